@@ -1,0 +1,1 @@
+//! ellip-margin
