@@ -1,1 +1,60 @@
-//! convex-support
+//! Convex shapes as support maps, for collision detection, ray casting and motion planning: 2D and 3D, `f32` and `f64`,
+//! on [glam]'s vectors.
+//!
+//! A convex shape is known here by one function, its [support mapping](SupportMap): which of its points lies farthest
+//! along a direction. That one function is enough for ray casts, distances and continuous collision detection, and it
+//! composes: the Minkowski sum, the difference (the configuration space obstacle), the hull, a pose, an affine map and
+//! rounding are each a few lines over the shapes they are made of.
+//!
+//! ```
+//! use convex_support::{Ball, Cuboid, Difference, Posed, SupportMap, glam::DVec3};
+//!
+//! // A ball of radius 0.5 can touch a box from any centre on the surface of their difference.
+//! let wall = Posed::translated(Cuboid::new(DVec3::new(1.0, 4.0, 4.0))?, DVec3::new(10.0, 0.0, 0.0))?;
+//! let ball = Ball::new(0.5)?;
+//! let obstacle = Difference::new(wall, ball);
+//! assert_eq!(obstacle.support_value(DVec3::NEG_X), -8.5); // from the left, the centre stops at x = 8.5
+//! # Ok::<(), convex_support::InvalidShape>(())
+//! ```
+//!
+//! # What is here
+//! - The traits: [`SupportMap`] (implement it for shapes of your own), [`Vector`] and [`Scalar`] (glam's types).
+//! - Shapes in any dimension: [`Point`], [`Segment`], [`Triangle`], [`Ball`], [`Cuboid`], [`Capsule`], [`Ellipsoid`],
+//!   [`Polytope`]; in 3D [`Cylinder`] and [`Cone`].
+//! - Shapes made of shapes: [`Posed`], [`Affine`], [`MinkowskiSum`], [`Difference`], [`Hull`], [`Rounded`]. They nest,
+//!   by value, by reference, or boxed as `dyn SupportMap<Vector = DVec3>`.
+//!
+//! Constructors check their numbers and return [`InvalidShape`]; support mappings then never fail.
+//!
+//! # Features
+//! - `std` (default): floating-point functions from the standard library.
+//! - `libm`: the same from the libm crate, for `no_std` targets; `alloc` is needed in any case.
+//! - `proptest`: strategies that generate shapes and poses of wild aspect and scale, for property tests.
+
+#![no_std]
+
+#[cfg(not(any(feature = "std", feature = "libm")))]
+compile_error!("convex-support needs floating-point functions: enable the feature `std` or `libm`");
+
+extern crate alloc;
+#[cfg(any(feature = "std", test))]
+extern crate std;
+
+mod combinators;
+mod error;
+mod hint;
+mod scalar;
+mod shapes;
+mod spd;
+mod support;
+mod vector;
+
+pub use glam;
+
+pub use combinators::{Affine, Difference, Hull, MinkowskiSum, Posed, Rounded};
+pub use error::InvalidShape;
+pub use hint::Hint;
+pub use scalar::Scalar;
+pub use shapes::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Polytope, Segment, Triangle};
+pub use support::{ScalarOf, SupportMap};
+pub use vector::{Matrix, Vector, Vector3};

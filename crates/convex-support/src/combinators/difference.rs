@@ -1,0 +1,65 @@
+//! The configuration space obstacle of two shapes.
+
+use crate::support::{ScalarOf, support_of_parts};
+use crate::{Hint, SupportMap};
+
+/// The set `A − B = { a − b : a ∈ A, b ∈ B }`, called the configuration space obstacle (CSO) of `A` and `B`.
+///
+/// Two shapes meet exactly where their difference contains zero; their distance is its distance from zero; and the
+/// translations of `B` that make it touch `A` are the boundary of the difference. So one moving shape against another
+/// becomes one ray against their difference.
+///
+/// ```
+/// use convex_support::{Ball, Cuboid, Difference, SupportMap, glam::DVec3};
+///
+/// let cso = Difference::new(Cuboid::new(DVec3::ONE)?, Ball::new(0.5)?);
+/// assert_eq!(cso.support_value(DVec3::X), 1.5);
+/// # Ok::<(), convex_support::InvalidShape>(())
+/// ```
+#[doc = include_str!("../../doc/cso.svg")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Difference<A, B> {
+    a: A,
+    b: B,
+}
+
+impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> Difference<A, B> {
+    /// The difference of the two shapes.
+    pub const fn new(a: A, b: B) -> Self {
+        Self { a, b }
+    }
+}
+
+impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for Difference<A, B> {
+    type Vector = A::Vector;
+
+    #[inline]
+    fn support(&self, direction: A::Vector) -> A::Vector {
+        support_of_parts(self, direction)
+    }
+
+    #[inline]
+    fn support_value(&self, direction: A::Vector) -> ScalarOf<A> {
+        self.a.support_value(direction) + self.b.support_value(-direction)
+    }
+
+    #[inline]
+    fn origin(&self) -> A::Vector {
+        self.a.origin() - self.b.origin()
+    }
+
+    #[inline]
+    fn core_support(&self, direction: A::Vector, hint: &mut Hint) -> A::Vector {
+        self.a.core_support(direction, hint) - self.b.core_support(-direction, hint)
+    }
+
+    #[inline]
+    fn radius(&self) -> ScalarOf<A> {
+        self.a.radius() + self.b.radius()
+    }
+
+    #[inline]
+    fn core_extent(&self) -> ScalarOf<A> {
+        self.a.core_extent() + self.b.core_extent()
+    }
+}

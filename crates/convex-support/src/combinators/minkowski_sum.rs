@@ -1,0 +1,61 @@
+//! The Minkowski sum of two shapes.
+
+use crate::support::{ScalarOf, support_of_parts};
+use crate::{Hint, SupportMap};
+
+/// The set `A + B = { a + b : a ∈ A, b ∈ B }`: one shape swept by the other. Nest it for more than two.
+///
+/// ```
+/// use convex_support::{Cuboid, MinkowskiSum, Segment, SupportMap, glam::DVec2};
+///
+/// let square = Cuboid::new(DVec2::ONE)?;
+/// let path = Segment::new([DVec2::ZERO, DVec2::new(5.0, 0.0)])?;
+/// assert_eq!(MinkowskiSum::new(square, path).support(DVec2::ONE), DVec2::new(6.0, 1.0));
+/// # Ok::<(), convex_support::InvalidShape>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MinkowskiSum<A, B> {
+    a: A,
+    b: B,
+}
+
+impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> MinkowskiSum<A, B> {
+    /// The sum of the two shapes.
+    pub const fn new(a: A, b: B) -> Self {
+        Self { a, b }
+    }
+}
+
+impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiSum<A, B> {
+    type Vector = A::Vector;
+
+    #[inline]
+    fn support(&self, direction: A::Vector) -> A::Vector {
+        support_of_parts(self, direction)
+    }
+
+    #[inline]
+    fn support_value(&self, direction: A::Vector) -> ScalarOf<A> {
+        self.a.support_value(direction) + self.b.support_value(direction)
+    }
+
+    #[inline]
+    fn origin(&self) -> A::Vector {
+        self.a.origin() + self.b.origin()
+    }
+
+    #[inline]
+    fn core_support(&self, direction: A::Vector, hint: &mut Hint) -> A::Vector {
+        self.a.core_support(direction, hint) + self.b.core_support(direction, hint)
+    }
+
+    #[inline]
+    fn radius(&self) -> ScalarOf<A> {
+        self.a.radius() + self.b.radius()
+    }
+
+    #[inline]
+    fn core_extent(&self) -> ScalarOf<A> {
+        self.a.core_extent() + self.b.core_extent()
+    }
+}

@@ -1,0 +1,101 @@
+//! What can be wrong with the numbers a shape is built from.
+
+use core::fmt;
+
+/// Why a shape could not be built.
+///
+/// Every constructor checks its numbers once, so that support mappings never have to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum InvalidShape {
+    /// A number is NaN or infinite.
+    NonFinite {
+        /// The parameter, as the constructor names it.
+        parameter: &'static str,
+        /// The index of the coordinate, point or matrix column within the parameter; 0 for a lone number.
+        index: usize,
+    },
+    /// A length that must be at least zero is negative.
+    Negative {
+        /// The parameter, as the constructor names it.
+        parameter: &'static str,
+        /// The index of the coordinate within the parameter; 0 for a lone number.
+        index: usize,
+        /// The value, converted to `f64`.
+        value: f64,
+    },
+    /// A length that must be greater than zero is not: an ellipsoid has no flat axes.
+    NotPositive {
+        /// The parameter, as the constructor names it.
+        parameter: &'static str,
+        /// The index of the coordinate within the parameter; 0 for a lone number.
+        index: usize,
+        /// The value, converted to `f64`.
+        value: f64,
+    },
+    /// A list of points is empty.
+    NoPoints,
+    /// The matrix of an ellipsoid is not symmetric to rounding.
+    NotSymmetric {
+        /// The row of the entry that differs from its mirror image.
+        row: usize,
+        /// Its column.
+        column: usize,
+    },
+    /// The matrix of an ellipsoid is not positive definite to rounding.
+    NotPositiveDefinite,
+    /// A rotation is the zero quaternion.
+    ZeroRotation,
+}
+
+impl fmt::Display for InvalidShape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NonFinite { parameter, index } => {
+                write!(f, "{parameter} must be finite, but number {index} of it is NaN or infinite")
+            }
+            Self::Negative { parameter, index, value } => {
+                write!(f, "{parameter} must not be negative, but number {index} of it is {value}")
+            }
+            Self::NotPositive { parameter, index, value } => {
+                write!(f, "{parameter} must be greater than zero, but number {index} of it is {value}")
+            }
+            Self::NoPoints => f.write_str("at least one point is needed, but the list is empty"),
+            Self::NotSymmetric { row, column } => {
+                write!(f, "the matrix must be symmetric, but entries ({row}, {column}) and ({column}, {row}) differ")
+            }
+            Self::NotPositiveDefinite => f.write_str("the matrix must be positive definite, but it is not"),
+            Self::ZeroRotation => f.write_str("the rotation must not be the zero quaternion"),
+        }
+    }
+}
+
+impl core::error::Error for InvalidShape {}
+
+/// `value` if it is finite and at least zero.
+pub(crate) fn non_negative<S: crate::Scalar>(parameter: &'static str, value: S) -> Result<S, InvalidShape> {
+    if !value.is_finite() {
+        Err(InvalidShape::NonFinite { parameter, index: 0 })
+    } else if value < S::ZERO {
+        Err(InvalidShape::Negative { parameter, index: 0, value: value.as_f64() })
+    } else {
+        Ok(value)
+    }
+}
+
+/// `vector` if its coordinates are finite.
+pub(crate) fn finite<V: crate::Vector>(parameter: &'static str, vector: V) -> Result<V, InvalidShape> {
+    match (0..V::DIM).find(|&i| !num_traits::Float::is_finite(vector.get(i))) {
+        Some(index) => Err(InvalidShape::NonFinite { parameter, index }),
+        None => Ok(vector),
+    }
+}
+
+/// `matrix` if its entries are finite.
+pub(crate) fn finite_matrix<M: crate::Matrix>(parameter: &'static str, matrix: M) -> Result<M, InvalidShape> {
+    use crate::Vector;
+    match (0..M::Vector::DIM).find(|&j| !matrix.col(j).is_finite()) {
+        Some(index) => Err(InvalidShape::NonFinite { parameter, index }),
+        None => Ok(matrix),
+    }
+}

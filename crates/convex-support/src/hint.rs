@@ -1,0 +1,40 @@
+//! What one support query remembers for the next.
+
+/// How many polytopes within one body are remembered; any further ones are searched afresh each time.
+const SLOTS: usize = 4;
+
+/// The vertices that the polytopes within a body answered with last.
+///
+/// Successive support queries of an iterative method, and of successive frames, have nearly the same answer. A large
+/// polytope that is told its last vertex climbs to the new one in a few steps. An empty hint (the default) is always
+/// right, and a stale one costs time, never correctness.
+///
+/// A body is a tree of combinators with shapes at its leaves; every query visits the leaves in the same order, and each
+/// polytope among them takes the next slot. [`rewind`](Self::rewind) starts a query.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Hint {
+    vertices: [u32; SLOTS],
+    next: u8,
+}
+
+impl Hint {
+    /// The hint with which nothing is known.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { vertices: [0; SLOTS], next: 0 }
+    }
+
+    /// Starts a query of the whole body: its first polytope takes the first slot again.
+    #[inline]
+    pub fn rewind(&mut self) {
+        self.next = 0;
+    }
+
+    /// The slot of the next polytope; `None` where a body has more polytopes than there are slots.
+    #[inline]
+    pub fn next_slot(&mut self) -> Option<&mut u32> {
+        let slot = self.vertices.get_mut(usize::from(self.next))?;
+        self.next += 1;
+        Some(slot)
+    }
+}

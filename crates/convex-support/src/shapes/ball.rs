@@ -1,0 +1,58 @@
+//! A ball about the origin.
+
+use crate::error::{InvalidShape, non_negative};
+use crate::support::{ScalarOf, swept};
+use crate::{Hint, Scalar, SupportMap, Vector};
+
+/// The ball `|x| ≤ radius`; a disc in 2D. Its core is a point.
+///
+/// ```
+/// use convex_support::{Ball, SupportMap, glam::DVec3};
+///
+/// let ball = Ball::<DVec3>::new(2.0)?;
+/// assert_eq!(ball.support(DVec3::new(0.0, 0.0, 9.0)), DVec3::new(0.0, 0.0, 2.0));
+/// # Ok::<(), convex_support::InvalidShape>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball<V: Vector> {
+    radius: V::Scalar,
+}
+
+impl<V: Vector> Ball<V> {
+    /// The ball of the given radius, which may be 0.
+    ///
+    /// # Errors
+    /// [`InvalidShape`] if the radius is negative or not finite.
+    pub fn new(radius: V::Scalar) -> Result<Self, InvalidShape> {
+        Ok(Self { radius: non_negative("radius", radius)? })
+    }
+}
+
+impl<V: Vector> SupportMap for Ball<V> {
+    type Vector = V;
+
+    #[inline]
+    fn support(&self, direction: V) -> V {
+        swept(self.radius, direction)
+    }
+
+    #[inline]
+    fn support_value(&self, direction: V) -> V::Scalar {
+        direction.norm() * self.radius
+    }
+
+    #[inline]
+    fn core_support(&self, _direction: V, _hint: &mut Hint) -> V {
+        V::ZERO
+    }
+
+    #[inline]
+    fn radius(&self) -> V::Scalar {
+        self.radius
+    }
+
+    #[inline]
+    fn core_extent(&self) -> ScalarOf<Self> {
+        V::Scalar::ZERO
+    }
+}

@@ -1,0 +1,69 @@
+//! A segment along the second axis, swept by a ball.
+
+use num_traits::Float as _;
+
+use crate::error::{InvalidShape, non_negative};
+use crate::support::{ScalarOf, support_of_parts};
+use crate::{Hint, SupportMap, Vector};
+
+/// The segment from `(0, −half_height)` to `(0, half_height)` along the second axis, swept by a ball. Its core is the
+/// segment.
+///
+/// ```
+/// use convex_support::{Capsule, SupportMap, glam::DVec2};
+///
+/// let capsule = Capsule::<DVec2>::new(1.0, 0.5)?;
+/// assert_eq!(capsule.support_value(DVec2::Y), 1.5);
+/// assert_eq!(capsule.support_value(DVec2::X), 0.5);
+/// # Ok::<(), convex_support::InvalidShape>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Capsule<V: Vector> {
+    half_height: V::Scalar,
+    radius: V::Scalar,
+}
+
+impl<V: Vector> Capsule<V> {
+    /// The capsule around a segment of length `2·half_height`; either number may be 0.
+    ///
+    /// # Errors
+    /// [`InvalidShape`] naming the number that is negative or not finite.
+    pub fn new(half_height: V::Scalar, radius: V::Scalar) -> Result<Self, InvalidShape> {
+        Ok(Self { half_height: non_negative("half_height", half_height)?, radius: non_negative("radius", radius)? })
+    }
+
+    /// Half the length of the segment.
+    #[must_use]
+    pub fn half_height(&self) -> V::Scalar {
+        self.half_height
+    }
+}
+
+impl<V: Vector> SupportMap for Capsule<V> {
+    type Vector = V;
+
+    #[inline]
+    fn support(&self, direction: V) -> V {
+        support_of_parts(self, direction)
+    }
+
+    #[inline]
+    fn support_value(&self, direction: V) -> V::Scalar {
+        direction.get(1).abs() * self.half_height + direction.norm() * self.radius
+    }
+
+    #[inline]
+    fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
+        V::axis(1) * self.half_height.copysign(direction.get(1))
+    }
+
+    #[inline]
+    fn radius(&self) -> V::Scalar {
+        self.radius
+    }
+
+    #[inline]
+    fn core_extent(&self) -> ScalarOf<Self> {
+        self.half_height
+    }
+}

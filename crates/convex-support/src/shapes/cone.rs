@@ -1,0 +1,71 @@
+//! A solid cone about the y axis.
+
+use super::cylinder::across;
+use crate::error::{InvalidShape, non_negative};
+use crate::support::{ScalarOf, swept};
+use crate::{Hint, SupportMap, Vector3};
+use num_traits::Float as _;
+
+/// The cone with its apex at `(0, half_height, 0)` and its base disc at `y = −half_height`.
+///
+/// ```
+/// use convex_support::{Cone, SupportMap, glam::DVec3};
+///
+/// let cone = Cone::<DVec3>::new(1.0, 0.5)?;
+/// assert_eq!(cone.support(DVec3::new(1.0, 1.0, 0.0)), DVec3::new(0.0, 1.0, 0.0));
+/// assert_eq!(cone.support(DVec3::new(1.0, 0.1, 0.0)), DVec3::new(0.5, -1.0, 0.0));
+/// # Ok::<(), convex_support::InvalidShape>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone<V: Vector3> {
+    half_height: V::Scalar,
+    radius: V::Scalar,
+}
+
+impl<V: Vector3> Cone<V> {
+    /// The cone of height `2·half_height`; either number may be 0.
+    ///
+    /// # Errors
+    /// [`InvalidShape`] naming the number that is negative or not finite.
+    pub fn new(half_height: V::Scalar, radius: V::Scalar) -> Result<Self, InvalidShape> {
+        Ok(Self { half_height: non_negative("half_height", half_height)?, radius: non_negative("radius", radius)? })
+    }
+
+    /// Half the height, from the middle to the apex or to the base.
+    #[must_use]
+    pub fn half_height(&self) -> V::Scalar {
+        self.half_height
+    }
+
+    /// The radius of the base disc.
+    #[must_use]
+    pub fn disc_radius(&self) -> V::Scalar {
+        self.radius
+    }
+}
+
+impl<V: Vector3> SupportMap for Cone<V> {
+    type Vector = V;
+
+    #[inline]
+    fn support(&self, direction: V) -> V {
+        // The cone is the hull of its apex (support value h·d_y) and its base disc (r·|d_xz| − h·d_y).
+        let across = across(direction);
+        let rise = (self.half_height + self.half_height) * direction.get(1);
+        if rise > self.radius * across.norm() {
+            V::axis(1) * self.half_height
+        } else {
+            swept(self.radius, across) - V::axis(1) * self.half_height
+        }
+    }
+
+    #[inline]
+    fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
+        self.support(direction)
+    }
+
+    #[inline]
+    fn core_extent(&self) -> ScalarOf<Self> {
+        self.radius.hypot(self.half_height)
+    }
+}

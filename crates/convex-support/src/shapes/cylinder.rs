@@ -1,0 +1,74 @@
+//! A solid cylinder about the y axis.
+
+use num_traits::Float as _;
+
+use crate::error::{InvalidShape, non_negative};
+use crate::support::{ScalarOf, swept};
+use crate::{Hint, Scalar, SupportMap, Vector3};
+
+/// The cylinder `x² + z² ≤ radius²`, `|y| ≤ half_height`.
+///
+/// ```
+/// use convex_support::{Cylinder, SupportMap, glam::DVec3};
+///
+/// let cylinder = Cylinder::<DVec3>::new(1.0, 0.5)?;
+/// assert_eq!(cylinder.support(DVec3::new(2.0, -1.0, 0.0)), DVec3::new(0.5, -1.0, 0.0));
+/// # Ok::<(), convex_support::InvalidShape>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cylinder<V: Vector3> {
+    half_height: V::Scalar,
+    radius: V::Scalar,
+}
+
+impl<V: Vector3> Cylinder<V> {
+    /// The cylinder of height `2·half_height`; either number may be 0.
+    ///
+    /// # Errors
+    /// [`InvalidShape`] naming the number that is negative or not finite.
+    pub fn new(half_height: V::Scalar, radius: V::Scalar) -> Result<Self, InvalidShape> {
+        Ok(Self { half_height: non_negative("half_height", half_height)?, radius: non_negative("radius", radius)? })
+    }
+
+    /// Half the length of the axis.
+    #[must_use]
+    pub fn half_height(&self) -> V::Scalar {
+        self.half_height
+    }
+
+    /// The radius of the discs at both ends.
+    #[must_use]
+    pub fn disc_radius(&self) -> V::Scalar {
+        self.radius
+    }
+}
+
+/// The part of `direction` across the y axis.
+#[inline]
+pub(super) fn across<V: Vector3>(direction: V) -> V {
+    V::from_fn(|i| if i == 1 { V::Scalar::ZERO } else { direction.get(i) })
+}
+
+impl<V: Vector3> SupportMap for Cylinder<V> {
+    type Vector = V;
+
+    #[inline]
+    fn support(&self, direction: V) -> V {
+        swept(self.radius, across(direction)) + V::axis(1) * self.half_height.copysign(direction.get(1))
+    }
+
+    #[inline]
+    fn support_value(&self, direction: V) -> V::Scalar {
+        across(direction).norm() * self.radius + direction.get(1).abs() * self.half_height
+    }
+
+    #[inline]
+    fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
+        self.support(direction)
+    }
+
+    #[inline]
+    fn core_extent(&self) -> ScalarOf<Self> {
+        self.radius.hypot(self.half_height)
+    }
+}

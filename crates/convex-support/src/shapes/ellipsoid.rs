@@ -1,0 +1,169 @@
+//! An ellipsoid by its centre, axes and semi-axes.
+
+use num_traits::Float as _;
+
+use crate::error::{InvalidShape, finite, finite_matrix};
+use crate::spd;
+use crate::support::ScalarOf;
+use crate::{Hint, Matrix, Scalar, SupportMap, Vector};
+
+/// The ellipsoid `{ c + R·diag(a)·u : |u| ≤ 1 }`; an ellipse in 2D.
+///
+/// It is kept as centre `c`, orthonormal axes (the columns of `R`) and semi-axes `a`. The matrix form
+/// `{ x : (x − c)ᵀX(x − c) ≤ 1 }` has `X = R·diag(a)⁻²·Rᵀ`, whose condition is the square of the aspect ratio: forming
+/// it loses all accuracy of the longest axis at an aspect of 1e8 in `f64`. Where the axes are known, give the axes.
+///
+/// ```
+/// use convex_support::{Ellipsoid, SupportMap, glam::{DMat2, DVec2}};
+///
+/// let ellipse = Ellipsoid::new(DVec2::ZERO, DVec2::new(2.0, 1.0), 0.0)?;
+/// assert_eq!(ellipse.support_value(DVec2::X), 2.0);
+///
+/// let same = Ellipsoid::from_matrix(DVec2::ZERO, DMat2::from_diagonal(DVec2::new(0.25, 1.0)))?;
+/// assert_eq!(same.support_value(DVec2::X), 2.0);
+/// # Ok::<(), convex_support::InvalidShape>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipsoid<V: Vector> {
+    center: V,
+    axes: V::Matrix,
+    semi_axes: V,
+}
+
+impl<V: Vector> Ellipsoid<V> {
+    /// The ellipsoid about `center` whose semi-axes, along the coordinate axes, are turned by `rotation`.
+    ///
+    /// # Errors
+    /// [`InvalidShape`] if a number is not finite, a semi-axis is not positive, or the rotation is the zero quaternion.
+    pub fn new(center: V, semi_axes: V, rotation: V::Rotation) -> Result<Self, InvalidShape> {
+        let axes = V::rotation_matrix(rotation).ok_or(InvalidShape::ZeroRotation)?;
+        Self::from_axes(center, semi_axes, axes)
+    }
+
+    /// The ellipsoid about `center` whose semi-axis `i` lies along column `i` of `axes`, which must be orthonormal.
+    ///
+    /// # Errors
+    /// [`InvalidShape`] if a number is not finite or a semi-axis is not positive.
+    pub fn from_axes(center: V, semi_axes: V, axes: V::Matrix) -> Result<Self, InvalidShape> {
+        let center = finite("center", center)?;
+        let semi_axes = finite("semi_axes", semi_axes)?;
+        let axes = finite_matrix("axes", axes)?;
+        match (0..V::DIM).find(|&i| semi_axes.get(i) <= V::Scalar::ZERO) {
+            Some(index) => {
+                Err(InvalidShape::NotPositive { parameter: "semi_axes", index, value: semi_axes.get(index).as_f64() })
+            }
+            None => Ok(Self { center, axes, semi_axes }),
+        }
+    }
+
+    /// The ellipsoid `{ x : (x − center)ᵀ·matrix·(x − center) ≤ 1 }`.
+    ///
+    /// The axes are found from a pivoted Cholesky factor by one-sided Jacobi rotations in `f64`: semi-axes are
+    /// as accurate, relative to themselves, as the matrix determines them.
+    ///
+    /// # Errors
+    /// [`InvalidShape`] if a number is not finite, or the matrix is not symmetric or not positive definite to rounding.
+    pub fn from_matrix(center: V, matrix: V::Matrix) -> Result<Self, InvalidShape> {
+        let center = finite("center", center)?;
+        let matrix = finite_matrix("matrix", matrix)?;
+        let mut x = [[0.0; 3]; 3];
+        for (j, column) in x.iter_mut().enumerate().take(V::DIM) {
+            for (i, entry) in column.iter_mut().enumerate().take(V::DIM) {
+                *entry = matrix.col(j).get(i).as_f64();
+            }
+        }
+        let spd::Axes { directions, eigenvalues } = spd::axes(x, V::DIM, V::Scalar::EPSILON.as_f64())?;
+        let axes = V::Matrix::from_cols_fn(|j| V::from_fn(|i| V::Scalar::from_f64(directions[j][i])));
+        let semi_axes = V::from_fn(|i| V::Scalar::from_f64(1.0 / eigenvalues[i].sqrt()));
+        Self::from_axes(center, semi_axes, axes)
+    }
+
+    /// The centre.
+    #[must_use]
+    pub fn center(&self) -> V {
+        self.center
+    }
+
+    /// The semi-axes: half the size along each column of [`axes`](Self::axes).
+    #[must_use]
+    pub fn semi_axes(&self) -> V {
+        self.semi_axes
+    }
+
+    /// The directions of the semi-axes, as orthonormal columns.
+    #[must_use]
+    pub fn axes(&self) -> V::Matrix {
+        self.axes
+    }
+
+    /// The matrix `X = R·diag(a)⁻²·Rᵀ` of the form `(x − c)ᵀX(x − c) ≤ 1`; entries may overflow where a semi-axis is
+    /// below the square root of the smallest number.
+    #[must_use]
+    pub fn matrix(&self) -> V::Matrix {
+        self.sum_of_squares(|a| (a * a).recip())
+    }
+
+    /// The inverse of [`matrix`](Self::matrix), `R·diag(a)²·Rᵀ`: the squared support value about the centre is
+    /// `dᵀ·shape_matrix·d`.
+    #[must_use]
+    pub fn shape_matrix(&self) -> V::Matrix {
+        self.sum_of_squares(|a| a * a)
+    }
+
+    /// `R·diag(f(a))·Rᵀ`.
+    fn sum_of_squares(&self, f: impl Fn(V::Scalar) -> V::Scalar) -> V::Matrix {
+        let scaled = V::Matrix::from_cols_fn(|j| self.axes.col(j) * f(self.semi_axes.get(j)));
+        // Column by column from the outer products, so that the result is symmetric to the last bit.
+        V::Matrix::from_cols_fn(|j| {
+            V::from_fn(|i| {
+                let mut sum = V::Scalar::ZERO;
+                for k in 0..V::DIM {
+                    let (low, high) = (i.min(j), i.max(j));
+                    sum += scaled.col(k).get(low) * self.axes.col(k).get(high);
+                }
+                sum
+            })
+        })
+    }
+
+    /// The same ellipsoid after the rigid motion `x ↦ rotation·x + translation`.
+    ///
+    /// # Errors
+    /// [`InvalidShape`] if a number is not finite or the rotation is the zero quaternion.
+    pub fn posed(&self, rotation: V::Rotation, translation: V) -> Result<Self, InvalidShape> {
+        let rotation = V::rotation_matrix(rotation).ok_or(InvalidShape::ZeroRotation)?;
+        Self::from_axes(rotation * self.center + translation, self.semi_axes, rotation * self.axes)
+    }
+}
+
+impl<V: Vector> SupportMap for Ellipsoid<V> {
+    type Vector = V;
+
+    #[inline]
+    fn support(&self, direction: V) -> V {
+        self.center + self.core_support(direction, &mut Hint::new())
+    }
+
+    #[inline]
+    fn support_value(&self, direction: V) -> V::Scalar {
+        direction.dot(self.center) + (self.semi_axes * self.axes.transpose_mul(direction)).norm()
+    }
+
+    #[inline]
+    fn origin(&self) -> V {
+        self.center
+    }
+
+    #[inline]
+    fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
+        // max e·(a∘u) over |u| ≤ 1, with e = Rᵀd: u is the unit vector along a∘e.
+        let e = self.axes.transpose_mul(direction);
+        let u = (self.semi_axes * e).unit().unwrap_or_else(|| V::axis(0));
+        self.axes * (self.semi_axes * u)
+    }
+
+    #[inline]
+    fn core_extent(&self) -> ScalarOf<Self> {
+        self.semi_axes.max_element()
+    }
+}

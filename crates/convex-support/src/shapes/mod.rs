@@ -1,0 +1,23 @@
+//! The primitive shapes. Each is centred on, or given in, its own frame; [`Posed`](crate::Posed) puts it elsewhere.
+
+mod ball;
+mod capsule;
+mod cone;
+mod cuboid;
+mod cylinder;
+mod ellipsoid;
+mod point;
+mod polytope;
+mod segment;
+mod triangle;
+
+pub use ball::Ball;
+pub use capsule::Capsule;
+pub use cone::Cone;
+pub use cuboid::Cuboid;
+pub use cylinder::Cylinder;
+pub use ellipsoid::Ellipsoid;
+pub use point::Point;
+pub use polytope::Polytope;
+pub use segment::Segment;
+pub use triangle::Triangle;

@@ -1,0 +1,53 @@
+//! A single point.
+
+use crate::error::{InvalidShape, finite};
+use crate::support::ScalarOf;
+use crate::{Hint, Scalar, SupportMap, Vector};
+
+/// The set of one point.
+///
+/// ```
+/// use convex_support::{Point, SupportMap, glam::DVec2};
+///
+/// let point = Point::new(DVec2::new(1.0, 2.0))?;
+/// assert_eq!(point.support(DVec2::X), DVec2::new(1.0, 2.0));
+/// # Ok::<(), convex_support::InvalidShape>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point<V: Vector> {
+    at: V,
+}
+
+impl<V: Vector> Point<V> {
+    /// The point at `at`.
+    ///
+    /// # Errors
+    /// [`InvalidShape::NonFinite`] naming the coordinate that is not finite.
+    pub fn new(at: V) -> Result<Self, InvalidShape> {
+        Ok(Self { at: finite("at", at)? })
+    }
+}
+
+impl<V: Vector> SupportMap for Point<V> {
+    type Vector = V;
+
+    #[inline]
+    fn support(&self, _direction: V) -> V {
+        self.at
+    }
+
+    #[inline]
+    fn origin(&self) -> V {
+        self.at
+    }
+
+    #[inline]
+    fn core_support(&self, _direction: V, _hint: &mut Hint) -> V {
+        V::ZERO
+    }
+
+    #[inline]
+    fn core_extent(&self) -> ScalarOf<Self> {
+        V::Scalar::ZERO
+    }
+}

@@ -1,0 +1,54 @@
+//! A straight line segment.
+
+use crate::error::{InvalidShape, finite};
+use crate::{Hint, Scalar, SupportMap, Vector};
+
+/// The segment between two points, which may coincide.
+///
+/// ```
+/// use convex_support::{Segment, SupportMap, glam::DVec2};
+///
+/// let segment = Segment::new([DVec2::ZERO, DVec2::new(2.0, 1.0)])?;
+/// assert_eq!(segment.support(DVec2::Y), DVec2::new(2.0, 1.0));
+/// # Ok::<(), convex_support::InvalidShape>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment<V: Vector> {
+    points: [V; 2],
+}
+
+impl<V: Vector> Segment<V> {
+    /// The segment between the two points.
+    ///
+    /// # Errors
+    /// [`InvalidShape::NonFinite`] if a coordinate is not finite.
+    pub fn new(points: [V; 2]) -> Result<Self, InvalidShape> {
+        Ok(Self { points: [finite("points[0]", points[0])?, finite("points[1]", points[1])?] })
+    }
+
+    /// Its end points.
+    #[must_use]
+    pub fn points(&self) -> [V; 2] {
+        self.points
+    }
+}
+
+impl<V: Vector> SupportMap for Segment<V> {
+    type Vector = V;
+
+    #[inline]
+    fn support(&self, direction: V) -> V {
+        let [a, b] = self.points;
+        if direction.dot(b - a) > V::Scalar::ZERO { b } else { a }
+    }
+
+    #[inline]
+    fn origin(&self) -> V {
+        super::polytope::middle(self.points)
+    }
+
+    #[inline]
+    fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
+        self.support(direction) - self.origin()
+    }
+}

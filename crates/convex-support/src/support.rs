@@ -1,0 +1,194 @@
+//! The support mapping, the one thing every convex shape here has in common.
+
+use num_traits::Float as _;
+
+use crate::{Hint, Scalar, Vector};
+
+/// A nonempty, closed, bounded convex set, known by its support mapping.
+///
+/// The *support point* `s(d)` in direction `d` is a point of the set farthest along `d`, and the *support value*
+/// `h(d) = d·s(d)` is how far that is:
+///
+/// $$ s(d) \in C, \qquad h(d) = d \cdot s(d) = \max \\{ d \cdot x : x \in C \\}. $$
+///
+/// Support mappings compose: the support point of a Minkowski sum is the sum of the support points, that of an affine
+/// image `M·C + t` is `M·s(Mᵀd) + t`, and that of a hull is the farther of two. The combinators of this crate are these
+/// formulas.
+///
+/// # Implementing it
+/// [`support`](Self::support) is all a shape of your own needs:
+///
+/// ```
+/// use convex_support::{SupportMap, glam::DVec2};
+///
+/// /// The square |x| + |y| ≤ 1.
+/// struct Diamond;
+///
+/// impl SupportMap for Diamond {
+///     type Vector = DVec2;
+///
+///     fn support(&self, d: DVec2) -> DVec2 {
+///         if d.x.abs() > d.y.abs() { DVec2::new(d.x.signum(), 0.0) } else { DVec2::new(0.0, d.y.signum()) }
+///     }
+/// }
+///
+/// assert_eq!(Diamond.support(DVec2::new(-3.0, 1.0)), DVec2::NEG_X);
+/// assert_eq!(Diamond.support_value(DVec2::new(-3.0, 1.0)), 3.0);
+/// ```
+///
+/// An implementor must obey these laws (up to rounding), and may rely on nothing about `d` but that callers make it
+/// finite:
+/// - `support(d)` is a point of one and the same set for every `d`, and no point of that set is farther along `d`;
+/// - where several points are, any one may be returned; for `d = 0` any point of the set may;
+/// - only the direction of `d` matters, not its length;
+/// - the same argument gives the same answer, and the provided methods describe the same set.
+///
+/// # Core and radius
+/// A ball, a capsule and everything [rounded](crate::Rounded) is a smaller set, its *core*, swept by a ball. Iterative
+/// methods converge slowly on round surfaces and finish at once on a point or a segment, so they work on the core and
+/// add the radius at the end. And they work near the body rather than near the world's origin, where coordinates have
+/// digits to spare. So a set is also known as
+///
+/// $$ C = o + K \oplus B(r) $$
+///
+/// with the [`origin`](Self::origin) `o`, the core `K` given by [`core_support`](Self::core_support), and the
+/// [`radius`](Self::radius) `r`. The provided methods say that `o = 0`, `r = 0` and the core is all there is; a shape
+/// that overrides one of them says what its set is split into.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a convex shape",
+    note = "implement `SupportMap` for it: only `support` is required"
+)]
+pub trait SupportMap {
+    /// The space the set lives in: dimension and precision.
+    type Vector: Vector;
+
+    /// A point of the set farthest along `direction`, which need not be of unit length.
+    fn support(&self, direction: Self::Vector) -> Self::Vector;
+
+    /// How far the set reaches along `direction`: the largest dot product of `direction` and a point of the set, in
+    /// units of length times the length of `direction`.
+    #[inline]
+    fn support_value(&self, direction: Self::Vector) -> ScalarOf<Self> {
+        direction.dot(self.support(direction))
+    }
+
+    /// A point near the set, which [`core_support`](Self::core_support) is relative to.
+    #[inline]
+    fn origin(&self) -> Self::Vector {
+        Self::Vector::ZERO
+    }
+
+    /// A point of the core farthest along `direction`, relative to the [`origin`](Self::origin).
+    ///
+    /// `hint` carries what the previous call found, so that a large polytope need not start its search afresh. It
+    /// never changes how far along `direction` the answer lies.
+    #[inline]
+    fn core_support(&self, direction: Self::Vector, hint: &mut Hint) -> Self::Vector {
+        let _ = hint;
+        self.support(direction) - self.origin()
+    }
+
+    /// The radius of the ball that sweeps the core.
+    #[inline]
+    fn radius(&self) -> ScalarOf<Self> {
+        ScalarOf::<Self>::ZERO
+    }
+
+    /// An upper bound on the length of every vector that [`core_support`](Self::core_support) computes with, which is
+    /// what its rounding errors are proportional to. Provided: the corner of the core's bounding box.
+    fn core_extent(&self) -> ScalarOf<Self> {
+        let corner = Self::Vector::from_fn(|i| {
+            let axis = Self::Vector::axis(i);
+            let reach = |d: Self::Vector| d.dot(self.core_support(d, &mut Hint::default())).abs();
+            reach(axis).max(reach(-axis))
+        });
+        corner.norm()
+    }
+}
+
+/// The scalar of the space a shape lives in.
+pub type ScalarOf<S> = <<S as SupportMap>::Vector as Vector>::Scalar;
+
+/// The support point of `origin + core ⊕ ball(radius)`, for shapes that are defined by their core.
+#[inline]
+pub(crate) fn support_of_parts<S: SupportMap + ?Sized>(shape: &S, direction: S::Vector) -> S::Vector {
+    let core = shape.core_support(direction, &mut Hint::default());
+    shape.origin() + core + swept(shape.radius(), direction)
+}
+
+/// The point of the ball of the given radius about zero farthest along `direction`.
+#[inline]
+pub(crate) fn swept<V: Vector>(radius: V::Scalar, direction: V) -> V {
+    if radius == V::Scalar::ZERO {
+        return V::ZERO;
+    }
+    direction.unit().unwrap_or_else(|| V::axis(0)) * radius
+}
+
+impl<S: SupportMap + ?Sized> SupportMap for &S {
+    type Vector = S::Vector;
+
+    #[inline]
+    fn support(&self, direction: S::Vector) -> S::Vector {
+        (**self).support(direction)
+    }
+
+    #[inline]
+    fn support_value(&self, direction: S::Vector) -> ScalarOf<S> {
+        (**self).support_value(direction)
+    }
+
+    #[inline]
+    fn origin(&self) -> S::Vector {
+        (**self).origin()
+    }
+
+    #[inline]
+    fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
+        (**self).core_support(direction, hint)
+    }
+
+    #[inline]
+    fn radius(&self) -> ScalarOf<S> {
+        (**self).radius()
+    }
+
+    #[inline]
+    fn core_extent(&self) -> ScalarOf<S> {
+        (**self).core_extent()
+    }
+}
+
+impl<S: SupportMap + ?Sized> SupportMap for alloc::boxed::Box<S> {
+    type Vector = S::Vector;
+
+    #[inline]
+    fn support(&self, direction: S::Vector) -> S::Vector {
+        (**self).support(direction)
+    }
+
+    #[inline]
+    fn support_value(&self, direction: S::Vector) -> ScalarOf<S> {
+        (**self).support_value(direction)
+    }
+
+    #[inline]
+    fn origin(&self) -> S::Vector {
+        (**self).origin()
+    }
+
+    #[inline]
+    fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
+        (**self).core_support(direction, hint)
+    }
+
+    #[inline]
+    fn radius(&self) -> ScalarOf<S> {
+        (**self).radius()
+    }
+
+    #[inline]
+    fn core_extent(&self) -> ScalarOf<S> {
+        (**self).core_extent()
+    }
+}
