@@ -1,0 +1,110 @@
+//! The ellipsoid as it is returned.
+
+use crate::solution::Shape;
+
+/// The ellipsoid E(c, X) = { x : (x − c)ᵀX(x − c) ≤ 1 } in N dimensions.
+///
+/// It is kept by centre, orthonormal axes and semi-axes; [`matrix`](Self::matrix) is formed from them. The condition of X
+/// is the square of the aspect ratio, so at an aspect of 1e8 the doubles of X no longer tell the longest axis: prefer
+/// the axes there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipsoid<const N: usize> {
+    center: [f64; N],
+    axes: [[f64; N]; N],
+    semi_axes: [f64; N],
+    matrix: [[f64; N]; N],
+    log_det: f64,
+}
+
+impl<const N: usize> Ellipsoid<N> {
+    pub(crate) fn from_shape(shape: &Shape) -> Self {
+        let square = |flat: &[f64]| {
+            let mut rows = [[0.0; N]; N];
+            rows.as_flattened_mut().copy_from_slice(flat);
+            rows
+        };
+        let row = |flat: &[f64]| {
+            let mut row = [0.0; N];
+            row.copy_from_slice(flat);
+            row
+        };
+        Self {
+            center: row(&shape.center),
+            axes: square(&shape.axes),
+            semi_axes: row(&shape.semi_axes),
+            matrix: square(&shape.matrix),
+            log_det: shape.log_det,
+        }
+    }
+
+    /// The centre c.
+    #[must_use]
+    pub const fn center(&self) -> [f64; N] {
+        self.center
+    }
+
+    /// The orthonormal directions of the semi-axes: row k is that of `semi_axes()[k]`. As a matrix these rows are the
+    /// rotation from the world into the frame of the ellipsoid; its determinant is +1.
+    #[must_use]
+    pub const fn axes(&self) -> [[f64; N]; N] {
+        self.axes
+    }
+
+    /// The lengths of the semi-axes, longest first. Those across the affine hull of a flat set are zero.
+    #[must_use]
+    pub const fn semi_axes(&self) -> [f64; N] {
+        self.semi_axes
+    }
+
+    /// X, row by row, symmetric to the last bit. For an ellipsoid within an affine hull it measures within the hull only
+    /// (it is zero along the normals). For an enclosing ellipsoid X is rounded outward by itself: it too holds every
+    /// point in (x − c)ᵀX(x − c) ≤ 1, evaluated in `f64` in any order.
+    #[must_use]
+    pub const fn matrix(&self) -> [[f64; N]; N] {
+        self.matrix
+    }
+
+    /// ln det X = −2·Σ ln semi-axis, over the semi-axes that are not zero.
+    #[must_use]
+    pub const fn log_det(&self) -> f64 {
+        self.log_det
+    }
+
+    /// The logarithm of the volume; of the length or area where the ellipsoid lies in an affine hull, and 0 for a point.
+    #[must_use]
+    pub fn log_volume(&self) -> f64 {
+        let rank = self.semi_axes.iter().filter(|a| **a > 0.0).count();
+        crate::solution::log_unit_ball_volume(rank) - 0.5 * self.log_det
+    }
+
+    /// |diag(1/a)·Rᵀ(x − c)|: 1 on the surface, less inside. Components across the affine hull of a flat ellipsoid are
+    /// not looked at.
+    #[must_use]
+    pub fn radius_at(&self, x: impl Into<[f64; N]>) -> f64 {
+        let x = x.into();
+        let mut square = 0.0;
+        for (axis, a) in self.axes.iter().zip(self.semi_axes) {
+            if a > 0.0 {
+                let mut along = 0.0;
+                for k in 0..N {
+                    along += axis[k] * (x[k] - self.center[k]);
+                }
+                square += (along / a) * (along / a);
+            }
+        }
+        square.sqrt()
+    }
+
+    /// Whether `x` lies in the ellipsoid, boundary included, as evaluated in `f64` by [`radius_at`](Self::radius_at).
+    #[must_use]
+    pub fn contains(&self, x: impl Into<[f64; N]>) -> bool {
+        self.radius_at(x) <= 1.0
+    }
+
+    /// The volume of this ellipsoid over that of `outer`, to the power 1/N: with the inscribed and the enclosing
+    /// ellipsoid of one body a number in [1/N, 1], which tells how nearly the body is an ellipsoid.
+    #[must_use]
+    pub fn tightness(&self, outer: &Self) -> f64 {
+        (0.5 * (outer.log_det - self.log_det) / N as f64).exp()
+    }
+}

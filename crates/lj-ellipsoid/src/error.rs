@@ -1,0 +1,83 @@
+//! What makes a set of points or half-spaces unfit for an ellipsoid.
+
+use thiserror::Error;
+
+/// Why there is no minimum-volume ellipsoid around the given points.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum EnclosingError {
+    /// There are no points, or they have no coordinates.
+    #[error("no points to enclose")]
+    Empty,
+    /// A coordinate is NaN or infinite.
+    #[error("coordinate {coordinate} of point {index} is {value}")]
+    NonFinite {
+        /// Which point.
+        index: usize,
+        /// Which of its coordinates.
+        coordinate: usize,
+        /// What stands there.
+        value: f64,
+    },
+    /// All points lie in an affine subspace of `rank` dimensions, up to rounding: the ellipsoid has no volume. Ask for
+    /// [`FlatPolicy::AffineHull`](crate::FlatPolicy::AffineHull) to get the ellipsoid within that subspace.
+    #[error("the points are flat: they span {rank} of {dimension} dimensions")]
+    Flat {
+        /// The dimension of the affine hull of the points; 0 where all are equal.
+        rank: usize,
+        /// The dimension of the space.
+        dimension: usize,
+    },
+    /// The points are sound, but the lengths or their inverse squares leave the range of `f64`.
+    #[error("the ellipsoid of these points is out of the range of f64")]
+    OutOfRange,
+}
+
+/// Why there is no maximum-volume ellipsoid inside the given body.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum InscribedError {
+    /// There are no half-spaces or points, or they have no coordinates.
+    #[error("no half-spaces or points to inscribe into")]
+    Empty,
+    /// A coordinate of a point, or of a normal, is NaN or infinite, or an offset is (then `coordinate` is the dimension).
+    #[error("coordinate {coordinate} of half-space or point {index} is {value}")]
+    NonFinite {
+        /// Which half-space or point.
+        index: usize,
+        /// Which coordinate; the dimension stands for the offset.
+        coordinate: usize,
+        /// What stands there.
+        value: f64,
+    },
+    /// The normal of a half-space is zero.
+    #[error("the normal of half-space {index} is zero")]
+    ZeroNormal {
+        /// Which half-space.
+        index: usize,
+    },
+    /// The normals do not positively span the space: the half-spaces have no bounded intersection. (It may be empty: that
+    /// is not looked into.)
+    #[error("the intersection of the half-spaces is unbounded")]
+    Unbounded,
+    /// The intersection has no interior point, up to rounding: it is empty or flat.
+    #[error("the intersection of the half-spaces has an empty interior")]
+    EmptyInterior,
+    /// All points lie in an affine subspace of `rank` dimensions, up to rounding: their hull has no interior.
+    #[error("the points are flat: they span {rank} of {dimension} dimensions")]
+    Flat {
+        /// The dimension of the affine hull of the points.
+        rank: usize,
+        /// The dimension of the space.
+        dimension: usize,
+    },
+    /// The hull of points is implemented in two and three dimensions; give half-spaces in others.
+    #[error("the convex hull of points is available in 2 and 3 dimensions, not in {dimension}")]
+    HullDimension {
+        /// The dimension of the points.
+        dimension: usize,
+    },
+    /// The input is sound, but lengths or their inverse squares leave the range of `f64`.
+    #[error("the ellipsoid in this body is out of the range of f64")]
+    OutOfRange,
+}

@@ -1,0 +1,166 @@
+//! Points as rows of a faer matrix, for dimensions known only at run time.
+
+use faer::{Mat, MatRef};
+
+use crate::dimension::Dynamic;
+use crate::enclosing::EnclosingIterate;
+use crate::error::EnclosingError;
+use crate::options::{EnclosingOptions, Status};
+use crate::points::Points;
+use crate::solution::{Shape, Solution, Weight};
+
+/// The ellipsoid E(c, X) = { x : (x − c)ᵀX(x − c) ≤ 1 } in a dimension known at run time; see
+/// [`Ellipsoid`](crate::Ellipsoid).
+#[derive(Clone, Debug)]
+pub struct EllipsoidDyn {
+    shape: Shape,
+}
+
+impl EllipsoidDyn {
+    pub(crate) fn from_shape(shape: Shape) -> Self {
+        Self { shape }
+    }
+
+    /// The number of coordinates.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.shape.center.len()
+    }
+
+    /// The centre c.
+    #[must_use]
+    pub fn center(&self) -> &[f64] {
+        &self.shape.center
+    }
+
+    /// The orthonormal directions of the semi-axes: row k is that of `semi_axes()[k]`; the determinant is +1.
+    #[must_use]
+    pub fn axes(&self) -> MatRef<'_, f64> {
+        let n = self.dimension();
+        MatRef::from_row_major_slice(&self.shape.axes, n, n)
+    }
+
+    /// The lengths of the semi-axes, longest first.
+    #[must_use]
+    pub fn semi_axes(&self) -> &[f64] {
+        &self.shape.semi_axes
+    }
+
+    /// X; see [`Ellipsoid::matrix`](crate::Ellipsoid::matrix).
+    #[must_use]
+    pub fn matrix(&self) -> MatRef<'_, f64> {
+        let n = self.dimension();
+        MatRef::from_row_major_slice(&self.shape.matrix, n, n)
+    }
+
+    /// ln det X = −2·Σ ln semi-axis, over the semi-axes that are not zero.
+    #[must_use]
+    pub fn log_det(&self) -> f64 {
+        self.shape.log_det
+    }
+
+    /// |diag(1/a)·Rᵀ(x − c)|: 1 on the surface, less inside.
+    ///
+    /// # Panics
+    /// If `x` has not as many coordinates as the ellipsoid.
+    #[must_use]
+    pub fn radius_at(&self, x: &[f64]) -> f64 {
+        let n = self.dimension();
+        assert_eq!(x.len(), n, "the point has {} coordinates, the ellipsoid {n}", x.len());
+        let mut square = 0.0;
+        for (axis, &a) in self.shape.axes.chunks_exact(n).zip(&self.shape.semi_axes) {
+            if a > 0.0 {
+                let along: f64 = (0..n).map(|k| axis[k] * (x[k] - self.shape.center[k])).sum();
+                square += (along / a) * (along / a);
+            }
+        }
+        square.sqrt()
+    }
+}
+
+/// [`Enclosing`](crate::Enclosing) in a dimension known at run time; the fields mean the same.
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct EnclosingDyn {
+    /// The ellipsoid. It contains every input point as evaluated in `f64`.
+    pub ellipsoid: EllipsoidDyn,
+    /// A certified bound on ln det X* − ln det X, rounding included; never negative.
+    pub log_det_gap: f64,
+    /// The weights that prove the gap.
+    pub weights: Vec<Weight>,
+    /// The points on the surface, up to the gap, by ascending index.
+    pub contacts: Vec<usize>,
+    /// How the computation ended.
+    pub status: Status,
+    /// Iterations of the method.
+    pub iterations: usize,
+    /// Passes over all points.
+    pub scans: usize,
+}
+
+/// Rows of a matrix as points.
+struct Rows<'a>(MatRef<'a, f64>);
+
+impl Points for Rows<'_> {
+    type Dim = Dynamic;
+
+    fn dim(&self) -> Dynamic {
+        Dynamic(self.0.ncols())
+    }
+
+    fn len(&self) -> usize {
+        self.0.nrows()
+    }
+
+    #[inline]
+    fn read(&self, i: usize, out: &mut [f64]) {
+        for (k, out) in out.iter_mut().enumerate() {
+            *out = self.0[(i, k)];
+        }
+    }
+}
+
+/// [`enclosing`](crate::enclosing()) for points of a dimension known at run time: one point per row of `points`.
+///
+/// # Errors
+/// As [`enclosing`](crate::enclosing()).
+///
+/// # Examples
+/// ```
+/// use lj_ellipsoid::{EnclosingOptions, enclosing_dyn, faer::Mat};
+///
+/// // The eight points ±eₖ in four dimensions: the unit ball.
+/// let cross = Mat::from_fn(8, 4, |i, k| if i % 4 == k { if i < 4 { 1.0 } else { -1.0 } } else { 0.0 });
+/// let answer = enclosing_dyn(cross.as_ref(), EnclosingOptions::default())?;
+/// assert!(answer.ellipsoid.log_det().abs() < 1e-13);
+/// # Ok::<(), lj_ellipsoid::EnclosingError>(())
+/// ```
+pub fn enclosing_dyn(points: MatRef<'_, f64>, options: EnclosingOptions) -> Result<EnclosingDyn, EnclosingError> {
+    enclosing_dyn_with(points, options, |_| {})
+}
+
+/// [`enclosing_dyn`], showing every iterate to `observer`.
+///
+/// # Errors
+/// As [`enclosing`](crate::enclosing()).
+pub fn enclosing_dyn_with(
+    points: MatRef<'_, f64>,
+    options: EnclosingOptions,
+    observer: impl FnMut(EnclosingIterate<'_>),
+) -> Result<EnclosingDyn, EnclosingError> {
+    let Solution { shape, log_det_gap, weights, contacts, status, iterations, scans } =
+        crate::enclosing::solve(&Rows(points), options, observer)?;
+    let ellipsoid = EllipsoidDyn::from_shape(shape);
+    Ok(EnclosingDyn { ellipsoid, log_det_gap, weights, contacts, status, iterations, scans })
+}
+
+/// `rows` as a matrix, one row each; for callers that hold vectors of run-time length.
+///
+/// # Panics
+/// If the rows differ in length.
+#[must_use]
+pub fn rows_to_matrix(rows: &[Vec<f64>]) -> Mat<f64> {
+    let columns = rows.first().map_or(0, Vec::len);
+    assert!(rows.iter().all(|row| row.len() == columns), "all rows must be of the length of the first, {columns}");
+    Mat::from_fn(rows.len(), columns, |i, k| rows[i][k])
+}

@@ -1,0 +1,145 @@
+//! Khachiyan's first-order method with the away steps of Todd and Yıldırım.
+//!
+//! # References
+//! L. G. Khachiyan, *Rounding of polytopes in the real number model of computation*, Math. Oper. Res. 21 (1996).
+//! M. J. Todd, E. A. Yıldırım, *On Khachiyan's algorithm for the computation of minimum-volume enclosing ellipsoids*,
+//! Discrete Appl. Math. 155 (2007).
+
+use crate::design::{Moments, WorkingSet};
+use crate::dimension::Dimension;
+use crate::enclosing::EnclosingIterate;
+use crate::error::EnclosingError;
+use crate::options::{EnclosingOptions, Status};
+use crate::points::Points;
+use crate::solution::{Certificate, Solution, finish};
+use crate::start::Start;
+use crate::working_set::recenter;
+
+/// The most moves, unless the caller says otherwise.
+const DEFAULT_ITERATIONS: usize = 1_000_000;
+
+/// Moves between two computations of everything from the weights, against the drift of the updates.
+const REFRESH: usize = 200;
+
+/// Moves one weight per iteration, by exact line search.
+///
+/// With ω = qᵀM⁻¹q of every point, take j₊ of largest ω, and j₋ of smallest ω among those with weight. The one further
+/// from optimality (ω = n) moves: u ← (1 − β)u + β·eⱼ with β = (ωⱼ − n)/(n(ωⱼ − 1)), at least −uⱼ/(1 − uⱼ), where the
+/// weight is zero (a drop step). Then g = Q·M⁻¹qⱼ gives ω ← (ω − βg²/(1 − β + βωⱼ))/(1 − β).
+pub(crate) fn solve<P: Points, R: Dimension>(
+    points: &P,
+    rank: R,
+    start: Start,
+    options: EnclosingOptions,
+    mut observer: impl FnMut(EnclosingIterate<'_>),
+) -> Result<Solution, EnclosingError> {
+    let r = rank.get();
+    let n = r as f64 + 1.0;
+    let max_iterations = if options.max_iterations == 0 { DEFAULT_ITERATIONS } else { options.max_iterations };
+    let Start { mut frame, working, mut scans } = start;
+    let mut set = WorkingSet::uniform((0..points.len()).collect());
+    set.u.fill(0.0);
+    for &i in &working {
+        set.u[i] = 1.0 / working.len() as f64;
+    }
+    set.locate(points, rank, &frame);
+    let mut moments = Moments::default();
+    if !moments.compute(rank, &set.y, &set.u) {
+        return Err(EnclosingError::OutOfRange);
+    }
+    let mut iterations = 0;
+    // Coordinates relative to the mean at the last refresh, in which M starts as the identity: the lifted qᵢ = (zᵢ; 1).
+    let lifted = r + 1;
+    let mut inverse = vec![0.0; lifted * lifted];
+    let mut omega = vec![0.0; set.len()];
+    let ended = 'outer: loop {
+        recenter(points, rank, &mut frame, &mut set, &mut moments);
+        scans += 1;
+        let gap = moments.log_det_gap(r);
+        observer(EnclosingIterate {
+            iteration: iterations,
+            scans,
+            log_det_gap: gap.max(0.0),
+            indices: &set.index,
+            weights: &set.u,
+        });
+        if gap <= 0.5 * options.epsilon {
+            break Status::Converged;
+        }
+        inverse.fill(0.0);
+        (0..lifted).for_each(|k| inverse[k * lifted + k] = 1.0);
+        omega.iter_mut().zip(&moments.q).for_each(|(o, q)| *o = q + 1.0);
+        for _ in 0..REFRESH {
+            if iterations >= max_iterations {
+                break 'outer Status::IterationLimit;
+            }
+            let (mut plus, mut minus) = (0, usize::MAX);
+            for i in 0..set.len() {
+                if omega[i] > omega[plus] {
+                    plus = i;
+                }
+                if set.u[i] > 0.0 && (minus == usize::MAX || omega[i] < omega[minus]) {
+                    minus = i;
+                }
+            }
+            let away = n - omega[minus] > omega[plus] - n;
+            // The bound of the weights is r·ln((ω₊ − 1)/r); rounding makes it negative at an optimum.
+            if r as f64 * ((omega[plus] - 1.0) / r as f64).ln() <= 0.25 * options.epsilon {
+                break;
+            }
+            let j = if away { minus } else { plus };
+            let mut beta = (omega[j] - n) / (n * (omega[j] - 1.0));
+            if away {
+                // A weight of one cannot move away; it is the only point, and then ω = 1.
+                beta = beta.max(-set.u[j] / (1.0 - set.u[j]));
+            }
+            if !(beta.abs() > 0.0 && beta < 1.0) {
+                break;
+            }
+            iterations += 1;
+            scans += 1;
+            rank_one_move(r, j, beta, &moments.z, &mut inverse, &mut omega);
+            let dropped = away && beta == -set.u[j] / (1.0 - set.u[j]);
+            set.u.iter_mut().for_each(|u| *u *= 1.0 - beta);
+            set.u[j] = if dropped { 0.0 } else { set.u[j] + beta };
+        }
+        let before = moments.log_det_scatter;
+        let unchanged = moments.q.clone();
+        if !moments.compute(rank, &set.y, &set.u) {
+            break Status::Stalled;
+        }
+        if moments.log_det_scatter <= before && moments.q == unchanged {
+            break Status::Stalled;
+        }
+    };
+    set.retain(r, {
+        let u = set.u.clone();
+        move |i| u[i] > 0.0
+    });
+    moments.compute(rank, &set.y, &set.u);
+    let certificate = Certificate::from_weights(points, rank, &frame, &set, &moments);
+    finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + 2)
+}
+
+/// Updates M⁻¹ and every ω for u ← (1 − β)u + β·eⱼ: M' = (1 − β)M + β·qⱼqⱼᵀ, by Sherman and Morrison.
+fn rank_one_move(r: usize, j: usize, beta: f64, z: &[f64], inverse: &mut [f64], omega: &mut [f64]) {
+    let lifted = r + 1;
+    let entry = |z: &[f64], k: usize| if k < r { z[k] } else { 1.0 };
+    let zj = &z[j * r..(j + 1) * r];
+    // p = M⁻¹qⱼ, so that gᵢ = qᵢᵀp.
+    let p: Vec<f64> =
+        (0..lifted).map(|a| (0..lifted).map(|b| inverse[a * lifted + b] * entry(zj, b)).sum()).collect();
+    let factor = beta / (1.0 - beta + beta * omega[j]);
+    for (omega, z) in omega.iter_mut().zip(z.chunks_exact(r)) {
+        let mut g = p[r];
+        for k in 0..r {
+            g += z[k] * p[k];
+        }
+        *omega = (*omega - factor * g * g) / (1.0 - beta);
+    }
+    for a in 0..lifted {
+        for b in 0..lifted {
+            inverse[a * lifted + b] = (inverse[a * lifted + b] - factor * p[a] * p[b]) / (1.0 - beta);
+        }
+    }
+}

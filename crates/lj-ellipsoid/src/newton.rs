@@ -1,0 +1,238 @@
+//! Newton's method for the weights of a working set.
+//!
+//! Maximise φ(u) = ln det M(u) − n·Σu over u ≥ 0, n = N + 1; the maximum has Σu = 1. With G_ij = qᵢᵀM⁻¹qⱼ the gradient is
+//! ω − n·1 and the Hessian −H, H = G∘G (entry by entry), and H·u = ω. The step to v = u + d maximises the model
+//!
+//! > rᵀv − ½vᵀHv over v ≥ 0, r = ω − n·1 + H·u = 2ω − n·1,
+//!
+//! a non-negative least-squares problem: it decides by itself which weights become zero. φ is self-concordant, so a
+//! step damped by 1/(1 + δ), δ = √(dᵀHd), always ascends; longer steps are tried first.
+//!
+//! H is singular where the matrices qᵢqᵢᵀ are dependent: rectangles, boxes, regular polygons, points on a sphere, more
+//! than n(n + 1)/2 points. M is still unique, u is not. A proximal term ½τ|v − u|² with τ some 1e-13 of H chooses the v
+//! nearest to u; it vanishes at the solution, so it moves no answer.
+
+use crate::design::{Moments, WorkingSet};
+use crate::dimension::Dimension;
+
+/// The proximal term relative to the largest diagonal of H: far above the rounding of its Cholesky factor, far below
+/// what ω could tell.
+const PROXIMAL: f64 = 1e-13;
+
+/// How a solve of the working set ended.
+#[derive(Debug)]
+pub(crate) struct Solve {
+    pub(crate) steps: usize,
+    /// The gap over the working set is at most what was asked.
+    pub(crate) converged: bool,
+}
+
+/// Room for the quadratic model, reused from step to step.
+#[derive(Debug, Default)]
+pub(crate) struct Workspace {
+    h: Vec<f64>,
+    r: Vec<f64>,
+    v: Vec<f64>,
+    free: Vec<usize>,
+    factor: Vec<f64>,
+    solution: Vec<f64>,
+    trial: Vec<f64>,
+    trial_moments: Moments,
+    best: Vec<f64>,
+}
+
+/// Improves the weights of `set` until the gap over it is at most `gap`, or rounding stops the ascent.
+/// `moments` are those of the weights, before and after.
+pub(crate) fn solve<R: Dimension>(
+    rank: R,
+    set: &mut WorkingSet,
+    moments: &mut Moments,
+    work: &mut Workspace,
+    gap: f64,
+    max_steps: usize,
+) -> Solve {
+    let r = rank.get();
+    let mut steps = 0;
+    let mut best_gap = f64::INFINITY;
+    let mut without_progress = 0;
+    work.best.clone_from(&set.u);
+    loop {
+        lift_far_points(rank, set, moments);
+        let now = moments.log_det_gap(r);
+        if now < best_gap {
+            // Quadratic convergence at least halves the gap; slower than that is rounding or a hard start.
+            without_progress = if now < 0.5 * best_gap { 0 } else { without_progress + 1 };
+            best_gap = now;
+            work.best.clone_from(&set.u);
+        } else {
+            without_progress += 1;
+        }
+        if now <= gap {
+            return Solve { steps, converged: true };
+        }
+        if steps >= max_steps || (without_progress >= 3 && best_gap < 1e-9) || !step(rank, set, moments, work) {
+            break;
+        }
+        steps += 1;
+    }
+    set.u.clone_from(&work.best);
+    moments.compute(rank, &set.y, &set.u);
+    Solve { steps, converged: false }
+}
+
+/// The model of a point far outside with little weight is poor: Newton would only double its weight each step. The
+/// exact line search of the first-order method (Todd and Yıldırım), β = (ω − n)/(n(ω − 1)), brings such points in.
+fn lift_far_points<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments) {
+    let n = rank.get() as f64 + 1.0;
+    for _ in 0..set.len() {
+        let (j, q) = moments.furthest();
+        let omega = q + 1.0;
+        if !(omega > 4.0 * n) {
+            break;
+        }
+        let beta = (omega - n) / (n * (omega - 1.0));
+        set.u.iter_mut().for_each(|u| *u *= 1.0 - beta);
+        set.u[j] += beta;
+        if !moments.compute(rank, &set.y, &set.u) {
+            break;
+        }
+    }
+}
+
+/// One damped Newton step; false where no ascent is left.
+fn step<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments, work: &mut Workspace) -> bool {
+    let r = rank.get();
+    let k = set.len();
+    let n = r as f64 + 1.0;
+    // H = G∘G with G_ij = 1 + zᵢ·zⱼ.
+    work.h.resize(k * k, 0.0);
+    for i in 0..k {
+        let zi = &moments.z[i * r..(i + 1) * r];
+        for j in 0..=i {
+            let zj = &moments.z[j * r..(j + 1) * r];
+            let mut g = 1.0;
+            for l in 0..r {
+                g += zi[l] * zj[l];
+            }
+            work.h[i * k + j] = g * g;
+            work.h[j * k + i] = g * g;
+        }
+    }
+    let proximal = PROXIMAL * (0..k).fold(0.0, |m: f64, i| m.max(work.h[i * k + i]));
+    work.r.clear();
+    for i in 0..k {
+        work.h[i * k + i] += proximal;
+        work.r.push(2.0 * (moments.q[i] + 1.0) - n + proximal * set.u[i]);
+    }
+    non_negative_quadratic(k, n, &set.u, work);
+
+    // δ² = dᵀHd and the predicted ascent gᵀd, g = ω − n.
+    let (mut delta2, mut slope) = (0.0, 0.0);
+    for i in 0..k {
+        let d = work.v[i] - set.u[i];
+        slope += (moments.q[i] + 1.0 - n) * d;
+        for j in 0..k {
+            delta2 += d * work.h[i * k + j] * (work.v[j] - set.u[j]);
+        }
+    }
+    if !(delta2 >= 0.0) {
+        return false;
+    }
+    let guaranteed = 1.0 / (1.0 + delta2.sqrt());
+    let mut t = 1.0;
+    // φ after normalising Σu = 1 is ln det S − n, so ln det S is the merit. Where the ascent is beyond what it resolves
+    // the full step is right anyway.
+    for _ in 0..60 {
+        work.trial.clear();
+        let (u, v) = (&set.u, &work.v);
+        work.trial.extend(u.iter().zip(v).map(|(u, v)| (u + t * (v - u)).max(0.0)));
+        let total: f64 = work.trial.iter().sum();
+        work.trial.iter_mut().for_each(|u| *u /= total);
+        if total > 0.0 && work.trial_moments.compute_scatter(rank, &set.y, &work.trial) {
+            let ascent = work.trial_moments.log_det_scatter - moments.log_det_scatter;
+            if ascent >= 1e-4 * t * slope || slope < 1e-11 {
+                std::mem::swap(&mut set.u, &mut work.trial);
+                return moments.compute(rank, &set.y, &set.u);
+            }
+        }
+        t = if t > guaranteed && 0.5 * t < guaranteed { guaranteed } else { 0.5 * t };
+    }
+    false
+}
+
+/// Maximises rᵀv − ½vᵀHv over v ≥ 0 by the active-set method of Lawson and Hanson, from v = u.
+///
+/// Leaves the result in `work.v`. Every pass either moves to a better v with fewer free members or to the optimum of the
+/// free ones, so it ends; should rounding make it cycle it stops with a v at least as good as u.
+fn non_negative_quadratic(k: usize, n: f64, u: &[f64], work: &mut Workspace) {
+    work.v.clear();
+    work.v.extend_from_slice(u);
+    work.free.clear();
+    work.free.extend((0..k).filter(|&i| u[i] > 0.0));
+    for _ in 0..3 * k + 10 {
+        let f = work.free.len();
+        if !solve_free(k, work) {
+            return;
+        }
+        // As far as v ≥ 0 allows towards the optimum of the free members.
+        let mut alpha = 1.0;
+        let mut blocking = None;
+        for a in 0..f {
+            let (v, s) = (work.v[work.free[a]], work.solution[a]);
+            if s < 0.0 {
+                let limit = v / (v - s);
+                if limit < alpha {
+                    (alpha, blocking) = (limit, Some(work.free[a]));
+                }
+            }
+        }
+        for a in 0..f {
+            let i = work.free[a];
+            let s = work.solution[a];
+            work.v[i] = if alpha == 1.0 { s } else { (work.v[i] + alpha * (s - work.v[i])).max(0.0) };
+        }
+        if let Some(blocking) = blocking {
+            work.v[blocking] = 0.0;
+            let v = &work.v;
+            work.free.retain(|&i| v[i] > 0.0);
+            continue;
+        }
+        // Optimal over the free: bring in the member whose multiplier is furthest from optimal.
+        let mut enter = None;
+        let mut largest = 1e-13 * n;
+        for j in 0..k {
+            if work.v[j] == 0.0 && !work.free.contains(&j) {
+                let hv: f64 = work.free.iter().map(|&i| work.h[j * k + i] * work.v[i]).sum();
+                let multiplier = work.r[j] - hv;
+                // A multiplier among the rounding of the terms it is the difference of says nothing.
+                if multiplier > largest.max(1e-14 * (work.r[j].abs() + hv.abs())) {
+                    (largest, enter) = (multiplier, Some(j));
+                }
+            }
+        }
+        match enter {
+            Some(j) => work.free.push(j),
+            None => return,
+        }
+    }
+}
+
+/// Solves H_FF·s = r_F by Cholesky; false where H_FF is not numerically positive definite.
+fn solve_free(k: usize, work: &mut Workspace) -> bool {
+    let f = work.free.len();
+    work.factor.resize(f * f, 0.0);
+    work.solution.clear();
+    for (a, &i) in work.free.iter().enumerate() {
+        for (b, &j) in work.free[..=a].iter().enumerate() {
+            work.factor[a * f + b] = work.h[i * k + j];
+        }
+        work.solution.push(work.r[i]);
+    }
+    let dim = crate::dimension::Dynamic(f);
+    if crate::linalg::cholesky(dim, &mut work.factor).is_none() {
+        return false;
+    }
+    crate::linalg::solve_lower(dim, &work.factor, &mut work.solution);
+    crate::linalg::solve_lower_transpose(dim, &work.factor, &mut work.solution);
+    true
+}

@@ -1,0 +1,294 @@
+//! From the last iterate to the ellipsoid that is returned: axes, outward rounding, certified gap, contact points.
+
+use crate::design::{Moments, WorkingSet};
+use crate::dimension::Dimension;
+use crate::error::EnclosingError;
+use crate::frame::Frame;
+use crate::linalg::{UNIT_ROUNDOFF, dot, orthogonalize_rows, triangularize};
+use crate::options::Status;
+use crate::points::Points;
+
+/// An ellipsoid of any dimension: what [`Ellipsoid`](crate::Ellipsoid) holds, in vectors.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Shape {
+    pub(crate) center: Vec<f64>,
+    /// Row k is the direction of semi-axis k.
+    pub(crate) axes: Vec<f64>,
+    pub(crate) semi_axes: Vec<f64>,
+    pub(crate) matrix: Vec<f64>,
+    pub(crate) log_det: f64,
+}
+
+/// The weight of a point in the certificate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weight {
+    /// Which point.
+    pub index: usize,
+    /// Its weight, positive; the weights sum to one up to rounding.
+    pub weight: f64,
+}
+
+/// A solved enclosing problem of any dimension.
+#[derive(Clone, Debug)]
+pub(crate) struct Solution {
+    pub(crate) shape: Shape,
+    pub(crate) log_det_gap: f64,
+    pub(crate) weights: Vec<Weight>,
+    pub(crate) contacts: Vec<usize>,
+    pub(crate) status: Status,
+    pub(crate) iterations: usize,
+    pub(crate) scans: usize,
+}
+
+/// The upper bound on ln det X* that a method proves, in the coordinates of its frame, and what proves it.
+pub(crate) struct Certificate {
+    /// Every ellipsoid that contains the points has ln det X ≤ this, X in the frame.
+    pub(crate) log_det_bound: f64,
+    pub(crate) weights: Vec<Weight>,
+}
+
+impl Certificate {
+    /// From weights: ln det X ≤ −ln det S − r·ln r, loosened by what the rounding of the coordinates can do to ln det S:
+    /// 2·tr(S⁻¹Σuᵢyᵢδyᵢᵀ) ≤ 2√r·max|L⁻¹δyᵢ|.
+    pub(crate) fn from_weights<P: Points, R: Dimension>(
+        points: &P,
+        rank: R,
+        frame: &Frame,
+        set: &WorkingSet,
+        moments: &Moments,
+    ) -> Self {
+        let r = rank.get() as f64;
+        // |L⁻¹| ≤ |L⁻¹|_F; L is near the identity in the last frame.
+        let mut inverse_norm: f64 = 0.0;
+        for k in 0..rank.get() {
+            let mut e = rank.zero();
+            e.as_mut()[k] = 1.0;
+            crate::linalg::solve_lower(rank, &moments.factor, e.as_mut());
+            inverse_norm += dot(e.as_ref(), e.as_ref());
+        }
+        let rounding = 2.0 * r.sqrt() * inverse_norm.sqrt() * set.coordinate_error(points, frame)
+            + 4.0 * (r + 2.0) * r * UNIT_ROUNDOFF;
+        let weights = set
+            .index
+            .iter()
+            .zip(&set.u)
+            .filter(|(_, u)| **u > 0.0)
+            .map(|(&index, &weight)| Weight { index, weight })
+            .collect();
+        Self { log_det_bound: -moments.log_det_scatter - r * r.ln() + rounding, weights }
+    }
+}
+
+/// How far the points reach in an ellipsoid, with the rounding of the evaluation added.
+struct Reach {
+    /// max |diag(1/a)·R·(x − c)|.
+    axes: f64,
+    /// max (x − c)ᵀX(x − c).
+    matrix: f64,
+}
+
+/// Turns the unit ball of `frame` into the ellipsoid that contains every point as evaluated in `f64`, with its gap.
+pub(crate) fn finish<P: Points>(
+    points: &P,
+    frame: &Frame,
+    certificate: Certificate,
+    epsilon: f64,
+    ended: Status,
+    iterations: usize,
+    scans: usize,
+) -> Result<Solution, EnclosingError> {
+    let n = points.dim().get();
+    let r = frame.rank();
+    let mut shape = principal_axes(n, &frame.map);
+    shape.center.clone_from(&frame.origin);
+    let log_det_frame: f64 = -2.0 * shape.semi_axes[..r].iter().map(|a| a.ln()).sum::<f64>();
+    let reach = reach(points, r, &shape);
+    let growth = reach.axes * (1.0 + 4.0 * UNIT_ROUNDOFF);
+    shape.semi_axes.iter_mut().for_each(|a| *a *= growth);
+    let shrink = (1.0 - 4.0 * UNIT_ROUNDOFF) / reach.matrix.max(growth * growth);
+    shape.matrix.iter_mut().for_each(|x| *x *= shrink);
+    shape.log_det = log_det_frame - 2.0 * r as f64 * growth.ln();
+    if !shape.log_det.is_finite() || shape.semi_axes.iter().any(|a| !a.is_finite()) {
+        return Err(EnclosingError::OutOfRange);
+    }
+    // ln det X* − ln det X: the transformation into the frame cancels, and with it its size.
+    let logarithms: f64 = shape.semi_axes[..r].iter().map(|a| a.ln().abs()).sum();
+    let log_det_gap =
+        (certificate.log_det_bound + 2.0 * r as f64 * growth.ln() + 4.0 * UNIT_ROUNDOFF * logarithms).max(0.0);
+    let status = match ended {
+        Status::IterationLimit if log_det_gap > epsilon => Status::IterationLimit,
+        _ if log_det_gap <= epsilon => Status::Converged,
+        _ => Status::Stalled,
+    };
+    let contacts = contacts(points, r, &shape, (0.5 * log_det_gap).max(1e-9));
+    Ok(Solution { shape, log_det_gap, weights: certificate.weights, contacts, status, iterations, scans })
+}
+
+/// Axes, semi-axes (longest first) and matrix of { v : |T·v| ≤ 1 }; r rows of n.
+pub(crate) fn principal_axes(n: usize, map: &[f64]) -> Shape {
+    let r = map.len() / n;
+    let mut rows = map.to_vec();
+    // A power of two keeps the squares in range and moves no bit.
+    let largest = rows.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let unit = if largest > 0.0 { f64::from_bits((largest.to_bits() >> 52).clamp(1, 2045) << 52) } else { 1.0 };
+    rows.iter_mut().for_each(|x| *x /= unit);
+    triangularize(n, &mut rows);
+    orthogonalize_rows(n, &mut rows);
+    let mut axes: Vec<(f64, Vec<f64>)> = rows
+        .chunks_exact(n)
+        .map(|row| {
+            let sigma = dot(row, row).sqrt();
+            (1.0 / sigma / unit, row.iter().map(|x| x / sigma).collect())
+        })
+        .collect();
+    axes.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut shape = Shape {
+        center: vec![0.0; n],
+        axes: Vec::with_capacity(n * n),
+        semi_axes: vec![0.0; n],
+        matrix: vec![0.0; n * n],
+        log_det: 0.0,
+    };
+    for (k, (a, axis)) in axes.iter().enumerate() {
+        shape.semi_axes[k] = *a;
+        shape.axes.extend_from_slice(axis);
+        for i in 0..n {
+            for j in 0..n {
+                shape.matrix[i * n + j] += (axis[i] / a) * (axis[j] / a);
+            }
+        }
+    }
+    complete_rotation(n, r, &mut shape.axes);
+    shape
+}
+
+/// Adds to the first `r` orthonormal rows of length `n` those that are missing, and makes the determinant +1.
+fn complete_rotation(n: usize, r: usize, axes: &mut Vec<f64>) {
+    for k in r..n {
+        let mut best = (vec![0.0; n], -1.0);
+        for j in 0..n {
+            let mut e = vec![0.0; n];
+            e[j] = 1.0;
+            for _ in 0..2 {
+                for row in axes.chunks_exact(n).take(k) {
+                    let along = dot(row, &e);
+                    e.iter_mut().zip(row).for_each(|(x, y)| *x -= along * y);
+                }
+            }
+            let length = dot(&e, &e).sqrt();
+            if length > best.1 {
+                best = (e, length);
+            }
+        }
+        axes.extend(best.0.iter().map(|x| x / best.1));
+    }
+    if determinant_sign(n, axes) < 0.0 {
+        axes[(n - 1) * n..].iter_mut().for_each(|x| *x = -*x);
+    }
+}
+
+/// The sign of the determinant, by elimination with pivoting.
+fn determinant_sign(n: usize, matrix: &[f64]) -> f64 {
+    let mut a = matrix.to_vec();
+    let mut sign = 1.0;
+    for k in 0..n {
+        let pivot = (k..n).fold(k, |best, i| if a[i * n + k].abs() > a[best * n + k].abs() { i } else { best });
+        if pivot != k {
+            sign = -sign;
+            for j in 0..n {
+                a.swap(k * n + j, pivot * n + j);
+            }
+        }
+        sign *= a[k * n + k].signum();
+        for i in k + 1..n {
+            let factor = a[i * n + k] / a[k * n + k];
+            for j in k..n {
+                a[i * n + j] -= factor * a[k * n + j];
+            }
+        }
+    }
+    sign
+}
+
+/// One pass over the points. The bound on the rounding of an evaluation, whatever the order of its sums, is computed only
+/// for points within a thousandth of the furthest so far: no bound that matters is larger.
+fn reach<P: Points>(points: &P, r: usize, shape: &Shape) -> Reach {
+    let dim = points.dim();
+    let n = dim.get();
+    let gamma = (n + 3) as f64 * UNIT_ROUNDOFF;
+    let (center, axes, matrix) = (&shape.center[..n], &shape.axes[..r * n], &shape.matrix[..n * n]);
+    let inverse: Vec<f64> = shape.semi_axes[..r].iter().map(|a| 1.0 / a).collect();
+    let mut reach = Reach { axes: 0.0, matrix: 0.0 };
+    let mut furthest = 0.0;
+    let mut v = dim.zero();
+    for i in 0..points.len() {
+        points.read(i, v.as_mut());
+        let e = v.as_mut();
+        for k in 0..n {
+            e[k] -= center[k];
+        }
+        let mut q = 0.0;
+        for (axis, inverse) in axes.chunks_exact(n).zip(&inverse) {
+            let mut s = 0.0;
+            for k in 0..n {
+                s += axis[k] * e[k];
+            }
+            s *= inverse;
+            q += s * s;
+        }
+        if q < 0.999 * furthest {
+            continue;
+        }
+        furthest = q.max(furthest);
+        let mut bound = 0.0;
+        for (axis, inverse) in axes.chunks_exact(n).zip(&inverse) {
+            let sum: f64 = (0..n).map(|k| (axis[k] * e[k]).abs()).sum();
+            bound += (gamma * inverse * sum).powi(2);
+        }
+        reach.axes = reach.axes.max(q.sqrt() + bound.sqrt());
+        let (mut value, mut size) = (0.0, 0.0);
+        for i in 0..n {
+            for j in 0..n {
+                let term = matrix[i * n + j] * e[i] * e[j];
+                value += term;
+                size += term.abs();
+            }
+        }
+        reach.matrix = reach.matrix.max(value + 2.0 * gamma * size);
+    }
+    reach
+}
+
+/// The points within a relative `tolerance` of the surface.
+fn contacts<P: Points>(points: &P, r: usize, shape: &Shape, tolerance: f64) -> Vec<usize> {
+    let dim = points.dim();
+    let n = dim.get();
+    let mut v = dim.zero();
+    let inverse: Vec<f64> = shape.semi_axes[..r].iter().map(|a| 1.0 / a).collect();
+    (0..points.len())
+        .filter(|&i| {
+            points.read(i, v.as_mut());
+            let e = v.as_ref();
+            let q: f64 = shape.axes[..r * n]
+                .chunks_exact(n)
+                .zip(&inverse)
+                .map(|(axis, inverse)| {
+                    let s: f64 = (0..n).map(|k| axis[k] * (e[k] - shape.center[k])).sum();
+                    (s * inverse).powi(2)
+                })
+                .sum();
+            q.sqrt() >= 1.0 - tolerance
+        })
+        .collect()
+}
+
+/// ln of the volume of the unit ball in n dimensions: V₀ = 1, V₁ = 2, Vₙ = Vₙ₋₂·2π/n.
+pub(crate) fn log_unit_ball_volume(n: usize) -> f64 {
+    let mut volume = if n % 2 == 0 { 1.0f64 } else { 2.0 }.ln();
+    let mut k = if n % 2 == 0 { 2 } else { 3 };
+    while k <= n {
+        volume += (std::f64::consts::TAU / k as f64).ln();
+        k += 2;
+    }
+    volume
+}
