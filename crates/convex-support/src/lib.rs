@@ -40,6 +40,7 @@ extern crate alloc;
 #[cfg(any(feature = "std", test))]
 extern crate std;
 
+mod closest_point;
 mod combinators;
 mod error;
 mod hint;
@@ -51,6 +52,7 @@ mod vector;
 
 pub use glam;
 
+pub use closest_point::ClosestPoint;
 pub use combinators::{Affine, Difference, Hull, MinkowskiSum, Posed, Rounded};
 pub use error::InvalidShape;
 pub use hint::Hint;

@@ -137,6 +137,20 @@ fn is_comfortable<S: Scalar>(squared: S) -> bool {
     squared >= S::min_positive_value() / S::EPSILON && squared < S::infinity()
 }
 
+/// A power of two in which a quantity of size `largest` may be measured without its square over- or underflowing: 1
+/// wherever that will do.
+#[inline]
+pub(crate) fn comfortable_unit_of_length<S: Scalar>(largest: S) -> S {
+    if is_comfortable(largest * largest) || !(largest > S::ZERO && largest.is_finite()) {
+        S::ONE
+    } else {
+        let (_, exponent, _) = num_traits::Float::integer_decode(largest);
+        // The mantissa is an integer of as many bits as EPSILON says; subnormal units are not needed.
+        let unit = num_traits::Float::powi(S::from_f64(2.0), i32::from(exponent)) / S::EPSILON;
+        if unit > S::ZERO { unit } else { S::min_positive_value() }
+    }
+}
+
 /// `v` divided by a power of two near its largest magnitude, and that power; `None` for zero and NaN.
 #[cold]
 fn scaled<V: Vector>(v: V) -> Option<(V, V::Scalar)> {

@@ -29,6 +29,24 @@ impl<S: SupportMap> Affine<S> {
     pub fn new(shape: S, matrix: <S::Vector as Vector>::Matrix, translation: S::Vector) -> Result<Self, InvalidShape> {
         Ok(Self { shape, matrix: finite_matrix("matrix", matrix)?, translation: finite("translation", translation)? })
     }
+
+    /// The shape before it is mapped.
+    #[must_use]
+    pub const fn shape(&self) -> &S {
+        &self.shape
+    }
+
+    /// The linear part, applied first.
+    #[must_use]
+    pub fn matrix(&self) -> <S::Vector as Vector>::Matrix {
+        self.matrix
+    }
+
+    /// The translation, applied last.
+    #[must_use]
+    pub fn translation(&self) -> S::Vector {
+        self.translation
+    }
 }
 
 impl<S: SupportMap> SupportMap for Affine<S> {

@@ -29,6 +29,18 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> Hull<A, B> {
     pub const fn new(a: A, b: B) -> Self {
         Self { a, b }
     }
+
+    /// The first shape.
+    #[must_use]
+    pub const fn a(&self) -> &A {
+        &self.a
+    }
+
+    /// The second shape.
+    #[must_use]
+    pub const fn b(&self) -> &B {
+        &self.b
+    }
 }
 
 /// The support point, relative to `origin`, of a part of a hull that is swept by `radius` as a whole.

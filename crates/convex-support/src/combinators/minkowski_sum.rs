@@ -24,6 +24,18 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> MinkowskiSum<A, B> {
     pub const fn new(a: A, b: B) -> Self {
         Self { a, b }
     }
+
+    /// The first shape.
+    #[must_use]
+    pub const fn a(&self) -> &A {
+        &self.a
+    }
+
+    /// The second shape.
+    #[must_use]
+    pub const fn b(&self) -> &B {
+        &self.b
+    }
 }
 
 impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiSum<A, B> {

@@ -44,6 +44,24 @@ impl<S: SupportMap> Posed<S> {
     pub fn translated(shape: S, translation: S::Vector) -> Result<Self, InvalidShape> {
         Ok(Self { shape, rotation: Matrix::IDENTITY, translation: finite("translation", translation)? })
     }
+
+    /// The shape before it is moved.
+    #[must_use]
+    pub const fn shape(&self) -> &S {
+        &self.shape
+    }
+
+    /// The rotation, applied first.
+    #[must_use]
+    pub fn rotation(&self) -> <S::Vector as Vector>::Matrix {
+        self.rotation
+    }
+
+    /// The translation, applied last.
+    #[must_use]
+    pub fn translation(&self) -> S::Vector {
+        self.translation
+    }
 }
 
 impl<S: SupportMap> SupportMap for Posed<S> {

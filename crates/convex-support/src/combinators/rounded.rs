@@ -29,6 +29,18 @@ impl<S: SupportMap> Rounded<S> {
     pub fn new(shape: S, radius: ScalarOf<S>) -> Result<Self, InvalidShape> {
         Ok(Self { shape, radius: non_negative("radius", radius)? })
     }
+
+    /// The shape before it is rounded.
+    #[must_use]
+    pub const fn shape(&self) -> &S {
+        &self.shape
+    }
+
+    /// The radius of the ball that is added to the shape, which may have a [`radius`](SupportMap::radius) of its own.
+    #[must_use]
+    pub fn rounding(&self) -> ScalarOf<S> {
+        self.radius
+    }
 }
 
 impl<S: SupportMap> SupportMap for Rounded<S> {

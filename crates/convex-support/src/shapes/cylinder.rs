@@ -45,7 +45,7 @@ impl<V: Vector3> Cylinder<V> {
 
 /// The part of `direction` across the y axis.
 #[inline]
-pub(super) fn across<V: Vector3>(direction: V) -> V {
+pub(crate) fn across<V: Vector3>(direction: V) -> V {
     V::from_fn(|i| if i == 1 { V::Scalar::ZERO } else { direction.get(i) })
 }
 

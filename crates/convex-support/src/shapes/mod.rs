@@ -11,6 +11,9 @@ mod polytope;
 mod segment;
 mod triangle;
 
+pub(crate) use cylinder::across;
+pub(crate) use segment::clamp_to_segment;
+
 pub use ball::Ball;
 pub use capsule::Capsule;
 pub use cone::Cone;

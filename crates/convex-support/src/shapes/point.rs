@@ -26,6 +26,12 @@ impl<V: Vector> Point<V> {
     pub fn new(at: V) -> Result<Self, InvalidShape> {
         Ok(Self { at: finite("at", at)? })
     }
+
+    /// Where it is.
+    #[must_use]
+    pub fn at(&self) -> V {
+        self.at
+    }
 }
 
 impl<V: Vector> SupportMap for Point<V> {
