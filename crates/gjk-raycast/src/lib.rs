@@ -1,1 +1,69 @@
-//! gjk-raycast
+//! Ray casts, distances and linear continuous collision detection against general convex shapes, by the
+//! Gilbert–Johnson–Keerthi algorithm (GJK): 2D and 3D, `f32` and `f64`, with certified answers.
+//!
+//! Shapes are support maps of [`convex_support`]: its primitives, its combinators, or your own.
+//!
+//! ```
+//! use convex_support::{Cuboid, Posed, glam::DVec3};
+//! use gjk_raycast::{LinearCastOptions, Motion, Outcome, linear_cast};
+//!
+//! // A box moves at 10 m/s towards a wall whose face is at x = 9.9. When does it arrive?
+//! let parcel = Cuboid::new(DVec3::splat(0.5))?;
+//! let wall = Posed::translated(Cuboid::new(DVec3::new(0.1, 5.0, 5.0))?, DVec3::new(10.0, 0.0, 0.0))?;
+//! let motion = Motion { velocity_a: DVec3::new(10.0, 0.0, 0.0), velocity_b: DVec3::ZERO };
+//!
+//! let Ok(cast) = linear_cast(&parcel, &wall, motion, LinearCastOptions::default()) else { panic!("finite input") };
+//! let Outcome::Hit(hit) = cast.outcome else { panic!("it arrives") };
+//! assert!((hit.time - 0.94).abs() < 1e-15);
+//! assert_eq!(hit.normal, Some(DVec3::NEG_X)); // out of the wall, towards the parcel
+//! # Ok::<(), convex_support::InvalidShape>(())
+//! ```
+//!
+//! # Questions it answers
+//! - *How far apart are two shapes, and where are they closest?* [`distance`] (GJK, Algorithm 2 of the paper).
+//! - *Do they meet?* [`intersects`], which stops at the first separating axis and can start from the last one.
+//! - *Where does a ray enter a shape?* [`ray_cast`] (Algorithm 3).
+//! - *When do two shapes meet that move without turning?* [`linear_cast`] (Algorithm 3 on their difference).
+//! - *The same from closest points alone:* [`iterative_ray_cast`] (Algorithm 1), for shapes with a closed form.
+//!
+//! Each has a variant `…_with` that shows an [observer](Iterate) every iterate, and every answer says how it ended
+//! ([`Status`]) and carries bounds on the value that come from the geometry: a separating plane below, points of the
+//! bodies above.
+//!
+//! # References
+//! Gino van den Bergen, *Ray Casting against General Convex Objects with Application to Continuous Collision
+//! Detection*, 2004, referred to as the paper.
+//!
+//! # Features
+//! - `std` (default): floating-point functions from the standard library.
+//! - `libm`: the same from the libm crate, for `no_std` targets.
+
+#![no_std]
+#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "comparisons are written so that NaN ends the loop they are in")]
+
+#[cfg(any(feature = "std", test))]
+extern crate std;
+
+mod body;
+mod closest;
+mod distance;
+mod entry;
+mod error;
+mod intersect;
+mod iterative;
+mod linear_cast;
+mod options;
+mod ray_cast;
+mod result;
+mod simplex;
+
+pub use convex_support;
+
+pub use distance::{distance, distance_with};
+pub use error::RayCastError;
+pub use intersect::{intersects, intersects_with};
+pub use iterative::{iterative_ray_cast, iterative_ray_cast_with};
+pub use linear_cast::{Motion, linear_cast, linear_cast_with};
+pub use options::{DistanceOptions, IntersectOptions, LinearCastOptions, RayCastOptions};
+pub use ray_cast::{Ray, ray_cast, ray_cast_with};
+pub use result::{Distance, Intersection, Iterate, LinearCast, LinearHit, Miss, Outcome, RayCast, RayHit, Status};

@@ -1,0 +1,129 @@
+//! Shapes in the frame that algorithms work in: relative to the shape's origin, in units of a power of two near its
+//! size.
+//!
+//! Numbers of magnitude about one neither over- nor underflow when they are multiplied a few times, in `f32` as in
+//! `f64`; and since the unit is a power of two, scaling a scene by one changes nothing but the unit.
+
+use convex_support::{Hint, Scalar, SupportMap, Vector};
+use num_traits::Float as _;
+
+/// A core and its radius, as algorithms see it.
+pub(crate) trait Body {
+    type Vector: Vector;
+    /// What a support point is made of: the points of both shapes for a difference.
+    type Witness: Copy + Default;
+
+    /// The support point of the core, relative to the origin and in units of `scale`.
+    fn support(&mut self, direction: Self::Vector) -> (Self::Vector, Self::Witness);
+    /// What positions are relative to, in the world.
+    fn origin(&self) -> Self::Vector;
+    /// The radius around the core, in the world's unit.
+    fn radius(&self) -> <Self::Vector as Vector>::Scalar;
+    /// A bound on the length of all vectors that support points of the core are computed from, in the world's unit.
+    fn extent(&self) -> <Self::Vector as Vector>::Scalar;
+    /// Sets the unit to the given power of two.
+    fn set_scale(&mut self, scale: <Self::Vector as Vector>::Scalar);
+}
+
+/// A power of two near `size`, or 1 where there is none with a finite reciprocal.
+pub(crate) fn power_of_two_near<S: Scalar>(size: S) -> S {
+    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
+    let power = S::from_f64(f64::from_bits(size.as_f64().to_bits() & EXPONENT));
+    if power > S::ZERO && power.recip() > S::ZERO && power.is_finite() && power.recip().is_finite() {
+        power
+    } else {
+        S::ONE
+    }
+}
+
+/// One shape.
+pub(crate) struct Single<'a, S: SupportMap + ?Sized> {
+    shape: &'a S,
+    hint: Hint,
+    per_unit: <S::Vector as Vector>::Scalar,
+}
+
+impl<'a, S: SupportMap + ?Sized> Single<'a, S> {
+    pub(crate) fn new(shape: &'a S) -> Self {
+        Self { shape, hint: Hint::new(), per_unit: Scalar::ONE }
+    }
+}
+
+impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
+    type Vector = S::Vector;
+    type Witness = ();
+
+    #[inline]
+    fn support(&mut self, direction: S::Vector) -> (S::Vector, ()) {
+        self.hint.rewind();
+        (self.shape.core_support(direction, &mut self.hint) * self.per_unit, ())
+    }
+
+    fn origin(&self) -> S::Vector {
+        self.shape.origin()
+    }
+
+    fn radius(&self) -> <S::Vector as Vector>::Scalar {
+        self.shape.radius()
+    }
+
+    fn extent(&self) -> <S::Vector as Vector>::Scalar {
+        self.shape.core_extent()
+    }
+
+    fn set_scale(&mut self, scale: <S::Vector as Vector>::Scalar) {
+        self.per_unit = scale.recip();
+    }
+}
+
+/// The difference of two shapes, whose support points remember both shapes' points.
+pub(crate) struct Pair<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
+    pub(crate) a: &'a A,
+    pub(crate) b: &'a B,
+    hint_a: Hint,
+    hint_b: Hint,
+    per_unit: <A::Vector as Vector>::Scalar,
+}
+
+impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'a, A, B> {
+    pub(crate) fn new(a: &'a A, b: &'a B) -> Self {
+        Self { a, b, hint_a: Hint::new(), hint_b: Hint::new(), per_unit: Scalar::ONE }
+    }
+}
+
+/// The core points of two shapes, each relative to its shape's origin, in units of the scale.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PointPair<V> {
+    pub(crate) a: V,
+    pub(crate) b: V,
+}
+
+impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body for Pair<'_, A, B> {
+    type Vector = A::Vector;
+    type Witness = PointPair<A::Vector>;
+
+    #[inline]
+    fn support(&mut self, direction: A::Vector) -> (A::Vector, PointPair<A::Vector>) {
+        self.hint_a.rewind();
+        self.hint_b.rewind();
+        let a = self.a.core_support(direction, &mut self.hint_a) * self.per_unit;
+        let b = self.b.core_support(-direction, &mut self.hint_b) * self.per_unit;
+        (a - b, PointPair { a, b })
+    }
+
+    fn origin(&self) -> A::Vector {
+        self.a.origin() - self.b.origin()
+    }
+
+    fn radius(&self) -> <A::Vector as Vector>::Scalar {
+        self.a.radius() + self.b.radius()
+    }
+
+    fn extent(&self) -> <A::Vector as Vector>::Scalar {
+        self.a.core_extent() + self.b.core_extent()
+    }
+
+    fn set_scale(&mut self, scale: <A::Vector as Vector>::Scalar) {
+        self.per_unit = scale.recip();
+    }
+}

@@ -1,0 +1,31 @@
+//! Rays that cannot be cast.
+
+use core::error::Error;
+use core::fmt::{self, Display, Formatter};
+
+/// Why a ray or a motion was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RayCastError {
+    /// The direction of the ray is the zero vector, so that it has no hit parameter. To ask whether a point is in a
+    /// shape, use [`intersects`](crate::intersects).
+    ZeroDirection,
+    /// A coordinate is NaN or infinite.
+    NonFinite {
+        /// The name of the vector: `"source"`, `"direction"`, `"velocity_a"` or `"velocity_b"`.
+        parameter: &'static str,
+        /// Which coordinate, counted from 0.
+        index: usize,
+    },
+}
+
+impl Display for RayCastError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::ZeroDirection => f.write_str("the direction of the ray is the zero vector"),
+            Self::NonFinite { parameter, index } => write!(f, "{parameter}[{index}] is not finite"),
+        }
+    }
+}
+
+impl Error for RayCastError {}

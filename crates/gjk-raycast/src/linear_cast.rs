@@ -1,0 +1,102 @@
+//! When two shapes meet that move without turning.
+
+use convex_support::{SupportMap, Vector};
+
+use crate::body::{Body, Pair, PointPair};
+use crate::error::RayCastError;
+use crate::ray_cast::{Contact, Ray, cast, check_finite};
+use crate::{Iterate, LinearCast, LinearCastOptions, LinearHit, Outcome, RayCastOptions};
+
+/// The velocities of two shapes, in units of length per unit of time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion<V> {
+    /// The velocity of `a`.
+    pub velocity_a: V,
+    /// The velocity of `b`.
+    pub velocity_b: V,
+}
+
+/// When two shapes first touch that move at constant velocities without turning, and where.
+///
+/// A ray is cast against their configuration space obstacle: `A + t·v_A` and `B + t·v_B` have a point in common just
+/// where `t·(v_B − v_A)` is in `A − B`. Where the velocities are equal, the shapes hit only if they overlap.
+///
+/// ```
+/// use convex_support::{Ball, Posed, glam::DVec2};
+/// use gjk_raycast::{LinearCastOptions, Motion, linear_cast};
+///
+/// let fast = Ball::new(0.5)?;
+/// let slow = Posed::translated(Ball::new(0.5)?, DVec2::new(4.0, 0.0))?;
+/// let motion = Motion { velocity_a: DVec2::new(3.0, 0.0), velocity_b: DVec2::new(1.0, 0.0) };
+/// let hit = linear_cast(&fast, &slow, motion, LinearCastOptions::default())?.outcome.hit().ok_or("they meet")?;
+/// assert_eq!((hit.time, hit.point, hit.normal), (1.5, DVec2::new(5.0, 0.0), Some(DVec2::NEG_X)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`RayCastError::NonFinite`] if a velocity is not finite.
+pub fn linear_cast<A, B>(
+    a: &A,
+    b: &B,
+    motion: Motion<A::Vector>,
+    options: LinearCastOptions<A::Vector>,
+) -> Result<LinearCast<A::Vector>, RayCastError>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    linear_cast_with(a, b, motion, options, |_| {})
+}
+
+/// [`linear_cast`], showing an observer every iterate.
+///
+/// # Errors
+/// [`RayCastError::NonFinite`] if a velocity is not finite.
+pub fn linear_cast_with<A, B>(
+    a: &A,
+    b: &B,
+    motion: Motion<A::Vector>,
+    options: LinearCastOptions<A::Vector>,
+    observer: impl FnMut(Iterate<'_, A::Vector>),
+) -> Result<LinearCast<A::Vector>, RayCastError>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    check_finite("velocity_a", motion.velocity_a)?;
+    check_finite("velocity_b", motion.velocity_b)?;
+    let mut body = Pair::new(a, b);
+    let mut wanted = RayCastOptions::new()
+        .with_max_lambda(options.max_time)
+        .with_tolerance(options.tolerance)
+        .with_max_iterations(options.max_iterations);
+    // Seen from b, a is at the outside of the obstacle: normals of A − B point out of a.
+    wanted.axis = options.axis.map(|axis| -axis);
+    let mut ray = Ray { source: -body.origin(), direction: motion.velocity_b - motion.velocity_a };
+    if ray.direction == A::Vector::ZERO {
+        // Only the start counts, and any ray of length zero is the start.
+        ray.direction = ray.source.unit().map_or(A::Vector::axis(0), |to| -to);
+        wanted.max_lambda = <A::Vector as Vector>::Scalar::default();
+    }
+    let cast = cast(&mut body, ray, wanted, observer);
+    let outcome = match cast.outcome {
+        Outcome::Hit(Contact { lambda: time, normal, simplex }) => {
+            // The contact point as a point of b, which it is farthest along the normal of A − B.
+            let mut core = A::Vector::ZERO;
+            for (weight, PointPair { b, .. }) in simplex.weighted() {
+                core += b * weight;
+            }
+            let mut point = b.origin() + core * cast.scale + motion.velocity_b * time;
+            if let Some(n) = normal {
+                point -= n * b.radius();
+            }
+            Outcome::Hit(LinearHit { time, point, normal: normal.map(|n| -n) })
+        }
+        Outcome::Miss(mut miss) => {
+            miss.axis = -miss.axis;
+            Outcome::Miss(miss)
+        }
+        Outcome::Undecided => Outcome::Undecided,
+    };
+    Ok(LinearCast { outcome, lower: cast.lower, upper: cast.upper, status: cast.status, iterations: cast.iterations })
+}

@@ -1,0 +1,223 @@
+//! What can be asked of each query beside its shapes.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+/// Iterations after which a query gives up. Polytopes and smooth shapes need a dozen; the cap only bounds the time
+/// spent on a support map that is not one.
+const MAX_ITERATIONS: usize = 200;
+
+/// Options of [`distance`](crate::distance).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct DistanceOptions<V: Vector> {
+    /// The width of the bracket at which to stop, relative to the distance of the cores. A bracket at the level of
+    /// rounding, relative to the size of what is compared, always ends the iteration. Default: 0.
+    pub tolerance: V::Scalar,
+    /// Stop as soon as the distance is certain to exceed this limit. Default: infinity.
+    pub limit: V::Scalar,
+    /// The iterations after which to give up. Default: 200.
+    pub max_iterations: usize,
+    /// A first guess of the direction from `b` to `a`, such as the normal of the last answer. Default: none.
+    pub axis: Option<V>,
+}
+
+impl<V: Vector> DistanceOptions<V> {
+    /// The default options.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { tolerance: V::Scalar::ZERO, limit: V::Scalar::infinity(), max_iterations: MAX_ITERATIONS, axis: None }
+    }
+
+    /// With another [`tolerance`](Self::tolerance).
+    #[must_use]
+    pub const fn with_tolerance(mut self, tolerance: V::Scalar) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// With a [`limit`](Self::limit).
+    #[must_use]
+    pub const fn with_limit(mut self, limit: V::Scalar) -> Self {
+        self.limit = limit;
+        self
+    }
+
+    /// With another cap on the [iterations](Self::max_iterations).
+    #[must_use]
+    pub const fn with_max_iterations(mut self, max_iterations: usize) -> Self {
+        self.max_iterations = max_iterations;
+        self
+    }
+
+    /// With a first [`axis`](Self::axis).
+    #[must_use]
+    pub const fn with_axis(mut self, axis: V) -> Self {
+        self.axis = Some(axis);
+        self
+    }
+}
+
+impl<V: Vector> Default for DistanceOptions<V> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Options of [`intersects`](crate::intersects).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct IntersectOptions<V: Vector> {
+    /// The iterations after which to give up. Default: 200.
+    pub max_iterations: usize,
+    /// A first guess of a separating axis, pointing from `b` to `a`, such as the [`axis`](crate::Intersection::axis)
+    /// of the last answer. Default: none.
+    pub axis: Option<V>,
+}
+
+impl<V: Vector> IntersectOptions<V> {
+    /// The default options.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { max_iterations: MAX_ITERATIONS, axis: None }
+    }
+
+    /// With another cap on the [iterations](Self::max_iterations).
+    #[must_use]
+    pub const fn with_max_iterations(mut self, max_iterations: usize) -> Self {
+        self.max_iterations = max_iterations;
+        self
+    }
+
+    /// With a first [`axis`](Self::axis).
+    #[must_use]
+    pub const fn with_axis(mut self, axis: V) -> Self {
+        self.axis = Some(axis);
+        self
+    }
+}
+
+impl<V: Vector> Default for IntersectOptions<V> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Options of [`ray_cast`](crate::ray_cast).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct RayCastOptions<V: Vector> {
+    /// The end of the ray, in units of its direction; the end belongs to the ray. Default: infinity.
+    pub max_lambda: V::Scalar,
+    /// How far along the ray the hit may stay uncertain, relative to the size of the target. A bracket at the level of
+    /// rounding always ends the iteration. Default: 0.
+    pub tolerance: V::Scalar,
+    /// The iterations after which to give up. Default: 200.
+    pub max_iterations: usize,
+    /// A first guess of the outward normal or of a separating axis, such as the last answer's. Default: none.
+    pub axis: Option<V>,
+}
+
+impl<V: Vector> RayCastOptions<V> {
+    /// The default options.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            max_lambda: V::Scalar::infinity(),
+            tolerance: V::Scalar::ZERO,
+            max_iterations: MAX_ITERATIONS,
+            axis: None,
+        }
+    }
+
+    /// With an [end of the ray](Self::max_lambda).
+    #[must_use]
+    pub const fn with_max_lambda(mut self, max_lambda: V::Scalar) -> Self {
+        self.max_lambda = max_lambda;
+        self
+    }
+
+    /// With another [`tolerance`](Self::tolerance).
+    #[must_use]
+    pub const fn with_tolerance(mut self, tolerance: V::Scalar) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// With another cap on the [iterations](Self::max_iterations).
+    #[must_use]
+    pub const fn with_max_iterations(mut self, max_iterations: usize) -> Self {
+        self.max_iterations = max_iterations;
+        self
+    }
+
+    /// With a first [`axis`](Self::axis).
+    #[must_use]
+    pub const fn with_axis(mut self, axis: V) -> Self {
+        self.axis = Some(axis);
+        self
+    }
+}
+
+impl<V: Vector> Default for RayCastOptions<V> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Options of [`linear_cast`](crate::linear_cast).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LinearCastOptions<V: Vector> {
+    /// The end of the motion; it belongs to the motion. Default: infinity.
+    pub max_time: V::Scalar,
+    /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
+    /// of rounding always ends the iteration. Default: 0.
+    pub tolerance: V::Scalar,
+    /// The iterations after which to give up. Default: 200.
+    pub max_iterations: usize,
+    /// A first guess of the direction from `b` to `a` at contact, such as the last answer's normal. Default: none.
+    pub axis: Option<V>,
+}
+
+impl<V: Vector> LinearCastOptions<V> {
+    /// The default options.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { max_time: V::Scalar::infinity(), tolerance: V::Scalar::ZERO, max_iterations: MAX_ITERATIONS, axis: None }
+    }
+
+    /// With an [end of the motion](Self::max_time).
+    #[must_use]
+    pub const fn with_max_time(mut self, max_time: V::Scalar) -> Self {
+        self.max_time = max_time;
+        self
+    }
+
+    /// With another [`tolerance`](Self::tolerance).
+    #[must_use]
+    pub const fn with_tolerance(mut self, tolerance: V::Scalar) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// With another cap on the [iterations](Self::max_iterations).
+    #[must_use]
+    pub const fn with_max_iterations(mut self, max_iterations: usize) -> Self {
+        self.max_iterations = max_iterations;
+        self
+    }
+
+    /// With a first [`axis`](Self::axis).
+    #[must_use]
+    pub const fn with_axis(mut self, axis: V) -> Self {
+        self.axis = Some(axis);
+        self
+    }
+}
+
+impl<V: Vector> Default for LinearCastOptions<V> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
