@@ -1,6 +1,6 @@
 //! Weighted points: the dual of the enclosing ellipsoid.
 //!
-//! Weights u ≥ 0 with Σu = 1 on points y₁…y_k give the mean c = Σuᵢyᵢ and the scatter S = Σuᵢ(yᵢ − c)(yᵢ − c)ᵀ. In the
+//! Weights u ≥ 0 with Σu = 1 on k points yᵢ give the mean c = Σuᵢyᵢ and the scatter S = Σuᵢ(yᵢ − c)(yᵢ − c)ᵀ. In the
 //! lifted problem, with qᵢ = (yᵢ; 1) and M = Σuᵢqᵢqᵢᵀ, the quantities of every method follow without forming M:
 //!
 //! > det M = det S, qᵢᵀM⁻¹qⱼ = 1 + zᵢ·zⱼ, ωᵢ = qᵢᵀM⁻¹qᵢ = 1 + |zᵢ|², where z = L⁻¹(y − c), S = L·Lᵀ.

@@ -11,26 +11,25 @@
 use crate::design::{Moments, WorkingSet};
 use crate::dimension::{Dimension, Dynamic};
 use crate::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
-use crate::newton::Solve;
 
 /// Newton steps along one path; twenty is typical.
 const MAX_STEPS: usize = 80;
 
-/// Improves the weights of `set` until the gap over it is at most `gap`.
+/// Improves the weights of `set` until the gap over it is at most `gap`; answers the number of steps.
 pub(crate) fn solve<R: Dimension>(
     rank: R,
     set: &mut WorkingSet,
     moments: &mut Moments,
     gap: f64,
     max_steps: usize,
-) -> Solve {
+) -> usize {
     let r = rank.get();
     let k = set.len();
     let dimension = r as f64;
     // Equal weights make t positive once scaled: h is inverse to the size of u.
     let mut u = vec![dimension / (2.0 * k as f64); k];
     if !moments.compute(rank, &set.y, &u) {
-        return Solve { steps: 0, converged: false };
+        return 0;
     }
     let grow = 1.05 * (moments.furthest().1 / dimension).max(1.0);
     u.iter_mut().for_each(|u| *u *= grow);
@@ -40,9 +39,9 @@ pub(crate) fn solve<R: Dimension>(
     let mut du = vec![0.0; k];
     let mut steps = 0;
     let (mut best, mut best_gap) = (u.clone(), f64::INFINITY);
-    let converged = loop {
+    loop {
         if !moments.compute(rank, &set.y, &u) {
-            break false;
+            break;
         }
         let now = moments.log_det_gap(r);
         if now < best_gap {
@@ -50,10 +49,10 @@ pub(crate) fn solve<R: Dimension>(
             best.clone_from(&u);
         }
         if now <= gap {
-            break true;
+            break;
         }
         if steps >= max_steps.min(MAX_STEPS) {
-            break false;
+            break;
         }
         steps += 1;
         let sum: f64 = u.iter().sum();
@@ -72,7 +71,7 @@ pub(crate) fn solve<R: Dimension>(
             du[i] = -(r1[i] - (theta - u[i] * t[i]) / u[i]);
         }
         if cholesky(Dynamic(k), &mut factor).is_none() {
-            break false;
+            break;
         }
         solve_lower(Dynamic(k), &factor, &mut du);
         solve_lower_transpose(Dynamic(k), &factor, &mut du);
@@ -85,7 +84,7 @@ pub(crate) fn solve<R: Dimension>(
         }
         u.iter_mut().zip(&du).for_each(|(x, d)| *x += step * d);
         t.iter_mut().zip(&dt).for_each(|(x, d)| *x += step * d);
-    };
+    }
     // The path never reaches zero: weights that cannot matter to the gap are dropped.
     let sum: f64 = best.iter().sum();
     let negligible = 1e-3 * gap / k as f64;
@@ -93,5 +92,5 @@ pub(crate) fn solve<R: Dimension>(
     let sum: f64 = set.u.iter().sum();
     set.u.iter_mut().for_each(|u| *u /= sum);
     moments.compute(rank, &set.y, &set.u);
-    Solve { steps, converged }
+    steps
 }

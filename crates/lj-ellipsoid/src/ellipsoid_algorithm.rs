@@ -124,7 +124,8 @@ pub(crate) fn solve<P: Points, R: Dimension>(
     if best.1.is_empty() || !gap.is_finite() {
         // No feasible iterate yet: the unit ball of the frame grown around the points still encloses, with the bound of
         // the starting weights.
-        let certificate = Certificate { weights: Vec::new(), ..Certificate::from_weights(points, rank, &frame, &set, &moments) };
+        let certificate =
+            Certificate { weights: Vec::new(), ..Certificate::from_weights(points, rank, &frame, &set, &moments) };
         return finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + iterations + 2);
     }
 

@@ -1,6 +1,5 @@
 //! The minimum-volume ellipsoid that contains given points.
 
-use crate::{ellipsoid_algorithm, khachiyan};
 use crate::dimension::{Dimension, Dynamic};
 use crate::ellipsoid::Ellipsoid;
 use crate::error::EnclosingError;
@@ -9,6 +8,7 @@ use crate::points::{PointSlice, Points};
 use crate::solution::{Certificate, Solution, Weight, finish};
 use crate::start::{Start, start};
 use crate::working_set;
+use crate::{ellipsoid_algorithm, khachiyan};
 
 /// The minimum-volume ellipsoid around points, and the proof of how near to minimal it is.
 #[derive(Clone, Debug, PartialEq)]

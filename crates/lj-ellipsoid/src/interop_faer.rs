@@ -4,8 +4,10 @@ use faer::{Mat, MatRef};
 
 use crate::dimension::Dynamic;
 use crate::enclosing::EnclosingIterate;
-use crate::error::EnclosingError;
-use crate::options::{EnclosingOptions, Status};
+use crate::error::{EnclosingError, InscribedError};
+use crate::inscribed::InscribedSolution;
+use crate::interior::round_coordinates;
+use crate::options::{EnclosingOptions, InscribedOptions, Status};
 use crate::points::Points;
 use crate::solution::{Shape, Solution, Weight};
 
@@ -152,6 +154,62 @@ pub fn enclosing_dyn_with(
         crate::enclosing::solve(&Rows(points), options, observer)?;
     let ellipsoid = EllipsoidDyn::from_shape(shape);
     Ok(EnclosingDyn { ellipsoid, log_det_gap, weights, contacts, status, iterations, scans })
+}
+
+/// [`Inscribed`](crate::Inscribed) in a dimension known at run time; the fields mean the same.
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct InscribedDyn {
+    /// The ellipsoid; it lies in every half-space, the rounding of the evaluation taken into account.
+    pub ellipsoid: EllipsoidDyn,
+    /// A certified bound on ln det X − ln det X*; never negative.
+    pub log_det_gap: f64,
+    /// The multipliers that prove the gap, with their half-spaces, scaled to sum to one.
+    pub weights: Vec<Weight>,
+    /// How the computation ended.
+    pub status: Status,
+    /// Newton steps.
+    pub iterations: usize,
+}
+
+impl InscribedDyn {
+    fn from_solution(solution: InscribedSolution) -> Self {
+        let InscribedSolution { shape, log_det_gap, weights, status, iterations } = solution;
+        Self { ellipsoid: EllipsoidDyn::from_shape(shape), log_det_gap, weights, status, iterations }
+    }
+}
+
+/// [`inscribed`](crate::inscribed()) in a dimension known at run time: the half-spaces normalsᵢ·x ≤ offsetsᵢ, one normal
+/// per row.
+///
+/// # Errors
+/// As [`inscribed`](crate::inscribed()).
+///
+/// # Panics
+/// If there are not as many offsets as normals.
+pub fn inscribed_dyn(
+    normals: MatRef<'_, f64>,
+    offsets: &[f64],
+    options: InscribedOptions,
+) -> Result<InscribedDyn, InscribedError> {
+    let (m, n) = (normals.nrows(), normals.ncols());
+    assert_eq!(m, offsets.len(), "{m} normals but {} offsets", offsets.len());
+    let rows: Vec<f64> = (0..m * n).map(|at| normals[(at / n, at % n)]).collect();
+    let halfspaces = rows.chunks_exact(n.max(1)).zip(offsets.iter().copied());
+    let polyhedron = crate::inscribed::polyhedron(n, halfspaces)?;
+    let coordinates = round_coordinates(&polyhedron)?;
+    crate::inscribed::solve(Dynamic(n), &polyhedron, coordinates, 0.0, options, |_| {}).map(InscribedDyn::from_solution)
+}
+
+/// [`inscribed_in_hull`](crate::inscribed_in_hull()) for points given as rows of a matrix; of 2 or 3 columns.
+///
+/// # Errors
+/// As [`inscribed_in_hull`](crate::inscribed_in_hull()).
+pub fn inscribed_in_hull_dyn(
+    points: MatRef<'_, f64>,
+    options: InscribedOptions,
+) -> Result<InscribedDyn, InscribedError> {
+    crate::inscribed_in_hull::solve_points(&Rows(points), options, |_| {}).map(InscribedDyn::from_solution)
 }
 
 /// `rows` as a matrix, one row each; for callers that hold vectors of run-time length.

@@ -127,8 +127,7 @@ fn rank_one_move(r: usize, j: usize, beta: f64, z: &[f64], inverse: &mut [f64], 
     let entry = |z: &[f64], k: usize| if k < r { z[k] } else { 1.0 };
     let zj = &z[j * r..(j + 1) * r];
     // p = M⁻¹qⱼ, so that gᵢ = qᵢᵀp.
-    let p: Vec<f64> =
-        (0..lifted).map(|a| (0..lifted).map(|b| inverse[a * lifted + b] * entry(zj, b)).sum()).collect();
+    let p: Vec<f64> = (0..lifted).map(|a| (0..lifted).map(|b| inverse[a * lifted + b] * entry(zj, b)).sum()).collect();
     let factor = beta / (1.0 - beta + beta * omega[j]);
     for (omega, z) in omega.iter_mut().zip(z.chunks_exact(r)) {
         let mut g = p[r];

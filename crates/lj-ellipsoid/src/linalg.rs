@@ -71,7 +71,7 @@ pub(crate) fn solve_lower_transpose<D: Dimension>(dim: D, l: &[f64], x: &mut [f6
 }
 
 /// Brings `t` (rows of length `n`, at most `n` of them) to triangular form by reflections from the left, up to the order
-/// of its columns: T ← H·T, so that TᵀT is unchanged.
+/// of its columns: T ← H·T, so that `TᵀT` is unchanged.
 ///
 /// Householder's QR with column pivoting and rows sorted by size: its error is small row by row and column by column
 /// (Cox & Higham 1998), so axes of wildly different size survive, wherever the grading stands.
@@ -114,11 +114,11 @@ pub(crate) fn triangularize(n: usize, t: &mut [f64]) {
     }
 }
 
-/// Makes the rows of `t` mutually orthogonal by rotations from the left: T ← J·T with JᵀJ = I, so that TᵀT is unchanged.
+/// Makes the rows of `t` mutually orthogonal by rotations from the left: T ← J·T with `JᵀJ = I`, so that `TᵀT` is unchanged.
 ///
 /// This is one-sided Jacobi (Hestenes 1958) on Tᵀ. With T = diag·(well conditioned) it finds every singular value, a
 /// row norm at the end, to high *relative* accuracy however graded the diagonal (Demmel & Veselić 1992), which an
-/// eigen-decomposition of TᵀT cannot. Rows count as orthogonal at |tᵢ·tⱼ| ≤ 4u·|tᵢ||tⱼ|.
+/// eigen-decomposition of `TᵀT` cannot. Rows count as orthogonal at |tᵢ·tⱼ| ≤ 4u·|tᵢ||tⱼ|.
 ///
 /// `t` holds rows of length `n`, at most `n` of them.
 pub(crate) fn orthogonalize_rows(n: usize, t: &mut [f64]) {

@@ -1,6 +1,6 @@
 //! Newton's method for the weights of a working set.
 //!
-//! Maximise φ(u) = ln det M(u) − n·Σu over u ≥ 0, n = N + 1; the maximum has Σu = 1. With G_ij = qᵢᵀM⁻¹qⱼ the gradient is
+//! Maximise φ(u) = ln det M(u) − n·Σu over u ≥ 0, n = N + 1; the maximum has Σu = 1. With Gᵢⱼ = qᵢᵀM⁻¹qⱼ the gradient is
 //! ω − n·1 and the Hessian −H, H = G∘G (entry by entry), and H·u = ω. The step to v = u + d maximises the model
 //!
 //! > rᵀv − ½vᵀHv over v ≥ 0, r = ω − n·1 + H·u = 2ω − n·1,
@@ -19,14 +19,6 @@ use crate::dimension::Dimension;
 /// what ω could tell.
 const PROXIMAL: f64 = 1e-13;
 
-/// How a solve of the working set ended.
-#[derive(Debug)]
-pub(crate) struct Solve {
-    pub(crate) steps: usize,
-    /// The gap over the working set is at most what was asked.
-    pub(crate) converged: bool,
-}
-
 /// Room for the quadratic model, reused from step to step.
 #[derive(Debug, Default)]
 pub(crate) struct Workspace {
@@ -42,7 +34,7 @@ pub(crate) struct Workspace {
 }
 
 /// Improves the weights of `set` until the gap over it is at most `gap`, or rounding stops the ascent.
-/// `moments` are those of the weights, before and after.
+/// `moments` are those of the weights, before and after. Answers the number of steps.
 pub(crate) fn solve<R: Dimension>(
     rank: R,
     set: &mut WorkingSet,
@@ -50,7 +42,7 @@ pub(crate) fn solve<R: Dimension>(
     work: &mut Workspace,
     gap: f64,
     max_steps: usize,
-) -> Solve {
+) -> usize {
     let r = rank.get();
     let mut steps = 0;
     let mut best_gap = f64::INFINITY;
@@ -68,7 +60,7 @@ pub(crate) fn solve<R: Dimension>(
             without_progress += 1;
         }
         if now <= gap {
-            return Solve { steps, converged: true };
+            return steps;
         }
         if steps >= max_steps || (without_progress >= 3 && best_gap < 1e-9) || !step(rank, set, moments, work) {
             break;
@@ -77,7 +69,7 @@ pub(crate) fn solve<R: Dimension>(
     }
     set.u.clone_from(&work.best);
     moments.compute(rank, &set.y, &set.u);
-    Solve { steps, converged: false }
+    steps
 }
 
 /// The model of a point far outside with little weight is poor: Newton would only double its weight each step. The
@@ -104,7 +96,7 @@ fn step<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments, work
     let r = rank.get();
     let k = set.len();
     let n = r as f64 + 1.0;
-    // H = G∘G with G_ij = 1 + zᵢ·zⱼ.
+    // H = G∘G with Gᵢⱼ = 1 + zᵢ·zⱼ.
     work.h.resize(k * k, 0.0);
     for i in 0..k {
         let zi = &moments.z[i * r..(i + 1) * r];
@@ -217,7 +209,7 @@ fn non_negative_quadratic(k: usize, n: f64, u: &[f64], work: &mut Workspace) {
     }
 }
 
-/// Solves H_FF·s = r_F by Cholesky; false where H_FF is not numerically positive definite.
+/// Solves H·s = r over the free members by Cholesky; false where their H is not numerically positive definite.
 fn solve_free(k: usize, work: &mut Workspace) -> bool {
     let f = work.free.len();
     work.factor.resize(f * f, 0.0);

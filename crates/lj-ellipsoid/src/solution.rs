@@ -101,13 +101,12 @@ pub(crate) fn finish<P: Points>(
     let r = frame.rank();
     let mut shape = principal_axes(n, &frame.map);
     shape.center.clone_from(&frame.origin);
-    let log_det_frame: f64 = -2.0 * shape.semi_axes[..r].iter().map(|a| a.ln()).sum::<f64>();
     let reach = reach(points, r, &shape);
     let growth = reach.axes * (1.0 + 4.0 * UNIT_ROUNDOFF);
     shape.semi_axes.iter_mut().for_each(|a| *a *= growth);
     let shrink = (1.0 - 4.0 * UNIT_ROUNDOFF) / reach.matrix.max(growth * growth);
     shape.matrix.iter_mut().for_each(|x| *x *= shrink);
-    shape.log_det = log_det_frame - 2.0 * r as f64 * growth.ln();
+    shape.log_det -= 2.0 * r as f64 * growth.ln();
     if !shape.log_det.is_finite() || shape.semi_axes.iter().any(|a| !a.is_finite()) {
         return Err(EnclosingError::OutOfRange);
     }
@@ -126,7 +125,6 @@ pub(crate) fn finish<P: Points>(
 
 /// Axes, semi-axes (longest first) and matrix of { v : |T·v| ≤ 1 }; r rows of n.
 pub(crate) fn principal_axes(n: usize, map: &[f64]) -> Shape {
-    let r = map.len() / n;
     let mut rows = map.to_vec();
     // A power of two keeps the squares in range and moves no bit.
     let largest = rows.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
@@ -134,14 +132,20 @@ pub(crate) fn principal_axes(n: usize, map: &[f64]) -> Shape {
     rows.iter_mut().for_each(|x| *x /= unit);
     triangularize(n, &mut rows);
     orthogonalize_rows(n, &mut rows);
-    let mut axes: Vec<(f64, Vec<f64>)> = rows
+    let axes = rows
         .chunks_exact(n)
         .map(|row| {
             let sigma = dot(row, row).sqrt();
             (1.0 / sigma / unit, row.iter().map(|x| x / sigma).collect())
         })
         .collect();
+    shape_from_axes(n, axes)
+}
+
+/// The shape with these semi-axes and directions, longest first; fewer than `n` leave the others zero.
+pub(crate) fn shape_from_axes(n: usize, mut axes: Vec<(f64, Vec<f64>)>) -> Shape {
     axes.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let r = axes.len();
     let mut shape = Shape {
         center: vec![0.0; n],
         axes: Vec::with_capacity(n * n),
@@ -152,6 +156,7 @@ pub(crate) fn principal_axes(n: usize, map: &[f64]) -> Shape {
     for (k, (a, axis)) in axes.iter().enumerate() {
         shape.semi_axes[k] = *a;
         shape.axes.extend_from_slice(axis);
+        shape.log_det -= 2.0 * a.ln();
         for i in 0..n {
             for j in 0..n {
                 shape.matrix[i * n + j] += (axis[i] / a) * (axis[j] / a);
@@ -284,8 +289,8 @@ fn contacts<P: Points>(points: &P, r: usize, shape: &Shape, tolerance: f64) -> V
 
 /// ln of the volume of the unit ball in n dimensions: V₀ = 1, V₁ = 2, Vₙ = Vₙ₋₂·2π/n.
 pub(crate) fn log_unit_ball_volume(n: usize) -> f64 {
-    let mut volume = if n % 2 == 0 { 1.0f64 } else { 2.0 }.ln();
-    let mut k = if n % 2 == 0 { 2 } else { 3 };
+    let mut volume = if n.is_multiple_of(2) { 1.0f64 } else { 2.0 }.ln();
+    let mut k = if n.is_multiple_of(2) { 2 } else { 3 };
     while k <= n {
         volume += (std::f64::consts::TAU / k as f64).ln();
         k += 2;

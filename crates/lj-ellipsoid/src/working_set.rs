@@ -45,13 +45,12 @@ pub(crate) fn solve<P: Points, R: Dimension>(
     let ended = loop {
         let budget = max_iterations - iterations;
         let goal = inner_gap.max(tight);
-        let solved = match options.method {
+        iterations += match options.method {
             EnclosingMethod::DualReducedNewton => {
                 crate::dual_reduced::solve(rank, &mut set, &mut moments, goal, budget)
             }
             _ => newton::solve(rank, &mut set, &mut moments, &mut work, goal, budget),
         };
-        iterations += solved.steps;
         recenter(points, rank, &mut frame, &mut set, &mut moments);
         let violators = scan(points, rank, &frame);
         scans += 1;
