@@ -1,0 +1,56 @@
+//! `enclosing_ellipsoid`.
+
+use lj_ellipsoid::{EnclosingError, EnclosingMethod, EnclosingOptions, enclosing, enclosing_dyn};
+
+use super::Ask;
+use super::fit::{Cloud, Fitting};
+use super::method::choose;
+use crate::mesh::Meshes;
+use crate::wire::error::{Kind, Problem};
+use crate::wire::query::{Points, Precision};
+
+const METHODS: &[(&str, EnclosingMethod)] = &[
+    ("newton", EnclosingMethod::Newton),
+    ("khachiyan", EnclosingMethod::Khachiyan),
+    ("ellipsoid", EnclosingMethod::EllipsoidAlgorithm),
+    ("dual_newton", EnclosingMethod::DualReducedNewton),
+];
+
+pub(super) fn question(
+    points: Points,
+    epsilon: Option<f64>,
+    method: Option<&str>,
+    precision: Precision,
+    meshes: &Meshes,
+) -> Result<Box<dyn Ask>, Problem> {
+    let mut options = EnclosingOptions::default().with_method(choose(method, METHODS)?);
+    options.epsilon = epsilon.unwrap_or(options.epsilon);
+    let epsilon = options.epsilon;
+    Ok(match Cloud::of(points, meshes)? {
+        Cloud::Plane(input) => {
+            let solve = |p: &Vec<[f64; 2]>, options| enclosing(p, options).map_err(problem);
+            Box::new(Fitting { input, options, solve, epsilon, precision })
+        }
+        Cloud::Space(input) => {
+            let solve = |p: &Vec<[f64; 3]>, options| enclosing(p, options).map_err(problem);
+            Box::new(Fitting { input, options, solve, epsilon, precision })
+        }
+        Cloud::Higher(input) => Box::new(Fitting {
+            input,
+            options,
+            solve: |p, o| enclosing_dyn(p.as_ref(), o).map_err(problem),
+            epsilon,
+            precision,
+        }),
+    })
+}
+
+fn problem(why: EnclosingError) -> Problem {
+    let kind = match why {
+        EnclosingError::Empty => Kind::InvalidShape,
+        EnclosingError::NonFinite { .. } | EnclosingError::OutOfRange => Kind::NonFinite,
+        EnclosingError::Flat { .. } => Kind::DegeneratePoints,
+        _ => Kind::NotConverged,
+    };
+    Problem::new(kind, why.to_string())
+}

@@ -1,0 +1,148 @@
+//! What enclosing and inscribed ellipsoids have in common: points of any dimension in, an ellipsoid and its gap out.
+
+use lj_ellipsoid::faer::{Mat, MatRef};
+use lj_ellipsoid::{Ellipsoid, EllipsoidDyn, Enclosing, EnclosingDyn, Inscribed, InscribedDyn, Status, rows_to_matrix};
+
+use super::Question;
+use crate::mesh::Meshes;
+use crate::wire::answer::{Answer, Field, Number};
+use crate::wire::error::{Kind, Problem};
+use crate::wire::query::{Points, Precision};
+
+/// Points in the plane or in space as arrays, so that the compiler knows the dimension; others as rows of a matrix.
+pub(super) enum Cloud {
+    Plane(Vec<[f64; 2]>),
+    Space(Vec<[f64; 3]>),
+    Higher(Mat<f64>),
+}
+
+impl Cloud {
+    pub(super) fn of(points: Points, meshes: &Meshes) -> Result<Self, Problem> {
+        Ok(match points {
+            Points::Mesh(path) => Self::Space(meshes.load(&path)?.points().iter().map(|p| p.to_array()).collect()),
+            Points::Listed(rows) => match rows.first().map_or(0, Vec::len) {
+                2 => Self::Plane(rows.iter().map(|row| array(row)).collect()),
+                3 => Self::Space(rows.iter().map(|row| array(row)).collect()),
+                _ => Self::Higher(rows_to_matrix(&rows)),
+            },
+        })
+    }
+}
+
+/// The first `N` numbers of a row that has as many.
+pub(super) fn array<const N: usize>(row: &[f64]) -> [f64; N] {
+    std::array::from_fn(|i| row[i])
+}
+
+/// An ellipsoid to be fitted. It is found in double precision, and rounded where single precision is asked for.
+pub(super) struct Fitting<Input, Options, Solution> {
+    pub(super) input: Input,
+    pub(super) options: Options,
+    pub(super) solve: fn(&Input, Options) -> Result<Solution, Problem>,
+    /// The gap to be certified.
+    pub(super) epsilon: f64,
+    pub(super) precision: Precision,
+}
+
+impl<Input, Options: Copy, Solution: Fitted> Question for Fitting<Input, Options, Solution> {
+    type Solution = Solution;
+
+    fn solve(&self) -> Result<Solution, Problem> {
+        (self.solve)(&self.input, self.options)
+    }
+
+    fn answer(&self, solution: Solution) -> Result<Answer, Problem> {
+        let Fit { gap, status, iterations } = solution.fit();
+        let status = match status {
+            Status::Converged => "converged",
+            // Rounding allows no smaller gap; the one that is certified stands beside the answer.
+            Status::Stalled => "stalled",
+            Status::IterationLimit => {
+                let message = format!(
+                    "the certified gap is {gap:e} after {iterations} iterations, but {:e} was asked for",
+                    self.epsilon
+                );
+                return Err(Problem::new(Kind::NotConverged, message));
+            }
+        };
+        let number = |value: f64| match self.precision {
+            Precision::F32 => Number::of(value as f32),
+            Precision::F64 => Number::of(value),
+        };
+        let answer = solution.with_ellipsoid(|center, matrix, log_det| {
+            let row = |i| (0..center.len()).map(|j| number(matrix[(i, j)])).collect();
+            Answer::default()
+                .with("center", Field::Numbers(center.iter().copied().map(number).collect()))
+                .with("matrix", Field::Rows((0..center.len()).map(row).collect()))
+                .with("log_det", Field::Number(number(log_det)))
+        });
+        Ok(answer
+            .with("gap", Field::Number(Number::of(gap)))
+            .with("status", Field::Text(status))
+            .with("iterations", Field::Count(iterations)))
+    }
+}
+
+/// How a fit ended.
+pub(super) struct Fit {
+    gap: f64,
+    status: Status,
+    iterations: usize,
+}
+
+/// The solutions of lj-ellipsoid, of a dimension known to the compiler or not.
+pub(super) trait Fitted {
+    fn fit(&self) -> Fit;
+
+    /// Shows the centre, the matrix and its log-determinant.
+    fn with_ellipsoid(&self, show: impl FnOnce(&[f64], MatRef<'_, f64>, f64) -> Answer) -> Answer;
+}
+
+fn show_fixed<const N: usize>(e: &Ellipsoid<N>, show: impl FnOnce(&[f64], MatRef<'_, f64>, f64) -> Answer) -> Answer {
+    let matrix = e.matrix();
+    show(&e.center(), MatRef::from_row_major_slice(matrix.as_flattened(), N, N), e.log_det())
+}
+
+fn show_dynamic(e: &EllipsoidDyn, show: impl FnOnce(&[f64], MatRef<'_, f64>, f64) -> Answer) -> Answer {
+    show(e.center(), e.matrix(), e.log_det())
+}
+
+impl<const N: usize> Fitted for Enclosing<N> {
+    fn fit(&self) -> Fit {
+        Fit { gap: self.log_det_gap, status: self.status, iterations: self.iterations }
+    }
+
+    fn with_ellipsoid(&self, show: impl FnOnce(&[f64], MatRef<'_, f64>, f64) -> Answer) -> Answer {
+        show_fixed(&self.ellipsoid, show)
+    }
+}
+
+impl Fitted for EnclosingDyn {
+    fn fit(&self) -> Fit {
+        Fit { gap: self.log_det_gap, status: self.status, iterations: self.iterations }
+    }
+
+    fn with_ellipsoid(&self, show: impl FnOnce(&[f64], MatRef<'_, f64>, f64) -> Answer) -> Answer {
+        show_dynamic(&self.ellipsoid, show)
+    }
+}
+
+impl<const N: usize> Fitted for Inscribed<N> {
+    fn fit(&self) -> Fit {
+        Fit { gap: self.log_det_gap, status: self.status, iterations: self.iterations }
+    }
+
+    fn with_ellipsoid(&self, show: impl FnOnce(&[f64], MatRef<'_, f64>, f64) -> Answer) -> Answer {
+        show_fixed(&self.ellipsoid, show)
+    }
+}
+
+impl Fitted for InscribedDyn {
+    fn fit(&self) -> Fit {
+        Fit { gap: self.log_det_gap, status: self.status, iterations: self.iterations }
+    }
+
+    fn with_ellipsoid(&self, show: impl FnOnce(&[f64], MatRef<'_, f64>, f64) -> Answer) -> Answer {
+        show_dynamic(&self.ellipsoid, show)
+    }
+}

@@ -1,0 +1,181 @@
+//! Meshes from OBJ and STL files, as the hulls of their vertices.
+
+use std::collections::HashMap;
+use std::fs;
+use std::io::{Cursor, Read as _};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use convex_support::glam::{DVec3, Vec3A};
+use convex_support::{Hint, InvalidShape, Polytope, SupportMap, Vector};
+
+use crate::wire::error::{Kind, Problem};
+
+/// The vertices of a mesh, and their hull once it has been asked for.
+#[derive(Debug)]
+pub(crate) struct Mesh {
+    points: Vec<DVec3>,
+    hull_f64: OnceLock<Result<Shared<Polytope<DVec3>>, InvalidShape>>,
+    hull_f32: OnceLock<Result<Shared<Polytope<Vec3A>>, InvalidShape>>,
+}
+
+impl Mesh {
+    fn new(points: Vec<DVec3>) -> Self {
+        Self { points, hull_f64: OnceLock::new(), hull_f32: OnceLock::new() }
+    }
+
+    /// The distinct vertices.
+    pub(crate) fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
+    /// The convex hull in double precision.
+    pub(crate) fn hull_f64(&self) -> Result<Shared<Polytope<DVec3>>, InvalidShape> {
+        self.hull_f64.get_or_init(|| Polytope::new(self.points.iter().copied()).map(Shared::new)).clone()
+    }
+
+    /// The convex hull of the vertices rounded to single precision.
+    pub(crate) fn hull_f32(&self) -> Result<Shared<Polytope<Vec3A>>, InvalidShape> {
+        let rounded = || self.points.iter().map(|p| p.as_vec3a());
+        self.hull_f32.get_or_init(|| Polytope::new(rounded()).map(Shared::new)).clone()
+    }
+}
+
+/// A shape that several queries hold at once.
+#[derive(Debug)]
+pub(crate) struct Shared<S>(Arc<S>);
+
+impl<S> Shared<S> {
+    fn new(shape: S) -> Self {
+        Self(Arc::new(shape))
+    }
+}
+
+impl<S> Clone for Shared<S> {
+    fn clone(&self) -> Self {
+        Self(Arc::clone(&self.0))
+    }
+}
+
+impl<S: SupportMap> SupportMap for Shared<S> {
+    type Vector = S::Vector;
+
+    fn support(&self, direction: S::Vector) -> S::Vector {
+        self.0.support(direction)
+    }
+
+    fn support_value(&self, direction: S::Vector) -> <S::Vector as Vector>::Scalar {
+        self.0.support_value(direction)
+    }
+
+    fn origin(&self) -> S::Vector {
+        self.0.origin()
+    }
+
+    fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
+        self.0.core_support(direction, hint)
+    }
+
+    fn radius(&self) -> <S::Vector as Vector>::Scalar {
+        self.0.radius()
+    }
+
+    fn core_extent(&self) -> <S::Vector as Vector>::Scalar {
+        self.0.core_extent()
+    }
+}
+
+/// The meshes in use, read once each. What is kept is bounded, whatever the number of files.
+#[derive(Debug)]
+pub(crate) struct Meshes {
+    /// What the paths of a query file are relative to.
+    folder: PathBuf,
+    kept: Mutex<Kept>,
+}
+
+#[derive(Debug, Default)]
+struct Kept {
+    meshes: HashMap<PathBuf, Arc<Mesh>>,
+    vertices: usize,
+}
+
+impl Kept {
+    /// 48 MB of vertices, and twice that with both hulls.
+    const MOST_VERTICES: usize = 2_000_000;
+}
+
+impl Meshes {
+    /// Meshes whose paths are relative to `folder`.
+    pub(crate) fn relative_to(folder: impl Into<PathBuf>) -> Self {
+        Self { folder: folder.into(), kept: Mutex::default() }
+    }
+
+    /// The mesh in the file at `path`.
+    pub(crate) fn load(&self, path: &Path) -> Result<Arc<Mesh>, Problem> {
+        let path = self.folder.join(path);
+        // A panic elsewhere leaves the map whole: it is only inserted into.
+        if let Some(mesh) = self.kept.lock().unwrap_or_else(PoisonError::into_inner).meshes.get(&path) {
+            return Ok(Arc::clone(mesh));
+        }
+        let points = read(&path)
+            .map_err(|why| Problem::new(Kind::Io, format!("the mesh {} cannot be read: {why}", path.display())))?;
+        if points.is_empty() {
+            return Err(Problem::new(Kind::InvalidShape, format!("the mesh {} has no vertices", path.display())));
+        }
+        let mesh = Arc::new(Mesh::new(points));
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if kept.vertices + mesh.points.len() > Kept::MOST_VERTICES {
+            *kept = Kept::default();
+        }
+        kept.vertices += mesh.points.len();
+        kept.meshes.insert(path, Arc::clone(&mesh));
+        Ok(mesh)
+    }
+}
+
+/// The distinct vertices of an OBJ or STL file, told apart by the extension, in the order of the file.
+fn read(path: &Path) -> Result<Vec<DVec3>, String> {
+    let bytes = fs::read(path).map_err(|why| why.to_string())?;
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let points = match extension.as_str() {
+        "obj" => read_obj(&bytes)?,
+        "stl" => read_stl(bytes)?,
+        _ => return Err("only .obj and .stl files are known".to_owned()),
+    };
+    let mut seen = std::collections::HashSet::with_capacity(points.len());
+    // −0 and 0 are one coordinate.
+    Ok(points.into_iter().filter(|p| seen.insert(p.to_array().map(|c| (c + 0.0).to_bits()))).collect())
+}
+
+fn read_obj(bytes: &[u8]) -> Result<Vec<DVec3>, String> {
+    // The reader returns the vertices of elements; a point element per vertex at the end of the file makes it return
+    // all of them, whether a face uses them or not.
+    let count = bytes.split(|&b| b == b'\n').filter(|l| is_vertex(l)).count();
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    let elements: String = (1..=count).map(|i| format!("\np {i}")).collect();
+    let mut text = bytes.chain(elements.as_bytes());
+    let options = tobj::LoadOptions { single_index: true, ..Default::default() };
+    let (models, _) = tobj::load_obj_buf(&mut std::io::BufReader::new(&mut text), &options, |_| Ok(Default::default()))
+        .map_err(|why| why.to_string())?;
+    let last = models.last().map(|m| m.mesh.positions.as_slice()).unwrap_or_default();
+    Ok(last.chunks_exact(3).map(DVec3::from_slice).collect())
+}
+
+/// Whether the line of an OBJ file is a vertex.
+fn is_vertex(line: &[u8]) -> bool {
+    let line = line.trim_ascii_start();
+    line.first() == Some(&b'v') && line.get(1).is_some_and(u8::is_ascii_whitespace)
+}
+
+fn read_stl(bytes: Vec<u8>) -> Result<Vec<DVec3>, String> {
+    let mut cursor = Cursor::new(bytes);
+    let triangles = stl_io::create_stl_reader(&mut cursor).map_err(|why| why.to_string())?;
+    let mut points = Vec::new();
+    for triangle in triangles {
+        let triangle = triangle.map_err(|why| why.to_string())?;
+        points.extend(triangle.vertices.iter().map(|v| DVec3::from_array(v.0.map(f64::from))));
+    }
+    Ok(points)
+}

@@ -1,0 +1,144 @@
+//! `cargo xtask query FILE…`: one answer per line, in order, in constant memory.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use rayon::prelude::*;
+use serde_json::Value;
+
+use crate::engine;
+use crate::mesh::Meshes;
+use crate::wire::answer::Line;
+use crate::wire::query;
+
+/// Lines are read as long as they are there already, and answered together: at most about this much of them at once.
+const BATCH_BYTES: usize = 1 << 18;
+
+/// Answers the files to standard output.
+pub(crate) fn run(files: &[PathBuf]) -> ExitCode {
+    let mut output = BufWriter::new(io::stdout().lock());
+    let (mut any_error, mut any_failure) = (false, false);
+    for file in files {
+        match answer_file(file, &mut output) {
+            Ok(Tally { errors, .. }) => any_error |= errors > 0,
+            Err(Failure::Output(why)) if why.kind() == io::ErrorKind::BrokenPipe => break,
+            Err(Failure::Output(why)) => {
+                any_failure = true;
+                complain(&format!("cannot write the answers: {why}"));
+                break;
+            }
+            Err(Failure::Input(why)) => {
+                any_failure = true;
+                complain(&format!("cannot read {}: {why}", file.display()));
+            }
+        }
+    }
+    match (any_failure, any_error) {
+        (true, _) => ExitCode::from(2),
+        (false, true) => ExitCode::from(1),
+        (false, false) => ExitCode::SUCCESS,
+    }
+}
+
+#[expect(clippy::print_stderr, reason = "this is the task's word to the person who started it")]
+fn complain(message: &str) {
+    eprintln!("error: {message}");
+}
+
+/// What became of the lines of a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Tally {
+    answers: u64,
+    errors: u64,
+}
+
+/// Why a file could not be answered to its end.
+#[derive(Debug)]
+enum Failure {
+    Input(io::Error),
+    Output(io::Error),
+}
+
+fn answer_file(file: &Path, output: &mut impl Write) -> Result<Tally, Failure> {
+    if file == Path::new("-") {
+        return answer_lines(io::stdin().lock(), &Meshes::relative_to(""), output);
+    }
+    let folder = file.parent().unwrap_or(Path::new(""));
+    answer_lines(File::open(file).map_err(Failure::Input)?, &Meshes::relative_to(folder), output)
+}
+
+/// Answers every line of `input`.
+///
+/// A batch is what lies in the buffer, so that whoever sends one line and waits gets its answer.
+fn answer_lines(input: impl Read, meshes: &Meshes, output: &mut impl Write) -> Result<Tally, Failure> {
+    let mut input = BufReader::with_capacity(BATCH_BYTES, input);
+    let mut lines = Lines::default();
+    let mut tally = Tally::default();
+    let mut more = true;
+    while more {
+        let mut batch = Vec::new();
+        loop {
+            more = lines.next(&mut input, &mut batch).map_err(Failure::Input)?;
+            if !more || !input.buffer().contains(&b'\n') {
+                break;
+            }
+        }
+        let answers: Vec<(bool, Vec<u8>)> = batch.par_iter().map(|line| answer_line(line, meshes)).collect();
+        for (answered, text) in answers {
+            output.write_all(&text).map_err(Failure::Output)?;
+            if answered { tally.answers += 1 } else { tally.errors += 1 }
+        }
+        output.flush().map_err(Failure::Output)?;
+    }
+    Ok(tally)
+}
+
+/// A line that asks something, and its number.
+struct Numbered {
+    line: u64,
+    text: Vec<u8>,
+}
+
+/// Counts the lines of a file.
+#[derive(Default)]
+struct Lines {
+    read: u64,
+}
+
+impl Lines {
+    /// Reads a line and puts it into the batch, unless it is blank or a comment; false at the end of the file.
+    fn next(&mut self, input: &mut impl BufRead, batch: &mut Vec<Numbered>) -> io::Result<bool> {
+        let mut text = Vec::new();
+        if input.read_until(b'\n', &mut text)? == 0 {
+            return Ok(false);
+        }
+        self.read += 1;
+        if self.read == 1 && text.starts_with(b"\xEF\xBB\xBF") {
+            text.drain(..3);
+        }
+        text.truncate(text.trim_ascii_end().len());
+        if !text.is_empty() && !text.starts_with(b"#") {
+            batch.push(Numbered { line: self.read, text });
+        }
+        Ok(true)
+    }
+}
+
+/// The line of output for a line of input, and whether it is an answer.
+fn answer_line(Numbered { line, text }: &Numbered, meshes: &Meshes) -> (bool, Vec<u8>) {
+    let number = || Value::from(*line);
+    let (id, outcome) = match query::object(text) {
+        Ok(object) => {
+            let id = object.get("id").cloned().unwrap_or_else(number);
+            (id, engine::question(&object, meshes).and_then(|question| question.ask()))
+        }
+        Err(problem) => (query::id_of(text).unwrap_or_else(number), Err(problem)),
+    };
+    let answered = outcome.is_ok();
+    // Writing to memory fails only for values that are no JSON, and there are none in a `Line`.
+    let mut text = serde_json::to_vec(&Line { id, line: *line, outcome }).unwrap_or_default();
+    text.push(b'\n');
+    (answered, text)
+}

@@ -1,0 +1,141 @@
+//! Answers, as they are written.
+
+use convex_support::{Matrix, Scalar, Vector};
+use serde::ser::{Serialize, SerializeMap as _, Serializer};
+use serde_json::Value;
+
+use super::error::Problem;
+
+/// A number in the precision of the query, printed with the fewest digits that tell it from its neighbours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Number {
+    Single(f32),
+    Double(f64),
+}
+
+impl Number {
+    pub(crate) fn of<S: Scalar>(value: S) -> Self {
+        if size_of::<S>() == size_of::<f32>() {
+            Self::Single(f32::from_f64(value.as_f64()))
+        } else {
+            Self::Double(value.as_f64())
+        }
+    }
+
+    fn is_finite(self) -> bool {
+        match self {
+            Self::Single(value) => value.is_finite(),
+            Self::Double(value) => value.is_finite(),
+        }
+    }
+}
+
+impl Serialize for Number {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match *self {
+            Self::Single(value) => serializer.serialize_f32(value),
+            Self::Double(value) => serializer.serialize_f64(value),
+        }
+    }
+}
+
+/// The value of a field.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[serde(untagged)]
+pub(crate) enum Field {
+    Null,
+    Flag(bool),
+    Count(usize),
+    Text(&'static str),
+    Number(Number),
+    Numbers(Vec<Number>),
+    Rows(Vec<Vec<Number>>),
+    Counts(Vec<usize>),
+}
+
+impl Field {
+    pub(crate) fn number<S: Scalar>(value: S) -> Self {
+        Self::Number(Number::of(value))
+    }
+
+    pub(crate) fn vector<V: Vector>(vector: V) -> Self {
+        Self::Numbers((0..V::DIM).map(|i| Number::of(vector.get(i))).collect())
+    }
+
+    /// The vector, or null.
+    pub(crate) fn maybe_vector<V: Vector>(vector: Option<V>) -> Self {
+        vector.map_or(Self::Null, Self::vector)
+    }
+
+    pub(crate) fn matrix<M: Matrix>(matrix: M) -> Self {
+        let n = M::Vector::DIM;
+        Self::Rows((0..n).map(|i| (0..n).map(|j| Number::of(matrix.col(j).get(i))).collect()).collect())
+    }
+
+    /// Whether JSON can hold it.
+    fn is_finite(&self) -> bool {
+        match self {
+            Self::Number(number) => number.is_finite(),
+            Self::Numbers(numbers) => numbers.iter().all(|n| n.is_finite()),
+            Self::Rows(rows) => rows.iter().flatten().all(|n| n.is_finite()),
+            Self::Null | Self::Flag(_) | Self::Count(_) | Self::Text(_) | Self::Counts(_) => true,
+        }
+    }
+}
+
+/// The fields of an answer, in the order they are written.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Answer {
+    fields: Vec<(&'static str, Field)>,
+}
+
+impl Answer {
+    pub(crate) fn with(mut self, name: &'static str, field: Field) -> Self {
+        self.fields.push((name, field));
+        self
+    }
+
+    /// With the number, where JSON can hold it: the open end of a bracket is left out.
+    pub(crate) fn with_finite<S: Scalar>(self, name: &'static str, value: S) -> Self {
+        if value.is_finite() { self.with(name, Field::number(value)) } else { self }
+    }
+
+    /// The first field that JSON cannot hold.
+    pub(crate) fn non_finite(&self) -> Option<&'static str> {
+        self.fields.iter().find(|(_, field)| !field.is_finite()).map(|(name, _)| *name)
+    }
+}
+
+/// One line of output.
+#[derive(Debug)]
+pub(crate) struct Line {
+    /// What the query calls itself; the number of its line otherwise.
+    pub(crate) id: Value,
+    /// The line in its file, counted from 1.
+    pub(crate) line: u64,
+    pub(crate) outcome: Result<Answer, Problem>,
+}
+
+impl Serialize for Line {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("id", &self.id)?;
+        match &self.outcome {
+            Ok(answer) => {
+                for (name, field) in &answer.fields {
+                    map.serialize_entry(name, field)?;
+                }
+            }
+            Err(problem) => {
+                #[derive(serde::Serialize)]
+                struct Error<'p> {
+                    kind: super::error::Kind,
+                    message: &'p str,
+                }
+                map.serialize_entry("line", &self.line)?;
+                map.serialize_entry("error", &Error { kind: problem.kind, message: &problem.message })?;
+            }
+        }
+        map.end()
+    }
+}

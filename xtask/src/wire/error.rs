@@ -1,0 +1,69 @@
+//! What can be wrong with a line, said to the person who wrote it.
+
+use convex_support::InvalidShape;
+use serde::Serialize;
+
+/// The kinds of errors of the format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Kind {
+    /// Not JSON, not an object, or a field is missing or of the wrong type.
+    Parse,
+    /// The `query` is not one of the format's.
+    UnknownQuery,
+    /// The `type` of a shape is not one of the format's.
+    UnknownShape,
+    /// Vectors of different lengths, or of a length the query does not know.
+    DimensionMismatch,
+    /// A number that is not finite in the precision asked for.
+    NonFinite,
+    /// Numbers that do not make a shape.
+    InvalidShape,
+    /// Points, or an intersection of half-spaces, without volume.
+    DegeneratePoints,
+    /// A direction of length zero.
+    ZeroDirection,
+    /// Half-spaces without a bounded intersection.
+    Unbounded,
+    /// The answer could not be certified.
+    NotConverged,
+    /// A file could not be read.
+    Io,
+}
+
+/// Why a line has no answer.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Problem {
+    pub(crate) kind: Kind,
+    /// Where and what, in a sentence.
+    pub(crate) message: String,
+}
+
+impl Problem {
+    pub(crate) fn new(kind: Kind, message: impl Into<String>) -> Self {
+        Self { kind, message: message.into() }
+    }
+
+    /// A shape that could not be built from the field at `place`.
+    pub(crate) fn invalid_shape(place: &str, why: InvalidShape) -> Self {
+        let item = |parameter: &str, index: usize, lone: bool| {
+            if lone { format!("{place}.{parameter}") } else { format!("{place}.{parameter}[{index}]") }
+        };
+        let is_lone = |parameter: &str| matches!(parameter, "radius" | "half_height");
+        match why {
+            InvalidShape::NonFinite { parameter, index } => Self::new(
+                Kind::NonFinite,
+                format!("{} is not finite in the precision asked for", item(parameter, index, is_lone(parameter))),
+            ),
+            InvalidShape::Negative { parameter, index, value } => Self::new(
+                Kind::InvalidShape,
+                format!("{} is {value}, but must not be negative", item(parameter, index, is_lone(parameter))),
+            ),
+            InvalidShape::NotPositive { parameter, index, value } => Self::new(
+                Kind::InvalidShape,
+                format!("{} is {value}, but must be greater than zero", item(parameter, index, is_lone(parameter))),
+            ),
+            other => Self::new(Kind::InvalidShape, format!("{place}: {other}")),
+        }
+    }
+}

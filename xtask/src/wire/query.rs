@@ -1,0 +1,314 @@
+//! Queries as written.
+
+use std::path::PathBuf;
+
+use serde::Deserialize as _;
+use serde_json::Value;
+
+use super::error::{Kind, Problem};
+use super::reader::{Coordinates, Object, Reader, Rotation};
+use super::shape::{EllipsoidSpec, Shape};
+
+/// The deepest nesting of lists and objects that is read.
+const DEEPEST: usize = 128;
+
+/// The precision to answer in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Precision {
+    F32,
+    F64,
+}
+
+/// A query and what all queries have in common.
+#[derive(Debug)]
+pub(crate) struct Request {
+    pub(crate) precision: Precision,
+    /// The dimension of the space, 2 or 3; 3 where nothing in the query says. Ellipsoid fits have their own.
+    pub(crate) dimension: usize,
+    pub(crate) tol: Option<f64>,
+    pub(crate) method: Option<String>,
+    pub(crate) query: Query,
+}
+
+/// The nine questions.
+#[derive(Debug)]
+pub(crate) enum Query {
+    RayCast { target: Shape, source: Coordinates, direction: Coordinates, max_lambda: Option<f64> },
+    Distance { a: Shape, b: Shape },
+    Intersect { a: Shape, b: Shape },
+    LinearCast { a: Shape, b: Shape, velocity_a: Coordinates, velocity_b: Coordinates, max_time: Option<f64> },
+    EnclosingEllipsoid { points: Points, epsilon: Option<f64> },
+    InscribedEllipsoid { body: Body, epsilon: Option<f64> },
+    Margin { e1: EllipsoidSpec, e2: EllipsoidSpec, gradient: bool },
+    Track { e1: EllipsoidSpec, e2: EllipsoidSpec, poses: Vec<Pose> },
+    Clearance { links: Vec<EllipsoidSpec>, obstacles: Vec<EllipsoidSpec> },
+}
+
+/// Points of any dimension.
+#[derive(Debug)]
+pub(crate) enum Points {
+    /// As a list, all of the same length.
+    Listed(Vec<Vec<f64>>),
+    /// The vertices of a mesh.
+    Mesh(PathBuf),
+}
+
+/// What to inscribe an ellipsoid in.
+#[derive(Debug)]
+pub(crate) enum Body {
+    /// The hull of points.
+    Points(Points),
+    /// The intersection of half-spaces, all of the same dimension.
+    HalfSpaces(Vec<HalfSpace>),
+}
+
+/// `normal·x ≤ offset`.
+#[derive(Clone, Debug)]
+pub(crate) struct HalfSpace {
+    pub(crate) normal: Vec<f64>,
+    pub(crate) offset: f64,
+}
+
+/// Where a body is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pose {
+    pub(crate) translation: Coordinates,
+    pub(crate) rotation: Option<Rotation>,
+}
+
+const QUERIES: &str = "ray_cast, distance, intersect, linear_cast, enclosing_ellipsoid, inscribed_ellipsoid, margin, \
+                       track, clearance";
+
+/// The JSON object on a line.
+///
+/// # Errors
+/// [`Kind::Parse`] where it is not JSON, not an object, or nested deeper than 128 levels.
+pub(crate) fn object(line: &[u8]) -> Result<Object, Problem> {
+    if deepest(line) > DEEPEST {
+        return Err(Problem::new(Kind::Parse, format!("lists and objects are nested deeper than {DEEPEST} levels")));
+    }
+    let mut deserializer = serde_json::Deserializer::from_slice(line);
+    deserializer.disable_recursion_limit();
+    let value = Value::deserialize(&mut deserializer).and_then(|value| deserializer.end().map(|()| value));
+    match value {
+        Ok(Value::Object(object)) => Ok(object),
+        Ok(_) => Err(Problem::new(Kind::Parse, "the line is JSON, but not an object")),
+        Err(why) => {
+            let text = why.to_string();
+            if text.contains("number out of range") {
+                let message = format!("the number before column {} is too large for a double", why.column());
+                return Err(Problem::new(Kind::NonFinite, message));
+            }
+            let what = text.split(" at line ").next().unwrap_or(&text);
+            Err(Problem::new(Kind::Parse, format!("the line is not JSON: {what} at column {}", why.column())))
+        }
+    }
+}
+
+/// What a line that could not be read calls itself, as far as that can be told.
+pub(crate) fn id_of(line: &[u8]) -> Option<Value> {
+    #[derive(serde::Deserialize)]
+    struct Named {
+        id: Option<Value>,
+    }
+    // Fields that are not asked for are skipped without looking at their numbers or their depth.
+    serde_json::from_slice::<Named>(line).ok()?.id
+}
+
+/// The deepest nesting of brackets outside strings.
+fn deepest(line: &[u8]) -> usize {
+    let (mut depth, mut deepest) = (0usize, 0usize);
+    let (mut quoted, mut escaped) = (false, false);
+    for &byte in line {
+        match byte {
+            _ if escaped => escaped = false,
+            b'\\' if quoted => escaped = true,
+            b'"' => quoted = !quoted,
+            b'[' | b'{' if !quoted => {
+                depth += 1;
+                deepest = deepest.max(depth);
+            }
+            b']' | b'}' if !quoted => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+    }
+    deepest
+}
+
+impl Request {
+    /// The query in a JSON object.
+    pub(crate) fn read(object: &Object) -> Result<Self, Problem> {
+        let reader = &mut Reader::default();
+        let name = reader.required(object, "query", Reader::text)?;
+        let precision = reader.optional(object, "precision", |r, v| match r.text(v)?.as_str() {
+            "f64" => Ok(Precision::F64),
+            "f32" => Ok(Precision::F32),
+            _ => Err(r.expected("\"f64\" or \"f32\"", v)),
+        })?;
+        let tol = reader.optional(object, "tol", Reader::positive)?;
+        let method = reader.optional(object, "method", Reader::text)?;
+        let epsilon = |r: &mut Reader| r.optional(object, "epsilon", Reader::positive);
+        let query = match name.as_str() {
+            "ray_cast" => Query::RayCast {
+                target: reader.required(object, "target", Shape::read)?,
+                source: reader.required(object, "source", Reader::vector)?,
+                direction: reader.required(object, "direction", Reader::vector)?,
+                max_lambda: reader.optional(object, "max_lambda", Reader::number)?,
+            },
+            "distance" => Query::Distance {
+                a: reader.required(object, "a", Shape::read)?,
+                b: reader.required(object, "b", Shape::read)?,
+            },
+            "intersect" => Query::Intersect {
+                a: reader.required(object, "a", Shape::read)?,
+                b: reader.required(object, "b", Shape::read)?,
+            },
+            "linear_cast" => Query::LinearCast {
+                a: reader.required(object, "a", Shape::read)?,
+                b: reader.required(object, "b", Shape::read)?,
+                velocity_a: reader.optional(object, "velocity_a", Reader::vector)?.unwrap_or_default(),
+                velocity_b: reader.optional(object, "velocity_b", Reader::vector)?.unwrap_or_default(),
+                max_time: reader.optional(object, "max_time", Reader::number)?,
+            },
+            "enclosing_ellipsoid" => {
+                Query::EnclosingEllipsoid { points: Points::read(reader, object)?, epsilon: epsilon(reader)? }
+            }
+            "inscribed_ellipsoid" => {
+                Query::InscribedEllipsoid { body: Body::read(reader, object)?, epsilon: epsilon(reader)? }
+            }
+            "margin" => Query::Margin {
+                e1: reader.required(object, "e1", EllipsoidSpec::read)?,
+                e2: reader.required(object, "e2", EllipsoidSpec::read)?,
+                gradient: reader.optional(object, "gradient", Reader::flag)?.unwrap_or(false),
+            },
+            "track" => Query::Track {
+                e1: reader.required(object, "e1", EllipsoidSpec::read)?,
+                e2: reader.required(object, "e2", EllipsoidSpec::read)?,
+                poses: reader.required(object, "poses", |r, v| r.list(v, Pose::read))?,
+            },
+            "clearance" => Query::Clearance {
+                links: reader.required(object, "links", |r, v| r.list(v, EllipsoidSpec::read))?,
+                obstacles: reader.required(object, "obstacles", |r, v| r.list(v, EllipsoidSpec::read))?,
+            },
+            _ => {
+                let message = format!("the query {name:?} is unknown; the queries are {QUERIES}");
+                return Err(Problem::new(Kind::UnknownQuery, message));
+            }
+        };
+        Ok(Self {
+            precision: precision.unwrap_or(Precision::F64),
+            dimension: reader.dimension().unwrap_or(3),
+            tol,
+            method,
+            query,
+        })
+    }
+}
+
+impl Pose {
+    fn read(reader: &mut Reader, value: &Value) -> Result<Self, Problem> {
+        let object = reader.object(value)?;
+        Ok(Self {
+            translation: reader.optional(object, "translation", Reader::vector)?.unwrap_or_default(),
+            rotation: reader.optional(object, "rotation", Reader::rotation)?,
+        })
+    }
+}
+
+impl Points {
+    fn read(reader: &mut Reader, object: &Object) -> Result<Self, Problem> {
+        if object.contains_key("points") || !object.contains_key("target") {
+            return Ok(Self::Listed(reader.required(object, "points", Self::list)?));
+        }
+        reader.required(object, "target", |reader, value| {
+            let target = reader.object(value)?;
+            match target.get("type").and_then(Value::as_str) {
+                // Read here rather than as a shape: these points may have any number of coordinates.
+                Some("polytope") => Ok(Self::Listed(reader.required(target, "points", Self::list)?)),
+                Some("mesh") => Ok(Self::Mesh(reader.required(target, "path", Reader::text)?.into())),
+                _ => match Shape::read(reader, value) {
+                    Err(problem) if problem.kind == Kind::UnknownShape => Err(problem),
+                    _ => Err(reader.problem(Kind::InvalidShape, "must be a polytope or a mesh")),
+                },
+            }
+        })
+    }
+
+    /// Points of one length, 2 or more.
+    fn list(reader: &mut Reader, value: &Value) -> Result<Vec<Vec<f64>>, Problem> {
+        let points = reader.list(value, Reader::numbers)?;
+        same_length(reader, points.iter().map(Vec::len), "")?;
+        Ok(points)
+    }
+}
+
+impl Body {
+    fn read(reader: &mut Reader, object: &Object) -> Result<Self, Problem> {
+        if !object.contains_key("halfspaces") {
+            return Points::read(reader, object).map(Self::Points);
+        }
+        let halfspaces = reader.required(object, "halfspaces", |reader, value| {
+            let halfspaces = reader.list(value, |reader, value| {
+                let object = reader.object(value)?;
+                Ok(HalfSpace {
+                    normal: reader.required(object, "normal", Reader::numbers)?,
+                    offset: reader.required(object, "offset", Reader::number)?,
+                })
+            })?;
+            same_length(reader, halfspaces.iter().map(|h| h.normal.len()), ".normal")?;
+            Ok(halfspaces)
+        })?;
+        Ok(Self::HalfSpaces(halfspaces))
+    }
+}
+
+/// Checks that a list of vectors is of one dimension.
+fn same_length(reader: &Reader, lengths: impl Iterator<Item = usize>, field: &str) -> Result<(), Problem> {
+    let mut first = None;
+    for (i, length) in lengths.enumerate() {
+        let first = *first.get_or_insert(length);
+        if length != first || length < 2 {
+            let list = reader.place();
+            let due =
+                if length < 2 { "a space has 2 or more".to_owned() } else { format!("{list}[0]{field} has {first}") };
+            let message = format!("{list}[{i}]{field} has {length} coordinates, but {due}");
+            return Err(Problem::new(Kind::DimensionMismatch, message));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn nested(levels: usize) -> String {
+        // The object is one level, each list one more.
+        format!(r#"{{"query":"x","deep":{}1{}}}"#, "[".repeat(levels - 1), "]".repeat(levels - 1))
+    }
+
+    #[test]
+    fn reads_128_levels_and_no_more() {
+        object(nested(128).as_bytes()).expect("the deepest that is read");
+        let problem = object(nested(129).as_bytes()).expect_err("too deep");
+        assert_eq!(problem.kind, Kind::Parse, "{problem:?}");
+        object(nested(1_000_000).as_bytes()).expect_err("far too deep, and no crash");
+        assert_eq!(deepest(br#"{"a":"[[[\"[[","b":[{}]}"#), 3, "brackets in strings do not nest");
+    }
+
+    #[test]
+    fn a_line_that_cannot_be_read_may_still_be_named() {
+        let line = br#"{"id":"far","source":[1e400,0,0]}"#;
+        assert_eq!(object(line).expect_err("beyond doubles").kind, Kind::NonFinite, "a number too large");
+        assert_eq!(id_of(line), Some(Value::from("far")), "the name");
+        assert_eq!(id_of(b"not json"), None, "no name");
+    }
+
+    #[test]
+    fn the_first_vector_decides_the_dimension_and_the_second_is_blamed() {
+        let text = br#"{"query":"ray_cast","target":{"type":"cuboid","half_extents":[1,1,1]},"source":[5,0],"direction":[1,0]}"#;
+        let problem = Request::read(&object(text).expect("JSON")).expect_err("2D and 3D");
+        assert_eq!(problem.kind, Kind::DimensionMismatch, "{problem:?}");
+        assert_eq!(problem.message, "source has 2 coordinates, but target.half_extents makes the query 3D");
+    }
+}

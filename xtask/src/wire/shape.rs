@@ -1,0 +1,357 @@
+//! Shapes as written, and the support maps they stand for.
+
+use std::path::PathBuf;
+
+use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
+use convex_support::{
+    Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Ellipsoid, Hull, InvalidShape, Matrix, MinkowskiSum,
+    Point, Polytope, Posed, Rounded, Scalar, Segment, SupportMap, Triangle, Vector, glam,
+};
+use serde_json::Value;
+
+use super::error::{Kind, Problem};
+use super::reader::{Coordinates, Object, Reader, Rotation};
+use crate::mesh::{Mesh, Meshes};
+
+/// A shape as the query says it.
+#[derive(Debug)]
+pub(crate) enum Shape {
+    Point(Coordinates),
+    Segment([Coordinates; 2]),
+    Triangle([Coordinates; 3]),
+    Ball { radius: f64 },
+    Cuboid { half_extents: Coordinates },
+    Capsule { half_height: f64, radius: f64 },
+    Upright { kind: Upright, half_height: f64, radius: f64 },
+    Ellipsoid(EllipsoidSpec),
+    Polytope(Vec<Coordinates>),
+    Mesh(PathBuf),
+    Posed { translation: Coordinates, rotation: Option<Rotation>, of: Box<Self> },
+    Affine { matrix: [Coordinates; 3], translation: Coordinates, of: Box<Self> },
+    MinkowskiSum(Vec<Self>),
+    Difference(Box<[Self; 2]>),
+    Hull(Vec<Self>),
+    Rounded { radius: f64, of: Box<Self> },
+}
+
+/// The shapes with a disc for a base, which exist in 3D only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Upright {
+    Cylinder,
+    Cone,
+}
+
+/// An ellipsoid as the query says it.
+#[derive(Clone, Debug)]
+pub(crate) struct EllipsoidSpec {
+    center: Coordinates,
+    form: EllipsoidForm,
+}
+
+#[derive(Clone, Debug)]
+enum EllipsoidForm {
+    Matrix([Coordinates; 3]),
+    Axes { semi_axes: Coordinates, rotation: Option<Rotation> },
+}
+
+const SHAPES: &str = "point, segment, triangle, ball, cuboid, capsule, cylinder, cone, ellipsoid, polytope, mesh, posed, \
+                      affine, minkowski_sum, difference, hull, rounded";
+
+impl Shape {
+    pub(crate) fn read(reader: &mut Reader, value: &Value) -> Result<Self, Problem> {
+        let object = reader.object(value)?;
+        let kind = reader.required(object, "type", Reader::text)?;
+        let radius = |r: &mut Reader| r.required(object, "radius", Reader::number);
+        let half_height = |r: &mut Reader| r.required(object, "half_height", Reader::number);
+        let of = |r: &mut Reader| r.required(object, "of", Self::read).map(Box::new);
+        let several = |r: &mut Reader| r.required(object, "of", |r, v| r.list(v, Self::read));
+        Ok(match kind.as_str() {
+            "point" => Self::Point(reader.required(object, "at", Reader::vector)?),
+            "segment" => Self::Segment(corners(reader, object)?),
+            "triangle" => Self::Triangle(corners(reader, object)?),
+            "ball" => Self::Ball { radius: radius(reader)? },
+            "cuboid" => Self::Cuboid { half_extents: reader.required(object, "half_extents", Reader::vector)? },
+            "capsule" => Self::Capsule { half_height: half_height(reader)?, radius: radius(reader)? },
+            "cylinder" | "cone" => {
+                reader.is_of_dimension(3, &format!("is a {kind}, which is 3D"))?;
+                let kind = if kind == "cone" { Upright::Cone } else { Upright::Cylinder };
+                Self::Upright { kind, half_height: half_height(reader)?, radius: radius(reader)? }
+            }
+            "ellipsoid" => Self::Ellipsoid(EllipsoidSpec::read(reader, value)?),
+            "polytope" => Self::Polytope(reader.required(object, "points", |r, v| r.list(v, Reader::vector))?),
+            "mesh" => {
+                reader.is_of_dimension(3, "is a mesh, which is 3D")?;
+                Self::Mesh(reader.required(object, "path", Reader::text)?.into())
+            }
+            "posed" => Self::Posed {
+                translation: reader.optional(object, "translation", Reader::vector)?.unwrap_or_default(),
+                rotation: reader.optional(object, "rotation", Reader::rotation)?,
+                of: of(reader)?,
+            },
+            "affine" => Self::Affine {
+                matrix: reader.required(object, "matrix", Reader::matrix)?,
+                translation: reader.optional(object, "translation", Reader::vector)?.unwrap_or_default(),
+                of: of(reader)?,
+            },
+            "minkowski_sum" => Self::MinkowskiSum(several(reader)?),
+            "difference" => Self::Difference(Box::new([
+                reader.required(object, "a", Self::read)?,
+                reader.required(object, "b", Self::read)?,
+            ])),
+            "hull" => Self::Hull(several(reader)?),
+            "rounded" => Self::Rounded { radius: radius(reader)?, of: of(reader)? },
+            _ => {
+                let message = format!("is of the unknown type {kind:?}; the types are {SHAPES}");
+                return Err(reader.problem(Kind::UnknownShape, message));
+            }
+        })
+    }
+}
+
+/// The corners of a segment or triangle.
+fn corners<const N: usize>(reader: &mut Reader, object: &Object) -> Result<[Coordinates; N], Problem> {
+    reader.required(object, "points", |reader, value| {
+        let points = reader.list(value, Reader::vector)?;
+        let count = points.len();
+        points
+            .try_into()
+            .map_err(|_| reader.problem(Kind::InvalidShape, format!("must be {N} points, but there are {count}")))
+    })
+}
+
+impl EllipsoidSpec {
+    pub(crate) fn read(reader: &mut Reader, value: &Value) -> Result<Self, Problem> {
+        let object = reader.object(value)?;
+        let center = reader.required(object, "center", Reader::vector)?;
+        let matrix = reader.optional(object, "matrix", Reader::matrix)?;
+        let semi_axes = reader.optional(object, "semi_axes", Reader::vector)?;
+        let rotation = reader.optional(object, "rotation", Reader::rotation)?;
+        let form = match (matrix, semi_axes) {
+            (Some(matrix), None) => EllipsoidForm::Matrix(matrix),
+            (None, Some(semi_axes)) => EllipsoidForm::Axes { semi_axes, rotation },
+            (Some(_), Some(_)) => {
+                return Err(reader.problem(Kind::Parse, "has both \"matrix\" and \"semi_axes\"; give one of them"));
+            }
+            (None, None) => {
+                return Err(reader.problem(Kind::Parse, "needs \"matrix\", or \"semi_axes\" and \"rotation\""));
+            }
+        };
+        Ok(Self { center, form })
+    }
+
+    /// The ellipsoid; `place` is where the query says it, for errors.
+    ///
+    /// Its axes are found in double precision and then rounded: that loses least where the matrix is given.
+    pub(crate) fn build<V: Space>(&self, place: &str) -> Result<Ellipsoid<V>, Problem> {
+        let wide = match &self.form {
+            EllipsoidForm::Matrix(matrix) => {
+                Ellipsoid::<V::Wide>::from_matrix(vector(&self.center), matrix_of_rows(matrix))
+            }
+            EllipsoidForm::Axes { semi_axes, rotation } => {
+                Ellipsoid::<V::Wide>::new(vector(&self.center), vector(semi_axes), rotation_of::<V::Wide>(*rotation))
+            }
+        };
+        let round = |v: V::Wide| V::from_fn(|i| V::Scalar::from_f64(v.get(i).as_f64()));
+        let build = || {
+            let wide = wide?;
+            let axes = V::Matrix::from_cols_fn(|j| round(wide.axes().col(j)));
+            Ellipsoid::from_axes(round(wide.center()), round(wide.semi_axes()), axes)
+        };
+        build().map_err(|why| Problem::invalid_shape(place, why))
+    }
+}
+
+/// A shape of any kind.
+pub(crate) type Solid<V> = Box<dyn SupportMap<Vector = V> + Send + Sync>;
+
+/// The spaces of the format: what depends on the precision or the dimension and is not the vector's own.
+pub(crate) trait Space: Vector {
+    /// The space of the same dimension in double precision.
+    type Wide: Space<Scalar = f64>;
+
+    /// The rotation, rounded to this precision; that of another dimension is a broken contract and gives none.
+    fn rotation(rotation: Rotation) -> Self::Rotation;
+
+    /// A cylinder or cone.
+    ///
+    /// # Panics
+    /// In 2D, where the reader lets none pass.
+    fn upright(kind: Upright, half_height: f64, radius: f64) -> Result<Solid<Self>, InvalidShape>;
+
+    /// The hull of a mesh.
+    ///
+    /// # Panics
+    /// In 2D, where the reader lets none pass.
+    fn mesh(mesh: &Mesh) -> Result<Solid<Self>, InvalidShape>;
+}
+
+impl Space for DVec2 {
+    type Wide = Self;
+
+    fn rotation(rotation: Rotation) -> f64 {
+        match rotation {
+            Rotation::Angle(angle) => angle,
+            Rotation::Quaternion(_) => 0.0,
+        }
+    }
+
+    fn upright(_: Upright, _: f64, _: f64) -> Result<Solid<Self>, InvalidShape> {
+        unreachable!("the reader refuses cylinders and cones in 2D")
+    }
+
+    fn mesh(_: &Mesh) -> Result<Solid<Self>, InvalidShape> {
+        unreachable!("the reader refuses meshes in 2D")
+    }
+}
+
+impl Space for Vec2 {
+    type Wide = DVec2;
+
+    fn rotation(rotation: Rotation) -> f32 {
+        f32::from_f64(DVec2::rotation(rotation))
+    }
+
+    fn upright(_: Upright, _: f64, _: f64) -> Result<Solid<Self>, InvalidShape> {
+        unreachable!("the reader refuses cylinders and cones in 2D")
+    }
+
+    fn mesh(_: &Mesh) -> Result<Solid<Self>, InvalidShape> {
+        unreachable!("the reader refuses meshes in 2D")
+    }
+}
+
+impl Space for DVec3 {
+    type Wide = Self;
+
+    fn rotation(rotation: Rotation) -> glam::DQuat {
+        match rotation {
+            Rotation::Angle(_) => glam::DQuat::IDENTITY,
+            Rotation::Quaternion(q) => glam::DQuat::from_array(q),
+        }
+    }
+
+    fn upright(kind: Upright, half_height: f64, radius: f64) -> Result<Solid<Self>, InvalidShape> {
+        Ok(match kind {
+            Upright::Cylinder => Box::new(Cylinder::<Self>::new(half_height, radius)?),
+            Upright::Cone => Box::new(Cone::<Self>::new(half_height, radius)?),
+        })
+    }
+
+    fn mesh(mesh: &Mesh) -> Result<Solid<Self>, InvalidShape> {
+        Ok(Box::new(mesh.hull_f64()?))
+    }
+}
+
+impl Space for Vec3A {
+    type Wide = DVec3;
+
+    fn rotation(rotation: Rotation) -> glam::Quat {
+        // Made unit in double precision, so that its length, whatever it is, survives the rounding.
+        let q = glam::DVec4::from(DVec3::rotation(rotation));
+        let unit = q / q.abs().max_element();
+        if unit.is_finite() {
+            glam::Quat::from_vec4(unit.normalize().as_vec4())
+        } else {
+            glam::Quat::from_vec4(q.as_vec4())
+        }
+    }
+
+    fn upright(kind: Upright, half_height: f64, radius: f64) -> Result<Solid<Self>, InvalidShape> {
+        let (half_height, radius) = (f32::from_f64(half_height), f32::from_f64(radius));
+        Ok(match kind {
+            Upright::Cylinder => Box::new(Cylinder::<Self>::new(half_height, radius)?),
+            Upright::Cone => Box::new(Cone::<Self>::new(half_height, radius)?),
+        })
+    }
+
+    fn mesh(mesh: &Mesh) -> Result<Solid<Self>, InvalidShape> {
+        Ok(Box::new(mesh.hull_f32()?))
+    }
+}
+
+/// The vector with these coordinates, rounded to its precision.
+pub(crate) fn vector<V: Vector>(coordinates: &Coordinates) -> V {
+    V::from_fn(|i| V::Scalar::from_f64(coordinates[i]))
+}
+
+fn matrix_of_rows<M: Matrix>(rows: &[Coordinates; 3]) -> M {
+    M::from_cols_fn(|j| M::Vector::from_fn(|i| <M::Vector as Vector>::Scalar::from_f64(rows[i][j])))
+}
+
+/// The rotation, or none.
+pub(crate) fn rotation_of<V: Space>(rotation: Option<Rotation>) -> V::Rotation {
+    rotation.map_or_else(V::Rotation::default, V::rotation)
+}
+
+impl Shape {
+    /// The support map of the shape; `place` is where the query says it, for errors.
+    pub(crate) fn build<V: Space>(&self, place: &str, meshes: &Meshes) -> Result<Solid<V>, Problem> {
+        let s = V::Scalar::from_f64;
+        let invalid = |why| Problem::invalid_shape(place, why);
+        let inner = |of: &Self| of.build::<V>(&format!("{place}.of"), meshes);
+        Ok(match self {
+            Self::Point(at) => Box::new(Point::<V>::new(vector(at)).map_err(invalid)?),
+            Self::Segment(points) => Box::new(Segment::<V>::new(points.each_ref().map(vector)).map_err(invalid)?),
+            Self::Triangle(points) => Box::new(Triangle::<V>::new(points.each_ref().map(vector)).map_err(invalid)?),
+            Self::Ball { radius } => Box::new(Ball::<V>::new(s(*radius)).map_err(invalid)?),
+            Self::Cuboid { half_extents } => Box::new(Cuboid::<V>::new(vector(half_extents)).map_err(invalid)?),
+            Self::Capsule { half_height, radius } => {
+                Box::new(Capsule::<V>::new(s(*half_height), s(*radius)).map_err(invalid)?)
+            }
+            Self::Upright { kind, half_height, radius } => V::upright(*kind, *half_height, *radius).map_err(invalid)?,
+            Self::Ellipsoid(spec) => Box::new(spec.build::<V>(place)?),
+            Self::Polytope(points) => Box::new(Polytope::<V>::new(points.iter().map(vector)).map_err(invalid)?),
+            Self::Mesh(path) => V::mesh(&*meshes.load(path)?).map_err(invalid)?,
+            Self::Posed { translation, rotation: None, of } => {
+                Box::new(Posed::translated(inner(of)?, vector(translation)).map_err(invalid)?)
+            }
+            Self::Posed { translation, rotation, of } => {
+                let rotation = rotation_of::<V>(*rotation);
+                Box::new(Posed::new(inner(of)?, rotation, vector(translation)).map_err(invalid)?)
+            }
+            Self::Affine { matrix, translation, of } => {
+                Box::new(Affine::new(inner(of)?, matrix_of_rows(matrix), vector(translation)).map_err(invalid)?)
+            }
+            Self::MinkowskiSum(of) if of.len() < 2 => {
+                let message = format!("{place}.of must be 2 or more shapes, but there are {}", of.len());
+                return Err(Problem::new(Kind::InvalidShape, message));
+            }
+            Self::MinkowskiSum(of) => combine(of, place, meshes, &|a, b| Box::new(MinkowskiSum::new(a, b)))?,
+            Self::Difference(pair) => {
+                let a = pair[0].build::<V>(&format!("{place}.a"), meshes)?;
+                Box::new(Difference::new(a, pair[1].build::<V>(&format!("{place}.b"), meshes)?))
+            }
+            Self::Hull(of) if of.is_empty() => {
+                return Err(Problem::new(Kind::InvalidShape, format!("{place}.of must be 1 or more shapes")));
+            }
+            Self::Hull(of) => combine(of, place, meshes, &|a, b| Box::new(Hull::new(a, b)))?,
+            Self::Rounded { radius, of } => Box::new(Rounded::new(inner(of)?, s(*radius)).map_err(invalid)?),
+        })
+    }
+}
+
+/// Joins a list of shapes by twos, and twos by twos: thousands of them nest a dozen levels deep.
+fn combine<V: Space>(
+    of: &[Shape],
+    place: &str,
+    meshes: &Meshes,
+    join: &impl Fn(Solid<V>, Solid<V>) -> Solid<V>,
+) -> Result<Solid<V>, Problem> {
+    let mut level = of
+        .iter()
+        .enumerate()
+        .map(|(i, shape)| shape.build::<V>(&format!("{place}.of[{i}]"), meshes))
+        .collect::<Result<Vec<_>, _>>()?;
+    while level.len() > 1 {
+        let mut pairs = Vec::with_capacity(level.len().div_ceil(2));
+        let mut rest = level.into_iter();
+        while let Some(a) = rest.next() {
+            pairs.push(match rest.next() {
+                Some(b) => join(a, b),
+                None => a,
+            });
+        }
+        level = pairs;
+    }
+    level.pop().ok_or_else(|| Problem::new(Kind::InvalidShape, format!("{place}.of is empty")))
+}
