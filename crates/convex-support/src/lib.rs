@@ -44,9 +44,12 @@ mod closest_point;
 mod combinators;
 mod error;
 mod hint;
+mod line_crossing;
 mod scalar;
 mod shapes;
 mod spd;
+#[cfg(feature = "proptest")]
+pub mod strategies;
 mod support;
 mod vector;
 
@@ -56,6 +59,7 @@ pub use closest_point::ClosestPoint;
 pub use combinators::{Affine, Difference, Hull, MinkowskiSum, Posed, Rounded};
 pub use error::InvalidShape;
 pub use hint::Hint;
+pub use line_crossing::{Crossing, LineCrossing, RoundedLineCrossing};
 pub use scalar::Scalar;
 pub use shapes::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Polytope, Segment, Triangle};
 pub use support::{ScalarOf, SupportMap};

@@ -14,10 +14,13 @@ pub(crate) struct Axes {
 /// One-sided Jacobi converges quadratically; a 3×3 matrix needs five sweeps or so.
 const MAX_SWEEPS: usize = 40;
 
-/// Axes of the leading `n`×`n` block of `x`, whose entries carry relative rounding errors of `epsilon`.
+/// Axes of the leading `n`×`n` block of `x`, symmetric up to relative rounding errors of `epsilon`.
 ///
 /// First `X = G·Gᵀ` by Cholesky's method, always pivoting on the largest remaining diagonal entry, so that column `k`
-/// of `G` is what is left of the pivot column over the root of the pivot. Then rotations of pairs of columns make them
+/// of `G` is what is left of the pivot column over the root of the pivot. A thin ellipsoid turned out of the coordinate
+/// axes has its long axis in the last digits of the entries, where pivots cancel: they are kept to twice the digits, so
+/// that the matrix is taken at its word and is refused only if, as given, it is not positive definite. Then
+/// rotations of pairs of columns make them
 /// orthogonal, which leaves `G·Gᵀ` as it is; in the end the columns are `√λᵢ·vᵢ`. Unlike the QR method this finds small
 /// eigenvalues to high relative accuracy (Demmel and Veselić, *Jacobi's method is more accurate than QR*, 1992).
 pub(crate) fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes, InvalidShape> {
@@ -32,25 +35,26 @@ pub(crate) fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes,
         }
     }
 
-    let diagonal = [x[0][0], x[1][1], x[2][2]];
+    let mut x = x.map(|row| row.map(|entry| Twofold { high: entry, low: 0.0 }));
     let mut g = [[0.0; 3]; 3];
     let mut left: [bool; 3] = core::array::from_fn(|i| i < n);
     for column in g.iter_mut().take(n) {
         let pivot = (0..n).filter(|&i| left[i]).fold(None, |best: Option<usize>, i| match best {
-            Some(b) if x[b][b] >= x[i][i] => Some(b),
+            Some(b) if x[b][b].high >= x[i][i].high => Some(b),
             _ => Some(i),
         });
         let Some(p) = pivot else { break };
-        // A pivot that has cancelled down to the rounding of its own entry cannot be told from zero.
-        if x[p][p].is_nan() || x[p][p] <= 4.0 * epsilon * diagonal[p].abs() {
+        if x[p][p].high.is_nan() || x[p][p].high <= 0.0 {
             return Err(InvalidShape::NotPositiveDefinite);
         }
         left[p] = false;
-        let root = x[p][p].sqrt();
-        *column = core::array::from_fn(|i| if i == p || (i < n && left[i]) { x[i][p] / root } else { 0.0 });
+        let root = x[p][p].high.sqrt();
+        *column = core::array::from_fn(|i| if i == p || (i < n && left[i]) { x[i][p].high / root } else { 0.0 });
+        let pivot_row = x[p];
         for i in 0..n {
+            let factor = pivot_row[i] / pivot_row[p];
             for j in 0..n {
-                x[i][j] -= column[i] * column[j];
+                x[i][j] = x[i][j] - factor * pivot_row[j];
             }
         }
     }
@@ -96,6 +100,60 @@ fn orthogonalise(g: &mut [[f64; 3]; 3], i: usize, j: usize) -> bool {
     g[i] = core::array::from_fn(|k| cosine * p[k] - sine * q[k]);
     g[j] = core::array::from_fn(|k| sine * p[k] + cosine * q[k]);
     true
+}
+
+/// `high + low`, not rounded: some 106 bits (Dekker 1971).
+#[derive(Clone, Copy)]
+struct Twofold {
+    high: f64,
+    low: f64,
+}
+
+impl Twofold {
+    /// `a + b` for |a| ≥ |b|.
+    fn of(a: f64, b: f64) -> Self {
+        let high = a + b;
+        Self { high, low: b - (high - a) }
+    }
+
+    /// `a·b` exactly, by Veltkamp's splitting.
+    fn product(a: f64, b: f64) -> Self {
+        let split = |x: f64| {
+            let t = 134_217_729.0 * x; // 2²⁷ + 1
+            let high = t - (t - x);
+            (high, x - high)
+        };
+        let high = a * b;
+        let ((a1, a2), (b1, b2)) = (split(a), split(b));
+        Self { high, low: ((a1 * b1 - high) + a1 * b2 + a2 * b1) + a2 * b2 }
+    }
+}
+
+impl core::ops::Sub for Twofold {
+    type Output = Self;
+    fn sub(self, rhs: Self) -> Self {
+        let high = self.high - rhs.high;
+        let t = high - self.high;
+        let low = (self.high - (high - t)) - (rhs.high + t);
+        Self::of(high, low + (self.low - rhs.low))
+    }
+}
+
+impl core::ops::Mul for Twofold {
+    type Output = Self;
+    fn mul(self, rhs: Self) -> Self {
+        let p = Self::product(self.high, rhs.high);
+        Self::of(p.high, p.low + (self.high * rhs.low + self.low * rhs.high))
+    }
+}
+
+impl core::ops::Div for Twofold {
+    type Output = Self;
+    fn div(self, rhs: Self) -> Self {
+        let first = self.high / rhs.high;
+        let rest = self - rhs * Self { high: first, low: 0.0 };
+        Self::of(first, rest.high / rhs.high)
+    }
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

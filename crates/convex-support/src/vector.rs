@@ -82,6 +82,8 @@ pub trait Vector:
     /// The rotation matrix of `rotation`, which is normalised first; `None` where it is not finite or is the zero
     /// quaternion.
     fn rotation_matrix(rotation: Self::Rotation) -> Option<Self::Matrix>;
+    /// The rotation that the quaternion `x·i + y·j + z·k + w` stands for; in 2D by its angle about `z`, `2·atan2(z, w)`.
+    fn rotation_from_xyzw(quaternion: [Self::Scalar; 4]) -> Self::Rotation;
 
     /// The unit vector along coordinate axis `index`.
     #[inline]
@@ -133,7 +135,7 @@ pub trait Vector:
 /// Whether a squared length carries full relative precision: it did not overflow, and a coordinate whose square
 /// underflowed is below its rounding error.
 #[inline]
-fn is_comfortable<S: Scalar>(squared: S) -> bool {
+pub(crate) fn is_comfortable<S: Scalar>(squared: S) -> bool {
     squared >= S::min_positive_value() / S::EPSILON && squared < S::infinity()
 }
 
@@ -153,7 +155,7 @@ pub(crate) fn comfortable_unit_of_length<S: Scalar>(largest: S) -> S {
 
 /// `v` divided by a power of two near its largest magnitude, and that power; `None` for zero and NaN.
 #[cold]
-fn scaled<V: Vector>(v: V) -> Option<(V, V::Scalar)> {
+pub(crate) fn scaled<V: Vector>(v: V) -> Option<(V, V::Scalar)> {
     let largest = v.abs().max_element();
     // Two steps, since the reciprocal of a subnormal power of two is not finite.
     let (_, exponent, _) = num_traits::Float::integer_decode(largest);
@@ -232,7 +234,7 @@ mod sealed {
 
 /// Forwards the traits to one of glam's types.
 macro_rules! glam_vector {
-    ($V:ident, $M:ident, $S:ident, $R:ty, $dim:literal, $transpose_mul:ident, [$($i:literal),+], $rotation:expr) => {
+    ($V:ident, $M:ident, $S:ident, $R:ty, $dim:literal, $transpose_mul:ident, [$($i:literal),+], $rotation:expr, $from_xyzw:expr) => {
         impl sealed::Sealed for glam::$V {}
         impl sealed::Sealed for glam::$M {}
 
@@ -273,6 +275,8 @@ macro_rules! glam_vector {
             fn is_finite(self) -> bool { self.is_finite() }
             #[inline]
             fn rotation_matrix(rotation: $R) -> Option<glam::$M> { ($rotation)(rotation) }
+            #[inline]
+            fn rotation_from_xyzw(quaternion: [$S; 4]) -> $R { ($from_xyzw)(quaternion) }
         }
 
         impl Matrix for glam::$M {
@@ -296,18 +300,52 @@ macro_rules! glam_vector {
     };
 }
 
-glam_vector!(Vec2, Mat2, f32, f32, 2, transpose_mul_vec2, [0, 1], |angle: f32| angle
-    .is_finite()
-    .then(|| glam::Mat2::from_angle(angle)));
-glam_vector!(DVec2, DMat2, f64, f64, 2, transpose_mul_vec2, [0, 1], |angle: f64| angle
-    .is_finite()
-    .then(|| glam::DMat2::from_angle(angle)));
-glam_vector!(Vec3, Mat3, f32, glam::Quat, 3, transpose_mul_vec3, [0, 1, 2], |q| unit_quat(q)
-    .map(glam::Mat3::from_quat));
-glam_vector!(Vec3A, Mat3A, f32, glam::Quat, 3, transpose_mul_vec3a, [0, 1, 2], |q| unit_quat(q)
-    .map(glam::Mat3A::from_quat));
-glam_vector!(DVec3, DMat3, f64, glam::DQuat, 3, transpose_mul_vec3, [0, 1, 2], |q| unit_dquat(q)
-    .map(glam::DMat3::from_quat));
+glam_vector!(Vec2, Mat2, f32, f32, 2, transpose_mul_vec2, [0, 1], turn_f32, |[_, _, z, w]: [f32; 4]| 2.0 * z.atan2(w));
+glam_vector!(DVec2, DMat2, f64, f64, 2, transpose_mul_vec2, [0, 1], turn_f64, |[_, _, z, w]: [f64; 4]| 2.0
+    * z.atan2(w));
+glam_vector!(
+    Vec3,
+    Mat3,
+    f32,
+    glam::Quat,
+    3,
+    transpose_mul_vec3,
+    [0, 1, 2],
+    |q| unit_quat(q).map(glam::Mat3::from_quat),
+    glam::Quat::from_array
+);
+glam_vector!(
+    Vec3A,
+    Mat3A,
+    f32,
+    glam::Quat,
+    3,
+    transpose_mul_vec3a,
+    [0, 1, 2],
+    |q| unit_quat(q).map(glam::Mat3A::from_quat),
+    glam::Quat::from_array
+);
+glam_vector!(
+    DVec3,
+    DMat3,
+    f64,
+    glam::DQuat,
+    3,
+    transpose_mul_vec3,
+    [0, 1, 2],
+    |q| unit_dquat(q).map(glam::DMat3::from_quat),
+    glam::DQuat::from_array
+);
+
+/// The matrix of a turn by an angle in radians; `None` where it is not finite.
+fn turn_f32(angle: f32) -> Option<glam::Mat2> {
+    angle.is_finite().then(|| glam::Mat2::from_angle(angle))
+}
+
+/// The matrix of a turn by an angle in radians; `None` where it is not finite.
+fn turn_f64(angle: f64) -> Option<glam::DMat2> {
+    angle.is_finite().then(|| glam::DMat2::from_angle(angle))
+}
 
 impl Vector3 for glam::Vec3 {
     #[inline]
