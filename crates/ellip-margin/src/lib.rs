@@ -1,1 +1,32 @@
-//! ellip-margin
+//! The free margin of ellipsoids: how far a robot's link is from an obstacle, and which way that grows.
+
+#![no_std]
+
+#[cfg(not(any(feature = "std", feature = "libm")))]
+compile_error!("ellip-margin needs floating-point functions: enable the feature `std` or `libm`");
+
+extern crate alloc;
+#[cfg(any(feature = "std", test))]
+extern crate std;
+
+mod clearance;
+mod double_double;
+mod error;
+mod gradient;
+mod margin;
+mod options;
+mod pair;
+mod secular;
+mod svd;
+mod track;
+mod wedge;
+
+pub use convex_support;
+
+pub use clearance::{ClearanceResult, clearance};
+pub use error::InvalidQuery;
+pub use gradient::{MarginGradient, ShapeGradient};
+pub use margin::{Margin, free_margin, free_margin_with};
+pub use options::{MarginOptions, Status};
+pub use track::MarginTracker;
+pub use wedge::Wedge;

@@ -1,0 +1,164 @@
+//! Two ellipsoids as the kernels see them: plain arrays of `f64`, relative to one another.
+//!
+//! | paper | here |
+//! |---|---|
+//! | E(x₁; P), E(x₂; Q) | P = R₁·diag(a₁)⁻²·R₁ᵀ, Q = R₂·diag(a₂)⁻²·R₂ᵀ, neither of them formed |
+//! | x̄ = Q^½(x − x₂) | `y` = diag(a₂)⁻¹R₂ᵀ(x − x₂): the same ball, turned by R₂ᵀ |
+//! | c = Q^½(x₁ − x₂) | `c` = diag(a₂)⁻¹R₂ᵀr, r = x₁ − x₂ |
+//! | C = Q^-½PQ^-½ | BᵀB, with B = diag(a₁)⁻¹R₁ᵀR₂·diag(a₂) |
+//! | b = Cc | Bᵀg, with g = Bc = diag(a₁)⁻¹R₁ᵀr |
+//!
+//! Everything is computed in `f64`, for bodies in `f32` too: the processor is as fast, no square leaves the range, and
+//! an `f32` answer then is the true one rounded, whatever the aspect.
+
+use convex_support::{Ellipsoid, Matrix, Scalar, Vector};
+
+use crate::double_double::DoubleDouble;
+
+pub(crate) type Vec<const N: usize> = [f64; N];
+
+/// Two ellipsoids; `axes[k]` is the direction of semi-axis `k`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair<const N: usize> {
+    pub(crate) x1: Vec<N>,
+    pub(crate) x2: Vec<N>,
+    pub(crate) axes1: [Vec<N>; N],
+    pub(crate) axes2: [Vec<N>; N],
+    pub(crate) a1: Vec<N>,
+    pub(crate) a2: Vec<N>,
+}
+
+impl<const N: usize> Pair<N> {
+    /// # Panics
+    /// In debug builds, if `N` is not the dimension of `V`.
+    #[inline]
+    pub(crate) fn new<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> Self {
+        debug_assert_eq!(N, V::DIM, "the kernel of one dimension was given bodies of another");
+        Self {
+            x1: load(e1.center()),
+            x2: load(e2.center()),
+            axes1: load_columns(e1.axes()),
+            axes2: load_columns(e2.axes()),
+            a1: load(e1.semi_axes()),
+            a2: load(e2.semi_axes()),
+        }
+    }
+
+    /// r = x₁ − x₂.
+    #[inline]
+    pub(crate) fn r(&self) -> Vec<N> {
+        sub(self.x1, self.x2)
+    }
+
+    /// c and g: the centre of E₁ seen from E₂ as the unit ball, and from E₁ as the unit ball.
+    #[inline]
+    pub(crate) fn c_and_g(&self) -> (Vec<N>, Vec<N>) {
+        let r = self.r();
+        (
+            core::array::from_fn(|j| dot(self.axes2[j], r) / self.a2[j]),
+            core::array::from_fn(|i| dot(self.axes1[i], r) / self.a1[i]),
+        )
+    }
+
+    /// B, row by row.
+    pub(crate) fn b(&self) -> [Vec<N>; N] {
+        core::array::from_fn(|i| {
+            core::array::from_fn(|j| dot(self.axes1[i], self.axes2[j]) * (self.a2[j] / self.a1[i]))
+        })
+    }
+
+    /// x − x₂ = R₂·diag(a₂)·y.
+    #[inline]
+    pub(crate) fn from_ball(&self, y: Vec<N>) -> Vec<N> {
+        combine(self.axes2, core::array::from_fn(|j| self.a2[j] * y[j]))
+    }
+
+    /// ‖c‖² − 1 with the rounding errors kept, for x₁ near the boundary of E₂, where it decides.
+    pub(crate) fn compensated_excess(&self) -> f64 {
+        let r: [DoubleDouble; N] = core::array::from_fn(|i| DoubleDouble::sum(self.x1[i], -self.x2[i]));
+        let mut excess = DoubleDouble::from(-1.0);
+        for j in 0..N {
+            let mut e = DoubleDouble::ZERO;
+            for i in 0..N {
+                e = e + r[i] * self.axes2[j][i];
+            }
+            let c = e.divided_by(self.a2[j]);
+            excess = excess + c * c;
+        }
+        excess.value()
+    }
+
+    /// ‖By − g‖² + ν(‖y‖² − 1) − 1 with the rounding errors kept.
+    ///
+    /// This Lagrangian of the margin's problem is stationary at the solution in `y` and in ν, so that their rounding
+    /// errors enter squared: it is the margin of the bodies as stored, to some ten digits more than `y` and ν have.
+    #[cold]
+    pub(crate) fn compensated_margin(&self, y: Vec<N>, nu: f64) -> f64 {
+        // p = x − x₁ = R₂·diag(a₂)·y − r
+        let mut p: [DoubleDouble; N] = core::array::from_fn(|i| DoubleDouble::sum(self.x2[i], -self.x1[i]));
+        let mut sphere = DoubleDouble::from(-1.0);
+        for j in 0..N {
+            let along = DoubleDouble::product(self.a2[j], y[j]);
+            for (i, p) in p.iter_mut().enumerate() {
+                *p = *p + along * self.axes2[j][i];
+            }
+            sphere = sphere + DoubleDouble::product(y[j], y[j]);
+        }
+        let mut margin = DoubleDouble::from(-1.0) + sphere * nu;
+        for i in 0..N {
+            let mut e = DoubleDouble::ZERO;
+            for k in 0..N {
+                e = e + p[k] * self.axes1[i][k];
+            }
+            let w = e.divided_by(self.a1[i]);
+            margin = margin + w * w;
+        }
+        margin.value()
+    }
+}
+
+#[inline]
+pub(crate) fn load<V: Vector, const N: usize>(v: V) -> Vec<N> {
+    core::array::from_fn(|i| v.get(i).as_f64())
+}
+
+#[inline]
+pub(crate) fn load_columns<M: Matrix, const N: usize>(m: M) -> [Vec<N>; N] {
+    core::array::from_fn(|j| load(m.col(j)))
+}
+
+#[inline]
+pub(crate) fn store<V: Vector, const N: usize>(v: Vec<N>) -> V {
+    V::from_fn(|i| V::Scalar::from_f64(v[i]))
+}
+
+#[inline]
+pub(crate) fn dot<const N: usize>(a: Vec<N>, b: Vec<N>) -> f64 {
+    let mut sum = a[0] * b[0];
+    for i in 1..N {
+        sum += a[i] * b[i];
+    }
+    sum
+}
+
+#[inline]
+pub(crate) fn add<const N: usize>(a: Vec<N>, b: Vec<N>) -> Vec<N> {
+    core::array::from_fn(|i| a[i] + b[i])
+}
+
+#[inline]
+pub(crate) fn sub<const N: usize>(a: Vec<N>, b: Vec<N>) -> Vec<N> {
+    core::array::from_fn(|i| a[i] - b[i])
+}
+
+/// Σₖ eₖ·columnₖ.
+#[inline]
+pub(crate) fn combine<const N: usize>(columns: [Vec<N>; N], e: Vec<N>) -> Vec<N> {
+    core::array::from_fn(|i| {
+        let mut sum = columns[0][i] * e[0];
+        for k in 1..N {
+            sum += columns[k][i] * e[k];
+        }
+        sum
+    })
+}

@@ -1,0 +1,128 @@
+//! The secular equation in the singular basis: right at any condition.
+//!
+//! With B = UΣVᵀ, ĉ = Vᵀc and rᵢ = (σ_max/σᵢ)² ≥ 1, the point of E₂ nearest to x₁ in the norm of P has the coordinates
+//! x̂ᵢ = ĉᵢ/(1 + τrᵢ) in the basis V of the ball, where τ = ν/σ_max² ≥ 0 solves
+//!
+//! > φ(τ)² = Σ ĉᵢ²/(1 + τrᵢ)² = 1.
+//!
+//! No term cancels, nothing over- or underflows before the answer does, and 1 + m = Σ (νx̂ᵢ/σᵢ)² has positive terms too.
+//! 1/φ is concave in τ, so that Newton's method for 1/φ(τ) = 1 (Hebden 1973; Moré and Sorensen 1983) rises to the root from
+//! any τ below it, and comes back below in one step from above.
+
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use crate::pair::{Pair, Vec, combine, dot};
+use crate::svd::{Svd, svd};
+use crate::{MarginOptions, Status};
+
+/// The nearest point of E₂ in coordinates of the ball, with ν, m, and how they were found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Solution<const N: usize> {
+    pub(crate) nu: f64,
+    /// x* = x₂ + R₂·diag(a₂)·y.
+    pub(crate) y: Vec<N>,
+    pub(crate) margin: f64,
+    pub(crate) status: Status,
+    pub(crate) iterations: u32,
+}
+
+impl<const N: usize> Solution<N> {
+    /// x₁ lies in E₂: x* = x₁.
+    pub(crate) fn inside(c: Vec<N>) -> Self {
+        Self { nu: 0.0, y: c, margin: -1.0, status: Status::Converged, iterations: 0 }
+    }
+}
+
+/// `‖c‖² − 1`, compensated where it is small.
+#[inline]
+pub(crate) fn excess<const N: usize>(pair: &Pair<N>, c: Vec<N>) -> f64 {
+    let plain = dot(c, c) - 1.0;
+    if plain.abs() < 0.25 { pair.compensated_excess() } else { plain }
+}
+
+/// Solves from `nu` (0 for none known), reporting each iterate (ν, φ).
+pub(crate) fn solve<const N: usize>(
+    pair: &Pair<N>,
+    start: f64,
+    options: MarginOptions,
+    mut observer: impl FnMut(f64, f64),
+) -> Solution<N> {
+    let (c, g) = pair.c_and_g();
+    let excess = excess(pair, c);
+    if excess <= 0.0 {
+        return Solution::inside(c);
+    }
+
+    let Svd { sigma, u, v } = svd(pair.b());
+    let largest = sigma.iter().fold(0.0f64, |m, s| m.max(*s));
+    let ratio = sigma.map(|s| (largest / s) * (largest / s));
+    // ĉ = Vᵀc = Σ⁻¹Uᵀg: each coordinate from the side with the smaller rounding error.
+    let (norm_c, norm_g) = (dot(c, c).sqrt(), dot(g, g).sqrt());
+    let ball: Vec<N> =
+        core::array::from_fn(|i| if norm_g < sigma[i] * norm_c { dot(u[i], g) / sigma[i] } else { dot(v[i], c) });
+
+    // Below the root: where one term alone would reach 1; where φ would if all rᵢ were their mean, with the weights of
+    // ĉ² (a step of Newton's method from τ = 0) or of (ĉᵢ/rᵢ)² (a step from infinity).
+    let squares = ball.map(|x| x * x);
+    let mut low = (0..N).fold(0.0f64, |m, i| m.max((ball[i].abs() - 1.0) / ratio[i]));
+    let b: Vec<N> = core::array::from_fn(|i| ball[i] / ratio[i]);
+    let (bb, mean) = (dot(b, b), (0..N).map(|i| b[i] * b[i] / ratio[i]).sum::<f64>());
+    low = low.max(bb.sqrt() - mean / bb);
+    let newton = excess / (1.0 + norm_c) * (norm_c * norm_c) / (0..N).map(|i| squares[i] * ratio[i]).sum::<f64>();
+    low = low.max(newton);
+
+    let scale = largest * largest;
+    let mut tau = low.max(start / scale);
+    let (mut status, mut iterations) = (Status::IterationLimit, 0);
+    let mut x = ball;
+    while iterations < options.max_iterations {
+        iterations += 1;
+        let (mut phi2, mut slope, mut above) = (0.0, 0.0, excess);
+        for i in 0..N {
+            let denominator = 1.0 + tau * ratio[i];
+            x[i] = ball[i] / denominator;
+            let square = x[i] * x[i];
+            phi2 += square;
+            slope += square * ratio[i] / denominator;
+            above -= square * (tau * ratio[i]) * (1.0 + denominator);
+        }
+        // φ² − 1, from the difference that cancels less.
+        let above = if excess < 1.0 { above } else { phi2 - 1.0 };
+        let phi = phi2.sqrt();
+        observer(tau * scale, phi);
+        // (φ − 1)·φ²/t
+        let step = above / (1.0 + phi) * phi2 / slope;
+        let next = (tau + step).max(low);
+        let change = (next - tau).abs();
+        if !change.is_finite() {
+            status = Status::Stalled;
+            break;
+        }
+        tau = next;
+        if change <= options.tolerance * tau {
+            status = Status::Converged;
+            break;
+        }
+    }
+    for i in 0..N {
+        x[i] = ball[i] / (1.0 + tau * ratio[i]);
+    }
+    // The last rounding errors of τ go into the length; the unit vector is a point of E₂.
+    let norm = dot(x, x).sqrt();
+    let x = x.map(|x| x / norm);
+    let nu = tau * scale;
+    // w = By − g = −ν·B⁻ᵀy
+    let w: Vec<N> = core::array::from_fn(|i| tau * largest * (largest / sigma[i]) * x[i]);
+    let y = combine(v, x);
+    Solution { nu, y, margin: margin(pair, dot(w, w), norm_g, y, nu), status, iterations }
+}
+
+/// m from 1 + m = ‖w‖², where the subtraction leaves enough, and from the compensated Lagrangian where it does not.
+#[inline]
+pub(crate) fn margin<const N: usize>(pair: &Pair<N>, squared: f64, norm_g: f64, y: Vec<N>, nu: f64) -> f64 {
+    let plain = squared - 1.0;
+    // The rounding errors of g and By, which are about ‖g‖ε and (‖g‖ + ‖w‖)ε, times 2‖w‖.
+    let error = (norm_g + squared.sqrt()) * squared.sqrt();
+    if error > 1e3 * plain.abs() && nu.is_finite() { pair.compensated_margin(y, nu) } else { plain }
+}

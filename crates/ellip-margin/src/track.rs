@@ -1,0 +1,73 @@
+//! The margin along a trajectory.
+
+use convex_support::{Ellipsoid, Scalar, Vector};
+use num_traits::Float as _;
+
+use crate::margin::margin_from;
+use crate::{Margin, MarginOptions};
+
+/// The margin of one pair along a trajectory, each step started from the last.
+///
+/// Newton's method for the secular equation converges from any start, so that there is no limit to the step: a turn of
+/// 90 degrees, a teleport, another pair of bodies altogether give what [`free_margin`](crate::free_margin) gives, in
+/// a few more iterations.
+///
+/// ```
+/// use convex_support::{Ellipsoid, glam::DVec2};
+/// use ellip_margin::{MarginOptions, MarginTracker};
+///
+/// let obstacle = Ellipsoid::new(DVec2::new(3.0, 0.0), DVec2::new(1.0, 0.5), 0.2)?;
+/// let mut track = MarginTracker::new(MarginOptions::default());
+/// for step in 0..90 {
+///     let link = Ellipsoid::new(DVec2::ZERO, DVec2::new(1.5, 0.3), f64::from(step).to_radians())?;
+///     assert!(track.step(&link, &obstacle).margin > 0.0);
+/// }
+/// assert_eq!(track.steps(), 90);
+/// assert!(track.iterations() <= 3 * 90);
+/// # Ok::<(), convex_support::InvalidShape>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MarginTracker {
+    options: MarginOptions,
+    nu: f64,
+    steps: u64,
+    iterations: u64,
+}
+
+impl MarginTracker {
+    /// A tracker that has seen nothing yet.
+    #[must_use]
+    pub const fn new(options: MarginOptions) -> Self {
+        Self { options, nu: 0.0, steps: 0, iterations: 0 }
+    }
+
+    /// The margin of `e1` about `e2`, wherever they have moved since the last call.
+    pub fn step<V: Vector>(&mut self, e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> Margin<V> {
+        let margin = margin_from(e1, e2, self.nu, self.options, |_, _| {});
+        // A step with x₁ in E₂ says nothing about the next one outside: keep the last ν.
+        if margin.nu > V::Scalar::ZERO && margin.nu.is_finite() {
+            self.nu = margin.nu.as_f64();
+        }
+        self.steps += 1;
+        self.iterations += u64::from(margin.iterations);
+        margin
+    }
+
+    /// The number of steps so far.
+    #[must_use]
+    pub const fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// The number of iterations in all steps so far.
+    #[must_use]
+    pub const fn iterations(&self) -> u64 {
+        self.iterations
+    }
+}
+
+impl Default for MarginTracker {
+    fn default() -> Self {
+        Self::new(MarginOptions::default())
+    }
+}

@@ -1,0 +1,95 @@
+//! Torques and infinitesimal rotations: a number in 2D, a vector in 3D.
+
+use convex_support::Vector;
+use convex_support::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
+
+/// A vector with the product that makes torques: `r ∧ F` is `r × F` in 3D and its only coordinate in 2D.
+///
+/// Infinitesimal rotations and their gradients are of the product's type: in 3D a vector along the axis in world
+/// coordinates, in 2D one number, counter-clockwise positive. Implemented for glam's five vectors, and sealed by
+/// [`Vector`].
+///
+/// ```
+/// use convex_support::glam::{DVec2, DVec3};
+/// use ellip_margin::Wedge;
+///
+/// assert_eq!(DVec2::X.wedge(DVec2::Y), 1.0);
+/// assert_eq!(DVec3::X.wedge(DVec3::Y), DVec3::Z);
+/// assert_eq!(DVec3::coordinates(&DVec3::Z), [0.0, 0.0, 1.0]);
+/// assert_eq!(DVec2::coordinates(&1.0), [1.0]);
+/// ```
+pub trait Wedge: Vector {
+    /// An infinitesimal rotation: the scalar in 2D, the vector in 3D.
+    type Bivector: Copy + core::fmt::Debug + Default + PartialEq + Send + Sync + 'static;
+
+    /// `self ∧ rhs`.
+    fn wedge(self, rhs: Self) -> Self::Bivector;
+
+    /// `self · rhs` of two infinitesimal rotations: the turn about one that is contained in the other.
+    fn bivector_dot(a: Self::Bivector, b: Self::Bivector) -> Self::Scalar;
+
+    /// The coordinates: one in 2D, three in 3D.
+    fn coordinates(bivector: &Self::Bivector) -> &[Self::Scalar];
+
+    /// The rotation whose coordinate `i` is `f(i)`.
+    fn bivector(f: impl FnMut(usize) -> Self::Scalar) -> Self::Bivector;
+}
+
+/// Forwards to the plane's perpendicular product.
+macro_rules! plane {
+    ($V:ident, $S:ident) => {
+        impl Wedge for $V {
+            type Bivector = $S;
+
+            #[inline]
+            fn wedge(self, rhs: Self) -> $S {
+                self.perp_dot(rhs)
+            }
+            #[inline]
+            fn bivector_dot(a: $S, b: $S) -> $S {
+                a * b
+            }
+            #[inline]
+            fn coordinates(bivector: &$S) -> &[$S] {
+                core::slice::from_ref(bivector)
+            }
+            #[inline]
+            fn bivector(mut f: impl FnMut(usize) -> $S) -> $S {
+                f(0)
+            }
+        }
+    };
+}
+
+/// Forwards to the cross product.
+macro_rules! space {
+    ($V:ident, $S:ident) => {
+        impl Wedge for $V {
+            type Bivector = Self;
+
+            #[inline]
+            fn wedge(self, rhs: Self) -> Self {
+                self.cross(rhs)
+            }
+            #[inline]
+            fn bivector_dot(a: Self, b: Self) -> $S {
+                a.dot(b)
+            }
+            #[inline]
+            fn coordinates(bivector: &Self) -> &[$S] {
+                let array: &[$S; 3] = bivector.as_ref();
+                array
+            }
+            #[inline]
+            fn bivector(f: impl FnMut(usize) -> $S) -> Self {
+                Self::from_fn(f)
+            }
+        }
+    };
+}
+
+plane!(Vec2, f32);
+plane!(DVec2, f64);
+space!(Vec3, f32);
+space!(Vec3A, f32);
+space!(DVec3, f64);
