@@ -5,6 +5,7 @@ mod enclosing;
 mod fit;
 mod inscribed;
 mod linear_cast;
+mod margin;
 mod method;
 mod ray_cast;
 
@@ -15,6 +16,7 @@ use convex_support::{Scalar as _, Vector};
 
 use self::distance::{DistanceQuestion, IntersectQuestion};
 use self::linear_cast::LinearCastQuestion;
+use self::margin::{ClearanceQuestion, MarginQuestion, TrackQuestion};
 use self::ray_cast::RayCastQuestion;
 use crate::mesh::Meshes;
 use crate::wire::answer::{Answer, Field};
@@ -97,7 +99,11 @@ fn in_space<V: Space>(request: Request, meshes: &Meshes) -> Result<Box<dyn Ask>,
         Query::InscribedEllipsoid { body, epsilon } => {
             inscribed::question(body, epsilon.or(tol), method, precision, meshes)?
         }
-        _ => return Err(Problem::new(Kind::UnknownQuery, "this query is not wired yet")),
+        Query::Margin { e1, e2, gradient } => Box::new(MarginQuestion::<V>::new([&e1, &e2], gradient, tol, method)?),
+        Query::Track { e1, e2, poses } => Box::new(TrackQuestion::<V>::new([&e1, &e2], &poses, tol, method)?),
+        Query::Clearance { links, obstacles } => {
+            Box::new(ClearanceQuestion::<V>::new(&links, &obstacles, tol, method)?)
+        }
     })
 }
 

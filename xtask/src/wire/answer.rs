@@ -1,6 +1,6 @@
 //! Answers, as they are written.
 
-use convex_support::{Matrix, Scalar, Vector};
+use convex_support::{Scalar, Vector};
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 use serde_json::Value;
 
@@ -65,11 +65,6 @@ impl Field {
     /// The vector, or null.
     pub(crate) fn maybe_vector<V: Vector>(vector: Option<V>) -> Self {
         vector.map_or(Self::Null, Self::vector)
-    }
-
-    pub(crate) fn matrix<M: Matrix>(matrix: M) -> Self {
-        let n = M::Vector::DIM;
-        Self::Rows((0..n).map(|i| (0..n).map(|j| Number::of(matrix.col(j).get(i))).collect()).collect())
     }
 
     /// Whether JSON can hold it.

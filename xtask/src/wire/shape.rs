@@ -7,9 +7,11 @@ use convex_support::{
     Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Ellipsoid, Hull, InvalidShape, Matrix, MinkowskiSum,
     Point, Polytope, Posed, Rounded, Scalar, Segment, SupportMap, Triangle, Vector, glam,
 };
+use ellip_margin::Wedge;
 use serde_json::Value;
 
 use super::error::{Kind, Problem};
+use super::query::Pose;
 use super::reader::{Coordinates, Object, Reader, Rotation};
 use crate::mesh::{Mesh, Meshes};
 
@@ -143,29 +145,45 @@ impl EllipsoidSpec {
     ///
     /// Its axes are found in double precision and then rounded: that loses least where the matrix is given.
     pub(crate) fn build<V: Space>(&self, place: &str) -> Result<Ellipsoid<V>, Problem> {
-        let wide = match &self.form {
-            EllipsoidForm::Matrix(matrix) => {
-                Ellipsoid::<V::Wide>::from_matrix(vector(&self.center), matrix_of_rows(matrix))
-            }
-            EllipsoidForm::Axes { semi_axes, rotation } => {
-                Ellipsoid::<V::Wide>::new(vector(&self.center), vector(semi_axes), rotation_of::<V::Wide>(*rotation))
-            }
-        };
-        let round = |v: V::Wide| V::from_fn(|i| V::Scalar::from_f64(v.get(i).as_f64()));
-        let build = || {
-            let wide = wide?;
-            let axes = V::Matrix::from_cols_fn(|j| round(wide.axes().col(j)));
-            Ellipsoid::from_axes(round(wide.center()), round(wide.semi_axes()), axes)
-        };
-        build().map_err(|why| Problem::invalid_shape(place, why))
+        self.wide::<V::Wide>().and_then(round).map_err(|why| Problem::invalid_shape(place, why))
     }
+
+    /// The ellipsoid at a pose, which is written at `pose_place`.
+    pub(crate) fn build_posed<V: Space>(
+        &self,
+        place: &str,
+        pose: &Pose,
+        pose_place: &str,
+    ) -> Result<Ellipsoid<V>, Problem> {
+        let body = self.wide::<V::Wide>().map_err(|why| Problem::invalid_shape(place, why))?;
+        body.posed(rotation_of::<V::Wide>(pose.rotation), vector(&pose.translation))
+            .and_then(round)
+            .map_err(|why| Problem::invalid_shape(pose_place, why))
+    }
+
+    /// The ellipsoid in double precision.
+    fn wide<W: Space>(&self) -> Result<Ellipsoid<W>, InvalidShape> {
+        match &self.form {
+            EllipsoidForm::Matrix(matrix) => Ellipsoid::from_matrix(vector(&self.center), matrix_of_rows(matrix)),
+            EllipsoidForm::Axes { semi_axes, rotation } => {
+                Ellipsoid::new(vector(&self.center), vector(semi_axes), rotation_of::<W>(*rotation))
+            }
+        }
+    }
+}
+
+/// The ellipsoid in the precision asked for.
+fn round<V: Space>(wide: Ellipsoid<V::Wide>) -> Result<Ellipsoid<V>, InvalidShape> {
+    let round = |v: V::Wide| V::from_fn(|i| V::Scalar::from_f64(v.get(i).as_f64()));
+    let axes = V::Matrix::from_cols_fn(|j| round(wide.axes().col(j)));
+    Ellipsoid::from_axes(round(wide.center()), round(wide.semi_axes()), axes)
 }
 
 /// A shape of any kind.
 pub(crate) type Solid<V> = Box<dyn SupportMap<Vector = V> + Send + Sync>;
 
 /// The spaces of the format: what depends on the precision or the dimension and is not the vector's own.
-pub(crate) trait Space: Vector {
+pub(crate) trait Space: Vector + Wedge {
     /// The space of the same dimension in double precision.
     type Wide: Space<Scalar = f64>;
 
