@@ -1,0 +1,155 @@
+//! The eleven shapes of the workloads, as plain numbers.
+
+use crate::rng::{Rng, round_to_f32};
+use crate::vec3::{Vec3, add, dot, scale};
+
+/// A convex shape about the origin; the y axis is the axis of symmetry.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// A ball.
+    Ball {
+        /// Its radius.
+        radius: f64,
+    },
+    /// A box.
+    Cuboid {
+        /// Half the size along each axis.
+        half_extents: Vec3,
+    },
+    /// A cylinder.
+    Cylinder {
+        /// Half the length of the axis.
+        half_height: f64,
+        /// The radius of the discs.
+        radius: f64,
+    },
+    /// A cone with its apex at `(0, half_height, 0)`.
+    Cone {
+        /// Half the length of the axis.
+        half_height: f64,
+        /// The radius of the base.
+        radius: f64,
+    },
+    /// A segment swept by a ball.
+    Capsule {
+        /// Half the length of the segment.
+        half_height: f64,
+        /// The radius of the ball.
+        radius: f64,
+    },
+    /// An ellipsoid.
+    Ellipsoid {
+        /// Half the size along each axis.
+        semi_axes: Vec3,
+    },
+    /// The convex hull of points.
+    Hull {
+        /// The points; all are vertices of the hull.
+        points: Vec<Vec3>,
+    },
+    /// A box swept by a ball.
+    RoundBox {
+        /// Half the size of the box along each axis.
+        half_extents: Vec3,
+        /// The radius of the ball.
+        radius: f64,
+    },
+}
+
+/// Names of the shapes, in the order of their numbers.
+pub const SHAPE_NAMES: [&str; 11] = [
+    "ball", "cuboid", "cylinder", "cone", "capsule", "ellipsoid", "hull16", "hull64", "hull256", "hull1024", "roundbox",
+];
+
+/// The points of `hull16`, `hull64`, `hull256` and `hull1024`: `count` of them on an ellipsoid, exact in `f32`.
+#[must_use]
+pub fn hull_points(count: u16) -> Vec<Vec3> {
+    let mut rng = Rng::new(100 + u64::from(count));
+    let on_ellipsoid = |[x, y, z]: Vec3| [x, y * 0.8, z * 0.6].map(round_to_f32);
+    (0..count).map(|_| on_ellipsoid(rng.sphere())).collect()
+}
+
+impl Shape {
+    /// The shape of that name.
+    ///
+    /// # Panics
+    /// If it is none of [`SHAPE_NAMES`].
+    #[must_use]
+    pub fn named(name: &str) -> Self {
+        match name {
+            "ball" => Self::Ball { radius: 1.0 },
+            "cuboid" => Self::Cuboid { half_extents: [1.0, 0.5, 0.25] },
+            "cylinder" => Self::Cylinder { half_height: 0.75, radius: 0.5 },
+            "cone" => Self::Cone { half_height: 0.75, radius: 0.625 },
+            "capsule" => Self::Capsule { half_height: 0.625, radius: 0.375 },
+            "ellipsoid" => Self::Ellipsoid { semi_axes: [1.0, 0.5, 0.1] },
+            "hull16" => Self::Hull { points: hull_points(16) },
+            "hull64" => Self::Hull { points: hull_points(64) },
+            "hull256" => Self::Hull { points: hull_points(256) },
+            "hull1024" => Self::Hull { points: hull_points(1024) },
+            "roundbox" => Self::RoundBox { half_extents: [0.75, 0.375, 0.125], radius: 0.125 },
+            _ => panic!("no shape is called {name:?}: there are {SHAPE_NAMES:?}"),
+        }
+    }
+
+    /// Half the size of the bounding box; for the hulls, that of the ellipsoid their vertices lie on.
+    #[must_use]
+    pub fn bounds(&self) -> Vec3 {
+        match *self {
+            Self::Ball { radius } => [radius; 3],
+            Self::Cuboid { half_extents } => half_extents,
+            Self::Cylinder { half_height, radius } | Self::Cone { half_height, radius } => [radius, half_height, radius],
+            Self::Capsule { half_height, radius } => [radius, half_height + radius, radius],
+            Self::Ellipsoid { semi_axes } => semi_axes,
+            Self::Hull { .. } => [1.0, 0.8, 0.6],
+            Self::RoundBox { half_extents, radius } => add(half_extents, [radius; 3]),
+        }
+    }
+
+    /// The point farthest along `direction`.
+    pub(crate) fn support(&self, direction: Vec3) -> Vec3 {
+        let [x, y, z] = direction;
+        match self {
+            Self::Ball { radius } => swept(*radius, direction),
+            Self::Cuboid { half_extents } => corner(*half_extents, direction),
+            Self::Cylinder { half_height, radius } => {
+                add(swept(*radius, [x, 0.0, z]), [0.0, if y >= 0.0 { *half_height } else { -half_height }, 0.0])
+            }
+            Self::Cone { half_height, radius } => {
+                let (apex, base) = ([0.0, *half_height, 0.0], add(swept(*radius, [x, 0.0, z]), [0.0, -half_height, 0.0]));
+                if dot(direction, apex) >= dot(direction, base) { apex } else { base }
+            }
+            Self::Capsule { half_height, radius } => {
+                add(swept(*radius, direction), [0.0, if y >= 0.0 { *half_height } else { -half_height }, 0.0])
+            }
+            Self::Ellipsoid { semi_axes: [a, b, c] } => {
+                let [i, j, k] = swept(1.0, [a * x, b * y, c * z]);
+                [a * i, b * j, c * k]
+            }
+            Self::Hull { points } => farthest(points, direction),
+            Self::RoundBox { half_extents, radius } => add(corner(*half_extents, direction), swept(*radius, direction)),
+        }
+    }
+}
+
+/// The point of the ball about zero farthest along `direction`.
+fn swept(radius: f64, direction: Vec3) -> Vec3 {
+    let length = dot(direction, direction).sqrt();
+    if length > 0.0 { scale(direction, radius / length) } else { [0.0; 3] }
+}
+
+/// The corner of the box farthest along `direction`.
+fn corner([a, b, c]: Vec3, [x, y, z]: Vec3) -> Vec3 {
+    [if x >= 0.0 { a } else { -a }, if y >= 0.0 { b } else { -b }, if z >= 0.0 { c } else { -c }]
+}
+
+fn farthest(points: &[Vec3], direction: Vec3) -> Vec3 {
+    let mut best = (f64::NEG_INFINITY, [0.0; 3]);
+    for &point in points {
+        let reach = dot(point, direction);
+        if reach > best.0 {
+            best = (reach, point);
+        }
+    }
+    best.1
+}
