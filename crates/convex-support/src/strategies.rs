@@ -180,7 +180,7 @@ pub fn points<V: Vector>(size: V::Scalar, count: usize) -> BoxedStrategy<Vec<V>>
         1 => (some(), 0..V::DIM).prop_map(|(p, flat)| {
             p.iter().map(|&v| V::from_fn(|i| if i == flat { V::Scalar::ZERO } else { v.get(i) })).collect()
         }),
-        1 => (some(), vector::<V>(size)).prop_map(|(p, line)| p.iter().map(|v| line * (v.get(0) / v.abs().max_element().max(V::Scalar::EPSILON))).collect()),
+        1 => (some(), vector::<V>(V::Scalar::ONE)).prop_map(|(p, line)| p.iter().map(|v| line * v.get(0)).collect()),
         1 => some().prop_map(move |p| {
             let step = size * V::Scalar::from_f64(0.5);
             p.iter().map(|&v| V::from_fn(|i| (v.get(i) / step).round() * step)).collect()
