@@ -15,7 +15,8 @@ pub(crate) trait Body {
 
     /// The support point of the core, relative to the origin and in units of `scale`.
     fn support(&mut self, direction: Self::Vector) -> (Self::Vector, Self::Witness);
-    /// What positions are relative to, in the world.
+    /// What positions are relative to, in the world; for a difference, that of the first shape alone, since subtracting
+    /// the other's would round.
     fn origin(&self) -> Self::Vector;
     /// The radius around the core, in the world's unit.
     fn radius(&self) -> <Self::Vector as Vector>::Scalar;
@@ -112,7 +113,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
     }
 
     fn origin(&self) -> A::Vector {
-        self.a.origin() - self.b.origin()
+        self.a.origin()
     }
 
     fn radius(&self) -> <A::Vector as Vector>::Scalar {

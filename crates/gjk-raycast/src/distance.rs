@@ -119,12 +119,11 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let zero = <A::Vector as Vector>::Scalar::ZERO;
     let eps = <A::Vector as Vector>::Scalar::EPSILON;
     let number = <A::Vector as Vector>::Scalar::from_f64;
 
     let mut body = Pair::new(a, b);
-    let origin = body.origin();
+    let origin = a.origin() - b.origin();
     let size = body.extent() + body.radius() + origin.norm();
     let scale = power_of_two_near(size);
     body.set_scale(scale);
@@ -181,12 +180,12 @@ where
             break;
         }
         simplex.push(w, witness);
-        let Some(next) = closest(simplex.points()) else {
+        let Some(next) = closest(simplex.points(), A::Vector::DIM) else {
             descent.end = End::Stalled;
             break;
         };
-        simplex.retain(next.weights);
-        let next_length = if next.contains { zero } else { next.v.norm() };
+        simplex.retain(next.face, next.weights);
+        let next_length = next.v.norm();
         if !(next_length < length) {
             descent.end = End::Stalled;
             break;

@@ -45,12 +45,15 @@
 extern crate std;
 
 mod body;
+mod cast;
 mod closest;
 mod distance;
 mod entry;
 mod error;
+mod flat;
 mod intersect;
 mod iterative;
+mod line;
 mod linear_cast;
 mod options;
 mod ray_cast;

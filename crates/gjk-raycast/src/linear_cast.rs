@@ -2,9 +2,10 @@
 
 use convex_support::{SupportMap, Vector};
 
-use crate::body::{Body, Pair, PointPair};
+use crate::body::{Pair, PointPair};
+use crate::cast::{Contact, cast};
 use crate::error::RayCastError;
-use crate::ray_cast::{Contact, Ray, cast, check_finite};
+use crate::ray_cast::{Ray, check_finite};
 use crate::{Iterate, LinearCast, LinearCastOptions, LinearHit, Outcome, RayCastOptions};
 
 /// The velocities of two shapes, in units of length per unit of time.
@@ -72,10 +73,11 @@ where
         .with_max_iterations(options.max_iterations);
     // Seen from b, a is at the outside of the obstacle: normals of A − B point out of a.
     wanted.axis = options.axis.map(|axis| -axis);
-    let mut ray = Ray { source: -body.origin(), direction: motion.velocity_b - motion.velocity_a };
+    // The ray starts at zero, where both shapes are in place: at b's origin, seen from a's.
+    let mut ray = Ray { source: b.origin(), direction: motion.velocity_b - motion.velocity_a };
     if ray.direction == A::Vector::ZERO {
         // Only the start counts, and any ray of length zero is the start.
-        ray.direction = ray.source.unit().map_or(A::Vector::axis(0), |to| -to);
+        ray.direction = (a.origin() - b.origin()).unit().unwrap_or_else(|| A::Vector::axis(0));
         wanted.max_lambda = <A::Vector as Vector>::Scalar::default();
     }
     let cast = cast(&mut body, ray, wanted, observer);

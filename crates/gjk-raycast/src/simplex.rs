@@ -40,22 +40,60 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
         self.len += 1;
     }
 
-    /// Takes the weights, and keeps only the points that have one.
-    pub(crate) fn retain(&mut self, weights: [V::Scalar; MAX_POINTS]) {
+    /// Keeps only a face, with these weights of its corners.
+    pub(crate) fn retain(&mut self, face: Face, weights: [V::Scalar; MAX_POINTS]) {
         let mut kept = 0;
-        for (i, &weight) in weights.iter().enumerate().take(self.len) {
-            if weight > V::Scalar::ZERO {
-                self.points[kept] = self.points[i];
-                self.witnesses[kept] = self.witnesses[i];
-                self.weights[kept] = weight;
-                kept += 1;
-            }
+        for i in (0..self.len).filter(|&i| face.has(i)) {
+            self.points[kept] = self.points[i];
+            self.witnesses[kept] = self.witnesses[i];
+            kept += 1;
         }
+        self.weights = weights;
         self.len = kept;
+    }
+
+    /// The weighted sum of the points.
+    pub(crate) fn weighted_point(&self) -> V {
+        let mut sum = V::ZERO;
+        for (&point, &weight) in self.points().iter().zip(&self.weights) {
+            sum += point * weight;
+        }
+        sum
     }
 
     /// The weights and witnesses.
     pub(crate) fn weighted(&self) -> impl Iterator<Item = (V::Scalar, W)> + '_ {
         (0..self.len).map(|i| (self.weights[i], self.witnesses[i]))
+    }
+}
+
+/// Some of the points of a simplex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Face(u8);
+
+/// The faces with at most `most` corners of a simplex of `len` points.
+pub(crate) fn faces(len: usize, most: usize) -> impl Iterator<Item = Face> {
+    (1_u8..1 << len).map(Face).filter(move |face| face.len() <= most)
+}
+
+impl Face {
+    /// The number of corners.
+    pub(crate) fn len(self) -> usize {
+        self.0.count_ones() as usize
+    }
+
+    /// Whether point `index` is a corner.
+    pub(crate) fn has(self, index: usize) -> bool {
+        self.0 >> index & 1 == 1
+    }
+
+    /// The corners, in order.
+    pub(crate) fn of<'a, V: Vector>(self, points: &[V], corners: &'a mut [V; MAX_POINTS]) -> &'a [V] {
+        let mut len = 0;
+        for (_, &point) in points.iter().enumerate().filter(|&(i, _)| self.has(i)) {
+            corners[len] = point;
+            len += 1;
+        }
+        &corners[..len]
     }
 }

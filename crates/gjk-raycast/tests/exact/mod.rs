@@ -94,8 +94,7 @@ pub fn contains(points: &[Point], q: Point) -> bool {
                 dot(p[i], cross(p[j], p[l])),
                 -dot(p[i], cross(p[j], p[k])),
             ];
-            signs.iter().sum::<i128>() != 0
-                && (signs.iter().all(|&s| s >= 0) || signs.iter().all(|&s| s <= 0))
+            signs.iter().sum::<i128>() != 0 && (signs.iter().all(|&s| s >= 0) || signs.iter().all(|&s| s <= 0))
         })
     };
     on_point || on_segment() || on_triangle() || in_tetrahedron()

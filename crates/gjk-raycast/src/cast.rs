@@ -1,0 +1,334 @@
+//! Algorithm 3 on a core: the ray cast that [`ray_cast`](crate::ray_cast) and [`linear_cast`](crate::linear_cast) share.
+//!
+//! The paper's loop moves a point `x` along the ray up to one supporting plane of the body after another, and finds the
+//! planes by GJK steps towards `x`. Three things are added to it here; `docs/ray-cast.md` derives them.
+//!
+//! - As soon as the simplex of support points is pierced by the ray, the hit is bracketed: behind the last plane, and
+//!   before the point where the ray enters the simplex. From then on, the simplex is refined where it is pierced
+//!   ([`Search::refine`]), and no vector has to tend to zero.
+//! - Where the ray runs nearly along the planes, a step along it gains nothing, and the steps of GJK are taken across
+//!   the ray, with the whole line for `x`.
+//! - A radius is never made of support points: the simplex is swept by it.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use crate::body::{Body, power_of_two_near};
+use crate::closest::{Closest, closest};
+use crate::entry::{Entry, entry};
+use crate::line::LocalRay;
+use crate::ray_cast::Ray;
+use crate::simplex::{MAX_POINTS, Simplex};
+use crate::{Iterate, Miss, Outcome, RayCastOptions, Status};
+
+/// A hit, as the search knows it.
+pub(crate) struct Contact<V: Vector, W> {
+    pub(crate) lambda: V::Scalar,
+    pub(crate) normal: Option<V>,
+    /// The points of the core whose weighted sum lies below the hit spot.
+    pub(crate) simplex: Simplex<V, W>,
+}
+
+/// What [`cast`] found; λ in units of the ray's direction.
+pub(crate) struct Cast<V: Vector, W> {
+    pub(crate) outcome: Outcome<Contact<V, W>, V>,
+    pub(crate) lower: V::Scalar,
+    pub(crate) upper: V::Scalar,
+    pub(crate) status: Status,
+    pub(crate) iterations: usize,
+    /// The unit of the simplex.
+    pub(crate) scale: V::Scalar,
+}
+
+type ScalarOf<B> = <<B as Body>::Vector as Vector>::Scalar;
+
+/// Casts a ray, given in the world, against a body.
+pub(crate) fn cast<B: Body>(
+    body: &mut B,
+    ray: Ray<B::Vector>,
+    options: RayCastOptions<B::Vector>,
+    observer: impl FnMut(Iterate<'_, B::Vector>),
+) -> Cast<B::Vector, B::Witness> {
+    let number = ScalarOf::<B>::from_f64;
+    let (zero, infinity) = (ScalarOf::<B>::ZERO, ScalarOf::<B>::infinity());
+    let origin = body.origin();
+    let size = body.extent() + body.radius();
+    let scale = power_of_two_near(if size > zero { size } else { (ray.source - origin).norm() });
+    body.set_scale(scale);
+    let radius = body.radius() / scale;
+    let noise = number(8.0) * ScalarOf::<B>::EPSILON * (size / scale);
+    let local = LocalRay::new(ray, origin, scale);
+
+    // The body lies in a ball about its origin. A line that misses the ball misses the body, and on one that does not,
+    // only the chord matters.
+    let reach = size / scale * (ScalarOf::<B>::ONE + number(16.0) * ScalarOf::<B>::EPSILON);
+    let across = local.line.foot.norm();
+    let half_chord = ((reach - across).max(zero) * (reach + across)).sqrt();
+    let low = local.start.max(-half_chord);
+
+    let mut search = Search {
+        body,
+        local,
+        radius,
+        noise,
+        options,
+        half_chord,
+        scale,
+        low,
+        low_error: zero,
+        high: infinity,
+        high_error: zero,
+        normal: None,
+        simplex: Simplex::new(),
+        v: local.line.at(low),
+        observer,
+        iterations: 0,
+    };
+    let end = if across > reach {
+        End::Miss(local.line.foot / across)
+    } else if local.start > half_chord {
+        End::Miss(local.line.direction)
+    } else if search.is_beyond(low, zero) {
+        End::Miss(-local.line.direction)
+    } else {
+        search.run()
+    };
+
+    let Search { low, low_error, high, high_error, normal, simplex, iterations, .. } = search;
+    let started_in = low <= local.start;
+    let lambda = if started_in { zero } else { local.lambda(low).max(zero) };
+    let lower = if started_in { zero } else { (lambda - local.error(low, low_error)).max(zero) };
+    let upper = match end {
+        End::Contact if started_in => zero,
+        _ => (local.lambda(high) + local.error(high, high_error)).max(lambda),
+    };
+    let hit = || Outcome::Hit(Contact { lambda, normal, simplex });
+    let miss = |axis| Outcome::Miss(Miss { axis });
+    let (outcome, status) = match end {
+        End::Miss(axis) => (miss(axis), Status::Converged),
+        // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
+        End::Contact if lambda > options.max_lambda => {
+            (miss(normal.unwrap_or(-local.line.direction)), Status::Converged)
+        }
+        End::Contact => (hit(), Status::Converged),
+        End::Open(status) if high < infinity && upper <= options.max_lambda => (hit(), status),
+        End::Open(status) => (Outcome::Undecided, status),
+    };
+    let (lower, upper) = match end {
+        End::Miss(_) => (infinity, infinity),
+        _ => (lower, upper),
+    };
+    Cast { outcome, lower, upper, status, iterations, scale }
+}
+
+/// How a search ended.
+#[derive(Clone, Copy, Debug)]
+enum End<V> {
+    /// A plane across this axis has the body behind it and the ray before it.
+    Miss(V),
+    /// The bracket has closed.
+    Contact,
+    /// It has not.
+    Open(Status),
+}
+
+struct Search<'a, B: Body, O> {
+    body: &'a mut B,
+    local: LocalRay<B::Vector>,
+    radius: ScalarOf<B>,
+    /// What rounding may have moved a plane or a point by.
+    noise: ScalarOf<B>,
+    options: RayCastOptions<B::Vector>,
+    half_chord: ScalarOf<B>,
+    scale: ScalarOf<B>,
+    /// Where on the line the last plane is crossed, and how far rounding may have moved the crossing.
+    low: ScalarOf<B>,
+    low_error: ScalarOf<B>,
+    /// Where the ray enters the simplex, and how far rounding may have moved that.
+    high: ScalarOf<B>,
+    high_error: ScalarOf<B>,
+    /// The unit normal of a plane through the point at `low`, to rounding, that has the body behind it.
+    normal: Option<B::Vector>,
+    simplex: Simplex<B::Vector, B::Witness>,
+    /// The paper's v.
+    v: B::Vector,
+    observer: O,
+    iterations: usize,
+}
+
+/// Slopes of planes, as cosines of the angle between normal and ray, below which steps along the ray gain little.
+const GRAZING: f64 = 0.1;
+
+impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
+    fn run(&mut self) -> End<B::Vector> {
+        let first = self.options.axis.and_then(Vector::unit).or_else(|| self.v.unit());
+        let found = self.approach(first.unwrap_or(-self.local.line.direction));
+        match found.and_then(|entry| self.refine(entry)) {
+            Ok(()) => End::Contact,
+            Err(end) => end,
+        }
+    }
+
+    /// Whether the ray ends before `mu`, even if that is wrong by `error`.
+    fn is_beyond(&self, mu: ScalarOf<B>, error: ScalarOf<B>) -> bool {
+        self.local.lambda(mu) - self.local.error(mu, error) > self.options.max_lambda
+    }
+
+    /// The next support point, along the unit vector `n`, if the plane through it leaves anything of the ray.
+    ///
+    /// The body is behind the plane `n·y = n·p + r`. A point `x` of the ray is before it by `n·(x − p) − r`, and if that
+    /// is positive and the ray approaches, it crosses the plane after `(n·(x − p) − r)/(−n·d)`, and not before.
+    fn probe(&mut self, n: B::Vector) -> Result<(B::Vector, B::Witness), End<B::Vector>> {
+        let zero = ScalarOf::<B>::ZERO;
+        if self.iterations >= self.options.max_iterations {
+            return Err(End::Open(Status::IterationLimit));
+        }
+        let (point, witness) = self.body.support(n);
+        let x = self.local.line.at(self.low);
+        self.iterations += 1;
+        self.show(x, x - point);
+        if !point.is_finite() {
+            return Err(End::Open(Status::Stalled));
+        }
+        let ahead = n.dot(x - point) - self.radius;
+        let slope = n.dot(self.local.line.direction);
+        if ahead > zero && slope < zero {
+            let (next, error) = (self.low - ahead / slope, -self.noise / slope);
+            if next - error > self.half_chord || self.is_beyond(next, error) {
+                return Err(End::Miss(n));
+            }
+            if next - error >= self.low - self.low_error {
+                (self.low, self.low_error, self.normal) = (next, error, Some(n));
+            }
+        } else if ahead > self.noise {
+            return Err(End::Miss(n));
+        }
+        Ok((point, witness))
+    }
+
+    fn show(&mut self, x: B::Vector, w: B::Vector) {
+        let mut seen = [B::Vector::ZERO; MAX_POINTS];
+        for (s, p) in seen.iter_mut().zip(self.simplex.points()) {
+            *s = x - *p;
+        }
+        (self.observer)(Iterate {
+            iteration: self.iterations - 1,
+            simplex: &seen[..self.simplex.points().len()],
+            v: self.v,
+            w,
+            scale: self.scale,
+            lower: self.local.lambda(self.low),
+            upper: self.local.lambda(self.high),
+        });
+    }
+
+    /// GJK steps, beginning along `n`, until the ray enters the simplex of support points, or touches the body.
+    fn approach(&mut self, mut n: B::Vector) -> Result<Option<Entry<B::Vector>>, End<B::Vector>> {
+        let zero = ScalarOf::<B>::ZERO;
+        let direction = self.local.line.direction;
+        let mut along = true;
+        let mut least = ScalarOf::<B>::infinity();
+        loop {
+            let before = self.low;
+            let (point, witness) = self.probe(n)?;
+            let repeated = self.simplex.points().contains(&point);
+            // The same support point may come again while x moves.
+            let moved = self.low > before;
+            if !repeated {
+                self.simplex.push(point, witness);
+                let found = entry(self.simplex.points(), self.local.line, self.radius, self.noise);
+                if let Some(found) = found.filter(|e| e.mu >= self.low - self.low_error - self.noise) {
+                    return Ok(Some(found));
+                }
+            }
+            // {x} − P, and its point closest to zero.
+            let x = self.local.line.at(self.low);
+            let Closest { v, face, weights } = self.toward(|p| x - p, B::Vector::DIM)?;
+            let length = v.norm();
+            if length - self.radius <= self.noise {
+                // x is in the body, or no farther from it than rounding.
+                self.simplex.retain(face, weights);
+                (self.high, self.high_error) = (self.low, self.low_error);
+                return Ok(None);
+            }
+            self.v = v;
+            n = v / length;
+            let slope = n.dot(direction);
+            if slope < zero && ((repeated && !moved) || slope > -ScalarOf::<B>::from_f64(GRAZING)) {
+                along = false;
+            }
+            if along || slope >= zero {
+                if repeated && !moved && length >= least {
+                    return Err(End::Open(Status::Stalled));
+                }
+                self.simplex.retain(face, weights);
+                least = length;
+                continue;
+            }
+            // The same across the ray: all of the line for x.
+            let line = self.local.line;
+            let Closest { v, face, weights } = self.toward(|p| line.across(line.foot - p), B::Vector::DIM - 1)?;
+            let length = v.norm();
+            if length - self.radius <= self.noise {
+                // The line comes within rounding of the simplex, and does not enter it.
+                self.simplex.retain(face, weights);
+                let mu = self.simplex.weighted_point().dot(direction);
+                (self.high, self.high_error) = (mu.max(self.low), self.noise);
+                return Ok(None);
+            }
+            if repeated && length >= least {
+                return Err(End::Open(Status::Stalled));
+            }
+            least = length;
+            self.simplex.retain(face, weights);
+            self.v = v;
+            n = v / length;
+        }
+    }
+
+    /// The point closest to zero of the simplex seen through `map`, in a space of `dimension` dimensions.
+    fn toward(
+        &self,
+        map: impl Fn(B::Vector) -> B::Vector,
+        dimension: usize,
+    ) -> Result<Closest<B::Vector>, End<B::Vector>> {
+        let mut seen = [B::Vector::ZERO; MAX_POINTS];
+        for (s, p) in seen.iter_mut().zip(self.simplex.points()) {
+            *s = map(*p);
+        }
+        closest(&seen[..self.simplex.points().len()], dimension).ok_or(End::Open(Status::Stalled))
+    }
+
+    /// Closes the bracket between the last plane and the entry into the simplex: the next plane is taken along the
+    /// normal at the entry, and the support point found there replaces one of the simplex such that the ray still
+    /// enters it, and earlier.
+    fn refine(&mut self, entered: Option<Entry<B::Vector>>) -> Result<(), End<B::Vector>> {
+        let Some(mut at) = entered else { return Ok(()) };
+        let direction = self.local.line.direction;
+        let wanted = self.noise.max(self.options.tolerance);
+        loop {
+            self.simplex.retain(at.face, at.weights);
+            let slope = -at.n.dot(direction);
+            (self.high, self.high_error) = (at.mu.max(self.low), self.noise / slope);
+            self.v = at.n;
+            let (point, witness) = self.probe(at.n)?;
+            let gap = (self.high - self.low) * slope;
+            if gap <= wanted {
+                return Ok(());
+            }
+            if self.simplex.points().contains(&point) {
+                return Err(End::Open(Status::Stalled));
+            }
+            self.simplex.push(point, witness);
+            match entry(self.simplex.points(), self.local.line, self.radius, self.noise) {
+                Some(next) if next.mu > self.low => at = next,
+                // The body has points of the line on both sides of the lower bound, which so is in the body.
+                Some(_) => {
+                    (self.high, self.high_error) = (self.low, self.low_error);
+                    return Ok(());
+                }
+                None => return Err(End::Open(Status::Stalled)),
+            }
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! A ray in the frame of a body.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use crate::body::power_of_two_near;
+use crate::ray_cast::Ray;
+
+/// The line `foot + μ·direction`, with `direction` of unit length and the foot its point closest to zero.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Line<V: Vector> {
+    pub(crate) foot: V,
+    pub(crate) direction: V,
+}
+
+impl<V: Vector> Line<V> {
+    pub(crate) fn at(&self, mu: V::Scalar) -> V {
+        self.foot + self.direction * mu
+    }
+
+    /// The part of `v` across the line.
+    pub(crate) fn across(&self, v: V) -> V {
+        v - self.direction * v.dot(self.direction)
+    }
+}
+
+/// A ray seen from a body, in the body's unit: a line, based where it is closest to the body's origin, and where on it
+/// the ray begins. However far the source, only numbers of the body's size take part in what follows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LocalRay<V: Vector> {
+    pub(crate) line: Line<V>,
+    /// Where the source is on the line.
+    pub(crate) start: V::Scalar,
+    /// What one unit of μ is in units of λ.
+    per_unit: V::Scalar,
+}
+
+impl<V: Vector> LocalRay<V> {
+    /// The ray relative to `origin`, in units of the power of two `scale`.
+    ///
+    /// With `s` the source relative to the origin, the foot is `s + t·d` with `t = −s·d/d·d`: two large vectors nearly
+    /// cancel. The subtraction of the origin is corrected by its rounding error (Knuth's TwoSum), and `t·d + s` is
+    /// rounded once, by a fused multiply-add; then the foot is right to rounding of its own length for this `t`. The
+    /// error of `t` itself only shifts the foot along the line, where it is undone by a second projection.
+    pub(crate) fn new(ray: Ray<V>, origin: V, scale: V::Scalar) -> Self {
+        let down = scale.recip();
+        let (from, to) = (ray.source * down, origin * down);
+        let s = from - to;
+        let direction = ray.direction.unit().unwrap_or_else(|| V::axis(0));
+        let t = -s.dot(direction);
+        let speed = ray.direction.norm();
+        // In units of the ray's own direction, which unlike its unit vector is exact, brought near unit length.
+        let near_one = power_of_two_near(speed);
+        let exact = ray.direction * near_one.recip();
+        let t_exact = t / (speed / near_one);
+        let foot = V::from_fn(|i| {
+            let (a, b, sum) = (from.get(i), -to.get(i), s.get(i));
+            let b_seen = sum - a;
+            let lost = (a - (sum - b_seen)) + (b - b_seen);
+            t_exact.mul_add(exact.get(i), sum) + lost
+        });
+        let rest = foot.dot(direction);
+        let foot = foot - direction * rest;
+        Self { line: Line { foot, direction }, start: -(t - rest), per_unit: scale / speed }
+    }
+
+    /// The parameter λ of the ray at `μ` on the line.
+    pub(crate) fn lambda(&self, mu: V::Scalar) -> V::Scalar {
+        (mu - self.start) * self.per_unit
+    }
+
+    /// The rounding error of [`lambda`](Self::lambda), of which `error` is due to `mu` itself.
+    pub(crate) fn error(&self, mu: V::Scalar, error: V::Scalar) -> V::Scalar {
+        let ulps = V::Scalar::from_f64(4.0) * V::Scalar::EPSILON;
+        (error + ulps * (mu.abs() + self.start.abs())) * self.per_unit
+    }
+}
