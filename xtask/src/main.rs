@@ -2,7 +2,9 @@
 
 mod engine;
 mod mesh;
+mod plot;
 mod query;
+mod validate;
 mod wire;
 
 use std::path::PathBuf;
@@ -29,10 +31,22 @@ enum Task {
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
     },
+    /// Compare answers with the truth, and write the report: error against run time.
+    ///
+    /// Exit status: 0 where everything is right, 1 where some answer is wrong, 2 where a file could not be read.
+    Validate {
+        /// Query files with `expect`; without any, the embedded suite.
+        #[arg(value_name = "FILE")]
+        files: Vec<PathBuf>,
+        /// Where the report goes.
+        #[arg(long, value_name = "FOLDER", default_value = "target/report")]
+        report: PathBuf,
+    },
 }
 
 fn main() -> ExitCode {
     match Arguments::parse().task {
         Task::Query { files } => query::run(&files),
+        Task::Validate { files, report } => validate::run(&files, &report),
     }
 }

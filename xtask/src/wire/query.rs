@@ -115,6 +115,19 @@ pub(crate) fn id_of(line: &[u8]) -> Option<Value> {
     serde_json::from_slice::<Named>(line).ok()?.id
 }
 
+/// What a line that could not be read says is expected of it: a case without its query.
+pub(crate) fn expectation_of(line: &[u8]) -> Option<Object> {
+    #[derive(serde::Deserialize)]
+    struct Expecting {
+        id: Option<Value>,
+        tags: Option<Value>,
+        expect: Value,
+    }
+    let Expecting { id, tags, expect } = serde_json::from_slice(line).ok()?;
+    let fields = [("id", id), ("tags", tags), ("expect", Some(expect))];
+    Some(fields.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))).collect())
+}
+
 /// The deepest nesting of brackets outside strings.
 fn deepest(line: &[u8]) -> usize {
     let (mut depth, mut deepest) = (0usize, 0usize);

@@ -1,0 +1,146 @@
+//! The report: one page without network, and the numbers beside it as CSV.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::Record;
+use super::summary::{Group, HEADERS, by_file, by_query, by_tag, total};
+use crate::plot::{LogLog, Series, escape};
+
+const STYLE: &str = "
+:root { color-scheme: light dark }
+body { font: 15px/1.5 system-ui, sans-serif; max-width: 66rem; margin: 2rem auto; padding: 0 1rem }
+table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular-nums }
+th, td { padding: .15rem .6rem; text-align: right; border-bottom: 1px solid color-mix(in srgb, currentColor 20%, transparent) }
+th:first-child, td:first-child { text-align: left }
+.wrong { color: #c03030; font-weight: 600 }
+svg { width: 100%; height: auto; max-width: 56rem; display: block; margin: 1.5rem 0 }
+figcaption { max-width: 46rem }
+";
+
+/// Errors below this are drawn here: it is less than half an ulp.
+const FLOOR: f64 = 1e-17;
+
+/// Writes the report into `folder` and says where its page is.
+pub(super) fn write(records: &[Record], folder: &Path) -> io::Result<PathBuf> {
+    fs::create_dir_all(folder)?;
+    fs::write(folder.join("cases.csv"), cases(records))?;
+    let page = folder.join("index.html");
+    fs::write(&page, html(records))?;
+    Ok(page)
+}
+
+/// Every case in a line.
+fn cases(records: &[Record]) -> String {
+    let mut csv = String::from("file,id,query,precision,tags,wrong,soft,error,relative_error,error_over_allow,ns\n");
+    let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:e}"));
+    let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+    for r in records {
+        let v = &r.verdict;
+        let _ = writeln!(
+            csv,
+            "{},{},{},{},{},{},{},{},{},{},{}",
+            quoted(&r.file),
+            quoted(&r.id),
+            quoted(&r.query),
+            r.precision,
+            quoted(&r.tags.join(" ")),
+            quoted(&v.wrong.join("; ")),
+            quoted(&v.soft.join("; ")),
+            number(v.error),
+            number(v.relative),
+            number(v.ratio),
+            r.time.map_or_else(String::new, |ns| format!("{ns:.1}"))
+        );
+    }
+    csv
+}
+
+fn html(records: &[Record]) -> String {
+    let total = total(records);
+    let mut page = format!(
+        "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width\">\n<title>Error against run time</title>\n\
+         <style>{STYLE}</style>\n<h1>Error against run time</h1>\n\
+         <p>{} cases with true answers known in exact arithmetic or to many digits: {} right, \
+         <span class=\"{}\">{} wrong</span>, {} right with a remark. Release build, one thread; the time is that of solving \
+         the query once its shapes are built.</p>\n",
+        total.cases,
+        total.cases - total.wrong,
+        if total.wrong > 0 { "wrong" } else { "right" },
+        total.wrong,
+        total.soft
+    );
+    page.push_str(&figure(records));
+    page.push_str("<h2>By query</h2>\n");
+    page.push_str(&table("query", &by_query(records)));
+    page.push_str("<h2>By file</h2>\n");
+    page.push_str(&table("file", &by_file(records)));
+    page.push_str("<h2>By tag</h2>\n");
+    page.push_str(&table("query: tag", &by_tag(records)));
+    page.push_str(&list("Wrong", records, |r| &r.verdict.wrong));
+    page.push_str(&list("Right with a remark", records, |r| &r.verdict.soft));
+    page.push_str("<p>The numbers of every case: <a href=\"cases.csv\">cases.csv</a>.</p>\n</html>\n");
+    page
+}
+
+/// Relative error against time, a colour for each query.
+fn figure(records: &[Record]) -> String {
+    ["f64", "f32"]
+        .into_iter()
+        .map(|precision| {
+            let mut series = BTreeMap::<&str, Vec<[f64; 2]>>::new();
+            for r in records.iter().filter(|r| r.precision == precision) {
+                if let (Some(time), Some(relative)) = (r.time, r.verdict.relative) {
+                    series.entry(&r.query).or_default().push([time, relative]);
+                }
+            }
+            let plot = LogLog {
+                title: format!("Relative error of the scalar against time per query, {precision}"),
+                x: "nanoseconds".to_owned(),
+                y: "relative error".to_owned(),
+                y_floor: FLOOR,
+                series: series
+                    .into_iter()
+                    .map(|(name, points)| Series { name: name.to_owned(), points, joined: false })
+                    .collect(),
+            };
+            format!(
+                "<figure>{}<figcaption>One dot per case, in {precision}; exact answers lie at the lower edge. A large \
+                 relative error of an answer near zero (bodies that almost touch, rays that start on a surface) can be as \
+                 good as the inputs allow: the tables compare each error with what its inputs allow.</figcaption></figure>\n",
+                plot.svg()
+            )
+        })
+        .collect()
+}
+
+fn table(title: &str, groups: &BTreeMap<String, Group>) -> String {
+    let mut html = format!("<table>\n<tr><th>{title}");
+    for header in HEADERS {
+        let _ = write!(html, "<th>{header}");
+    }
+    html.push('\n');
+    for (name, group) in groups {
+        let class = if group.wrong > 0 { " class=\"wrong\"" } else { "" };
+        let _ = write!(html, "<tr{class}><td>{}", escape(name));
+        for column in group.columns() {
+            let _ = write!(html, "<td>{column}");
+        }
+        html.push('\n');
+    }
+    html.push_str("</table>\n");
+    html
+}
+
+fn list<'r>(title: &str, records: &'r [Record], why: impl Fn(&'r Record) -> &'r Vec<String>) -> String {
+    let items: String = records
+        .iter()
+        .filter(|r| !why(r).is_empty())
+        .map(|r| format!("<li>{} {}: {}\n", escape(&r.file), escape(&r.id), escape(&why(r).join("; "))))
+        .collect();
+    if items.is_empty() { String::new() } else { format!("<h2>{title}</h2>\n<ul>\n{items}</ul>\n") }
+}
