@@ -7,14 +7,15 @@
 //! - a turn δω of E₁ about p moves E₁ under a fixed x*: ∂m/∂ω = (x* − p) ∧ F. F at x* is a wrench. For E₂, its opposite;
 //! - ∂m/∂P = wwᵀ, ∂m/∂Q = νvvᵀ; along semi-axis k, direction e: ∂m/∂a₁ₖ = −2(e·w)²/a₁ₖ³, ∂m/∂a₂ₖ = −2ν(e·v)²/a₂ₖ³.
 //!
-//! In the code no difference of positions is taken: w and v are kept as each body sees them, w = R₁·diag(a₁)β with
-//! β = −ν·diag(a₁)R₁ᵀz, v = R₂·diag(a₂)y. Torques about the own centre are products in body axes, where nothing cancels:
+//! In the code w and v are kept as each body sees them, w = R₁·diag(a₁)β and v = R₂·diag(a₂)y. Torques about the own centre are products in body axes, where nothing cancels:
 //! w ∧ F = Σ wᵢFⱼ eᵢ∧eⱼ with wᵢ = a₁ᵢβᵢ and Fⱼ = −2βⱼ/a₁ⱼ, hence −2βᵢβⱼ(a₁ᵢ/a₁ⱼ − a₁ⱼ/a₁ᵢ) for each plane i < j. It is
 //! zero in a plane where the body is round, to the last bit.
 
 use convex_support::{Ellipsoid, Matrix, Scalar, Vector};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
-use crate::pair::{combine, dot, load, load_columns, store};
+use crate::pair::{Pair, combine, dot, load, load_columns, store, sub};
 use crate::{Margin, Wedge};
 
 /// The gradient of the margin with respect to the motion of one of the two ellipsoids: a force at a point.
@@ -70,14 +71,21 @@ pub struct ShapeGradient<V: Vector> {
     pub matrix2: V::Matrix,
 }
 
-/// β: x* − x₁ as E₁ sees it, diag(a₁)⁻¹R₁ᵀ(x* − x₁) = −ν·diag(a₁)R₁ᵀz; and z = Q(x* − x₂).
+/// β = diag(a₁)⁻¹R₁ᵀ(x* − x₁), x* − x₁ as E₁ sees it, and z = Q(x* − x₂).
 #[inline]
 fn contact<V: Vector, const N: usize>(m: &Margin<V>, e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> ([f64; N], [f64; N]) {
-    let (y, a2): ([f64; N], [f64; N]) = (load(m.ball_point), load(e2.semi_axes()));
-    let z = combine(load_columns(e2.axes()), core::array::from_fn(|j| y[j] / a2[j]));
-    let (axes1, a1): ([[f64; N]; N], [f64; N]) = (load_columns(e1.axes()), load(e1.semi_axes()));
+    let pair = Pair::<N>::new(e1, e2);
+    let y: [f64; N] = load(m.ball_point);
     let nu = m.nu.as_f64();
-    (core::array::from_fn(|i| -nu * a1[i] * dot(axes1[i], z)), z)
+    let z = combine(pair.axes2, core::array::from_fn(|j| y[j] / pair.a2[j]));
+    let (r, v) = (pair.r(), pair.from_ball(y));
+    // βᵢ = −ν·a₁ᵢ·eᵢ·z = eᵢ·(v − r)/a₁ᵢ; the sums have errors of about ν·a₁ᵢ‖z‖ε and (‖v‖ + ‖r‖)ε/a₁ᵢ.
+    let (norm_z, norm_w) = (nu * dot(z, z).sqrt(), dot(v, v).sqrt() + dot(r, r).sqrt());
+    let beta = core::array::from_fn(|i| {
+        let a = pair.a1[i];
+        if a * a * norm_z < norm_w { -nu * a * dot(pair.axes1[i], z) } else { dot(pair.axes1[i], sub(v, r)) / a }
+    });
+    (beta, z)
 }
 
 impl<V: Wedge> Margin<V> {

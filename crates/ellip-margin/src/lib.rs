@@ -11,8 +11,11 @@ extern crate std;
 
 mod clearance;
 mod double_double;
+#[cfg(feature = "eigen")]
+pub mod eigen;
 mod error;
 mod gradient;
+mod inverse_iteration;
 mod margin;
 mod options;
 mod pair;
@@ -26,6 +29,7 @@ pub use convex_support;
 pub use clearance::{ClearanceResult, clearance};
 pub use error::InvalidQuery;
 pub use gradient::{MarginGradient, ShapeGradient};
+pub use inverse_iteration::InverseIterationTracker;
 pub use margin::{Margin, free_margin, free_margin_with};
 pub use options::{MarginOptions, Status};
 pub use track::MarginTracker;
