@@ -132,6 +132,9 @@ enum End<V> {
     Open(Status),
 }
 
+/// A support point and what it is made of, or how the search ends instead.
+type Found<B> = Result<(<B as Body>::Vector, <B as Body>::Witness), End<<B as Body>::Vector>>;
+
 struct Search<'a, B: Body, O> {
     body: &'a mut B,
     local: LocalRay<B::Vector>,
@@ -159,6 +162,9 @@ struct Search<'a, B: Body, O> {
 /// Slopes of planes, as cosines of the angle between normal and ray, below which steps along the ray gain little.
 const GRAZING: f64 = 0.1;
 
+/// Exchanges of a point that gain nothing before the line is nudged.
+const PATIENCE: usize = 3;
+
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     fn run(&mut self) -> End<B::Vector> {
         let first = self.options.axis.and_then(Vector::unit).or_else(|| self.v.unit());
@@ -178,7 +184,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     ///
     /// The body is behind the plane `n·y = n·p + r`. A point `x` of the ray is before it by `n·(x − p) − r`, and if that
     /// is positive and the ray approaches, it crosses the plane after `(n·(x − p) − r)/(−n·d)`, and not before.
-    fn probe(&mut self, n: B::Vector) -> Result<(B::Vector, B::Witness), End<B::Vector>> {
+    fn probe(&mut self, n: B::Vector) -> Found<B> {
         let zero = ScalarOf::<B>::ZERO;
         if self.iterations >= self.options.max_iterations {
             return Err(End::Open(Status::IterationLimit));
@@ -225,24 +231,25 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     /// GJK steps, beginning along `n`, until the ray enters the simplex of support points, or touches the body.
     fn approach(&mut self, mut n: B::Vector) -> Result<Option<Entry<B::Vector>>, End<B::Vector>> {
         let zero = ScalarOf::<B>::ZERO;
-        let direction = self.local.line.direction;
-        let mut along = true;
-        let mut least = ScalarOf::<B>::infinity();
+        let line = self.local.line;
+        let mut across = false;
+        // The distances of the simplex from x and from the line, which have to decrease while x stays.
+        let (mut least, mut least_across) = (ScalarOf::<B>::infinity(), ScalarOf::<B>::infinity());
         loop {
             let before = self.low;
             let (point, witness) = self.probe(n)?;
-            let repeated = self.simplex.points().contains(&point);
-            // The same support point may come again while x moves.
-            let moved = self.low > before;
-            if !repeated {
+            if self.low > before {
+                least = ScalarOf::<B>::infinity();
+            }
+            if !self.simplex.points().contains(&point) {
                 self.simplex.push(point, witness);
-                let found = entry(self.simplex.points(), self.local.line, self.radius, self.noise);
+                let found = entry(self.simplex.points(), line, self.radius, self.noise);
                 if let Some(found) = found.filter(|e| e.mu >= self.low - self.low_error - self.noise) {
                     return Ok(Some(found));
                 }
             }
-            // {x} − P, and its point closest to zero.
-            let x = self.local.line.at(self.low);
+            // The paper's step: the point of {x} − P closest to zero.
+            let x = line.at(self.low);
             let Closest { v, face, weights } = self.toward(|p| x - p, B::Vector::DIM)?;
             let length = v.norm();
             if length - self.radius <= self.noise {
@@ -251,38 +258,33 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 (self.high, self.high_error) = (self.low, self.low_error);
                 return Ok(None);
             }
-            self.v = v;
-            n = v / length;
-            let slope = n.dot(direction);
-            if slope < zero && ((repeated && !moved) || slope > -ScalarOf::<B>::from_f64(GRAZING)) {
-                along = false;
-            }
-            if along || slope >= zero {
-                if repeated && !moved && length >= least {
+            let slope = v.dot(line.direction) / length;
+            let progress = length < least;
+            across |= slope < zero && (!progress || slope > -ScalarOf::<B>::from_f64(GRAZING));
+            if !across || slope >= zero {
+                if !progress {
                     return Err(End::Open(Status::Stalled));
                 }
-                self.simplex.retain(face, weights);
                 least = length;
+                self.simplex.retain(face, weights);
+                (self.v, n) = (v, v / length);
                 continue;
             }
-            // The same across the ray: all of the line for x.
-            let line = self.local.line;
+            // The same across the ray, with the whole line for x.
             let Closest { v, face, weights } = self.toward(|p| line.across(line.foot - p), B::Vector::DIM - 1)?;
             let length = v.norm();
+            self.simplex.retain(face, weights);
             if length - self.radius <= self.noise {
-                // The line comes within rounding of the simplex, and does not enter it.
-                self.simplex.retain(face, weights);
-                let mu = self.simplex.weighted_point().dot(direction);
+                // The line comes within rounding of the simplex without entering it ahead of x.
+                let mu = self.simplex.weighted_point().dot(line.direction);
                 (self.high, self.high_error) = (mu.max(self.low), self.noise);
                 return Ok(None);
             }
-            if repeated && length >= least {
+            if !(length < least_across) {
                 return Err(End::Open(Status::Stalled));
             }
-            least = length;
-            self.simplex.retain(face, weights);
-            self.v = v;
-            n = v / length;
+            (least, least_across) = (ScalarOf::<B>::infinity(), length);
+            (self.v, n) = (v, v / length);
         }
     }
 
@@ -302,14 +304,20 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     /// Closes the bracket between the last plane and the entry into the simplex: the next plane is taken along the
     /// normal at the entry, and the support point found there replaces one of the simplex such that the ray still
     /// enters it, and earlier.
+    ///
+    /// A ray that runs through an edge or a vertex enters more than one facet there, and like the simplex method of
+    /// linear programming, the exchange of points can go round in circles. Then the line that the simplex is kept pierced
+    /// by is nudged into the facet; planes are still crossed by the ray itself.
     fn refine(&mut self, entered: Option<Entry<B::Vector>>) -> Result<(), End<B::Vector>> {
         let Some(mut at) = entered else { return Ok(()) };
         let direction = self.local.line.direction;
-        let wanted = self.noise.max(self.options.tolerance);
+        let mut wanted = self.noise.max(self.options.tolerance);
+        let mut line = self.local.line;
+        let (mut nudge, mut patience) = (ScalarOf::<B>::ZERO, PATIENCE);
         loop {
             self.simplex.retain(at.face, at.weights);
             let slope = -at.n.dot(direction);
-            (self.high, self.high_error) = (at.mu.max(self.low), self.noise / slope);
+            (self.high, self.high_error) = (at.mu.max(self.low), (self.noise + nudge) / slope);
             self.v = at.n;
             let (point, witness) = self.probe(at.n)?;
             let gap = (self.high - self.low) * slope;
@@ -319,8 +327,20 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             if self.simplex.points().contains(&point) {
                 return Err(End::Open(Status::Stalled));
             }
+            let facet = self.simplex.middle();
             self.simplex.push(point, witness);
-            match entry(self.simplex.points(), self.local.line, self.radius, self.noise) {
+            let mut next = entry(self.simplex.points(), line, self.radius, self.noise);
+            patience -= usize::from(next.is_none_or(|next| next.mu >= at.mu));
+            if next.is_none() || patience == 0 {
+                patience = PATIENCE;
+                let inward = line.across(facet - line.foot);
+                let step = ScalarOf::<B>::from_f64(8.0) * self.noise;
+                line.foot += inward.unit().unwrap_or(B::Vector::ZERO) * step.min(inward.norm());
+                nudge += step;
+                wanted += step;
+                next = entry(self.simplex.points(), line, self.radius, self.noise);
+            }
+            match next {
                 Some(next) if next.mu > self.low => at = next,
                 // The body has points of the line on both sides of the lower bound, which so is in the body.
                 Some(_) => {

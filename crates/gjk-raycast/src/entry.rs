@@ -59,7 +59,8 @@ fn enter_facet<V: Vector>(flat: &Flat<V>, line: Line<V>, radius: V::Scalar, nois
     let n = d / slope;
     let mu = ((flat.corner() - line.foot).dot(n) + radius) / slope;
     let below = flat.project(line.at(mu) - n * radius - flat.corner());
-    flat.contains(&below.coordinates, noise).then_some((mu, n, below.coordinates))
+    // Noise across the line moves the crossing by the more, the flatter the line meets the plane.
+    flat.contains(&below.coordinates, noise / -slope).then_some((mu, n, below.coordinates))
 }
 
 /// The line comes within `radius` of a corner, or in 3D of an edge.

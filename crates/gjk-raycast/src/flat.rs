@@ -68,10 +68,10 @@ impl<V: Vector> Flat<V> {
         let mut across = v;
         let mut t = [zero; 3];
         for _ in 0..2 {
-            for i in 0..self.n {
-                let ti = across.dot(self.f[i]) / self.squared[i];
-                across -= self.f[i] * ti;
-                t[i] += ti;
+            for (ti, (&fi, &squared)) in t.iter_mut().zip(self.f.iter().zip(&self.squared)).take(self.n) {
+                let part = across.dot(fi) / squared;
+                across -= fi * part;
+                *ti += part;
             }
         }
         let mut b = [zero; MAX_POINTS];

@@ -39,7 +39,7 @@ impl<V: Vector> LocalRay<V> {
     /// The ray relative to `origin`, in units of the power of two `scale`.
     ///
     /// With `s` the source relative to the origin, the foot is `s + t·d` with `t = −s·d/d·d`: two large vectors nearly
-    /// cancel. The subtraction of the origin is corrected by its rounding error (Knuth's TwoSum), and `t·d + s` is
+    /// cancel. The subtraction of the origin is corrected by its rounding error (Knuth's two-sum), and `t·d + s` is
     /// rounded once, by a fused multiply-add; then the foot is right to rounding of its own length for this `t`. The
     /// error of `t` itself only shifts the foot along the line, where it is undone by a second projection.
     pub(crate) fn new(ray: Ray<V>, origin: V, scale: V::Scalar) -> Self {

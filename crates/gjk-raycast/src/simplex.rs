@@ -61,6 +61,15 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
         sum
     }
 
+    /// The mean of the points.
+    pub(crate) fn middle(&self) -> V {
+        let mut sum = V::ZERO;
+        for &point in self.points() {
+            sum += point;
+        }
+        sum / V::Scalar::from_f64(self.len as f64)
+    }
+
     /// The weights and witnesses.
     pub(crate) fn weighted(&self) -> impl Iterator<Item = (V::Scalar, W)> + '_ {
         (0..self.len).map(|i| (self.weights[i], self.witnesses[i]))
