@@ -2,7 +2,7 @@
 
 use num_traits::Float as _;
 
-use crate::shapes::{across, clamp_to_segment};
+use crate::shapes::{Frame, across, clamp_to_segment};
 use crate::vector::comfortable_unit_of_length;
 use crate::{
     Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Matrix, Point, Posed, Rounded, Scalar, ScalarOf, Segment,
@@ -69,21 +69,13 @@ impl<V: Vector> ClosestPoint for Segment<V> {
 }
 
 impl<V: Vector> ClosestPoint for Triangle<V> {
-    /// In the plane of the triangle, with the longest edge as the first axis: the third corner then stands above that
-    /// edge, and the signs of three areas tell the inside, without the cancellation of Gram determinants.
-    ///
     /// Outside, the answer is the foot on an edge that has the point on its outer side, or else a corner. Comparing the
     /// distances of all three edges instead would lose half the digits, since a distance is flat at its minimum.
     fn closest_point(&self, x: V) -> V {
-        let [a, b, c] = longest_edge_first(self.points());
-        let Some(u) = (b - a).unit() else { return a };
-        let along = u.dot(c - a);
-        let up = (c - a) - u * along;
-        // Once more, since `up` may be small beside what was subtracted.
-        let up = up - u * u.dot(up);
-        let Some(v) = up.unit() else { return clamp_to_segment([a, b], x) };
-
-        let (length, height) = (u.dot(b - a), v.dot(up));
+        let Some(Frame { corners: [a, b, c], axes: [u, v], length, along, height }) = self.frame() else {
+            let [a, b, _] = self.longest_edge_first();
+            return clamp_to_segment([a, b], x);
+        };
         let (p, q) = (u.dot(x - a), v.dot(x - a));
         let beyond_ab = q < V::Scalar::ZERO;
         let beyond_bc = (length - p) * height < q * (length - along);
@@ -99,18 +91,6 @@ impl<V: Vector> ClosestPoint for Triangle<V> {
             }
         }
         corner.unwrap_or(if V::DIM == 2 { x } else { a + u * p + v * q })
-    }
-}
-
-/// The same corners in the same cyclic order, the longest edge between the first two.
-fn longest_edge_first<V: Vector>([a, b, c]: [V; 3]) -> [V; 3] {
-    let (ab, bc, ca) = ((b - a).norm(), (c - b).norm(), (a - c).norm());
-    if ab >= bc && ab >= ca {
-        [a, b, c]
-    } else if bc >= ca {
-        [b, c, a]
-    } else {
-        [c, a, b]
     }
 }
 

@@ -2,7 +2,7 @@
 
 use num_traits::Float as _;
 
-use crate::shapes::across;
+use crate::shapes::{Frame, across};
 use crate::vector::{is_comfortable, scaled};
 use crate::{
     Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Matrix, Point, Posed, Rounded, Scalar, ScalarOf, Segment,
@@ -169,12 +169,11 @@ impl<V: Vector> LineCrossing for Cuboid<V> {
             }
             exit = exit.min((-near - s) / d);
         }
-        // Written so that a NaN is a miss; without a face the direction is zero.
-        if face == V::DIM || !(entry <= exit) {
-            return None;
-        }
-        let normal = V::axis(face) * V::Scalar::ONE.copysign(-direction.get(face));
-        Some(Crossing { entry, exit, normal })
+        // A NaN compares false; without a face the direction is zero.
+        (face < V::DIM && entry <= exit).then(|| {
+            let normal = V::axis(face) * V::Scalar::ONE.copysign(-direction.get(face));
+            Crossing { entry, exit, normal }
+        })
     }
 }
 
@@ -214,6 +213,9 @@ fn capsule<V: Vector>(
     let steep = slope <= dd * (V::Scalar::EPSILON * V::Scalar::EPSILON);
     let side = if steep {
         (out.length_squared() <= radius * radius).then_some(None)
+    } else if V::DIM == 2 {
+        // In the plane a line meets the axis itself, also where rounding says that it passes it at some distance.
+        Some(Some(Chord { middle: -out.dot(across) / slope, half: radius / slope.sqrt(), nearest: V::ZERO }))
     } else {
         chord(out, across, slope, radius).map(Some)
     }?;
@@ -226,13 +228,14 @@ fn capsule<V: Vector>(
         ball(radius, source - center, direction, dd)
     };
     let (entry, normal) = match &side {
-        Some(c) if enters.abs() <= half_height && radius > zero => {
-            (c.middle - c.half, (c.nearest - across * c.half) / radius)
+        Some(c) if enters.abs() <= half_height => {
+            let out = if radius > zero { (c.nearest - across * c.half) / radius } else { -across / slope.sqrt() };
+            (c.middle - c.half, out)
         }
         _ => cap(enters).map(|c| (c.entry, c.normal))?,
     };
     let exit = match &side {
-        Some(c) if leaves.abs() <= half_height && radius > zero => c.middle + c.half,
+        Some(c) if leaves.abs() <= half_height => c.middle + c.half,
         _ => cap(leaves).map_or(entry, |c| c.exit),
     };
     Some(Crossing { entry: base + entry, exit: base + exit.max(entry), normal })
@@ -294,9 +297,10 @@ fn shifted<V: Vector>(crossing: Crossing<V>, base: V::Scalar) -> Option<Crossing
 }
 
 impl<V: Vector3> LineCrossing for Cone<V> {
-    /// Within its slab, the cone is `F(x) ≤ 0` below the apex, with `F(x) = 4h²(x² + z²) − r²(y − h)²`. Along the line,
-    /// counted from the apex, `F = Aλ² + 2Bλ + C`; and by Lagrange's identity the discriminant is, with the moment
-    /// `m = p × d`, `B² − AC = 4h²·(r²(m_x² + m_z²) − 4h²·m_y²)`: no difference of products of `B` and `AC` is formed.
+    /// Within its slab, the cone is `F(x) ≤ 0` below the apex, with `F(x) = cos²α·(x² + z²) − sin²α·(h − y)²` and `α` half
+    /// the opening angle. Along the line, counted from the apex, `F = Aλ² + 2Bλ + C`; and by Lagrange's identity the
+    /// discriminant is, with the moment `m = p × d`, `B² − AC = cos²α·(sin²α·(m_x² + m_z²) − cos²α·m_y²)`: no difference
+    /// of the products of `B` and `AC` is formed.
     #[inline]
     fn line_crossing(&self, source: V, direction: V) -> Option<Crossing<V>> {
         let dd = direction.length_squared();
@@ -309,25 +313,29 @@ impl<V: Vector3> LineCrossing for Cone<V> {
             // A disc or a segment.
             return Cylinder::new(h, r).ok()?.line_crossing(source, direction);
         }
-        let base = -source.dot(direction) / dd;
+        // A unit direction keeps the products of four lengths and directions below in range.
+        let speed = dd.sqrt();
+        let direction = direction / speed;
+        let base = -source.dot(direction);
         let source = source + direction * base;
         let (y, rise) = (source.get(1), direction.get(1));
         let (top, bottom) = slab(y, rise, h)?;
 
         let height = h + h;
-        let (out, radial) = (across(source) * height, across(direction) * height);
-        let (drop, fall) = (r * (h - y), -r * rise);
+        let slant = height.hypot(r);
+        let (cosine, sine) = (height / slant, r / slant);
+        let (out, radial) = (across(source) * cosine, across(direction) * cosine);
+        let (drop, fall) = (sine * (h - y), -sine * rise);
         let a = radial.length_squared() - fall * fall;
         let b = out.dot(radial) - drop * fall;
         let c = out.length_squared() - drop * drop;
-        let p = source - V::axis(1) * h;
-        let m = p.cross(direction);
-        let discriminant =
-            (r * across(m).length() - height * m.get(1).abs()) * (r * across(m).length() + height * m.get(1).abs());
-        if !(discriminant >= zero) {
+        let m = (source - V::axis(1) * h).cross(direction);
+        let (swing, twist) = (sine * across(m).length(), cosine * m.get(1).abs());
+        let discriminant = (swing - twist) * (swing + twist);
+        if discriminant < zero || discriminant.is_nan() {
             return None;
         }
-        let root = height * discriminant.sqrt();
+        let root = cosine * discriminant.sqrt();
         // The larger of the two in magnitude first, so that B and the root do not cancel; the other from the product.
         let q = -(b + root.copysign(b));
         let far = if a == zero { V::Scalar::infinity().copysign(-q) } else { q / a };
@@ -351,10 +359,11 @@ impl<V: Vector3> LineCrossing for Cone<V> {
         if enters > top || rise < zero {
             // From above a line enters through the slant, at the latest at the apex.
             crossing.entry = enters.max(top);
-            let radial = across(source + direction * crossing.entry).unit().unwrap_or(V::ZERO);
-            crossing.normal = (radial * height + V::axis(1) * r).unit().unwrap_or(V::axis(1));
+            let radial = across(source + direction * crossing.entry).unit();
+            crossing.normal = radial.map_or_else(|| V::axis(1), |out| out * cosine + V::axis(1) * sine);
         }
-        shifted(crossing, base)
+        let Crossing { entry, exit, normal } = shifted(crossing, base)?;
+        Some(Crossing { entry: entry / speed, exit: exit / speed, normal })
     }
 }
 
@@ -468,7 +477,6 @@ impl<V: Vector> RoundedLineCrossing for Capsule<V> {
     }
 }
 
-/// A segment on its way to becoming a capsule.
 impl<V: Vector> RoundedLineCrossing for Segment<V> {
     #[inline]
     fn rounded_line_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
@@ -489,6 +497,8 @@ fn edge<V: Vector>([a, b]: [V; 2], radius: V::Scalar, source: V, direction: V, d
     capsule(axis, to_b.norm(), radius, source - (a + to_b), direction, dd)
 }
 
+/// In 3D a line crosses it at a point, where `entry` and `exit` agree. A triangle without area, a segment, has no side to
+/// cross it by: `None`.
 impl<V: Vector> LineCrossing for Triangle<V> {
     #[inline]
     fn line_crossing(&self, source: V, direction: V) -> Option<Crossing<V>> {
@@ -497,14 +507,18 @@ impl<V: Vector> LineCrossing for Triangle<V> {
 }
 
 /// The prism over the triangle, as thick as the ball, and the three edges swept by the ball: their union is convex, so
-/// the line is inside from the first entry to the last exit. In 2D the triangle is its own prism.
+/// the line is inside from the first entry to the last exit. In 2D the triangle itself stands for the prism.
 impl<V: Vector> RoundedLineCrossing for Triangle<V> {
     fn rounded_line_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
         let dd = direction.length_squared();
         if !is_comfortable(dd) {
             return in_other_units(&Rounded::new(*self, radius).ok()?, source, direction);
         }
-        let mut union = self.prism_crossing(radius, source, direction);
+        let mut union = if V::DIM == 2 {
+            self.crossing_in_the_plane(source, direction)
+        } else {
+            self.prism_crossing(radius, source, direction)
+        };
         if radius > V::Scalar::ZERO {
             let [a, b, c] = self.points();
             for side in [[a, b], [b, c], [c, a]] {
@@ -522,35 +536,63 @@ impl<V: Vector> RoundedLineCrossing for Triangle<V> {
 }
 
 impl<V: Vector> Triangle<V> {
-    /// The crossing of the points within `thickness` of the triangle, across its plane.
-    fn prism_crossing(&self, thickness: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+    /// The crossing of a triangle in 2D: through the edges whose ends are on different sides of the line. A line meets
+    /// a sliver too, however thin, that lies across it.
+    fn crossing_in_the_plane(&self, source: V, direction: V) -> Option<Crossing<V>> {
+        let zero = V::Scalar::ZERO;
+        let left = |v: V| V::from_fn(|i| if i == 0 { -v.get(1) } else { v.get(0) });
         let [a, b, c] = self.points();
         let base = -(source - a).dot(direction) / direction.length_squared();
+        let source = (source - a) + direction * base;
+        // Every corner by how far it is to the left of the line, and how far along it.
+        let corners = [V::ZERO, b - a, c - a].map(|p| {
+            let p = p - source;
+            (left(direction).dot(p), direction.dot(p) / direction.length_squared(), p)
+        });
+        let mut crossing = Crossing { entry: V::Scalar::infinity(), exit: -V::Scalar::infinity(), normal: V::ZERO };
+        for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            let ((side_i, along_i, p_i), (side_j, along_j, p_j)) = (corners[i], corners[j]);
+            if side_i.max(side_j) < zero || side_i.min(side_j) > zero {
+                continue;
+            }
+            let t = if side_i == side_j { zero } else { side_i / (side_i - side_j) };
+            let at = along_i + (along_j - along_i) * t;
+            if at <= crossing.entry {
+                let n = left(p_j - p_i);
+                let outward = if n.dot(corners[k].2 - p_i) > zero { -n } else { n };
+                if at < crossing.entry || outward.dot(direction) < zero {
+                    crossing.normal = outward;
+                }
+                crossing.entry = at;
+            }
+            crossing.exit = crossing.exit.max(at);
+        }
+        crossing.normal = if crossing.normal.dot(direction) < zero { crossing.normal } else { -direction }.unit()?;
+        shifted(crossing, base)
+    }
+
+    /// The crossing of the points within `thickness` of the triangle in 3D, across its plane.
+    fn prism_crossing(&self, thickness: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+        let Frame { corners: [a, b, _], axes: [u, v], length, along, height } = self.frame()?;
+        let base = -(source - a).dot(direction) / direction.length_squared();
         let from_a = (source - a) + direction * base;
-        let u = (b - a).unit()?;
-        let out = |v: V| v - u * u.dot(v);
-        let w = out(out(c - a)).unit()?;
         let zero = V::Scalar::ZERO;
         let mut clip = Clip::default();
-        if V::DIM == 3 {
-            // The normal is what is left of the axis that is least within the plane.
-            let off_plane = |v: V| out(v) - w * w.dot(v);
-            let lengths = V::from_fn(|i| off_plane(V::axis(i)).length_squared());
-            let steepest = (1..V::DIM).fold(0, |best, i| if lengths.get(i) > lengths.get(best) { i } else { best });
-            let normal = off_plane(off_plane(V::axis(steepest))).unit()?;
-            clip.cut(normal, from_a, thickness, direction);
-            clip.cut(-normal, from_a, thickness, direction);
-        }
+        // The normal is what is left of the axis that is least within the plane.
+        let off_plane = |x: V| x - u * u.dot(x) - v * v.dot(x);
+        let lengths = V::from_fn(|i| off_plane(V::axis(i)).length_squared());
+        let steepest = (1..V::DIM).fold(0, |best, i| if lengths.get(i) > lengths.get(best) { i } else { best });
+        let normal = off_plane(off_plane(V::axis(steepest))).unit()?;
+        clip.cut(normal, from_a, thickness, direction);
+        clip.cut(-normal, from_a, thickness, direction);
         // Outward of each edge, within the plane.
-        let inward = |[p, q]: [V; 2], third: V| {
-            let e = (q - p).unit()?;
-            let n = third - p;
-            let n = n - e * e.dot(n);
-            (n - e * e.dot(n)).unit()
-        };
-        for (edge, third) in [([a, b], c), ([b, c], a), ([c, a], b)] {
-            clip.cut(-inward(edge, third)?, from_a - (edge[0] - a), zero, direction);
-        }
+        clip.cut(-v, from_a, zero, direction);
+        clip.cut((u * height + v * (length - along)).unit()?, from_a - (b - a), zero, direction);
+        clip.cut((v * along - u * height).unit()?, from_a, zero, direction);
+        // The sides of a sliver are parallel to rounding and do not say where it ends; its longest edge does, and is
+        // normal to a supporting line at both of its ends.
+        clip.cut(-u, from_a, zero, direction);
+        clip.cut(u, from_a, length, direction);
         shifted(clip.crossing?, base)
     }
 }
@@ -581,7 +623,7 @@ impl<V: Vector> Clip<V> {
             }
         } else if speed > V::Scalar::ZERO {
             crossing.exit = crossing.exit.min(room / speed);
-        } else if !(room >= V::Scalar::ZERO) {
+        } else if room < V::Scalar::ZERO || room.is_nan() {
             self.crossing = None;
         }
     }

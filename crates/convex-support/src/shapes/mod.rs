@@ -13,6 +13,7 @@ mod triangle;
 
 pub(crate) use cylinder::across;
 pub(crate) use segment::clamp_to_segment;
+pub(crate) use triangle::Frame;
 
 pub use ball::Ball;
 pub use capsule::Capsule;

@@ -34,6 +34,47 @@ impl<V: Vector> Triangle<V> {
     }
 }
 
+/// A triangle in its own plane: the longest edge from `(0, 0)` to `(length, 0)`, the third corner above it at
+/// `(along, height)`, so that `0 ≤ along ≤ length`.
+///
+/// Signs of areas in these coordinates tell inside from outside without the cancellation of Gram determinants.
+pub(crate) struct Frame<V: Vector> {
+    /// The corners, those of the longest edge first.
+    pub(crate) corners: [V; 3],
+    /// Unit vectors along the longest edge and up to the third corner.
+    pub(crate) axes: [V; 2],
+    pub(crate) length: V::Scalar,
+    pub(crate) along: V::Scalar,
+    pub(crate) height: V::Scalar,
+}
+
+impl<V: Vector> Triangle<V> {
+    /// `None` where the triangle is a segment or a point.
+    pub(crate) fn frame(&self) -> Option<Frame<V>> {
+        let [a, b, c] = self.longest_edge_first();
+        let u = (b - a).unit()?;
+        let along = u.dot(c - a);
+        let up = (c - a) - u * along;
+        // Once more, since `up` may be small beside what was subtracted.
+        let up = up - u * u.dot(up);
+        let v = up.unit()?;
+        Some(Frame { corners: [a, b, c], axes: [u, v], length: u.dot(b - a), along, height: v.dot(up) })
+    }
+
+    /// The corners in the same cyclic order, the longest edge between the first two.
+    pub(crate) fn longest_edge_first(&self) -> [V; 3] {
+        let [a, b, c] = self.points;
+        let (ab, bc, ca) = ((b - a).norm(), (c - b).norm(), (a - c).norm());
+        if ab >= bc && ab >= ca {
+            [a, b, c]
+        } else if bc >= ca {
+            [b, c, a]
+        } else {
+            [c, a, b]
+        }
+    }
+}
+
 impl<V: Vector> SupportMap for Triangle<V> {
     type Vector = V;
 

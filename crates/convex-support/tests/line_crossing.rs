@@ -1,0 +1,176 @@
+//! Closed-form crossings and nearest points, each against the other and against the support mapping.
+
+use convex_support::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
+use convex_support::strategies as any;
+use convex_support::{
+    ClosestPoint, Crossing, LineCrossing, Posed, Rounded, RoundedLineCrossing, Scalar, SupportMap, Vector,
+};
+use num_traits::Float;
+use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
+use std::cell::Cell;
+use std::fmt::Debug;
+
+/// A shape that knows both capabilities, and can be printed.
+trait Shape: ClosestPoint + LineCrossing + Debug {}
+impl<S: ClosestPoint + LineCrossing + Debug> Shape for S {}
+type AnyShape<V> = Box<dyn Shape<Vector = V>>;
+
+fn boxed<S: Shape + 'static>(strategy: BoxedStrategy<S>) -> BoxedStrategy<AnyShape<S::Vector>> {
+    strategy.prop_map(|s| Box::new(s) as AnyShape<S::Vector>).boxed()
+}
+
+fn rounded<S>(strategy: BoxedStrategy<S>, size: <S::Vector as Vector>::Scalar) -> BoxedStrategy<AnyShape<S::Vector>>
+where
+    S: RoundedLineCrossing + ClosestPoint + Debug + 'static,
+{
+    (strategy, any::length(size), any::pose::<S::Vector>(size))
+        .prop_map(|(s, r, (q, t))| {
+            Box::new(Posed::new(Rounded::new(s, r).unwrap(), q, t).unwrap()) as AnyShape<S::Vector>
+        })
+        .boxed()
+}
+
+fn shapes<V: Vector>(size: V::Scalar) -> BoxedStrategy<AnyShape<V>> {
+    prop_oneof![
+        boxed(any::ball(size)),
+        boxed(any::cuboid(size)),
+        boxed(any::capsule(size)),
+        boxed(any::ellipsoid(size)),
+        boxed(any::triangle(size)),
+        rounded(any::point(size), size),
+        rounded(any::segment(size), size),
+        rounded(any::triangle(size), size),
+        rounded(any::cuboid(size), size),
+        rounded(any::capsule(size), size),
+    ]
+    .boxed()
+}
+
+fn shapes_3d<V: convex_support::Vector3>(size: V::Scalar) -> BoxedStrategy<AnyShape<V>> {
+    prop_oneof![
+        3 => shapes(size),
+        1 => boxed((any::cylinder(size), any::pose::<V>(size)).prop_map(|(s, (q, t))| Posed::new(s, q, t).unwrap()).boxed()),
+        1 => boxed((any::cone(size), any::pose::<V>(size)).prop_map(|(s, (q, t))| Posed::new(s, q, t).unwrap()).boxed()),
+        1 => boxed(any::cylinder(size)),
+        1 => boxed(any::cone(size)),
+    ]
+    .boxed()
+}
+
+/// How deep the line is in the shape: the shadow of the shape along the line is convex, and so the least of
+/// `h(n) − n·source` over the unit vectors `n` across the line; negative where the line misses.
+fn depth_of_line<V: Vector>(shape: &AnyShape<V>, source: V, unit: V) -> V::Scalar {
+    let mut basis: Vec<V> = vec![unit];
+    while basis.len() < V::DIM {
+        let across = |i: usize| {
+            let once = basis.iter().fold(V::axis(i), |v, &b| v - b * b.dot(v));
+            basis.iter().fold(once, |v, &b| v - b * b.dot(v))
+        };
+        let longest = (0..V::DIM).map(across).max_by(|a, b| a.norm().partial_cmp(&b.norm()).unwrap()).unwrap();
+        basis.push(longest.unit().unwrap());
+    }
+    let depth = |n: V| n.dot(shape.support(n) - source);
+    if V::DIM == 2 {
+        return depth(basis[1]).min(depth(-basis[1]));
+    }
+    let at =
+        |angle: f64| depth(basis[1] * V::Scalar::from_f64(angle.cos()) + basis[2] * V::Scalar::from_f64(angle.sin()));
+    let step = std::f64::consts::TAU / 256.0;
+    let coarse = (0..256).map(|k| f64::from(k) * step).min_by(|&p, &q| at(p).partial_cmp(&at(q)).unwrap()).unwrap();
+    let ratio = 0.618_033_988_749_894_9;
+    let (mut low, mut high) = (coarse - step, coarse + step);
+    let mut least = at(coarse);
+    for _ in 0..70 {
+        let (p, q) = (high - (high - low) * ratio, low + (high - low) * ratio);
+        let (dp, dq) = (at(p), at(q));
+        least = least.min(dp).min(dq);
+        if dp < dq { high = q } else { low = p }
+    }
+    least
+}
+
+fn check<V: Vector>(
+    shape: &AnyShape<V>,
+    source: V,
+    target: V,
+    scale: V::Scalar,
+    hits: &Cell<(u32, u32)>,
+) -> Result<(), TestCaseError> {
+    let direction = target - source;
+    prop_assume!(direction.norm() > scale * V::Scalar::from_f64(1e-3));
+    let unit = direction / direction.norm();
+    let ulps = |n: f64| V::Scalar::EPSILON * V::Scalar::from_f64(n);
+    let from = (source - shape.origin()).norm();
+    let tolerance = ulps(64.0) * (scale + from);
+    let (hit, miss) = hits.get();
+    match shape.line_crossing(source, direction) {
+        Some(Crossing { entry, exit, normal }) => {
+            hits.set((hit + 1, miss));
+            prop_assert!(entry <= exit, "entry {entry:?} after exit {exit:?}");
+            let depth = depth_of_line(shape, source, unit);
+            prop_assert!(depth >= -tolerance, "a hit, but the line is {depth:?} deep");
+            prop_assert!((normal.norm() - V::Scalar::ONE).abs() <= ulps(16.0), "normal {normal:?} is not unit");
+            for (name, lambda) in [("entry", entry), ("exit", exit)] {
+                let p = source + direction * lambda;
+                let off = (p - shape.closest_point(p)).norm();
+                prop_assert!(off <= tolerance, "{name} {lambda:?} is {off:?} off the shape, allowed {tolerance:?}");
+            }
+            // The plane across the normal at the entry supports the shape. A point off by e along a line that grazes a
+            // surface of curvature 1/ρ turns the normal by e/ρ, and ρ may be as small as 1e-12 sizes: only flat and
+            // moderately curved shapes are held to it, below.
+            prop_assert!(unit.dot(normal) <= ulps(64.0).sqrt(), "the normal {normal:?} looks along the line");
+            // What is before the entry and behind the exit is outside.
+            let step = tolerance.sqrt() * (scale + from).sqrt();
+            for lambda in [entry - step / direction.norm(), exit + step / direction.norm()] {
+                let p = source + direction * lambda;
+                if lambda < entry - tolerance / direction.norm() {
+                    prop_assert!(
+                        normal.dot(p) >= normal.dot(source + direction * entry) - tolerance,
+                        "before the entry is inside"
+                    );
+                } else {
+                    let off = p - shape.closest_point(p);
+                    prop_assert!(off != V::ZERO || step <= tolerance, "behind the exit {exit:?} is inside");
+                }
+            }
+        }
+        None => {
+            hits.set((hit, miss + 1));
+            let depth = depth_of_line(shape, source, unit);
+            prop_assert!(depth <= tolerance, "a miss, but the line is {depth:?} deep, allowed {tolerance:?}");
+        }
+    }
+    Ok(())
+}
+
+fn crosses<V: Vector>(shapes: fn(V::Scalar) -> BoxedStrategy<AnyShape<V>>) {
+    let strategy = any::size::<V::Scalar>().prop_flat_map(move |size| {
+        let reach = prop_oneof![Just(3.0), Just(10.0), Just(1e3)];
+        (
+            shapes(size),
+            reach.prop_flat_map(move |r| any::vector::<V>(size * V::Scalar::from_f64(r))),
+            any::vector::<V>(size),
+            Just(size),
+        )
+    });
+    let hits = Cell::new((0, 0));
+    let mut runner = TestRunner::new(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) });
+    let outcome = runner.run(&strategy, |(shape, source, target, size)| {
+        check(&shape, source, target, size * V::Scalar::from_f64(4.0), &hits)
+    });
+    if let Err(error) = outcome {
+        panic!("in {}: {error}", std::any::type_name::<V>());
+    }
+    let (hit, miss) = hits.get();
+    assert!(hit > 200 && miss > 200, "{hit} hits and {miss} misses are no fair sample");
+}
+
+#[test]
+fn crossings_begin_and_end_on_the_surface() {
+    crosses::<DVec2>(shapes);
+    crosses::<DVec3>(shapes_3d);
+    crosses::<Vec2>(shapes);
+    crosses::<Vec3>(shapes_3d);
+    crosses::<Vec3A>(shapes_3d);
+}
