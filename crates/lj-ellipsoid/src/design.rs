@@ -14,7 +14,7 @@ use crate::linalg::{UNIT_ROUNDOFF, cholesky, dot, solve_lower};
 use crate::points::Points;
 
 /// The points an iterate works on, with their weights, in the coordinates of a frame.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct WorkingSet {
     pub(crate) index: Vec<usize>,
     pub(crate) u: Vec<f64>,
@@ -168,7 +168,7 @@ impl Moments {
     }
 
     #[inline(always)]
-    fn compute_distances<R: Dimension>(&mut self, rank: R, y: &[f64]) {
+    pub(crate) fn compute_distances<R: Dimension>(&mut self, rank: R, y: &[f64]) {
         let r = rank.get();
         self.z.resize(y.len(), 0.0);
         self.q.clear();

@@ -40,7 +40,7 @@ pub(crate) fn solve<P: Points, R: Dimension>(
     let r = rank.get();
     let n = r + 1;
     let max_iterations = if options.max_iterations == 0 { DEFAULT_ITERATIONS } else { options.max_iterations };
-    let Start { mut frame, working, scans } = start;
+    let Start { mut frame, working, scans, .. } = start;
     let mut set = WorkingSet::uniform(working);
     let mut moments = Moments::default();
     set.locate(points, rank, &frame);
@@ -126,7 +126,7 @@ pub(crate) fn solve<P: Points, R: Dimension>(
         // the starting weights.
         let certificate =
             Certificate { weights: Vec::new(), ..Certificate::from_weights(points, rank, &frame, &set, &moments) };
-        return finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + iterations + 2);
+        return finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + iterations + 1);
     }
 
     // The slice of P at height one: centre −P₁₁⁻¹P₁₂ (eq. 17), shape proportional to P₁₁.
@@ -157,7 +157,7 @@ pub(crate) fn solve<P: Points, R: Dimension>(
         .collect();
     frame.map = map;
     frame.origin = origin;
-    finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + iterations + 2)
+    finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + iterations + 1)
 }
 
 /// o + Σwᵢ(vᵢ − o).

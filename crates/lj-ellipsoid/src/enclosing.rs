@@ -5,7 +5,7 @@ use crate::ellipsoid::Ellipsoid;
 use crate::error::EnclosingError;
 use crate::options::{EnclosingMethod, EnclosingOptions, FlatPolicy, Status};
 use crate::points::{PointSlice, Points};
-use crate::solution::{Certificate, Solution, Weight, finish};
+use crate::solution::{Solution, Weight};
 use crate::start::{Start, start};
 use crate::working_set;
 use crate::{ellipsoid_algorithm, khachiyan};
@@ -39,7 +39,7 @@ impl<const N: usize> Enclosing<N> {
         0.5 * self.log_det_gap
     }
 
-    fn from_solution(solution: Solution) -> Self {
+    pub(crate) fn from_solution(solution: Solution) -> Self {
         Self {
             ellipsoid: Ellipsoid::from_shape(&solution.shape),
             log_det_gap: solution.log_det_gap,
@@ -118,21 +118,17 @@ pub(crate) fn solve<P: Points>(
     let start = start(points, options.flat_tolerance)?;
     let rank = start.frame.rank();
     if rank == dimension {
-        return solve_in(points, dim, start, options, observer);
+        return solve_from(points, dim, start, options, observer);
     }
     match options.flat {
         FlatPolicy::Error => Err(EnclosingError::Flat { rank, dimension }),
-        FlatPolicy::AffineHull if rank == 0 => {
-            let certificate =
-                Certificate { log_det_bound: 0.0, weights: vec![Weight { index: start.working[0], weight: 1.0 }] };
-            finish(points, &start.frame, certificate, options.epsilon, Status::Converged, 0, start.scans + 1)
-        }
-        FlatPolicy::AffineHull => solve_in(points, Dynamic(rank), start, options, observer),
+        FlatPolicy::AffineHull if rank == 0 => Ok(Solution::point(start.frame.origin, points.len(), start.scans)),
+        FlatPolicy::AffineHull => solve_from(points, Dynamic(rank), start, options, observer),
     }
 }
 
-/// Solves in the `rank` coordinates of the starting frame.
-fn solve_in<P: Points, R: Dimension>(
+/// Solves in the `rank` coordinates of a starting frame.
+pub(crate) fn solve_from<P: Points, R: Dimension>(
     points: &P,
     rank: R,
     start: Start,

@@ -36,7 +36,7 @@ pub(crate) fn solve<P: Points, R: Dimension>(
     let r = rank.get();
     let n = r as f64 + 1.0;
     let max_iterations = if options.max_iterations == 0 { DEFAULT_ITERATIONS } else { options.max_iterations };
-    let Start { mut frame, working, mut scans } = start;
+    let Start { mut frame, working, mut scans, .. } = start;
     let mut set = WorkingSet::uniform((0..points.len()).collect());
     set.u.fill(0.0);
     for &i in &working {
@@ -118,7 +118,7 @@ pub(crate) fn solve<P: Points, R: Dimension>(
     });
     moments.compute(rank, &set.y, &set.u);
     let certificate = Certificate::from_weights(points, rank, &frame, &set, &moments);
-    finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + 2)
+    finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + 1)
 }
 
 /// Updates M⁻¹ and every ω for u ← (1 − β)u + β·eⱼ: M' = (1 − β)M + β·qⱼqⱼᵀ, by Sherman and Morrison.

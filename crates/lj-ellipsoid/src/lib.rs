@@ -21,11 +21,14 @@ mod interior;
 mod interop_faer;
 mod khachiyan;
 mod linalg;
+mod moving_points;
 mod newton;
 mod options;
 mod points;
+mod scan;
 mod solution;
 mod start;
+mod violators;
 mod working_set;
 
 pub use ellipsoid::Ellipsoid;
@@ -40,5 +43,6 @@ pub use interop_faer::{
     EllipsoidDyn, EnclosingDyn, InscribedDyn, enclosing_dyn, enclosing_dyn_with, inscribed_dyn, inscribed_in_hull_dyn,
     rows_to_matrix,
 };
+pub use moving_points::MovingPoints;
 pub use options::{EnclosingMethod, EnclosingOptions, FlatPolicy, InscribedOptions, Status};
 pub use solution::Weight;

@@ -14,6 +14,7 @@
 
 use crate::design::{Moments, WorkingSet};
 use crate::dimension::Dimension;
+use crate::violators::elimination_threshold;
 
 /// The proximal term relative to the largest diagonal of H: far above the rounding of its Cholesky factor, far below
 /// what ω could tell.
@@ -30,7 +31,7 @@ pub(crate) struct Workspace {
     solution: Vec<f64>,
     trial: Vec<f64>,
     trial_moments: Moments,
-    best: Vec<f64>,
+    best: WorkingSet,
 }
 
 /// Improves the weights of `set` until the gap over it is at most `gap`, or rounding stops the ascent.
@@ -47,7 +48,7 @@ pub(crate) fn solve<R: Dimension>(
     let mut steps = 0;
     let mut best_gap = f64::INFINITY;
     let mut without_progress = 0;
-    work.best.clone_from(&set.u);
+    work.best.clone_from(set);
     loop {
         lift_far_points(rank, set, moments);
         let now = moments.log_det_gap(r);
@@ -55,19 +56,24 @@ pub(crate) fn solve<R: Dimension>(
             // Quadratic convergence at least halves the gap; slower than that is rounding or a hard start.
             without_progress = if now < 0.5 * best_gap { 0 } else { without_progress + 1 };
             best_gap = now;
-            work.best.clone_from(&set.u);
+            work.best.clone_from(set);
         } else {
             without_progress += 1;
         }
         if now <= gap {
             return steps;
         }
-        if steps >= max_steps || (without_progress >= 3 && best_gap < 1e-9) || !step(rank, set, moments, work) {
+        eliminate(rank, set, moments);
+        if steps >= max_steps
+            || (without_progress >= 3 && best_gap < 1e-9)
+            || without_progress >= 12
+            || !step(rank, set, moments, work)
+        {
             break;
         }
         steps += 1;
     }
-    set.u.clone_from(&work.best);
+    set.clone_from(&work.best);
     moments.compute(rank, &set.y, &set.u);
     steps
 }
@@ -98,39 +104,29 @@ fn step<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments, work
     let n = r as f64 + 1.0;
     // H = G∘G with Gᵢⱼ = 1 + zᵢ·zⱼ.
     work.h.resize(k * k, 0.0);
-    for i in 0..k {
-        let zi = &moments.z[i * r..(i + 1) * r];
-        for j in 0..=i {
-            let zj = &moments.z[j * r..(j + 1) * r];
+    for (i, zi) in moments.z.chunks_exact(r).enumerate() {
+        let row = &mut work.h[i * k..i * k + i + 1];
+        for (h, zj) in row.iter_mut().zip(moments.z.chunks_exact(r)) {
             let mut g = 1.0;
             for l in 0..r {
                 g += zi[l] * zj[l];
             }
-            work.h[i * k + j] = g * g;
-            work.h[j * k + i] = g * g;
+            *h = g * g;
         }
     }
-    let proximal = PROXIMAL * (0..k).fold(0.0, |m: f64, i| m.max(work.h[i * k + i]));
+    let proximal = PROXIMAL * moments.q.iter().fold(0.0, |m: f64, q| m.max((1.0 + q) * (1.0 + q)));
     work.r.clear();
-    for i in 0..k {
+    for (i, (q, u)) in moments.q.iter().zip(&set.u).enumerate() {
         work.h[i * k + i] += proximal;
-        work.r.push(2.0 * (moments.q[i] + 1.0) - n + proximal * set.u[i]);
+        work.r.push(2.0 * (q + 1.0) - n + proximal * u);
     }
     non_negative_quadratic(k, n, &set.u, work);
 
-    // δ² = dᵀHd and the predicted ascent gᵀd, g = ω − n.
-    let (mut delta2, mut slope) = (0.0, 0.0);
-    for i in 0..k {
-        let d = work.v[i] - set.u[i];
-        slope += (moments.q[i] + 1.0 - n) * d;
-        for j in 0..k {
-            delta2 += d * work.h[i * k + j] * (work.v[j] - set.u[j]);
-        }
-    }
-    if !(delta2 >= 0.0) {
-        return false;
-    }
-    let guaranteed = 1.0 / (1.0 + delta2.sqrt());
+    // The predicted ascent gᵀd, g = ω − n·1, and the decrement δ² = dᵀHd, d = v − u: with H·u = ω, Σuω = n and
+    // vᵀHv = rᵀv at the optimum of the model, they are ωᵀv − n·Σv and n·(1 − Σv).
+    let sum: f64 = work.v.iter().sum();
+    let slope = moments.q.iter().zip(&work.v).map(|(q, v)| (q + 1.0) * v).sum::<f64>() - n * sum;
+    let guaranteed = 1.0 / (1.0 + (n * (1.0 - sum)).max(0.0).sqrt());
     let mut t = 1.0;
     // φ after normalising Σu = 1 is ln det S − n, so ln det S is the merit. Where the ascent is beyond what it resolves
     // the full step is right anyway.
@@ -144,12 +140,31 @@ fn step<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments, work
             let ascent = work.trial_moments.log_det_scatter - moments.log_det_scatter;
             if ascent >= 1e-4 * t * slope || slope < 1e-11 {
                 std::mem::swap(&mut set.u, &mut work.trial);
-                return moments.compute(rank, &set.y, &set.u);
+                std::mem::swap(moments, &mut work.trial_moments);
+                moments.compute_distances(rank, &set.y);
+                return true;
             }
         }
         t = if t > guaranteed && 0.5 * t < guaranteed { guaranteed } else { 0.5 * t };
     }
     false
+}
+
+/// Forgets the members that cannot have weight at the optimum of this set, by Harman's and Pronzato's bound.
+fn eliminate<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments) {
+    let r = rank.get();
+    let threshold = elimination_threshold(r, moments.furthest().1);
+    if moments.q.iter().any(|q| *q < threshold) {
+        let weighted = set.u.iter().zip(&moments.q).any(|(u, q)| *u > 0.0 && *q < threshold);
+        let q = &moments.q;
+        let mut kept = q.iter().map(|q| !(*q < threshold));
+        set.retain(r, |_| kept.next().unwrap_or(true));
+        if weighted {
+            let total: f64 = set.u.iter().sum();
+            set.u.iter_mut().for_each(|u| *u /= total);
+        }
+        moments.compute(rank, &set.y, &set.u);
+    }
 }
 
 /// Maximises rᵀv − ½vᵀHv over v ≥ 0 by the active-set method of Lawson and Hanson, from v = u.
@@ -194,7 +209,7 @@ fn non_negative_quadratic(k: usize, n: f64, u: &[f64], work: &mut Workspace) {
         let mut largest = 1e-13 * n;
         for j in 0..k {
             if work.v[j] == 0.0 && !work.free.contains(&j) {
-                let hv: f64 = work.free.iter().map(|&i| work.h[j * k + i] * work.v[i]).sum();
+                let hv: f64 = work.free.iter().map(|&i| work.h[i.max(j) * k + i.min(j)] * work.v[i]).sum();
                 let multiplier = work.r[j] - hv;
                 // A multiplier among the rounding of the terms it is the difference of says nothing.
                 if multiplier > largest.max(1e-14 * (work.r[j].abs() + hv.abs())) {
@@ -216,7 +231,7 @@ fn solve_free(k: usize, work: &mut Workspace) -> bool {
     work.solution.clear();
     for (a, &i) in work.free.iter().enumerate() {
         for (b, &j) in work.free[..=a].iter().enumerate() {
-            work.factor[a * f + b] = work.h[i * k + j];
+            work.factor[a * f + b] = work.h[i.max(j) * k + i.min(j)];
         }
         work.solution.push(work.r[i]);
     }

@@ -1,12 +1,13 @@
 //! From the last iterate to the ellipsoid that is returned: axes, outward rounding, certified gap, contact points.
 
 use crate::design::{Moments, WorkingSet};
-use crate::dimension::Dimension;
+use crate::dimension::{Dimension, Dynamic};
 use crate::error::EnclosingError;
 use crate::frame::Frame;
 use crate::linalg::{UNIT_ROUNDOFF, dot, orthogonalize_rows, triangularize};
 use crate::options::Status;
 use crate::points::Points;
+use crate::scan::beyond;
 
 /// An ellipsoid of any dimension: what [`Ellipsoid`](crate::Ellipsoid) holds, in vectors.
 #[derive(Clone, Debug, Default)]
@@ -38,6 +39,21 @@ pub(crate) struct Solution {
     pub(crate) status: Status,
     pub(crate) iterations: usize,
     pub(crate) scans: usize,
+}
+
+impl Solution {
+    /// The ellipsoid around `count` points that all are `center`.
+    pub(crate) fn point(center: Vec<f64>, count: usize, scans: usize) -> Self {
+        Self {
+            shape: Shape { center: center.clone(), ..shape_from_axes(center.len(), Vec::new()) },
+            log_det_gap: 0.0,
+            weights: vec![Weight { index: 0, weight: 1.0 }],
+            contacts: (0..count).collect(),
+            status: Status::Converged,
+            iterations: 0,
+            scans,
+        }
+    }
 }
 
 /// The upper bound on ln det X* that a method proves, in the coordinates of its frame, and what proves it.
@@ -85,7 +101,12 @@ struct Reach {
     axes: f64,
     /// max (x − c)ᵀX(x − c).
     matrix: f64,
+    /// The points that may be contacts, with |diag(1/a)·R·(x − c)|².
+    candidates: Vec<(usize, f64)>,
 }
+
+/// Points whose rounding is bounded one by one.
+const MANY: usize = 256;
 
 /// Turns the unit ball of `frame` into the ellipsoid that contains every point as evaluated in `f64`, with its gap.
 pub(crate) fn finish<P: Points>(
@@ -101,7 +122,9 @@ pub(crate) fn finish<P: Points>(
     let r = frame.rank();
     let mut shape = principal_axes(n, &frame.map);
     shape.center.clone_from(&frame.origin);
-    let reach = reach(points, r, &shape);
+    // A point with weight lies within the gap of the surface.
+    let tolerance = (certificate.log_det_bound + r as f64 * (r as f64).ln()).max(1e-9);
+    let reach = reach(points, r, &shape, tolerance);
     let growth = reach.axes * (1.0 + 4.0 * UNIT_ROUNDOFF);
     shape.semi_axes.iter_mut().for_each(|a| *a *= growth);
     let shrink = (1.0 - 4.0 * UNIT_ROUNDOFF) / reach.matrix.max(growth * growth);
@@ -119,7 +142,8 @@ pub(crate) fn finish<P: Points>(
         _ if log_det_gap <= epsilon => Status::Converged,
         _ => Status::Stalled,
     };
-    let contacts = contacts(points, r, &shape, (0.5 * log_det_gap).max(1e-9));
+    let nearest = growth * (1.0 - log_det_gap.max(1e-9));
+    let contacts = reach.candidates.iter().filter(|(_, q)| q.sqrt() >= nearest).map(|(i, _)| *i).collect();
     Ok(Solution { shape, log_det_gap, weights: certificate.weights, contacts, status, iterations, scans })
 }
 
@@ -215,76 +239,75 @@ fn determinant_sign(n: usize, matrix: &[f64]) -> f64 {
     sign
 }
 
-/// One pass over the points. The bound on the rounding of an evaluation, whatever the order of its sums, is computed only
-/// for points within a thousandth of the furthest so far: no bound that matters is larger.
-fn reach<P: Points>(points: &P, r: usize, shape: &Shape) -> Reach {
+/// One pass over the points.
+///
+/// The rounding of an evaluation, whatever the order of its sums, is bounded for each point that could be the furthest.
+/// Where these are many (points on a sphere) the bound that holds for all serves instead.
+fn reach<P: Points>(points: &P, r: usize, shape: &Shape, tolerance: f64) -> Reach {
     let dim = points.dim();
     let n = dim.get();
     let gamma = (n + 3) as f64 * UNIT_ROUNDOFF;
-    let (center, axes, matrix) = (&shape.center[..n], &shape.axes[..r * n], &shape.matrix[..n * n]);
-    let inverse: Vec<f64> = shape.semi_axes[..r].iter().map(|a| 1.0 / a).collect();
-    let mut reach = Reach { axes: 0.0, matrix: 0.0 };
-    let mut furthest = 0.0;
-    let mut v = dim.zero();
-    for i in 0..points.len() {
-        points.read(i, v.as_mut());
-        let e = v.as_mut();
-        for k in 0..n {
-            e[k] -= center[k];
+    let map = shape.axes[..r * n].chunks_exact(n).zip(&shape.semi_axes);
+    let frame = Frame {
+        origin: shape.center.clone(),
+        map: map.flat_map(|(axis, a)| axis.iter().map(move |x| x / a)).collect(),
+    };
+    // Of e = x − c with |T·e| = 1: |T·e| is computed within `error`, eᵀXe within `error_matrix`.
+    let errors = |e: &[f64]| {
+        let mut error = 0.0;
+        for row in frame.map.chunks_exact(n) {
+            let sum: f64 = (0..n).map(|k| (row[k] * e[k]).abs()).sum();
+            error += (gamma * sum) * (gamma * sum);
         }
-        let mut q = 0.0;
-        for (axis, inverse) in axes.chunks_exact(n).zip(&inverse) {
-            let mut s = 0.0;
-            for k in 0..n {
-                s += axis[k] * e[k];
-            }
-            s *= inverse;
-            q += s * s;
-        }
-        if q < 0.999 * furthest {
-            continue;
-        }
-        furthest = q.max(furthest);
-        let mut bound = 0.0;
-        for (axis, inverse) in axes.chunks_exact(n).zip(&inverse) {
-            let sum: f64 = (0..n).map(|k| (axis[k] * e[k]).abs()).sum();
-            bound += (gamma * inverse * sum).powi(2);
-        }
-        reach.axes = reach.axes.max(q.sqrt() + bound.sqrt());
         let (mut value, mut size) = (0.0, 0.0);
         for i in 0..n {
             for j in 0..n {
-                let term = matrix[i * n + j] * e[i] * e[j];
+                let term = shape.matrix[i * n + j] * e[i] * e[j];
                 value += term;
                 size += term.abs();
             }
         }
-        reach.matrix = reach.matrix.max(value + 2.0 * gamma * size);
+        (error.sqrt(), value, 2.0 * gamma * size)
+    };
+    // The half-extents of the ellipsoid along the coordinates bound |e| of every point in it. X itself is AᵀA only up to
+    // rounding of the same size.
+    let extent: Vec<f64> = (0..n)
+        .map(|k| (0..r).map(|j| (shape.semi_axes[j] * shape.axes[j * n + k]).powi(2)).sum::<f64>().sqrt())
+        .collect();
+    let (error, _, error_matrix) = errors(&extent);
+    let largest_error = 2.0 * error + 2.0 * error_matrix;
+    let near = 1.0 - (2.0 * largest_error).max(4.0 * tolerance);
+
+    let mut reach = Reach { axes: 0.0, matrix: 0.0, candidates: Vec::new() };
+    let mut furthest: f64 = 0.0;
+    let mut examined = 0;
+    let mut v = dim.zero();
+    let mut visit = |i: usize, q: f64| {
+        furthest = furthest.max(q);
+        reach.candidates.push((i, q));
+        if examined < MANY && q >= furthest * (1.0 - 2.0 * largest_error) {
+            examined += 1;
+            points.read(i, v.as_mut());
+            let e = v.as_mut();
+            for k in 0..n {
+                e[k] -= frame.origin[k];
+            }
+            let (error, value, error_matrix) = errors(e);
+            reach.axes = reach.axes.max(q.sqrt() + error);
+            reach.matrix = reach.matrix.max(value + error_matrix);
+        }
+        near * furthest
+    };
+    if r == n {
+        beyond(points, 0..points.len(), dim, &frame, 0.0, &mut visit);
+    } else {
+        beyond(points, 0..points.len(), Dynamic(r), &frame, 0.0, &mut visit);
+    }
+    if examined == MANY {
+        reach.axes = furthest.sqrt() * (1.0 + error);
+        reach.matrix = furthest * (1.0 + largest_error);
     }
     reach
-}
-
-/// The points within a relative `tolerance` of the surface.
-fn contacts<P: Points>(points: &P, r: usize, shape: &Shape, tolerance: f64) -> Vec<usize> {
-    let dim = points.dim();
-    let n = dim.get();
-    let mut v = dim.zero();
-    let inverse: Vec<f64> = shape.semi_axes[..r].iter().map(|a| 1.0 / a).collect();
-    (0..points.len())
-        .filter(|&i| {
-            points.read(i, v.as_mut());
-            let e = v.as_ref();
-            let q: f64 = shape.axes[..r * n]
-                .chunks_exact(n)
-                .zip(&inverse)
-                .map(|(axis, inverse)| {
-                    let s: f64 = (0..n).map(|k| axis[k] * (e[k] - shape.center[k])).sum();
-                    (s * inverse).powi(2)
-                })
-                .sum();
-            q.sqrt() >= 1.0 - tolerance
-        })
-        .collect()
 }
 
 /// ln of the volume of the unit ball in n dimensions: V₀ = 1, V₁ = 2, Vₙ = Vₙ₋₂·2π/n.

@@ -5,7 +5,7 @@
 //! extreme points along directions orthogonal to those already found are a start within a constant factor of the optimum,
 //! and a direction without spread is a normal of the affine hull.
 
-use crate::dimension::Dimension;
+use crate::dimension::{Dimension, LANES};
 use crate::error::EnclosingError;
 use crate::frame::Frame;
 use crate::linalg::dot;
@@ -23,6 +23,8 @@ pub(crate) struct Start {
     pub(crate) frame: Frame,
     /// Points whose affine hull is that of all points, without repetition.
     pub(crate) working: Vec<usize>,
+    /// Their weights, if an earlier answer supplies them; equal ones otherwise.
+    pub(crate) weights: Option<Vec<f64>>,
     /// Passes over all points so far.
     pub(crate) scans: usize,
 }
@@ -35,6 +37,25 @@ struct Bounds<V> {
     argmax: Vec<usize>,
 }
 
+impl<V: AsRef<[f64]> + AsMut<[f64]>> Bounds<V> {
+    fn include(&mut self, index: usize, v: &[f64]) -> Result<(), EnclosingError> {
+        for (k, &x) in v.iter().enumerate() {
+            if !x.is_finite() {
+                return Err(EnclosingError::NonFinite { index, coordinate: k, value: x });
+            }
+            if x < self.low.as_ref()[k] {
+                self.low.as_mut()[k] = x;
+                self.argmin[k] = index;
+            }
+            if x > self.high.as_ref()[k] {
+                self.high.as_mut()[k] = x;
+                self.argmax[k] = index;
+            }
+        }
+        Ok(())
+    }
+}
+
 fn bounds<P: Points>(points: &P) -> Result<Bounds<<P::Dim as Dimension>::Point>, EnclosingError> {
     let dim = points.dim();
     let n = dim.get();
@@ -44,23 +65,33 @@ fn bounds<P: Points>(points: &P) -> Result<Bounds<<P::Dim as Dimension>::Point>,
     let mut v = dim.zero();
     points.read(0, v.as_mut());
     let mut b = Bounds { low: v.clone(), high: v.clone(), argmin: vec![0; n], argmax: vec![0; n] };
-    for index in 0..points.len() {
-        points.read(index, v.as_mut());
-        let v = v.as_ref();
-        for k in 0..n {
-            let x = v[k];
-            if !x.is_finite() {
-                return Err(EnclosingError::NonFinite { index, coordinate: k, value: x });
-            }
-            if x < b.low.as_ref()[k] {
-                b.low.as_mut()[k] = x;
-                b.argmin[k] = index;
-            }
-            if x > b.high.as_ref()[k] {
-                b.high.as_mut()[k] = x;
-                b.argmax[k] = index;
+    let mut block = dim.zero_block();
+    let mut at = 0;
+    while at < points.len() {
+        for lane in 0..LANES {
+            points.read((at + lane).min(points.len() - 1), v.as_mut());
+            for k in 0..n {
+                block.as_mut()[k][lane] = v.as_ref()[k];
             }
         }
+        // Few blocks hold a new extreme, and a look at the lanes together tells which. x·0 is 0 unless x is NaN or infinite.
+        let (low, high) = (b.low.as_ref(), b.high.as_ref());
+        let mut extreme = false;
+        let mut finite = [0.0; LANES];
+        for k in 0..n {
+            let x = &block.as_ref()[k];
+            for lane in 0..LANES {
+                extreme |= (x[lane] < low[k]) | (x[lane] > high[k]);
+                finite[lane] += x[lane] * 0.0;
+            }
+        }
+        if extreme || finite.iter().any(|z| *z != 0.0) {
+            for index in at..(at + LANES).min(points.len()) {
+                points.read(index, v.as_mut());
+                b.include(index, v.as_ref())?;
+            }
+        }
+        at += LANES;
     }
     Ok(b)
 }
@@ -154,7 +185,7 @@ pub(crate) fn start<P: Points>(points: &P, flat_tolerance: f64) -> Result<Start,
         hull_frame(points, &basis, center, &scale, &working)
     };
     if frame.map.iter().all(|x| x.is_finite()) && frame.origin.iter().all(|x| x.is_finite()) {
-        Ok(Start { frame, working, scans })
+        Ok(Start { frame, working, weights: None, scans })
     } else {
         Err(EnclosingError::OutOfRange)
     }

@@ -10,6 +10,7 @@ use crate::options::{EnclosingMethod, EnclosingOptions, Status};
 use crate::points::Points;
 use crate::solution::{Certificate, Solution, finish};
 use crate::start::Start;
+use crate::violators::{Survivors, Violators, look};
 
 /// The most Newton steps over all working sets, unless the caller says otherwise.
 const DEFAULT_ITERATIONS: usize = 2_000;
@@ -17,8 +18,8 @@ const DEFAULT_ITERATIONS: usize = 2_000;
 /// The most passes over the points: each adds at least one violator, and in practice less than twenty are needed.
 const MAX_SCANS: usize = 500;
 
-/// Violators are sought per orthant of at most this many leading coordinates, so that those of one pass spread out.
-const ORTHANT_COORDINATES: usize = 5;
+/// Below this many points, forgetting some does not pay.
+const FEW: usize = 2_048;
 
 /// Solves by Newton's method (or the dual reduced Newton method) on a working set.
 pub(crate) fn solve<P: Points, R: Dimension>(
@@ -30,18 +31,31 @@ pub(crate) fn solve<P: Points, R: Dimension>(
 ) -> Result<Solution, EnclosingError> {
     let r = rank.get();
     let max_iterations = if options.max_iterations == 0 { DEFAULT_ITERATIONS } else { options.max_iterations };
-    let Start { mut frame, working, mut scans } = start;
+    let Start { mut frame, working, weights, mut scans } = start;
     let mut set = WorkingSet::uniform(working);
+    if let Some(weights) = weights {
+        set.u = weights;
+    }
     let mut moments = Moments::default();
     let mut work = newton::Workspace::default();
     set.locate(points, rank, &frame);
     if !moments.compute(rank, &set.y, &set.u) {
         return Err(EnclosingError::OutOfRange);
     }
+    // The starting frame may be skew: rather than compute in it, move to where the weights' ellipsoid is round.
+    let diagonal = (0..r).map(|k| moments.factor[k * r + k]);
+    let (least, most) = diagonal.fold((f64::INFINITY, 0.0), |(l, m): (f64, f64), d| (l.min(d), m.max(d)));
+    if least < 0.05 * most {
+        recenter(points, rank, &mut frame, &mut set, &mut moments);
+    }
     let mut iterations = 0;
     // What is asked of a working set: a little below the gap over all points seen last, and tight once that is small.
     let tight = (0.1 * options.epsilon).max(1e-15);
-    let mut inner_gap: f64 = 1e-2;
+    let complete = set.len() == points.len();
+    let mut inner_gap: f64 = if complete { tight } else { 1e-2 };
+    // How far the next iterate is expected to fall short; only the share of points forgotten depends on it.
+    let mut expected = 1.5 * r as f64;
+    let mut pool: Option<Survivors<P::Dim>> = None;
     let ended = loop {
         let budget = max_iterations - iterations;
         let goal = inner_gap.max(tight);
@@ -52,8 +66,24 @@ pub(crate) fn solve<P: Points, R: Dimension>(
             _ => newton::solve(rank, &mut set, &mut moments, &mut work, goal, budget),
         };
         recenter(points, rank, &mut frame, &mut set, &mut moments);
-        let violators = scan(points, rank, &frame);
-        scans += 1;
+        let violators = match &mut pool {
+            None => {
+                scans += 1;
+                let (violators, survivors) = look(points, rank, &frame, expected, capacity(points.len()));
+                pool = survivors;
+                violators
+            }
+            Some(survivors) => {
+                let (violators, fewer) = look(survivors, rank, &frame, expected, capacity(survivors.len()));
+                let violators =
+                    Violators { found: violators.found.iter().map(|&i| survivors.index[i]).collect(), ..violators };
+                if let Some(mut fewer) = fewer {
+                    fewer.index.iter_mut().for_each(|i| *i = survivors.index[*i]);
+                    *survivors = fewer;
+                }
+                violators
+            }
+        };
         // The unit ball of the frame grown to κ against the weights' bound: r·ln κ + (−ln det S − r·ln r).
         let gap = r as f64 * (violators.furthest / r as f64).ln() - moments.log_det_scatter;
         observer(EnclosingIterate {
@@ -63,31 +93,33 @@ pub(crate) fn solve<P: Points, R: Dimension>(
             indices: &set.index,
             weights: &set.u,
         });
-        if gap <= 0.5 * options.epsilon {
+        // Below what the rounding of the coordinates does to the gap there is nothing to gain.
+        if gap <= (0.5 * options.epsilon).max(r as f64 * set.coordinate_error(points, &frame)) {
             break Status::Converged;
         }
         if iterations >= max_iterations || scans >= MAX_SCANS {
             break Status::IterationLimit;
         }
+        expected = r as f64 + 0.3 * (violators.furthest - r as f64);
         // Points without weight that are well inside will hardly come back; those that do are found again.
-        let (u, q) = (set.u.clone(), moments.q.clone());
-        set.retain(r, |i| u[i] > 0.0 || q[i] > 0.95 * r as f64);
-        let mut added = false;
-        for (index, q) in violators.found {
-            // Violations far below the worst one are mostly gone once that is repaired.
-            if q > r as f64 + 0.1 * (violators.furthest - r as f64) && !set.index.contains(&index) {
+        if !complete {
+            let (u, q) = (set.u.clone(), moments.q.clone());
+            set.retain(r, |i| u[i] > 0.0 || q[i] > 0.95 * r as f64);
+        }
+        let before = set.len();
+        for index in violators.found {
+            if !set.index.contains(&index) {
                 let mut v = points.dim().zero();
                 let mut y = rank.zero();
                 points.read(index, v.as_mut());
                 frame.apply(points.dim(), rank, v.as_mut(), y.as_mut());
                 set.push(index, y.as_ref());
-                added = true;
             }
         }
         if !moments.compute(rank, &set.y, &set.u) {
             break Status::Stalled;
         }
-        if added {
+        if set.len() > before {
             inner_gap = 0.02 * gap;
         } else if inner_gap > tight {
             inner_gap = (1e-3 * inner_gap).max(tight);
@@ -96,7 +128,13 @@ pub(crate) fn solve<P: Points, R: Dimension>(
         }
     };
     let certificate = Certificate::from_weights(points, rank, &frame, &set, &moments);
-    finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + 2)
+    finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + 1)
+}
+
+/// How many of `len` points may survive a pass for it to pay to go on with them alone: their copy stays well below the
+/// size of the input.
+const fn capacity(len: usize) -> usize {
+    if len < FEW { 0 } else { len / 4 }
 }
 
 /// Makes the ellipsoid of the weights, (y − c)ᵀS⁻¹(y − c) ≤ 1, the unit ball of the frame.
@@ -111,39 +149,4 @@ pub(crate) fn recenter<P: Points, R: Dimension>(
     frame.recenter(rank, origin, &moments.factor);
     set.locate(points, rank, frame);
     moments.compute(rank, &set.y, &set.u);
-}
-
-/// The furthest points from the origin of the frame.
-struct Violators {
-    /// κ = max |y|².
-    furthest: f64,
-    /// The furthest point of each orthant, with |y|².
-    found: Vec<(usize, f64)>,
-}
-
-/// One pass over all points.
-fn scan<P: Points, R: Dimension>(points: &P, rank: R, frame: &Frame) -> Violators {
-    let dim = points.dim();
-    let coordinates = rank.get().min(ORTHANT_COORDINATES);
-    let mut found = vec![(usize::MAX, f64::NEG_INFINITY); 1 << coordinates];
-    let mut v = dim.zero();
-    let mut y = rank.zero();
-    for i in 0..points.len() {
-        points.read(i, v.as_mut());
-        frame.apply(dim, rank, v.as_mut(), y.as_mut());
-        let y = y.as_ref();
-        let mut q = 0.0;
-        let mut orthant = 0;
-        for k in 0..rank.get() {
-            q += y[k] * y[k];
-            if k < coordinates {
-                orthant |= usize::from(y[k] > 0.0) << k;
-            }
-        }
-        if q > found[orthant].1 {
-            found[orthant] = (i, q);
-        }
-    }
-    found.retain(|(i, _)| *i != usize::MAX);
-    Violators { furthest: found.iter().fold(0.0, |m, (_, q)| q.max(m)), found }
 }

@@ -1,0 +1,170 @@
+//! Points that come, go and move, and the enclosing ellipsoid that follows them.
+
+use crate::design::{Moments, WorkingSet};
+use crate::dimension::Const;
+use crate::enclosing::{Enclosing, solve, solve_from};
+use crate::error::EnclosingError;
+use crate::frame::Frame;
+use crate::options::EnclosingOptions;
+use crate::points::PointSlice;
+use crate::start::Start;
+
+/// Points with their minimum-volume enclosing ellipsoid, kept up to date when points are added, removed or moved.
+///
+/// A change that cannot touch the ellipsoid costs no solve: a point added inside, or removed or moved inside without having
+/// carried weight, leaves the ellipsoid and its certificate as they are. Otherwise the next [`enclosing`](Self::enclosing)
+/// starts from the old ellipsoid and its weights, which saves the passes of a cold start.
+///
+/// # Examples
+/// ```
+/// use lj_ellipsoid::{EnclosingOptions, MovingPoints};
+///
+/// let mut points = MovingPoints::new(&[[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]], EnclosingOptions::new())?;
+/// let area = points.enclosing()?.ellipsoid.log_volume().exp();
+///
+/// points.insert([2.0, 1.0])?; // inside: nothing to compute
+/// assert_eq!(points.solves(), 1);
+///
+/// points.update(2, [5.0, 3.0])?; // a corner moves out
+/// assert!(points.enclosing()?.ellipsoid.log_volume().exp() > area);
+/// assert_eq!(points.solves(), 2);
+/// # Ok::<(), lj_ellipsoid::EnclosingError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct MovingPoints<const N: usize> {
+    points: Vec<[f64; N]>,
+    options: EnclosingOptions,
+    answer: Option<Enclosing<N>>,
+    /// The answer is that of the points as they are now.
+    current: bool,
+    solves: usize,
+}
+
+impl<const N: usize> MovingPoints<N> {
+    /// Takes the points; nothing is computed yet. They may be none at first.
+    ///
+    /// # Errors
+    /// [`EnclosingError::NonFinite`].
+    pub fn new<P: Into<[f64; N]> + Copy>(points: &[P], options: EnclosingOptions) -> Result<Self, EnclosingError> {
+        let points: Vec<[f64; N]> = points.iter().map(|&p| p.into()).collect();
+        for (index, point) in points.iter().enumerate() {
+            check_finite(index, point)?;
+        }
+        Ok(Self { points, options, answer: None, current: false, solves: 0 })
+    }
+
+    /// The points, in the order of their indices.
+    #[must_use]
+    pub fn points(&self) -> &[[f64; N]] {
+        &self.points
+    }
+
+    /// How many times an ellipsoid was computed so far.
+    #[must_use]
+    pub const fn solves(&self) -> usize {
+        self.solves
+    }
+
+    /// Adds a point and answers its index.
+    ///
+    /// # Errors
+    /// [`EnclosingError::NonFinite`]; then nothing changes.
+    pub fn insert(&mut self, point: impl Into<[f64; N]>) -> Result<usize, EnclosingError> {
+        let point = point.into();
+        let index = self.points.len();
+        check_finite(index, &point)?;
+        self.points.push(point);
+        self.current &= self.well_inside(point);
+        Ok(index)
+    }
+
+    /// Removes point `index` and answers it; the last point takes its index.
+    ///
+    /// # Panics
+    /// If there is no such point.
+    pub fn remove(&mut self, index: usize) -> [f64; N] {
+        let last = self.points.len() - 1;
+        let point = self.points.swap_remove(index);
+        if let Some(answer) = &mut self.answer {
+            self.current &= answer.weights.iter().all(|w| w.index != index);
+            answer.weights.retain(|w| w.index != index);
+            answer.contacts.retain(|&i| i != index);
+            answer.weights.iter_mut().filter(|w| w.index == last).for_each(|w| w.index = index);
+            answer.contacts.iter_mut().filter(|i| **i == last).for_each(|i| *i = index);
+            answer.contacts.sort_unstable();
+        }
+        point
+    }
+
+    /// Moves point `index` to `point` and answers where it was.
+    ///
+    /// # Errors
+    /// [`EnclosingError::NonFinite`]; then nothing changes.
+    ///
+    /// # Panics
+    /// If there is no such point.
+    pub fn update(&mut self, index: usize, point: impl Into<[f64; N]>) -> Result<[f64; N], EnclosingError> {
+        let point = point.into();
+        check_finite(index, &point)?;
+        let old = std::mem::replace(&mut self.points[index], point);
+        let inside = self.well_inside(point);
+        if let Some(answer) = &mut self.answer {
+            self.current &= inside && answer.weights.iter().all(|w| w.index != index);
+            answer.contacts.retain(|&i| i != index);
+        }
+        Ok(old)
+    }
+
+    /// The enclosing ellipsoid of the points as they are now.
+    ///
+    /// # Errors
+    /// As [`enclosing`](crate::enclosing()).
+    pub fn enclosing(&mut self) -> Result<&Enclosing<N>, EnclosingError> {
+        let answer = match self.answer.take() {
+            Some(answer) if self.current => answer,
+            earlier => {
+                self.solves += 1;
+                let points = PointSlice(&self.points);
+                let solution = match earlier.and_then(|answer| self.warm_start(&answer)) {
+                    Some(start) => solve_from(&points, Const::<N>, start, self.options, |_| {})?,
+                    None => solve(&points, self.options, |_| {})?,
+                };
+                self.current = true;
+                Enclosing::from_solution(solution)
+            }
+        };
+        Ok(self.answer.insert(answer))
+    }
+
+    /// Inside by more than what counts as contact.
+    fn well_inside(&self, point: [f64; N]) -> bool {
+        self.answer.as_ref().is_some_and(|answer| answer.ellipsoid.radius_at(point) < 1.0 - 1e-8)
+    }
+
+    /// The old ellipsoid as frame and its points with their weights, unless these no longer span the space.
+    fn warm_start(&self, answer: &Enclosing<N>) -> Option<Start> {
+        let (axes, lengths) = (answer.ellipsoid.axes(), answer.ellipsoid.semi_axes());
+        let map: Vec<f64> = axes.iter().zip(lengths).flat_map(|(axis, a)| axis.map(|x| x / a)).collect();
+        let frame = Frame { origin: answer.ellipsoid.center().to_vec(), map };
+        let working: Vec<usize> = answer.weights.iter().map(|w| w.index).collect();
+        let total: f64 = answer.weights.iter().map(|w| w.weight).sum();
+        let weights: Vec<f64> = answer.weights.iter().map(|w| w.weight / total).collect();
+        if !frame.map.iter().chain(&weights).all(|x| x.is_finite()) {
+            return None;
+        }
+        let mut set = WorkingSet { u: weights, ..WorkingSet::uniform(working) };
+        set.locate(&PointSlice(&self.points), Const::<N>, &frame);
+        let mut moments = Moments::default();
+        // A scatter far from the identity is no start worth having.
+        let round = moments.compute(Const::<N>, &set.y, &set.u)
+            && (0..N).all(|k| (1e-4..=1e4).contains(&moments.factor[k * N + k]));
+        round.then_some(Start { frame, working: set.index, weights: Some(set.u), scans: 0 })
+    }
+}
+
+fn check_finite<const N: usize>(index: usize, point: &[f64; N]) -> Result<(), EnclosingError> {
+    match point.iter().position(|x| !x.is_finite()) {
+        Some(coordinate) => Err(EnclosingError::NonFinite { index, coordinate, value: point[coordinate] }),
+        None => Ok(()),
+    }
+}
