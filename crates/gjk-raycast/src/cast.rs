@@ -15,6 +15,7 @@ use num_traits::Float as _;
 
 use crate::body::{Body, power_of_two_near};
 use crate::closest::{Closest, closest};
+use crate::decrease::Decrease;
 use crate::entry::{Entry, entry};
 use crate::line::LocalRay;
 use crate::ray_cast::Ray;
@@ -233,13 +234,14 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         let zero = ScalarOf::<B>::ZERO;
         let line = self.local.line;
         let mut across = false;
-        // The distances of the simplex from x and from the line, which have to decrease while x stays.
-        let (mut least, mut least_across) = (ScalarOf::<B>::infinity(), ScalarOf::<B>::infinity());
+        // The distances of the simplex from x and from the line decrease while x stays; near contact by less than
+        // rounding for a few steps, while v turns.
+        let (mut nearing, mut nearing_across) = (Decrease::new(), Decrease::new());
         loop {
             let before = self.low;
             let (point, witness) = self.probe(n)?;
             if self.low > before {
-                least = ScalarOf::<B>::infinity();
+                nearing = Decrease::new();
             }
             if !self.simplex.points().contains(&point) {
                 self.simplex.push(point, witness);
@@ -259,13 +261,12 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 return Ok(None);
             }
             let slope = v.dot(line.direction) / length;
-            let progress = length < least;
+            let progress = nearing.goes_on(length);
             across |= slope < zero && (!progress || slope > -ScalarOf::<B>::from_f64(GRAZING));
             if !across || slope >= zero {
                 if !progress {
                     return Err(End::Open(Status::Stalled));
                 }
-                least = length;
                 self.simplex.retain(face, weights);
                 (self.v, n) = (v, v / length);
                 continue;
@@ -280,10 +281,10 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 (self.high, self.high_error) = (mu.max(self.low), self.noise);
                 return Ok(None);
             }
-            if !(length < least_across) {
+            if !nearing_across.goes_on(length) {
                 return Err(End::Open(Status::Stalled));
             }
-            (least, least_across) = (ScalarOf::<B>::infinity(), length);
+            nearing = Decrease::new();
             (self.v, n) = (v, v / length);
         }
     }

@@ -21,9 +21,16 @@ pub(crate) struct Closest<V: Vector> {
 /// to zero within the face. `None` where no comparison holds, as with NaN.
 ///
 /// The points lie in a space of `dimension` dimensions: that of the vectors, or one less for points seen along a ray.
+///
+/// A new support point brings the simplex nearer, if by less than rounding; so a face with the last point for a corner
+/// is preferred to one that without it is no nearer than that.
 pub(crate) fn closest<V: Vector>(points: &[V], dimension: usize) -> Option<Closest<V>> {
+    let newest = points.len().checked_sub(1)?;
+    let longest = points.iter().map(|p| p.length_squared()).fold(V::Scalar::ZERO, V::Scalar::max).sqrt();
+    let rounding = V::Scalar::from_f64(8.0) * V::Scalar::EPSILON * longest;
     let mut best = None;
     let mut least = V::Scalar::infinity();
+    // In the order of faces those without the newest point come first.
     for face in faces(points.len(), dimension + 1) {
         let mut corners = [V::ZERO; MAX_POINTS];
         let flat = Flat::new(face.of(points, &mut corners));
@@ -32,9 +39,12 @@ pub(crate) fn closest<V: Vector>(points: &[V], dimension: usize) -> Option<Close
             continue;
         }
         let v = if face.len() > dimension { V::ZERO } else { -foot.across };
-        let squared = v.length_squared();
-        if squared < least {
-            least = squared;
+        let length = v.length();
+        let known: Option<Closest<V>> = best;
+        let bonus =
+            if face.has(newest) && known.is_some_and(|b| !b.face.has(newest)) { rounding } else { V::Scalar::ZERO };
+        if length < least + bonus {
+            least = length;
             best = Some(Closest { v, face, weights: foot.coordinates });
         }
     }

@@ -5,6 +5,7 @@ use num_traits::Float as _;
 
 use crate::body::{Body, Pair, PointPair, power_of_two_near};
 use crate::closest::closest;
+use crate::decrease::Decrease;
 use crate::simplex::Simplex;
 use crate::{Distance, DistanceOptions, Iterate, Status};
 
@@ -147,6 +148,7 @@ where
         iterations: 0,
     };
     let mut n = first;
+    let mut nearing = Decrease::new();
     while descent.iterations < options.max_iterations {
         let (point, witness) = body.support(-n);
         let w = point + offset;
@@ -186,7 +188,7 @@ where
         };
         simplex.retain(next.face, next.weights);
         let next_length = next.v.norm();
-        if !(next_length < length) {
+        if !nearing.goes_on(next_length) {
             descent.end = End::Stalled;
             break;
         }

@@ -47,6 +47,7 @@ extern crate std;
 mod body;
 mod cast;
 mod closest;
+mod decrease;
 mod distance;
 mod entry;
 mod error;
