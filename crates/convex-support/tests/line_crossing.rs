@@ -77,15 +77,19 @@ fn depth_of_line<V: Vector>(shape: &AnyShape<V>, source: V, unit: V) -> V::Scala
     let at =
         |angle: f64| depth(basis[1] * V::Scalar::from_f64(angle.cos()) + basis[2] * V::Scalar::from_f64(angle.sin()));
     let step = std::f64::consts::TAU / 256.0;
-    let coarse = (0..256).map(|k| f64::from(k) * step).min_by(|&p, &q| at(p).partial_cmp(&at(q)).unwrap()).unwrap();
+    let sample: Vec<_> = (0..256).map(|k| at(f64::from(k) * step)).collect();
     let ratio = 0.618_033_988_749_894_9;
-    let (mut low, mut high) = (coarse - step, coarse + step);
-    let mut least = at(coarse);
-    for _ in 0..70 {
-        let (p, q) = (high - (high - low) * ratio, low + (high - low) * ratio);
-        let (dp, dq) = (at(p), at(q));
-        least = least.min(dp).min(dq);
-        if dp < dq { high = q } else { low = p }
+    let mut least = V::Scalar::infinity();
+    // From every local minimum of the samples, since a shadow has one for each of its sides.
+    for k in (0..256).filter(|&k| sample[k] <= sample[(k + 1) % 256] && sample[k] <= sample[(k + 255) % 256]) {
+        let (mut low, mut high) = ((k as f64 - 1.0) * step, (k as f64 + 1.0) * step);
+        least = least.min(sample[k]);
+        for _ in 0..60 {
+            let (p, q) = (high - (high - low) * ratio, low + (high - low) * ratio);
+            let (dp, dq) = (at(p), at(q));
+            least = least.min(dp).min(dq);
+            if dp < dq { high = q } else { low = p }
+        }
     }
     least
 }
@@ -131,7 +135,8 @@ fn check<V: Vector>(
                     );
                 } else {
                     let off = p - shape.closest_point(p);
-                    prop_assert!(off != V::ZERO || step <= tolerance, "behind the exit {exit:?} is inside");
+                    let grazes = depth <= tolerance * V::Scalar::from_f64(32.0);
+                    prop_assert!(off != V::ZERO || grazes, "behind the exit {exit:?} is inside");
                 }
             }
         }
@@ -155,7 +160,7 @@ fn crosses<V: Vector>(shapes: fn(V::Scalar) -> BoxedStrategy<AnyShape<V>>) {
         )
     });
     let hits = Cell::new((0, 0));
-    let mut runner = TestRunner::new(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) });
+    let mut runner = TestRunner::new(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1000) });
     let outcome = runner.run(&strategy, |(shape, source, target, size)| {
         check(&shape, source, target, size * V::Scalar::from_f64(4.0), &hits)
     });
