@@ -78,7 +78,7 @@ fn contact<V: Vector, const N: usize>(m: &Margin<V>, e1: &Ellipsoid<V>, e2: &Ell
     let y: [f64; N] = load(m.ball_point);
     let nu = m.nu.as_f64();
     let z = combine(pair.axes2, core::array::from_fn(|j| y[j] / pair.a2[j]));
-    let (r, v) = (pair.r(), pair.from_ball(y));
+    let (r, v) = (pair.r(), pair.out_of_ball(y));
     // βᵢ = −ν·a₁ᵢ·eᵢ·z = eᵢ·(v − r)/a₁ᵢ; the sums have errors of about ν·a₁ᵢ‖z‖ε and (‖v‖ + ‖r‖)ε/a₁ᵢ.
     let (norm_z, norm_w) = (nu * dot(z, z).sqrt(), dot(v, v).sqrt() + dot(r, r).sqrt());
     let beta = core::array::from_fn(|i| {

@@ -1,6 +1,7 @@
 //! The free margin of ellipsoids: how far a robot's link is from an obstacle, and which way that grows.
 
 #![no_std]
+#![allow(clippy::needless_range_loop, reason = "the formulas of this crate index several small arrays at once")]
 
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!("ellip-margin needs floating-point functions: enable the feature `std` or `libm`");
@@ -19,6 +20,7 @@ mod inverse_iteration;
 mod margin;
 mod options;
 mod pair;
+mod polynomial;
 mod secular;
 mod svd;
 mod track;
@@ -31,6 +33,6 @@ pub use error::InvalidQuery;
 pub use gradient::{MarginGradient, ShapeGradient};
 pub use inverse_iteration::InverseIterationTracker;
 pub use margin::{Margin, free_margin, free_margin_with};
-pub use options::{MarginOptions, Status};
+pub use options::{MarginOptions, Method, Status};
 pub use track::MarginTracker;
 pub use wedge::Wedge;

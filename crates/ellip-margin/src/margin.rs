@@ -3,8 +3,9 @@
 use convex_support::{Ellipsoid, Scalar, Vector};
 
 use crate::pair::{Pair, add, store};
+use crate::polynomial;
 use crate::secular::{self, Solution};
-use crate::{MarginOptions, Status};
+use crate::{MarginOptions, Method, Status};
 
 /// The free margin of E₁ about E₂; see [`free_margin`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,18 +93,33 @@ pub(crate) fn margin_from<V: Vector>(
 ) -> Margin<V> {
     if V::DIM == 2 {
         let pair = Pair::<2>::new(e1, e2);
-        answer(&pair, secular::solve(&pair, nu, options, observer))
+        answer(&pair, solve(&pair, nu, options, observer))
     } else {
         let pair = Pair::<3>::new(e1, e2);
-        answer(&pair, secular::solve(&pair, nu, options, observer))
+        answer(&pair, solve(&pair, nu, options, observer))
     }
+}
+
+/// By the polynomial where it keeps its digits, and in the singular basis where it does not.
+#[inline]
+pub(crate) fn solve<const N: usize>(
+    pair: &Pair<N>,
+    nu: f64,
+    options: MarginOptions,
+    mut observer: impl FnMut(f64, f64),
+) -> Solution<N> {
+    let quick = match options.method {
+        Method::Automatic => polynomial::solve(pair, nu, options, &mut observer),
+        Method::SingularBasis => None,
+    };
+    quick.unwrap_or_else(|| secular::solve(pair, nu, options, observer))
 }
 
 /// `solution` in world coordinates.
 #[inline]
 pub(crate) fn answer<V: Vector, const N: usize>(pair: &Pair<N>, solution: Solution<N>) -> Margin<V> {
     let Solution { nu, y, margin, status, iterations } = solution;
-    let point = if nu > 0.0 { add(pair.x2, pair.from_ball(y)) } else { pair.x1 };
+    let point = if nu > 0.0 { add(pair.x2, pair.out_of_ball(y)) } else { pair.x1 };
     Margin {
         margin: V::Scalar::from_f64(margin),
         nu: V::Scalar::from_f64(nu),

@@ -5,7 +5,7 @@
 //! | E(x₁; P), E(x₂; Q) | P = R₁·diag(a₁)⁻²·R₁ᵀ, Q = R₂·diag(a₂)⁻²·R₂ᵀ, neither of them formed |
 //! | x̄ = Q^½(x − x₂) | `y` = diag(a₂)⁻¹R₂ᵀ(x − x₂): the same ball, turned by R₂ᵀ |
 //! | c = Q^½(x₁ − x₂) | `c` = diag(a₂)⁻¹R₂ᵀr, r = x₁ − x₂ |
-//! | C = Q^-½PQ^-½ | BᵀB, with B = diag(a₁)⁻¹R₁ᵀR₂·diag(a₂) |
+//! | C = Q^(-½)·P·Q^(-½) | BᵀB, with B = diag(a₁)⁻¹R₁ᵀR₂·diag(a₂) |
 //! | b = Cc | Bᵀg, with g = Bc = diag(a₁)⁻¹R₁ᵀr |
 //!
 //! Everything is computed in `f64`, for bodies in `f32` too: the processor is as fast, no square leaves the range, and
@@ -69,7 +69,7 @@ impl<const N: usize> Pair<N> {
 
     /// x − x₂ = R₂·diag(a₂)·y.
     #[inline]
-    pub(crate) fn from_ball(&self, y: Vec<N>) -> Vec<N> {
+    pub(crate) fn out_of_ball(&self, y: Vec<N>) -> Vec<N> {
         combine(self.axes2, core::array::from_fn(|j| self.a2[j] * y[j]))
     }
 

@@ -100,7 +100,8 @@ pub(crate) fn solve<const N: usize>(
             break;
         }
         tau = next;
-        if change <= options.tolerance * tau {
+        // Newton's method squares the error.
+        if change * change <= options.tolerance * (tau * tau) {
             status = Status::Converged;
             break;
         }
@@ -115,14 +116,19 @@ pub(crate) fn solve<const N: usize>(
     // w = By − g = −ν·B⁻ᵀy
     let w: Vec<N> = core::array::from_fn(|i| tau * largest * (largest / sigma[i]) * x[i]);
     let y = combine(v, x);
-    Solution { nu, y, margin: margin(pair, dot(w, w), norm_g, y, nu), status, iterations }
+    Solution { nu, y, margin: margin(pair, dot(w, w), y, nu), status, iterations }
 }
 
-/// m from 1 + m = ‖w‖², where the subtraction leaves enough, and from the compensated Lagrangian where it does not.
+/// m from 1 + m = ‖w‖², where its digits are sure to suffice, and from the compensated Lagrangian where they are not.
+///
+/// The products R₁ᵀR₂ and R₁ᵀr have errors of about ε(‖v‖ + ‖r‖) in the units of space, with v = x* − x₂, which E₁'s least
+/// semi-axis turns into errors of w.
 #[inline]
-pub(crate) fn margin<const N: usize>(pair: &Pair<N>, squared: f64, norm_g: f64, y: Vec<N>, nu: f64) -> f64 {
+pub(crate) fn margin<const N: usize>(pair: &Pair<N>, squared: f64, y: Vec<N>, nu: f64) -> f64 {
     let plain = squared - 1.0;
-    // The rounding errors of g and By, which are about ‖g‖ε and (‖g‖ + ‖w‖)ε, times 2‖w‖.
-    let error = (norm_g + squared.sqrt()) * squared.sqrt();
-    if error > 1e3 * plain.abs() && nu.is_finite() { pair.compensated_margin(y, nu) } else { plain }
+    let (v, r): (Vec<N>, _) = (core::array::from_fn(|j| pair.a2[j] * y[j]), pair.r());
+    let least = (1..N).fold(pair.a1[0], |m, i| m.min(pair.a1[i]));
+    // (‖v‖² + ‖r‖²)‖w‖²/a₁² against (1000·m)²
+    let sure = (dot(v, v) + dot(r, r)) * squared < 1e6 * (plain * plain) * (least * least);
+    if sure || !squared.is_finite() { plain } else { pair.compensated_margin(y, nu) }
 }

@@ -29,7 +29,8 @@ use crate::{Margin, MarginOptions};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarginTracker {
     options: MarginOptions,
-    nu: f64,
+    /// ν at the last two steps with x₁ outside E₂, the last first; 0 where unknown.
+    last: [f64; 2],
     steps: u64,
     iterations: u64,
 }
@@ -38,15 +39,20 @@ impl MarginTracker {
     /// A tracker that has seen nothing yet.
     #[must_use]
     pub const fn new(options: MarginOptions) -> Self {
-        Self { options, nu: 0.0, steps: 0, iterations: 0 }
+        Self { options, last: [0.0; 2], steps: 0, iterations: 0 }
     }
 
     /// The margin of `e1` about `e2`, wherever they have moved since the last call.
     pub fn step<V: Vector>(&mut self, e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> Margin<V> {
-        let margin = margin_from(e1, e2, self.nu, self.options, |_, _| {});
-        // A step with x₁ in E₂ says nothing about the next one outside: keep the last ν.
+        // On a smooth path the next ν lies on the line through the last two; a line that leads below half of the last is
+        // a jump, not a path.
+        let [last, before] = self.last;
+        let line = 2.0 * last - before;
+        let start = if before > 0.0 && line > 0.5 * last { line } else { last };
+        let margin = margin_from(e1, e2, start, self.options, |_, _| {});
+        // A step with x₁ in E₂ says nothing about the next one outside.
         if margin.nu > V::Scalar::ZERO && margin.nu.is_finite() {
-            self.nu = margin.nu.as_f64();
+            self.last = [margin.nu.as_f64(), last];
         }
         self.steps += 1;
         self.iterations += u64::from(margin.iterations);
