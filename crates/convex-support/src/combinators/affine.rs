@@ -1,7 +1,7 @@
 //! A shape under an affine map.
 
 use crate::error::{InvalidShape, finite, finite_matrix};
-use crate::support::swept;
+use crate::support::{swept, swept_derivative};
 use crate::{Hint, Matrix, SupportMap, Vector};
 
 /// The image `M·C + t` of a shape under an affine map: scaled, sheared, mirrored, or flattened where `M` is singular.
@@ -68,5 +68,13 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         // A ball does not stay a ball, so it becomes part of the core.
         let direction = self.matrix.transpose_mul(direction);
         self.matrix * (self.shape.core_support(direction, hint) + swept(self.shape.radius(), direction))
+    }
+
+    #[inline]
+    fn core_support_derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
+        let (direction, change) = (self.matrix.transpose_mul(direction), self.matrix.transpose_mul(change));
+        self.matrix
+            * (self.shape.core_support_derivative(direction, change)
+                + swept_derivative(self.shape.radius(), direction, change))
     }
 }

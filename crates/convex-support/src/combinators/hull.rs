@@ -2,7 +2,7 @@
 
 use num_traits::Float as _;
 
-use crate::support::{ScalarOf, support_of_parts, swept};
+use crate::support::{ScalarOf, support_of_parts, swept, swept_derivative};
 use crate::{Hint, Scalar, SupportMap, Vector};
 
 /// The convex hull of the union of two shapes. Nest it for more than two.
@@ -76,6 +76,19 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for Hull<A, B>
         let a = part(&self.a, direction, hint, origin, radius);
         let b = part(&self.b, direction, hint, origin, radius);
         if direction.dot(b - a) > ScalarOf::<A>::ZERO { b } else { a }
+    }
+
+    fn core_support_derivative(&self, direction: A::Vector, change: A::Vector) -> A::Vector {
+        let (origin, radius) = (self.origin(), self.radius());
+        let a = part(&self.a, direction, &mut Hint::new(), origin, radius);
+        let b = part(&self.b, direction, &mut Hint::new(), origin, radius);
+        if direction.dot(b - a) > ScalarOf::<A>::ZERO {
+            self.b.core_support_derivative(direction, change)
+                + swept_derivative(self.b.radius() - radius, direction, change)
+        } else {
+            self.a.core_support_derivative(direction, change)
+                + swept_derivative(self.a.radius() - radius, direction, change)
+        }
     }
 
     #[inline]

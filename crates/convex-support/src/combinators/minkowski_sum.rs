@@ -62,6 +62,11 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
     }
 
     #[inline]
+    fn core_support_derivative(&self, direction: A::Vector, change: A::Vector) -> A::Vector {
+        self.a.core_support_derivative(direction, change) + self.b.core_support_derivative(direction, change)
+    }
+
+    #[inline]
     fn radius(&self) -> ScalarOf<A> {
         self.a.radius() + self.b.radius()
     }

@@ -83,6 +83,12 @@ impl<S: SupportMap> SupportMap for Posed<S> {
     }
 
     #[inline]
+    fn core_support_derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
+        let (direction, change) = (self.rotation.transpose_mul(direction), self.rotation.transpose_mul(change));
+        self.rotation * self.shape.core_support_derivative(direction, change)
+    }
+
+    #[inline]
     fn radius(&self) -> ScalarOf<S> {
         self.shape.radius()
     }

@@ -67,6 +67,11 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
     }
 
     #[inline]
+    fn core_support_derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
+        self.shape.core_support_derivative(direction, change)
+    }
+
+    #[inline]
     fn radius(&self) -> ScalarOf<S> {
         self.shape.radius() + self.radius
     }

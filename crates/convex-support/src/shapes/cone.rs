@@ -2,8 +2,8 @@
 
 use super::cylinder::across;
 use crate::error::{InvalidShape, non_negative};
-use crate::support::{ScalarOf, swept};
-use crate::{Hint, SupportMap, Vector3};
+use crate::support::{ScalarOf, swept, swept_derivative};
+use crate::{Hint, Scalar, SupportMap, Vector3};
 use num_traits::Float as _;
 
 /// The cone with its apex at `(0, half_height, 0)` and its base disc at `y = −half_height`.
@@ -62,6 +62,14 @@ impl<V: Vector3> SupportMap for Cone<V> {
     #[inline]
     fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
         self.support(direction)
+    }
+
+    #[inline]
+    fn core_support_derivative(&self, direction: V, change: V) -> V {
+        if self.core_support(direction, &mut Hint::new()).get(1) > V::Scalar::ZERO {
+            return V::ZERO; // the apex
+        }
+        swept_derivative(self.radius, across(direction), across(change))
     }
 
     #[inline]

@@ -3,7 +3,7 @@
 use num_traits::Float as _;
 
 use crate::error::{InvalidShape, non_negative};
-use crate::support::{ScalarOf, swept};
+use crate::support::{ScalarOf, swept, swept_derivative};
 use crate::{Hint, Scalar, SupportMap, Vector3};
 
 /// The cylinder `x² + z² ≤ radius²`, `|y| ≤ half_height`.
@@ -65,6 +65,11 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
     #[inline]
     fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
         self.support(direction)
+    }
+
+    #[inline]
+    fn core_support_derivative(&self, direction: V, change: V) -> V {
+        swept_derivative(self.radius, across(direction), across(change))
     }
 
     #[inline]

@@ -4,7 +4,7 @@ use num_traits::Float as _;
 
 use crate::error::{InvalidShape, finite, finite_matrix};
 use crate::spd;
-use crate::support::ScalarOf;
+use crate::support::{ScalarOf, swept_derivative};
 use crate::{Hint, Matrix, Scalar, SupportMap, Vector};
 
 /// The ellipsoid `{ c + R·diag(a)·u : |u| ≤ 1 }`; an ellipse in 2D.
@@ -160,6 +160,13 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
         let e = self.axes.transpose_mul(direction);
         let u = (self.semi_axes * e).unit().unwrap_or_else(|| V::axis(0));
         self.axes * (self.semi_axes * u)
+    }
+
+    #[inline]
+    fn core_support_derivative(&self, direction: V, change: V) -> V {
+        let e = self.semi_axes * self.axes.transpose_mul(direction);
+        let de = self.semi_axes * self.axes.transpose_mul(change);
+        self.axes * (self.semi_axes * swept_derivative(V::Scalar::ONE, e, de))
     }
 
     #[inline]
