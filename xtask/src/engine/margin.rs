@@ -1,8 +1,10 @@
 //! `margin`, `track` and `clearance`.
 
 use convex_support::{Ellipsoid, Vector};
+use ellip_margin::eigen::free_margin_eigen;
 use ellip_margin::{
-    ClearanceResult, Margin, MarginGradient, MarginOptions, MarginTracker, Status, clearance, free_margin,
+    ClearanceResult, InverseIterationTracker, Margin, MarginGradient, MarginOptions, MarginTracker, Status, clearance,
+    free_margin,
 };
 
 use super::Question;
@@ -37,6 +39,15 @@ pub(super) struct MarginQuestion<V: Vector> {
     e2: Ellipsoid<V>,
     gradient: bool,
     options: MarginOptions,
+    method: MarginMethod,
+}
+
+#[derive(Clone, Copy)]
+enum MarginMethod {
+    /// The secular equation.
+    Secular,
+    /// The paper's 2N×2N eigenvalue problem.
+    Eigen,
 }
 
 impl<V: Space> MarginQuestion<V> {
@@ -46,8 +57,8 @@ impl<V: Space> MarginQuestion<V> {
         tol: Option<f64>,
         method: Option<&str>,
     ) -> Result<Self, Problem> {
-        choose(method, &[("secular", ())])?;
-        Ok(Self { e1: e1.build("e1")?, e2: e2.build("e2")?, gradient, options: options(tol) })
+        let method = choose(method, &[("secular", MarginMethod::Secular), ("eigen", MarginMethod::Eigen)])?;
+        Ok(Self { e1: e1.build("e1")?, e2: e2.build("e2")?, gradient, options: options(tol), method })
     }
 }
 
@@ -55,7 +66,10 @@ impl<V: Space> Question for MarginQuestion<V> {
     type Solution = (Margin<V>, Option<MarginGradient<V>>);
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
-        let margin = free_margin(&self.e1, &self.e2, self.options);
+        let margin = match self.method {
+            MarginMethod::Secular => free_margin(&self.e1, &self.e2, self.options),
+            MarginMethod::Eigen => free_margin_eigen(&self.e1, &self.e2),
+        };
         Ok((margin, self.gradient.then(|| margin.gradient(&self.e1, &self.e2))))
     }
 
@@ -85,8 +99,20 @@ pub(super) struct TrackQuestion<V: Vector> {
     /// E₁ at every pose.
     moving: Vec<Ellipsoid<V>>,
     e2: Ellipsoid<V>,
-    options: MarginOptions,
+    tracker: Tracker,
 }
+
+#[derive(Clone, Copy)]
+enum Tracker {
+    /// Newton's method for the secular equation, started from the last pose.
+    Newton(MarginTracker),
+    /// The paper's inverse iteration.
+    Inverse(InverseIterationTracker),
+}
+
+/// The change of the unit eigenvector at which the inverse iteration ends, and the most steps: the eigenvalue's error is
+/// of second order in it.
+const INVERSE: (f64, u32) = (1e-8, 40);
 
 impl<V: Space> TrackQuestion<V> {
     pub(super) fn new(
@@ -95,22 +121,30 @@ impl<V: Space> TrackQuestion<V> {
         tol: Option<f64>,
         method: Option<&str>,
     ) -> Result<Self, Problem> {
-        choose(method, &[("newton", ())])?;
+        let newton = Tracker::Newton(MarginTracker::new(options(tol)));
+        let inverse = Tracker::Inverse(InverseIterationTracker::new(tol.unwrap_or(INVERSE.0), INVERSE.1));
+        let tracker = choose(method, &[("newton", newton), ("inverse", inverse)])?;
         let at = |(i, pose)| e1.build_posed("e1", pose, &format!("poses[{i}]"));
         let moving = poses.iter().enumerate().map(at).collect::<Result<_, _>>()?;
-        Ok(Self { moving, e2: e2.build("e2")?, options: options(tol) })
+        Ok(Self { moving, e2: e2.build("e2")?, tracker })
     }
 }
 
 impl<V: Space> Question for TrackQuestion<V> {
-    type Solution = Vec<Margin<V>>;
+    type Solution = (Vec<Margin<V>>, u64);
 
-    fn solve(&self) -> Result<Vec<Margin<V>>, Problem> {
-        let mut tracker = MarginTracker::new(self.options);
-        Ok(self.moving.iter().map(|e1| tracker.step(e1, &self.e2)).collect())
+    fn solve(&self) -> Result<Self::Solution, Problem> {
+        Ok(match self.tracker {
+            // Newton's method converges from any start: there is nothing to fall back on.
+            Tracker::Newton(mut tracker) => (self.moving.iter().map(|e1| tracker.step(e1, &self.e2)).collect(), 0),
+            Tracker::Inverse(mut tracker) => {
+                let margins = self.moving.iter().map(|e1| tracker.step(e1, &self.e2)).collect();
+                (margins, tracker.fallbacks())
+            }
+        })
     }
 
-    fn answer(&self, margins: Vec<Margin<V>>) -> Result<Answer, Problem> {
+    fn answer(&self, (margins, fallbacks): Self::Solution) -> Result<Answer, Problem> {
         for (i, margin) in margins.iter().enumerate() {
             certain(margin.status, margin.iterations)
                 .map_err(|problem| Problem::new(problem.kind, format!("poses[{i}]: {}", problem.message)))?;
@@ -118,8 +152,7 @@ impl<V: Space> Question for TrackQuestion<V> {
         Ok(Answer::default()
             .with("margins", Field::Numbers(margins.iter().map(|m| Number::of(m.margin)).collect()))
             .with("iterations", Field::Counts(margins.iter().map(|m| m.iterations as usize).collect()))
-            // Newton's method for the secular equation needs no other solver to fall back on.
-            .with("fallbacks", Field::Count(0)))
+            .with("fallbacks", Field::Count(fallbacks as usize)))
     }
 }
 
