@@ -20,6 +20,9 @@ use crate::violators::elimination_threshold;
 /// what ω could tell.
 const PROXIMAL: f64 = 1e-13;
 
+/// Steps of [`thin_out`].
+const MULTIPLICATIVE_STEPS: usize = 4;
+
 /// Room for the quadratic model, reused from step to step.
 #[derive(Debug, Default)]
 pub(crate) struct Workspace {
@@ -49,6 +52,7 @@ pub(crate) fn solve<R: Dimension>(
     let mut best_gap = f64::INFINITY;
     let mut without_progress = 0;
     work.best.clone_from(set);
+    thin_out(rank, set, moments);
     loop {
         lift_far_points(rank, set, moments);
         let now = moments.log_det_gap(r);
@@ -76,6 +80,22 @@ pub(crate) fn solve<R: Dimension>(
     set.clone_from(&work.best);
     moments.compute(rank, &set.y, &set.u);
     steps
+}
+
+/// Where every member has weight, as at the start, most will lose it, and Newton's model takes them out one by one. A few
+/// multiplicative steps u ← u·ω/n, which always ascend, bring the bound of [`eliminate`] to bear on them together.
+fn thin_out<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments) {
+    let n = rank.get() as f64 + 1.0;
+    for _ in 0..MULTIPLICATIVE_STEPS {
+        if set.len() <= rank.get() + 3 || set.u.contains(&0.0) || moments.furthest().1 <= (n - 1.0) * (1.0 + 1e-9) {
+            break;
+        }
+        set.u.iter_mut().zip(&moments.q).for_each(|(u, q)| *u *= (1.0 + q) / n);
+        if !moments.compute(rank, &set.y, &set.u) {
+            break;
+        }
+        eliminate(rank, set, moments);
+    }
 }
 
 /// The model of a point far outside with little weight is poor: Newton would only double its weight each step. The
@@ -121,6 +141,11 @@ fn step<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments, work
         work.r.push(2.0 * (q + 1.0) - n + proximal * u);
     }
     non_negative_quadratic(k, n, &set.u, work);
+
+    // N + 1 points are a simplex: equal weights, whatever their places.
+    if work.v.iter().filter(|v| **v > 0.0).count() == r + 1 {
+        work.v.iter_mut().filter(|v| **v > 0.0).for_each(|v| *v = 1.0 / n);
+    }
 
     // The predicted ascent gᵀd, g = ω − n·1, and the decrement δ² = dᵀHd, d = v − u: with H·u = ω, Σuω = n and
     // vᵀHv = rᵀv at the optimum of the model, they are ωᵀv − n·Σv and n·(1 − Σv).
