@@ -2,8 +2,8 @@
 
 use convex_support::glam::{DMat3, DQuat, DVec3};
 use convex_support::{
-    Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Ellipsoid, Hint, Hull, InvalidShape, MinkowskiSum, Posed,
-    Rounded, SupportMap,
+    Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Ellipsoid, Hint, Hull, InvalidShape, MinkowskiSum,
+    Posed, Rounded, SupportMap,
 };
 
 type Shape = Box<dyn SupportMap<Vector = DVec3>>;

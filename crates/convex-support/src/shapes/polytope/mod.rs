@@ -1,8 +1,12 @@
 //! The convex hull of points.
 
+mod lanes;
+
 use num_traits::Float as _;
 
 use alloc::vec::Vec;
+
+use lanes::Lanes;
 
 use crate::error::InvalidShape;
 use crate::support::ScalarOf;
@@ -23,6 +27,8 @@ use crate::{Hint, Scalar, SupportMap, Vector};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polytope<V: Vector> {
     points: Vec<V>,
+    /// The points relative to `middle`.
+    lanes: Lanes<V>,
     middle: V,
     extent: V::Scalar,
 }
@@ -42,7 +48,8 @@ impl<V: Vector> Polytope<V> {
         }
         let middle = middle(points.iter().copied());
         let extent = points.iter().map(|&p| (p - middle).norm()).fold(V::Scalar::ZERO, V::Scalar::max);
-        Ok(Self { points, middle, extent })
+        let relative: Vec<V> = points.iter().map(|&p| p - middle).collect();
+        Ok(Self { lanes: Lanes::new(&relative), points, middle, extent })
     }
 
     /// The points, as given.
@@ -67,15 +74,7 @@ impl<V: Vector> SupportMap for Polytope<V> {
 
     #[inline]
     fn support(&self, direction: V) -> V {
-        let mut best = self.points[0];
-        let mut reach = direction.dot(best - self.middle);
-        for &point in &self.points[1..] {
-            let r = direction.dot(point - self.middle);
-            if r > reach {
-                (best, reach) = (point, r);
-            }
-        }
-        best
+        self.points[self.lanes.farthest(direction)]
     }
 
     #[inline]
