@@ -8,7 +8,7 @@ pub(crate) const LANES: usize = 4;
 /// after monomorphisation, so the one implementation is unrolled for N = 2, 3 and serves any N at run time.
 pub(crate) trait Dimension: Copy {
     /// Room for one point: an array, or a vector where the length is not known.
-    type Point: AsRef<[f64]> + AsMut<[f64]> + Clone;
+    type Point: AsRef<[f64]> + AsMut<[f64]> + Clone + Send;
 
     /// Room for [`LANES`] points, coordinate by coordinate.
     type Block: AsRef<[[f64; LANES]]> + AsMut<[[f64; LANES]]>;

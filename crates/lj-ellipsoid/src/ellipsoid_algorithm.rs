@@ -30,7 +30,7 @@ use crate::working_set::recenter;
 const DEFAULT_ITERATIONS: usize = 200_000;
 
 /// Cuts the space of quadratic forms until f is known to `epsilon`.
-pub(crate) fn solve<P: Points, R: Dimension>(
+pub(crate) fn solve<P: Points, R: Dimension + Sync>(
     points: &P,
     rank: R,
     start: Start,

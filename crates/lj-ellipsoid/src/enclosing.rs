@@ -88,7 +88,7 @@ pub struct EnclosingIterate<'a> {
 /// assert!(square.iter().all(|&corner| answer.ellipsoid.contains(corner)));
 /// # Ok::<(), lj_ellipsoid::EnclosingError>(())
 /// ```
-pub fn enclosing<P: Into<[f64; N]> + Copy, const N: usize>(
+pub fn enclosing<P: Into<[f64; N]> + Copy + Sync, const N: usize>(
     points: &[P],
     options: EnclosingOptions,
 ) -> Result<Enclosing<N>, EnclosingError> {
@@ -99,7 +99,7 @@ pub fn enclosing<P: Into<[f64; N]> + Copy, const N: usize>(
 ///
 /// # Errors
 /// As [`enclosing`](enclosing()).
-pub fn enclosing_with<P: Into<[f64; N]> + Copy, const N: usize>(
+pub fn enclosing_with<P: Into<[f64; N]> + Copy + Sync, const N: usize>(
     points: &[P],
     options: EnclosingOptions,
     observer: impl FnMut(EnclosingIterate<'_>),
@@ -128,7 +128,7 @@ pub(crate) fn solve<P: Points>(
 }
 
 /// Solves in the `rank` coordinates of a starting frame.
-pub(crate) fn solve_from<P: Points, R: Dimension>(
+pub(crate) fn solve_from<P: Points, R: Dimension + Sync>(
     points: &P,
     rank: R,
     start: Start,

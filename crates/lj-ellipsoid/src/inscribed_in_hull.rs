@@ -34,7 +34,7 @@ const COPLANAR: f64 = 512.0;
 /// assert!((answer.ellipsoid.log_volume() - share.ln()).abs() < 1e-8);
 /// # Ok::<(), lj_ellipsoid::InscribedError>(())
 /// ```
-pub fn inscribed_in_hull<P: Into<[f64; N]> + Copy, const N: usize>(
+pub fn inscribed_in_hull<P: Into<[f64; N]> + Copy + Sync, const N: usize>(
     points: &[P],
     options: InscribedOptions,
 ) -> Result<Inscribed<N>, InscribedError> {
@@ -45,7 +45,7 @@ pub fn inscribed_in_hull<P: Into<[f64; N]> + Copy, const N: usize>(
 ///
 /// # Errors
 /// As [`inscribed_in_hull`](inscribed_in_hull()).
-pub fn inscribed_in_hull_with<P: Into<[f64; N]> + Copy, const N: usize>(
+pub fn inscribed_in_hull_with<P: Into<[f64; N]> + Copy + Sync, const N: usize>(
     points: &[P],
     options: InscribedOptions,
     observer: impl FnMut(InscribedIterate),

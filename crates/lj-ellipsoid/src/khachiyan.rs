@@ -26,7 +26,7 @@ const REFRESH: usize = 200;
 /// With ω = qᵀM⁻¹q of every point, take j₊ of largest ω, and j₋ of smallest ω among those with weight. The one further
 /// from optimality (ω = n) moves: u ← (1 − β)u + β·eⱼ with β = (ωⱼ − n)/(n(ωⱼ − 1)), at least −uⱼ/(1 − uⱼ), where the
 /// weight is zero (a drop step). Then g = Q·M⁻¹qⱼ gives ω ← (ω − βg²/(1 − β + βωⱼ))/(1 − β).
-pub(crate) fn solve<P: Points, R: Dimension>(
+pub(crate) fn solve<P: Points, R: Dimension + Sync>(
     points: &P,
     rank: R,
     start: Start,

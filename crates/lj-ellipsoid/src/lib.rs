@@ -1,9 +1,55 @@
-//! lj-ellipsoid
+//! The Löwner–John ellipsoids: the smallest around points, the largest inside a body, each with a certified gap.
+//!
+//! Which ellipsoid encloses this link, and how much does it waste?
+//!
+//! ```
+//! use lj_ellipsoid::{EnclosingOptions, InscribedOptions, enclosing, inscribed_in_hull};
+//!
+//! // The corners of a bar, 6 × 2 × 1, standing somewhere in the world.
+//! let bar: Vec<[f64; 3]> = (0..8u8)
+//!     .map(|i| [10.0 + f64::from(i & 1) * 6.0, f64::from(i >> 1 & 1) * 2.0, f64::from(i >> 2)])
+//!     .collect();
+//!
+//! let outer = enclosing(&bar, EnclosingOptions::default())?;
+//! assert!(bar.iter().all(|&corner| outer.ellipsoid.contains(corner))); // every point, as evaluated in f64
+//! assert!(outer.log_det_gap <= 1e-9); // certified: no smaller ellipsoid does, beyond this
+//! assert!((outer.ellipsoid.semi_axes()[0] - 3.0 * 3f64.sqrt()).abs() < 1e-9);
+//!
+//! let inner = inscribed_in_hull(&bar, InscribedOptions::default())?;
+//! let tightness = inner.ellipsoid.tightness(&outer.ellipsoid); // (volume ratio)^(1/3), between 1/3 and 1
+//! assert!((tightness - 1.0 / 3f64.sqrt()).abs() < 1e-8);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # What is here
+//! Around points: [`enclosing()`] and [`enclosing_with`] (an observer sees every iterate); [`MovingPoints`] where points come,
+//! go and move. [`EnclosingMethod`] selects among four algorithms. Points that span no volume are an error, or on request
+//! ([`FlatPolicy::AffineHull`]) a disc, a segment or a point.
+//!
+//! Inside a body: [`inscribed()`] for half-spaces, [`inscribed_in_hull()`] for the hull of points in 2D and 3D.
+//!
+//! Points are anything that converts into `[f64; N]`: arrays, glam's `DVec2` and `DVec3`, your own. With the feature `faer` the
+//! dimension may be known at run time only: [`enclosing_dyn`], [`inscribed_dyn`].
+//!
+//! # What every answer says
+//! The gap is *certified*: computed from the duality of the problem, not from the size of the last step, with the rounding
+//! of its own evaluation added. [`Status`] tells whether it is what was asked for. Whatever the status, the
+//! enclosing ellipsoid contains every point and the inscribed one stays within every half-space, as evaluated in `f64`.
+//! All tolerances are relative: scaling the input by a power of two changes no bit of any mantissa.
+//!
+//! # Features
+//! - `faer` (default): points and half-spaces as faer matrices, of a dimension known at run time.
+//! - `rayon`: passes over many points use all cores. The answer is the same to the last bit.
+//! - `convex-support`: conversions to that crate's `Ellipsoid`.
 #![allow(
     clippy::needless_range_loop,
     reason = "formulas index several arrays at once; the loops read as the sums they compute"
 )]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0)` is how NaN takes the same exit as zero")]
+#![cfg_attr(
+    not(feature = "faer"),
+    allow(rustdoc::broken_intra_doc_links, reason = "the crate docs name items of the default feature")
+)]
 
 mod design;
 mod dimension;
@@ -17,6 +63,8 @@ mod hull;
 mod inscribed;
 mod inscribed_in_hull;
 mod interior;
+#[cfg(feature = "convex-support")]
+mod interop_convex_support;
 #[cfg(feature = "faer")]
 mod interop_faer;
 mod khachiyan;
@@ -24,6 +72,7 @@ mod linalg;
 mod moving_points;
 mod newton;
 mod options;
+mod parallel;
 mod points;
 mod scan;
 mod solution;
@@ -46,3 +95,8 @@ pub use interop_faer::{
 pub use moving_points::MovingPoints;
 pub use options::{EnclosingMethod, EnclosingOptions, FlatPolicy, InscribedOptions, Status};
 pub use solution::Weight;
+
+/// The README's example, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

@@ -3,9 +3,9 @@
 use crate::dimension::{Const, Dimension};
 
 /// A finite sequence of points, read by copy.
-pub(crate) trait Points {
+pub(crate) trait Points: Sync {
     /// How much of the dimension the compiler knows.
-    type Dim: Dimension;
+    type Dim: Dimension + Sync;
 
     fn dim(&self) -> Self::Dim;
 
@@ -19,7 +19,7 @@ pub(crate) trait Points {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PointSlice<'a, P, const N: usize>(pub(crate) &'a [P]);
 
-impl<P: Into<[f64; N]> + Copy, const N: usize> Points for PointSlice<'_, P, N> {
+impl<P: Into<[f64; N]> + Copy + Sync, const N: usize> Points for PointSlice<'_, P, N> {
     type Dim = Const<N>;
 
     #[inline(always)]

@@ -6,6 +6,7 @@ use crate::error::EnclosingError;
 use crate::frame::Frame;
 use crate::linalg::{UNIT_ROUNDOFF, dot, orthogonalize_rows, triangularize};
 use crate::options::Status;
+use crate::parallel::map_ranges;
 use crate::points::Points;
 use crate::scan::beyond;
 
@@ -278,36 +279,47 @@ fn reach<P: Points>(points: &P, r: usize, shape: &Shape, tolerance: f64) -> Reac
     let largest_error = 2.0 * error + 2.0 * error_matrix;
     let near = 1.0 - (2.0 * largest_error).max(4.0 * tolerance);
 
-    let mut reach = Reach { axes: 0.0, matrix: 0.0, candidates: Vec::new() };
-    let mut furthest: f64 = 0.0;
-    let mut examined = 0;
-    let mut v = dim.zero();
-    let mut visit = |i: usize, q: f64| {
-        furthest = furthest.max(q);
-        reach.candidates.push((i, q));
-        if examined < MANY && q >= furthest * (1.0 - 2.0 * largest_error) {
-            examined += 1;
-            points.read(i, v.as_mut());
-            let e = v.as_mut();
-            for k in 0..n {
-                e[k] -= frame.origin[k];
-            }
-            let (error, value, error_matrix) = errors(e);
-            reach.axes = reach.axes.max(q.sqrt() + error);
-            reach.matrix = reach.matrix.max(value + error_matrix);
+    let collect = |range| {
+        let mut furthest: f64 = 0.0;
+        let mut candidates = Vec::new();
+        let visit = |i: usize, q: f64| {
+            furthest = furthest.max(q);
+            candidates.push((i, q));
+            near * furthest
+        };
+        if r == n {
+            beyond(points, range, dim, &frame, 0.0, visit);
+        } else {
+            beyond(points, range, Dynamic(r), &frame, 0.0, visit);
         }
-        near * furthest
+        (furthest, candidates)
     };
-    if r == n {
-        beyond(points, 0..points.len(), dim, &frame, 0.0, &mut visit);
-    } else {
-        beyond(points, 0..points.len(), Dynamic(r), &frame, 0.0, &mut visit);
+    let parts = map_ranges(points.len(), collect);
+    let furthest = parts.iter().fold(0.0, |m: f64, part| m.max(part.0));
+    let mut candidates: Vec<(usize, f64)> = Vec::new();
+    for (_, mut part) in parts {
+        part.retain(|(_, q)| *q >= near * furthest);
+        candidates.append(&mut part);
     }
-    if examined == MANY {
-        reach.axes = furthest.sqrt() * (1.0 + error);
-        reach.matrix = furthest * (1.0 + largest_error);
+
+    let least = furthest * (1.0 - 2.0 * largest_error);
+    let leaders = || candidates.iter().filter(|(_, q)| *q >= least);
+    if leaders().nth(MANY).is_some() {
+        return Reach { axes: furthest.sqrt() * (1.0 + error), matrix: furthest * (1.0 + largest_error), candidates };
     }
-    reach
+    let mut v = dim.zero();
+    let (mut axes, mut matrix): (f64, f64) = (0.0, 0.0);
+    for &(i, q) in leaders() {
+        points.read(i, v.as_mut());
+        let e = v.as_mut();
+        for k in 0..n {
+            e[k] -= frame.origin[k];
+        }
+        let (error, value, error_matrix) = errors(e);
+        axes = axes.max(q.sqrt() + error);
+        matrix = matrix.max(value + error_matrix);
+    }
+    Reach { axes, matrix, candidates }
 }
 
 /// ln of the volume of the unit ball in n dimensions: V₀ = 1, V₁ = 2, Vₙ = Vₙ₋₂·2π/n.

@@ -5,10 +5,13 @@
 //! extreme points along directions orthogonal to those already found are a start within a constant factor of the optimum,
 //! and a direction without spread is a normal of the affine hull.
 
+use std::ops::Range;
+
 use crate::dimension::{Dimension, LANES};
 use crate::error::EnclosingError;
 use crate::frame::Frame;
 use crate::linalg::dot;
+use crate::parallel::map_ranges;
 use crate::points::Points;
 
 /// A spread of this many [`f64::EPSILON`] of the coordinates is rounding of the points, not thickness.
@@ -30,6 +33,7 @@ pub(crate) struct Start {
 }
 
 /// The bounding box of the points: extreme coordinates and who attains them.
+#[derive(Clone, Debug)]
 struct Bounds<V> {
     low: V,
     high: V,
@@ -57,19 +61,43 @@ impl<V: AsRef<[f64]> + AsMut<[f64]>> Bounds<V> {
 }
 
 fn bounds<P: Points>(points: &P) -> Result<Bounds<<P::Dim as Dimension>::Point>, EnclosingError> {
-    let dim = points.dim();
-    let n = dim.get();
+    let n = points.dim().get();
     if points.len() == 0 || n == 0 {
         return Err(EnclosingError::Empty);
     }
+    let mut parts = map_ranges(points.len(), |range| bounds_of(points, range)).into_iter();
+    let mut all = parts.next().unwrap_or(Err(EnclosingError::Empty))?;
+    for part in parts {
+        let part = part?;
+        for k in 0..n {
+            if part.low.as_ref()[k] < all.low.as_ref()[k] {
+                all.low.as_mut()[k] = part.low.as_ref()[k];
+                all.argmin[k] = part.argmin[k];
+            }
+            if part.high.as_ref()[k] > all.high.as_ref()[k] {
+                all.high.as_mut()[k] = part.high.as_ref()[k];
+                all.argmax[k] = part.argmax[k];
+            }
+        }
+    }
+    Ok(all)
+}
+
+fn bounds_of<P: Points>(
+    points: &P,
+    range: Range<usize>,
+) -> Result<Bounds<<P::Dim as Dimension>::Point>, EnclosingError> {
+    let dim = points.dim();
+    let n = dim.get();
     let mut v = dim.zero();
-    points.read(0, v.as_mut());
-    let mut b = Bounds { low: v.clone(), high: v.clone(), argmin: vec![0; n], argmax: vec![0; n] };
+    points.read(range.start, v.as_mut());
+    let (argmin, argmax) = (vec![range.start; n], vec![range.start; n]);
+    let mut b = Bounds { low: v.clone(), high: v.clone(), argmin, argmax };
     let mut block = dim.zero_block();
-    let mut at = 0;
-    while at < points.len() {
+    let mut at = range.start;
+    while at < range.end {
         for lane in 0..LANES {
-            points.read((at + lane).min(points.len() - 1), v.as_mut());
+            points.read((at + lane).min(range.end - 1), v.as_mut());
             for k in 0..n {
                 block.as_mut()[k][lane] = v.as_ref()[k];
             }
@@ -86,7 +114,7 @@ fn bounds<P: Points>(points: &P) -> Result<Bounds<<P::Dim as Dimension>::Point>,
             }
         }
         if extreme || finite.iter().any(|z| *z != 0.0) {
-            for index in at..(at + LANES).min(points.len()) {
+            for index in at..(at + LANES).min(range.end) {
                 points.read(index, v.as_mut());
                 b.include(index, v.as_ref())?;
             }

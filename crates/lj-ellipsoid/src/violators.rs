@@ -1,8 +1,11 @@
 //! One look at all points from the frame of an iterate: how far they reach, who reaches furthest, who can be forgotten.
 
+use std::ops::Range;
+
 use crate::dimension::Dimension;
 use crate::frame::Frame;
 use crate::linalg::dot;
+use crate::parallel::map_ranges;
 use crate::points::Points;
 use crate::scan::beyond;
 
@@ -30,7 +33,7 @@ pub(crate) struct Survivors<D> {
     coordinates: Vec<f64>,
 }
 
-impl<D: Dimension> Points for Survivors<D> {
+impl<D: Dimension + Sync> Points for Survivors<D> {
     type Dim = D;
 
     #[inline(always)]
@@ -64,11 +67,25 @@ pub(crate) fn elimination_threshold(r: usize, furthest: f64) -> f64 {
     omega * (1.0 - 1e-10) - 1.0
 }
 
+/// What a pass found in a part of the points.
+struct Part {
+    furthest: f64,
+    /// The furthest point of each orthant, with |y|².
+    champions: Vec<(usize, f64)>,
+    /// Points beyond the elimination threshold, unless they are too many.
+    kept: Option<Vec<usize>>,
+}
+
+/// What is worth a closer look: a violation worth adding, or at least the largest |y|².
+fn worth(r: f64, furthest: f64) -> f64 {
+    if furthest > r { r + WORTH_ADDING * (furthest - r) } else { furthest }
+}
+
 /// Looks at all points from `frame`, in which the weights have scatter I and mean 0 up to rounding.
 ///
-/// If κ turns out at most `expected`, and fewer than `capacity` points lie beyond the elimination threshold of
+/// If κ turns out at most `expected`, and no more than `capacity` points lie beyond the elimination threshold of
 /// `expected`, these survivors are answered too: the threshold falls as κ grows, so theirs is on the safe side.
-pub(crate) fn look<P: Points, R: Dimension>(
+pub(crate) fn look<P: Points, R: Dimension + Sync>(
     points: &P,
     rank: R,
     frame: &Frame,
@@ -78,44 +95,79 @@ pub(crate) fn look<P: Points, R: Dimension>(
     let r = rank.get();
     let dim = points.dim();
     let n = dim.get();
+    let keep_from = elimination_threshold(r, expected);
+    let keeping = capacity > 0 && keep_from > 0.0 && few_beyond(points, rank, frame, keep_from, capacity);
+    let parts =
+        map_ranges(points.len(), |range| part(points, range, rank, frame, keeping.then_some((keep_from, capacity))));
+
+    let furthest = parts.iter().fold(0.0, |m: f64, part| m.max(part.furthest));
+    let cutoff = worth(r as f64, furthest);
+    let mut champions = vec![(usize::MAX, f64::NEG_INFINITY); 1 << r.min(ORTHANT_COORDINATES)];
+    for part in &parts {
+        for (champion, &other) in champions.iter_mut().zip(&part.champions) {
+            if other.1 > champion.1 {
+                *champion = other;
+            }
+        }
+    }
+    let found = champions.iter().filter(|(_, q)| *q > r as f64 && *q >= cutoff).map(|(i, _)| *i).collect();
+    let kept = parts.into_iter().map(|part| part.kept).try_fold(Vec::new(), |mut all: Vec<usize>, part| {
+        all.append(&mut part?);
+        (all.len() <= capacity).then_some(all)
+    });
+    let survivors = kept.filter(|_| furthest <= expected).map(|index| {
+        let mut coordinates = vec![0.0; index.len() * n];
+        index.iter().zip(coordinates.chunks_exact_mut(n)).for_each(|(&i, out)| points.read(i, out));
+        Survivors { dim, index, coordinates }
+    });
+    (Violators { furthest, found }, survivors)
+}
+
+/// Whether a sample suggests that at most `capacity` points lie beyond `threshold`: to collect survivors only to find them
+/// too many is dear.
+fn few_beyond<P: Points, R: Dimension>(points: &P, rank: R, frame: &Frame, threshold: f64, capacity: usize) -> bool {
+    let mut v = points.dim().zero();
+    let mut y = rank.zero();
+    let step = (points.len() / SAMPLE).max(1);
+    let sampled = (0..points.len()).step_by(step).filter(|&i| {
+        points.read(i, v.as_mut());
+        frame.apply(points.dim(), rank, v.as_mut(), y.as_mut());
+        dot(y.as_ref(), y.as_ref()) >= threshold
+    });
+    sampled.count() * points.len() <= capacity * SAMPLE * 9 / 10
+}
+
+/// One range of a pass; `keep` is the elimination threshold and the most survivors wanted.
+fn part<P: Points, R: Dimension>(
+    points: &P,
+    range: Range<usize>,
+    rank: R,
+    frame: &Frame,
+    keep: Option<(f64, usize)>,
+) -> Part {
+    let r = rank.get();
     let coordinates = r.min(ORTHANT_COORDINATES);
     let mut champions = vec![(usize::MAX, f64::NEG_INFINITY); 1 << coordinates];
     let mut furthest: f64 = 0.0;
-    let mut kept: Vec<usize> = Vec::new();
-    let keep_from = elimination_threshold(r, expected);
-    let mut v = dim.zero();
+    let (keep_from, capacity) = keep.unwrap_or((f64::INFINITY, 0));
+    let mut kept = keep.map(|_| Vec::new());
+    let mut v = points.dim().zero();
     let mut y = rank.zero();
-    let mut keeping = capacity > 0 && keep_from > 0.0 && {
-        // Collecting survivors only to find them too many is dear: ask a sample first.
-        let step = (points.len() / SAMPLE).max(1);
-        let sampled = (0..points.len()).step_by(step).filter(|&i| {
-            points.read(i, v.as_mut());
-            frame.apply(dim, rank, v.as_mut(), y.as_mut());
-            dot(y.as_ref(), y.as_ref()) >= keep_from
-        });
-        sampled.count() * points.len() <= capacity * SAMPLE * 9 / 10
-    };
-    // What is worth a closer look: a violation worth adding, or at least the largest |y|².
-    let worth = |furthest: f64| {
-        let r = r as f64;
-        if furthest > r { r + WORTH_ADDING * (furthest - r) } else { furthest }
-    };
     let mut cutoff = 0.0;
-    let first = if keeping { 0.0f64.max(keep_from.min(cutoff)) } else { 0.0 };
-    beyond(points, 0..points.len(), rank, frame, first, |i, q| {
-        if keeping && q >= keep_from {
-            if kept.len() == capacity {
-                kept = Vec::new();
-                keeping = false;
-            } else {
-                kept.push(i);
+    beyond(points, range, rank, frame, 0.0, |i, q| {
+        if q >= keep_from
+            && let Some(list) = &mut kept
+        {
+            list.push(i);
+            if list.len() > capacity {
+                kept = None;
             }
         }
         if q >= cutoff {
             furthest = furthest.max(q);
-            cutoff = worth(furthest);
+            cutoff = worth(r as f64, furthest);
             points.read(i, v.as_mut());
-            frame.apply(dim, rank, v.as_mut(), y.as_mut());
+            frame.apply(points.dim(), rank, v.as_mut(), y.as_mut());
             let mut orthant = 0;
             for k in 0..coordinates {
                 orthant |= usize::from(y.as_ref()[k] > 0.0) << k;
@@ -124,13 +176,7 @@ pub(crate) fn look<P: Points, R: Dimension>(
                 champions[orthant] = (i, q);
             }
         }
-        if keeping { cutoff.min(keep_from) } else { cutoff }
+        if kept.is_some() { cutoff.min(keep_from) } else { cutoff }
     });
-    let found = champions.iter().filter(|(_, q)| *q > r as f64 && *q >= cutoff).map(|(i, _)| *i).collect();
-    let survivors = (keeping && furthest <= expected).then(|| {
-        let mut coordinates = vec![0.0; kept.len() * n];
-        kept.iter().zip(coordinates.chunks_exact_mut(n)).for_each(|(&i, out)| points.read(i, out));
-        Survivors { dim, index: kept, coordinates }
-    });
-    (Violators { furthest, found }, survivors)
+    Part { furthest, champions, kept }
 }

@@ -22,7 +22,7 @@ const MAX_SCANS: usize = 500;
 const FEW: usize = 2_048;
 
 /// Solves by Newton's method (or the dual reduced Newton method) on a working set.
-pub(crate) fn solve<P: Points, R: Dimension>(
+pub(crate) fn solve<P: Points, R: Dimension + Sync>(
     points: &P,
     rank: R,
     start: Start,
