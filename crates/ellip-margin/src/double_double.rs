@@ -5,6 +5,9 @@
 
 use core::ops::{Add, Mul, Neg, Sub};
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 /// `high + low`, not rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DoubleDouble {
@@ -43,6 +46,17 @@ impl DoubleDouble {
         let first = self.high / divisor;
         let rest = self - Self::product(first, divisor);
         Self::sum(first, rest.value() / divisor)
+    }
+
+    /// The square root of a number that is not negative.
+    #[inline]
+    pub(crate) fn sqrt(self) -> Self {
+        let first = self.high.sqrt();
+        if first == 0.0 {
+            return Self::ZERO;
+        }
+        let rest = self - Self::product(first, first);
+        Self::sum(first, rest.value() / (2.0 * first))
     }
 
     /// The nearest plain number.

@@ -2,6 +2,7 @@
 
 #![no_std]
 #![allow(clippy::needless_range_loop, reason = "the formulas of this crate index several small arrays at once")]
+#![allow(clippy::doc_markdown, reason = "formulas are not code")]
 
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!("ellip-margin needs floating-point functions: enable the feature `std` or `libm`");
@@ -11,6 +12,7 @@ extern crate alloc;
 extern crate std;
 
 mod clearance;
+mod distance;
 mod double_double;
 #[cfg(feature = "eigen")]
 pub mod eigen;
@@ -21,6 +23,7 @@ mod margin;
 mod options;
 mod pair;
 mod polynomial;
+mod scaling;
 mod secular;
 mod svd;
 mod track;
@@ -29,10 +32,12 @@ mod wedge;
 pub use convex_support;
 
 pub use clearance::{ClearanceResult, clearance};
+pub use distance::{Distance, DistanceBracket, distance, distance_bracket};
 pub use error::InvalidQuery;
 pub use gradient::{MarginGradient, ShapeGradient};
 pub use inverse_iteration::InverseIterationTracker;
 pub use margin::{Margin, free_margin, free_margin_with};
 pub use options::{MarginOptions, Method, Status};
+pub use scaling::{Scaling, scaling};
 pub use track::MarginTracker;
 pub use wedge::Wedge;
