@@ -42,6 +42,8 @@ extern crate std;
 
 mod closest_point;
 mod combinators;
+#[cfg(feature = "hull")]
+mod convex_hull;
 mod error;
 mod hint;
 mod line_crossing;

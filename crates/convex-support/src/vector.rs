@@ -143,14 +143,20 @@ pub(crate) fn is_comfortable<S: Scalar>(squared: S) -> bool {
 /// wherever that will do.
 #[inline]
 pub(crate) fn comfortable_unit_of_length<S: Scalar>(largest: S) -> S {
-    if is_comfortable(largest * largest) || !(largest > S::ZERO && largest.is_finite()) {
-        S::ONE
-    } else {
-        let (_, exponent, _) = num_traits::Float::integer_decode(largest);
-        // The mantissa is an integer of as many bits as EPSILON says; subnormal units are not needed.
-        let unit = num_traits::Float::powi(S::from_f64(2.0), i32::from(exponent)) / S::EPSILON;
-        if unit > S::ZERO { unit } else { S::min_positive_value() }
+    if is_comfortable(largest * largest) { S::ONE } else { power_of_two_below(largest) }
+}
+
+/// The largest power of two that is not above `value`, or the smallest normal one; 1 where `value` is not positive or
+/// not finite.
+#[cold]
+pub(crate) fn power_of_two_below<S: Scalar>(value: S) -> S {
+    if value <= S::ZERO || !value.is_finite() {
+        return S::ONE;
     }
+    let (_, exponent, _) = num_traits::Float::integer_decode(value);
+    // The mantissa is an integer of as many bits as EPSILON says.
+    let unit = num_traits::Float::powi(S::from_f64(2.0), i32::from(exponent)) / S::EPSILON;
+    if unit > S::ZERO { unit } else { S::min_positive_value() }
 }
 
 /// `v` divided by a power of two near its largest magnitude, and that power; `None` for zero and NaN.

@@ -8,7 +8,7 @@ use crate::{Scalar, Vector};
 
 /// Points side by side: a multiple of what a vector register holds, and few enough that the best of each lane and where
 /// it was stay in registers on every target.
-const WIDTH: usize = 8;
+const WIDTH: usize = 4;
 
 /// Up to [`WIDTH`] points, coordinate by coordinate.
 type Block<S> = [[S; WIDTH]; 3];
@@ -21,7 +21,7 @@ pub(super) struct Lanes<V: Vector> {
 }
 
 /// The number of a block is kept as a scalar, so that one comparison selects both value and number; this many are
-/// numbered exactly even in `f32`.
+/// numbered exactly, with all their points, even in `f32`.
 const BLOCKS_AT_ONCE: usize = 1 << 20;
 
 impl<V: Vector> Lanes<V> {
@@ -66,11 +66,18 @@ fn farthest_of<V: Vector>(blocks: &[Block<V::Scalar>], direction: V) -> (V::Scal
         }
         number += V::Scalar::ONE;
     }
-    let mut lane = 0;
-    for l in 1..WIDTH {
-        if best[l] > best[lane] {
-            lane = l;
-        }
+    // The number of a point from the number of its block; then the better halves, down to one.
+    for (l, n) in found.iter_mut().enumerate() {
+        *n = *n * V::Scalar::from_f64(WIDTH as f64) + V::Scalar::from_f64(l as f64);
     }
-    (best[lane], found[lane].to_usize().unwrap_or(0) * WIDTH + lane)
+    let mut half = WIDTH / 2;
+    while half > 0 {
+        for l in 0..half {
+            let farther = best[l + half] > best[l];
+            best[l] = if farther { best[l + half] } else { best[l] };
+            found[l] = if farther { found[l + half] } else { found[l] };
+        }
+        half /= 2;
+    }
+    (best[0], found[0].to_usize().unwrap_or(0))
 }

@@ -1,11 +1,15 @@
 //! The convex hull of points.
 
+mod graph;
+#[cfg(feature = "hull")]
+mod hull;
 mod lanes;
 
 use num_traits::Float as _;
 
 use alloc::vec::Vec;
 
+use graph::Graph;
 use lanes::Lanes;
 
 use crate::error::InvalidShape;
@@ -24,39 +28,64 @@ use crate::{Hint, Scalar, SupportMap, Vector};
 /// assert_eq!(polygon.support(DVec2::new(1.0, 2.0)), DVec2::Y);
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
+///
+/// # Speed
+/// [`new`](Self::new) keeps the points as they are and scans all of them in each query, several at a time. With the
+/// feature `hull`, `Polytope::hull_of` finds the vertices and edges of the hull first, and queries of more than a few
+/// dozen vertices climb along them, from a vertex that is near from the beginning or from the last answer
+/// ([`Hint`]): their cost hardly grows with the number of vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polytope<V: Vector> {
     points: Vec<V>,
-    /// The points relative to `middle`.
-    lanes: Lanes<V>,
+    search: Search<V>,
     middle: V,
     extent: V::Scalar,
 }
 
+/// How the farthest of the points, relative to the middle, is found.
+#[derive(Clone, Debug, PartialEq)]
+enum Search<V: Vector> {
+    Scan(Lanes<V>),
+    #[cfg_attr(not(feature = "hull"), allow(dead_code, reason = "only the feature `hull` finds the edges"))]
+    Climb(Graph<V>),
+}
+
 impl<V: Vector> Polytope<V> {
-    /// The convex hull of the points.
+    /// The convex hull of the points, each of which every query looks at.
     ///
     /// # Errors
     /// [`InvalidShape::NoPoints`], or [`InvalidShape::NonFinite`] naming the index of the point that is not finite.
     pub fn new(points: impl IntoIterator<Item = V>) -> Result<Self, InvalidShape> {
-        let points: Vec<V> = points.into_iter().collect();
-        if let Some(index) = points.iter().position(|p| !p.is_finite()) {
-            return Err(InvalidShape::NonFinite { parameter: "points", index });
-        }
-        if points.is_empty() {
-            return Err(InvalidShape::NoPoints);
-        }
+        let points = checked(points)?;
         let middle = middle(points.iter().copied());
-        let extent = points.iter().map(|&p| (p - middle).norm()).fold(V::Scalar::ZERO, V::Scalar::max);
-        let relative: Vec<V> = points.iter().map(|&p| p - middle).collect();
-        Ok(Self { lanes: Lanes::new(&relative), points, middle, extent })
+        Ok(Self::searched_by(Search::Scan(Lanes::new(&relative(&points, middle))), points, middle))
     }
 
-    /// The points, as given.
+    fn searched_by(search: Search<V>, points: Vec<V>, middle: V) -> Self {
+        let extent = points.iter().map(|&p| (p - middle).norm()).fold(V::Scalar::ZERO, V::Scalar::max);
+        Self { points, search, middle, extent }
+    }
+
+    /// The points: as given, or the vertices of their hull where it was asked for.
     #[must_use]
     pub fn points(&self) -> &[V] {
         &self.points
     }
+}
+
+/// The points, of which there is at least one and all are finite.
+fn checked<V: Vector>(points: impl IntoIterator<Item = V>) -> Result<Vec<V>, InvalidShape> {
+    let points: Vec<V> = points.into_iter().collect();
+    if let Some(index) = points.iter().position(|p| !p.is_finite()) {
+        return Err(InvalidShape::NonFinite { parameter: "points", index });
+    }
+    if points.is_empty() { Err(InvalidShape::NoPoints) } else { Ok(points) }
+}
+
+/// The points seen from the middle. The search works on these rounded differences, and on nothing else, so that whatever
+/// is exact about them stays exact.
+fn relative<V: Vector>(points: &[V], middle: V) -> Vec<V> {
+    points.iter().map(|&p| p - middle).collect()
 }
 
 /// The middle of the bounding box of a non-empty list of points.
@@ -74,7 +103,10 @@ impl<V: Vector> SupportMap for Polytope<V> {
 
     #[inline]
     fn support(&self, direction: V) -> V {
-        self.points[self.lanes.farthest(direction)]
+        match &self.search {
+            Search::Scan(lanes) => self.points[lanes.farthest(direction)],
+            Search::Climb(graph) => self.points[graph.farthest(direction, u32::MAX) as usize],
+        }
     }
 
     #[inline]
@@ -83,8 +115,16 @@ impl<V: Vector> SupportMap for Polytope<V> {
     }
 
     #[inline]
-    fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
-        self.support(direction) - self.middle
+    fn core_support(&self, direction: V, hint: &mut Hint) -> V {
+        match &self.search {
+            Search::Scan(lanes) => self.points[lanes.farthest(direction)] - self.middle,
+            Search::Climb(graph) => {
+                let mut unknown = u32::MAX;
+                let last = hint.next_slot().unwrap_or(&mut unknown);
+                *last = graph.farthest(direction, *last);
+                graph.vertices()[*last as usize]
+            }
+        }
     }
 
     #[inline]

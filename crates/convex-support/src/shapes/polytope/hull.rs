@@ -1,0 +1,70 @@
+//! Polytopes that know their vertices and edges.
+
+use alloc::vec::Vec;
+
+use super::graph::Graph;
+use super::lanes::Lanes;
+use super::{Polytope, Search, checked, middle, relative};
+use crate::convex_hull::{ConvexHull, convex_hull};
+use crate::error::InvalidShape;
+use crate::vector::power_of_two_below;
+use crate::{Scalar, Vector};
+
+/// Up to this many vertices a scan takes no longer than a climb (measured: docs/support-maps.md).
+const SCANNED: usize = 64;
+
+impl<V: Vector> Polytope<V> {
+    /// The convex hull of the points, reduced to its vertices, with the edges between them where there are many.
+    ///
+    /// For point clouds and meshes of any size: duplicates, points inside, on faces and on edges are sorted out by exact
+    /// predicates, and a flat cloud becomes a flat polygon. Takes `O(n log n)` time for most inputs, about 0.1 s for
+    /// 60,000 points. [`points`](Self::points) are then the vertices, in the order given; a few that lie on a face
+    /// without being a corner of it may be among them.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn hull_of(points: impl IntoIterator<Item = V>) -> Result<Self, InvalidShape> {
+        let points = checked(points)?;
+        let middle = middle(points.iter().copied());
+        let Some(hull) = convex_hull(&in_unit_box(&relative(&points, middle))) else {
+            // Points a hundred orders of magnitude apart: nothing is lost but the time of a scan.
+            return Self::new(points);
+        };
+        let edges = edges(&hull);
+        let mut kept: Vec<u32> = edges.iter().map(|e| e[0]).collect();
+        kept.sort_unstable();
+        kept.dedup();
+        let vertices: Vec<V> = kept.iter().map(|&i| points[i as usize]).collect();
+        let seen = relative(&vertices, middle);
+        let search = if vertices.len() <= SCANNED {
+            Search::Scan(Lanes::new(&seen))
+        } else {
+            let place = |i: u32| kept.partition_point(|&k| k < i) as u32;
+            Search::Climb(Graph::new(seen, edges.into_iter().map(|e| e.map(place)).collect()))
+        };
+        Ok(Self::searched_by(search, vertices, middle))
+    }
+}
+
+/// The same points in units of a power of two, so that the products of the predicates stay in range: exactly the same
+/// shape.
+fn in_unit_box<V: Vector>(points: &[V]) -> Vec<[f64; 3]> {
+    let largest = points.iter().fold(0.0, |m: f64, p| m.max(p.abs().max_element().as_f64()));
+    let unit = power_of_two_below(largest);
+    let coordinates = |p: &V| core::array::from_fn(|i| if i < V::DIM { p.get(i).as_f64() / unit } else { 0.0 });
+    points.iter().map(coordinates).collect()
+}
+
+/// The edges of the hull, in both directions; those of a point lead from it to itself.
+fn edges(hull: &ConvexHull) -> Vec<[u32; 2]> {
+    match hull {
+        ConvexHull::Point(a) => alloc::vec![[*a, *a]],
+        ConvexHull::Segment([a, b]) => alloc::vec![[*a, *b], [*b, *a]],
+        ConvexHull::Polygon(corners) => {
+            let next = corners.iter().cycle().skip(1);
+            corners.iter().zip(next).flat_map(|(&a, &b)| [[a, b], [b, a]]).collect()
+        }
+        // Every edge belongs to two triangles, which pass it in opposite directions.
+        ConvexHull::Polyhedron(facets) => facets.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect(),
+    }
+}
