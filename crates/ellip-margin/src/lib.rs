@@ -18,6 +18,7 @@ mod double_double;
 pub mod eigen;
 mod error;
 mod gradient;
+mod hierarchy;
 mod inverse_iteration;
 mod margin;
 mod options;
@@ -31,7 +32,7 @@ mod wedge;
 
 pub use convex_support;
 
-pub use clearance::{ClearanceResult, clearance};
+pub use clearance::{Clearance, ClearanceResult, LeftOut, NearPair, clearance};
 pub use distance::{Distance, DistanceBracket, distance, distance_bracket};
 pub use error::InvalidQuery;
 pub use gradient::{MarginGradient, ShapeGradient};
