@@ -3,17 +3,38 @@
 //! Every workload is drawn from fixed seeds with `+ − × ÷ √` only, so that any program can make the same inputs bit by
 //! bit; `tests/digests.rs` compares their fingerprints.
 //!
-//! - [`shapes`]: the eleven shapes.
+//! - [`shapes`] and [`pairs`]: the eleven shapes, and twelve pairs of them.
 //! - [`w1_ray_cast`]: rays against one body, with `λ` in closed form.
+//! - [`w2_linear_cast`]: a body moving past or into another, with `λ` by construction.
+//! - [`w3_distance`], [`w3b_intersect`]: two bodies, with their distance by construction.
 //! - [`w4_enclosing`]: points to be enclosed by an ellipsoid.
 //! - [`w5_margin`]: pairs of ellipsoids.
+//!
+//! The same queries are answered by [`ours`] and by `parry`, each with the inputs in its own types, timed by
+//! [`measure`] and compared with the truth by [`score`]. [`rows`] does so for everything, [`report`] prints it beside
+//! the [`goals`].
 
 mod convex_hull;
 pub mod digest;
+pub mod goals;
 mod line_entry;
+pub mod measure;
+pub mod ours;
+pub mod pairs;
+#[cfg(feature = "parry")]
+pub mod parry;
+mod reference;
+pub mod report;
 pub mod rng;
+pub mod rows;
+pub mod score;
 pub mod shapes;
 pub mod vec3;
 pub mod w1_ray_cast;
+pub mod w2_linear_cast;
+pub mod w3_distance;
+pub mod w3b_intersect;
 pub mod w4_enclosing;
 pub mod w5_margin;
+
+pub use reference::Pose;

@@ -78,11 +78,8 @@ fn roots(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
 /// The cylinder about the given coordinate axis.
 fn cylinder(p: Vec3, d: Vec3, axis: usize, half_height: f64, radius: f64) -> Option<f64> {
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-    let round = roots(
-        d[i] * d[i] + d[j] * d[j],
-        p[i] * d[i] + p[j] * d[j],
-        p[i] * p[i] + p[j] * p[j] - radius * radius,
-    )?;
+    let round =
+        roots(d[i] * d[i] + d[j] * d[j], p[i] * d[i] + p[j] * d[j], p[i] * p[i] + p[j] * p[j] - radius * radius)?;
     let flat = slab(p[axis], d[axis], half_height);
     let (entry, exit) = (round.0.max(flat.0), round.1.min(flat.1));
     (entry <= exit).then_some(entry)

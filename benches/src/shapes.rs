@@ -58,7 +58,17 @@ pub enum Shape {
 
 /// Names of the shapes, in the order of their numbers.
 pub const SHAPE_NAMES: [&str; 11] = [
-    "ball", "cuboid", "cylinder", "cone", "capsule", "ellipsoid", "hull16", "hull64", "hull256", "hull1024", "roundbox",
+    "ball",
+    "cuboid",
+    "cylinder",
+    "cone",
+    "capsule",
+    "ellipsoid",
+    "hull16",
+    "hull64",
+    "hull256",
+    "hull1024",
+    "roundbox",
 ];
 
 /// The points of `hull16`, `hull64`, `hull256` and `hull1024`: `count` of them on an ellipsoid, exact in `f32`.
@@ -98,7 +108,9 @@ impl Shape {
         match *self {
             Self::Ball { radius } => [radius; 3],
             Self::Cuboid { half_extents } => half_extents,
-            Self::Cylinder { half_height, radius } | Self::Cone { half_height, radius } => [radius, half_height, radius],
+            Self::Cylinder { half_height, radius } | Self::Cone { half_height, radius } => {
+                [radius, half_height, radius]
+            }
             Self::Capsule { half_height, radius } => [radius, half_height + radius, radius],
             Self::Ellipsoid { semi_axes } => semi_axes,
             Self::Hull { .. } => [1.0, 0.8, 0.6],
@@ -116,7 +128,8 @@ impl Shape {
                 add(swept(*radius, [x, 0.0, z]), [0.0, if y >= 0.0 { *half_height } else { -half_height }, 0.0])
             }
             Self::Cone { half_height, radius } => {
-                let (apex, base) = ([0.0, *half_height, 0.0], add(swept(*radius, [x, 0.0, z]), [0.0, -half_height, 0.0]));
+                let (apex, base) =
+                    ([0.0, *half_height, 0.0], add(swept(*radius, [x, 0.0, z]), [0.0, -half_height, 0.0]));
                 if dot(direction, apex) >= dot(direction, base) { apex } else { base }
             }
             Self::Capsule { half_height, radius } => {

@@ -45,7 +45,7 @@ impl Condition {
 pub fn pairs3(condition: Condition) -> Vec<EllipsoidPair<3>> {
     let shortest = condition.shortest_semi_axis();
     let mut rng = Rng::new(60_030 + condition.index());
-    let mut ellipsoid = |rng: &mut Rng| {
+    let ellipsoid = |rng: &mut Rng| {
         let semi_axes = [1.0, shortest + (1.0 - shortest) * rng.unit(), shortest];
         let q = rng.quat();
         let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| rotate(q, axis));

@@ -1,0 +1,21 @@
+//! How long does it take to tell whether two bodies meet (W3b)?
+
+use benches::pairs::{PAIR_NAMES, Pair};
+use benches::rows::intersection_testers;
+use benches::score::intersections;
+use benches::w3b_intersect::queries;
+use criterion::{Criterion, criterion_group, criterion_main};
+
+mod common;
+
+fn bench(c: &mut Criterion) {
+    for name in PAIR_NAMES {
+        let pair = Pair::named(name);
+        let queries = queries(&pair);
+        let solvers = intersection_testers(&pair, &queries);
+        common::bench(c, &format!("intersect/{name}"), &solvers, |_, answers| intersections(&queries, answers));
+    }
+}
+
+criterion_group!(benches, bench);
+criterion_main!(benches);

@@ -1,0 +1,281 @@
+//! The workloads answered by this workspace, in either precision.
+
+use convex_support::glam::{DQuat, DVec3, Quat, Vec3A};
+use convex_support::{
+    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, LineCrossing, Polytope, Posed, Rounded, Scalar,
+    SupportMap, Vector3,
+};
+use gjk_raycast::{
+    DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, RayCastOptions, Status, distance,
+    intersects, linear_cast, ray_cast,
+};
+
+use crate::measure::Solver;
+use crate::pairs::Pair;
+use crate::reference::Pose;
+use crate::shapes::Shape;
+use crate::vec3::Vec3;
+use crate::w1_ray_cast::Ray;
+use crate::w2_linear_cast::Cast;
+use crate::w3_distance::DistanceQuery;
+use crate::w3b_intersect::IntersectQuery;
+
+/// The vectors that are measured.
+pub trait Space: Vector3 {
+    /// A rotation from a unit quaternion.
+    fn rotation(q: crate::vec3::Quat) -> Self::Rotation;
+}
+
+impl Space for DVec3 {
+    fn rotation(q: crate::vec3::Quat) -> DQuat {
+        DQuat::from_array(q)
+    }
+}
+
+impl Space for Vec3A {
+    #[allow(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is the purpose")]
+    fn rotation(q: crate::vec3::Quat) -> Quat {
+        Quat::from_array(q.map(|x| x as f32))
+    }
+}
+
+fn number<V: Space>(x: f64) -> V::Scalar {
+    V::Scalar::from_f64(x)
+}
+
+fn vector<V: Space>(v: Vec3) -> V {
+    V::from_fn(|i| number::<V>(v[i]))
+}
+
+/// Why a shape of the workloads should always be one.
+const VALID: &str = "the shapes and poses of the workloads are valid";
+
+/// Ray casts by GJK.
+#[must_use]
+pub fn ray_casts<V: Space>(shape: &Shape, rays: &[Ray]) -> Solver {
+    struct Cast<'a>(&'a [Ray]);
+    impl<V: Space> Task<V> for Cast<'_> {
+        fn solver<S: SupportMap<Vector = V> + 'static>(self, target: S) -> Solver {
+            let rays = self
+                .0
+                .iter()
+                .map(|ray| gjk_raycast::Ray { source: vector(ray.origin), direction: vector(ray.direction) });
+            Solver::new(rays.collect(), move |&ray| {
+                let options = RayCastOptions::default().with_max_lambda(V::Scalar::ONE);
+                match ray_cast(&target, ray, options).map(|cast| cast.outcome) {
+                    Ok(Outcome::Hit(hit)) => hit.lambda.as_f64(),
+                    Ok(Outcome::Miss(_)) => f64::INFINITY,
+                    Ok(Outcome::Undecided) | Err(_) => f64::NAN,
+                }
+            })
+        }
+    }
+    with_shape::<V, _>(shape, Cast(rays))
+}
+
+/// Ray casts in closed form; `None` for shapes without one.
+#[must_use]
+pub fn closed_form_ray_casts<V: Space>(shape: &Shape, rays: &[Ray]) -> Option<Solver> {
+    fn solver<S: LineCrossing<Vector: Space> + 'static>(target: Result<S, InvalidShape>, rays: &[Ray]) -> Solver {
+        let target = target.expect(VALID);
+        let rays = rays.iter().map(|ray| (vector(ray.origin), vector(ray.direction))).collect();
+        Solver::new(rays, move |&(source, direction): &(S::Vector, S::Vector)| {
+            let hit = target.line_crossing(source, direction).and_then(|crossing| crossing.first_hit(Scalar::ONE));
+            hit.map_or(f64::INFINITY, Scalar::as_f64)
+        })
+    }
+    Some(match *shape {
+        Shape::Ball { radius } => solver(Ball::<V>::new(number::<V>(radius)), rays),
+        Shape::Cuboid { half_extents } => solver(Cuboid::<V>::new(vector(half_extents)), rays),
+        Shape::Cylinder { half_height, radius } => {
+            solver(Cylinder::<V>::new(number::<V>(half_height), number::<V>(radius)), rays)
+        }
+        Shape::Cone { half_height, radius } => {
+            solver(Cone::<V>::new(number::<V>(half_height), number::<V>(radius)), rays)
+        }
+        Shape::Capsule { half_height, radius } => {
+            solver(Capsule::<V>::new(number::<V>(half_height), number::<V>(radius)), rays)
+        }
+        Shape::Ellipsoid { semi_axes } => {
+            solver(Ellipsoid::<V>::new(V::ZERO, vector(semi_axes), V::Rotation::default()), rays)
+        }
+        Shape::RoundBox { half_extents, radius } => solver(
+            Cuboid::<V>::new(vector(half_extents)).and_then(|core| Rounded::new(core, number::<V>(radius))),
+            rays,
+        ),
+        Shape::Hull { .. } => return None,
+    })
+}
+
+/// Linear casts. The body is posed within the measurement: every query comes with a new pose.
+#[must_use]
+pub fn linear_casts<V: Space>(pair: &Pair, casts: &[Cast]) -> Solver {
+    struct Task<'a>(&'a [Cast]);
+    impl<V: Space> PairTask<V> for Task<'_> {
+        fn solver<A, B>(self, a: A, b: B) -> Solver
+        where
+            A: SupportMap<Vector = V> + 'static,
+            B: SupportMap<Vector = V> + 'static,
+        {
+            let queries = self.0.iter().map(|cast| (placed::<V>(cast.pose), vector::<V>(cast.velocity))).collect();
+            Solver::new(queries, move |&((rotation, translation), velocity_b)| {
+                let b = Posed::new(&b, rotation, translation).expect(VALID);
+                let motion = Motion { velocity_a: V::ZERO, velocity_b };
+                let options = LinearCastOptions::default().with_max_time(V::Scalar::ONE);
+                match linear_cast(&a, &b, motion, options).map(|cast| cast.outcome) {
+                    Ok(Outcome::Hit(hit)) => hit.time.as_f64(),
+                    Ok(Outcome::Miss(_)) => f64::INFINITY,
+                    Ok(Outcome::Undecided) | Err(_) => f64::NAN,
+                }
+            })
+        }
+    }
+    with_pair::<V, _>(pair, Task(casts))
+}
+
+/// Distances.
+#[must_use]
+pub fn distances<V: Space>(pair: &Pair, queries: &[DistanceQuery]) -> Solver {
+    struct Task<'a>(&'a [DistanceQuery]);
+    impl<V: Space> PairTask<V> for Task<'_> {
+        fn solver<A, B>(self, a: A, b: B) -> Solver
+        where
+            A: SupportMap<Vector = V> + 'static,
+            B: SupportMap<Vector = V> + 'static,
+        {
+            let queries = self.0.iter().map(|query| placed::<V>(query.pose)).collect();
+            Solver::new(queries, move |&(rotation, translation)| {
+                let b = Posed::new(&b, rotation, translation).expect(VALID);
+                distance(&a, &b, DistanceOptions::default()).distance.as_f64()
+            })
+        }
+    }
+    with_pair::<V, _>(pair, Task(queries))
+}
+
+/// Intersection tests; `warm` ones are given the separating axis of the same query asked before.
+#[must_use]
+pub fn intersections<V: Space>(pair: &Pair, queries: &[IntersectQuery], warm: bool) -> Solver {
+    struct Task<'a>(&'a [IntersectQuery], bool);
+    impl<V: Space> PairTask<V> for Task<'_> {
+        fn solver<A, B>(self, a: A, b: B) -> Solver
+        where
+            A: SupportMap<Vector = V> + 'static,
+            B: SupportMap<Vector = V> + 'static,
+        {
+            let Self(queries, warm) = self;
+            let ask = move |(rotation, translation), options| {
+                let b = Posed::new(&b, rotation, translation).expect(VALID);
+                intersects(&a, &b, options)
+            };
+            let prepared = queries.iter().map(|query| {
+                let (pose, cold) = (placed::<V>(query.pose), IntersectOptions::default());
+                let axis = if warm { ask(pose, cold).axis } else { None };
+                (pose, axis.map_or(cold, |axis| cold.with_axis(axis)))
+            });
+            Solver::new(prepared.collect(), move |&(pose, options)| {
+                let answer = ask(pose, options);
+                match answer.status {
+                    Status::Converged => f64::from(u8::from(answer.overlap)),
+                    Status::IterationLimit | Status::Stalled => f64::NAN,
+                }
+            })
+        }
+    }
+    with_pair::<V, _>(pair, Task(queries, warm))
+}
+
+fn placed<V: Space>(pose: Pose) -> (V::Rotation, V) {
+    (V::rotation(pose.rotation), vector(pose.translation))
+}
+
+/// Makes a solver from a shape of any type.
+trait Task<V: Space> {
+    fn solver<S: SupportMap<Vector = V> + 'static>(self, shape: S) -> Solver;
+}
+
+/// Makes a solver from two shapes of any types.
+trait PairTask<V: Space> {
+    fn solver<A, B>(self, a: A, b: B) -> Solver
+    where
+        A: SupportMap<Vector = V> + 'static,
+        B: SupportMap<Vector = V> + 'static;
+}
+
+fn with_shape<V: Space, T: Task<V>>(shape: &Shape, task: T) -> Solver {
+    match shape {
+        Shape::Ball { radius } => task.solver(ball::<V>(*radius)),
+        Shape::Cuboid { half_extents } => task.solver(cuboid::<V>(*half_extents)),
+        Shape::Cylinder { half_height, radius } => task.solver(cylinder::<V>(*half_height, *radius)),
+        Shape::Cone { half_height, radius } => task.solver(cone::<V>(*half_height, *radius)),
+        Shape::Capsule { half_height, radius } => task.solver(capsule::<V>(*half_height, *radius)),
+        Shape::Ellipsoid { semi_axes } => task.solver(ellipsoid::<V>(*semi_axes)),
+        Shape::Hull { points } => task.solver(hull::<V>(points)),
+        Shape::RoundBox { half_extents, radius } => task.solver(round_box::<V>(*half_extents, *radius)),
+    }
+}
+
+/// # Panics
+/// For two shapes that are no pair of the workloads.
+fn with_pair<V: Space, T: PairTask<V>>(pair: &Pair, task: T) -> Solver {
+    match (&pair.a, &pair.b) {
+        (Shape::Ball { radius }, Shape::Cuboid { half_extents }) => {
+            task.solver(ball::<V>(*radius), cuboid::<V>(*half_extents))
+        }
+        (Shape::Cuboid { half_extents: a }, Shape::Cuboid { half_extents: b }) => {
+            task.solver(cuboid::<V>(*a), cuboid::<V>(*b))
+        }
+        (Shape::Cylinder { half_height: h, radius: r }, Shape::Cone { half_height, radius }) => {
+            task.solver(cylinder::<V>(*h, *r), cone::<V>(*half_height, *radius))
+        }
+        (Shape::Capsule { half_height, radius }, Shape::Ellipsoid { semi_axes }) => {
+            task.solver(capsule::<V>(*half_height, *radius), ellipsoid::<V>(*semi_axes))
+        }
+        (Shape::Ellipsoid { semi_axes: a }, Shape::Ellipsoid { semi_axes: b }) => {
+            task.solver(ellipsoid::<V>(*a), ellipsoid::<V>(*b))
+        }
+        (Shape::Hull { points: a }, Shape::Hull { points: b }) => task.solver(hull::<V>(a), hull::<V>(b)),
+        (Shape::RoundBox { half_extents: a, radius: r }, Shape::RoundBox { half_extents: b, radius: s }) => {
+            task.solver(round_box::<V>(*a, *r), round_box::<V>(*b, *s))
+        }
+        (Shape::Cuboid { half_extents }, Shape::Hull { points }) => {
+            task.solver(cuboid::<V>(*half_extents), hull::<V>(points))
+        }
+        (Shape::Capsule { half_height: h, radius: r }, Shape::Capsule { half_height, radius }) => {
+            task.solver(capsule::<V>(*h, *r), capsule::<V>(*half_height, *radius))
+        }
+        pair => panic!("no pair of the workloads: {pair:?}"),
+    }
+}
+
+fn ball<V: Space>(radius: f64) -> Ball<V> {
+    Ball::new(number::<V>(radius)).expect(VALID)
+}
+
+fn cuboid<V: Space>(half_extents: Vec3) -> Cuboid<V> {
+    Cuboid::new(vector(half_extents)).expect(VALID)
+}
+
+fn cylinder<V: Space>(half_height: f64, radius: f64) -> Cylinder<V> {
+    Cylinder::new(number::<V>(half_height), number::<V>(radius)).expect(VALID)
+}
+
+fn cone<V: Space>(half_height: f64, radius: f64) -> Cone<V> {
+    Cone::new(number::<V>(half_height), number::<V>(radius)).expect(VALID)
+}
+
+fn capsule<V: Space>(half_height: f64, radius: f64) -> Capsule<V> {
+    Capsule::new(number::<V>(half_height), number::<V>(radius)).expect(VALID)
+}
+
+fn ellipsoid<V: Space>(semi_axes: Vec3) -> Ellipsoid<V> {
+    Ellipsoid::new(V::ZERO, vector(semi_axes), V::Rotation::default()).expect(VALID)
+}
+
+fn hull<V: Space>(points: &[Vec3]) -> Polytope<V> {
+    Polytope::new(points.iter().map(|&p| vector(p))).expect(VALID)
+}
+
+fn round_box<V: Space>(half_extents: Vec3, radius: f64) -> Rounded<Cuboid<V>> {
+    Rounded::new(cuboid(half_extents), number::<V>(radius)).expect(VALID)
+}

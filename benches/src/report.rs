@@ -1,0 +1,177 @@
+//! The measurements as text: Markdown tables for people, CSV for programs.
+
+use std::fmt::Write as _;
+use std::process::Command;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use crate::goals::{GOALS, NEAR_P99, WARM_NS, parry_ns};
+use crate::rows::{Method, Row, Workload};
+
+/// The rows as CSV.
+#[must_use]
+pub fn csv(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "workload,case,method,ns,p99_error,max_error,false_hits,false_misses,undecided,far_off,said_zero\n",
+    );
+    for Row { workload, case, method, ns, score } in rows {
+        let (workload, method) = (workload.name(), method.name());
+        let _ = writeln!(
+            text,
+            "{workload},{case},{method},{ns:.1},{:e},{:e},{},{},{},{},{}",
+            score.p99, score.max, score.false_hits, score.false_misses, score.undecided, score.far_off, score.said_zero
+        );
+    }
+    text
+}
+
+/// Everything: the machine, the goals, and a table for each workload.
+#[must_use]
+pub fn markdown(rows: &[Row]) -> String {
+    let mut text = format!("{}\n\n## Goals\n\n{}\n", machine(), goals(rows));
+    for workload in Workload::ALL.into_iter().filter(|workload| rows.iter().any(|row| row.workload == *workload)) {
+        let _ = writeln!(text, "## {}\n\n{}", title(workload), table(rows, workload));
+    }
+    text
+}
+
+fn title(workload: Workload) -> &'static str {
+    match workload {
+        Workload::RayCast => "W1: ray cast",
+        Workload::LinearCast => "W2: linear cast",
+        Workload::DistanceFar => "W3: distance, 3 to 0.01 (relative error)",
+        Workload::DistanceNear => "W3: distance, 1e-6 (absolute error)",
+        Workload::Intersect => "W3b: intersection",
+    }
+}
+
+/// One table: a case a line, a method a column, `ns / p99 error / wrong` in each cell.
+fn table(rows: &[Row], workload: Workload) -> String {
+    let rows: Vec<_> = rows.iter().filter(|row| row.workload == workload).collect();
+    let methods: Vec<_> =
+        Method::ALL.into_iter().filter(|method| rows.iter().any(|row| row.method == *method)).collect();
+    let mut cases: Vec<&str> = rows.iter().map(|row| row.case).collect();
+    cases.dedup();
+
+    let mut text = String::from("| case |");
+    for method in &methods {
+        let _ = write!(text, " {} |", method.name());
+    }
+    let _ = writeln!(text, "\n|---|{}", "---|".repeat(methods.len()));
+    for case in cases {
+        let _ = write!(text, "| {case} |");
+        for method in &methods {
+            match rows.iter().find(|row| row.case == case && row.method == *method) {
+                Some(row) if row.score.p99.is_nan() => {
+                    let _ = write!(text, " {:.0} / {} |", row.ns, row.score.wrong());
+                }
+                Some(row) => {
+                    let _ = write!(text, " {:.0} / {:.1e} / {} |", row.ns, row.score.p99, row.score.wrong());
+                }
+                None => text.push_str(" - |"),
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Each goal beside what was measured.
+fn goals(rows: &[Row]) -> String {
+    let find = |workload, case: &str, method| {
+        rows.iter().find(|row| row.workload == workload && row.case == case && row.method == method)
+    };
+    let mut text = String::from(
+        "| workload | case | method | ns | parry gjk f64 | ratio | goal | p99 error | goal | wrong | |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|\n",
+    );
+    let mut line = |row: &Row, goal_ns: f64, goal_p99: f64| {
+        let parry = find(row.workload, row.case, Method::ParryGjkF64).map_or(f64::NAN, |parry| parry.ns);
+        let (ratio, goal) = (row.ns / parry, goal_ns / parry_ns(row.workload, row.case).unwrap_or(f64::NAN));
+        let accurate = row.score.p99.is_nan() || row.score.p99 <= goal_p99;
+        let verdict = match (ratio <= goal, accurate, row.score.wrong()) {
+            (true, true, 0) => "met",
+            (false, true, 0) => "slow",
+            (_, false, 0) => "inaccurate",
+            _ => "wrong",
+        };
+        let p99 = if row.score.p99.is_nan() { "-".into() } else { format!("{:.1e}", row.score.p99) };
+        let p99_goal = if goal_p99.is_finite() { format!("{goal_p99:.0e}") } else { "-".into() };
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {:.0} | {parry:.0} | {ratio:.3} | {goal:.3} | {p99} | {p99_goal} | {} | {verdict} |",
+            row.workload.name(),
+            row.case,
+            row.method.name(),
+            row.ns,
+            row.score.wrong(),
+        );
+    };
+    for goal in GOALS {
+        if let Some(row) = find(goal.workload, goal.case, goal.method) {
+            line(row, goal.ns, goal.p99);
+        }
+    }
+    for row in rows.iter().filter(|row| row.method == Method::WarmF64) {
+        line(row, WARM_NS, f64::INFINITY);
+    }
+    for row in rows.iter().filter(|row| row.workload == Workload::DistanceNear && row.method == Method::OursF64) {
+        // Twice the far time of this very run, brought to the machine of the goals and back by `line`.
+        let far = find(Workload::DistanceFar, row.case, Method::OursF64).map_or(f64::NAN, |far| far.ns);
+        let parry = find(row.workload, row.case, Method::ParryGjkF64).map_or(f64::NAN, |parry| parry.ns);
+        let goal = 2.0 * far / parry * parry_ns(row.workload, row.case).unwrap_or(f64::NAN);
+        line(row, goal, NEAR_P99);
+    }
+    let slower = rows.iter().filter(|row| row.method == Method::OursF32).filter_map(|row| {
+        let double = find(row.workload, row.case, Method::OursF64)?;
+        (row.ns > double.ns).then(|| format!("{} {} ({:.2})", row.workload.name(), row.case, row.ns / double.ns))
+    });
+    let slower: Vec<_> = slower.collect();
+    let _ = writeln!(
+        text,
+        "\n`f32` should be at least as fast as `f64` everywhere; it is not at: {}.",
+        if slower.is_empty() { "none".into() } else { slower.join(", ") }
+    );
+    text
+}
+
+/// Processor, compiler and date.
+fn machine() -> String {
+    let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let processor = processor
+        .lines()
+        .find_map(|line| line.strip_prefix("model name")?.split_once(':'))
+        .map_or("an unknown processor", |(_, name)| name.trim());
+    let compiler = Command::new("rustc").arg("--version").output().ok();
+    let compiler = compiler.and_then(|output| String::from_utf8(output.stdout).ok());
+    let compiler = compiler.as_deref().map_or("an unknown compiler", str::trim);
+    let flags = if cfg!(target_feature = "avx2") { "with AVX2" } else { "baseline instruction set" };
+    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
+    format!("Measured on {processor}, one thread, {flags}, {compiler}, on {}.", date(seconds / 86_400))
+}
+
+/// The date so many days after 1970-01-01, by Hinnant's `civil_from_days`: years begin in March, so that leap days come
+/// last, and eras of 400 years all have 146,097 days.
+fn date(days: u64) -> String {
+    let days = days + 719_468;
+    let (era, day_of_era) = (days / 146_097, days % 146_097);
+    let year_of_era = (day_of_era - day_of_era / 1_460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
+    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+    let month = (5 * day_of_year + 2) / 153;
+    let day = day_of_year - (153 * month + 2) / 5 + 1;
+    let month = if month < 10 { month + 3 } else { month - 9 };
+    let year = era * 400 + year_of_era + u64::from(month <= 2);
+    format!("{year}-{month:02}-{day:02}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::date;
+
+    #[test]
+    fn dates() {
+        assert_eq!(date(0), "1970-01-01");
+        assert_eq!(date(19_782), "2024-02-29");
+        assert_eq!(date(19_783), "2024-03-01");
+        assert_eq!(date(47_481), "2099-12-31");
+    }
+}

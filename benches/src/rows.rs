@@ -1,0 +1,259 @@
+//! Everything measured, one row per workload, case and method.
+
+use std::ops::Range;
+use std::time::Duration;
+
+use convex_support::glam::{DVec3, Vec3A};
+
+use crate::measure::Solver;
+use crate::ours;
+use crate::pairs::{PAIR_NAMES, Pair};
+#[cfg(feature = "parry")]
+use crate::parry::{double, single};
+use crate::score::{self, Precision, Score};
+use crate::shapes::{SHAPE_NAMES, Shape};
+use crate::{w1_ray_cast, w2_linear_cast, w3_distance, w3b_intersect};
+
+/// A workload.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Workload {
+    /// W1.
+    RayCast,
+    /// W2.
+    LinearCast,
+    /// The far queries of W3.
+    DistanceFar,
+    /// The near queries of W3.
+    DistanceNear,
+    /// W3b.
+    Intersect,
+}
+
+impl Workload {
+    /// All of them, in the order of the report.
+    pub const ALL: [Self; 5] =
+        [Self::RayCast, Self::LinearCast, Self::DistanceFar, Self::DistanceNear, Self::Intersect];
+
+    /// Its short name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::RayCast => "W1",
+            Self::LinearCast => "W2",
+            Self::DistanceFar => "W3far",
+            Self::DistanceNear => "W3near",
+            Self::Intersect => "W3b",
+        }
+    }
+}
+
+/// A way to answer, in the order of the columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// `gjk-raycast` on `DVec3`.
+    OursF64,
+    /// `gjk-raycast` on `Vec3A`.
+    OursF32,
+    /// `LineCrossing` on `DVec3`.
+    ClosedF64,
+    /// `LineCrossing` on `Vec3A`.
+    ClosedF32,
+    /// `intersects` on `DVec3` with the separating axis of the frame before.
+    WarmF64,
+    /// The same on `Vec3A`.
+    WarmF32,
+    /// The GJK functions of parry3d-f64.
+    ParryGjkF64,
+    /// The GJK functions of parry3d.
+    ParryGjkF32,
+    /// The functions parry3d-f64's users call, with their special cases.
+    ParryF64,
+    /// The same of parry3d.
+    ParryF32,
+}
+
+impl Method {
+    /// All of them, in the order of the columns.
+    pub const ALL: [Self; 10] = [
+        Self::OursF64,
+        Self::OursF32,
+        Self::ClosedF64,
+        Self::ClosedF32,
+        Self::WarmF64,
+        Self::WarmF32,
+        Self::ParryGjkF64,
+        Self::ParryGjkF32,
+        Self::ParryF64,
+        Self::ParryF32,
+    ];
+
+    /// Its column title.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::OursF64 => "ours f64",
+            Self::OursF32 => "ours f32",
+            Self::ClosedF64 => "ours closed f64",
+            Self::ClosedF32 => "ours closed f32",
+            Self::WarmF64 => "ours warm f64",
+            Self::WarmF32 => "ours warm f32",
+            Self::ParryGjkF64 => "parry gjk f64",
+            Self::ParryGjkF32 => "parry gjk f32",
+            Self::ParryF64 => "parry f64",
+            Self::ParryF32 => "parry f32",
+        }
+    }
+
+    /// The precision it works in.
+    #[must_use]
+    pub const fn precision(self) -> Precision {
+        match self {
+            Self::OursF64 | Self::ClosedF64 | Self::WarmF64 | Self::ParryGjkF64 | Self::ParryF64 => Precision::Double,
+            Self::OursF32 | Self::ClosedF32 | Self::WarmF32 | Self::ParryGjkF32 | Self::ParryF32 => Precision::Single,
+        }
+    }
+}
+
+/// One measurement.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// The workload.
+    pub workload: Workload,
+    /// The shape or pair of shapes.
+    pub case: &'static str,
+    /// Who answered.
+    pub method: Method,
+    /// Nanoseconds of thread CPU time per query.
+    pub ns: f64,
+    /// How right the answers are.
+    pub score: Score,
+}
+
+/// Measures every method on every case of the workloads, telling `progress` of each row as it comes.
+///
+/// Each row may spend `budget`.
+#[must_use]
+pub fn measure(workloads: &[Workload], budget: Duration, mut progress: impl FnMut(&Row)) -> Vec<Row> {
+    let mut rows = Vec::new();
+    let mut add = |workload, case, method, solver: &Solver, range: Range<usize>, score: &dyn Fn(&[f64]) -> Score| {
+        let score = score(&solver.answers()[range.clone()]);
+        let row = Row { workload, case, method, ns: solver.nanoseconds(range, budget), score };
+        progress(&row);
+        rows.push(row);
+    };
+    if workloads.contains(&Workload::RayCast) {
+        for case in SHAPE_NAMES {
+            let rays = w1_ray_cast::rays(case);
+            for (method, solver) in ray_casters(&Shape::named(case), &rays) {
+                let score = |answers: &[f64]| score::ray_casts(&rays, answers, method.precision());
+                add(Workload::RayCast, case, method, &solver, 0..rays.len(), &score);
+            }
+        }
+    }
+    for case in PAIR_NAMES {
+        let pair = Pair::named(case);
+        if workloads.contains(&Workload::LinearCast) {
+            let casts = w2_linear_cast::casts(&pair);
+            let grazing = w2_linear_cast::grazing(&pair, &casts);
+            for (method, solver) in linear_casters(&pair, &casts) {
+                let score = |answers: &[f64]| score::linear_casts(&casts, &grazing, answers);
+                add(Workload::LinearCast, case, method, &solver, 0..casts.len(), &score);
+            }
+        }
+        if workloads.contains(&Workload::DistanceFar) || workloads.contains(&Workload::DistanceNear) {
+            let queries = w3_distance::queries(&pair);
+            let near = w3_distance::FAR..queries.len();
+            for (method, solver) in distance_solvers(&pair, &queries) {
+                for (workload, range) in
+                    [(Workload::DistanceFar, 0..w3_distance::FAR), (Workload::DistanceNear, near.clone())]
+                {
+                    let score = |answers: &[f64]| score::distances(&queries[range.clone()], answers);
+                    add(workload, case, method, &solver, range.clone(), &score);
+                }
+            }
+        }
+        if workloads.contains(&Workload::Intersect) {
+            let queries = w3b_intersect::queries(&pair);
+            for (method, solver) in intersection_testers(&pair, &queries) {
+                let score = |answers: &[f64]| score::intersections(&queries, answers);
+                add(Workload::Intersect, case, method, &solver, 0..queries.len(), &score);
+            }
+        }
+    }
+    rows
+}
+
+/// Every method's solver of ray casts against one shape.
+#[must_use]
+pub fn ray_casters(shape: &Shape, rays: &[w1_ray_cast::Ray]) -> Vec<(Method, Solver)> {
+    let mut solvers = vec![
+        (Method::OursF64, ours::ray_casts::<DVec3>(shape, rays)),
+        (Method::OursF32, ours::ray_casts::<Vec3A>(shape, rays)),
+    ];
+    solvers.extend(ours::closed_form_ray_casts::<DVec3>(shape, rays).map(|solver| (Method::ClosedF64, solver)));
+    solvers.extend(ours::closed_form_ray_casts::<Vec3A>(shape, rays).map(|solver| (Method::ClosedF32, solver)));
+    #[cfg(feature = "parry")]
+    {
+        solvers.push((Method::ParryGjkF64, double::ray_casts(shape, rays)));
+        solvers.push((Method::ParryGjkF32, single::ray_casts(shape, rays)));
+        solvers.extend(double::front_door_ray_casts(shape, rays).map(|solver| (Method::ParryF64, solver)));
+        solvers.extend(single::front_door_ray_casts(shape, rays).map(|solver| (Method::ParryF32, solver)));
+    }
+    solvers
+}
+
+/// Every method's solver of linear casts of one pair.
+#[must_use]
+pub fn linear_casters(pair: &Pair, casts: &[w2_linear_cast::Cast]) -> Vec<(Method, Solver)> {
+    #[allow(unused_mut, reason = "without peers there is nothing to add")]
+    let mut solvers = vec![
+        (Method::OursF64, ours::linear_casts::<DVec3>(pair, casts)),
+        (Method::OursF32, ours::linear_casts::<Vec3A>(pair, casts)),
+    ];
+    #[cfg(feature = "parry")]
+    {
+        solvers.push((Method::ParryGjkF64, double::linear_casts(pair, casts)));
+        solvers.push((Method::ParryGjkF32, single::linear_casts(pair, casts)));
+        solvers.extend(double::front_door_linear_casts(pair, casts).map(|solver| (Method::ParryF64, solver)));
+        solvers.extend(single::front_door_linear_casts(pair, casts).map(|solver| (Method::ParryF32, solver)));
+    }
+    solvers
+}
+
+/// Every method's solver of distances of one pair.
+#[must_use]
+pub fn distance_solvers(pair: &Pair, queries: &[w3_distance::DistanceQuery]) -> Vec<(Method, Solver)> {
+    #[allow(unused_mut, reason = "without peers there is nothing to add")]
+    let mut solvers = vec![
+        (Method::OursF64, ours::distances::<DVec3>(pair, queries)),
+        (Method::OursF32, ours::distances::<Vec3A>(pair, queries)),
+    ];
+    #[cfg(feature = "parry")]
+    {
+        solvers.push((Method::ParryGjkF64, double::distances(pair, queries)));
+        solvers.push((Method::ParryGjkF32, single::distances(pair, queries)));
+        solvers.extend(double::front_door_distances(pair, queries).map(|solver| (Method::ParryF64, solver)));
+        solvers.extend(single::front_door_distances(pair, queries).map(|solver| (Method::ParryF32, solver)));
+    }
+    solvers
+}
+
+/// Every method's solver of intersection tests of one pair.
+#[must_use]
+pub fn intersection_testers(pair: &Pair, queries: &[w3b_intersect::IntersectQuery]) -> Vec<(Method, Solver)> {
+    #[allow(unused_mut, reason = "without peers there is nothing to add")]
+    let mut solvers = vec![
+        (Method::OursF64, ours::intersections::<DVec3>(pair, queries, false)),
+        (Method::OursF32, ours::intersections::<Vec3A>(pair, queries, false)),
+        (Method::WarmF64, ours::intersections::<DVec3>(pair, queries, true)),
+        (Method::WarmF32, ours::intersections::<Vec3A>(pair, queries, true)),
+    ];
+    #[cfg(feature = "parry")]
+    {
+        solvers.push((Method::ParryGjkF64, double::intersections(pair, queries)));
+        solvers.push((Method::ParryGjkF32, single::intersections(pair, queries)));
+        solvers.extend(double::front_door_intersections(pair, queries).map(|solver| (Method::ParryF64, solver)));
+        solvers.extend(single::front_door_intersections(pair, queries).map(|solver| (Method::ParryF32, solver)));
+    }
+    solvers
+}
