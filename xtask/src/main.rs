@@ -1,9 +1,11 @@
 //! The workspace's tasks: `cargo xtask --help`.
 
+mod book2d;
 mod engine;
 mod mesh;
 mod plot;
 mod query;
+mod scene;
 mod validate;
 mod wire;
 
@@ -42,11 +44,33 @@ enum Task {
         #[arg(long, value_name = "FOLDER", default_value = "target/report")]
         report: PathBuf,
     },
+    /// Move a robot along its trajectory among obstacles: ellipsoids first, exact distances where they cannot decide.
+    ///
+    /// Exit status: 0, or 1 where an answer differs from the truth given, or 2 where a file could not be read.
+    Scene {
+        /// A scene: robot, joints, obstacles, trajectory.
+        #[arg(value_name = "FILE", default_value = scene::EMBEDDED)]
+        file: PathBuf,
+        /// True overlaps and distances, one JSON line per pair [default: beside FILE, if there]
+        #[arg(long, value_name = "FILE")]
+        truth: Option<PathBuf>,
+        /// Where tables and plots go.
+        #[arg(long, value_name = "FOLDER", default_value = "target/scene")]
+        output: PathBuf,
+    },
+    /// Draw the descent of GJK in the plane, step by step.
+    Book2d {
+        /// Where the drawings go.
+        #[arg(long, value_name = "FOLDER", default_value = "target/book2d")]
+        output: PathBuf,
+    },
 }
 
 fn main() -> ExitCode {
     match Arguments::parse().task {
         Task::Query { files } => query::run(&files),
         Task::Validate { files, report } => validate::run(&files, &report),
+        Task::Book2d { output } => book2d::run(&output),
+        Task::Scene { file, truth, output } => scene::run(&file, truth.as_deref(), &output),
     }
 }

@@ -31,13 +31,13 @@ impl Mesh {
 
     /// The convex hull in double precision.
     pub(crate) fn hull_f64(&self) -> Result<Shared<Polytope<DVec3>>, InvalidShape> {
-        self.hull_f64.get_or_init(|| Polytope::new(self.points.iter().copied()).map(Shared::new)).clone()
+        self.hull_f64.get_or_init(|| Polytope::hull_of(self.points.iter().copied()).map(Shared::new)).clone()
     }
 
     /// The convex hull of the vertices rounded to single precision.
     pub(crate) fn hull_f32(&self) -> Result<Shared<Polytope<Vec3A>>, InvalidShape> {
         let rounded = || self.points.iter().map(|p| p.as_vec3a());
-        self.hull_f32.get_or_init(|| Polytope::new(rounded()).map(Shared::new)).clone()
+        self.hull_f32.get_or_init(|| Polytope::hull_of(rounded()).map(Shared::new)).clone()
     }
 }
 
@@ -74,6 +74,10 @@ impl<S: SupportMap> SupportMap for Shared<S> {
 
     fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
         self.0.core_support(direction, hint)
+    }
+
+    fn core_support_derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
+        self.0.core_support_derivative(direction, change)
     }
 
     fn radius(&self) -> <S::Vector as Vector>::Scalar {

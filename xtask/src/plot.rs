@@ -1,4 +1,4 @@
-//! Log–log plots as SVG, by hand: points and lines in colours that read on light and dark pages.
+//! Plots as SVG, by hand: points and lines in colours that read on light and dark pages.
 
 use std::fmt::Write as _;
 
@@ -6,20 +6,30 @@ use std::fmt::Write as _;
 #[derive(Clone, Debug)]
 pub(crate) struct Series {
     pub(crate) name: String,
-    /// Pairs of positive numbers; a 0 is drawn at the lower edge.
     pub(crate) points: Vec<[f64; 2]>,
     /// Whether the points are joined, in the order given.
     pub(crate) joined: bool,
+    /// Which of the colours; plots side by side give the same thing the same one.
+    pub(crate) colour: usize,
 }
 
-/// A plot with logarithmic axes.
+/// How numbers are laid out along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scale {
+    Linear,
+    /// By whole decades. What is not positive is drawn at the lower edge.
+    Log,
+}
+
+/// Numbers against numbers.
 #[derive(Clone, Debug)]
-pub(crate) struct LogLog {
+pub(crate) struct Plot {
     pub(crate) title: String,
     pub(crate) x: String,
     pub(crate) y: String,
-    /// What is below is drawn at the lower edge.
-    pub(crate) y_floor: f64,
+    pub(crate) scales: [Scale; 2],
+    /// What is below is drawn there.
+    pub(crate) floor: f64,
     pub(crate) series: Vec<Series>,
 }
 
@@ -33,14 +43,14 @@ const BOTTOM: f64 = 46.0;
 /// Colours that can be told apart, also by the colour-blind (Okabe and Ito).
 const COLOURS: [&str; 8] = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#b59f00", "#888888"];
 
-impl LogLog {
+impl Plot {
     /// The plot as an `<svg>` element.
     pub(crate) fn svg(&self) -> String {
         let xs = self.series.iter().flat_map(|s| s.points.iter().map(|p| p[0]));
-        let ys = self.series.iter().flat_map(|s| s.points.iter().map(|p| p[1].max(self.y_floor)));
-        let (x, y) = (Decades::around(xs), Decades::around(ys));
+        let ys = self.series.iter().flat_map(|s| s.points.iter().map(|p| p[1].max(self.floor)));
+        let (x, y) = (Axis::around(self.scales[0], xs), Axis::around(self.scales[1], ys));
         let px = |v: f64| LEFT + x.part(v) * (WIDTH - LEFT - RIGHT);
-        let py = |v: f64| HEIGHT - BOTTOM - y.part(v.max(self.y_floor)) * (HEIGHT - TOP - BOTTOM);
+        let py = |v: f64| HEIGHT - BOTTOM - y.part(v.max(self.floor)) * (HEIGHT - TOP - BOTTOM);
         let mut svg = format!(
             "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" xmlns=\"http://www.w3.org/2000/svg\" \
              font-family=\"system-ui, sans-serif\" font-size=\"12\" fill=\"currentColor\">\n\
@@ -78,7 +88,7 @@ impl LogLog {
             escape(&self.y)
         );
         for (i, series) in self.series.iter().enumerate() {
-            let colour = COLOURS[i % COLOURS.len()];
+            let colour = COLOURS[series.colour % COLOURS.len()];
             let _ = writeln!(svg, "<g fill=\"{colour}\" stroke=\"{colour}\"><title>{}</title>", escape(&series.name));
             if series.joined && !series.points.is_empty() {
                 let path: Vec<String> =
@@ -110,40 +120,64 @@ impl LogLog {
     }
 }
 
-/// A range of whole decades.
+/// The range of an axis, in whole ticks.
 #[derive(Clone, Copy, Debug)]
-struct Decades {
-    from: i32,
-    to: i32,
+struct Axis {
+    scale: Scale,
+    /// The ends and the tick, in decades on a logarithmic axis.
+    from: f64,
+    to: f64,
+    tick: f64,
 }
 
-impl Decades {
-    fn around(values: impl Iterator<Item = f64>) -> Self {
+impl Axis {
+    fn around(scale: Scale, values: impl Iterator<Item = f64>) -> Self {
+        let place = |v: f64| if scale == Scale::Log { v.log10() } else { v };
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for v in values.filter(|v| *v > 0.0 && v.is_finite()) {
+        for v in values.map(place).filter(|v| v.is_finite()) {
             (low, high) = (low.min(v), high.max(v));
         }
         if low > high {
-            return Self { from: 0, to: 1 };
+            (low, high) = (0.0, 1.0);
         }
-        let (from, to) = (low.log10().floor() as i32, high.log10().ceil() as i32);
-        Self { from, to: to.max(from + 1) }
+        let tick = match scale {
+            Scale::Log => ((high - low) / 9.0).floor().max(1.0),
+            // 1, 2 or 5 times a power of ten, five to ten of them.
+            Scale::Linear => {
+                let span = if high > low { high - low } else { 1.0 };
+                let ten = 10f64.powf((span / 5.0).log10().floor());
+                [5.0, 2.0, 1.0].map(|m| m * ten).into_iter().find(|t| span / t >= 5.0).unwrap_or(ten)
+            }
+        };
+        let from = (low / tick).floor() * tick;
+        Self { scale, from, to: ((high / tick).ceil() * tick).max(from + tick), tick }
     }
 
     /// Where between its ends a value lies, from 0 to 1.
     fn part(self, value: f64) -> f64 {
-        if value > 0.0 {
-            ((value.log10() - f64::from(self.from)) / f64::from(self.to - self.from)).clamp(0.0, 1.0)
-        } else {
-            0.0
-        }
+        let place = match self.scale {
+            Scale::Linear => value,
+            Scale::Log if value > 0.0 => value.log10(),
+            Scale::Log => return 0.0,
+        };
+        ((place - self.from) / (self.to - self.from)).clamp(0.0, 1.0)
     }
 
+    /// The values with a tick, and what is written at it.
     fn ticks(self) -> impl Iterator<Item = (f64, String)> {
-        let step = (self.to - self.from).div_euclid(9).max(1);
-        (self.from..=self.to).step_by(step as usize).map(|e| {
-            let label = if (0..4).contains(&e) { format!("{}", 10i32.pow(e as u32)) } else { format!("1e{e}") };
-            (10f64.powi(e), label)
+        let count = ((self.to - self.from) / self.tick).round() as usize;
+        (0..=count).map(move |i| {
+            let place = self.from + i as f64 * self.tick;
+            match self.scale {
+                Scale::Log if (0.0..4.0).contains(&place) => {
+                    (10f64.powf(place), format!("{}", 10f64.powf(place).round()))
+                }
+                Scale::Log => (10f64.powf(place), format!("1e{place}")),
+                Scale::Linear => {
+                    let decimals = (-self.tick.log10().floor()).max(0.0) as usize;
+                    (place, format!("{place:.decimals$}"))
+                }
+            }
         })
     }
 }
@@ -158,11 +192,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn decades_hold_their_values() {
-        let decades = Decades::around([3e-9, 0.0, 2e4, f64::NAN].into_iter());
-        assert_eq!((decades.from, decades.to), (-9, 5), "whole decades around the positive values");
-        assert_eq!(decades.part(0.0), 0.0, "zero lies at the lower edge");
-        assert_eq!(decades.part(1e5), 1.0, "the upper edge");
-        assert_eq!(Decades::around([1.0].into_iter()).part(1.0), 0.0, "one value still has a decade");
+    fn logarithmic_axes_go_by_whole_decades() {
+        let axis = Axis::around(Scale::Log, [3e-9, 0.0, 2e4, f64::NAN].into_iter());
+        assert_eq!((axis.from, axis.to), (-9.0, 5.0), "whole decades around the positive values");
+        assert_eq!(axis.part(0.0), 0.0, "zero lies at the lower edge");
+        assert_eq!(axis.part(1e5), 1.0, "the upper edge");
+        assert_eq!(Axis::around(Scale::Log, [1.0].into_iter()).part(1.0), 0.0, "one value still has a decade");
+    }
+
+    #[test]
+    fn linear_axes_go_by_round_ticks() {
+        let axis = Axis::around(Scale::Linear, [0.12, 4.9].into_iter());
+        assert_eq!((axis.from, axis.to, axis.tick), (0.0, 5.0, 0.5), "whole ticks around the values");
+        let labels: Vec<String> = axis.ticks().map(|(_, label)| label).collect();
+        assert_eq!((labels[0].as_str(), labels[10].as_str()), ("0.0", "5.0"), "{labels:?}");
     }
 }

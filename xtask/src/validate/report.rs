@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::Record;
 use super::summary::{Group, HEADERS, by_file, by_query, by_tag, total};
-use crate::plot::{LogLog, Series, escape};
+use crate::plot::{Plot, Scale, Series, escape};
 
 const STYLE: &str = "
 :root { color-scheme: light dark }
@@ -87,26 +87,40 @@ fn html(records: &[Record]) -> String {
     page
 }
 
+/// The queries that have a scalar, in the order of their colours.
+const QUERIES: [&str; 8] = [
+    "ray_cast",
+    "linear_cast",
+    "distance",
+    "margin",
+    "enclosing_ellipsoid",
+    "inscribed_ellipsoid",
+    "track",
+    "clearance",
+];
+
+/// The error that is plotted: relative, but for the logarithm of a volume its own, which is relative already.
+fn plotted(record: &Record) -> Option<f64> {
+    if record.query.ends_with("_ellipsoid") { record.verdict.error } else { record.verdict.relative }
+}
+
 /// Relative error against time, a colour for each query.
 fn figure(records: &[Record]) -> String {
     ["f64", "f32"]
         .into_iter()
         .map(|precision| {
-            let mut series = BTreeMap::<&str, Vec<[f64; 2]>>::new();
-            for r in records.iter().filter(|r| r.precision == precision) {
-                if let (Some(time), Some(relative)) = (r.time, r.verdict.relative) {
-                    series.entry(&r.query).or_default().push([time, relative]);
-                }
-            }
-            let plot = LogLog {
+            let series = |(colour, query): (usize, &&str)| {
+                let of_query = records.iter().filter(|r| r.precision == precision && r.query == **query);
+                let points: Vec<[f64; 2]> = of_query.filter_map(|r| Some([r.time?, plotted(r)?.min(1.0)])).collect();
+                (!points.is_empty()).then(|| Series { name: (*query).to_owned(), points, joined: false, colour })
+            };
+            let plot = Plot {
                 title: format!("Relative error of the scalar against time per query, {precision}"),
                 x: "nanoseconds".to_owned(),
-                y: "relative error".to_owned(),
-                y_floor: FLOOR,
-                series: series
-                    .into_iter()
-                    .map(|(name, points)| Series { name: name.to_owned(), points, joined: false })
-                    .collect(),
+                y: "relative error; of a log-volume, absolute".to_owned(),
+                scales: [Scale::Log, Scale::Log],
+                floor: FLOOR,
+                series: QUERIES.iter().enumerate().filter_map(series).collect(),
             };
             format!(
                 "<figure>{}<figcaption>One dot per case, in {precision}; exact answers lie at the lower edge. A large \
