@@ -40,6 +40,7 @@ extern crate alloc;
 #[cfg(any(feature = "std", test))]
 extern crate std;
 
+mod bounds;
 mod closest_point;
 mod combinators;
 #[cfg(feature = "hull")]
@@ -57,6 +58,7 @@ mod vector;
 
 pub use glam;
 
+pub use bounds::{Aabb, BoundingSphere, bounding_box, bounding_sphere};
 pub use closest_point::ClosestPoint;
 pub use combinators::{Affine, Difference, Hull, MinkowskiSum, Posed, Rounded};
 pub use error::InvalidShape;

@@ -1,9 +1,10 @@
 //! The laws of support maps, one property each, over every shape and combinator in every space.
 
-use convex_support::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
+use convex_support::glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::strategies::{self, AnyShape};
 use convex_support::{
     Affine, Ball, Difference, Hint, Hull, Matrix, MinkowskiSum, Posed, Rounded, Scalar, SupportMap, Vector,
+    bounding_box, bounding_sphere,
 };
 use num_traits::Float;
 use proptest::prelude::*;
@@ -241,4 +242,41 @@ impl Law for NothingPanics {
 #[test]
 fn zero_gives_a_point_of_the_set_and_nothing_panics() {
     holds::<NothingPanics>();
+}
+
+struct BoundsContainTheSet;
+impl Law for BoundsContainTheSet {
+    fn check<V: Vector>(shape: &AnyShape<V>, d: V, _: V, tolerance: V::Scalar) -> Result<(), TestCaseError> {
+        let (aabb, sphere, p) = (bounding_box(shape), bounding_sphere(shape), shape.support(d));
+        prop_assert_eq!(
+            p.min(aabb.max + V::ONE * tolerance).max(aabb.min - V::ONE * tolerance),
+            p,
+            "the box is too small"
+        );
+        prop_assert!((p - sphere.center).norm() <= sphere.radius + tolerance, "{:?} is too small for {:?}", sphere, p);
+        for i in 0..V::DIM {
+            let (low, high) = (shape.support(-V::axis(i)).get(i), shape.support(V::axis(i)).get(i));
+            close("the low side", aabb.min.get(i), low, tolerance)?;
+            close("the high side", aabb.max.get(i), high, tolerance)?;
+        }
+        prop_assert!(sphere.radius <= aabb.half_extents().norm() + tolerance, "{:?} is larger than {:?}", sphere, aabb);
+        Ok(())
+    }
+}
+
+#[test]
+fn bounds_contain_the_set_tightly() {
+    holds::<BoundsContainTheSet>();
+}
+
+#[test]
+fn a_scaled_or_mirrored_ball_stays_a_ball() {
+    let ball = Ball::<DVec3>::new(0.5).expect("r ≥ 0");
+    let mirror = DMat3::from_diagonal(DVec3::new(-2.0, 2.0, 2.0));
+    let turned = DMat3::from_quat(DQuat::from_xyzw(0.1, 0.2, 0.3, 0.9).normalize());
+    let image = Affine::new(ball, mirror * turned, DVec3::X).expect("finite");
+    assert!((image.radius() - 1.0).abs() < 1e-15, "{}", image.radius());
+    assert_eq!(image.core_support(DVec3::ONE, &mut Hint::new()), DVec3::ZERO, "its core stays a point");
+    let sheared = Affine::new(ball, DMat3::from_diagonal(DVec3::new(2.0, 2.0, 1.0)), DVec3::X).expect("finite");
+    assert_eq!(sheared.radius(), 0.0, "an ellipsoid is its own core");
 }

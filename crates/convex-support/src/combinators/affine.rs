@@ -1,8 +1,10 @@
 //! A shape under an affine map.
 
+use num_traits::Float as _;
+
 use crate::error::{InvalidShape, finite, finite_matrix};
-use crate::support::{swept, swept_derivative};
-use crate::{Hint, Matrix, SupportMap, Vector};
+use crate::support::{ScalarOf, swept, swept_derivative};
+use crate::{Hint, Matrix, Scalar, SupportMap, Vector};
 
 /// The image `M·C + t` of a shape under an affine map: scaled, sheared, mirrored, or flattened where `M` is singular.
 ///
@@ -19,6 +21,8 @@ pub struct Affine<S: SupportMap> {
     shape: S,
     matrix: <S::Vector as Vector>::Matrix,
     translation: S::Vector,
+    /// The factor `s` where the matrix is `s` times a rotation or reflection: a ball then stays a ball.
+    scale: Option<ScalarOf<S>>,
 }
 
 impl<S: SupportMap> Affine<S> {
@@ -27,7 +31,8 @@ impl<S: SupportMap> Affine<S> {
     /// # Errors
     /// [`InvalidShape::NonFinite`] if a number is not finite.
     pub fn new(shape: S, matrix: <S::Vector as Vector>::Matrix, translation: S::Vector) -> Result<Self, InvalidShape> {
-        Ok(Self { shape, matrix: finite_matrix("matrix", matrix)?, translation: finite("translation", translation)? })
+        let matrix = finite_matrix("matrix", matrix)?;
+        Ok(Self { shape, matrix, translation: finite("translation", translation)?, scale: uniform_scale(matrix) })
     }
 
     /// The shape before it is mapped.
@@ -65,16 +70,52 @@ impl<S: SupportMap> SupportMap for Affine<S> {
 
     #[inline]
     fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
-        // A ball does not stay a ball, so it becomes part of the core.
         let direction = self.matrix.transpose_mul(direction);
-        self.matrix * (self.shape.core_support(direction, hint) + swept(self.shape.radius(), direction))
+        let core = self.shape.core_support(direction, hint);
+        match self.scale {
+            Some(_) => self.matrix * core,
+            // A ball does not stay a ball, so it becomes part of the core.
+            None => self.matrix * (core + swept(self.shape.radius(), direction)),
+        }
     }
 
     #[inline]
     fn core_support_derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
         let (direction, change) = (self.matrix.transpose_mul(direction), self.matrix.transpose_mul(change));
-        self.matrix
-            * (self.shape.core_support_derivative(direction, change)
-                + swept_derivative(self.shape.radius(), direction, change))
+        let core = self.shape.core_support_derivative(direction, change);
+        match self.scale {
+            Some(_) => self.matrix * core,
+            None => self.matrix * (core + swept_derivative(self.shape.radius(), direction, change)),
+        }
     }
+
+    #[inline]
+    fn radius(&self) -> ScalarOf<S> {
+        self.scale.map_or(ScalarOf::<S>::ZERO, |scale| scale * self.shape.radius())
+    }
+
+    fn core_extent(&self) -> ScalarOf<S> {
+        match self.scale {
+            Some(scale) => scale * self.shape.core_extent(),
+            // |M·x| and every product in it are bounded by the Frobenius norm of M times |x|.
+            None => {
+                let columns = S::Vector::from_fn(|j| self.matrix.col(j).norm());
+                columns.norm() * (self.shape.core_extent() + self.shape.radius())
+            }
+        }
+    }
+}
+
+/// The factor `s > 0` where the matrix is, to rounding, `s` times an orthogonal one.
+fn uniform_scale<M: Matrix>(matrix: M) -> Option<<M::Vector as Vector>::Scalar> {
+    type S<M> = <<M as Matrix>::Vector as Vector>::Scalar;
+    let scale = matrix.col(0).norm();
+    let tolerance = S::<M>::EPSILON * S::<M>::from_f64(4.0);
+    let like = |i: usize, j: usize| {
+        // The columns in units of the scale: orthonormal.
+        let product = (matrix.col(i) / scale).dot(matrix.col(j) / scale);
+        (product - if i == j { S::<M>::ONE } else { S::<M>::ZERO }).abs() <= tolerance
+    };
+    let pairs = (0..M::Vector::DIM).flat_map(|i| (0..=i).map(move |j| (i, j)));
+    (scale > S::<M>::ZERO && pairs.into_iter().all(|(i, j)| like(i, j))).then_some(scale)
 }

@@ -24,8 +24,8 @@ pub(super) struct Graph<V: Vector> {
     resolution: usize,
 }
 
-/// Vertices for each cell of the grid.
-const VERTICES_PER_CELL: f64 = 4.0;
+/// Vertices for each cell of the grid. Fewer cells mean longer climbs; more of them, that the grid leaves the cache.
+const VERTICES_PER_CELL: f64 = 1.0;
 
 impl<V: Vector> Graph<V> {
     /// A graph of vertices and undirected edges, given once in each direction and in any order.
@@ -129,7 +129,7 @@ impl<V: Vector> Graph<V> {
             places[i] = ((cell % self.resolution) as f64 + 0.5) / self.resolution as f64 * 2.0 - 1.0;
             cell /= self.resolution;
         }
-        let (axis, sign) = (cell / 2, if cell % 2 == 0 { 1.0 } else { -1.0 });
+        let (axis, sign) = (cell / 2, if cell.is_multiple_of(2) { 1.0 } else { -1.0 });
         V::from_fn(|i| {
             let steps = (i + V::DIM - axis) % V::DIM;
             V::Scalar::from_f64(if steps == 0 { sign } else { places[steps - 1] })

@@ -11,7 +11,7 @@ use crate::vector::power_of_two_below;
 use crate::{Scalar, Vector};
 
 /// Up to this many vertices a scan takes no longer than a climb (measured: docs/support-maps.md).
-const SCANNED: usize = 64;
+const SCANNED: usize = 40;
 
 impl<V: Vector> Polytope<V> {
     /// The convex hull of the points, reduced to its vertices, with the edges between them where there are many.
