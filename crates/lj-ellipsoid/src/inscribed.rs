@@ -15,7 +15,7 @@
 //! Y. Zhang, L. Gao, *On numerical solution of the maximum volume ellipsoid problem*, SIAM J. Optim. 14 (2003), treat the
 //! same conditions with m × m systems.
 
-use crate::dimension::{Const, Dimension, Dynamic};
+use crate::dimension::{Const, Dimension, Dynamic, LANES};
 use crate::ellipsoid::Ellipsoid;
 use crate::error::InscribedError;
 use crate::interior::{Coordinates, Polyhedron, round_coordinates};
@@ -351,6 +351,9 @@ pub(crate) fn solve<D: Dimension>(
     Ok(InscribedSolution { shape, log_det_gap, weights, status, iterations })
 }
 
+/// The complementarity below which the dual bound is evaluated.
+const WORTH_BOUNDING: f64 = 1e-3;
+
 type Maximum = (Point, Option<Dual>, Status, usize);
 
 /// The primal–dual iteration over { z : pᵢ·z ≤ 1 }.
@@ -376,7 +379,8 @@ fn maximize<D: Dimension>(
     let mut iteration = 0;
     let ended = loop {
         let growth = point.h.iter().zip(&point.c).fold(f64::INFINITY, |g: f64, (h, c)| g.min((h + c) / h));
-        let dual = dual_bound(dim, p, &point.v, &y);
+        // The complementarity Σyᵢcᵢ is about half the gap: while it is large the bound is not worth its price.
+        let dual = if dot(&point.c, &y) < WORTH_BOUNDING { dual_bound(dim, p, &point.v, &y) } else { None };
         let gap = dual
             .as_ref()
             .map_or(f64::INFINITY, |dual| 2.0 * (dual.log_det_bound - point.log_det - n as f64 * growth.ln()));
@@ -413,24 +417,36 @@ fn maximize<D: Dimension>(
             }
             let d = (mu - y[i] * point.c[i] - y[i] * change) / point.c[i];
             if d < 0.0 {
-                dual_length = dual_length.min(-0.99 * y[i] / d);
+                dual_length = dual_length.min(-0.995 * y[i] / d);
             }
             dy.push(d);
         }
-        let mut primal_length = 1.0;
+        // The longest of 1, 0.98, 0.96, 0.92, … that keeps off the boundary.
+        let (mut primal_length, mut shortfall) = (1.0, 0.02);
         let moved = loop {
             let b = point.b.iter().zip(&db).map(|(x, d)| x + primal_length * d).collect();
             let d = point.d.iter().zip(&dd).map(|(x, d)| x + primal_length * d).collect();
             match Point::at(dim, p, b, d) {
-                Some(next) if next.c.iter().zip(&point.c).all(|(new, old)| *new >= 0.01 * old) => break Some(next),
+                Some(next) if next.c.iter().zip(&point.c).all(|(new, old)| *new >= 0.002 * old) => break Some(next),
                 _ if primal_length < 1e-9 => break None,
-                _ => primal_length *= 0.8,
+                _ if shortfall < 0.5 => {
+                    primal_length = 1.0 - shortfall;
+                    shortfall *= 2.0;
+                }
+                _ => primal_length *= 0.6,
             }
         };
         let Some(moved) = moved else { break Status::Stalled };
         point = moved;
         y.iter_mut().zip(&dy).for_each(|(y, d)| *y += dual_length * d);
-        centring = if primal_length.min(dual_length) > 0.7 { 0.03 } else { 0.3 };
+        // Near the end full steps are taken and μ may fall fast; a bold step from afar costs several to recover.
+        centring = match primal_length.min(dual_length) {
+            length if length > 0.95 && dot(&point.c, &y) < 0.1 => 0.005,
+            length if length > 0.7 => 0.05,
+            length if length > 0.3 => 0.3,
+            // Products yᵢcᵢ too uneven for progress: even them out.
+            _ => 1.0,
+        };
     };
     Ok((point, best.1, ended, iteration))
 }
@@ -440,12 +456,13 @@ struct System {
     size: usize,
     matrix: Vec<f64>,
     right: Vec<f64>,
+    gradients: Vec<f64>,
 }
 
 impl System {
     fn new(n: usize) -> Self {
         let size = n * (n + 3) / 2;
-        Self { size, matrix: vec![0.0; size * size], right: vec![0.0; size] }
+        Self { size, matrix: vec![0.0; size * size], right: vec![0.0; size], gradients: Vec::new() }
     }
 
     /// Assembles and solves
@@ -457,38 +474,49 @@ impl System {
         let n = dim.get();
         let size = self.size;
         let entries = size - n;
-        self.matrix.fill(0.0);
-        self.right.fill(0.0);
         let Some(inverse) = inverse(dim, &point.b) else { return false };
+        // −∇cᵢ = ∇hᵢ and pᵢ, unknown by unknown, so that the sums over the half-spaces run along lanes.
+        let m = y.len();
+        let gradients = &mut self.gradients;
+        gradients.resize(size * m, 0.0);
+        let mut a = 0;
+        for j in 0..n {
+            for k in j..n {
+                for (i, g) in gradients[a * m..(a + 1) * m].iter_mut().enumerate() {
+                    let (p, v) = (&p[i * n..(i + 1) * n], &point.v[i * n..(i + 1) * n]);
+                    *g = if j == k { v[j] * p[j] } else { v[j] * p[k] + v[k] * p[j] };
+                }
+                a += 1;
+            }
+        }
+        for j in 0..n {
+            for (i, g) in gradients[(entries + j) * m..(entries + j + 1) * m].iter_mut().enumerate() {
+                *g = p[i * n + j];
+            }
+        }
+        let ratio: Vec<f64> = y.iter().zip(&point.c).map(|(y, c)| y / c).collect();
+        let curvature: Vec<f64> = y.iter().zip(&point.h).map(|(y, h)| y / h).collect();
+        let pull: Vec<f64> = point.c.iter().map(|c| mu / c).collect();
+        // Along B: (yᵢ/cᵢ − yᵢ/hᵢ)∇hᵢ∇hᵢᵀ, the second from the curvature; along d, and between them: yᵢ/cᵢ.
+        let along_b: Vec<f64> = ratio.iter().zip(&curvature).map(|(r, c)| r - c).collect();
+        let mut weighted = vec![0.0; m];
+        for a in 0..size {
+            let weight = if a < entries { &along_b } else { &ratio };
+            let g = &gradients[a * m..(a + 1) * m];
+            weighted.iter_mut().zip(weight.iter().zip(g)).for_each(|(x, (w, g))| *x = w * g);
+            for b in 0..=a {
+                self.matrix[a * size + b] = dot_in_lanes(&weighted, &gradients[b * m..(b + 1) * m]);
+            }
+            self.right[a] = -dot_in_lanes(&pull, g);
+        }
         // Σ(yᵢ/hᵢ)|Δpᵢ|² = tr(Δ·W·Δ), W = Σ(yᵢ/hᵢ)pᵢpᵢᵀ.
         let mut w = vec![0.0; n * n];
-        let mut gradient = vec![0.0; size];
-        for i in 0..y.len() {
-            let (p, v) = (&p[i * n..(i + 1) * n], &point.v[i * n..(i + 1) * n]);
-            let (ratio, curvature) = (y[i] / point.c[i], y[i] / point.h[i]);
-            let mut at = 0;
-            for j in 0..n {
-                gradient[at] = v[j] * p[j];
-                at += 1;
-                for k in j + 1..n {
-                    gradient[at] = v[j] * p[k] + v[k] * p[j];
-                    at += 1;
-                }
-                for k in 0..n {
-                    w[j * n + k] += curvature * p[j] * p[k];
-                }
+        for j in 0..n {
+            let pj = &gradients[(entries + j) * m..(entries + j + 1) * m];
+            weighted.iter_mut().zip(curvature.iter().zip(pj)).for_each(|(x, (c, p))| *x = c * p);
+            for k in 0..n {
+                w[j * n + k] = dot_in_lanes(&weighted, &gradients[(entries + k) * m..(entries + k + 1) * m]);
             }
-            gradient[entries..].copy_from_slice(p);
-            let pull = mu / point.c[i];
-            for a in 0..size {
-                self.right[a] -= pull * gradient[a];
-                let weight = if a < entries { ratio - curvature } else { ratio };
-                let row = &mut self.matrix[a * size..a * size + a + 1];
-                for (entry, g) in row.iter_mut().zip(&gradient) {
-                    *entry += weight * gradient[a] * g;
-                }
-            }
-            // The rows of d also meet columns of B, with yᵢ/cᵢ alone: handled by their weight above.
         }
         let mut a = 0;
         for i in 0..n {
@@ -527,6 +555,19 @@ impl System {
         }
         (db, self.right[at..].to_vec())
     }
+}
+
+/// a·b with four partial sums, which the compiler keeps in vector registers.
+fn dot_in_lanes(a: &[f64], b: &[f64]) -> f64 {
+    let (a, a_rest) = a.as_chunks::<LANES>();
+    let (b, b_rest) = b.as_chunks::<LANES>();
+    let mut sums = [0.0; LANES];
+    for (a, b) in a.iter().zip(b) {
+        for lane in 0..LANES {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    sums.iter().sum::<f64>() + dot(a_rest, b_rest)
 }
 
 /// tr(CΔC∇) + tr(ΔW∇) for Δ and ∇ the symmetric unit matrices of the entries (i, j) and (k, l).
