@@ -2,9 +2,11 @@
 
 mod book2d;
 mod engine;
+mod footprint;
 mod mesh;
 mod plot;
 mod query;
+mod render;
 mod scene;
 mod validate;
 mod wire;
@@ -64,6 +66,21 @@ enum Task {
         #[arg(long, value_name = "FOLDER", default_value = "target/book2d")]
         output: PathBuf,
     },
+    /// Render a picture by GJK ray casts.
+    Render {
+        /// The picture.
+        #[arg(value_name = "PNG", default_value = "target/render.png")]
+        file: PathBuf,
+        /// Its width in pixels; the height is 9/16 of it.
+        #[arg(long, default_value_t = 1280, value_parser = clap::value_parser!(u32).range(16..=16384))]
+        width: u32,
+    },
+    /// Measure what importing each crate alone costs: packages, build time, code size.
+    Footprint {
+        /// Where the programs are built; emptied first.
+        #[arg(long, value_name = "FOLDER", default_value = "target/footprint")]
+        output: PathBuf,
+    },
 }
 
 fn main() -> ExitCode {
@@ -71,6 +88,8 @@ fn main() -> ExitCode {
         Task::Query { files } => query::run(&files),
         Task::Validate { files, report } => validate::run(&files, &report),
         Task::Book2d { output } => book2d::run(&output),
+        Task::Render { file, width } => render::run(&file, width),
+        Task::Footprint { output } => footprint::run(&output),
         Task::Scene { file, truth, output } => scene::run(&file, truth.as_deref(), &output),
     }
 }

@@ -1,0 +1,150 @@
+//! `cargo xtask footprint`: what importing each crate alone costs. Packages in the tree, time of a clean build, and the
+//! code of a program that asks one question, beside a program that asks none.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+use std::process::{Command, ExitCode};
+use std::time::Instant;
+
+/// A program that asks one question.
+struct Program {
+    name: &'static str,
+    /// The crate it imports, and the features it does so with; none for the program to compare with.
+    import: Option<(&'static str, &'static str)>,
+    body: &'static str,
+}
+
+const SUPPORT: &str = "
+    use convex_support::{Cuboid, SupportMap, glam::DVec3};
+    let cuboid = Cuboid::new(DVec3::splat(input())).unwrap();
+    println!(\"{}\", cuboid.support(DVec3::splat(input())));";
+
+const RAY: &str = "
+    use gjk_raycast::convex_support::{Cuboid, glam::DVec3};
+    use gjk_raycast::{Ray, RayCastOptions, ray_cast};
+    let cuboid = Cuboid::new(DVec3::splat(input())).unwrap();
+    let ray = Ray { source: DVec3::splat(9.0 * input()), direction: DVec3::splat(-input()) };
+    println!(\"{:?}\", ray_cast(&cuboid, ray, RayCastOptions::default()).unwrap().lower);";
+
+const ENCLOSING: &str = "
+    use lj_ellipsoid::{EnclosingOptions, enclosing};
+    let a = input();
+    let points = [[a, 0.0, 0.0], [0.0, a, 0.0], [0.0, 0.0, a], [a, a, a], [-a, a, 0.5]];
+    println!(\"{}\", enclosing(&points, EnclosingOptions::default()).unwrap().log_det_gap);";
+
+const MARGIN: &str = "
+    use ellip_margin::convex_support::{Ellipsoid, glam::{DQuat, DVec3}};
+    use ellip_margin::{MarginOptions, free_margin};
+    let at = |x| Ellipsoid::new(DVec3::splat(x), DVec3::new(1.0, 2.0, input()), DQuat::IDENTITY).unwrap();
+    println!(\"{}\", free_margin(&at(0.0), &at(9.0), MarginOptions::default()).margin);";
+
+const EIGEN: &str = "
+    use ellip_margin::convex_support::{Ellipsoid, glam::{DQuat, DVec3}};
+    let at = |x| Ellipsoid::new(DVec3::splat(x), DVec3::new(1.0, 2.0, input()), DQuat::IDENTITY).unwrap();
+    println!(\"{}\", ellip_margin::eigen::free_margin_eigen(&at(0.0), &at(9.0)).margin);";
+
+const PROGRAMS: &[Program] = &[
+    Program { name: "nothing", import: None, body: "println!(\"{}\", input());" },
+    Program { name: "convex-support", import: Some(("convex-support", "\"std\"")), body: SUPPORT },
+    Program { name: "convex-support, libm", import: Some(("convex-support", "\"libm\"")), body: SUPPORT },
+    Program { name: "convex-support, hull", import: Some(("convex-support", "\"std\", \"hull\"")), body: SUPPORT },
+    Program { name: "gjk-raycast", import: Some(("gjk-raycast", "\"std\"")), body: RAY },
+    Program { name: "gjk-raycast, libm", import: Some(("gjk-raycast", "\"libm\"")), body: RAY },
+    Program { name: "lj-ellipsoid", import: Some(("lj-ellipsoid", "")), body: ENCLOSING },
+    Program { name: "lj-ellipsoid, faer", import: Some(("lj-ellipsoid", "\"faer\"")), body: ENCLOSING },
+    Program { name: "ellip-margin", import: Some(("ellip-margin", "\"std\"")), body: MARGIN },
+    Program { name: "ellip-margin, libm", import: Some(("ellip-margin", "\"libm\"")), body: MARGIN },
+    Program { name: "ellip-margin, eigen", import: Some(("ellip-margin", "\"std\", \"eigen\"")), body: EIGEN },
+];
+
+/// What a program costs.
+struct Cost {
+    packages: usize,
+    seconds: f64,
+    bytes: u64,
+}
+
+/// Builds the programs in `folder` and prints a table.
+pub(crate) fn run(folder: &Path) -> ExitCode {
+    match measure(folder) {
+        Ok(table) => {
+            let written = fs::write(folder.join("footprint.md"), &table);
+            let _ = io::stdout().write_all(table.as_bytes());
+            if written.is_ok() { ExitCode::SUCCESS } else { ExitCode::from(2) }
+        }
+        Err(why) => {
+            let _ = writeln!(io::stderr(), "error: {why}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn measure(folder: &Path) -> Result<String, String> {
+    let failed = |why: io::Error| format!("cannot build in {}: {why}", folder.display());
+    if folder.exists() {
+        fs::remove_dir_all(folder).map_err(failed)?;
+    }
+    fs::create_dir_all(folder).map_err(failed)?;
+    let folder = folder.canonicalize().map_err(failed)?;
+    let mut table =
+        String::from("| program that asks one question | packages | clean build | code |\n|---|---:|---:|---:|\n");
+    let mut nothing = 0;
+    for program in PROGRAMS {
+        let cost = build(program, &folder)?;
+        if program.import.is_none() {
+            nothing = cost.bytes;
+        }
+        table += &format!(
+            "| {} | {} | {:.1} s | {} kB |\n",
+            program.name,
+            cost.packages,
+            cost.seconds,
+            cost.bytes.saturating_sub(nothing) / 1000
+        );
+    }
+    Ok(table)
+}
+
+fn build(program: &Program, folder: &Path) -> Result<Cost, String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
+    let here = folder.join(program.name.replace(", ", "-"));
+    let failed = |why: io::Error| format!("cannot build {}: {why}", program.name);
+    let import = program.import.map_or_else(String::new, |(name, features)| {
+        let path = root.join("crates").join(name);
+        format!("{name} = {{ path = {path:?}, default-features = false, features = [{features}] }}\n")
+    });
+    let manifest = format!(
+        "[package]\nname = \"program\"\nversion = \"0.0.0\"\nedition = \"2024\"\n[workspace]\n[dependencies]\n{import}\
+         [profile.release]\nlto = true\ncodegen-units = 1\nstrip = true\npanic = \"abort\"\n"
+    );
+    let source =
+        format!("fn input() -> f64 {{ std::env::args().count() as f64 }}\nfn main() {{\n{}\n}}\n", program.body);
+    fs::create_dir_all(here.join("src")).map_err(failed)?;
+    fs::write(here.join("Cargo.toml"), manifest).map_err(failed)?;
+    fs::write(here.join("src/main.rs"), source).map_err(failed)?;
+    // The versions of the workspace, so that nothing new is fetched.
+    fs::copy(root.join("Cargo.lock"), here.join("Cargo.lock")).map_err(failed)?;
+
+    let cargo = |arguments: &[&str]| {
+        let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        // Not the target folder of whoever runs this: the build must be a clean one.
+        command.args(arguments).current_dir(&here).env("CARGO_TARGET_DIR", here.join("target"));
+        let output = command.output().map_err(failed)?;
+        if output.status.success() {
+            Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+        } else {
+            Err(format!("cannot build {}: {}", program.name, String::from_utf8_lossy(&output.stderr)))
+        }
+    };
+    let tree = cargo(&["tree", "--quiet", "--edges", "normal", "--prefix", "none", "--format", "{p}"])?;
+    // The program itself does not count.
+    let packages: BTreeSet<&str> = tree.lines().filter(|line| !line.starts_with("program ")).collect();
+    let start = Instant::now();
+    cargo(&["build", "--quiet", "--release"])?;
+    let seconds = start.elapsed().as_secs_f64();
+    let binary = here.join("target/release").join(format!("program{}", std::env::consts::EXE_SUFFIX));
+    let bytes = fs::metadata(binary).map_err(failed)?.len();
+    Ok(Cost { packages: packages.len(), seconds, bytes })
+}
