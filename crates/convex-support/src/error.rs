@@ -46,6 +46,9 @@ pub enum InvalidShape {
     NotPositiveDefinite,
     /// A rotation is the zero quaternion.
     ZeroRotation,
+    /// The columns of a matrix that should be a rotation or a set of axes are not orthonormal, to half the digits of the
+    /// scalar, or a rotation mirrors.
+    NotOrthonormal,
 }
 
 impl fmt::Display for InvalidShape {
@@ -65,6 +68,7 @@ impl fmt::Display for InvalidShape {
                 write!(f, "the matrix must be symmetric, but entries ({row}, {column}) and ({column}, {row}) differ")
             }
             Self::NotPositiveDefinite => f.write_str("the matrix must be positive definite, but it is not"),
+            Self::NotOrthonormal => f.write_str("the columns of the matrix must be orthonormal, but they are not"),
             Self::ZeroRotation => f.write_str("the rotation must not be the zero quaternion"),
         }
     }
@@ -89,6 +93,19 @@ pub(crate) fn finite<V: crate::Vector>(parameter: &'static str, vector: V) -> Re
         Some(index) => Err(InvalidShape::NonFinite { parameter, index }),
         None => Ok(vector),
     }
+}
+
+/// `matrix` if its columns are orthonormal to half the digits of the scalar: enough to find a blunder, and not so strict as
+/// to refuse a matrix that has drifted.
+pub(crate) fn orthonormal<M: crate::Matrix>(parameter: &'static str, matrix: M) -> Result<M, InvalidShape> {
+    use crate::{Scalar, Vector};
+    use num_traits::Float as _;
+    type S<M> = <<M as crate::Matrix>::Vector as Vector>::Scalar;
+    let matrix = finite_matrix(parameter, matrix)?;
+    let unit = |i, j| if i == j { S::<M>::ONE } else { S::<M>::ZERO };
+    let off = |i, j| (matrix.col(i).dot(matrix.col(j)) - unit(i, j)).abs();
+    let all = (0..M::Vector::DIM).all(|i| (0..=i).all(|j| off(i, j) <= S::<M>::EPSILON.sqrt()));
+    if all { Ok(matrix) } else { Err(InvalidShape::NotOrthonormal) }
 }
 
 /// `matrix` if its entries are finite.

@@ -47,6 +47,8 @@ mod combinators;
 mod convex_hull;
 mod error;
 mod hint;
+#[cfg(feature = "serde")]
+mod interop_serde;
 mod line_crossing;
 mod scalar;
 mod shapes;

@@ -1,8 +1,10 @@
 //! A shape moved without deforming it.
 
-use crate::error::{InvalidShape, finite};
+use num_traits::Float as _;
+
+use crate::error::{InvalidShape, finite, orthonormal};
 use crate::support::ScalarOf;
-use crate::{Hint, Matrix, SupportMap, Vector};
+use crate::{Hint, Matrix, Scalar, SupportMap, Vector};
 
 /// The image `R·C + t` of a shape under a rotation and then a translation.
 ///
@@ -37,6 +39,24 @@ impl<S: SupportMap> Posed<S> {
         Ok(Self { shape, rotation, translation: finite("translation", translation)? })
     }
 
+    /// The shape moved by a rotation matrix, then by `translation`: for poses that come as glam's `DAffine3` or as a
+    /// matrix. A matrix that has drifted from orthonormality is taken to the nearest rotation.
+    ///
+    /// # Errors
+    /// [`InvalidShape`] if a number is not finite, the columns are not orthonormal even to half of their digits, or
+    /// the matrix mirrors.
+    pub fn from_matrix(
+        shape: S,
+        rotation: <S::Vector as Vector>::Matrix,
+        translation: S::Vector,
+    ) -> Result<Self, InvalidShape> {
+        let rotation = orthonormal("rotation", rotation)?;
+        if rotation.determinant() < ScalarOf::<S>::ZERO {
+            return Err(InvalidShape::NotOrthonormal);
+        }
+        Ok(Self { shape, rotation: polished(rotation), translation: finite("translation", translation)? })
+    }
+
     /// The shape moved by `translation`.
     ///
     /// # Errors
@@ -62,6 +82,19 @@ impl<S: SupportMap> Posed<S> {
     pub fn translation(&self) -> S::Vector {
         self.translation
     }
+}
+
+/// The nearest rotation to a matrix that is one to half its digits, by one step of Newton's method for the orthogonal
+/// polar factor, `R·(3 − RᵀR)/2`, which squares the error. What is a rotation to rounding stays as it is.
+fn polished<M: Matrix>(matrix: M) -> M {
+    type S<M> = <<M as Matrix>::Vector as Vector>::Scalar;
+    let gram = M::from_cols_fn(|j| matrix.transpose_mul(matrix.col(j)));
+    let off = (0..M::Vector::DIM).map(|j| (gram.col(j) - M::Vector::axis(j)).abs().max_element());
+    if off.fold(S::<M>::ZERO, S::<M>::max) <= S::<M>::EPSILON * S::<M>::from_f64(8.0) {
+        return matrix;
+    }
+    let (half, three) = (S::<M>::from_f64(0.5), S::<M>::from_f64(3.0));
+    matrix * M::from_cols_fn(|j| (M::Vector::axis(j) * three - gram.col(j)) * half)
 }
 
 impl<S: SupportMap> SupportMap for Posed<S> {

@@ -2,7 +2,7 @@
 
 use num_traits::Float as _;
 
-use crate::error::{InvalidShape, finite, finite_matrix};
+use crate::error::{InvalidShape, finite, finite_matrix, orthonormal};
 use crate::spd;
 use crate::support::{ScalarOf, swept_derivative};
 use crate::{Hint, Matrix, Scalar, SupportMap, Vector};
@@ -43,11 +43,12 @@ impl<V: Vector> Ellipsoid<V> {
     /// The ellipsoid about `center` whose semi-axis `i` lies along column `i` of `axes`, which must be orthonormal.
     ///
     /// # Errors
-    /// [`InvalidShape`] if a number is not finite or a semi-axis is not positive.
+    /// [`InvalidShape`] if a number is not finite, a semi-axis is not positive, or the axes are not orthonormal, not even
+    /// to half of their digits.
     pub fn from_axes(center: V, semi_axes: V, axes: V::Matrix) -> Result<Self, InvalidShape> {
         let center = finite("center", center)?;
         let semi_axes = finite("semi_axes", semi_axes)?;
-        let axes = finite_matrix("axes", axes)?;
+        let axes = orthonormal("axes", axes)?;
         match (0..V::DIM).find(|&i| semi_axes.get(i) <= V::Scalar::ZERO) {
             Some(index) => {
                 Err(InvalidShape::NotPositive { parameter: "semi_axes", index, value: semi_axes.get(index).as_f64() })
