@@ -234,6 +234,10 @@ impl<V: Vector> Clearance<V> {
     }
 }
 
+/// A link's boxes are searched to this multiple of the least √(1 + m), although farther ones than the least need not be: the
+/// bound so found lets the link be left out for some steps to come.
+const REACH: f64 = 1.5;
+
 /// How many pairs were solved and left out.
 #[derive(Default)]
 struct Count {
@@ -279,10 +283,11 @@ impl<V: Vector> Least<V> {
 struct Limit(f64, f64);
 
 impl Limit {
-    /// Whether `scale`² − 1 is greater, by more than rounding can have done. NaN never is.
+    /// Whether √(1 + m) ≥ `scale` means a greater m, by more than rounding can have done. A negative bound or NaN never does.
     #[inline]
     fn excludes(self, scale: f64) -> bool {
         let Self(margin, epsilon) = self;
+        let scale = scale.max(0.0);
         scale * scale > (1.0 + margin) * (1.0 + 64.0 * epsilon) + 64.0 * epsilon
     }
 }
@@ -383,7 +388,7 @@ impl<V: Vector> Search<V> {
         while depth > 0 {
             depth -= 1;
             let (node, distance) = stack[depth];
-            if self.least.excludes(distance) {
+            if self.least.excludes(distance / REACH) {
                 self.nearest = self.nearest.min(distance);
                 self.count.left_out.by_box += tree.count(node);
                 continue;

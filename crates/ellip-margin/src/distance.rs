@@ -269,9 +269,14 @@ impl<const N: usize> Slab<N> {
         16.0 * f64::EPSILON * extent
     }
 
+    /// Whether rounding leaves more than twelve digits of `width`.
+    fn is_wide(&self, pair: &Pair<N>) -> bool {
+        self.rounding(pair) <= 2.5e-13 * self.width
+    }
+
     /// f(n) with the rounding errors kept where they would show.
     fn exact_width(&self, pair: &Pair<N>) -> f64 {
-        if self.width > 1e4 * self.rounding(pair) { self.width } else { self.compensated_width(pair) }
+        if self.is_wide(pair) { self.width } else { self.compensated_width(pair) }
     }
 
     /// (n·r − ‖diag(a₁)R₁ᵀn‖ − ‖diag(a₂)R₂ᵀn‖)/‖n‖ in double-double.
@@ -294,8 +299,7 @@ impl<const N: usize> Slab<N> {
 
     /// The bracket, given the [`exact_width`](Self::exact_width).
     fn bracket<V: Vector>(&self, pair: &Pair<N>, width: f64) -> DistanceBracket<V> {
-        let rounding = self.rounding(pair);
-        let slack = if self.width > 1e4 * rounding { rounding } else { 8.0 * f64::EPSILON * width.abs() };
+        let slack = if self.is_wide(pair) { self.rounding(pair) } else { 8.0 * f64::EPSILON * width.abs() };
         // The lengths along and across n, so that the width's digits are not lost.
         let (f, t) = (self.width, sub(self.across, self.n.map(|x| x * self.width)));
         let upper = if f > 0.0 { width.max(0.0).hypot(dot(t, t).sqrt()) } else { self.length() };

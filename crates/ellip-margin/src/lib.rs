@@ -16,8 +16,10 @@ mod distance;
 mod double_double;
 #[cfg(feature = "eigen")]
 pub mod eigen;
+mod eigenvalue;
 mod error;
 mod gradient;
+mod hessian;
 mod hierarchy;
 mod inverse_iteration;
 mod margin;
@@ -34,6 +36,7 @@ pub use convex_support;
 
 pub use clearance::{Clearance, ClearanceResult, LeftOut, NearPair, clearance};
 pub use distance::{Distance, DistanceBracket, distance, distance_bracket};
+pub use eigenvalue::{EigenvalueGradient, eigenvalue_gradient};
 pub use error::InvalidQuery;
 pub use gradient::{MarginGradient, ShapeGradient};
 pub use inverse_iteration::InverseIterationTracker;

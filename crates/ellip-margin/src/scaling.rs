@@ -85,7 +85,7 @@ fn scaling_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, o
     let largest = sigma.iter().fold(0.0f64, |m, s| m.max(*s));
     let (mut low, mut high) = (least(sigma), largest);
     // Exact for round bodies.
-    let mut nu = (low.sqrt() * high.sqrt()).clamp(low, high);
+    let mut nu = (low.sqrt() * high.sqrt()).max(low).min(high);
     let (mut status, mut iterations) = (Status::IterationLimit, 0);
     let (mut x, mut w) = ([0.0; N], [0.0; N]);
     loop {
@@ -122,8 +122,9 @@ fn scaling_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, o
         }
     }
 
-    // The two norms agree to rounding; their geometric mean is stationary in ν.
-    let scale = (dot(x, x).sqrt() * dot(w, w).sqrt()).sqrt();
+    // α² = t(1 − t)rᵀ[…]⁻¹r = ν/(1 + ν)·Σ ĉᵢx̂ᵢ, stationary in ν.
+    let scale = (nu / (1.0 + nu) * dot(ball, x)).sqrt();
+    let status = if scale.is_finite() { status } else { Status::Stalled };
     let y = combine(v, x);
     let z = combine(pair.axes2, core::array::from_fn(|j| -y[j] / pair.a2[j]));
     let norm = dot(z, z).sqrt();

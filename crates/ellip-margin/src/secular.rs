@@ -116,7 +116,10 @@ pub(crate) fn solve<const N: usize>(
     // w = By − g = −ν·B⁻ᵀy
     let w: Vec<N> = core::array::from_fn(|i| tau * largest * (largest / sigma[i]) * x[i]);
     let y = combine(v, x);
-    Solution { nu, y, margin: margin(pair, dot(w, w), y, nu), status, iterations }
+    let margin = margin(pair, dot(w, w), y, nu);
+    // Sizes beyond the square root of the range of `f64`.
+    let status = if margin.is_finite() && nu.is_finite() { status } else { Status::Stalled };
+    Solution { nu, y, margin, status, iterations }
 }
 
 /// m from 1 + m = ‖w‖², where its digits are sure to suffice, and from the compensated Lagrangian where they are not.

@@ -1,0 +1,94 @@
+//! What must not change the answer, to the last bit where that can be asked.
+
+mod common;
+
+use common::{close, ellipsoid2, ellipsoid3, rotation, within};
+use convex_support::glam::{DMat3, DVec3, Vec3, Vec3A};
+use convex_support::{Ellipsoid, Matrix, Scalar, Vector};
+use ellip_margin::{MarginOptions, distance, free_margin, scaling};
+use proptest::prelude::*;
+
+/// All lengths times `s`.
+fn scaled<V: Vector>(e: &Ellipsoid<V>, s: V::Scalar) -> Ellipsoid<V> {
+    Ellipsoid::from_axes(e.center() * s, e.semi_axes() * s, e.axes()).expect("in range")
+}
+
+fn assert_scale_free<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, s: f64) {
+    let (o, k) = (MarginOptions::default(), V::Scalar::from_f64(s));
+    let (a, b) = (free_margin(e1, e2, o), free_margin(&scaled(e1, k), &scaled(e2, k), o));
+    assert_eq!((a.margin, a.nu, a.iterations), (b.margin, b.nu, b.iterations), "scaled by {s}");
+    assert_eq!(a.point * k, b.point, "scaled by {s}");
+    let (a, b) = (distance(e1, e2, o), distance(&scaled(e1, k), &scaled(e2, k), o));
+    assert_eq!(a.distance * k, b.distance, "scaled by {s}");
+    assert_eq!(a.bracket.lower * k, b.bracket.lower, "scaled by {s}");
+    assert_eq!(a.bracket.upper * k, b.bracket.upper, "scaled by {s}");
+    assert_eq!(scaling(e1, e2, o).scale, scaling(&scaled(e1, k), &scaled(e2, k), o).scale, "scaled by {s}");
+}
+
+/// The same body in single precision.
+fn single(e: &Ellipsoid<DVec3>) -> Ellipsoid<Vec3> {
+    let axes = Matrix::from_cols_fn(|j| Vector::from_fn(|i| e.axes().col(j)[i] as f32));
+    Ellipsoid::from_axes(e.center().as_vec3(), e.semi_axes().as_vec3(), axes).expect("in range")
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn powers_of_two(e1 in ellipsoid3(4.0, 2.0), e2 in ellipsoid3(4.0, 2.0), f1 in ellipsoid2(4.0, 2.0), f2 in ellipsoid2(4.0, 2.0), k in -40i32..40) {
+        let s = 2f64.powi(k);
+        assert_scale_free(&e1, &e2, s);
+        assert_scale_free(&f1, &f2, s);
+        assert_scale_free(&single(&e1), &single(&e2), s);
+    }
+
+    #[test]
+    fn rigid_motions(e1 in ellipsoid3(1.0, 2.0), e2 in ellipsoid3(1.0, 2.0), r in rotation(), t in within(3.0)) {
+        let o = MarginOptions::default();
+        let (a, b) = (free_margin(&e1, &e2, o), free_margin(&e1.posed(r, t).expect("finite"), &e2.posed(r, t).expect("finite"), o));
+        prop_assert!(close(1.0 + a.margin, 1.0 + b.margin, 1e-12, 1e-12), "{} and {}", a.margin, b.margin);
+        prop_assert!((r * a.point + t).abs_diff_eq(b.point, 1e-12));
+        let (a, b) = (distance(&e1, &e2, o), distance(&e1.posed(r, t).expect("finite"), &e2.posed(r, t).expect("finite"), o));
+        prop_assert!(close(a.distance, b.distance, 1e-11, 1e-13), "{} and {}", a.distance, b.distance);
+    }
+
+    /// An affine map changes both bodies and no margin.
+    #[test]
+    fn affine_maps(e1 in ellipsoid3(0.7, 2.0), e2 in ellipsoid3(0.7, 2.0), r in rotation(), d in [0.5..2.0f64, 0.5..2.0, 0.5..2.0]) {
+        let map = DMat3::from_quat(r) * DMat3::from_diagonal(DVec3::from_array(d));
+        let back = map.inverse();
+        let mapped = |e: &Ellipsoid<DVec3>| {
+            let x = back.transpose() * e.matrix() * back;
+            Ellipsoid::from_matrix(map * e.center(), (x + x.transpose()) * 0.5).expect("positive definite")
+        };
+        let o = MarginOptions::default();
+        let (a, b) = (free_margin(&e1, &e2, o), free_margin(&mapped(&e1), &mapped(&e2), o));
+        prop_assert!(close(1.0 + a.margin, 1.0 + b.margin, 1e-10, 1e-10), "{} and {}", a.margin, b.margin);
+    }
+
+    /// Vec3 and Vec3A hold the same numbers and get the same answer.
+    #[test]
+    fn layouts(e1 in ellipsoid3(2.0, 2.0), e2 in ellipsoid3(2.0, 2.0)) {
+        let aligned = |e: &Ellipsoid<Vec3>| {
+            let axes = Matrix::from_cols_fn(|j| Vec3A::from(e.axes().col(j)));
+            Ellipsoid::from_axes(Vec3A::from(e.center()), Vec3A::from(e.semi_axes()), axes).expect("valid")
+        };
+        let (a, b) = (single(&e1), single(&e2));
+        let o = MarginOptions::default();
+        let (m, n) = (free_margin(&a, &b, o), free_margin(&aligned(&a), &aligned(&b), o));
+        prop_assert_eq!((m.margin, m.nu), (n.margin, n.nu));
+    }
+
+    /// √(1 + m) is 1-Lipschitz in x₁ in the norm of P, and m is convex in it.
+    #[test]
+    fn lipschitz_and_convex(e1 in ellipsoid3(1.0, 2.0), e2 in ellipsoid3(1.0, 2.0), by in within(1.0)) {
+        let at = |t: f64| {
+            let e = Ellipsoid::from_axes(e1.center() + by * t, e1.semi_axes(), e1.axes()).expect("finite");
+            free_margin(&e, &e2, MarginOptions::default())
+        };
+        let (a, middle, b) = (at(0.0), at(0.5), at(1.0));
+        let step = ((e1.axes().transpose() * by) / e1.semi_axes()).length();
+        prop_assert!((a.scale() - b.scale()).abs() <= step * (1.0 + 1e-12) + 1e-12);
+        prop_assert!(2.0 * middle.margin <= (a.margin + b.margin) + 1e-12 * (2.0 + a.margin + b.margin));
+    }
+}

@@ -1,0 +1,67 @@
+//! Trackers: any step gives what a cold start gives.
+
+mod common;
+
+use common::{close, ellipsoid3};
+use convex_support::Ellipsoid;
+use convex_support::glam::{DQuat, DVec2, DVec3};
+use ellip_margin::{InverseIterationTracker, MarginOptions, MarginTracker, free_margin};
+use proptest::prelude::*;
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    /// Bodies that have nothing to do with the ones before: the greatest jump there is.
+    #[test]
+    fn teleports(pairs in prop::collection::vec((ellipsoid3(5.0, 2.0), ellipsoid3(5.0, 2.0)), 1..20)) {
+        let mut track = MarginTracker::default();
+        for (e1, e2) in &pairs {
+            let (warm, cold) = (track.step(e1, e2), free_margin(e1, e2, MarginOptions::default()));
+            prop_assert!(close(1.0 + warm.margin, 1.0 + cold.margin, 1e-14, 0.0), "{} and {}", warm.margin, cold.margin);
+            prop_assert!(close(warm.nu, cold.nu, 1e-12, 0.0), "{} and {}", warm.nu, cold.nu);
+        }
+        prop_assert_eq!(track.steps(), pairs.len() as u64);
+    }
+
+    /// A smooth path with quarter turns and jumps in it, through contact and through the centre of E₂.
+    #[test]
+    fn paths(link in ellipsoid3(1.0, 0.01), obstacle in ellipsoid3(1.0, 0.5), from in common::within(3.0), to in common::within(3.0)) {
+        let mut track = MarginTracker::default();
+        for step in 0..100 {
+            let t = f64::from(step) / 99.0;
+            let jump = if step % 17 == 0 { 90f64.to_radians() } else { 0.0 };
+            let e1 = link.posed(DQuat::from_rotation_y(t + jump), from.lerp(to, t)).expect("finite");
+            let (warm, cold) = (track.step(&e1, &obstacle), free_margin(&e1, &obstacle, MarginOptions::default()));
+            prop_assert!(close(1.0 + warm.margin, 1.0 + cold.margin, 1e-13, 0.0), "{} and {}", warm.margin, cold.margin);
+        }
+        prop_assert!(track.iterations() <= 500, "{} iterations", track.iterations());
+    }
+
+    /// The paper's method gives the right margin too: where it fails it says so and falls back.
+    #[test]
+    fn inverse_iteration(link in ellipsoid3(0.5, 0.01), obstacle in ellipsoid3(0.5, 0.5), step in 0.0..0.5f64) {
+        let mut track = InverseIterationTracker::new(1e-9, 200);
+        for k in 0..30 {
+            let t = f64::from(k) * step;
+            let e1 = link.posed(DQuat::from_rotation_z(t), DVec3::new(3.0 * t.cos(), 3.0 * t.sin(), 0.3)).expect("finite");
+            let (tracked, exact) = (track.step(&e1, &obstacle), free_margin(&e1, &obstacle, MarginOptions::default()));
+            prop_assert!(close(1.0 + tracked.margin, 1.0 + exact.margin, 1e-6, 0.0), "{} and {}", tracked.margin, exact.margin);
+        }
+        prop_assert!(track.fallbacks() >= 1 && track.steps() == 30, "the first step has nothing to start from");
+    }
+}
+
+/// One degree a step is within reach of inverse iteration: it never falls back after the first pose.
+#[test]
+fn small_steps_do_not_fall_back() {
+    let obstacle = Ellipsoid::new(DVec2::new(3.0, 0.0), DVec2::new(1.0, 0.4), 0.3).expect("valid");
+    let mut paper = InverseIterationTracker::new(1e-6, 40);
+    let mut ours = MarginTracker::default();
+    for k in 0..360 {
+        let link = Ellipsoid::new(DVec2::ZERO, DVec2::new(1.5, 0.5), f64::from(k).to_radians()).expect("valid");
+        let (a, b) = (paper.step(&link, &obstacle), ours.step(&link, &obstacle));
+        assert!(close(a.margin, b.margin, 1e-4, 0.0), "{} and {} at {k} degrees", a.margin, b.margin);
+    }
+    assert_eq!(paper.fallbacks(), 1, "the first pose only");
+    assert!(ours.iterations() < 3 * 360 && ours.iterations() < paper.iterations(), "{ours:?} {paper:?}");
+}
