@@ -1,7 +1,7 @@
 //! How long does it take to tell whether two bodies meet (W3b)?
 
 use benches::pairs::{PAIR_NAMES, Pair};
-use benches::rows::intersection_testers;
+use benches::rows::{intersection_testers, warm_intersection_testers};
 use benches::score::intersections;
 use benches::w3b_intersect::queries;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -14,6 +14,9 @@ fn bench(c: &mut Criterion) {
         let queries = queries(&pair);
         let solvers = intersection_testers(&pair, &queries);
         common::bench(c, &format!("intersect/{name}"), &solvers, |_, answers| intersections(&queries, answers));
+        let apart: Vec<_> = queries.into_iter().filter(|query| !query.meet).collect();
+        let solvers = warm_intersection_testers(&pair, &apart);
+        common::bench(c, &format!("intersect/warm/{name}"), &solvers, |_, answers| intersections(&apart, answers));
     }
 }
 

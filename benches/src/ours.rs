@@ -153,7 +153,7 @@ pub fn distances<V: Space>(pair: &Pair, queries: &[DistanceQuery]) -> Solver {
     with_pair::<V, _>(pair, Task(queries))
 }
 
-/// Intersection tests; `warm` ones are given the separating axis of the same query asked before.
+/// Intersection tests; `warm` ones are given the axis, if any, that the same query answered with before.
 #[must_use]
 pub fn intersections<V: Space>(pair: &Pair, queries: &[IntersectQuery], warm: bool) -> Solver {
     struct Task<'a>(&'a [IntersectQuery], bool);
@@ -273,7 +273,7 @@ fn ellipsoid<V: Space>(semi_axes: Vec3) -> Ellipsoid<V> {
 }
 
 fn hull<V: Space>(points: &[Vec3]) -> Polytope<V> {
-    Polytope::new(points.iter().map(|&p| vector(p))).expect(VALID)
+    Polytope::hull_of(points.iter().map(|&p| vector(p))).expect(VALID)
 }
 
 fn round_box<V: Space>(half_extents: Vec3, radius: f64) -> Rounded<Cuboid<V>> {
