@@ -38,14 +38,7 @@ enum Task {
     /// Compare answers with the truth, and write the report: error against run time.
     ///
     /// Exit status: 0 where everything is right, 1 where some answer is wrong, 2 where a file could not be read.
-    Validate {
-        /// Query files with `expect`; without any, the embedded suite.
-        #[arg(value_name = "FILE")]
-        files: Vec<PathBuf>,
-        /// Where the report goes.
-        #[arg(long, value_name = "FOLDER", default_value = "target/report")]
-        report: PathBuf,
-    },
+    Validate(validate::Scope),
     /// Move a robot along its trajectory among obstacles: ellipsoids first, exact distances where they cannot decide.
     ///
     /// Exit status: 0, or 1 where an answer differs from the truth given, or 2 where a file could not be read.
@@ -86,7 +79,7 @@ enum Task {
 fn main() -> ExitCode {
     match Arguments::parse().task {
         Task::Query { files } => query::run(&files),
-        Task::Validate { files, report } => validate::run(&files, &report),
+        Task::Validate(scope) => validate::run(&scope),
         Task::Book2d { output } => book2d::run(&output),
         Task::Render { file, width } => render::run(&file, width),
         Task::Footprint { output } => footprint::run(&output),

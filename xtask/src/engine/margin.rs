@@ -3,8 +3,8 @@
 use convex_support::{Ellipsoid, Vector};
 use ellip_margin::eigen::free_margin_eigen;
 use ellip_margin::{
-    ClearanceResult, InverseIterationTracker, Margin, MarginGradient, MarginOptions, MarginTracker, Status, clearance,
-    free_margin,
+    Clearance, ClearanceResult, InverseIterationTracker, Margin, MarginGradient, MarginOptions, MarginTracker, Status,
+    clearance, free_margin,
 };
 
 use super::Question;
@@ -161,6 +161,15 @@ pub(super) struct ClearanceQuestion<V: Vector> {
     links: Vec<Ellipsoid<V>>,
     obstacles: Vec<Ellipsoid<V>>,
     options: MarginOptions,
+    method: ClearanceMethod,
+}
+
+#[derive(Clone, Copy)]
+enum ClearanceMethod {
+    /// A tree of the obstacles, and only the pairs that can be the least.
+    Culled,
+    /// Every pair.
+    AllPairs,
 }
 
 impl<V: Space> ClearanceQuestion<V> {
@@ -170,11 +179,16 @@ impl<V: Space> ClearanceQuestion<V> {
         tol: Option<f64>,
         method: Option<&str>,
     ) -> Result<Self, Problem> {
-        choose(method, &[("all_pairs", ())])?;
+        let method = choose(method, &[("culled", ClearanceMethod::Culled), ("all_pairs", ClearanceMethod::AllPairs)])?;
         let build = |name: &str, of: &[EllipsoidSpec]| -> Result<Vec<Ellipsoid<V>>, Problem> {
             of.iter().enumerate().map(|(i, spec)| spec.build(&format!("{name}[{i}]"))).collect()
         };
-        Ok(Self { links: build("links", links)?, obstacles: build("obstacles", obstacles)?, options: options(tol) })
+        Ok(Self {
+            links: build("links", links)?,
+            obstacles: build("obstacles", obstacles)?,
+            options: options(tol),
+            method,
+        })
     }
 }
 
@@ -182,8 +196,13 @@ impl<V: Space> Question for ClearanceQuestion<V> {
     type Solution = ClearanceResult<V>;
 
     fn solve(&self) -> Result<ClearanceResult<V>, Problem> {
-        clearance(&self.links, &self.obstacles, self.options)
-            .map_err(|why| Problem::new(Kind::InvalidShape, why.to_string()))
+        match self.method {
+            ClearanceMethod::Culled => {
+                Clearance::new(&self.obstacles, self.options).and_then(|mut clearance| clearance.step(&self.links))
+            }
+            ClearanceMethod::AllPairs => clearance(&self.links, &self.obstacles, self.options),
+        }
+        .map_err(|why| Problem::new(Kind::InvalidShape, why.to_string()))
     }
 
     fn answer(&self, least: ClearanceResult<V>) -> Result<Answer, Problem> {

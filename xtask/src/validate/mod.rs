@@ -1,20 +1,27 @@
 //! `cargo xtask validate [FILE…]`: answers against the truth, error against run time.
 
+mod growth;
+mod provenance;
 mod report;
 mod score;
 mod summary;
+mod work_precision;
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, IsTerminal as _, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
+use clap::Args;
 use serde_json::Value;
 
 use self::score::Verdict;
-use crate::engine::{self, Ask};
+use crate::engine;
 use crate::mesh::Meshes;
+use crate::plot::Plot;
 use crate::wire::answer::Line;
+use crate::wire::error::Problem;
 use crate::wire::query;
 use crate::wire::reader::Object;
 
@@ -33,11 +40,58 @@ pub(crate) struct Record {
     verdict: Verdict,
     /// Nanoseconds to solve it, once its shapes are built; none for a line that asks nothing.
     time: Option<f64>,
+    /// Iterations, of all poses together for `track`.
+    iterations: Option<u64>,
 }
 
-/// Validates the files, or the embedded suite, and writes the report to `folder`.
-pub(crate) fn run(files: &[PathBuf], folder: &Path) -> ExitCode {
-    match validate(files, folder) {
+/// A case that was answered, to be asked again in other ways.
+struct Case {
+    object: Object,
+    meshes: Arc<Meshes>,
+}
+
+/// What to validate, and how thoroughly.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Scope {
+    /// Query files with `expect`; without any, the embedded suite.
+    #[arg(value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// Answers only: no ladders of tolerances, no growth.
+    #[arg(long)]
+    quick: bool,
+    /// Only this query, or the queries of this crate.
+    #[arg(long, value_name = "QUERY|CRATE")]
+    only: Option<String>,
+    /// Where the report goes.
+    #[arg(long, value_name = "FOLDER", default_value = "target/report")]
+    report: PathBuf,
+}
+
+impl Scope {
+    /// Whether a query is asked for.
+    fn holds(&self, query: &str) -> bool {
+        let Some(only) = self.only.as_deref() else { return true };
+        only == query
+            || match only {
+                "gjk-raycast" => matches!(query, "ray_cast" | "linear_cast" | "distance" | "intersect"),
+                "lj-ellipsoid" => query.ends_with("_ellipsoid"),
+                "ellip-margin" => matches!(query, "margin" | "track" | "clearance"),
+                _ => false,
+            }
+    }
+}
+
+/// A figure of the report.
+struct Figure {
+    /// The stem of its files.
+    name: &'static str,
+    plot: Plot,
+    caption: String,
+}
+
+/// Validates and writes the report.
+pub(crate) fn run(scope: &Scope) -> ExitCode {
+    match validate(scope) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(why) => {
@@ -48,26 +102,43 @@ pub(crate) fn run(files: &[PathBuf], folder: &Path) -> ExitCode {
 }
 
 /// Whether everything was right.
-fn validate(files: &[PathBuf], folder: &Path) -> Result<bool, String> {
+fn validate(scope: &Scope) -> Result<bool, String> {
     let embedded;
-    let files = if files.is_empty() {
+    let files = if scope.files.is_empty() {
         embedded = suite()?;
         &embedded
     } else {
-        files
+        &scope.files
     };
-    let mut records = Vec::new();
+    let (mut records, mut cases) = (Vec::new(), Vec::new());
     for file in files {
-        validate_file(file, &mut records).map_err(|why| format!("cannot read {}: {why}", file.display()))?;
+        validate_file(file, scope, &mut records, &mut cases)
+            .map_err(|why| format!("cannot read {}: {why}", file.display()))?;
     }
+    if records.is_empty() {
+        return Err("there is nothing to validate".to_owned());
+    }
+    let mut figures = Vec::new();
+    if !scope.quick {
+        figures.extend(work_precision::figures(&cases));
+        figures.extend(growth::figures(scope));
+    }
+    progress("");
     let mut output = io::stdout().lock();
     let written = summary::print(&records, &mut output).and_then(|()| {
-        let page = report::write(&records, folder)?;
+        let page = report::write(&records, &figures, &scope.report)?;
         writeln!(output, "report: {}", page.display())
     });
     match written {
         Err(why) if why.kind() != io::ErrorKind::BrokenPipe => Err(format!("cannot write the report: {why}")),
         _ => Ok(records.iter().all(|r| r.verdict.wrong.is_empty())),
+    }
+}
+
+/// Shows what is being done, where somebody watches.
+fn progress(what: &str) {
+    if io::stderr().is_terminal() {
+        let _ = write!(io::stderr(), "\r{what}\x1b[K");
     }
 }
 
@@ -80,10 +151,9 @@ fn suite() -> Result<Vec<PathBuf>, String> {
     Ok(files)
 }
 
-fn validate_file(file: &Path, records: &mut Vec<Record>) -> io::Result<()> {
-    let meshes = Meshes::relative_to(file.parent().unwrap_or(Path::new("")));
+fn validate_file(file: &Path, scope: &Scope, records: &mut Vec<Record>, cases: &mut Vec<Case>) -> io::Result<()> {
+    let meshes = Arc::new(Meshes::relative_to(file.parent().unwrap_or(Path::new(""))));
     let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let progress = io::stderr().is_terminal();
     let mut input = BufReader::new(File::open(file)?);
     let mut text = Vec::new();
     let mut line = 0;
@@ -91,29 +161,36 @@ fn validate_file(file: &Path, records: &mut Vec<Record>) -> io::Result<()> {
         line += 1;
         let trimmed = text.trim_ascii_end();
         if !trimmed.is_empty() && !trimmed.starts_with(b"#") {
-            records.push(validate_line(trimmed, line, &name, &meshes));
-            if progress && line % 32 == 0 {
-                write!(io::stderr(), "\r{name}: line {line}\x1b[K")?;
+            let object = query::object(trimmed);
+            let asked = object.as_ref().ok().and_then(|o| o.get("query")).and_then(Value::as_str).unwrap_or("none");
+            if scope.holds(asked) {
+                let record = validate_line(trimmed, &object, line, &name, &meshes);
+                if record.time.is_some() && cases.len() < MOST_CASES {
+                    cases.extend(object.ok().map(|object| Case { object, meshes: Arc::clone(&meshes) }));
+                }
+                records.push(record);
+            }
+            if line % 32 == 0 {
+                progress(&format!("{name}: line {line}"));
             }
         }
         text.clear();
     }
-    if progress {
-        write!(io::stderr(), "\r\x1b[K")?;
-    }
     Ok(())
 }
 
-fn validate_line(text: &[u8], line: u64, file: &str, meshes: &Meshes) -> Record {
-    let object = query::object(text);
+/// The most cases that are kept to be asked again.
+const MOST_CASES: usize = 10_000;
+
+fn validate_line(text: &[u8], object: &Result<Object, Problem>, line: u64, file: &str, meshes: &Meshes) -> Record {
     // A line that cannot be read may still say what is expected of it.
-    let case = match &object {
+    let case = match object {
         Ok(object) => Some(object.clone()),
         Err(_) => query::expectation_of(text),
     };
-    let question = object.and_then(|object| engine::question(&object, meshes));
+    let question = object.as_ref().map_err(Clone::clone).and_then(|object| engine::question(object, meshes));
     let outcome = question.as_ref().map_err(Clone::clone).and_then(|question| question.ask());
-    let time = outcome.is_ok().then(|| question.as_ref().ok().map(|q| time(q.as_ref()))).flatten();
+    let time = question.ok().filter(|_| outcome.is_ok()).map(|question| question.time(MICROSECONDS));
     let answer = as_read(Line { id: Value::Null, line, outcome });
     let verdict = case.as_ref().map_or_else(|| score::judge_unreadable(&answer), |case| score::judge(case, &answer));
     let case = case.unwrap_or_default();
@@ -130,14 +207,20 @@ fn validate_line(text: &[u8], line: u64, file: &str, meshes: &Meshes) -> Record 
             .unwrap_or_default(),
         verdict,
         time,
+        iterations: answer.get("iterations").and_then(iterations),
     }
 }
 
-/// Nanoseconds to solve the question: long enough to be told from the clock, short enough for thousands of questions.
-fn time(question: &dyn Ask) -> f64 {
-    const MICROSECONDS: u64 = 100;
-    question.time(MICROSECONDS)
+/// Iterations as answered: a number, or one for each pose.
+fn iterations(value: &Value) -> Option<u64> {
+    match value {
+        Value::Array(each) => each.iter().map(Value::as_u64).sum(),
+        number => number.as_u64(),
+    }
 }
+
+/// How long a question is timed: long enough to be told from the clock, short enough for thousands of questions.
+const MICROSECONDS: u64 = 100;
 
 /// The answer as whoever reads the line of output gets it.
 fn as_read(line: Line) -> Object {

@@ -6,8 +6,9 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::Record;
+use super::provenance::provenance;
 use super::summary::{Group, HEADERS, by_file, by_query, by_tag, total};
+use super::{Figure, Record};
 use crate::plot::{Plot, Scale, Series, escape};
 
 const STYLE: &str = "
@@ -25,24 +26,40 @@ figcaption { max-width: 46rem }
 const FLOOR: f64 = 1e-17;
 
 /// Writes the report into `folder` and says where its page is.
-pub(super) fn write(records: &[Record], folder: &Path) -> io::Result<PathBuf> {
+pub(super) fn write(records: &[Record], figures: &[Figure], folder: &Path) -> io::Result<PathBuf> {
     fs::create_dir_all(folder)?;
     fs::write(folder.join("cases.csv"), cases(records))?;
+    for figure in figures {
+        fs::write(folder.join(figure.name).with_extension("csv"), points(figure))?;
+    }
     let page = folder.join("index.html");
-    fs::write(&page, html(records))?;
+    fs::write(&page, html(records, figures))?;
     Ok(page)
+}
+
+/// The points of a figure.
+fn points(figure: &Figure) -> String {
+    let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+    let mut csv = format!("series,{},{}\n", quoted(&figure.plot.x), quoted(&figure.plot.y));
+    for series in &figure.plot.series {
+        for [x, y] in &series.points {
+            let _ = writeln!(csv, "{},{x:e},{y:e}", quoted(&series.name));
+        }
+    }
+    csv
 }
 
 /// Every case in a line.
 fn cases(records: &[Record]) -> String {
-    let mut csv = String::from("file,id,query,precision,tags,wrong,soft,error,relative_error,error_over_allow,ns\n");
+    let mut csv =
+        String::from("file,id,query,precision,tags,wrong,soft,error,relative_error,error_over_allow,iterations,ns\n");
     let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:e}"));
     let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
     for r in records {
         let v = &r.verdict;
         let _ = writeln!(
             csv,
-            "{},{},{},{},{},{},{},{},{},{},{}",
+            "{},{},{},{},{},{},{},{},{},{},{},{}",
             quoted(&r.file),
             quoted(&r.id),
             quoted(&r.query),
@@ -53,13 +70,14 @@ fn cases(records: &[Record]) -> String {
             number(v.error),
             number(v.relative),
             number(v.ratio),
+            r.iterations.map_or_else(String::new, |i| i.to_string()),
             r.time.map_or_else(String::new, |ns| format!("{ns:.1}"))
         );
     }
     csv
 }
 
-fn html(records: &[Record]) -> String {
+fn html(records: &[Record], figures: &[Figure]) -> String {
     let total = total(records);
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
@@ -74,7 +92,16 @@ fn html(records: &[Record]) -> String {
         total.wrong,
         total.soft
     );
-    page.push_str(&figure(records));
+    let _ = writeln!(page, "<p>{}</p>", escape(&provenance()));
+    page.push_str(&scatter(records));
+    for Figure { name, plot, caption } in figures {
+        let _ = writeln!(
+            page,
+            "<figure id=\"{name}\">{}<figcaption>{} <a href=\"{name}.csv\">{name}.csv</a></figcaption></figure>",
+            plot.svg(),
+            escape(caption)
+        );
+    }
     page.push_str("<h2>By query</h2>\n");
     page.push_str(&table("query", &by_query(records)));
     page.push_str("<h2>By file</h2>\n");
@@ -105,7 +132,7 @@ fn plotted(record: &Record) -> Option<f64> {
 }
 
 /// Relative error against time, a colour for each query.
-fn figure(records: &[Record]) -> String {
+fn scatter(records: &[Record]) -> String {
     ["f64", "f32"]
         .into_iter()
         .map(|precision| {

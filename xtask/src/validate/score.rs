@@ -5,7 +5,7 @@ use serde_json::Value;
 use crate::wire::reader::Object;
 
 /// The field that holds the scalar of an answer.
-fn scalar_of(query: &str) -> Option<&'static str> {
+pub(crate) fn scalar_of(query: &str) -> Option<&'static str> {
     Some(match query {
         "ray_cast" => "lambda",
         "distance" => "distance",

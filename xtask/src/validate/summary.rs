@@ -15,6 +15,7 @@ pub(super) struct Group {
     relative: Vec<f64>,
     ratio: Vec<f64>,
     time: Vec<f64>,
+    iterations: Vec<f64>,
 }
 
 impl Group {
@@ -26,10 +27,12 @@ impl Group {
         self.relative.extend(record.verdict.relative);
         self.ratio.extend(record.verdict.ratio);
         self.time.extend(record.time);
+        self.iterations.extend(record.iterations.map(|i| i as f64));
     }
 
     /// The columns of [`HEADERS`], after the name.
-    pub(super) fn columns(&self) -> [String; 10] {
+    pub(super) fn columns(&self) -> [String; 12] {
+        let whole = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.0}"));
         [
             self.cases.to_string(),
             (self.cases - self.wrong).to_string(),
@@ -40,14 +43,28 @@ impl Group {
             error(quantile(&self.relative, 0.99)),
             error(quantile(&self.relative, 1.0)),
             error(quantile(&self.ratio, 1.0)),
-            quantile(&self.time, 0.5).map_or_else(|| "-".to_owned(), |ns| format!("{ns:.0}")),
+            whole(quantile(&self.iterations, 0.5)),
+            whole(quantile(&self.iterations, 1.0)),
+            whole(quantile(&self.time, 0.5)),
         ]
     }
 }
 
 /// What the columns of a group are.
-pub(super) const HEADERS: [&str; 10] =
-    ["cases", "right", "wrong", "errored", "soft", "rel 50%", "rel 99%", "rel max", "err/allow", "ns 50%"];
+pub(super) const HEADERS: [&str; 12] = [
+    "cases",
+    "right",
+    "wrong",
+    "errored",
+    "soft",
+    "rel 50%",
+    "rel 99%",
+    "rel max",
+    "err/allow",
+    "it 50%",
+    "it max",
+    "ns 50%",
+];
 
 fn error(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), |e| format!("{e:.1e}"))

@@ -1,0 +1,221 @@
+//! How the time of a query grows: with vertices, points, obstacles and dimension.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use convex_support::glam::{DQuat, DVec3};
+use convex_support::{Ellipsoid, Polytope, SupportMap};
+use ellip_margin::{Clearance, MarginOptions, clearance};
+use gjk_raycast::{Ray, RayCastOptions, ray_cast};
+use lj_ellipsoid::faer::Mat;
+use lj_ellipsoid::{EnclosingMethod, EnclosingOptions, enclosing, enclosing_dyn};
+
+use super::{Figure, Scope, progress};
+use crate::plot::{Plot, Scale, Series};
+
+/// The figures that are asked for.
+pub(super) fn figures(scope: &Scope) -> Vec<Figure> {
+    let all: [(&str, fn() -> Figure); 4] = [
+        ("ray_cast", vertices),
+        ("enclosing_ellipsoid", points),
+        ("enclosing_ellipsoid", dimension),
+        ("clearance", obstacles),
+    ];
+    all.into_iter().filter(|(query, _)| scope.holds(query)).map(|(_, figure)| figure()).collect()
+}
+
+/// Numbers between −1 and 1, the same on every machine (`SplitMix64`).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.next(), self.next(), self.next())
+    }
+
+    /// A point of the unit sphere, by rejection from the cube.
+    fn on_sphere(&mut self) -> DVec3 {
+        loop {
+            let v = self.vector();
+            if (0.01..=1.0).contains(&v.length_squared()) {
+                return v.normalize();
+            }
+        }
+    }
+}
+
+/// Mean nanoseconds of a run, over about 20 ms or a single one.
+fn time(mut run: impl FnMut()) -> f64 {
+    const BUDGET_NS: f64 = 2e7;
+    let start = Instant::now();
+    run();
+    let once = (start.elapsed().as_nanos() as f64).max(1.0);
+    let count = (BUDGET_NS / once) as u32;
+    if count == 0 {
+        return once;
+    }
+    let start = Instant::now();
+    (0..count).for_each(|_| run());
+    start.elapsed().as_nanos() as f64 / f64::from(count)
+}
+
+fn figure(name: &'static str, title: &str, x: &str, series: Vec<(String, Vec<[f64; 2]>)>, caption: &str) -> Figure {
+    let series = series.into_iter().enumerate();
+    Figure {
+        name,
+        plot: Plot {
+            title: title.to_owned(),
+            x: x.to_owned(),
+            y: "nanoseconds".to_owned(),
+            scales: [Scale::Log, Scale::Log],
+            floor: 1.0,
+            series: series.map(|(colour, (name, points))| Series { name, points, joined: true, colour }).collect(),
+        },
+        caption: caption.to_owned(),
+    }
+}
+
+/// Ray casts against the hull of points on a sphere.
+fn vertices() -> Figure {
+    let mut random = Random(1);
+    let rays: Vec<Ray<DVec3>> = (0..64)
+        .map(|_| {
+            let source = random.on_sphere() * 3.0;
+            Ray { source, direction: random.vector() * 0.9 - source }
+        })
+        .collect();
+    let (mut scan, mut climb) = (Vec::new(), Vec::new());
+    for n in [4, 12, 32, 100, 316, 1000, 3162, 10_000, 31_623, 100_000] {
+        progress(&format!("ray casts against {n} vertices"));
+        let points: Vec<DVec3> = (0..n).map(|_| random.on_sphere()).collect();
+        let per_ray = |shape: &dyn SupportMap<Vector = DVec3>| {
+            let cast = |ray: &Ray<DVec3>| black_box(ray_cast(shape, *ray, RayCastOptions::default()).is_ok());
+            time(|| rays.iter().for_each(|ray| _ = cast(ray))) / rays.len() as f64
+        };
+        if let Ok(all) = Polytope::new(points.iter().copied()) {
+            scan.push([f64::from(n), per_ray(&all)]);
+        }
+        if let Ok(hull) = Polytope::hull_of(points) {
+            climb.push([f64::from(n), per_ray(&hull)]);
+        }
+    }
+    figure(
+        "growth-vertices",
+        "ray_cast: time against vertices",
+        "vertices",
+        vec![("scan of all points".to_owned(), scan), ("climb on the hull".to_owned(), climb)],
+        "Rays from three radii away, most of which hit, against the hull of points on a sphere, f64. Scanning looks at every \
+         point in every support query; the hull, found once, is climbed along its edges.",
+    )
+}
+
+/// Enclosing ellipsoids of points in a ball.
+fn points() -> Figure {
+    let mut random = Random(2);
+    let methods = [
+        ("newton", EnclosingMethod::Newton),
+        ("khachiyan", EnclosingMethod::Khachiyan),
+        ("ellipsoid", EnclosingMethod::EllipsoidAlgorithm),
+        ("dual_newton", EnclosingMethod::DualReducedNewton),
+    ];
+    let mut series: Vec<(String, Vec<[f64; 2]>)> =
+        methods.iter().map(|(name, _)| ((*name).to_owned(), vec![])).collect();
+    for n in [5, 10, 100, 1000, 10_000, 100_000, 1_000_000] {
+        let points: Vec<[f64; 3]> =
+            (0..n).map(|_| (random.on_sphere() * random.next().abs().cbrt()).to_array()).collect();
+        for ((name, method), (_, measured)) in methods.into_iter().zip(&mut series) {
+            progress(&format!("{name} on {n} points"));
+            // No point in waiting longer than a second for a method that has been outrun.
+            if measured.last().is_some_and(|[_, last]| *last > 1e8) {
+                continue;
+            }
+            let options = EnclosingOptions::default().with_method(method).with_epsilon(1e-7);
+            measured.push([f64::from(n), time(|| _ = black_box(enclosing(&points, options).is_ok()))]);
+        }
+    }
+    figure(
+        "growth-points",
+        "enclosing_ellipsoid: time against points",
+        "points",
+        series,
+        "Points spread evenly in a ball, three dimensions, certified gap 1e-7. A method is not tried on ten times the points \
+         once it takes more than 0.1 s.",
+    )
+}
+
+/// Enclosing ellipsoids of 200 points in many dimensions.
+fn dimension() -> Figure {
+    let mut random = Random(3);
+    let mut measured = Vec::new();
+    for n in 2..=10usize {
+        progress(&format!("{n} dimensions"));
+        let cloud = Mat::from_fn(200, n, |_, _| random.next());
+        let run = || _ = black_box(enclosing_dyn(cloud.as_ref(), EnclosingOptions::default()).is_ok());
+        measured.push([n as f64, time(run)]);
+    }
+    figure(
+        "growth-dimension",
+        "enclosing_ellipsoid: time against dimension",
+        "dimension",
+        vec![("newton".to_owned(), measured)],
+        "200 points in a cube, certified gap 1e-9, the dimension known at run time only.",
+    )
+}
+
+/// A robot of 30 links along a smooth trajectory among obstacles.
+fn obstacles() -> Figure {
+    let mut random = Random(4);
+    let (mut culled, mut brute) = (Vec::new(), Vec::new());
+    for m in [10, 100, 1000, 10_000, 100_000] {
+        progress(&format!("clearance among {m} obstacles"));
+        // As many as there are, the space they fill grows: the density around the robot stays.
+        let extent = 2.0 * f64::from(m).cbrt();
+        let obstacles: Vec<Ellipsoid<DVec3>> = (0..m)
+            .filter_map(|_| {
+                let center = random.vector() * extent;
+                let center = center + center.normalize() * 3.0;
+                let semi_axes = DVec3::splat(0.3) + random.vector().abs() * 0.4;
+                Ellipsoid::new(center, semi_axes, DQuat::from_scaled_axis(random.vector() * 3.0)).ok()
+            })
+            .collect();
+        let Ok(mut tracked) = Clearance::new(&obstacles, MarginOptions::default()) else { continue };
+        let mut step = 0.0;
+        let mut links = || {
+            step += 1.0;
+            robot(step * 0.01)
+        };
+        let _ = tracked.step(&links());
+        culled.push([f64::from(m), time(|| _ = black_box(tracked.step(&links()).is_ok()))]);
+        if m <= 10_000 {
+            let run = || _ = black_box(clearance(&links(), &obstacles, MarginOptions::default()).is_ok());
+            brute.push([f64::from(m), time(run)]);
+        }
+    }
+    figure(
+        "growth-obstacles",
+        "clearance: time per step against obstacles",
+        "obstacles",
+        vec![("culled and tracked".to_owned(), culled), ("all pairs".to_owned(), brute)],
+        "A chain of 30 links that turns by 0.01 radians per step among ellipsoids of constant density; the least margin of all \
+         pairs in every step.",
+    )
+}
+
+/// A chain of 30 links, bent and turned by an angle.
+fn robot(angle: f64) -> Vec<Ellipsoid<DVec3>> {
+    (0..30)
+        .filter_map(|i| {
+            let along = f64::from(i) / 29.0;
+            let (sine, cosine) = (angle + along).sin_cos();
+            let center = DVec3::new(2.0 * along * cosine, 2.0 * along * sine, 0.5 * (3.0 * along + angle).sin());
+            Ellipsoid::new(center, DVec3::new(0.08, 0.05, 0.04), DQuat::from_rotation_z(angle + along)).ok()
+        })
+        .collect()
+}

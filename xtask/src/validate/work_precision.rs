@@ -1,0 +1,194 @@
+//! Error against run time: every method, in every precision, down a ladder of tolerances.
+
+use serde_json::Value;
+
+use super::summary::quantile;
+use super::{Case, Figure, as_read, progress, score};
+use crate::engine;
+use crate::plot::{Plot, Scale, Series};
+use crate::wire::answer::Line;
+use crate::wire::reader::Object;
+
+/// A query, the knob that trades time for error, and what to try.
+struct Ladder {
+    name: &'static str,
+    query: &'static str,
+    knob: &'static str,
+    methods: &'static [&'static str],
+    precisions: &'static [&'static str],
+    rungs: &'static [f64],
+}
+
+const COARSE_TO_FINE: &[f64] = &[1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14];
+const BOTH: &[&str] = &["f64", "f32"];
+
+const LADDERS: &[Ladder] = &[
+    Ladder {
+        name: "ladder-ray-cast",
+        query: "ray_cast",
+        knob: "tol",
+        methods: &["gjk", "iterative"],
+        precisions: BOTH,
+        rungs: COARSE_TO_FINE,
+    },
+    Ladder {
+        name: "ladder-linear-cast",
+        query: "linear_cast",
+        knob: "tol",
+        methods: &["gjk"],
+        precisions: BOTH,
+        rungs: COARSE_TO_FINE,
+    },
+    Ladder {
+        name: "ladder-distance",
+        query: "distance",
+        knob: "tol",
+        methods: &["gjk"],
+        precisions: BOTH,
+        rungs: COARSE_TO_FINE,
+    },
+    Ladder {
+        name: "ladder-enclosing",
+        query: "enclosing_ellipsoid",
+        knob: "epsilon",
+        methods: &["newton", "khachiyan", "ellipsoid", "dual_newton"],
+        precisions: &["f64"],
+        rungs: &[1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12],
+    },
+    Ladder {
+        name: "ladder-inscribed",
+        query: "inscribed_ellipsoid",
+        knob: "epsilon",
+        methods: &["newton"],
+        precisions: &["f64"],
+        rungs: &[1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12],
+    },
+    Ladder {
+        name: "ladder-margin",
+        query: "margin",
+        knob: "tol",
+        methods: &["secular", "eigen"],
+        precisions: BOTH,
+        rungs: COARSE_TO_FINE,
+    },
+    Ladder {
+        name: "ladder-track",
+        query: "track",
+        knob: "tol",
+        methods: &["newton", "inverse"],
+        precisions: BOTH,
+        rungs: &[1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10],
+    },
+    Ladder {
+        name: "ladder-clearance",
+        query: "clearance",
+        knob: "tol",
+        methods: &["culled", "all_pairs"],
+        precisions: BOTH,
+        rungs: &[1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15],
+    },
+];
+
+/// The most cases of a query that go down its ladder.
+const MOST: usize = 48;
+
+/// How long a question is timed.
+const MICROSECONDS: u64 = 30;
+
+/// A method whose median time is beyond this goes no further down.
+const SLOWEST_NS: f64 = 3e7;
+
+/// The figures of the queries among the cases.
+pub(super) fn figures(cases: &[Case]) -> Vec<Figure> {
+    LADDERS.iter().filter_map(|ladder| figure(ladder, cases)).collect()
+}
+
+fn figure(ladder: &Ladder, cases: &[Case]) -> Option<Figure> {
+    let chosen = choose(ladder.query, cases);
+    if chosen.is_empty() {
+        return None;
+    }
+    let mut series = Vec::new();
+    for method in ladder.methods {
+        for precision in ladder.precisions {
+            let mut points = Vec::new();
+            for &rung in ladder.rungs {
+                progress(&format!("{}: {method} {precision} {rung:e}", ladder.query));
+                let Some(point) = measure(ladder, &chosen, method, precision, rung) else { continue };
+                points.push(point);
+                if point[0] > SLOWEST_NS {
+                    break;
+                }
+            }
+            if !points.is_empty() {
+                series.push(Series {
+                    name: format!("{method}, {precision}"),
+                    points,
+                    joined: true,
+                    colour: series.len(),
+                });
+            }
+        }
+    }
+    let error = if ladder.query.ends_with("_ellipsoid") { "error of ln det X" } else { "relative error" };
+    Some(Figure {
+        name: ladder.name,
+        plot: Plot {
+            title: format!("{}: error against time down a ladder of {}", ladder.query, ladder.knob),
+            x: "median nanoseconds per query".to_owned(),
+            y: format!("{error}, 90th percentile"),
+            scales: [Scale::Log, Scale::Log],
+            floor: 1e-17,
+            series,
+        },
+        caption: format!(
+            "Each line is a method in a precision, each of its points a value of `{}` from {:e} to {:e}: the median time of \
+             {} cases, and the error that nine in ten of them do not exceed, against the truth. Cases whose inputs do not \
+             determine the answer to 1e-5 are left to the tables.",
+            ladder.knob,
+            ladder.rungs[0],
+            ladder.rungs[ladder.rungs.len() - 1],
+            chosen.len()
+        ),
+    })
+}
+
+/// Cases in double precision whose inputs determine the answer well, spread over all there are.
+fn choose<'c>(query: &str, cases: &'c [Case]) -> Vec<&'c Case> {
+    let is_fit = |case: &&Case| {
+        let o = &case.object;
+        let text = |name: &str| o.get(name).and_then(Value::as_str);
+        let scalar = score::scalar_of(query).and_then(|name| o.get("expect")?.get(name));
+        let allow = o.get("allow").and_then(Value::as_f64);
+        let determined = match (scalar.and_then(Value::as_f64), allow) {
+            (Some(scalar), Some(allow)) => query.ends_with("_ellipsoid") || allow <= 1e-5 * scalar.abs(),
+            (None, _) => scalar.is_some_and(Value::is_array),
+            (Some(_), None) => true,
+        };
+        text("query") == Some(query) && text("precision") != Some("f32") && text("method").is_none() && determined
+    };
+    let fit: Vec<&Case> = cases.iter().filter(is_fit).collect();
+    let stride = fit.len().div_ceil(MOST).max(1);
+    fit.into_iter().step_by(stride).collect()
+}
+
+/// The median time and the 90th percentile of the error; none where most cases were not answered.
+fn measure(ladder: &Ladder, cases: &[&Case], method: &str, precision: &str, rung: f64) -> Option<[f64; 2]> {
+    let (mut times, mut errors) = (Vec::new(), Vec::new());
+    for case in cases {
+        let mut object: Object = case.object.clone();
+        object.insert("method".to_owned(), Value::from(method));
+        object.insert("precision".to_owned(), Value::from(precision));
+        object.insert(ladder.knob.to_owned(), Value::from(rung));
+        let Ok(question) = engine::question(&object, &case.meshes) else { continue };
+        let Ok(answer) = question.ask() else { continue };
+        let answer = as_read(Line { id: Value::Null, line: 0, outcome: Ok(answer) });
+        let verdict = score::judge(&object, &answer);
+        let error = if ladder.query.ends_with("_ellipsoid") { verdict.error } else { verdict.relative };
+        let Some(error) = error else { continue };
+        errors.push(error);
+        times.push(question.time(MICROSECONDS));
+    }
+    let answered = 2 * errors.len() > cases.len();
+    answered.then(|| Some([quantile(&times, 0.5)?, quantile(&errors, 0.9)?])).flatten()
+}
