@@ -276,9 +276,8 @@ impl<V: Vector3> LineCrossing for Cylinder<V> {
             let (enters, leaves) = (side.middle - side.half, side.middle + side.half);
             if enters > crossing.entry {
                 crossing.entry = enters;
-                if let Some(n) = (side.nearest - radial * side.half).unit() {
-                    crossing.normal = n;
-                }
+                crossing.normal =
+                    if r > V::Scalar::ZERO { (side.nearest - radial * side.half) / r } else { -radial / slope.sqrt() };
             }
             crossing.exit = crossing.exit.min(leaves);
         }
@@ -356,14 +355,29 @@ impl<V: Vector3> LineCrossing for Cone<V> {
 
         let mut crossing =
             Crossing { entry: top, exit: bottom.min(leaves), normal: V::axis(1) * V::Scalar::ONE.copysign(-rise) };
-        if enters > top || rise < zero {
-            // From above a line enters through the slant, at the latest at the apex.
+        let from_above = enters > top || rise < zero;
+        if from_above {
             crossing.entry = enters.max(top);
-            let radial = across(source + direction * crossing.entry).unit();
-            crossing.normal = radial.map_or_else(|| V::axis(1), |out| out * cosine + V::axis(1) * sine);
         }
-        let Crossing { entry, exit, normal } = shifted(crossing, base)?;
-        Some(Crossing { entry: entry / speed, exit: exit / speed, normal })
+        // The slant and the base of a flat cone are nearly parallel, and rounding moves the place where they meet along
+        // both; but the rim is at a distance r from the axis, which the crossing neither begins beyond nor ends before.
+        let place = across(source + direction * crossing.entry);
+        let rounding = V::Scalar::EPSILON * V::Scalar::from_f64(8.0);
+        let within = place.length_squared() <= r * r * (V::Scalar::ONE + rounding);
+        if !within || crossing.entry > crossing.exit + rounding * (slant + crossing.entry.abs()) {
+            return None;
+        }
+        if from_above {
+            // At the apex one normal is as good as the other, as long as it looks against the line.
+            let facing = |out: V| out * cosine + V::axis(1) * sine;
+            let normal = place.unit().map(facing).filter(|n| n.dot(direction) <= zero);
+            crossing.normal = normal.unwrap_or_else(|| across(direction).unit().map_or(V::axis(1), |out| facing(-out)));
+        }
+        Some(Crossing {
+            entry: (base + crossing.entry) / speed,
+            exit: (base + crossing.exit.max(crossing.entry)) / speed,
+            normal: crossing.normal,
+        })
     }
 }
 

@@ -3,7 +3,6 @@
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::strategies as any;
 use convex_support::{Hint, Polytope, Scalar, SupportMap, Vector};
-use num_traits::Float;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 
