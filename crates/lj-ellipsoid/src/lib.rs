@@ -69,6 +69,7 @@ mod interop_convex_support;
 mod interop_faer;
 mod khachiyan;
 mod linalg;
+mod maximize;
 mod moving_points;
 mod newton;
 mod options;
