@@ -15,6 +15,8 @@ pub(crate) trait Body {
 
     /// The support point of the core, relative to the origin and in units of `scale`.
     fn support(&mut self, direction: Self::Vector) -> (Self::Vector, Self::Witness);
+    /// The derivative of the support point at `direction` along `change`, in units of `scale`.
+    fn derivative(&self, direction: Self::Vector, change: Self::Vector) -> Self::Vector;
     /// What positions are relative to, in the world; for a difference, that of the first shape alone, since subtracting
     /// the other's would round.
     fn origin(&self) -> Self::Vector;
@@ -58,6 +60,11 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
     fn support(&mut self, direction: S::Vector) -> (S::Vector, ()) {
         self.hint.rewind();
         (self.shape.core_support(direction, &mut self.hint) * self.per_unit, ())
+    }
+
+    #[inline]
+    fn derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
+        self.shape.core_support_derivative(direction, change) * self.per_unit
     }
 
     fn origin(&self) -> S::Vector {
@@ -110,6 +117,13 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
         let a = self.a.core_support(direction, &mut self.hint_a) * self.per_unit;
         let b = self.b.core_support(-direction, &mut self.hint_b) * self.per_unit;
         (a - b, PointPair { a, b })
+    }
+
+    #[inline]
+    fn derivative(&self, direction: A::Vector, change: A::Vector) -> A::Vector {
+        let a = self.a.core_support_derivative(direction, change);
+        let b = self.b.core_support_derivative(-direction, -change);
+        (a - b) * self.per_unit
     }
 
     fn origin(&self) -> A::Vector {

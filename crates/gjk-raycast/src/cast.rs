@@ -20,6 +20,7 @@ use crate::entry::{Entry, entry};
 use crate::line::LocalRay;
 use crate::ray_cast::Ray;
 use crate::simplex::{MAX_POINTS, Simplex};
+use crate::turn::{Condition, Found, Recent, Turn, turn};
 use crate::{Iterate, Miss, Outcome, RayCastOptions, Status};
 
 /// A hit, as the search knows it.
@@ -77,6 +78,7 @@ pub(crate) fn cast<B: Body>(
         scale,
         low,
         low_error: zero,
+        low_slope: zero,
         high: infinity,
         high_error: zero,
         normal: None,
@@ -134,7 +136,7 @@ enum End<V> {
 }
 
 /// A support point and what it is made of, or how the search ends instead.
-type Found<B> = Result<(<B as Body>::Vector, <B as Body>::Witness), End<<B as Body>::Vector>>;
+type Probe<B> = Result<(<B as Body>::Vector, <B as Body>::Witness), End<<B as Body>::Vector>>;
 
 struct Search<'a, B: Body, O> {
     body: &'a mut B,
@@ -148,6 +150,8 @@ struct Search<'a, B: Body, O> {
     /// Where on the line the last plane is crossed, and how far rounding may have moved the crossing.
     low: ScalarOf<B>,
     low_error: ScalarOf<B>,
+    /// The cosine of the angle at which it is crossed.
+    low_slope: ScalarOf<B>,
     /// Where the ray enters the simplex, and how far rounding may have moved that.
     high: ScalarOf<B>,
     high_error: ScalarOf<B>,
@@ -165,6 +169,9 @@ const GRAZING: f64 = 0.1;
 
 /// Exchanges of a point that gain nothing before the line is nudged.
 const PATIENCE: usize = 3;
+
+/// How often it is nudged at a time, each time twice as far, until it pierces the simplex.
+const MAX_NUDGES: usize = 6;
 
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     fn run(&mut self) -> End<B::Vector> {
@@ -185,7 +192,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     ///
     /// The body is behind the plane `n·y = n·p + r`. A point `x` of the ray is before it by `n·(x − p) − r`, and if that
     /// is positive and the ray approaches, it crosses the plane after `(n·(x − p) − r)/(−n·d)`, and not before.
-    fn probe(&mut self, n: B::Vector) -> Found<B> {
+    fn probe(&mut self, n: B::Vector) -> Probe<B> {
         let zero = ScalarOf::<B>::ZERO;
         if self.iterations >= self.options.max_iterations {
             return Err(End::Open(Status::IterationLimit));
@@ -205,7 +212,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 return Err(End::Miss(n));
             }
             if next - error >= self.low - self.low_error {
-                (self.low, self.low_error, self.normal) = (next, error, Some(n));
+                (self.low, self.low_error, self.low_slope, self.normal) = (next, error, -slope, Some(n));
             }
         } else if ahead > self.noise {
             return Err(End::Miss(n));
@@ -244,7 +251,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 nearing = Decrease::new();
             }
             if !self.simplex.points().contains(&point) {
-                self.simplex.push(point, witness);
+                self.simplex.push(point, n, witness);
                 let found = entry(self.simplex.points(), line, self.radius, self.noise);
                 if let Some(found) = found.filter(|e| e.mu >= self.low - self.low_error - self.noise) {
                     return Ok(Some(found));
@@ -312,37 +319,73 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     fn refine(&mut self, entered: Option<Entry<B::Vector>>) -> Result<(), End<B::Vector>> {
         let Some(mut at) = entered else { return Ok(()) };
         let direction = self.local.line.direction;
-        let mut wanted = self.noise.max(self.options.tolerance);
+        let mut wanted = (self.noise + self.noise).max(self.options.tolerance);
         let mut line = self.local.line;
         let (mut nudge, mut patience) = (ScalarOf::<B>::ZERO, PATIENCE);
+        // Newton's steps are taken while they shrink, and the facet's normal after one that did not; between two pieces,
+        // every other step only goes back and forth.
+        let (mut last_gap, mut stuck) = (ScalarOf::<B>::infinity(), 0);
+        let unbounded = [ScalarOf::<B>::infinity(); 2];
+        let mut angles = unbounded;
+        let (mut recent, mut lead) = (Recent::new(), self.noise);
+        self.simplex.retain(at.face, at.weights);
         loop {
-            self.simplex.retain(at.face, at.weights);
             let slope = -at.n.dot(direction);
-            (self.high, self.high_error) = (at.mu.max(self.low), (self.noise + nudge) / slope);
-            self.v = at.n;
-            let (point, witness) = self.probe(at.n)?;
-            let gap = (self.high - self.low) * slope;
+            (self.high, self.high_error) = (at.mu.max(self.low), (self.noise + nudge) / slope.max(self.low_slope));
+            let shrunk = angles[0].max(angles[1]) * ScalarOf::<B>::from_f64(0.5);
+            let newton = if stuck > PATIENCE { None } else { self.newton(&recent, lead) };
+            let newton = newton.filter(|step| step.angle <= shrunk || stuck > 0);
+            angles = newton.map_or(unbounded, |step| [step.angle, angles[0]]);
+            let n = newton.map_or(at.n, |step| step.to);
+            self.v = n;
+            let (point, witness) = self.probe(n)?;
+            let gap = (self.high - self.low) * slope.max(self.low_slope);
             if gap <= wanted {
                 return Ok(());
             }
-            if self.simplex.points().contains(&point) {
+            let touch = point + n * self.radius;
+            let progress = gap <= last_gap * ScalarOf::<B>::from_f64(0.5);
+            (last_gap, stuck) = (gap, if progress || newton.is_none() { 0 } else { stuck + 1 });
+            lead = if stuck == 0 { self.noise } else { lead * ScalarOf::<B>::from_f64(16.0) };
+            recent.push(Found { point: touch, along: n }, witness);
+            if self.touches(&recent, n) {
+                return Ok(());
+            }
+            let known = self.simplex.points().contains(&point);
+            if known && newton.is_none() {
                 return Err(End::Open(Status::Stalled));
             }
+            if known {
+                continue;
+            }
             let facet = self.simplex.middle();
-            self.simplex.push(point, witness);
+            let before = self.simplex;
+            self.simplex.push(point, n, witness);
             let mut next = entry(self.simplex.points(), line, self.radius, self.noise);
+            if newton.is_some() && next.is_none_or(|next| next.mu >= at.mu) {
+                // Away from the facet's normal, there may be nothing before the facet.
+                self.simplex = before;
+                continue;
+            }
             patience -= usize::from(next.is_none_or(|next| next.mu >= at.mu));
-            if next.is_none() || patience == 0 {
+            let mut step = ScalarOf::<B>::from_f64(8.0) * self.noise;
+            for _ in 0..MAX_NUDGES {
+                if next.is_some() && patience > 0 {
+                    break;
+                }
                 patience = PATIENCE;
                 let inward = line.across(facet - line.foot);
-                let step = ScalarOf::<B>::from_f64(8.0) * self.noise;
                 line.foot += inward.unit().unwrap_or(B::Vector::ZERO) * step.min(inward.norm());
                 nudge += step;
                 wanted += step;
+                step += step;
                 next = entry(self.simplex.points(), line, self.radius, self.noise);
             }
             match next {
-                Some(next) if next.mu > self.low => at = next,
+                Some(next) if next.mu > self.low => {
+                    at = next;
+                    self.simplex.retain(at.face, at.weights);
+                }
                 // The body has points of the line on both sides of the lower bound, which so is in the body.
                 Some(_) => {
                     (self.high, self.high_error) = (self.low, self.low_error);
@@ -351,5 +394,66 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 None => return Err(End::Open(Status::Stalled)),
             }
         }
+    }
+
+    /// Whether the ray runs through the last support points, or through a segment or triangle of them, where that also
+    /// is where it crosses the plane; then the bracket is closed.
+    fn touches(&mut self, recent: &Recent<B::Vector, B::Witness>, n: B::Vector) -> bool {
+        let line = self.local.line;
+        let mut seen = [B::Vector::ZERO; MAX_POINTS];
+        for (s, f) in seen.iter_mut().zip(recent.found()) {
+            *s = line.across(f.point - line.foot);
+        }
+        let Some(nearest) = closest(&seen[..recent.found().len()], B::Vector::DIM - 1) else { return false };
+        let mut touching = Simplex::new();
+        for (f, &witness) in recent.found().iter().zip(recent.witnesses()) {
+            touching.push(f.point, f.along, witness);
+        }
+        touching.retain(nearest.face, nearest.weights);
+        let mu = touching.weighted_point().dot(line.direction);
+        let slope = -n.dot(line.direction);
+        let closed =
+            nearest.v.length() <= self.noise && (mu - self.low) * slope <= ScalarOf::<B>::from_f64(4.0) * self.noise;
+        if closed {
+            self.simplex = touching;
+            (self.high, self.high_error) = (mu.max(self.low), self.noise / slope);
+        }
+        closed
+    }
+
+    /// The direction in which the plane crossed last should be crossed by the ray where it supports a curved body.
+    fn newton(&self, recent: &Recent<B::Vector, B::Witness>, lead: ScalarOf<B>) -> Option<Turn<B::Vector>> {
+        let line = self.local.line;
+        // The corners of the simplex first, since what was found last was found nearest the answer.
+        let mut found = [Found::default(); 2 * MAX_POINTS];
+        let mut len = 0;
+        for (&point, &along) in self.simplex.points().iter().zip(self.simplex.along()) {
+            found[len] = Found { point: point + along * self.radius, along };
+            len += 1;
+        }
+        for &last in recent.found() {
+            found[len] = last;
+            len += 1;
+        }
+        let condition = Condition {
+            axis: line.direction,
+            target: line.foot,
+            distance: ScalarOf::<B>::ZERO,
+            noise: self.noise,
+            lead,
+        };
+        let step = turn(&found[..len], condition, |n, change| self.derivative(n, change))?;
+        (step.to.dot(line.direction) < ScalarOf::<B>::ZERO).then_some(step)
+    }
+
+    /// The derivative of the swept body's support point; zero where the core is not curved, since a radius alone needs
+    /// no iteration.
+    fn derivative(&self, n: B::Vector, change: B::Vector) -> B::Vector {
+        let core = self.body.derivative(n, change);
+        if core == B::Vector::ZERO || self.radius == ScalarOf::<B>::ZERO {
+            return core;
+        }
+        let across = change - n * (change.dot(n) / n.length_squared());
+        core + across * (self.radius / n.norm())
     }
 }

@@ -181,7 +181,7 @@ where
             descent.end = End::Stalled;
             break;
         }
-        simplex.push(w, witness);
+        simplex.push(w, -n, witness);
         let Some(next) = closest(simplex.points(), A::Vector::DIM) else {
             descent.end = End::Stalled;
             break;

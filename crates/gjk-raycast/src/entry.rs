@@ -33,9 +33,12 @@ pub(crate) fn entry<V: Vector>(points: &[V], line: Line<V>, radius: V::Scalar, n
     for face in faces(points.len(), V::DIM).filter(|face| face.has(newest)) {
         let is_facet = face.len() == V::DIM;
         let mut corners = [V::ZERO; MAX_POINTS];
-        let flat = Flat::new(face.of(points, &mut corners));
-        let found =
-            if is_facet { enter_facet(&flat, line, radius, noise) } else { enter_edge(&flat, line, radius.max(noise)) };
+        let corners = face.of(points, &mut corners);
+        let found = if is_facet {
+            enter_facet(corners, line, radius, noise)
+        } else {
+            enter_edge(&Flat::new(corners), line, radius.max(noise))
+        };
         let Some((mu, n, weights)) = found else { continue };
         let better = |b: Entry<V>| mu < b.mu || (is_facet && radius <= noise && b.face.len() < V::DIM);
         let worse = |b: Entry<V>| !is_facet && radius <= noise && b.face.len() == V::DIM;
@@ -49,18 +52,35 @@ pub(crate) fn entry<V: Vector>(points: &[V], line: Line<V>, radius: V::Scalar, n
 type Found<V> = Option<(<V as Vector>::Scalar, V, [<V as Vector>::Scalar; MAX_POINTS])>;
 
 /// The line crosses the plane at distance `radius` from a facet, on the side it comes from.
-fn enter_facet<V: Vector>(flat: &Flat<V>, line: Line<V>, radius: V::Scalar, noise: V::Scalar) -> Found<V> {
-    let d = flat.project(line.direction).across;
+///
+/// Which point of the facet lies below the crossing is read off across the line, where the line is a point and the facet
+/// a triangle: the barycentric coordinates are the same there, and how flat the line meets the facet does not matter.
+fn enter_facet<V: Vector>(corners: &[V], line: Line<V>, radius: V::Scalar, noise: V::Scalar) -> Found<V> {
+    let d = Flat::new(corners).project(line.direction).across;
     let slope = -d.length();
     // A facet along the line has nothing but rounding for d.
     if !(slope < V::Scalar::from_f64(-8.0) * V::Scalar::EPSILON) {
         return None;
     }
     let n = d / slope;
-    let mu = ((flat.corner() - line.foot).dot(n) + radius) / slope;
-    let below = flat.project(line.at(mu) - n * radius - flat.corner());
-    // Noise across the line moves the crossing by the more, the flatter the line meets the plane.
-    flat.contains(&below.coordinates, noise / -slope).then_some((mu, n, below.coordinates))
+    let mut seen = [V::ZERO; MAX_POINTS];
+    for (s, &corner) in seen.iter_mut().zip(corners) {
+        *s = line.across(corner - line.foot);
+    }
+    let below = -line.across(n) * radius;
+    let flat = Flat::new(&seen[..corners.len()]);
+    let coordinates = flat.project(below - flat.corner()).coordinates;
+    // Weights that are negative by rounding are none: then what the line passes is a point of the facet itself, and not
+    // of its plane, which rounding may have turned along the line. It passes within the noise, or elsewhere.
+    let mut weights = coordinates.map(|b| b.max(V::Scalar::ZERO));
+    let sum = weights.iter().fold(V::Scalar::ZERO, |sum, &b| sum + b);
+    let (mut mu, mut passed) = (radius * slope, V::ZERO);
+    for ((&corner, &across), weight) in corners.iter().zip(&seen).zip(&mut weights) {
+        *weight /= sum;
+        mu += corner.dot(line.direction) * *weight;
+        passed += across * *weight;
+    }
+    ((passed - below).length() <= noise).then_some((mu, n, weights))
 }
 
 /// The line comes within `radius` of a corner, or in 3D of an edge.
@@ -80,6 +100,7 @@ fn enter_edge<V: Vector>(flat: &Flat<V>, line: Line<V>, radius: V::Scalar) -> Fo
     let half = (rest / squared).sqrt();
     let (mu, n) = (nearest - half, (passing - d * half).unit()?);
     let below = flat.project(line.at(mu) - n * radius - flat.corner());
-    // Without tolerance: beyond the end of an edge is the sphere about its corner.
-    (mu.is_finite() && flat.contains(&below.coordinates, V::Scalar::ZERO)).then_some((mu, n, below.coordinates))
+    // Beyond the end of an edge is the sphere about its corner.
+    let within = below.coordinates.iter().all(|&b| b >= V::Scalar::ZERO);
+    (mu.is_finite() && within).then_some((mu, n, below.coordinates))
 }

@@ -86,24 +86,4 @@ impl<V: Vector> Flat<V> {
         b[self.n] = rest;
         Projection { across, coordinates: b }
     }
-
-    /// Whether a point of the flat with these coordinates is in the simplex, or out of it by no more than `tolerance`.
-    ///
-    /// The coordinate of a corner is its signed height above the opposite face, relative to the corner's own; and in a
-    /// triangle that height is twice the area by the length of the opposite edge.
-    pub(crate) fn contains(&self, coordinates: &[V::Scalar; MAX_POINTS], tolerance: V::Scalar) -> bool {
-        let zero = V::Scalar::ZERO;
-        let squared_tolerance = tolerance * tolerance;
-        let [f0, f1, _] = self.squared;
-        let inside = |b: V::Scalar, height: V::Scalar| b >= zero || b * b * height <= squared_tolerance;
-        match self.n {
-            1 => coordinates[..2].iter().all(|&b| inside(b, f0)),
-            2 => {
-                let (e0, e1) = (self.f[0], self.f[1] + self.f[0] * self.c[1][0]);
-                let opposite = [e1, e0, e1 - e0].map(V::length_squared);
-                coordinates.iter().zip(opposite).all(|(&b, edge)| inside(b, f0 * f1 / edge))
-            }
-            n => coordinates[..=n].iter().all(|&b| b >= zero),
-        }
-    }
 }

@@ -60,6 +60,7 @@ mod options;
 mod ray_cast;
 mod result;
 mod simplex;
+mod turn;
 
 pub use convex_support;
 

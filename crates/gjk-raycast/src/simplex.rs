@@ -9,6 +9,8 @@ pub(crate) const MAX_POINTS: usize = 4;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Simplex<V: Vector, W> {
     points: [V; MAX_POINTS],
+    /// The directions along which they are support points.
+    along: [V; MAX_POINTS],
     witnesses: [W; MAX_POINTS],
     weights: [V::Scalar; MAX_POINTS],
     len: usize,
@@ -18,6 +20,7 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
     pub(crate) fn new() -> Self {
         Self {
             points: [V::ZERO; MAX_POINTS],
+            along: [V::ZERO; MAX_POINTS],
             witnesses: [W::default(); MAX_POINTS],
             weights: [V::Scalar::ZERO; MAX_POINTS],
             len: 0,
@@ -28,13 +31,14 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
         &self.points[..self.len]
     }
 
-    /// Adds a point with no weight yet.
+    /// Adds a support point found along a direction, with no weight yet.
     ///
     /// # Panics
     /// If there are four already.
-    pub(crate) fn push(&mut self, point: V, witness: W) {
+    pub(crate) fn push(&mut self, point: V, along: V, witness: W) {
         debug_assert!(self.len < MAX_POINTS, "a simplex has at most four points");
         self.points[self.len] = point;
+        self.along[self.len] = along;
         self.witnesses[self.len] = witness;
         self.weights[self.len] = V::Scalar::ZERO;
         self.len += 1;
@@ -45,6 +49,7 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
         let mut kept = 0;
         for i in (0..self.len).filter(|&i| face.has(i)) {
             self.points[kept] = self.points[i];
+            self.along[kept] = self.along[i];
             self.witnesses[kept] = self.witnesses[i];
             kept += 1;
         }
@@ -68,6 +73,11 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
             sum += point;
         }
         sum / V::Scalar::from_f64(self.len as f64)
+    }
+
+    /// The directions along which the points are support points.
+    pub(crate) fn along(&self) -> &[V] {
+        &self.along[..self.len]
     }
 
     /// The weights and witnesses.
