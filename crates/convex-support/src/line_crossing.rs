@@ -103,16 +103,21 @@ struct Chord<V: Vector> {
     nearest: V,
 }
 
+/// Where the line is nearest zero; `recip` is `1/|direction|²`.
+#[inline]
+fn rebased<V: Vector>(source: V, direction: V, recip: V::Scalar) -> (V::Scalar, V) {
+    let first = -source.dot(direction) * recip;
+    let near = source + direction * first;
+    // Far from zero that was rounded to the distance of the source; the second step is rounded to that of the line.
+    let second = -near.dot(direction) * recip;
+    (first + second, near + direction * second)
+}
+
 /// The chord that the ball `|x|² ≤ radius²` cuts out of `source + λ·direction`; `dd` is `|direction|²`.
 #[inline]
 fn chord<V: Vector>(source: V, direction: V, dd: V::Scalar, radius: V::Scalar) -> Option<Chord<V>> {
     let recip = dd.recip();
-    let mut middle = -source.dot(direction) * recip;
-    let mut nearest = source + direction * middle;
-    // Far from the ball that was rounded to the distance of the source; the second step is rounded to the chord.
-    let correction = -nearest.dot(direction) * recip;
-    middle += correction;
-    nearest += direction * correction;
+    let (middle, nearest) = rebased(source, direction, recip);
     // |nearest + μ·direction|² = radius², where nearest ⟂ direction.
     let inside = radius * radius - nearest.length_squared();
     (inside >= V::Scalar::ZERO).then(|| Chord { middle, half: (inside * recip).sqrt(), nearest })
@@ -144,9 +149,21 @@ impl<V: Vector> LineCrossing for Ball<V> {
 /// The crossing of a ball about zero.
 #[inline]
 fn ball<V: Vector>(radius: V::Scalar, source: V, direction: V, dd: V::Scalar) -> Option<Crossing<V>> {
-    let Chord { middle, half, nearest } = chord(source, direction, dd, radius)?;
-    let normal = if radius > V::Scalar::ZERO { (nearest - direction * half) / radius } else { -direction / dd.sqrt() };
-    Some(Crossing { entry: middle - half, exit: middle + half, normal })
+    let chord = chord(source, direction, dd, radius)?;
+    Some(chord.crossing(radius, direction, dd))
+}
+
+impl<V: Vector> Chord<V> {
+    /// As the crossing of the ball of the given radius.
+    #[inline]
+    fn crossing(&self, radius: V::Scalar, direction: V, dd: V::Scalar) -> Crossing<V> {
+        let normal = if radius > V::Scalar::ZERO {
+            (self.nearest - direction * self.half) * radius.recip()
+        } else {
+            -direction / dd.sqrt()
+        };
+        Crossing { entry: self.middle - self.half, exit: self.middle + self.half, normal }
+    }
 }
 
 impl<V: Vector> LineCrossing for Cuboid<V> {
@@ -184,11 +201,19 @@ impl<V: Vector> LineCrossing for Capsule<V> {
         if !is_comfortable(dd) {
             return in_other_units(self, source, direction);
         }
-        capsule(V::axis(1), self.half_height(), self.radius(), source, direction, dd)
+        let recip = dd.recip();
+        let (base, source) = rebased(source, direction, recip);
+        let (y, h, r) = (V::axis(1), self.half_height(), self.radius());
+        let split = |v: V| (v.get(1), V::from_fn(|i| if i == 1 { V::Scalar::ZERO } else { v.get(i) }));
+        shifted(capsule(y, h, r, (source, split(source)), (direction, split(direction)), recip)?, base)
     }
 }
 
-/// The crossing of the segment between `±half_height·axis`, swept by a ball; `axis` is a unit vector.
+/// A vector and its parts along and across an axis.
+type Split<V> = (V, (<V as Vector>::Scalar, V));
+
+/// The crossing of the segment between `±half_height·axis`, swept by a ball; `axis` is a unit vector, and `source` the
+/// point of the line nearest the middle; `recip` is `1/|direction|²`.
 ///
 /// A line enters the infinite cylinder about the axis through the side, which is then where it enters the capsule, or
 /// beyond one of the ends, and then it has to pass through the ball at that end; likewise where it leaves.
@@ -197,20 +222,13 @@ fn capsule<V: Vector>(
     axis: V,
     half_height: V::Scalar,
     radius: V::Scalar,
-    source: V,
-    direction: V,
-    dd: V::Scalar,
+    (source, (along, out)): Split<V>,
+    (direction, (rise, across)): Split<V>,
+    recip: V::Scalar,
 ) -> Option<Crossing<V>> {
-    // From the point of the line nearest the centre.
-    let base = -source.dot(direction) / dd;
-    let source = source + direction * base;
-    let (along, rise) = (source.dot(axis), direction.dot(axis));
-    let (out, across) = (source - axis * along, direction - axis * rise);
     let slope = across.length_squared();
-
-    let zero = V::Scalar::ZERO;
     // A direction that is along the axis to rounding meets the side nowhere near.
-    let steep = slope <= dd * (V::Scalar::EPSILON * V::Scalar::EPSILON);
+    let steep = slope * recip <= V::Scalar::EPSILON * V::Scalar::EPSILON;
     let side = if steep {
         (out.length_squared() <= radius * radius).then_some(None)
     } else if V::DIM == 2 {
@@ -224,21 +242,28 @@ fn capsule<V: Vector>(
         None => (-rise * V::Scalar::infinity(), rise * V::Scalar::infinity()),
     };
     let cap = |y: V::Scalar| {
-        let center = axis * half_height.copysign(y);
-        ball(radius, source - center, direction, dd)
+        // From the end on the side of y; (source − end)·direction, with source ⟂ direction, is −height·rise.
+        let height = half_height.copysign(y);
+        let middle = height * rise * recip;
+        let nearest = source - axis * height + direction * middle;
+        let inside = radius * radius - nearest.length_squared();
+        (inside >= V::Scalar::ZERO).then(|| Chord { middle, half: (inside * recip).sqrt(), nearest })
     };
     let (entry, normal) = match &side {
         Some(c) if enters.abs() <= half_height => {
-            let out = if radius > zero { (c.nearest - across * c.half) / radius } else { -across / slope.sqrt() };
-            (c.middle - c.half, out)
+            let Crossing { entry, normal, .. } = c.crossing(radius, across, slope);
+            (entry, normal)
         }
-        _ => cap(enters).map(|c| (c.entry, c.normal))?,
+        _ => {
+            let Crossing { entry, normal, .. } = cap(enters)?.crossing(radius, direction, recip.recip());
+            (entry, normal)
+        }
     };
     let exit = match &side {
         Some(c) if leaves.abs() <= half_height => c.middle + c.half,
-        _ => cap(leaves).map_or(entry, |c| c.exit),
+        _ => cap(leaves).map_or(entry, |c| c.middle + c.half),
     };
-    Some(Crossing { entry: base + entry, exit: base + exit.max(entry), normal })
+    Some(Crossing { entry, exit: exit.max(entry), normal })
 }
 
 /// The part of a line where `|y| ≤ half_height`: entry, exit. A level line is in the slab everywhere or nowhere.
@@ -258,8 +283,7 @@ impl<V: Vector3> LineCrossing for Cylinder<V> {
         if !is_comfortable(dd) {
             return in_other_units(self, source, direction);
         }
-        let base = -source.dot(direction) / dd;
-        let source = source + direction * base;
+        let (base, source) = rebased(source, direction, dd.recip());
         let (out, radial) = (across(source), across(direction));
         let slope = radial.length_squared();
         let r = self.disc_radius();
@@ -276,8 +300,7 @@ impl<V: Vector3> LineCrossing for Cylinder<V> {
             let (enters, leaves) = (side.middle - side.half, side.middle + side.half);
             if enters > crossing.entry {
                 crossing.entry = enters;
-                crossing.normal =
-                    if r > V::Scalar::ZERO { (side.nearest - radial * side.half) / r } else { -radial / slope.sqrt() };
+                crossing.normal = side.crossing(r, radial, slope).normal;
             }
             crossing.exit = crossing.exit.min(leaves);
         }
@@ -315,8 +338,7 @@ impl<V: Vector3> LineCrossing for Cone<V> {
         // A unit direction keeps the products of four lengths and directions below in range.
         let speed = dd.sqrt();
         let direction = direction / speed;
-        let base = -source.dot(direction);
-        let source = source + direction * base;
+        let (base, source) = rebased(source, direction, V::Scalar::ONE);
         let (y, rise) = (source.get(1), direction.get(1));
         let (top, bottom) = slab(y, rise, h)?;
 
@@ -508,7 +530,11 @@ fn edge<V: Vector>([a, b]: [V; 2], radius: V::Scalar, source: V, direction: V, d
     let half = V::Scalar::from_f64(0.5);
     let to_b = (b - a) * half;
     let axis = to_b.unit().unwrap_or_else(|| V::axis(0));
-    capsule(axis, to_b.norm(), radius, source - (a + to_b), direction, dd)
+    let source = source - (a + to_b);
+    let recip = dd.recip();
+    let (base, source) = rebased(source, direction, recip);
+    let split = |v: V| (v.dot(axis), v - axis * v.dot(axis));
+    shifted(capsule(axis, to_b.norm(), radius, (source, split(source)), (direction, split(direction)), recip)?, base)
 }
 
 /// In 3D a line crosses it at a point, where `entry` and `exit` agree. A triangle without area, a segment, has no side to
@@ -556,8 +582,7 @@ impl<V: Vector> Triangle<V> {
         let zero = V::Scalar::ZERO;
         let left = |v: V| V::from_fn(|i| if i == 0 { -v.get(1) } else { v.get(0) });
         let [a, b, c] = self.points();
-        let base = -(source - a).dot(direction) / direction.length_squared();
-        let source = (source - a) + direction * base;
+        let (base, source) = rebased(source - a, direction, direction.length_squared().recip());
         // Every corner by how far it is to the left of the line, and how far along it.
         let corners = [V::ZERO, b - a, c - a].map(|p| {
             let p = p - source;
@@ -588,8 +613,7 @@ impl<V: Vector> Triangle<V> {
     /// The crossing of the points within `thickness` of the triangle in 3D, across its plane.
     fn prism_crossing(&self, thickness: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
         let Frame { corners: [a, b, _], axes: [u, v], length, along, height } = self.frame()?;
-        let base = -(source - a).dot(direction) / direction.length_squared();
-        let from_a = (source - a) + direction * base;
+        let (base, from_a) = rebased(source - a, direction, direction.length_squared().recip());
         let zero = V::Scalar::ZERO;
         let mut clip = Clip::default();
         // The normal is what is left of the axis that is least within the plane.
@@ -655,8 +679,7 @@ impl<V: Vector> RoundedLineCrossing for Cuboid<V> {
         if !is_comfortable(dd) {
             return in_other_units(&Rounded::new(*self, radius).ok()?, source, direction);
         }
-        let base = -source.dot(direction) / dd;
-        let source = source + direction * base;
+        let (base, source) = rebased(source, direction, dd.recip());
         let h = self.half_extents();
 
         let infinity = V::Scalar::infinity();
