@@ -66,10 +66,10 @@ fn time(mut run: impl FnMut()) -> f64 {
     start.elapsed().as_nanos() as f64 / f64::from(count)
 }
 
-fn figure(name: &'static str, title: &str, x: &str, series: Vec<(String, Vec<[f64; 2]>)>, caption: &str) -> Figure {
+fn figure(name: &str, title: &str, x: &str, series: Vec<(String, Vec<[f64; 2]>)>, caption: &str) -> Figure {
     let series = series.into_iter().enumerate();
     Figure {
-        name,
+        name: name.to_owned(),
         plot: Plot {
             title: title.to_owned(),
             x: x.to_owned(),

@@ -4,6 +4,7 @@ mod growth;
 mod provenance;
 mod report;
 mod score;
+mod stiff;
 mod summary;
 mod work_precision;
 
@@ -84,7 +85,7 @@ impl Scope {
 /// A figure of the report.
 struct Figure {
     /// The stem of its files.
-    name: &'static str,
+    name: String,
     plot: Plot,
     caption: String,
 }
@@ -121,6 +122,7 @@ fn validate(scope: &Scope) -> Result<bool, String> {
     let mut figures = Vec::new();
     if !scope.quick {
         figures.extend(work_precision::figures(&cases));
+        figures.extend(stiff::figures(&cases));
         figures.extend(growth::figures(scope));
     }
     progress("");

@@ -30,7 +30,7 @@ pub(super) fn write(records: &[Record], figures: &[Figure], folder: &Path) -> io
     fs::create_dir_all(folder)?;
     fs::write(folder.join("cases.csv"), cases(records))?;
     for figure in figures {
-        fs::write(folder.join(figure.name).with_extension("csv"), points(figure))?;
+        fs::write(folder.join(format!("{}.csv", figure.name)), points(figure))?;
     }
     let page = folder.join("index.html");
     fs::write(&page, html(records, figures))?;

@@ -109,12 +109,15 @@ fn figure(ladder: &Ladder, cases: &[Case]) -> Option<Figure> {
         return None;
     }
     let mut series = Vec::new();
+    let mut unanswered = 0;
     for method in ladder.methods {
         for precision in ladder.precisions {
             let mut points = Vec::new();
             for &rung in ladder.rungs {
                 progress(&format!("{}: {method} {precision} {rung:e}", ladder.query));
-                let Some(point) = measure(ladder, &chosen, method, precision, rung) else { continue };
+                let measured = measure(ladder, &chosen, method, precision, rung);
+                unanswered += measured.unanswered;
+                let Some(point) = measured.point else { continue };
                 points.push(point);
                 if point[0] > SLOWEST_NS {
                     break;
@@ -132,7 +135,7 @@ fn figure(ladder: &Ladder, cases: &[Case]) -> Option<Figure> {
     }
     let error = if ladder.query.ends_with("_ellipsoid") { "error of ln det X" } else { "relative error" };
     Some(Figure {
-        name: ladder.name,
+        name: ladder.name.to_owned(),
         plot: Plot {
             title: format!("{}: error against time down a ladder of {}", ladder.query, ladder.knob),
             x: "median nanoseconds per query".to_owned(),
@@ -144,7 +147,8 @@ fn figure(ladder: &Ladder, cases: &[Case]) -> Option<Figure> {
         caption: format!(
             "Each line is a method in a precision, each of its points a value of `{}` from {:e} to {:e}: the median time of \
              {} cases, and the error that nine in ten of them do not exceed, against the truth. Cases whose inputs do not \
-             determine the answer to 1e-5 are left to the tables.",
+             determine the answer to 1e-5 are left to the tables. {unanswered} questions got an error for an answer; a point is \
+             missing where more than half did.",
             ladder.knob,
             ladder.rungs[0],
             ladder.rungs[ladder.rungs.len() - 1],
@@ -172,8 +176,14 @@ fn choose<'c>(query: &str, cases: &'c [Case]) -> Vec<&'c Case> {
     fit.into_iter().step_by(stride).collect()
 }
 
-/// The median time and the 90th percentile of the error; none where most cases were not answered.
-fn measure(ladder: &Ladder, cases: &[&Case], method: &str, precision: &str, rung: f64) -> Option<[f64; 2]> {
+/// What became of a rung of a ladder.
+struct Measured {
+    /// The median time and the 90th percentile of the error, where at least half of the cases were answered.
+    point: Option<[f64; 2]>,
+    unanswered: usize,
+}
+
+fn measure(ladder: &Ladder, cases: &[&Case], method: &str, precision: &str, rung: f64) -> Measured {
     let (mut times, mut errors) = (Vec::new(), Vec::new());
     for case in cases {
         let mut object: Object = case.object.clone();
@@ -184,11 +194,12 @@ fn measure(ladder: &Ladder, cases: &[&Case], method: &str, precision: &str, rung
         let Ok(answer) = question.ask() else { continue };
         let answer = as_read(Line { id: Value::Null, line: 0, outcome: Ok(answer) });
         let verdict = score::judge(&object, &answer);
+        // A wrong flag is as wrong as can be.
         let error = if ladder.query.ends_with("_ellipsoid") { verdict.error } else { verdict.relative };
-        let Some(error) = error else { continue };
-        errors.push(error);
+        errors.push(error.unwrap_or(1.0));
         times.push(question.time(MICROSECONDS));
     }
-    let answered = 2 * errors.len() > cases.len();
-    answered.then(|| Some([quantile(&times, 0.5)?, quantile(&errors, 0.9)?])).flatten()
+    let unanswered = cases.len() - errors.len();
+    let point = || Some([quantile(&times, 0.5)?, quantile(&errors, 0.9)?]);
+    Measured { point: if 2 * unanswered > cases.len() { None } else { point() }, unanswered }
 }
