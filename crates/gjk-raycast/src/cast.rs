@@ -14,7 +14,7 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::body::{Body, power_of_two_near};
-use crate::closest::{Closest, closest};
+use crate::closest::{Closest, nearest_face};
 use crate::decrease::Decrease;
 use crate::entry::{Entry, entry};
 use crate::line::LocalRay;
@@ -306,7 +306,8 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         for (s, p) in seen.iter_mut().zip(self.simplex.points()) {
             *s = map(*p);
         }
-        closest(&seen[..self.simplex.points().len()], dimension).ok_or(End::Open(Status::Stalled))
+        let points = &seen[..self.simplex.points().len()];
+        self.options.sub_algorithm.closest(points, dimension).ok_or(End::Open(Status::Stalled))
     }
 
     /// Closes the bracket between the last plane and the entry into the simplex: the next plane is taken along the
@@ -404,7 +405,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         for (s, f) in seen.iter_mut().zip(recent.found()) {
             *s = line.across(f.point - line.foot);
         }
-        let Some(nearest) = closest(&seen[..recent.found().len()], B::Vector::DIM - 1) else { return false };
+        let Some(nearest) = nearest_face(&seen[..recent.found().len()], B::Vector::DIM - 1) else { return false };
         let mut touching = Simplex::new();
         for (f, &witness) in recent.found().iter().zip(recent.witnesses()) {
             touching.push(f.point, f.along, witness);

@@ -4,6 +4,8 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::flat::Flat;
+use crate::johnson::johnson;
+use crate::signed_volumes::signed_volumes;
 use crate::simplex::{Face, MAX_POINTS, faces};
 
 /// The point of a simplex closest to zero.
@@ -17,6 +19,34 @@ pub(crate) struct Closest<V: Vector> {
     pub(crate) weights: [V::Scalar; MAX_POINTS],
 }
 
+/// How the point of a simplex closest to zero, and the smallest face that contains it, are found.
+///
+/// All three share the orthogonal projection that computes the point once its face is known, and the back-up where signs
+/// are inconsistent; they differ in how they find the face.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum SubAlgorithm {
+    /// Every face is projected upon, and the nearest taken that zero projects into: the most robust.
+    #[default]
+    NearestFace,
+    /// Johnson's determinants, as in the paper.
+    Johnson,
+    /// The signs of volumes, after Montanari, Petrinic and Barbieri.
+    SignedVolumes,
+}
+
+impl SubAlgorithm {
+    /// The closest point of the points, in a space of `dimension` dimensions: that of the vectors, or one less for points
+    /// seen along a ray, where only [`nearest_face`] applies.
+    pub(crate) fn closest<V: Vector>(self, points: &[V], dimension: usize) -> Option<Closest<V>> {
+        match self {
+            Self::Johnson if dimension == V::DIM => johnson(points, dimension),
+            Self::SignedVolumes if dimension == V::DIM => signed_volumes(points, dimension),
+            _ => nearest_face(points, dimension),
+        }
+    }
+}
+
 /// The closest point found by looking at every face, and taking the nearest of those whose affine hull comes closest
 /// to zero within the face. `None` where no comparison holds, as with NaN.
 ///
@@ -24,7 +54,7 @@ pub(crate) struct Closest<V: Vector> {
 ///
 /// A new support point brings the simplex nearer, if by less than rounding; so a face with the last point for a corner
 /// is preferred to one that without it is no nearer than that.
-pub(crate) fn closest<V: Vector>(points: &[V], dimension: usize) -> Option<Closest<V>> {
+pub(crate) fn nearest_face<V: Vector>(points: &[V], dimension: usize) -> Option<Closest<V>> {
     let newest = points.len().checked_sub(1)?;
     let longest = points.iter().map(|p| p.length_squared()).fold(V::Scalar::ZERO, V::Scalar::max).sqrt();
     let rounding = V::Scalar::from_f64(8.0) * V::Scalar::EPSILON * longest;

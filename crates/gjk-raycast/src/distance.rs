@@ -4,7 +4,6 @@ use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::body::{Body, Pair, PointPair, power_of_two_near};
-use crate::closest::closest;
 use crate::decrease::Decrease;
 use crate::simplex::Simplex;
 use crate::{Distance, DistanceOptions, Iterate, Status};
@@ -182,7 +181,7 @@ where
             break;
         }
         simplex.push(w, -n, witness);
-        let Some(next) = closest(simplex.points(), A::Vector::DIM) else {
+        let Some(next) = options.sub_algorithm.closest(simplex.points(), A::Vector::DIM) else {
             descent.end = End::Stalled;
             break;
         };

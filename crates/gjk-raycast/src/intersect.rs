@@ -45,7 +45,8 @@ where
 {
     let mut wanted = DistanceOptions::new()
         .with_limit(<A::Vector as Vector>::Scalar::ZERO)
-        .with_max_iterations(options.max_iterations);
+        .with_max_iterations(options.max_iterations)
+        .with_sub_algorithm(options.sub_algorithm);
     wanted.axis = options.axis;
     let descent = descend(a, b, wanted, observer);
     let status = match descent.end {

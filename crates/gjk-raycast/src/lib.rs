@@ -54,16 +54,19 @@ mod error;
 mod flat;
 mod intersect;
 mod iterative;
+mod johnson;
 mod line;
 mod linear_cast;
 mod options;
 mod ray_cast;
 mod result;
+mod signed_volumes;
 mod simplex;
 mod turn;
 
 pub use convex_support;
 
+pub use closest::SubAlgorithm;
 pub use distance::{distance, distance_with};
 pub use error::RayCastError;
 pub use intersect::{intersects, intersects_with};

@@ -3,6 +3,8 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use crate::SubAlgorithm;
+
 /// Iterations after which a query gives up. Polytopes and smooth shapes need a dozen; the cap only bounds the time
 /// spent on a support map that is not one.
 const MAX_ITERATIONS: usize = 200;
@@ -20,13 +22,21 @@ pub struct DistanceOptions<V: Vector> {
     pub max_iterations: usize,
     /// A first guess of the direction from `b` to `a`, such as the normal of the last answer. Default: none.
     pub axis: Option<V>,
+    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::NearestFace`].
+    pub sub_algorithm: SubAlgorithm,
 }
 
 impl<V: Vector> DistanceOptions<V> {
     /// The default options.
     #[must_use]
     pub fn new() -> Self {
-        Self { tolerance: V::Scalar::ZERO, limit: V::Scalar::infinity(), max_iterations: MAX_ITERATIONS, axis: None }
+        Self {
+            tolerance: V::Scalar::ZERO,
+            limit: V::Scalar::infinity(),
+            max_iterations: MAX_ITERATIONS,
+            axis: None,
+            sub_algorithm: SubAlgorithm::NearestFace,
+        }
     }
 
     /// With another [`tolerance`](Self::tolerance).
@@ -56,6 +66,13 @@ impl<V: Vector> DistanceOptions<V> {
         self.axis = Some(axis);
         self
     }
+
+    /// With another [`sub_algorithm`](Self::sub_algorithm).
+    #[must_use]
+    pub const fn with_sub_algorithm(mut self, sub_algorithm: SubAlgorithm) -> Self {
+        self.sub_algorithm = sub_algorithm;
+        self
+    }
 }
 
 impl<V: Vector> Default for DistanceOptions<V> {
@@ -73,13 +90,15 @@ pub struct IntersectOptions<V: Vector> {
     /// A first guess of a separating axis, pointing from `b` to `a`, such as the [`axis`](crate::Intersection::axis)
     /// of the last answer. Default: none.
     pub axis: Option<V>,
+    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::NearestFace`].
+    pub sub_algorithm: SubAlgorithm,
 }
 
 impl<V: Vector> IntersectOptions<V> {
     /// The default options.
     #[must_use]
     pub const fn new() -> Self {
-        Self { max_iterations: MAX_ITERATIONS, axis: None }
+        Self { max_iterations: MAX_ITERATIONS, axis: None, sub_algorithm: SubAlgorithm::NearestFace }
     }
 
     /// With another cap on the [iterations](Self::max_iterations).
@@ -93,6 +112,13 @@ impl<V: Vector> IntersectOptions<V> {
     #[must_use]
     pub const fn with_axis(mut self, axis: V) -> Self {
         self.axis = Some(axis);
+        self
+    }
+
+    /// With another [`sub_algorithm`](Self::sub_algorithm).
+    #[must_use]
+    pub const fn with_sub_algorithm(mut self, sub_algorithm: SubAlgorithm) -> Self {
+        self.sub_algorithm = sub_algorithm;
         self
     }
 }
@@ -116,6 +142,8 @@ pub struct RayCastOptions<V: Vector> {
     pub max_iterations: usize,
     /// A first guess of the outward normal or of a separating axis, such as the last answer's. Default: none.
     pub axis: Option<V>,
+    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::NearestFace`].
+    pub sub_algorithm: SubAlgorithm,
 }
 
 impl<V: Vector> RayCastOptions<V> {
@@ -127,6 +155,7 @@ impl<V: Vector> RayCastOptions<V> {
             tolerance: V::Scalar::ZERO,
             max_iterations: MAX_ITERATIONS,
             axis: None,
+            sub_algorithm: SubAlgorithm::NearestFace,
         }
     }
 
@@ -157,6 +186,13 @@ impl<V: Vector> RayCastOptions<V> {
         self.axis = Some(axis);
         self
     }
+
+    /// With another [`sub_algorithm`](Self::sub_algorithm).
+    #[must_use]
+    pub const fn with_sub_algorithm(mut self, sub_algorithm: SubAlgorithm) -> Self {
+        self.sub_algorithm = sub_algorithm;
+        self
+    }
 }
 
 impl<V: Vector> Default for RayCastOptions<V> {
@@ -178,13 +214,21 @@ pub struct LinearCastOptions<V: Vector> {
     pub max_iterations: usize,
     /// A first guess of the direction from `b` to `a` at contact, such as the last answer's normal. Default: none.
     pub axis: Option<V>,
+    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::NearestFace`].
+    pub sub_algorithm: SubAlgorithm,
 }
 
 impl<V: Vector> LinearCastOptions<V> {
     /// The default options.
     #[must_use]
     pub fn new() -> Self {
-        Self { max_time: V::Scalar::infinity(), tolerance: V::Scalar::ZERO, max_iterations: MAX_ITERATIONS, axis: None }
+        Self {
+            max_time: V::Scalar::infinity(),
+            tolerance: V::Scalar::ZERO,
+            max_iterations: MAX_ITERATIONS,
+            axis: None,
+            sub_algorithm: SubAlgorithm::NearestFace,
+        }
     }
 
     /// With an [end of the motion](Self::max_time).
@@ -212,6 +256,13 @@ impl<V: Vector> LinearCastOptions<V> {
     #[must_use]
     pub const fn with_axis(mut self, axis: V) -> Self {
         self.axis = Some(axis);
+        self
+    }
+
+    /// With another [`sub_algorithm`](Self::sub_algorithm).
+    #[must_use]
+    pub const fn with_sub_algorithm(mut self, sub_algorithm: SubAlgorithm) -> Self {
+        self.sub_algorithm = sub_algorithm;
         self
     }
 }

@@ -1,0 +1,63 @@
+//! Johnson's distance subalgorithm (Section 3 of the paper).
+
+use convex_support::{Scalar, Vector};
+
+use crate::closest::{Closest, nearest_face};
+use crate::flat::Flat;
+use crate::simplex::{Face, MAX_POINTS, faces};
+
+/// The point of a simplex closest to zero, by Johnson's determinants.
+///
+/// With the vertices `y_i`, and `k` any index in `X`, the determinants are
+///
+/// ```text
+/// Δ_i{i} = 1,   Δ_j(X ∪ {j}) = Σ_{i in X} Δ_i(X)·(y_i·y_k − y_i·y_j),
+/// ```
+///
+/// and the face is the `X` with `Δ_i(X) > 0` for all `i` in `X` and `Δ_j(X ∪ {j}) ≤ 0` for all others. Then
+/// `v = Σ Δ_i·y_i / Σ Δ_i`. The products `y_i·y_j` are computed once, and each determinant once.
+///
+/// Rounding may turn the signs such that no face, or the wrong one, satisfies them. Where none does, the back-up is to
+/// look at every face for the nearest; and the point is recomputed in its face by orthogonal projection, because the
+/// weighted sum of long vectors is a poor direction when it is short.
+pub(crate) fn johnson<V: Vector>(points: &[V], dimension: usize) -> Option<Closest<V>> {
+    let zero = V::Scalar::ZERO;
+    let len = points.len();
+    let mut dot = [[zero; MAX_POINTS]; MAX_POINTS];
+    for i in 0..len {
+        for j in 0..=i {
+            dot[i][j] = points[i].dot(points[j]);
+            dot[j][i] = dot[i][j];
+        }
+    }
+    let mut delta = [[zero; MAX_POINTS]; 1 << MAX_POINTS];
+    // Supersets have larger numbers, so that each set is complete when its turn comes.
+    for x in faces(len, len) {
+        let Some(k) = (0..len).find(|&k| x.has(k)) else { continue };
+        if x.len() == 1 {
+            delta[x.index()][k] = V::Scalar::ONE;
+        }
+        for j in (0..len).filter(|&j| !x.has(j)) {
+            let mut sum = zero;
+            for i in (0..len).filter(|&i| x.has(i)) {
+                sum += delta[x.index()][i] * (dot[i][k] - dot[i][j]);
+            }
+            delta[x.with(j).index()][j] = sum;
+        }
+    }
+    let is_answer = |x: &Face| {
+        (0..len).all(|i| if x.has(i) { delta[x.index()][i] > zero } else { delta[x.with(i).index()][i] <= zero })
+    };
+    let Some(face) = faces(len, dimension + 1).find(is_answer) else { return nearest_face(points, dimension) };
+    Some(within(points, face, dimension)).flatten().or_else(|| nearest_face(points, dimension))
+}
+
+/// The closest point of the affine hull of a face, if it is in the face.
+pub(crate) fn within<V: Vector>(points: &[V], face: Face, dimension: usize) -> Option<Closest<V>> {
+    let mut corners = [V::ZERO; MAX_POINTS];
+    let flat = Flat::new(face.of(points, &mut corners));
+    let foot = flat.project(-flat.corner());
+    let inside = foot.coordinates[..face.len()].iter().all(|&b| b > V::Scalar::ZERO);
+    let v = if face.len() > dimension { V::ZERO } else { -foot.across };
+    inside.then_some(Closest { v, face, weights: foot.coordinates })
+}
