@@ -19,6 +19,8 @@
 //!
 //! # What is here
 //! - The traits: [`SupportMap`] (implement it for shapes of your own), [`Vector`] and [`Scalar`] (glam's types).
+//! - What some shapes can do beside: [`ClosestPoint`], [`LineCrossing`]; and what all can: [`bounding_box`],
+//!   [`bounding_sphere`].
 //! - Shapes in any dimension: [`Point`], [`Segment`], [`Triangle`], [`Ball`], [`Cuboid`], [`Capsule`], [`Ellipsoid`],
 //!   [`Polytope`]; in 3D [`Cylinder`] and [`Cone`].
 //! - Shapes made of shapes: [`Posed`], [`Affine`], [`MinkowskiSum`], [`Difference`], [`Hull`], [`Rounded`]. They nest,
@@ -29,7 +31,10 @@
 //! # Features
 //! - `std` (default): floating-point functions from the standard library.
 //! - `libm`: the same from the libm crate, for `no_std` targets; `alloc` is needed in any case.
-//! - `proptest`: strategies that generate shapes and poses of wild aspect and scale, for property tests.
+//! - `hull`: `Polytope::hull_of`, the exact convex hull of raw points, for polytopes of thousands of vertices.
+//! - `serde`: shapes as serde data, checked on the way in.
+//! - `mint`: glam's conversions from and to mint's vectors.
+//! - `proptest`: the module `strategies`, which generates shapes and poses of wild aspect and scale, for property tests.
 
 #![no_std]
 
@@ -70,3 +75,8 @@ pub use scalar::Scalar;
 pub use shapes::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Polytope, Segment, Triangle};
 pub use support::{ScalarOf, SupportMap};
 pub use vector::{Matrix, Vector, Vector3};
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
