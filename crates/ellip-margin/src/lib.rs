@@ -1,4 +1,39 @@
-//! The free margin of ellipsoids: how far a robot's link is from an obstacle, and which way that grows.
+//! The free margin of ellipsoids: how far a robot's link is from an obstacle, and which way that grows; 2D and 3D, `f32` and
+//! `f64`, on [glam](convex_support::glam)'s vectors.
+//!
+//! The margin of E₁ about E₂ is how much E₁, grown about its centre, needs to touch E₂ (Rimon and Boyd, *Obstacle collision
+//! detection using best ellipsoid fit*, 1997): positive where they are disjoint, 0 where they touch, negative where they
+//! overlap, and continuously differentiable throughout.
+//!
+//! ```
+//! use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};
+//! use ellip_margin::{MarginOptions, free_margin};
+//!
+//! // May this link move up? The obstacle is above it.
+//! let link = Ellipsoid::new(DVec2::ZERO, DVec2::new(2.0, 0.5), 0.0)?;
+//! let obstacle = Ellipsoid::new(DVec2::new(1.0, 2.0), DVec2::new(1.0, 0.5), 0.7)?;
+//! let m = free_margin(&link, &obstacle, MarginOptions::default());
+//! assert!(m.margin > 0.0 && m.gradient(&link, &obstacle).translation.y < 0.0);
+//! # Ok::<(), convex_support::InvalidShape>(())
+//! ```
+//!
+//! # One pair
+//! - [`free_margin`]: value, multiplier and nearest point; [`free_margin_with`] to watch it converge.
+//! - [`Margin::gradient`], [`Margin::gradient_of_second`]: by the motion of either body, as a wrench, or per joint.
+//! - [`Margin::shape_gradient`], [`Margin::hessian`].
+//! - [`distance`], [`distance_bracket`]: the Euclidean distance, exact or bounded, certified either way.
+//! - [`scaling`]: the common scale at which both touch, symmetric, informative at any depth.
+//!
+//! # Along a motion
+//! - [`MarginTracker`]: one pair. [`Clearance`]: many links against many obstacles; [`clearance`] is its plain reference.
+//!
+//! # The paper's own routes, corrected
+//! - `eigen::free_margin_eigen` (feature `eigen`), [`InverseIterationTracker`], [`eigenvalue_gradient`].
+//!
+//! # Features
+//! - `std` (default): floating-point functions from the standard library; `libm`: the same from the libm crate, for `no_std`
+//!   targets. `alloc` is needed in any case.
+//! - `eigen`: the eigenvalue route, by faer.
 
 #![no_std]
 #![allow(clippy::needless_range_loop, reason = "the formulas of this crate index several small arrays at once")]
@@ -45,3 +80,8 @@ pub use options::{MarginOptions, Method, Status};
 pub use scaling::{Scaling, scaling};
 pub use track::MarginTracker;
 pub use wedge::Wedge;
+
+/// The README's example, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -11,7 +11,11 @@ use proptest::prelude::*;
 fn assert_same<V: Vector>(scene: &mut Clearance<V>, links: &[Ellipsoid<V>]) {
     let quick = scene.step(links).expect("there are links");
     let brute = clearance(links, scene.obstacles(), MarginOptions::default()).expect("there are links");
-    assert_eq!((quick.margin, quick.link, quick.obstacle), (brute.margin, brute.link, brute.obstacle));
+    assert_eq!(
+        (quick.margin, quick.link, quick.obstacle),
+        (brute.margin, brute.link, brute.obstacle),
+        "as brute force"
+    );
     let pairs = links.len() * scene.obstacles().len();
     let out = quick.left_out;
     assert_eq!(quick.pairs_evaluated + out.by_motion + out.by_box + out.by_plane, pairs, "each pair once: {quick:?}");
