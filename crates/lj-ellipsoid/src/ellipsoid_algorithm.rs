@@ -126,7 +126,7 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
         // the starting weights.
         let certificate =
             Certificate { weights: Vec::new(), ..Certificate::from_weights(points, rank, &frame, &set, &moments) };
-        return finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + iterations + 1);
+        return finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + iterations);
     }
 
     // The slice of P at height one: centre −P₁₁⁻¹P₁₂ (eq. 17), shape proportional to P₁₁.
@@ -157,7 +157,7 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
         .collect();
     frame.map = map;
     frame.origin = origin;
-    finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + iterations + 1)
+    finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + iterations)
 }
 
 /// o + Σwᵢ(vᵢ − o).

@@ -118,7 +118,7 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
     });
     moments.compute(rank, &set.y, &set.u);
     let certificate = Certificate::from_weights(points, rank, &frame, &set, &moments);
-    finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + 1)
+    finish(points, &frame, certificate, options.epsilon, ended, iterations, scans)
 }
 
 /// Updates M⁻¹ and every ω for u ← (1 − β)u + β·eⱼ: M' = (1 − β)M + β·qⱼqⱼᵀ, by Sherman and Morrison.

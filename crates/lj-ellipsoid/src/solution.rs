@@ -1,5 +1,7 @@
 //! From the last iterate to the ellipsoid that is returned: axes, outward rounding, certified gap, contact points.
 
+use std::ops::Range;
+
 use crate::design::{Moments, WorkingSet};
 use crate::dimension::{Dimension, Dynamic};
 use crate::error::EnclosingError;
@@ -98,12 +100,16 @@ impl Certificate {
 
 /// How far the points reach in an ellipsoid, with the rounding of the evaluation added.
 struct Reach {
+    /// Where the ellipsoid is the unit ball.
+    frame: Frame,
     /// max |diag(1/a)·R·(x − c)|.
     axes: f64,
     /// max (x − c)ᵀX(x − c).
     matrix: f64,
-    /// The points that may be contacts, with |diag(1/a)·R·(x − c)|².
-    candidates: Vec<(usize, f64)>,
+    /// The points that may be contacts, with |diag(1/a)·R·(x − c)|²; `None` where they are a large part of all.
+    candidates: Option<Vec<(usize, f64)>>,
+    /// Passes over the points.
+    passes: usize,
 }
 
 /// Points whose rounding is bounded one by one.
@@ -144,7 +150,11 @@ pub(crate) fn finish<P: Points>(
         _ => Status::Stalled,
     };
     let nearest = growth * (1.0 - log_det_gap.max(1e-9));
-    let contacts = reach.candidates.iter().filter(|(_, q)| q.sqrt() >= nearest).map(|(i, _)| *i).collect();
+    let contacts = match &reach.candidates {
+        Some(candidates) => candidates.iter().filter(|(_, q)| q.sqrt() >= nearest).map(|(i, _)| *i).collect(),
+        None => beyond_radius(points, r, &reach.frame, nearest),
+    };
+    let scans = scans + reach.passes + usize::from(reach.candidates.is_none());
     Ok(Solution { shape, log_det_gap, weights: certificate.weights, contacts, status, iterations, scans })
 }
 
@@ -279,33 +289,46 @@ fn reach<P: Points>(points: &P, r: usize, shape: &Shape, tolerance: f64) -> Reac
     let largest_error = 2.0 * error + 2.0 * error_matrix;
     let near = 1.0 - (2.0 * largest_error).max(4.0 * tolerance);
 
-    let collect = |range| {
-        let mut furthest: f64 = 0.0;
-        let mut candidates = Vec::new();
-        let visit = |i: usize, q: f64| {
-            furthest = furthest.max(q);
-            candidates.push((i, q));
-            near * furthest
+    // Candidates take as much room as the points themselves where all are on the surface: then rather look once more.
+    let room = MANY.max(points.len() / 8);
+    let mut furthest: f64 = 0.0;
+    let mut candidates = None;
+    // While the furthest is not known too many may seem near it; the second look knows it.
+    let mut passes = 0;
+    while passes < 2 {
+        passes += 1;
+        let collect = |range| {
+            let mut furthest = furthest;
+            let mut found = Some(Vec::new());
+            in_rank(points, range, r, &frame, near * furthest, |i, q| {
+                furthest = furthest.max(q);
+                if let Some(list) = &mut found {
+                    list.push((i, q));
+                    if list.len() > room {
+                        found = None;
+                    }
+                }
+                if found.is_some() { near * furthest } else { furthest }
+            });
+            (furthest, found)
         };
-        if r == n {
-            beyond(points, range, dim, &frame, 0.0, visit);
-        } else {
-            beyond(points, range, Dynamic(r), &frame, 0.0, visit);
+        let parts = map_ranges(points.len(), collect);
+        furthest = parts.iter().fold(furthest, |m: f64, part| m.max(part.0));
+        let complete = parts.iter().all(|part| part.1.is_some());
+        candidates = parts.into_iter().try_fold(Vec::new(), |mut all, (_, part): (f64, Option<Vec<(usize, f64)>>)| {
+            all.extend(part?.into_iter().filter(|(_, q)| *q >= near * furthest));
+            (all.len() <= room).then_some(all)
+        });
+        if complete {
+            break;
         }
-        (furthest, candidates)
-    };
-    let parts = map_ranges(points.len(), collect);
-    let furthest = parts.iter().fold(0.0, |m: f64, part| m.max(part.0));
-    let mut candidates: Vec<(usize, f64)> = Vec::new();
-    for (_, mut part) in parts {
-        part.retain(|(_, q)| *q >= near * furthest);
-        candidates.append(&mut part);
     }
 
     let least = furthest * (1.0 - 2.0 * largest_error);
-    let leaders = || candidates.iter().filter(|(_, q)| *q >= least);
-    if leaders().nth(MANY).is_some() {
-        return Reach { axes: furthest.sqrt() * (1.0 + error), matrix: furthest * (1.0 + largest_error), candidates };
+    let leaders = || candidates.iter().flatten().filter(|(_, q)| *q >= least);
+    if candidates.is_none() || leaders().nth(MANY).is_some() {
+        let (axes, matrix) = (furthest.sqrt() * (1.0 + error), furthest * (1.0 + largest_error));
+        return Reach { frame, axes, matrix, candidates, passes };
     }
     let mut v = dim.zero();
     let (mut axes, mut matrix): (f64, f64) = (0.0, 0.0);
@@ -319,7 +342,38 @@ fn reach<P: Points>(points: &P, r: usize, shape: &Shape, tolerance: f64) -> Reac
         axes = axes.max(q.sqrt() + error);
         matrix = matrix.max(value + error_matrix);
     }
-    Reach { axes, matrix, candidates }
+    Reach { frame, axes, matrix, candidates, passes }
+}
+
+/// The points at least `radius` from the origin of the frame.
+fn beyond_radius<P: Points>(points: &P, r: usize, frame: &Frame, radius: f64) -> Vec<usize> {
+    let parts = map_ranges(points.len(), |range| {
+        let mut found = Vec::new();
+        in_rank(points, range, r, frame, 0.0, |i, q| {
+            if q.sqrt() >= radius {
+                found.push(i);
+            }
+            0.999_999 * radius * radius
+        });
+        found
+    });
+    parts.concat()
+}
+
+/// [`beyond`], with the rank as constant as the dimension where they are equal.
+fn in_rank<P: Points>(
+    points: &P,
+    range: Range<usize>,
+    r: usize,
+    frame: &Frame,
+    cutoff: f64,
+    visit: impl FnMut(usize, f64) -> f64,
+) {
+    if r == points.dim().get() {
+        beyond(points, range, points.dim(), frame, cutoff, visit);
+    } else {
+        beyond(points, range, Dynamic(r), frame, cutoff, visit);
+    }
 }
 
 /// ln of the volume of the unit ball in n dimensions: V₀ = 1, V₁ = 2, Vₙ = Vₙ₋₂·2π/n.

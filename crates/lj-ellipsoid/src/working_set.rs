@@ -128,7 +128,7 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
         }
     };
     let certificate = Certificate::from_weights(points, rank, &frame, &set, &moments);
-    finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + 1)
+    finish(points, &frame, certificate, options.epsilon, ended, iterations, scans)
 }
 
 /// How many of `len` points may survive a pass for it to pay to go on with them alone: their copy stays well below the
