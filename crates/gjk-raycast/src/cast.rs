@@ -208,7 +208,9 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         let slope = n.dot(self.local.line.direction);
         if ahead > zero && slope < zero {
             let (next, error) = (self.low - ahead / slope, -self.noise / slope);
-            if next - error > self.half_chord || self.is_beyond(next, error) {
+            // By products: for a plane along the ray the quotients overflow.
+            let leaves_first = ahead - self.noise > (self.half_chord - self.low) * -slope;
+            if leaves_first || self.is_beyond(next, error) {
                 return Err(End::Miss(n));
             }
             if next - error >= self.low - self.low_error {

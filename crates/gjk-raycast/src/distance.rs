@@ -152,6 +152,10 @@ where
         let (point, witness) = body.support(-n);
         let w = point + offset;
         descent.iterations += 1;
+        if !w.is_finite() {
+            descent.end = End::Stalled;
+            break;
+        }
         // No point of A − B lies before w along n (the paper's bound ‖v‖² − v·w, divided by ‖v‖).
         let reach = n.dot(w);
         if reach > descent.lower {
@@ -176,7 +180,7 @@ where
             break;
         }
         let mut simplex = descent.simplex;
-        if simplex.points().contains(&w) || !w.is_finite() {
+        if simplex.points().contains(&w) {
             descent.end = End::Stalled;
             break;
         }

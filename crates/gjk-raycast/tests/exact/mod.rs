@@ -6,13 +6,13 @@
 //! cross product of two fractions is exact in 128 bits. Planar sets have `z = 0`: flatness needs no case of its own.
 
 /// A point with integer coordinates.
-pub type Point = [i128; 3];
+pub(crate) type Point = [i128; 3];
 
 /// The fraction `numerator / denominator`, with a positive denominator.
 #[derive(Clone, Copy, Debug)]
-pub struct Fraction {
-    pub numerator: i128,
-    pub denominator: i128,
+pub(crate) struct Fraction {
+    pub(crate) numerator: i128,
+    pub(crate) denominator: i128,
 }
 
 impl Fraction {
@@ -28,7 +28,7 @@ impl Fraction {
 
     /// The nearest double, but for an ulp.
     #[allow(clippy::cast_precision_loss, reason = "rounding is the purpose")]
-    pub fn as_f64(self) -> f64 {
+    pub(crate) fn as_f64(self) -> f64 {
         self.numerator as f64 / self.denominator as f64
     }
 }
@@ -50,7 +50,7 @@ fn scale(a: Point, s: i128) -> Point {
 }
 
 /// All differences `a − b`.
-pub fn difference(a: &[Point], b: &[Point]) -> Vec<Point> {
+pub(crate) fn difference(a: &[Point], b: &[Point]) -> Vec<Point> {
     a.iter().flat_map(|&p| b.iter().map(move |&q| sub(p, q))).collect()
 }
 
@@ -76,7 +76,7 @@ fn within(n: Point, [a, b, c]: [Point; 3], x: Point, s: i128) -> bool {
 }
 
 /// Whether the hull of the points contains `q`.
-pub fn contains(points: &[Point], q: Point) -> bool {
+pub(crate) fn contains(points: &[Point], q: Point) -> bool {
     let p: Vec<Point> = points.iter().map(|&p| sub(p, q)).collect();
     let on_point = p.contains(&[0; 3]);
     let on_segment = || tuples::<2>(p.len()).any(|[i, j]| cross(p[i], p[j]) == [0; 3] && dot(p[i], p[j]) <= 0);
@@ -101,7 +101,7 @@ pub fn contains(points: &[Point], q: Point) -> bool {
 }
 
 /// The least λ ≥ 0 at which `source + λ·direction` is in the hull of the points.
-pub fn ray_entry(points: &[Point], source: Point, direction: Point) -> Option<Fraction> {
+pub(crate) fn ray_entry(points: &[Point], source: Point, direction: Point) -> Option<Fraction> {
     if contains(points, source) {
         return Some(Fraction::ZERO);
     }
@@ -127,7 +127,7 @@ pub fn ray_entry(points: &[Point], source: Point, direction: Point) -> Option<Fr
 }
 
 /// The squared distance of zero from the hull of the points.
-pub fn squared_distance(points: &[Point]) -> Fraction {
+pub(crate) fn squared_distance(points: &[Point]) -> Fraction {
     let p = points;
     if contains(p, [0; 3]) {
         return Fraction::ZERO;

@@ -1,0 +1,255 @@
+//! Distances and overlaps that went wrong elsewhere. Each test is named after its report, tells what goes wrong there, and
+//! runs in both precisions where the coordinates allow it.
+
+mod common;
+
+use common::{Quaternion, apart, at, cuboid, directions, meets, s, turned, ulps, v};
+use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
+use convex_support::{Cylinder, Point, Polytope, Rounded, Scalar, SupportMap, Triangle, Vector};
+use gjk_raycast::{DistanceOptions, IntersectOptions, Status, distance, intersects};
+
+fn both(single: impl FnOnce(), double: impl FnOnce()) {
+    single();
+    double();
+}
+
+/// A hull of points in a ball of the given size, the same for the same seed.
+fn hull<V: Vector>(seed: u32, count: u32, size: f64, center: [f64; 3]) -> Polytope<V> {
+    let points = (0..count).map(|i| {
+        let t = f64::from(seed * 97 + i * 31);
+        let p = [(1.3 * t).sin(), (2.7 * t + 1.0).sin(), (4.1 * t + 2.0).sin()];
+        v::<V>([0, 1, 2].map(|k| center[k] + size * p[k]))
+    });
+    Polytope::new(points).expect("finite points")
+}
+
+/// `MuJoCo` #3383. A hundred of 3,000 pairs of meshes were answered 0 although a plane separates them. The certificate of
+/// the report is the test: if any sampled direction separates, the distance is at least that.
+#[test]
+fn d1_no_zero_where_a_plane_separates() {
+    fn run<V: Quaternion>() {
+        let mut separated = 0;
+        for seed in 0..200 {
+            let a = hull::<V>(seed, 5 + seed % 20, 0.5, [0.0; 3]);
+            let b = hull::<V>(seed + 1000, 12, 0.3, directions(200).nth(seed as usize).expect("200").map(|c| 0.9 * c));
+            let answer = apart(&a, &b);
+            let planes = directions(300).map(|d| -(a.support_value(v(d)) + b.support_value(-v::<V>(d))).as_f64());
+            let plane = planes.fold(f64::NEG_INFINITY, f64::max);
+            assert!(answer.upper.as_f64() >= plane, "{seed}: {answer:?}, {plane}");
+            assert_eq!(answer.status, Status::Converged, "{seed}");
+            assert_eq!(answer.overlap, answer.distance.as_f64() == 0.0, "{seed}: {answer:?}");
+            separated += u32::from(plane > 0.0);
+        }
+        assert!((20..180).contains(&separated), "both kinds of pairs: {separated} of 200 apart");
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// `mujoco_warp` #1546, openGJK #52. Supports were subtracted in world coordinates, so that moving both bodies changed the
+/// answer. Exact translations change nothing here.
+#[test]
+fn d2_d6_a_common_translation_changes_nothing() {
+    fn run<V: Quaternion>(reaches: &[f64]) {
+        let pair = |x: f64| {
+            apart(
+                &at(cuboid::<V>([1.0, 0.5, 0.25]), [x, -x, x]),
+                &at(cuboid::<V>([0.5; 3]), [x + 3.0, 0.5 - x, x + 0.25]),
+            )
+        };
+        let near = pair(0.0);
+        for &reach in reaches {
+            let far = pair(reach);
+            assert_eq!((far.distance, far.normal, far.iterations), (near.distance, near.normal, near.iterations));
+        }
+    }
+    both(|| run::<Vec3A>(&[1.0, 1024.0, 65_536.0]), || run::<DVec3>(&[1.0, 1024.0, 1_048_576.0, 1e12]));
+}
+
+/// #1526, fcl #293, openGJK #13. The origin on a face, an edge or a corner of the simplex, and simplices of four points in
+/// a plane or three on a line: contact was dropped, or 0/0.
+#[test]
+fn d3_d5_d26_contact_on_a_face_an_edge_or_a_corner_is_contact() {
+    fn run<V: Quaternion>() {
+        let cube = cuboid::<V>([1.0; 3]);
+        for x in [0.0, 1.0, 2.0] {
+            for y in [0.0, 1.0, 2.0] {
+                for z in [0.0, 1.0, 2.0] {
+                    let other = at(cuboid::<V>([1.0; 3]), [x, y, z]);
+                    let answer = apart(&cube, &other);
+                    assert!(answer.overlap, "({x}, {y}, {z}): {answer:?}");
+                    assert!(meets(&cube, &other).overlap, "({x}, {y}, {z})");
+                }
+            }
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// openGJK #56 and #41. NaN for flat objects and rounded cubes.
+#[test]
+fn d7_flat_and_rounded_shapes_have_finite_answers() {
+    fn run<V: Quaternion>() {
+        let plate = cuboid::<V>([1.0, 0.0, 1.0]);
+        let needle = cuboid::<V>([0.0, 0.0, 1.0]);
+        let rounded = Rounded::new(cuboid::<V>([0.5; 3]), s::<V>(0.25)).expect("positive");
+        for d in directions(60) {
+            let away = d.map(|c| 4.0 * c);
+            for answer in [
+                apart(&plate, &at(plate, away)),
+                apart(&needle, &at(plate, away)),
+                apart(&rounded, &at(needle, away)),
+                apart(&rounded, &at(rounded, away)),
+            ] {
+                assert_eq!(answer.status, Status::Converged, "{d:?}: {answer:?}");
+                let gap = (answer.point_a - answer.point_b).norm().as_f64();
+                assert!((gap - answer.distance.as_f64()).abs() < ulps::<V>(64.0), "{d:?}: {answer:?}");
+            }
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// coal #48, #49, #53. Two nearly touching triangles, one of 25 m and one of millimetres: no convergence.
+#[test]
+fn d10_a_tiny_triangle_near_a_large_one() {
+    fn run<V: Quaternion>() {
+        let large = Triangle::new([v::<V>([-25.0, 0.0, -20.0]), v([25.0, 0.0, -15.0]), v([0.0, 0.0, 25.0])]);
+        let large = large.expect("finite");
+        for gap in [1e-3, 1e-4, 0.0] {
+            let corners = [[1.0, gap, 2.0], [1.002, gap + 1e-3, 2.0], [1.0, gap + 1e-3, 2.003]];
+            let small = Triangle::new(corners.map(v::<V>)).expect("finite");
+            let answer = apart(&small, &large);
+            assert!((answer.distance.as_f64() - gap).abs() < ulps::<V>(256.0), "{gap}: {answer:?}");
+            assert_eq!(answer.status, Status::Converged, "{gap}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// coal #37, #380. A cylinder very close to a box never converged, or hit an assertion.
+#[test]
+fn d11_d12_a_cylinder_close_to_a_box_converges() {
+    fn run<V: Quaternion>(gaps: &[f64]) {
+        for &gap in gaps {
+            let cylinder = Cylinder::<V>::new(s::<V>(0.5), s::<V>(0.25)).expect("positive");
+            for (rotation, reach) in [([0.0, 0.0, 0.0, 1.0], 0.5), ([0.0, 0.0, 0.5_f64.sqrt(), 0.5_f64.sqrt()], 0.25)] {
+                let posed = turned(cylinder, V::quaternion(rotation), [0.1, 1.0 + reach + gap, 0.2]);
+                let answer = apart(&posed, &cuboid::<V>([1.0; 3]));
+                assert!((answer.distance.as_f64() - gap).abs() < ulps::<V>(64.0), "{gap}: {answer:?}");
+            }
+        }
+    }
+    both(|| run::<Vec3A>(&[1e-2, 1e-4]), || run::<DVec3>(&[1e-2, 1e-6, 1e-10]));
+}
+
+/// fcl #508, libccd #25. Parallel boxes: 3.16 instead of 3, NaN, or the right answer from another start only. The start
+/// axis does not matter.
+#[test]
+fn d13_d15_parallel_boxes_from_every_start() {
+    fn run<V: Quaternion>() {
+        let unit = cuboid::<V>([0.5; 3]);
+        for axis in 0..3 {
+            let mut offset = [0.0; 3];
+            offset[axis] = 4.0;
+            let other = at(unit, offset);
+            for d in directions(40).chain([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]]) {
+                let answer = distance(&unit, &other, DistanceOptions::new().with_axis(v(d)));
+                assert!((answer.distance.as_f64() - 3.0).abs() < ulps::<V>(8.0), "{axis} {d:?}: {answer:?}");
+                let near = at(cuboid::<V>([1.0; 3]), offset.map(|c| 0.475 * c));
+                let meets = intersects(&cuboid::<V>([1.0; 3]), &near, IntersectOptions::new().with_axis(v(d)));
+                assert_eq!(meets.decided(), Some(true), "{axis} {d:?}");
+            }
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// jitterphysics2 #302. A unit box and a one-point cloud on its face: distance said apart, overlap said together.
+#[test]
+fn d19_distance_and_overlap_never_contradict() {
+    fn run<V: Quaternion>() {
+        let cube = cuboid::<V>([0.5; 3]);
+        for i in -40..=40 {
+            let x = 0.5 * (1.0 + ulps::<V>(0.5 * f64::from(i)));
+            let point = Point::new(v::<V>([x, 0.1, -0.2])).expect("finite");
+            let answer = apart(&point, &cube);
+            assert_eq!(meets(&point, &cube).overlap, answer.overlap, "{i}: {answer:?}");
+            assert!(answer.overlap == (answer.distance.as_f64() == 0.0), "{i}: {answer:?}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Jolt #671, #1008, #419, coal #604. Boxes a millimetre apart and nearly parallel: the axis flipped with the orientation,
+/// and centimetres of depth came out.
+#[test]
+fn d9_d21_d22_nearly_parallel_boxes_keep_their_axis() {
+    fn run<V: Quaternion>() {
+        let b = cuboid::<V>([0.363, 0.277, 0.363]);
+        for i in -20..=20 {
+            let half = 0.5e-4 * f64::from(i);
+            let a = turned(
+                cuboid::<V>([0.363, 0.363, 0.277]),
+                V::quaternion([half, 0.0, 0.3 * half, 1.0]),
+                [0.02, 0.6411, 0.01],
+            );
+            let answer = apart(&a, &b);
+            let d = answer.distance.as_f64();
+            assert!((5e-5..1.2e-3).contains(&d), "{i}: {answer:?}");
+            assert!(common::off(answer.normal, [0.0, 1.0, 0.0]) < 0.01, "{i}: {answer:?}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// sch-core #28, Flexible-GJK #8, `EnhancedGJK.jl` #30. Parallel closest faces and NaN made endless loops. A support map
+/// of NaN ends with a status.
+#[test]
+fn d18_d27_nothing_loops() {
+    struct Broken<V>(V);
+    impl<V: Vector> SupportMap for Broken<V> {
+        type Vector = V;
+
+        fn support(&self, _: V) -> V {
+            self.0
+        }
+    }
+    fn run<V: Quaternion>() {
+        for bad in [f64::NAN, f64::INFINITY] {
+            let answer = apart(&Broken(v::<V>([bad, 0.0, 0.0])), &cuboid::<V>([1.0; 3]));
+            assert_ne!(answer.status, Status::Converged, "{answer:?}");
+            assert_eq!(meets(&Broken(v::<V>([bad, 0.0, 0.0])), &cuboid::<V>([1.0; 3])).decided(), None);
+        }
+        let (a, b) = (cuboid::<V>([1.0; 3]), at(hull::<V>(3, 9, 1.0, [0.0; 3]), [5.0, 0.0, 0.0]));
+        assert!(apart(&a, &b).iterations < 20);
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// distance3d #72. A long bar and a cube turned by 45 degrees at its end, both far from the origin.
+#[test]
+fn d28_a_cube_at_the_end_of_a_bar() {
+    fn run<V: Quaternion>() {
+        let bar = at(cuboid::<V>([15.0, 0.5, 0.5]), [-104.5, -120.0, -120.0]);
+        let eighth = std::f64::consts::FRAC_PI_8;
+        let cube = turned(
+            cuboid::<V>([0.5; 3]),
+            V::quaternion([0.0, 0.0, eighth.sin(), eighth.cos()]),
+            [-88.0, -120.0, -120.0],
+        );
+        let answer = apart(&cube, &bar);
+        assert!((answer.distance.as_f64() - (1.5 - 0.5_f64.sqrt())).abs() < ulps::<V>(512.0), "{answer:?}");
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Box2D's short edge, the distance: a point 5 mm beyond the end of a plank 1 m by 3.2 mm.
+#[test]
+fn s9_a_point_beyond_the_short_end_is_apart() {
+    fn run<V: Vector>() {
+        let point = at(Point::new(V::ZERO).expect("finite"), [0.505, 0.0, 0.0]);
+        let answer = apart(&point, &cuboid::<V>([0.5, 0.0016, 0.0]));
+        assert!((answer.distance.as_f64() - 0.005).abs() < ulps::<V>(4.0), "{answer:?}");
+    }
+    both(run::<Vec2>, run::<DVec2>);
+}

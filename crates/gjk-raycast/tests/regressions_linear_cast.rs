@@ -1,0 +1,253 @@
+//! Linear casts that went wrong elsewhere. Each test is named after its report, tells what goes wrong there, and runs in
+//! both precisions where the coordinates allow it.
+
+mod common;
+
+use common::{Quaternion, at, cuboid, directions, off, s, sweep, time, turned, ulps, v};
+use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
+use convex_support::{Ball, Capsule, Cuboid, Cylinder, Point, Posed, Scalar, SupportMap, Vector};
+use gjk_raycast::{LinearCast, LinearCastOptions, Motion, Outcome, Status, linear_cast};
+
+fn both(single: impl FnOnce(), double: impl FnOnce()) {
+    single();
+    double();
+}
+
+/// parry #429. A ball falls on a box of 5, 50, 500, 5000 m: the time of impact was short by an amount that grew with the
+/// box, to half a metre, since the closest point of a long simplex lost its digits.
+#[test]
+fn s1_time_of_impact_does_not_depend_on_the_size_of_the_floor() {
+    fn run<V: Quaternion>() {
+        for size in [5.0, 50.0, 500.0, 5000.0] {
+            let ball = at(Ball::<V>::new(s::<V>(0.5166)).expect("positive"), [0.3, 10.0, -0.2]);
+            let floor = cuboid::<V>([size, 1.0, size]);
+            let hit = time(&ball, &floor, [0.0, -1.0, 0.0]).expect("it lands");
+            assert!((hit - (9.0 - 0.5166)).abs() < ulps::<V>(4.0) * (size + 10.0), "{size}: {hit}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// bevy_rapier #119, godot #85314. The same over a grid of starting points: the heights differed by up to 6 cm.
+#[test]
+fn s2_s23_every_start_over_the_floor_lands_at_one_height() {
+    fn run<V: Quaternion>() {
+        let floor = cuboid::<V>([500.0, 1.0, 500.0]);
+        for i in 0..400 {
+            let (x, z) = (f64::from(i % 20) * 0.01, f64::from(i / 20) * 0.01);
+            let ball = at(Ball::<V>::new(s::<V>(1.0)).expect("positive"), [x, 3.0, z]);
+            let hit = time(&ball, &floor, [0.0, -1.0, 0.0]).expect("it lands");
+            assert!((hit - 1.0).abs() < ulps::<V>(2048.0), "({x}, {z}): {hit}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// rapier.js #258. In the plane, a long thin bar and a ball that crosses it within one step: the ray hit, the ball missed;
+/// later it hit, and stopped 1.4 % of its radius early.
+#[test]
+fn s3_a_ball_does_not_tunnel_through_a_thin_bar() {
+    fn run<V: Vector>() {
+        let bar = at(cuboid::<V>([244.5, 0.5, 0.0]), [884.5, 188.5, 0.0]);
+        for radius in [0.1, 1.0, 20.0] {
+            let ball = at(Ball::<V>::new(s::<V>(radius)).expect("positive"), [380.0, 241.0, 0.0]);
+            // It meets the upper side, y = 189, if it is by then over the bar, else the upper left corner.
+            let t = (241.0 - 189.0 - radius) / 104.0;
+            let over = 380.0 + 624.0 * t >= 640.0;
+            let hit = time(&ball, &bar, [624.0, -104.0, 0.0]).expect("it is in the way");
+            if over {
+                assert!((hit - t).abs() < ulps::<V>(1024.0), "{radius}: {hit}, {t}");
+            } else {
+                let at_corner = (380.0 + 624.0 * hit - 640.0).hypot(241.0 - 104.0 * hit - 189.0);
+                assert!((at_corner - radius).abs() < ulps::<V>(1024.0) * 1000.0, "{radius}: {hit}, {at_corner}");
+            }
+        }
+    }
+    both(run::<Vec2>, run::<DVec2>);
+}
+
+/// parry #193. Along a wall, almost tangentially: normals were wrong and not of unit length.
+#[test]
+fn s6_grazing_normals_are_unit_and_those_of_the_face() {
+    fn run<V: Quaternion>() {
+        let wall = cuboid::<V>([5.0, 2.5, 0.05]);
+        let ball = at(Ball::<V>::new(s::<V>(0.25)).expect("positive"), [-4.0, 0.0, 0.305]);
+        for slope in [1e-2, 5e-3, 2e-3] {
+            let hit = sweep(&ball, &wall, [1.0, 0.0, -slope]).outcome.hit().expect("it comes down on the wall");
+            assert!(off(hit.normal, [0.0, 0.0, 1.0]) < ulps::<V>(64.0), "{slope}: {hit:?}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// rapier #933. Is the normal local or of the world, and whose? It is the world's, out of `b` towards `a`.
+#[test]
+fn s7_the_normal_is_the_worlds_and_points_to_a() {
+    fn run<V: Quaternion>() {
+        let (sin, cos) = 0.4_f64.sin_cos();
+        let b = turned(cuboid::<V>([1.0, 1.0, 1.0]), V::quaternion([0.0, 0.0, sin, cos]), [0.0; 3]);
+        let n = [0.8_f64.cos(), 0.8_f64.sin(), 0.0];
+        let a = at(Ball::<V>::new(s::<V>(0.5)).expect("positive"), n.map(|c| 5.0 * c));
+        let hit = sweep(&a, &b, n.map(|c| -c)).outcome.hit().expect("head-on");
+        assert!(off(hit.normal, n) < ulps::<V>(16.0), "{hit:?}");
+        assert!((hit.point - v::<V>(n)).norm().as_f64() < ulps::<V>(32.0), "{hit:?}");
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Box2D's short edge. A thin plank and a point just beyond its short end: an absolute threshold on areas, cubic in the
+/// length, dropped the end from the simplex.
+#[test]
+fn s9_the_short_end_of_a_thin_plank_is_there() {
+    fn run<V: Vector>() {
+        let plank = cuboid::<V>([0.5, 0.0002, 0.0]);
+        let start = at(Point::new(V::ZERO).expect("finite"), [0.506, 0.0035, 0.0]);
+        // It crosses y = 0.0002 at t = 0.0066, where x = 0.505934 is beyond the end, and never comes nearer.
+        let answer = sweep(&start, &plank, [-0.01, -0.5, 0.0]);
+        assert!(answer.outcome.is_miss(), "{answer:?}");
+        let inwards = sweep(&start, &plank, [-1.0, -0.55, 0.0]).outcome.hit().expect("it is in the way");
+        assert!((inwards.time.as_f64() - 0.006).abs() < ulps::<V>(64.0), "{inwards:?}");
+    }
+    both(run::<Vec2>, run::<DVec2>);
+}
+
+/// Box2D #625, Box3D #32. Starting within the tolerance, but apart: a hit at 0 in every direction, or an empty simplex.
+/// Receding and tangential starts miss, closing ones advance, however near.
+#[test]
+fn s10_s13_near_starts_are_not_contact() {
+    fn run<V: Quaternion>() {
+        for gap in [1e-2, 1e-3, 1e-4] {
+            let a = at(cuboid::<V>([1.0, 1.0, 1.0]), [0.0, 2.0 + gap, 0.0]);
+            let b = cuboid::<V>([1.0, 1.0, 1.0]);
+            assert!(sweep(&a, &b, [0.0, 1.0, 0.0]).outcome.is_miss(), "receding from {gap}");
+            assert!(sweep(&a, &b, [1.0, 0.0, 0.3]).outcome.is_miss(), "sliding at {gap}");
+            let hit = time(&a, &b, [0.0, -1.0, 0.0]).expect("closing");
+            assert!((hit - gap).abs() < ulps::<V>(16.0), "{gap}: {hit}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// box2c #26. A point has no radius to hide behind.
+#[test]
+fn s11_a_point_hits_a_box() {
+    fn run<V: Vector>() {
+        let point = at(Point::new(V::ZERO).expect("finite"), [3.0, 0.25, 0.0]);
+        let hit = time(&point, &cuboid::<V>([1.0, 1.0, 0.0]), [-1.0, 0.0, 0.0]).expect("it is in the way");
+        assert!((hit - 2.0).abs() < ulps::<V>(8.0), "{hit}");
+    }
+    both(run::<Vec2>, run::<DVec2>);
+}
+
+/// Box2D #115, #120, #50. Overlap at the start was reported at the end of the step. It is a hit at 0 without a normal.
+#[test]
+fn s12_overlap_at_the_start_is_a_hit_at_zero() {
+    fn run<V: Vector>() {
+        let large = at(cuboid::<V>([25.0, 5.0, 0.0]), [24.0, -60.0, 0.0]);
+        let small = at(cuboid::<V>([2.5, 2.5, 0.0]), [40.0, -56.0, 0.0]);
+        for velocity in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-3.0, 2.0, 0.0], [0.0; 3]] {
+            let hit = sweep(&small, &large, velocity).outcome.hit().expect("they overlap");
+            assert_eq!((hit.time.as_f64(), hit.normal), (0.0, None), "{velocity:?}");
+        }
+    }
+    both(run::<Vec2>, run::<DVec2>);
+}
+
+/// Jolt #2103. A capsule of 9 m and a cylinder of half a metre, 5 micrometres apart by the coordinates: a rejected support
+/// point stayed in the simplex, and 7.25 m of penetration came out.
+#[test]
+fn s14_nearly_touching_capsule_and_cylinder_stay_near_contact() {
+    fn run<V: Quaternion>() {
+        let capsule = Capsule::<V>::new(s::<V>(2.031_143_43), s::<V>(7.197_321_89)).expect("positive");
+        let cylinder = Cylinder::<V>::new(s::<V>(0.3), s::<V>(0.4975)).expect("positive");
+        let cylinder = at(cylinder, [-0.951_660_156, -2.091_552_73, -7.635_742_18]);
+        let apart = common::apart(&cylinder, &capsule);
+        assert!(apart.distance.as_f64() < 1e-3, "{apart:?}");
+        let answer = sweep(&cylinder, &capsule, [0.002_441_406_25, -0.006_835_937_5, 0.002_929_687_5]);
+        assert_eq!(answer.status, Status::Converged, "{answer:?}");
+        if let Some(hit) = answer.outcome.hit() {
+            assert!(hit.point.norm().as_f64() < 9.3, "{hit:?}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Jolt #217, #1734. The normal of a search that ends in its first iteration was zero, or an axis from halfway.
+#[test]
+fn s16_s18_normals_are_unit_even_when_found_at_once() {
+    fn run<V: Quaternion>() {
+        let cylinder = at(Cylinder::<V>::new(s::<V>(1.2), s::<V>(0.75)).expect("positive"), [0.1, 5.0, 0.2]);
+        let floor = cuboid::<V>([3.0, 0.5, 4.0]);
+        let hit = sweep(&cylinder, &floor, [0.0, -1.0, 0.0]).outcome.hit().expect("it lands");
+        assert!(off(hit.normal, [0.0, 1.0, 0.0]) < ulps::<V>(64.0), "{hit:?}");
+        assert!((hit.time.as_f64() - 3.3).abs() < ulps::<V>(64.0), "{hit:?}");
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// `PhysX` #610. Two cubes, one above the other: 2.9975 instead of 3.
+#[test]
+fn s19_cubes_fall_exactly_as_far_as_they_can() {
+    fn run<V: Quaternion>() {
+        let (lower, upper) = (at(cuboid::<V>([1.0; 3]), [0.0, 10.0, 0.0]), at(cuboid::<V>([1.0; 3]), [0.0, 15.0, 0.0]));
+        let hit = time(&upper, &lower, [0.0, -1.0, 0.0]).expect("it lands");
+        assert!((hit - 3.0).abs() < ulps::<V>(8.0), "{hit}");
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Bullet #596. The same cast gave another answer depending on what had been asked before. There is no state: fresh
+/// shapes and used ones, the same bits.
+#[test]
+fn s22_the_same_question_has_the_same_answer() {
+    fn scene<V: Quaternion>() -> LinearCast<V> {
+        let rotation = V::quaternion([-0.057_141, 0.572_179, 0.040_011, 0.817_157]);
+        let slab: Posed<Cuboid<V>> = turned(cuboid([19.92, 0.92, 49.92]), rotation, [0.0, 0.0, 120.0]);
+        let ball = Ball::new(s::<V>(0.45)).expect("positive");
+        let ball = at(ball, [-27.449_842, -2.994_38, 109.886_52]);
+        sweep(&ball, &slab, [-0.079_466, -0.610_439, -0.333_244])
+    }
+    fn run<V: Quaternion>() {
+        let first = scene::<V>();
+        assert_eq!(first.status, Status::Converged);
+        for d in directions(20) {
+            let _ = sweep(&cuboid::<V>([1.0; 3]), &at(cuboid::<V>([1.0; 3]), d.map(|c| 4.0 * c)), d);
+            assert_eq!(scene::<V>(), first);
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// parry #317. Hits far from the origin were lost. What both shapes share of their position does not matter.
+#[test]
+fn s25_far_from_the_origin_is_like_near_it() {
+    fn run<V: Quaternion>(reach: f64) {
+        let far = [reach, -reach, reach];
+        let a = at(cuboid::<V>([1.0, 2.0, 0.5]), [far[0] + 8.0, far[1], far[2]]);
+        let b = at(cuboid::<V>([1.0; 3]), far);
+        let hit = time(&a, &b, [-2.0, 0.25, 0.0]).expect("it is in the way");
+        assert!((hit - 3.0).abs() < ulps::<V>(16.0), "{hit}");
+    }
+    both(|| run::<Vec3A>(65_536.0), || run::<DVec3>(1e9));
+}
+
+/// Equal velocities, whatever they are, are no error: only the start counts.
+#[test]
+fn equal_velocities_hit_only_what_overlaps() {
+    fn run<V: Quaternion>() {
+        let velocity = v::<V>([1.0, 2.0, 3.0]);
+        let motion = Motion { velocity_a: velocity, velocity_b: velocity };
+        let b = cuboid::<V>([1.0; 3]);
+        for (x, overlap) in [(0.5, true), (1.9, true), (2.1, false), (50.0, false)] {
+            let a = at(cuboid::<V>([1.0; 3]), [x, 0.0, 0.0]);
+            let answer = linear_cast(&a, &b, motion, LinearCastOptions::default()).expect("finite velocities");
+            match answer.outcome {
+                Outcome::Hit(hit) => assert!(overlap && hit.time.as_f64() == 0.0, "{x}: {hit:?}"),
+                Outcome::Miss(_) => assert!(!overlap, "{x}"),
+                Outcome::Undecided => panic!("{x}: undecided"),
+            }
+        }
+        assert_eq!(b.support(velocity), v([1.0; 3]), "the box is as it was");
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}

@@ -1,0 +1,264 @@
+//! Ray casts that went wrong elsewhere. Each test is named after its report, tells what goes wrong there, and runs in
+//! both precisions.
+
+mod common;
+
+use common::{Quaternion, at, cast, cuboid, directions, lambda, off, s, turned, ulps, v};
+use convex_support::glam::{DVec3, Vec3A};
+use convex_support::{Ball, Capsule, Cone, Cylinder, Hull, MinkowskiSum, Point, Polytope, Scalar, Segment, SupportMap};
+use gjk_raycast::{Outcome, Ray, RayCastOptions, Status, iterative_ray_cast, ray_cast};
+
+/// Runs a test in both precisions.
+fn both(single: impl FnOnce(), double: impl FnOnce()) {
+    single();
+    double();
+}
+
+/// Bullet #1947. A wall 1000 wide, its front at z = 50, and nearly perpendicular rays: the loop stops on an absolute
+/// squared distance while the simplex still spans the whole wall, and the hit sinks in by 0.8 % at one side.
+#[test]
+fn r1_wall_hit_is_flat_across_its_width() {
+    fn run<V: Quaternion>() {
+        let wall = at(cuboid::<V>([500.0, 100.0, 0.5]), [0.0, 0.0, 49.5]);
+        for i in -49..=49 {
+            let x = f64::from(i) * 10.0;
+            let hit = lambda(&wall, [x, 1.0, 150.0], [0.0, -0.01, -1.0]).expect("the wall is hit");
+            assert!((hit - 100.0).abs() < ulps::<V>(4096.0), "x = {x}: {hit}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Bullet #34, drake #1712. A lidar in front of a box: near the perpendicular the loop ended after eight iterations,
+/// 9 mm before the wall, since 8.32e-5 m² was below 1e-4.
+#[test]
+fn r2_lidar_ranges_are_right_near_the_perpendicular() {
+    fn run<V: Quaternion>() {
+        let wall = at(cuboid::<V>([1.0, 20.0, 20.0]), [11.0, 0.0, 0.0]);
+        for i in -200..=200 {
+            let angle = f64::from(i) * 1e-3;
+            let range = lambda(&wall, [0.0; 3], [angle.cos(), angle.sin(), 0.0]).expect("the wall is hit");
+            assert!((range - 10.0 / angle.cos()).abs() < ulps::<V>(512.0), "{angle}: {range}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Bullet #93. A flat simplex falls between the cases of a Voronoi region test. Hulls of collinear and coplanar points
+/// have nothing but flat simplices.
+#[test]
+fn r4_flat_hulls_are_hit_where_they_are() {
+    fn run<V: Quaternion>() {
+        let grid = (0..25).map(|i| v::<V>([f64::from(i % 5) - 2.0, f64::from(i / 5) - 2.0, 0.0]));
+        let plate = Polytope::new(grid).expect("finite points");
+        for d in directions(60).filter(|d| d[2].abs() > 0.1) {
+            let source = [0.3 - 3.0 * d[0], 0.1 - 3.0 * d[1], -3.0 * d[2]];
+            let hit = lambda(&plate, source, d).expect("the plate is hit");
+            assert!((hit - 3.0).abs() < ulps::<V>(256.0), "{d:?}: {hit}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Bullet #344. The normal of a turned child was left in the child's frame.
+#[test]
+fn r5_normal_turns_with_the_shape() {
+    fn run<V: Quaternion>() {
+        let (sin, cos) = 0.25_f64.sin_cos();
+        let tilted = turned(cuboid::<V>([1.0, 1.0, 1.0]), V::quaternion([0.0, 0.0, sin, cos]), [5.0, 0.0, 0.0]);
+        let hit = cast(&tilted, [0.0; 3], [1.0, 0.0, 0.0]).outcome.hit().expect("it is in the way");
+        assert!(off(hit.normal, [-0.5_f64.cos(), -0.5_f64.sin(), 0.0]) < ulps::<V>(8.0), "{hit:?}");
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// `PhysX` #429. A flat cone far from the origin: the hit position was that of an earlier simplex, and did not lie at the
+/// hit distance along the ray.
+#[test]
+fn r6_hit_point_is_at_the_hit_parameter() {
+    fn run<V: Quaternion>() {
+        let rotation = V::quaternion([-0.664_463_043, 0.664_463_043, 0.241_844_788, 0.241_844_788]);
+        let cone = Cone::<V>::new(s::<V>(250.0), s::<V>(495.0)).expect("positive");
+        let cone = turned(cone, rotation, [11_800.0, 166.703_125, 1_934.414_43]);
+        let (source, direction) = ([11_835.0, 4.709_930_42, 1_705.919_43], [0.0, 0.0, 1.0]);
+        let answer = cast(&cone, source, direction);
+        assert_eq!(answer.status, Status::Converged);
+        if let Some(hit) = answer.outcome.hit() {
+            let along = v::<V>(source) + v::<V>(direction) * hit.lambda;
+            assert!((hit.point - along).norm().as_f64() < 1e-3, "{hit:?}");
+            assert!(hit.lambda.as_f64() <= 778.38, "{hit:?}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// edyn #155. A ray along an axis through the centre is parallel to four faces of the cube; the simplex is seen edge-on,
+/// and the hit was lost.
+#[test]
+fn r7_axis_rays_hit_the_cube() {
+    fn run<V: Quaternion>() {
+        let corners = (0..8).map(|i| v::<V>([0, 1, 2].map(|axis| if i >> axis & 1 == 1 { 1.0 } else { -1.0 })));
+        let cube = Polytope::new(corners).expect("finite points");
+        for axis in 0..3 {
+            let mut source = [0.0; 3];
+            source[axis] = 2.0;
+            let hit = lambda(&cube, source, source.map(|c| -2.0 * c)).expect("the cube is hit");
+            assert!((hit - 0.25).abs() < ulps::<V>(16.0), "axis {axis}: {hit}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// parry #183, godot-jolt #652 and #653. From within, some shapes answered an outward normal, others an inward one. There
+/// is none: the ray starts in the shape.
+#[test]
+fn r9_r10_a_ray_from_within_is_a_hit_at_zero_without_a_normal() {
+    fn within<S: SupportMap>(shape: &S) {
+        for d in directions(12) {
+            let answer = cast(shape, [0.05, 0.02, -0.03], d);
+            let hit = answer.outcome.hit().expect("the source is in the shape");
+            assert_eq!((hit.lambda.as_f64(), hit.normal, answer.status), (0.0, None, Status::Converged));
+        }
+    }
+    fn run<V: Quaternion>() {
+        let (r, h) = (s::<V>(1.0), s::<V>(2.0));
+        within(&cuboid::<V>([1.0, 1.0, 2.0]));
+        within(&Ball::<V>::new(r).expect("positive"));
+        within(&Capsule::<V>::new(h, r).expect("positive"));
+        within(&Cylinder::<V>::new(h, r).expect("positive"));
+        within(&Cone::<V>::new(h, r).expect("positive"));
+        let tip = Point::new(v::<V>([0.0, 4.0, 0.0])).expect("finite");
+        within(&Hull::new(Ball::new(r).expect("positive"), tip));
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Jolt #1554. Touched by the very end of the ray only: one overload asserted. The end belongs to the ray, two ulps less
+/// do not reach.
+#[test]
+fn r11_the_end_of_the_ray_belongs_to_it() {
+    fn run<V: Quaternion>() {
+        let target = at(cuboid::<V>([1.0, 1.0, 1.0]), [5.0, 0.25, 0.5]);
+        let ray = Ray { source: V::ZERO, direction: v([1.0, 0.0, 0.0]) };
+        for (ulp, reaches) in [(-2.0, false), (0.0, true), (2.0, true)] {
+            let end = s::<V>(4.0 * (1.0 + ulps::<V>(ulp)));
+            let answer = ray_cast(&target, ray, RayCastOptions::new().with_max_lambda(end)).expect("a finite ray");
+            assert_eq!(answer.outcome.hit().is_some(), reaches, "{ulp} ulp: {answer:?}");
+            assert_eq!(answer.outcome.is_miss(), !reaches, "{ulp} ulp: {answer:?}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// argos3 #169. Two casters of one library disagreed on a hull. Closest points in closed form (Algorithm 1), support
+/// points (Algorithm 3), and the same box as a hull give one answer.
+#[test]
+fn r12_all_algorithms_agree() {
+    fn run<V: Quaternion>() {
+        let h = v::<V>([1.0, 0.5, 0.25]);
+        let solid = cuboid::<V>([1.0, 0.5, 0.25]);
+        let corners = (0..8).map(|i| h * v::<V>([0, 1, 2].map(|axis| if i >> axis & 1 == 1 { 1.0 } else { -1.0 })));
+        let hull = Polytope::new(corners).expect("finite points");
+        let mut hits = 0;
+        for d in directions(200) {
+            let source = [0.6 - 3.0 * d[0], 0.3 - 3.0 * d[1], 0.1 - 3.0 * d[2]];
+            let ray = Ray { source: v::<V>(source), direction: v(d) };
+            let oracle = iterative_ray_cast(|x: V| x.max(-h).min(h), ray, RayCastOptions::default());
+            let oracle = oracle.expect("a finite ray").outcome.hit().map(|hit| hit.lambda.as_f64());
+            let answers = [oracle, lambda(&solid, source, d), lambda(&hull, source, d)];
+            let expected = answers[0].expect("the ray runs through an inner point");
+            for answer in answers {
+                let error = (answer.expect("so do the others") - expected).abs();
+                assert!(error < ulps::<V>(512.0), "{d:?}: {answers:?}");
+            }
+            hits += 1;
+        }
+        assert_eq!(hits, 200);
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// DART #3355. Sampling the ray at sixteen points steps over a thin hull.
+#[test]
+fn r13_a_thin_slab_is_not_stepped_over() {
+    fn run<V: Quaternion>() {
+        let slab = cuboid::<V>([1.0, 1e-3, 1.0]);
+        for d in directions(100) {
+            let hit = lambda(&slab, d.map(|c| -7.3 * c), d.map(|c| 100.0 * c)).expect("through the centre");
+            let enters = 0.073
+                - 1e-2
+                    * [1.0 / d[0].abs(), 1e-3 / d[1].abs(), 1.0 / d[2].abs()].into_iter().fold(f64::INFINITY, f64::min);
+            assert!((hit - enters).abs() < ulps::<V>(64.0), "{d:?}: {hit}, {enters}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Jolt #1574. A ray almost along the separating plane: `v·r` is tiny and negative, and λ overflowed.
+#[test]
+fn r14_no_answer_is_infinite_or_nan() {
+    fn run<V: Quaternion>() {
+        let target = cuboid::<V>([1.0, 1.0, 1.0]);
+        for tilt in [0.0, 1e-45, 1e-38, 1e-30, 1e-20, 1e-12, 1e-7, 1e-3] {
+            for height in [1.0, 1.0 + 1e-6, 1.5] {
+                let answer = cast(&target, [-5.0, height, 0.3], [1.0, -tilt, 0.0]);
+                assert_eq!(answer.status, Status::Converged, "{tilt} {height}");
+                if let Outcome::Hit(hit) = answer.outcome {
+                    assert!(hit.point.is_finite() && hit.normal.is_some_and(V::is_finite), "{hit:?}");
+                    assert!((4.0 - 1e-5..=6.0 + 1e-5).contains(&hit.lambda.as_f64()), "{hit:?}");
+                }
+            }
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Measured: parry in single precision, Jolt. A thousand false hits in 20,000 rays on boxes below 10 cm, and errors of the
+/// size of the box, from tolerances in metres.
+#[test]
+fn r15_r16_small_shapes_are_hit_as_well_as_large_ones() {
+    fn run<V: Quaternion>() {
+        let h = [0.9, 0.6, 0.3];
+        let mut hits = 0;
+        for exponent in [-20, -10, 0, 10, 20] {
+            let size = 2.0_f64.powi(exponent);
+            let target = cuboid::<V>(h.map(|c| c * size));
+            for (i, d) in directions(100).enumerate() {
+                let aim = [0.0, 0.4, -0.8].map(|c| c * (1.0 + 0.01 * i as f64));
+                let source = [0, 1, 2].map(|k| (aim[k] - 3.0 * d[k]) * size);
+                // Slabs, in double precision, of the numbers as the ray has them.
+                let (p, r) = (v::<V>(source), v::<V>(d));
+                let [(a0, b0), (a1, b1), (a2, b2)] = [0, 1, 2].map(|k| {
+                    let (p, r, h) = (p.get(k).as_f64(), r.get(k).as_f64(), target.half_extents().get(k).as_f64());
+                    let (x, y) = ((-h - p) / r, (h - p) / r);
+                    (x.min(y), x.max(y))
+                });
+                let (enter, leave) = (a0.max(a1).max(a2), b0.min(b1).min(b2));
+                let answer = lambda(&target, source, d);
+                if leave - enter > 1e-3 * size {
+                    let error = (answer.expect("a sure hit") - enter).abs();
+                    assert!(error < ulps::<V>(256.0) * size, "{size} {d:?}: {error}");
+                    hits += 1;
+                } else if enter - leave > 1e-3 * size {
+                    assert_eq!(answer, None, "a sure miss, {size} {d:?}");
+                }
+            }
+        }
+        assert!((50..450).contains(&hits), "both hits and misses: {hits} of 500");
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// The combination of all: a rounded, summed, far away thing is hit where its closed form says.
+#[test]
+fn far_source_loses_only_its_own_digits() {
+    fn run<V: Quaternion>() {
+        let bar = Segment::new([v::<V>([-1.0, 0.0, 0.0]), v([1.0, 0.0, 0.0])]).expect("finite");
+        let capsule = MinkowskiSum::new(bar, Ball::new(s::<V>(0.5)).expect("positive"));
+        for distance in [1e1, 1e3, 1e6] {
+            let hit = lambda(&capsule, [0.3, 0.0, -distance], [0.0, 0.0, 1.0]).expect("it is hit");
+            assert!((hit - (distance - 0.5)).abs() < ulps::<V>(4.0) * distance, "{distance}: {hit}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
