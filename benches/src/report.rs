@@ -81,11 +81,17 @@ fn goals(rows: &[Row]) -> String {
         rows.iter().find(|row| row.workload == workload && row.case == case && row.method == method)
     };
     let mut text = String::from(
-        "| workload | case | method | ns | parry gjk f64 | ratio | goal | p99 error | goal | wrong | |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|\n",
+        "| workload | case | method | ns | best right peer | parry gjk f64 | ratio | goal | p99 error | goal | wrong | |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     let mut line = |row: &Row, goal_ns: f64, goal_p99: f64| {
         let parry = find(row.workload, row.case, Method::ParryGjkF64).map_or(f64::NAN, |parry| parry.ns);
+        let best = rows
+            .iter()
+            .filter(|peer| peer.workload == row.workload && peer.case == row.case && peer.method.is_peer())
+            .filter(|peer| peer.score.wrong() == 0)
+            .min_by(|a, b| a.ns.total_cmp(&b.ns))
+            .map_or("-".into(), |peer| format!("{:.0} ({})", peer.ns, peer.method.name()));
         let (ratio, goal) = (row.ns / parry, goal_ns / parry_ns(row.workload, row.case).unwrap_or(f64::NAN));
         let accurate = row.score.p99.is_nan() || row.score.p99 <= goal_p99;
         let verdict = match (ratio <= goal, accurate, row.score.wrong()) {
@@ -98,7 +104,7 @@ fn goals(rows: &[Row]) -> String {
         let p99_goal = if goal_p99.is_finite() { format!("{goal_p99:.0e}") } else { "-".into() };
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {:.0} | {parry:.0} | {ratio:.3} | {goal:.3} | {p99} | {p99_goal} | {} | {verdict} |",
+            "| {} | {} | {} | {:.0} | {best} | {parry:.0} | {ratio:.3} | {goal:.3} | {p99} | {p99_goal} | {} | {verdict} |",
             row.workload.name(),
             row.case,
             row.method.name(),
@@ -146,7 +152,7 @@ fn machine() -> String {
     let compiler = compiler.as_deref().map_or("an unknown compiler", str::trim);
     let flags = if cfg!(target_feature = "avx2") { "with AVX2" } else { "baseline instruction set" };
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
-    format!("Measured on {processor}, one thread, {flags}, {compiler}, on {}.", date(seconds / 86_400))
+    format!("Measured on {processor}, one thread, {flags}, thin LTO, {compiler}, on {}.", date(seconds / 86_400))
 }
 
 /// The date so many days after 1970-01-01, by Hinnant's `civil_from_days`: years begin in March, so that leap days come

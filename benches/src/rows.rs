@@ -104,6 +104,12 @@ impl Method {
         }
     }
 
+    /// Whether it is another library's.
+    #[must_use]
+    pub const fn is_peer(self) -> bool {
+        matches!(self, Self::ParryGjkF64 | Self::ParryGjkF32 | Self::ParryF64 | Self::ParryF32)
+    }
+
     /// The precision it works in.
     #[must_use]
     pub const fn precision(self) -> Precision {
