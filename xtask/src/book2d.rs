@@ -99,7 +99,7 @@ fn svg(figure: &Figure, steps: &[Step], end: &Distance<DVec2>) -> String {
     let middle = (low + high) / 2.0;
     let at = |p: DVec2| DVec2::new((p.x - middle.x) * UNIT, (middle.y - p.y) * UNIT) + PANEL / 2.0;
     let path = |points: &mut dyn Iterator<Item = DVec2>| {
-        let corners: Vec<String> = points.map(|p| at(p)).map(|p| format!("{:.1} {:.1}", p.x, p.y)).collect();
+        let corners: Vec<String> = points.map(at).map(|p| format!("{:.1} {:.1}", p.x, p.y)).collect();
         format!("M{}", corners.join("L"))
     };
     let dot = |p: DVec2, name: &str, colour: &str| {

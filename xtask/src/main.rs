@@ -42,17 +42,7 @@ enum Task {
     /// Move a robot along its trajectory among obstacles: ellipsoids first, exact distances where they cannot decide.
     ///
     /// Exit status: 0, or 1 where an answer differs from the truth given, or 2 where a file could not be read.
-    Scene {
-        /// A scene: robot, joints, obstacles, trajectory.
-        #[arg(value_name = "FILE", default_value = scene::EMBEDDED)]
-        file: PathBuf,
-        /// True overlaps and distances, one JSON line per pair [default: beside FILE, if there]
-        #[arg(long, value_name = "FILE")]
-        truth: Option<PathBuf>,
-        /// Where tables and plots go.
-        #[arg(long, value_name = "FOLDER", default_value = "target/scene")]
-        output: PathBuf,
-    },
+    Scene(scene::Choice),
     /// Draw the descent of GJK in the plane, step by step.
     Book2d {
         /// Where the drawings go.
@@ -83,6 +73,6 @@ fn main() -> ExitCode {
         Task::Book2d { output } => book2d::run(&output),
         Task::Render { file, width } => render::run(&file, width),
         Task::Footprint { output } => footprint::run(&output),
-        Task::Scene { file, truth, output } => scene::run(&file, truth.as_deref(), &output),
+        Task::Scene(choice) => scene::run(&choice),
     }
 }

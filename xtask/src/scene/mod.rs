@@ -6,6 +6,7 @@
 
 mod body;
 mod picture;
+mod planar;
 mod robot;
 mod truth;
 
@@ -16,6 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use clap::Args;
 use convex_support::glam::{DQuat, DVec3};
 use ellip_margin::{Margin, MarginTracker};
 use gjk_raycast::{Distance, DistanceOptions, distance};
@@ -28,6 +30,9 @@ use crate::plot::{Plot, Scale, Series};
 
 /// The scene that is run where none is named.
 pub(crate) const EMBEDDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/ur5_reach.json");
+
+/// One row in so many is drawn.
+const STRIDE: usize = 10;
 
 /// A scene as written.
 #[derive(Debug, Deserialize)]
@@ -177,9 +182,42 @@ struct Row {
     hulls_asked: usize,
 }
 
-/// Runs the scene and writes tables and plots into `folder`.
-pub(crate) fn run(file: &Path, truth: Option<&Path>, folder: &Path) -> ExitCode {
-    match scene(file, truth, folder) {
+/// What came of a scene.
+struct Outcome {
+    /// The time to fit the ellipsoids.
+    fitted: Duration,
+    levels: Levels,
+    /// The time per row for the distance of every pair.
+    every_pair: Duration,
+    rows: Vec<Row>,
+    truth: Option<truth::Truth>,
+}
+
+/// Which scene to run.
+#[derive(Debug, Args)]
+pub(crate) struct Choice {
+    /// A scene: robot, joints, obstacles, trajectory.
+    #[arg(value_name = "FILE", default_value = EMBEDDED)]
+    file: PathBuf,
+    /// True overlaps and distances, one JSON line per pair [default: beside FILE, if there]
+    #[arg(long, value_name = "FILE")]
+    truth: Option<PathBuf>,
+    /// Instead of a file: a chain of so many links in the plane.
+    #[arg(long, value_name = "LINKS", conflicts_with_all = ["file", "truth"], value_parser = clap::value_parser!(u32).range(1..=1000))]
+    planar: Option<u32>,
+    /// Where tables and plots go.
+    #[arg(long, value_name = "FOLDER", default_value = "target/scene")]
+    output: PathBuf,
+}
+
+/// Runs the scene and writes tables and plots.
+pub(crate) fn run(choice: &Choice) -> ExitCode {
+    let Choice { file, truth, planar, output } = choice;
+    let outcome = match planar {
+        Some(links) => planar::run(*links, output).map(|()| true),
+        None => scene(file, truth.as_deref(), output),
+    };
+    match outcome {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(why) => {
@@ -197,7 +235,7 @@ fn scene(file: &Path, truth: Option<&Path>, folder: &Path) -> Result<bool, Strin
     let mut pairs = vec![Pair::default(); scene.bodies.len() * scene.obstacles.len()];
     let mut levels = Levels::default();
     let mut rows = Vec::new();
-    let mut frames = picture::Frames::new(&scene.obstacles);
+    let mut frames = picture::Frames::new(scene.obstacles.iter().map(|o| picture::outline(&o.outer)));
     // The truth of a scene, if it is known, lies beside it.
     let beside = Some(file.with_extension("truth.jsonl")).filter(|path| path.is_file());
     let mut checked = truth.map(Path::to_path_buf).or(beside).map(|path| truth::Truth::read(&path)).transpose()?;
@@ -230,14 +268,16 @@ fn scene(file: &Path, truth: Option<&Path>, folder: &Path) -> Result<bool, Strin
                 }
             }
         }
-        frames.add(step, &links, nearest);
+        if step.is_multiple_of(STRIDE) {
+            frames.add(links.iter().map(|link| picture::outline(&link.outer)), nearest.map(picture::project));
+        }
         rows.push(row);
     }
-    let every = every_pair(&scene)?;
+    let every_pair = every_pair(&scene)?;
     let right = checked.as_ref().is_none_or(truth::Truth::holds);
-    let written = write(&rows, &frames, folder).and_then(|()| {
-        print(&scene, fitted, &levels, every, &rows, checked.as_ref(), folder, &mut io::stdout().lock())
-    });
+    let outcome = Outcome { fitted, levels, every_pair, rows, truth: checked };
+    let written =
+        write(&outcome.rows, &frames, folder).and_then(|()| print(&scene, &outcome, folder, &mut io::stdout().lock()));
     match written {
         Err(why) if why.kind() != io::ErrorKind::BrokenPipe => {
             Err(format!("cannot write to {}: {why}", folder.display()))
@@ -294,16 +334,8 @@ fn write(rows: &[Row], frames: &picture::Frames, folder: &Path) -> io::Result<()
     fs::write(folder.join("robot.svg"), frames.svg())
 }
 
-fn print(
-    scene: &Scene,
-    fitted: Duration,
-    levels: &Levels,
-    every: Duration,
-    rows: &[Row],
-    truth: Option<&truth::Truth>,
-    folder: &Path,
-    output: &mut impl Write,
-) -> io::Result<()> {
+fn print(scene: &Scene, outcome: &Outcome, folder: &Path, output: &mut impl Write) -> io::Result<()> {
+    let Outcome { fitted, levels, every_pair, rows, truth } = outcome;
     let (links, obstacles) = (scene.bodies.len(), scene.obstacles.len());
     writeln!(output, "{links} links, {obstacles} obstacles, {} rows: {} pairs", rows.len(), levels.asked[0])?;
     writeln!(output, "ellipsoids around and inside every mesh: {:.1} ms, once", fitted.as_secs_f64() * 1e3)?;
@@ -329,7 +361,11 @@ fn print(
         total.as_secs_f64() * 1e6 / rows.len().max(1) as f64,
         links * obstacles
     )?;
-    writeln!(output, "{:.1} µs per row for the distance of every pair of hulls instead", every.as_secs_f64() * 1e6)?;
+    writeln!(
+        output,
+        "{:.1} µs per row for the distance of every pair of hulls instead",
+        every_pair.as_secs_f64() * 1e6
+    )?;
     let overlapping = rows.iter().filter(|row| row.overlaps > 0).count();
     let least = rows.iter().filter_map(|row| row.least_distance).filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
     writeln!(output, "{overlapping} rows with an overlap; least exact distance otherwise {least:.6} m")?;

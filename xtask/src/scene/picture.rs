@@ -1,21 +1,16 @@
-//! The robot's ellipsoids among the obstacles' as an animated SVG, seen from the side.
+//! A robot's ellipsoids among those of the obstacles as an animated SVG.
 
 use std::fmt::Write as _;
 
 use convex_support::Ellipsoid;
 use convex_support::glam::{DMat3, DVec2, DVec3};
 
-use super::body::Placed;
-
-/// One frame in so many rows is drawn.
-const STRIDE: usize = 10;
-
 /// Seconds that a frame stays.
 const PERIOD: f64 = 0.1;
 
 /// An ellipse of the picture.
 #[derive(Clone, Copy, Debug)]
-struct Ellipse {
+pub(super) struct Ellipse {
     center: DVec2,
     semi_axes: DVec2,
     angle: f64,
@@ -35,13 +30,14 @@ fn view() -> DMat3 {
     DMat3::from_cols(right, right.cross(forward), forward).transpose()
 }
 
-fn project(point: DVec3) -> DVec2 {
+/// Where a point of space is in the picture.
+pub(super) fn project(point: DVec3) -> DVec2 {
     (view() * point).truncate()
 }
 
 /// The outline of an ellipsoid: the support values of the outline are those of the ellipsoid within the picture, so its
 /// shape matrix is a block of R·diag(a²)·Rᵀ in the picture's axes.
-fn outline(e: &Ellipsoid<DVec3>) -> Ellipse {
+pub(super) fn outline(e: &Ellipsoid<DVec3>) -> Ellipse {
     let view = view();
     let shape = view * e.shape_matrix() * view.transpose();
     let (a, b, c) = (shape.x_axis.x, shape.x_axis.y, shape.y_axis.y);
@@ -50,23 +46,26 @@ fn outline(e: &Ellipsoid<DVec3>) -> Ellipse {
     Ellipse { center: project(e.center()), semi_axes, angle: (2.0 * b).atan2(a - c) / 2.0 }
 }
 
+/// An ellipse of the plane as it is.
+pub(super) fn flat(e: &Ellipsoid<DVec2>) -> Ellipse {
+    Ellipse { center: e.center(), semi_axes: e.semi_axes(), angle: e.axes().x_axis.to_angle() }
+}
+
 impl Frames {
-    pub(super) fn new(obstacles: &[Placed]) -> Self {
-        Self { obstacles: obstacles.iter().map(|o| outline(&o.outer)).collect(), frames: Vec::new() }
+    pub(super) fn new(obstacles: impl Iterator<Item = Ellipse>) -> Self {
+        Self { obstacles: obstacles.collect(), frames: Vec::new() }
     }
 
-    /// Draws the row, if its turn has come; `nearest` is the point of the nearest obstacle nearest to the robot.
-    pub(super) fn add(&mut self, row: usize, links: &[Placed], nearest: Option<DVec3>) {
-        if row.is_multiple_of(STRIDE) {
-            self.frames.push((links.iter().map(|link| outline(&link.outer)).collect(), nearest.map(project)));
-        }
+    /// Adds a frame; `nearest` is the point of the nearest obstacle nearest to the robot.
+    pub(super) fn add(&mut self, links: impl Iterator<Item = Ellipse>, nearest: Option<DVec2>) {
+        self.frames.push((links.collect(), nearest));
     }
 
     /// The animation; where nothing moves, its first frame.
     pub(super) fn svg(&self) -> String {
         let (mut low, mut high) = (DVec2::splat(f64::INFINITY), DVec2::splat(f64::NEG_INFINITY));
         for e in self.obstacles.iter().chain(self.frames.iter().flat_map(|(links, _)| links)) {
-            let reach = DVec2::splat(e.semi_axes.x);
+            let reach = DVec2::splat(e.semi_axes.max_element());
             (low, high) = (low.min(e.center - reach), high.max(e.center + reach));
         }
         let scale = 720.0 / (high - low).max_element().max(f64::MIN_POSITIVE);

@@ -15,13 +15,17 @@ use crate::plot::{Plot, Scale, Series};
 
 /// The figures that are asked for.
 pub(super) fn figures(scope: &Scope) -> Vec<Figure> {
-    let all: [(&str, fn() -> Figure); 4] = [
-        ("ray_cast", vertices),
-        ("enclosing_ellipsoid", points),
-        ("enclosing_ellipsoid", dimension),
-        ("clearance", obstacles),
-    ];
-    all.into_iter().filter(|(query, _)| scope.holds(query)).map(|(_, figure)| figure()).collect()
+    let mut figures = Vec::new();
+    if scope.holds("ray_cast") {
+        figures.push(vertices());
+    }
+    if scope.holds("enclosing_ellipsoid") {
+        figures.extend([points(), dimension()]);
+    }
+    if scope.holds("clearance") {
+        figures.push(obstacles());
+    }
+    figures
 }
 
 /// Numbers between −1 and 1, the same on every machine (`SplitMix64`).
