@@ -1,4 +1,4 @@
-//! Strategies for [proptest] that generate shapes, poses and directions which are adversarial on purpose: lengths a few
+//! Strategies for [proptest](https://docs.rs/proptest) that generate shapes, poses and directions which are adversarial on purpose: lengths a few
 //! ulps apart or six orders of magnitude apart, zero extents, duplicate, collinear and coplanar points, parallel faces,
 //! directions along an axis or one ulp off it.
 //!

@@ -212,7 +212,7 @@ mod tests {
 
     #[test]
     fn our_shapes_are_parrys() {
-        let corners = (0u8..8).map(|i| V::new(f32::from(i & 1).into(), f32::from(i >> 1 & 1).into(), f32::from(i >> 2).into()));
+        let corners = (0..8).map(|i| V::from_fn(|axis| if i >> axis & 1 == 1 { 1.0 } else { 0.0 }));
         let cube = Polytope::new(corners).unwrap();
         let polyhedron = convex_polyhedron(&cube).expect("a cube is a polyhedron");
         same(&FromParry(polyhedron.clone()), &Polytope::try_from(&polyhedron).unwrap());
