@@ -1,0 +1,83 @@
+//! How long does a step of a robot of 30 links among many obstacles take, and how does it grow with their number?
+
+use std::hint::black_box;
+
+use benches::rng::Rng;
+use convex_support::Ellipsoid;
+use convex_support::glam::{DQuat, DVec3};
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use ellip_margin::{Clearance, MarginOptions, clearance};
+
+const LINKS: u32 = 30;
+const STEPS: u32 = 500;
+
+/// Ellipsoids of 2 to 8 cm in a room of 4 m, none of them in the way of the robot.
+fn obstacles(count: usize) -> Vec<Ellipsoid<DVec3>> {
+    let mut rng = Rng::new(80_000);
+    (0..count)
+        .map(|_| {
+            let size = 0.02 + 0.06 * rng.unit();
+            let a = DVec3::new(1.0, 0.3 + 0.7 * rng.unit(), 0.3 + 0.7 * rng.unit()) * size;
+            let [x, y, z, w] = rng.quat();
+            let mut center = DVec3::new(rng.signed(), rng.signed(), rng.signed()) * 2.0;
+            if center.length() < 0.9 {
+                center *= (0.95 + 0.5 * rng.unit()) / center.length();
+            }
+            Ellipsoid::new(center, a, DQuat::from_xyzw(x, y, z, w)).expect("valid by construction")
+        })
+        .collect()
+}
+
+/// A ring of links turning about the origin, a third of a degree a step: 3.5 mm.
+fn motion() -> Vec<Vec<Ellipsoid<DVec3>>> {
+    let mut rng = Rng::new(80_001);
+    let shapes: Vec<_> = (0..LINKS)
+        .map(|i| {
+            let a = DVec3::new(0.12, 0.03 + 0.09 * rng.unit(), 0.03 + 0.03 * rng.unit());
+            let [x, y, z, w] = rng.quat();
+            (f64::from(i) * 0.4, 0.2 * rng.signed(), a, DQuat::from_xyzw(x, y, z, w))
+        })
+        .collect();
+    let pose = |t: f64| {
+        let links = shapes.iter().map(|&(phase, height, a, q)| {
+            let angle = t + phase;
+            let center = DVec3::new(0.7 * angle.cos(), 0.7 * angle.sin(), height);
+            Ellipsoid::new(center, a, DQuat::from_rotation_z(angle) * q).expect("valid by construction")
+        });
+        links.collect()
+    };
+    (0..STEPS).map(|k| pose(f64::from(k) * 0.005)).collect()
+}
+
+fn bench(c: &mut Criterion) {
+    let motion = motion();
+    let mut group = c.benchmark_group("clearance");
+    group.sample_size(20);
+    for count in [100, 1_000, 10_000, 100_000] {
+        let obstacles = obstacles(count);
+        let mut scene = Clearance::new(&obstacles, MarginOptions::default()).expect("not empty");
+        // Who is timed gives the answer of brute force.
+        for links in motion.iter().step_by(STEPS as usize / if count > 10_000 { 1 } else { 4 }) {
+            let (quick, brute) = (scene.step(links), clearance(links, &obstacles, MarginOptions::default()));
+            let (quick, brute) = (quick.expect("links"), brute.expect("links"));
+            assert_eq!(
+                (quick.margin, quick.link, quick.obstacle),
+                (brute.margin, brute.link, brute.obstacle),
+                "{count}"
+            );
+        }
+        let mut steps = motion.iter().cycle();
+        group.bench_function(BenchmarkId::new("step", count), |b| {
+            b.iter(|| black_box(scene.step(steps.next().expect("a cycle")).expect("links")));
+        });
+        if count <= 1_000 {
+            group.bench_function(BenchmarkId::new("brute force", count), |b| {
+                b.iter(|| black_box(clearance(&motion[0], &obstacles, MarginOptions::default()).expect("links")));
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, bench);
+criterion_main!(benches);
