@@ -81,6 +81,7 @@ pub(crate) fn cast<B: Body>(
         low_slope: zero,
         high: infinity,
         high_error: zero,
+        touched: None,
         normal: None,
         simplex: Simplex::new(),
         v: local.line.at(low),
@@ -97,10 +98,11 @@ pub(crate) fn cast<B: Body>(
         search.run()
     };
 
-    let Search { low, low_error, high, high_error, normal, simplex, iterations, .. } = search;
-    let started_in = low <= local.start;
-    let lambda = if started_in { zero } else { local.lambda(low).max(zero) };
-    let lower = if started_in { zero } else { (lambda - local.error(low, low_error)).max(zero) };
+    let Search { low, low_error, high, high_error, touched, normal, simplex, iterations, .. } = search;
+    let hit_at = touched.unwrap_or(low);
+    let started_in = hit_at <= local.start;
+    let lambda = if started_in { zero } else { local.lambda(hit_at).max(zero) };
+    let lower = (local.lambda(low) - local.error(low, low_error)).max(zero);
     let upper = match end {
         End::Contact if started_in => zero,
         _ => (local.lambda(high) + local.error(high, high_error)).max(lambda),
@@ -155,6 +157,8 @@ struct Search<'a, B: Body, O> {
     /// Where the ray enters the simplex, and how far rounding may have moved that.
     high: ScalarOf<B>,
     high_error: ScalarOf<B>,
+    /// Where the line passes the body within rounding without entering it, which no plane tells.
+    touched: Option<ScalarOf<B>>,
     /// The unit normal of a plane through the point at `low`, to rounding, that has the body behind it.
     normal: Option<B::Vector>,
     simplex: Simplex<B::Vector, B::Witness>,
@@ -286,8 +290,9 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             self.simplex.retain(face, weights);
             if length - self.radius <= self.noise {
                 // The line comes within rounding of the simplex without entering it ahead of x.
-                let mu = self.simplex.weighted_point().dot(line.direction);
-                (self.high, self.high_error) = (mu.max(self.low), self.noise);
+                let mu = self.simplex.weighted_point().dot(line.direction).max(self.low);
+                (self.high, self.high_error, self.touched) = (mu, self.noise, Some(mu));
+                self.normal = self.normal.or(v.unit());
                 return Ok(None);
             }
             if !nearing_across.goes_on(length) {

@@ -45,7 +45,7 @@ fn d1_no_zero_where_a_plane_separates() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// `mujoco_warp` #1546, openGJK #52. Supports were subtracted in world coordinates, so that moving both bodies changed the
+/// `mujoco_warp` #1546, `openGJK` #52. Supports were subtracted in world coordinates, so that moving both bodies changed the
 /// answer. Exact translations change nothing here.
 #[test]
 fn d2_d6_a_common_translation_changes_nothing() {
@@ -65,7 +65,7 @@ fn d2_d6_a_common_translation_changes_nothing() {
     both(|| run::<Vec3A>(&[1.0, 1024.0, 65_536.0]), || run::<DVec3>(&[1.0, 1024.0, 1_048_576.0, 1e12]));
 }
 
-/// #1526, fcl #293, openGJK #13. The origin on a face, an edge or a corner of the simplex, and simplices of four points in
+/// #1526, fcl #293, `openGJK` #13. The origin on a face, an edge or a corner of the simplex, and simplices of four points in
 /// a plane or three on a line: contact was dropped, or 0/0.
 #[test]
 fn d3_d5_d26_contact_on_a_face_an_edge_or_a_corner_is_contact() {
@@ -85,7 +85,7 @@ fn d3_d5_d26_contact_on_a_face_an_edge_or_a_corner_is_contact() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// openGJK #56 and #41. NaN for flat objects and rounded cubes.
+/// `openGJK` #56 and #41. NaN for flat objects and rounded cubes.
 #[test]
 fn d7_flat_and_rounded_shapes_have_finite_answers() {
     fn run<V: Quaternion>() {
@@ -202,7 +202,7 @@ fn d9_d21_d22_nearly_parallel_boxes_keep_their_axis() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// sch-core #28, Flexible-GJK #8, `EnhancedGJK.jl` #30. Parallel closest faces and NaN made endless loops. A support map
+/// sch-core #28, Flexible-GJK #8, `EnhancedGJK` #30. Parallel closest faces and NaN made endless loops. A support map
 /// of NaN ends with a status.
 #[test]
 fn d18_d27_nothing_loops() {
@@ -243,7 +243,7 @@ fn d28_a_cube_at_the_end_of_a_bar() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// Box2D's short edge, the distance: a point 5 mm beyond the end of a plank 1 m by 3.2 mm.
+/// `Box2D`'s short edge, the distance: a point 5 mm beyond the end of a plank 1 m by 3.2 mm.
 #[test]
 fn s9_a_point_beyond_the_short_end_is_apart() {
     fn run<V: Vector>() {

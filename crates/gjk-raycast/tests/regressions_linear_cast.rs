@@ -28,7 +28,7 @@ fn s1_time_of_impact_does_not_depend_on_the_size_of_the_floor() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// bevy_rapier #119, godot #85314. The same over a grid of starting points: the heights differed by up to 6 cm.
+/// `bevy_rapier` #119, godot #85314. The same over a grid of starting points: the heights differed by up to 6 cm.
 #[test]
 fn s2_s23_every_start_over_the_floor_lands_at_one_height() {
     fn run<V: Quaternion>() {
@@ -95,7 +95,7 @@ fn s7_the_normal_is_the_worlds_and_points_to_a() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// Box2D's short edge. A thin plank and a point just beyond its short end: an absolute threshold on areas, cubic in the
+/// `Box2D`'s short edge. A thin plank and a point just beyond its short end: an absolute threshold on areas, cubic in the
 /// length, dropped the end from the simplex.
 #[test]
 fn s9_the_short_end_of_a_thin_plank_is_there() {
@@ -111,7 +111,7 @@ fn s9_the_short_end_of_a_thin_plank_is_there() {
     both(run::<Vec2>, run::<DVec2>);
 }
 
-/// Box2D #625, Box3D #32. Starting within the tolerance, but apart: a hit at 0 in every direction, or an empty simplex.
+/// `Box2D` #625, `Box3D` #32. Starting within the tolerance, but apart: a hit at 0 in every direction, or an empty simplex.
 /// Receding and tangential starts miss, closing ones advance, however near.
 #[test]
 fn s10_s13_near_starts_are_not_contact() {
@@ -139,7 +139,7 @@ fn s11_a_point_hits_a_box() {
     both(run::<Vec2>, run::<DVec2>);
 }
 
-/// Box2D #115, #120, #50. Overlap at the start was reported at the end of the step. It is a hit at 0 without a normal.
+/// `Box2D` #115, #120, #50. Overlap at the start was reported at the end of the step. It is a hit at 0 without a normal.
 #[test]
 fn s12_overlap_at_the_start_is_a_hit_at_zero() {
     fn run<V: Vector>() {
