@@ -327,7 +327,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     fn refine(&mut self, entered: Option<Entry<B::Vector>>) -> Result<(), End<B::Vector>> {
         let Some(mut at) = entered else { return Ok(()) };
         let direction = self.local.line.direction;
-        let mut wanted = (self.noise + self.noise).max(self.options.tolerance);
+        let mut wanted = self.noise.max(self.options.tolerance);
         let mut line = self.local.line;
         let (mut nudge, mut patience) = (ScalarOf::<B>::ZERO, PATIENCE);
         // Newton's steps are taken while they shrink, and the facet's normal after one that did not; between two pieces,
