@@ -6,7 +6,9 @@ use convex_support::glam::DVec3;
 use convex_support::{Ball, Cone, Cuboid, InvalidShape, Posed, SupportMap};
 use gjk_raycast::{Ray, RayCastOptions, ray_cast};
 
-fn scene() -> Result<Vec<(&'static str, Box<dyn SupportMap<Vector = DVec3>>)>, InvalidShape> {
+type Shape = Box<dyn SupportMap<Vector = DVec3>>;
+
+fn scene() -> Result<Vec<(&'static str, Shape)>, InvalidShape> {
     Ok(vec![
         ("crate", Box::new(Posed::translated(Cuboid::new(DVec3::splat(0.5))?, DVec3::new(0.0, 0.5, 0.0))?)),
         ("ball", Box::new(Posed::translated(Ball::new(0.4)?, DVec3::new(0.2, 0.6, 2.0))?)),

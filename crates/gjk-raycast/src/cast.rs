@@ -329,7 +329,8 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         let direction = self.local.line.direction;
         let mut wanted = self.noise.max(self.options.tolerance);
         let mut line = self.local.line;
-        let (mut nudge, mut patience) = (ScalarOf::<B>::ZERO, PATIENCE);
+        let zero = ScalarOf::<B>::ZERO;
+        let (mut nudge, mut patience) = (zero, PATIENCE);
         // Newton's steps are taken while they shrink, and the facet's normal after one that did not; between two pieces,
         // every other step only goes back and forth.
         let (mut last_gap, mut stuck) = (ScalarOf::<B>::infinity(), 0);
@@ -396,7 +397,10 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 }
                 // The body has points of the line on both sides of the lower bound, which so is in the body.
                 Some(_) => {
-                    (self.high, self.high_error) = (self.low, self.low_error);
+                    (self.high, self.high_error) = (
+                        self.low,
+                        self.low_error + if nudge > zero { nudge / slope.min(self.low_slope) } else { zero },
+                    );
                     return Ok(());
                 }
                 None => return Err(End::Open(Status::Stalled)),
