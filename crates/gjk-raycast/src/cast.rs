@@ -422,10 +422,13 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             touching.push(f.point, f.along, witness);
         }
         touching.retain(nearest.face, nearest.weights);
-        let mu = touching.weighted_point().dot(line.direction);
+        // Measured again, since the coordinates in a flat triangle may be nothing but rounding.
+        let passed = touching.weighted_point();
+        let aside = line.across(passed - line.foot).length();
+        let mu = passed.dot(line.direction);
         let slope = -n.dot(line.direction);
         let closed =
-            nearest.v.length() <= self.noise && (mu - self.low) * slope <= ScalarOf::<B>::from_f64(4.0) * self.noise;
+            aside <= self.noise * ScalarOf::<B>::from_f64(0.5) && (mu - self.low) * slope <= self.noise + self.noise;
         if closed {
             self.simplex = touching;
             (self.high, self.high_error) = (mu.max(self.low), self.noise / slope);

@@ -175,7 +175,7 @@ where
             descent.end = End::Separated;
             break;
         }
-        if length - lower <= noise.max(options.tolerance * length) {
+        if length - lower <= noise.max(options.tolerance * lower) {
             descent.end = if length - radius <= noise { End::Overlap } else { End::Separated };
             break;
         }
