@@ -98,6 +98,9 @@ fn points_of_wild_magnitudes_are_handled() {
         assert_eq!(hull.points().len(), 100, "at {s:e}");
         assert_eq!(hull.support(DVec3::Z).z, 0.99 * s, "at {s:e}");
     }
+    // Directions whose products with the points underflow.
+    let small = Polytope::hull_of(spiral(100).map(|p| p * 1e-20)).expect("valid points");
+    assert_eq!(small.support(DVec3::Z * 1e-310), small.support(DVec3::Z));
     // Predicates whose products underflow: still the same set.
     let points: Vec<DVec3> = spiral(60).enumerate().map(|(i, p)| p * 10f64.powi(-5 * i as i32)).collect();
     let directions: Vec<DVec3> = spiral(50).collect();

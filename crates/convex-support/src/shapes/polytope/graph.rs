@@ -53,11 +53,6 @@ impl<V: Vector> Graph<V> {
         graph
     }
 
-    /// The vertices, as given.
-    pub(super) fn vertices(&self) -> &[V] {
-        &self.vertices
-    }
-
     /// The index of a vertex farthest along `direction`; `hint` may be that of a vertex to begin at, or anything.
     #[inline]
     pub(super) fn farthest(&self, direction: V, hint: u32) -> u32 {

@@ -14,6 +14,7 @@ use lanes::Lanes;
 
 use crate::error::InvalidShape;
 use crate::support::ScalarOf;
+use crate::vector::{is_comfortable, scaled};
 use crate::{Hint, Scalar, SupportMap, Vector};
 
 /// The convex hull of a list of points; a polygon in 2D, a polyhedron in 3D.
@@ -66,6 +67,30 @@ impl<V: Vector> Polytope<V> {
         Self { points, search, middle, extent }
     }
 
+    /// The index of the point farthest along `direction`; `hint` is that of one to begin at, or anything.
+    #[inline]
+    fn farthest(&self, direction: V, hint: u32) -> usize {
+        if !is_comfortable(direction.length_squared()) {
+            return self.farthest_along_multiple(direction, hint);
+        }
+        self.search(direction, hint)
+    }
+
+    /// Where products of the direction's coordinates with those of points could vanish or overflow.
+    #[cold]
+    #[inline(never)]
+    fn farthest_along_multiple(&self, direction: V, hint: u32) -> usize {
+        self.search(scaled(direction).map_or(direction, |(multiple, _)| multiple), hint)
+    }
+
+    #[inline]
+    fn search(&self, direction: V, hint: u32) -> usize {
+        match &self.search {
+            Search::Scan(lanes) => lanes.farthest(direction),
+            Search::Climb(graph) => graph.farthest(direction, hint) as usize,
+        }
+    }
+
     /// The points: as given, or the vertices of their hull where it was asked for.
     #[must_use]
     pub fn points(&self) -> &[V] {
@@ -103,10 +128,7 @@ impl<V: Vector> SupportMap for Polytope<V> {
 
     #[inline]
     fn support(&self, direction: V) -> V {
-        match &self.search {
-            Search::Scan(lanes) => self.points[lanes.farthest(direction)],
-            Search::Climb(graph) => self.points[graph.farthest(direction, u32::MAX) as usize],
-        }
+        self.points[self.farthest(direction, u32::MAX)]
     }
 
     #[inline]
@@ -116,15 +138,14 @@ impl<V: Vector> SupportMap for Polytope<V> {
 
     #[inline]
     fn core_support(&self, direction: V, hint: &mut Hint) -> V {
-        match &self.search {
-            Search::Scan(lanes) => self.points[lanes.farthest(direction)] - self.middle,
-            Search::Climb(graph) => {
-                let mut unknown = u32::MAX;
-                let last = hint.next_slot().unwrap_or(&mut unknown);
-                *last = graph.farthest(direction, *last);
-                graph.vertices()[*last as usize]
-            }
-        }
+        let mut unknown = u32::MAX;
+        let last = match &self.search {
+            Search::Scan(_) => &mut unknown,
+            Search::Climb(_) => hint.next_slot().unwrap_or(&mut unknown),
+        };
+        let index = self.farthest(direction, *last);
+        *last = index as u32;
+        self.points[index] - self.middle
     }
 
     #[inline]
