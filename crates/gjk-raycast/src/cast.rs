@@ -286,6 +286,9 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             }
             // The same across the ray, with the whole line for x.
             let Closest { v, face, weights } = self.toward(|p| line.across(line.foot - p), B::Vector::DIM - 1)?;
+            // A short vector that long ones cancelled to leans along the ray by their rounding, and a plane that leans
+            // does not stay before the whole ray.
+            let v = line.across(v);
             let length = v.norm();
             self.simplex.retain(face, weights);
             if length - self.radius <= self.noise {
