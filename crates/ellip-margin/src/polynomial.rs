@@ -114,13 +114,9 @@ pub(crate) fn solve<const N: usize>(
         core::array::from_fn(|j| if N == 2 { low[j] + nu * b[j] } else { low[j] + nu * (middle[j] + nu * b[j]) });
     let norm = dot(y, y).sqrt().recip();
     let y: Vec<N> = core::array::from_fn(|j| y[j] * norm);
-    // w = By − g = −ν·B⁻ᵀy
-    let w = times(a1, apply(&m, times(i2, y)));
-    let ww = nu * nu * dot(w, w);
-    if nu * nu * norm_a > MAX_LOSS * MAX_LOSS * ww {
-        return None;
-    }
-    Some(Solution { nu, y, margin: secular::margin(pair, ww, y, nu), status, iterations })
+    let margin = secular::margin(pair, y, nu);
+    // The margin's error is ‖Bδ‖² for an error δ of y, here up to 1e-12: it must stay below the last digit.
+    (norm_b < 1e9 * (1.0 + margin)).then_some(Solution { nu, y, margin, status, iterations })
 }
 
 /// N(ν) = D(ν)², by its coefficients from the constant one up.

@@ -5,14 +5,14 @@
 //!
 //! > φ(τ)² = Σ ĉᵢ²/(1 + τrᵢ)² = 1.
 //!
-//! No term cancels, nothing over- or underflows before the answer does, and 1 + m = Σ (νx̂ᵢ/σᵢ)² has positive terms too.
+//! No term cancels, and nothing over- or underflows before the answer does.
 //! 1/φ is concave in τ, so that Newton's method for 1/φ(τ) = 1 (Hebden 1973; Moré and Sorensen 1983) rises to the root from
 //! any τ below it, and comes back below in one step from above.
 
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use crate::pair::{Pair, Vec, combine, dot};
+use crate::pair::{Pair, Vec, combine, dot, sub};
 use crate::svd::{Svd, svd};
 use crate::{MarginOptions, Status};
 
@@ -113,25 +113,27 @@ pub(crate) fn solve<const N: usize>(
     let norm = dot(x, x).sqrt();
     let x = x.map(|x| x / norm);
     let nu = tau * scale;
-    // w = By − g = −ν·B⁻ᵀy
-    let w: Vec<N> = core::array::from_fn(|i| tau * largest * (largest / sigma[i]) * x[i]);
     let y = combine(v, x);
-    let margin = margin(pair, dot(w, w), y, nu);
+    let margin = margin(pair, y, nu);
     // Sizes beyond the square root of the range of `f64`.
     let status = if margin.is_finite() && nu.is_finite() { status } else { Status::Stalled };
     Solution { nu, y, margin, status, iterations }
 }
 
-/// m from 1 + m = ‖w‖², where its digits are sure to suffice, and from the compensated Lagrangian where they are not.
+/// m = ‖w‖² − 1 for the unit vector y, with w = diag(a₁)⁻¹R₁ᵀ(v − r), v = x* − x₂ = R₂·diag(a₂)y.
 ///
-/// The products R₁ᵀR₂ and R₁ᵀr have errors of about ε(‖v‖ + ‖r‖) in the units of space, with v = x* − x₂, which E₁'s least
-/// semi-axis turns into errors of w.
+/// Among the points of E₂ the nearest is stationary, so that the rounding errors of y enter squared, and those of ν not at all.
+/// What remains are errors of about ε(‖v‖ + ‖r‖) in the units of space, which E₁'s least semi-axis turns into errors of w.
+/// Where they could show, m is taken from the compensated Lagrangian.
 #[inline]
-pub(crate) fn margin<const N: usize>(pair: &Pair<N>, squared: f64, y: Vec<N>, nu: f64) -> f64 {
+pub(crate) fn margin<const N: usize>(pair: &Pair<N>, y: Vec<N>, nu: f64) -> f64 {
+    let (v, r) = (pair.out_of_ball(y), pair.r());
+    let p = sub(v, r);
+    let w: Vec<N> = core::array::from_fn(|i| dot(pair.axes1[i], p) / pair.a1[i]);
+    let squared = dot(w, w);
     let plain = squared - 1.0;
-    let (v, r): (Vec<N>, _) = (core::array::from_fn(|j| pair.a2[j] * y[j]), pair.r());
     let least = (1..N).fold(pair.a1[0], |m, i| m.min(pair.a1[i]));
-    // (‖v‖² + ‖r‖²)‖w‖²/a₁² against (1000·m)²
-    let sure = (dot(v, v) + dot(r, r)) * squared < 1e6 * (plain * plain) * (least * least);
+    // (‖v‖² + ‖r‖²)‖w‖²/a₁² against (32·m)²
+    let sure = (dot(v, v) + dot(r, r)) * squared < 1024.0 * (plain * plain) * (least * least);
     if sure || !squared.is_finite() { plain } else { pair.compensated_margin(y, nu) }
 }
