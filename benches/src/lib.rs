@@ -38,3 +38,8 @@ pub mod w4_enclosing;
 pub mod w5_margin;
 
 pub use reference::Pose;
+
+/// Compiles and runs the examples of the workspace's README: no other package sees all four crates.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
