@@ -21,6 +21,12 @@ const MAX_SCANS: usize = 500;
 /// Below this many points, forgetting some does not pay.
 const FEW: usize = 2_048;
 
+/// Below this gap Newton's method doubles the digits with each step, and two steps reach rounding.
+const QUADRATIC: f64 = 1e-6;
+
+/// A gap that is rounding in any case.
+const ROUNDING: f64 = 1e-14;
+
 /// Solves by Newton's method (or the dual reduced Newton method) on a working set.
 pub(crate) fn solve<P: Points, R: Dimension + Sync>(
     points: &P,
@@ -56,6 +62,7 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
     // How far the next iterate is expected to fall short; only the share of points forgotten depends on it.
     let mut expected = 1.5 * r as f64;
     let mut pool: Option<Survivors<P::Dim>> = None;
+    let mut polishing = options.method == EnclosingMethod::Newton;
     let ended = loop {
         let budget = max_iterations - iterations;
         let goal = inner_gap.max(tight);
@@ -94,8 +101,29 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
             weights: &set.u,
         });
         // Below what the rounding of the coordinates does to the gap there is nothing to gain.
-        if gap <= (0.5 * options.epsilon).max(r as f64 * set.coordinate_error(points, &frame)) {
-            break Status::Converged;
+        let floor = r as f64 * set.coordinate_error(points, &frame);
+        if gap <= (0.5 * options.epsilon).max(floor) {
+            if !polishing || gap <= floor.max(ROUNDING) || gap > QUADRATIC {
+                break Status::Converged;
+            }
+            // Two more steps cost little. The final check, which looks at all points anyway, tells whether they served; if
+            // ever they did not, the loop goes on without them.
+            polishing = false;
+            add(points, rank, &frame, &mut set, &violators.found);
+            if !moments.compute(rank, &set.y, &set.u) {
+                break Status::Converged;
+            }
+            let steps = max_iterations.saturating_sub(iterations).min(2);
+            iterations += newton::solve(rank, &mut set, &mut moments, &mut work, ROUNDING, steps);
+            recenter(points, rank, &mut frame, &mut set, &mut moments);
+            let certificate = Certificate::from_weights(points, rank, &frame, &set, &moments);
+            let polished = finish(points, &frame, certificate, options.epsilon, Status::Converged, iterations, scans)?;
+            if polished.status == Status::Converged {
+                return Ok(polished);
+            }
+            scans = polished.scans;
+            inner_gap = tight;
+            continue;
         }
         if iterations >= max_iterations || scans >= MAX_SCANS {
             break Status::IterationLimit;
@@ -107,15 +135,7 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
             set.retain(r, |i| u[i] > 0.0 || q[i] > 0.95 * r as f64);
         }
         let before = set.len();
-        for index in violators.found {
-            if !set.index.contains(&index) {
-                let mut v = points.dim().zero();
-                let mut y = rank.zero();
-                points.read(index, v.as_mut());
-                frame.apply(points.dim(), rank, v.as_mut(), y.as_mut());
-                set.push(index, y.as_ref());
-            }
-        }
+        add(points, rank, &frame, &mut set, &violators.found);
         if !moments.compute(rank, &set.y, &set.u) {
             break Status::Stalled;
         }
@@ -135,6 +155,19 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
 /// size of the input.
 const fn capacity(len: usize) -> usize {
     if len < FEW { 0 } else { len / 4 }
+}
+
+/// Adds the points `found`, with weight zero.
+fn add<P: Points, R: Dimension>(points: &P, rank: R, frame: &Frame, set: &mut WorkingSet, found: &[usize]) {
+    let mut v = points.dim().zero();
+    let mut y = rank.zero();
+    for &index in found {
+        if !set.index.contains(&index) {
+            points.read(index, v.as_mut());
+            frame.apply(points.dim(), rank, v.as_mut(), y.as_mut());
+            set.push(index, y.as_ref());
+        }
+    }
 }
 
 /// Makes the ellipsoid of the weights, (y − c)ᵀS⁻¹(y − c) ≤ 1, the unit ball of the frame.
