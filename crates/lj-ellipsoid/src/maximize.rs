@@ -22,6 +22,7 @@ use crate::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
 use crate::options::{InscribedOptions, Status};
 
 /// The unknowns of the program and what follows from them.
+#[derive(Clone)]
 pub(crate) struct Point {
     /// B, symmetric, n × n.
     pub(crate) b: Vec<f64>,
@@ -118,6 +119,13 @@ fn dual_bound<D: Dimension>(dim: D, p: &[f64], v: &[f64], y: &[f64]) -> Option<D
 /// The complementarity below which the dual bound is evaluated.
 const WORTH_BOUNDING: f64 = 1e-3;
 
+/// Steps taken beyond the gap asked for, each of which shrinks it by two to three orders, and the gap they aim at.
+const POLISHING_STEPS: usize = 3;
+const ROUNDING: f64 = 1e-14;
+
+/// Below this gap steps are full ones, and polishing is worth its price.
+const NEAR: f64 = 1e-6;
+
 /// The best point, what its multipliers prove, how the iteration ended, and its steps.
 type Maximum = (Point, Option<Dual>, Status, usize);
 
@@ -142,6 +150,8 @@ pub(crate) fn maximize<D: Dimension>(
     let mut centring = 0.3;
     let mut without_progress = 0;
     let mut iteration = 0;
+    let mut polishing = POLISHING_STEPS;
+    let mut kept: Option<Point> = None;
     let ended = loop {
         let growth = point.h.iter().zip(&point.c).fold(f64::INFINITY, |g: f64, (h, c)| g.min((h + c) / h));
         // The complementarity Σyᵢcᵢ is about half the gap: while it is large the bound is not worth its price.
@@ -155,9 +165,18 @@ pub(crate) fn maximize<D: Dimension>(
             best = (gap, dual);
         } else {
             without_progress += 1;
+            if let Some(kept) = kept.take() {
+                point = kept;
+                break Status::Converged;
+            }
         }
         if gap <= 0.5 * options.epsilon {
-            break Status::Converged;
+            if gap <= ROUNDING || gap > NEAR || polishing == 0 || iteration >= options.max_iterations {
+                break Status::Converged;
+            }
+            // A step of rounding may lead anywhere: what is at hand is kept against it.
+            polishing -= 1;
+            kept = Some(point.clone());
         }
         if iteration >= options.max_iterations {
             break Status::IterationLimit;

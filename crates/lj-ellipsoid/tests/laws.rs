@@ -208,3 +208,20 @@ proptest! {
         }
     }
 }
+
+/// The answer ends where Newton's method does, not where the gap asked for was first reached.
+#[test]
+fn a_loose_epsilon_ends_near_rounding() {
+    for seed in 0..20 {
+        let points = Rng(seed).normals::<3>(300);
+        let loose = enclosing(&points, EnclosingOptions::new().with_epsilon(1e-7)).expect("full rank").ellipsoid;
+        let tight = enclosing(&points, EnclosingOptions::new().with_epsilon(1e-13)).expect("full rank").ellipsoid;
+        assert!((loose.log_det() - tight.log_det()).abs() <= 2e-13, "enclosing, seed {seed}");
+
+        let loose =
+            inscribed_in_hull(&points, InscribedOptions::new().with_epsilon(1e-7)).expect("full rank").ellipsoid;
+        let tight =
+            inscribed_in_hull(&points, InscribedOptions::new().with_epsilon(1e-13)).expect("full rank").ellipsoid;
+        assert!((loose.log_det() - tight.log_det()).abs() <= 2e-13, "inscribed, seed {seed}");
+    }
+}
