@@ -275,11 +275,8 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             }
             let slope = v.dot(line.direction) / length;
             let progress = nearing.goes_on(length);
-            across |= slope < zero && (!progress || slope > -ScalarOf::<B>::from_f64(GRAZING));
-            if !across || slope >= zero {
-                if !progress {
-                    return Err(End::Open(Status::Stalled));
-                }
+            across |= slope < zero && slope > -ScalarOf::<B>::from_f64(GRAZING);
+            if progress && (!across || slope >= zero) {
                 self.simplex.retain(face, weights);
                 (self.v, n) = (v, v / length);
                 continue;
@@ -292,6 +289,10 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             let length = v.norm();
             self.simplex.retain(face, weights);
             if length - self.radius <= self.noise {
+                if slope >= zero {
+                    // Where it does, the ray may be past the simplex.
+                    return Err(End::Open(Status::Stalled));
+                }
                 // The line comes within rounding of the simplex without entering it ahead of x.
                 let mu = self.simplex.weighted_point().dot(line.direction).max(self.low);
                 (self.high, self.high_error, self.touched) = (mu, self.noise, Some(mu));

@@ -68,7 +68,9 @@ pub(crate) fn nearest_face<V: Vector>(points: &[V], dimension: usize) -> Option<
         if !foot.coordinates[..face.len()].iter().all(|&b| b > V::Scalar::ZERO) {
             continue;
         }
-        let v = if face.len() > dimension { V::ZERO } else { -foot.across };
+        // A simplex of full dimension leaves nothing across, or else it is flat, and what spans it is rounding.
+        let full = face.len() > dimension && foot.across.length() <= rounding;
+        let v = if full { V::ZERO } else { -foot.across };
         let length = v.length();
         let known: Option<Closest<V>> = best;
         let bonus =

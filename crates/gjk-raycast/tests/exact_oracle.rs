@@ -124,6 +124,15 @@ fn direction(planar: bool) -> impl Strategy<Value = Point> {
     (-9_i128..=9, -9_i128..=9, -z..=z).prop_map(|(x, y, z)| [x, y, z]).prop_filter("not zero", |d| *d != [0; 3])
 }
 
+/// The edge along the ray is a single point across it, spanned by rounding; what rounding spans must not count as
+/// passed. Found by the properties below.
+#[test]
+fn a_ray_along_an_edge_misses() {
+    let points = [[3, -8, 0], [-4, -1, 0], [-7, -9, 0]];
+    check_ray::<DVec2>(&points, [27, -27, 0], [-9, 9, 0]).expect("in double precision");
+    check_ray::<Vec2>(&points, [27, -27, 0], [-9, 9, 0]).expect("in single precision");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
