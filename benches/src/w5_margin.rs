@@ -3,7 +3,7 @@
 use crate::rng::Rng;
 use crate::vec3::{rotate, scale};
 
-/// How many pairs [`pairs`] makes.
+/// How many pairs [`pairs2`] and [`pairs3`] make.
 pub const PAIRS: usize = 2_000;
 
 /// Two ellipsoids in the frame in which the first is the unit ball: the second is `{ translation + map·y : |y| ≤ 1 }`.
