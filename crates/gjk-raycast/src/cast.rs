@@ -275,7 +275,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             }
             let slope = v.dot(line.direction) / length;
             let progress = nearing.goes_on(length);
-            across |= slope < zero && slope > -ScalarOf::<B>::from_f64(GRAZING);
+            across |= slope < zero && (!progress || slope > -ScalarOf::<B>::from_f64(GRAZING));
             if progress && (!across || slope >= zero) {
                 self.simplex.retain(face, weights);
                 (self.v, n) = (v, v / length);
