@@ -1,13 +1,13 @@
 //! `linear_cast`.
 
 use convex_support::Vector;
-use gjk_raycast::{LinearCast, LinearCastOptions, Motion, Outcome, linear_cast};
+use gjk_raycast::{LinearCast, LinearCastOptions, LinearHit, Motion, linear_cast};
 
+use super::cast::{self, problem};
 use super::method::choose;
-use super::ray_cast::{problem, undecided};
-use super::{Question, scalar, status, tolerance};
+use super::{Question, scalar, tolerance};
 use crate::mesh::Meshes;
-use crate::wire::answer::{Answer, Field};
+use crate::wire::answer::Answer;
 use crate::wire::error::Problem;
 use crate::wire::reader::Coordinates;
 use crate::wire::shape::{Shape, Solid, Space, vector};
@@ -53,21 +53,8 @@ impl<V: Space> Question for LinearCastQuestion<V> {
     }
 
     fn answer(&self, cast: LinearCast<V>) -> Result<Answer, Problem> {
-        let answer = match cast.outcome {
-            Outcome::Hit(hit) => Answer::default()
-                .with("hit", Field::Flag(true))
-                .with("time", Field::number(hit.time))
-                .with("point", Field::vector(hit.point))
-                .with("normal", Field::maybe_vector(hit.normal))
-                .with_finite("lower", cast.lower)
-                .with_finite("upper", cast.upper),
-            Outcome::Miss(miss) => {
-                Answer::default().with("hit", Field::Flag(false)).with("axis", Field::vector(miss.axis))
-            }
-            Outcome::Undecided => {
-                return Err(undecided("time", [cast.lower, cast.upper], cast.status, cast.iterations));
-            }
-        };
-        Ok(answer.with("status", status(cast.status)).with("iterations", Field::Count(cast.iterations)))
+        let LinearCast { outcome, lower, upper, status, iterations, .. } = cast;
+        let show = |hit: LinearHit<V>| (hit.time, hit.point, hit.normal);
+        cast::answer("time", outcome, show, [lower, upper], status, iterations)
     }
 }

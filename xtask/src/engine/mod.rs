@@ -1,5 +1,6 @@
 //! From a query to its answer: the one place where precision and dimension become types.
 
+mod cast;
 mod distance;
 mod enclosing;
 mod fit;

@@ -1,16 +1,14 @@
 //! `ray_cast`.
 
-use convex_support::{Point, Scalar, Vector};
-use gjk_raycast::{
-    DistanceOptions, Outcome, Ray, RayCast, RayCastError, RayCastOptions, Status, distance, iterative_ray_cast,
-    ray_cast,
-};
+use convex_support::{Point, Vector};
+use gjk_raycast::{DistanceOptions, Ray, RayCast, RayCastOptions, RayHit, distance, iterative_ray_cast, ray_cast};
 
+use super::cast::{self, problem};
 use super::method::choose;
-use super::{Question, scalar, status, tolerance};
+use super::{Question, scalar, tolerance};
 use crate::mesh::Meshes;
-use crate::wire::answer::{Answer, Field};
-use crate::wire::error::{Kind, Problem};
+use crate::wire::answer::Answer;
+use crate::wire::error::Problem;
 use crate::wire::reader::Coordinates;
 use crate::wire::shape::{Shape, Solid, Space, vector};
 
@@ -73,46 +71,8 @@ impl<V: Space> Question for RayCastQuestion<V> {
         .map_err(problem)
     }
 
-    fn answer(&self, cast: RayCast<V>) -> Result<Answer, Problem> {
-        let answer = match cast.outcome {
-            Outcome::Hit(hit) => Answer::default()
-                .with("hit", Field::Flag(true))
-                .with("lambda", Field::number(hit.lambda))
-                .with("point", Field::vector(hit.point))
-                .with("normal", Field::maybe_vector(hit.normal))
-                .with_finite("lower", cast.lower)
-                .with_finite("upper", cast.upper),
-            Outcome::Miss(miss) => {
-                Answer::default().with("hit", Field::Flag(false)).with("axis", Field::vector(miss.axis))
-            }
-            Outcome::Undecided => {
-                return Err(undecided("lambda", [cast.lower, cast.upper], cast.status, cast.iterations));
-            }
-        };
-        Ok(answer.with("status", status(cast.status)).with("iterations", Field::Count(cast.iterations)))
-    }
-}
-
-/// A cast that ended between hit and miss.
-pub(super) fn undecided<S: Scalar>(name: &str, [lower, upper]: [S; 2], status: Status, iterations: usize) -> Problem {
-    let how = match status {
-        Status::IterationLimit => "the limit was reached",
-        _ => "rounding allowed no further progress",
-    };
-    let message = format!(
-        "neither hit nor miss is certain after {iterations} iterations, where {how}; {name} is between {lower} and {upper}"
-    );
-    Problem::new(Kind::NotConverged, message)
-}
-
-pub(super) fn problem(why: RayCastError) -> Problem {
-    match why {
-        RayCastError::ZeroDirection => {
-            Problem::new(Kind::ZeroDirection, "direction is the zero vector in this precision")
-        }
-        RayCastError::NonFinite { parameter, index } => {
-            Problem::new(Kind::NonFinite, format!("{parameter}[{index}] is not finite in the precision asked for"))
-        }
-        _ => Problem::new(Kind::NotConverged, why.to_string()),
+    fn answer(&self, RayCast { outcome, lower, upper, status, iterations, .. }: RayCast<V>) -> Result<Answer, Problem> {
+        let show = |hit: RayHit<V>| (hit.lambda, hit.point, hit.normal);
+        cast::answer("lambda", outcome, show, [lower, upper], status, iterations)
     }
 }
