@@ -8,6 +8,7 @@ mod plot;
 mod query;
 mod render;
 mod scene;
+mod sweep;
 mod validate;
 mod wire;
 
@@ -43,6 +44,10 @@ enum Task {
     ///
     /// Exit status: 0, or 1 where an answer differs from the truth given, or 2 where a file could not be read.
     Scene(scene::Choice),
+    /// Cast rays at every scale, and hold them against references in thirty digits; the same for linear casts and distances.
+    ///
+    /// Exit status: 0 where everything is right, 1 where some answer is wrong, 2 where the table could not be written.
+    Sweep(sweep::Scope),
     /// Draw the descent of GJK in the plane, step by step.
     Book2d {
         /// Where the drawings go.
@@ -70,6 +75,7 @@ fn main() -> ExitCode {
     match Arguments::parse().task {
         Task::Query { files } => query::run(&files),
         Task::Validate(scope) => validate::run(&scope),
+        Task::Sweep(scope) => sweep::run(&scope),
         Task::Book2d { output } => book2d::run(&output),
         Task::Render { file, width } => render::run(&file, width),
         Task::Footprint { output } => footprint::run(&output),
