@@ -1,5 +1,6 @@
 //! `cargo xtask validate [FILE…]`: answers against the truth, error against run time.
 
+mod enclosing_ladder;
 mod growth;
 mod provenance;
 mod report;
@@ -122,6 +123,7 @@ fn validate(scope: &Scope) -> Result<bool, String> {
     let mut figures = Vec::new();
     if !scope.quick {
         figures.extend(work_precision::figures(&cases));
+        figures.extend(enclosing_ladder::figures(scope));
         figures.extend(stiff::figures(&cases));
         figures.extend(growth::figures(scope));
     }
