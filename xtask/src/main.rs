@@ -1,6 +1,7 @@
 //! The workspace's tasks: `cargo xtask --help`.
 
 mod book2d;
+mod docs;
 mod engine;
 mod footprint;
 mod mesh;
@@ -63,6 +64,10 @@ enum Task {
         #[arg(long, default_value_t = 1280, value_parser = clap::value_parser!(u32).range(16..=16384))]
         width: u32,
     },
+    /// Build the API documentation of the libraries as docs.rs does, and check that no link leads nowhere.
+    ///
+    /// Exit status: 0, or 1 where a note or page refers to what is not there, or 2 where the documentation does not build.
+    Docs,
     /// Measure what importing each crate alone costs: packages, build time, code size.
     Footprint {
         /// Where the programs are built; emptied first.
@@ -78,6 +83,7 @@ fn main() -> ExitCode {
         Task::Sweep(scope) => sweep::run(&scope),
         Task::Book2d { output } => book2d::run(&output),
         Task::Render { file, width } => render::run(&file, width),
+        Task::Docs => docs::run(),
         Task::Footprint { output } => footprint::run(&output),
         Task::Scene(choice) => scene::run(&choice),
     }

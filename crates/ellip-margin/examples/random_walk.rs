@@ -6,7 +6,7 @@
 //!
 //! `cargo run --release -p ellip-margin --example random_walk`
 
-#![allow(clippy::print_stdout, reason = "an example shows its results")]
+#![allow(clippy::print_stdout, reason = "an example talks")]
 
 use ellip_margin::convex_support::{Ellipsoid, InvalidShape, glam::DVec2};
 use ellip_margin::{InverseIterationTracker, MarginOptions, MarginTracker, free_margin};

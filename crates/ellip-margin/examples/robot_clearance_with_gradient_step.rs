@@ -3,7 +3,7 @@
 //!
 //! `cargo run -p ellip-margin --example robot_clearance_with_gradient_step`
 
-#![allow(clippy::print_stdout, reason = "an example shows its results")]
+#![allow(clippy::print_stdout, reason = "an example talks")]
 
 use ellip_margin::convex_support::{Ellipsoid, InvalidShape, glam::DVec2};
 use ellip_margin::{InvalidQuery, MarginOptions, clearance};

@@ -1,0 +1,92 @@
+//! `cargo xtask docs`: the API documentation of the four libraries as docs.rs builds it, with every feature and no warning
+//! let pass; and a check that what the pages and the notes refer to is there, without a network.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+const LIBRARIES: [&str; 4] = ["convex-support", "gjk-raycast", "lj-ellipsoid", "ellip-margin"];
+
+/// Builds the pages, checks them and the notes, and says where they are.
+pub(crate) fn run() -> ExitCode {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
+    match build(root).and_then(|pages| Ok((missing(root)?, fetched(&pages)?, pages))) {
+        Ok((missing, fetched, pages)) => {
+            for complaint in missing.iter().chain(&fetched) {
+                let _ = writeln!(io::stderr(), "error: {complaint}");
+            }
+            let _ = writeln!(io::stdout(), "{}", pages.join("convex_support/index.html").display());
+            if missing.is_empty() && fetched.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(1) }
+        }
+        Err(why) => {
+            let _ = writeln!(io::stderr(), "error: {why}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// The folder of the pages.
+fn build(root: &Path) -> Result<PathBuf, String> {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.current_dir(root).env("RUSTDOCFLAGS", "-D warnings");
+    command.args(["doc", "--no-deps", "--all-features"]);
+    command.args(LIBRARIES.iter().flat_map(|library| ["--package", library]));
+    let status = command.status().map_err(|why| format!("cannot run cargo: {why}"))?;
+    if !status.success() {
+        return Err("the documentation does not build".to_owned());
+    }
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
+    Ok(target.join("doc"))
+}
+
+/// The relative links in the notes and READMEs that lead nowhere.
+fn missing(root: &Path) -> Result<Vec<String>, String> {
+    let mut missing = Vec::new();
+    for note in files(root, "md")? {
+        let text = read(&note)?;
+        for target in text.split("](").skip(1).filter_map(|rest| rest.split([')', ' ']).next()) {
+            let file = target.split('#').next().unwrap_or_default();
+            let elsewhere = target.contains("://") || file.is_empty();
+            if !elsewhere && !note.with_file_name(file).exists() {
+                missing.push(format!("{} links to {target}, which is not there", note.display()));
+            }
+        }
+    }
+    Ok(missing)
+}
+
+/// The pages of the libraries that a browser would fetch something for.
+fn fetched(pages: &Path) -> Result<Vec<String>, String> {
+    let mut fetched = Vec::new();
+    for library in LIBRARIES {
+        for page in files(&pages.join(library.replace('-', "_")), "html")? {
+            let text = read(&page)?;
+            if ["src=\"http", "src=\"//", "url(http"].iter().any(|sign| text.contains(sign)) {
+                fetched.push(format!("{} needs the network", page.display()));
+            }
+        }
+    }
+    Ok(fetched)
+}
+
+fn read(file: &Path) -> Result<String, String> {
+    fs::read_to_string(file).map_err(|why| format!("cannot read {}: {why}", file.display()))
+}
+
+/// All files below `folder` that end with `.extension`, but for hidden folders and cargo's own.
+fn files(folder: &Path, extension: &str) -> Result<Vec<PathBuf>, String> {
+    let failed = |why: io::Error| format!("cannot read {}: {why}", folder.display());
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        if path.is_dir() && name != "target" && !name.starts_with('.') {
+            found.extend(files(&path, extension)?);
+        } else if path.extension().is_some_and(|e| e == extension) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
