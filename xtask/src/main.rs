@@ -4,6 +4,7 @@ mod book2d;
 mod docs;
 mod engine;
 mod footprint;
+mod fuzz;
 mod mesh;
 mod plot;
 mod query;
@@ -49,6 +50,10 @@ enum Task {
     ///
     /// Exit status: 0 where everything is right, 1 where some answer is wrong, 2 where the table could not be written.
     Sweep(sweep::Scope),
+    /// Try damaged query lines, and hulls of integers against an exact oracle, for a bounded time.
+    ///
+    /// Exit status: 0 where nothing failed, 1 where something did, 2 where the suite could not be read.
+    Fuzz(fuzz::Scope),
     /// Draw the descent of GJK in the plane, step by step.
     Book2d {
         /// Where the drawings go.
@@ -81,6 +86,7 @@ fn main() -> ExitCode {
         Task::Query { files } => query::run(&files),
         Task::Validate(scope) => validate::run(&scope),
         Task::Sweep(scope) => sweep::run(&scope),
+        Task::Fuzz(scope) => fuzz::run(&scope),
         Task::Book2d { output } => book2d::run(&output),
         Task::Render { file, width } => render::run(&file, width),
         Task::Docs => docs::run(),

@@ -126,6 +126,11 @@ impl Lines {
     }
 }
 
+/// The line of output for one line of input.
+pub(crate) fn answer(text: &[u8], meshes: &Meshes) -> Vec<u8> {
+    answer_line(&Numbered { line: 1, text: text.to_vec() }, meshes).1
+}
+
 /// The line of output for a line of input, and whether it is an answer.
 fn answer_line(Numbered { line, text }: &Numbered, meshes: &Meshes) -> (bool, Vec<u8>) {
     let number = || Value::from(*line);

@@ -28,7 +28,7 @@ use crate::wire::query;
 use crate::wire::reader::Object;
 
 /// What is validated where no files are named.
-const EMBEDDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/suite");
+pub(crate) const EMBEDDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/suite");
 
 /// One case and what became of it.
 #[derive(Clone, Debug)]

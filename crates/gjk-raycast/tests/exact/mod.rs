@@ -5,6 +5,8 @@
 //! the least distance of zero from one of them. Coordinates are integers below 2⁹, so that every determinant and every
 //! cross product of two fractions is exact in 128 bits. Planar sets have `z = 0`: flatness needs no case of its own.
 
+pub(crate) mod agree;
+
 /// A point with integer coordinates.
 pub(crate) type Point = [i128; 3];
 
