@@ -29,34 +29,51 @@ use crate::{Margin, MarginOptions};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarginTracker {
     options: MarginOptions,
-    /// ν at the last two steps with x₁ outside E₂, the last first; 0 where unknown.
-    last: [f64; 2],
+    /// ν at the last step with x₁ outside E₂, and its backward differences: ∇ν, ∇²ν, …; 0 where unknown.
+    past: [f64; DEPTH],
     steps: u64,
     iterations: u64,
 }
+
+/// ν and its differences up to the fourth.
+const DEPTH: usize = 5;
 
 impl MarginTracker {
     /// A tracker that has seen nothing yet.
     #[must_use]
     pub const fn new(options: MarginOptions) -> Self {
-        Self { options, last: [0.0; 2], steps: 0, iterations: 0 }
+        Self { options, past: [0.0; DEPTH], steps: 0, iterations: 0 }
     }
 
     /// The margin of `e1` about `e2`, wherever they have moved since the last call.
     pub fn step<V: Vector>(&mut self, e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> Margin<V> {
-        // On a smooth path the next ν lies on the line through the last two; a line that leads below half of the last is
-        // a jump, not a path.
-        let [last, before] = self.last;
-        let line = 2.0 * last - before;
-        let start = if before > 0.0 && line > 0.5 * last { line } else { last };
-        let margin = margin_from(e1, e2, start, self.options, |_, _| {});
+        let margin = margin_from(e1, e2, self.forecast(), self.options, |_, _| {});
         // A step with x₁ in E₂ says nothing about the next one outside.
         if margin.nu > V::Scalar::ZERO && margin.nu.is_finite() {
-            self.last = [margin.nu.as_f64(), last];
+            let mut difference = margin.nu.as_f64();
+            for past in &mut self.past {
+                let before = core::mem::replace(past, difference);
+                difference -= before;
+            }
         }
         self.steps += 1;
         self.iterations += u64::from(margin.iterations);
         margin
+    }
+
+    /// ν of the next step by the polynomial through the last k + 1 values, ν + ∇ν + … + ∇ᵏν, whose error at the last step was
+    /// ∇ᵏ⁺¹ν: that k is taken for which it was least. After a jump, that is none of them; a forecast below half of the last
+    /// value is no path.
+    fn forecast(&self) -> f64 {
+        let (mut sum, mut best, mut least) = (0.0, 0.0, f64::INFINITY);
+        for k in 0..DEPTH - 1 {
+            sum += self.past[k];
+            let error = self.past[k + 1].abs();
+            if error < least {
+                (best, least) = (sum, error);
+            }
+        }
+        if best > 0.5 * self.past[0] { best } else { self.past[0] }
     }
 
     /// The number of steps so far.
