@@ -22,6 +22,13 @@ pub enum InvalidQuery {
         /// How many there are.
         now: usize,
     },
+    /// Two lists that should go together pair by pair are of different lengths.
+    LengthsDiffer {
+        /// The length of the first list.
+        first: usize,
+        /// The length of the second list.
+        second: usize,
+    },
 }
 
 impl fmt::Display for InvalidQuery {
@@ -29,6 +36,12 @@ impl fmt::Display for InvalidQuery {
         match *self {
             Self::NoLinks => f.write_str("at least one link is needed, but the list of links is empty"),
             Self::NoObstacles => f.write_str("at least one obstacle is needed, but the list of obstacles is empty"),
+            Self::LengthsDiffer { first, second } => {
+                write!(
+                    f,
+                    "the lists of first and second ellipsoids must be equally long, but have {first} and {second}"
+                )
+            }
             Self::CountChanged { list, before, now } => {
                 write!(f, "the number of {list} must stay the same along a motion, but it went from {before} to {now}")
             }

@@ -22,6 +22,7 @@
 //! - [`Margin::gradient`], [`Margin::gradient_of_second`]: by the motion of either body, as a wrench, or per joint.
 //! - [`Margin::shape_gradient`], [`Margin::hessian`].
 //! - [`distance`], [`distance_bracket`]: the Euclidean distance, exact or bounded, certified either way.
+//! - [`free_margins`]: many pairs side by side, in vector registers.
 //! - [`scaling`]: the common scale at which both touch, symmetric, informative at any depth.
 //!
 //! # Along a motion
@@ -34,6 +35,7 @@
 //! - `std` (default): floating-point functions from the standard library; `libm`: the same from the libm crate, for `no_std`
 //!   targets. `alloc` is needed in any case.
 //! - `eigen`: the eigenvalue route, by faer.
+//! - `simd`: batches take the widest vector instructions of the processor, found at run time by pulp. The answers are the same.
 
 #![no_std]
 #![allow(clippy::needless_range_loop, reason = "the formulas of this crate index several small arrays at once")]
@@ -46,6 +48,7 @@ extern crate alloc;
 #[cfg(any(feature = "std", test))]
 extern crate std;
 
+mod batch;
 mod clearance;
 mod distance;
 mod double_double;
@@ -69,6 +72,7 @@ mod wedge;
 
 pub use convex_support;
 
+pub use batch::{free_margins, free_margins_into};
 pub use clearance::{Clearance, ClearanceResult, LeftOut, NearPair, clearance};
 pub use distance::{Distance, DistanceBracket, distance, distance_bracket};
 pub use eigenvalue::{EigenvalueGradient, eigenvalue_gradient};

@@ -22,7 +22,7 @@
 use num_traits::Float as _;
 
 use crate::pair::{Pair, Vec, dot, sub};
-use crate::secular::{self, Solution};
+use crate::secular::Solution;
 use crate::{MarginOptions, Status};
 
 /// The largest factor by which a sum of the coefficients may cancel: the relative errors of ν and y stay below this times
@@ -70,6 +70,39 @@ pub(crate) fn solve<const N: usize>(
     is_sharp.then_some(Solution { nu, y, margin, status, iterations })
 }
 
+/// [`solve`] from a cold start without branches, so that a loop over pairs can be vectorised: four steps of Newton's
+/// method and one by the series, which is enough for nearly all pairs.
+#[inline(always)]
+pub(crate) fn solve_straight<const N: usize>(pair: &Pair<N>, tolerance: f64) -> Straight<N> {
+    let problem = Problem::new(pair);
+    let mut nu = problem.start();
+    // Not in a loop: the loop that is to be vectorised is around this.
+    nu = (nu + problem.equation.at(nu).hebden()).max(0.0);
+    nu = (nu + problem.equation.at(nu).hebden()).max(0.0);
+    nu = (nu + problem.equation.at(nu).hebden()).max(0.0);
+    nu = (nu + problem.equation.at(nu).hebden()).max(0.0);
+    let taylor = problem.equation.at(nu);
+    let (step, error) = taylor.series();
+    let is_root = taylor.is_near(nu) & (error <= tolerance * nu);
+    let nu = nu + step;
+    let Nearest { y, margin, is_sure, is_sharp } = problem.nearest(pair, nu);
+    let is_answer = problem.fits & is_root & is_sure & is_sharp;
+    Straight { is_answer: if is_answer { 1.0 } else { 0.0 }, nu, y, margin }
+}
+
+/// The steps [`solve_straight`] takes.
+pub(crate) const STRAIGHT_STEPS: u32 = 5;
+
+/// An answer among those found side by side; all of one type, as vector instructions want it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Straight<const N: usize> {
+    /// 1, or 0 where [`solve`] and its fallbacks have to be asked instead.
+    pub(crate) is_answer: f64,
+    pub(crate) nu: f64,
+    pub(crate) y: Vec<N>,
+    pub(crate) margin: f64,
+}
+
 /// The equation of a pair, and what its solution is turned into an answer with.
 #[derive(Clone, Copy, Debug)]
 struct Problem<const N: usize> {
@@ -88,8 +121,8 @@ struct Problem<const N: usize> {
     rows: [Vec<N>; N],
     g: Vec<N>,
     r: Vec<N>,
-    /// ‖diag(a₁)⁻¹‖².
-    inverse: f64,
+    /// 1/a₁.
+    i1: Vec<N>,
     /// ‖B‖².
     norm: f64,
 }
@@ -147,8 +180,7 @@ impl<const N: usize> Problem<N> {
             & (norm > 1.0 / MAX_SIZE)
             & (norm * gg < MAX_LOSS * MAX_LOSS * bb)
             & keeps;
-        let inverse = dot(i1, i1);
-        Self { inside: n0 < 0.75 * square, fits, equation, low, middle, b, bcb, rows, g, r, inverse, norm }
+        Self { inside: n0 < 0.75 * square, fits, equation, low, middle, b, bcb, rows, g, r, i1, norm }
     }
 
     /// A number below the root: a step of Newton's method from infinity, ‖b‖ − bᵀCb/bᵀb, or from 0.
@@ -177,9 +209,10 @@ impl<const N: usize> Problem<N> {
         let w = sub(apply(&self.rows, y), self.g);
         let squared = dot(w, w);
         let margin = (squared - 1.0) + nu * (dot(y, y) - 1.0);
-        // Errors of w of ε‖diag(a₁)⁻¹‖(‖v‖ + ‖r‖) against 32ε·m
+        // An error of x* − x₁ in space of ε(‖v‖ + ‖r‖) changes m by its product with ∂m/∂x₁ = 2R₁·diag(a₁)⁻¹w: not by 32ε·m?
         let v: Vec<N> = core::array::from_fn(|j| pair.a2[j] * y[j]);
-        let is_sure = (dot(v, v) + dot(self.r, self.r)) * self.inverse * squared < 1024.0 * (margin * margin);
+        let pw: Vec<N> = core::array::from_fn(|i| self.i1[i] * w[i]);
+        let is_sure = (dot(v, v) + dot(self.r, self.r)) * dot(pw, pw) < 1024.0 * (margin * margin);
         // The margin's error is ‖Bδ‖² for an error δ of y, here up to 1e-12: it must stay below the last digit.
         Nearest { y, margin, is_sure, is_sharp: self.norm < 1e9 * (1.0 + margin) }
     }
