@@ -142,3 +142,37 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
         self.per_unit = scale.recip();
     }
 }
+
+/// A body whose support points are not asked where they come from.
+pub(crate) struct Untraced<'b, B>(pub(crate) &'b mut B);
+
+impl<B: Body> Body for Untraced<'_, B> {
+    type Vector = B::Vector;
+    type Witness = ();
+
+    #[inline]
+    fn support(&mut self, direction: B::Vector) -> (B::Vector, ()) {
+        (self.0.support(direction).0, ())
+    }
+
+    #[inline]
+    fn derivative(&self, direction: B::Vector, change: B::Vector) -> B::Vector {
+        self.0.derivative(direction, change)
+    }
+
+    fn origin(&self) -> B::Vector {
+        self.0.origin()
+    }
+
+    fn radius(&self) -> <B::Vector as Vector>::Scalar {
+        self.0.radius()
+    }
+
+    fn extent(&self) -> <B::Vector as Vector>::Scalar {
+        self.0.extent()
+    }
+
+    fn set_scale(&mut self, scale: <B::Vector as Vector>::Scalar) {
+        self.0.set_scale(scale);
+    }
+}

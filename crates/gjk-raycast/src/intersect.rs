@@ -2,8 +2,9 @@
 
 use convex_support::{Scalar, SupportMap, Vector};
 
-use crate::distance::{End, descend};
-use crate::{DistanceOptions, IntersectOptions, Intersection, Iterate, Status};
+use crate::body::{Pair, Untraced};
+use crate::descent::{End, Frame, Wanted, descend};
+use crate::{IntersectOptions, Intersection, Iterate};
 
 /// Whether two shapes have a point in common, decided as soon as it can be.
 ///
@@ -43,21 +44,21 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let mut wanted = DistanceOptions::new()
-        .with_limit(<A::Vector as Vector>::Scalar::ZERO)
-        .with_max_iterations(options.max_iterations)
-        .with_sub_algorithm(options.sub_algorithm);
-    wanted.axis = options.axis;
-    let descent = descend(a, b, wanted, observer);
-    let status = match descent.end {
-        End::Separated | End::Overlap => Status::Converged,
-        End::IterationLimit => Status::IterationLimit,
-        End::Stalled => Status::Stalled,
+    let mut pair = Pair::new(a, b);
+    let frame = Frame::new(&mut pair);
+    let wanted = Wanted {
+        first: options.axis.and_then(Vector::unit).or_else(|| frame.offset.unit()).unwrap_or_else(|| Vector::axis(0)),
+        limit: frame.radius,
+        tolerance: Scalar::ZERO,
+        max_iterations: options.max_iterations,
+        sub_algorithm: options.sub_algorithm,
     };
+    let descent = descend(&mut Untraced(&mut pair), frame, wanted, None, observer);
     let overlap = match descent.end {
         End::Overlap => true,
         End::Separated => false,
-        End::IterationLimit | End::Stalled => descent.lower <= descent.radius,
+        End::IterationLimit | End::Stalled => descent.lower <= frame.radius,
     };
-    Intersection { overlap, axis: (!overlap).then_some(descent.axis), status, iterations: descent.iterations }
+    let axis = descent.axis.unit().filter(|_| !overlap);
+    Intersection { overlap, axis, status: descent.end.status(), iterations: descent.iterations }
 }

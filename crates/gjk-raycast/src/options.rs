@@ -22,7 +22,7 @@ pub struct DistanceOptions<V: Vector> {
     pub max_iterations: usize,
     /// A first guess of the direction from `b` to `a`, such as the normal of the last answer. Default: none.
     pub axis: Option<V>,
-    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::NearestFace`].
+    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
     pub sub_algorithm: SubAlgorithm,
 }
 
@@ -35,7 +35,7 @@ impl<V: Vector> DistanceOptions<V> {
             limit: V::Scalar::infinity(),
             max_iterations: MAX_ITERATIONS,
             axis: None,
-            sub_algorithm: SubAlgorithm::NearestFace,
+            sub_algorithm: SubAlgorithm::Regions,
         }
     }
 
@@ -90,7 +90,7 @@ pub struct IntersectOptions<V: Vector> {
     /// A first guess of a separating axis, pointing from `b` to `a`, such as the [`axis`](crate::Intersection::axis)
     /// of the last answer. Default: none.
     pub axis: Option<V>,
-    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::NearestFace`].
+    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
     pub sub_algorithm: SubAlgorithm,
 }
 
@@ -98,7 +98,7 @@ impl<V: Vector> IntersectOptions<V> {
     /// The default options.
     #[must_use]
     pub const fn new() -> Self {
-        Self { max_iterations: MAX_ITERATIONS, axis: None, sub_algorithm: SubAlgorithm::NearestFace }
+        Self { max_iterations: MAX_ITERATIONS, axis: None, sub_algorithm: SubAlgorithm::Regions }
     }
 
     /// With another cap on the [iterations](Self::max_iterations).
@@ -142,7 +142,7 @@ pub struct RayCastOptions<V: Vector> {
     pub max_iterations: usize,
     /// A first guess of the outward normal or of a separating axis, such as the last answer's. Default: none.
     pub axis: Option<V>,
-    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::NearestFace`].
+    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
     pub sub_algorithm: SubAlgorithm,
 }
 
@@ -155,7 +155,7 @@ impl<V: Vector> RayCastOptions<V> {
             tolerance: V::Scalar::ZERO,
             max_iterations: MAX_ITERATIONS,
             axis: None,
-            sub_algorithm: SubAlgorithm::NearestFace,
+            sub_algorithm: SubAlgorithm::Regions,
         }
     }
 
@@ -214,7 +214,7 @@ pub struct LinearCastOptions<V: Vector> {
     pub max_iterations: usize,
     /// A first guess of the direction from `b` to `a` at contact, such as the last answer's normal. Default: none.
     pub axis: Option<V>,
-    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::NearestFace`].
+    /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
     pub sub_algorithm: SubAlgorithm,
 }
 
@@ -227,7 +227,7 @@ impl<V: Vector> LinearCastOptions<V> {
             tolerance: V::Scalar::ZERO,
             max_iterations: MAX_ITERATIONS,
             axis: None,
-            sub_algorithm: SubAlgorithm::NearestFace,
+            sub_algorithm: SubAlgorithm::Regions,
         }
     }
 

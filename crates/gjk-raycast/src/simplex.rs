@@ -44,17 +44,39 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
         self.len += 1;
     }
 
+    /// Takes the newest point away.
+    pub(crate) fn pop(&mut self) {
+        self.len = self.len.saturating_sub(1);
+    }
+
     /// Keeps only a face, with these weights of its corners.
     pub(crate) fn retain(&mut self, face: Face, weights: [V::Scalar; MAX_POINTS]) {
-        let mut kept = 0;
-        for i in (0..self.len).filter(|&i| face.has(i)) {
-            self.points[kept] = self.points[i];
-            self.along[kept] = self.along[i];
-            self.witnesses[kept] = self.witnesses[i];
-            kept += 1;
-        }
+        self.keep(face);
         self.weights = weights;
+    }
+
+    /// Keeps only a face, without weights.
+    #[inline]
+    pub(crate) fn keep(&mut self, face: Face) {
+        let mut kept = 0;
+        for i in 0..MAX_POINTS {
+            if i < self.len && face.has(i) {
+                // Point i is not before the place it goes to, where it mostly is already.
+                if kept != i {
+                    self.points[kept] = self.points[i];
+                    self.along[kept] = self.along[i];
+                    self.witnesses[kept] = self.witnesses[i];
+                }
+                kept += 1;
+            }
+        }
         self.len = kept;
+    }
+
+    /// The points in an array, of which the last ones may be no points, and the index of the newest.
+    #[inline]
+    pub(crate) fn padded(&self) -> (&[V; MAX_POINTS], usize) {
+        (&self.points, (self.len + MAX_POINTS - 1) % MAX_POINTS)
     }
 
     /// The weighted sum of the points.
@@ -90,12 +112,27 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Face(u8);
 
+/// The face of all of `len` points.
+pub(crate) fn all(len: usize) -> Face {
+    Face((1 << len) - 1)
+}
+
 /// The faces with at most `most` corners of a simplex of `len` points.
 pub(crate) fn faces(len: usize, most: usize) -> impl Iterator<Item = Face> {
     (1_u8..1 << len).map(Face).filter(move |face| face.len() <= most)
 }
 
 impl Face {
+    /// The face with these corners.
+    #[inline]
+    pub(crate) fn of_corners(corners: &[usize]) -> Self {
+        let mut bits = 0;
+        for &corner in corners {
+            bits |= 1 << corner;
+        }
+        Self(bits)
+    }
+
     /// The number of corners.
     pub(crate) fn len(self) -> usize {
         self.0.count_ones() as usize

@@ -1,0 +1,258 @@
+//! The descent to the closest points that [`distance`](crate::distance) and [`intersects`](crate::intersects) share (the
+//! paper's Algorithm 2).
+
+use convex_support::{Scalar, SupportMap, Vector};
+use num_traits::Float as _;
+
+use crate::body::{Body, Pair, power_of_two_near};
+use crate::closest::{Closest, nearest_face};
+use crate::decrease::Decrease;
+use crate::johnson::within;
+use crate::regions::nearest;
+use crate::simplex::{Simplex, all};
+use crate::{Iterate, Status, SubAlgorithm};
+
+/// Where the difference of two bodies is, and the unit it is measured in.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame<V: Vector> {
+    pub(crate) scale: V::Scalar,
+    pub(crate) per_unit: V::Scalar,
+    /// The difference of the origins: zero lies at minus this, seen from the origin of `A − B`.
+    pub(crate) offset: V,
+    /// The radii of both bodies.
+    pub(crate) radius: V::Scalar,
+    /// What rounding may have added to any bound.
+    pub(crate) noise: V::Scalar,
+}
+
+impl<V: Vector> Frame<V> {
+    /// Measures a pair, and sets its unit.
+    #[inline]
+    pub(crate) fn new<A, B>(pair: &mut Pair<'_, A, B>) -> Self
+    where
+        A: SupportMap<Vector = V> + ?Sized,
+        B: SupportMap<Vector = V> + ?Sized,
+    {
+        let offset = pair.a.origin() - pair.b.origin();
+        let radius = pair.radius();
+        let size = pair.extent() + radius + offset.norm();
+        let scale = power_of_two_near(size);
+        let per_unit = scale.recip();
+        pair.set_scale(scale);
+        let noise = V::Scalar::from_f64(8.0) * V::Scalar::EPSILON * (size * per_unit);
+        Self { scale, per_unit, offset: offset * per_unit, radius: radius * per_unit, noise }
+    }
+}
+
+/// What a descent is to find out; lengths in units of the frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wanted<V: Vector> {
+    /// The first direction from zero to the difference, of any length but zero.
+    pub(crate) first: V,
+    /// Stop where the cores are certainly farther apart than this.
+    pub(crate) limit: V::Scalar,
+    /// Stop where the bracket is as narrow as this, relative to its lower end.
+    pub(crate) tolerance: V::Scalar,
+    pub(crate) max_iterations: usize,
+    pub(crate) sub_algorithm: SubAlgorithm,
+}
+
+/// How a descent ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum End {
+    Separated,
+    Overlap,
+    IterationLimit,
+    Stalled,
+}
+
+impl End {
+    pub(crate) fn status(self) -> Status {
+        match self {
+            Self::Separated | Self::Overlap => Status::Converged,
+            Self::IterationLimit => Status::IterationLimit,
+            Self::Stalled => Status::Stalled,
+        }
+    }
+}
+
+/// What a descent knows at its end; lengths in units of the frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Descent<V: Vector, W> {
+    /// The corners of the face closest to zero.
+    pub(crate) simplex: Simplex<V, W>,
+    /// The shortest vector of the difference that was found, of any length, and its length.
+    pub(crate) normal: V,
+    pub(crate) length: V::Scalar,
+    /// The best lower bound on the distance of the cores, before rounding, and the axis that proves it, of any length.
+    pub(crate) lower: V::Scalar,
+    pub(crate) axis: V,
+    /// Whether the corners have weights, and the length is that of an orthogonal projection.
+    pub(crate) measured: bool,
+    pub(crate) end: End,
+    pub(crate) iterations: usize,
+}
+
+/// Algorithm 2 on the cores, until their distance is known to rounding, or to exceed the limit, or not to exceed the radii.
+///
+/// Steps are taken lightly, by [`nearest`], and judged by what they achieve: one that brings the simplex no nearer is
+/// taken again with care, by a search of all faces. The bounds that end the descent do not depend on how it came there:
+/// the lower one is that of a plane through a support point, and the upper one is measured again before it counts.
+///
+/// `first` is the support point along the first direction, if it is known.
+#[inline]
+pub(crate) fn descend<B: Body>(
+    body: &mut B,
+    frame: Frame<B::Vector>,
+    wanted: Wanted<B::Vector>,
+    mut first: Option<(B::Vector, B::Witness)>,
+    mut observer: impl FnMut(Iterate<'_, B::Vector>),
+) -> Descent<B::Vector, B::Witness> {
+    let Frame { scale, offset, radius, noise, .. } = frame;
+    let infinity = <B::Vector as Vector>::Scalar::infinity();
+    let touching = radius.max(noise);
+    let light = wanted.sub_algorithm == SubAlgorithm::Regions;
+    let mut nearing = Decrease::new();
+    let mut descent = Descent {
+        simplex: Simplex::new(),
+        normal: wanted.first,
+        length: infinity,
+        lower: -infinity,
+        axis: wanted.first,
+        measured: false,
+        end: End::IterationLimit,
+        iterations: 0,
+    };
+    let mut size = wanted.first.length();
+    while descent.iterations < wanted.max_iterations {
+        let n = descent.normal;
+        let (point, witness) = first.take().unwrap_or_else(|| body.support(-n));
+        let w = point + offset;
+        descent.iterations += 1;
+        // No point of A − B lies before w along n (the paper's bound ‖v‖² − v·w, divided by ‖v‖).
+        let reach = n.dot(w) / size;
+        if !reach.is_finite() {
+            descent.end = End::Stalled;
+            break;
+        }
+        if reach > descent.lower {
+            (descent.lower, descent.axis) = (reach, n);
+        }
+        observer(Iterate {
+            iteration: descent.iterations - 1,
+            simplex: descent.simplex.points(),
+            v: if descent.length < infinity { n * (descent.length / size) } else { n },
+            w,
+            scale,
+            lower: descent.lower * scale,
+            upper: descent.length * scale,
+        });
+        if descent.lower > wanted.limit + noise {
+            descent.end = End::Separated;
+            break;
+        }
+        let wide =
+            |descent: &Descent<_, _>| !(descent.length - descent.lower <= noise.max(wanted.tolerance * descent.lower));
+        if !wide(&descent) {
+            if !descent.measured {
+                let _ = descent.measure();
+            }
+            if !wide(&descent) {
+                descent.end = if descent.length - radius <= noise { End::Overlap } else { End::Separated };
+                break;
+            }
+        }
+        descent.simplex.push(w, -n, witness);
+        let next = if light { descent.step_lightly() } else { None };
+        let next = next.or_else(|| descent.step_carefully(wanted.sub_algorithm, &mut nearing));
+        let Some(next) = next else {
+            descent.end = End::Stalled;
+            break;
+        };
+        size = next;
+        if descent.length <= touching {
+            // A simplex of full dimension contains zero for certain; of any other it remains to be measured.
+            if descent.length > Scalar::ZERO && !descent.measured {
+                size = descent.measure().unwrap_or(size);
+            }
+            if descent.length <= touching {
+                descent.end = End::Overlap;
+                break;
+            }
+        }
+    }
+    if descent.end == End::Stalled {
+        if !descent.measured {
+            let _ = descent.measure();
+        }
+        if descent.length - radius <= noise {
+            descent.end = End::Overlap;
+        }
+    }
+    descent
+}
+
+impl<V: Vector, W: Copy + Default> Descent<V, W> {
+    /// Goes on to the face of the simplex closest to zero, if that is clear and brings it nearer; its normal's length.
+    #[inline]
+    fn step_lightly(&mut self) -> Option<V::Scalar> {
+        let (points, newest) = self.simplex.padded();
+        let next = nearest(points, newest)?;
+        let level = next.normal.dot(points[newest]);
+        let (normal, size) = comfortable(next.normal)?;
+        let length = if size > V::Scalar::ZERO { level / size } else { size };
+        if length < self.length {
+            self.simplex.keep(next.face);
+            (self.normal, self.length, self.measured) = (normal, length, false);
+            Some(size)
+        } else {
+            None
+        }
+    }
+
+    /// The same by a search of all faces. Where rounding is all that is left to gain, a few steps without a gain are borne
+    /// with. `None`, and the newest point is not added, where there are too many of them.
+    #[cold]
+    #[inline(never)]
+    fn step_carefully(&mut self, sub_algorithm: SubAlgorithm, nearing: &mut Decrease<V::Scalar>) -> Option<V::Scalar> {
+        let next = match self.simplex.points() {
+            [known @ .., newest] if known.contains(newest) => None,
+            points => sub_algorithm.closest(points, V::DIM),
+        };
+        let Some(next) = next.filter(|next| nearing.goes_on(next.v.norm())) else {
+            self.simplex.pop();
+            return None;
+        };
+        self.accept(next)
+    }
+
+    /// Measures the face closest to zero by orthogonal projection, whatever rounding the steps there left.
+    #[inline(never)]
+    pub(crate) fn measure(&mut self) -> Option<V::Scalar> {
+        let points = self.simplex.points();
+        if points.is_empty() {
+            return None;
+        }
+        let found = within(points, all(points.len()), V::DIM).or_else(|| nearest_face(points, V::DIM))?;
+        self.accept(found)
+    }
+
+    fn accept(&mut self, Closest { v, face, weights }: Closest<V>) -> Option<V::Scalar> {
+        self.simplex.retain(face, weights);
+        let (normal, size) = comfortable(v)?;
+        (self.normal, self.length, self.measured) = (normal, v.norm(), true);
+        Some(size)
+    }
+}
+
+/// A vector of the same direction whose square is in range, and its length; the zero vector as it is. `None` where it is
+/// not finite.
+#[inline]
+fn comfortable<V: Vector>(v: V) -> Option<(V, V::Scalar)> {
+    let squared = v.length_squared();
+    if squared >= V::Scalar::min_positive_value() / V::Scalar::EPSILON {
+        squared.is_finite().then(|| (v, squared.sqrt()))
+    } else {
+        v.unit().map_or((v == V::ZERO).then_some((v, V::Scalar::ZERO)), |unit| Some((unit, V::Scalar::ONE)))
+    }
+}

@@ -1,0 +1,174 @@
+//! The point of a simplex closest to zero, looked for from its newest vertex.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use crate::simplex::{Face, MAX_POINTS};
+
+/// The face of a simplex that is closest to zero.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nearest<V> {
+    pub(crate) face: Face,
+    /// A vector along the shortest one from zero to the face, of any length; zero where the simplex has full dimension
+    /// and contains zero for certain.
+    pub(crate) normal: V,
+}
+
+/// A simplex is taken for flat where its volume is less than this many rounding errors of the product of its edges.
+const FLAT: f64 = 64.0;
+
+/// The face of a simplex closest to zero, if it has the newest point `y` for a corner and rounding leaves little doubt.
+///
+/// In GJK a support point is added because it is nearer to zero, along the shortest vector so far, than all the others,
+/// which are equally near. So the face looked for has it for a corner. With edges `e_i = y_i − y`, products
+/// `G_ij = e_i·e_j` and `g_i = −y·e_i`, zero's foot on a face is `y + Σ t_i·e_i` with
+///
+/// ```text
+/// edge i:       t_i = g_i / G_ii,
+/// facet i, j:   t_j = r_ij / (G_ii·G_jj − G_ij²),   r_ij = g_j·G_ii − g_i·G_ij,
+/// all of 3D:    t_k = −y·n_k / det,   n_k = e_i × e_j,   det = e_k·n_k,
+/// ```
+///
+/// and zero is in the region of a face where the `t` of the face are positive and those that each further corner would
+/// get are not. These are Johnson's determinants of the faces at `y`, as differences of points that are near to one
+/// another. In space a facet's normal comes from the cross product, right to rounding however near zero is; and so does
+/// that of an edge, by two projections.
+///
+/// A wrong sign costs no more than a step: whatever face is found, the points of its plane are no farther than the
+/// caller measures them to be. Only that zero is within needs proof here. `None` where no region fits.
+#[inline]
+pub(crate) fn nearest<V: Vector>(points: &[V; MAX_POINTS], newest: usize) -> Option<Nearest<V>> {
+    let y = points[newest];
+    match newest {
+        0 => Some(vertex(0, y)),
+        1 => of_segment(y, points[0] - y),
+        2 => of_triangle(y, [points[0] - y, points[1] - y]),
+        _ => of_tetrahedron(y, [points[0] - y, points[1] - y, points[2] - y]),
+    }
+}
+
+#[inline]
+fn vertex<V: Vector>(newest: usize, y: V) -> Nearest<V> {
+    Nearest { face: Face::of_corners(&[newest]), normal: y }
+}
+
+/// The edge along `e` from the newest point to point `i`.
+#[inline]
+fn edge<V: Vector>(newest: usize, i: usize, y: V, e: V, squared: V::Scalar) -> Nearest<V> {
+    let per_square = squared.recip();
+    let across = |v: V| v - e * (v.dot(e) * per_square);
+    // Twice, since the first projection leaves rounding errors of the length of y along e.
+    Nearest { face: Face::of_corners(&[newest, i]), normal: across(across(y)) }
+}
+
+#[inline]
+fn of_segment<V: Vector>(y: V, e: V) -> Option<Nearest<V>> {
+    let (squared, g) = (e.length_squared(), -y.dot(e));
+    if g >= squared {
+        return None;
+    }
+    Some(if g > V::Scalar::ZERO { edge(1, 0, y, e, squared) } else { vertex(1, y) })
+}
+
+#[inline]
+fn of_triangle<V: Vector>(y: V, e: [V; 2]) -> Option<Nearest<V>> {
+    let zero = V::Scalar::ZERO;
+    let (g00, g01, g11) = (e[0].length_squared(), e[0].dot(e[1]), e[1].length_squared());
+    let (g0, g1) = (-y.dot(e[0]), -y.dot(e[1]));
+    let (r0, r1) = (g0 * g11 - g1 * g01, g1 * g00 - g0 * g01);
+    if r0 > zero && r1 > zero {
+        let determinant = g00 * g11 - g01 * g01;
+        let flat = flatness::<V>() * g00 * g11;
+        if r0 + r1 >= determinant {
+            return None;
+        }
+        if V::DIM == 2 {
+            // In the plane the triangle is all there is; its r are areas squared.
+            let doubt = flatness::<V>() * y.length_squared() * g00 * g11;
+            let inside = determinant > flat && r0 * r0 > doubt * g11 && r1 * r1 > doubt * g00;
+            return inside.then_some(Nearest { face: Face::of_corners(&[0, 1, 2]), normal: V::ZERO });
+        }
+        let normal = towards(cross(e[0], e[1]), y);
+        return (normal.length_squared() > flat).then_some(Nearest { face: Face::of_corners(&[0, 1, 2]), normal });
+    }
+    if g0 > zero && r1 <= zero {
+        (g0 < g00).then(|| edge(2, 0, y, e[0], g00))
+    } else if g1 > zero && r0 <= zero {
+        (g1 < g11).then(|| edge(2, 1, y, e[1], g11))
+    } else {
+        (g0 <= zero && g1 <= zero).then(|| vertex(2, y))
+    }
+}
+
+#[inline]
+fn of_tetrahedron<V: Vector>(y: V, e: [V; 3]) -> Option<Nearest<V>> {
+    let zero = V::Scalar::ZERO;
+    let squared = [e[0].length_squared(), e[1].length_squared(), e[2].length_squared()];
+    let (g01, g12, g20) = (e[0].dot(e[1]), e[1].dot(e[2]), e[2].dot(e[0]));
+    let g = [-y.dot(e[0]), -y.dot(e[1]), -y.dot(e[2])];
+    let n = [cross(e[1], e[2]), cross(e[2], e[0]), cross(e[0], e[1])];
+    let det = e[0].dot(n[0]);
+    // With the sign of det, so that a positive one means inside.
+    let sign = V::Scalar::ONE.copysign(det);
+    let s = [-y.dot(n[0]) * sign, -y.dot(n[1]) * sign, -y.dot(n[2]) * sign];
+    if s[0] > zero && s[1] > zero && s[2] > zero {
+        let doubt = flatness::<V>() * y.length_squared();
+        let inside = det * det > flatness::<V>() * squared[0] * n[0].length_squared()
+            && s[0] * s[0] > doubt * squared[1] * squared[2]
+            && s[1] * s[1] > doubt * squared[2] * squared[0]
+            && s[2] * s[2] > doubt * squared[0] * squared[1]
+            && s[0] + s[1] + s[2] < det.abs();
+        return inside.then_some(Nearest { face: Face::of_corners(&[0, 1, 2, 3]), normal: V::ZERO });
+    }
+    // r[i][j] for the facets in the order of n: what edge i leaves for the corner of edge j.
+    let (r01, r10) = (g[1] * squared[0] - g[0] * g01, g[0] * squared[1] - g[1] * g01);
+    let (r12, r21) = (g[2] * squared[1] - g[1] * g12, g[1] * squared[2] - g[2] * g12);
+    let (r20, r02) = (g[0] * squared[2] - g[2] * g20, g[2] * squared[0] - g[0] * g20);
+    let facet = |k: usize, i: usize, j: usize| {
+        let area = n[k].length_squared();
+        (area > flatness::<V>() * squared[i] * squared[j])
+            .then(|| Nearest { face: Face::of_corners(&[i, j, 3]), normal: towards(n[k], y) })
+    };
+    if s[0] <= zero && r12 > zero && r21 > zero {
+        return facet(0, 1, 2);
+    }
+    if s[1] <= zero && r20 > zero && r02 > zero {
+        return facet(1, 2, 0);
+    }
+    if s[2] <= zero && r01 > zero && r10 > zero {
+        return facet(2, 0, 1);
+    }
+    let along = |i: usize| (g[i] < squared[i]).then(|| edge(3, i, y, e[i], squared[i]));
+    if g[0] > zero && r01 <= zero && r02 <= zero {
+        along(0)
+    } else if g[1] > zero && r12 <= zero && r10 <= zero {
+        along(1)
+    } else if g[2] > zero && r20 <= zero && r21 <= zero {
+        along(2)
+    } else {
+        (g[0] <= zero && g[1] <= zero && g[2] <= zero).then(|| vertex(3, y))
+    }
+}
+
+/// The square of [`FLAT`] rounding errors.
+#[inline]
+fn flatness<V: Vector>() -> V::Scalar {
+    let flat = V::Scalar::from_f64(FLAT) * V::Scalar::EPSILON;
+    flat * flat
+}
+
+/// The normal or its opposite, whichever points to the side of `y`.
+#[inline]
+fn towards<V: Vector>(normal: V, y: V) -> V {
+    if normal.dot(y) < V::Scalar::ZERO { -normal } else { normal }
+}
+
+/// The cross product, in space.
+#[inline]
+pub(crate) fn cross<V: Vector>(a: V, b: V) -> V {
+    debug_assert!(V::DIM == 3, "cross products are of space");
+    V::from_fn(|i| {
+        let (j, k) = ((i + 1) % V::DIM, (i + 2) % V::DIM);
+        a.get(j) * b.get(k) - a.get(k) * b.get(j)
+    })
+}
