@@ -381,8 +381,12 @@ fn unit_quat(q: glam::Quat) -> Option<glam::Quat> {
 
 /// A quaternion of any magnitude made unit; `None` for zero and where not finite.
 fn unit_dquat(q: glam::DQuat) -> Option<glam::DQuat> {
-    // Dividing by the largest magnitude first keeps the squares in range.
     let v = glam::DVec4::from(q);
+    let squared = v.length_squared();
+    if is_comfortable(squared) {
+        return Some(glam::DQuat::from_vec4(v * squared.sqrt().recip()));
+    }
+    // Dividing by the largest magnitude first keeps the squares in range.
     let v = v / v.abs().max_element();
     v.is_finite().then(|| glam::DQuat::from_vec4(v.normalize()))
 }

@@ -39,6 +39,24 @@ pub(crate) fn power_of_two_near<S: Scalar>(size: S) -> S {
     }
 }
 
+/// Whether products of a few such numbers, and their rounding errors, are far from over- and underflow.
+#[inline]
+pub(crate) fn is_moderate<S: Scalar>(x: S) -> bool {
+    let tiny = S::min_positive_value().sqrt().sqrt();
+    x > tiny && x < tiny.recip()
+}
+
+/// The same direction at a length that is moderate, by a power of two and so without rounding. `None` for the zero vector
+/// and where a coordinate is not finite.
+#[inline]
+pub(crate) fn direction<V: Vector>(v: V) -> Option<V> {
+    if is_moderate(v.length_squared()) {
+        return Some(v);
+    }
+    let near_one = v * power_of_two_near(v.abs().max_element()).recip();
+    if is_moderate(near_one.length_squared()) { Some(near_one) } else { v.unit() }
+}
+
 /// One shape.
 pub(crate) struct Single<'a, S: SupportMap + ?Sized> {
     shape: &'a S,
@@ -99,6 +117,14 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pai
     }
 }
 
+impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_, A, B> {
+    /// A bound on all lengths that rounding errors are relative to, for bodies whose origins differ by `offset`.
+    #[inline]
+    pub(crate) fn size(&self, offset: A::Vector) -> <A::Vector as Vector>::Scalar {
+        self.extent() + self.radius() + offset.norm()
+    }
+}
+
 /// The core points of two shapes, each relative to its shape's origin, in units of the scale.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PointPair<V> {
@@ -130,10 +156,12 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
         self.a.origin()
     }
 
+    #[inline]
     fn radius(&self) -> <A::Vector as Vector>::Scalar {
         self.a.radius() + self.b.radius()
     }
 
+    #[inline]
     fn extent(&self) -> <A::Vector as Vector>::Scalar {
         self.a.core_extent() + self.b.core_extent()
     }

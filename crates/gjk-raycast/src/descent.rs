@@ -26,22 +26,25 @@ pub(crate) struct Frame<V: Vector> {
 }
 
 impl<V: Vector> Frame<V> {
-    /// Measures a pair, and sets its unit.
+    /// The frame of a pair whose origins and sizes are these, which is set to the frame's unit.
     #[inline]
-    pub(crate) fn new<A, B>(pair: &mut Pair<'_, A, B>) -> Self
+    pub(crate) fn new<A, B>(pair: &mut Pair<'_, A, B>, offset: V, size: V::Scalar) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,
         B: SupportMap<Vector = V> + ?Sized,
     {
-        let offset = pair.a.origin() - pair.b.origin();
-        let radius = pair.radius();
-        let size = pair.extent() + radius + offset.norm();
         let scale = power_of_two_near(size);
         let per_unit = scale.recip();
         pair.set_scale(scale);
-        let noise = V::Scalar::from_f64(8.0) * V::Scalar::EPSILON * (size * per_unit);
-        Self { scale, per_unit, offset: offset * per_unit, radius: radius * per_unit, noise }
+        let (radius, noise) = (pair.radius() * per_unit, rounding(size) * per_unit);
+        Self { scale, per_unit, offset: offset * per_unit, radius, noise }
     }
+}
+
+/// What rounding may add to a bound on the distance of two bodies of the given size.
+#[inline]
+pub(crate) fn rounding<S: Scalar>(size: S) -> S {
+    S::from_f64(8.0) * S::EPSILON * size
 }
 
 /// What a descent is to find out; lengths in units of the frame.
@@ -181,7 +184,7 @@ pub(crate) fn descend<B: Body>(
             }
         }
     }
-    if descent.end == End::Stalled {
+    if descent.end == End::Stalled && descent.length < infinity {
         if !descent.measured {
             let _ = descent.measure();
         }

@@ -3,7 +3,7 @@
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Pair, PointPair};
+use crate::body::{Pair, PointPair, direction};
 use crate::descent::{Descent, End, Frame, Wanted, descend};
 use crate::{Distance, DistanceOptions, Iterate};
 
@@ -41,10 +41,12 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let mut pair = Pair::new(a, b);
-    let frame = Frame::new(&mut pair);
+    let offset = a.origin() - b.origin();
+    let size = pair.size(offset);
+    let frame = Frame::new(&mut pair, offset, size);
     let Frame { scale, per_unit, radius, noise, .. } = frame;
     let wanted = Wanted {
-        first: options.axis.and_then(Vector::unit).or_else(|| frame.offset.unit()).unwrap_or_else(|| Vector::axis(0)),
+        first: options.axis.and_then(direction).or_else(|| direction(frame.offset)).unwrap_or_else(|| Vector::axis(0)),
         limit: options.limit * per_unit + radius,
         tolerance: options.tolerance,
         max_iterations: options.max_iterations,

@@ -1,10 +1,11 @@
 //! Whether two shapes meet.
 
 use convex_support::{Scalar, SupportMap, Vector};
+use num_traits::Float;
 
-use crate::body::{Pair, Untraced};
-use crate::descent::{End, Frame, Wanted, descend};
-use crate::{IntersectOptions, Intersection, Iterate};
+use crate::body::{Body, Pair, Untraced, direction, is_moderate};
+use crate::descent::{End, Frame, Wanted, descend, rounding};
+use crate::{IntersectOptions, Intersection, Iterate, Status};
 
 /// Whether two shapes have a point in common, decided as soon as it can be.
 ///
@@ -38,22 +39,45 @@ pub fn intersects_with<A, B>(
     a: &A,
     b: &B,
     options: IntersectOptions<A::Vector>,
-    observer: impl FnMut(Iterate<'_, A::Vector>),
+    mut observer: impl FnMut(Iterate<'_, A::Vector>),
 ) -> Intersection<A::Vector>
 where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let mut pair = Pair::new(a, b);
-    let frame = Frame::new(&mut pair);
+    let offset = a.origin() - b.origin();
+    let first = options.axis.and_then(direction).or_else(|| direction(offset)).unwrap_or_else(|| Vector::axis(0));
+    // The first axis is tried in the world's unit, before any other is fixed.
+    let size = pair.size(offset);
+    let mut known = None;
+    if is_moderate(size) && options.max_iterations > 0 {
+        let point = pair.support(-first).0;
+        let w = point + offset;
+        let (reach, length) = (first.dot(w), first.length());
+        if reach.is_finite() && reach > (pair.radius() + rounding(size)) * length {
+            let lower = reach / length;
+            let upper = Float::infinity();
+            observer(Iterate { iteration: 0, simplex: &[], v: first, w, scale: Scalar::ONE, lower, upper });
+            return Intersection {
+                overlap: false,
+                axis: Some(first / length),
+                status: Status::Converged,
+                iterations: 1,
+            };
+        }
+        known = Some(point);
+    }
+    let frame = Frame::new(&mut pair, offset, size);
     let wanted = Wanted {
-        first: options.axis.and_then(Vector::unit).or_else(|| frame.offset.unit()).unwrap_or_else(|| Vector::axis(0)),
+        first,
         limit: frame.radius,
         tolerance: Scalar::ZERO,
         max_iterations: options.max_iterations,
         sub_algorithm: options.sub_algorithm,
     };
-    let descent = descend(&mut Untraced(&mut pair), frame, wanted, None, observer);
+    let known = known.map(|point| (point * frame.per_unit, ()));
+    let descent = descend(&mut Untraced(&mut pair), frame, wanted, known, observer);
     let overlap = match descent.end {
         End::Overlap => true,
         End::Separated => false,
