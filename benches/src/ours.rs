@@ -6,8 +6,8 @@ use convex_support::{
     SupportMap, Vector3,
 };
 use gjk_raycast::{
-    DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, RayCastOptions, Status, distance,
-    intersects, linear_cast, ray_cast,
+    DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, RayCastOptions, Status, SubAlgorithm,
+    distance, intersects, linear_cast, ray_cast,
 };
 
 use crate::measure::Solver;
@@ -50,27 +50,66 @@ fn vector<V: Space>(v: Vec3) -> V {
 /// Why a shape of the workloads should always be one.
 const VALID: &str = "the shapes and poses of the workloads are valid";
 
+/// How hard `gjk-raycast` is to try, and what its solvers are to tell. By default its own options, and the answer.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// The relative tolerance; rounding ends the iteration in any case.
+    pub tolerance: f64,
+    /// The iterations after which to give up.
+    pub max_iterations: usize,
+    /// How the closest point of a simplex is found.
+    pub sub_algorithm: SubAlgorithm,
+    /// Whether the support points that were computed of each body are told in place of the answer.
+    pub iterations: bool,
+}
+
+impl Default for Effort {
+    fn default() -> Self {
+        let options = DistanceOptions::<DVec3>::default();
+        Self {
+            tolerance: options.tolerance,
+            max_iterations: options.max_iterations,
+            sub_algorithm: options.sub_algorithm,
+            iterations: false,
+        }
+    }
+}
+
+impl Effort {
+    /// What a solver answers.
+    fn tell(self, answer: f64, iterations: usize) -> f64 {
+        if self.iterations { iterations as f64 } else { answer }
+    }
+}
+
 /// Ray casts by GJK.
 #[must_use]
-pub fn ray_casts<V: Space>(shape: &Shape, rays: &[Ray]) -> Solver {
-    struct Cast<'a>(&'a [Ray]);
+pub fn ray_casts<V: Space>(shape: &Shape, rays: &[Ray], effort: Effort) -> Solver {
+    struct Cast<'a>(&'a [Ray], Effort);
     impl<V: Space> Task<V> for Cast<'_> {
         fn solver<S: SupportMap<Vector = V> + 'static>(self, target: S) -> Solver {
             let rays = self
                 .0
                 .iter()
                 .map(|ray| gjk_raycast::Ray { source: vector(ray.origin), direction: vector(ray.direction) });
+            let effort = self.1;
+            let options = RayCastOptions::default()
+                .with_max_lambda(V::Scalar::ONE)
+                .with_tolerance(number::<V>(effort.tolerance))
+                .with_max_iterations(effort.max_iterations)
+                .with_sub_algorithm(effort.sub_algorithm);
             Solver::new(rays.collect(), move |&ray| {
-                let options = RayCastOptions::default().with_max_lambda(V::Scalar::ONE);
-                match ray_cast(&target, ray, options).map(|cast| cast.outcome) {
-                    Ok(Outcome::Hit(hit)) => hit.lambda.as_f64(),
-                    Ok(Outcome::Miss(_)) => f64::INFINITY,
-                    Ok(Outcome::Undecided) | Err(_) => f64::NAN,
-                }
+                let Ok(cast) = ray_cast(&target, ray, options) else { return f64::NAN };
+                let answer = match cast.outcome {
+                    Outcome::Hit(hit) => hit.lambda.as_f64(),
+                    Outcome::Miss(_) => f64::INFINITY,
+                    Outcome::Undecided => f64::NAN,
+                };
+                effort.tell(answer, cast.iterations)
             })
         }
     }
-    with_shape::<V, _>(shape, Cast(rays))
+    with_shape::<V, _>(shape, Cast(rays, effort))
 }
 
 /// Ray casts in closed form; `None` for shapes without one.
@@ -109,8 +148,8 @@ pub fn closed_form_ray_casts<V: Space>(shape: &Shape, rays: &[Ray]) -> Option<So
 
 /// Linear casts. The body is posed within the measurement: every query comes with a new pose.
 #[must_use]
-pub fn linear_casts<V: Space>(pair: &Pair, casts: &[Cast]) -> Solver {
-    struct Task<'a>(&'a [Cast]);
+pub fn linear_casts<V: Space>(pair: &Pair, casts: &[Cast], effort: Effort) -> Solver {
+    struct Task<'a>(&'a [Cast], Effort);
     impl<V: Space> PairTask<V> for Task<'_> {
         fn solver<A, B>(self, a: A, b: B) -> Solver
         where
@@ -118,25 +157,32 @@ pub fn linear_casts<V: Space>(pair: &Pair, casts: &[Cast]) -> Solver {
             B: SupportMap<Vector = V> + 'static,
         {
             let queries = self.0.iter().map(|cast| (placed::<V>(cast.pose), vector::<V>(cast.velocity))).collect();
+            let effort = self.1;
+            let options = LinearCastOptions::default()
+                .with_max_time(V::Scalar::ONE)
+                .with_tolerance(number::<V>(effort.tolerance))
+                .with_max_iterations(effort.max_iterations)
+                .with_sub_algorithm(effort.sub_algorithm);
             Solver::new(queries, move |&((rotation, translation), velocity_b)| {
                 let b = Posed::new(&b, rotation, translation).expect(VALID);
                 let motion = Motion { velocity_a: V::ZERO, velocity_b };
-                let options = LinearCastOptions::default().with_max_time(V::Scalar::ONE);
-                match linear_cast(&a, &b, motion, options).map(|cast| cast.outcome) {
-                    Ok(Outcome::Hit(hit)) => hit.time.as_f64(),
-                    Ok(Outcome::Miss(_)) => f64::INFINITY,
-                    Ok(Outcome::Undecided) | Err(_) => f64::NAN,
-                }
+                let Ok(cast) = linear_cast(&a, &b, motion, options) else { return f64::NAN };
+                let answer = match cast.outcome {
+                    Outcome::Hit(hit) => hit.time.as_f64(),
+                    Outcome::Miss(_) => f64::INFINITY,
+                    Outcome::Undecided => f64::NAN,
+                };
+                effort.tell(answer, cast.iterations)
             })
         }
     }
-    with_pair::<V, _>(pair, Task(casts))
+    with_pair::<V, _>(pair, Task(casts, effort))
 }
 
 /// Distances.
 #[must_use]
-pub fn distances<V: Space>(pair: &Pair, queries: &[DistanceQuery]) -> Solver {
-    struct Task<'a>(&'a [DistanceQuery]);
+pub fn distances<V: Space>(pair: &Pair, queries: &[DistanceQuery], effort: Effort) -> Solver {
+    struct Task<'a>(&'a [DistanceQuery], Effort);
     impl<V: Space> PairTask<V> for Task<'_> {
         fn solver<A, B>(self, a: A, b: B) -> Solver
         where
@@ -144,26 +190,32 @@ pub fn distances<V: Space>(pair: &Pair, queries: &[DistanceQuery]) -> Solver {
             B: SupportMap<Vector = V> + 'static,
         {
             let queries = self.0.iter().map(|query| placed::<V>(query.pose)).collect();
+            let effort = self.1;
+            let options = DistanceOptions::default()
+                .with_tolerance(number::<V>(effort.tolerance))
+                .with_max_iterations(effort.max_iterations)
+                .with_sub_algorithm(effort.sub_algorithm);
             Solver::new(queries, move |&(rotation, translation)| {
                 let b = Posed::new(&b, rotation, translation).expect(VALID);
-                distance(&a, &b, DistanceOptions::default()).distance.as_f64()
+                let answer = distance(&a, &b, options);
+                effort.tell(answer.distance.as_f64(), answer.iterations)
             })
         }
     }
-    with_pair::<V, _>(pair, Task(queries))
+    with_pair::<V, _>(pair, Task(queries, effort))
 }
 
 /// Intersection tests; `warm` ones are given the axis, if any, that the same query answered with before.
 #[must_use]
-pub fn intersections<V: Space>(pair: &Pair, queries: &[IntersectQuery], warm: bool) -> Solver {
-    struct Task<'a>(&'a [IntersectQuery], bool);
+pub fn intersections<V: Space>(pair: &Pair, queries: &[IntersectQuery], warm: bool, effort: Effort) -> Solver {
+    struct Task<'a>(&'a [IntersectQuery], bool, Effort);
     impl<V: Space> PairTask<V> for Task<'_> {
         fn solver<A, B>(self, a: A, b: B) -> Solver
         where
             A: SupportMap<Vector = V> + 'static,
             B: SupportMap<Vector = V> + 'static,
         {
-            let Self(queries, warm) = self;
+            let Self(queries, warm, effort) = self;
             let ask = move |(rotation, translation), options| {
                 let b = Posed::new(&b, rotation, translation).expect(VALID);
                 intersects(&a, &b, options)
@@ -171,18 +223,21 @@ pub fn intersections<V: Space>(pair: &Pair, queries: &[IntersectQuery], warm: bo
             let prepared = queries.iter().map(|query| {
                 let (pose, cold) = (placed::<V>(query.pose), IntersectOptions::default());
                 let axis = if warm { ask(pose, cold).axis } else { None };
-                (pose, axis.map_or(cold, |axis| cold.with_axis(axis)))
+                let options = axis.map_or(cold, |axis| cold.with_axis(axis));
+                let options = options.with_max_iterations(effort.max_iterations);
+                (pose, options.with_sub_algorithm(effort.sub_algorithm))
             });
             Solver::new(prepared.collect(), move |&(pose, options)| {
                 let answer = ask(pose, options);
-                match answer.status {
+                let value = match answer.status {
                     Status::Converged => f64::from(u8::from(answer.overlap)),
                     Status::IterationLimit | Status::Stalled => f64::NAN,
-                }
+                };
+                effort.tell(value, answer.iterations)
             })
         }
     }
-    with_pair::<V, _>(pair, Task(queries, warm))
+    with_pair::<V, _>(pair, Task(queries, warm, effort))
 }
 
 fn placed<V: Space>(pose: Pose) -> (V::Rotation, V) {

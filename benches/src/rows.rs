@@ -6,7 +6,7 @@ use std::time::Duration;
 use convex_support::glam::{DVec3, Vec3A};
 
 use crate::measure::Solver;
-use crate::ours;
+use crate::ours::{self, Effort};
 use crate::pairs::{PAIR_NAMES, Pair};
 #[cfg(feature = "parry")]
 use crate::parry::{double, single};
@@ -199,8 +199,8 @@ pub fn measure(workloads: &[Workload], budget: Duration, mut progress: impl FnMu
 #[must_use]
 pub fn ray_casters(shape: &Shape, rays: &[w1_ray_cast::Ray]) -> Vec<(Method, Solver)> {
     let mut solvers = vec![
-        (Method::OursF64, ours::ray_casts::<DVec3>(shape, rays)),
-        (Method::OursF32, ours::ray_casts::<Vec3A>(shape, rays)),
+        (Method::OursF64, ours::ray_casts::<DVec3>(shape, rays, Effort::default())),
+        (Method::OursF32, ours::ray_casts::<Vec3A>(shape, rays, Effort::default())),
     ];
     solvers.extend(ours::closed_form_ray_casts::<DVec3>(shape, rays).map(|solver| (Method::ClosedF64, solver)));
     solvers.extend(ours::closed_form_ray_casts::<Vec3A>(shape, rays).map(|solver| (Method::ClosedF32, solver)));
@@ -219,8 +219,8 @@ pub fn ray_casters(shape: &Shape, rays: &[w1_ray_cast::Ray]) -> Vec<(Method, Sol
 pub fn linear_casters(pair: &Pair, casts: &[w2_linear_cast::Cast]) -> Vec<(Method, Solver)> {
     #[allow(unused_mut, reason = "without peers there is nothing to add")]
     let mut solvers = vec![
-        (Method::OursF64, ours::linear_casts::<DVec3>(pair, casts)),
-        (Method::OursF32, ours::linear_casts::<Vec3A>(pair, casts)),
+        (Method::OursF64, ours::linear_casts::<DVec3>(pair, casts, Effort::default())),
+        (Method::OursF32, ours::linear_casts::<Vec3A>(pair, casts, Effort::default())),
     ];
     #[cfg(feature = "parry")]
     {
@@ -237,8 +237,8 @@ pub fn linear_casters(pair: &Pair, casts: &[w2_linear_cast::Cast]) -> Vec<(Metho
 pub fn distance_solvers(pair: &Pair, queries: &[w3_distance::DistanceQuery]) -> Vec<(Method, Solver)> {
     #[allow(unused_mut, reason = "without peers there is nothing to add")]
     let mut solvers = vec![
-        (Method::OursF64, ours::distances::<DVec3>(pair, queries)),
-        (Method::OursF32, ours::distances::<Vec3A>(pair, queries)),
+        (Method::OursF64, ours::distances::<DVec3>(pair, queries, Effort::default())),
+        (Method::OursF32, ours::distances::<Vec3A>(pair, queries, Effort::default())),
     ];
     #[cfg(feature = "parry")]
     {
@@ -255,8 +255,8 @@ pub fn distance_solvers(pair: &Pair, queries: &[w3_distance::DistanceQuery]) -> 
 pub fn intersection_testers(pair: &Pair, queries: &[w3b_intersect::IntersectQuery]) -> Vec<(Method, Solver)> {
     #[allow(unused_mut, reason = "without peers there is nothing to add")]
     let mut solvers = vec![
-        (Method::OursF64, ours::intersections::<DVec3>(pair, queries, false)),
-        (Method::OursF32, ours::intersections::<Vec3A>(pair, queries, false)),
+        (Method::OursF64, ours::intersections::<DVec3>(pair, queries, false, Effort::default())),
+        (Method::OursF32, ours::intersections::<Vec3A>(pair, queries, false, Effort::default())),
     ];
     #[cfg(feature = "parry")]
     {
@@ -272,7 +272,7 @@ pub fn intersection_testers(pair: &Pair, queries: &[w3b_intersect::IntersectQuer
 #[must_use]
 pub fn warm_intersection_testers(pair: &Pair, apart: &[w3b_intersect::IntersectQuery]) -> Vec<(Method, Solver)> {
     vec![
-        (Method::WarmF64, ours::intersections::<DVec3>(pair, apart, true)),
-        (Method::WarmF32, ours::intersections::<Vec3A>(pair, apart, true)),
+        (Method::WarmF64, ours::intersections::<DVec3>(pair, apart, true, Effort::default())),
+        (Method::WarmF32, ours::intersections::<Vec3A>(pair, apart, true, Effort::default())),
     ]
 }

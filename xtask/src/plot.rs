@@ -1,4 +1,4 @@
-//! Plots as SVG, by hand: points and lines in colours that read on light and dark pages.
+//! Plots as SVG, by hand: points and lines that can be told apart by colour and by mark, on light and dark pages and on paper.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ pub(crate) struct Series {
     pub(crate) points: Vec<[f64; 2]>,
     /// Whether the points are joined, in the order given.
     pub(crate) joined: bool,
-    /// Which of the colours; plots side by side give the same thing the same one.
+    /// Which of the colours and marks; plots side by side give the same thing the same one.
     pub(crate) colour: usize,
 }
 
@@ -17,8 +17,10 @@ pub(crate) struct Series {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scale {
     Linear,
-    /// By whole decades. What is not positive is drawn at the lower edge.
+    /// Logarithmic. What is not positive is drawn at the lower edge.
     Log,
+    /// Logarithmic, of nanoseconds.
+    Time,
 }
 
 /// Numbers against numbers.
@@ -33,15 +35,20 @@ pub(crate) struct Plot {
     pub(crate) series: Vec<Series>,
 }
 
-const WIDTH: f64 = 720.0;
-const HEIGHT: f64 = 420.0;
-const LEFT: f64 = 64.0;
-const RIGHT: f64 = 170.0;
-const TOP: f64 = 34.0;
-const BOTTOM: f64 = 46.0;
+const WIDTH: f64 = 600.0;
+/// Of the plot with its axes; the legend comes below.
+const HEIGHT: f64 = 390.0;
+const LEFT: f64 = 66.0;
+const RIGHT: f64 = 20.0;
+const TOP: f64 = 40.0;
+const BOTTOM: f64 = 48.0;
+const LEGEND_ROW: f64 = 20.0;
+/// About the width of a letter, to lay out the legend.
+const LETTER: f64 = 6.7;
 
-/// Colours that can be told apart, also by the colour-blind (Okabe and Ito).
-const COLOURS: [&str; 8] = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#b59f00", "#888888"];
+/// Colours that can be told apart, also by the colour-blind (after Okabe and Ito). A page may replace them by its custom
+/// properties `--c0` to `--c7`, such as brighter ones on a dark ground.
+const COLOURS: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b8860b", "#3a9bd9", "#7a5195", "#6f6f6f"];
 
 impl Plot {
     /// The plot as an `<svg>` element.
@@ -49,90 +56,187 @@ impl Plot {
         let xs = self.series.iter().flat_map(|s| s.points.iter().map(|p| p[0]));
         let ys = self.series.iter().flat_map(|s| s.points.iter().map(|p| p[1].max(self.floor)));
         let (x, y) = (Axis::around(self.scales[0], xs), Axis::around(self.scales[1], ys));
-        let px = |v: f64| LEFT + x.part(v) * (WIDTH - LEFT - RIGHT);
-        let py = |v: f64| HEIGHT - BOTTOM - y.part(v.max(self.floor)) * (HEIGHT - TOP - BOTTOM);
+        let legend = self.legend();
+        let rows = legend.iter().map(|entry| entry.row + 1).max().unwrap_or(0);
+        let frame = Frame { x, y, floor: self.floor };
         let mut svg = format!(
-            "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" xmlns=\"http://www.w3.org/2000/svg\" \
-             font-family=\"system-ui, sans-serif\" font-size=\"12\" fill=\"currentColor\">\n\
-             <title>{0}</title>\n<text x=\"{LEFT}\" y=\"20\" font-size=\"14\" font-weight=\"600\">{0}</text>\n",
+            "<svg viewBox=\"0 0 {WIDTH} {:.0}\" role=\"img\" aria-label=\"{1}\" xmlns=\"http://www.w3.org/2000/svg\" \
+             font-family=\"system-ui, sans-serif\" font-size=\"12.5\" fill=\"currentColor\">\n\
+             <text x=\"8\" y=\"18\" font-size=\"14.5\" font-weight=\"600\">{1}</text>\n",
+            HEIGHT + LEGEND_ROW * rows as f64,
             escape(&self.title)
         );
-        let (right, bottom) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
-        for (value, label) in x.ticks() {
-            let at = px(value);
-            let _ = writeln!(
-                svg,
-                "<path d=\"M{at:.1} {TOP}V{bottom}\" stroke=\"currentColor\" stroke-opacity=\".15\"/>\
-                 <text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{label}</text>",
-                bottom + 16.0
-            );
+        self.axes(&mut svg, &frame);
+        for series in &self.series {
+            draw(&mut svg, series, &frame);
         }
-        for (value, label) in y.ticks() {
-            let at = py(value);
+        for entry in &legend {
+            let (x, y) = (entry.left, HEIGHT + 4.0 + LEGEND_ROW * entry.row as f64);
+            let look = look(entry.series.colour);
+            let line = if entry.series.joined {
+                format!("<path d=\"M{:.1} {y:.1}h26\" fill=\"none\" {}/>", x, dashes(entry.series.colour))
+            } else {
+                String::new()
+            };
             let _ = writeln!(
                 svg,
-                "<path d=\"M{LEFT} {at:.1}H{right}\" stroke=\"currentColor\" stroke-opacity=\".15\"/>\
-                 <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>",
-                LEFT - 6.0,
-                at + 4.0
-            );
-        }
-        let _ = writeln!(
-            svg,
-            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>\
-             <text transform=\"translate(14 {:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
-            (LEFT + right) / 2.0,
-            HEIGHT - 10.0,
-            escape(&self.x),
-            (TOP + bottom) / 2.0,
-            escape(&self.y)
-        );
-        for (i, series) in self.series.iter().enumerate() {
-            let colour = COLOURS[series.colour % COLOURS.len()];
-            let _ = writeln!(svg, "<g fill=\"{colour}\" stroke=\"{colour}\"><title>{}</title>", escape(&series.name));
-            if series.joined && !series.points.is_empty() {
-                let path: Vec<String> =
-                    series.points.iter().map(|p| format!("{:.1} {:.1}", px(p[0]), py(p[1]))).collect();
-                let _ = writeln!(svg, "<path fill=\"none\" stroke-width=\"1.5\" d=\"M{}\"/>", path.join("L"));
-            }
-            let (radius, opacity) = if series.joined { (3.0, 1.0) } else { (2.2, 0.55) };
-            for p in &series.points {
-                let _ = write!(
-                    svg,
-                    "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"{radius}\" stroke=\"none\" fill-opacity=\"{opacity}\"/>",
-                    px(p[0]),
-                    py(p[1])
-                );
-            }
-            let _ = writeln!(
-                svg,
-                "\n<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"4\" stroke=\"none\"/></g>\
-                 <text x=\"{:.1}\" y=\"{:.1}\">{}</text>",
-                right + 14.0,
-                TOP + 8.0 + 18.0 * i as f64,
-                right + 24.0,
-                TOP + 12.0 + 18.0 * i as f64,
-                escape(&series.name)
+                "<g {look}>{line}{}</g><text x=\"{:.1}\" y=\"{:.1}\">{}</text>",
+                mark(entry.series.colour, x + 13.0, y, 4.0),
+                x + 32.0,
+                y + 4.0,
+                escape(&entry.series.name)
             );
         }
         svg.push_str("</svg>\n");
         svg
     }
+
+    /// Grid, ticks and titles of both axes. The vertical one is titled above its end, where it can be read without turning.
+    fn axes(&self, svg: &mut String, frame: &Frame) {
+        let (right, bottom) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
+        for (value, label) in frame.x.ticks() {
+            let at = frame.px(value);
+            let _ = writeln!(
+                svg,
+                "<path d=\"M{at:.1} {TOP}V{bottom}\" stroke=\"currentColor\" stroke-opacity=\".13\"/>\
+                 <text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{label}</text>",
+                bottom + 17.0
+            );
+        }
+        // Values below the floor, zero above all, lie on the lowest line.
+        let floored = self.series.iter().flat_map(|s| &s.points).any(|p| p[1] < self.floor);
+        for (i, (value, label)) in frame.y.ticks().into_iter().enumerate() {
+            let at = frame.py(value);
+            let label = if i == 0 && floored { "0".to_owned() } else { label };
+            let _ = writeln!(
+                svg,
+                "<path d=\"M{LEFT} {at:.1}H{right}\" stroke=\"currentColor\" stroke-opacity=\".13\"/>\
+                 <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>",
+                LEFT - 7.0,
+                at + 4.0
+            );
+        }
+        let _ = writeln!(
+            svg,
+            "<path d=\"M{LEFT} {TOP}V{bottom}H{right}\" fill=\"none\" stroke=\"currentColor\" stroke-opacity=\".5\"/>\
+             <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>\
+             <text transform=\"translate(15 {:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
+            f64::midpoint(LEFT, right),
+            HEIGHT - 12.0,
+            escape(&self.x),
+            f64::midpoint(TOP, bottom),
+            escape(&self.y)
+        );
+    }
+
+    /// The names of the series in rows below the plot, where they cover nothing.
+    fn legend(&self) -> Vec<Entry<'_>> {
+        let (mut left, mut row) = (LEFT - 30.0, 0);
+        self.series
+            .iter()
+            .map(|series| {
+                let width = 32.0 + LETTER * series.name.chars().count() as f64 + 18.0;
+                if left + width > WIDTH && left > LEFT {
+                    (left, row) = (LEFT - 30.0, row + 1);
+                }
+                let entry = Entry { series, left, row };
+                left += width;
+                entry
+            })
+            .collect()
+    }
 }
 
-/// The range of an axis, in whole ticks.
+/// A name in the legend.
+struct Entry<'p> {
+    series: &'p Series,
+    left: f64,
+    row: usize,
+}
+
+/// Where numbers lie on the picture.
+struct Frame {
+    x: Axis,
+    y: Axis,
+    floor: f64,
+}
+
+impl Frame {
+    fn px(&self, value: f64) -> f64 {
+        LEFT + self.x.part(value) * (WIDTH - LEFT - RIGHT)
+    }
+
+    fn py(&self, value: f64) -> f64 {
+        HEIGHT - BOTTOM - self.y.part(value.max(self.floor)) * (HEIGHT - TOP - BOTTOM)
+    }
+}
+
+fn draw(svg: &mut String, series: &Series, frame: &Frame) {
+    let _ = writeln!(svg, "<g {}><title>{}</title>", look(series.colour), escape(&series.name));
+    if series.joined && series.points.len() > 1 {
+        let path: Vec<String> =
+            series.points.iter().map(|p| format!("{:.1} {:.1}", frame.px(p[0]), frame.py(p[1]))).collect();
+        let _ = writeln!(svg, "<path fill=\"none\" {} d=\"M{}\"/>", dashes(series.colour), path.join("L"));
+    }
+    let (radius, opacity) = if series.points.len() > 60 { (2.4, ".6") } else { (4.0, "1") };
+    let _ = write!(svg, "<g fill-opacity=\"{opacity}\">");
+    for p in &series.points {
+        svg.push_str(&mark(series.colour, frame.px(p[0]), frame.py(p[1]), radius));
+    }
+    svg.push_str("</g></g>\n");
+}
+
+/// The colour of a series, as attributes.
+fn look(colour: usize) -> String {
+    let c = colour % COLOURS.len();
+    format!("style=\"fill:var(--c{c},{0});stroke:var(--c{c},{0})\"", COLOURS[c])
+}
+
+/// The line of a series, as attributes.
+fn dashes(colour: usize) -> &'static str {
+    [
+        "stroke-width=\"1.8\"",
+        "stroke-width=\"1.8\" stroke-dasharray=\"7 3\"",
+        "stroke-width=\"1.8\" stroke-dasharray=\"2 3\"",
+        "stroke-width=\"1.8\" stroke-dasharray=\"9 3 2 3\"",
+    ][colour % 4]
+}
+
+/// The mark of a series: disc, square, triangle, diamond; hollow beyond four.
+fn mark(colour: usize, x: f64, y: f64, r: f64) -> String {
+    let fill =
+        if colour % 8 >= 4 { " style=\"fill:var(--ground,none)\" stroke-width=\"1.6\"" } else { " stroke=\"none\"" };
+    match colour % 4 {
+        0 => format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{r}\"{fill}/>"),
+        1 => {
+            let (x, y, side) = (x - 0.9 * r, y - 0.9 * r, 1.8 * r);
+            format!("<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{side:.1}\" height=\"{side:.1}\"{fill}/>")
+        }
+        2 => {
+            let (top, half) = (y - 1.2 * r, 1.15 * r);
+            format!("<path d=\"M{x:.1} {top:.1}l{half:.1} {:.1}h-{:.1}z\"{fill}/>", 2.0 * r, 2.0 * half)
+        }
+        _ => {
+            let d = 1.25 * r;
+            format!("<path d=\"M{x:.1} {:.1}l{d:.1} {d:.1}l-{d:.1} {d:.1}l-{d:.1} -{d:.1}z\"{fill}/>", y - d)
+        }
+    }
+}
+
+/// The range of an axis.
 #[derive(Clone, Copy, Debug)]
 struct Axis {
     scale: Scale,
-    /// The ends and the tick, in decades on a logarithmic axis.
+    /// The ends, as logarithms on a logarithmic axis.
     from: f64,
     to: f64,
+    /// The distance of ticks; on a logarithmic axis in whole decades, or 0 where ticks are at 1, 2 and 5 of each.
     tick: f64,
 }
 
 impl Axis {
     fn around(scale: Scale, values: impl Iterator<Item = f64>) -> Self {
-        let place = |v: f64| if scale == Scale::Log { v.log10() } else { v };
+        let place = |v: f64| if scale == Scale::Linear { v } else { v.log10() };
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for v in values.map(place).filter(|v| v.is_finite()) {
             (low, high) = (low.min(v), high.max(v));
@@ -140,46 +244,105 @@ impl Axis {
         if low > high {
             (low, high) = (0.0, 1.0);
         }
-        let tick = match scale {
-            Scale::Log => ((high - low) / 9.0).floor().max(1.0),
+        if scale == Scale::Linear {
             // 1, 2 or 5 times a power of ten, five to ten of them.
-            Scale::Linear => {
-                let span = if high > low { high - low } else { 1.0 };
-                let ten = 10f64.powf((span / 5.0).log10().floor());
-                [5.0, 2.0, 1.0].map(|m| m * ten).into_iter().find(|t| span / t >= 5.0).unwrap_or(ten)
-            }
-        };
-        let from = (low / tick).floor() * tick;
-        Self { scale, from, to: ((high / tick).ceil() * tick).max(from + tick), tick }
+            let span = if high > low { high - low } else { 1.0 };
+            let ten = 10f64.powf((span / 5.0).log10().floor());
+            let tick = [5.0, 2.0, 1.0].map(|m| m * ten).into_iter().find(|t| span / t >= 5.0).unwrap_or(ten);
+            let from = (low / tick).floor() * tick;
+            return Self { scale, from, to: ((high / tick).ceil() * tick).max(from + tick), tick };
+        }
+        let (floor, ceil) = (low.floor(), high.ceil().max(low.floor() + 1.0));
+        if high - low < 1.7 {
+            // Short: from one of 1, 2, 5 to another.
+            let steps =
+                || (0..=(ceil - floor) as usize).flat_map(|d| [1.0f64, 2.0, 5.0].map(|m| floor + d as f64 + m.log10()));
+            let from = steps().filter(|s| *s <= low + 1e-9).fold(floor, f64::max);
+            let to = steps().filter(|s| *s >= high - 1e-9 && *s > from + 0.5).fold(ceil.max(from + 1.0), f64::min);
+            return Self { scale, from, to, tick: 0.0 };
+        }
+        // At most ten ticks.
+        let tick = ((ceil - floor) / 10.0).ceil().max(1.0);
+        let to = floor + ((ceil - floor) / tick).ceil() * tick;
+        Self { scale, from: floor, to, tick }
     }
 
     /// Where between its ends a value lies, from 0 to 1.
     fn part(self, value: f64) -> f64 {
         let place = match self.scale {
             Scale::Linear => value,
-            Scale::Log if value > 0.0 => value.log10(),
-            Scale::Log => return 0.0,
+            _ if value > 0.0 => value.log10(),
+            _ => return 0.0,
         };
         ((place - self.from) / (self.to - self.from)).clamp(0.0, 1.0)
     }
 
     /// The values with a tick, and what is written at it.
-    fn ticks(self) -> impl Iterator<Item = (f64, String)> {
+    fn ticks(self) -> Vec<(f64, String)> {
+        let written = |value: f64| match self.scale {
+            Scale::Time => duration(value),
+            _ => power(value),
+        };
+        if self.scale != Scale::Linear && self.tick == 0.0 {
+            let decades = self.from.floor() as i32..=self.to.ceil() as i32;
+            let all = decades.flat_map(|d| [1.0, 2.0, 5.0].map(|m| m * 10f64.powi(d)));
+            let inside = all.filter(|v| (self.from - 1e-9..=self.to + 1e-9).contains(&v.log10()));
+            return inside.map(|v| (v, written(v))).collect();
+        }
         let count = ((self.to - self.from) / self.tick).round() as usize;
-        (0..=count).map(move |i| {
+        let at = |i: usize| {
             let place = self.from + i as f64 * self.tick;
-            match self.scale {
-                Scale::Log if (0.0..4.0).contains(&place) => {
-                    (10f64.powf(place), format!("{}", 10f64.powf(place).round()))
-                }
-                Scale::Log => (10f64.powf(place), format!("1e{place}")),
-                Scale::Linear => {
-                    let decimals = (-self.tick.log10().floor()).max(0.0) as usize;
-                    (place, format!("{place:.decimals$}"))
-                }
+            if self.scale == Scale::Linear {
+                let decimals = (-self.tick.log10().floor()).max(0.0) as usize;
+                (place, format!("{place:.decimals$}"))
+            } else {
+                let value = 10f64.powi(place.round() as i32);
+                (value, written(value))
             }
-        })
+        };
+        (0..=count).map(at).collect()
     }
+}
+
+/// A number of nanoseconds as people write it.
+pub(crate) fn duration(ns: f64) -> String {
+    let (scale, unit) = match ns {
+        _ if ns.is_nan() => return "–".to_owned(),
+        _ if ns < 999.5 => (1.0, "ns"),
+        _ if ns < 999.5e3 => (1e3, "µs"),
+        _ if ns < 999.5e6 => (1e6, "ms"),
+        _ => (1e9, "s"),
+    };
+    let value = ns / scale;
+    let decimals = if value >= 99.5 || value.fract() == 0.0 {
+        0
+    } else if value >= 9.95 {
+        1
+    } else {
+        2
+    };
+    format!("{value:.decimals$} {unit}")
+}
+
+/// 10⁻⁷, 2·10⁵, or 20: small whole numbers as they are.
+fn power(value: f64) -> String {
+    if (1.0..10_000.0).contains(&(value * (1.0 + 1e-9))) {
+        return format!("{}", value.round());
+    }
+    let exponent = (value.log10() + 1e-9).floor() as i32;
+    let leading = (value / 10f64.powi(exponent)).round();
+    let digits: String = exponent
+        .to_string()
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            digit => char::from_u32(digit as u32 - '0' as u32 + '⁰' as u32).unwrap_or(digit),
+        })
+        .collect();
+    if leading == 1.0 { format!("10{digits}") } else { format!("{leading}·10{digits}") }
 }
 
 /// Text for HTML and SVG.
@@ -197,14 +360,28 @@ mod tests {
         assert_eq!((axis.from, axis.to), (-9.0, 5.0), "whole decades around the positive values");
         assert_eq!(axis.part(0.0), 0.0, "zero lies at the lower edge");
         assert_eq!(axis.part(1e5), 1.0, "the upper edge");
-        assert_eq!(Axis::around(Scale::Log, [1.0].into_iter()).part(1.0), 0.0, "one value still has a decade");
+        let decade = Axis::around(Scale::Log, [1.0].into_iter());
+        assert_eq!((decade.from, decade.to), (0.0, 1.0), "one value still has a decade");
+    }
+
+    #[test]
+    fn short_logarithmic_axes_go_by_ones_twos_and_fives() {
+        let labels: Vec<String> =
+            Axis::around(Scale::Time, [210.0, 2300.0].into_iter()).ticks().into_iter().map(|t| t.1).collect();
+        assert_eq!(labels, ["200 ns", "500 ns", "1 µs", "2 µs", "5 µs"], "from 200 ns to 5 µs");
     }
 
     #[test]
     fn linear_axes_go_by_round_ticks() {
         let axis = Axis::around(Scale::Linear, [0.12, 4.9].into_iter());
         assert_eq!((axis.from, axis.to, axis.tick), (0.0, 5.0, 0.5), "whole ticks around the values");
-        let labels: Vec<String> = axis.ticks().map(|(_, label)| label).collect();
+        let labels: Vec<String> = axis.ticks().into_iter().map(|(_, label)| label).collect();
         assert_eq!((labels[0].as_str(), labels[10].as_str()), ("0.0", "5.0"), "{labels:?}");
+    }
+
+    #[test]
+    fn numbers_are_written_short() {
+        assert_eq!([1e-7, 1.0, 2e5, 1000.0, 20.0].map(power), ["10⁻⁷", "1", "2·10⁵", "1000", "20"], "powers of ten");
+        assert_eq!([3.0, 1234.0, 2.5e7].map(duration), ["3 ns", "1.23 µs", "25 ms"], "durations");
     }
 }

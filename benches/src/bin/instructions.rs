@@ -6,7 +6,7 @@
 use std::process::ExitCode;
 
 use benches::measure::Solver;
-use benches::ours;
+use benches::ours::{self, Effort};
 use benches::pairs::Pair;
 use benches::shapes::Shape;
 use benches::{w1_ray_cast, w2_linear_cast, w3_distance, w3b_intersect};
@@ -24,24 +24,24 @@ const ROWS: [Row; 6] = [
     ("ray_cast/hull1024", || ray_cast("hull1024")),
     ("linear_cast/hull64-hull64", || {
         let pair = Pair::named("hull64-hull64");
-        ours::linear_casts::<DVec3>(&pair, &w2_linear_cast::casts(&pair)[..QUERIES])
+        ours::linear_casts::<DVec3>(&pair, &w2_linear_cast::casts(&pair)[..QUERIES], Effort::default())
     }),
     ("linear_cast/capsule-capsule", || {
         let pair = Pair::named("capsule-capsule");
-        ours::linear_casts::<DVec3>(&pair, &w2_linear_cast::casts(&pair)[..QUERIES])
+        ours::linear_casts::<DVec3>(&pair, &w2_linear_cast::casts(&pair)[..QUERIES], Effort::default())
     }),
     ("distance/ellipsoid-ellipsoid", || {
         let pair = Pair::named("ellipsoid-ellipsoid");
-        ours::distances::<DVec3>(&pair, &w3_distance::queries(&pair)[..QUERIES])
+        ours::distances::<DVec3>(&pair, &w3_distance::queries(&pair)[..QUERIES], Effort::default())
     }),
     ("intersect/cuboid-cuboid", || {
         let pair = Pair::named("cuboid-cuboid");
-        ours::intersections::<DVec3>(&pair, &w3b_intersect::queries(&pair)[..QUERIES], false)
+        ours::intersections::<DVec3>(&pair, &w3b_intersect::queries(&pair)[..QUERIES], false, Effort::default())
     }),
 ];
 
 fn ray_cast(name: &str) -> Solver {
-    ours::ray_casts::<DVec3>(&Shape::named(name), &w1_ray_cast::rays(name)[..QUERIES])
+    ours::ray_casts::<DVec3>(&Shape::named(name), &w1_ray_cast::rays(name)[..QUERIES], Effort::default())
 }
 
 fn main() -> ExitCode {

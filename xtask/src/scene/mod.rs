@@ -286,6 +286,39 @@ fn scene(file: &Path, truth: Option<&Path>, folder: &Path) -> Result<bool, Strin
     }
 }
 
+/// How often a level was asked and knew, over the whole embedded scene.
+pub(crate) struct Level {
+    pub(crate) name: &'static str,
+    pub(crate) asked: u64,
+    pub(crate) knew: u64,
+    /// Mean time of a question.
+    pub(crate) nanoseconds: f64,
+}
+
+/// The levels of the embedded scene.
+///
+/// # Errors
+/// If the scene cannot be read.
+pub(crate) fn embedded_levels() -> Result<Vec<Level>, String> {
+    let scene = Scene::read(Path::new(EMBEDDED))?;
+    let mut pairs = vec![Pair::default(); scene.bodies.len() * scene.obstacles.len()];
+    let mut levels = Levels::default();
+    for values in &scene.trajectory {
+        let links = scene.links_at(values)?;
+        let asked = links.iter().flat_map(|link| scene.obstacles.iter().map(move |obstacle| (link, obstacle)));
+        for (pair, (link, obstacle)) in pairs.iter_mut().zip(asked) {
+            let _ = pair.ask(link, obstacle, &mut levels);
+        }
+    }
+    let level = |i: usize, name| Level {
+        name,
+        asked: levels.asked[i],
+        knew: levels.knew[i],
+        nanoseconds: levels.time[i].as_nanos() as f64 / levels.asked[i].max(1) as f64,
+    };
+    Ok(vec![level(0, "outer ellipsoids"), level(1, "inner ellipsoids"), level(2, "exact hulls")])
+}
+
 /// The time per row for the exact distance of every pair, cold: what the ellipsoids and the memory of the last row
 /// leave out. A sample of the rows.
 fn every_pair(scene: &Scene) -> Result<Duration, String> {

@@ -10,11 +10,25 @@ use gjk_raycast::{Ray, RayCastOptions, ray_cast};
 use lj_ellipsoid::faer::Mat;
 use lj_ellipsoid::{EnclosingMethod, EnclosingOptions, enclosing, enclosing_dyn};
 
-use super::{Figure, Scope, progress};
+use super::random::Random;
+use super::{Block, Figure, Scope, Section, progress};
 use crate::plot::{Plot, Scale, Series};
 
+/// The chapter.
+pub(super) fn section(scope: &Scope) -> Section {
+    Section {
+        id: "growth",
+        title: "Growth with the size of the question",
+        lead:
+            "How the time of one query grows with vertices, points, obstacles and dimensions. On these axes a straight \
+               line is a power: what is scanned has slope 1, what is looked up stays nearly level."
+                .to_owned(),
+        blocks: figures(scope).into_iter().map(Block::Figure).collect(),
+    }
+}
+
 /// The figures that are asked for.
-pub(super) fn figures(scope: &Scope) -> Vec<Figure> {
+fn figures(scope: &Scope) -> Vec<Figure> {
     let mut figures = Vec::new();
     if scope.holds("ray_cast") {
         figures.push(vertices());
@@ -28,35 +42,8 @@ pub(super) fn figures(scope: &Scope) -> Vec<Figure> {
     figures
 }
 
-/// Numbers between −1 and 1, the same on every machine (`SplitMix64`).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-
-    /// A point of the unit sphere, by rejection from the cube.
-    fn on_sphere(&mut self) -> DVec3 {
-        loop {
-            let v = self.vector();
-            if (0.01..=1.0).contains(&v.length_squared()) {
-                return v.normalize();
-            }
-        }
-    }
-}
-
 /// Mean nanoseconds of a run, over about 20 ms or a single one.
-fn time(mut run: impl FnMut()) -> f64 {
+pub(super) fn time(mut run: impl FnMut()) -> f64 {
     const BUDGET_NS: f64 = 2e7;
     let start = Instant::now();
     run();
@@ -77,8 +64,8 @@ fn figure(name: &str, title: &str, x: &str, series: Vec<(String, Vec<[f64; 2]>)>
         plot: Plot {
             title: title.to_owned(),
             x: x.to_owned(),
-            y: "nanoseconds".to_owned(),
-            scales: [Scale::Log, Scale::Log],
+            y: "time".to_owned(),
+            scales: [Scale::Log, Scale::Time],
             floor: 1.0,
             series: series.map(|(colour, (name, points))| Series { name, points, joined: true, colour }).collect(),
         },
@@ -179,16 +166,7 @@ fn obstacles() -> Figure {
     let (mut culled, mut brute) = (Vec::new(), Vec::new());
     for m in [10, 100, 1000, 10_000, 100_000] {
         progress(&format!("clearance among {m} obstacles"));
-        // As many as there are, the space they fill grows: the density around the robot stays.
-        let extent = 2.0 * f64::from(m).cbrt();
-        let obstacles: Vec<Ellipsoid<DVec3>> = (0..m)
-            .filter_map(|_| {
-                let center = random.vector() * extent;
-                let center = center + center.normalize() * 3.0;
-                let semi_axes = DVec3::splat(0.3) + random.vector().abs() * 0.4;
-                Ellipsoid::new(center, semi_axes, DQuat::from_scaled_axis(random.vector() * 3.0)).ok()
-            })
-            .collect();
+        let obstacles = field(m, &mut random);
         let Ok(mut tracked) = Clearance::new(&obstacles, MarginOptions::default()) else { continue };
         let mut step = 0.0;
         let mut links = || {
@@ -212,8 +190,21 @@ fn obstacles() -> Figure {
     )
 }
 
+/// Ellipsoids around a robot. As many as there are, the space they fill grows: the density around the robot stays.
+pub(super) fn field(count: u32, random: &mut Random) -> Vec<Ellipsoid<DVec3>> {
+    let extent = 2.0 * f64::from(count).cbrt();
+    (0..count)
+        .filter_map(|_| {
+            let center = random.vector() * extent;
+            let center = center + center.normalize() * 3.0;
+            let semi_axes = DVec3::splat(0.3) + random.vector().abs() * 0.4;
+            Ellipsoid::new(center, semi_axes, DQuat::from_scaled_axis(random.vector() * 3.0)).ok()
+        })
+        .collect()
+}
+
 /// A chain of 30 links, bent and turned by an angle.
-fn robot(angle: f64) -> Vec<Ellipsoid<DVec3>> {
+pub(super) fn robot(angle: f64) -> Vec<Ellipsoid<DVec3>> {
     (0..30)
         .filter_map(|i| {
             let along = f64::from(i) / 29.0;

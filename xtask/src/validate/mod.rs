@@ -1,16 +1,25 @@
 //! `cargo xtask validate [FILE…]`: answers against the truth, error against run time.
 
+mod cases;
+mod claims;
 mod enclosing_ladder;
 mod growth;
+mod headline;
+mod left_out;
+mod page;
+mod paper;
+mod progress;
 mod provenance;
+mod random;
 mod report;
 mod score;
 mod stiff;
 mod summary;
 mod work_precision;
+mod workloads;
 
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, IsTerminal as _, Write};
+use std::io::{self, BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -18,10 +27,11 @@ use std::sync::Arc;
 use clap::Args;
 use serde_json::Value;
 
+use self::page::{Block, Figure, Section};
+use self::progress::progress;
 use self::score::Verdict;
 use crate::engine;
 use crate::mesh::Meshes;
-use crate::plot::Plot;
 use crate::wire::answer::Line;
 use crate::wire::error::Problem;
 use crate::wire::query;
@@ -58,37 +68,77 @@ pub(crate) struct Scope {
     /// Query files with `expect`; without any, the embedded suite.
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Answers only: no ladders of tolerances, no growth.
+    /// The cases and what needs no long measurements: done in well under a minute.
     #[arg(long)]
     quick: bool,
-    /// Only this query, or the queries of this crate.
-    #[arg(long, value_name = "QUERY|CRATE")]
-    only: Option<String>,
+    /// Only this query, the queries of this crate, or this chapter of the report; or both, as in `gjk-raycast/growth`.
+    #[arg(long, value_name = "QUERY|CRATE|CHAPTER", value_parser = Only::parse)]
+    only: Option<Only>,
     /// Where the report goes.
     #[arg(long, value_name = "FOLDER", default_value = "target/report")]
     report: PathBuf,
 }
 
-impl Scope {
-    /// Whether a query is asked for.
-    fn holds(&self, query: &str) -> bool {
-        let Some(only) = self.only.as_deref() else { return true };
-        only == query
-            || match only {
-                "gjk-raycast" => matches!(query, "ray_cast" | "linear_cast" | "distance" | "intersect"),
-                "lj-ellipsoid" => query.ends_with("_ellipsoid"),
-                "ellip-margin" => matches!(query, "margin" | "track" | "clearance"),
-                _ => false,
+/// The queries, by the crate that answers them.
+const CRATES: [(&str, &[&str]); 3] = [
+    ("gjk-raycast", &["ray_cast", "linear_cast", "distance", "intersect"]),
+    ("lj-ellipsoid", &["enclosing_ellipsoid", "inscribed_ellipsoid"]),
+    ("ellip-margin", &["margin", "track", "clearance"]),
+];
+
+/// The chapters of the report, in their order, and whether a quick run has them.
+const CHAPTERS: [(&str, bool); 7] = [
+    ("headline", false),
+    ("ladders", false),
+    ("stiff", true),
+    ("growth", false),
+    ("left-out", true),
+    ("claims", true),
+    ("cases", true),
+];
+
+/// A part of the work.
+#[derive(Clone, Debug)]
+struct Only {
+    queries: Option<Vec<String>>,
+    chapter: Option<String>,
+}
+
+impl Only {
+    fn parse(text: &str) -> Result<Self, String> {
+        let mut only = Self { queries: None, chapter: None };
+        for part in text.split('/') {
+            let of_crate = CRATES.iter().find(|(name, _)| *name == part).map(|(_, queries)| queries.to_vec());
+            let known = CRATES.iter().flat_map(|(_, queries)| *queries).find(|query| **query == part);
+            if let Some(queries) = of_crate.or(known.map(|query| vec![*query])) {
+                only.queries = Some(queries.into_iter().map(str::to_owned).collect());
+            } else if CHAPTERS.iter().any(|(chapter, _)| *chapter == part) {
+                only.chapter = Some(part.to_owned());
+            } else {
+                let crates =
+                    CRATES.iter().flat_map(|(name, queries)| [*name].into_iter().chain(queries.iter().copied()));
+                let names: Vec<&str> = crates.chain(CHAPTERS.iter().map(|(chapter, _)| *chapter)).collect();
+                return Err(format!("{part:?} is none of {}", names.join(", ")));
             }
+        }
+        Ok(only)
     }
 }
 
-/// A figure of the report.
-struct Figure {
-    /// The stem of its files.
-    name: String,
-    plot: Plot,
-    caption: String,
+impl Scope {
+    /// Whether a query is asked for.
+    fn holds(&self, query: &str) -> bool {
+        let queries = self.only.as_ref().and_then(|only| only.queries.as_ref());
+        queries.is_none_or(|queries| queries.iter().any(|q| q == query))
+    }
+
+    /// Whether a chapter of the report is asked for.
+    fn shows(&self, chapter: &str) -> bool {
+        match self.only.as_ref().and_then(|only| only.chapter.as_ref()) {
+            Some(only) => only == chapter,
+            None => !self.quick || CHAPTERS.iter().any(|(name, quick)| *name == chapter && *quick),
+        }
+    }
 }
 
 /// Validates and writes the report.
@@ -113,6 +163,8 @@ fn validate(scope: &Scope) -> Result<bool, String> {
         &scope.files
     };
     let (mut records, mut cases) = (Vec::new(), Vec::new());
+    let chapters = CHAPTERS.iter().filter(|(chapter, _)| scope.shows(chapter)).count();
+    progress::begin(chapters + 1, "cases");
     for file in files {
         validate_file(file, scope, &mut records, &mut cases)
             .map_err(|why| format!("cannot read {}: {why}", file.display()))?;
@@ -120,29 +172,36 @@ fn validate(scope: &Scope) -> Result<bool, String> {
     if records.is_empty() {
         return Err("there is nothing to validate".to_owned());
     }
-    let mut figures = Vec::new();
-    if !scope.quick {
-        figures.extend(work_precision::figures(&cases));
-        figures.extend(enclosing_ladder::figures(scope));
-        figures.extend(stiff::figures(&cases));
-        figures.extend(growth::figures(scope));
+    let mut sections = Vec::new();
+    for (chapter, _) in CHAPTERS.into_iter().filter(|(chapter, _)| scope.shows(chapter)) {
+        progress::chapter(chapter);
+        let section = match chapter {
+            "headline" => headline::section(scope),
+            "ladders" => {
+                let mut section = workloads::section(scope);
+                section.blocks.extend(work_precision::blocks(&cases));
+                section.blocks.extend(enclosing_ladder::figures(scope).into_iter().map(Block::Figure));
+                section
+            }
+            "stiff" => stiff::section(&records, if scope.quick { &[] } else { &cases }),
+            "growth" => growth::section(scope),
+            "left-out" => left_out::section(scope),
+            "claims" => claims::section(scope, &cases),
+            _ => cases::section(&records),
+        };
+        if !section.blocks.is_empty() {
+            sections.push(section);
+        }
     }
-    progress("");
+    progress::end();
     let mut output = io::stdout().lock();
     let written = summary::print(&records, &mut output).and_then(|()| {
-        let page = report::write(&records, &figures, &scope.report)?;
+        let page = report::write(&records, &sections, &scope.report)?;
         writeln!(output, "report: {}", page.display())
     });
     match written {
         Err(why) if why.kind() != io::ErrorKind::BrokenPipe => Err(format!("cannot write the report: {why}")),
         _ => Ok(records.iter().all(|r| r.verdict.wrong.is_empty())),
-    }
-}
-
-/// Shows what is being done, where somebody watches.
-fn progress(what: &str) {
-    if io::stderr().is_terminal() {
-        let _ = write!(io::stderr(), "\r{what}\x1b[K");
     }
 }
 

@@ -36,6 +36,11 @@ pub(crate) struct Verdict {
 }
 
 impl Verdict {
+    /// Whether a bound that the answer certifies does not hold the truth.
+    pub(crate) fn violates_certificate(&self) -> bool {
+        self.soft.iter().any(|why| why.starts_with("bracket") || why.starts_with("gap"))
+    }
+
     fn wrong(why: impl Into<String>) -> Self {
         Self { wrong: vec![why.into()], ..Self::default() }
     }

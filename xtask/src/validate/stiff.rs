@@ -1,12 +1,15 @@
 //! Error against difficulty: condition, thickness, scale, distance, gap to contact, as far as the tags of cases say them.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use super::{Case, Figure, as_read, progress, score};
+use super::page::{Row, Table, error};
+use super::summary::quantile;
+use super::{Block, Case, Figure, Record, Section, as_read, progress, score};
 use crate::engine;
-use crate::plot::{Plot, Scale, Series};
+use crate::plot::{Plot, Scale, Series, duration};
 use crate::wire::answer::Line;
 
 /// Methods beside the default that are shown for comparison.
@@ -18,8 +21,103 @@ const FEWEST_VALUES: usize = 3;
 /// For each value of a difficulty, the worst of what was measured there.
 type Worst = BTreeMap<u64, f64>;
 
+/// The chapter: a table of every kind and value of difficulty, and figures of those with enough cases.
+pub(super) fn section(records: &[Record], cases: &[Case]) -> Section {
+    let mut blocks: Vec<Block> = figures(cases).into_iter().map(Block::Figure).collect();
+    let table = table(records);
+    if !table.rows.is_empty() {
+        blocks.push(Block::Table(table));
+    }
+    Section {
+        id: "stiff",
+        title: "Stiff and extreme cases",
+        lead: "Aspect, scale, offset, condition, gap to contact, grazing: what happens to the answers where the numbers get hard. What to \
+               see: worst errors stay below what the inputs allow (err/allow below 1) and do not grow with the difficulty, \
+               nothing is wrong, no certificate is violated, and iterations stay few. Where a relative error is large, the \
+               answer itself is nearly zero, or a change of the last digits of the inputs changes it as much."
+            .to_owned(),
+        blocks,
+    }
+}
+
+/// For each query, precision, and kind and value of difficulty: how many, how right, how many iterations, how long.
+fn table(records: &[Record]) -> Table {
+    let mut groups = BTreeMap::<(&str, String, Ordered, &str), Vec<&Record>>::new();
+    for record in records {
+        for (kind, value) in record.tags.iter().filter_map(|tag| difficulty(tag)) {
+            let key = (record.query.as_str(), kind.to_owned(), Ordered(value), record.precision);
+            groups.entry(key).or_default().push(record);
+        }
+    }
+    let rows = groups.into_iter().map(|((query, kind, Ordered(value), precision), of)| {
+        let worst = |of_verdict: fn(&score::Verdict) -> Option<f64>| {
+            of.iter().filter_map(|r| of_verdict(&r.verdict)).fold(f64::NAN, f64::max)
+        };
+        let wrong = of.iter().filter(|r| !r.verdict.wrong.is_empty()).count();
+        let violations = of.iter().filter(|r| r.verdict.violates_certificate()).count();
+        let times: Vec<f64> = of.iter().filter_map(|r| r.time).collect();
+        let log_volume = query.ends_with("_ellipsoid");
+        let iterations = of.iter().filter_map(|r| r.iterations).max();
+        Row::of([
+            query.to_owned(),
+            kind,
+            // Powers of two are scales; all else is told as it is.
+            if value > 0.0 && (value.log2().fract() == 0.0) && (value > 1e8 || value < 1e-8) {
+                format!("2^{}", value.log2())
+            } else {
+                format!("{value:e}")
+            },
+            precision.to_owned(),
+            of.len().to_string(),
+            error(worst(|v| v.relative).min(if log_volume { worst(|v| v.error) } else { f64::INFINITY })),
+            error(worst(|v| v.ratio)),
+            wrong.to_string(),
+            violations.to_string(),
+            iterations.map_or_else(|| "–".to_owned(), |i| i.to_string()),
+            quantile(&times, 0.5).map_or_else(|| "–".to_owned(), duration),
+        ])
+        .bad_if(wrong + violations > 0)
+    });
+    Table::new(
+        "stiff",
+        "Worst error: relative, of a log-volume its own. Violations: certificates (brackets, gaps) that do not hold the truth.",
+        &[
+            "query",
+            "difficulty",
+            "value",
+            "precision",
+            "cases",
+            "worst error",
+            "err/allow",
+            "wrong",
+            "violations",
+            "iterations, most",
+            "median time",
+        ],
+        rows.collect(),
+    )
+}
+
+/// A number that can be sorted by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Ordered(f64);
+
+impl Eq for Ordered {}
+
+impl PartialOrd for Ordered {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Ordered {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+
 /// One figure for each query and kind of difficulty.
-pub(super) fn figures(cases: &[Case]) -> Vec<Figure> {
+fn figures(cases: &[Case]) -> Vec<Figure> {
     // By query and kind of difficulty, then by method.
     let mut found = BTreeMap::<(String, String), BTreeMap<String, Worst>>::new();
     for (i, case) in cases.iter().enumerate() {
@@ -66,26 +164,36 @@ fn figure(query: &str, kind: &str, methods: BTreeMap<String, Worst>) -> Option<F
         name: format!("stiff-{query}-{kind}"),
         plot: Plot {
             title: format!("{query}: worst error against {kind}"),
-            x: kind.to_owned(),
+            x: match kind {
+                "cond" => "condition of the matrices",
+                "gap" => "gap to contact / size",
+                "thickness" => "thickness / size",
+                "scale" => "scale",
+                other => other,
+            }
+            .to_owned(),
             y: "worst error".to_owned(),
             scales: [Scale::Log, Scale::Log],
             floor: 1e-17,
             series: series.collect(),
         },
-        caption: "The worst error among the cases of each value, in f64: relative, or that of ln det X itself. What is allowed \
+        caption: "What to see: ours stays under the line of what the inputs allow. The worst error among the cases of each value, in f64: relative, or that of ln det X itself. What is allowed \
                   is 1e-7 and twice what a change of the inputs by 1000 ulps does to the truth."
             .to_owned(),
     })
 }
 
-/// The kind and value of a tag that ends in a positive number with a kind before it, such as `cond1e+06`.
+/// The kind and value of a tag that ends in a positive number with a kind before it, such as `cond1e+06` or `scale2^-30`.
 fn difficulty(tag: &str) -> Option<(&str, f64)> {
     let at = tag.find(|c: char| c.is_ascii_digit())?;
     let (kind, number) = tag.split_at(at);
     let kind = kind.trim_end_matches(['-', '^']);
-    let value = number.parse::<f64>().ok().filter(|value| *value > 0.0)?;
-    // Dimensions and counts are no difficulties.
-    (kind.len() > 1).then_some((kind, value))
+    let value = match number.split_once('^') {
+        Some((base, exponent)) => base.parse::<f64>().ok()?.powi(exponent.parse().ok()?),
+        None => number.parse().ok()?,
+    };
+    // Dimensions, counts and steps of a motion are no difficulties.
+    (kind.len() > 1 && value > 0.0 && kind != "nesting" && kind != "f").then_some((kind, value))
 }
 
 /// The error of a case and what is allowed, both in the unit of the figure.
@@ -125,7 +233,7 @@ mod tests {
     fn difficulties_are_told_from_other_tags() {
         assert_eq!(difficulty("cond1e+06"), Some(("cond", 1e6)), "a condition");
         assert_eq!(difficulty("thickness1e-05"), Some(("thickness", 1e-5)), "a thickness");
-        assert_eq!(difficulty("scale2^-30"), None, "no number");
+        assert_eq!(difficulty("scale2^-30"), Some(("scale", 2f64.powi(-30))), "a scale");
         assert_eq!(difficulty("n4"), None, "a dimension");
         assert_eq!(difficulty("3d"), None, "a dimension");
         assert_eq!(difficulty("easy"), None, "no number at all");

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::summary::quantile;
-use super::{Case, Figure, as_read, progress, score};
+use super::{Block, Case, Figure, as_read, progress, score};
 use crate::engine;
 use crate::plot::{Plot, Scale, Series};
 use crate::wire::answer::Line;
@@ -99,8 +99,12 @@ const MICROSECONDS: u64 = 30;
 const SLOWEST_NS: f64 = 3e7;
 
 /// The figures of the queries among the cases.
-pub(super) fn figures(cases: &[Case]) -> Vec<Figure> {
-    LADDERS.iter().filter_map(|ladder| figure(ladder, cases)).collect()
+pub(super) fn blocks(cases: &[Case]) -> Vec<Block> {
+    let mut blocks: Vec<Block> = LADDERS.iter().filter_map(|ladder| figure(ladder, cases)).map(Block::Figure).collect();
+    if !blocks.is_empty() {
+        blocks.insert(0, Block::Heading("All kinds of cases together, against exact truths".to_owned()));
+    }
+    blocks
 }
 
 fn figure(ladder: &Ladder, cases: &[Case]) -> Option<Figure> {
@@ -137,10 +141,10 @@ fn figure(ladder: &Ladder, cases: &[Case]) -> Option<Figure> {
     Some(Figure {
         name: ladder.name.to_owned(),
         plot: Plot {
-            title: format!("{}: error against time down a ladder of {}", ladder.query, ladder.knob),
-            x: "median nanoseconds per query".to_owned(),
+            title: format!("{}: down a ladder of {}", ladder.query, ladder.knob),
+            x: "median time per query".to_owned(),
             y: format!("{error}, 90th percentile"),
-            scales: [Scale::Log, Scale::Log],
+            scales: [Scale::Time, Scale::Log],
             floor: 1e-17,
             series,
         },

@@ -1,0 +1,187 @@
+//! The parts of the report: sections of figures and tables, as HTML and as CSV.
+
+use std::fmt::Write as _;
+
+use crate::plot::{Plot, escape};
+
+/// A chapter of the report.
+pub(super) struct Section {
+    /// The anchor, which is also what `--only` calls it.
+    pub(super) id: &'static str,
+    pub(super) title: &'static str,
+    /// What to see in it.
+    pub(super) lead: String,
+    pub(super) blocks: Vec<Block>,
+}
+
+/// What a section is made of.
+pub(super) enum Block {
+    Heading(String),
+    Figure(Figure),
+    Table(Table),
+}
+
+/// A plot with its caption.
+pub(super) struct Figure {
+    /// The stem of its files.
+    pub(super) name: String,
+    pub(super) plot: Plot,
+    /// A sentence that says what to see, and how it was measured.
+    pub(super) caption: String,
+}
+
+/// Numbers in rows.
+pub(super) struct Table {
+    /// The stem of its file.
+    pub(super) name: String,
+    pub(super) caption: String,
+    pub(super) headers: Vec<String>,
+    pub(super) rows: Vec<Row>,
+    /// Long tables are folded until somebody asks.
+    pub(super) folded: bool,
+}
+
+/// One row of a table.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Row {
+    pub(super) cells: Vec<String>,
+    pub(super) tone: Tone,
+}
+
+/// How a row stands out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Tone {
+    #[default]
+    Plain,
+    Bad,
+}
+
+impl Row {
+    pub(super) fn of(cells: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        Self { cells: cells.into_iter().map(Into::into).collect(), tone: Tone::Plain }
+    }
+
+    pub(super) fn bad_if(mut self, bad: bool) -> Self {
+        self.tone = if bad { Tone::Bad } else { Tone::Plain };
+        self
+    }
+}
+
+impl Table {
+    pub(super) fn new(name: &str, caption: &str, headers: &[&str], rows: Vec<Row>) -> Self {
+        Self {
+            name: name.to_owned(),
+            caption: caption.to_owned(),
+            headers: headers.iter().map(|h| (*h).to_owned()).collect(),
+            rows,
+            folded: false,
+        }
+    }
+
+    pub(super) fn folded(mut self) -> Self {
+        self.folded = true;
+        self
+    }
+
+    fn csv(&self) -> String {
+        let line = |cells: &[String]| cells.iter().map(|c| quoted(c)).collect::<Vec<_>>().join(",") + "\n";
+        line(&self.headers) + &self.rows.iter().map(|row| line(&row.cells)).collect::<String>()
+    }
+
+    fn html(&self) -> String {
+        let mut html = format!("<div class=\"scroll\"><table id=\"{}\">\n<thead><tr>", self.name);
+        for header in &self.headers {
+            let _ = write!(html, "<th>{}", escape(header));
+        }
+        html.push_str("</thead>\n<tbody>\n");
+        for row in &self.rows {
+            html.push_str(if row.tone == Tone::Bad { "<tr class=\"wrong\">" } else { "<tr>" });
+            for (i, cell) in row.cells.iter().enumerate() {
+                // Sentences run from the left, numbers to the right.
+                let prose = i > 0 && cell.chars().filter(|c| c.is_alphabetic()).count() > 14;
+                let _ = write!(html, "{}{}", if prose { "<td class=\"prose\">" } else { "<td>" }, escape(cell));
+            }
+            html.push('\n');
+        }
+        html.push_str("</tbody></table></div>\n");
+        let link = format!("<a href=\"{0}.csv\">{0}.csv</a>", self.name);
+        if self.folded {
+            format!(
+                "<details><summary>{} ({} rows)</summary>{html}<p>{link}</p></details>\n",
+                escape(&self.caption),
+                self.rows.len()
+            )
+        } else {
+            format!("<p class=\"caption\">{} {link}</p>{html}", escape(&self.caption))
+        }
+    }
+}
+
+impl Figure {
+    /// The points.
+    fn csv(&self) -> String {
+        let mut csv = format!("series,{},{}\n", quoted(&self.plot.x), quoted(&self.plot.y));
+        for series in &self.plot.series {
+            for [x, y] in &series.points {
+                let _ = writeln!(csv, "{},{x:e},{y:e}", quoted(&series.name));
+            }
+        }
+        csv
+    }
+
+    fn html(&self) -> String {
+        format!(
+            "<figure id=\"{0}\">{1}<figcaption>{2} <a href=\"{0}.csv\">{0}.csv</a></figcaption></figure>\n",
+            self.name,
+            self.plot.svg(),
+            escape(&self.caption)
+        )
+    }
+}
+
+impl Section {
+    pub(super) fn html(&self) -> String {
+        let mut html =
+            format!("<section id=\"{}\">\n<h2>{}</h2>\n<p>{}</p>\n", self.id, escape(self.title), escape(&self.lead));
+        // Figures in a row share a grid.
+        let mut in_grid = false;
+        for block in &self.blocks {
+            let figure = matches!(block, Block::Figure(_));
+            if figure != in_grid {
+                html.push_str(if figure { "<div class=\"grid\">\n" } else { "</div>\n" });
+                in_grid = figure;
+            }
+            match block {
+                Block::Heading(text) => {
+                    let _ = writeln!(html, "<h3>{}</h3>", escape(text));
+                }
+                Block::Figure(figure) => html.push_str(&figure.html()),
+                Block::Table(table) => html.push_str(&table.html()),
+            }
+        }
+        if in_grid {
+            html.push_str("</div>\n");
+        }
+        html.push_str("</section>\n");
+        html
+    }
+
+    /// Names and contents of the CSV files beside the page.
+    pub(super) fn files(&self) -> impl Iterator<Item = (String, String)> {
+        self.blocks.iter().filter_map(|block| match block {
+            Block::Heading(_) => None,
+            Block::Figure(figure) => Some((format!("{}.csv", figure.name), figure.csv())),
+            Block::Table(table) => Some((format!("{}.csv", table.name), table.csv())),
+        })
+    }
+}
+
+/// A field of CSV.
+pub(super) fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('"', "\"\""))
+}
+
+/// An error as people read it.
+pub(super) fn error(value: f64) -> String {
+    if value.is_nan() { "–".to_owned() } else { format!("{value:.1e}") }
+}
