@@ -38,8 +38,8 @@ pub(crate) struct Plot {
 const WIDTH: f64 = 600.0;
 /// Of the plot with its axes; the legend comes below.
 const HEIGHT: f64 = 390.0;
-const LEFT: f64 = 66.0;
-const RIGHT: f64 = 20.0;
+const LEFT: f64 = 72.0;
+const RIGHT: f64 = 30.0;
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 48.0;
 const LEGEND_ROW: f64 = 20.0;

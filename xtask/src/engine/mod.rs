@@ -10,10 +10,9 @@ mod margin;
 mod method;
 mod ray_cast;
 
-use std::time::Instant;
-
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{Scalar as _, Vector};
+use cpu_time::ThreadTime;
 
 use self::distance::{DistanceQuestion, IntersectQuestion};
 use self::linear_cast::LinearCastQuestion;
@@ -42,7 +41,7 @@ pub(crate) trait Ask {
     /// Solves the question once.
     fn ask(&self) -> Result<Answer, Problem>;
 
-    /// Nanoseconds that solving it takes: the least mean of three runs of about `microseconds` each.
+    /// Nanoseconds of thread CPU time that solving it takes: the least mean of three runs of about `microseconds` each.
     fn time(&self, microseconds: u64) -> f64;
 }
 
@@ -59,7 +58,7 @@ impl<Q: Question> Ask for Q {
 
     fn time(&self, microseconds: u64) -> f64 {
         let run = |count: u64| {
-            let start = Instant::now();
+            let start = ThreadTime::now();
             for _ in 0..count {
                 let _ = std::hint::black_box(self.solve());
             }

@@ -1,10 +1,10 @@
 //! How the time of a query grows: with vertices, points, obstacles and dimension.
 
 use std::hint::black_box;
-use std::time::Instant;
 
 use convex_support::glam::{DQuat, DVec3};
 use convex_support::{Ellipsoid, Polytope, SupportMap};
+use cpu_time::ThreadTime;
 use ellip_margin::{Clearance, MarginOptions, clearance};
 use gjk_raycast::{Ray, RayCastOptions, ray_cast};
 use lj_ellipsoid::faer::Mat;
@@ -42,17 +42,17 @@ fn figures(scope: &Scope) -> Vec<Figure> {
     figures
 }
 
-/// Mean nanoseconds of a run, over about 20 ms or a single one.
+/// Mean nanoseconds of thread CPU time of a run, over about 20 ms or a single one.
 pub(super) fn time(mut run: impl FnMut()) -> f64 {
     const BUDGET_NS: f64 = 2e7;
-    let start = Instant::now();
+    let start = ThreadTime::now();
     run();
     let once = (start.elapsed().as_nanos() as f64).max(1.0);
     let count = (BUDGET_NS / once) as u32;
     if count == 0 {
         return once;
     }
-    let start = Instant::now();
+    let start = ThreadTime::now();
     (0..count).for_each(|_| run());
     start.elapsed().as_nanos() as f64 / f64::from(count)
 }
@@ -99,11 +99,12 @@ fn vertices() -> Figure {
     }
     figure(
         "growth-vertices",
-        "ray_cast: time against vertices",
+        "Ray cast: time against vertices",
         "vertices",
         vec![("scan of all points".to_owned(), scan), ("climb on the hull".to_owned(), climb)],
         "Rays from three radii away, most of which hit, against the hull of points on a sphere, f64. Scanning looks at every \
-         point in every support query; the hull, found once, is climbed along its edges.",
+         point in every support query; the hull, found once, is climbed along its edges. What to see: a hundred times the \
+         vertices cost a climb little.",
     )
 }
 
@@ -133,11 +134,12 @@ fn points() -> Figure {
     }
     figure(
         "growth-points",
-        "enclosing_ellipsoid: time against points",
+        "Enclosing ellipsoid: time against points",
         "points",
         series,
         "Points spread evenly in a ball, three dimensions, certified gap 1e-7. A method is not tried on ten times the points \
-         once it takes more than 0.1 s.",
+         once it takes more than 0.1 s. What to see: Newton's method on a working set looks at most points once or \
+         twice, so that a million cost no more than a few scans.",
     )
 }
 
@@ -153,10 +155,10 @@ fn dimension() -> Figure {
     }
     figure(
         "growth-dimension",
-        "enclosing_ellipsoid: time against dimension",
+        "Enclosing ellipsoid: time against dimension",
         "dimension",
         vec![("newton".to_owned(), measured)],
-        "200 points in a cube, certified gap 1e-9, the dimension known at run time only.",
+        "200 points in a cube, certified gap 1e-9, the dimension known at run time only. What to see: a power, not an exponential.",
     )
 }
 
@@ -182,11 +184,11 @@ fn obstacles() -> Figure {
     }
     figure(
         "growth-obstacles",
-        "clearance: time per step against obstacles",
+        "Clearance: time per step against obstacles",
         "obstacles",
         vec![("culled and tracked".to_owned(), culled), ("all pairs".to_owned(), brute)],
         "A chain of 30 links that turns by 0.01 radians per step among ellipsoids of constant density; the least margin of all \
-         pairs in every step.",
+         pairs in every step. What to see: all pairs grow with their number, the tracked tree hardly at all.",
     )
 }
 

@@ -87,7 +87,7 @@ fn foot(x: DVec3, points: &[DVec3]) -> Option<DVec3> {
     // Gauss–Jordan; the matrix is positive definite unless the points are dependent.
     for k in 0..n {
         let pivot = rows[k][k];
-        if !(pivot > 0.0) {
+        if pivot.is_nan() || pivot <= 0.0 {
             return None;
         }
         rows[k].iter_mut().for_each(|entry| *entry /= pivot);

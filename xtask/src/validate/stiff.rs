@@ -15,6 +15,9 @@ use crate::wire::answer::Line;
 /// Methods beside the default that are shown for comparison.
 const COMPARED: &[(&str, &str)] = &[("margin", "eigen"), ("ray_cast", "iterative")];
 
+/// What the inputs allow.
+const ALLOWED: &str = "what the inputs allow";
+
 /// Fewer values than this make no figure.
 const FEWEST_VALUES: usize = 3;
 
@@ -62,10 +65,10 @@ fn table(records: &[Record]) -> Table {
             query.to_owned(),
             kind,
             // Powers of two are scales; all else is told as it is.
-            if value > 0.0 && (value.log2().fract() == 0.0) && (value > 1e8 || value < 1e-8) {
-                format!("2^{}", value.log2())
-            } else {
-                format!("{value:e}")
+            match value.log2() {
+                two if two.fract() == 0.0 && two.abs() > 20.0 => format!("2^{two}"),
+                _ if value == 1.0 => "1".to_owned(),
+                _ => format!("{value:e}"),
             },
             precision.to_owned(),
             of.len().to_string(),
@@ -143,8 +146,8 @@ fn figures(cases: &[Case]) -> Vec<Figure> {
                     let worst = figure.entry(name.to_owned()).or_default().entry(value.to_bits()).or_insert(0.0);
                     *worst = worst.max(error);
                 };
-                note(method.unwrap_or("default method"), error);
-                note("allowed", allowed);
+                note(method.unwrap_or("ours"), error);
+                note(ALLOWED, allowed);
             }
         }
     }
@@ -152,10 +155,16 @@ fn figures(cases: &[Case]) -> Vec<Figure> {
 }
 
 fn figure(query: &str, kind: &str, methods: BTreeMap<String, Worst>) -> Option<Figure> {
-    if methods.values().map(BTreeMap::len).max()? < FEWEST_VALUES {
+    // Scaling changes nothing, which a table shows better.
+    if kind == "scale" || methods.values().map(BTreeMap::len).max()? < FEWEST_VALUES {
         return None;
     }
-    let series = methods.into_iter().enumerate().map(|(colour, (name, worst))| {
+    let series = methods.into_iter().map(|(name, worst)| {
+        let colour = match name.as_str() {
+            "ours" => 0,
+            ALLOWED => 7,
+            _ => 1,
+        };
         let mut points: Vec<[f64; 2]> = worst.into_iter().map(|(bits, error)| [f64::from_bits(bits), error]).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         Series { name, points, joined: true, colour }

@@ -12,11 +12,14 @@ use crate::wire::reader::Object;
 /// A query, the knob that trades time for error, and what to try.
 struct Ladder {
     name: &'static str,
+    title: &'static str,
     query: &'static str,
     knob: &'static str,
     methods: &'static [&'static str],
     precisions: &'static [&'static str],
     rungs: &'static [f64],
+    /// What to see.
+    see: &'static str,
 }
 
 const COARSE_TO_FINE: &[f64] = &[1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14];
@@ -25,6 +28,8 @@ const BOTH: &[&str] = &["f64", "f32"];
 const LADDERS: &[Ladder] = &[
     Ladder {
         name: "ladder-ray-cast",
+        title: "Ray cast",
+        see: "A mix of all shapes. Casting on closest points (Algorithm 1) has no use for a loose tolerance.",
         query: "ray_cast",
         knob: "tol",
         methods: &["gjk", "iterative"],
@@ -33,6 +38,8 @@ const LADDERS: &[Ladder] = &[
     },
     Ladder {
         name: "ladder-linear-cast",
+        title: "Linear cast",
+        see: "A mix of all pairs: a step or two decide between a guess and the last digit.",
         query: "linear_cast",
         knob: "tol",
         methods: &["gjk"],
@@ -41,6 +48,8 @@ const LADDERS: &[Ladder] = &[
     },
     Ladder {
         name: "ladder-distance",
+        title: "Distance",
+        see: "Polytopes end at the exact distance after finitely many steps, whatever the tolerance.",
         query: "distance",
         knob: "tol",
         methods: &["gjk"],
@@ -49,6 +58,8 @@ const LADDERS: &[Ladder] = &[
     },
     Ladder {
         name: "ladder-enclosing",
+        title: "Enclosing ellipsoid",
+        see: "Second-order methods pay for six digits more with one or two iterations; the ellipsoid algorithm of the paper is a hundred times slower.",
         query: "enclosing_ellipsoid",
         knob: "epsilon",
         methods: &["newton", "khachiyan", "ellipsoid", "dual_newton"],
@@ -57,6 +68,8 @@ const LADDERS: &[Ladder] = &[
     },
     Ladder {
         name: "ladder-inscribed",
+        title: "Inscribed ellipsoid",
+        see: "An interior-point method: each digit costs about the same, the last ones nothing.",
         query: "inscribed_ellipsoid",
         knob: "epsilon",
         methods: &["newton"],
@@ -65,6 +78,8 @@ const LADDERS: &[Ladder] = &[
     },
     Ladder {
         name: "ladder-margin",
+        title: "Margin",
+        see: "The secular equation reaches rounding in the time that the eigenvalue route takes to set up its matrix.",
         query: "margin",
         knob: "tol",
         methods: &["secular", "eigen"],
@@ -73,6 +88,8 @@ const LADDERS: &[Ladder] = &[
     },
     Ladder {
         name: "ladder-track",
+        title: "Tracking",
+        see: "Newton from the last pose against the inverse iteration of the paper, along whole trajectories.",
         query: "track",
         knob: "tol",
         methods: &["newton", "inverse"],
@@ -81,6 +98,8 @@ const LADDERS: &[Ladder] = &[
     },
     Ladder {
         name: "ladder-clearance",
+        title: "Clearance",
+        see: "The least margin of few links and obstacles, the tree built anew for each question.",
         query: "clearance",
         knob: "tol",
         methods: &["culled", "all_pairs"],
@@ -102,7 +121,8 @@ const SLOWEST_NS: f64 = 3e7;
 pub(super) fn blocks(cases: &[Case]) -> Vec<Block> {
     let mut blocks: Vec<Block> = LADDERS.iter().filter_map(|ladder| figure(ladder, cases)).map(Block::Figure).collect();
     if !blocks.is_empty() {
-        blocks.insert(0, Block::Heading("All kinds of cases together, against exact truths".to_owned()));
+        let heading = "All kinds of cases together, against exact truths: time in the middle, error of the worst tenth";
+        blocks.insert(0, Block::Heading(heading.to_owned()));
     }
     blocks
 }
@@ -141,7 +161,7 @@ fn figure(ladder: &Ladder, cases: &[Case]) -> Option<Figure> {
     Some(Figure {
         name: ladder.name.to_owned(),
         plot: Plot {
-            title: format!("{}: down a ladder of {}", ladder.query, ladder.knob),
+            title: ladder.title.to_owned(),
             x: "median time per query".to_owned(),
             y: format!("{error}, 90th percentile"),
             scales: [Scale::Time, Scale::Log],
@@ -149,11 +169,9 @@ fn figure(ladder: &Ladder, cases: &[Case]) -> Option<Figure> {
             series,
         },
         caption: format!(
-            "Each line is a method in a precision, each of its points a value of `{}` from {:e} to {:e}: the median time of \
-             {} cases, and the error that nine in ten of them do not exceed, against the truth. Cases whose inputs do not \
-             determine the answer to 1e-5 are left to the tables. {unanswered} questions got an error for an answer; a point is \
-             missing where more than half did.",
-            ladder.knob,
+            "{} {} from {:e} to {:e}; medians of {} cases. {unanswered} questions got an error for an answer.",
+            ladder.see,
+            if ladder.knob == "tol" { "Tolerance" } else { "Certified gap" },
             ladder.rungs[0],
             ladder.rungs[ladder.rungs.len() - 1],
             chosen.len()

@@ -149,7 +149,7 @@ fn ray_cast(case: &'static str) -> Figure {
     };
     let judge = |answers: &[f64], precision| score::ray_casts(&rays, answers, precision);
     let series = series(&make, rows::ray_casters(&shape, &rays), &judge, &tolerances(), p99);
-    figure(format!("ray-cast-{case}"), format!("Rays against a {case}"), "Truth in closed form.", series)
+    figure(format!("ray-cast-{case}"), format!("Ray casts: {case}"), "Truth in closed form.", series)
 }
 
 fn linear_cast(case: &'static str) -> Figure {
@@ -165,7 +165,7 @@ fn linear_cast(case: &'static str) -> Figure {
     let judge = |answers: &[f64], _| score::linear_casts(&casts, &grazing, answers);
     let series = series(&make, rows::linear_casters(&pair, &casts), &judge, &tolerances(), p99);
     let truth = "Truth by construction, to about 1e-14.";
-    figure(format!("linear-cast-{case}"), format!("Linear casts of {case}"), truth, series)
+    figure(format!("linear-cast-{case}"), format!("Linear casts: {case}"), truth, series)
 }
 
 fn distance(case: &'static str) -> Figure {
@@ -180,7 +180,7 @@ fn distance(case: &'static str) -> Figure {
     let judge = |answers: &[f64], _| score::distances(&queries, answers);
     let series = series(&make, rows::distance_solvers(&pair, &queries), &judge, &tolerances(), p99);
     let truth = "Truth by construction, to about 1e-13 of the distance: the lines cannot fall further.";
-    figure(format!("distance-{case}"), format!("Distances of {case}"), truth, series)
+    figure(format!("distance-{case}"), format!("Distances: {case}"), truth, series)
 }
 
 fn intersect(case: &'static str) -> Figure {
@@ -198,7 +198,7 @@ fn intersect(case: &'static str) -> Figure {
     let efforts = CAPS.map(|max_iterations| Effort { max_iterations, ..Effort::default() });
     let mut figure = figure(
         format!("intersect-{case}"),
-        format!("Do {case} meet?"),
+        format!("Boolean: {case}"),
         "",
         series(&make, others, &judge, &efforts, share),
     );

@@ -1,0 +1,58 @@
+//! What the two papers claim, beside what is measured here.
+
+mod ellipsoids;
+mod ray_casts;
+
+use super::page::{Row, Table};
+use super::{Block, Case, Scope, Section, progress};
+
+/// One line of the table.
+struct Claim {
+    place: &'static str,
+    claim: &'static str,
+    measured: String,
+    verdict: &'static str,
+}
+
+impl Claim {
+    fn row(self) -> Row {
+        Row::of([self.claim.to_owned(), self.place.to_owned(), self.measured, self.verdict.to_owned()])
+            .bad_if(self.verdict.starts_with("fails here"))
+    }
+}
+
+const HEADERS: [&str; 4] = ["claim", "where", "measured", "verdict"];
+
+/// The chapter.
+pub(super) fn section(scope: &Scope, cases: &[Case]) -> Section {
+    let mut blocks = Vec::new();
+    if scope.holds("ray_cast") {
+        progress("claims on ray casts");
+        let spheres = ray_casts::spheres();
+        blocks.push(Block::Table(Table::new(
+            "claims-ray-cast",
+            "van den Bergen, Ray Casting against General Convex Objects with Application to Continuous Collision Detection, 2004.",
+            &HEADERS,
+            ray_casts::claims(&spheres).into_iter().map(Claim::row).collect(),
+        )));
+        blocks.push(Block::Figure(ray_casts::convergence(&spheres)));
+    }
+    if scope.holds("enclosing_ellipsoid") || scope.holds("margin") {
+        progress("claims on ellipsoids");
+        blocks.push(Block::Table(Table::new(
+            "claims-ellipsoids",
+            "Rimon and Boyd, Obstacle Collision Detection Using Best Ellipsoid Fit, Journal of Intelligent and Robotic Systems 18, \
+             1997. Their times are those of a DEC 5000.",
+            &HEADERS,
+            ellipsoids::claims(cases).into_iter().map(Claim::row).collect(),
+        )));
+    }
+    Section {
+        id: "claims",
+        title: "The papers' claims, measured again",
+        lead: "Each claim is put to the algorithm as it is printed, and to what is used here in its place. Verdicts are computed from the \
+               numbers beside them. Misprints and corrections are told in the notes on each method in docs/."
+            .to_owned(),
+        blocks,
+    }
+}
