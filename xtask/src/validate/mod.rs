@@ -180,7 +180,13 @@ fn validate(scope: &Scope) -> Result<bool, String> {
             "ladders" => {
                 let mut section = workloads::section(scope);
                 section.blocks.extend(work_precision::blocks(&cases));
-                section.blocks.extend(enclosing_ladder::figures(scope).into_iter().map(Block::Figure));
+                let figures = enclosing_ladder::figures(scope);
+                if !figures.is_empty() {
+                    section
+                        .blocks
+                        .push(Block::Heading("Enclosing ellipsoids: the certified gap against time".to_owned()));
+                }
+                section.blocks.extend(figures.into_iter().map(Block::Figure));
                 section
             }
             "stiff" => stiff::section(&records, if scope.quick { &[] } else { &cases }),
