@@ -30,6 +30,7 @@ pub trait Vector:
     + Neg<Output = Self>
     + Mul<Output = Self>
     + Mul<Self::Scalar, Output = Self>
+    + Div<Output = Self>
     + Div<Self::Scalar, Output = Self>
     + Send
     + Sync
@@ -79,6 +80,8 @@ pub trait Vector:
     fn min_element(self) -> Self::Scalar;
     /// Whether all coordinates are finite.
     fn is_finite(self) -> bool;
+    /// Whether any coordinate is `NaN`.
+    fn is_nan(self) -> bool;
     /// The rotation matrix of `rotation`, which is normalised first; `None` where it is not finite or is the zero
     /// quaternion.
     fn rotation_matrix(rotation: Self::Rotation) -> Option<Self::Matrix>;
@@ -279,6 +282,8 @@ macro_rules! glam_vector {
             fn min_element(self) -> $S { self.min_element() }
             #[inline]
             fn is_finite(self) -> bool { self.is_finite() }
+            #[inline]
+            fn is_nan(self) -> bool { self.is_nan() }
             #[inline]
             fn rotation_matrix(rotation: $R) -> Option<glam::$M> { ($rotation)(rotation) }
             #[inline]

@@ -1,9 +1,10 @@
 //! Closed-form crossings and nearest points, each against the other and against the support mapping.
 
-use convex_support::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
+use convex_support::glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::strategies as any;
 use convex_support::{
-    ClosestPoint, Crossing, LineCrossing, Posed, Rounded, RoundedLineCrossing, Scalar, SupportMap, Vector,
+    Affine, Ball, Capsule, ClosestPoint, Cone, Crossing, Cuboid, Cylinder, Ellipsoid, LineCrossing, Posed, Rounded,
+    RoundedLineCrossing, Scalar, SupportMap, Triangle, Vector,
 };
 use num_traits::Float;
 use proptest::prelude::*;
@@ -185,4 +186,100 @@ fn crossings_begin_and_end_on_the_surface() {
     crosses::<Vec2>(shapes);
     crosses::<Vec3>(shapes_3d);
     crosses::<Vec3A>(shapes_3d);
+}
+
+/// Shapes about the origin, all of which the line from (4, 0.25, 0.5) towards the origin crosses.
+fn around_zero() -> Vec<(&'static str, AnyShape<DVec3>)> {
+    let cuboid = Cuboid::new(DVec3::new(1.0, 0.5, 0.75)).unwrap();
+    let stretched = Affine::new(cuboid, DMat3::from_diagonal(DVec3::new(1.0, -2.0, 0.5)), DVec3::ZERO).unwrap();
+    let corners = [DVec3::new(0.0, 1.0, 1.0), DVec3::new(0.0, 1.0, -2.0), DVec3::new(0.0, -2.0, 0.0)];
+    vec![
+        ("ball", Box::new(Ball::new(1.0).unwrap())),
+        ("cuboid", Box::new(cuboid)),
+        ("capsule", Box::new(Capsule::new(1.0, 0.5).unwrap())),
+        ("cylinder", Box::new(Cylinder::new(1.0, 0.5).unwrap())),
+        ("cone", Box::new(Cone::new(1.0, 0.5).unwrap())),
+        ("ellipsoid", Box::new(Ellipsoid::new(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0), DQuat::IDENTITY).unwrap())),
+        ("rounded cuboid", Box::new(Rounded::new(cuboid, 0.25).unwrap())),
+        ("rounded triangle", Box::new(Rounded::new(Triangle::new(corners).unwrap(), 0.25).unwrap())),
+        ("stretched cuboid", Box::new(Crossed(stretched))),
+    ]
+}
+
+/// A shape of which nobody asks the closest point.
+#[derive(Debug)]
+struct Crossed<S>(S);
+
+impl<S: SupportMap> SupportMap for Crossed<S> {
+    type Vector = S::Vector;
+    fn support(&self, direction: S::Vector) -> S::Vector {
+        self.0.support(direction)
+    }
+}
+
+impl<S: LineCrossing> LineCrossing for Crossed<S> {
+    fn line_crossing(&self, source: S::Vector, direction: S::Vector) -> Option<Crossing<S::Vector>> {
+        self.0.line_crossing(source, direction)
+    }
+}
+
+impl<S: SupportMap> ClosestPoint for Crossed<S> {
+    fn closest_point(&self, _x: S::Vector) -> S::Vector {
+        unreachable!("only crossings are tested")
+    }
+}
+
+#[test]
+fn directions_may_have_any_length() {
+    for (name, shape) in around_zero() {
+        let source = DVec3::new(4.0, 0.25, 0.5);
+        let unit = shape.line_crossing(source, -source).expect(name);
+        assert!(unit.entry > 0.5 && unit.exit < 1.5 && unit.entry <= unit.exit, "{name}: {unit:?}");
+        // Exactly: a power of two changes no digit, not even where the square of the direction is not a number.
+        for power in [-1010, -700, -511, -300, -1, 1, 300, 511, 700, 1020] {
+            let scale = 2f64.powi(power);
+            let crossing = shape.line_crossing(source, -source * scale).expect(name);
+            let expected = Crossing { entry: unit.entry / scale, exit: unit.exit / scale, ..unit };
+            let digits = if power < 1020 { 0.0 } else { 1e-14 }; // λ has few digits left where it is subnormal
+            assert!((crossing.entry - expected.entry).abs() <= digits * expected.entry, "{name}, 2^{power}");
+            assert!((crossing.exit - expected.exit).abs() <= digits * expected.exit, "{name}, 2^{power}");
+            assert_eq!(crossing.normal, expected.normal, "{name}, 2^{power}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_line_has_no_crossing() {
+    let source = DVec3::new(4.0, 0.25, 0.5);
+    for (name, shape) in around_zero() {
+        assert_eq!(shape.line_crossing(source, DVec3::ZERO), None, "{name}: a zero direction");
+        assert_eq!(shape.line_crossing(DVec3::ZERO, DVec3::ZERO), None, "{name}: a zero direction from inside");
+        for i in 0..3 {
+            for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                let broken = |v: DVec3| DVec3::from_fn(|k| if k == i { bad } else { v[k] });
+                let nan = bad.is_nan();
+                let from = shape.line_crossing(broken(source), -source);
+                assert!(from.is_none() || !nan, "{name}: from {bad} in coordinate {i}: {from:?}");
+                let along = shape.line_crossing(source, broken(-source));
+                assert!(along.is_none() || !nan, "{name}: along {bad} in coordinate {i}: {along:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn lines_in_the_planes_of_faces_and_along_edges_are_within() {
+    let cuboid = Cuboid::new(DVec3::ONE).unwrap();
+    for (y, z) in [(1.0, 0.0), (-1.0, 0.5), (0.0, 1.0), (1.0, -1.0), (0.0, 0.0)] {
+        for towards in [1.0, -1.0] {
+            for zero in [0.0, -0.0] {
+                let source = DVec3::new(-3.0 * towards, y, z);
+                let crossing = cuboid.line_crossing(source, DVec3::new(towards, zero, zero)).expect("closed");
+                assert_eq!((crossing.entry, crossing.exit), (2.0, 4.0), "y = {y}, z = {z}");
+                assert_eq!(crossing.normal, DVec3::new(-towards, 0.0, 0.0), "y = {y}, z = {z}");
+                let beside = source + DVec3::new(0.0, 0.0, 2.5);
+                assert_eq!(cuboid.line_crossing(beside, DVec3::new(towards, zero, zero)), None, "beside");
+            }
+        }
+    }
 }

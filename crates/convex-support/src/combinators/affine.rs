@@ -23,6 +23,8 @@ pub struct Affine<S: SupportMap> {
     translation: S::Vector,
     /// The factor `s` where the matrix is `s` times a rotation or reflection: a ball then stays a ball.
     scale: Option<ScalarOf<S>>,
+    /// The inverse of the matrix; `None` where it is singular.
+    inverse: Option<<S::Vector as Vector>::Matrix>,
 }
 
 impl<S: SupportMap> Affine<S> {
@@ -32,7 +34,9 @@ impl<S: SupportMap> Affine<S> {
     /// [`InvalidShape::NonFinite`] if a number is not finite.
     pub fn new(shape: S, matrix: <S::Vector as Vector>::Matrix, translation: S::Vector) -> Result<Self, InvalidShape> {
         let matrix = finite_matrix("matrix", matrix)?;
-        Ok(Self { shape, matrix, translation: finite("translation", translation)?, scale: uniform_scale(matrix) })
+        let translation = finite("translation", translation)?;
+        let inverse = Some(matrix.inverse()).filter(Matrix::is_finite);
+        Ok(Self { shape, matrix, translation, scale: uniform_scale(matrix), inverse })
     }
 
     /// The shape before it is mapped.
@@ -45,6 +49,11 @@ impl<S: SupportMap> Affine<S> {
     #[must_use]
     pub fn matrix(&self) -> <S::Vector as Vector>::Matrix {
         self.matrix
+    }
+
+    /// The inverse of the matrix; `None` where it is singular.
+    pub(crate) fn inverse(&self) -> Option<<S::Vector as Vector>::Matrix> {
+        self.inverse
     }
 
     /// The translation, applied last.

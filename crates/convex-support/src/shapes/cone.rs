@@ -20,6 +20,9 @@ use num_traits::Float as _;
 pub struct Cone<V: Vector3> {
     half_height: V::Scalar,
     radius: V::Scalar,
+    extent: V::Scalar,
+    /// Cosine and sine of half the opening angle.
+    slant: (V::Scalar, V::Scalar),
 }
 
 impl<V: Vector3> Cone<V> {
@@ -28,13 +31,28 @@ impl<V: Vector3> Cone<V> {
     /// # Errors
     /// [`InvalidShape`] naming the number that is negative or not finite.
     pub fn new(half_height: V::Scalar, radius: V::Scalar) -> Result<Self, InvalidShape> {
-        Ok(Self { half_height: non_negative("half_height", half_height)?, radius: non_negative("radius", radius)? })
+        let half_height = non_negative("half_height", half_height)?;
+        let radius = non_negative("radius", radius)?;
+        // The slant reaches from the rim up to the apex; of a point it is upright.
+        let half_radius = radius * V::Scalar::from_f64(0.5);
+        let half_length = half_height.hypot(half_radius);
+        let slant = if half_length > V::Scalar::ZERO {
+            (half_height / half_length, half_radius / half_length)
+        } else {
+            (V::Scalar::ONE, V::Scalar::ZERO)
+        };
+        Ok(Self { half_height, radius, extent: radius.hypot(half_height), slant })
     }
 
     /// Half the height, from the middle to the apex or to the base.
     #[must_use]
     pub fn half_height(&self) -> V::Scalar {
         self.half_height
+    }
+
+    /// Cosine and sine of half the opening angle.
+    pub(crate) fn slant(&self) -> (V::Scalar, V::Scalar) {
+        self.slant
     }
 
     /// The radius of the base disc.
@@ -74,6 +92,6 @@ impl<V: Vector3> SupportMap for Cone<V> {
 
     #[inline]
     fn core_extent(&self) -> ScalarOf<Self> {
-        self.radius.hypot(self.half_height)
+        self.extent
     }
 }

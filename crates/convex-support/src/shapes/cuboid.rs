@@ -16,6 +16,7 @@ use crate::{Hint, Scalar, SupportMap, Vector};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid<V: Vector> {
     half_extents: V,
+    extent: V::Scalar,
 }
 
 impl<V: Vector> Cuboid<V> {
@@ -31,7 +32,7 @@ impl<V: Vector> Cuboid<V> {
                 index,
                 value: half_extents.get(index).as_f64(),
             }),
-            None => Ok(Self { half_extents }),
+            None => Ok(Self { half_extents, extent: half_extents.norm() }),
         }
     }
 
@@ -62,6 +63,6 @@ impl<V: Vector> SupportMap for Cuboid<V> {
 
     #[inline]
     fn core_extent(&self) -> ScalarOf<Self> {
-        self.half_extents.norm()
+        self.extent
     }
 }

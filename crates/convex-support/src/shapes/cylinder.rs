@@ -19,6 +19,7 @@ use crate::{Hint, Scalar, SupportMap, Vector3};
 pub struct Cylinder<V: Vector3> {
     half_height: V::Scalar,
     radius: V::Scalar,
+    extent: V::Scalar,
 }
 
 impl<V: Vector3> Cylinder<V> {
@@ -27,7 +28,9 @@ impl<V: Vector3> Cylinder<V> {
     /// # Errors
     /// [`InvalidShape`] naming the number that is negative or not finite.
     pub fn new(half_height: V::Scalar, radius: V::Scalar) -> Result<Self, InvalidShape> {
-        Ok(Self { half_height: non_negative("half_height", half_height)?, radius: non_negative("radius", radius)? })
+        let half_height = non_negative("half_height", half_height)?;
+        let radius = non_negative("radius", radius)?;
+        Ok(Self { half_height, radius, extent: radius.hypot(half_height) })
     }
 
     /// Half the length of the axis.
@@ -74,6 +77,6 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
 
     #[inline]
     fn core_extent(&self) -> ScalarOf<Self> {
-        self.radius.hypot(self.half_height)
+        self.extent
     }
 }

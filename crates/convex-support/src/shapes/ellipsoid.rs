@@ -28,6 +28,7 @@ pub struct Ellipsoid<V: Vector> {
     center: V,
     axes: V::Matrix,
     semi_axes: V,
+    inverse_semi_axes: V,
 }
 
 impl<V: Vector> Ellipsoid<V> {
@@ -53,7 +54,7 @@ impl<V: Vector> Ellipsoid<V> {
             Some(index) => {
                 Err(InvalidShape::NotPositive { parameter: "semi_axes", index, value: semi_axes.get(index).as_f64() })
             }
-            None => Ok(Self { center, axes, semi_axes }),
+            None => Ok(Self { center, axes, semi_axes, inverse_semi_axes: V::ONE / semi_axes }),
         }
     }
 
@@ -89,6 +90,11 @@ impl<V: Vector> Ellipsoid<V> {
     #[must_use]
     pub fn semi_axes(&self) -> V {
         self.semi_axes
+    }
+
+    /// The reciprocals of the semi-axes.
+    pub(crate) fn inverse_semi_axes(&self) -> V {
+        self.inverse_semi_axes
     }
 
     /// The directions of the semi-axes, as orthonormal columns.

@@ -1,0 +1,46 @@
+//! Balls, and points swept by a ball.
+
+use num_traits::Float as _;
+
+use super::{Chord, Crossing, LineCrossing, RoundedLineCrossing, comfortable};
+use crate::{Ball, Point, SupportMap, Vector};
+
+impl<V: Vector> LineCrossing for Ball<V> {
+    #[inline(always)]
+    fn line_crossing(&self, source: V, direction: V) -> Option<Crossing<V>> {
+        ball(self.radius(), source, direction)
+    }
+}
+
+impl<V: Vector> RoundedLineCrossing for Ball<V> {
+    #[inline(always)]
+    fn rounded_line_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+        ball(self.radius() + radius, source, direction)
+    }
+}
+
+impl<V: Vector> RoundedLineCrossing for Point<V> {
+    #[inline(always)]
+    fn rounded_line_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+        ball(radius, source - self.at(), direction)
+    }
+}
+
+/// The crossing of a ball about zero.
+#[inline(always)]
+pub(super) fn ball<V: Vector>(radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+    let (direction, dd, unit) = comfortable(direction);
+    let recip = dd.recip();
+    let first = -source.dot(direction) * recip;
+    let near = source + direction * first;
+    // As in `rebased`, but the second step does not need the point it leads to: by Pythagoras it is nearer by the step.
+    let along = near.dot(direction);
+    let second = -along * recip;
+    let chord = Chord {
+        middle: first + second,
+        half: ((radius * radius - (near.length_squared() + along * second)) * recip).sqrt(),
+        nearest: near + direction * second,
+    };
+    Crossing { entry: -chord.half, exit: chord.half, normal: chord.normal(radius, direction, recip) }
+        .shifted(chord.middle, unit)
+}

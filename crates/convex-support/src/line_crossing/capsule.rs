@@ -1,0 +1,108 @@
+//! Capsules, and segments swept by a ball.
+
+use num_traits::Float as _;
+
+use super::{Chord, Crossing, LineCrossing, RoundedLineCrossing, comfortable, rebased};
+use crate::{Capsule, Scalar, Segment, SupportMap, Vector};
+
+impl<V: Vector> LineCrossing for Capsule<V> {
+    #[inline(always)]
+    fn line_crossing(&self, source: V, direction: V) -> Option<Crossing<V>> {
+        upright(self.half_height(), self.radius(), source, direction)
+    }
+}
+
+impl<V: Vector> RoundedLineCrossing for Capsule<V> {
+    #[inline(always)]
+    fn rounded_line_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+        upright(self.half_height(), self.radius() + radius, source, direction)
+    }
+}
+
+impl<V: Vector> RoundedLineCrossing for Segment<V> {
+    #[inline]
+    fn rounded_line_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+        edge(self.points(), radius, source, direction)
+    }
+}
+
+/// The crossing of the segment between `±half_height` on the second axis, swept by a ball.
+#[inline(always)]
+fn upright<V: Vector>(half_height: V::Scalar, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+    let (direction, dd, unit) = comfortable(direction);
+    let recip = dd.recip();
+    let (base, source) = rebased(source, direction, recip);
+    let split = |v: V| (v.get(1), V::from_fn(|i| if i == 1 { V::Scalar::ZERO } else { v.get(i) }));
+    let (source, direction) = ((source, split(source)), (direction, split(direction)));
+    capsule(V::axis(1), half_height, radius, source, direction, recip)?.shifted(base, unit)
+}
+
+/// The crossing of the segment between two points, swept by a ball.
+#[inline]
+pub(super) fn edge<V: Vector>([a, b]: [V; 2], radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+    let (direction, dd, unit) = comfortable(direction);
+    let half = V::Scalar::from_f64(0.5);
+    let to_b = (b - a) * half;
+    let axis = to_b.unit().unwrap_or_else(|| V::axis(0));
+    let recip = dd.recip();
+    let (base, source) = rebased(source - (a + to_b), direction, recip);
+    let split = |v: V| (v.dot(axis), v - axis * v.dot(axis));
+    let (source, direction) = ((source, split(source)), (direction, split(direction)));
+    capsule(axis, to_b.norm(), radius, source, direction, recip)?.shifted(base, unit)
+}
+
+/// A vector and its parts along and across an axis.
+type Split<V> = (V, (<V as Vector>::Scalar, V));
+
+/// The crossing of the segment between `±half_height·axis`, swept by a ball; `axis` is a unit vector, and `source` the
+/// point of the line nearest the middle; `recip` is `1/|direction|²`.
+///
+/// A line enters the infinite cylinder about the axis through the side, which is then where it enters the capsule, or
+/// beyond one of the ends, and then it has to pass through the ball at that end; likewise where it leaves.
+#[inline(always)]
+fn capsule<V: Vector>(
+    axis: V,
+    half_height: V::Scalar,
+    radius: V::Scalar,
+    (source, (along, out)): Split<V>,
+    (direction, (rise, across)): Split<V>,
+    recip: V::Scalar,
+) -> Option<Crossing<V>> {
+    let slope = across.length_squared();
+    let per_slope = slope.recip();
+    let middle = -out.dot(across) * per_slope;
+    // In the plane a line meets the axis itself, also where rounding says that it passes it at some distance.
+    let nearest = if V::DIM == 2 { V::ZERO } else { out + across * middle };
+    let side = Chord::about(middle, nearest, per_slope, radius);
+    let (mut entry, mut exit) = side.ends();
+    let (mut enters, mut leaves) = (along + rise * entry, along + rise * exit);
+    // A direction that is along the axis to rounding meets the side nowhere near.
+    if slope * recip <= V::Scalar::EPSILON * V::Scalar::EPSILON {
+        if out.length_squared() > radius * radius {
+            return None;
+        }
+        (enters, leaves) = (-rise * V::Scalar::infinity(), rise * V::Scalar::infinity());
+    } else if !side.is_some() {
+        return None;
+    }
+    let cap = |y: V::Scalar| {
+        // From the end on the side of y; (source − end)·direction, with source ⟂ direction, is −height·rise.
+        let height = half_height.copysign(y);
+        let middle = height * rise * recip;
+        Chord::about(middle, source - axis * height + direction * middle, recip, radius)
+    };
+    let mut normal = side.normal(radius, across, per_slope);
+    if !(enters.abs() <= half_height) {
+        let cap = cap(enters);
+        if !cap.is_some() {
+            return None;
+        }
+        entry = cap.middle - cap.half;
+        normal = cap.normal(radius, direction, recip);
+    }
+    if !(leaves.abs() <= half_height) {
+        exit = cap(leaves).ends().1;
+    }
+    // The balls at both ends are met within rounding, or not, together.
+    Some(Crossing { entry, exit: if exit > entry { exit } else { entry }, normal })
+}

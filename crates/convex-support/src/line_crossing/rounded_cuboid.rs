@@ -1,0 +1,111 @@
+//! Boxes swept by a ball.
+
+use num_traits::Float as _;
+
+use super::{Chord, Crossing, LineCrossing, RoundedLineCrossing, comfortable, rebased};
+use crate::{Cuboid, Scalar, Vector};
+
+/// The squared distance from a box is `φ(λ) = Σ max(|xᵢ| − hᵢ, 0)²` along the line: convex, and one quadratic between
+/// any two neighbouring crossings of the planes `xᵢ = ±hᵢ`. The line enters the rounded box where `φ` falls to `radius²`,
+/// and not before it enters the box of half extents `hᵢ + radius`: from there, piece after piece is searched. Most lines
+/// enter through one of the flat sides, in the first piece. They leave where the reversed line enters.
+impl<V: Vector> RoundedLineCrossing for Cuboid<V> {
+    #[inline]
+    fn rounded_line_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+        if radius == V::Scalar::ZERO {
+            return self.line_crossing(source, direction);
+        }
+        let (direction, dd, unit) = comfortable(direction);
+        let (base, source) = rebased(source, direction, dd.recip());
+        let h = self.half_extents();
+        let per_unit = V::ONE / direction;
+        let near = h.copysign(-direction);
+        let (enters, leaves) = ((near - source) * per_unit, (-near - source) * per_unit);
+        let margin = per_unit.abs() * radius;
+        let begin = largest(enters - margin);
+        let end = -largest(-(leaves + margin));
+        if !(begin <= end) {
+            return None;
+        }
+        let line = Line { source, direction, near, enters, leaves };
+        let entry = line.entry(radius, begin, end)?;
+        let reversed = Line { source, direction: -direction, near: -near, enters: -leaves, leaves: -enters };
+        let exit = reversed.entry(radius, -end, -begin).map_or(entry, |exit| -exit);
+
+        let at = source + direction * entry;
+        let excess = at - at.max(-h).min(h);
+        let normal = excess.unit().unwrap_or_else(|| -direction * dd.sqrt().recip());
+        Crossing { entry, exit: if exit > entry { exit } else { entry }, normal }.shifted(base, unit)
+    }
+}
+
+/// The largest coordinate; `NaN` (of a line in a plane) is passed over.
+#[inline(always)]
+fn largest<V: Vector>(v: V) -> V::Scalar {
+    (0..V::DIM).fold(-V::Scalar::infinity(), |most, i| if v.get(i) > most { v.get(i) } else { most })
+}
+
+/// A line, and where it crosses the sides of a box: the slab of coordinate `i` from the side at `nearᵢ`, at `entersᵢ`, to
+/// the side at `−nearᵢ`, at `leavesᵢ`.
+struct Line<V: Vector> {
+    source: V,
+    direction: V,
+    near: V,
+    enters: V,
+    leaves: V,
+}
+
+impl<V: Vector> Line<V> {
+    /// Where the line enters the rounded box, which is between `begin` and `end`; `None` where it misses.
+    #[inline(always)]
+    fn entry(&self, radius: V::Scalar, begin: V::Scalar, end: V::Scalar) -> Option<V::Scalar> {
+        let zero = V::Scalar::ZERO;
+        let mut lambda = begin;
+        // Each coordinate changes its piece at most twice.
+        for _ in 0..=2 * V::DIM {
+            // The piece from λ on: by how much the line is outside of the box, and how fast that changes.
+            let (mut outside, mut speed, mut beyond, mut next) = (V::ZERO, V::ZERO, 0, V::Scalar::infinity());
+            for i in 0..V::DIM {
+                let (enters, leaves) = (self.enters.get(i), self.leaves.get(i));
+                let before = lambda < enters;
+                if before | !(lambda < leaves) {
+                    let side = if before { self.near.get(i) } else { -self.near.get(i) };
+                    outside += V::axis(i) * (self.source.get(i) - side);
+                    speed += V::axis(i) * self.direction.get(i);
+                    beyond += 1;
+                }
+                let change = if before { enters } else { leaves };
+                next = if (lambda < change) & (change < next) { change } else { next };
+            }
+            let dd = speed.length_squared();
+            if beyond == 0 {
+                return Some(lambda);
+            }
+            if beyond == 1 && lambda == begin {
+                // Opposite a flat side, where the boxes of half extents hᵢ + radius and the rounded one agree.
+                return Some(lambda);
+            }
+            let recip = dd.recip();
+            let middle = -outside.dot(speed) * recip;
+            let chord = Chord::about(middle, outside + speed * middle, recip, radius);
+            let (enters, leaves) = chord.ends();
+            if dd == zero {
+                if outside.length_squared() <= radius * radius {
+                    return Some(lambda);
+                }
+            } else if chord.is_some() {
+                if leaves < lambda {
+                    return None;
+                }
+                if enters <= next {
+                    return Some(if enters > lambda { enters } else { lambda });
+                }
+            }
+            if !(next < end) {
+                return None;
+            }
+            lambda = next;
+        }
+        None
+    }
+}

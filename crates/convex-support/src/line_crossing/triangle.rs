@@ -1,0 +1,135 @@
+//! Triangles, flat and swept by a ball.
+
+use num_traits::Float as _;
+
+use super::capsule::edge;
+use super::{Crossing, LineCrossing, RoundedLineCrossing, comfortable, rebased};
+use crate::shapes::Frame;
+use crate::{Scalar, Triangle, Vector};
+
+/// In 3D a line crosses it at a point, where `entry` and `exit` agree. A triangle without area, a segment, has no side to
+/// cross it by: `None`.
+impl<V: Vector> LineCrossing for Triangle<V> {
+    #[inline]
+    fn line_crossing(&self, source: V, direction: V) -> Option<Crossing<V>> {
+        self.rounded_line_crossing(V::Scalar::ZERO, source, direction)
+    }
+}
+
+/// The prism over the triangle, as thick as the ball, and the three edges swept by the ball: their union is convex, so
+/// the line is inside from the first entry to the last exit. In 2D the triangle itself stands for the prism.
+impl<V: Vector> RoundedLineCrossing for Triangle<V> {
+    fn rounded_line_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+        let (direction, _, unit) = comfortable(direction);
+        let mut union = if V::DIM == 2 {
+            self.crossing_in_the_plane(source, direction)
+        } else {
+            self.prism_crossing(radius, source, direction)
+        };
+        if radius > V::Scalar::ZERO {
+            let [a, b, c] = self.points();
+            for side in [[a, b], [b, c], [c, a]] {
+                union = match (union, edge(side, radius, source, direction)) {
+                    (Some(p), Some(q)) => {
+                        let first = if q.entry < p.entry { q } else { p };
+                        Some(Crossing { exit: p.exit.max(q.exit), ..first })
+                    }
+                    (p, q) => p.or(q),
+                };
+            }
+        }
+        union?.shifted(V::Scalar::ZERO, unit)
+    }
+}
+
+impl<V: Vector> Triangle<V> {
+    /// The crossing of a triangle in 2D: through the edges whose ends are on different sides of the line. A line meets
+    /// a sliver too, however thin, that lies across it.
+    fn crossing_in_the_plane(&self, source: V, direction: V) -> Option<Crossing<V>> {
+        let zero = V::Scalar::ZERO;
+        let left = |v: V| V::from_fn(|i| if i == 0 { -v.get(1) } else { v.get(0) });
+        let [a, b, c] = self.points();
+        let (base, source) = rebased(source - a, direction, direction.length_squared().recip());
+        // Every corner by how far it is to the left of the line, and how far along it.
+        let corners = [V::ZERO, b - a, c - a].map(|p| {
+            let p = p - source;
+            (left(direction).dot(p), direction.dot(p) / direction.length_squared(), p)
+        });
+        let mut crossing = Crossing { entry: V::Scalar::infinity(), exit: -V::Scalar::infinity(), normal: V::ZERO };
+        for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            let ((side_i, along_i, p_i), (side_j, along_j, p_j)) = (corners[i], corners[j]);
+            if side_i.max(side_j) < zero || side_i.min(side_j) > zero {
+                continue;
+            }
+            let t = if side_i == side_j { zero } else { side_i / (side_i - side_j) };
+            let at = along_i + (along_j - along_i) * t;
+            if at <= crossing.entry {
+                let n = left(p_j - p_i);
+                let outward = if n.dot(corners[k].2 - p_i) > zero { -n } else { n };
+                if at < crossing.entry || outward.dot(direction) < zero {
+                    crossing.normal = outward;
+                }
+                crossing.entry = at;
+            }
+            crossing.exit = crossing.exit.max(at);
+        }
+        crossing.normal = if crossing.normal.dot(direction) < zero { crossing.normal } else { -direction }.unit()?;
+        crossing.shifted(base, V::Scalar::ONE)
+    }
+
+    /// The crossing of the points within `thickness` of the triangle in 3D, across its plane.
+    fn prism_crossing(&self, thickness: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+        let Frame { corners: [a, b, _], axes: [u, v], length, along, height } = self.frame()?;
+        let (base, from_a) = rebased(source - a, direction, direction.length_squared().recip());
+        let zero = V::Scalar::ZERO;
+        let mut clip = Clip::default();
+        // The normal is what is left of the axis that is least within the plane.
+        let off_plane = |x: V| x - u * u.dot(x) - v * v.dot(x);
+        let lengths = V::from_fn(|i| off_plane(V::axis(i)).length_squared());
+        let steepest = (1..V::DIM).fold(0, |best, i| if lengths.get(i) > lengths.get(best) { i } else { best });
+        let normal = off_plane(off_plane(V::axis(steepest))).unit()?;
+        clip.cut(normal, from_a, thickness, direction);
+        clip.cut(-normal, from_a, thickness, direction);
+        // Outward of each edge, within the plane.
+        clip.cut(-v, from_a, zero, direction);
+        clip.cut((u * height + v * (length - along)).unit()?, from_a - (b - a), zero, direction);
+        clip.cut((v * along - u * height).unit()?, from_a, zero, direction);
+        // The sides of a sliver are parallel to rounding and do not say where it ends; its longest edge does, and is
+        // normal to a supporting line at both of its ends.
+        clip.cut(-u, from_a, zero, direction);
+        clip.cut(u, from_a, length, direction);
+        clip.crossing?.shifted(base, V::Scalar::ONE)
+    }
+}
+
+/// What half-spaces leave of a line.
+struct Clip<V: Vector> {
+    crossing: Option<Crossing<V>>,
+}
+
+impl<V: Vector> Default for Clip<V> {
+    /// The whole line.
+    fn default() -> Self {
+        let infinity = V::Scalar::infinity();
+        Self { crossing: Some(Crossing { entry: -infinity, exit: infinity, normal: V::ZERO }) }
+    }
+}
+
+impl<V: Vector> Clip<V> {
+    /// Keeps what satisfies `normal·x ≤ offset`.
+    #[inline]
+    fn cut(&mut self, normal: V, source: V, offset: V::Scalar, direction: V) {
+        let Some(crossing) = &mut self.crossing else { return };
+        let (room, speed) = (offset - normal.dot(source), normal.dot(direction));
+        if speed < V::Scalar::ZERO {
+            let enters = room / speed;
+            if enters > crossing.entry {
+                (crossing.entry, crossing.normal) = (enters, normal);
+            }
+        } else if speed > V::Scalar::ZERO {
+            crossing.exit = crossing.exit.min(room / speed);
+        } else if room < V::Scalar::ZERO || room.is_nan() {
+            self.crossing = None;
+        }
+    }
+}
