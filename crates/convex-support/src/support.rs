@@ -112,7 +112,9 @@ pub trait SupportMap {
         let corner = Self::Vector::from_fn(|i| {
             let axis = Self::Vector::axis(i);
             let reach = |d: Self::Vector| d.dot(self.core_support(d, &mut Hint::default())).abs();
-            reach(axis).max(reach(-axis))
+            // NaN, from a support map that is none, makes the whole extent NaN.
+            let (ahead, behind) = (reach(axis), reach(-axis));
+            if ahead < behind { behind } else { ahead + (behind - behind) }
         });
         corner.norm()
     }

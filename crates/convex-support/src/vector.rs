@@ -107,11 +107,7 @@ pub trait Vector:
     #[must_use]
     fn norm(self) -> Self::Scalar {
         let squared = self.length_squared();
-        if is_comfortable(squared) {
-            squared.sqrt()
-        } else {
-            scaled(self).map_or(Self::Scalar::ZERO, |(v, s)| v.length() * s)
-        }
+        if is_comfortable(squared) { squared.sqrt() } else { scaled(self).map_or(squared, |(v, s)| v.length() * s) }
     }
 
     /// The unit vector along `self` for vectors of any magnitude; `None` for the zero vector and where a coordinate

@@ -3,8 +3,10 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use crate::body::power_of_two_near;
 use crate::error::RayCastError;
-use crate::ray_cast::{Ray, check_finite};
+use crate::line::LocalRay;
+use crate::ray_cast::Ray;
 use crate::{Iterate, Miss, Outcome, RayCast, RayCastOptions, RayHit, Status};
 
 /// The first point of a ray in a convex set that is known by its closest points: `closest_point(x)` is the point of
@@ -12,17 +14,24 @@ use crate::{Iterate, Miss, Outcome, RayCast, RayCastOptions, RayHit, Status};
 ///
 /// The method moves to the plane through the closest point, again and again. It is Newton's iteration for the distance
 /// along the ray: on a polytope it ends after finitely many steps, and on a curved surface the digits double with each.
+/// Shapes with a closed form of their closest point ([`ClosestPoint`](convex_support::ClosestPoint)) need nothing else.
 ///
 /// ```
-/// use convex_support::glam::DVec2;
+/// use convex_support::{ClosestPoint, Cone, glam::DVec3};
 /// use gjk_raycast::{Ray, RayCastOptions, iterative_ray_cast};
 ///
-/// let disc = |x: DVec2| if x.length() > 1.0 { x.normalize() } else { x };
-/// let ray = Ray { source: DVec2::new(-3.0, 0.6), direction: DVec2::X };
-/// let hit = iterative_ray_cast(disc, ray, RayCastOptions::default())?.outcome.hit().ok_or("it hits")?;
-/// assert!((hit.lambda - 2.2).abs() < 1e-14);
+/// let cone = Cone::<DVec3>::new(1.0, 0.5)?;
+/// let ray = Ray { source: DVec3::new(-1e6, 0.0, 0.0), direction: DVec3::X };
+/// let cast = iterative_ray_cast(|x| cone.closest_point(x), ray, RayCastOptions::default())?;
+/// let hit = cast.outcome.hit().ok_or("it hits")?;
+/// assert!((hit.lambda - (1e6 - 0.25)).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// # Accuracy
+/// λ is within rounding of the truth, as for [`ray_cast`](crate::ray_cast), if the closest point is within rounding of
+/// the coordinates of `x` and of the set. The point closest to the source tells where the set is; the ray is based at its
+/// own point closest to that, so that a far source costs nothing but its own digits.
 ///
 /// # Errors
 /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
@@ -45,61 +54,86 @@ pub fn iterative_ray_cast_with<V: Vector>(
     options: RayCastOptions<V>,
     mut observer: impl FnMut(Iterate<'_, V>),
 ) -> Result<RayCast<V>, RayCastError> {
-    check_finite("source", ray.source)?;
-    check_finite("direction", ray.direction)?;
-    let direction = ray.direction.unit().ok_or(RayCastError::ZeroDirection)?;
-    let speed = ray.direction.norm();
+    ray.check()?;
     let zero = V::Scalar::ZERO;
     let rounding = V::Scalar::from_f64(8.0) * V::Scalar::EPSILON;
-
-    let mut lambda = zero;
-    let mut normal = None;
+    let origin = closest_point(ray.source);
     let mut answer = RayCast {
         outcome: Outcome::Undecided,
         lower: zero,
         upper: V::Scalar::infinity(),
-        status: Status::IterationLimit,
-        iterations: 0,
+        status: Status::Stalled,
+        iterations: 1,
     };
-    while answer.iterations < options.max_iterations {
-        let x = ray.at(lambda);
-        let c = closest_point(x);
-        answer.iterations += 1;
-        let v = x - c;
+    if !origin.is_finite() {
+        return Ok(answer);
+    }
+    let scale = power_of_two_near((ray.source - origin).norm());
+    let local = LocalRay::new(ray, origin, scale);
+    let (line, down) = (local.line, scale.recip());
+    let direction = line.direction;
+
+    // The ray is known not to enter the set before μ, where it is before the plane with the normal n, which it crosses at
+    // `crossing` at the latest: μ stays behind by what rounding may have moved the plane.
+    let (mut mu, mut crossing) = (local.start, local.start);
+    let mut normal: Option<V> = None;
+    let mut c = origin;
+    loop {
+        let from_start = mu <= local.start;
+        let x = if from_start { ray.source } else { origin + line.at(mu) * scale };
+        if answer.iterations > 1 || !from_start {
+            c = closest_point(x);
+        }
+        let v = (x - c) * down;
         let length = v.norm();
         observer(Iterate {
             iteration: answer.iterations - 1,
             simplex: &[v],
             v,
             w: v,
-            scale: V::Scalar::ONE,
-            lower: lambda,
+            scale,
+            lower: local.lambda(mu).max(zero),
             upper: answer.upper,
         });
-        answer.lower = lambda;
         // x is only known to the rounding of its coordinates, and so is its distance.
-        let noise = rounding * (x.norm() + c.norm());
-        if length <= noise {
-            answer.upper = lambda;
-            answer.status = Status::Converged;
-            answer.outcome = Outcome::Hit(RayHit { lambda, point: x, normal });
+        let noise = rounding * (x.norm() + c.norm()) * down;
+        answer.lower = (local.lambda(mu) - local.error(mu, zero)).max(zero);
+        if length <= noise + noise {
+            let slope = normal.map_or(V::Scalar::ONE, |n| -n.dot(direction));
+            let lambda = if from_start { zero } else { local.lambda(crossing).max(zero) };
+            let point = if from_start { ray.source } else { origin + line.at(crossing) * scale };
+            answer.upper = if from_start {
+                zero
+            } else {
+                lambda + local.error(crossing, noise * V::Scalar::from_f64(4.0) / slope)
+            };
+            (answer.outcome, answer.status) = if lambda > options.max_lambda {
+                (Outcome::Miss(Miss { axis: normal.unwrap_or(-direction) }), Status::Converged)
+            } else {
+                (Outcome::Hit(RayHit { lambda, point, normal }), Status::Converged)
+            };
             break;
         }
         let n = v / length;
         let slope = n.dot(direction);
-        let next = lambda - length / slope / speed;
-        if slope >= zero || next > options.max_lambda {
-            answer.lower = if slope >= zero { V::Scalar::infinity() } else { next };
+        let next = mu - (length - noise) / slope;
+        if slope >= zero || local.lambda(next) - local.error(next, zero) > options.max_lambda {
+            // Together with the plane before x, the axis has the whole ray before it: across the ray, both count.
+            let axis = normal.filter(|_| slope > zero).and_then(|m| (m * slope - n * m.dot(direction)).unit());
+            answer.outcome = Outcome::Miss(Miss { axis: axis.unwrap_or(n) });
             answer.status = Status::Converged;
-            answer.outcome = Outcome::Miss(Miss { axis: n });
+            (answer.lower, answer.upper) = (V::Scalar::infinity(), V::Scalar::infinity());
             break;
         }
-        if !(next > lambda) {
-            answer.status = Status::Stalled;
+        if !(next > mu) {
             break;
         }
-        lambda = next;
-        normal = Some(n);
+        if answer.iterations >= options.max_iterations {
+            answer.status = Status::IterationLimit;
+            break;
+        }
+        answer.iterations += 1;
+        (mu, crossing, normal) = (next, mu - length / slope, Some(n));
     }
     Ok(answer)
 }

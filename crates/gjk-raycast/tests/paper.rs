@@ -1,0 +1,191 @@
+//! What the paper proves and claims, seen through the observer: van den Bergen, *Ray Casting against General Convex Objects
+//! with Application to Continuous Collision Detection*, 2004.
+
+mod common;
+
+use std::cell::Cell;
+
+use common::directions;
+use convex_support::glam::{DQuat, DVec3};
+use convex_support::{
+    Ball, Capsule, ClosestPoint, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rounded, SupportMap,
+};
+use gjk_raycast::{
+    DistanceOptions, IntersectOptions, Outcome, Ray, RayCastOptions, SubAlgorithm, distance, distance_with, intersects,
+    iterative_ray_cast_with, ray_cast, ray_cast_with,
+};
+use proptest::prelude::*;
+
+const VALID: &str = "positive sizes";
+
+fn shape(kind: usize, turn: DQuat) -> Posed<Box<dyn ClosestPoint<Vector = DVec3>>> {
+    let shape: Box<dyn ClosestPoint<Vector = DVec3>> = match kind {
+        0 => Box::new(Cuboid::new(DVec3::new(1.0, 0.5, 0.25)).expect(VALID)),
+        1 => Box::new(Ball::<DVec3>::new(0.75).expect(VALID)),
+        2 => Box::new(Capsule::<DVec3>::new(0.5, 0.25).expect(VALID)),
+        3 => Box::new(Cylinder::<DVec3>::new(0.75, 0.5).expect(VALID)),
+        4 => Box::new(Cone::<DVec3>::new(0.75, 0.5).expect(VALID)),
+        5 => Box::new(Ellipsoid::new(DVec3::ZERO, DVec3::new(1.0, 0.5, 0.125), DQuat::IDENTITY).expect(VALID)),
+        _ => Box::new(Rounded::new(Cuboid::new(DVec3::new(0.5, 0.25, 0.125)).expect(VALID), 0.25).expect(VALID)),
+    };
+    Posed::new(shape, turn, DVec3::ZERO).expect("a rotation")
+}
+
+fn vector(reach: f64) -> impl Strategy<Value = DVec3> {
+    [-reach..reach, -reach..reach, -reach..reach].prop_map(DVec3::from_array)
+}
+
+fn turn() -> impl Strategy<Value = DQuat> {
+    (vector(1.0), -3.0..3.0)
+        .prop_map(|(axis, angle)| DQuat::from_axis_angle(axis.try_normalize().unwrap_or(DVec3::X), angle))
+}
+
+/// What rounding leaves of an inequality between numbers of about one.
+const ROUNDING: f64 = 1e-13;
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    /// Lemma 1: (x₂ − x₁)·(c₂ − c₁) ≥ ‖c₂ − c₁‖² for the points c closest to any two points x.
+    #[test]
+    fn lemma_1(kind in 0_usize..7, turn in turn(), x1 in vector(4.0), x2 in vector(4.0)) {
+        let shape = shape(kind, turn);
+        let (c1, c2) = (shape.closest_point(x1), shape.closest_point(x2));
+        prop_assert!((x2 - x1).dot(c2 - c1) >= (c2 - c1).length_squared() - ROUNDING, "{} {}", c1, c2);
+    }
+
+    /// Theorem 2: λ ↦ c(λ) is continuous. Its proof gives ‖c₂ − c₁‖² ≤ |λ₂ − λ₁|·r·(c₂ − c₁), so that the mapping is
+    /// even Lipschitz: ‖c₂ − c₁‖ ≤ |λ₂ − λ₁|·‖r‖.
+    #[test]
+    fn theorem_2(
+        kind in 0_usize..7, turn in turn(), s in vector(4.0), r in vector(2.0), l1 in 0.0..3.0, step in -12.0..0.0,
+    ) {
+        let shape = shape(kind, turn);
+        let l2 = l1 + 10.0_f64.powf(step);
+        let (c1, c2) = (shape.closest_point(s + r * l1), shape.closest_point(s + r * l2));
+        prop_assert!((c2 - c1).length() <= (l2 - l1) * r.length() + ROUNDING, "{} {}", c1, c2);
+    }
+
+    /// Theorem 3: (x − c(x))·r never decreases along the ray.
+    #[test]
+    fn theorem_3(kind in 0_usize..7, turn in turn(), s in vector(4.0), r in vector(2.0)) {
+        let shape = shape(kind, turn);
+        let slopes = (0..60).map(|i| s + r * (0.05 * f64::from(i))).map(|x| (x - shape.closest_point(x)).dot(r));
+        let slopes: Vec<f64> = slopes.collect();
+        prop_assert!(slopes.windows(2).all(|w| w[0] <= w[1] + ROUNDING), "{:?}", slopes);
+    }
+
+    /// λ only grows, and stays a lower bound, in Algorithm 1 and in Algorithm 3.
+    #[test]
+    fn lambda_is_monotone_and_below_the_hit(kind in 0_usize..7, turn in turn(), from in vector(1.0), aim in vector(0.6)) {
+        prop_assume!(from.length() > 0.1);
+        let shape = shape(kind, turn);
+        let source = from.normalize() * 4.0;
+        let ray = Ray { source, direction: aim - source };
+        let (mut first, mut third) = (Vec::new(), Vec::new());
+        let one = iterative_ray_cast_with(|x| shape.closest_point(x), ray, RayCastOptions::default(), |i| first.push(i.lower));
+        let three = ray_cast_with(&shape, ray, RayCastOptions::default(), |i| third.push(i.lower));
+        for (cast, lambdas) in [(one, first), (three, third)] {
+            prop_assert!(lambdas.is_sorted_by(|a, b| a <= &(b + ROUNDING)), "{:?}", lambdas);
+            if let Some(hit) = cast.expect("finite").outcome.hit() {
+                let grazing = hit.normal.map_or(1.0, |n| -n.dot(ray.direction.normalize())).max(1e-6);
+                let last = lambdas.last().copied().unwrap_or(0.0);
+                prop_assert!(last <= hit.lambda + ROUNDING / grazing, "{} {:?}", last, hit);
+            }
+        }
+    }
+
+    /// The bounds of Algorithm 2: ‖v‖ above, v·w/‖v‖ below, and ‖v − v*‖² ≤ ‖v‖² − v·w.
+    #[test]
+    fn v_and_w_bound_the_distance(kind in 0_usize..7, turn in turn(), x in vector(4.0)) {
+        let shape = shape(kind, turn);
+        let nearest = x - shape.closest_point(x);
+        prop_assume!(nearest.length() > 1e-3);
+        let point = convex_support::Point::new(x).expect("finite");
+        let mut seen = Vec::new();
+        // Without the radius: then v is the paper's.
+        let bare = |d: DVec3| shape.support(d);
+        let bare = Bare(bare);
+        let _ = distance_with(&point, &bare, DistanceOptions::default(), |i| {
+            if !i.simplex.is_empty() {
+                seen.push((i.v * i.scale, i.w * i.scale));
+            }
+        });
+        prop_assert!(!seen.is_empty());
+        for (v, w) in seen {
+            prop_assert!(v.length() >= nearest.length() - ROUNDING, "an upper bound: {} {}", v, nearest);
+            prop_assert!(v.dot(w) / v.length() <= nearest.length() + ROUNDING, "a lower bound: {} {}", v, w);
+            prop_assert!(
+                (v - nearest).length_squared() <= v.length_squared() - v.dot(w) + ROUNDING,
+                "the error bound: {} {} {}", v, w, nearest
+            );
+        }
+    }
+}
+
+/// A support map that is nothing but a function.
+struct Bare<F>(F);
+
+impl<F: Fn(DVec3) -> DVec3> SupportMap for Bare<F> {
+    type Vector = DVec3;
+
+    fn support(&self, direction: DVec3) -> DVec3 {
+        (self.0)(direction)
+    }
+}
+
+/// "By initializing v₀ with a previously returned separating axis, the number of iterations per frame can be reduced
+/// considerably": a ray that moves slowly past a hull, and two hulls that pass one another.
+#[test]
+fn the_last_axis_saves_iterations() {
+    let hull = Polytope::new(directions(100).map(DVec3::from_array)).expect("finite");
+    let mut casts = [0, 0];
+    let mut axis = None;
+    for frame in 0..200 {
+        let height = 1.05 + 1e-3 * f64::from(frame);
+        let ray =
+            Ray { source: DVec3::new(-4.0, height, 0.1), direction: DVec3::new(1.0, 1e-3 * f64::from(frame % 7), 0.0) };
+        let mut warm = RayCastOptions::new();
+        warm.axis = axis;
+        for (count, options) in casts.iter_mut().zip([RayCastOptions::new(), warm]) {
+            let cast = ray_cast(&hull, ray, options).expect("finite");
+            *count += cast.iterations;
+            let Outcome::Miss(miss) = cast.outcome else { panic!("it passes by: {frame} {cast:?}") };
+            axis = Some(miss.axis);
+        }
+    }
+    assert!(2 * casts[1] <= casts[0], "cold and warm casts: {casts:?}");
+
+    let mut tests = [0, 0];
+    let mut axis = None;
+    for frame in 0..200 {
+        let other = Posed::translated(&hull, DVec3::new(1.5, 1.6 + 1e-3 * f64::from(frame), 0.2)).expect("finite");
+        let mut warm = IntersectOptions::new();
+        warm.axis = axis;
+        for (count, options) in tests.iter_mut().zip([IntersectOptions::new(), warm]) {
+            let answer = intersects(&hull, &other, options);
+            assert_eq!(answer.decided(), Some(false), "{frame}");
+            *count += answer.iterations;
+            axis = answer.axis;
+        }
+    }
+    assert!(tests[1] <= tests[0] && tests[1] <= 220, "cold and warm tests: {tests:?}");
+}
+
+/// Every sub-algorithm ends on the same points: the smallest simplex that holds v is unique.
+#[test]
+fn the_end_does_not_depend_on_the_sub_algorithm() {
+    let count = Cell::new(0);
+    for d in directions(60) {
+        let b =
+            Posed::new(Cuboid::new(DVec3::ONE).expect(VALID), DQuat::from_rotation_y(d[0]), DVec3::from_array(d) * 4.0);
+        let (a, b) = (Cone::<DVec3>::new(1.0, 0.5).expect(VALID), b.expect("a rotation"));
+        let all = [SubAlgorithm::NearestFace, SubAlgorithm::Johnson, SubAlgorithm::SignedVolumes];
+        let ends = all.map(|s| distance(&a, &b, DistanceOptions::new().with_sub_algorithm(s)));
+        for end in &ends {
+            assert!((end.point_a - ends[0].point_a).length() < 1e-7, "{d:?}: {ends:?}");
+            count.set(count.get() + 1);
+        }
+    }
+    assert_eq!(count.get(), 180);
+}

@@ -1,0 +1,262 @@
+//! How casts begin and end: touching, receding, sliding, inside, at rest, at the very end, and what is no cast at all.
+
+mod common;
+
+use common::{Quaternion, at, cuboid, directions, s, ulps, v};
+use convex_support::glam::{DVec3, Vec3A};
+use convex_support::{
+    Ball, Capsule, Cone, Cylinder, Ellipsoid, Point, Polytope, Posed, Rounded, Scalar, ScalarOf, SupportMap, Vector,
+};
+use gjk_raycast::{
+    DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, Ray, RayCast, RayCastError, RayCastOptions,
+    Status, distance, intersects, linear_cast, ray_cast,
+};
+
+type Shape<V> = Box<dyn SupportMap<Vector = V>>;
+
+const VALID: &str = "positive sizes";
+
+/// Bodies that reach from −1 to 1 along x, and have no other point at either end; with those, hits are known.
+fn bodies<V: Quaternion>() -> Vec<(&'static str, Shape<V>)> {
+    let n = s::<V>;
+    let upright = V::quaternion([0.0, 0.0, -0.5_f64.sqrt(), 0.5_f64.sqrt()]);
+    let unturned = V::quaternion([0.0, 0.0, 0.0, 1.0]);
+    let octahedron =
+        [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
+    vec![
+        ("ball", Box::new(Ball::<V>::new(n(1.0)).expect(VALID))),
+        ("cuboid", Box::new(cuboid::<V>([1.0, 0.5, 0.25]))),
+        ("cylinder", Box::new(Cylinder::<V>::new(n(0.5), n(1.0)).expect(VALID))),
+        // Lying down, its apex at x = 1.
+        (
+            "cone",
+            Box::new(Posed::new(Cone::<V>::new(n(1.0), n(0.5)).expect(VALID), upright, V::ZERO).expect("a rotation")),
+        ),
+        ("capsule", Box::new(Capsule::<V>::new(n(0.25), n(1.0)).expect(VALID))),
+        ("ellipsoid", Box::new(Ellipsoid::new(V::ZERO, v::<V>([1.0, 0.5, 0.25]), unturned).expect(VALID))),
+        ("rounded", Box::new(Rounded::new(cuboid::<V>([0.75, 0.5, 0.25]), n(0.25)).expect(VALID))),
+        ("octahedron", Box::new(Polytope::new(octahedron.map(v::<V>)).expect("finite"))),
+    ]
+}
+
+fn cast<V: Vector>(target: &Shape<V>, source: [f64; 3], direction: [f64; 3], end: V::Scalar) -> RayCast<V> {
+    let ray = Ray { source: v(source), direction: v(direction) };
+    ray_cast(target, ray, RayCastOptions::new().with_max_lambda(end)).expect("a finite ray with a direction")
+}
+
+fn both(single: impl FnOnce(), double: impl FnOnce()) {
+    single();
+    double();
+}
+
+fn infinity<V: Vector>() -> V::Scalar {
+    s::<V>(f64::INFINITY)
+}
+
+/// In the body, or on its boundary to rounding: a hit at 0 without a normal, whatever the direction.
+#[test]
+fn inside_and_touching_is_a_hit_at_zero() {
+    fn run<V: Quaternion>() {
+        for (name, body) in bodies::<V>() {
+            let surface = [[0.0; 3], [0.3, 0.02, -0.01], [1.0, 0.0, 0.0], [1.0 - ulps::<V>(1.0), 0.0, 0.0]];
+            for source in surface {
+                for d in directions(30).chain([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]) {
+                    let answer = cast(&body, source, d, infinity::<V>());
+                    let hit = answer.outcome.hit().unwrap_or_else(|| panic!("{name} {source:?} {d:?}: {answer:?}"));
+                    assert_eq!((hit.lambda.as_f64(), hit.normal), (0.0, None), "{name} {source:?} {d:?}");
+                    assert_eq!((answer.lower.as_f64(), answer.upper.as_f64()), (0.0, 0.0), "{name} {source:?} {d:?}");
+                }
+            }
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Outside by a thousandth, and away from the body or past it: a miss, at every distance.
+#[test]
+fn receding_and_sliding_rays_miss() {
+    fn run<V: Quaternion>() {
+        for (name, body) in bodies::<V>() {
+            for x in [1.001, 1.5, 1e3, 1e6] {
+                for d in directions(40) {
+                    let away = [d[0].abs(), d[1], d[2]];
+                    for (what, direction) in [("receding", away), ("sliding", [0.0, d[1], d[2] + 1e-3])] {
+                        let answer = cast(&body, [x, 0.0, 0.0], direction, infinity::<V>());
+                        assert!(answer.outcome.is_miss(), "{what}: {name} {x} {direction:?}: {answer:?}");
+                    }
+                }
+            }
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// A graze within rounding may be either, but is one of both, and at the place of the graze.
+#[test]
+fn a_graze_is_decided() {
+    fn run<V: Quaternion>() {
+        for (name, body) in bodies::<V>() {
+            for i in -4..=4 {
+                let x = 1.0 + ulps::<V>(f64::from(i));
+                for d in [[0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.6, 0.8]] {
+                    let answer = cast(&body, [x, -3.0 * d[1], -3.0 * d[2]], d, infinity::<V>());
+                    assert_ne!(answer.outcome, Outcome::Undecided, "{name} {i} {d:?}: {answer:?}");
+                    if let Some(hit) = answer.outcome.hit() {
+                        assert!((0.0..=4.0).contains(&hit.lambda.as_f64()), "{name} {i} {d:?}: {answer:?}");
+                    }
+                }
+            }
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// The end of the ray at the hit belongs to the ray: two ulps less may not reach, and what reaches is a hit.
+#[test]
+fn the_end_at_the_hit() {
+    fn run<V: Quaternion>() {
+        for (name, body) in bodies::<V>() {
+            for source in [[3.0, 0.0, 0.0], [5.0, 0.25, -0.125]] {
+                let direction = [-1.0, 0.0, 0.0];
+                let free = cast(&body, source, direction, infinity::<V>()).outcome.hit();
+                let Some(hit) = free else { continue };
+                let lambda = hit.lambda.as_f64();
+                for (ulp, reaches) in [(-2.0, false), (0.0, true), (2.0, true)] {
+                    let answer = cast(&body, source, direction, s::<V>(lambda * (1.0 + ulps::<V>(ulp))));
+                    assert_eq!(answer.outcome.hit().is_some(), reaches, "{name} {source:?} {ulp} ulp: {answer:?}");
+                    assert_eq!(answer.outcome.is_miss(), !reaches, "{name} {source:?} {ulp} ulp: {answer:?}");
+                }
+            }
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// The same of moving bodies: the one starts beside the other, and closes, recedes, slides, or rests.
+#[test]
+fn motions_begin_as_rays_do() {
+    fn run<V: Quaternion>() {
+        for (name, body) in bodies::<V>() {
+            let cast = |x: f64, velocity: [f64; 3], end: f64| {
+                let other = at(cuboid::<V>([1.0, 2.0, 2.0]), [x, 0.0, 0.0]);
+                let motion = Motion { velocity_a: V::ZERO, velocity_b: v(velocity) };
+                let options = LinearCastOptions::new().with_max_time(s::<V>(end));
+                linear_cast(&body, &other, motion, options).expect("finite velocities")
+            };
+            let forever = f64::INFINITY;
+            for x in [0.5, 1.5, 2.0, 2.0 - ulps::<V>(1.0)] {
+                for velocity in [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0; 3]] {
+                    for end in [0.0, forever] {
+                        let answer = cast(x, velocity, end);
+                        let hit = answer.outcome.hit().unwrap_or_else(|| panic!("{name} {x} {velocity:?}: {answer:?}"));
+                        assert_eq!((hit.time.as_f64(), hit.normal), (0.0, None), "{name} {x} {velocity:?}");
+                    }
+                }
+            }
+            for gap in [1e-3, 1.0] {
+                assert!(cast(2.0 + gap, [1.0, 0.0, 0.0], forever).outcome.is_miss(), "{name} recedes from {gap}");
+                assert!(cast(2.0 + gap, [0.0, 1.0, 0.0], forever).outcome.is_miss(), "{name} slides at {gap}");
+                assert!(cast(2.0 + gap, [0.0; 3], forever).outcome.is_miss(), "{name} rests at {gap}");
+                assert!(cast(2.0 + gap, [-1.0, 0.0, 0.0], 0.5 * gap).outcome.is_miss(), "{name} stops short at {gap}");
+                let closing = cast(2.0 + gap, [-1.0, 0.0, 0.0], forever).outcome.hit().expect("it closes");
+                assert!((closing.time.as_f64() - gap).abs() < ulps::<V>(32.0), "{name} {gap}: {closing:?}");
+            }
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// What is no ray is an error that names the coordinate.
+#[test]
+fn bad_rays_are_errors() {
+    fn run<V: Quaternion>() {
+        let body = cuboid::<V>([1.0; 3]);
+        let cast = |source: [f64; 3], direction: [f64; 3]| {
+            ray_cast(&body, Ray { source: v::<V>(source), direction: v(direction) }, RayCastOptions::default())
+        };
+        assert_eq!(cast([0.0; 3], [0.0; 3]), Err(RayCastError::ZeroDirection));
+        assert_eq!(cast([5.0, 0.0, 0.0], [0.0, -0.0, 0.0]), Err(RayCastError::ZeroDirection));
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let source = cast([0.0, bad, 0.0], [1.0, 0.0, 0.0]);
+            assert_eq!(source, Err(RayCastError::NonFinite { parameter: "source", index: 1 }));
+            let direction = cast([0.0; 3], [1.0, 0.0, bad]);
+            assert_eq!(direction, Err(RayCastError::NonFinite { parameter: "direction", index: 2 }));
+            let motion = Motion { velocity_a: v::<V>([bad, 0.0, 0.0]), velocity_b: V::ZERO };
+            let moving = linear_cast(&body, &body, motion, LinearCastOptions::default());
+            assert_eq!(moving, Err(RayCastError::NonFinite { parameter: "velocity_a", index: 0 }));
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// A user's support map that answers NaN or infinity: always, or from some call on. Every query ends, with a status.
+#[test]
+fn a_broken_support_map_ends_with_a_status() {
+    struct Broken<V: Vector> {
+        bad: V,
+        /// The half-space of directions in which it is broken; all of them if zero.
+        from: V,
+    }
+    impl<V: Vector> SupportMap for Broken<V> {
+        type Vector = V;
+
+        fn support(&self, direction: V) -> V {
+            let zero = ScalarOf::<Self>::ZERO;
+            if self.from == V::ZERO || direction.dot(self.from) > zero {
+                self.bad
+            } else {
+                direction.unit().unwrap_or(V::ZERO)
+            }
+        }
+    }
+    fn run<V: Quaternion>() {
+        let cube = at(cuboid::<V>([1.0; 3]), [0.5, 3.0, 0.25]);
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for bad in [[bad, 0.0, 0.0], [0.0, bad, 0.0], [bad; 3]] {
+                for from in directions(20).chain([[0.0; 3]]) {
+                    let broken = Broken { bad: v::<V>(bad), from: v(from) };
+                    let apart = distance(&broken, &cube, DistanceOptions::default());
+                    assert!(
+                        apart.iterations <= 200 && !apart.distance.as_f64().is_nan(),
+                        "{bad:?} {from:?}: {apart:?}"
+                    );
+                    let meets = intersects(&cube, &broken, IntersectOptions::default());
+                    assert!(meets.iterations <= 200, "{bad:?} {from:?}: {meets:?}");
+                    let ray = Ray { source: v::<V>([0.2, 5.0, 0.1]), direction: v([0.0, -1.0, 0.0]) };
+                    let cast = ray_cast(&broken, ray, RayCastOptions::default()).expect("a finite ray");
+                    assert!(cast.iterations <= 200, "{bad:?} {from:?}: {cast:?}");
+                    let motion = Motion { velocity_a: v::<V>([0.0, 1.0, 0.0]), velocity_b: V::ZERO };
+                    let sweep = linear_cast(&broken, &cube, motion, LinearCastOptions::default()).expect("finite");
+                    assert!(sweep.iterations <= 200, "{bad:?} {from:?}: {sweep:?}");
+                    if from == [0.0; 3] {
+                        assert_ne!(apart.status, Status::Converged, "{bad:?}: {apart:?}");
+                        assert_eq!(meets.decided(), None, "{bad:?}: {meets:?}");
+                        assert_eq!(cast.outcome, Outcome::Undecided, "{bad:?}: {cast:?}");
+                        assert_eq!(sweep.outcome, Outcome::Undecided, "{bad:?}: {sweep:?}");
+                    }
+                }
+            }
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// A point is the smallest body. A ray through it grazes it, and is decided; one that passes it by misses.
+#[test]
+fn a_point_is_missed_where_it_is_not() {
+    fn run<V: Quaternion>() {
+        let point: Shape<V> = Box::new(Point::new(v::<V>([2.0, 1.0, -1.0])).expect("finite"));
+        for d in directions(50) {
+            let source = [2.0 - 3.0 * d[0], 1.0 - 3.0 * d[1], -1.0 - 3.0 * d[2]];
+            let through = cast(&point, source, d, infinity::<V>());
+            assert_ne!(through.outcome, Outcome::Undecided, "{d:?}: {through:?}");
+            if let Some(hit) = through.outcome.hit() {
+                assert!((hit.lambda.as_f64() - 3.0).abs() < ulps::<V>(16.0), "{d:?}: {hit:?}");
+            }
+            assert!(cast(&point, source, d.map(|c| -c), infinity::<V>()).outcome.is_miss(), "away: {d:?}");
+            let beside = [source[0] + 1e-3 * d[1], source[1] - 1e-3 * d[0], source[2] + 1e-3];
+            assert!(cast(&point, beside, d, infinity::<V>()).outcome.is_miss() || d[2].abs() > 0.99, "past: {d:?}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
