@@ -15,7 +15,10 @@ use crate::{Scalar, Vector};
 /// vertices a climb from there takes a step or two, whatever their number.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Graph<V: Vector> {
+    /// Sorted by the cell that they are in as seen from the middle, so that neighbours are near in memory too.
     vertices: Vec<V>,
+    /// Where they were in the list that was given.
+    names: Vec<u32>,
     /// The neighbours of vertex `i` are `neighbours[first[i]..first[i + 1]]`.
     first: Vec<u32>,
     neighbours: Vec<u32>,
@@ -29,21 +32,40 @@ const VERTICES_PER_CELL: f64 = 1.0;
 
 impl<V: Vector> Graph<V> {
     /// A graph of vertices and undirected edges, given once in each direction and in any order.
-    pub(super) fn new(vertices: Vec<V>, mut edges: Vec<[u32; 2]>) -> Self {
-        edges.sort_unstable();
-        edges.dedup();
-        let mut first = vec![0; vertices.len() + 1];
-        for &[from, _] in &edges {
-            first[from as usize + 1] += 1;
-        }
-        for i in 0..vertices.len() {
-            first[i + 1] += first[i];
-        }
-        let neighbours = edges.into_iter().map(|[_, to]| to).collect();
+    pub(super) fn new(vertices: &[V], edges: &[[u32; 2]]) -> Self {
         let cells = vertices.len() as f64 / VERTICES_PER_CELL / (2 * V::DIM) as f64;
         let side = if V::DIM == 3 { num_traits::Float::sqrt(cells) } else { cells };
         let resolution = (side as usize).max(1);
-        let mut graph = Self { vertices, first, neighbours, starts: Vec::new(), resolution };
+        let mut graph = Self {
+            vertices: Vec::new(),
+            names: Vec::new(),
+            first: vec![],
+            neighbours: vec![],
+            starts: vec![],
+            resolution,
+        };
+
+        let count = vertices.len() as u32;
+        let mut names: Vec<u32> = (0..count).collect();
+        names.sort_by_cached_key(|&name| graph.cell(vertices[name as usize]));
+        graph.names = names;
+        let mut number = vec![0; vertices.len()];
+        for (i, &name) in (0..).zip(&graph.names) {
+            number[name as usize] = i;
+        }
+        graph.vertices = graph.names.iter().map(|&name| vertices[name as usize]).collect();
+        let mut edges: Vec<[u32; 2]> = edges.iter().map(|edge| edge.map(|name| number[name as usize])).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        graph.first = vec![0; vertices.len() + 1];
+        for &[from, _] in &edges {
+            graph.first[from as usize + 1] += 1;
+        }
+        for i in 0..vertices.len() {
+            graph.first[i + 1] += graph.first[i];
+        }
+        graph.neighbours = edges.into_iter().map(|[_, to]| to).collect();
+
         let mut at = 0;
         let columns = if V::DIM == 3 { resolution } else { 1 };
         for cell in 0..2 * V::DIM * resolution * columns {
@@ -51,6 +73,18 @@ impl<V: Vector> Graph<V> {
             graph.starts.push(at);
         }
         graph
+    }
+
+    /// Vertex `index` as the search counts them.
+    #[inline]
+    pub(super) fn vertex(&self, index: u32) -> V {
+        self.vertices[index as usize]
+    }
+
+    /// The index of a vertex in the list that the graph was made of.
+    #[inline]
+    pub(super) fn name(&self, index: u32) -> usize {
+        self.names[index as usize] as usize
     }
 
     /// The index of a vertex farthest along `direction`; `hint` may be that of a vertex to begin at, or anything.
@@ -77,9 +111,7 @@ impl<V: Vector> Graph<V> {
             let range = self.first[at as usize] as usize..self.first[at as usize + 1] as usize;
             for &neighbour in &self.neighbours[range] {
                 let gain = direction.dot(self.vertices[neighbour as usize] - here);
-                if gain > best.0 {
-                    best = (gain, neighbour);
-                }
+                best = if gain > best.0 { (gain, neighbour) } else { best };
             }
             if best.1 == at {
                 return at;
@@ -138,7 +170,7 @@ mod tests {
     use glam::{DVec2, DVec3, Vec3};
 
     fn cells_know_their_middles<V: Vector>(vertices: usize) {
-        let graph = Graph::new(vec![V::ZERO; vertices], Vec::new());
+        let graph = Graph::new(&vec![V::ZERO; vertices], &[]);
         for cell in 0..graph.starts.len() {
             assert_eq!(graph.cell(graph.middle(cell)), cell, "{}", graph.middle(cell).get(0));
         }

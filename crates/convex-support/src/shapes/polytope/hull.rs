@@ -11,7 +11,7 @@ use crate::vector::power_of_two_below;
 use crate::{Scalar, Vector};
 
 /// Up to this many vertices a scan takes no longer than a climb (measured: docs/support-maps.md).
-const SCANNED: usize = 40;
+const SCANNED: usize = 48;
 
 impl<V: Vector> Polytope<V> {
     /// The convex hull of the points, reduced to its vertices, with the edges between them where there are many.
@@ -40,7 +40,8 @@ impl<V: Vector> Polytope<V> {
             Search::Scan(Lanes::new(&seen))
         } else {
             let place = |i: u32| kept.partition_point(|&k| k < i) as u32;
-            Search::Climb(Graph::new(seen, edges.into_iter().map(|e| e.map(place)).collect()))
+            let edges: Vec<_> = edges.into_iter().map(|e| e.map(place)).collect();
+            Search::Climb(Graph::new(&seen, &edges))
         };
         Ok(Self::searched_by(search, vertices, middle))
     }

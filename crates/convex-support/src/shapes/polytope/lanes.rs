@@ -1,14 +1,16 @@
 //! The farthest of a list of points by a scan that compilers turn into vector instructions.
 
-use num_traits::{Float as _, ToPrimitive as _};
+use num_traits::Float as _;
 
 use alloc::vec::Vec;
 
 use crate::{Scalar, Vector};
 
-/// Points side by side: a multiple of what a vector register holds, and few enough that the best of each lane and where
-/// it was stay in registers on every target.
+/// Points side by side: a multiple of what a vector register holds on every target.
 const WIDTH: usize = 4;
+
+/// Blocks of which only the farthest reach is kept, before it is looked up which of them it was.
+const BLOCKS: usize = 16;
 
 /// Up to [`WIDTH`] points, coordinate by coordinate.
 type Block<S> = [[S; WIDTH]; 3];
@@ -19,10 +21,6 @@ pub(super) struct Lanes<V: Vector> {
     blocks: Vec<Block<V::Scalar>>,
     count: usize,
 }
-
-/// The number of a block is kept as a scalar, so that one comparison selects both value and number; this many are
-/// numbered exactly, with all their points, even in `f32`.
-const BLOCKS_AT_ONCE: usize = 1 << 20;
 
 impl<V: Vector> Lanes<V> {
     /// A non-empty list of points.
@@ -35,49 +33,43 @@ impl<V: Vector> Lanes<V> {
     }
 
     /// The index of a point farthest along `direction`; any index where that is not a number.
+    ///
+    /// Twice: first how far the farthest point of each lane reaches, which is a multiplication, an addition and a maximum
+    /// for each coordinate; then which point of the best lane it was, among the few blocks where it is. Both times the
+    /// same operations are rounded alike, so that the reach is found again exactly.
     #[inline]
     pub(super) fn farthest(&self, direction: V) -> usize {
-        let mut best = (-V::Scalar::infinity(), 0);
-        for (k, blocks) in self.blocks.chunks(BLOCKS_AT_ONCE).enumerate() {
-            let (reach, index) = farthest_of(blocks, direction);
-            if reach > best.0 {
-                best = (reach, k * BLOCKS_AT_ONCE * WIDTH + index);
+        let (dx, dy) = (direction.get(0), direction.get(1));
+        let dz = if V::DIM == 3 { direction.get(2) } else { V::Scalar::ZERO };
+        let (mut best, mut first, mut best_of_lanes) = (-V::Scalar::infinity(), 0, [V::Scalar::ZERO; WIDTH]);
+        for (k, blocks) in self.blocks.chunks(BLOCKS).enumerate() {
+            let of_lanes = farthest_reaches(blocks, dx, dy, dz);
+            let [a, b, c, d] = of_lanes;
+            let [a, b] = [if a > b { a } else { b }, if c > d { c } else { d }];
+            let most = if a > b { a } else { b };
+            if most > best {
+                (best, first, best_of_lanes) = (most, k * BLOCKS, of_lanes);
             }
         }
-        best.1.min(self.count - 1)
+        let lane = best_of_lanes.iter().position(|&reach| reach == best).unwrap_or(0);
+        let is_best = |&[x, y, z]: &Block<V::Scalar>| dx * x[lane] + dy * y[lane] + dz * z[lane] == best;
+        let found = self.blocks[first..].iter().position(is_best);
+        found.map_or(0, |block| ((first + block) * WIDTH + lane).min(self.count - 1))
     }
 }
 
-#[inline]
-fn farthest_of<V: Vector>(blocks: &[Block<V::Scalar>], direction: V) -> (V::Scalar, usize) {
-    let d: [V::Scalar; 3] = core::array::from_fn(|i| if i < V::DIM { direction.get(i) } else { V::Scalar::ZERO });
-    let mut best = [-V::Scalar::infinity(); WIDTH];
-    let mut found = [V::Scalar::ZERO; WIDTH];
-    let mut number = V::Scalar::ZERO;
+/// How far the farthest point of each lane reaches along a direction.
+///
+/// Apart from its caller the loop is one that compilers turn into vector instructions; within it, it is not. And an array
+/// for the direction would be written number by number and read in pairs, which takes longer than a dozen points.
+#[inline(never)]
+fn farthest_reaches<S: Scalar>(blocks: &[Block<S>], dx: S, dy: S, dz: S) -> [S; WIDTH] {
+    let mut best = [-S::infinity(); WIDTH];
     for [x, y, z] in blocks {
         for l in 0..WIDTH {
-            let mut reach = d[0] * x[l] + d[1] * y[l];
-            if V::DIM == 3 {
-                reach += d[2] * z[l];
-            }
-            let farther = reach > best[l];
-            best[l] = if farther { reach } else { best[l] };
-            found[l] = if farther { number } else { found[l] };
+            let reach = dx * x[l] + dy * y[l] + dz * z[l];
+            best[l] = if reach > best[l] { reach } else { best[l] };
         }
-        number += V::Scalar::ONE;
     }
-    // The number of a point from the number of its block; then the better halves, down to one.
-    for (l, n) in found.iter_mut().enumerate() {
-        *n = *n * V::Scalar::from_f64(WIDTH as f64) + V::Scalar::from_f64(l as f64);
-    }
-    let mut half = WIDTH / 2;
-    while half > 0 {
-        for l in 0..half {
-            let farther = best[l + half] > best[l];
-            best[l] = if farther { best[l + half] } else { best[l] };
-            found[l] = if farther { found[l + half] } else { found[l] };
-        }
-        half /= 2;
-    }
-    (best[0], found[0].to_usize().unwrap_or(0))
+    best
 }

@@ -67,9 +67,9 @@ impl<V: Vector> Polytope<V> {
         Self { points, search, middle, extent }
     }
 
-    /// The index of the point farthest along `direction`; `hint` is that of one to begin at, or anything.
+    /// What the search calls the point farthest along `direction`; `hint` is such a number to begin at, or anything.
     #[inline]
-    fn farthest(&self, direction: V, hint: u32) -> usize {
+    fn farthest(&self, direction: V, hint: u32) -> u32 {
         if !is_comfortable(direction.length_squared()) {
             return self.farthest_along_multiple(direction, hint);
         }
@@ -79,15 +79,15 @@ impl<V: Vector> Polytope<V> {
     /// Where products of the direction's coordinates with those of points could vanish or overflow.
     #[cold]
     #[inline(never)]
-    fn farthest_along_multiple(&self, direction: V, hint: u32) -> usize {
+    fn farthest_along_multiple(&self, direction: V, hint: u32) -> u32 {
         self.search(scaled(direction).map_or(direction, |(multiple, _)| multiple), hint)
     }
 
     #[inline]
-    fn search(&self, direction: V, hint: u32) -> usize {
+    fn search(&self, direction: V, hint: u32) -> u32 {
         match &self.search {
-            Search::Scan(lanes) => lanes.farthest(direction),
-            Search::Climb(graph) => graph.farthest(direction, hint) as usize,
+            Search::Scan(lanes) => lanes.farthest(direction) as u32,
+            Search::Climb(graph) => graph.farthest(direction, hint),
         }
     }
 
@@ -128,7 +128,11 @@ impl<V: Vector> SupportMap for Polytope<V> {
 
     #[inline]
     fn support(&self, direction: V) -> V {
-        self.points[self.farthest(direction, u32::MAX)]
+        let index = self.farthest(direction, u32::MAX);
+        match &self.search {
+            Search::Scan(_) => self.points[index as usize],
+            Search::Climb(graph) => self.points[graph.name(index)],
+        }
     }
 
     #[inline]
@@ -138,14 +142,15 @@ impl<V: Vector> SupportMap for Polytope<V> {
 
     #[inline]
     fn core_support(&self, direction: V, hint: &mut Hint) -> V {
-        let mut unknown = u32::MAX;
-        let last = match &self.search {
-            Search::Scan(_) => &mut unknown,
-            Search::Climb(_) => hint.next_slot().unwrap_or(&mut unknown),
-        };
-        let index = self.farthest(direction, *last);
-        *last = index as u32;
-        self.points[index] - self.middle
+        match &self.search {
+            Search::Scan(_) => self.points[self.farthest(direction, u32::MAX) as usize] - self.middle,
+            Search::Climb(graph) => {
+                let mut unknown = u32::MAX;
+                let last = hint.next_slot().unwrap_or(&mut unknown);
+                *last = self.farthest(direction, *last);
+                graph.vertex(*last)
+            }
+        }
     }
 
     #[inline]
