@@ -85,6 +85,67 @@ fn d3_d5_d26_contact_on_a_face_an_edge_or_a_corner_is_contact() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
+/// `openGJK` #13, the random pairs: about 2 in 10,000 pairs of cubes that overlap deeply were tens of centimetres apart.
+#[test]
+fn d5_deep_overlap_is_overlap() {
+    fn run<V: Quaternion>() {
+        for (i, d) in directions(3000).enumerate() {
+            let t = i as f64;
+            let turn = V::quaternion([(1.1 * t).sin(), (1.7 * t).sin(), (2.3 * t).sin(), 1.5]);
+            let cube = turned(cuboid::<V>([0.5; 3]), turn, d.map(|c| 0.9 * c * (0.7 * t).sin().abs()));
+            // Both contain the ball of radius ½ about their centres, less than 1 apart.
+            let answer = apart(&cube, &cuboid::<V>([0.5; 3]));
+            assert!(answer.overlap && answer.distance.as_f64() == 0.0, "{i}: {answer:?}");
+            assert_eq!(meets(&cube, &cuboid::<V>([0.5; 3])).decided(), Some(true), "{i}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// `openGJK` #52. In single precision, boxes that overlap near (91000, 54000) were 0.00329 apart.
+#[test]
+fn d6_boxes_that_overlap_far_away_overlap() {
+    fn run<V: Quaternion>() {
+        for x in [0.0, 0.25, 0.5, 0.9375, 1.0] {
+            let a = at(cuboid::<V>([0.5; 3]), [91_000.0, 54_000.0, 10.0]);
+            let b = at(cuboid::<V>([0.5; 3]), [91_000.0 + x, 54_000.0 - x, 10.0 + 0.5 * x]);
+            let answer = apart(&a, &b);
+            assert!(answer.overlap && answer.distance.as_f64() == 0.0, "{x}: {answer:?}");
+        }
+        let beyond = at(cuboid::<V>([0.5; 3]), [91_001.5, 54_000.0, 10.0]);
+        let answer = apart(&at(cuboid::<V>([0.5; 3]), [91_000.0, 54_000.0, 10.0]), &beyond);
+        assert!((answer.distance.as_f64() - 0.5).abs() < ulps::<V>(32.0), "{answer:?}");
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Jolt #1008, #419, #41. A cylinder at the edge of a triangle had a depth of 0.397, another 0.01 apart one of 0.499, and a
+/// triangle below a square millimetre was dropped as having no area.
+#[test]
+fn d22_a_cylinder_at_the_edge_of_a_triangle() {
+    fn run<V: Quaternion>() {
+        for size in [1.0, 1e-3, 1e-4] {
+            let corners = [[0.0, 0.0, -size], [0.0, 0.0, size], [-size, 0.0, 0.0]];
+            let triangle = Triangle::new(corners.map(v::<V>)).expect("finite");
+            for gap in [1e-2, 1e-3] {
+                let (h, r) = (0.5 * size, 0.25 * size);
+                let cylinder = Cylinder::<V>::new(s::<V>(h), s::<V>(r)).expect("positive");
+                // Standing beside the edge, above the face, and lying across the edge from beyond.
+                let beside = apart(&at(cylinder, [r + gap * size, 0.0, 0.1 * size]), &triangle);
+                let above = apart(&at(cylinder, [-0.1 * size, h + gap * size, 0.1 * size]), &triangle);
+                for (what, answer) in [("beside", beside), ("above", above)] {
+                    let error = (answer.distance.as_f64() - gap * size).abs();
+                    assert!(error < ulps::<V>(64.0) * size, "{what} {size} {gap}: {answer:?}");
+                    assert!(!answer.overlap, "{what} {size} {gap}: {answer:?}");
+                }
+                let within = apart(&at(cylinder, [0.5 * r, 0.0, 0.1 * size]), &triangle);
+                assert!(within.overlap, "{size}: {within:?}");
+            }
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
 /// `openGJK` #56 and #41. NaN for flat objects and rounded cubes.
 #[test]
 fn d7_flat_and_rounded_shapes_have_finite_answers() {

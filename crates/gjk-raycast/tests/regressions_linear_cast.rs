@@ -231,6 +231,104 @@ fn s25_far_from_the_origin_is_like_near_it() {
     both(|| run::<Vec3A>(65_536.0), || run::<DVec3>(1e9));
 }
 
+/// Jolt #1786 and #1787. A cast that starts touching, or within, was no hit at all where the deepest point was asked for.
+/// It is a hit at 0 in every direction, and the distance of the same pair is an overlap with a point in both.
+#[test]
+fn s15_a_start_in_contact_is_a_hit_in_every_direction() {
+    fn run<V: Quaternion>() {
+        let floor = cuboid::<V>([4.0, 1.0, 4.0]);
+        for depth in [0.0, ulps::<V>(1.0), 1e-3, 0.5] {
+            let ball = at(Ball::<V>::new(s::<V>(0.5)).expect("positive"), [0.25, 1.5 - depth, -0.5]);
+            for d in directions(40).chain([[0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]]) {
+                let hit = sweep(&ball, &floor, d).outcome.hit().unwrap_or_else(|| panic!("in contact: {depth} {d:?}"));
+                assert_eq!((hit.time.as_f64(), hit.normal), (0.0, None), "{depth} {d:?}");
+            }
+            let apart = common::apart(&ball, &floor);
+            assert!(apart.overlap && apart.distance.as_f64() == 0.0, "{depth}: {apart:?}");
+            for point in [apart.point_a, apart.point_b] {
+                assert!(point.get(1).as_f64() <= 1.0 + ulps::<V>(16.0), "in the floor: {depth} {apart:?}");
+                let from_center = (point - v::<V>([0.25, 1.5 - depth, -0.5])).norm().as_f64();
+                assert!(from_center <= 0.5 + ulps::<V>(16.0), "in the ball: {depth} {apart:?}");
+            }
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Jolt #534. The early out of a search by fraction dropped the hit at fraction 0: nothing is earlier than a start in
+/// contact, however short the motion may be, even of no length.
+#[test]
+fn s17_no_end_is_too_early_for_a_start_in_contact() {
+    fn run<V: Quaternion>() {
+        let (a, b) = (at(cuboid::<V>([1.0; 3]), [0.5, 1.5, 0.0]), cuboid::<V>([1.0; 3]));
+        for end in [0.0, f64::MIN_POSITIVE, 1e-30, 1e-3, 1.0, f64::INFINITY] {
+            for velocity in [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [1e-20, 0.0, 0.0], [0.0; 3]] {
+                let motion = Motion { velocity_a: v::<V>(velocity), velocity_b: V::ZERO };
+                let options = LinearCastOptions::new().with_max_time(s::<V>(end));
+                let hit = linear_cast(&a, &b, motion, options).expect("finite velocities").outcome.hit();
+                assert_eq!(hit.map(|hit| hit.time.as_f64()), Some(0.0), "{end} {velocity:?}");
+            }
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// `PhysX` #507. The contact was returned as the origin of the world, where the shapes were not. Far from it the contact is
+/// on both shapes, for casts and for distances.
+#[test]
+fn s20_the_point_of_contact_is_on_the_shapes() {
+    fn run<V: Quaternion>() {
+        let place = [40.0, -30.0, 20.0];
+        let b = at(cuboid::<V>([1.0, 2.0, 3.0]), place);
+        for d in directions(60) {
+            let start = [0, 1, 2].map(|i| place[i] + 6.0 * d[i]);
+            let a = at(Ball::<V>::new(s::<V>(0.5)).expect("positive"), start);
+            let on_box = |p: V| {
+                let off = [0, 1, 2].map(|i| (p.get(i).as_f64() - place[i]).abs() - [1.0, 2.0, 3.0][i]);
+                off.into_iter().fold(f64::NEG_INFINITY, f64::max).abs()
+            };
+            let hit = sweep(&a, &b, d.map(|c| -c)).outcome.hit().expect("towards the middle");
+            let center = v::<V>(start) - v::<V>(d) * hit.time;
+            assert!(on_box(hit.point) < ulps::<V>(256.0), "{d:?}: {hit:?}");
+            assert!(((hit.point - center).norm().as_f64() - 0.5).abs() < ulps::<V>(256.0), "{d:?}: {hit:?}");
+            let apart = common::apart(&a, &b);
+            assert!(on_box(apart.point_b) < ulps::<V>(256.0), "{d:?}: {apart:?}");
+            let radius = (apart.point_a - v::<V>(start)).norm().as_f64();
+            assert!((radius - 0.5).abs() < ulps::<V>(256.0), "{d:?}: {apart:?}");
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// `Box2D` #115. A long box turned by 2.95 and a square turned by 513 − 162π, which came in as 513: without taking whole
+/// turns off, the loop over the sweep did not end; with them, it said touching where there is a gap. The angles of both ends
+/// of the step, and the motion between them.
+#[test]
+fn s12_large_angles_are_angles() {
+    fn run<V: Vector>(turn: impl Fn(f64) -> V::Rotation) {
+        let long = turned(cuboid::<V>([25.0, 5.0, 0.0]), turn(2.95), [24.0, -60.0, 0.0]);
+        let (start, end) = ([53.474_274, -50.252_514, 0.0], [54.595_478, -51.083_473, 0.0]);
+        let velocity = [0, 1, 2].map(|i| end[i] - start[i]);
+        for angle in [513.366_76, 513.627_81] {
+            let less = angle - 162.0 * std::f64::consts::PI;
+            let [whole, less] = [angle, less].map(|a| turned(cuboid::<V>([2.5, 2.5, 0.0]), turn(a), start));
+            let [x, y] = [&whole, &less].map(|square| sweep(square, &long, velocity));
+            for answer in [&x, &y] {
+                assert_eq!(answer.status, Status::Converged, "{angle}: {answer:?}");
+                assert!(answer.iterations < 20, "{angle}: {answer:?}");
+            }
+            assert_eq!(x.outcome.is_miss(), y.outcome.is_miss(), "{angle}: {x:?} {y:?}");
+            // The gap of the step's start is there in the distance as well.
+            let [d, e] = [&whole, &less].map(|square| common::apart(square, &long).distance.as_f64());
+            assert!((d - e).abs() < ulps::<V>(513.0 * 64.0) * 60.0, "{angle}: {d} {e}");
+            if let Some(hit) = y.outcome.hit() {
+                assert!(d == 0.0 || hit.time.as_f64() > 0.0, "apart by {d}, but touching at once: {hit:?}");
+            }
+        }
+    }
+    both(|| run::<Vec2>(|a| s::<Vec2>(a)), || run::<DVec2>(|a| a));
+}
+
 /// Equal velocities, whatever they are, are no error: only the start counts.
 #[test]
 fn equal_velocities_hit_only_what_overlaps() {
