@@ -1,5 +1,6 @@
 //! The ellipsoid as it is returned.
 
+use crate::linalg::dot;
 use crate::solution::Shape;
 
 /// The ellipsoid E(c, X) = { x : (x − c)ᵀX(x − c) ≤ 1 } in N dimensions.
@@ -81,18 +82,7 @@ impl<const N: usize> Ellipsoid<N> {
     /// not looked at.
     #[must_use]
     pub fn radius_at(&self, x: impl Into<[f64; N]>) -> f64 {
-        let x = x.into();
-        let mut square = 0.0;
-        for (axis, a) in self.axes.iter().zip(self.semi_axes) {
-            if a > 0.0 {
-                let mut along = 0.0;
-                for k in 0..N {
-                    along += axis[k] * (x[k] - self.center[k]);
-                }
-                square += (along / a) * (along / a);
-            }
-        }
-        square.sqrt()
+        radius_at(&self.center, self.axes.as_flattened(), &self.semi_axes, &x.into())
     }
 
     /// Whether `x` lies in the ellipsoid, boundary included, as evaluated in `f64` by [`radius_at`](Self::radius_at).
@@ -101,10 +91,48 @@ impl<const N: usize> Ellipsoid<N> {
         self.radius_at(x) <= 1.0
     }
 
+    /// max direction·x over the ellipsoid, = direction·c + |diag(a)·R·direction|: how far it reaches along `direction`,
+    /// which need not be of unit length.
+    #[must_use]
+    pub fn support_value(&self, direction: impl Into<[f64; N]>) -> f64 {
+        let direction = direction.into();
+        dot(&direction, &self.center) + reach_along(self.axes.as_flattened(), &self.semi_axes, &direction)
+    }
+
     /// The volume of this ellipsoid over that of `outer`, to the power 1/N: with the inscribed and the enclosing
     /// ellipsoid of one body a number in [1/N, 1], which tells how nearly the body is an ellipsoid.
     #[must_use]
     pub fn tightness(&self, outer: &Self) -> f64 {
         (0.5 * (outer.log_det - self.log_det) / N as f64).exp()
     }
+}
+
+/// |diag(1/a)·R·(x − c)| over the semi-axes that are not zero. What is promised of points as evaluated in `f64` is promised of
+/// this very evaluation.
+#[inline]
+pub(crate) fn radius_at(center: &[f64], axes: &[f64], semi_axes: &[f64], x: &[f64]) -> f64 {
+    let n = center.len();
+    let mut square = 0.0;
+    for (axis, &a) in axes.chunks_exact(n).zip(semi_axes) {
+        if a > 0.0 {
+            let mut along = 0.0;
+            for k in 0..n {
+                along += axis[k] * (x[k] - center[k]);
+            }
+            square += (along / a) * (along / a);
+        }
+    }
+    square.sqrt()
+}
+
+/// |diag(a)·R·d|: how far the ellipsoid reaches from its centre along d. What is promised of half-spaces as evaluated in `f64`
+/// is promised of this very evaluation.
+#[inline]
+pub(crate) fn reach_along(axes: &[f64], semi_axes: &[f64], direction: &[f64]) -> f64 {
+    let mut square = 0.0;
+    for (axis, a) in axes.chunks_exact(direction.len()).zip(semi_axes) {
+        let along = a * dot(axis, direction);
+        square += along * along;
+    }
+    square.sqrt()
 }

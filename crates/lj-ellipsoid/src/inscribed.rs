@@ -1,13 +1,14 @@
 //! The maximum-volume ellipsoid inside an intersection of half-spaces.
 
 use crate::dimension::{Const, Dimension};
-use crate::ellipsoid::Ellipsoid;
+use crate::ellipsoid::{Ellipsoid, reach_along};
 use crate::error::InscribedError;
 use crate::interior::{Coordinates, Polyhedron, round_coordinates};
-use crate::linalg::{UNIT_ROUNDOFF, dot, orthogonalize_rows, triangularize};
+use crate::linalg::{UNIT_ROUNDOFF, dot, orthogonalize_rows, sum_of_logarithms, triangularize};
 use crate::maximize::maximize;
 use crate::options::{InscribedOptions, Status};
 use crate::solution::{Shape, Weight, shape_from_axes};
+use crate::start::power_of_two_inverse;
 
 /// The half-space { x : normal·x ≤ offset }. The normal points outward and need not be of unit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +23,8 @@ pub struct Halfspace<const N: usize> {
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
 pub struct Inscribed<const N: usize> {
-    /// The ellipsoid. Its reach normal·c + |diag(a)·Rᵀ·normal| in every given half-space is at most the offset, with the
-    /// rounding of the evaluation taken into account.
+    /// The ellipsoid. Its [`support_value`](Ellipsoid::support_value) along the normal of every given half-space, as evaluated
+    /// in `f64`, is at most the offset.
     pub ellipsoid: Ellipsoid<N>,
     /// A certified bound: ln det X of `ellipsoid` exceeds that of the true optimum by at most this. It is twice the bound on
     /// the lack of log-volume. Never negative.
@@ -121,7 +122,7 @@ pub fn inscribed_with<const N: usize>(
     solve(Const::<N>, &polyhedron, coordinates, 0.0, options, observer).map(Inscribed::from_solution)
 }
 
-/// Checks half-spaces and brings their normals to unit length.
+/// Checks half-spaces and scales each so that the largest coordinate of its normal is between one and two.
 pub(crate) fn polyhedron<'a>(
     n: usize,
     halfspaces: impl ExactSizeIterator<Item = (&'a [f64], f64)>,
@@ -141,9 +142,10 @@ pub(crate) fn polyhedron<'a>(
         if size == 0.0 {
             return Err(InscribedError::ZeroNormal { index });
         }
-        let length = normal.iter().map(|x| (x / size) * (x / size)).sum::<f64>().sqrt();
-        normals.extend(normal.iter().map(|x| x / size / length));
-        offsets.push(offset / size / length);
+        // A power of two moves no bit: what holds for these rows holds for the given ones.
+        let unit = power_of_two_inverse(size);
+        normals.extend(normal.iter().map(|x| x * unit));
+        offsets.push(offset * unit);
     }
     if offsets.iter().any(|b: &f64| !b.is_finite()) {
         return Err(InscribedError::OutOfRange);
@@ -184,41 +186,30 @@ pub(crate) fn solve<D: Dimension>(
     }
     triangularize(n, &mut rows);
     orthogonalize_rows(n, &mut rows);
-    let mut axes: Vec<(f64, Vec<f64>)> = rows
+    let axes: Vec<(f64, Vec<f64>)> = rows
         .chunks_exact(n)
         .map(|row| {
             let length = dot(row, row).sqrt();
             (length, row.iter().map(|x| x / length).collect())
         })
         .collect();
-    let log_det_image: f64 = axes.iter().map(|a| a.0.ln()).sum();
-    // How much room the half-spaces leave, with the rounding of this evaluation taken off.
-    let gamma = (n + 4) as f64 * UNIT_ROUNDOFF;
-    let mut room = f64::INFINITY;
-    let mut error_of_gap = 0.0;
-    let zero = vec![0.0; polyhedron.len()];
-    let y = dual.as_ref().map_or(&zero, |d| &d.y);
-    for ((a, b), y) in polyhedron.rows().zip(y) {
-        let reach = axes.iter().map(|(length, axis)| (length * dot(axis, a)).powi(2)).sum::<f64>().sqrt();
-        let (mut along, mut size) = (0.0, b.abs());
-        for k in 0..n {
-            along += a[k] * (center[k] - polyhedron.origin[k]);
-            size += (a[k] * (center[k].abs() + polyhedron.origin[k].abs())).abs();
-        }
-        let longest = axes.iter().fold(0.0, |m: f64, x| m.max(x.0));
-        let error = gamma * (size + longest);
-        room = room.min((b - along - error) / reach);
-        error_of_gap += y * (error / reach + rounding);
-    }
-    let room = room * (1.0 - 4.0 * UNIT_ROUNDOFF);
-    if !(room > 0.0 && room.is_finite()) {
-        return Err(InscribedError::OutOfRange);
-    }
-    axes.iter_mut().for_each(|axis| axis.0 *= room);
+    let log_det_image = sum_of_logarithms(axes.iter().map(|a| a.0));
     let mut shape = shape_from_axes(n, axes);
     shape.center = center;
+    touch(polyhedron, &mut shape).ok_or(InscribedError::OutOfRange)?;
+    shape.log_det = -2.0 * sum_of_logarithms(shape.semi_axes.iter().copied());
     if !shape.log_det.is_finite() {
         return Err(InscribedError::OutOfRange);
+    }
+    // What the rounding of the half-spaces' evaluation can do to the bound.
+    let gamma = (n + 4) as f64 * UNIT_ROUNDOFF;
+    let zero = vec![0.0; polyhedron.len()];
+    let y = dual.as_ref().map_or(&zero, |d| &d.y);
+    let mut error_of_gap = 0.0;
+    for ((a, b), y) in polyhedron.rows().zip(y).filter(|(_, y)| **y > 0.0) {
+        let size: f64 = (0..n).map(|k| (a[k] * shape.center[k]).abs() + (a[k] * polyhedron.origin[k]).abs()).sum();
+        let error = gamma * (size + b.abs() + shape.semi_axes[0] * dot(a, a).sqrt());
+        error_of_gap += y * (error / reach_along(&shape.axes, &shape.semi_axes, a) + rounding);
     }
     let n_float = n as f64;
     let log_det_gap = dual.as_ref().map_or(f64::INFINITY, |dual| {
@@ -240,3 +231,33 @@ pub(crate) fn solve<D: Dimension>(
         y.iter().enumerate().filter(|(_, y)| **y > 0.0).map(|(index, &weight)| Weight { index, weight }).collect();
     Ok(InscribedSolution { shape, log_det_gap, weights, status, iterations })
 }
+
+/// Scales the semi-axes so that the ellipsoid touches the first half-space, the most that keeps it in all of them as evaluated:
+/// a·(c − o) + |diag(axes)·R·a| ≤ b. `None` where that leaves nothing.
+///
+/// A scaling may by its own rounding leave a half-space a rounding behind: then it shrinks once more, twice as far every time.
+fn touch(polyhedron: &Polyhedron, shape: &mut Shape) -> Option<()> {
+    let center: Vec<f64> = shape.center.iter().zip(&polyhedron.origin).map(|(c, o)| c - o).collect();
+    let room = polyhedron
+        .rows()
+        .map(|(a, b)| (b - dot(a, &center)) / reach_along(&shape.axes, &shape.semi_axes, a))
+        .fold(f64::INFINITY, f64::min);
+    let mut scale = room;
+    let mut shrinkage = UNIT_ROUNDOFF;
+    for _ in 0..MOST_SHRINKS {
+        if !(scale > 0.0 && scale.is_finite()) {
+            return None;
+        }
+        shape.semi_axes.iter_mut().for_each(|a| *a *= scale);
+        let within = |(a, b): (&[f64], f64)| dot(a, &center) + reach_along(&shape.axes, &shape.semi_axes, a) <= b;
+        if polyhedron.rows().all(within) {
+            return Some(());
+        }
+        scale = 1.0 - shrinkage;
+        shrinkage *= 2.0;
+    }
+    None
+}
+
+/// Doubling shrinkages: the last is all of the size.
+const MOST_SHRINKS: usize = 54;

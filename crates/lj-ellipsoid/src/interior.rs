@@ -4,7 +4,7 @@ use crate::dimension::Dynamic;
 use crate::error::InscribedError;
 use crate::linalg::{UNIT_ROUNDOFF, cholesky, dot, solve_lower};
 
-/// Half-spaces aᵢ·(x − o) ≤ bᵢ, |aᵢ| = 1 unless said otherwise; rows of `n` numbers.
+/// Half-spaces aᵢ·(x − o) ≤ bᵢ, |aᵢ| near one; rows of `n` numbers.
 #[derive(Clone, Debug)]
 pub(crate) struct Polyhedron {
     pub(crate) n: usize,

@@ -3,10 +3,12 @@
 use faer::{Mat, MatRef};
 
 use crate::dimension::Dynamic;
+use crate::ellipsoid::{radius_at, reach_along};
 use crate::enclosing::EnclosingIterate;
 use crate::error::{EnclosingError, InscribedError};
 use crate::inscribed::InscribedSolution;
 use crate::interior::round_coordinates;
+use crate::linalg::dot;
 use crate::options::{EnclosingOptions, InscribedOptions, Status};
 use crate::points::Points;
 use crate::solution::{Shape, Solution, Weight};
@@ -69,14 +71,34 @@ impl EllipsoidDyn {
     pub fn radius_at(&self, x: &[f64]) -> f64 {
         let n = self.dimension();
         assert_eq!(x.len(), n, "the point has {} coordinates, the ellipsoid {n}", x.len());
-        let mut square = 0.0;
-        for (axis, &a) in self.shape.axes.chunks_exact(n).zip(&self.shape.semi_axes) {
-            if a > 0.0 {
-                let along: f64 = (0..n).map(|k| axis[k] * (x[k] - self.shape.center[k])).sum();
-                square += (along / a) * (along / a);
-            }
-        }
-        square.sqrt()
+        radius_at(&self.shape.center, &self.shape.axes, &self.shape.semi_axes, x)
+    }
+
+    /// Whether `x` lies in the ellipsoid, boundary included, as evaluated in `f64` by [`radius_at`](Self::radius_at).
+    ///
+    /// # Panics
+    /// If `x` has not as many coordinates as the ellipsoid.
+    #[must_use]
+    pub fn contains(&self, x: &[f64]) -> bool {
+        self.radius_at(x) <= 1.0
+    }
+
+    /// max direction·x over the ellipsoid; see [`Ellipsoid::support_value`](crate::Ellipsoid::support_value).
+    ///
+    /// # Panics
+    /// If `direction` has not as many coordinates as the ellipsoid.
+    #[must_use]
+    pub fn support_value(&self, direction: &[f64]) -> f64 {
+        let n = self.dimension();
+        assert_eq!(direction.len(), n, "the direction has {} coordinates, the ellipsoid {n}", direction.len());
+        dot(direction, &self.shape.center) + reach_along(&self.shape.axes, &self.shape.semi_axes, direction)
+    }
+
+    /// The logarithm of the volume; see [`Ellipsoid::log_volume`](crate::Ellipsoid::log_volume).
+    #[must_use]
+    pub fn log_volume(&self) -> f64 {
+        let rank = self.shape.semi_axes.iter().filter(|a| **a > 0.0).count();
+        crate::solution::log_unit_ball_volume(rank) - 0.5 * self.shape.log_det
     }
 }
 

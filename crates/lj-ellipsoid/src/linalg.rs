@@ -10,13 +10,31 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
+/// Σ ln xᵢ of positive numbers, as the logarithm of their product: one rounding of a logarithm in the common case, none of
+/// whose products is extreme.
+#[inline(always)]
+pub(crate) fn sum_of_logarithms(numbers: impl Iterator<Item = f64>) -> f64 {
+    let mut sum = 0.0;
+    let mut product = 1.0;
+    for x in numbers {
+        if !(1e-150..=1e150).contains(&x) {
+            sum += x.ln();
+            continue;
+        }
+        product *= x;
+        if !(1e-150..=1e150).contains(&product) {
+            sum += product.ln();
+            product = 1.0;
+        }
+    }
+    sum + product.ln()
+}
+
 /// Overwrites the lower triangle of the symmetric `a` by its Cholesky factor L, A = L·Lᵀ, and answers ln det A.
 /// `None` if a pivot is not positive (or NaN): then `a` is not numerically positive definite.
 #[inline(always)]
 pub(crate) fn cholesky<D: Dimension>(dim: D, a: &mut [f64]) -> Option<f64> {
     let n = dim.get();
-    let mut product = 1.0;
-    let mut log_det = 0.0;
     for j in 0..n {
         let mut pivot = a[j * n + j];
         for k in 0..j {
@@ -24,12 +42,6 @@ pub(crate) fn cholesky<D: Dimension>(dim: D, a: &mut [f64]) -> Option<f64> {
         }
         if !(pivot > 0.0 && pivot.is_finite()) {
             return None;
-        }
-        // One logarithm per matrix in the common case, none of whose pivots is extreme.
-        product *= pivot;
-        if !(1e-100..=1e100).contains(&product) {
-            log_det += product.ln();
-            product = 1.0;
         }
         let root = pivot.sqrt();
         a[j * n + j] = root;
@@ -41,7 +53,7 @@ pub(crate) fn cholesky<D: Dimension>(dim: D, a: &mut [f64]) -> Option<f64> {
             a[i * n + j] = s / root;
         }
     }
-    Some(log_det + product.ln())
+    Some(2.0 * sum_of_logarithms((0..n).map(|k| a[k * n + k])))
 }
 
 /// Solves L·x = b in place, `l` lower triangular.

@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use crate::design::{Moments, WorkingSet};
 use crate::dimension::{Dimension, Dynamic};
+use crate::ellipsoid::radius_at;
 use crate::error::EnclosingError;
 use crate::frame::Frame;
-use crate::linalg::{UNIT_ROUNDOFF, dot, orthogonalize_rows, triangularize};
+use crate::linalg::{UNIT_ROUNDOFF, dot, orthogonalize_rows, sum_of_logarithms, triangularize};
 use crate::options::Status;
 use crate::parallel::map_ranges;
 use crate::points::Points;
@@ -102,12 +103,14 @@ impl Certificate {
 struct Reach {
     /// Where the ellipsoid is the unit ball.
     frame: Frame,
-    /// max |diag(1/a)·R·(x − c)|.
+    /// At least max |diag(1/a)·R·(x − c)|, in whatever order it is evaluated.
     axes: f64,
     /// max (x − c)ᵀX(x − c).
     matrix: f64,
     /// The points that may be contacts, with |diag(1/a)·R·(x − c)|²; `None` where they are a large part of all.
     candidates: Option<Vec<(usize, f64)>>,
+    /// The points that may be the furthest, unless they are many.
+    leaders: Option<Vec<usize>>,
     /// Passes over the points.
     passes: usize,
 }
@@ -132,11 +135,10 @@ pub(crate) fn finish<P: Points>(
     // A point with weight lies within the gap of the surface.
     let tolerance = (certificate.log_det_bound + r as f64 * (r as f64).ln()).max(1e-9);
     let reach = reach(points, r, &shape, tolerance);
-    let growth = reach.axes * (1.0 + 4.0 * UNIT_ROUNDOFF);
-    shape.semi_axes.iter_mut().for_each(|a| *a *= growth);
+    let growth = touch(points, &mut shape, &reach);
     let shrink = (1.0 - 4.0 * UNIT_ROUNDOFF) / reach.matrix.max(growth * growth);
     shape.matrix.iter_mut().for_each(|x| *x *= shrink);
-    shape.log_det -= 2.0 * r as f64 * growth.ln();
+    shape.log_det = -2.0 * sum_of_logarithms(shape.semi_axes[..r].iter().copied());
     if !shape.log_det.is_finite() || shape.semi_axes.iter().any(|a| !a.is_finite()) {
         return Err(EnclosingError::OutOfRange);
     }
@@ -191,13 +193,13 @@ pub(crate) fn shape_from_axes(n: usize, mut axes: Vec<(f64, Vec<f64>)>) -> Shape
     for (k, (a, axis)) in axes.iter().enumerate() {
         shape.semi_axes[k] = *a;
         shape.axes.extend_from_slice(axis);
-        shape.log_det -= 2.0 * a.ln();
         for i in 0..n {
             for j in 0..n {
                 shape.matrix[i * n + j] += (axis[i] / a) * (axis[j] / a);
             }
         }
     }
+    shape.log_det = -2.0 * sum_of_logarithms(shape.semi_axes[..r].iter().copied());
     complete_rotation(n, r, &mut shape.axes);
     shape
 }
@@ -263,12 +265,18 @@ fn reach<P: Points>(points: &P, r: usize, shape: &Shape, tolerance: f64) -> Reac
         origin: shape.center.clone(),
         map: map.flat_map(|(axis, a)| axis.iter().map(move |x| x / a)).collect(),
     };
-    // Of e = x − c with |T·e| = 1: |T·e| is computed within `error`, eᵀXe within `error_matrix`.
+    // Of e = x − c: |T·e| and eᵀXe, each with a bound on the rounding of its evaluation.
     let errors = |e: &[f64]| {
-        let mut error = 0.0;
+        let (mut square, mut error) = (0.0, 0.0);
         for row in frame.map.chunks_exact(n) {
-            let sum: f64 = (0..n).map(|k| (row[k] * e[k]).abs()).sum();
-            error += (gamma * sum) * (gamma * sum);
+            let (mut along, mut size) = (0.0, 0.0);
+            for k in 0..n {
+                let term = row[k] * e[k];
+                along += term;
+                size += term.abs();
+            }
+            square += along * along;
+            error += (gamma * size) * (gamma * size);
         }
         let (mut value, mut size) = (0.0, 0.0);
         for i in 0..n {
@@ -278,14 +286,14 @@ fn reach<P: Points>(points: &P, r: usize, shape: &Shape, tolerance: f64) -> Reac
                 size += term.abs();
             }
         }
-        (error.sqrt(), value, 2.0 * gamma * size)
+        (error.sqrt(), square.sqrt(), 2.0 * gamma * size, value)
     };
     // The half-extents of the ellipsoid along the coordinates bound |e| of every point in it. X itself is AᵀA only up to
     // rounding of the same size.
     let extent: Vec<f64> = (0..n)
         .map(|k| (0..r).map(|j| (shape.semi_axes[j] * shape.axes[j * n + k]).powi(2)).sum::<f64>().sqrt())
         .collect();
-    let (error, _, error_matrix) = errors(&extent);
+    let (error, _, error_matrix, _) = errors(&extent);
     let largest_error = 2.0 * error + 2.0 * error_matrix;
     let near = 1.0 - (2.0 * largest_error).max(4.0 * tolerance);
 
@@ -325,24 +333,52 @@ fn reach<P: Points>(points: &P, r: usize, shape: &Shape, tolerance: f64) -> Reac
     }
 
     let least = furthest * (1.0 - 2.0 * largest_error);
-    let leaders = || candidates.iter().flatten().filter(|(_, q)| *q >= least);
-    if candidates.is_none() || leaders().nth(MANY).is_some() {
-        let (axes, matrix) = (furthest.sqrt() * (1.0 + error), furthest * (1.0 + largest_error));
-        return Reach { frame, axes, matrix, candidates, passes };
-    }
-    let mut v = dim.zero();
-    let (mut axes, mut matrix): (f64, f64) = (0.0, 0.0);
-    for &(i, q) in leaders() {
-        points.read(i, v.as_mut());
-        let e = v.as_mut();
-        for k in 0..n {
-            e[k] -= frame.origin[k];
+    let leaders: Option<Vec<usize>> = candidates.as_ref().and_then(|candidates| {
+        let mut leaders = candidates.iter().filter(|(_, q)| *q >= least).map(|(i, _)| *i);
+        let found: Vec<usize> = leaders.by_ref().take(MANY).collect();
+        leaders.next().is_none().then_some(found)
+    });
+    let (mut axes, mut matrix) = (furthest.sqrt() * (1.0 + error), furthest * (1.0 + largest_error));
+    if let Some(leaders) = &leaders {
+        let mut v = dim.zero();
+        (axes, matrix) = (0.0, 0.0);
+        for &i in leaders {
+            points.read(i, v.as_mut());
+            let e = v.as_mut();
+            for k in 0..n {
+                e[k] -= frame.origin[k];
+            }
+            let (error, radius, error_matrix, value) = errors(e);
+            axes = axes.max(radius + error);
+            matrix = matrix.max(value + error_matrix);
         }
-        let (error, value, error_matrix) = errors(e);
-        axes = axes.max(q.sqrt() + error);
-        matrix = matrix.max(value + error_matrix);
     }
-    Reach { frame, axes, matrix, candidates, passes }
+    Reach { frame, axes, matrix, candidates, leaders, passes }
+}
+
+/// Scales the semi-axes so that the furthest point touches, and answers by how much: the least that holds every point as
+/// evaluated by [`radius_at`].
+///
+/// A scaling that makes the largest radius one may, by its own rounding, leave one a rounding beyond: then once more.
+/// Where points are many, or rounding does not settle, the scaling is what holds them in any order of evaluation.
+fn touch<P: Points>(points: &P, shape: &mut Shape, reach: &Reach) -> f64 {
+    let mut v = points.dim().zero();
+    let mut growth = 1.0;
+    for attempt in 0..if reach.leaders.is_some() { 8 } else { 0 } {
+        let mut furthest: f64 = 0.0;
+        for &i in reach.leaders.iter().flatten() {
+            points.read(i, v.as_mut());
+            furthest = furthest.max(radius_at(&shape.center, &shape.axes, &shape.semi_axes, v.as_ref()));
+        }
+        if attempt > 0 && furthest <= 1.0 {
+            return growth;
+        }
+        shape.semi_axes.iter_mut().for_each(|a| *a *= furthest);
+        growth *= furthest;
+    }
+    let rest = reach.axes / growth * (1.0 + 6.0 * UNIT_ROUNDOFF);
+    shape.semi_axes.iter_mut().for_each(|a| *a *= rest);
+    growth * rest
 }
 
 /// The points at least `radius` from the origin of the frame.

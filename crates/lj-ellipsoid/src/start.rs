@@ -125,7 +125,7 @@ fn bounds_of<P: Points>(
 }
 
 /// The power of two that brings `extent` near one, so that scaling by it is exact.
-fn power_of_two_inverse(extent: f64) -> f64 {
+pub(crate) fn power_of_two_inverse(extent: f64) -> f64 {
     if extent == 0.0 {
         return 1.0;
     }
