@@ -172,6 +172,7 @@ impl Moments {
         let r = rank.get();
         self.z.resize(y.len(), 0.0);
         self.q.clear();
+        self.q.reserve(y.len() / r);
         for (z, y) in self.z.chunks_exact_mut(r).zip(y.chunks_exact(r)) {
             for k in 0..r {
                 z[k] = y[k] - self.mean[k];

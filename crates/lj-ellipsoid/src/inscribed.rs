@@ -186,15 +186,14 @@ pub(crate) fn solve<D: Dimension>(
     }
     triangularize(n, &mut rows);
     orthogonalize_rows(n, &mut rows);
-    let axes: Vec<(f64, Vec<f64>)> = rows
-        .chunks_exact(n)
-        .map(|row| {
-            let length = dot(row, row).sqrt();
-            (length, row.iter().map(|x| x / length).collect())
-        })
-        .collect();
-    let log_det_image = sum_of_logarithms(axes.iter().map(|a| a.0));
-    let mut shape = shape_from_axes(n, axes);
+    let mut semi_axes = Vec::with_capacity(n);
+    for row in rows.chunks_exact_mut(n) {
+        let length = dot(row, row).sqrt();
+        semi_axes.push(length);
+        row.iter_mut().for_each(|x| *x /= length);
+    }
+    let log_det_image = sum_of_logarithms(semi_axes.iter().copied());
+    let mut shape = shape_from_axes(n, semi_axes, rows);
     shape.center = center;
     touch(polyhedron, &mut shape).ok_or(InscribedError::OutOfRange)?;
     shape.log_det = -2.0 * sum_of_logarithms(shape.semi_axes.iter().copied());

@@ -169,41 +169,39 @@ fn orthonormal_columns(n: usize, a: &mut [f64], map: &mut [f64]) -> Result<(), I
 /// By Stiemke's lemma this is so exactly if −g, g = Σaᵢ/|aᵢ|, is a non-negative combination of the rows. The residual of
 /// the non-negative least-squares problem (Lawson and Hanson) is otherwise such a direction.
 fn positively_spans(n: usize, rows: &[f64]) -> bool {
-    let unit: Vec<Vec<f64>> = rows
-        .chunks_exact(n)
-        .map(|row| {
-            let length = dot(row, row).sqrt();
-            row.iter().map(|x| x / length).collect()
-        })
-        .collect();
-    let mut target = vec![0.0; n];
-    for row in &unit {
-        target.iter_mut().zip(row).for_each(|(t, x)| *t -= x);
+    let mut unit = rows.to_vec();
+    for row in unit.chunks_exact_mut(n) {
+        let length = dot(row, row).sqrt();
+        row.iter_mut().for_each(|x| *x /= length);
     }
-    let tolerance = 1e-12 * unit.len() as f64;
+    let m = unit.len() / n;
+    let unit = |i: usize| &unit[i * n..(i + 1) * n];
+    let mut target = vec![0.0; n];
+    for i in 0..m {
+        target.iter_mut().zip(unit(i)).for_each(|(t, x)| *t -= x);
+    }
+    let tolerance = 1e-12 * m as f64;
     let mut passive: Vec<usize> = Vec::new();
     let mut weights: Vec<f64> = Vec::new();
-    for _ in 0..20 * (unit.len() + n) {
+    for _ in 0..20 * (m + n) {
         let mut residual = target.clone();
         for (&i, w) in passive.iter().zip(&weights) {
-            residual.iter_mut().zip(&unit[i]).for_each(|(r, x)| *r -= w * x);
+            residual.iter_mut().zip(unit(i)).for_each(|(r, x)| *r -= w * x);
         }
         let length = dot(&residual, &residual).sqrt();
         if length <= tolerance {
             return true;
         }
-        let best = (0..unit.len())
+        let best = (0..m)
             .filter(|i| !passive.contains(i))
-            .map(|i| (i, dot(&unit[i], &residual)))
+            .map(|i| (i, dot(unit(i), &residual)))
             .fold((usize::MAX, 1e-13 * length), |best, now| if now.1 > best.1 { now } else { best });
         if best.0 == usize::MAX || passive.len() == n {
             return false;
         }
         passive.push(best.0);
         weights.push(0.0);
-        while let Some(solution) =
-            least_squares(&passive.iter().map(|&i| unit[i].as_slice()).collect::<Vec<_>>(), &target)
-        {
+        while let Some(solution) = least_squares(&passive.iter().map(|&i| unit(i)).collect::<Vec<_>>(), &target) {
             if solution.iter().all(|w| *w > 0.0) {
                 weights = solution;
                 break;

@@ -150,8 +150,8 @@ pub(crate) fn orthogonalize_rows(n: usize, t: &mut [f64]) {
                 rotated = true;
                 // The rotation (c, s) with (c·a − s·b)·(s·a + c·b) = 0, t = s/c the root of least size of t² + 2ζt − 1 = 0.
                 let zeta = (bb - aa) / (2.0 * ab);
-                let tangent = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
-                let c = 1.0 / tangent.hypot(1.0);
+                let tangent = zeta.signum() / (zeta.abs() + (zeta * zeta + 1.0).sqrt());
+                let c = 1.0 / (tangent * tangent + 1.0).sqrt();
                 let s = c * tangent;
                 for (x, y) in a.iter_mut().zip(b) {
                     (*x, *y) = (c * *x - s * *y, s * *x + c * *y);

@@ -36,15 +36,27 @@ pub(crate) struct Point {
 }
 
 impl Point {
-    /// Evaluates everything at (B, d); `None` unless B ≻ 0 and all cᵢ > 0.
-    fn at<D: Dimension>(dim: D, p: &[f64], b: Vec<f64>, d: Vec<f64>) -> Option<Self> {
+    /// Room for a point of n coordinates and m half-spaces.
+    fn new(n: usize, m: usize) -> Self {
+        Self {
+            b: vec![0.0; n * n],
+            d: vec![0.0; n],
+            v: vec![0.0; n * m],
+            h: vec![0.0; m],
+            c: vec![0.0; m],
+            log_det: 0.0,
+        }
+    }
+
+    /// Evaluates everything that follows from B and d; false unless B ≻ 0 and all cᵢ > 0.
+    fn evaluate<D: Dimension>(&mut self, dim: D, p: &[f64], factor: &mut Vec<f64>) -> bool {
         let n = dim.get();
-        let mut factor = b.clone();
-        let log_det = cholesky(dim, &mut factor)?;
-        let mut v = vec![0.0; p.len()];
-        let m = p.len() / n;
-        let (mut h, mut c) = (Vec::with_capacity(m), Vec::with_capacity(m));
-        for (p, v) in p.chunks_exact(n).zip(v.chunks_exact_mut(n)) {
+        factor.clone_from(&self.b);
+        let Some(log_det) = cholesky(dim, factor) else { return false };
+        self.log_det = log_det;
+        let (b, d) = (&self.b[..n * n], &self.d[..n]);
+        let outputs = self.v.chunks_exact_mut(n).zip(&mut self.h).zip(&mut self.c);
+        for (p, ((v, h), c)) in p.chunks_exact(n).zip(outputs) {
             let mut square = 0.0;
             let mut along = 0.0;
             for i in 0..n {
@@ -56,16 +68,15 @@ impl Point {
                 square += sum * sum;
                 along += p[i] * d[i];
             }
-            let length = square.sqrt();
-            v.iter_mut().for_each(|v| *v /= length);
-            let slack = 1.0 - along - length;
-            if !(slack > 0.0) {
-                return None;
+            *h = square.sqrt();
+            *c = 1.0 - along - *h;
+            if !(*c > 0.0) {
+                return false;
             }
-            h.push(length);
-            c.push(slack);
+            let inverse = 1.0 / *h;
+            v.iter_mut().for_each(|v| *v *= inverse);
         }
-        Some(Self { b, d, v, h, c, log_det })
+        true
     }
 }
 
@@ -139,9 +150,14 @@ pub(crate) fn maximize<D: Dimension>(
     let n = dim.get();
     let m = p.len() / n;
     let reach = p.chunks_exact(n).fold(0.0, |r: f64, p| r.max(dot(p, p).sqrt()));
-    let mut b = vec![0.0; n * n];
-    (0..n).for_each(|k| b[k * n + k] = 0.5 / reach);
-    let mut point = Point::at(dim, p, b, vec![0.0; n]).ok_or(InscribedError::OutOfRange)?;
+    let mut point = Point::new(n, m);
+    let mut factor = Vec::with_capacity(n * n);
+    (0..n).for_each(|k| point.b[k * n + k] = 0.5 / reach);
+    if !point.evaluate(dim, p, &mut factor) {
+        return Err(InscribedError::OutOfRange);
+    }
+    let mut trial = point.clone();
+    let mut dy = vec![0.0; m];
     // Σyᵢhᵢ = N at the solution.
     let mut mu = n as f64 / m as f64;
     let mut y: Vec<f64> = point.c.iter().map(|c| mu / c).collect();
@@ -190,38 +206,52 @@ pub(crate) fn maximize<D: Dimension>(
             break Status::Stalled;
         }
         let (db, dd) = system.step(n);
-        // Δyᵢ = (μ − yᵢcᵢ − yᵢ∇cᵢᵀΔ)/cᵢ, ∇cᵢᵀΔ = −vᵢᵀΔB·pᵢ − pᵢᵀΔd.
+        // Δyᵢ = (μ − yᵢcᵢ − yᵢ∇cᵢᵀΔ)/cᵢ, ∇cᵢᵀΔ = −vᵢᵀΔB·pᵢ − pᵢᵀΔd. As cᵢ is concave it stays below its tangent: no step
+        // beyond `reachable` keeps cᵢ ≥ 0.002 of what it is.
         let mut dual_length: f64 = 1.0;
-        let mut dy = Vec::with_capacity(m);
-        for i in 0..m {
-            let (p, v) = (&p[i * n..(i + 1) * n], &point.v[i * n..(i + 1) * n]);
+        let mut reachable = f64::INFINITY;
+        let rows = p.chunks_exact(n).zip(point.v.chunks_exact(n)).zip(point.c.iter().zip(&y));
+        for (((p, v), (&c, &y)), dy) in rows.zip(&mut dy) {
             let mut change = 0.0;
             for j in 0..n {
                 change -= p[j] * dd[j] + v[j] * dot(&db[j * n..(j + 1) * n], p);
             }
-            let d = (mu - y[i] * point.c[i] - y[i] * change) / point.c[i];
-            if d < 0.0 {
-                dual_length = dual_length.min(-0.995 * y[i] / d);
+            *dy = (mu - y * c - y * change) / c;
+            if *dy < 0.0 {
+                dual_length = dual_length.min(-0.995 * y / *dy);
             }
-            dy.push(d);
+            if change < 0.0 {
+                reachable = reachable.min(-0.998 * c / change);
+            }
         }
         // The longest of 1, 0.98, 0.96, 0.92, … that keeps off the boundary.
         let (mut primal_length, mut shortfall) = (1.0, 0.02);
         let moved = loop {
-            let b = point.b.iter().zip(&db).map(|(x, d)| x + primal_length * d).collect();
-            let d = point.d.iter().zip(&dd).map(|(x, d)| x + primal_length * d).collect();
-            match Point::at(dim, p, b, d) {
-                Some(next) if next.c.iter().zip(&point.c).all(|(new, old)| *new >= 0.002 * old) => break Some(next),
-                _ if primal_length < 1e-9 => break None,
-                _ if shortfall < 0.5 => {
-                    primal_length = 1.0 - shortfall;
-                    shortfall *= 2.0;
+            // A little beyond, for the rounding of the tangent.
+            if primal_length <= 1.001 * reachable {
+                let step = |x: &mut f64, (old, d): (&f64, &f64)| *x = old + primal_length * d;
+                trial.b.iter_mut().zip(point.b.iter().zip(&db)).for_each(|(x, from)| step(x, from));
+                trial.d.iter_mut().zip(point.d.iter().zip(&dd)).for_each(|(x, from)| step(x, from));
+                if trial.evaluate(dim, p, &mut factor)
+                    && trial.c.iter().zip(&point.c).all(|(new, old)| *new >= 0.002 * old)
+                {
+                    break true;
                 }
-                _ => primal_length *= 0.6,
+            }
+            if primal_length < 1e-9 {
+                break false;
+            }
+            if shortfall < 0.5 {
+                primal_length = 1.0 - shortfall;
+                shortfall *= 2.0;
+            } else {
+                primal_length *= 0.6;
             }
         };
-        let Some(moved) = moved else { break Status::Stalled };
-        point = moved;
+        if !moved {
+            break Status::Stalled;
+        }
+        std::mem::swap(&mut point, &mut trial);
         y.iter_mut().zip(&dy).for_each(|(y, d)| *y += dual_length * d);
         // Near the end full steps are taken and μ may fall fast; a bold step from afar costs several to recover.
         centring = match primal_length.min(dual_length) {
@@ -241,12 +271,20 @@ struct System {
     matrix: Vec<f64>,
     right: Vec<f64>,
     gradients: Vec<f64>,
+    /// Weights of the half-spaces, and a row of gradients times them.
+    ratio: Vec<f64>,
+    curvature: Vec<f64>,
+    pull: Vec<f64>,
+    along_b: Vec<f64>,
+    weighted: Vec<f64>,
 }
 
 impl System {
     fn new(n: usize) -> Self {
         let size = n * (n + 3) / 2;
-        Self { size, matrix: vec![0.0; size * size], right: vec![0.0; size], gradients: Vec::new() }
+        let [gradients, ratio, curvature, pull, along_b, weighted] = Default::default();
+        let (matrix, right) = (vec![0.0; size * size], vec![0.0; size]);
+        Self { size, matrix, right, gradients, ratio, curvature, pull, along_b, weighted }
     }
 
     /// Assembles and solves
@@ -263,44 +301,42 @@ impl System {
         let m = y.len();
         let gradients = &mut self.gradients;
         gradients.resize(size * m, 0.0);
-        let mut a = 0;
+        let rows = || p.chunks_exact(n).zip(point.v.chunks_exact(n));
+        let mut rest = &mut gradients[..];
         for j in 0..n {
             for k in j..n {
-                for (i, g) in gradients[a * m..(a + 1) * m].iter_mut().enumerate() {
-                    let (p, v) = (&p[i * n..(i + 1) * n], &point.v[i * n..(i + 1) * n]);
-                    *g = if j == k { v[j] * p[j] } else { v[j] * p[k] + v[k] * p[j] };
+                let (row, others) = rest.split_at_mut(m);
+                rest = others;
+                if j == k {
+                    row.iter_mut().zip(rows()).for_each(|(g, (p, v))| *g = v[j] * p[j]);
+                } else {
+                    row.iter_mut().zip(rows()).for_each(|(g, (p, v))| *g = v[j] * p[k] + v[k] * p[j]);
                 }
-                a += 1;
             }
         }
-        for j in 0..n {
-            for (i, g) in gradients[(entries + j) * m..(entries + j + 1) * m].iter_mut().enumerate() {
-                *g = p[i * n + j];
-            }
+        for (j, row) in rest.chunks_exact_mut(m).enumerate() {
+            row.iter_mut().zip(p.chunks_exact(n)).for_each(|(g, p)| *g = p[j]);
         }
-        let ratio: Vec<f64> = y.iter().zip(&point.c).map(|(y, c)| y / c).collect();
-        let curvature: Vec<f64> = y.iter().zip(&point.h).map(|(y, h)| y / h).collect();
-        let pull: Vec<f64> = point.c.iter().map(|c| mu / c).collect();
+        let Self { ratio, curvature, pull, along_b, weighted, .. } = self;
+        fill(ratio, y.iter().zip(&point.c).map(|(y, c)| y / c));
+        fill(curvature, y.iter().zip(&point.h).map(|(y, h)| y / h));
+        fill(pull, point.c.iter().map(|c| mu / c));
         // Along B: (yᵢ/cᵢ − yᵢ/hᵢ)∇hᵢ∇hᵢᵀ, the second from the curvature; along d, and between them: yᵢ/cᵢ.
-        let along_b: Vec<f64> = ratio.iter().zip(&curvature).map(|(r, c)| r - c).collect();
-        let mut weighted = vec![0.0; m];
+        fill(along_b, ratio.iter().zip(&*curvature).map(|(r, c)| r - c));
+        weighted.resize(m, 0.0);
         for a in 0..size {
-            let weight = if a < entries { &along_b } else { &ratio };
+            let weight = if a < entries { &*along_b } else { &*ratio };
             let g = &gradients[a * m..(a + 1) * m];
             weighted.iter_mut().zip(weight.iter().zip(g)).for_each(|(x, (w, g))| *x = w * g);
-            for b in 0..=a {
-                self.matrix[a * size + b] = dot_in_lanes(&weighted, &gradients[b * m..(b + 1) * m]);
-            }
-            self.right[a] = -dot_in_lanes(&pull, g);
+            dots_in_lanes(weighted, &gradients[..(a + 1) * m], &mut self.matrix[a * size..a * size + a + 1]);
+            self.right[a] = -dot_in_lanes(pull, g);
         }
         // Σ(yᵢ/hᵢ)|Δpᵢ|² = tr(Δ·W·Δ), W = Σ(yᵢ/hᵢ)pᵢpᵢᵀ.
         let mut w = vec![0.0; n * n];
         for j in 0..n {
             let pj = &gradients[(entries + j) * m..(entries + j + 1) * m];
             weighted.iter_mut().zip(curvature.iter().zip(pj)).for_each(|(x, (c, p))| *x = c * p);
-            for k in 0..n {
-                w[j * n + k] = dot_in_lanes(&weighted, &gradients[(entries + k) * m..(entries + k + 1) * m]);
-            }
+            dots_in_lanes(weighted, &gradients[entries * m..], &mut w[j * n..(j + 1) * n]);
         }
         let mut a = 0;
         for i in 0..n {
@@ -338,6 +374,41 @@ impl System {
             }
         }
         (db, self.right[at..].to_vec())
+    }
+}
+
+/// Replaces what `to` holds, in the room it has.
+fn fill(to: &mut Vec<f64>, numbers: impl Iterator<Item = f64>) {
+    to.clear();
+    to.extend(numbers);
+}
+
+/// outₖ = a·bₖ for the rows bₖ of `rows`: three at a time, so that each number of `a` is loaded once for three.
+fn dots_in_lanes(a: &[f64], rows: &[f64], out: &mut [f64]) {
+    let m = a.len();
+    let mut threes = out.chunks_exact_mut(3);
+    let (a_lanes, a_rest) = a.as_chunks::<LANES>();
+    for (out, rows) in threes.by_ref().zip(rows.chunks_exact(3 * m)) {
+        let (x, rest) = rows.split_at(m);
+        let (y, z) = rest.split_at(m);
+        let (x, x_rest) = x.as_chunks::<LANES>();
+        let (y, y_rest) = y.as_chunks::<LANES>();
+        let (z, z_rest) = z.as_chunks::<LANES>();
+        let mut sums = [[0.0; LANES]; 3];
+        for (((a, x), y), z) in a_lanes.iter().zip(x).zip(y).zip(z) {
+            for lane in 0..LANES {
+                sums[0][lane] += a[lane] * x[lane];
+                sums[1][lane] += a[lane] * y[lane];
+                sums[2][lane] += a[lane] * z[lane];
+            }
+        }
+        for ((out, sums), rest) in out.iter_mut().zip(sums).zip([x_rest, y_rest, z_rest]) {
+            *out = sums.iter().sum::<f64>() + dot(a_rest, rest);
+        }
+    }
+    let done = rows.len() / m / 3 * 3;
+    for (out, row) in threes.into_remainder().iter_mut().zip(rows[done * m..].chunks_exact(m)) {
+        *out = dot_in_lanes(a, row);
     }
 }
 

@@ -56,6 +56,9 @@ pub(crate) fn solve<R: Dimension>(
     loop {
         lift_far_points(rank, set, moments);
         let now = moments.log_det_gap(r);
+        if now <= gap {
+            return steps;
+        }
         if now < best_gap {
             // Quadratic convergence at least halves the gap; slower than that is rounding or a hard start.
             without_progress = if now < 0.5 * best_gap { 0 } else { without_progress + 1 };
@@ -64,12 +67,10 @@ pub(crate) fn solve<R: Dimension>(
         } else {
             without_progress += 1;
         }
-        if now <= gap {
-            return steps;
-        }
         eliminate(rank, set, moments);
         if steps >= max_steps
             || (without_progress >= 3 && best_gap < 1e-9)
+            || (without_progress >= 1 && best_gap < 1e-13)
             || without_progress >= 12
             || !step(rank, set, moments, work)
         {
@@ -136,6 +137,7 @@ fn step<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments, work
     }
     let proximal = PROXIMAL * moments.q.iter().fold(0.0, |m: f64, q| m.max((1.0 + q) * (1.0 + q)));
     work.r.clear();
+    work.r.reserve(k);
     for (i, (q, u)) in moments.q.iter().zip(&set.u).enumerate() {
         work.h[i * k + i] += proximal;
         work.r.push(2.0 * (q + 1.0) - n + proximal * u);
@@ -200,6 +202,7 @@ fn non_negative_quadratic(k: usize, n: f64, u: &[f64], work: &mut Workspace) {
     work.v.clear();
     work.v.extend_from_slice(u);
     work.free.clear();
+    work.free.reserve(k);
     work.free.extend((0..k).filter(|&i| u[i] > 0.0));
     for _ in 0..3 * k + 10 {
         let f = work.free.len();
@@ -254,6 +257,7 @@ fn solve_free(k: usize, work: &mut Workspace) -> bool {
     let f = work.free.len();
     work.factor.resize(f * f, 0.0);
     work.solution.clear();
+    work.solution.reserve(f);
     for (a, &i) in work.free.iter().enumerate() {
         for (b, &j) in work.free[..=a].iter().enumerate() {
             work.factor[a * f + b] = work.h[i.max(j) * k + i.min(j)];

@@ -16,7 +16,80 @@ pub(crate) fn map_ranges<T: Send>(len: usize, look: impl Fn(Range<usize>) -> T +
         return vec![look(0..len)];
     }
     let parts = 0..len.div_ceil(PART);
+    let look = |k: usize| look(k * PART..((k + 1) * PART).min(len));
     #[cfg(feature = "rayon")]
-    let parts = parts.into_par_iter();
-    parts.map(|k| look(k * PART..((k + 1) * PART).min(len))).collect()
+    if !in_turn() {
+        return parts.into_par_iter().map(look).collect();
+    }
+    parts.map(look).collect()
+}
+
+/// Whether this thread is to look at the parts one after the other, as it does without `rayon`; tests compare the two.
+#[cfg(feature = "rayon")]
+fn in_turn() -> bool {
+    #[cfg(test)]
+    return tests::IN_TURN.get();
+    #[cfg(not(test))]
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(feature = "rayon")]
+    thread_local! {
+        pub(super) static IN_TURN: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
+    }
+
+    #[test]
+    fn the_parts_are_the_whole_in_order() {
+        for len in [0, 1, PART, 2 * PART - 1, 2 * PART, 2 * PART + 1, 7 * PART + 12_345] {
+            let all = map_ranges(len, |range| range).into_iter().flatten();
+            assert!(all.eq(0..len), "{len} points in parts");
+        }
+    }
+
+    /// Whole answers, with `rayon` on one to five threads and without it: not a bit differs.
+    #[cfg(feature = "rayon")]
+    #[test]
+    fn answers_are_the_same_with_and_without_rayon() {
+        use crate::{EnclosingMethod, EnclosingOptions, enclosing, inscribed_in_hull};
+
+        let mut state = 1u64;
+        let mut unit = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        // Many points nearly touch in the first cloud, few in the second, all in the third.
+        let cube: Vec<[f64; 2]> = (0..5 * PART / 2).map(|_| [unit(), unit()]).collect();
+        let bell: Vec<[f64; 3]> =
+            (0..4 * PART).map(|_| std::array::from_fn(|_| (0..12).map(|_| unit()).sum::<f64>())).collect();
+        let sphere: Vec<[f64; 3]> = (0..3 * PART)
+            .map(|_| {
+                let x: [f64; 3] = std::array::from_fn(|_| unit() - 0.5);
+                let length = x.iter().map(|x| x * x).sum::<f64>().sqrt();
+                x.map(|x| x / length)
+            })
+            .collect();
+        let answers = || {
+            let options = EnclosingOptions::new();
+            let slow = options.with_method(EnclosingMethod::Khachiyan).with_epsilon(1e-2);
+            (
+                enclosing(&cube, options),
+                enclosing(&bell, options),
+                enclosing(&sphere, options),
+                enclosing(&bell, slow),
+                inscribed_in_hull(&cube, crate::InscribedOptions::new()),
+            )
+        };
+        IN_TURN.set(true);
+        let in_turn = answers();
+        IN_TURN.set(false);
+        assert!(in_turn.0.is_ok() && in_turn.1.is_ok() && in_turn.2.is_ok(), "three answers");
+        for threads in [1, 2, 3, 5] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            assert_eq!(pool.install(answers), in_turn, "{threads} threads");
+        }
+    }
 }

@@ -49,7 +49,7 @@ impl Solution {
     /// The ellipsoid around `count` points that all are `center`.
     pub(crate) fn point(center: Vec<f64>, count: usize, scans: usize) -> Self {
         Self {
-            shape: Shape { center: center.clone(), ..shape_from_axes(center.len(), Vec::new()) },
+            shape: Shape { center: center.clone(), ..shape_from_axes(center.len(), Vec::new(), Vec::new()) },
             log_det_gap: 0.0,
             weights: vec![Weight { index: 0, weight: 1.0 }],
             contacts: (0..count).collect(),
@@ -169,39 +169,42 @@ pub(crate) fn principal_axes(n: usize, map: &[f64]) -> Shape {
     rows.iter_mut().for_each(|x| *x /= unit);
     triangularize(n, &mut rows);
     orthogonalize_rows(n, &mut rows);
-    let axes = rows
-        .chunks_exact(n)
-        .map(|row| {
-            let sigma = dot(row, row).sqrt();
-            (1.0 / sigma / unit, row.iter().map(|x| x / sigma).collect())
-        })
-        .collect();
-    shape_from_axes(n, axes)
+    let mut semi_axes = Vec::with_capacity(n);
+    for row in rows.chunks_exact_mut(n) {
+        let sigma = dot(row, row).sqrt();
+        semi_axes.push(1.0 / sigma / unit);
+        row.iter_mut().for_each(|x| *x /= sigma);
+    }
+    shape_from_axes(n, semi_axes, rows)
 }
 
-/// The shape with these semi-axes and directions, longest first; fewer than `n` leave the others zero.
-pub(crate) fn shape_from_axes(n: usize, mut axes: Vec<(f64, Vec<f64>)>) -> Shape {
-    axes.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let r = axes.len();
-    let mut shape = Shape {
-        center: vec![0.0; n],
-        axes: Vec::with_capacity(n * n),
-        semi_axes: vec![0.0; n],
-        matrix: vec![0.0; n * n],
-        log_det: 0.0,
-    };
-    for (k, (a, axis)) in axes.iter().enumerate() {
-        shape.semi_axes[k] = *a;
-        shape.axes.extend_from_slice(axis);
+/// The shape with these semi-axes along the rows of `axes`, longest first; fewer than `n` leave the others zero.
+pub(crate) fn shape_from_axes(n: usize, mut semi_axes: Vec<f64>, mut axes: Vec<f64>) -> Shape {
+    let r = semi_axes.len();
+    // By insertion, which keeps the order of equals.
+    for k in 1..r {
+        let mut at = k;
+        while at > 0 && semi_axes[at].total_cmp(&semi_axes[at - 1]).is_gt() {
+            semi_axes.swap(at, at - 1);
+            let (above, row) = axes[(at - 1) * n..(at + 1) * n].split_at_mut(n);
+            above.swap_with_slice(row);
+            at -= 1;
+        }
+    }
+    let log_det = -2.0 * sum_of_logarithms(semi_axes.iter().copied());
+    let mut matrix = vec![0.0; n * n];
+    let mut scaled = vec![0.0; n];
+    for (axis, a) in axes.chunks_exact(n).zip(&semi_axes) {
+        scaled.iter_mut().zip(axis).for_each(|(s, x)| *s = x / a);
         for i in 0..n {
             for j in 0..n {
-                shape.matrix[i * n + j] += (axis[i] / a) * (axis[j] / a);
+                matrix[i * n + j] += scaled[i] * scaled[j];
             }
         }
     }
-    shape.log_det = -2.0 * sum_of_logarithms(shape.semi_axes[..r].iter().copied());
-    complete_rotation(n, r, &mut shape.axes);
-    shape
+    complete_rotation(n, r, &mut axes);
+    semi_axes.resize(n, 0.0);
+    Shape { center: vec![0.0; n], axes, semi_axes, matrix, log_det }
 }
 
 /// Adds to the first `r` orthonormal rows of length `n` those that are missing, and makes the determinant +1.

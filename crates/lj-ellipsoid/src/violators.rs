@@ -15,8 +15,9 @@ const ORTHANT_COORDINATES: usize = 5;
 /// Violations below this share of the worst one are mostly gone once that is repaired.
 const WORTH_ADDING: f64 = 0.1;
 
-/// Points asked to estimate how many survive.
+/// Points asked to estimate how many survive: at most so many, and at most one in so many.
 const SAMPLE: usize = 512;
+const SAMPLED: usize = 8;
 
 /// What a pass found.
 pub(crate) struct Violators {
@@ -128,13 +129,13 @@ pub(crate) fn look<P: Points, R: Dimension + Sync>(
 fn few_beyond<P: Points, R: Dimension>(points: &P, rank: R, frame: &Frame, threshold: f64, capacity: usize) -> bool {
     let mut v = points.dim().zero();
     let mut y = rank.zero();
-    let step = (points.len() / SAMPLE).max(1);
+    let step = (points.len() / SAMPLE).max(SAMPLED);
     let sampled = (0..points.len()).step_by(step).filter(|&i| {
         points.read(i, v.as_mut());
         frame.apply(points.dim(), rank, v.as_mut(), y.as_mut());
         dot(y.as_ref(), y.as_ref()) >= threshold
     });
-    sampled.count() * points.len() <= capacity * SAMPLE * 9 / 10
+    sampled.count() * step * 10 <= capacity * 9
 }
 
 /// One range of a pass; `keep` is the elimination threshold and the most survivors wanted.

@@ -19,7 +19,7 @@ const DEFAULT_ITERATIONS: usize = 2_000;
 const MAX_SCANS: usize = 500;
 
 /// Below this many points, forgetting some does not pay.
-const FEW: usize = 2_048;
+const FEW: usize = 512;
 
 /// Below this gap Newton's method doubles the digits with each step, and two steps reach rounding.
 const QUADRATIC: f64 = 1e-6;
@@ -55,9 +55,27 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
         recenter(points, rank, &mut frame, &mut set, &mut moments);
     }
     let mut iterations = 0;
+    let complete = set.len() == points.len();
+    if complete && options.method == EnclosingMethod::Newton {
+        // A few points are a working set that needs no pass: straight to rounding, and the final check.
+        iterations = newton::solve(rank, &mut set, &mut moments, &mut work, ROUNDING, max_iterations);
+        recenter(points, rank, &mut frame, &mut set, &mut moments);
+        observer(EnclosingIterate {
+            iteration: iterations,
+            scans,
+            log_det_gap: moments.log_det_gap(r).max(0.0),
+            indices: &set.index,
+            weights: &set.u,
+        });
+        let certificate = Certificate::from_weights(points, rank, &frame, &set, &moments);
+        let solved = finish(points, &frame, certificate, options.epsilon, Status::Converged, iterations, scans)?;
+        if solved.status == Status::Converged {
+            return Ok(solved);
+        }
+        scans = solved.scans;
+    }
     // What is asked of a working set: a little below the gap over all points seen last, and tight once that is small.
     let tight = (0.1 * options.epsilon).max(1e-15);
-    let complete = set.len() == points.len();
     let mut inner_gap: f64 = if complete { tight } else { 1e-2 };
     // How far the next iterate is expected to fall short; only the share of points forgotten depends on it.
     let mut expected = 1.5 * r as f64;

@@ -4,7 +4,9 @@
 mod common;
 
 use common::{Rng, apply, assert_contains};
-use lj_ellipsoid::{EnclosingMethod, EnclosingOptions, InscribedOptions, Status, enclosing, inscribed_in_hull};
+use lj_ellipsoid::{
+    EnclosingMethod, EnclosingOptions, Halfspace, InscribedOptions, Status, enclosing, inscribed, inscribed_in_hull,
+};
 use proptest::prelude::*;
 
 const TIGHT: EnclosingOptions = EnclosingOptions::new().with_epsilon(1e-11);
@@ -187,6 +189,80 @@ proptest! {
                 prop_assert!(support(inner.ellipsoid.center()) + reach <= furthest + 1e-13 * size, "pokes out");
             }
         }
+    }
+
+    /// John: the enclosing ellipsoid shrunk by N about its centre lies in the hull; by √N where the points are symmetric.
+    ///
+    /// It does where along the normal of every facet it reaches no further than the points. Every plane through three points
+    /// is tried: the facets are among them.
+    #[test]
+    fn shrunk_it_lies_in_the_hull(points in cloud::<3>(), symmetric: bool) {
+        // The last four are a simplex.
+        let middle = 10.min(points.len() - 4)..points.len() - 4;
+        let mut points = points;
+        points.drain(middle);
+        if symmetric {
+            let mirrored: Vec<_> = points.iter().map(|p| p.map(|x| -x)).collect();
+            points.extend(mirrored);
+        }
+        let answer = enclosing(&points, TIGHT).expect("full rank");
+        let e = &answer.ellipsoid;
+        let shrink = if symmetric { 3f64.sqrt() } else { 3.0 };
+        // In the coordinates in which the ellipsoid is the unit ball, where thin clouds lose nothing.
+        let images: Vec<[f64; 3]> = points
+            .iter()
+            .map(|p| {
+                let turned = apply(&e.axes(), std::array::from_fn(|k| p[k] - e.center()[k]));
+                std::array::from_fn(|k| turned[k] / e.semi_axes()[k])
+            })
+            .collect();
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let mut least = f64::INFINITY;
+        for i in 0..images.len() {
+            for j in 0..i {
+                for k in 0..j {
+                    let [a, b]: [[f64; 3]; 2] = [i, j].map(|at| std::array::from_fn(|l| images[at][l] - images[k][l]));
+                    let normal = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+                    let length = dot(normal, normal).sqrt();
+                    if length < 1e-9 {
+                        continue;
+                    }
+                    for sign in [1.0, -1.0] {
+                        let reach = images.iter().map(|&y| sign * dot(normal, y) / length).fold(f64::MIN, f64::max);
+                        least = least.min(reach);
+                    }
+                }
+            }
+        }
+        let slack = 1e-9 + answer.log_det_gap.sqrt();
+        prop_assert!(least >= 1.0 / shrink - slack, "a facet at {least}, the shrunk ball at {}", 1.0 / shrink);
+    }
+
+    /// Whatever half-spaces: what is inscribed keeps within every one as given, evaluated in `f64`.
+    #[test]
+    fn inscribed_stays_within_as_evaluated(rows in prop::collection::vec((prop::array::uniform3(-1.0..1.0f64), -6.0..6.0f64, 0.1..2.0f64), 4..40), shift in prop::array::uniform3(-1e6..1e6f64)) {
+        let mut halfspaces: Vec<Halfspace<3>> = rows
+            .into_iter()
+            .map(|(normal, scale, room)| {
+                let normal = normal.map(|x| x * 10f64.powf(scale));
+                let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+                let at: f64 = normal.iter().zip(shift).map(|(x, s)| x * s).sum();
+                Halfspace { normal, offset: at + room * length }
+            })
+            .filter(|h| h.normal != [0.0; 3])
+            .collect();
+        for k in 0..3 {
+            for sign in [1.0, -1.0] {
+                let normal = std::array::from_fn(|l| if k == l { sign } else { 0.0 });
+                halfspaces.push(Halfspace { normal, offset: sign * shift[k] + 1.0 });
+            }
+        }
+        let answer = inscribed(&halfspaces, InscribedOptions::new()).expect("a body around the shift");
+        for h in &halfspaces {
+            let reach = answer.ellipsoid.support_value(h.normal);
+            prop_assert!(reach <= h.offset, "reaches {reach} in {h:?}");
+        }
+        prop_assert!(answer.log_det_gap < 1e-6, "gap {}", answer.log_det_gap);
     }
 
     /// Nothing finite panics or hangs, nothing non-finite is accepted.

@@ -1,6 +1,7 @@
 //! Situations in which users of other minimum-volume ellipsoid programs got wrong answers, hangs or crashes.
 //!
-//! Each test names the situation and where it comes from; the answers are closed forms or certified here.
+//! Each test names the situation and where it comes from; the answers are closed forms or certified here. Number 16 asks for
+//! other ellipsoids (around all but 5 % of the points, with two equal axes, axis-aligned), which this crate does not offer.
 #![allow(clippy::needless_range_loop, reason = "several arrays share an index")]
 
 mod common;
@@ -81,9 +82,10 @@ fn s04_duplicates() {
     let repeated: Vec<[f64; 3]> = (0..1000).flat_map(|_| points.iter().copied()).collect();
     let answer = enclosing(&repeated, TIGHT).expect("full rank");
     assert_contains(&answer, &points);
-    assert_near("ln det", answer.ellipsoid.log_det(), alone.log_det(), 1e-12);
+    // So many contacts are rounded outward together, each semi-axis by some 1e-15.
+    assert_near("ln det", answer.ellipsoid.log_det(), alone.log_det(), 2e-14);
     for (got, want) in answer.ellipsoid.semi_axes().into_iter().zip(alone.semi_axes()) {
-        assert_near("semi-axis", got, want, 1e-6 * want);
+        assert_near("semi-axis", got, want, 1e-14 * want);
     }
 }
 
@@ -196,9 +198,11 @@ fn s11_far_offset() {
     let moved: Vec<[f64; 2]> = points.iter().map(|p| [p[0] + offset[0], p[1] + offset[1]]).collect();
     let answer = enclosing(&moved, TIGHT).expect("full rank");
     assert_contains(&answer, &moved);
+    // Spacing of doubles at 1e7: 2e-9, so the centre cannot be told nearer than that.
+    let spread = 2.0 * base.semi_axes()[0];
     for k in 0..2 {
-        assert_near("centre", answer.ellipsoid.center()[k] - offset[k], base.center()[k], 2e-9);
-        assert_near("semi-axis", answer.ellipsoid.semi_axes()[k], base.semi_axes()[k], 1e-8);
+        assert_near("centre", answer.ellipsoid.center()[k] - offset[k], base.center()[k], 1e-9 * spread);
+        assert_near("semi-axis", answer.ellipsoid.semi_axes()[k], base.semi_axes()[k], 1e-9 * spread);
     }
 }
 
@@ -343,6 +347,43 @@ fn s19_thin_and_nearly_parallel() {
     let answer = inscribed(&halfspaces(&rows), InscribedOptions::new()).expect("a square");
     assert_near("ln det", answer.ellipsoid.log_det(), 0.0, 1e-7);
     assert!(answer.log_det_gap < 1e-6, "gap {}", answer.log_det_gap);
+}
+
+/// volesti #325 and #382: polygons made the solver throw.
+#[test]
+fn s19_polygons() {
+    // Of a triangle the largest ellipse is Steiner's: it touches the middles of the sides.
+    let triangle = [[0.0, 0.0], [4.0, 0.0], [1.0, 3.0]];
+    let answer = inscribed_in_hull(&triangle, InscribedOptions::new()).expect("a triangle");
+    assert_eq!(answer.status, Status::Converged);
+    for i in 0..3 {
+        let (p, q) = (triangle[i], triangle[(i + 1) % 3]);
+        let middle = [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
+        assert_near("radius at the middle of a side", answer.ellipsoid.radius_at(middle), 1.0, 1e-9);
+    }
+    for m in [4u32, 5, 17, 360] {
+        let sides: Vec<Halfspace<2>> = (0..m)
+            .map(|i| Halfspace { normal: (2.0 * PI * f64::from(i) / f64::from(m)).sin_cos().into(), offset: 1.0 })
+            .collect();
+        let answer = inscribed(&sides, InscribedOptions::new()).expect("a polygon");
+        assert_near("ln det of the unit disc", answer.ellipsoid.log_det(), 0.0, 1e-9);
+        for side in &sides {
+            assert!(answer.ellipsoid.support_value(side.normal) <= side.offset, "pokes out of {side:?}");
+        }
+    }
+}
+
+/// iris-distro #2: the ellipsoid in a sliver.
+#[test]
+fn s19_slivers() {
+    for thickness in [1e-3, 1e-6, 1e-9] {
+        let sliver = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.3, 1.0, 0.0], [0.4, 0.2, thickness]];
+        let answer = inscribed_in_hull(&sliver, InscribedOptions::new()).expect("a simplex");
+        // Of a simplex both ellipsoids are images of a ball in and around the regular one: they differ by the factor N.
+        let outer = enclosing(&sliver, TIGHT).expect("a simplex");
+        assert_near("tightness", answer.ellipsoid.tightness(&outer.ellipsoid), 1.0 / 3.0, 1e-6);
+        assert!(answer.log_det_gap < 1e-5, "gap {} at thickness {thickness}", answer.log_det_gap);
+    }
 }
 
 /// Redundant and repeated half-spaces change nothing.
