@@ -114,7 +114,7 @@ pub trait SupportMap {
             let reach = |d: Self::Vector| d.dot(self.core_support(d, &mut Hint::default())).abs();
             // NaN, from a support map that is none, makes the whole extent NaN.
             let (ahead, behind) = (reach(axis), reach(-axis));
-            if ahead < behind { behind } else { ahead + (behind - behind) }
+            if ahead < behind || behind.is_nan() { behind } else { ahead }
         });
         corner.norm()
     }

@@ -23,6 +23,7 @@
 //! - *How far apart are two shapes, and where are they closest?* [`distance`] (GJK, Algorithm 2 of the paper).
 //! - *Do they meet?* [`intersects`], which stops at the first separating axis and can start from the last one.
 //! - *Where does a ray enter a shape?* [`ray_cast`] (Algorithm 3).
+//! - *Many rays at once, or the first of many bodies?* [`ray_casts`] and [`Scene`].
 //! - *When do two shapes meet that move without turning?* [`linear_cast`] (Algorithm 3 on their difference).
 //! - *The same from closest points alone:* [`iterative_ray_cast`] (Algorithm 1), for shapes with a closed form.
 //!
@@ -37,10 +38,12 @@
 //! # Features
 //! - `std` (default): floating-point functions from the standard library.
 //! - `libm`: the same from the libm crate, for `no_std` targets.
+//! - `rayon`: batches on all threads, `par_ray_casts` and `Scene::par_ray_casts`.
 
 #![no_std]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "comparisons are written so that NaN ends the loop they are in")]
 
+extern crate alloc;
 #[cfg(any(feature = "std", test))]
 extern crate std;
 
@@ -48,6 +51,7 @@ extern crate std;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+mod batch;
 mod body;
 mod cast;
 mod closest;
@@ -72,6 +76,9 @@ mod turn;
 
 pub use convex_support;
 
+#[cfg(feature = "rayon")]
+pub use batch::par_ray_casts;
+pub use batch::{FirstHit, Scene, SceneRayCast, ray_casts};
 pub use closest::SubAlgorithm;
 pub use distance::{distance, distance_with};
 pub use error::RayCastError;

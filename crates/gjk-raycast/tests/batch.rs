@@ -1,0 +1,147 @@
+//! Batches answer what single casts answer.
+
+use convex_support::glam::{DQuat, DVec3};
+use convex_support::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, SupportMap};
+use gjk_raycast::{FirstHit, Outcome, Ray, RayCastError, RayCastOptions, Scene, Status, ray_cast, ray_casts};
+
+type Body = Box<dyn SupportMap<Vector = DVec3> + Sync>;
+
+/// A few numbers in −1..1 from an index: the same on every machine.
+fn spread(index: usize, salt: usize) -> f64 {
+    let golden = 0.618_033_988_749_894_9 * (salt + 1) as f64;
+    2.0 * ((index as f64 + 0.5) * golden).fract() - 1.0
+}
+
+fn vector(index: usize, salt: usize) -> DVec3 {
+    DVec3::from_array([0, 1, 2].map(|i| spread(index, 3 * salt + i)))
+}
+
+fn shape(kind: usize) -> Body {
+    match kind % 7 {
+        0 => Box::new(Ball::new(0.5).unwrap()),
+        1 => Box::new(Cuboid::new(DVec3::new(0.5, 0.25, 0.75)).unwrap()),
+        2 => Box::new(Capsule::new(0.5, 0.25).unwrap()),
+        3 => Box::new(Cylinder::new(0.5, 0.25).unwrap()),
+        4 => Box::new(Cone::new(0.5, 0.5).unwrap()),
+        5 => Box::new(Ellipsoid::new(DVec3::ZERO, DVec3::new(0.75, 0.5, 0.25), DQuat::IDENTITY).unwrap()),
+        _ => Box::new(Polytope::new((0..30).map(|i| vector(i, 9) * 0.6)).unwrap()),
+    }
+}
+
+fn bodies(count: usize, size: f64) -> Vec<Body> {
+    (0..count)
+        .map(|i| {
+            let turn = DQuat::from_scaled_axis(vector(i, 1) * 3.0);
+            Box::new(Posed::new(shape(i), turn, vector(i, 2) * size).unwrap()) as Body
+        })
+        .collect()
+}
+
+fn rays(count: usize, size: f64) -> Vec<Ray<DVec3>> {
+    (0..count).map(|i| Ray { source: vector(i, 3) * 1.5 * size, direction: vector(i, 4) }).collect()
+}
+
+#[test]
+fn a_scene_answers_as_every_body_alone() {
+    let (mut hits, mut inside, mut culled) = (0, 0, 0);
+    for (count, size) in [(1, 1.0), (60, 5.0), (60, 1.0), (40, 1e6)] {
+        let scene = Scene::new(bodies(count, size));
+        for options in [RayCastOptions::default(), RayCastOptions::default().with_max_lambda(2.0)] {
+            for ray in rays(300, size) {
+                let answer = scene.ray_cast(ray, options).unwrap();
+                let mut first: Option<FirstHit<DVec3>> = None;
+                for (body, shape) in scene.bodies().iter().enumerate() {
+                    let cast = ray_cast(shape, ray, options).unwrap();
+                    assert_eq!(cast.status, Status::Converged, "body {body}, {ray:?}");
+                    if let Outcome::Hit(hit) = cast.outcome
+                        && first.is_none_or(|first| hit.lambda < first.hit.lambda)
+                    {
+                        first = Some(FirstHit { body, hit });
+                    }
+                }
+                // To the last bit, whatever was left out.
+                assert_eq!(answer.first, first, "{ray:?}");
+                assert_eq!(answer.undecided, None, "{ray:?}");
+                assert_eq!(answer.tested + answer.culled, count, "every body is one or the other");
+                assert!(first.is_none_or(|first| answer.lower <= first.hit.lambda), "{ray:?}");
+                hits += usize::from(first.is_some());
+                inside += usize::from(first.is_some_and(|first| first.hit.lambda == 0.0));
+                culled += answer.culled;
+            }
+        }
+    }
+    assert!(hits > 300 && inside > 30 && culled > 60_000, "{hits} hits, {inside} inside, {culled} culled");
+}
+
+#[test]
+fn many_rays_are_answered_as_one_by_one() {
+    let (mut hits, mut misses, mut stalled) = (0, 0, 0);
+    for kind in 0..7 {
+        let target = shape(kind);
+        // A picture: neighbouring rays, some of which graze.
+        let rays: Vec<_> = (0..900)
+            .map(|i| {
+                let (x, y) = (f64::from(i % 30) / 15.0 - 1.0, f64::from(i / 30) / 15.0 - 1.0);
+                Ray { source: DVec3::new(0.3, 0.2, 5.0), direction: DVec3::new(x - 0.3, y - 0.2, -5.0) }
+            })
+            .collect();
+        let options = RayCastOptions::default();
+        let casts: Vec<_> = ray_casts(&target, &rays, options).map(Result::unwrap).collect();
+        assert_eq!(casts.len(), rays.len(), "an answer for each ray");
+        for (cast, &ray) in casts.iter().zip(&rays) {
+            let alone = ray_cast(&target, ray, options).unwrap();
+            match (cast.outcome, alone.outcome) {
+                (Outcome::Hit(p), Outcome::Hit(q)) if cast.status != alone.status => {
+                    // One of them said that it could not go on; its bounds hold.
+                    stalled += 1;
+                    let ulps = 16.0 * f64::EPSILON;
+                    assert!(cast.lower <= alone.upper + ulps && alone.lower <= cast.upper + ulps, "{p:?} or {q:?}");
+                }
+                (Outcome::Hit(p), Outcome::Hit(q)) => {
+                    hits += 1;
+                    // λ = 1 is 5 away from the source, and the shapes are about 1 in size.
+                    let (angle, ulps) = (q.normal.unwrap().dot(ray.direction.normalize()).abs(), 64.0 * f64::EPSILON);
+                    assert!((p.lambda - q.lambda).abs() <= ulps / angle, "kind {kind}: {ray:?}: {p:?} or {q:?}");
+                }
+                (Outcome::Miss(_), Outcome::Miss(_)) => misses += 1,
+                (p, q) => panic!("kind {kind}: {ray:?}: {p:?} or {q:?}"),
+            }
+        }
+    }
+    assert!(stalled < 10, "{stalled} of {hits} hits stalled");
+    assert!(hits > 500 && misses > 500, "{hits} hits and {misses} misses are no fair sample");
+}
+
+#[test]
+fn a_bad_ray_spoils_only_its_own_answer() {
+    let ball = Ball::<DVec3>::new(1.0).unwrap();
+    let good = Ray { source: DVec3::new(-3.0, 0.0, 0.0), direction: DVec3::X };
+    let bad = Ray { source: DVec3::ZERO, direction: DVec3::ZERO };
+    let rays = [good, bad, Ray { source: DVec3::NAN, ..good }, good];
+    let answers: Vec<_> = ray_casts(&ball, &rays, RayCastOptions::default()).collect();
+    assert_eq!(answers[1], Err(RayCastError::ZeroDirection), "a zero direction");
+    assert!(matches!(answers[2], Err(RayCastError::NonFinite { parameter: "source", index: 0 })), "{:?}", answers[2]);
+    for answer in [answers[0], answers[3]] {
+        assert_eq!(answer.unwrap().outcome.hit().unwrap().lambda, 2.0, "the good ones");
+    }
+    let scene = Scene::new([ball]);
+    assert_eq!(scene.ray_cast(bad, RayCastOptions::default()), Err(RayCastError::ZeroDirection), "a zero direction");
+    let empty = Scene::<Ball<DVec3>>::new([]).ray_cast(good, RayCastOptions::default()).unwrap();
+    assert_eq!((empty.first, empty.tested, empty.culled), (None, 0, 0), "nothing is in the way");
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+fn threads_change_no_bit() {
+    use gjk_raycast::par_ray_casts;
+    let options = RayCastOptions::default();
+    let rays = rays(2000, 1.0);
+    for kind in 0..7 {
+        let target = shape(kind);
+        let alone: Vec<_> = ray_casts(&target, &rays, options).collect();
+        assert_eq!(par_ray_casts(&target, &rays, options), alone, "kind {kind}");
+    }
+    let scene = Scene::new(bodies(40, 2.0));
+    let alone: Vec<_> = rays.iter().map(|&ray| scene.ray_cast(ray, options)).collect();
+    assert_eq!(scene.par_ray_casts(&rays, options), alone, "a scene");
+}
