@@ -171,7 +171,7 @@ fn scaled<V: Space>(scene: &Scene, exponent: i32) -> Result<(), TestCaseError> {
     prop_assert_eq!((small.lower, small.upper, small.iterations), (big.lower, big.upper, big.iterations));
     match (small.outcome, big.outcome) {
         (Outcome::Hit(x), Outcome::Hit(y)) => {
-            prop_assert_eq!((x.time, x.normal, x.point * unit), (y.time, y.normal, y.point))
+            prop_assert_eq!((x.time, x.normal, x.point * unit), (y.time, y.normal, y.point));
         }
         (x, y) => prop_assert_eq!(x, y),
     }
@@ -182,7 +182,7 @@ fn scaled<V: Space>(scene: &Scene, exponent: i32) -> Result<(), TestCaseError> {
     prop_assert_eq!((small.lower, small.upper, small.iterations), (big.lower, big.upper, big.iterations));
     match (small.outcome, big.outcome) {
         (Outcome::Hit(x), Outcome::Hit(y)) => {
-            prop_assert_eq!((x.lambda, x.normal, x.point * unit), (y.lambda, y.normal, y.point))
+            prop_assert_eq!((x.lambda, x.normal, x.point * unit), (y.lambda, y.normal, y.point));
         }
         (x, y) => prop_assert_eq!(x, y),
     }

@@ -326,7 +326,7 @@ fn s12_large_angles_are_angles() {
             }
         }
     }
-    both(|| run::<Vec2>(|a| s::<Vec2>(a)), || run::<DVec2>(|a| a));
+    both(|| run::<Vec2>(s::<Vec2>), || run::<DVec2>(|a| a));
 }
 
 /// Equal velocities, whatever they are, are no error: only the start counts.
