@@ -91,9 +91,10 @@ pub(crate) fn cast<B: Body>(
     let end = if across > reach {
         End::Miss(local.line.foot / across)
     } else if local.start > half_chord {
-        End::Miss(local.line.direction)
+        // The ball has a point closest to the ray, and the plane there is before all of it.
+        End::Miss(local.line.at(local.start).unit().unwrap_or(local.line.direction))
     } else if search.is_beyond(low, zero) {
-        End::Miss(-local.line.direction)
+        End::Miss((ray.at(options.max_lambda) - origin).unit().unwrap_or(-local.line.direction))
     } else {
         search.run()
     };
@@ -110,7 +111,21 @@ pub(crate) fn cast<B: Body>(
     let hit = || Outcome::Hit(Contact { lambda, normal, simplex });
     let miss = |axis| Outcome::Miss(Miss { axis });
     let (outcome, status) = match end {
-        End::Miss(axis) => (miss(axis), Status::Converged),
+        End::Miss(n) => {
+            // A plane that comes nearer behind x, or crosses the ray ahead of it, leaves that to the last plane, or to the
+            // ball. Both together are before the whole line: with slopes of opposite sign, n·|m·d| + m·|n·d| has none.
+            let (d, slope) = (local.line.direction, n.dot(local.line.direction));
+            let other = if slope > zero && low > local.start {
+                normal.or_else(|| local.line.at(low).unit())
+            } else if slope < zero && local.lambda(half_chord) <= options.max_lambda {
+                local.line.at(half_chord).unit()
+            } else {
+                None
+            };
+            let other = other.filter(|m| (m.dot(d) > zero) == (slope < zero));
+            let axis = other.and_then(|m| (n * m.dot(d).abs() + m * slope.abs()).unit());
+            (miss(if iterations > 0 { axis.unwrap_or(n) } else { n }), Status::Converged)
+        }
         // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
         End::Contact if lambda > options.max_lambda => {
             (miss(normal.unwrap_or(-local.line.direction)), Status::Converged)
@@ -400,7 +415,8 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                     self.simplex.retain(at.face, at.weights);
                 }
                 // The body has points of the line on both sides of the lower bound, which so is in the body.
-                Some(_) => {
+                Some(next) => {
+                    self.simplex.retain(next.face, next.weights);
                     (self.high, self.high_error) = (
                         self.low,
                         self.low_error + if nudge > zero { nudge / slope.min(self.low_slope) } else { zero },

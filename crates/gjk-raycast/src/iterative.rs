@@ -116,7 +116,8 @@ pub fn iterative_ray_cast_with<V: Vector>(
         }
         let n = v / length;
         let slope = n.dot(direction);
-        let next = mu - (length - noise) / slope;
+        // What v is wrong by turns n by `noise/length`, so that the plane may be as much steeper to the ray than it seems.
+        let next = mu - (length - noise) / (slope - noise / length);
         if slope >= zero || local.lambda(next) - local.error(next, zero) > options.max_lambda {
             // Together with the plane before x, the axis has the whole ray before it: across the ray, both count.
             let axis = normal.filter(|_| slope > zero).and_then(|m| (m * slope - n * m.dot(direction)).unit());
