@@ -1,8 +1,10 @@
 //! Algorithm 3 on a core: the ray cast that [`ray_cast`](crate::ray_cast) and [`linear_cast`](crate::linear_cast) share.
 //!
 //! The paper's loop moves a point `x` along the ray up to one supporting plane of the body after another, and finds the
-//! planes by GJK steps towards `x`. Three things are added to it here; `docs/ray-cast.md` derives them.
+//! planes by GJK steps towards `x`. Four things are added to it here; `docs/ray-cast.md` derives them.
 //!
+//! - In 3D, a quicker search is tried first (`portal.rs`, `swept.rs`); the one described here is what remains where that is
+//!   in doubt.
 //! - As soon as the simplex of support points is pierced by the ray, the hit is bracketed: behind the last plane, and
 //!   before the point where the ray enters the simplex. From then on, the simplex is refined where it is pierced
 //!   ([`Search::refine`]), and no vector has to tend to zero.
@@ -21,7 +23,7 @@ use crate::line::LocalRay;
 use crate::ray_cast::Ray;
 use crate::simplex::{MAX_POINTS, Simplex};
 use crate::turn::{Condition, Found, Recent, Turn, turn};
-use crate::{Iterate, Miss, Outcome, RayCastOptions, Status};
+use crate::{CastMethod, Iterate, Miss, Outcome, RayCastOptions, Status};
 
 /// A hit, as the search knows it.
 pub(crate) struct Contact<V: Vector, W> {
@@ -42,7 +44,7 @@ pub(crate) struct Cast<V: Vector, W> {
     pub(crate) scale: V::Scalar,
 }
 
-type ScalarOf<B> = <<B as Body>::Vector as Vector>::Scalar;
+pub(crate) type ScalarOf<B> = <<B as Body>::Vector as Vector>::Scalar;
 
 /// Casts a ray, given in the world, against a body.
 pub(crate) fn cast<B: Body>(
@@ -54,7 +56,8 @@ pub(crate) fn cast<B: Body>(
     let number = ScalarOf::<B>::from_f64;
     let (zero, infinity) = (ScalarOf::<B>::ZERO, ScalarOf::<B>::infinity());
     let origin = body.origin();
-    let size = body.extent() + body.radius();
+    let extent = body.extent();
+    let size = extent + body.radius();
     let scale = power_of_two_near(if size > zero { size } else { (ray.source - origin).norm() });
     body.set_scale(scale);
     let radius = body.radius() / scale;
@@ -75,6 +78,7 @@ pub(crate) fn cast<B: Body>(
         noise,
         options,
         half_chord,
+        is_point: extent == zero,
         scale,
         low,
         low_error: zero,
@@ -143,7 +147,7 @@ pub(crate) fn cast<B: Body>(
 
 /// How a search ended.
 #[derive(Clone, Copy, Debug)]
-enum End<V> {
+pub(crate) enum End<V> {
     /// A plane across this axis has the body behind it and the ray before it.
     Miss(V),
     /// The bracket has closed.
@@ -155,32 +159,34 @@ enum End<V> {
 /// A support point and what it is made of, or how the search ends instead.
 type Probe<B> = Result<(<B as Body>::Vector, <B as Body>::Witness), End<<B as Body>::Vector>>;
 
-struct Search<'a, B: Body, O> {
-    body: &'a mut B,
-    local: LocalRay<B::Vector>,
-    radius: ScalarOf<B>,
+pub(crate) struct Search<'a, B: Body, O> {
+    pub(crate) body: &'a mut B,
+    pub(crate) local: LocalRay<B::Vector>,
+    pub(crate) radius: ScalarOf<B>,
     /// What rounding may have moved a plane or a point by.
-    noise: ScalarOf<B>,
-    options: RayCastOptions<B::Vector>,
-    half_chord: ScalarOf<B>,
-    scale: ScalarOf<B>,
+    pub(crate) noise: ScalarOf<B>,
+    pub(crate) options: RayCastOptions<B::Vector>,
+    pub(crate) half_chord: ScalarOf<B>,
+    /// Whether the core is a single point.
+    pub(crate) is_point: bool,
+    pub(crate) scale: ScalarOf<B>,
     /// Where on the line the last plane is crossed, and how far rounding may have moved the crossing.
-    low: ScalarOf<B>,
-    low_error: ScalarOf<B>,
+    pub(crate) low: ScalarOf<B>,
+    pub(crate) low_error: ScalarOf<B>,
     /// The cosine of the angle at which it is crossed.
-    low_slope: ScalarOf<B>,
+    pub(crate) low_slope: ScalarOf<B>,
     /// Where the ray enters the simplex, and how far rounding may have moved that.
-    high: ScalarOf<B>,
-    high_error: ScalarOf<B>,
+    pub(crate) high: ScalarOf<B>,
+    pub(crate) high_error: ScalarOf<B>,
     /// Where the line passes the body within rounding without entering it, which no plane tells.
-    touched: Option<ScalarOf<B>>,
+    pub(crate) touched: Option<ScalarOf<B>>,
     /// The unit normal of a plane through the point at `low`, to rounding, that has the body behind it.
-    normal: Option<B::Vector>,
-    simplex: Simplex<B::Vector, B::Witness>,
+    pub(crate) normal: Option<B::Vector>,
+    pub(crate) simplex: Simplex<B::Vector, B::Witness>,
     /// The paper's v.
-    v: B::Vector,
-    observer: O,
-    iterations: usize,
+    pub(crate) v: B::Vector,
+    pub(crate) observer: O,
+    pub(crate) iterations: usize,
 }
 
 /// Slopes of planes, as cosines of the angle between normal and ray, below which steps along the ray gain little.
@@ -194,6 +200,12 @@ const MAX_NUDGES: usize = 6;
 
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     fn run(&mut self) -> End<B::Vector> {
+        if B::Vector::DIM == 3
+            && self.options.method == CastMethod::Portal
+            && let Some(found) = if self.radius > ScalarOf::<B>::ZERO { self.pierce_swept() } else { self.pierce() }
+        {
+            return found.map_or_else(|end| end, |()| End::Contact);
+        }
         let first = self.options.axis.and_then(Vector::unit).or_else(|| self.v.unit());
         let found = self.approach(first.unwrap_or(-self.local.line.direction));
         match found.and_then(|entry| self.refine(entry)) {
@@ -212,7 +224,14 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     /// The body is behind the plane `n·y = n·p + r`. A point `x` of the ray is before it by `n·(x − p) − r`, and if that
     /// is positive and the ray approaches, it crosses the plane after `(n·(x − p) − r)/(−n·d)`, and not before.
     fn probe(&mut self, n: B::Vector) -> Probe<B> {
-        let zero = ScalarOf::<B>::ZERO;
+        let (point, witness) = self.sight(n)?;
+        self.advance(n, point)?;
+        Ok((point, witness))
+    }
+
+    /// The next support point along any vector.
+    #[inline]
+    pub(crate) fn sight(&mut self, n: B::Vector) -> Probe<B> {
         if self.iterations >= self.options.max_iterations {
             return Err(End::Open(Status::IterationLimit));
         }
@@ -220,9 +239,14 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         let x = self.local.line.at(self.low);
         self.iterations += 1;
         self.show(x, x - point);
-        if !point.is_finite() {
-            return Err(End::Open(Status::Stalled));
-        }
+        if point.is_finite() { Ok((point, witness)) } else { Err(End::Open(Status::Stalled)) }
+    }
+
+    /// Moves the lower bound up to the plane across the unit vector `n` that supports the core at `point`, if it leaves
+    /// anything of the ray.
+    pub(crate) fn advance(&mut self, n: B::Vector, point: B::Vector) -> Result<(), End<B::Vector>> {
+        let zero = ScalarOf::<B>::ZERO;
+        let x = self.local.line.at(self.low);
         let ahead = n.dot(x - point) - self.radius;
         let slope = n.dot(self.local.line.direction);
         if ahead > zero && slope < zero {
@@ -238,7 +262,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         } else if ahead > self.noise {
             return Err(End::Miss(n));
         }
-        Ok((point, witness))
+        Ok(())
     }
 
     fn show(&mut self, x: B::Vector, w: B::Vector) {

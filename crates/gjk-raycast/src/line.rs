@@ -69,6 +69,11 @@ impl<V: Vector> LocalRay<V> {
         (mu - self.start) * self.per_unit
     }
 
+    /// Where on the line the parameter λ of the ray is.
+    pub(crate) fn mu(&self, lambda: V::Scalar) -> V::Scalar {
+        self.start + lambda / self.per_unit
+    }
+
     /// The rounding error of [`lambda`](Self::lambda), of which `error` is due to `mu` itself.
     pub(crate) fn error(&self, mu: V::Scalar, error: V::Scalar) -> V::Scalar {
         let ulps = V::Scalar::from_f64(4.0) * V::Scalar::EPSILON;

@@ -71,7 +71,8 @@ where
         .with_max_lambda(options.max_time)
         .with_tolerance(options.tolerance)
         .with_max_iterations(options.max_iterations)
-        .with_sub_algorithm(options.sub_algorithm);
+        .with_sub_algorithm(options.sub_algorithm)
+        .with_method(options.method);
     // Seen from b, a is at the outside of the obstacle: normals of A − B point out of a.
     wanted.axis = options.axis.map(|axis| -axis);
     // The ray starts at zero, where both shapes are in place: at b's origin, seen from a's.

@@ -129,6 +129,18 @@ impl<V: Vector> Default for IntersectOptions<V> {
     }
 }
 
+/// How a cast finds the planes that it moves the ray up to, and when it ends. The bounds are computed alike.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum CastMethod {
+    /// In 3D, triangles of support points that the ray pierces are brought nearer, by the simplex method of linear
+    /// programming; where that is in doubt, and in 2D, as [`Gjk`](Self::Gjk): the fastest.
+    #[default]
+    Portal,
+    /// The vector from the ray's point to the simplex of support points, as in the paper's Algorithm 3.
+    Gjk,
+}
+
 /// Options of [`ray_cast`](crate::ray_cast).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -144,6 +156,8 @@ pub struct RayCastOptions<V: Vector> {
     pub axis: Option<V>,
     /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
     pub sub_algorithm: SubAlgorithm,
+    /// How planes are found. Default: [`CastMethod::Portal`].
+    pub method: CastMethod,
 }
 
 impl<V: Vector> RayCastOptions<V> {
@@ -156,6 +170,7 @@ impl<V: Vector> RayCastOptions<V> {
             max_iterations: MAX_ITERATIONS,
             axis: None,
             sub_algorithm: SubAlgorithm::Regions,
+            method: CastMethod::Portal,
         }
     }
 
@@ -193,6 +208,13 @@ impl<V: Vector> RayCastOptions<V> {
         self.sub_algorithm = sub_algorithm;
         self
     }
+
+    /// With another [`method`](Self::method).
+    #[must_use]
+    pub const fn with_method(mut self, method: CastMethod) -> Self {
+        self.method = method;
+        self
+    }
 }
 
 impl<V: Vector> Default for RayCastOptions<V> {
@@ -216,6 +238,8 @@ pub struct LinearCastOptions<V: Vector> {
     pub axis: Option<V>,
     /// How the closest point of a simplex is found. Default: [`SubAlgorithm::Regions`].
     pub sub_algorithm: SubAlgorithm,
+    /// How planes are found. Default: [`CastMethod::Portal`].
+    pub method: CastMethod,
 }
 
 impl<V: Vector> LinearCastOptions<V> {
@@ -228,6 +252,7 @@ impl<V: Vector> LinearCastOptions<V> {
             max_iterations: MAX_ITERATIONS,
             axis: None,
             sub_algorithm: SubAlgorithm::Regions,
+            method: CastMethod::Portal,
         }
     }
 
@@ -263,6 +288,13 @@ impl<V: Vector> LinearCastOptions<V> {
     #[must_use]
     pub const fn with_sub_algorithm(mut self, sub_algorithm: SubAlgorithm) -> Self {
         self.sub_algorithm = sub_algorithm;
+        self
+    }
+
+    /// With another [`method`](Self::method).
+    #[must_use]
+    pub const fn with_method(mut self, method: CastMethod) -> Self {
+        self.method = method;
         self
     }
 }

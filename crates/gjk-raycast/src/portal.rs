@@ -1,0 +1,332 @@
+//! The ray cast as it is seen along the ray, where it is a search for a triangle that contains a point.
+//!
+//! With `e₁`, `e₂` and the unit direction `d` of the ray for axes and the line's foot for origin, a support point has
+//! coordinates `(u, v, t)`, and the line is `u = v = 0`. A plane that the ray approaches has a normal `n = α₁·e₁ + α₂·e₂ − d`,
+//! and the core is behind it where `t ≥ α·(u, v) + τ`. So the hit is the lower hull of the core's points, taken at zero:
+//!
+//! ```text
+//! μ* = max over α of τ(α),   τ(α) = min over the core of t − α·(u, v).
+//! ```
+//!
+//! Three points whose triangle contains zero in the plane of `(u, v)`, a *portal*, bound it from above: the ray crosses the
+//! triangle at `Σ wᵢ·tᵢ`. With the portal's own plane for `α`, the support point either is on that plane, and `τ(α)` is as
+//! high; or it is before it, and of the three triangles that it spans with the edges of the portal one contains zero,
+//! and is crossed earlier. That is the simplex method for a linear programme in the two unknowns `α`, whose constraints
+//! are the support points.
+//!
+//! All that is decided here by signs, and by planes in the coordinates `(u, v, t)`, is where to look next. A miss and a
+//! lower bound come from [`Search::advance`] alone, and the upper bound is a point of the triangle that is measured to lie
+//! on the ray. Where either is in doubt, so is the answer, and the search of `cast.rs` takes over.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use crate::Iterate;
+use crate::body::Body;
+use crate::cast::{End, ScalarOf, Search};
+use crate::simplex::Simplex;
+
+/// A support point as it is seen along the ray.
+#[derive(Clone, Copy)]
+pub(crate) struct Seen<V: Vector, W> {
+    pub(crate) u: V::Scalar,
+    pub(crate) v: V::Scalar,
+    pub(crate) t: V::Scalar,
+    pub(crate) point: V,
+    pub(crate) witness: W,
+}
+
+impl<V: Vector, W> Seen<V, W> {
+    /// Twice the area of the triangle from zero to `self` and `other`, positive if that turns left.
+    fn cross(&self, other: &Self) -> V::Scalar {
+        self.u * other.v - self.v * other.u
+    }
+}
+
+/// A plane that the ray approaches, by its normal `α₁·e₁ + α₂·e₂ − d`.
+#[derive(Clone, Copy)]
+pub(crate) struct Slant<S> {
+    pub(crate) a: S,
+    pub(crate) b: S,
+}
+
+impl<S: Scalar> Slant<S> {
+    /// The `τ` of the plane through a point.
+    pub(crate) fn crossing<V: Vector<Scalar = S>, W>(self, p: &Seen<V, W>) -> S {
+        p.t - self.a * p.u - self.b * p.v
+    }
+
+    /// The length of the normal: the reciprocal of the cosine at which the ray crosses the plane.
+    pub(crate) fn length(self) -> S {
+        (S::ONE + self.a * self.a + self.b * self.b).sqrt()
+    }
+}
+
+/// The axes across the ray.
+pub(crate) struct Frame<V> {
+    pub(crate) e1: V,
+    pub(crate) e2: V,
+}
+
+/// Why the search ends: decided, or in doubt.
+pub(crate) type Exit<B> = Option<End<<B as Body>::Vector>>;
+
+pub(crate) type SeenBy<B> = Seen<<B as Body>::Vector, <B as Body>::Witness>;
+
+/// Support points until the portal has to be found.
+const MAX_OUTSIDE: usize = 16;
+
+/// Exchanges of a point that bring the portal no nearer.
+pub(crate) const PATIENCE: usize = 12;
+
+impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
+    /// Closes the bracket, or finds a plane that the whole ray is before. `None` where that is in doubt.
+    pub(crate) fn pierce(&mut self) -> Option<Result<(), End<B::Vector>>> {
+        match self.portal() {
+            Ok(()) => Some(Ok(())),
+            Err(exit) => exit.map(Err),
+        }
+    }
+
+    fn portal(&mut self) -> Result<(), Exit<B>> {
+        let zero = ScalarOf::<B>::ZERO;
+        let one = ScalarOf::<B>::ONE;
+        let frame = Frame::new(self.local.line.direction);
+        let x = self.local.line.at(self.low);
+
+        // The first plane: the one given, or the tangent plane of the ball about the body where the ray enters it.
+        let (first, mut reach) = match self.options.axis.and_then(Vector::unit) {
+            Some(axis) => (axis, ScalarOf::<B>::from_f64(0.03)),
+            None => (x, ScalarOf::<B>::from_f64(0.75)),
+        };
+        let facing = -first.dot(self.local.line.direction);
+        let mut p = self.look(&frame, first)?;
+        self.separate(first, &p)?;
+        // The plane that is crossed last, of those known, and a point on it.
+        let mut slant = Slant { a: zero, b: zero };
+        let (mut low, mut low_slant, mut low_point) = (-ScalarOf::<B>::infinity(), slant, p.point);
+        if facing > first.length() * ScalarOf::<B>::from_f64(0.125) {
+            slant = Slant { a: frame.e1.dot(first) / facing, b: frame.e2.dot(first) / facing };
+            (low, low_slant) = (slant.crossing(&p), slant);
+        }
+        let mut end = self.end();
+
+        // A second point on the other side of the line.
+        let distance = (p.u * p.u + p.v * p.v).sqrt();
+        if !(distance > self.noise) {
+            return Err(None);
+        }
+        let toward = (-p.u / distance, -p.v / distance);
+        let tilt = reach * slant.length();
+        slant = Slant { a: slant.a + toward.0 * tilt, b: slant.b + toward.1 * tilt };
+        let mut q = self.look_slanted(&frame, slant)?;
+        let tau = slant.crossing(&q);
+        if tau > end {
+            self.separate(frame.normal(self.local.line.direction, slant), &q)?;
+        }
+        if tau > low {
+            (low, low_slant, low_point) = (tau, slant, q.point);
+        }
+        if !(toward.0 * q.u + toward.1 * q.v > zero) {
+            let across = frame.e1 * toward.0 + frame.e2 * toward.1;
+            q = self.look(&frame, across)?;
+            self.separate(across, &q)?;
+            if !(toward.0 * q.u + toward.1 * q.v > zero) {
+                return Err(None);
+            }
+            reach = reach.max(one);
+        }
+
+        // A third such that the triangle contains zero, which is kept on the left of the edge from p to q.
+        let mut outside = MAX_OUTSIDE;
+        let (mut s, mut weights) = loop {
+            let mut w = p.cross(&q);
+            if w < zero {
+                (p, q, w) = (q, p, -w);
+            }
+            let (du, dv, dt) = (q.u - p.u, q.v - p.v, q.t - p.t);
+            let squared = du * du + dv * dv;
+            let length = squared.sqrt();
+            let toward = (-dv / length, du / length);
+            // The plane through both points that is tilted from the last one, towards the line.
+            let along = dt / squared;
+            let tilt = slant.a * toward.0 + slant.b * toward.1;
+            let tilt = tilt + reach * (one + tilt * tilt).sqrt();
+            slant = Slant { a: du * along + toward.0 * tilt, b: dv * along + toward.1 * tilt };
+            let mut s = self.look_slanted(&frame, slant)?;
+            let tau = slant.crossing(&s);
+            if tau > end {
+                self.separate(frame.normal(self.local.line.direction, slant), &s)?;
+                end = self.end();
+            }
+            if tau > low {
+                (low, low_slant, low_point) = (tau, slant, s.point);
+            }
+            if !(toward.0 * s.u + toward.1 * s.v > zero) {
+                let across = frame.e1 * toward.0 + frame.e2 * toward.1;
+                s = self.look(&frame, across)?;
+                self.separate(across, &s)?;
+                if !(toward.0 * s.u + toward.1 * s.v > zero) {
+                    return Err(None);
+                }
+                reach = reach.max(one);
+            }
+            let weights = [q.cross(&s), s.cross(&p), w];
+            if weights[0] >= zero && weights[1] >= zero {
+                break (s, weights);
+            }
+            outside -= 1;
+            if outside == 0 {
+                return Err(None);
+            }
+            if weights[0] < weights[1] {
+                p = s;
+            } else {
+                q = s;
+            }
+        };
+
+        // The portal is brought nearer.
+        let wanted = self.noise.max(self.options.tolerance);
+        let mut last = ScalarOf::<B>::infinity();
+        let mut patience = PATIENCE;
+        loop {
+            let sum = weights[0] + weights[1] + weights[2];
+            if !(sum > zero) {
+                return Err(None);
+            }
+            let inverse = sum.recip();
+            let high = (weights[0] * p.t + weights[1] * q.t + weights[2] * s.t) * inverse;
+            if !(high < last) {
+                patience -= 1;
+                if patience == 0 || !(high < ScalarOf::<B>::infinity()) {
+                    return Err(None);
+                }
+            }
+            last = high;
+            if high < self.low {
+                // The ray begins behind the portal, in the body or past it.
+                return Err(None);
+            }
+            let (pu, pv, pt) = (q.u - p.u, q.v - p.v, q.t - p.t);
+            let (qu, qv, qt) = (s.u - p.u, s.v - p.v, s.t - p.t);
+            slant = Slant { a: (pt * qv - qt * pv) * inverse, b: (pu * qt - qu * pt) * inverse };
+            let length = slant.length();
+            if high - low <= wanted * length {
+                return self.close(&frame, &[p, q, s], &weights.map(|w| w * inverse), high, low_slant, low_point);
+            }
+            let n = frame.normal(self.local.line.direction, slant);
+            // Where the core is curved, the planes that are wanted next are not those of portals.
+            let flat = |e| self.body.derivative(n, e) == B::Vector::ZERO;
+            if !(flat(frame.e1) && flat(frame.e2)) {
+                return Err(None);
+            }
+            let r = self.look(&frame, n)?;
+            let tau = slant.crossing(&r);
+            if tau > low {
+                (low, low_slant, low_point) = (tau, slant, r.point);
+                if tau > end {
+                    self.separate(n, &r)?;
+                    end = self.end();
+                }
+                if high - low <= wanted * length {
+                    return self.close(&frame, &[p, q, s], &weights.map(|w| w * inverse), high, low_slant, low_point);
+                }
+            }
+            let (kp, kq, ks) = (p.cross(&r), q.cross(&r), s.cross(&r));
+            if kq >= zero && kp <= zero {
+                (s, weights) = (r, [kq, -kp, weights[2]]);
+            } else if ks >= zero && kq <= zero {
+                (p, weights) = (r, [weights[0], ks, -kq]);
+            } else if kp >= zero && ks <= zero {
+                (q, weights) = (r, [-ks, weights[1], kp]);
+            } else {
+                return Err(None);
+            }
+        }
+    }
+
+    /// The next support point along any vector.
+    #[inline]
+    pub(crate) fn look(&mut self, frame: &Frame<B::Vector>, n: B::Vector) -> Result<SeenBy<B>, Exit<B>> {
+        let (point, witness) = self.sight(n).map_err(Some)?;
+        let seen = point - self.local.line.foot;
+        let t = point.dot(self.local.line.direction);
+        Ok(Seen { u: seen.dot(frame.e1), v: seen.dot(frame.e2), t, point, witness })
+    }
+
+    #[inline]
+    pub(crate) fn look_slanted(
+        &mut self,
+        frame: &Frame<B::Vector>,
+        slant: Slant<ScalarOf<B>>,
+    ) -> Result<SeenBy<B>, Exit<B>> {
+        self.look(frame, frame.normal(self.local.line.direction, slant))
+    }
+
+    /// Where on the line the ray ends, or leaves the ball about the body.
+    pub(crate) fn end(&self) -> ScalarOf<B> {
+        self.half_chord.min(self.local.mu(self.options.max_lambda))
+    }
+
+    /// The search ends if the plane across `n` that supports the body at a point leaves nothing of the ray.
+    pub(crate) fn separate(&mut self, n: B::Vector, p: &SeenBy<B>) -> Result<(), Exit<B>> {
+        match n.unit() {
+            Some(n) => self.advance(n, p.point).map_err(Some),
+            None => Ok(()),
+        }
+    }
+
+    /// Certifies that the bracket has closed: from the last plane to the point at `high`, which is no farther than the
+    /// radius from the core's point with these weights.
+    pub(crate) fn close(
+        &mut self,
+        frame: &Frame<B::Vector>,
+        corners: &[SeenBy<B>],
+        weights: &[ScalarOf<B>],
+        high: ScalarOf<B>,
+        slant: Slant<ScalarOf<B>>,
+        point: B::Vector,
+    ) -> Result<(), Exit<B>> {
+        let n = frame.normal(self.local.line.direction, slant).unit().ok_or(None)?;
+        self.advance(n, point).map_err(Some)?;
+        let zero = ScalarOf::<B>::ZERO;
+        let (mut u, mut v, mut t) = (zero, zero, -high);
+        let mut simplex = Simplex::new();
+        for (p, &weight) in corners.iter().zip(weights) {
+            u += p.u * weight;
+            v += p.v * weight;
+            t += p.t * weight;
+            simplex.push_weighted(p.point, n, p.witness, weight);
+        }
+        let within = self.radius + self.noise;
+        let slope = self.low_slope;
+        let closed = (high - self.low) * slope <= self.noise.max(self.options.tolerance);
+        if !(closed && u * u + v * v + t * t <= within * within && high + self.noise >= self.low) {
+            return Err(None);
+        }
+        self.simplex = simplex;
+        (self.high, self.high_error) = (high.max(self.low), self.noise / slope);
+        Ok(())
+    }
+}
+
+impl<V: Vector> Frame<V> {
+    /// Unit vectors across a unit vector `d` and one another, after Duff et al., *Building an orthonormal basis,
+    /// revisited* (2017).
+    pub(crate) fn new(d: V) -> Self {
+        let one = V::Scalar::ONE;
+        let (x, y, z) = (d.get(0), d.get(1), d.get(2));
+        let sign = one.copysign(z);
+        let a = -(sign + z).recip();
+        let b = x * y * a;
+        let e1 = [one + sign * x * x * a, sign * b, -sign * x];
+        let e2 = [b, sign + y * y * a, -y];
+        Self { e1: V::from_fn(|i| e1[i]), e2: V::from_fn(|i| e2[i]) }
+    }
+
+    /// The normal of a plane.
+    pub(crate) fn normal(&self, direction: V, slant: Slant<V::Scalar>) -> V {
+        self.e1 * slant.a + self.e2 * slant.b - direction
+    }
+}

@@ -1,0 +1,85 @@
+//! Both methods of casting give the same answers, within rounding, on bodies with and without a radius.
+
+use std::fmt::Debug;
+
+use convex_support::glam::{DQuat, DVec3};
+use convex_support::{Ball, Capsule, Cuboid, Polytope, Posed, Rounded, SupportMap};
+use gjk_raycast::{CastMethod, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions, linear_cast, ray_cast};
+use proptest::prelude::*;
+
+fn vector(range: f64) -> impl Strategy<Value = DVec3> {
+    prop::array::uniform3(-range..range).prop_map(DVec3::from_array)
+}
+
+fn rotation() -> impl Strategy<Value = DQuat> {
+    prop::array::uniform4(-1.0..1.0_f64)
+        .prop_filter("a quaternion", |q| q.iter().map(|x| x * x).sum::<f64>() > 0.01)
+        .prop_map(|q| DQuat::from_array(q).normalize())
+}
+
+/// A shape that proptest can print.
+trait Shape: SupportMap<Vector = DVec3> + Debug {}
+impl<S: SupportMap<Vector = DVec3> + Debug> Shape for S {}
+
+fn boxed(shape: impl Shape + 'static) -> Box<dyn Shape> {
+    Box::new(shape)
+}
+
+fn shape() -> impl Strategy<Value = Box<dyn Shape>> {
+    const VALID: &str = "valid numbers";
+    let radius = 0.01..1.0_f64;
+    let core = prop_oneof![
+        vector(1.0).prop_map(|h| boxed(Cuboid::new(h.abs()).expect(VALID))),
+        radius.clone().prop_map(|r| boxed(Ball::new(r).expect(VALID))),
+        (radius.clone(), radius.clone()).prop_map(|(h, r)| boxed(Capsule::new(h, r).expect(VALID))),
+        prop::collection::vec(vector(1.0), 4..20).prop_map(|points| boxed(Polytope::new(points).expect(VALID))),
+        (vector(1.0), radius)
+            .prop_map(|(h, r)| { boxed(Rounded::new(Cuboid::new(h.abs()).expect(VALID), r).expect(VALID)) }),
+    ];
+    (core, rotation()).prop_map(|(core, q)| boxed(Posed::new(core, q, DVec3::ZERO).expect(VALID)))
+}
+
+proptest! {
+    #[test]
+    fn rays(target in shape(), source in vector(3.0), aim in vector(1.2)) {
+        let ray = Ray { source, direction: aim - source };
+        let [quick, careful] = [CastMethod::Portal, CastMethod::Gjk].map(|method| {
+            ray_cast(&target, ray, RayCastOptions::default().with_method(method)).expect("a finite ray")
+        });
+        match (quick.outcome, careful.outcome) {
+            (Outcome::Hit(a), Outcome::Hit(b)) => {
+                let steep = a.normal.zip(b.normal).map_or(1.0, |(a, b)| {
+                    (a.dot(ray.direction).min(b.dot(ray.direction)) / ray.direction.length()).abs()
+                });
+                let error = (a.lambda - b.lambda).abs() * ray.direction.length();
+                prop_assert!(error * steep.min(1.0) < 1e-13, "{a:?}, {b:?}");
+                prop_assert!(quick.lower <= careful.upper && careful.lower <= quick.upper, "{quick:?}, {careful:?}");
+            }
+            (Outcome::Miss(_), Outcome::Miss(_)) => {}
+            answers => prop_assert!(false, "{answers:?}"),
+        }
+    }
+
+    #[test]
+    fn motions(a in shape(), b in shape(), from in vector(4.0), aim in vector(1.5)) {
+        let b = Posed::translated(b, from).expect("finite");
+        let motion = Motion { velocity_a: DVec3::ZERO, velocity_b: aim - from };
+        let [quick, careful] = [CastMethod::Portal, CastMethod::Gjk].map(|method| {
+            linear_cast(&a, &b, motion, LinearCastOptions::default().with_method(method)).expect("a finite motion")
+        });
+        match (quick.outcome, careful.outcome) {
+            (Outcome::Hit(p), Outcome::Hit(q)) => {
+                let speed = motion.velocity_b.length();
+                let steep = p.normal.map_or(1.0, |n| (n.dot(motion.velocity_b) / speed).abs());
+                prop_assert!((p.time - q.time).abs() * speed * steep < 1e-13, "{p:?}, {q:?}");
+                // The point of contact is one of both bodies.
+                if let Some(n) = p.normal {
+                    let reach = a.support_value(-n) + n.dot(p.point);
+                    prop_assert!(reach.abs() < 1e-12, "the point is {reach:e} off the surface");
+                }
+            }
+            (Outcome::Miss(_), Outcome::Miss(_)) => {}
+            answers => prop_assert!(false, "{answers:?}"),
+        }
+    }
+}
