@@ -8,6 +8,7 @@ use crate::body::{Body, Pair, power_of_two_near};
 use crate::closest::{Closest, nearest_face};
 use crate::decrease::Decrease;
 use crate::johnson::within;
+use crate::newton::Newton;
 use crate::regions::nearest;
 use crate::simplex::{Simplex, all};
 use crate::{Iterate, Status, SubAlgorithm};
@@ -56,6 +57,8 @@ pub(crate) struct Wanted<V: Vector> {
     pub(crate) limit: V::Scalar,
     /// Stop where the bracket is as narrow as this, relative to its lower end.
     pub(crate) tolerance: V::Scalar,
+    /// Whether the closest points are wanted, and not only which of two bounds comes first.
+    pub(crate) closely: bool,
     pub(crate) max_iterations: usize,
     pub(crate) sub_algorithm: SubAlgorithm,
 }
@@ -114,7 +117,7 @@ pub(crate) fn descend<B: Body>(
     let Frame { scale, offset, radius, noise, .. } = frame;
     let infinity = <B::Vector as Vector>::Scalar::infinity();
     let touching = radius.max(noise);
-    let light = wanted.sub_algorithm == SubAlgorithm::Regions;
+    let regions = wanted.sub_algorithm == SubAlgorithm::Regions;
     let mut nearing = Decrease::new();
     let mut descent = Descent {
         simplex: Simplex::new(),
@@ -126,9 +129,10 @@ pub(crate) fn descend<B: Body>(
         end: End::IterationLimit,
         iterations: 0,
     };
-    let mut size = wanted.first.length();
+    let mut n = wanted.first;
+    let mut size = n.length();
+    let mut newton = Newton::new(noise);
     while descent.iterations < wanted.max_iterations {
-        let n = descent.normal;
         let (point, witness) = first.take().unwrap_or_else(|| body.support(-n));
         let w = point + offset;
         descent.iterations += 1;
@@ -144,12 +148,13 @@ pub(crate) fn descend<B: Body>(
         observer(Iterate {
             iteration: descent.iterations - 1,
             simplex: descent.simplex.points(),
-            v: if descent.length < infinity { n * (descent.length / size) } else { n },
+            v: descent.v(),
             w,
             scale,
             lower: descent.lower * scale,
             upper: descent.length * scale,
         });
+        let mut light = regions;
         if descent.lower > wanted.limit + noise {
             descent.end = End::Separated;
             break;
@@ -164,24 +169,42 @@ pub(crate) fn descend<B: Body>(
                 descent.end = if descent.length - radius <= noise { End::Overlap } else { End::Separated };
                 break;
             }
+            // The steps were not as good as they seemed.
+            light = false;
         }
         descent.simplex.push(w, -n, witness);
         let next = if light { descent.step_lightly() } else { None };
+        if next.is_none() && newton.has_turned() {
+            // A plane that was turned away from the shortest vector may be the better bound without its support point
+            // bringing the simplex nearer.
+            descent.simplex.pop();
+            let to = newton.next(body, &descent, w, n / size, reach);
+            (n, size) = to.map_or((descent.normal, descent.normal.length()), |to| (to, Scalar::ONE));
+            continue;
+        }
         let next = next.or_else(|| descent.step_carefully(wanted.sub_algorithm, &mut nearing));
         let Some(next) = next else {
             descent.end = End::Stalled;
             break;
         };
-        size = next;
+        let (along, along_size) = (n, size);
+        (n, size) = (descent.normal, next);
         if descent.length <= touching {
             // A simplex of full dimension contains zero for certain; of any other it remains to be measured.
             if descent.length > Scalar::ZERO && !descent.measured {
                 size = descent.measure().unwrap_or(size);
+                n = descent.normal;
             }
             if descent.length <= touching {
                 descent.end = End::Overlap;
                 break;
             }
+        }
+        if wanted.closely
+            && body.derivative(-along, w) != Vector::ZERO
+            && let Some(to) = newton.next(body, &descent, w, along / along_size, reach)
+        {
+            (n, size) = (to, Scalar::ONE);
         }
     }
     if descent.end == End::Stalled && descent.length < infinity {
@@ -196,6 +219,12 @@ pub(crate) fn descend<B: Body>(
 }
 
 impl<V: Vector, W: Copy + Default> Descent<V, W> {
+    /// The shortest vector found, or as long as there is none, the first direction.
+    fn v(&self) -> V {
+        let size = self.normal.length();
+        if self.length.is_finite() && size > V::Scalar::ZERO { self.normal * (self.length / size) } else { self.normal }
+    }
+
     /// Goes on to the face of the simplex closest to zero, if that is clear and brings it nearer; its normal's length.
     #[inline]
     fn step_lightly(&mut self) -> Option<V::Scalar> {

@@ -49,6 +49,7 @@ where
         first: options.axis.and_then(direction).or_else(|| direction(frame.offset)).unwrap_or_else(|| Vector::axis(0)),
         limit: options.limit * per_unit + radius,
         tolerance: options.tolerance,
+        closely: true,
         max_iterations: options.max_iterations,
         sub_algorithm: options.sub_algorithm,
     };
@@ -56,7 +57,7 @@ where
     if !descent.measured {
         let _ = descent.measure();
     }
-    let Descent { normal, length, lower, ref simplex, .. } = descent;
+    let Descent { normal, length, lower, axis, ref simplex, .. } = descent;
     let overlap = descent.end == End::Overlap;
     let n = normal.unit();
     let (mut point_a, mut point_b) = (A::Vector::ZERO, A::Vector::ZERO);
@@ -87,7 +88,7 @@ where
         overlap,
         point_a,
         point_b,
-        normal: n.filter(|_| !overlap && length > zero),
+        normal: if lower > zero { axis.unit() } else { n }.filter(|_| !overlap && length > zero),
         status: descent.end.status(),
         iterations: descent.iterations,
     }

@@ -73,6 +73,7 @@ where
         first,
         limit: frame.radius,
         tolerance: Scalar::ZERO,
+        closely: false,
         max_iterations: options.max_iterations,
         sub_algorithm: options.sub_algorithm,
     };

@@ -66,6 +66,7 @@ mod iterative;
 mod johnson;
 mod line;
 mod linear_cast;
+mod newton;
 mod options;
 mod portal;
 mod ray_cast;

@@ -124,19 +124,19 @@ fn of_tetrahedron<V: Vector>(y: V, e: [V; 3]) -> Option<Nearest<V>> {
     let (r01, r10) = (g[1] * squared[0] - g[0] * g01, g[0] * squared[1] - g[1] * g01);
     let (r12, r21) = (g[2] * squared[1] - g[1] * g12, g[1] * squared[2] - g[2] * g12);
     let (r20, r02) = (g[0] * squared[2] - g[2] * g20, g[2] * squared[0] - g[0] * g20);
-    let facet = |k: usize, i: usize, j: usize| {
+    let facet = |k: usize, i: usize, j: usize, r: V::Scalar| {
         let area = n[k].length_squared();
-        (area > flatness::<V>() * squared[i] * squared[j])
+        (r < area && area > flatness::<V>() * squared[i] * squared[j])
             .then(|| Nearest { face: Face::of_corners(&[i, j, 3]), normal: towards(n[k], y) })
     };
     if s[0] <= zero && r12 > zero && r21 > zero {
-        return facet(0, 1, 2);
+        return facet(0, 1, 2, r12 + r21);
     }
     if s[1] <= zero && r20 > zero && r02 > zero {
-        return facet(1, 2, 0);
+        return facet(1, 2, 0, r20 + r02);
     }
     if s[2] <= zero && r01 > zero && r10 > zero {
-        return facet(2, 0, 1);
+        return facet(2, 0, 1, r01 + r10);
     }
     let along = |i: usize| (g[i] < squared[i]).then(|| edge(3, i, y, e[i], squared[i]));
     if g[0] > zero && r01 <= zero && r02 <= zero {
