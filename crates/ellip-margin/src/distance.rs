@@ -30,7 +30,9 @@ use num_traits::Float as _;
 
 use crate::double_double::DoubleDouble;
 use crate::margin::solve;
+use crate::multipliers;
 use crate::pair::{Pair, Vec, add, combine, dot, store, sub};
+use crate::polynomial;
 use crate::secular::Solution;
 use crate::{MarginOptions, Status};
 
@@ -130,12 +132,28 @@ pub fn distance<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: Margin
 
 fn distance_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: MarginOptions) -> Distance<V> {
     let pair = Pair::<N>::new(e1, e2);
-    let margin = solve(&pair, 0.0, options, |_, _| {});
-    let Some(mut slab) = Slab::of_margin(&pair, &margin) else {
-        let bracket = overlapping(&pair, &margin);
-        return Distance { distance: V::Scalar::ZERO, bracket, status: margin.status, iterations: 0 };
+    // A slab that separates the bodies settles that they are disjoint, however its normal was found.
+    let rough = polynomial::rough(&pair).and_then(|y| Slab::across(&pair, y)).filter(|slab| slab.is_wide(&pair));
+    let mut slab = match rough {
+        Some(slab) => slab,
+        None => {
+            let margin = solve(&pair, 0.0, options, |_, _| {});
+            let Some(slab) = Slab::of_margin(&pair, &margin) else {
+                let bracket = overlapping(&pair, &margin);
+                return Distance { distance: V::Scalar::ZERO, bracket, status: margin.status, iterations: 0 };
+            };
+            slab
+        }
     };
     let (mut status, mut iterations) = (Status::IterationLimit, 0);
+    if slab.width > 0.0 && slab.tangent_squared() > 2.0 * options.tolerance {
+        let beta = slab.h.map(|h| h * slab.width);
+        if let Some((d, steps)) = multipliers::closest(&pair, beta, options.max_iterations) {
+            iterations += steps;
+            let next = Slab::new(&pair, unit(d));
+            slab = if next.width > slab.width { next } else { slab };
+        }
+    }
     while iterations < options.max_iterations {
         if slab.tangent_squared() <= 2.0 * options.tolerance {
             status = Status::Converged;
@@ -184,9 +202,14 @@ impl<const N: usize> Slab<N> {
         if solution.margin.is_nan() || solution.margin <= 0.0 {
             return None;
         }
+        Self::across(pair, solution.y)
+    }
+
+    /// The slab whose normal is that of E₂ at its point y of the ball; `None` where that is not a number.
+    fn across(pair: &Pair<N>, y: Vec<N>) -> Option<Self> {
         // −z = −Q(x* − x₂) points from E₁ to E₂.
-        let z = combine(pair.axes2, core::array::from_fn(|j| -solution.y[j] / pair.a2[j]));
-        Some(Self::new(pair, unit(z)))
+        let n = unit(combine(pair.axes2, core::array::from_fn(|j| -y[j] / pair.a2[j])));
+        n.iter().all(|x| x.is_finite()).then(|| Self::new(pair, n))
     }
 
     fn new(pair: &Pair<N>, n: Vec<N>) -> Self {

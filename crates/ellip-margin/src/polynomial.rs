@@ -103,6 +103,19 @@ pub(crate) struct Straight<const N: usize> {
     pub(crate) margin: f64,
 }
 
+/// About the nearest point of E₂, as a point of its ball, at any aspect: to a few digits, or to none, which whoever takes it
+/// has to find out. `None` where x₁ lies in E₂ or near its boundary.
+#[inline]
+pub(crate) fn rough<const N: usize>(pair: &Pair<N>) -> Option<Vec<N>> {
+    let problem = Problem::new(pair);
+    let mut nu = problem.start();
+    for _ in 0..3 {
+        nu = (nu + problem.equation.at(nu).hebden()).max(0.0);
+    }
+    let y = problem.nearest(pair, nu).y;
+    (!problem.inside && y.iter().all(|x| x.is_finite())).then_some(y)
+}
+
 /// The equation of a pair, and what its solution is turned into an answer with.
 #[derive(Clone, Copy, Debug)]
 struct Problem<const N: usize> {

@@ -6,11 +6,13 @@ mod enclosing_ladder;
 mod growth;
 mod headline;
 mod left_out;
+mod margin_routes;
 mod page;
 mod paper;
 mod progress;
 mod provenance;
 mod random;
+mod random_walk;
 mod report;
 mod score;
 mod stiff;
@@ -189,7 +191,11 @@ fn validate(scope: &Scope) -> Result<bool, String> {
                 section.blocks.extend(figures.into_iter().map(Block::Figure));
                 section
             }
-            "stiff" => stiff::section(&records, if scope.quick { &[] } else { &cases }),
+            "stiff" => {
+                let mut section = stiff::section(&records, if scope.quick { &[] } else { &cases });
+                section.blocks.extend(margin_routes::figures(scope).into_iter().map(Block::Figure));
+                section
+            }
             "growth" => growth::section(scope),
             "left-out" => left_out::section(scope),
             "claims" => claims::section(scope, &cases),

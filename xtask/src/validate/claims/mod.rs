@@ -4,7 +4,7 @@ mod ellipsoids;
 mod ray_casts;
 
 use super::page::{Row, Table};
-use super::{Block, Case, Scope, Section, progress};
+use super::{Block, Case, Scope, Section, progress, random_walk};
 
 /// One line of the table.
 struct Claim {
@@ -47,6 +47,7 @@ pub(super) fn section(scope: &Scope, cases: &[Case]) -> Section {
             ellipsoids::claims(cases).into_iter().map(Claim::row).collect(),
         )));
     }
+    blocks.extend(random_walk::figures(scope).into_iter().map(Block::Figure));
     Section {
         id: "claims",
         title: "The papers' claims, measured again",
