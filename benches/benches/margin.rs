@@ -7,9 +7,13 @@ use convex_support::Ellipsoid;
 use convex_support::glam::{DMat3, DQuat, DVec3};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use ellip_margin::eigen::free_margin_eigen;
-use ellip_margin::{MarginOptions, Method, distance, distance_bracket, free_margin, scaling};
+use ellip_margin::{MarginOptions, Method, distance, distance_bracket, free_margin, free_margins_into, scaling};
+use nalgebra::SMatrix;
 
 const PAIRS: usize = 2_000;
+
+/// Pairs of a batch.
+const BATCH: usize = 10_000;
 
 /// The pairs of W5 before either is made a ball: semi-axes from 1 to `shortest`, centres 3 apart.
 fn pairs(seed: u64, shortest: f64) -> Vec<[Ellipsoid<DVec3>; 2]> {
@@ -22,6 +26,25 @@ fn pairs(seed: u64, shortest: f64) -> Vec<[Ellipsoid<DVec3>; 2]> {
         Ellipsoid::from_axes(center, a, axes).expect("valid by construction")
     };
     (0..PAIRS).map(|_| [ellipsoid(false), ellipsoid(true)]).collect()
+}
+
+/// The margin by the paper's matrix `[[C, −I], [−bbᵀ, C]]` and nalgebra's eigenvalues of it, the fastest general routine we
+/// know of for one of this size.
+fn margin_by_nalgebra(e1: &Ellipsoid<DVec3>, e2: &Ellipsoid<DVec3>) -> f64 {
+    let p = e1.matrix();
+    let root = e2.axes() * DMat3::from_diagonal(e2.semi_axes()) * e2.axes().transpose(); // Q^-½
+    let r = e1.center() - e2.center();
+    let (c, b) = (root * p * root, root * (p * r));
+    let m = SMatrix::<f64, 6, 6>::from_fn(|i, j| match (i < 3, j < 3) {
+        (true, true) => c.col(j)[i],
+        (true, false) => -f64::from(u8::from(i == j - 3)),
+        (false, true) => -b[i - 3] * b[j],
+        (false, false) => c.col(j - 3)[i - 3],
+    });
+    let lambda = m.complex_eigenvalues().iter().fold(f64::INFINITY, |least, l| least.min(l.re));
+    let x = (c - DMat3::from_diagonal(DVec3::splat(lambda))).inverse() * b;
+    let w = root * x - r;
+    w.dot(p * w) - 1.0
 }
 
 fn bench(c: &mut Criterion) {
@@ -41,6 +64,8 @@ fn bench(c: &mut Criterion) {
                 paper.margin,
                 basis.margin
             );
+            let other = margin_by_nalgebra(a, b);
+            assert!((other - basis.margin).abs() <= tolerance * basis.margin, "{other} {}", basis.margin);
         }
         let mut group = c.benchmark_group(format!("margin/{name}"));
         group.throughput(Throughput::Elements(PAIRS as u64));
@@ -61,6 +86,9 @@ fn bench(c: &mut Criterion) {
         row("eigenvalues (faer)", &|a, b| {
             let _ = black_box(free_margin_eigen(a, b));
         });
+        row("eigenvalues (nalgebra)", &|a, b| {
+            black_box(margin_by_nalgebra(a, b));
+        });
         row("distance bracket", &|a, b| {
             let _ = black_box(distance_bracket(a, b, options));
         });
@@ -69,6 +97,17 @@ fn bench(c: &mut Criterion) {
         });
         row("common scale", &|a, b| {
             let _ = black_box(scaling(a, b, options));
+        });
+        let (first, second): (Vec<_>, Vec<_>) = pairs.iter().cycle().take(BATCH).map(|[a, b]| (*a, *b)).unzip();
+        let mut margins = Vec::new();
+        group.throughput(Throughput::Elements(BATCH as u64));
+        group.bench_function("batch", |bencher| {
+            bencher.iter(|| {
+                margins.clear();
+                free_margins_into(black_box(&first), black_box(&second), options, &mut margins)
+                    .expect("lists of one length");
+                black_box(&margins);
+            });
         });
         group.finish();
     }

@@ -6,6 +6,7 @@
 //! aspect, or slow to converge are asked again one by one.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use convex_support::{Ellipsoid, Scalar, Vector};
 
@@ -66,21 +67,59 @@ pub fn free_margins_into<V: Vector>(
         (first, second) => return Err(InvalidQuery::LengthsDiffer { first, second }),
     };
     margins.reserve(count);
-    let first = |k: usize| if e1.len() == 1 { &e1[0] } else { &e1[k] };
-    let second = |k: usize| if e2.len() == 1 { &e2[0] } else { &e2[k] };
-    let mut next = 0;
+    let of = |k: usize| (&e1[if e1.len() == 1 { 0 } else { k }], &e2[if e2.len() == 1 { 0 } else { k }]);
+    in_parts(count, margins, |part, margins| some(part, of, options, margins));
+    Ok(())
+}
+
+/// How many pairs a core takes at a time: whole lanes, so that each pair is solved as it is in one go.
+#[cfg(feature = "rayon")]
+const PART: usize = 128 * LANES;
+
+/// Fills the list by parts, on all cores.
+#[cfg(feature = "rayon")]
+fn in_parts<M: Send>(count: usize, list: &mut Vec<M>, fill: impl Fn(Range<usize>, &mut Vec<M>) + Sync) {
+    use rayon::prelude::*;
+    if count <= PART {
+        return fill(0..count, list);
+    }
+    let part = |k: usize| {
+        let mut part = Vec::with_capacity(PART);
+        fill(k * PART..count.min((k + 1) * PART), &mut part);
+        part
+    };
+    let parts: Vec<Vec<M>> = (0..count.div_ceil(PART)).into_par_iter().map(part).collect();
+    list.extend(parts.into_iter().flatten());
+}
+
+/// Fills the list.
+#[cfg(not(feature = "rayon"))]
+fn in_parts<M>(count: usize, list: &mut Vec<M>, fill: impl Fn(Range<usize>, &mut Vec<M>)) {
+    fill(0..count, list);
+}
+
+/// The margins of the pairs of a range.
+fn some<'a, V: Vector>(
+    range: Range<usize>,
+    of: impl Fn(usize) -> (&'a Ellipsoid<V>, &'a Ellipsoid<V>),
+    options: MarginOptions,
+    margins: &mut Vec<Margin<V>>,
+) {
+    let Range { start: mut next, end } = range;
     if options.method == Method::Automatic && options.max_iterations >= STRAIGHT_STEPS {
-        while next + LANES <= count {
+        while next + LANES <= end {
             if V::DIM == 2 {
-                eight::<V, 2>(|k| (first(next + k), second(next + k)), options, margins);
+                eight::<V, 2>(|k| of(next + k), options, margins);
             } else {
-                eight::<V, 3>(|k| (first(next + k), second(next + k)), options, margins);
+                eight::<V, 3>(|k| of(next + k), options, margins);
             }
             next += LANES;
         }
     }
-    margins.extend((next..count).map(|k| free_margin(first(k), second(k), options)));
-    Ok(())
+    margins.extend((next..end).map(|k| {
+        let (e1, e2) = of(k);
+        free_margin(e1, e2, options)
+    }));
 }
 
 /// A number of each lane.

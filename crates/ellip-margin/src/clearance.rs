@@ -30,13 +30,18 @@ pub struct ClearanceResult<V: Vector> {
 /// Pairs that needed no margin, by reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LeftOut {
     /// The link has moved too little since its margins were last bounded.
     pub by_motion: usize,
     /// A box around the obstacle, or around a group of them, is too far from the link in the norm of the link.
     pub by_box: usize,
+    /// A ball around the obstacle is too far from the ball around the grown link.
+    pub by_sphere: usize,
     /// A plane across the line of centres separates the obstacle from the grown link.
     pub by_plane: usize,
+    /// So does a plane across the normal at which the link was nearest to the obstacle when the two were last solved.
+    pub by_normal: usize,
 }
 
 /// A pair within a threshold; see [`Clearance::within`].
@@ -65,22 +70,41 @@ pub fn clearance<V: Vector>(
     if obstacles.is_empty() {
         return Err(InvalidQuery::NoObstacles);
     }
-    let mut least = Least::default();
-    for (link, e1) in links.iter().enumerate() {
+    let of_link = |(link, e1): (usize, &Ellipsoid<V>)| {
+        let mut least = Least::default();
         for (obstacle, e2) in obstacles.iter().enumerate() {
             least.take(free_margin(e1, e2, options), link, obstacle);
         }
-    }
+        least
+    };
+    let least = least_of(links, of_link);
     let (margin, link, obstacle) = least.0.ok_or(InvalidQuery::NoLinks)?;
     let pairs_evaluated = links.len() * obstacles.len();
     Ok(ClearanceResult { margin, link, obstacle, pairs_evaluated, left_out: LeftOut::default() })
+}
+
+/// The least of what is found for each link: which core finds what does not matter, since ties go by index.
+#[cfg(feature = "rayon")]
+fn least_of<V: Vector>(
+    links: &[Ellipsoid<V>],
+    of_link: impl Fn((usize, &Ellipsoid<V>)) -> Least<V> + Sync + Send,
+) -> Least<V> {
+    use rayon::prelude::*;
+    links.par_iter().enumerate().map(of_link).reduce(Least::default, Least::or)
+}
+
+/// The least of what is found for each link.
+#[cfg(not(feature = "rayon"))]
+fn least_of<V: Vector>(links: &[Ellipsoid<V>], of_link: impl Fn((usize, &Ellipsoid<V>)) -> Least<V>) -> Least<V> {
+    links.iter().enumerate().map(of_link).fold(Least::default(), Least::or)
 }
 
 /// The least margin of a robot's links about obstacles along a motion, without looking at most pairs.
 ///
 /// The obstacles lie in a tree of boxes, which follows when they [move](Self::move_obstacles). Per link, groups of them
 /// are left out whose box is farther, in the norm in which the link is the unit ball, than the least margin so far; so are
-/// obstacles beyond a plane across the line of centres. A link that has moved little is left out altogether, since √(1 + m) changes
+/// obstacles whose ball is too far, and those beyond a plane across the line of centres or across the normal at which the
+/// two were nearest when last solved. A link that has moved little is left out altogether, since √(1 + m) changes
 /// by no more than the link's motion in its own norm. What remains is solved as [`free_margin`] does, so that
 /// the result is that of [`clearance`], to the last bit.
 ///
@@ -98,14 +122,15 @@ pub fn clearance<V: Vector>(
 /// let link = Ellipsoid::new(DVec3::new(5.1, 3.0, 3.0), DVec3::new(0.5, 0.1, 0.1), Default::default())?;
 /// let nearest = scene.step(&[link])?;
 /// assert!(nearest.margin.margin > 0.0 && nearest.pairs_evaluated < 20);
-/// let out = nearest.left_out;
-/// assert_eq!(nearest.pairs_evaluated + out.by_motion + out.by_box + out.by_plane, 1000);
+/// assert_eq!(nearest.pairs_evaluated + nearest.left_out.total(), 1000);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Clearance<V: Vector> {
     options: MarginOptions,
     obstacles: Vec<Ellipsoid<V>>,
+    /// The greatest semi-axis of each obstacle.
+    radii: Vec<f64>,
     tree: Hierarchy,
     /// How far any point of any obstacle can have moved in all calls of `move_obstacles`.
     drift: f64,
@@ -122,6 +147,38 @@ struct Seen<V: Vector> {
     scale: f64,
     /// The drift then.
     drift: f64,
+    /// The pairs solved last, the newest first.
+    normals: Normals,
+}
+
+/// How many normals are kept of each link: the obstacles it is among, not all there are.
+const NORMALS: usize = 8;
+
+/// Obstacles that were solved with a link lately, and the unit normal from the link to each where it was nearest.
+#[derive(Clone, Copy, Debug)]
+struct Normals([Option<(usize, [f64; 3])>; NORMALS]);
+
+impl Normals {
+    const NONE: Self = Self([None; NORMALS]);
+
+    fn of(&self, obstacle: usize) -> Option<[f64; 3]> {
+        self.0.iter().flatten().find(|(of, _)| *of == obstacle).map(|(_, normal)| *normal)
+    }
+
+    /// Keeps a normal, in the place of the same obstacle's or of the oldest.
+    fn keep(&mut self, obstacle: usize, normal: [f64; 3]) {
+        let place = self.0.iter().position(|kept| kept.is_none_or(|(of, _)| of == obstacle)).unwrap_or(NORMALS - 1);
+        self.0[place] = Some((obstacle, normal));
+        self.0[..=place].rotate_right(1);
+    }
+}
+
+impl LeftOut {
+    /// All of them.
+    #[must_use]
+    pub const fn total(&self) -> usize {
+        self.by_motion + self.by_box + self.by_sphere + self.by_plane + self.by_normal
+    }
 }
 
 impl<V: Vector> Clearance<V> {
@@ -137,6 +194,7 @@ impl<V: Vector> Clearance<V> {
         Ok(Self {
             options,
             obstacles: obstacles.to_vec(),
+            radii: obstacles.iter().map(radius).collect(),
             tree: Hierarchy::new(&boxes),
             drift: 0.0,
             links: Vec::new(),
@@ -162,6 +220,8 @@ impl<V: Vector> Clearance<V> {
         let moved = self.obstacles.iter().zip(obstacles).map(|(a, b)| displacement(a, b));
         self.drift += moved.fold(0.0, f64::max);
         self.obstacles.copy_from_slice(obstacles);
+        self.radii.clear();
+        self.radii.extend(obstacles.iter().map(radius));
         let boxes: Vec<Aabb> = obstacles.iter().map(around).collect();
         self.tree.refit(&boxes);
         Ok(())
@@ -174,7 +234,7 @@ impl<V: Vector> Clearance<V> {
     /// [`InvalidQuery::NoLinks`] if the list is empty.
     pub fn step(&mut self, links: &[Ellipsoid<V>]) -> Result<ClearanceResult<V>, InvalidQuery> {
         let first = *links.first().ok_or(InvalidQuery::NoLinks)?;
-        self.links.resize(links.len(), Seen { link: first, scale: 0.0, drift: self.drift });
+        self.links.resize(links.len(), Seen { link: first, scale: 0.0, drift: self.drift, normals: Normals::NONE });
         let mut least = Least::default();
         let mut count = Count::default();
         // The pair that was nearest is likely to be near still: it is solved first.
@@ -192,9 +252,9 @@ impl<V: Vector> Clearance<V> {
             }
             // What is solved already is as near as the least at most.
             let nearest = solved.map_or(f64::INFINITY, |_| least.scale());
-            let mut search = Search { frame: Frame::new(link), least, count, nearest, solved };
-            search.run(&self.tree, &self.obstacles, link, index, self.options);
-            *seen = Seen { link: *link, scale: search.nearest, drift: self.drift };
+            let mut search = Search { frame: Frame::new(link), least, count, nearest, solved, normals: seen.normals };
+            search.run(&self.tree, &self.obstacles, &self.radii, link, index, self.options);
+            *seen = Seen { link: *link, scale: search.nearest, drift: self.drift, normals: search.normals };
             Search { least, count, .. } = search;
         }
         let Some((margin, link, obstacle)) = least.0 else { return Err(InvalidQuery::NoLinks) };
@@ -264,6 +324,14 @@ impl<V: Vector> Least<V> {
         }
     }
 
+    /// The lesser of two.
+    fn or(mut self, other: Self) -> Self {
+        if let Some((margin, link, obstacle)) = other.0 {
+            self.take(margin, link, obstacle);
+        }
+        self
+    }
+
     /// Whether a pair with √(1 + m) ≥ `scale` is certainly not the least.
     fn excludes(&self, scale: f64) -> bool {
         self.0.is_some_and(|(least, ..)| Limit(least.margin.as_f64(), V::Scalar::EPSILON.as_f64()).excludes(scale))
@@ -327,13 +395,15 @@ impl<V: Vector> Seen<V> {
 struct Frame {
     center: [f64; 3],
     rows: [[f64; 3]; 3],
+    /// The greatest semi-axis.
+    radius: f64,
 }
 
 impl Frame {
     fn new<V: Vector>(link: &Ellipsoid<V>) -> Self {
         let (axes, a): ([[f64; 3]; 3], [f64; 3]) = (columns(link.axes()), padded(link.semi_axes()));
         let rows = core::array::from_fn(|i| if i < V::DIM { axes[i].map(|x| x / a[i]) } else { [0.0; 3] });
-        Self { center: padded(link.center()), rows }
+        Self { center: padded(link.center()), rows, radius: radius(link) }
     }
 
     /// The distance of the ball's centre from a box around the box.
@@ -349,15 +419,41 @@ impl Frame {
         squared.sqrt()
     }
 
+    /// A lower bound on that distance from a ball around the obstacle: (‖r‖ − radius)/a_max.
+    #[inline]
+    fn sphere_distance<V: Vector>(&self, obstacle: &Ellipsoid<V>, radius: f64) -> f64 {
+        let r = sub(padded(obstacle.center()), self.center);
+        let norm = dot(r, r).sqrt();
+        (norm - radius - 16.0 * f64::EPSILON * (norm + radius)) / self.radius
+    }
+
     /// The distance of the ball's centre from the tangent plane of the obstacle across the line of centres.
     fn plane_distance<V: Vector>(&self, obstacle: &Ellipsoid<V>) -> f64 {
         let g = self.rows.map(|row| dot(row, sub(padded(obstacle.center()), self.center)));
-        let norm = dot(g, g).sqrt();
-        let n: [f64; 3] = core::array::from_fn(|k| (0..3).map(|i| self.rows[i][k] * (g[i] / norm)).sum());
+        self.tangent_distance(obstacle, g, g)
+    }
+
+    /// The distance of the ball's centre from the tangent plane of the obstacle across a normal of space.
+    fn normal_distance<V: Vector>(&self, obstacle: &Ellipsoid<V>, normal: [f64; 3]) -> f64 {
+        let g = self.rows.map(|row| dot(row, sub(padded(obstacle.center()), self.center)));
+        // A plane's normal in the ball is A⁻ᵀn for x ↦ Ax: rowᵢ/‖rowᵢ‖²·n.
+        let n = self.rows.map(|row| {
+            let squared = dot(row, row);
+            if squared > 0.0 { dot(row, normal) / squared } else { 0.0 }
+        });
+        self.tangent_distance(obstacle, n, g)
+    }
+
+    /// The distance of the ball's centre from the tangent plane of the obstacle with the normal `n` of the ball, for the
+    /// obstacle's centre at `g`.
+    fn tangent_distance<V: Vector>(&self, obstacle: &Ellipsoid<V>, n: [f64; 3], g: [f64; 3]) -> f64 {
+        let length = dot(n, n).sqrt();
+        let n = n.map(|x| x / length);
+        let world: [f64; 3] = core::array::from_fn(|k| (0..3).map(|i| self.rows[i][k] * n[i]).sum());
         let (axes, a): ([[f64; 3]; 3], [f64; 3]) = (columns(obstacle.axes()), padded(obstacle.semi_axes()));
-        let u: [f64; 3] = core::array::from_fn(|k| a[k] * dot(axes[k], n));
-        let height = dot(u, u).sqrt();
-        norm - height - 16.0 * f64::EPSILON * (norm + height)
+        let u: [f64; 3] = core::array::from_fn(|k| a[k] * dot(axes[k], world));
+        let (along, height) = (dot(n, g), dot(u, u).sqrt());
+        along - height - 16.0 * f64::EPSILON * (dot(g, g).sqrt() + height)
     }
 }
 
@@ -370,6 +466,7 @@ struct Search<V: Vector> {
     nearest: f64,
     /// An obstacle that was solved before.
     solved: Option<usize>,
+    normals: Normals,
 }
 
 impl<V: Vector> Search<V> {
@@ -377,6 +474,7 @@ impl<V: Vector> Search<V> {
         &mut self,
         tree: &Hierarchy,
         obstacles: &[Ellipsoid<V>],
+        radii: &[f64],
         link: &Ellipsoid<V>,
         index: usize,
         options: MarginOptions,
@@ -407,10 +505,9 @@ impl<V: Vector> Search<V> {
                             self.solved = None;
                             continue;
                         }
-                        let plane = self.frame.plane_distance(&obstacles[obstacle]);
-                        if self.least.excludes(plane) {
-                            self.nearest = self.nearest.min(plane);
-                            self.count.left_out.by_plane += 1;
+                        if let Some((bound, reason)) = self.leave_out(&obstacles[obstacle], radii[obstacle], obstacle) {
+                            self.nearest = self.nearest.min(bound);
+                            *reason(&mut self.count.left_out) += 1;
                             continue;
                         }
                         let margin = free_margin(link, &obstacles[obstacle], options);
@@ -419,6 +516,7 @@ impl<V: Vector> Search<V> {
                         let square = (1.0 + margin.margin.as_f64()) * (1.0 - rounding) - rounding;
                         self.nearest = self.nearest.min(square.max(0.0).sqrt());
                         self.least.take(margin, index, obstacle);
+                        self.normals.keep(obstacle, normal(&obstacles[obstacle], &margin));
                     }
                 }
             }
@@ -426,6 +524,37 @@ impl<V: Vector> Search<V> {
         // Not met again: it was counted with a box that was left out.
         self.count.left_out.by_box -= usize::from(self.solved.is_some());
     }
+
+    /// A bound on √(1 + m) that shows the obstacle not to be the least, and what it is due to: the cheapest that does.
+    #[inline]
+    fn leave_out(&self, obstacle: &Ellipsoid<V>, radius: f64, index: usize) -> Option<(f64, Reason)> {
+        let sphere = self.frame.sphere_distance(obstacle, radius);
+        if self.least.excludes(sphere) {
+            return Some((sphere, |out| &mut out.by_sphere));
+        }
+        let plane = self.frame.plane_distance(obstacle);
+        if self.least.excludes(plane) {
+            return Some((plane, |out| &mut out.by_plane));
+        }
+        let normal = self.frame.normal_distance(obstacle, self.normals.of(index)?);
+        self.least.excludes(normal).then_some((normal, |out| &mut out.by_normal))
+    }
+}
+
+/// The count of a reason.
+type Reason = fn(&mut LeftOut) -> &mut usize;
+
+/// The unit normal from the link to the obstacle at x*, in space; zero where the centre of the link lies in the obstacle.
+fn normal<V: Vector>(obstacle: &Ellipsoid<V>, margin: &Margin<V>) -> [f64; 3] {
+    let (axes, a, y) = (columns(obstacle.axes()), padded(obstacle.semi_axes()), padded(margin.ball_point));
+    let z: [f64; 3] = core::array::from_fn(|i| (0..V::DIM).map(|k| -axes[k][i] * (y[k] / a[k])).sum());
+    let norm = dot(z, z).sqrt();
+    z.map(|x| x / norm)
+}
+
+/// The greatest semi-axis.
+fn radius<V: Vector>(e: &Ellipsoid<V>) -> f64 {
+    e.semi_axes().max_element().as_f64()
 }
 
 fn padded<V: Vector>(v: V) -> [f64; 3] {

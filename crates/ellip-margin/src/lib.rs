@@ -35,6 +35,8 @@
 //! - `std` (default): floating-point functions from the standard library; `libm`: the same from the libm crate, for `no_std`
 //!   targets. `alloc` is needed in any case.
 //! - `eigen`: the eigenvalue route, by faer.
+//! - `rayon`: [`free_margins`] and [`clearance`] use all cores. The answers are the same to the last bit.
+//! - `serde`: options, margins and trackers as data, beside convex-support's shapes.
 //! - `simd`: batches take the widest vector instructions of the processor, found at run time by pulp. The answers are the same.
 
 #![no_std]

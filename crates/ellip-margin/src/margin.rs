@@ -11,6 +11,12 @@ use crate::{MarginOptions, Method, Status};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
 pub struct Margin<V: Vector> {
     /// m = min (x − x₁)ᵀP(x − x₁) − 1 over x in E₂, in [−1, ∞): positive where the ellipsoids are disjoint, 0 where they
     /// touch, negative where they overlap, −1 where x₁ lies in E₂. Grown by the factor √(1 + m), E₁ just touches E₂.

@@ -10,6 +10,7 @@
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MarginOptions {
     /// The relative error of ν to reach, as foreseen from the last step and the order of the method. The default, 1e-15,
     /// leaves nothing but rounding; the margin's own error is about the square of this.
@@ -23,6 +24,7 @@ pub struct MarginOptions {
 /// How the secular equation is set up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Method {
     /// As a polynomial where that keeps its digits, which is where both bodies have moderate aspects, and in
     /// the singular basis elsewhere.
@@ -62,6 +64,7 @@ impl MarginOptions {
 /// How an iteration ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Status {
     /// The tolerance was met.
     Converged,

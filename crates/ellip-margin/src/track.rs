@@ -27,6 +27,7 @@ use crate::{Margin, MarginOptions};
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MarginTracker {
     options: MarginOptions,
     /// ν at the last step with x₁ outside E₂, and its backward differences: ∇ν, ∇²ν, …; 0 where unknown.
@@ -62,8 +63,8 @@ impl MarginTracker {
     }
 
     /// ν of the next step by the polynomial through the last k + 1 values, ν + ∇ν + … + ∇ᵏν, whose error at the last step was
-    /// ∇ᵏ⁺¹ν: that k is taken for which it was least. After a jump, that is none of them; a forecast below half of the last
-    /// value is no path.
+    /// ∇ᵏ⁺¹ν: that k is taken for which it was least. Where even that was more than a 32nd of ν there is no path to follow, and
+    /// the bound that a cold start begins with is the better guess: 0.
     fn forecast(&self) -> f64 {
         let (mut sum, mut best, mut least) = (0.0, 0.0, f64::INFINITY);
         for k in 0..DEPTH - 1 {
@@ -73,7 +74,7 @@ impl MarginTracker {
                 (best, least) = (sum, error);
             }
         }
-        if best > 0.5 * self.past[0] { best } else { self.past[0] }
+        if 32.0 * least < best { best } else { 0.0 }
     }
 
     /// The number of steps so far.

@@ -76,7 +76,9 @@ pub(super) fn run(links: u32, folder: &Path) -> Result<(), String> {
 
         left_out.by_motion += least.left_out.by_motion;
         left_out.by_box += least.left_out.by_box;
+        left_out.by_sphere += least.left_out.by_sphere;
         left_out.by_plane += least.left_out.by_plane;
+        left_out.by_normal += least.left_out.by_normal;
         evaluated += least.pairs_evaluated;
         margins.push([now, least.margin.margin]);
         csv += &format!(
@@ -108,7 +110,9 @@ pub(super) fn run(links: u32, folder: &Path) -> Result<(), String> {
         for (why, count) in [
             ("the link has hardly moved", left_out.by_motion),
             ("a box around obstacles is too far", left_out.by_box),
+            ("balls around both are too far", left_out.by_sphere),
             ("a plane separates them far enough", left_out.by_plane),
+            ("so does the plane of the last normal", left_out.by_normal),
         ] {
             writeln!(output, "left out: {why:25} {count:>9} {:>6.2}%", share(count))?;
         }

@@ -83,7 +83,7 @@ fn measure(size: f64) -> Row {
         for pose in poses {
             let cold = free_margin(pose, obstacle, options);
             row.cold_iterations += f64::from(cold.iterations);
-            let off = |m: f64, tolerance: f64| (m - cold.margin).abs() > tolerance * (1.0 + cold.margin);
+            let off = |m: f64, tolerance: f64| (m - cold.margin).abs() > tolerance * (1.0 + cold.margin.abs());
             row.wrong += f64::from(u8::from(off(paper.step(pose, obstacle).margin, 1e-4)));
             row.newton_wrong += f64::from(u8::from(off(ours.step(pose, obstacle).margin, 1e-14)));
         }
