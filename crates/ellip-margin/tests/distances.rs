@@ -57,11 +57,27 @@ proptest! {
         check(&e1, &e2, 1e-11);
     }
 
+    /// However thin the bodies are, the distance is found to its last digits, in a few steps.
+    #[test]
+    fn converges_at_any_aspect(e1 in ellipsoid3(7.0, 2.0), e2 in ellipsoid3(7.0, 2.0), f1 in ellipsoid2(7.0, 2.0), f2 in ellipsoid2(7.0, 2.0)) {
+        fn converges<V: Vector<Scalar = f64>>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> Result<(), TestCaseError> {
+            let d = distance(e1, e2, MarginOptions::default());
+            if d.distance > 1e-6 {
+                prop_assert_eq!(d.status, Status::Converged, "{:?} {:?}: {:?}", e1, e2, d);
+                prop_assert!(d.bracket.upper - d.bracket.lower <= 1e-8 * d.distance, "{:?}", d);
+                prop_assert!(d.iterations <= 40, "{:?}", d);
+            }
+            Ok(())
+        }
+        converges(&e1, &e2)?;
+        converges(&f1, &f2)?;
+    }
+
     /// Whatever ends the iteration, the bracket holds.
     #[test]
     fn bracket_at_any_aspect(e1 in ellipsoid3(7.0, 2.0), e2 in ellipsoid3(7.0, 2.0), steps in 0u32..20) {
         let full = distance(&e1, &e2, MarginOptions::default());
-        let short = distance(&e1, &e2, MarginOptions::default().with_max_iterations(64));
+        let short = distance(&e1, &e2, MarginOptions::default().with_max_iterations(steps));
         prop_assert!(short.bracket.lower <= full.bracket.upper && full.bracket.lower <= short.bracket.upper);
         prop_assert!(full.bracket.lower <= full.bracket.upper, "{:?} after {} steps", full, steps);
     }

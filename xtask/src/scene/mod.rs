@@ -249,13 +249,20 @@ fn scene(file: &Path, truth: Option<&Path>, folder: &Path) -> Result<bool, Strin
             hulls_asked: 0,
         };
         let mut nearest = None;
+        let mut states = vec![picture::State::Clear; links.len()];
         for (i, link) in links.iter().enumerate() {
             for (j, obstacle) in scene.obstacles.iter().enumerate() {
                 let answer = pairs[i * scene.obstacles.len() + j].ask(link, obstacle, &mut levels);
                 if answer.margin.margin < row.least_margin {
                     row.least_margin = answer.margin.margin;
-                    nearest = Some(answer.margin.point);
+                    nearest = Some((i, answer.margin.point));
                 }
+                let state = match (answer.overlap, answer.decided) {
+                    (true, _) => picture::State::Overlapping,
+                    (false, Decided::Hulls) => picture::State::Near,
+                    (false, _) => picture::State::Clear,
+                };
+                states[i] = states[i].max(state);
                 row.overlaps += usize::from(answer.overlap);
                 row.hulls_asked += usize::from(answer.decided == Decided::Hulls);
                 if let Some(exact) = &answer.exact {
@@ -269,7 +276,21 @@ fn scene(file: &Path, truth: Option<&Path>, folder: &Path) -> Result<bool, Strin
             }
         }
         if step.is_multiple_of(STRIDE) {
-            frames.add(links.iter().map(|link| picture::outline(&link.outer)), nearest.map(picture::project));
+            let distance = row.least_distance.map_or(String::new(), |d| format!(", least distance {:.1} mm", d * 1e3));
+            frames.add(picture::Frame {
+                links: links.iter().map(|link| picture::outline(&link.outer)).zip(states).collect(),
+                nearest: nearest.map(|(i, point)| [links[i].outer.center(), point].map(picture::project)),
+                caption: format!(
+                    "t = {:.2} s\nleast margin {:.3}{}\n{} pairs: ellipsoids decided {}, hulls {}\n{} overlap{distance}",
+                    row.time,
+                    row.least_margin,
+                    nearest.map_or(String::new(), |(i, _)| format!(" of {}", scene.robot.links[i].name)),
+                    links.len() * scene.obstacles.len(),
+                    links.len() * scene.obstacles.len() - row.hulls_asked,
+                    row.hulls_asked,
+                    row.overlaps,
+                ),
+            });
         }
         rows.push(row);
     }

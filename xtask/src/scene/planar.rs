@@ -86,7 +86,23 @@ pub(super) fn run(links: u32, folder: &Path) -> Result<(), String> {
             least.margin.margin, least.link, least.obstacle, least.pairs_evaluated, steepest.0, steepest.1
         );
         if step.is_multiple_of(10) {
-            frames.add(bodies.iter().map(picture::flat), Some(least.margin.point));
+            // A margin of 0 or less is an overlap of what is drawn.
+            let overlaps: Vec<usize> = clearance.within(&bodies, 0.0).iter().map(|pair| pair.link).collect();
+            let state =
+                |i: usize| if overlaps.contains(&i) { picture::State::Overlapping } else { picture::State::Clear };
+            frames.add(picture::Frame {
+                links: bodies.iter().enumerate().map(|(i, link)| (picture::flat(link), state(i))).collect(),
+                nearest: Some([bodies[least.link].center(), least.margin.point]),
+                caption: format!(
+                    "t = {now:.2}\nleast margin {:.3} of link {}\n{} of {} pairs solved\nturn joint {}: {:+.1} per radian",
+                    least.margin.margin,
+                    least.link,
+                    least.pairs_evaluated,
+                    trackers.len(),
+                    steepest.0,
+                    steepest.1
+                ),
+            });
         }
     }
     let plot = Plot {
