@@ -148,15 +148,20 @@ fn distance_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, 
     let (mut status, mut iterations) = (Status::IterationLimit, 0);
     if slab.width > 0.0 && slab.tangent_squared() > 2.0 * options.tolerance {
         let beta = slab.h.map(|h| h * slab.width);
-        if let Some((d, steps)) = multipliers::closest(&pair, beta, options.max_iterations) {
+        // An eighth of the steps is left for the slab to close by itself, should this end before it is at rest.
+        let most = options.max_iterations - options.max_iterations / 8;
+        if let Some((d, steps)) = multipliers::closest(&pair, beta, most) {
             iterations += steps;
             let next = Slab::new(&pair, unit(d));
             slab = if next.width > slab.width { next } else { slab };
         }
     }
-    while iterations < options.max_iterations {
+    loop {
         if slab.tangent_squared() <= 2.0 * options.tolerance {
             status = Status::Converged;
+            break;
+        }
+        if iterations >= options.max_iterations {
             break;
         }
         iterations += 1;
@@ -242,11 +247,14 @@ impl<const N: usize> Slab<N> {
 
     /// A wider slab; `None` where none is found.
     fn ascend(&self, pair: &Pair<N>) -> Option<Self> {
-        // Newton's step, if it does a quarter of what it foresees.
+        // Newton's step, if it does a quarter of what it foresees, or brings p₂ − p₁ nearer to n where that is too little
+        // for the width to show.
         let tangent = sub(self.across, self.n.map(|x| x * self.width));
         let step = cholesky_solve(self.curvature(pair, true), tangent);
         let next = Self::new(pair, unit(add(self.n, step)));
-        if next.width >= self.width + 0.125 * dot(step, tangent) {
+        let gain = 0.125 * dot(step, tangent);
+        let hidden = gain <= self.rounding(pair) && next.tangent_squared() <= 0.25 * self.tangent_squared();
+        if next.width >= self.width + gain || hidden {
             return Some(next);
         }
         let reweighted = Self::new(pair, unit(cholesky_solve(self.curvature(pair, false), pair.r().map(|x| -x))));

@@ -10,7 +10,13 @@
 //! > (I − M)·Δ ln β = ln(h/β), Mᵢⱼ = qᵢᵀK⁻¹qⱼ/(hᵢ²βⱼ),
 //!
 //! where 0 ≤ Mₖₖ < 1 because K ⪰ Sₖ/βₖ. What is stiff in a thin body is inside K⁻¹ and solved exactly; the two
-//! numbers do not feel it.
+//! numbers do not feel it. One pair of needles in ten thousand sends these steps round in a circle. Then the same matrix
+//! serves Newton's method on the convex
+//!
+//! > Φ(β) = ½(β₁ + β₂ − rᵀK⁻¹r) = min over d of ½‖d‖² + Σ(dᵀSₖd/βₖ + βₖ)/2 − r·d, ∂Φ/∂βₖ = ½(1 − hₖ²/βₖ²),
+//! > ∂²Φ/∂βᵢ∂βⱼ = hᵢ²/(βᵢ²βⱼ)·(I − M)ᵢⱼ, hence (I − M)·diag(β)⁻¹Δβ = ½(1 − β²/h²),
+//!
+//! which is slower, since it at most half as much again as β, but always descends.
 
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
@@ -19,6 +25,9 @@ use crate::pair::{Pair, Vec, combine, dot};
 
 /// The largest change of ln β in a step: beyond it the linear model says little.
 const TRUST: f64 = 2.0;
+
+/// The steps in ln β before those on Φ.
+const SWIFT: u32 = 12;
 
 /// Below this residual of ln β the step is the last, and d follows it by its derivative: both leave an error of the residual's
 /// square, and the slab across d closes with the square of that.
@@ -45,7 +54,9 @@ pub(crate) fn closest<const N: usize>(
         let d = factor.solve(r);
         let q = [times(&pair.axes1, &pair.a1, d), times(&pair.axes2, &pair.a2, d)];
         let h2 = [dot(q[0], d), dot(q[1], d)];
-        let rest: [f64; 2] = core::array::from_fn(|k| 0.5 * (h2[k] / (beta[k] * beta[k])).ln());
+        let squared_ratio: [f64; 2] = core::array::from_fn(|k| h2[k] / (beta[k] * beta[k]));
+        let swift = iterations <= SWIFT;
+        let rest = squared_ratio.map(|s| if swift { 0.5 * s.ln() } else { 0.5 - 0.5 / s });
         let largest = rest[0].abs().max(rest[1].abs());
         if !largest.is_finite() {
             return None;
@@ -61,7 +72,13 @@ pub(crate) fn closest<const N: usize>(
             return Some((core::array::from_fn(|i| d[i] + (s * k[0][i] + t * k[1][i])), iterations));
         }
         for k in 0..2 {
-            beta[k] *= if is_step { newton[k].clamp(-TRUST, TRUST) } else { rest[k] }.exp();
+            beta[k] *= match (is_step, swift) {
+                (false, _) => squared_ratio[k].sqrt(),
+                (true, true) => newton[k].clamp(-TRUST, TRUST).exp(),
+                // 1 + x to first order, and positive.
+                (true, false) if newton[k] < 0.0 => 1.0 / (1.0 - newton[k]),
+                (true, false) => 1.0 + newton[k],
+            };
         }
     }
 }

@@ -169,8 +169,8 @@ fn transpose(m: &[Vec3; 3]) -> [Vec3; 3] {
 }
 
 impl Truth {
-    /// With B = diag(a₁)⁻¹R₁ᵀR₂·diag(a₂), g = diag(a₁)⁻¹R₁ᵀ(x₁ − x₂): adj(C + ν) = AᵀA′ + ν(tr C − C) + ν², A = adj B,
-    /// A′ᵀ = A, and y = adj(C + ν)Bᵀg/det(C + ν) is a unit vector.
+    /// With B = diag(a₁)⁻¹R₁ᵀR₂·diag(a₂), g = diag(a₁)⁻¹R₁ᵀ(x₁ − x₂): adj(C + ν) = A·Aᵀ + ν(tr C − C) + ν², A = adj B,
+    /// and y = adj(C + ν)Bᵀg/det(C + ν) is a unit vector.
     fn of(e1: &Ellipsoid<DVec3>, e2: &Ellipsoid<DVec3>) -> Self {
         let exact = |v: DVec3| -> Vec3 { v.to_array().map(Quad::from) };
         let columns = |e: &Ellipsoid<DVec3>| e.axes().to_cols_array_2d().map(|c| c.map(Quad::from));

@@ -73,6 +73,9 @@ struct Row {
     times: [f64; 4],
 }
 
+/// What a line shows: its name, and its value in a row.
+type Quantity = (&'static str, fn(&Row) -> f64);
+
 fn measure(size: f64) -> Row {
     let mut random = Random(7);
     let walks: Vec<Walk> = (0..WALKS).filter_map(|_| Walk::new(&mut random, size)).collect();
@@ -126,9 +129,9 @@ pub(super) fn figures(scope: &Scope) -> Vec<Figure> {
             (size, measure(size))
         })
         .collect();
-    let series = |of: &[(&str, &dyn Fn(&Row) -> f64)]| -> Vec<Series> {
-        let line = |(colour, (name, value)): (usize, &(&str, &dyn Fn(&Row) -> f64))| Series {
-            name: (*name).to_owned(),
+    let series = |of: &[Quantity]| -> Vec<Series> {
+        let line = |(colour, &(name, value)): (usize, &Quantity)| Series {
+            name: name.to_owned(),
             points: rows.iter().map(|(size, row)| [*size, value(row)]).collect(),
             joined: true,
             colour,
@@ -157,9 +160,9 @@ pub(super) fn figures(scope: &Scope) -> Vec<Figure> {
             "iterations per step",
             Scale::Linear,
             series(&[
-                ("inverse iteration", &|r| r.inverse_iterations),
-                ("Newton, tracked", &|r| r.newton_iterations),
-                ("Newton, cold", &|r| r.cold_iterations),
+                ("inverse iteration", |r| r.inverse_iterations),
+                ("Newton, tracked", |r| r.newton_iterations),
+                ("Newton, cold", |r| r.cold_iterations),
             ]),
             format!(
                 "{walks}, ε = 1e-6 and at most 14 inverse iterations. At one degree and one cell: {:.1} inverse iterations, {:.1} of \
@@ -173,9 +176,9 @@ pub(super) fn figures(scope: &Scope) -> Vec<Figure> {
             "per cent of the steps",
             Scale::Linear,
             series(&[
-                ("inverse iteration gives up", &|r| r.fell_back),
-                ("inverse iteration is off by 1e-4", &|r| r.wrong),
-                ("Newton is off by 1e-14", &|r| r.newton_wrong),
+                ("inverse iteration gives up", |r| r.fell_back),
+                ("inverse iteration is off by 1e-4", |r| r.wrong),
+                ("Newton is off by 1e-14", |r| r.newton_wrong),
             ]),
             format!(
                 "{walks}. The paper puts the limit of correct convergence at about five degrees and cells: there inverse iteration \
@@ -189,10 +192,10 @@ pub(super) fn figures(scope: &Scope) -> Vec<Figure> {
             "nanoseconds per step",
             Scale::Log,
             series(&[
-                ("eigenvalues, each pose anew", &|r| r.times[0]),
-                ("inverse iteration", &|r| r.times[1]),
-                ("Newton, tracked", &|r| r.times[2]),
-                ("Newton, cold", &|r| r.times[3]),
+                ("eigenvalues, each pose anew", |r| r.times[0]),
+                ("inverse iteration", |r| r.times[1]),
+                ("Newton, tracked", |r| r.times[2]),
+                ("Newton, cold", |r| r.times[3]),
             ]),
             format!(
                 "{walks}. The gain of inverse iteration over all eigenvalues is {:.1} at one degree and cell (the paper: 2.5, from counted \
