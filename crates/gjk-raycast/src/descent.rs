@@ -201,7 +201,6 @@ pub(crate) fn descend<B: Body>(
             }
         }
         if wanted.closely
-            && body.derivative(-along, w) != Vector::ZERO
             && let Some(to) = newton.next(body, &descent, w, along / along_size, reach)
         {
             (n, size) = (to, Scalar::ONE);

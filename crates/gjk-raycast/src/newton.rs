@@ -6,55 +6,93 @@ use num_traits::Float as _;
 use crate::body::Body;
 use crate::descent::Descent;
 use crate::regions::cross;
-use crate::simplex::MAX_POINTS;
-use crate::turn::{Condition, Found, Recent, turn};
+use crate::turn::Found;
 
 /// Chooses directions to look along by curvature, where the support map knows it.
 ///
-/// Among the unit vectors `n`, the distance of `C = A − B` from zero is the maximum of `n·p(n)`, with `p(n)` the point of
-/// `C` lowest along `n`: all of `C` lies beyond the plane through it. There `p` points along `n`. With the derivative
-/// `Hδ` of the support point as its direction turns by `δ`, and `ρ = n·p`, the condition is to first order
+/// Among the unit vectors `n`, the distance of `C = A − B` from zero is the maximum of `f(n) = n·p(n)`, with `p(n)` the
+/// point of `C` lowest along `n`: all of `C` lies beyond the plane through it. There `p` points along `n`. With the
+/// derivative `Hδ` of the support point as its direction `−n` turns by `δ`, and with `r = p − f·n` and `ρ` the distance,
 ///
 /// ```text
-/// (H + ρ)·δ = −(p − ρ·n)   across n,   n' ~ n − δ.
+/// f(n − δ) ≈ f − r·δ − δ·(H + ρ)·δ/2,   largest where   (H + ρ)·δ = −r.
 /// ```
 ///
-/// `H` has no negative eigenvalue and `ρ` tends to the distance, so that the matrix is definite, and Newton's steps double
-/// the digits: then `n·p` and `|p|` are bounds that meet. That holds as long as `p` moves on one smooth piece; the point
-/// that a step foretold tells whether it did. Where it did not, the closest point may be between pieces, as on the side of
-/// a cylinder between its rims, and [`turn`] looks for the direction that supports both.
+/// `H` has no negative eigenvalue, so that the matrix is definite; the length of the shortest vector known is taken for
+/// `ρ`, which is too large at first and so shortens the first steps. Newton's steps double the digits, and then `f` and
+/// `|p|` are bounds that meet, as long as `p` moves on one smooth piece of the surface.
 ///
-/// Steps are taken while they shrink the bracket. Otherwise a step of GJK is next, which always makes progress.
+/// A known point of `C` that lies before the plane so foretold is on another piece, and tells that the closest point is
+/// between both, as on the side of a cylinder between its rims. Then both have to support one plane. With `q` the point of
+/// that piece at `n`, `g` how much higher it lies, `e = q − p`, and `β` the share that `q` has of the closest point,
+///
+/// ```text
+/// (H_β + ρ)·δ + β·e = −r,   e·δ = g,   H_β = (1 − β)·H_p + β·H_q.
+/// ```
+///
+/// Three pieces that meet fix a plane by themselves: there GJK's own steps suffice, and they are taken too where steps by
+/// curvature do not shrink the bracket.
 pub(crate) struct Newton<V: Vector> {
-    recent: Recent<V, ()>,
     noise: V::Scalar,
-    /// See [`Condition::lead`].
-    lead: V::Scalar,
+    /// The support point found before the last one.
+    last: Option<Found<V>>,
     /// The width of the bracket before the last turn, if the last step was one.
     before: Option<V::Scalar>,
     /// Turns in a row that did not shrink the bracket.
     failures: usize,
-    /// A support point, and where it was expected to move by the last turn.
-    foretold: Option<[V; 2]>,
-    /// Turns for which the closest point is taken to be between pieces.
-    between: usize,
 }
-
-/// Turns between pieces after one that did not find the point that was foretold.
-const BETWEEN: usize = 8;
 
 /// Turns that fail to halve the bracket before the next step is one of GJK.
 const PATIENCE: usize = 2;
 
-/// How far one piece is made to lead over another, relative to the bracket.
-const LEAD: f64 = 0.01;
+/// How much lower than the first of two pieces the second is made, so that it is the one found next, relative to the
+/// bracket. It is to exceed the error of what is foretold.
+const LEAD: [f64; PATIENCE] = [0.01, 0.2];
 
-/// A support point was foretold if it is this near, relative to how far it moved.
+/// A point contradicts what is foretold where it takes away this much of the gain.
+const CONTRADICTION: f64 = 0.1;
+
+/// Two support points are of one smooth piece if the curvature at one foretells the other but for this part.
 const FORETOLD: f64 = 0.25;
+
+/// The largest tangent of an angle to turn by.
+const LARGEST: f64 = 0.5;
+
+/// A direction, the derivative of the support point there along `u` and `w` across the direction, and the matrix `H`.
+#[derive(Clone, Copy)]
+struct Curvature<S> {
+    uu: S,
+    uw: S,
+    ww: S,
+}
+
+impl<S: Scalar> Curvature<S> {
+    #[inline]
+    fn new<V: Vector<Scalar = S>>(moved: [V; 2], [u, w]: [V; 2]) -> Self {
+        Self { uu: u.dot(moved[0]), uw: u.dot(moved[1]), ww: w.dot(moved[1]) }
+    }
+
+    /// `(1 − β)·self + β·other + ρ`.
+    #[inline]
+    fn blended(self, other: Self, share: S, distance: S) -> Self {
+        let blend = |a: S, b: S| a + (b - a) * share;
+        Self {
+            uu: blend(self.uu, other.uu) + distance,
+            uw: blend(self.uw, other.uw),
+            ww: blend(self.ww, other.ww) + distance,
+        }
+    }
+
+    /// The matrix times a vector.
+    #[inline]
+    fn times(self, [x, y]: [S; 2]) -> [S; 2] {
+        [self.uu * x + self.uw * y, self.uw * x + self.ww * y]
+    }
+}
 
 impl<V: Vector> Newton<V> {
     pub(crate) fn new(noise: V::Scalar) -> Self {
-        Self { recent: Recent::new(), noise, lead: noise, before: None, failures: 0, foretold: None, between: 0 }
+        Self { noise, last: None, before: None, failures: 0 }
     }
 
     /// Whether the last direction was chosen here.
@@ -73,17 +111,15 @@ impl<V: Vector> Newton<V> {
         n: V,
         reach: V::Scalar,
     ) -> Option<V> {
-        let along = -n;
-        self.recent.push(Found { point: p, along }, ());
-        let foretold = self.foretold.take();
+        let last = self.last.replace(Found { point: p, along: -n });
         let gap = descent.length - descent.lower;
         if let Some(before) = self.before.take() {
             if gap <= before * V::Scalar::from_f64(0.5) {
-                (self.failures, self.lead) = (0, self.noise);
+                self.failures = 0;
             } else {
                 self.failures += 1;
-                self.lead *= V::Scalar::from_f64(16.0);
                 if self.failures >= PATIENCE {
+                    self.failures = 0;
                     return None;
                 }
             }
@@ -92,79 +128,98 @@ impl<V: Vector> Newton<V> {
         if !(reach > -descent.length) {
             return None;
         }
-        let distance = reach.max(V::Scalar::ZERO);
-        let as_foretold = foretold.is_none_or(|[from, to]| {
-            (p - to).length() <= (to - from).length() * V::Scalar::from_f64(FORETOLD) + self.noise
-        });
-        if !as_foretold {
-            self.between = BETWEEN;
-        }
-        let to = if self.between == 0 {
-            let change = change(body, along, p + along * reach, distance)?;
-            self.foretold = Some([p, p + change.moved]);
-            (along + change.turn).unit()?
-        } else {
-            self.between -= 1;
-            let condition = Condition {
-                axis: along,
-                target: V::ZERO,
-                distance,
-                noise: self.noise,
-                lead: self.lead.max(gap * V::Scalar::from_f64(LEAD)),
-            };
-            let mut known = [Found::default(); 2 * MAX_POINTS];
-            let mut len = 0;
-            for (&point, &along) in descent.simplex.points().iter().zip(descent.simplex.along()) {
-                known[len] = Found { point, along };
-                len += 1;
-            }
-            for &last in self.recent.found() {
-                known[len] = last;
-                len += 1;
-            }
-            turn(&known[..len], condition, |n, change| body.derivative(n, change))?.to
-        };
+        let lead = self.noise + gap * V::Scalar::from_f64(LEAD[self.failures]);
+        let to = self.turned(body, descent, last, p, -n, reach, lead)?;
         self.before = Some(gap);
         Some(-to)
     }
-}
 
-/// A change of the direction, and how the support point is to move by it.
-struct Change<V> {
-    turn: V,
-    moved: V,
-}
-
-/// The Newton step on one smooth piece: `(H + ρ)·δ = −rest`, with `rest` the support point's part across the direction.
-///
-/// With `u` the unit vector along `rest` and `w` across both, and the matrix `(a b; b d)` in that basis,
-/// `δ = −|rest|·(d·u − b·w) / (a·d − b²)`.
-#[inline]
-fn change<B: Body>(
-    body: &B,
-    along: B::Vector,
-    rest: B::Vector,
-    distance: <B::Vector as Vector>::Scalar,
-) -> Option<Change<B::Vector>> {
-    type S<B> = <<B as Body>::Vector as Vector>::Scalar;
-    let length = rest.length();
-    let u = rest / length;
-    let moved_u = body.derivative(along, u);
-    let a = u.dot(moved_u) + distance;
-    let change = if B::Vector::DIM == 2 {
-        let part = -length / a;
-        Change { turn: u * part, moved: moved_u * part }
-    } else {
-        let w = cross(along, u);
-        let moved_w = body.derivative(along, w);
-        let (b, d) = (u.dot(moved_w), w.dot(moved_w) + distance);
-        let determinant = a * d - b * b;
-        if !(determinant > S::<B>::EPSILON.sqrt() * a * d) {
+    /// The direction `−n` turned.
+    #[inline]
+    #[allow(clippy::too_many_arguments, reason = "the quantities of the derivation above")]
+    fn turned<B: Body<Vector = V>>(
+        &self,
+        body: &B,
+        descent: &Descent<V, B::Witness>,
+        last: Option<Found<V>>,
+        p: V,
+        along: V,
+        reach: V::Scalar,
+        lead: V::Scalar,
+    ) -> Option<V> {
+        let (zero, one, half) = (V::Scalar::ZERO, V::Scalar::ONE, V::Scalar::from_f64(0.5));
+        let (distance, largest) = (descent.length, V::Scalar::from_f64(LARGEST));
+        let r = p + along * reach;
+        let r_length = r.length();
+        let u = r / r_length;
+        let basis = [u, if V::DIM == 2 { V::ZERO } else { cross(along, u) }];
+        let [u, w] = basis;
+        let moved = basis.map(|b| body.derivative(along, b));
+        if moved == [V::ZERO; 2] {
             return None;
         }
-        let (s, t) = (-length * d / determinant, length * b / determinant);
-        Change { turn: u * s + w * t, moved: moved_u * s + moved_w * t }
-    };
-    // NaN fails this too.
-    (change.turn.length_squared() <= S::<B>::from_f64(0.25)).then_some(change)
+        let flat = Curvature { uu: zero, uw: zero, ww: zero };
+        let curvature = Curvature::new(moved, basis);
+
+        // One piece: (H + ρ)·δ = −r, no farther than is sensible, and the f foretold.
+        let h = curvature.blended(flat, zero, distance);
+        let determinant = h.uu * h.ww - h.uw * h.uw;
+        let d = [-(r_length * h.ww / determinant), r_length * h.uw / determinant];
+        let size = (d[0] * d[0] + d[1] * d[1]).sqrt();
+        if !size.is_finite() {
+            return None;
+        }
+        let d = if size > largest { d.map(|d| d * (largest / size)) } else { d };
+        let hd = h.times(d);
+        let gain = -(r_length * d[0]) - (d[0] * hd[0] + d[1] * hd[1]) * half;
+        let to = (along + u * d[0] + w * d[1]).unit()?;
+
+        // The known point that lies farthest before the plane foretold.
+        let mut least = reach + gain * V::Scalar::from_f64(1.0 - CONTRADICTION) - self.noise;
+        let mut second = None;
+        let corners = descent.simplex.points().iter().zip(descent.simplex.along());
+        for (&point, &along) in corners.chain(last.iter().map(|last| (&last.point, &last.along))) {
+            let level = -to.dot(point);
+            if level < least && point != p {
+                least = level;
+                second = Some(Found { point, along });
+            }
+        }
+        let Some(Found { point, along: from }) = second else { return Some(to) };
+        if V::DIM == 2 {
+            return None;
+        }
+
+        // Its piece, turned to n.
+        let from = from / from.dot(along);
+        let change = along - from;
+        if !(change.length() <= largest) {
+            return None;
+        }
+        let shift = body.derivative(from, change);
+        let q = point + shift;
+        if (q - p).length() <= (point - p).length() * V::Scalar::from_f64(FORETOLD) + self.noise {
+            return None;
+        }
+        let level = -(along.dot(point) + change.dot(shift) * half);
+        let moved = basis.map(|b| body.derivative(from, b));
+        let lead = if moved == [V::ZERO; 2] { -lead } else { lead };
+
+        // Two pieces: along e the change is given, and what it is across e follows from the first equation.
+        let e = [u.dot(q - p), w.dot(q - p)];
+        let squared = e[0] * e[0] + e[1] * e[1];
+        let share = (-(e[0] * r_length) / squared).max(zero).min(one);
+        let h = curvature.blended(Curvature::new(moved, basis), share, distance);
+        let t = (level - reach + lead) / squared;
+        let across = [-e[1], e[0]];
+        let h_across = h.times(across);
+        let stiffness = across[0] * h_across[0] + across[1] * h_across[1];
+        let s = (e[1] * r_length - (e[0] * h_across[0] + e[1] * h_across[1]) * t) / stiffness;
+        let d = [e[0] * t + across[0] * s, e[1] * t + across[1] * s];
+        // NaN fails this too.
+        if !(d[0] * d[0] + d[1] * d[1] <= largest * largest) {
+            return None;
+        }
+        (along + u * d[0] + w * d[1]).unit()
+    }
 }
