@@ -159,8 +159,19 @@ pub(crate) fn power_of_two_below<S: Scalar>(value: S) -> S {
 }
 
 /// `v` divided by a power of two near its largest magnitude, and that power; `None` for zero and NaN.
-#[cold]
+///
+/// The coordinates are passed on one by one: a vector of `f64` would go through memory, and since compilers put it there
+/// before they branch, written in other pieces than it is read in, those who never come here would wait for it.
+#[inline]
 pub(crate) fn scaled<V: Vector>(v: V) -> Option<(V, V::Scalar)> {
+    let z = if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO };
+    scaled_coordinates(v.get(0), v.get(1), z)
+}
+
+#[cold]
+#[inline(never)]
+fn scaled_coordinates<V: Vector>(x: V::Scalar, y: V::Scalar, z: V::Scalar) -> Option<(V, V::Scalar)> {
+    let v = V::from_fn(|i| [x, y, z][i]);
     let largest = v.abs().max_element();
     // Two steps, since the reciprocal of a subnormal power of two is not finite.
     let (_, exponent, _) = num_traits::Float::integer_decode(largest);

@@ -45,11 +45,11 @@ fn reduces<V: Vector>(largest: usize, cases: u32) {
 
 #[test]
 fn hulls_of_few_points_are_the_same_sets() {
-    reduces::<Vec2>(12, 300);
+    reduces::<Vec2>(40, 300);
     reduces::<DVec2>(12, 300);
-    reduces::<Vec3>(12, 300);
+    reduces::<Vec3>(40, 300);
     reduces::<Vec3A>(12, 300);
-    reduces::<DVec3>(12, 300);
+    reduces::<DVec3>(40, 300);
 }
 
 #[test]
@@ -105,4 +105,31 @@ fn points_of_wild_magnitudes_are_handled() {
     let points: Vec<DVec3> = spiral(60).enumerate().map(|(i, p)| p * 10f64.powi(-5 * i as i32)).collect();
     let directions: Vec<DVec3> = spiral(50).collect();
     same_set(&points, &directions).unwrap_or_else(|error| panic!("{error}"));
+}
+
+/// The first of the points that reach farthest, by looking at all of them.
+fn first_farthest<V: Vector>(hull: &Polytope<V>, d: V) -> V {
+    let reach = |p: V| d.dot(p - hull.origin());
+    hull.points().iter().copied().reduce(|best, p| if reach(p) > reach(best) { p } else { best }).expect("not empty")
+}
+
+#[test]
+fn of_vertices_equally_far_the_first_is_found() {
+    // The middle is 0, so that both see the same numbers. Sizes differ, up to needles and flakes; directions along axes,
+    // edges and facets tie.
+    for (n, size) in [(40, DVec3::ONE), (300, DVec3::new(1.0, 0.5, 0.25)), (2000, DVec3::new(1e6, 1.0, 1e-3))] {
+        let half: Vec<DVec3> = spiral(n).map(|p| p * size).collect();
+        let hull = Polytope::hull_of(half.iter().copied().chain(half.iter().map(|&p| -p))).expect("valid points");
+        assert_eq!(hull.origin(), DVec3::ZERO);
+        let axes = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
+        let any = spiral(3000).map(|d| d / size);
+        let across = half.windows(3).map(|w| (w[1] - w[0]).cross(w[2] - w[0]));
+        let mut hint = Hint::new();
+        for d in any.chain(axes).chain(across) {
+            let expected = first_farthest(&hull, d);
+            assert_eq!(hull.support(d), expected, "{n} along {d}");
+            hint.rewind();
+            assert_eq!(hull.core_support(d, &mut hint), expected, "{n} along {d}, whatever was asked before");
+        }
+    }
 }

@@ -65,7 +65,7 @@ impl<V: Vector3> Cone<V> {
 impl<V: Vector3> SupportMap for Cone<V> {
     type Vector = V;
 
-    #[inline]
+    #[inline(always)]
     fn support(&self, direction: V) -> V {
         // The cone is the hull of its apex (support value h·d_y) and its base disc (r·|d_xz| − h·d_y).
         let across = across(direction);
@@ -77,7 +77,7 @@ impl<V: Vector3> SupportMap for Cone<V> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
         self.support(direction)
     }

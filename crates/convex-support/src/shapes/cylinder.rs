@@ -4,7 +4,7 @@ use num_traits::Float as _;
 
 use crate::error::{InvalidShape, non_negative};
 use crate::support::{ScalarOf, swept, swept_derivative};
-use crate::{Hint, Scalar, SupportMap, Vector3};
+use crate::{Hint, SupportMap, Vector3};
 
 /// The cylinder `x² + z² ≤ radius²`, `|y| ≤ half_height`.
 ///
@@ -49,13 +49,13 @@ impl<V: Vector3> Cylinder<V> {
 /// The part of `direction` across the y axis.
 #[inline]
 pub(crate) fn across<V: Vector3>(direction: V) -> V {
-    V::from_fn(|i| if i == 1 { V::Scalar::ZERO } else { direction.get(i) })
+    direction - V::axis(1) * direction.get(1)
 }
 
 impl<V: Vector3> SupportMap for Cylinder<V> {
     type Vector = V;
 
-    #[inline]
+    #[inline(always)]
     fn support(&self, direction: V) -> V {
         swept(self.radius, across(direction)) + V::axis(1) * self.half_height.copysign(direction.get(1))
     }
@@ -65,7 +65,7 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
         across(direction).norm() * self.radius + direction.get(1).abs() * self.half_height
     }
 
-    #[inline]
+    #[inline(always)]
     fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
         self.support(direction)
     }

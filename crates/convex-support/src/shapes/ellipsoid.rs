@@ -146,7 +146,7 @@ impl<V: Vector> Ellipsoid<V> {
 impl<V: Vector> SupportMap for Ellipsoid<V> {
     type Vector = V;
 
-    #[inline]
+    #[inline(always)]
     fn support(&self, direction: V) -> V {
         self.center + self.core_support(direction, &mut Hint::new())
     }
@@ -161,7 +161,7 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
         self.center
     }
 
-    #[inline]
+    #[inline(always)]
     fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
         // max e·(a∘u) over |u| ≤ 1, with e = Rᵀd: u is the unit vector along a∘e.
         let e = self.axes.transpose_mul(direction);

@@ -1,18 +1,24 @@
-//! The farthest vertex of a convex polytope by climbing along its edges.
+//! The farthest vertex of a convex polytope among the few that can be, or by climbing along its edges.
 
 #![cfg_attr(not(feature = "hull"), allow(dead_code, reason = "only the feature `hull` finds the edges"))]
+
+use num_traits::Float as _;
 
 use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::{Scalar, Vector};
 
-/// The vertices and edges of a convex polytope, and for each of many directions a vertex to begin at.
+/// The vertices and edges of a convex polytope, and for each of many directions the vertices that can be farthest.
 ///
-/// On a convex polytope a vertex that no neighbour is farther along than is farthest of all: its neighbours span the
-/// cone that the whole polytope is in. What remains is to begin near. The directions are sorted into the cells of a grid
-/// on the faces of a cube, each with a vertex that is farthest along the middle of the cell; with about as many cells as
-/// vertices a climb from there takes a step or two, whatever their number.
+/// The directions are sorted into the cells of a grid on the faces of a cube, which is stretched as the polytope is, so
+/// that a needle's cells are filled as evenly as a ball's. Each cell lists all vertices that are farthest along any
+/// of its directions: with about as many cells as vertices these are a handful, whatever their number.
+///
+/// Where they are not, as at a corner that is all tiny edges, the cell keeps a vertex to climb from. A corner that no
+/// neighbour is farther along than is farthest of all: its neighbours span the cone that the whole polytope is in. Not
+/// so a vertex in the middle of a facet, whose neighbours are all in its plane: it can be the nearest of all, too. But a
+/// climb begins at a vertex that is farthest along a direction less than 60° away, which that one is not.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Graph<V: Vector> {
     /// Sorted by the cell that they are in as seen from the middle, so that neighbours are near in memory too.
@@ -22,32 +28,57 @@ pub(super) struct Graph<V: Vector> {
     /// The neighbours of vertex `i` are `neighbours[first[i]..first[i + 1]]`.
     first: Vec<u32>,
     neighbours: Vec<u32>,
-    /// A vertex for each cell: by face, then row, then column.
-    starts: Vec<u32>,
+    /// The size of the polytope along each axis, in units of the largest: what stretches the cube.
+    sizes: V,
+    /// By face, then row, then column.
+    cells: Vec<Cell>,
+    candidates: Vec<u32>,
     resolution: usize,
+    half_resolution: V::Scalar,
 }
 
-/// Vertices for each cell of the grid. Fewer cells mean longer climbs; more of them, that the grid leaves the cache.
+/// The vertices that are farthest along some direction of the cell are `candidates[begin..begin + count]`, those that
+/// come first in the list that was given first. Where `count` is 0 they are too many, and `begin` is one of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Cell {
+    begin: u32,
+    count: u32,
+}
+
+/// Vertices for each cell of the grid. Fewer cells mean longer lists; more of them, that the grid leaves the cache.
 const VERTICES_PER_CELL: f64 = 1.0;
 
+/// The longest list that is looked through rather than climbed (measured: docs/support-maps.md).
+const LISTED: usize = 24;
+
+/// Vertices that a cell is searched for before it is left to be climbed.
+const MANY: usize = 2 * LISTED;
+
 impl<V: Vector> Graph<V> {
-    /// A graph of vertices and undirected edges, given once in each direction and in any order.
+    /// A graph of vertices, whose largest coordinate is near 1, and of undirected edges, given once in each direction
+    /// and in any order.
     pub(super) fn new(vertices: &[V], edges: &[[u32; 2]]) -> Self {
         let cells = vertices.len() as f64 / VERTICES_PER_CELL / (2 * V::DIM) as f64;
         let side = if V::DIM == 3 { num_traits::Float::sqrt(cells) } else { cells };
         let resolution = (side as usize).max(1);
+        let size = vertices.iter().fold(V::ZERO, |size, v| size.max(v.abs()));
+        // A polytope that is flat, or nearly so, is no reason for a cube that is.
+        let thinnest = (size.max_element() * V::Scalar::EPSILON).max(V::Scalar::min_positive_value());
         let mut graph = Self {
             vertices: Vec::new(),
             names: Vec::new(),
             first: vec![],
             neighbours: vec![],
-            starts: vec![],
+            sizes: size.max(V::splat(thinnest)),
+            cells: vec![],
+            candidates: vec![],
             resolution,
+            half_resolution: V::Scalar::from_f64(0.5 * resolution as f64),
         };
 
         let count = vertices.len() as u32;
         let mut names: Vec<u32> = (0..count).collect();
-        names.sort_by_cached_key(|&name| graph.cell(vertices[name as usize]));
+        names.sort_by_cached_key(|&name| graph.cell_of_unstretched(vertices[name as usize] / graph.sizes));
         graph.names = names;
         let mut number = vec![0; vertices.len()];
         for (i, &name) in (0..).zip(&graph.names) {
@@ -65,14 +96,74 @@ impl<V: Vector> Graph<V> {
             graph.first[i + 1] += graph.first[i];
         }
         graph.neighbours = edges.into_iter().map(|[_, to]| to).collect();
-
-        let mut at = 0;
-        let columns = if V::DIM == 3 { resolution } else { 1 };
-        for cell in 0..2 * V::DIM * resolution * columns {
-            at = graph.climb(graph.middle(cell), at);
-            graph.starts.push(at);
-        }
+        graph.fill_cells();
         graph
+    }
+
+    /// Finds the candidates of every cell.
+    fn fill_cells(&mut self) {
+        let mut seen_by = vec![u32::MAX; self.vertices.len()];
+        let mut found = Vec::new();
+        let (mut farthest_of_face, mut last) = (0, 0);
+        let cells_of_face = if V::DIM == 3 { self.resolution * self.resolution } else { self.resolution };
+        for index in 0..2 * V::DIM * cells_of_face {
+            if index % cells_of_face == 0 {
+                let (axis, is_negative) = (index / cells_of_face / 2, index / cells_of_face % 2 == 1);
+                farthest_of_face = self.farthest_along_axis(axis, is_negative);
+            }
+            let cone = self.cone(index);
+            let farthest = self.climb_from_nearer(cone.middle, farthest_of_face, last);
+            last = farthest;
+            let all_are_found = self.collect(&cone, farthest, index as u32, &mut seen_by, &mut found);
+            let all = found.clone();
+            found.retain(|&v| all.iter().all(|&u| cone.can_be_farther(self.vertex(v), self.vertex(u))));
+            let cell = if all_are_found && found.len() <= LISTED {
+                found.sort_unstable_by_key(|&v| self.name(v));
+                self.candidates.extend(&found);
+                Cell { begin: (self.candidates.len() - found.len()) as u32, count: found.len() as u32 }
+            } else {
+                Cell { begin: farthest, count: 0 }
+            };
+            self.cells.push(cell);
+        }
+    }
+
+    fn farthest_along_axis(&self, axis: usize, is_negative: bool) -> u32 {
+        let reach = |&i: &u32| if is_negative { -self.vertex(i).get(axis) } else { self.vertex(i).get(axis) };
+        (0..self.vertices.len() as u32).reduce(|best, i| if reach(&i) > reach(&best) { i } else { best }).unwrap_or(0)
+    }
+
+    /// Finds all vertices that are farthest along some direction of the cone, and perhaps others, from the one that is
+    /// along its middle. Gives up where they are many, and says so by `false`.
+    ///
+    /// As the direction moves through the cone, the farthest vertex passes along edges, over vertices that are farthest
+    /// too: they are connected. And such a vertex is farther than its neighbours somewhere in the cone.
+    fn collect(&self, cone: &Cone<V>, farthest: u32, cell: u32, seen_by: &mut [u32], found: &mut Vec<u32>) -> bool {
+        found.clear();
+        found.push(farthest);
+        seen_by[farthest as usize] = cell;
+        let mut visited = 0;
+        while let Some(&at) = found.get(visited) {
+            if found.len() > MANY {
+                return false;
+            }
+            visited += 1;
+            for &next in self.around(at) {
+                if core::mem::replace(&mut seen_by[next as usize], cell) != cell {
+                    let mut others = self.around(next).iter().chain([&farthest]);
+                    if others.all(|&other| cone.can_be_farther(self.vertex(next), self.vertex(other))) {
+                        found.push(next);
+                    }
+                }
+            }
+        }
+        true
+    }
+
+    /// The neighbours of a vertex.
+    #[inline]
+    fn around(&self, vertex: u32) -> &[u32] {
+        &self.neighbours[self.first[vertex as usize] as usize..self.first[vertex as usize + 1] as usize]
     }
 
     /// Vertex `index` as the search counts them.
@@ -87,12 +178,40 @@ impl<V: Vector> Graph<V> {
         self.names[index as usize] as usize
     }
 
-    /// The index of a vertex farthest along `direction`; `hint` may be that of a vertex to begin at, or anything.
-    #[inline]
-    pub(super) fn farthest(&self, direction: V, hint: u32) -> u32 {
-        let start = self.starts[self.cell(direction)];
+    /// The index of a vertex farthest along the direction `(dx, dy, dz)`: the one that came first in the list that was
+    /// given, where they are not too many to be listed. `hint` may be that of a vertex to climb from, or anything.
+    ///
+    /// The coordinates come one by one because a vector would pass through memory, written in other pieces than it is
+    /// read in, which takes as long as all the rest.
+    #[inline(never)]
+    pub(super) fn farthest(&self, dx: V::Scalar, dy: V::Scalar, dz: V::Scalar, hint: u32) -> u32 {
+        let direction = V::from_fn(|i| {
+            if i == 0 {
+                dx
+            } else if i == 1 {
+                dy
+            } else {
+                dz
+            }
+        });
+        let Cell { begin, count } = self.cells[self.cell(direction)];
+        if count == 0 {
+            return self.climb_from_nearer(direction, begin, hint);
+        }
+        let candidates = &self.candidates[begin as usize..][..count as usize];
+        let mut best = (candidates[0], direction.dot(self.vertex(candidates[0])));
+        for &candidate in &candidates[1..] {
+            let reach = direction.dot(self.vertex(candidate));
+            best = if reach > best.1 { (candidate, reach) } else { best };
+        }
+        best.0
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn climb_from_nearer(&self, direction: V, start: u32, hint: u32) -> u32 {
         let start = match self.vertices.get(hint as usize) {
-            Some(&vertex) if direction.dot(vertex - self.vertices[start as usize]) > V::Scalar::ZERO => hint,
+            Some(&vertex) if direction.dot(vertex - self.vertex(start)) > V::Scalar::ZERO => hint,
             _ => start,
         };
         self.climb(direction, start)
@@ -101,66 +220,99 @@ impl<V: Vector> Graph<V> {
     /// Climbs to the best neighbour for as long as it is farther.
     ///
     /// Gains are dot products with the edges, not differences of dot products, so that they are as accurate as the
-    /// edges are short: vertices that are close to one another do not stop the climb.
-    #[inline]
+    /// edges are short: vertices that are close to one another do not stop the climb. But three corners of a facet that
+    /// faces the direction can each seem a rounding farther than the one before. A climb that comes back to where it was
+    /// ends there. It is watched by Brent's method: the vertex it has reached after each power of two of steps.
     fn climb(&self, direction: V, start: u32) -> u32 {
-        let mut at = start;
-        for _ in 0..self.vertices.len() {
-            let here = self.vertices[at as usize];
+        let (mut at, mut landmark) = (start, start);
+        // A path and a circle of n vertices together are closed, and found to be, within 4n steps.
+        for step in 1..=4 * self.vertices.len() {
+            let here = self.vertex(at);
             let mut best = (V::Scalar::ZERO, at);
-            let range = self.first[at as usize] as usize..self.first[at as usize + 1] as usize;
-            for &neighbour in &self.neighbours[range] {
-                let gain = direction.dot(self.vertices[neighbour as usize] - here);
+            for &neighbour in self.around(at) {
+                let gain = direction.dot(self.vertex(neighbour) - here);
                 best = if gain > best.0 { (gain, neighbour) } else { best };
             }
-            if best.1 == at {
-                return at;
+            if best.1 == at || best.1 == landmark {
+                return best.1;
             }
             at = best.1;
-        }
-        self.scan(direction)
-    }
-
-    /// Should rounding ever lead a climb around in a circle.
-    #[cold]
-    fn scan(&self, direction: V) -> u32 {
-        let reach = |i: usize| direction.dot(self.vertices[i]);
-        (1..self.vertices.len()).fold(0, |best, i| if reach(i) > reach(best) { i } else { best }) as u32
-    }
-
-    /// The cell of a direction: the face of the cube it leaves through, and where.
-    #[inline]
-    fn cell(&self, direction: V) -> usize {
-        let magnitude = direction.abs();
-        let mut axis = 0;
-        for i in 1..V::DIM {
-            if magnitude.get(i) > magnitude.get(axis) {
-                axis = i;
+            if step.is_power_of_two() {
+                landmark = at;
             }
         }
+        at
+    }
+
+    /// The cell of a direction.
+    #[inline]
+    fn cell(&self, direction: V) -> usize {
+        // The polytope stretched to a cube, v/s, is seen along d∘s: d·v = (d∘s)·(v/s).
+        self.cell_of_unstretched(direction * self.sizes)
+    }
+
+    /// The face of the cube that a direction leaves through, and where.
+    #[inline]
+    fn cell_of_unstretched(&self, direction: V) -> usize {
+        let magnitude = direction.abs();
+        let (mut axis, mut largest) = (0, magnitude.get(0));
+        for i in 1..V::DIM {
+            let candidate = magnitude.get(i);
+            axis = if candidate > largest { i } else { axis };
+            largest = if candidate > largest { candidate } else { largest };
+        }
         let mut cell = 2 * axis + usize::from(direction.get(axis) < V::Scalar::ZERO);
-        let half = V::Scalar::from_f64(0.5 * self.resolution as f64);
-        let scale = half / magnitude.get(axis);
+        let half = self.half_resolution;
+        let scale = half / largest;
         for i in 1..V::DIM {
             let place = direction.get((axis + i) % V::DIM) * scale + half;
-            // A cast saturates, and makes 0 of a NaN.
-            cell = cell * self.resolution + (place.as_f64() as usize).min(self.resolution - 1);
+            // A cast saturates, and makes 0 of a NaN; a place is never negative but for rounding.
+            let place = place.as_f64() as i32;
+            cell = cell * self.resolution + (place.max(0) as usize).min(self.resolution - 1);
         }
         cell
     }
 
-    /// The direction of the middle of a cell.
-    fn middle(&self, mut cell: usize) -> V {
+    /// The directions of a cell, seen by the polytope as it is.
+    fn cone(&self, mut cell: usize) -> Cone<V> {
+        let width = 1.0 / self.resolution as f64;
         let mut places = [0.0; 2];
         for i in (0..V::DIM - 1).rev() {
-            places[i] = ((cell % self.resolution) as f64 + 0.5) / self.resolution as f64 * 2.0 - 1.0;
+            places[i] = ((cell % self.resolution) as f64 + 0.5) * width * 2.0 - 1.0;
             cell /= self.resolution;
         }
         let (axis, sign) = (cell / 2, if cell.is_multiple_of(2) { 1.0 } else { -1.0 });
-        V::from_fn(|i| {
-            let steps = (i + V::DIM - axis) % V::DIM;
-            V::Scalar::from_f64(if steps == 0 { sign } else { places[steps - 1] })
-        })
+        let thinnest = self.sizes.min_element();
+        let stretched = |on_axis: f64, across: &dyn Fn(usize) -> f64| {
+            V::from_fn(|i| {
+                let steps = (i + V::DIM - axis) % V::DIM;
+                V::Scalar::from_f64(if steps == 0 { on_axis } else { across(steps - 1) })
+                    * (thinnest / self.sizes.get(i))
+            })
+        };
+        Cone {
+            middle: stretched(sign, &|i| places[i]),
+            spread: stretched(0.0, &|_| width),
+            // Each of three products d·v is at most 1 in the stretched cube. The reaches that are compared later, and the
+            // place of a direction in its cell, are each rounded a few times.
+            rounding: thinnest * V::Scalar::EPSILON * V::Scalar::from_f64(64.0),
+        }
+    }
+}
+
+/// The directions `d` with `|d − middle| ≤ spread`, coordinate by coordinate.
+struct Cone<V: Vector> {
+    middle: V,
+    spread: V,
+    rounding: V::Scalar,
+}
+
+impl<V: Vector> Cone<V> {
+    /// Whether `v` can come out as far as `u` along some direction of the cone, rounding included.
+    fn can_be_farther(&self, v: V, u: V) -> bool {
+        let difference = v - u;
+        let most = self.middle.dot(difference) + self.spread.dot(difference.abs());
+        most >= -self.rounding
     }
 }
 
@@ -169,19 +321,45 @@ mod tests {
     use super::*;
     use glam::{DVec2, DVec3, Vec3};
 
-    fn cells_know_their_middles<V: Vector>(vertices: usize) {
-        let graph = Graph::new(&vec![V::ZERO; vertices], &[]);
-        for cell in 0..graph.starts.len() {
-            assert_eq!(graph.cell(graph.middle(cell)), cell, "{}", graph.middle(cell).get(0));
+    fn cells_know_their_middles<V: Vector>(vertices: usize, size: V) {
+        let graph = Graph::new(&vec![size; vertices], &[]);
+        for cell in 0..graph.cells.len() {
+            let Cone { middle, .. } = graph.cone(cell);
+            assert_eq!(graph.cell(middle), cell, "{middle:?}");
         }
     }
 
     #[test]
     fn every_cell_contains_its_middle() {
         for vertices in [1, 100, 5000] {
-            cells_know_their_middles::<DVec2>(vertices);
-            cells_know_their_middles::<DVec3>(vertices);
-            cells_know_their_middles::<Vec3>(vertices);
+            cells_know_their_middles(vertices, DVec2::ONE);
+            cells_know_their_middles(vertices, DVec3::ONE);
+            cells_know_their_middles(vertices, Vec3::ONE);
+            cells_know_their_middles(vertices, DVec3::new(1.0, 1e-12, 0.0));
+            cells_know_their_middles(vertices, Vec3::new(1.0, 0.0, 1e-5));
         }
+    }
+
+    /// Three vertices that a rounding each makes a circle of, in a plane that faces the direction.
+    #[test]
+    fn a_climb_around_a_facet_ends() {
+        let mut state = 1u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        let edges = [[0, 1], [1, 0], [1, 2], [2, 1], [2, 0], [0, 2]];
+        let mut circles = 0;
+        for _ in 0..1000 {
+            let [a, b, c] = core::array::from_fn(|_| DVec3::new(random(), random(), random()));
+            let graph = Graph::new(&[a, b, c], &edges);
+            let [a, b, c] = [0, 1, 2].map(|i| graph.vertex(i));
+            let normal = (b - a).cross(c - a);
+            let gains = [b - a, c - b, a - c].map(|edge| normal.dot(edge) > 0.0);
+            circles += usize::from(gains == [true; 3] || gains == [false; 3]);
+            let reach = normal.dot(graph.vertex(graph.climb(normal, 0)));
+            assert!((reach - normal.dot(a)).abs() <= 1e-15, "any corner is as far as another");
+        }
+        assert!(circles > 10, "{circles} circles are too few to test by");
     }
 }

@@ -7,11 +7,10 @@ use super::lanes::Lanes;
 use super::{Polytope, Search, checked, middle, relative};
 use crate::convex_hull::{ConvexHull, convex_hull};
 use crate::error::InvalidShape;
-use crate::vector::power_of_two_below;
 use crate::{Scalar, Vector};
 
-/// Up to this many vertices a scan takes no longer than a climb (measured: docs/support-maps.md).
-const SCANNED: usize = 48;
+/// Up to this many vertices a scan takes no longer than looking them up (measured: docs/support-maps.md).
+const SCANNED: usize = 16;
 
 impl<V: Vector> Polytope<V> {
     /// The convex hull of the points, reduced to its vertices, with the edges between them where there are many.
@@ -26,7 +25,8 @@ impl<V: Vector> Polytope<V> {
     pub fn hull_of(points: impl IntoIterator<Item = V>) -> Result<Self, InvalidShape> {
         let points = checked(points)?;
         let middle = middle(points.iter().copied());
-        let Some(hull) = convex_hull(&in_unit_box(&relative(&points, middle))) else {
+        let (seen, unit) = relative(&points, middle);
+        let Some(hull) = convex_hull(&coordinates(&seen)) else {
             // Points a hundred orders of magnitude apart: nothing is lost but the time of a scan.
             return Self::new(points);
         };
@@ -35,24 +35,21 @@ impl<V: Vector> Polytope<V> {
         kept.sort_unstable();
         kept.dedup();
         let vertices: Vec<V> = kept.iter().map(|&i| points[i as usize]).collect();
-        let seen = relative(&vertices, middle);
+        let seen: Vec<V> = kept.iter().map(|&i| seen[i as usize]).collect();
         let search = if vertices.len() <= SCANNED {
             Search::Scan(Lanes::new(&seen))
         } else {
             let place = |i: u32| kept.partition_point(|&k| k < i) as u32;
             let edges: Vec<_> = edges.into_iter().map(|e| e.map(place)).collect();
-            Search::Climb(Graph::new(&seen, &edges))
+            Search::Look { graph: Graph::new(&seen, &edges), unit }
         };
         Ok(Self::searched_by(search, vertices, middle))
     }
 }
 
-/// The same points in units of a power of two, so that the products of the predicates stay in range: exactly the same
-/// shape.
-fn in_unit_box<V: Vector>(points: &[V]) -> Vec<[f64; 3]> {
-    let largest = points.iter().fold(0.0, |m: f64, p| m.max(p.abs().max_element().as_f64()));
-    let unit = power_of_two_below(largest);
-    let coordinates = |p: &V| core::array::from_fn(|i| if i < V::DIM { p.get(i).as_f64() / unit } else { 0.0 });
+/// The points in three coordinates of double precision.
+fn coordinates<V: Vector>(points: &[V]) -> Vec<[f64; 3]> {
+    let coordinates = |p: &V| core::array::from_fn(|i| if i < V::DIM { p.get(i).as_f64() } else { 0.0 });
     points.iter().map(coordinates).collect()
 }
 

@@ -32,15 +32,13 @@ impl<V: Vector> Lanes<V> {
         Self { blocks: points.chunks(WIDTH).map(block).collect(), count: points.len() }
     }
 
-    /// The index of a point farthest along `direction`; any index where that is not a number.
+    /// The index of a point farthest along the direction `(dx, dy, dz)`; any index where that is not a number.
     ///
     /// Twice: first how far the farthest point of each lane reaches, which is a multiplication, an addition and a maximum
     /// for each coordinate; then which point of the best lane it was, among the few blocks where it is. Both times the
     /// same operations are rounded alike, so that the reach is found again exactly.
-    #[inline]
-    pub(super) fn farthest(&self, direction: V) -> usize {
-        let (dx, dy) = (direction.get(0), direction.get(1));
-        let dz = if V::DIM == 3 { direction.get(2) } else { V::Scalar::ZERO };
+    #[inline(never)]
+    pub(super) fn farthest(&self, dx: V::Scalar, dy: V::Scalar, dz: V::Scalar) -> usize {
         let (mut best, mut first, mut best_of_lanes) = (-V::Scalar::infinity(), 0, [V::Scalar::ZERO; WIDTH]);
         for (k, blocks) in self.blocks.chunks(BLOCKS).enumerate() {
             let of_lanes = farthest_reaches(blocks, dx, dy, dz);

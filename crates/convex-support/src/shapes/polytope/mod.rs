@@ -14,7 +14,7 @@ use lanes::Lanes;
 
 use crate::error::InvalidShape;
 use crate::support::ScalarOf;
-use crate::vector::{is_comfortable, scaled};
+use crate::vector::{is_comfortable, power_of_two_below, scaled};
 use crate::{Hint, Scalar, SupportMap, Vector};
 
 /// The convex hull of a list of points; a polygon in 2D, a polyhedron in 3D.
@@ -32,9 +32,14 @@ use crate::{Hint, Scalar, SupportMap, Vector};
 ///
 /// # Speed
 /// [`new`](Self::new) keeps the points as they are and scans all of them in each query, several at a time. With the
-/// feature `hull`, `Polytope::hull_of` finds the vertices and edges of the hull first, and queries of more than a few
-/// dozen vertices climb along them, from a vertex that is near from the beginning or from the last answer
-/// ([`Hint`]): their cost hardly grows with the number of vertices.
+/// feature `hull`, `Polytope::hull_of` finds the vertices and edges of the hull first, and where there are more than a few
+/// dozen, which of them can be farthest along the directions of each cell of a grid: queries look at a handful, however
+/// many there are. In a cell of too many they climb along the edges, from a vertex of the cell or from the last answer
+/// ([`Hint`]).
+///
+/// # Ties
+/// Of points that reach equally far along a direction, to the last bit of the dot product with what they are relative to
+/// the middle, the answer is the first of [`points`](Self::points), except where it was climbed to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polytope<V: Vector> {
     points: Vec<V>,
@@ -48,7 +53,10 @@ pub struct Polytope<V: Vector> {
 enum Search<V: Vector> {
     Scan(Lanes<V>),
     #[cfg_attr(not(feature = "hull"), allow(dead_code, reason = "only the feature `hull` finds the edges"))]
-    Climb(Graph<V>),
+    Look {
+        graph: Graph<V>,
+        unit: V::Scalar,
+    },
 }
 
 impl<V: Vector> Polytope<V> {
@@ -59,7 +67,8 @@ impl<V: Vector> Polytope<V> {
     pub fn new(points: impl IntoIterator<Item = V>) -> Result<Self, InvalidShape> {
         let points = checked(points)?;
         let middle = middle(points.iter().copied());
-        Ok(Self::searched_by(Search::Scan(Lanes::new(&relative(&points, middle))), points, middle))
+        let (seen, _) = relative(&points, middle);
+        Ok(Self::searched_by(Search::Scan(Lanes::new(&seen)), points, middle))
     }
 
     fn searched_by(search: Search<V>, points: Vec<V>, middle: V) -> Self {
@@ -68,26 +77,20 @@ impl<V: Vector> Polytope<V> {
     }
 
     /// What the search calls the point farthest along `direction`; `hint` is such a number to begin at, or anything.
-    #[inline]
+    ///
+    /// A direction whose products with coordinates could vanish or overflow is taken at another length.
+    #[inline(always)]
     fn farthest(&self, direction: V, hint: u32) -> u32 {
-        if !is_comfortable(direction.length_squared()) {
-            return self.farthest_along_multiple(direction, hint);
-        }
-        self.search(direction, hint)
-    }
-
-    /// Where products of the direction's coordinates with those of points could vanish or overflow.
-    #[cold]
-    #[inline(never)]
-    fn farthest_along_multiple(&self, direction: V, hint: u32) -> u32 {
-        self.search(scaled(direction).map_or(direction, |(multiple, _)| multiple), hint)
-    }
-
-    #[inline]
-    fn search(&self, direction: V, hint: u32) -> u32 {
+        let direction = if is_comfortable(direction.length_squared()) {
+            direction
+        } else {
+            scaled(direction).map_or(direction, |(multiple, _)| multiple)
+        };
+        let (dx, dy) = (direction.get(0), direction.get(1));
+        let dz = if V::DIM == 3 { direction.get(2) } else { V::Scalar::ZERO };
         match &self.search {
-            Search::Scan(lanes) => lanes.farthest(direction) as u32,
-            Search::Climb(graph) => graph.farthest(direction, hint),
+            Search::Scan(lanes) => lanes.farthest(dx, dy, dz) as u32,
+            Search::Look { graph, .. } => graph.farthest(dx, dy, dz, hint),
         }
     }
 
@@ -107,10 +110,15 @@ fn checked<V: Vector>(points: impl IntoIterator<Item = V>) -> Result<Vec<V>, Inv
     if points.is_empty() { Err(InvalidShape::NoPoints) } else { Ok(points) }
 }
 
-/// The points seen from the middle. The search works on these rounded differences, and on nothing else, so that whatever
-/// is exact about them stays exact.
-fn relative<V: Vector>(points: &[V], middle: V) -> Vec<V> {
-    points.iter().map(|&p| p - middle).collect()
+/// The points seen from the middle, in units of a power of two near their size, and that unit. The search works on these
+/// rounded differences, and on nothing else, so that whatever is exact about them stays exact, and products with a
+/// direction stay in range.
+fn relative<V: Vector>(points: &[V], middle: V) -> (Vec<V>, V::Scalar) {
+    let mut seen: Vec<V> = points.iter().map(|&p| p - middle).collect();
+    let largest = seen.iter().fold(V::Scalar::ZERO, |largest, p| largest.max(p.abs().max_element()));
+    let unit = power_of_two_below(largest);
+    seen.iter_mut().for_each(|p| *p = *p / unit);
+    (seen, unit)
 }
 
 /// The middle of the bounding box of a non-empty list of points.
@@ -131,7 +139,7 @@ impl<V: Vector> SupportMap for Polytope<V> {
         let index = self.farthest(direction, u32::MAX);
         match &self.search {
             Search::Scan(_) => self.points[index as usize],
-            Search::Climb(graph) => self.points[graph.name(index)],
+            Search::Look { graph, .. } => self.points[graph.name(index)],
         }
     }
 
@@ -140,15 +148,15 @@ impl<V: Vector> SupportMap for Polytope<V> {
         self.middle
     }
 
-    #[inline]
+    #[inline(always)]
     fn core_support(&self, direction: V, hint: &mut Hint) -> V {
         match &self.search {
             Search::Scan(_) => self.points[self.farthest(direction, u32::MAX) as usize] - self.middle,
-            Search::Climb(graph) => {
+            Search::Look { graph, unit } => {
                 let mut unknown = u32::MAX;
                 let last = hint.next_slot().unwrap_or(&mut unknown);
                 *last = self.farthest(direction, *last);
-                graph.vertex(*last)
+                graph.vertex(*last) * *unit
             }
         }
     }
