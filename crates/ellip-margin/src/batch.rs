@@ -20,7 +20,8 @@ const LANES: usize = 8;
 /// The free margins of many pairs, of `e1[k]` about `e2[k]` for each k: what [`free_margin`](crate::free_margin) gives, at a
 /// fraction of the time.
 ///
-/// The margins are the same to 1e-14 of 1 + m, ν to 1e-12 of itself, the signs exactly; all are the same on every processor.
+/// The margins are the same to 1e-14 of 1 + m and the rounding of m, ν to 1e-12 of itself, the signs exactly; all are the same
+/// on every processor.
 /// `iterations` is that of the batch, 5, where the pair was not asked again.
 ///
 /// A list of a single ellipsoid stands for as many of it as the other list has.

@@ -113,7 +113,8 @@ fn bracket_in<V: Vector, const N: usize>(
 /// The Euclidean distance between `e1` and `e2` with its closest points, certified: the bracket is the width of a
 /// separating slab and the distance of two points, and closes to about 1e-12 of the distance (1e-7 in `f32`).
 ///
-/// Where the bodies overlap, which the sign of the margin decides, it is 0.
+/// Where the bodies overlap, which the sign of the margin decides, it is 0; so it may be where they are apart by less than
+/// the rounding of their coordinates.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec3};
@@ -332,8 +333,8 @@ impl<const N: usize> Slab<N> {
     fn bracket<V: Vector>(&self, pair: &Pair<N>, width: f64) -> DistanceBracket<V> {
         let slack = if self.is_wide(pair) { self.rounding(pair) } else { 8.0 * f64::EPSILON * width.abs() };
         // The lengths along and across n, so that the width's digits are not lost.
-        let (f, t) = (self.width, sub(self.across, self.n.map(|x| x * self.width)));
-        let upper = if f > 0.0 { width.max(0.0).hypot(dot(t, t).sqrt()) } else { self.length() };
+        let t = sub(self.across, self.n.map(|x| x * self.width));
+        let upper = width.hypot(dot(t, t).sqrt());
         // Rounding to an `f32` must not close the bracket either.
         let coarse = V::Scalar::EPSILON;
         DistanceBracket {

@@ -100,8 +100,9 @@ pub(crate) fn solve<const N: usize>(
             break;
         }
         tau = next;
-        // Newton's method squares the error.
-        if change * change <= options.tolerance * (tau * tau) {
+        // Newton's method squares the error. After its first step it is below the root, and only rounding takes it back: where
+        // φ is flat, no more digits of τ are to be had.
+        if change * change <= options.tolerance * (tau * tau) || (iterations > 1 && step <= 0.0) {
             status = Status::Converged;
             break;
         }

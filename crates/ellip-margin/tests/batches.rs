@@ -9,7 +9,8 @@ use ellip_margin::{InvalidQuery, MarginOptions, Method, free_margin, free_margin
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 
-/// Margins to 1e-14 of 1 + m, ν to 1e-12: rounding, since both paths end at the root by other steps.
+/// Margins to 1e-14 of 1 + m and the last two digits of m, ν to 1e-12: rounding, since both paths end at the root by other
+/// steps, and m is rounded where it is near −1.
 fn assert_same<V: Vector>(e1: &[Ellipsoid<V>], e2: &[Ellipsoid<V>], options: MarginOptions) {
     let margins = free_margins(e1, e2, options).expect("lists of one length");
     assert_eq!(margins.len(), e1.len().max(e2.len()), "one margin per pair");
@@ -17,7 +18,7 @@ fn assert_same<V: Vector>(e1: &[Ellipsoid<V>], e2: &[Ellipsoid<V>], options: Mar
     for (k, batch) in margins.iter().enumerate() {
         let one = free_margin(&e1[k.min(e1.len() - 1)], &e2[k.min(e2.len() - 1)], options);
         let (a, b) = (1.0 + batch.margin.as_f64(), 1.0 + one.margin.as_f64());
-        assert!(close(a, b, 1e-14 + coarse, 0.0), "pair {k}: {batch:?} {one:?}");
+        assert!(close(a, b, 1e-14 + coarse, 2.0 * coarse), "pair {k}: {batch:?} {one:?}");
         assert!(close(batch.nu.as_f64(), one.nu.as_f64(), 1e-12 + coarse, 0.0), "pair {k}: {batch:?} {one:?}");
         assert_eq!(batch.margin > V::Scalar::ZERO, one.margin > V::Scalar::ZERO, "pair {k}: the sign");
         assert_eq!(batch.status, one.status, "pair {k}");
