@@ -33,7 +33,7 @@
 //! - `libm`: the same from the libm crate, for `no_std` targets; `alloc` is needed in any case.
 //! - `hull`: `Polytope::hull_of`, the exact convex hull of raw points, for polytopes of thousands of vertices.
 //! - `serde`: shapes as serde data, checked on the way in.
-//! - `parry3d`, `parry3d-f64`: parry's shapes as shapes of this crate, and back.
+//! - `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`: parry's shapes as shapes of this crate, and back.
 //! - `mint`: glam's conversions from and to mint's vectors.
 //! - `proptest`: the module `strategies`, which generates shapes and poses of wild aspect and scale, for property tests.
 
@@ -53,7 +53,7 @@ mod combinators;
 mod convex_hull;
 mod error;
 mod hint;
-#[cfg(any(feature = "parry3d", feature = "parry3d-f64"))]
+#[cfg(any(feature = "parry2d", feature = "parry2d-f64", feature = "parry3d", feature = "parry3d-f64"))]
 mod interop_parry;
 #[cfg(feature = "serde")]
 mod interop_serde;
@@ -73,6 +73,10 @@ pub use closest_point::ClosestPoint;
 pub use combinators::{Affine, Difference, Hull, MinkowskiSum, Posed, Rounded};
 pub use error::InvalidShape;
 pub use hint::Hint;
+#[cfg(feature = "parry2d")]
+pub use interop_parry::parry2d;
+#[cfg(feature = "parry2d-f64")]
+pub use interop_parry::parry2d_f64;
 #[cfg(feature = "parry3d")]
 pub use interop_parry::parry3d;
 #[cfg(feature = "parry3d-f64")]

@@ -107,7 +107,11 @@ pub trait Vector:
     #[must_use]
     fn norm(self) -> Self::Scalar {
         let squared = self.length_squared();
-        if is_comfortable(squared) { squared.sqrt() } else { scaled(self).map_or(squared, |(v, s)| v.length() * s) }
+        if is_comfortable(squared) {
+            squared.sqrt()
+        } else {
+            scaled(self).map_or(squared, |(v, [s, t])| v.length() * s * t)
+        }
     }
 
     /// The unit vector along `self` for vectors of any magnitude; `None` for the zero vector and where a coordinate
@@ -158,26 +162,26 @@ pub(crate) fn power_of_two_below<S: Scalar>(value: S) -> S {
     if unit > S::ZERO { unit } else { S::min_positive_value() }
 }
 
-/// `v` divided by a power of two near its largest magnitude, and that power; `None` for zero and NaN.
+/// `v` divided by a power of two near its largest magnitude, and that power as two factors; `None` for zero and NaN.
 ///
 /// The coordinates are passed on one by one: a vector of `f64` would go through memory, and since compilers put it there
 /// before they branch, written in other pieces than it is read in, those who never come here would wait for it.
 #[inline]
-pub(crate) fn scaled<V: Vector>(v: V) -> Option<(V, V::Scalar)> {
+pub(crate) fn scaled<V: Vector>(v: V) -> Option<(V, [V::Scalar; 2])> {
     let z = if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO };
     scaled_coordinates(v.get(0), v.get(1), z)
 }
 
 #[cold]
 #[inline(never)]
-fn scaled_coordinates<V: Vector>(x: V::Scalar, y: V::Scalar, z: V::Scalar) -> Option<(V, V::Scalar)> {
+fn scaled_coordinates<V: Vector>(x: V::Scalar, y: V::Scalar, z: V::Scalar) -> Option<(V, [V::Scalar; 2])> {
     let v = V::from_fn(|i| [x, y, z][i]);
     let largest = v.abs().max_element();
-    // Two steps, since the reciprocal of a subnormal power of two is not finite.
+    // Two factors, since those of subnormal numbers are below the smallest number, and their reciprocals not finite.
     let (_, exponent, _) = num_traits::Float::integer_decode(largest);
     let half = num_traits::Float::powi(V::Scalar::from_f64(2.0), i32::from(exponent) / 2);
     let rest = num_traits::Float::powi(V::Scalar::from_f64(2.0), i32::from(exponent) - i32::from(exponent) / 2);
-    (largest > V::Scalar::ZERO).then(|| (v / half / rest, half * rest))
+    (largest > V::Scalar::ZERO).then(|| (v / half / rest, [half, rest]))
 }
 
 /// A vector of 3D space, where there is a cross product: `Vec3`, `Vec3A` or `DVec3`.
@@ -431,6 +435,8 @@ mod tests {
             assert!((n / s - 5.0).abs() < 1e-14, "{s}: {n}");
         }
         assert_eq!(Vector::norm(DVec2::ZERO), 0.0, "the zero vector");
+        assert_eq!(Vector::norm(DVec2::new(3.0, 4.0) * 5e-324), 5.0 * 5e-324, "subnormal");
+        assert_eq!(Vector::norm(Vec3A::new(3.0, 0.0, 4.0) * 1e-45), 5.0 * 1e-45, "subnormal");
     }
 
     #[test]

@@ -280,3 +280,42 @@ fn a_scaled_or_mirrored_ball_stays_a_ball() {
     let sheared = Affine::new(ball, DMat3::from_diagonal(DVec3::new(2.0, 2.0, 1.0)), DVec3::X).expect("finite");
     assert_eq!(sheared.radius(), 0.0, "an ellipsoid is its own core");
 }
+
+/// Sizes and directions whose products are out of range, in single precision: only the direction of the direction matters.
+#[test]
+fn support_points_do_not_depend_on_the_length_of_the_direction() {
+    use convex_support::glam::{Mat3A, Quat};
+    use convex_support::{Cone, Cuboid, Cylinder, Ellipsoid, Polytope};
+
+    for size in [1e-30_f32, 1e-18, 1.0, 1e18, 1e30] {
+        for thin in [1.0, 1e-6] {
+            let extents = Vec3A::new(1.0, 0.5, thin) * size;
+            let ellipsoid = Ellipsoid::new(Vec3A::ZERO, extents, Quat::IDENTITY).unwrap();
+            let corners = (0..40).map(|i| Vec3A::new((i as f32).sin(), (2.5 * i as f32).cos(), (1.7 * i as f32).sin()));
+            let corners: Vec<Vec3A> = corners.map(|p| p * extents).collect();
+            let shapes: [Box<dyn SupportMap<Vector = Vec3A>>; 8] = [
+                Box::new(Cuboid::new(extents).unwrap()),
+                Box::new(Cylinder::new(size, size * thin).unwrap()),
+                Box::new(Cone::new(size, size * thin).unwrap()),
+                Box::new(Cone::new(size * thin, size).unwrap()),
+                Box::new(Posed::new(ellipsoid, Quat::from_xyzw(0.5, 0.5, -0.5, 0.5), Vec3A::ZERO).unwrap()),
+                Box::new(
+                    Affine::new(Ball::new(1.0).unwrap(), Mat3A::from_diagonal(extents.into()), Vec3A::ZERO).unwrap(),
+                ),
+                Box::new(Polytope::new(corners.iter().copied()).unwrap()),
+                Box::new(Polytope::hull_of(corners).unwrap()),
+            ];
+            for (k, shape) in shapes.iter().enumerate() {
+                for i in 0..50 {
+                    let i = i as f32;
+                    let d = Vec3A::new((1.3 * i).sin(), (2.1 * i).sin(), (3.7 * i).sin());
+                    let expected = shape.support(d);
+                    for exponent in [-90, -66, -50, 33, 60, 100] {
+                        let found = shape.support(d * 2.0_f32.powi(exponent));
+                        assert_eq!(found, expected, "shape {k} of size {size:e} × {thin:e} along {d} · 2^{exponent}");
+                    }
+                }
+            }
+        }
+    }
+}

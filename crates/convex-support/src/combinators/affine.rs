@@ -4,6 +4,7 @@ use num_traits::Float as _;
 
 use crate::error::{InvalidShape, finite, finite_matrix};
 use crate::support::{ScalarOf, swept, swept_derivative};
+use crate::vector::power_of_two_below;
 use crate::{Hint, Matrix, Scalar, SupportMap, Vector};
 
 /// The image `M·C + t` of a shape under an affine map: scaled, sheared, mirrored, or flattened where `M` is singular.
@@ -20,6 +21,8 @@ use crate::{Hint, Matrix, Scalar, SupportMap, Vector};
 pub struct Affine<S: SupportMap> {
     shape: S,
     matrix: <S::Vector as Vector>::Matrix,
+    /// The transpose in units of a power of two near the largest entry: directions stay in range.
+    onto_shape: <S::Vector as Vector>::Matrix,
     translation: S::Vector,
     /// The factor `s` where the matrix is `s` times a rotation or reflection: a ball then stays a ball.
     scale: Option<ScalarOf<S>>,
@@ -36,7 +39,11 @@ impl<S: SupportMap> Affine<S> {
         let matrix = finite_matrix("matrix", matrix)?;
         let translation = finite("translation", translation)?;
         let inverse = Some(matrix.inverse()).filter(Matrix::is_finite);
-        Ok(Self { shape, matrix, translation, scale: uniform_scale(matrix), inverse })
+        let largest = S::Vector::from_fn(|j| matrix.col(j).abs().max_element()).max_element();
+        let unit = power_of_two_below(largest);
+        let transpose = matrix.transpose();
+        let onto_shape = Matrix::from_cols_fn(|j| transpose.col(j) / unit);
+        Ok(Self { shape, matrix, onto_shape, translation, scale: uniform_scale(matrix), inverse })
     }
 
     /// The shape before it is mapped.
@@ -68,8 +75,8 @@ impl<S: SupportMap> SupportMap for Affine<S> {
 
     #[inline]
     fn support(&self, direction: S::Vector) -> S::Vector {
-        // max d·(Mx + t) = max (Mᵀd)·x + d·t
-        self.matrix * self.shape.support(self.matrix.transpose_mul(direction)) + self.translation
+        // max d·(Mx + t) = max (Mᵀd)·x + d·t, and the length of Mᵀd does not matter.
+        self.matrix * self.shape.support(self.onto_shape * direction) + self.translation
     }
 
     #[inline]
@@ -79,7 +86,7 @@ impl<S: SupportMap> SupportMap for Affine<S> {
 
     #[inline]
     fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
-        let direction = self.matrix.transpose_mul(direction);
+        let direction = self.onto_shape * direction;
         let core = self.shape.core_support(direction, hint);
         match self.scale {
             Some(_) => self.matrix * core,
@@ -90,7 +97,7 @@ impl<S: SupportMap> SupportMap for Affine<S> {
 
     #[inline]
     fn core_support_derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
-        let (direction, change) = (self.matrix.transpose_mul(direction), self.matrix.transpose_mul(change));
+        let (direction, change) = (self.onto_shape * direction, self.onto_shape * change);
         let core = self.shape.core_support_derivative(direction, change);
         match self.scale {
             Some(_) => self.matrix * core,

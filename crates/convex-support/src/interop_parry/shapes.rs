@@ -1,22 +1,10 @@
-// The bridge for one of parry's crates, named `parry`, and glam's vector type of the same precision, named `V`. The two may
-// use different versions of glam, so that vectors pass by their coordinates.
+// What the bridges to parry's crates share: `parry` is the crate, `V` glam's vector type of the same dimension and precision.
+// The two may use different versions of glam, so that vectors pass by their coordinates.
 
-use alloc::vec::Vec;
-
-use parry::math::{Pose, Vector as ParryVector};
+use parry::math::Vector as ParryVector;
 use parry::shape as theirs;
 
-use crate::{
-    Ball, Cone, Cuboid, Cylinder, InvalidShape, Polytope, Posed, Rounded, Segment, SupportMap, Triangle, Vector,
-};
-
-fn ours(v: ParryVector) -> V {
-    V::new(v.x, v.y, v.z)
-}
-
-fn parrys(v: V) -> ParryVector {
-    ParryVector::new(v.x, v.y, v.z)
-}
+use crate::{Ball, Cuboid, InvalidShape, Rounded, Segment, SupportMap, Triangle};
 
 /// A shape of parry's, in its own frame, as a shape of this crate: anything that has parry's support mapping.
 ///
@@ -51,15 +39,6 @@ impl<S: SupportMap<Vector = V>> theirs::SupportMap for IntoParry<S> {
     }
 }
 
-/// The shape in a pose of parry's.
-///
-/// # Errors
-/// [`InvalidShape`] if a number of the pose is not finite or its rotation is the zero quaternion.
-pub fn posed<S: SupportMap<Vector = V>>(shape: S, pose: &Pose) -> Result<Posed<S>, InvalidShape> {
-    let q = pose.rotation;
-    Posed::new(shape, V::rotation_from_xyzw([q.x, q.y, q.z, q.w]), ours(pose.translation))
-}
-
 impl TryFrom<theirs::Ball> for Ball<V> {
     type Error = InvalidShape;
 
@@ -73,22 +52,6 @@ impl TryFrom<theirs::Cuboid> for Cuboid<V> {
 
     fn try_from(cuboid: theirs::Cuboid) -> Result<Self, InvalidShape> {
         Self::new(ours(cuboid.half_extents))
-    }
-}
-
-impl TryFrom<theirs::Cylinder> for Cylinder<V> {
-    type Error = InvalidShape;
-
-    fn try_from(cylinder: theirs::Cylinder) -> Result<Self, InvalidShape> {
-        Self::new(cylinder.half_height, cylinder.radius)
-    }
-}
-
-impl TryFrom<theirs::Cone> for Cone<V> {
-    type Error = InvalidShape;
-
-    fn try_from(cone: theirs::Cone) -> Result<Self, InvalidShape> {
-        Self::new(cone.half_height, cone.radius)
     }
 }
 
@@ -117,14 +80,6 @@ impl TryFrom<theirs::Capsule> for Rounded<Segment<V>> {
     }
 }
 
-impl TryFrom<&theirs::ConvexPolyhedron> for Polytope<V> {
-    type Error = InvalidShape;
-
-    fn try_from(polyhedron: &theirs::ConvexPolyhedron) -> Result<Self, InvalidShape> {
-        Self::new(polyhedron.points().iter().map(|&p| ours(p)))
-    }
-}
-
 impl From<&Ball<V>> for theirs::Ball {
     fn from(ball: &Ball<V>) -> Self {
         Self::new(ball.radius())
@@ -134,18 +89,6 @@ impl From<&Ball<V>> for theirs::Ball {
 impl From<&Cuboid<V>> for theirs::Cuboid {
     fn from(cuboid: &Cuboid<V>) -> Self {
         Self::new(parrys(cuboid.half_extents()))
-    }
-}
-
-impl From<&Cylinder<V>> for theirs::Cylinder {
-    fn from(cylinder: &Cylinder<V>) -> Self {
-        Self::new(cylinder.half_height(), cylinder.disc_radius())
-    }
-}
-
-impl From<&Cone<V>> for theirs::Cone {
-    fn from(cone: &Cone<V>) -> Self {
-        Self::new(cone.half_height(), cone.disc_radius())
     }
 }
 
@@ -167,60 +110,5 @@ impl From<&Rounded<Segment<V>>> for theirs::Capsule {
     fn from(capsule: &Rounded<Segment<V>>) -> Self {
         let [a, b] = capsule.shape().points().map(parrys);
         Self::new(a, b, capsule.rounding())
-    }
-}
-
-/// parry's polyhedron of the same points; `None` where parry cannot make one of them, as where they are flat.
-#[must_use]
-pub fn convex_polyhedron(polytope: &Polytope<V>) -> Option<theirs::ConvexPolyhedron> {
-    let points: Vec<ParryVector> = polytope.points().iter().map(|&p| parrys(p)).collect();
-    theirs::ConvexPolyhedron::from_convex_hull(&points)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{ClosestPoint, Hint};
-
-    const DIRECTIONS: [V; 4] = [V::X, V::NEG_Y, V::new(0.5, -0.25, 0.75), V::new(-1.0, 2.0, 0.125)];
-
-    fn same(a: &dyn SupportMap<Vector = V>, b: &dyn SupportMap<Vector = V>) {
-        for d in DIRECTIONS {
-            let (a, b) = (a.support_value(d), b.support_value(d));
-            assert!((a - b).abs() <= 1e-6 * a.abs(), "along {d}: {a} against {b}");
-        }
-    }
-
-    #[test]
-    fn parrys_shapes_are_ours() {
-        let cone = theirs::Cone::new(1.0, 0.5);
-        same(&FromParry(cone), &Cone::try_from(cone).unwrap());
-        let cylinder = theirs::Cylinder::new(1.0, 0.5);
-        same(&FromParry(cylinder), &Cylinder::try_from(cylinder).unwrap());
-        let capsule = theirs::Capsule::new(parrys(V::X), parrys(V::Y), 0.5);
-        let rounded = Rounded::try_from(capsule).unwrap();
-        same(&FromParry(capsule), &rounded);
-        assert_eq!(rounded.radius(), 0.5, "the radius stays apart from the core");
-        let cuboid = theirs::Cuboid::new(parrys(V::new(1.0, 2.0, 3.0)));
-        same(&FromParry(cuboid), &Cuboid::try_from(cuboid).unwrap());
-        assert!(Ball::try_from(theirs::Ball::new(-1.0)).is_err(), "a negative radius");
-        let pose = Pose::from_translation(parrys(V::new(1.0, 2.0, 3.0)));
-        let ball = posed(Ball::try_from(theirs::Ball::new(0.5)).unwrap(), &pose).unwrap();
-        assert_eq!(ball.origin(), V::new(1.0, 2.0, 3.0));
-        assert_eq!(ball.core_support(V::X, &mut Hint::new()), V::ZERO);
-    }
-
-    #[test]
-    fn our_shapes_are_parrys() {
-        let corners = (0..8).map(|i| V::from_fn(|axis| if i >> axis & 1 == 1 { 1.0 } else { 0.0 }));
-        let cube = Polytope::new(corners).unwrap();
-        let polyhedron = convex_polyhedron(&cube).expect("a cube is a polyhedron");
-        same(&FromParry(polyhedron.clone()), &Polytope::try_from(&polyhedron).unwrap());
-        same(&FromParry(polyhedron), &cube);
-        let cone = Cone::new(1.0, 0.5).unwrap();
-        same(&FromParry(IntoParry(cone)), &FromParry(theirs::Cone::from(&cone)));
-        let triangle = Triangle::new([V::X, V::Y, V::Z]).unwrap();
-        assert_eq!(Triangle::try_from(theirs::Triangle::from(&triangle)).unwrap(), triangle);
-        assert_eq!(triangle.closest_point(V::X), V::X);
     }
 }

@@ -67,10 +67,11 @@ impl<V: Vector3> SupportMap for Cone<V> {
 
     #[inline(always)]
     fn support(&self, direction: V) -> V {
-        // The cone is the hull of its apex (support value h·d_y) and its base disc (r·|d_xz| − h·d_y).
+        // The cone is the hull of its apex (support value h·d_y) and its base disc (r·|d_xz| − h·d_y): the apex is farther
+        // where 2h·d_y > r·|d_xz|, here in units of the slant's length, so that no product is out of range.
         let across = across(direction);
-        let rise = (self.half_height + self.half_height) * direction.get(1);
-        if rise > self.radius * across.norm() {
+        let (cosine, sine) = self.slant;
+        if cosine * direction.get(1) > sine * across.norm() {
             V::axis(1) * self.half_height
         } else {
             swept(self.radius, across) - V::axis(1) * self.half_height

@@ -5,6 +5,7 @@ use num_traits::Float as _;
 use crate::error::{InvalidShape, finite, finite_matrix, orthonormal};
 use crate::spd;
 use crate::support::{ScalarOf, swept_derivative};
+use crate::vector::power_of_two_below;
 use crate::{Hint, Matrix, Scalar, SupportMap, Vector};
 
 /// The ellipsoid `{ c + R·diag(a)·u : |u| ≤ 1 }`; an ellipse in 2D.
@@ -29,6 +30,8 @@ pub struct Ellipsoid<V: Vector> {
     axes: V::Matrix,
     semi_axes: V,
     inverse_semi_axes: V,
+    /// The semi-axes in units of a power of two near the largest: products with a direction stay in range.
+    scaled_semi_axes: V,
 }
 
 impl<V: Vector> Ellipsoid<V> {
@@ -54,7 +57,13 @@ impl<V: Vector> Ellipsoid<V> {
             Some(index) => {
                 Err(InvalidShape::NotPositive { parameter: "semi_axes", index, value: semi_axes.get(index).as_f64() })
             }
-            None => Ok(Self { center, axes, semi_axes, inverse_semi_axes: V::ONE / semi_axes }),
+            None => Ok(Self {
+                center,
+                axes,
+                semi_axes,
+                inverse_semi_axes: V::ONE / semi_axes,
+                scaled_semi_axes: semi_axes / power_of_two_below(semi_axes.max_element()),
+            }),
         }
     }
 
@@ -165,14 +174,14 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
     fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
         // max e·(a∘u) over |u| ≤ 1, with e = Rᵀd: u is the unit vector along a∘e.
         let e = self.axes.transpose_mul(direction);
-        let u = (self.semi_axes * e).unit().unwrap_or_else(|| V::axis(0));
+        let u = (self.scaled_semi_axes * e).unit().unwrap_or_else(|| V::axis(0));
         self.axes * (self.semi_axes * u)
     }
 
     #[inline]
     fn core_support_derivative(&self, direction: V, change: V) -> V {
-        let e = self.semi_axes * self.axes.transpose_mul(direction);
-        let de = self.semi_axes * self.axes.transpose_mul(change);
+        let e = self.scaled_semi_axes * self.axes.transpose_mul(direction);
+        let de = self.scaled_semi_axes * self.axes.transpose_mul(change);
         self.axes * (self.semi_axes * swept_derivative(V::Scalar::ONE, e, de))
     }
 

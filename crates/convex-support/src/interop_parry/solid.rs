@@ -1,0 +1,115 @@
+// What the bridges to parry's crates of 3D space have beside.
+
+use alloc::vec::Vec;
+
+use parry::math::Pose;
+
+use crate::{Cone, Cylinder, Polytope, Posed, Vector};
+
+fn ours(v: ParryVector) -> V {
+    V::new(v.x, v.y, v.z)
+}
+
+fn parrys(v: V) -> ParryVector {
+    ParryVector::new(v.x, v.y, v.z)
+}
+
+/// The shape in a pose of parry's.
+///
+/// # Errors
+/// [`InvalidShape`] if a number of the pose is not finite or its rotation is the zero quaternion.
+pub fn posed<S: SupportMap<Vector = V>>(shape: S, pose: &Pose) -> Result<Posed<S>, InvalidShape> {
+    let q = pose.rotation;
+    Posed::new(shape, V::rotation_from_xyzw([q.x, q.y, q.z, q.w]), ours(pose.translation))
+}
+
+impl TryFrom<theirs::Cylinder> for Cylinder<V> {
+    type Error = InvalidShape;
+
+    fn try_from(cylinder: theirs::Cylinder) -> Result<Self, InvalidShape> {
+        Self::new(cylinder.half_height, cylinder.radius)
+    }
+}
+
+impl TryFrom<theirs::Cone> for Cone<V> {
+    type Error = InvalidShape;
+
+    fn try_from(cone: theirs::Cone) -> Result<Self, InvalidShape> {
+        Self::new(cone.half_height, cone.radius)
+    }
+}
+
+impl TryFrom<&theirs::ConvexPolyhedron> for Polytope<V> {
+    type Error = InvalidShape;
+
+    fn try_from(polyhedron: &theirs::ConvexPolyhedron) -> Result<Self, InvalidShape> {
+        Self::new(polyhedron.points().iter().map(|&p| ours(p)))
+    }
+}
+
+impl From<&Cylinder<V>> for theirs::Cylinder {
+    fn from(cylinder: &Cylinder<V>) -> Self {
+        Self::new(cylinder.half_height(), cylinder.disc_radius())
+    }
+}
+
+impl From<&Cone<V>> for theirs::Cone {
+    fn from(cone: &Cone<V>) -> Self {
+        Self::new(cone.half_height(), cone.disc_radius())
+    }
+}
+
+/// parry's polyhedron of the same points; `None` where parry cannot make one of them, as where they are flat.
+#[must_use]
+pub fn convex_polyhedron(polytope: &Polytope<V>) -> Option<theirs::ConvexPolyhedron> {
+    let points: Vec<ParryVector> = polytope.points().iter().map(|&p| parrys(p)).collect();
+    theirs::ConvexPolyhedron::from_convex_hull(&points)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ClosestPoint, Hint};
+
+    const DIRECTIONS: [V; 4] = [V::X, V::NEG_Y, V::new(0.5, -0.25, 0.75), V::new(-1.0, 2.0, 0.125)];
+
+    fn same(a: &dyn SupportMap<Vector = V>, b: &dyn SupportMap<Vector = V>) {
+        for d in DIRECTIONS {
+            let (a, b) = (a.support_value(d), b.support_value(d));
+            assert!((a - b).abs() <= 1e-6 * a.abs(), "along {d}: {a} against {b}");
+        }
+    }
+
+    #[test]
+    fn parrys_shapes_are_ours() {
+        let cone = theirs::Cone::new(1.0, 0.5);
+        same(&FromParry(cone), &Cone::try_from(cone).unwrap());
+        let cylinder = theirs::Cylinder::new(1.0, 0.5);
+        same(&FromParry(cylinder), &Cylinder::try_from(cylinder).unwrap());
+        let capsule = theirs::Capsule::new(parrys(V::X), parrys(V::Y), 0.5);
+        let rounded = Rounded::try_from(capsule).unwrap();
+        same(&FromParry(capsule), &rounded);
+        assert_eq!(rounded.radius(), 0.5, "the radius stays apart from the core");
+        let cuboid = theirs::Cuboid::new(parrys(V::new(1.0, 2.0, 3.0)));
+        same(&FromParry(cuboid), &Cuboid::try_from(cuboid).unwrap());
+        assert!(Ball::try_from(theirs::Ball::new(-1.0)).is_err(), "a negative radius");
+        let pose = Pose::from_translation(parrys(V::new(1.0, 2.0, 3.0)));
+        let ball = posed(Ball::try_from(theirs::Ball::new(0.5)).unwrap(), &pose).unwrap();
+        assert_eq!(ball.origin(), V::new(1.0, 2.0, 3.0));
+        assert_eq!(ball.core_support(V::X, &mut Hint::new()), V::ZERO);
+    }
+
+    #[test]
+    fn our_shapes_are_parrys() {
+        let corners = (0..8).map(|i| V::from_fn(|axis| if i >> axis & 1 == 1 { 1.0 } else { 0.0 }));
+        let cube = Polytope::new(corners).unwrap();
+        let polyhedron = convex_polyhedron(&cube).expect("a cube is a polyhedron");
+        same(&FromParry(polyhedron.clone()), &Polytope::try_from(&polyhedron).unwrap());
+        same(&FromParry(polyhedron), &cube);
+        let cone = Cone::new(1.0, 0.5).unwrap();
+        same(&FromParry(IntoParry(cone)), &FromParry(theirs::Cone::from(&cone)));
+        let triangle = Triangle::new([V::X, V::Y, V::Z]).unwrap();
+        assert_eq!(Triangle::try_from(theirs::Triangle::from(&triangle)).unwrap(), triangle);
+        assert_eq!(triangle.closest_point(V::X), V::X);
+    }
+}
