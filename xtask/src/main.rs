@@ -73,7 +73,7 @@ enum Task {
     ///
     /// Exit status: 0, or 1 where a note or page refers to what is not there, or 2 where the documentation does not build.
     Docs,
-    /// Measure what importing each crate alone costs: packages, build time, code size.
+    /// Measure what importing each crate alone costs, packages, build time, code size, and write `docs/footprint.md`.
     Footprint {
         /// Where the programs are built; emptied first.
         #[arg(long, value_name = "FOLDER", default_value = "target/footprint")]

@@ -69,7 +69,6 @@ const QUICK: u64 = 100;
 
 impl Scope {
     /// All questions at a hundredth of the queries.
-    #[allow(dead_code, reason = "for reports that want a table within seconds")]
     pub(crate) fn quick(question: Question) -> Self {
         Self {
             question: Some(question),

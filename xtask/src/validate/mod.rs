@@ -31,6 +31,7 @@ use serde_json::Value;
 
 use self::page::{Block, Figure, Section};
 use self::progress::progress;
+pub(crate) use self::provenance::provenance;
 use self::score::Verdict;
 use crate::engine;
 use crate::mesh::Meshes;
@@ -192,7 +193,7 @@ fn validate(scope: &Scope) -> Result<bool, String> {
                 section
             }
             "stiff" => {
-                let mut section = stiff::section(&records, if scope.quick { &[] } else { &cases });
+                let mut section = stiff::section(scope, &records, if scope.quick { &[] } else { &cases });
                 section.blocks.extend(margin_routes::figures(scope).into_iter().map(Block::Figure));
                 section
             }

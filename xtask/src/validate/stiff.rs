@@ -7,9 +7,10 @@ use serde_json::Value;
 
 use super::page::{Row, Table, error};
 use super::summary::quantile;
-use super::{Block, Case, Figure, Record, Section, as_read, progress, score};
+use super::{Block, Case, Figure, Record, Scope, Section, as_read, progress, score};
 use crate::engine;
 use crate::plot::{Plot, Scale, Series, duration};
+use crate::sweep::{self, Question};
 use crate::wire::answer::Line;
 
 /// Methods beside the default that are shown for comparison.
@@ -25,8 +26,11 @@ const FEWEST_VALUES: usize = 3;
 type Worst = BTreeMap<u64, f64>;
 
 /// The chapter: a table of every kind and value of difficulty, and figures of those with enough cases.
-pub(super) fn section(records: &[Record], cases: &[Case]) -> Section {
+pub(super) fn section(scope: &Scope, records: &[Record], cases: &[Case]) -> Section {
     let mut blocks: Vec<Block> = figures(cases).into_iter().map(Block::Figure).collect();
+    if !scope.quick {
+        blocks.extend(swept(scope));
+    }
     let table = table(records);
     if !table.rows.is_empty() {
         blocks.push(Block::Table(table));
@@ -41,6 +45,66 @@ pub(super) fn section(records: &[Record], cases: &[Case]) -> Section {
             .to_owned(),
         blocks,
     }
+}
+
+/// The sweep of casts and distances: random bodies at every size and distance, against references in thirty digits.
+fn swept(scope: &Scope) -> Vec<Block> {
+    let questions = [
+        (Question::Ray, "ray_cast", "Swept: ray casts, the source ever farther away"),
+        (Question::Linear, "linear_cast", "Swept: linear casts, the start ever farther away"),
+        (Question::Distance, "distance", "Swept: distances, the gap ever wider"),
+        (Question::Certificates, "intersect", "Swept: certificates of queries that are stopped early"),
+    ];
+    let mut blocks = Vec::new();
+    for (question, _, title) in questions.into_iter().filter(|(_, query, _)| scope.holds(query)) {
+        let rows = sweep::rows(&sweep::Scope::quick(question), |row| progress(&format!("{title}: {}", row.subject)));
+        // All sizes and subjects together: neither makes a difference, which the task `sweep` shows one by one.
+        let mut by_distance = BTreeMap::<(Ordered, &str), Vec<sweep::Row>>::new();
+        for row in rows {
+            let precision = if row.is_single { "f32" } else { "f64" };
+            by_distance.entry((Ordered(row.distance), precision)).or_default().push(row);
+        }
+        let rows = by_distance.into_iter().map(|((Ordered(distance), precision), of)| {
+            let sum = |count: fn(&sweep::Row) -> u64| of.iter().map(count).sum::<u64>();
+            let most = |value: fn(&sweep::Row) -> f64| of.iter().map(value).fold(0.0, f64::max);
+            let wrong = of.iter().filter(|row| !row.is_right()).count();
+            Row::of([
+                format!("{distance:e}"),
+                precision.to_owned(),
+                of.len().to_string(),
+                sum(|r| r.queries).to_string(),
+                error(most(|r| r.worst)),
+                format!("{:.1}", most(sweep::Row::ulps)),
+                (sum(|r| r.false_hits) + sum(|r| r.missed)).to_string(),
+                sum(|r| r.undecided).to_string(),
+                sum(|r| r.violations).to_string(),
+                format!("{:.1}", sum(|r| r.iterations) as f64 / sum(|r| r.queries).max(1) as f64),
+                of.iter().map(|r| r.most_iterations).max().unwrap_or(0).to_string(),
+                wrong.to_string(),
+            ])
+            .bad_if(wrong > 0)
+        });
+        let name = format!(
+            "sweep-{}",
+            title.trim_start_matches("Swept: ").split(',').next().unwrap_or("all").replace(' ', "-")
+        );
+        blocks.push(Block::Heading(title.to_owned()));
+        blocks.push(Block::Table(Table::new(
+            &name,
+            "Random bodies of many kinds, aspects and sizes; distances and errors in sizes of the body, and in rounding errors of \
+             the distance. False: hits that are sure misses, and misses that are sure hits. Queries that were stopped early may \
+             be undecided, but must not be certain of what is wrong.",
+            &[
+                "distance", "precision", "cells", "queries", "worst error", "in ulps", "false", "undecided", "violations",
+                "iterations, mean", "most", "wrong cells",
+            ],
+            rows.collect(),
+        )));
+    }
+    if !blocks.is_empty() {
+        blocks.push(Block::Heading("Cases by kind and value of difficulty".to_owned()));
+    }
+    blocks
 }
 
 /// For each query, precision, and kind and value of difficulty: how many, how right, how many iterations, how long.
