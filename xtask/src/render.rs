@@ -21,18 +21,36 @@ type Shape = Box<dyn SupportMap<Vector = Vec3A> + Send + Sync>;
 struct Thing {
     shape: Shape,
     colour: Vec3,
+    /// How much of a mirror it is.
+    gloss: f32,
     /// A ball around it: rays that miss this are not cast.
     center: Vec3A,
     radius: f32,
 }
 
-/// The light is far away, in this direction.
-fn light() -> Vec3A {
-    Vec3A::new(-0.5, 0.9, 0.6).normalize()
-}
+/// Rays per pixel along each axis. Each has its own spot in the pixel, its own part of the sun, and its own part of the
+/// sky, the same in every pixel: the average is smooth, without noise.
+const SAMPLES: u32 = 4;
 
-/// Rays per pixel along each axis.
-const SAMPLES: u32 = 2;
+/// The middle of the sun, and its radius as seen from the ground.
+const SUN: Vec3A = Vec3A::new(-0.55, 0.8, 0.5);
+const SUN_RADIUS: f32 = 0.06;
+const SUNLIGHT: Vec3 = Vec3::new(1.0, 0.94, 0.84);
+const SKYLIGHT: Vec3 = Vec3::new(0.62, 0.7, 0.82);
+
+/// The part of the sun and of the sky that sample `i` asks for light.
+fn lights(i: u32) -> (Vec3A, Vec3A) {
+    let count = SAMPLES * SAMPLES;
+    // Samples next to each other in a pixel ask for parts that are far apart.
+    let k = i * 7 % count;
+    let along = (k as f32 + 0.5) / count as f32;
+    let (sine, cosine) = (f32::from_f64(2.399_963) * k as f32).sin_cos();
+    let sun = SUN.normalize();
+    let (side, up) = (sun.cross(Vec3A::Y).normalize(), sun.cross(Vec3A::Y).normalize().cross(sun));
+    let sun = (sun + (side * cosine + up * sine) * (SUN_RADIUS * along.sqrt())).normalize();
+    let across = (1.0 - along * along).sqrt();
+    (sun, Vec3A::new(across * cosine, along, across * sine))
+}
 
 /// Renders the picture into a PNG file.
 pub(crate) fn run(file: &Path, width: u32) -> ExitCode {
@@ -119,10 +137,10 @@ struct Camera {
 
 impl Camera {
     fn new(width: u32, height: u32) -> Self {
-        let (eye, target) = (Vec3A::new(0.0, 4.4, 12.0), Vec3A::new(0.0, 0.75, 0.0));
+        let (eye, target) = (Vec3A::new(0.0, 3.6, 12.0), Vec3A::new(0.0, 0.72, 0.0));
         let forward = (target - eye).normalize();
         let right = forward.cross(Vec3A::Y).normalize();
-        let field = 0.36;
+        let field = 0.385;
         Self { eye, right: right * field, up: right.cross(forward) * field, forward, width, height }
     }
 
@@ -135,15 +153,21 @@ impl Camera {
             let v = 1.0 - 2.0 * (y as f32 + part(sample / SAMPLES)) / self.height as f32;
             let aspect = self.height as f32 / self.width as f32;
             let direction = self.forward + self.right * u + self.up * (v * aspect);
-            sum += shade(Ray { source: self.eye, direction }, things, tally);
+            sum += shade(Ray { source: self.eye, direction }, sample, 1, things, tally);
         }
         let linear = sum / (SAMPLES * SAMPLES) as f32;
         linear.powf(1.0 / 2.2).clamp(Vec3::ZERO, Vec3::ONE).to_array().map(|c| (c * 255.0).round() as u8)
     }
 }
 
-/// The light that comes back along a ray.
-fn shade(ray: Ray<Vec3A>, things: &[Thing], tally: &mut Tally) -> Vec3 {
+/// What is seen where nothing is: brighter towards the ground.
+fn backdrop(direction: Vec3A) -> Vec3 {
+    let height = direction.normalize().y;
+    Vec3::new(0.80, 0.84, 0.88).lerp(Vec3::new(0.42, 0.53, 0.68), (0.5 + 1.6 * height).clamp(0.0, 1.0))
+}
+
+/// The light that comes back along a ray, mirrored at most `bounces` times.
+fn shade(ray: Ray<Vec3A>, sample: u32, bounces: u32, things: &[Thing], tally: &mut Tally) -> Vec3 {
     let mut nearest: Option<(f32, Vec3A, &Thing)> = None;
     for thing in things {
         // Nothing behind what was hit already needs to be looked at.
@@ -152,21 +176,41 @@ fn shade(ray: Ray<Vec3A>, things: &[Thing], tally: &mut Tally) -> Vec3 {
             nearest = Some((lambda, normal, thing));
         }
     }
-    let Some((lambda, normal, thing)) = nearest else {
-        return Vec3::new(0.75, 0.82, 0.9);
-    };
-    let light = light();
+    let Some((lambda, normal, thing)) = nearest else { return backdrop(ray.direction) };
+    let towards = -ray.direction.normalize();
     // Off the surface, so that it does not shade itself.
     let spot = ray.at(lambda) + normal * 1e-3;
-    let facing = normal.dot(light);
-    let lit = facing > 0.0
-        && !things
-            .iter()
-            .any(|other| tally.cast(other, Ray { source: spot, direction: light }, f32::INFINITY).is_some());
-    let half = (light - ray.direction.normalize()).normalize();
-    let shine = if lit { normal.dot(half).max(0.0).powi(40) * 0.25 } else { 0.0 };
-    let sky = 0.25 + 0.15 * normal.y;
-    thing.colour * (sky + if lit { 0.8 * facing } else { 0.0 }) + Vec3::splat(shine)
+    let mut reaches = |direction: Vec3A, how_far: f32| {
+        let ray = Ray { source: spot, direction };
+        normal.dot(direction) > 0.0 && !things.iter().any(|other| tally.cast(other, ray, how_far).is_some())
+    };
+    let (sun, sky) = lights(sample);
+    let sunlit = reaches(sun, f32::INFINITY);
+    // What is far away darkens the sky no more.
+    let skylit = reaches(sky, 4.0);
+    let mut light = SKYLIGHT * (0.16 - 0.08 * normal.y);
+    if sunlit {
+        light += SUNLIGHT * (0.85 * normal.dot(sun));
+    }
+    if skylit {
+        light += SKYLIGHT * (1.1 * normal.dot(sky));
+    }
+    let mut seen = thing.colour * light;
+    // Schlick's approximation of what glass-like gloss mirrors.
+    let facing = normal.dot(towards).clamp(0.0, 1.0);
+    let mirrored = thing.gloss * (0.04 + 0.96 * (1.0 - facing).powi(5));
+    if bounces > 0 {
+        let direction = normal * (2.0 * normal.dot(towards)) - towards;
+        let other = shade(Ray { source: spot, direction }, sample, bounces - 1, things, tally);
+        seen = seen.lerp(other, mirrored);
+    }
+    if sunlit {
+        let half = (sun + towards).normalize();
+        seen += SUNLIGHT * (thing.gloss * 0.5 * normal.dot(half).max(0.0).powi(90));
+    }
+    // The floor has no end: it fades into the backdrop.
+    let far = ((spot.length() - 6.0) / 9.0).clamp(0.0, 1.0);
+    seen.lerp(backdrop(ray.direction), far * far * (3.0 - 2.0 * far))
 }
 
 fn thing<S>(shape: S, colour: [f32; 3], [x, y, z]: [f32; 3], rotation: Quat) -> Result<Thing, InvalidShape>
@@ -180,7 +224,9 @@ where
         center,
         radius: radius * (1.0 + 4.0 * f32::EPSILON),
         shape: Box::new(shape),
-        colour: Vec3::from(colour),
+        // The colours are written as a screen shows them.
+        colour: Vec3::from(colour).powf(2.2),
+        gloss: 1.0,
     })
 }
 
@@ -191,46 +237,49 @@ fn things() -> Result<Vec<Thing>, InvalidShape> {
     let disc = Cylinder::<Vec3A>::new(0.0, 0.55)?;
     let gem: Vec<Vec3A> = (0..40).map(|i| spiral(i, 40) * Vec3A::new(0.75, 0.95, 0.75)).collect();
     Ok(vec![
-        thing(Cuboid::new(Vec3A::new(9.0, 0.1, 7.0))?, [0.62, 0.62, 0.6], [0.0, -0.1, 0.0], level)?,
+        Thing {
+            gloss: 0.6,
+            ..thing(Cuboid::new(Vec3A::new(60.0, 0.1, 60.0))?, [0.86, 0.86, 0.86], [0.0, -0.1, 0.0], level)?
+        },
         // A box swept by a disc.
         thing(
             MinkowskiSum::new(Cuboid::new(Vec3A::new(0.35, 0.6, 0.35))?, disc),
-            [0.0, 0.45, 0.7],
+            [0.12, 0.42, 0.75],
             [-3.4, 0.6, 0.2],
             turned(0.0, 0.5, 0.0),
         )?,
         // A cone swept by a ball.
-        thing(Rounded::new(Cone::<Vec3A>::new(0.7, 0.6)?, 0.18)?, [0.9, 0.6, 0.0], [-1.7, 0.88, 0.8], level)?,
+        thing(Rounded::new(Cone::<Vec3A>::new(0.7, 0.6)?, 0.18)?, [0.95, 0.66, 0.16], [-1.7, 0.88, 0.8], level)?,
         // The hull of a ball and a box.
         thing(
             Hull::new(
                 Posed::translated(Ball::new(0.42)?, Vec3A::new(0.0, 1.5, 0.0))?,
                 Cuboid::new(Vec3A::new(0.6, 0.02, 0.6))?,
             ),
-            [0.0, 0.6, 0.45],
+            [0.10, 0.62, 0.48],
             [-0.3, 0.02, -1.2],
             turned(0.0, 0.6, 0.0),
         )?,
         thing(
             Ellipsoid::new(Vec3A::ZERO, Vec3A::new(0.95, 0.5, 0.35), level)?,
-            [0.8, 0.45, 0.65],
+            [0.82, 0.45, 0.68],
             [0.1, 0.75, 1.7],
             turned(0.3, 0.7, 0.5),
         )?,
-        thing(Polytope::new(gem)?, [0.84, 0.37, 0.0], [1.5, 0.95, 0.1], turned(0.2, 0.0, 0.1))?,
+        thing(Polytope::new(gem)?, [0.88, 0.36, 0.13], [1.5, 0.95, 0.1], turned(0.2, 0.0, 0.1))?,
         // A capsule plus an ellipsoid.
         thing(
             MinkowskiSum::new(
                 Capsule::<Vec3A>::new(0.45, 0.1)?,
                 Ellipsoid::new(Vec3A::ZERO, Vec3A::new(0.7, 0.18, 0.4), level)?,
             ),
-            [0.35, 0.7, 0.9],
+            [0.38, 0.70, 0.92],
             [3.2, 0.75, 0.3],
             turned(0.0, 0.4, 0.25),
         )?,
         thing(
             Rounded::new(Cuboid::new(Vec3A::new(0.35, 0.2, 0.3))?, 0.12)?,
-            [0.75, 0.65, 0.1],
+            [0.82, 0.73, 0.20],
             [2.2, 0.32, 1.9],
             turned(0.0, 0.9, 0.0),
         )?,
