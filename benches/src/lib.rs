@@ -43,3 +43,8 @@ pub use reference::Pose;
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 struct Readme;
+
+/// Compiles and runs the examples of the note on porting, which ask parry the same.
+#[cfg(all(doctest, feature = "parry"))]
+#[doc = include_str!("../../docs/porting-from-parry.md")]
+struct PortingFromParry;

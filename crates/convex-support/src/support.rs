@@ -9,7 +9,9 @@ use crate::{Hint, Scalar, Vector};
 /// The *support point* `s(d)` in direction `d` is a point of the set farthest along `d`, and the *support value*
 /// `h(d) = d·s(d)` is how far that is:
 ///
-/// $$ s(d) \in C, \qquad h(d) = d \cdot s(d) = \max \\{ d \cdot x : x \in C \\}. $$
+/// > s(d) ∈ C,  h(d) = d·s(d) = max { d·x : x ∈ C }.
+///
+#[doc = include_str!("../doc/support.svg")]
 ///
 /// Support mappings compose: the support point of a Minkowski sum is the sum of the support points, that of an affine
 /// image `M·C + t` is `M·s(Mᵀd) + t`, and that of a hull is the farther of two. The combinators of this crate are these
@@ -49,7 +51,7 @@ use crate::{Hint, Scalar, Vector};
 /// add the radius at the end. And they work near the body rather than near the world's origin, where coordinates have
 /// digits to spare. So a set is also known as
 ///
-/// $$ C = o + K \oplus B(r) $$
+/// > C = o + K ⊕ B(r)
 ///
 /// with the [`origin`](Self::origin) `o`, the core `K` given by [`core_support`](Self::core_support), and the
 /// [`radius`](Self::radius) `r`. The provided methods say that `o = 0`, `r = 0` and the core is all there is; a shape

@@ -60,6 +60,8 @@ pub struct Margin<V: Vector> {
 /// assert!(m.point.abs_diff_eq(DVec3::new(5.0, 0.0, 0.0), 1e-14));
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
+///
+#[doc = include_str!("../doc/margin.svg")]
 #[inline]
 pub fn free_margin<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: MarginOptions) -> Margin<V> {
     free_margin_with(e1, e2, options, |_, _| {})

@@ -21,6 +21,11 @@ use crate::{Distance, DistanceOptions, Iterate};
 /// assert_eq!(answer.normal, Some(DVec3::Y)); // from the table to the ball
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
+///
+/// Two points of the shapes bound the distance from above, and a slab between the shapes from below. The iteration ends
+/// where the two meet.
+///
+#[doc = include_str!("../doc/bracket.svg")]
 pub fn distance<A, B>(a: &A, b: &B, options: DistanceOptions<A::Vector>) -> Distance<A::Vector>
 where
     A: SupportMap + ?Sized,

@@ -52,6 +52,8 @@ pub(crate) fn check_finite<V: Vector>(parameter: &'static str, vector: V) -> Res
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
+#[doc = include_str!("../doc/ray.svg")]
+///
 /// # How it begins and ends
 /// - A source in the target, or on its boundary to rounding, is a hit at λ = 0 with no normal, whatever the direction.
 /// - A source outside is a hit or a miss by the ray alone: one that leaves or slides by at a distance misses.

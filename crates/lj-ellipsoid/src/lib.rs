@@ -1,5 +1,7 @@
 //! The Löwner–John ellipsoids: the smallest around points, the largest inside a body, each with a certified gap.
 //!
+#![doc = include_str!("../doc/pair.svg")]
+//!
 //! Which ellipsoid encloses this link, and how much does it waste?
 //!
 //! ```

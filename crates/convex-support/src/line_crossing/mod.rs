@@ -73,7 +73,7 @@ impl<V: Vector> Crossing<V> {
 /// A convex set whose crossing by a line has a closed form.
 ///
 /// For ray tracers, and as the independent reference of ray casts that only use the support mapping. Poses and invertible
-/// affine maps pass it through, and so does [`Rounded`] for the shapes that know it
+/// affine maps pass it through, and so does [`Rounded`](crate::Rounded) for the shapes that know it
 /// ([`RoundedLineCrossing`]).
 ///
 /// # Accuracy
