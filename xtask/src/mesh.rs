@@ -84,6 +84,10 @@ impl<S: SupportMap> SupportMap for Shared<S> {
         self.0.radius()
     }
 
+    fn is_core_polyhedral(&self) -> bool {
+        self.0.is_core_polyhedral()
+    }
+
     fn core_extent(&self) -> <S::Vector as Vector>::Scalar {
         self.0.core_extent()
     }

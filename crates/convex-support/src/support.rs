@@ -2,6 +2,7 @@
 
 use num_traits::Float as _;
 
+use crate::vector::is_comfortable;
 use crate::{Hint, Scalar, Vector};
 
 /// A nonempty, closed, bounded convex set, known by its support mapping.
@@ -102,6 +103,13 @@ pub trait SupportMap {
         Self::Vector::ZERO
     }
 
+    /// Whether the core is a polytope, whose support point jumps from vertex to vertex and does not move in between, so that
+    /// [`core_support_derivative`](Self::core_support_derivative) is always zero and need not be asked for. Provided: `false`.
+    #[inline]
+    fn is_core_polyhedral(&self) -> bool {
+        false
+    }
+
     /// The radius of the ball that sweeps the core.
     #[inline]
     fn radius(&self) -> ScalarOf<Self> {
@@ -148,6 +156,10 @@ pub(crate) fn swept_derivative<V: Vector>(radius: V::Scalar, direction: V, chang
     if radius == V::Scalar::ZERO {
         return V::ZERO;
     }
+    let squared = direction.length_squared();
+    if is_comfortable(squared) {
+        return (change - direction * (change.dot(direction) / squared)) * (radius / squared.sqrt());
+    }
     match direction.unit() {
         Some(u) => (change - u * change.dot(u)) * (radius / direction.norm()),
         None => V::ZERO,
@@ -188,6 +200,11 @@ impl<S: SupportMap + ?Sized> SupportMap for &S {
     }
 
     #[inline]
+    fn is_core_polyhedral(&self) -> bool {
+        (**self).is_core_polyhedral()
+    }
+
+    #[inline]
     fn core_extent(&self) -> ScalarOf<S> {
         (**self).core_extent()
     }
@@ -224,6 +241,11 @@ impl<S: SupportMap + ?Sized> SupportMap for alloc::boxed::Box<S> {
     #[inline]
     fn radius(&self) -> ScalarOf<S> {
         (**self).radius()
+    }
+
+    #[inline]
+    fn is_core_polyhedral(&self) -> bool {
+        (**self).is_core_polyhedral()
     }
 
     #[inline]

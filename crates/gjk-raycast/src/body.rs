@@ -17,6 +17,8 @@ pub(crate) trait Body {
     fn support(&mut self, direction: Self::Vector) -> (Self::Vector, Self::Witness);
     /// The derivative of the support point at `direction` along `change`, in units of `scale`.
     fn derivative(&self, direction: Self::Vector, change: Self::Vector) -> Self::Vector;
+    /// Whether that derivative may be anything but zero.
+    fn is_curved(&self) -> bool;
     /// What positions are relative to, in the world; for a difference, that of the first shape alone, since subtracting
     /// the other's would round.
     fn origin(&self) -> Self::Vector;
@@ -83,6 +85,11 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
     #[inline]
     fn derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
         self.shape.core_support_derivative(direction, change) * self.per_unit
+    }
+
+    #[inline]
+    fn is_curved(&self) -> bool {
+        !self.shape.is_core_polyhedral()
     }
 
     fn origin(&self) -> S::Vector {
@@ -152,6 +159,11 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
         (a - b) * self.per_unit
     }
 
+    #[inline]
+    fn is_curved(&self) -> bool {
+        !(self.a.is_core_polyhedral() && self.b.is_core_polyhedral())
+    }
+
     fn origin(&self) -> A::Vector {
         self.a.origin()
     }
@@ -186,6 +198,11 @@ impl<B: Body> Body for Untraced<'_, B> {
     #[inline]
     fn derivative(&self, direction: B::Vector, change: B::Vector) -> B::Vector {
         self.0.derivative(direction, change)
+    }
+
+    #[inline]
+    fn is_curved(&self) -> bool {
+        self.0.is_curved()
     }
 
     fn origin(&self) -> B::Vector {

@@ -131,6 +131,7 @@ pub(crate) fn descend<B: Body>(
     };
     let mut n = wanted.first;
     let mut size = n.length();
+    let curved = wanted.closely && body.is_curved();
     let mut newton = Newton::new(noise);
     while descent.iterations < wanted.max_iterations {
         let (point, witness) = first.take().unwrap_or_else(|| body.support(-n));
@@ -200,9 +201,7 @@ pub(crate) fn descend<B: Body>(
                 break;
             }
         }
-        if wanted.closely
-            && let Some(to) = newton.next(body, &descent, w, along / along_size, reach)
-        {
+        if curved && let Some(to) = newton.next(body, &descent, w, along / along_size, reach) {
             (n, size) = (to, Scalar::ONE);
         }
     }

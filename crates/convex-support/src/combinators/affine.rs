@@ -110,6 +110,11 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         self.scale.map_or(ScalarOf::<S>::ZERO, |scale| scale * self.shape.radius())
     }
 
+    #[inline]
+    fn is_core_polyhedral(&self) -> bool {
+        self.shape.is_core_polyhedral() && (self.scale.is_some() || self.shape.radius() == ScalarOf::<S>::ZERO)
+    }
+
     fn core_extent(&self) -> ScalarOf<S> {
         match self.scale {
             Some(scale) => scale * self.shape.core_extent(),

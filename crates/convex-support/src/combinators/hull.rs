@@ -96,6 +96,11 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for Hull<A, B>
         self.a.radius().min(self.b.radius())
     }
 
+    #[inline]
+    fn is_core_polyhedral(&self) -> bool {
+        self.a.radius() == self.b.radius() && self.a.is_core_polyhedral() && self.b.is_core_polyhedral()
+    }
+
     fn core_extent(&self) -> ScalarOf<A> {
         let origin = self.origin();
         let a = (self.a.origin() - origin).norm() + self.a.core_extent() + self.a.radius();

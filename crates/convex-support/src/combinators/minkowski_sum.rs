@@ -72,6 +72,11 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
     }
 
     #[inline]
+    fn is_core_polyhedral(&self) -> bool {
+        self.a.is_core_polyhedral() && self.b.is_core_polyhedral()
+    }
+
+    #[inline]
     fn core_extent(&self) -> ScalarOf<A> {
         self.a.core_extent() + self.b.core_extent()
     }

@@ -127,6 +127,11 @@ impl<S: SupportMap> SupportMap for Posed<S> {
     }
 
     #[inline]
+    fn is_core_polyhedral(&self) -> bool {
+        self.shape.is_core_polyhedral()
+    }
+
+    #[inline]
     fn core_extent(&self) -> ScalarOf<S> {
         self.shape.core_extent()
     }

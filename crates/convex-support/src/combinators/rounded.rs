@@ -77,6 +77,11 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
     }
 
     #[inline]
+    fn is_core_polyhedral(&self) -> bool {
+        self.shape.is_core_polyhedral()
+    }
+
+    #[inline]
     fn core_extent(&self) -> ScalarOf<S> {
         self.shape.core_extent()
     }

@@ -52,6 +52,11 @@ impl<V: Vector> SupportMap for Ball<V> {
     }
 
     #[inline]
+    fn is_core_polyhedral(&self) -> bool {
+        true
+    }
+
+    #[inline]
     fn core_extent(&self) -> ScalarOf<Self> {
         V::Scalar::ZERO
     }

@@ -63,6 +63,11 @@ impl<V: Vector> SupportMap for Capsule<V> {
     }
 
     #[inline]
+    fn is_core_polyhedral(&self) -> bool {
+        true
+    }
+
+    #[inline]
     fn core_extent(&self) -> ScalarOf<Self> {
         self.half_height
     }

@@ -60,6 +60,14 @@ impl<V: Vector3> Cone<V> {
     pub fn disc_radius(&self) -> V::Scalar {
         self.radius
     }
+
+    /// The cone is the hull of its apex (support value `h·d_y`) and its base disc (`r·|d_xz| − h·d_y`): the apex is farther
+    /// where `2h·d_y > r·|d_xz|`, here in units of the slant's length, so that no product is out of range.
+    #[inline(always)]
+    fn is_apex_farthest(&self, direction: V, across: V) -> bool {
+        let (cosine, sine) = self.slant;
+        cosine * direction.get(1) > sine * across.norm()
+    }
 }
 
 impl<V: Vector3> SupportMap for Cone<V> {
@@ -67,11 +75,8 @@ impl<V: Vector3> SupportMap for Cone<V> {
 
     #[inline(always)]
     fn support(&self, direction: V) -> V {
-        // The cone is the hull of its apex (support value h·d_y) and its base disc (r·|d_xz| − h·d_y): the apex is farther
-        // where 2h·d_y > r·|d_xz|, here in units of the slant's length, so that no product is out of range.
         let across = across(direction);
-        let (cosine, sine) = self.slant;
-        if cosine * direction.get(1) > sine * across.norm() {
+        if self.is_apex_farthest(direction, across) {
             V::axis(1) * self.half_height
         } else {
             swept(self.radius, across) - V::axis(1) * self.half_height
@@ -85,10 +90,11 @@ impl<V: Vector3> SupportMap for Cone<V> {
 
     #[inline]
     fn core_support_derivative(&self, direction: V, change: V) -> V {
-        if self.core_support(direction, &mut Hint::new()).get(1) > V::Scalar::ZERO {
-            return V::ZERO; // the apex
+        let from_axis = across(direction);
+        if self.is_apex_farthest(direction, from_axis) {
+            return V::ZERO;
         }
-        swept_derivative(self.radius, across(direction), across(change))
+        swept_derivative(self.radius, from_axis, across(change))
     }
 
     #[inline]

@@ -62,6 +62,11 @@ impl<V: Vector> SupportMap for Cuboid<V> {
     }
 
     #[inline]
+    fn is_core_polyhedral(&self) -> bool {
+        true
+    }
+
+    #[inline]
     fn core_extent(&self) -> ScalarOf<Self> {
         self.extent
     }

@@ -53,6 +53,11 @@ impl<V: Vector> SupportMap for Point<V> {
     }
 
     #[inline]
+    fn is_core_polyhedral(&self) -> bool {
+        true
+    }
+
+    #[inline]
     fn core_extent(&self) -> ScalarOf<Self> {
         V::Scalar::ZERO
     }

@@ -101,4 +101,9 @@ impl<V: Vector> SupportMap for Triangle<V> {
     fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
         self.support(direction) - self.origin()
     }
+
+    #[inline]
+    fn is_core_polyhedral(&self) -> bool {
+        true
+    }
 }

@@ -162,6 +162,11 @@ impl<V: Vector> SupportMap for Polytope<V> {
     }
 
     #[inline]
+    fn is_core_polyhedral(&self) -> bool {
+        true
+    }
+
+    #[inline]
     fn core_extent(&self) -> ScalarOf<Self> {
         self.extent
     }
