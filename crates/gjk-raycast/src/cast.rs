@@ -202,7 +202,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     fn run(&mut self) -> End<B::Vector> {
         if B::Vector::DIM == 3
             && self.options.method == CastMethod::Portal
-            && let Some(found) = if self.radius > ScalarOf::<B>::ZERO { self.pierce_swept() } else { self.pierce() }
+            && let Some(found) = self.look_through()
         {
             return found.map_or_else(|end| end, |()| End::Contact);
         }

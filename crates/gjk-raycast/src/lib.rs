@@ -55,6 +55,7 @@ mod batch;
 mod body;
 mod cast;
 mod closest;
+mod curved;
 mod decrease;
 mod descent;
 mod distance;

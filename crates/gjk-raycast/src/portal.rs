@@ -34,17 +34,19 @@ pub(crate) struct Seen<V: Vector, W> {
     pub(crate) t: V::Scalar,
     pub(crate) point: V,
     pub(crate) witness: W,
+    /// The plane it was found on; one along the ray has no slant.
+    pub(crate) slant: Option<Slant<V::Scalar>>,
 }
 
 impl<V: Vector, W> Seen<V, W> {
     /// Twice the area of the triangle from zero to `self` and `other`, positive if that turns left.
-    fn cross(&self, other: &Self) -> V::Scalar {
+    pub(crate) fn cross(&self, other: &Self) -> V::Scalar {
         self.u * other.v - self.v * other.u
     }
 }
 
 /// A plane that the ray approaches, by its normal `α₁·e₁ + α₂·e₂ − d`.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Slant<S> {
     pub(crate) a: S,
     pub(crate) b: S,
@@ -62,10 +64,62 @@ impl<S: Scalar> Slant<S> {
     }
 }
 
-/// The axes across the ray.
-pub(crate) struct Frame<V> {
+/// The axes across the ray, and the radius that is added to what is seen.
+pub(crate) struct Frame<V: Vector> {
     pub(crate) e1: V,
     pub(crate) e2: V,
+    pub(crate) lift: V::Scalar,
+}
+
+/// The plane that is crossed last, of those known, and a point of the core on it.
+#[derive(Clone, Copy)]
+pub(crate) struct Best<V: Vector> {
+    pub(crate) tau: V::Scalar,
+    pub(crate) slant: Slant<V::Scalar>,
+    pub(crate) point: V,
+}
+
+/// Three points of the body, in anticlockwise order, whose triangle the line runs through.
+#[derive(Clone, Copy)]
+pub(crate) struct Portal<V: Vector, W> {
+    pub(crate) corners: [Seen<V, W>; 3],
+    /// The weights of the point where the line runs through, with sum 1.
+    pub(crate) weights: [V::Scalar; 3],
+    /// Where the line runs through.
+    pub(crate) high: V::Scalar,
+}
+
+impl<V: Vector, W: Copy> Portal<V, W> {
+    /// Its plane.
+    pub(crate) fn slant(&self) -> Slant<V::Scalar> {
+        let [p, q, s] = &self.corners;
+        let (pu, pv, pt) = (q.u - p.u, q.v - p.v, q.t - p.t);
+        let (qu, qv, qt) = (s.u - p.u, s.v - p.v, s.t - p.t);
+        let inverse = (pu * qv - pv * qu).recip();
+        Slant { a: (pt * qv - qt * pv) * inverse, b: (pu * qt - qu * pt) * inverse }
+    }
+
+    /// Puts a point in the place of one corner, if the line still runs through, and earlier.
+    pub(crate) fn exchange(&mut self, r: &Seen<V, W>) {
+        let zero = V::Scalar::ZERO;
+        for i in 0..3 {
+            let (p, q) = (&self.corners[(i + 1) % 3], &self.corners[(i + 2) % 3]);
+            // With r for corner i: the areas beyond p and beyond q, and the one that r and both span.
+            let areas = [p.cross(q), q.cross(r), r.cross(p)];
+            let sum = areas[0] + areas[1] + areas[2];
+            if areas[1] >= zero && areas[2] >= zero && sum > zero {
+                let inverse = sum.recip();
+                let high = (areas[0] * r.t + areas[1] * p.t + areas[2] * q.t) * inverse;
+                if high < self.high {
+                    (self.corners[i], self.high) = (*r, high);
+                    self.weights[i] = areas[0] * inverse;
+                    self.weights[(i + 1) % 3] = areas[1] * inverse;
+                    self.weights[(i + 2) % 3] = areas[2] * inverse;
+                }
+                return;
+            }
+        }
+    }
 }
 
 /// Why the search ends: decided, or in doubt.
@@ -81,33 +135,44 @@ pub(crate) const PATIENCE: usize = 12;
 
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     /// Closes the bracket, or finds a plane that the whole ray is before. `None` where that is in doubt.
-    pub(crate) fn pierce(&mut self) -> Option<Result<(), End<B::Vector>>> {
-        match self.portal() {
+    pub(crate) fn look_through(&mut self) -> Option<Result<(), End<B::Vector>>> {
+        let mut frame = Frame::new(self.local.line.direction);
+        // The first plane: the one given, or the tangent plane of the ball about the body where the ray enters it; and how
+        // far it is tilted next.
+        let (first, reach) = match self.options.axis.and_then(Vector::unit) {
+            Some(axis) => (axis, ScalarOf::<B>::from_f64(0.03)),
+            None => (self.local.line.at(self.low), ScalarOf::<B>::from_f64(0.75)),
+        };
+        let curved = self.is_curved(&frame, first);
+        let found = if !curved && self.radius > ScalarOf::<B>::ZERO {
+            self.swept(&frame, first, reach)
+        } else if curved {
+            frame.lift = self.radius;
+            match self.osculate(&frame, first) {
+                Err(None) => self.portal(&frame, first, reach),
+                found => found,
+            }
+        } else {
+            self.portal(&frame, first, reach)
+        };
+        match found {
             Ok(()) => Some(Ok(())),
             Err(exit) => exit.map(Err),
         }
     }
 
-    fn portal(&mut self) -> Result<(), Exit<B>> {
+    fn portal(&mut self, frame: &Frame<B::Vector>, first: B::Vector, mut reach: ScalarOf<B>) -> Result<(), Exit<B>> {
         let zero = ScalarOf::<B>::ZERO;
         let one = ScalarOf::<B>::ONE;
-        let frame = Frame::new(self.local.line.direction);
-        let x = self.local.line.at(self.low);
-
-        // The first plane: the one given, or the tangent plane of the ball about the body where the ray enters it.
-        let (first, mut reach) = match self.options.axis.and_then(Vector::unit) {
-            Some(axis) => (axis, ScalarOf::<B>::from_f64(0.03)),
-            None => (x, ScalarOf::<B>::from_f64(0.75)),
-        };
         let facing = -first.dot(self.local.line.direction);
-        let mut p = self.look(&frame, first)?;
+        let mut p = self.look(frame, first)?;
         self.separate(first, &p)?;
-        // The plane that is crossed last, of those known, and a point on it.
         let mut slant = Slant { a: zero, b: zero };
-        let (mut low, mut low_slant, mut low_point) = (-ScalarOf::<B>::infinity(), slant, p.point);
+        let mut best = Best { tau: -ScalarOf::<B>::infinity(), slant, point: p.point };
         if facing > first.length() * ScalarOf::<B>::from_f64(0.125) {
             slant = Slant { a: frame.e1.dot(first) / facing, b: frame.e2.dot(first) / facing };
-            (low, low_slant) = (slant.crossing(&p), slant);
+            p.slant = Some(slant);
+            best = Best { tau: slant.crossing(&p), slant, point: p.point };
         }
         let mut end = self.end();
 
@@ -119,17 +184,17 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         let toward = (-p.u / distance, -p.v / distance);
         let tilt = reach * slant.length();
         slant = Slant { a: slant.a + toward.0 * tilt, b: slant.b + toward.1 * tilt };
-        let mut q = self.look_slanted(&frame, slant)?;
+        let mut q = self.look_slanted(frame, slant)?;
         let tau = slant.crossing(&q);
         if tau > end {
             self.separate(frame.normal(self.local.line.direction, slant), &q)?;
         }
-        if tau > low {
-            (low, low_slant, low_point) = (tau, slant, q.point);
+        if tau > best.tau {
+            best = Best { tau, slant, point: q.point };
         }
         if !(toward.0 * q.u + toward.1 * q.v > zero) {
             let across = frame.e1 * toward.0 + frame.e2 * toward.1;
-            q = self.look(&frame, across)?;
+            q = self.look(frame, across)?;
             self.separate(across, &q)?;
             if !(toward.0 * q.u + toward.1 * q.v > zero) {
                 return Err(None);
@@ -153,18 +218,18 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             let tilt = slant.a * toward.0 + slant.b * toward.1;
             let tilt = tilt + reach * (one + tilt * tilt).sqrt();
             slant = Slant { a: du * along + toward.0 * tilt, b: dv * along + toward.1 * tilt };
-            let mut s = self.look_slanted(&frame, slant)?;
+            let mut s = self.look_slanted(frame, slant)?;
             let tau = slant.crossing(&s);
             if tau > end {
                 self.separate(frame.normal(self.local.line.direction, slant), &s)?;
                 end = self.end();
             }
-            if tau > low {
-                (low, low_slant, low_point) = (tau, slant, s.point);
+            if tau > best.tau {
+                best = Best { tau, slant, point: s.point };
             }
             if !(toward.0 * s.u + toward.1 * s.v > zero) {
                 let across = frame.e1 * toward.0 + frame.e2 * toward.1;
-                s = self.look(&frame, across)?;
+                s = self.look(frame, across)?;
                 self.separate(across, &s)?;
                 if !(toward.0 * s.u + toward.1 * s.v > zero) {
                     return Err(None);
@@ -212,25 +277,24 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             let (qu, qv, qt) = (s.u - p.u, s.v - p.v, s.t - p.t);
             slant = Slant { a: (pt * qv - qt * pv) * inverse, b: (pu * qt - qu * pt) * inverse };
             let length = slant.length();
-            if high - low <= wanted * length {
-                return self.close(&frame, &[p, q, s], &weights.map(|w| w * inverse), high, low_slant, low_point);
+            if high - best.tau <= wanted * length {
+                return self.close(frame, &[p, q, s], &weights.map(|w| w * inverse), high, &best);
             }
             let n = frame.normal(self.local.line.direction, slant);
-            // Where the core is curved, the planes that are wanted next are not those of portals.
-            let flat = |e| self.body.derivative(n, e) == B::Vector::ZERO;
-            if !(flat(frame.e1) && flat(frame.e2)) {
-                return Err(None);
+            if self.is_curved(frame, n) {
+                let weights = weights.map(|w| w * inverse);
+                return self.curved(frame, Portal { corners: [p, q, s], weights, high }, best);
             }
-            let r = self.look(&frame, n)?;
+            let r = self.look_slanted(frame, slant)?;
             let tau = slant.crossing(&r);
-            if tau > low {
-                (low, low_slant, low_point) = (tau, slant, r.point);
+            if tau > best.tau {
+                best = Best { tau, slant, point: r.point };
                 if tau > end {
                     self.separate(n, &r)?;
                     end = self.end();
                 }
-                if high - low <= wanted * length {
-                    return self.close(&frame, &[p, q, s], &weights.map(|w| w * inverse), high, low_slant, low_point);
+                if high - best.tau <= wanted * length {
+                    return self.close(frame, &[p, q, s], &weights.map(|w| w * inverse), high, &best);
                 }
             }
             let (kp, kq, ks) = (p.cross(&r), q.cross(&r), s.cross(&r));
@@ -246,13 +310,20 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         }
     }
 
+    /// Whether the core's support point moves as a plane turns.
+    pub(crate) fn is_curved(&self, frame: &Frame<B::Vector>, n: B::Vector) -> bool {
+        let moves = |e| self.body.derivative(n, e) != B::Vector::ZERO;
+        moves(frame.e1) || moves(frame.e2)
+    }
+
     /// The next support point along any vector.
     #[inline]
     pub(crate) fn look(&mut self, frame: &Frame<B::Vector>, n: B::Vector) -> Result<SeenBy<B>, Exit<B>> {
         let (point, witness) = self.sight(n).map_err(Some)?;
-        let seen = point - self.local.line.foot;
-        let t = point.dot(self.local.line.direction);
-        Ok(Seen { u: seen.dot(frame.e1), v: seen.dot(frame.e2), t, point, witness })
+        let touch = if frame.lift > ScalarOf::<B>::ZERO { point + n * (frame.lift / n.norm()) } else { point };
+        let seen = touch - self.local.line.foot;
+        let t = touch.dot(self.local.line.direction);
+        Ok(Seen { u: seen.dot(frame.e1), v: seen.dot(frame.e2), t, point, witness, slant: None })
     }
 
     #[inline]
@@ -261,7 +332,9 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         frame: &Frame<B::Vector>,
         slant: Slant<ScalarOf<B>>,
     ) -> Result<SeenBy<B>, Exit<B>> {
-        self.look(frame, frame.normal(self.local.line.direction, slant))
+        let mut seen = self.look(frame, frame.normal(self.local.line.direction, slant))?;
+        seen.slant = Some(slant);
+        Ok(seen)
     }
 
     /// Where on the line the ray ends, or leaves the ball about the body.
@@ -285,24 +358,19 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         corners: &[SeenBy<B>],
         weights: &[ScalarOf<B>],
         high: ScalarOf<B>,
-        slant: Slant<ScalarOf<B>>,
-        point: B::Vector,
+        best: &Best<B::Vector>,
     ) -> Result<(), Exit<B>> {
-        let n = frame.normal(self.local.line.direction, slant).unit().ok_or(None)?;
-        self.advance(n, point).map_err(Some)?;
-        let zero = ScalarOf::<B>::ZERO;
-        let (mut u, mut v, mut t) = (zero, zero, -high);
+        let n = frame.normal(self.local.line.direction, best.slant).unit().ok_or(None)?;
+        self.advance(n, best.point).map_err(Some)?;
         let mut simplex = Simplex::new();
         for (p, &weight) in corners.iter().zip(weights) {
-            u += p.u * weight;
-            v += p.v * weight;
-            t += p.t * weight;
             simplex.push_weighted(p.point, n, p.witness, weight);
         }
+        let off = simplex.weighted_point() - self.local.line.at(high);
         let within = self.radius + self.noise;
         let slope = self.low_slope;
         let closed = (high - self.low) * slope <= self.noise.max(self.options.tolerance);
-        if !(closed && u * u + v * v + t * t <= within * within && high + self.noise >= self.low) {
+        if !(closed && off.length_squared() <= within * within && high + self.noise >= self.low) {
             return Err(None);
         }
         self.simplex = simplex;
@@ -322,7 +390,7 @@ impl<V: Vector> Frame<V> {
         let b = x * y * a;
         let e1 = [one + sign * x * x * a, sign * b, -sign * x];
         let e2 = [b, sign + y * y * a, -y];
-        Self { e1: V::from_fn(|i| e1[i]), e2: V::from_fn(|i| e2[i]) }
+        Self { e1: V::from_fn(|i| e1[i]), e2: V::from_fn(|i| e2[i]), lift: V::Scalar::ZERO }
     }
 
     /// The normal of a plane.

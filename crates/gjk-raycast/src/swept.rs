@@ -16,8 +16,8 @@ use num_traits::Float as _;
 
 use crate::Iterate;
 use crate::body::Body;
-use crate::cast::{End, ScalarOf, Search};
-use crate::portal::{Exit, Frame, PATIENCE, Seen, SeenBy, Slant};
+use crate::cast::{ScalarOf, Search};
+use crate::portal::{Best, Exit, Frame, PATIENCE, Seen, SeenBy, Slant};
 
 /// Where the ray enters the swept hull of some points.
 #[derive(Clone, Copy)]
@@ -34,35 +34,28 @@ struct Entry<S> {
 const MAX_STEPS: usize = 32;
 
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
-    /// Closes the bracket, or finds a plane that the whole ray is before. `None` where that is in doubt.
-    pub(crate) fn pierce_swept(&mut self) -> Option<Result<(), End<B::Vector>>> {
-        match self.swept() {
-            Ok(()) => Some(Ok(())),
-            Err(exit) => exit.map(Err),
-        }
-    }
-
-    fn swept(&mut self) -> Result<(), Exit<B>> {
+    /// Closes the bracket, or finds a plane that the whole ray is before; beginning across `first`, and with planes tilted
+    /// by `reach` until the line enters the swept points.
+    pub(crate) fn swept(
+        &mut self,
+        frame: &Frame<B::Vector>,
+        first: B::Vector,
+        reach: ScalarOf<B>,
+    ) -> Result<(), Exit<B>> {
         let number = ScalarOf::<B>::from_f64;
         let zero = ScalarOf::<B>::ZERO;
         let (radius, noise) = (self.radius, self.noise);
         let direction = self.local.line.direction;
-        let frame = Frame::new(direction);
-        let x = self.local.line.at(self.low);
-        let (first, reach) = match self.options.axis.and_then(Vector::unit) {
-            Some(axis) => (axis, number(0.03)),
-            None => (x, number(0.75)),
-        };
-        let p = self.look(&frame, first)?;
+        let p = self.look(frame, first)?;
         let mut slant = Slant { a: zero, b: zero };
-        let (mut low, mut low_slant, mut low_point) = (-ScalarOf::<B>::infinity(), slant, p.point);
+        let mut best = Best { tau: -ScalarOf::<B>::infinity(), slant, point: p.point };
         let end = self.end();
         if !self.is_point {
             self.separate(first, &p)?;
             let facing = -first.dot(direction);
             if facing > first.length() * number(0.125) {
                 slant = Slant { a: frame.e1.dot(first) / facing, b: frame.e2.dot(first) / facing };
-                (low, low_slant) = (slant.crossing(&p) - radius * slant.length(), slant);
+                best = Best { tau: slant.crossing(&p) - radius * slant.length(), slant, point: p.point };
             }
         }
 
@@ -98,17 +91,17 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 }
                 let tilt = reach * base.length();
                 slant = Slant { a: base.a + toward.0 * tilt, b: base.b + toward.1 * tilt };
-                let mut next = self.look_slanted(&frame, slant)?;
+                let mut next = self.look_slanted(frame, slant)?;
                 let tau = slant.crossing(&next) - radius * slant.length();
                 if tau > end {
                     self.separate(frame.normal(direction, slant), &next)?;
                 }
-                if tau > low {
-                    (low, low_slant, low_point) = (tau, slant, next.point);
+                if tau > best.tau {
+                    best = Best { tau, slant, point: next.point };
                 }
                 let reached = |p: &SeenBy<B>| toward.0 * p.u + toward.1 * p.v + radius > zero;
                 if !reached(&next) {
-                    next = self.look(&frame, across)?;
+                    next = self.look(frame, across)?;
                     self.separate(across, &next)?;
                     if !reached(&next) {
                         return Err(None);
@@ -133,29 +126,25 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             len = at.len;
             slant = at.slant;
             let length = slant.length();
-            let close = |search: &mut Self, low_slant, low_point| {
-                search.close(&frame, &kept[..len], &at.weights, high, low_slant, low_point)
-            };
             if self.is_point {
-                return close(self, slant, p.point);
+                best = Best { tau: high, slant, point: p.point };
             }
-            if high - low <= wanted * length {
-                return close(self, low_slant, low_point);
+            if high - best.tau <= wanted * length {
+                return self.close(frame, &kept[..len], &at.weights, high, &best);
             }
             let n = frame.normal(direction, slant);
-            let flat = |e| self.body.derivative(n, e) == B::Vector::ZERO;
-            if !(flat(frame.e1) && flat(frame.e2)) {
+            if self.is_curved(frame, n) {
                 return Err(None);
             }
-            let next = self.look(&frame, n)?;
+            let next = self.look_slanted(frame, slant)?;
             let tau = slant.crossing(&next) - radius * length;
-            if tau > low {
-                (low, low_slant, low_point) = (tau, slant, next.point);
+            if tau > best.tau {
+                best = Best { tau, slant, point: next.point };
                 if tau > end {
                     self.separate(n, &next)?;
                 }
-                if high - low <= wanted * length {
-                    return close(self, low_slant, low_point);
+                if high - best.tau <= wanted * length {
+                    return self.close(frame, &kept[..len], &at.weights, high, &best);
                 }
             }
             kept[len] = next;

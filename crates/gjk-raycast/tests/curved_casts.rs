@@ -1,0 +1,107 @@
+//! Casts at curved bodies that once stalled, or ended with a point that was not on the surface.
+
+use convex_support::glam::{DQuat, DVec3};
+use convex_support::{Cone, Cuboid, Cylinder, Ellipsoid, Posed, SupportMap};
+use gjk_raycast::{LinearCastOptions, Motion, Ray, RayCastOptions, Status, linear_cast, ray_cast};
+
+const VALID: &str = "valid numbers";
+
+/// The first hit of a ray whose search must end by itself.
+fn hit(target: &impl SupportMap<Vector = DVec3>, source: DVec3, direction: DVec3, axis: Option<DVec3>) -> f64 {
+    let mut options = RayCastOptions::new();
+    options.axis = axis;
+    let cast = ray_cast(target, Ray { source, direction }, options).expect("a finite ray");
+    assert_eq!(cast.status, Status::Converged, "{cast:?}");
+    cast.outcome.hit().expect("a hit").lambda
+}
+
+/// A unit ball that tells nothing but its support points.
+struct UnitBall;
+
+impl SupportMap for UnitBall {
+    type Vector = DVec3;
+
+    fn support(&self, direction: DVec3) -> DVec3 {
+        direction.normalize_or_zero()
+    }
+}
+
+#[test]
+fn a_support_map_without_a_derivative_converges() {
+    let source = DVec3::new(2.166_167_607_521_591, 1.538_706_565_958_625_6, 2.99);
+    let direction = DVec3::new(-2.271_812_979_490_743_3, -0.971_445_365_543_760_7, -3.513_987_189_664_789);
+    let found = hit(&UnitBall, source, direction, None);
+    let (a, b, c) = (direction.length_squared(), source.dot(direction), source.length_squared() - 1.0);
+    assert!((found - (-b - (b * b - a * c).sqrt()) / a).abs() < 1e-13, "{found}");
+}
+
+#[test]
+fn the_top_of_a_cylinder_is_found_cold() {
+    let cylinder = Cylinder::<DVec3>::new(0.5, 0.25).expect(VALID);
+    let found = hit(&cylinder, DVec3::new(0.3, 0.2, 5.0), DVec3::new(-0.3, -0.466_666_666_666_666_73, -5.0), None);
+    assert!((found - 0.950_089_757_726_711).abs() < 1e-14, "{found}");
+}
+
+#[test]
+fn an_axis_with_a_tiny_component_starts_as_well_as_any() {
+    let turn = DQuat::from_rotation_y(5.0);
+    let center = DVec3::new(4.244_329_615_003_198, 0.0, -4.240_951_086_632_196);
+    let ellipsoid = Ellipsoid::new(center, DVec3::new(0.8, 1.2, 0.2), turn).expect(VALID);
+    let direction = DQuat::from_rotation_y(112.0 * core::f64::consts::TAU / 900.0) * DVec3::new(1.0, 0.0, 1e-3);
+    let cold = hit(&ellipsoid, DVec3::ZERO, direction, None);
+    let axis = DVec3::new(-0.941_182_989_935_370_4, -2.563_797_941_968_295_7e-30, 0.337_897_291_282_893_25);
+    let warm = hit(&ellipsoid, DVec3::ZERO, direction, Some(axis));
+    assert!((cold - 5.762_875_768_883_107).abs() < 1e-13 && (warm - cold).abs() < 1e-13, "{cold}, {warm}");
+}
+
+/// How far the point of contact is from the surface of either shape, seen along the normal, and beyond either.
+fn off<A: SupportMap<Vector = DVec3>, B: SupportMap<Vector = DVec3>>(a: &A, b: &B, velocity: DVec3) -> f64 {
+    let motion = Motion { velocity_a: velocity, velocity_b: DVec3::ZERO };
+    let cast = linear_cast(a, b, motion, LinearCastOptions::default()).expect("a finite motion");
+    assert_eq!(cast.status, Status::Converged, "{cast:?}");
+    let hit = cast.outcome.hit().expect("they meet");
+    let normal = hit.normal.expect("not at the start");
+    let then = hit.point - velocity * hit.time;
+    let mut worst = 0.0_f64;
+    for n in [normal, -normal, DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z] {
+        worst = worst.max(n.dot(then) - a.support_value(n)).max(n.dot(hit.point) - b.support_value(n));
+    }
+    let (on_a, on_b) = (a.support_value(-normal) + normal.dot(then), b.support_value(normal) - normal.dot(hit.point));
+    worst.max(on_a.abs()).max(on_b.abs())
+}
+
+#[test]
+fn the_point_of_contact_of_a_cone_and_a_cuboid_is_on_both() {
+    let turn = |q: [f64; 4]| DQuat::from_array(q);
+    let a = Posed::new(
+        Cone::<DVec3>::new(0.75, 0.625).expect(VALID),
+        turn([-0.221_874_544_939_686_92, 0.564_004_624_061_630_9, -0.790_277_916_601_447_1, 0.090_173_637_372_470_07]),
+        DVec3::new(-2.380_667_890_933_938, 6.202_247_997_459_124, 6.242_014_428_842_903),
+    );
+    let b = Posed::new(
+        Cuboid::new(DVec3::new(1.0, 0.5, 0.25)).expect(VALID),
+        turn([-0.481_464_082_024_079_86, 0.821_215_712_341_951_5, 0.035_051_882_606_993_42, -0.304_250_648_395_556_93]),
+        DVec3::new(0.663_193_886_914_437_4, -0.644_612_340_909_985_6, -0.380_327_225_301_935),
+    );
+    let velocity = DVec3::new(80.592_997_397_252_96, -143.747_227_985_784_38, -135.010_449_161_670_58);
+    let off = off(&a.expect(VALID), &b.expect(VALID), velocity);
+    assert!(off < 1e-12, "{off:e}");
+}
+
+#[test]
+fn the_point_of_contact_of_ellipsoids_is_on_both() {
+    let ellipsoid = |center: [f64; 3], q: [f64; 4]| {
+        Ellipsoid::new(DVec3::from_array(center), DVec3::new(1e4, 5e3, 1e3), DQuat::from_array(q)).expect(VALID)
+    };
+    let a = ellipsoid(
+        [-10_366.980_446_355_56, -17_776.877_451_074_524, 15_457.909_293_412_95],
+        [0.897_055_257_800_735_9, -0.368_209_105_220_714_6, 0.004_999_592_672_272_545_5, 0.244_283_021_500_714_5],
+    );
+    let b = ellipsoid(
+        [4_469.560_269_475_641, 6_555.408_866_761_782_5, 6_086.842_004_447_448],
+        [0.104_476_140_494_831_12, 0.522_275_573_887_154_1, 0.785_104_648_505_992_5, 0.316_107_025_993_460_4],
+    );
+    let velocity = DVec3::new(241.840_019_974_292_98, 501.767_319_244_948_06, -203.510_002_093_202_23);
+    let off = off(&a, &b, velocity);
+    assert!(off < 1e-9, "{off:e}");
+}
