@@ -76,7 +76,7 @@ pub fn iterative_ray_cast_with<V: Vector>(
     // The ray is known not to enter the set before μ, where it is before the plane with the normal n, which it crosses at
     // `crossing` at the latest: μ stays behind by what rounding may have moved the plane.
     let (mut mu, mut crossing) = (local.start, local.start);
-    let mut normal: Option<V> = None;
+    let (mut normal, mut tilt) = (None::<V>, zero);
     let mut c = origin;
     loop {
         let from_start = mu <= local.start;
@@ -99,7 +99,9 @@ pub fn iterative_ray_cast_with<V: Vector>(
         let noise = rounding * (x.norm() + c.norm()) * down;
         answer.lower = (local.lambda(mu) - local.error(mu, zero)).max(zero);
         if length <= noise + noise {
+            // Where the set is entered, its surface may be flatter to the ray by what the last normal was turned by rounding.
             let slope = normal.map_or(V::Scalar::ONE, |n| -n.dot(direction));
+            let slope = (slope - tilt).max(slope / V::Scalar::from_f64(8.0));
             let lambda = if from_start { zero } else { local.lambda(crossing).max(zero) };
             let point = if from_start { ray.source } else { origin + line.at(crossing) * scale };
             answer.upper = if from_start {
@@ -117,7 +119,8 @@ pub fn iterative_ray_cast_with<V: Vector>(
         let n = v / length;
         let slope = n.dot(direction);
         // What v is wrong by turns n by `noise/length`, so that the plane may be as much steeper to the ray than it seems.
-        let next = mu - (length - noise) / (slope - noise / length);
+        tilt = noise / length;
+        let next = mu - (length - noise) / (slope - tilt);
         if slope >= zero || local.lambda(next) - local.error(next, zero) > options.max_lambda {
             // Together with the plane before x, the axis has the whole ray before it: across the ray, both count.
             let axis = normal.filter(|_| slope > zero).and_then(|m| (m * slope - n * m.dot(direction)).unit());

@@ -61,24 +61,50 @@ fn agree<V: Quaternion>(
             let n = b.normal.unwrap_or(V::ZERO);
             let slope = (n.dot(ray.direction).as_f64() / speed).abs().max(1e-6);
             let off = (a.lambda - b.lambda).as_f64().abs() * speed * slope;
-            prop_assert!(off <= allowed, "off by {}: {:?} {:?}", off, one, three);
+            // Where the surface bends away within the rounding of v, Algorithm 1 knows less, and says so.
+            let known = (one.upper - one.lower).as_f64() * speed * slope;
+            prop_assert!(known <= 256.0 * allowed, "known to {}: {:?}", known, one);
+            prop_assert!(off <= allowed.max(known), "off by {}: {:?} {:?}", off, one, three);
             prop_assert!(one.lower <= three.upper && three.lower <= one.upper, "{:?} {:?}", one, three);
             Ok(Some(true))
         }
         (Outcome::Miss(a), Outcome::Miss(_)) => {
-            // The axis separates, at least from the ray ahead of the source as far as it matters.
+            // The axis separates, at least from the ray ahead of the source as far as it matters: but for the angle that v
+            // is turned by where its rounding, a few units in the last place of coordinates near one, is much of its length.
+            let turned = 4.0 * V::Scalar::EPSILON.as_f64() / nearest(&target, ray);
             let reach = target.support_value(a.axis);
-            prop_assert!(a.axis.dot(ray.at(s::<V>(1.0))) > reach - s::<V>(allowed), "{:?}", one);
+            let before = (a.axis.dot(ray.at(s::<V>(1.0))) - reach).as_f64();
+            prop_assert!(before > -allowed - 2.0 * DIAMETER * turned, "{} before: {:?}", before, one);
             Ok(Some(false))
         }
         // Only a graze may be either.
         _ => {
-            let closest = (0..=2000).map(|i| ray.at(s::<V>(f64::from(i) * 1e-3)));
-            let nearest = closest.map(|x| (x - target.closest_point(x)).norm().as_f64()).fold(f64::INFINITY, f64::min);
-            prop_assert!(nearest <= 2e-3 * speed, "{:?} {:?}", one, three);
+            let nearest = nearest(&target, ray);
+            prop_assert!(nearest <= 1e-6 * speed, "{} {:?} {:?}", nearest, one, three);
             Ok(None)
         }
     }
+}
+
+/// The least diameter of a ball around any of the shapes.
+const DIAMETER: f64 = 2.5;
+
+/// The distance of the ray from the shape up to twice its direction: it falls and then rises, so a third can be cut off.
+fn nearest<V: Quaternion>(target: &Posed<Shape<V>>, ray: Ray<V>) -> f64 {
+    let distance = |lambda: f64| {
+        let x = ray.at(s::<V>(lambda));
+        (x - target.closest_point(x)).norm().as_f64()
+    };
+    let (mut from, mut to) = (0.0, 2.0);
+    for _ in 0..60 {
+        let (a, b) = (from + (to - from) / 3.0, to - (to - from) / 3.0);
+        if distance(a) < distance(b) {
+            to = b;
+        } else {
+            from = a;
+        }
+    }
+    distance((from + to) / 2.0)
 }
 
 fn vector(reach: f64) -> impl Strategy<Value = [f64; 3]> {
