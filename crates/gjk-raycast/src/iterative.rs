@@ -73,9 +73,9 @@ pub fn iterative_ray_cast_with<V: Vector>(
     let (line, down) = (local.line, scale.recip());
     let direction = line.direction;
 
-    // The ray is known not to enter the set before μ, where it is before the plane with the normal n, which it crosses at
-    // `crossing` at the latest: μ stays behind by what rounding may have moved the plane.
-    let (mut mu, mut crossing) = (local.start, local.start);
+    // At μ, the ray is before the plane with the normal n, which it crosses at `crossing`: μ stays behind by what rounding
+    // may have moved the plane. Not before `proved`, if rounding turned it as well, does the ray enter the set.
+    let (mut mu, mut crossing, mut proved) = (local.start, local.start, local.start);
     let (mut normal, mut tilt) = (None::<V>, zero);
     let mut c = origin;
     loop {
@@ -92,12 +92,12 @@ pub fn iterative_ray_cast_with<V: Vector>(
             v,
             w: v,
             scale,
-            lower: local.lambda(mu).max(zero),
+            lower: local.lambda(proved).max(zero),
             upper: answer.upper,
         });
         // x is only known to the rounding of its coordinates, and so is its distance.
         let noise = rounding * (x.norm() + c.norm()) * down;
-        answer.lower = (local.lambda(mu) - local.error(mu, zero)).max(zero);
+        answer.lower = (local.lambda(proved) - local.error(proved, zero)).max(zero);
         if length <= noise + noise {
             // Where the set is entered, its surface may be flatter to the ray by what the last normal was turned by rounding.
             let slope = normal.map_or(V::Scalar::ONE, |n| -n.dot(direction));
@@ -118,10 +118,12 @@ pub fn iterative_ray_cast_with<V: Vector>(
         }
         let n = v / length;
         let slope = n.dot(direction);
+        let next = mu - (length - noise) / slope;
         // What v is wrong by turns n by `noise/length`, so that the plane may be as much steeper to the ray than it seems.
+        // The set is behind the plane, and so it is of all of the ray before x.
         tilt = noise / length;
-        let next = mu - (length - noise) / (slope - tilt);
-        if slope >= zero || local.lambda(next) - local.error(next, zero) > options.max_lambda {
+        proved = proved.max(mu - (length - noise) / (slope - tilt));
+        if slope >= zero || local.lambda(proved) - local.error(proved, zero) > options.max_lambda {
             // Together with the plane before x, the axis has the whole ray before it: across the ray, both count.
             let axis = normal.filter(|_| slope > zero).and_then(|m| (m * slope - n * m.dot(direction)).unit());
             answer.outcome = Outcome::Miss(Miss { axis: axis.unwrap_or(n) });
