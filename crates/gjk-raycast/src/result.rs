@@ -95,6 +95,9 @@ impl<H, V> Outcome<H, V> {
 pub struct Miss<V> {
     /// A unit vector along which a plane separates the shape from the whole ray (up to its end, if it has one),
     /// pointing from the shape to the ray; a good [first axis](crate::RayCastOptions::axis) for a similar query.
+    ///
+    /// Its components are rounded, so that at a distance `L` along the ray the plane is off by `L` times half an ulp: a
+    /// point of the ray that is a million sizes away may be behind it in `f32`.
     pub axis: V,
 }
 
