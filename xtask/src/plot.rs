@@ -360,8 +360,12 @@ mod tests {
         assert_eq!((axis.from, axis.to), (-9.0, 5.0), "whole decades around the positive values");
         assert_eq!(axis.part(0.0), 0.0, "zero lies at the lower edge");
         assert_eq!(axis.part(1e5), 1.0, "the upper edge");
-        let decade = Axis::around(Scale::Log, [1.0].into_iter());
-        assert_eq!((decade.from, decade.to), (0.0, 1.0), "one value still has a decade");
+    }
+
+    #[test]
+    fn one_value_has_an_axis() {
+        let axis = Axis::around(Scale::Log, [1.0].into_iter());
+        assert_eq!((axis.from, axis.to), (0.0, 5f64.log10()), "from 1 to 5");
     }
 
     #[test]
