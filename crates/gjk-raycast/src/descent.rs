@@ -157,6 +157,10 @@ pub(crate) fn descend<B: Body>(
         });
         let mut light = regions;
         if descent.lower > wanted.limit + noise {
+            // The first support points are a bound from above, if nothing better is known.
+            if wanted.closely && descent.simplex.points().is_empty() {
+                descent.simplex.push(w, -n, witness);
+            }
             descent.end = End::Separated;
             break;
         }

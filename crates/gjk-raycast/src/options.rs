@@ -16,7 +16,8 @@ pub struct DistanceOptions<V: Vector> {
     /// The width of the bracket at which to stop, relative to the distance of the cores. A bracket at the level of
     /// rounding, relative to the size of what is compared, always ends the iteration. Default: 0.
     pub tolerance: V::Scalar,
-    /// Stop as soon as the distance is certain to exceed this limit. Default: infinity.
+    /// Stop as soon as the distance is certain to exceed this limit; the bracket is then as wide as it is known. Default:
+    /// infinity.
     pub limit: V::Scalar,
     /// The iterations after which to give up. Default: 200.
     pub max_iterations: usize,

@@ -46,6 +46,9 @@ pub struct Intersection<V: Vector> {
     /// It agrees with [`Distance::overlap`].
     pub overlap: bool,
     /// A unit vector along which a plane separates the shapes, pointing from `b` to `a`; `None` where they overlap.
+    ///
+    /// Its components are rounded: where the gap itself is at the level of rounding, a few ε of the extent of both shapes,
+    /// planes across it may overlap by an ulp of that extent.
     pub axis: Option<V>,
     /// How the iteration ended.
     pub status: Status,

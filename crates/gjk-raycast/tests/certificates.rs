@@ -62,6 +62,13 @@ fn holds<V: Vector>(a: &Placed<V>, b: &Placed<V>, size: V::Scalar, velocity: V) 
     let planes = unit_directions::<V>().chain(apart.normal).map(|n| gap(a, b, n)).fold(f64::NEG_INFINITY, f64::max);
     prop_assert!(planes <= upper + rounding, "a plane {} apart: {:?}", planes, apart);
 
+    // Stopped at a limit, it still says how far apart two points of the shapes are.
+    let limit = apart.distance * V::Scalar::from_f64(0.5);
+    let far = distance(a, b, DistanceOptions::default().with_limit(limit));
+    let between = (far.point_a - far.point_b).norm().as_f64();
+    prop_assert!(far.lower <= apart.upper && apart.lower <= far.upper, "{:?}, but {:?}", far, apart);
+    prop_assert!(between <= far.upper.as_f64() + rounding, "witnesses {} apart: {:?}", between, far);
+
     let meets = intersects(a, b, IntersectOptions::default());
     if let Some(overlap) = meets.decided() {
         prop_assert!(!overlap || planes <= rounding, "a plane {} apart: {:?}", planes, meets);

@@ -256,9 +256,11 @@ impl Proof {
     }
 }
 
-/// Whether the axis of an answer separates.
+/// Whether the axis of an answer separates, as far as its rounded components can.
 pub(super) fn judge_intersection<V: Vector3>([a, b]: [&Solid; 2], answer: &Intersection<V>) -> Verdict {
-    let separated = answer.axis.map(|axis| gap_along([a, b], coordinates(axis)).f64() > 0.0);
+    let extent = a.form.reach() + b.form.reach() + norm(sub(wide(a.translation), wide(b.translation))).f64();
+    let rounding = V::Scalar::EPSILON.as_f64() * extent;
+    let separated = answer.axis.map(|axis| gap_along([a, b], coordinates(axis)).f64() > -rounding);
     let decided = answer.status == Status::Converged;
     Verdict {
         undecided: !decided,

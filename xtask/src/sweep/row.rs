@@ -76,11 +76,13 @@ impl Row {
         self.undecided += u64::from(verdict.undecided);
         self.unconverged += u64::from(verdict.unconverged);
         self.violations += u64::from(verdict.violation);
+        // Where queries are stopped early, errors are of no account.
         let in_sizes = |length: Option<f64>| match length {
+            None => 0.0,
+            Some(_) if self.question == Question::Certificates => 0.0,
             // NaN is the worst of all.
             Some(length) if length.is_nan() => f64::INFINITY,
-            Some(length) if self.question != Question::Certificates => length / self.size,
-            _ => 0.0,
+            Some(length) => length / self.size,
         };
         let (error, excess) = (in_sizes(verdict.error), in_sizes(verdict.excess));
         self.worst = self.worst.max(error);
