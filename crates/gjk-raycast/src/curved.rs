@@ -58,6 +58,14 @@ impl<S: Scalar> Symmetric<S> {
         }
     }
 
+    /// The eigenvalue of a matrix of rank one, and its unit eigenvector.
+    fn eigen_of_rank_one(self) -> Option<(S, (S, S))> {
+        let trace = self.a + self.d;
+        let column = if self.a > self.d { (self.a, self.b) } else { (self.b, self.d) };
+        let length = dot(column, column).sqrt();
+        (trace > S::ZERO && length > S::ZERO).then(|| (trace, (column.0 / length, column.1 / length)))
+    }
+
     fn is_zero(self) -> bool {
         self.a == S::ZERO && self.d == S::ZERO
     }
@@ -92,34 +100,48 @@ impl<V: Vector, W: Copy> Copy for Piece<V, W> {}
 /// A piece as it is expected at another slant, to second order.
 #[derive(Clone, Copy, Debug)]
 struct Turned<S> {
-    /// What is expected of `τ` there, and how wrong that may be.
+    /// What is expected of `τ` there.
     tau: S,
-    doubt: S,
     /// What is expected of `(u, v)`.
-    at: (S, S),
+    at: Across<S>,
     bend: Symmetric<S>,
 }
 
 impl<V: Vector, W: Copy> Piece<V, W> {
-    fn turned(&self, slant: Slant<V::Scalar>) -> Turned<V::Scalar> {
-        let half = V::Scalar::from_f64(0.5);
+    /// The piece as seen from another slant, where nothing is crossed before `least`.
+    ///
+    /// The plane through the point alone is crossed at `cut`, never before the body, and the point that supports the body
+    /// there `½·δ·Hδ` earlier, to second order. How wrong that may be is told by the angle that the plane turns by, and by how
+    /// far the point moves; where that is too far, or where it foretells less than was found, a point counts for itself
+    /// alone. Of what is in doubt the larger value is expected: where it is wrong, the piece shows itself, and is known anew.
+    fn turned(&self, slant: Slant<V::Scalar>, least: V::Scalar, caution: V::Scalar) -> Turned<V::Scalar> {
+        let number = V::Scalar::from_f64;
+        let zero = V::Scalar::ZERO;
         let change = (slant.a - self.slant.a, slant.b - self.slant.b);
-        let angle = dot(change, change).sqrt() / slant.length();
-        let cut = slant.crossing(&self.seen);
-        if angle > V::Scalar::from_f64(FAR) {
-            // From afar a point counts for itself alone: it is before the plane or not.
-            let zero = V::Scalar::ZERO;
-            let bend = Symmetric { a: zero, b: zero, d: zero };
-            return Turned { tau: cut, doubt: zero, at: (self.seen.u, self.seen.v), bend };
-        }
         let shift = self.bend.times(change);
-        let sinks = half * dot(change, shift);
-        let at = (self.seen.u + shift.0, self.seen.v + shift.1);
-        Turned { tau: cut - sinks, doubt: sinks * angle, at, bend: self.bend }
+        let angle = dot(change, change).sqrt() / slant.length();
+        let moved = dot(shift, shift).sqrt();
+        let cut = slant.crossing(&self.seen);
+        let sinks = number(0.5) * dot(change, shift);
+        let doubt = sinks * angle.max(moved + moved).max(number(0.125));
+        if angle.max(moved) > number(FAR) || cut - sinks + doubt < least {
+            let bend = Symmetric { a: zero, b: zero, d: zero };
+            return Turned { tau: cut, at: (self.seen.u, self.seen.v), bend };
+        }
+        let tau = ((cut - sinks).max(least) + caution * doubt).min(cut);
+        Turned { tau, at: (self.seen.u + shift.0, self.seen.v + shift.1), bend: self.bend }
     }
 }
 
-/// The change of the slant, as an angle, up to which a piece is a quadratic model.
+impl<S: Scalar> Turned<S> {
+    /// The model `m(δ)`.
+    fn model(&self, change: Across<S>) -> S {
+        self.tau - dot(self.at, change) - S::from_f64(0.5) * dot(change, self.bend.times(change))
+    }
+}
+
+/// The angle that a plane may turn by, and the way that the point may move, in units of the body's size, for a piece to be a
+/// quadratic model.
 const FAR: f64 = 0.3;
 
 /// As many pieces as are kept.
@@ -147,14 +169,20 @@ impl<V: Vector, W: Copy> Pieces<V, W> {
         &self.kept[..self.len]
     }
 
-    /// Adds a piece in place of the one that foretold it, or of the one that is the farthest from being active.
+    /// Adds a piece in place of those that are the same, or else of the one that is the farthest from being active. Tells
+    /// whether it is the same as the last.
+    ///
+    /// A point is the same piece's if it moved as the mean of both derivatives says, which is right to third order.
     fn push(&mut self, piece: Piece<V, W>, noise: V::Scalar) -> bool {
+        let number = V::Scalar::from_f64;
         let foretold = |old: &Piece<V, W>| {
-            let expected = old.turned(piece.slant).at;
-            let (eu, ev) = (piece.seen.u - expected.0, piece.seen.v - expected.1);
-            let (mu, mv) = (piece.seen.u - old.seen.u, piece.seen.v - old.seen.v);
-            let moved = V::Scalar::from_f64(FORETOLD) * (mu * mu + mv * mv).sqrt();
-            (eu * eu + ev * ev).sqrt() <= noise.max(moved)
+            let change = (piece.slant.a - old.slant.a, piece.slant.b - old.slant.b);
+            let expected = old.bend.blend(piece.bend, number(0.5)).times(change);
+            let moved = (piece.seen.u - old.seen.u, piece.seen.v - old.seen.v);
+            let error = (moved.0 - expected.0, moved.1 - expected.1);
+            let squared = dot(moved, moved);
+            let allowed = (noise * noise).max(number(FORETOLD * FORETOLD) * squared);
+            squared <= number(FAR * FAR) && dot(error, error) <= allowed
         };
         let again = foretold(&self.kept[self.len - 1]);
         let mut len = 0;
@@ -167,7 +195,7 @@ impl<V: Vector, W: Copy> Pieces<V, W> {
         if len == MAX_PIECES {
             let (mut idle, mut most) = (0, -V::Scalar::infinity());
             for (i, old) in self.kept.iter().enumerate() {
-                let tau = old.turned(piece.slant).tau;
+                let tau = old.turned(piece.slant, -V::Scalar::infinity(), V::Scalar::ZERO).tau;
                 if tau > most {
                     (idle, most) = (i, tau);
                 }
@@ -223,7 +251,7 @@ impl<V: Vector, W: Copy> Pieces<V, W> {
 /// Σ wᵢ·Pᵢ + W·δ = 0,   mᵢ(δ) alike where wᵢ > 0, and no lower elsewhere.
 /// ```
 ///
-/// One piece gives `δ = −H⁻¹P`. Of two, with `e = Pⱼ − Pᵢ`, the second condition to first order is `e·δ = τⱼ − τᵢ`, and the
+/// One piece gives `δ = −H⁻¹P`, or where `H` is singular, [`along_edge`]. Of two, with `e = Pⱼ − Pᵢ`, the second condition to first order is `e·δ = τⱼ − τᵢ`, and the
 /// first one across `e` gives the rest. Three are alike at one `δ`.
 fn next<V: Vector, W: Copy>(
     pieces: &[Piece<V, W>],
@@ -235,10 +263,11 @@ fn next<V: Vector, W: Copy>(
     let half = V::Scalar::from_f64(0.5);
     let length = slant.length();
     let lead = half * noise * length;
-    let first = pieces.first()?.turned(slant);
-    let mut turned = [first; MAX_PIECES];
-    for (t, piece) in turned.iter_mut().zip(pieces) {
-        *t = piece.turned(slant);
+    let (last, others) = pieces.split_last()?;
+    let last = last.turned(slant, -V::Scalar::infinity(), zero);
+    let mut turned = [last; MAX_PIECES];
+    for (t, piece) in turned.iter_mut().zip(others) {
+        *t = piece.turned(slant, last.tau, caution);
     }
     let turned = &turned[..pieces.len()];
     let newest = pieces.len() - 1;
@@ -250,21 +279,25 @@ fn next<V: Vector, W: Copy>(
         } else if t.bend.is_zero() {
             t.tau - lead
         } else {
-            t.tau + caution * (t.doubt + lead)
+            t.tau + caution * lead
         }
     };
-    let model = |t: &Turned<V::Scalar>, change| t.tau - dot(t.at, change) - half * dot(change, t.bend.times(change));
     let mut best: Option<(Across<V::Scalar>, V::Scalar)> = None;
     let mut offer = |change: Across<V::Scalar>, corners: &[usize]| {
         let least = |among: &dyn Fn(usize) -> bool| {
             let mut least = V::Scalar::infinity();
             for (i, t) in turned.iter().enumerate() {
                 if among(i) {
-                    least = least.min(model(t, change));
+                    least = least.min(t.model(change));
                 }
             }
             least
         };
+        // NaN fails this too.
+        let angle = dot(change, change).sqrt();
+        if !(angle <= length && angle > V::Scalar::EPSILON * length) {
+            return;
+        }
         let value = least(&|i| corners.contains(&i));
         let other = least(&|i| !corners.contains(&i));
         let slack = lead + lead + (value - led(newest)).abs() * V::Scalar::from_f64(0.1);
@@ -272,11 +305,14 @@ fn next<V: Vector, W: Copy>(
             best = Some((change, value));
         }
     };
+
     for i in 0..turned.len() {
         let t = &turned[i];
         if t.bend.is_regular() {
             let (x, y) = t.bend.solve(t.at);
             offer((-x, -y), &[i]);
+        } else if let Some(change) = along_edge(turned, i, noise * length, noise) {
+            offer(change, &[i]);
         }
         for j in 0..i {
             let s = &turned[j];
@@ -312,10 +348,39 @@ fn next<V: Vector, W: Copy>(
             }
         }
     }
-    let (change, value) = best?;
-    let angle = dot(change, change).sqrt();
-    // NaN fails this too.
-    (angle <= length).then(|| (Slant { a: slant.a + change.0, b: slant.b + change.1 }, value))
+    best.map(|(change, value)| (Slant { a: slant.a + change.0, b: slant.b + change.1 }, value))
+}
+
+/// Where the model of a piece with `H = λ·q·qᵀ` is greatest: an edge of the body, curved or straight, that the line runs through
+/// when `q·P` is zero.
+///
+/// Across the edge, `δ = −(q·P)/λ·q`. Along it the plane is free, between those that the other pieces are on; it is laid away from
+/// them, since on them it would be another piece that shows itself.
+fn along_edge<S: Scalar>(turned: &[Turned<S>], edge: usize, least: S, noise: S) -> Option<Across<S>> {
+    let t = &turned[edge];
+    let (curvature, q) = t.bend.eigen_of_rank_one()?;
+    let (beside, along) = (dot(q, t.at), cross(q, t.at));
+    // Where the line is to be found along the edge rather than beside it, another piece is needed.
+    if !(along.abs() <= beside.abs().max(noise)) {
+        return None;
+    }
+    let step = -beside / curvature;
+    let change = (q.0 * step, q.1 * step);
+    let value = t.model(change);
+    let (mut from, mut to) = (-S::infinity(), S::infinity());
+    for (i, other) in turned.iter().enumerate() {
+        let (spare, falls) = (other.model(change) - value, cross(q, other.at) - along);
+        if i == edge {
+            continue;
+        } else if falls > noise {
+            to = to.min(spare / falls);
+        } else if falls < -noise {
+            from = from.max(spare / falls);
+        }
+    }
+    let margin = (step.abs() + least).min((to - from) * S::from_f64(0.25));
+    let slide = S::ZERO.max(from + margin).min(to - margin);
+    Some((change.0 - q.1 * slide, change.1 + q.0 * slide))
 }
 
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
@@ -353,7 +418,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         let end = self.end();
         let (zero, half) = (ScalarOf::<B>::ZERO, ScalarOf::<B>::from_f64(0.5));
         let mut pieces: Option<Pieces<B::Vector, B::Witness>> = None;
-        let mut slant = portal.slant();
+        let mut slant = if portal.high.is_finite() { portal.slant() } else { best.slant };
         for seen in &portal.corners {
             // A point found on a plane along the ray counts for itself alone.
             let piece = match seen.slant {
@@ -365,6 +430,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 None => pieces = Some(Pieces::new(piece)),
             }
         }
+        let start = self.low;
         let (mut gap, mut stuck) = (ScalarOf::<B>::infinity(), 0);
         let mut caution = ScalarOf::<B>::ONE;
         for _ in 0..MAX_STEPS {
@@ -385,8 +451,12 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 }
                 None => pieces.insert(Pieces::new(piece)),
             };
-            portal.exchange(&seen);
-            if portal.high < self.low {
+            let floor = best.tau - self.noise * best.slant.length();
+            portal.exchange(&seen, floor);
+            if portal.high < floor {
+                // Nothing of the body is before the plane: zero was in the triangle by rounding alone.
+                portal.high = ScalarOf::<B>::infinity();
+            } else if portal.high < start {
                 return Err(None);
             }
             let within = wanted * best.slant.length();
@@ -397,7 +467,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 for (p, &weight) in corners[..len].iter().zip(&weights) {
                     high += p.t * weight;
                 }
-                if high - best.tau <= within && high >= self.low {
+                if high - best.tau <= within && high >= start {
                     match self.close(frame, &corners[..len], &weights[..len], high, &best) {
                         Err(None) => {}
                         end => return end,
@@ -410,11 +480,23 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                     end => return end,
                 }
             }
-            let suggested = if stuck < 3 { next(pieces.all(), slant, self.noise, caution) } else { None };
+            let suggested = if stuck < 3 || portal.high.is_infinite() {
+                next(pieces.all(), slant, self.noise, caution)
+            } else {
+                None
+            };
             let gone = suggested.map_or(portal.high, |(_, value)| value.min(portal.high)) - best.tau;
             stuck = if gone <= gap * half || stuck >= 3 { 0 } else { stuck + 1 };
             gap = gone;
-            slant = suggested.map_or_else(|| portal.slant(), |(slant, _)| slant);
+            if suggested.is_none() && portal.high.is_infinite() {
+                return Err(None);
+            }
+            let to = suggested.map_or_else(|| portal.slant(), |(slant, _)| slant);
+            // What is looked at twice tells nothing new.
+            if to.a == slant.a && to.b == slant.b {
+                return Err(None);
+            }
+            slant = to;
         }
         Err(None)
     }

@@ -79,7 +79,8 @@ pub(crate) struct Best<V: Vector> {
     pub(crate) point: V,
 }
 
-/// Three points of the body, in anticlockwise order, whose triangle the line runs through.
+/// Three points of the body, in anticlockwise order, whose triangle the line runs through; or where none is known, any, and
+/// `high` infinite.
 #[derive(Clone, Copy)]
 pub(crate) struct Portal<V: Vector, W> {
     pub(crate) corners: [Seen<V, W>; 3],
@@ -99,8 +100,9 @@ impl<V: Vector, W: Copy> Portal<V, W> {
         Slant { a: (pt * qv - qt * pv) * inverse, b: (pu * qt - qu * pt) * inverse }
     }
 
-    /// Puts a point in the place of one corner, if the line still runs through, and earlier.
-    pub(crate) fn exchange(&mut self, r: &Seen<V, W>) {
+    /// Puts a point in the place of one corner, if the line still runs through, and earlier; but no earlier than `floor`,
+    /// before which nothing of the body is: a triangle that is as flat as rounding may not contain zero.
+    pub(crate) fn exchange(&mut self, r: &Seen<V, W>, floor: V::Scalar) {
         let zero = V::Scalar::ZERO;
         for i in 0..3 {
             let (p, q) = (&self.corners[(i + 1) % 3], &self.corners[(i + 2) % 3]);
@@ -110,7 +112,7 @@ impl<V: Vector, W: Copy> Portal<V, W> {
             if areas[1] >= zero && areas[2] >= zero && sum > zero {
                 let inverse = sum.recip();
                 let high = (areas[0] * r.t + areas[1] * p.t + areas[2] * q.t) * inverse;
-                if high < self.high {
+                if high < self.high && high >= floor {
                     (self.corners[i], self.high) = (*r, high);
                     self.weights[i] = areas[0] * inverse;
                     self.weights[(i + 1) % 3] = areas[1] * inverse;
@@ -127,7 +129,7 @@ pub(crate) type Exit<B> = Option<End<<B as Body>::Vector>>;
 
 pub(crate) type SeenBy<B> = Seen<<B as Body>::Vector, <B as Body>::Witness>;
 
-/// Support points until the portal has to be found.
+/// Support points until the portal has to be found; half as many where curvature may tell more.
 const MAX_OUTSIDE: usize = 16;
 
 /// Exchanges of a point that bring the portal no nearer.
@@ -203,7 +205,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         }
 
         // A third such that the triangle contains zero, which is kept on the left of the edge from p to q.
-        let mut outside = MAX_OUTSIDE;
+        let mut outside = if self.body.is_curved() { MAX_OUTSIDE / 2 } else { MAX_OUTSIDE };
         let (mut s, mut weights) = loop {
             let mut w = p.cross(&q);
             if w < zero {
@@ -240,14 +242,22 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             if weights[0] >= zero && weights[1] >= zero {
                 break (s, weights);
             }
-            outside -= 1;
-            if outside == 0 {
-                return Err(None);
-            }
             if weights[0] < weights[1] {
                 p = s;
             } else {
                 q = s;
+            }
+            outside -= 1;
+            if outside == 0 {
+                // The line passes near where the body is seen to end, too near to be enclosed by points; but an edge or a
+                // smooth piece may be found that it runs through.
+                let found = best.tau > -ScalarOf::<B>::infinity()
+                    && self.is_curved(frame, frame.normal(self.local.line.direction, best.slant));
+                if !found {
+                    return Err(None);
+                }
+                let portal = Portal { corners: [p, q, q], weights: [zero; 3], high: ScalarOf::<B>::infinity() };
+                return self.curved(frame, portal, best);
             }
         };
 
