@@ -141,11 +141,12 @@ fn svg(figure: &Figure, steps: &[Step], end: &Distance<DVec2>) -> String {
             if end.overlap { String::new() } else { dot(end.point_a, "closest point", "#d55e00") },
         )])
         .collect();
-    let columns = panels.len().min(3);
+    let columns = (1..).find(|n| n * n >= panels.len()).unwrap_or(1);
     let rows = panels.len().div_ceil(columns);
     let mut svg = format!(
         "<svg viewBox=\"0 0 {} {}\" xmlns=\"http://www.w3.org/2000/svg\" fill=\"none\" \
-         font-family=\"system-ui, sans-serif\" font-size=\"13\">\n<title>Descent of GJK on the {}</title>\n",
+         font-family=\"system-ui, sans-serif\" font-size=\"13\">\n<title>Descent of GJK on the {}</title>\n\
+         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
         columns as f64 * PANEL.x,
         rows as f64 * PANEL.y,
         figure.name
@@ -154,11 +155,11 @@ fn svg(figure: &Figure, steps: &[Step], end: &Distance<DVec2>) -> String {
         let corner = DVec2::new((i % columns) as f64, (i / columns) as f64) * PANEL;
         let _ = writeln!(
             svg,
-            "<g transform=\"translate({} {})\"><path d=\"{outline}Z\" stroke=\"currentColor\" stroke-opacity=\".5\"/>\
-             {}{drawing}<text x=\"12\" y=\"18\" fill=\"currentColor\">{caption}</text></g>",
+            "<g transform=\"translate({} {})\"><path d=\"{outline}Z\" stroke=\"#000\" stroke-opacity=\".5\"/>\
+             {}{drawing}<text x=\"12\" y=\"18\" fill=\"#000\">{caption}</text></g>",
             corner.x,
             corner.y,
-            dot(DVec2::ZERO, "origin", "currentColor")
+            dot(DVec2::ZERO, "origin", "#000")
         );
     }
     svg.push_str("</svg>\n");

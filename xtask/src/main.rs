@@ -31,6 +31,9 @@ struct Arguments {
 enum Task {
     /// Answer the queries in files, one JSON line out per line in.
     ///
+    /// The queries, shapes, and answers are described in `xtask/README.md`; try
+    /// `echo '{"query":"distance","a":{"type":"ball","radius":1},"b":{"type":"point","at":[3,0,0]}}' | cargo xtask query -`.
+    ///
     /// Exit status: 0 where every line was answered, 1 where some line got an error in place of an answer, 2 where a file
     /// could not be read or the arguments are wrong.
     Query {
@@ -73,7 +76,7 @@ enum Task {
     ///
     /// Exit status: 0, or 1 where a note or page refers to what is not there, or 2 where the documentation does not build.
     Docs,
-    /// Measure what importing each crate alone costs, packages, build time, code size, and write `docs/footprint.md`.
+    /// Measure what importing each crate alone costs, and write `docs/footprint.md`: packages, build time, code size.
     Footprint {
         /// Where the programs are built; emptied first.
         #[arg(long, value_name = "FOLDER", default_value = "target/footprint")]

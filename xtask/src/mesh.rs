@@ -126,9 +126,9 @@ impl Meshes {
             return Ok(Arc::clone(mesh));
         }
         let points = read(&path)
-            .map_err(|why| Problem::new(Kind::Io, format!("the mesh {} cannot be read: {why}", path.display())))?;
+            .map_err(|why| Problem::new(Kind::Io, format!("the mesh \"{}\" cannot be read: {why}", path.display())))?;
         if points.is_empty() {
-            return Err(Problem::new(Kind::InvalidShape, format!("the mesh {} has no vertices", path.display())));
+            return Err(Problem::new(Kind::InvalidShape, format!("the mesh \"{}\" has no vertices", path.display())));
         }
         let mesh = Arc::new(Mesh::new(points));
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
@@ -148,7 +148,7 @@ fn read(path: &Path) -> Result<Vec<DVec3>, String> {
     let points = match extension.as_str() {
         "obj" => read_obj(&bytes)?,
         "stl" => read_stl(bytes)?,
-        _ => return Err("only .obj and .stl files are known".to_owned()),
+        _ => return Err("its name must end in .obj or .stl".to_owned()),
     };
     let mut seen = std::collections::HashSet::with_capacity(points.len());
     // −0 and 0 are one coordinate.
@@ -156,17 +156,17 @@ fn read(path: &Path) -> Result<Vec<DVec3>, String> {
 }
 
 fn read_obj(bytes: &[u8]) -> Result<Vec<DVec3>, String> {
-    // The reader returns the vertices of elements; a point element per vertex at the end of the file makes it return
-    // all of them, whether a face uses them or not.
+    // The reader returns the vertices of elements, one model after another. A last model with an element of one vertex for
+    // every vertex of the file makes it return all of them, whether a face uses them or not.
     let count = bytes.split(|&b| b == b'\n').filter(|l| is_vertex(l)).count();
     if count == 0 {
         return Ok(Vec::new());
     }
-    let elements: String = (1..=count).map(|i| format!("\np {i}")).collect();
+    let elements = (1..=count).fold("\no all".to_owned(), |text, i| text + &format!("\nl {i}"));
     let mut text = bytes.chain(elements.as_bytes());
     let options = tobj::LoadOptions { single_index: true, ..Default::default() };
     let (models, _) = tobj::load_obj_buf(&mut std::io::BufReader::new(&mut text), &options, |_| Ok(Default::default()))
-        .map_err(|why| why.to_string())?;
+        .map_err(|why| broken_vertex(bytes).unwrap_or_else(|| why.to_string()))?;
     let last = models.last().map(|m| m.mesh.positions.as_slice()).unwrap_or_default();
     Ok(last.chunks_exact(3).map(DVec3::from_slice).collect())
 }
@@ -175,6 +175,17 @@ fn read_obj(bytes: &[u8]) -> Result<Vec<DVec3>, String> {
 fn is_vertex(line: &[u8]) -> bool {
     let line = line.trim_ascii_start();
     line.first() == Some(&b'v') && line.get(1).is_some_and(u8::is_ascii_whitespace)
+}
+
+/// Says which line of an OBJ file is a vertex without three numbers.
+fn broken_vertex(bytes: &[u8]) -> Option<String> {
+    let lines = bytes.split(|&b| b == b'\n').map(String::from_utf8_lossy);
+    let is_broken = |line: &str| {
+        is_vertex(line.as_bytes())
+            && line.split_whitespace().skip(1).map_while(|word| word.parse::<f64>().ok()).take(3).count() < 3
+    };
+    let (i, line) = lines.enumerate().find(|(_, line)| is_broken(line))?;
+    Some(format!("line {} is {:?}, but a vertex is \"v x y z\"", i + 1, line.trim_end()))
 }
 
 fn read_stl(bytes: Vec<u8>) -> Result<Vec<DVec3>, String> {
@@ -186,4 +197,28 @@ fn read_stl(bytes: Vec<u8>) -> Result<Vec<DVec3>, String> {
         points.extend(triangle.vertices.iter().map(|v| DVec3::from_array(v.0.map(f64::from))));
     }
     Ok(points)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_broken_vertex_is_named_by_its_line() {
+        let why = read_obj(b"v 0 0 0\nv 1 2\nv 3 4 5\n").expect_err("two numbers are no vertex");
+        assert_eq!(why, r#"line 2 is "v 1 2", but a vertex is "v x y z""#, "what stands there");
+    }
+
+    #[test]
+    fn every_vertex_counts_whether_a_face_uses_it_or_not() {
+        let xs = |text: &str| read_obj(text.as_bytes()).map(|points| points.iter().map(|p| p.x).collect::<Vec<_>>());
+        assert_eq!(xs("v 4 0 0\nv 3 0 0\nv 2 0 0\nv 1 0 0\nf 4 2 1\n"), Ok(vec![4.0, 3.0, 2.0, 1.0]), "one is unused");
+        assert_eq!(xs("v 4 0 0\nv 3 0 0"), Ok(vec![4.0, 3.0]), "no faces, no end of line");
+        assert_eq!(
+            xs("o a\nv 4 0 0\np 1\no b\nv 3 0 0\nv 6 0 0 2\nl 2 3\n"),
+            Ok(vec![4.0, 3.0, 3.0]),
+            "groups, a weight"
+        );
+        assert_eq!(xs("# nothing\n"), Ok(Vec::new()), "no vertices");
+    }
 }

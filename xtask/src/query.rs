@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::engine;
 use crate::mesh::Meshes;
 use crate::wire::answer::Line;
-use crate::wire::query;
+use crate::wire::json;
 
 /// Lines are read as long as they are there already, and answered together: at most about this much of them at once.
 const BATCH_BYTES: usize = 1 << 18;
@@ -134,12 +134,12 @@ pub(crate) fn answer(text: &[u8], meshes: &Meshes) -> Vec<u8> {
 /// The line of output for a line of input, and whether it is an answer.
 fn answer_line(Numbered { line, text }: &Numbered, meshes: &Meshes) -> (bool, Vec<u8>) {
     let number = || Value::from(*line);
-    let (id, outcome) = match query::object(text) {
+    let (id, outcome) = match json::object(text) {
         Ok(object) => {
             let id = object.get("id").cloned().unwrap_or_else(number);
             (id, engine::question(&object, meshes).and_then(|question| question.ask()))
         }
-        Err(problem) => (query::id_of(text).unwrap_or_else(number), Err(problem)),
+        Err(problem) => (json::id_of(text).unwrap_or_else(number), Err(problem)),
     };
     let answered = outcome.is_ok();
     // Writing to memory fails only for values that are no JSON, and there are none in a `Line`.

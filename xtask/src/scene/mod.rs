@@ -32,7 +32,7 @@ use crate::plot::{Plot, Scale, Series};
 pub(crate) const EMBEDDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/ur5_reach.json");
 
 /// One row in so many is drawn.
-const STRIDE: usize = 10;
+const STRIDE: usize = 12;
 
 /// A scene as written.
 #[derive(Debug, Deserialize)]
@@ -196,8 +196,8 @@ struct Outcome {
 /// Which scene to run.
 #[derive(Debug, Args)]
 pub(crate) struct Choice {
-    /// A scene: robot, joints, obstacles, trajectory.
-    #[arg(value_name = "FILE", default_value = EMBEDDED)]
+    /// A scene: robot, joints, obstacles, trajectory; without one, a UR5 reaching among objects.
+    #[arg(value_name = "FILE", default_value = EMBEDDED, hide_default_value = true)]
     file: PathBuf,
     /// True overlaps and distances, one JSON line per pair [default: beside FILE, if there]
     #[arg(long, value_name = "FILE")]

@@ -35,7 +35,7 @@ pub(crate) struct Scope {
     #[arg(long, value_name = "N")]
     rays: Option<u64>,
     /// Only subjects whose name contains this.
-    #[arg(long, value_name = "SHAPE", default_value = "")]
+    #[arg(long, value_name = "SHAPE", default_value = "", hide_default_value = true)]
     only: String,
     /// Another seed draws other queries.
     #[arg(long, default_value_t = 0)]

@@ -37,7 +37,7 @@ use crate::engine;
 use crate::mesh::Meshes;
 use crate::wire::answer::Line;
 use crate::wire::error::Problem;
-use crate::wire::query;
+use crate::wire::json;
 use crate::wire::reader::Object;
 
 /// What is validated where no files are named.
@@ -237,7 +237,7 @@ fn validate_file(file: &Path, scope: &Scope, records: &mut Vec<Record>, cases: &
         line += 1;
         let trimmed = text.trim_ascii_end();
         if !trimmed.is_empty() && !trimmed.starts_with(b"#") {
-            let object = query::object(trimmed);
+            let object = json::object(trimmed);
             let asked = object.as_ref().ok().and_then(|o| o.get("query")).and_then(Value::as_str).unwrap_or("none");
             if scope.holds(asked) {
                 let record = validate_line(trimmed, &object, line, &name, &meshes);
@@ -262,7 +262,7 @@ fn validate_line(text: &[u8], object: &Result<Object, Problem>, line: u64, file:
     // A line that cannot be read may still say what is expected of it.
     let case = match object {
         Ok(object) => Some(object.clone()),
-        Err(_) => query::expectation_of(text),
+        Err(_) => json::expectation_of(text),
     };
     let question = object.as_ref().map_err(Clone::clone).and_then(|object| engine::question(object, meshes));
     let outcome = question.as_ref().map_err(Clone::clone).and_then(|question| question.ask());

@@ -44,6 +44,11 @@ impl Problem {
         Self { kind, message: message.into() }
     }
 
+    /// The same, said of the field at `place`.
+    pub(crate) fn at(self, place: &str) -> Self {
+        Self { message: format!("{place}: {}", self.message), ..self }
+    }
+
     /// A shape that could not be built from the field at `place`.
     pub(crate) fn invalid_shape(place: &str, why: InvalidShape) -> Self {
         let item = |parameter: &str, index: usize, lone: bool| {
@@ -53,7 +58,10 @@ impl Problem {
         match why {
             InvalidShape::NonFinite { parameter, index } => Self::new(
                 Kind::NonFinite,
-                format!("{} is not finite in the precision asked for", item(parameter, index, is_lone(parameter))),
+                format!(
+                    "{} is not a finite number in the precision asked for",
+                    item(parameter, index, is_lone(parameter))
+                ),
             ),
             InvalidShape::Negative { parameter, index, value } => Self::new(
                 Kind::InvalidShape,
@@ -62,6 +70,22 @@ impl Problem {
             InvalidShape::NotPositive { parameter, index, value } => Self::new(
                 Kind::InvalidShape,
                 format!("{} is {value}, but must be greater than zero", item(parameter, index, is_lone(parameter))),
+            ),
+            InvalidShape::NoPoints => {
+                Self::new(Kind::InvalidShape, format!("{place}.points is empty, but must be 1 or more points"))
+            }
+            InvalidShape::NotSymmetric { row, column } => Self::new(
+                Kind::InvalidShape,
+                format!(
+                    "{place}.matrix[{row}][{column}] and [{column}][{row}] differ, but the matrix must be symmetric"
+                ),
+            ),
+            InvalidShape::NotPositiveDefinite => {
+                Self::new(Kind::InvalidShape, format!("{place}.matrix is not positive definite, but must be"))
+            }
+            InvalidShape::ZeroRotation => Self::new(
+                Kind::InvalidShape,
+                format!("{place}.rotation is the zero quaternion; to turn nothing, leave it out or write [0, 0, 0, 1]"),
             ),
             other => Self::new(Kind::InvalidShape, format!("{place}: {other}")),
         }

@@ -2,6 +2,8 @@
 
 pub(crate) mod answer;
 pub(crate) mod error;
+mod form;
+pub(crate) mod json;
 pub(crate) mod query;
 pub(crate) mod reader;
 pub(crate) mod shape;

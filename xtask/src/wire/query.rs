@@ -2,15 +2,12 @@
 
 use std::path::PathBuf;
 
-use serde::Deserialize as _;
 use serde_json::Value;
 
 use super::error::{Kind, Problem};
+use super::form;
 use super::reader::{Coordinates, Object, Reader, Rotation};
 use super::shape::{EllipsoidSpec, Shape};
-
-/// The deepest nesting of lists and objects that is read.
-const DEEPEST: usize = 128;
 
 /// The precision to answer in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,78 +73,6 @@ pub(crate) struct Pose {
     pub(crate) rotation: Option<Rotation>,
 }
 
-const QUERIES: &str = "ray_cast, distance, intersect, linear_cast, enclosing_ellipsoid, inscribed_ellipsoid, margin, \
-                       track, clearance";
-
-/// The JSON object on a line.
-///
-/// # Errors
-/// [`Kind::Parse`] where it is not JSON, not an object, or nested deeper than 128 levels.
-pub(crate) fn object(line: &[u8]) -> Result<Object, Problem> {
-    if deepest(line) > DEEPEST {
-        return Err(Problem::new(Kind::Parse, format!("lists and objects are nested deeper than {DEEPEST} levels")));
-    }
-    let mut deserializer = serde_json::Deserializer::from_slice(line);
-    deserializer.disable_recursion_limit();
-    let value = Value::deserialize(&mut deserializer).and_then(|value| deserializer.end().map(|()| value));
-    match value {
-        Ok(Value::Object(object)) => Ok(object),
-        Ok(_) => Err(Problem::new(Kind::Parse, "the line is JSON, but not an object")),
-        Err(why) => {
-            let text = why.to_string();
-            if text.contains("number out of range") {
-                let message = format!("the number before column {} is too large for a double", why.column());
-                return Err(Problem::new(Kind::NonFinite, message));
-            }
-            let what = text.split(" at line ").next().unwrap_or(&text);
-            Err(Problem::new(Kind::Parse, format!("the line is not JSON: {what} at column {}", why.column())))
-        }
-    }
-}
-
-/// What a line that could not be read calls itself, as far as that can be told.
-pub(crate) fn id_of(line: &[u8]) -> Option<Value> {
-    #[derive(serde::Deserialize)]
-    struct Named {
-        id: Option<Value>,
-    }
-    // Fields that are not asked for are skipped without looking at their numbers or their depth.
-    serde_json::from_slice::<Named>(line).ok()?.id
-}
-
-/// What a line that could not be read says is expected of it: a case without its query.
-pub(crate) fn expectation_of(line: &[u8]) -> Option<Object> {
-    #[derive(serde::Deserialize)]
-    struct Expecting {
-        id: Option<Value>,
-        tags: Option<Value>,
-        expect: Value,
-    }
-    let Expecting { id, tags, expect } = serde_json::from_slice(line).ok()?;
-    let fields = [("id", id), ("tags", tags), ("expect", Some(expect))];
-    Some(fields.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))).collect())
-}
-
-/// The deepest nesting of brackets outside strings.
-fn deepest(line: &[u8]) -> usize {
-    let (mut depth, mut deepest) = (0usize, 0usize);
-    let (mut quoted, mut escaped) = (false, false);
-    for &byte in line {
-        match byte {
-            _ if escaped => escaped = false,
-            b'\\' if quoted => escaped = true,
-            b'"' => quoted = !quoted,
-            b'[' | b'{' if !quoted => {
-                depth += 1;
-                deepest = deepest.max(depth);
-            }
-            b']' | b'}' if !quoted => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-    }
-    deepest
-}
-
 impl Request {
     /// The query in a JSON object.
     pub(crate) fn read(object: &Object) -> Result<Self, Problem> {
@@ -204,7 +129,8 @@ impl Request {
                 obstacles: reader.required(object, "obstacles", |r, v| r.list(v, EllipsoidSpec::read))?,
             },
             _ => {
-                let message = format!("the query {name:?} is unknown; the queries are {QUERIES}");
+                let message =
+                    format!("the query {name:?} is unknown; {}", form::known(&name, form::QUERIES, "queries"));
                 return Err(Problem::new(Kind::UnknownQuery, message));
             }
         };
@@ -284,7 +210,8 @@ fn same_length(reader: &Reader, lengths: impl Iterator<Item = usize>, field: &st
             let list = reader.place();
             let due =
                 if length < 2 { "a space has 2 or more".to_owned() } else { format!("{list}[0]{field} has {first}") };
-            let message = format!("{list}[{i}]{field} has {length} coordinates, but {due}");
+            let s = if length == 1 { "" } else { "s" };
+            let message = format!("{list}[{i}]{field} has {length} coordinate{s}, but {due}");
             return Err(Problem::new(Kind::DimensionMismatch, message));
         }
     }
@@ -293,29 +220,8 @@ fn same_length(reader: &Reader, lengths: impl Iterator<Item = usize>, field: &st
 
 #[cfg(test)]
 mod tests {
+    use super::super::json::object;
     use super::*;
-
-    fn nested(levels: usize) -> String {
-        // The object is one level, each list one more.
-        format!(r#"{{"query":"x","deep":{}1{}}}"#, "[".repeat(levels - 1), "]".repeat(levels - 1))
-    }
-
-    #[test]
-    fn reads_128_levels_and_no_more() {
-        object(nested(128).as_bytes()).expect("the deepest that is read");
-        let problem = object(nested(129).as_bytes()).expect_err("too deep");
-        assert_eq!(problem.kind, Kind::Parse, "{problem:?}");
-        object(nested(1_000_000).as_bytes()).expect_err("far too deep, and no crash");
-        assert_eq!(deepest(br#"{"a":"[[[\"[[","b":[{}]}"#), 3, "brackets in strings do not nest");
-    }
-
-    #[test]
-    fn a_line_that_cannot_be_read_may_still_be_named() {
-        let line = br#"{"id":"far","source":[1e400,0,0]}"#;
-        assert_eq!(object(line).expect_err("beyond doubles").kind, Kind::NonFinite, "a number too large");
-        assert_eq!(id_of(line), Some(Value::from("far")), "the name");
-        assert_eq!(id_of(b"not json"), None, "no name");
-    }
 
     #[test]
     fn the_first_vector_decides_the_dimension_and_the_second_is_blamed() {
@@ -323,5 +229,47 @@ mod tests {
         let problem = Request::read(&object(text).expect("JSON")).expect_err("2D and 3D");
         assert_eq!(problem.kind, Kind::DimensionMismatch, "{problem:?}");
         assert_eq!(problem.message, "source has 2 coordinates, but target.half_extents makes the query 3D");
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_with_its_place_and_what_would_be_right() {
+        let cast_at =
+            |shape: &str| format!(r#"{{"query":"ray_cast","target":{shape},"source":[5,0,0],"direction":[-1,0,0]}}"#);
+        let cases = [
+            (
+                r#"{"query":"ray_cast","target":{"type":"ball","radius":1},"sourc":[5,0,0],"direction":[-1,0,0]}"#
+                    .to_owned(),
+                "the field \"source\" is missing (is \"sourc\" meant for it?); a ray_cast has \"target\": SHAPE, \"source\": \
+                 VECTOR, \"direction\": VECTOR, and if wanted \"max_lambda\": NUMBER",
+            ),
+            (
+                r#"{"query":"distance","a":{"type":"ball","radius":1}}"#.to_owned(),
+                "the field \"b\" is missing; a distance has \"a\": SHAPE, \"b\": SHAPE",
+            ),
+            (
+                cast_at(r#"{"type":"ball","r":1}"#),
+                "the field \"radius\" of target is missing; a ball has \"radius\": NUMBER",
+            ),
+            (
+                cast_at(r#"{"type":"hull","of":[{"type":"ball","radius":[1]}]}"#),
+                "target.of[0].radius must be a number, but is a list",
+            ),
+            (
+                cast_at(r#"{"type":"cuboid","half_extents":1}"#),
+                "target.half_extents must be a vector, a list of numbers, but is 1",
+            ),
+            (
+                cast_at(r#"{"type":"polytope","points":[[0,0,0],[1,0]]}"#),
+                "target.points[1] has 2 coordinates, but target.points[0] makes the query 3D",
+            ),
+            (
+                r#"{"query":"inscribed_ellipsoid","halfspaces":[{"normal":[1,0]}]}"#.to_owned(),
+                "the field \"offset\" of halfspaces[0] is missing; a half-space has \"normal\": VECTOR, \"offset\": NUMBER",
+            ),
+        ];
+        for (line, message) in cases {
+            let problem = Request::read(&object(line.as_bytes()).expect("JSON")).expect_err("it cannot be asked");
+            assert_eq!(problem.message, message, "{line}");
+        }
     }
 }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use serde_json::{Map, Value};
 
 use super::error::{Kind, Problem};
+use super::form;
 
 /// A JSON object.
 pub(crate) type Object = Map<String, Value>;
@@ -84,7 +85,8 @@ impl Reader {
             None => {
                 let of = self.place();
                 let of = if of.is_empty() { String::new() } else { format!(" of {of}") };
-                Err(Problem::new(Kind::Parse, format!("the field \"{key}\"{of} is missing")))
+                let form = form::missing(object, key);
+                Err(Problem::new(Kind::Parse, format!("the field \"{key}\"{of} is missing{form}")))
             }
         }
     }
@@ -103,9 +105,19 @@ impl Reader {
     pub(crate) fn list<T>(
         &mut self,
         value: &Value,
+        read: impl FnMut(&mut Self, &Value) -> Result<T, Problem>,
+    ) -> Result<Vec<T>, Problem> {
+        self.list_called("a list", value, read)
+    }
+
+    /// Every item of a list that is called `what` where it is missing.
+    fn list_called<T>(
+        &mut self,
+        what: &str,
+        value: &Value,
         mut read: impl FnMut(&mut Self, &Value) -> Result<T, Problem>,
     ) -> Result<Vec<T>, Problem> {
-        let Some(items) = value.as_array() else { return Err(self.expected("a list", value)) };
+        let Some(items) = value.as_array() else { return Err(self.expected(what, value)) };
         items.iter().enumerate().map(|(i, item)| self.inside(Step::Index(i), |reader| read(reader, item))).collect()
     }
 
@@ -141,7 +153,7 @@ impl Reader {
 
     /// A list of numbers of any length.
     pub(crate) fn numbers(&mut self, value: &Value) -> Result<Vec<f64>, Problem> {
-        self.list(value, Self::number)
+        self.list_called("a vector, a list of numbers", value, Self::number)
     }
 
     /// A vector of the space of the query.
@@ -155,7 +167,7 @@ impl Reader {
 
     /// A square matrix of the space of the query, as a list of rows.
     pub(crate) fn matrix(&mut self, value: &Value) -> Result<[Coordinates; 3], Problem> {
-        let rows = self.list(value, Self::vector)?;
+        let rows = self.list_called("a matrix, a list of rows", value, Self::vector)?;
         self.found_dimension(rows.len(), "rows")?;
         let mut matrix = [[0.0; 3]; 3];
         matrix[..rows.len()].copy_from_slice(&rows);
@@ -187,7 +199,8 @@ impl Reader {
     /// Notes that the present place has `count` of something that a space has as many of as dimensions.
     pub(crate) fn found_dimension(&mut self, count: usize, of: &str) -> Result<(), Problem> {
         if !matches!(count, 2 | 3) {
-            return Err(self.problem(Kind::DimensionMismatch, format!("has {count} {of}, but a space has 2 or 3")));
+            let one = if count == 1 { of.trim_end_matches('s') } else { of };
+            return Err(self.problem(Kind::DimensionMismatch, format!("has {count} {one}, but a space has 2 or 3")));
         }
         self.is_of_dimension(count, &format!("has {count} {of}"))
     }
@@ -214,6 +227,7 @@ impl Reader {
             Value::Number(number) => number.to_string(),
             Value::String(text) if text.len() <= 40 => format!("{text:?}"),
             Value::String(_) => "a string".to_owned(),
+            Value::Array(items) if items.is_empty() => "an empty list".to_owned(),
             Value::Array(_) => "a list".to_owned(),
             Value::Object(_) => "an object".to_owned(),
         };

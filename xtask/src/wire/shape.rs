@@ -11,6 +11,7 @@ use ellip_margin::Wedge;
 use serde_json::Value;
 
 use super::error::{Kind, Problem};
+use super::form;
 use super::query::Pose;
 use super::reader::{Coordinates, Object, Reader, Rotation};
 use crate::mesh::{Mesh, Meshes};
@@ -56,9 +57,6 @@ enum EllipsoidForm {
     Axes { semi_axes: Coordinates, rotation: Option<Rotation> },
 }
 
-const SHAPES: &str = "point, segment, triangle, ball, cuboid, capsule, cylinder, cone, ellipsoid, polytope, mesh, posed, \
-                      affine, minkowski_sum, difference, hull, rounded";
-
 impl Shape {
     pub(crate) fn read(reader: &mut Reader, value: &Value) -> Result<Self, Problem> {
         let object = reader.object(value)?;
@@ -103,7 +101,7 @@ impl Shape {
             "hull" => Self::Hull(several(reader)?),
             "rounded" => Self::Rounded { radius: radius(reader)?, of: of(reader)? },
             _ => {
-                let message = format!("is of the unknown type {kind:?}; the types are {SHAPES}");
+                let message = format!("is of the unknown type {kind:?}; {}", form::known(&kind, form::SHAPES, "types"));
                 return Err(reader.problem(Kind::UnknownShape, message));
             }
         })
@@ -135,7 +133,9 @@ impl EllipsoidSpec {
                 return Err(reader.problem(Kind::Parse, "has both \"matrix\" and \"semi_axes\"; give one of them"));
             }
             (None, None) => {
-                return Err(reader.problem(Kind::Parse, "needs \"matrix\", or \"semi_axes\" and \"rotation\""));
+                return Err(
+                    reader.problem(Kind::Parse, "needs \"matrix\", or \"semi_axes\" and if wanted \"rotation\"")
+                );
             }
         };
         Ok(Self { center, form })
@@ -319,7 +319,10 @@ impl Shape {
             Self::Upright { kind, half_height, radius } => V::upright(*kind, *half_height, *radius).map_err(invalid)?,
             Self::Ellipsoid(spec) => Box::new(spec.build::<V>(place)?),
             Self::Polytope(points) => Box::new(Polytope::<V>::new(points.iter().map(vector)).map_err(invalid)?),
-            Self::Mesh(path) => V::mesh(&*meshes.load(path)?).map_err(invalid)?,
+            Self::Mesh(path) => {
+                let mesh = meshes.load(path).map_err(|why| why.at(&format!("{place}.path")))?;
+                V::mesh(&mesh).map_err(invalid)?
+            }
             Self::Posed { translation, rotation: None, of } => {
                 Box::new(Posed::translated(inner(of)?, vector(translation)).map_err(invalid)?)
             }
