@@ -140,6 +140,13 @@ pub(crate) fn support_of_parts<S: SupportMap + ?Sized>(shape: &S, direction: S::
     shape.origin() + core + swept(shape.radius(), direction)
 }
 
+/// What the rounding of `a + b` loses (Knuth's two-sum).
+pub(crate) fn lost_in_sum<V: Vector>(a: V, b: V) -> V {
+    let sum = a + b;
+    let seen = sum - a;
+    (a - (sum - seen)) + (b - seen)
+}
+
 /// The point of the ball of the given radius about zero farthest along `direction`.
 #[inline]
 pub(crate) fn swept<V: Vector>(radius: V::Scalar, direction: V) -> V {

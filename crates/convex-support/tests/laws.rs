@@ -319,3 +319,23 @@ fn support_points_do_not_depend_on_the_length_of_the_direction() {
         }
     }
 }
+
+/// Far from the world's origin the origin of a shape is rounded by much of the shape's size, and the core makes up for it.
+#[test]
+fn a_shape_placed_far_away_loses_nothing_of_itself() {
+    use convex_support::Polytope;
+    use convex_support::glam::{Mat3A, Quat};
+
+    let corners = [[0.3, 0.1, 0.2], [0.9, 0.3, 0.1], [0.2, 0.8, 0.4], [0.5, 0.4, 0.7]].map(Vec3A::from);
+    let far = Vec3A::new(3e6, -1e6, 2e6);
+    let tetrahedron = Polytope::new(corners).unwrap();
+    let posed = Posed::new(tetrahedron.clone(), Quat::IDENTITY, far).unwrap();
+    let mapped = Affine::new(tetrahedron, Mat3A::IDENTITY, far).unwrap();
+    for shape in [&posed as &dyn SupportMap<Vector = Vec3A>, &mapped] {
+        for (corner, d) in corners.iter().zip([[-1.0, -2.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]) {
+            // Exact: the origin and the translation are alike but for a few bits.
+            let seen = (shape.origin() - far) + shape.core_support(d.into(), &mut Hint::default());
+            assert!((seen - *corner).abs().max_element() < 4.0 * f32::EPSILON, "{seen}, not {corner}");
+        }
+    }
+}

@@ -92,13 +92,13 @@ pub(crate) fn cast<B: Body>(
         observer,
         iterations: 0,
     };
-    let end = if across > reach {
-        End::Miss(local.line.foot / across)
-    } else if local.start > half_chord {
-        // The ball has a point closest to the ray, and the plane there is before all of it.
+    // Of a ray that misses the ball, the plane through its point closest to the ball is before all of it.
+    let end = if local.start > half_chord {
         End::Miss(local.line.at(local.start).unit().unwrap_or(local.line.direction))
     } else if search.is_beyond(low, zero) {
         End::Miss((ray.at(options.max_lambda) - origin).unit().unwrap_or(-local.line.direction))
+    } else if across > reach {
+        End::Miss(local.line.foot / across)
     } else {
         search.run()
     };
@@ -107,10 +107,11 @@ pub(crate) fn cast<B: Body>(
     let hit_at = touched.unwrap_or(low);
     let started_in = hit_at <= local.start;
     let lambda = if started_in { zero } else { local.lambda(hit_at).max(zero) };
-    let lower = (local.lambda(low) - local.error(low, low_error)).max(zero);
+    // What rounding moved a crossing by, and as much again: the support points were rounded before they came here.
+    let lower = (local.lambda(low) - local.error(low, low_error + low_error)).max(zero);
     let upper = match end {
         End::Contact if started_in => zero,
-        _ => (local.lambda(high) + local.error(high, high_error)).max(lambda),
+        _ => (local.lambda(high) + local.error(high, high_error + high_error)).max(lambda),
     };
     let hit = || Outcome::Hit(Contact { lambda, normal, simplex });
     let miss = |axis| Outcome::Miss(Miss { axis });

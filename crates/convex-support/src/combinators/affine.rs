@@ -3,7 +3,7 @@
 use num_traits::Float as _;
 
 use crate::error::{InvalidShape, finite, finite_matrix};
-use crate::support::{ScalarOf, swept, swept_derivative};
+use crate::support::{ScalarOf, lost_in_sum, swept, swept_derivative};
 use crate::vector::power_of_two_below;
 use crate::{Hint, Matrix, Scalar, SupportMap, Vector};
 
@@ -24,6 +24,8 @@ pub struct Affine<S: SupportMap> {
     /// The transpose in units of a power of two near the largest entry: directions stay in range.
     onto_shape: <S::Vector as Vector>::Matrix,
     translation: S::Vector,
+    /// What the rounding of the origin `M·c + t` loses; it stays with the core.
+    lost: S::Vector,
     /// The factor `s` where the matrix is `s` times a rotation or reflection: a ball then stays a ball.
     scale: Option<ScalarOf<S>>,
     /// The inverse of the matrix; `None` where it is singular.
@@ -43,7 +45,8 @@ impl<S: SupportMap> Affine<S> {
         let unit = power_of_two_below(largest);
         let transpose = matrix.transpose();
         let onto_shape = Matrix::from_cols_fn(|j| transpose.col(j) / unit);
-        Ok(Self { shape, matrix, onto_shape, translation, scale: uniform_scale(matrix), inverse })
+        let lost = lost_in_sum(matrix * shape.origin(), translation);
+        Ok(Self { shape, matrix, onto_shape, translation, lost, scale: uniform_scale(matrix), inverse })
     }
 
     /// The shape before it is mapped.
@@ -89,9 +92,9 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         let direction = self.onto_shape * direction;
         let core = self.shape.core_support(direction, hint);
         match self.scale {
-            Some(_) => self.matrix * core,
+            Some(_) => self.matrix * core + self.lost,
             // A ball does not stay a ball, so it becomes part of the core.
-            None => self.matrix * (core + swept(self.shape.radius(), direction)),
+            None => self.matrix * (core + swept(self.shape.radius(), direction)) + self.lost,
         }
     }
 
@@ -116,14 +119,15 @@ impl<S: SupportMap> SupportMap for Affine<S> {
     }
 
     fn core_extent(&self) -> ScalarOf<S> {
-        match self.scale {
+        let extent = match self.scale {
             Some(scale) => scale * self.shape.core_extent(),
             // |M·x| and every product in it are bounded by the Frobenius norm of M times |x|.
             None => {
                 let columns = S::Vector::from_fn(|j| self.matrix.col(j).norm());
                 columns.norm() * (self.shape.core_extent() + self.shape.radius())
             }
-        }
+        };
+        extent + self.lost.abs().max_element() * Scalar::from_f64(2.0)
     }
 }
 

@@ -3,7 +3,7 @@
 use num_traits::Float as _;
 
 use crate::error::{InvalidShape, finite, orthonormal};
-use crate::support::ScalarOf;
+use crate::support::{ScalarOf, lost_in_sum};
 use crate::{Hint, Matrix, Scalar, SupportMap, Vector};
 
 /// The image `R·C + t` of a shape under a rotation and then a translation.
@@ -22,9 +22,18 @@ pub struct Posed<S: SupportMap> {
     shape: S,
     rotation: <S::Vector as Vector>::Matrix,
     translation: S::Vector,
+    /// What the origin `R·c + t` loses by its rounding. Far from the world's origin that is much of the shape's size, and it
+    /// stays with the core.
+    lost: S::Vector,
 }
 
 impl<S: SupportMap> Posed<S> {
+    fn at(shape: S, rotation: <S::Vector as Vector>::Matrix, translation: S::Vector) -> Result<Self, InvalidShape> {
+        let translation = finite("translation", translation)?;
+        let lost = lost_in_sum(rotation * shape.origin(), translation);
+        Ok(Self { shape, rotation, translation, lost })
+    }
+
     /// The shape turned about the origin by `rotation` (an angle in radians in 2D, a quaternion in 3D, which is
     /// normalised first), then moved by `translation`.
     ///
@@ -36,7 +45,7 @@ impl<S: SupportMap> Posed<S> {
         translation: S::Vector,
     ) -> Result<Self, InvalidShape> {
         let rotation = S::Vector::rotation_matrix(rotation).ok_or(InvalidShape::ZeroRotation)?;
-        Ok(Self { shape, rotation, translation: finite("translation", translation)? })
+        Self::at(shape, rotation, translation)
     }
 
     /// The shape moved by a rotation matrix, then by `translation`: for poses that come as glam's `DAffine3` or as a
@@ -54,7 +63,7 @@ impl<S: SupportMap> Posed<S> {
         if rotation.determinant() < ScalarOf::<S>::ZERO {
             return Err(InvalidShape::NotOrthonormal);
         }
-        Ok(Self { shape, rotation: polished(rotation), translation: finite("translation", translation)? })
+        Self::at(shape, polished(rotation), translation)
     }
 
     /// The shape moved by `translation`.
@@ -62,7 +71,7 @@ impl<S: SupportMap> Posed<S> {
     /// # Errors
     /// [`InvalidShape::NonFinite`] if a coordinate is not finite.
     pub fn translated(shape: S, translation: S::Vector) -> Result<Self, InvalidShape> {
-        Ok(Self { shape, rotation: Matrix::IDENTITY, translation: finite("translation", translation)? })
+        Self::at(shape, Matrix::IDENTITY, translation)
     }
 
     /// The shape before it is moved.
@@ -112,7 +121,7 @@ impl<S: SupportMap> SupportMap for Posed<S> {
 
     #[inline]
     fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
-        self.rotation * self.shape.core_support(self.rotation.transpose_mul(direction), hint)
+        self.rotation * self.shape.core_support(self.rotation.transpose_mul(direction), hint) + self.lost
     }
 
     #[inline]
@@ -133,6 +142,6 @@ impl<S: SupportMap> SupportMap for Posed<S> {
 
     #[inline]
     fn core_extent(&self) -> ScalarOf<S> {
-        self.shape.core_extent()
+        self.shape.core_extent() + self.lost.abs().max_element() * Scalar::from_f64(2.0)
     }
 }
