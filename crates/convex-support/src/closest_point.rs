@@ -40,20 +40,6 @@ pub trait ClosestPoint: SupportMap {
     fn closest_point(&self, x: Self::Vector) -> Self::Vector;
 }
 
-impl<S: ClosestPoint + ?Sized> ClosestPoint for &S {
-    #[inline]
-    fn closest_point(&self, x: S::Vector) -> S::Vector {
-        (**self).closest_point(x)
-    }
-}
-
-impl<S: ClosestPoint + ?Sized> ClosestPoint for alloc::boxed::Box<S> {
-    #[inline]
-    fn closest_point(&self, x: S::Vector) -> S::Vector {
-        (**self).closest_point(x)
-    }
-}
-
 impl<V: Vector> ClosestPoint for Point<V> {
     #[inline]
     fn closest_point(&self, _x: V) -> V {

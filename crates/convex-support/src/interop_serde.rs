@@ -2,6 +2,7 @@
 //! them. Reading goes through the constructors, so that no invalid shape comes in.
 
 use alloc::vec::Vec;
+use core::convert::Infallible;
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -90,324 +91,60 @@ struct Pair<A, B> {
     b: B,
 }
 
-impl<V: Vector> Serialize for Point<V>
-where
-    V: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        At { at: self.at() }.serialize(serializer)
-    }
+/// Writes a shape as one of the structs above, each field by a getter, and reads it by giving the fields to a constructor:
+/// `[parameters] shape as struct { field: getter } by constructor, where these are data too`.
+macro_rules! as_data {
+    ($(
+        [$($parameters:tt)*] $shape:ty as $data:ident { $($field:ident: $getter:ident),* } by $constructor:expr,
+        where $($part:ty),*;
+    )*) => {$(
+        impl<$($parameters)*> Serialize for $shape
+        where
+            $($part: Serialize,)*
+        {
+            fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+                $data { $($field: self.$getter()),* }.serialize(serializer)
+            }
+        }
+
+        impl<'de, $($parameters)*> Deserialize<'de> for $shape
+        where
+            $($part: Deserialize<'de>,)*
+        {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let $data { $($field),* } = $data::deserialize(deserializer)?;
+                $constructor($($field),*).map_err(D::Error::custom)
+            }
+        }
+    )*};
 }
 
-impl<'de, V: Vector> Deserialize<'de> for Point<V>
-where
-    V: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let At { at } = At::deserialize(deserializer)?;
-        Self::new(at).map_err(D::Error::custom)
-    }
+as_data! {
+    [V: Vector] Point<V> as At { at: at } by Self::new, where V;
+    [V: Vector] Segment<V> as Points { points: points } by Self::new, where V;
+    [V: Vector] Triangle<V> as Points { points: points } by Self::new, where V;
+    [V: Vector] Polytope<V> as Points { points: points } by |points: Vec<V>| Self::new(points), where V;
+    [V: Vector] Ball<V> as Radius { radius: radius } by Self::new, where V::Scalar;
+    [V: Vector] Cuboid<V> as HalfExtents { half_extents: half_extents } by Self::new, where V;
+    [V: Vector] Capsule<V> as Round { half_height: half_height, radius: radius } by Self::new, where V::Scalar;
+    [V: Vector3] Cylinder<V> as Round { half_height: half_height, radius: disc_radius } by Self::new, where V::Scalar;
+    [V: Vector3] Cone<V> as Round { half_height: half_height, radius: disc_radius } by Self::new, where V::Scalar;
+    [V: Vector] Ellipsoid<V> as Axes { center: center, semi_axes: semi_axes, axes: axes } by Self::from_axes,
+        where V, V::Matrix;
+    [S: SupportMap] Posed<S> as Moved { shape: shape, rotation: rotation, translation: translation } by Self::from_matrix,
+        where S, S::Vector, <S::Vector as Vector>::Matrix;
+    [S: SupportMap] Affine<S> as Mapped { shape: shape, matrix: matrix, translation: translation } by Self::new,
+        where S, S::Vector, <S::Vector as Vector>::Matrix;
+    [S: SupportMap] Rounded<S> as Grown { shape: shape, radius: rounding } by Self::new, where S, ScalarOf<S>;
+    [A: SupportMap, B: SupportMap<Vector = A::Vector>] MinkowskiSum<A, B> as Pair { a: a, b: b } by sound(Self::new),
+        where A, B;
+    [A: SupportMap, B: SupportMap<Vector = A::Vector>] Difference<A, B> as Pair { a: a, b: b } by sound(Self::new),
+        where A, B;
+    [A: SupportMap, B: SupportMap<Vector = A::Vector>] Hull<A, B> as Pair { a: a, b: b } by sound(Self::new),
+        where A, B;
 }
 
-impl<V: Vector> Serialize for Segment<V>
-where
-    V: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        Points { points: self.points() }.serialize(serializer)
-    }
-}
-
-impl<'de, V: Vector> Deserialize<'de> for Segment<V>
-where
-    V: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let Points { points } = Points::deserialize(deserializer)?;
-        Self::new(points).map_err(D::Error::custom)
-    }
-}
-
-impl<V: Vector> Serialize for Triangle<V>
-where
-    V: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        Points { points: self.points() }.serialize(serializer)
-    }
-}
-
-impl<'de, V: Vector> Deserialize<'de> for Triangle<V>
-where
-    V: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let Points { points } = Points::deserialize(deserializer)?;
-        Self::new(points).map_err(D::Error::custom)
-    }
-}
-
-impl<V: Vector> Serialize for Polytope<V>
-where
-    V: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        Points { points: self.points() }.serialize(serializer)
-    }
-}
-
-impl<'de, V: Vector> Deserialize<'de> for Polytope<V>
-where
-    V: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let Points { points } = Points::<Vec<V>>::deserialize(deserializer)?;
-        Self::new(points).map_err(D::Error::custom)
-    }
-}
-
-impl<V: Vector> Serialize for Ball<V>
-where
-    V::Scalar: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        Radius { radius: self.radius() }.serialize(serializer)
-    }
-}
-
-impl<'de, V: Vector> Deserialize<'de> for Ball<V>
-where
-    V::Scalar: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let Radius { radius } = Radius::deserialize(deserializer)?;
-        Self::new(radius).map_err(D::Error::custom)
-    }
-}
-
-impl<V: Vector> Serialize for Cuboid<V>
-where
-    V: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        HalfExtents { half_extents: self.half_extents() }.serialize(serializer)
-    }
-}
-
-impl<'de, V: Vector> Deserialize<'de> for Cuboid<V>
-where
-    V: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let HalfExtents { half_extents } = HalfExtents::deserialize(deserializer)?;
-        Self::new(half_extents).map_err(D::Error::custom)
-    }
-}
-
-impl<V: Vector> Serialize for Capsule<V>
-where
-    V::Scalar: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        Round { half_height: self.half_height(), radius: self.radius() }.serialize(serializer)
-    }
-}
-
-impl<'de, V: Vector> Deserialize<'de> for Capsule<V>
-where
-    V::Scalar: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let Round { half_height, radius } = Round::deserialize(deserializer)?;
-        Self::new(half_height, radius).map_err(D::Error::custom)
-    }
-}
-
-impl<V: Vector3> Serialize for Cylinder<V>
-where
-    V::Scalar: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        Round { half_height: self.half_height(), radius: self.disc_radius() }.serialize(serializer)
-    }
-}
-
-impl<'de, V: Vector3> Deserialize<'de> for Cylinder<V>
-where
-    V::Scalar: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let Round { half_height, radius } = Round::deserialize(deserializer)?;
-        Self::new(half_height, radius).map_err(D::Error::custom)
-    }
-}
-
-impl<V: Vector3> Serialize for Cone<V>
-where
-    V::Scalar: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        Round { half_height: self.half_height(), radius: self.disc_radius() }.serialize(serializer)
-    }
-}
-
-impl<'de, V: Vector3> Deserialize<'de> for Cone<V>
-where
-    V::Scalar: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let Round { half_height, radius } = Round::deserialize(deserializer)?;
-        Self::new(half_height, radius).map_err(D::Error::custom)
-    }
-}
-
-impl<V: Vector> Serialize for Ellipsoid<V>
-where
-    V: Serialize,
-    V::Matrix: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        Axes { center: self.center(), semi_axes: self.semi_axes(), axes: self.axes() }.serialize(serializer)
-    }
-}
-
-impl<'de, V: Vector> Deserialize<'de> for Ellipsoid<V>
-where
-    V: Deserialize<'de>,
-    V::Matrix: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let Axes { center, semi_axes, axes } = Axes::deserialize(deserializer)?;
-        Self::from_axes(center, semi_axes, axes).map_err(D::Error::custom)
-    }
-}
-
-impl<S: SupportMap> Serialize for Posed<S>
-where
-    S: Serialize,
-    S::Vector: Serialize,
-    <S::Vector as Vector>::Matrix: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        Moved { shape: self.shape(), rotation: self.rotation(), translation: self.translation() }.serialize(serializer)
-    }
-}
-
-impl<'de, S: SupportMap> Deserialize<'de> for Posed<S>
-where
-    S: Deserialize<'de>,
-    S::Vector: Deserialize<'de>,
-    <S::Vector as Vector>::Matrix: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let Moved { shape, rotation, translation } = Moved::deserialize(deserializer)?;
-        Self::from_matrix(shape, rotation, translation).map_err(D::Error::custom)
-    }
-}
-
-impl<S: SupportMap> Serialize for Affine<S>
-where
-    S: Serialize,
-    S::Vector: Serialize,
-    <S::Vector as Vector>::Matrix: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        Mapped { shape: self.shape(), matrix: self.matrix(), translation: self.translation() }.serialize(serializer)
-    }
-}
-
-impl<'de, S: SupportMap> Deserialize<'de> for Affine<S>
-where
-    S: Deserialize<'de>,
-    S::Vector: Deserialize<'de>,
-    <S::Vector as Vector>::Matrix: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let Mapped { shape, matrix, translation } = Mapped::deserialize(deserializer)?;
-        Self::new(shape, matrix, translation).map_err(D::Error::custom)
-    }
-}
-
-impl<S: SupportMap> Serialize for Rounded<S>
-where
-    S: Serialize,
-    ScalarOf<S>: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        Grown { shape: self.shape(), radius: self.rounding() }.serialize(serializer)
-    }
-}
-
-impl<'de, S: SupportMap> Deserialize<'de> for Rounded<S>
-where
-    S: Deserialize<'de>,
-    ScalarOf<S>: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let Grown { shape, radius } = Grown::deserialize(deserializer)?;
-        Self::new(shape, radius).map_err(D::Error::custom)
-    }
-}
-
-impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> Serialize for MinkowskiSum<A, B>
-where
-    A: Serialize,
-    B: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        Pair { a: self.a(), b: self.b() }.serialize(serializer)
-    }
-}
-
-impl<'de, A: SupportMap, B: SupportMap<Vector = A::Vector>> Deserialize<'de> for MinkowskiSum<A, B>
-where
-    A: Deserialize<'de>,
-    B: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let Pair { a, b } = Pair::deserialize(deserializer)?;
-        Ok(Self::new(a, b))
-    }
-}
-
-impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> Serialize for Difference<A, B>
-where
-    A: Serialize,
-    B: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        Pair { a: self.a(), b: self.b() }.serialize(serializer)
-    }
-}
-
-impl<'de, A: SupportMap, B: SupportMap<Vector = A::Vector>> Deserialize<'de> for Difference<A, B>
-where
-    A: Deserialize<'de>,
-    B: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let Pair { a, b } = Pair::deserialize(deserializer)?;
-        Ok(Self::new(a, b))
-    }
-}
-
-impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> Serialize for Hull<A, B>
-where
-    A: Serialize,
-    B: Serialize,
-{
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        Pair { a: self.a(), b: self.b() }.serialize(serializer)
-    }
-}
-
-impl<'de, A: SupportMap, B: SupportMap<Vector = A::Vector>> Deserialize<'de> for Hull<A, B>
-where
-    A: Deserialize<'de>,
-    B: Deserialize<'de>,
-{
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let Pair { a, b } = Pair::deserialize(deserializer)?;
-        Ok(Self::new(a, b))
-    }
+/// A constructor that cannot fail, as one that could.
+fn sound<A, B, S>(constructor: impl FnOnce(A, B) -> S) -> impl FnOnce(A, B) -> Result<S, Infallible> {
+    |a, b| Ok(constructor(a, b))
 }

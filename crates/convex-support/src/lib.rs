@@ -58,6 +58,7 @@ mod interop_parry;
 #[cfg(feature = "serde")]
 mod interop_serde;
 mod line_crossing;
+mod pointers;
 mod scalar;
 mod shapes;
 mod spd;

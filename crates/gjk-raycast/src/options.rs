@@ -9,6 +9,51 @@ use crate::SubAlgorithm;
 /// spent on a support map that is not one.
 const MAX_ITERATIONS: usize = 200;
 
+/// The methods `with_…` of the fields that several options share.
+macro_rules! setters {
+    ($($field:ident),*) => { $(setters! { @ $field })* };
+    (@ tolerance) => {
+        /// With another [`tolerance`](Self::tolerance).
+        #[must_use]
+        pub const fn with_tolerance(mut self, tolerance: V::Scalar) -> Self {
+            self.tolerance = tolerance;
+            self
+        }
+    };
+    (@ max_iterations) => {
+        /// With another cap on the [iterations](Self::max_iterations).
+        #[must_use]
+        pub const fn with_max_iterations(mut self, max_iterations: usize) -> Self {
+            self.max_iterations = max_iterations;
+            self
+        }
+    };
+    (@ axis) => {
+        /// With a first [`axis`](Self::axis).
+        #[must_use]
+        pub const fn with_axis(mut self, axis: V) -> Self {
+            self.axis = Some(axis);
+            self
+        }
+    };
+    (@ sub_algorithm) => {
+        /// With another [`sub_algorithm`](Self::sub_algorithm).
+        #[must_use]
+        pub const fn with_sub_algorithm(mut self, sub_algorithm: SubAlgorithm) -> Self {
+            self.sub_algorithm = sub_algorithm;
+            self
+        }
+    };
+    (@ method) => {
+        /// With another [`method`](Self::method).
+        #[must_use]
+        pub const fn with_method(mut self, method: CastMethod) -> Self {
+            self.method = method;
+            self
+        }
+    };
+}
+
 /// Options of [`distance`](crate::distance).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -40,13 +85,6 @@ impl<V: Vector> DistanceOptions<V> {
         }
     }
 
-    /// With another [`tolerance`](Self::tolerance).
-    #[must_use]
-    pub const fn with_tolerance(mut self, tolerance: V::Scalar) -> Self {
-        self.tolerance = tolerance;
-        self
-    }
-
     /// With a [`limit`](Self::limit).
     #[must_use]
     pub const fn with_limit(mut self, limit: V::Scalar) -> Self {
@@ -54,26 +92,7 @@ impl<V: Vector> DistanceOptions<V> {
         self
     }
 
-    /// With another cap on the [iterations](Self::max_iterations).
-    #[must_use]
-    pub const fn with_max_iterations(mut self, max_iterations: usize) -> Self {
-        self.max_iterations = max_iterations;
-        self
-    }
-
-    /// With a first [`axis`](Self::axis).
-    #[must_use]
-    pub const fn with_axis(mut self, axis: V) -> Self {
-        self.axis = Some(axis);
-        self
-    }
-
-    /// With another [`sub_algorithm`](Self::sub_algorithm).
-    #[must_use]
-    pub const fn with_sub_algorithm(mut self, sub_algorithm: SubAlgorithm) -> Self {
-        self.sub_algorithm = sub_algorithm;
-        self
-    }
+    setters!(tolerance, max_iterations, axis, sub_algorithm);
 }
 
 impl<V: Vector> Default for DistanceOptions<V> {
@@ -102,26 +121,7 @@ impl<V: Vector> IntersectOptions<V> {
         Self { max_iterations: MAX_ITERATIONS, axis: None, sub_algorithm: SubAlgorithm::Regions }
     }
 
-    /// With another cap on the [iterations](Self::max_iterations).
-    #[must_use]
-    pub const fn with_max_iterations(mut self, max_iterations: usize) -> Self {
-        self.max_iterations = max_iterations;
-        self
-    }
-
-    /// With a first [`axis`](Self::axis).
-    #[must_use]
-    pub const fn with_axis(mut self, axis: V) -> Self {
-        self.axis = Some(axis);
-        self
-    }
-
-    /// With another [`sub_algorithm`](Self::sub_algorithm).
-    #[must_use]
-    pub const fn with_sub_algorithm(mut self, sub_algorithm: SubAlgorithm) -> Self {
-        self.sub_algorithm = sub_algorithm;
-        self
-    }
+    setters!(max_iterations, axis, sub_algorithm);
 }
 
 impl<V: Vector> Default for IntersectOptions<V> {
@@ -182,40 +182,7 @@ impl<V: Vector> RayCastOptions<V> {
         self
     }
 
-    /// With another [`tolerance`](Self::tolerance).
-    #[must_use]
-    pub const fn with_tolerance(mut self, tolerance: V::Scalar) -> Self {
-        self.tolerance = tolerance;
-        self
-    }
-
-    /// With another cap on the [iterations](Self::max_iterations).
-    #[must_use]
-    pub const fn with_max_iterations(mut self, max_iterations: usize) -> Self {
-        self.max_iterations = max_iterations;
-        self
-    }
-
-    /// With a first [`axis`](Self::axis).
-    #[must_use]
-    pub const fn with_axis(mut self, axis: V) -> Self {
-        self.axis = Some(axis);
-        self
-    }
-
-    /// With another [`sub_algorithm`](Self::sub_algorithm).
-    #[must_use]
-    pub const fn with_sub_algorithm(mut self, sub_algorithm: SubAlgorithm) -> Self {
-        self.sub_algorithm = sub_algorithm;
-        self
-    }
-
-    /// With another [`method`](Self::method).
-    #[must_use]
-    pub const fn with_method(mut self, method: CastMethod) -> Self {
-        self.method = method;
-        self
-    }
+    setters!(tolerance, max_iterations, axis, sub_algorithm, method);
 }
 
 impl<V: Vector> Default for RayCastOptions<V> {
@@ -264,40 +231,7 @@ impl<V: Vector> LinearCastOptions<V> {
         self
     }
 
-    /// With another [`tolerance`](Self::tolerance).
-    #[must_use]
-    pub const fn with_tolerance(mut self, tolerance: V::Scalar) -> Self {
-        self.tolerance = tolerance;
-        self
-    }
-
-    /// With another cap on the [iterations](Self::max_iterations).
-    #[must_use]
-    pub const fn with_max_iterations(mut self, max_iterations: usize) -> Self {
-        self.max_iterations = max_iterations;
-        self
-    }
-
-    /// With a first [`axis`](Self::axis).
-    #[must_use]
-    pub const fn with_axis(mut self, axis: V) -> Self {
-        self.axis = Some(axis);
-        self
-    }
-
-    /// With another [`sub_algorithm`](Self::sub_algorithm).
-    #[must_use]
-    pub const fn with_sub_algorithm(mut self, sub_algorithm: SubAlgorithm) -> Self {
-        self.sub_algorithm = sub_algorithm;
-        self
-    }
-
-    /// With another [`method`](Self::method).
-    #[must_use]
-    pub const fn with_method(mut self, method: CastMethod) -> Self {
-        self.method = method;
-        self
-    }
+    setters!(tolerance, max_iterations, axis, sub_algorithm, method);
 }
 
 impl<V: Vector> Default for LinearCastOptions<V> {

@@ -107,32 +107,6 @@ pub trait RoundedLineCrossing: SupportMap {
     ) -> Option<Crossing<Self::Vector>>;
 }
 
-impl<S: LineCrossing + ?Sized> LineCrossing for &S {
-    #[inline]
-    fn line_crossing(&self, source: S::Vector, direction: S::Vector) -> Option<Crossing<S::Vector>> {
-        (**self).line_crossing(source, direction)
-    }
-}
-
-impl<S: LineCrossing + ?Sized> LineCrossing for alloc::boxed::Box<S> {
-    #[inline]
-    fn line_crossing(&self, source: S::Vector, direction: S::Vector) -> Option<Crossing<S::Vector>> {
-        (**self).line_crossing(source, direction)
-    }
-}
-
-impl<S: RoundedLineCrossing + ?Sized> RoundedLineCrossing for &S {
-    #[inline]
-    fn rounded_line_crossing(
-        &self,
-        radius: ScalarOf<S>,
-        source: S::Vector,
-        direction: S::Vector,
-    ) -> Option<Crossing<S::Vector>> {
-        (**self).rounded_line_crossing(radius, source, direction)
-    }
-}
-
 /// The part of a line within a ball about zero, as `middle ± half`; `half` is `NaN` where the line misses the ball.
 struct Chord<V: Vector> {
     middle: V::Scalar,
