@@ -19,10 +19,9 @@ const MAX_SWEEPS: usize = 40;
 /// First `X = G·Gᵀ` by Cholesky's method, always pivoting on the largest remaining diagonal entry, so that column `k`
 /// of `G` is what is left of the pivot column over the root of the pivot. A thin ellipsoid turned out of the coordinate
 /// axes has its long axis in the last digits of the entries, where pivots cancel: they are kept to twice the digits, so
-/// that the matrix is taken at its word and is refused only if, as given, it is not positive definite. Then
-/// rotations of pairs of columns make them
-/// orthogonal, which leaves `G·Gᵀ` as it is; in the end the columns are `√λᵢ·vᵢ`. Unlike the QR method this finds small
-/// eigenvalues to high relative accuracy (Demmel and Veselić, *Jacobi's method is more accurate than QR*, 1992).
+/// that the matrix is taken at its word and is refused only if, as given, it is not positive definite. Then rotations of
+/// pairs of columns make them orthogonal, which leaves `G·Gᵀ` as it is; in the end the columns are `√λᵢ·vᵢ`. Unlike the QR
+/// method this finds small eigenvalues to high relative accuracy (Demmel and Veselić, *Jacobi's method is more accurate than QR*, 1992).
 pub(crate) fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes, InvalidShape> {
     let largest = x.iter().flatten().fold(0.0f64, |a, b| a.max(b.abs()));
     for (row, column) in [(1, 0), (2, 0), (2, 1)] {
