@@ -33,7 +33,7 @@ macro_rules! pointer {
                 (**self).core_support(direction, hint)
             }
 
-            #[inline]
+            #[inline(always)]
             fn core_support_derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
                 (**self).core_support_derivative(direction, change)
             }

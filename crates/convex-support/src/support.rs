@@ -158,7 +158,7 @@ pub(crate) fn swept<V: Vector>(radius: V::Scalar, direction: V) -> V {
 
 /// The derivative of [`swept`] at `direction` along `change`: with `u` the unit direction, the part of the change across
 /// `u`, times the radius by the length of the direction.
-#[inline]
+#[inline(always)]
 pub(crate) fn swept_derivative<V: Vector>(radius: V::Scalar, direction: V, change: V) -> V {
     if radius == V::Scalar::ZERO {
         return V::ZERO;

@@ -17,6 +17,12 @@ pub(crate) trait Body {
     fn support(&mut self, direction: Self::Vector) -> (Self::Vector, Self::Witness);
     /// The derivative of the support point at `direction` along `change`, in units of `scale`.
     fn derivative(&self, direction: Self::Vector, change: Self::Vector) -> Self::Vector;
+    /// The derivatives along two changes. Compiled as one piece, so that what depends on the direction alone, with its root
+    /// and quotients, is computed once.
+    #[inline(always)]
+    fn derivatives(&self, direction: Self::Vector, [u, w]: [Self::Vector; 2]) -> [Self::Vector; 2] {
+        [self.derivative(direction, u), self.derivative(direction, w)]
+    }
     /// Whether that derivative may be anything but zero.
     fn is_curved(&self) -> bool;
     /// What positions are relative to, in the world; for a difference, that of the first shape alone, since subtracting
@@ -82,7 +88,7 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
         (self.shape.core_support(direction, &mut self.hint) * self.per_unit, ())
     }
 
-    #[inline]
+    #[inline(always)]
     fn derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
         self.shape.core_support_derivative(direction, change) * self.per_unit
     }
@@ -143,7 +149,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
     type Vector = A::Vector;
     type Witness = PointPair<A::Vector>;
 
-    #[inline]
+    #[inline(always)]
     fn support(&mut self, direction: A::Vector) -> (A::Vector, PointPair<A::Vector>) {
         self.hint_a.rewind();
         self.hint_b.rewind();
@@ -152,7 +158,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
         (a - b, PointPair { a, b })
     }
 
-    #[inline]
+    #[inline(always)]
     fn derivative(&self, direction: A::Vector, change: A::Vector) -> A::Vector {
         let a = self.a.core_support_derivative(direction, change);
         let b = self.b.core_support_derivative(-direction, -change);
@@ -190,12 +196,12 @@ impl<B: Body> Body for Untraced<'_, B> {
     type Vector = B::Vector;
     type Witness = ();
 
-    #[inline]
+    #[inline(always)]
     fn support(&mut self, direction: B::Vector) -> (B::Vector, ()) {
         (self.0.support(direction).0, ())
     }
 
-    #[inline]
+    #[inline(always)]
     fn derivative(&self, direction: B::Vector, change: B::Vector) -> B::Vector {
         self.0.derivative(direction, change)
     }

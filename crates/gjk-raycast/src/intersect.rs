@@ -26,6 +26,7 @@ use crate::{IntersectOptions, Intersection, Iterate, Status};
 /// assert_eq!((next.overlap, next.iterations), (false, 1));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[inline]
 pub fn intersects<A, B>(a: &A, b: &B, options: IntersectOptions<A::Vector>) -> Intersection<A::Vector>
 where
     A: SupportMap + ?Sized,
@@ -35,6 +36,7 @@ where
 }
 
 /// [`intersects`], showing an observer every iterate.
+#[inline]
 pub fn intersects_with<A, B>(
     a: &A,
     b: &B,
@@ -47,9 +49,13 @@ where
 {
     let mut pair = Pair::new(a, b);
     let offset = a.origin() - b.origin();
-    let first = options.axis.and_then(direction).or_else(|| direction(offset)).unwrap_or_else(|| Vector::axis(0));
-    // The first axis is tried in the world's unit, before any other is fixed.
-    let size = pair.size(offset);
+    let first = match options.axis {
+        Some(axis) if is_moderate(axis.length_squared()) => axis,
+        axis => axis.and_then(direction).or_else(|| direction(offset)).unwrap_or_else(|| Vector::axis(0)),
+    };
+    // The first axis is tried in the world's unit, before anything else is set up; the sum of the coordinates bounds the
+    // length of the offset without a root.
+    let size = pair.extent() + pair.radius() + offset.abs().dot(Vector::ONE);
     let mut known = None;
     if is_moderate(size) && options.max_iterations > 0 {
         let point = pair.support(-first).0;
@@ -68,17 +74,43 @@ where
         }
         known = Some(point);
     }
-    let frame = Frame::new(&mut pair, offset, size);
+    search(&mut pair, &options, &First { offset, direction: first, point: known }, observer)
+}
+
+/// What was found about the first direction.
+struct First<V> {
+    /// The difference of the origins.
+    offset: V,
+    direction: V,
+    /// The support point, relative to the origins, if they are of sizes to be computed with in the world's unit.
+    point: Option<V>,
+}
+
+/// [`intersects_with`] where the first direction does not separate the shapes. Apart from it, so that a query whose first
+/// direction does is short enough to be compiled into its caller.
+#[inline(never)]
+fn search<A, B>(
+    pair: &mut Pair<'_, A, B>,
+    options: &IntersectOptions<A::Vector>,
+    first: &First<A::Vector>,
+    observer: impl FnMut(Iterate<'_, A::Vector>),
+) -> Intersection<A::Vector>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let size = pair.size(first.offset);
+    let frame = Frame::new(pair, first.offset, size);
     let wanted = Wanted {
-        first,
+        first: first.direction,
         limit: frame.radius,
         tolerance: Scalar::ZERO,
         closely: false,
         max_iterations: options.max_iterations,
         sub_algorithm: options.sub_algorithm,
     };
-    let known = known.map(|point| (point * frame.per_unit, ()));
-    let descent = descend(&mut Untraced(&mut pair), frame, wanted, known, observer);
+    let known = first.point.map(|point| (point * frame.per_unit, ()));
+    let descent = descend(&mut Untraced(pair), frame, wanted, known, observer);
     let overlap = match descent.end {
         End::Overlap => true,
         End::Separated => false,

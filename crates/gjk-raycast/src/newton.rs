@@ -154,7 +154,7 @@ impl<V: Vector> Newton<V> {
         let u = r / r_length;
         let basis = [u, if V::DIM == 2 { V::ZERO } else { cross(along, u) }];
         let [u, w] = basis;
-        let moved = basis.map(|b| body.derivative(along, b));
+        let moved = body.derivatives(along, basis);
         if moved == [V::ZERO; 2] {
             return None;
         }
@@ -190,20 +190,24 @@ impl<V: Vector> Newton<V> {
             return None;
         }
 
-        // Its piece, turned to n.
+        // Its piece, turned to n; a vertex stays, however far the turn.
         let from = from / from.dot(along);
         let change = along - from;
-        if !(change.length() <= largest) {
+        let moved = body.derivatives(from, basis);
+        let is_vertex = moved == [V::ZERO; 2];
+        // NaN fails this too.
+        if !(is_vertex || change.length() <= largest) {
             return None;
         }
-        let shift = body.derivative(from, change);
+        // The change is across n, so that its derivative is made of those along the basis.
+        let shift = if is_vertex { V::ZERO } else { moved[0] * u.dot(change) + moved[1] * w.dot(change) };
         let q = point + shift;
         if (q - p).length() <= (point - p).length() * V::Scalar::from_f64(FORETOLD) + self.noise {
             return None;
         }
-        let level = -(along.dot(point) + change.dot(shift) * half);
-        let moved = basis.map(|b| body.derivative(from, b));
-        let lead = if moved == [V::ZERO; 2] { -lead } else { lead };
+        let bend = if is_vertex { zero } else { change.dot(shift) * half };
+        let level = -(along.dot(point) + bend);
+        let lead = if is_vertex { -lead } else { lead };
 
         // Two pieces: along e the change is given, and what it is across e follows from the first equation.
         let e = [u.dot(q - p), w.dot(q - p)];

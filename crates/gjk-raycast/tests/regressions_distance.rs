@@ -4,8 +4,10 @@
 mod common;
 
 use common::{Quaternion, apart, at, cuboid, directions, meets, s, turned, ulps, v};
-use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
-use convex_support::{Cylinder, Point, Polytope, Rounded, Scalar, SupportMap, Triangle, Vector};
+use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3A};
+use convex_support::{
+    Cone, Cylinder, InvalidShape, Point, Polytope, Posed, Rounded, Scalar, SupportMap, Triangle, Vector,
+};
 use gjk_raycast::{DistanceOptions, IntersectOptions, Status, distance, intersects};
 
 fn both(single: impl FnOnce(), double: impl FnOnce()) {
@@ -313,4 +315,24 @@ fn s9_a_point_beyond_the_short_end_is_apart() {
         assert!((answer.distance.as_f64() - 0.005).abs() < ulps::<V>(4.0), "{answer:?}");
     }
     both(run::<Vec2>, run::<DVec2>);
+}
+
+/// A vertex on the slant of a cone, 1e-10 apart: the closest edge of the difference reaches from the apex, first found along
+/// a direction a right angle away, to the rim. Between the two, only the rim's curvature tells how the plane is turned about
+/// the edge, since the shortest vector is too short to have digits; steps by curvature refused a turn so large although a
+/// vertex stays where it is, and the bracket was left open by 2 % with the status `Stalled`.
+#[test]
+fn a_vertex_just_off_the_slant_of_a_cone_converges() -> Result<(), InvalidShape> {
+    let point = Point::new(DVec3::new(-0.31363, 0.8864, 0.64011))?;
+    let cone = Cone::<DVec3>::new(1.3824, 0.43314)?;
+    let turn = [-0.10653281093092501, -0.8848421753354835, 0.3091320055096589, 0.33187721842919776];
+    let a = Posed::new(point, DQuat::from_array(turn), DVec3::new(0.33497, 1.711, 0.92984))?;
+    let turn = [-0.26476062699718267, -0.8386872163612973, -0.11661267126966078, 0.46141851762098945];
+    let translation = DVec3::new(-0.5092884833057056, 1.013198403712642, -0.13485589563622247);
+    let b = Posed::new(cone, DQuat::from_array(turn), translation)?;
+    let answer = distance(&a, &b, DistanceOptions::default());
+    assert_eq!(answer.status, Status::Converged, "{answer:?}");
+    assert!(answer.upper - answer.lower < 1e-13, "{answer:?}");
+    assert!((answer.distance - 1.0000008467684762e-10).abs() < 1e-14, "{answer:?}");
+    Ok(())
 }

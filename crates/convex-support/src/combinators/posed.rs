@@ -124,7 +124,7 @@ impl<S: SupportMap> SupportMap for Posed<S> {
         self.rotation * self.shape.core_support(self.rotation.transpose_mul(direction), hint) + self.lost
     }
 
-    #[inline]
+    #[inline(always)]
     fn core_support_derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
         let (direction, change) = (self.rotation.transpose_mul(direction), self.rotation.transpose_mul(change));
         self.rotation * self.shape.core_support_derivative(direction, change)

@@ -88,7 +88,7 @@ impl<V: Vector3> SupportMap for Cone<V> {
         self.support(direction)
     }
 
-    #[inline]
+    #[inline(always)]
     fn core_support_derivative(&self, direction: V, change: V) -> V {
         let from_axis = across(direction);
         if self.is_apex_farthest(direction, from_axis) {

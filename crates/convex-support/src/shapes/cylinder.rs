@@ -70,7 +70,7 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
         self.support(direction)
     }
 
-    #[inline]
+    #[inline(always)]
     fn core_support_derivative(&self, direction: V, change: V) -> V {
         swept_derivative(self.radius, across(direction), across(change))
     }

@@ -178,7 +178,7 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
         self.axes * (self.semi_axes * u)
     }
 
-    #[inline]
+    #[inline(always)]
     fn core_support_derivative(&self, direction: V, change: V) -> V {
         let e = self.scaled_semi_axes * self.axes.transpose_mul(direction);
         let de = self.scaled_semi_axes * self.axes.transpose_mul(change);
