@@ -335,7 +335,8 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 }
                 // The line comes within rounding of the simplex without entering it ahead of x.
                 let mu = self.simplex.weighted_point().dot(line.direction).max(self.low);
-                (self.high, self.high_error, self.touched) = (mu, self.noise, Some(mu));
+                let error = if self.low_slope > zero { self.noise / self.low_slope } else { self.noise };
+                (self.high, self.high_error, self.touched) = (mu, error, Some(mu));
                 self.normal = self.normal.or(v.unit());
                 return Ok(None);
             }
@@ -384,7 +385,10 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         self.simplex.retain(at.face, at.weights);
         loop {
             let slope = -at.n.dot(direction);
-            (self.high, self.high_error) = (at.mu.max(self.low), (self.noise + nudge) / slope.max(self.low_slope));
+            // A point of the facet may be outside of the body by rounding, and is in it where the ray is that far behind the
+            // plane that is crossed less steeply.
+            let least = if self.low_slope > zero { slope.min(self.low_slope) } else { slope };
+            (self.high, self.high_error) = (at.mu.max(self.low), (self.noise + nudge) / least);
             let shrunk = angles[0].max(angles[1]) * ScalarOf::<B>::from_f64(0.5);
             let newton = if stuck > PATIENCE { None } else { self.newton(&recent, lead) };
             let newton = newton.filter(|step| step.angle <= shrunk || stuck > 0);

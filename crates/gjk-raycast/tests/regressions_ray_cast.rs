@@ -4,9 +4,11 @@
 mod common;
 
 use common::{Quaternion, at, cast, cuboid, directions, lambda, off, s, turned, ulps, v};
-use convex_support::glam::{DVec3, Vec3A};
-use convex_support::{Ball, Capsule, Cone, Cylinder, Hull, MinkowskiSum, Point, Polytope, Scalar, Segment, SupportMap};
-use gjk_raycast::{Outcome, Ray, RayCastOptions, Status, iterative_ray_cast, ray_cast};
+use convex_support::glam::{DQuat, DVec3, Vec3A};
+use convex_support::{
+    Ball, Capsule, Cone, Cuboid, Cylinder, Hull, MinkowskiSum, Point, Polytope, Posed, Scalar, Segment, SupportMap,
+};
+use gjk_raycast::{Outcome, Ray, RayCastOptions, Status, SubAlgorithm, iterative_ray_cast, ray_cast};
 
 /// Runs a test in both precisions.
 fn both(single: impl FnOnce(), double: impl FnOnce()) {
@@ -261,4 +263,23 @@ fn far_source_loses_only_its_own_digits() {
         }
     }
     both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// A ray that crosses a face at a cosine of 0.002, and a facet of support points behind it ten times as steeply: where the
+/// ray enters is known to rounding divided by the lesser cosine. The truth is from fifty digits.
+#[test]
+fn a_grazing_hit_is_bracketed_by_its_lesser_slope() {
+    let cuboid = Cuboid::new(DVec3::new(157.15030592069337, 78.57515296034668, 39.28757648017334)).expect("positive");
+    let turn = DQuat::from_xyzw(0.16172384247692612, 0.5165523092448319, -0.8269384664007119, 0.15228881566014074);
+    let place = DVec3::new(-155.9487882186194, -478.60807352170985, 1.330241923435082);
+    let ray = Ray {
+        source: DVec3::new(-452.0003311752498, -445.9729657411644, -268.09972528286045),
+        direction: DVec3::new(0.7187691680792078, -0.30536876865379214, 0.5357431193242176),
+    };
+    let axis = DVec3::new(-0.4446695582394215, 0.837573233373685, -0.3173957509342371);
+    let mut options =
+        RayCastOptions::new().with_tolerance(0.007890631001332341).with_sub_algorithm(SubAlgorithm::Johnson);
+    options.axis = Some(axis);
+    let cast = ray_cast(&Posed::new(cuboid, turn, place).expect("a rotation"), ray, options).expect("finite");
+    assert!(cast.lower <= 308.198737809357 && 308.198737809357 <= cast.upper, "{cast:?}");
 }
