@@ -8,7 +8,10 @@ use convex_support::glam::{DQuat, DVec3, Vec3A};
 use convex_support::{
     Ball, Capsule, Cone, Cuboid, Cylinder, Hull, MinkowskiSum, Point, Polytope, Posed, Scalar, Segment, SupportMap,
 };
-use gjk_raycast::{Outcome, Ray, RayCastOptions, Status, SubAlgorithm, iterative_ray_cast, ray_cast};
+use gjk_raycast::{
+    CastMethod, DistanceOptions, Outcome, Ray, RayCastOptions, Status, SubAlgorithm, distance, iterative_ray_cast,
+    ray_cast,
+};
 
 /// Runs a test in both precisions.
 fn both(single: impl FnOnce(), double: impl FnOnce()) {
@@ -282,4 +285,26 @@ fn a_grazing_hit_is_bracketed_by_its_lesser_slope() {
     options.axis = Some(axis);
     let cast = ray_cast(&Posed::new(cuboid, turn, place).expect("a rotation"), ray, options).expect("finite");
     assert!(cast.lower <= 308.198737809357 && 308.198737809357 <= cast.upper, "{cast:?}");
+}
+
+/// Found by the sweep: a polytope's middle is not its frame's origin, and the sum of both was rounded where it is posed: the
+/// shape was moved by up to half an ulp of its place, which at a million sizes in `f32` is a twentieth of its size, and the
+/// bounds did not hold the truth. Here half an ulp of the place is the shape.
+#[test]
+fn r30_a_posed_polytope_is_where_its_vertices_are() {
+    fn run<V: Quaternion>(far: f64) {
+        let corners = (0..8).map(|i| v::<V>([0, 1, 2].map(|axis| if i >> axis & 1 == 1 { 0.0625 } else { 0.0 })));
+        let cube = at(Polytope::new(corners).expect("eight points"), [far, 0.0, 0.0]);
+        let ray = Ray { source: v::<V>([far - 1.0, 0.03125, 0.03125]), direction: v::<V>([1.0, 0.0, 0.0]) };
+        for method in [CastMethod::Portal, CastMethod::Gjk] {
+            let found = ray_cast(&cube, ray, RayCastOptions::default().with_method(method)).expect("a finite ray");
+            let hit = found.outcome.hit().expect("the cube is ahead").lambda.as_f64();
+            assert!((hit - 1.0).abs() <= ulps::<V>(8.0), "{far} {method:?}: {hit}");
+            assert!(found.lower.as_f64() <= 1.0 && found.upper.as_f64() >= 1.0, "{far} {method:?}: {found:?}");
+        }
+        let point = at(Point::new(V::ZERO).expect("finite"), [far - 1.0, 0.0, 0.0]);
+        let apart = distance(&point, &cube, DistanceOptions::default()).distance.as_f64();
+        assert!((apart - 1.0).abs() <= ulps::<V>(8.0), "{far}: {apart}");
+    }
+    both(|| run::<Vec3A>(f64::from(1 << 20)), || run::<DVec3>(f64::from(1 << 30) * f64::from(1 << 19)));
 }
