@@ -65,7 +65,7 @@ pub struct Distance<V: Vector> {
     /// How the iteration ended. Whatever this says, the bracket holds.
     pub status: Status,
     /// The steps it took, after those for the margin.
-    pub iterations: u32,
+    pub iterations: usize,
 }
 
 /// Bounds on the Euclidean distance from the two margins, of `e1` about `e2` and the other way round: no further iteration.

@@ -42,7 +42,7 @@ use crate::{Margin, MarginOptions, Status};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InverseIterationTracker {
     tolerance: f64,
-    max_iterations: u32,
+    max_iterations: usize,
     /// λ̂ and the eigenvector's blocks y, z, once known.
     start: Option<(f64, [Vec<3>; 2])>,
     steps: u64,
@@ -54,7 +54,7 @@ impl InverseIterationTracker {
     /// A tracker that stops when the unit eigenvector changes by `tolerance` (the paper's ε), and gives up after
     /// `max_iterations` (its K; ln(1/ε) there).
     #[must_use]
-    pub const fn new(tolerance: f64, max_iterations: u32) -> Self {
+    pub const fn new(tolerance: f64, max_iterations: usize) -> Self {
         Self { tolerance, max_iterations, start: None, steps: 0, iterations: 0, fallbacks: 0 }
     }
 
@@ -101,7 +101,7 @@ impl InverseIterationTracker {
 
         if let Some((shift, start)) = self.start {
             let (found, iterations) = self.iterate(matrix, b, shift, start.map(shrink));
-            self.iterations += u64::from(iterations);
+            self.iterations += iterations as u64;
             if let Some((lambda, [y, z])) = found {
                 self.start = Some((lambda, [y, z].map(grow)));
                 // (10): z = [C − λI]⁻¹b, the point in the ball, where bᵀy = 1.
@@ -130,7 +130,7 @@ impl InverseIterationTracker {
         b: Vec<N>,
         shift: f64,
         mut x: [Vec<N>; 2],
-    ) -> (Option<(f64, [Vec<N>; 2])>, u32) {
+    ) -> (Option<(f64, [Vec<N>; 2])>, usize) {
         let g = inverse(shifted(c, shift));
         let gb = times(g, b);
         let ggb = times(g, gb);

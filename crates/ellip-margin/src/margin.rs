@@ -29,7 +29,7 @@ pub struct Margin<V: Vector> {
     /// How the iteration for ν ended.
     pub status: Status,
     /// The steps it took; 0 where x₁ lies in E₂.
-    pub iterations: u32,
+    pub iterations: usize,
     /// x* as seen by E₂: diag(a₂)⁻¹R₂ᵀ(x* − x₂), a unit vector unless x₁ lies in E₂. Kept because gradients from
     /// differences of `point` would lose digits far from the origin.
     pub(crate) ball_point: V,

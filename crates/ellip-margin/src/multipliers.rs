@@ -27,7 +27,7 @@ use crate::pair::{Pair, Vec, combine, dot};
 const TRUST: f64 = 2.0;
 
 /// The steps in ln β before those on Φ.
-const SWIFT: u32 = 12;
+const SWIFT: usize = 12;
 
 /// Below this residual of ln β the step is the last, and d follows it by its derivative: both leave an error of the residual's
 /// square, and the slab across d closes with the square of that.
@@ -38,8 +38,8 @@ const SMALL: f64 = 1e-4;
 pub(crate) fn closest<const N: usize>(
     pair: &Pair<N>,
     mut beta: [f64; 2],
-    max_iterations: u32,
-) -> Option<(Vec<N>, u32)> {
+    max_iterations: usize,
+) -> Option<(Vec<N>, usize)> {
     let r = pair.r().map(|x| -x);
     let shapes = [shape(&pair.axes1, &pair.a1), shape(&pair.axes2, &pair.a2)];
     let mut iterations = 0;

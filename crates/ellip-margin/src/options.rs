@@ -16,7 +16,7 @@ pub struct MarginOptions {
     /// leaves nothing but rounding; the margin's own error is about the square of this.
     pub tolerance: f64,
     /// The largest number of steps; the default, 64, is several times what any pair has been seen to need.
-    pub max_iterations: u32,
+    pub max_iterations: usize,
     /// How the equation is set up.
     pub method: Method,
 }
@@ -37,11 +37,17 @@ pub enum Method {
 
 impl Default for MarginOptions {
     fn default() -> Self {
-        Self { tolerance: 1e-15, max_iterations: 64, method: Method::Automatic }
+        Self::new()
     }
 }
 
 impl MarginOptions {
+    /// The default options.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { tolerance: 1e-15, max_iterations: 64, method: Method::Automatic }
+    }
+
     /// The same options with another [`tolerance`](Self::tolerance).
     #[must_use]
     pub const fn with_tolerance(self, tolerance: f64) -> Self {
@@ -50,7 +56,7 @@ impl MarginOptions {
 
     /// The same options with another [`max_iterations`](Self::max_iterations).
     #[must_use]
-    pub const fn with_max_iterations(self, max_iterations: u32) -> Self {
+    pub const fn with_max_iterations(self, max_iterations: usize) -> Self {
         Self { max_iterations, ..self }
     }
 
@@ -63,7 +69,6 @@ impl MarginOptions {
 
 /// How an iteration ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Status {
     /// The tolerance was met.

@@ -91,7 +91,7 @@ pub(crate) fn solve_straight<const N: usize>(pair: &Pair<N>, tolerance: f64) -> 
 }
 
 /// The steps [`solve_straight`] takes.
-pub(crate) const STRAIGHT_STEPS: u32 = 5;
+pub(crate) const STRAIGHT_STEPS: usize = 5;
 
 /// An answer among those found side by side; all of one type, as vector instructions want it.
 #[derive(Clone, Copy, Debug)]

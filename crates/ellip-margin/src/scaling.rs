@@ -36,7 +36,7 @@ pub struct Scaling<V: Vector> {
     /// How the iteration ended.
     pub status: Status,
     /// The steps it took.
-    pub iterations: u32,
+    pub iterations: usize,
 }
 
 /// The scale α about their own centres at which `e1` and `e2` touch (Perram and Wertheim's contact function is α²).

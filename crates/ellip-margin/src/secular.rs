@@ -24,7 +24,7 @@ pub(crate) struct Solution<const N: usize> {
     pub(crate) y: Vec<N>,
     pub(crate) margin: f64,
     pub(crate) status: Status,
-    pub(crate) iterations: u32,
+    pub(crate) iterations: usize,
 }
 
 impl<const N: usize> Solution<N> {

@@ -58,7 +58,7 @@ impl MarginTracker {
             }
         }
         self.steps += 1;
-        self.iterations += u64::from(margin.iterations);
+        self.iterations += margin.iterations as u64;
         margin
     }
 

@@ -75,7 +75,7 @@ proptest! {
 
     /// Whatever ends the iteration, the bracket holds.
     #[test]
-    fn bracket_at_any_aspect(e1 in ellipsoid3(7.0, 2.0), e2 in ellipsoid3(7.0, 2.0), steps in 0u32..20) {
+    fn bracket_at_any_aspect(e1 in ellipsoid3(7.0, 2.0), e2 in ellipsoid3(7.0, 2.0), steps in 0usize..20) {
         let full = distance(&e1, &e2, MarginOptions::default());
         let short = distance(&e1, &e2, MarginOptions::default().with_max_iterations(steps));
         prop_assert!(short.bracket.lower <= full.bracket.upper && full.bracket.lower <= short.bracket.upper);

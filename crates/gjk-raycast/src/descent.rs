@@ -232,7 +232,9 @@ impl<V: Vector, W: Copy + Default> Descent<V, W> {
     fn step_lightly(&mut self) -> Option<V::Scalar> {
         let (points, newest) = self.simplex.padded();
         let next = nearest(points, newest)?;
-        let level = next.normal.dot(points[newest]);
+        // A sliver's normal leans by its rounding: the points of its plane are as far as the farthest corner.
+        let levels = (0..=newest).filter(|&i| next.face.has(i)).map(|i| next.normal.dot(points[i]));
+        let level = levels.fold(V::Scalar::ZERO, V::Scalar::max);
         let (normal, size) = comfortable(next.normal)?;
         let length = if size > V::Scalar::ZERO { level / size } else { size };
         if length < self.length {

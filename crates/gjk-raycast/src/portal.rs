@@ -322,8 +322,8 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
 
     /// Whether the core's support point moves as a plane turns.
     pub(crate) fn is_curved(&self, frame: &Frame<B::Vector>, n: B::Vector) -> bool {
-        let moves = |e| self.body.derivative(n, e) != B::Vector::ZERO;
-        moves(frame.e1) || moves(frame.e2)
+        let moves = |d: B::Vector| d != B::Vector::ZERO;
+        self.body.is_curved() && self.body.derivatives(n, [frame.e1, frame.e2]).into_iter().any(moves)
     }
 
     /// The next support point along any vector.

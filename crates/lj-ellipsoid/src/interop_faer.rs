@@ -15,7 +15,7 @@ use crate::solution::{Shape, Solution, Weight};
 
 /// The ellipsoid E(c, X) = { x : (x − c)ᵀX(x − c) ≤ 1 } in a dimension known at run time; see
 /// [`Ellipsoid`](crate::Ellipsoid).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct EllipsoidDyn {
     shape: Shape,
 }
@@ -103,7 +103,7 @@ impl EllipsoidDyn {
 }
 
 /// [`Enclosing`](crate::Enclosing) in a dimension known at run time; the fields mean the same.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[must_use]
 pub struct EnclosingDyn {
     /// The ellipsoid. It contains every input point as evaluated in `f64`.

@@ -14,7 +14,7 @@ use crate::points::Points;
 use crate::scan::beyond;
 
 /// An ellipsoid of any dimension: what [`Ellipsoid`](crate::Ellipsoid) holds, in vectors.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Shape {
     pub(crate) center: Vec<f64>,
     /// Row k is the direction of semi-axis k.

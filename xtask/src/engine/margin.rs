@@ -21,13 +21,13 @@ fn options(tol: Option<f64>) -> MarginOptions {
 }
 
 /// Says that the iteration of a margin did not get as far as it was to.
-fn certain(status: Status, iterations: u32) -> Result<(), Problem> {
+fn certain(status: Status, iterations: usize) -> Result<(), Problem> {
     match status {
         Status::Converged => Ok(()),
         Status::IterationLimit => {
             Err(Problem::new(Kind::NotConverged, format!("the margin was not found in {iterations} iterations")))
         }
-        _ => {
+        Status::Stalled => {
             let message = format!("the iteration for the margin made no progress after {iterations} iterations");
             Err(Problem::new(Kind::NotConverged, message))
         }
@@ -90,7 +90,7 @@ impl<V: Space> Question for MarginQuestion<V> {
                 .with("gradient_translation", Field::vector(gradient.translation))
                 .with("gradient_rotation", rotation);
         }
-        Ok(answer.with("iterations", Field::Count(margin.iterations as usize)))
+        Ok(answer.with("iterations", Field::Count(margin.iterations)))
     }
 }
 
@@ -112,7 +112,7 @@ enum Tracker {
 
 /// The change of the unit eigenvector at which the inverse iteration ends, and the most steps: the eigenvalue's error is
 /// of second order in it.
-const INVERSE: (f64, u32) = (1e-8, 40);
+const INVERSE: (f64, usize) = (1e-8, 40);
 
 impl<V: Space> TrackQuestion<V> {
     pub(super) fn new(
@@ -151,7 +151,7 @@ impl<V: Space> Question for TrackQuestion<V> {
         }
         Ok(Answer::default()
             .with("margins", Field::Numbers(margins.iter().map(|m| Number::of(m.margin)).collect()))
-            .with("iterations", Field::Counts(margins.iter().map(|m| m.iterations as usize).collect()))
+            .with("iterations", Field::Counts(margins.iter().map(|m| m.iterations).collect()))
             .with("fallbacks", Field::Count(fallbacks as usize)))
     }
 }

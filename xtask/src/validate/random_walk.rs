@@ -20,7 +20,7 @@ const WALKS: usize = 40;
 const STEPS: usize = 200;
 
 /// The paper's ε, and its K = ln(1/ε).
-const PRECISION: (f64, u32) = (1e-6, 14);
+const PRECISION: (f64, usize) = (1e-6, 14);
 
 /// What the paper says a step may be.
 const SIZES: [f64; 10] = [1.0, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 15.0, 20.0, 30.0];
@@ -85,7 +85,7 @@ fn measure(size: f64) -> Row {
         let (mut paper, mut ours) = (InverseIterationTracker::new(PRECISION.0, PRECISION.1), MarginTracker::default());
         for pose in poses {
             let cold = free_margin(pose, obstacle, options);
-            row.cold_iterations += f64::from(cold.iterations);
+            row.cold_iterations += cold.iterations as f64;
             let off = |m: f64, tolerance: f64| (m - cold.margin).abs() > tolerance * (1.0 + cold.margin.abs());
             row.wrong += f64::from(u8::from(off(paper.step(pose, obstacle).margin, 1e-4)));
             row.newton_wrong += f64::from(u8::from(off(ours.step(pose, obstacle).margin, 1e-14)));
