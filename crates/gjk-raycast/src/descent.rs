@@ -146,14 +146,15 @@ pub(crate) fn descend<B: Body>(
         if reach > descent.lower {
             (descent.lower, descent.axis) = (reach, n);
         }
+        let (v, length) = descent.shortest();
         observer(Iterate {
             iteration: descent.iterations - 1,
             simplex: descent.simplex.points(),
-            v: descent.v(),
+            v,
             w,
             scale,
             lower: descent.lower * scale,
-            upper: descent.length * scale,
+            upper: length * scale,
         });
         let mut light = regions;
         if descent.lower > wanted.limit + noise {
@@ -221,10 +222,16 @@ pub(crate) fn descend<B: Body>(
 }
 
 impl<V: Vector, W: Copy + Default> Descent<V, W> {
-    /// The shortest vector found, or as long as there is none, the first direction.
-    fn v(&self) -> V {
+    /// The shortest vector found and its length; as long as there is none, the first direction and infinity.
+    fn shortest(&self) -> (V, V::Scalar) {
         let size = self.normal.length();
-        if self.length.is_finite() && size > V::Scalar::ZERO { self.normal * (self.length / size) } else { self.normal }
+        if !self.length.is_finite() || size <= V::Scalar::ZERO {
+            return (self.normal, self.length);
+        }
+        // A sliver's normal leans by its rounding, and its corners are not equally far along it.
+        let levels = self.simplex.points().iter().map(|p| self.normal.dot(*p) / size);
+        let length = levels.fold(self.length, V::Scalar::max);
+        (self.normal * (length / size), length)
     }
 
     /// Goes on to the face of the simplex closest to zero, if that is clear and brings it nearer; its normal's length.
@@ -232,9 +239,7 @@ impl<V: Vector, W: Copy + Default> Descent<V, W> {
     fn step_lightly(&mut self) -> Option<V::Scalar> {
         let (points, newest) = self.simplex.padded();
         let next = nearest(points, newest)?;
-        // A sliver's normal leans by its rounding: the points of its plane are as far as the farthest corner.
-        let levels = (0..=newest).filter(|&i| next.face.has(i)).map(|i| next.normal.dot(points[i]));
-        let level = levels.fold(V::Scalar::ZERO, V::Scalar::max);
+        let level = next.normal.dot(points[newest]);
         let (normal, size) = comfortable(next.normal)?;
         let length = if size > V::Scalar::ZERO { level / size } else { size };
         if length < self.length {
