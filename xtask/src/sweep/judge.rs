@@ -159,8 +159,10 @@ impl Cast {
             // Within rounding of a graze, a hit may be of what the ray passes by.
             verdict.violation = !holds && (is_surely_hit || entry(1.0 - GRAZE * epsilon).is_some());
         }
-        if let CastOutcome::Hit { excess, .. } = self.outcome {
-            verdict.excess = Some(excess);
+        if let CastOutcome::Hit { normal, excess, .. } = self.outcome {
+            // Where the ray meets the surface is known to rounding divided by the cosine.
+            let facing = normal.map_or(1.0, |n| -dot(wide(n), self.direction).f64() / speed);
+            verdict.excess = Some(excess * (facing / STEEP).clamp(0.0, 1.0));
         }
         match self.outcome {
             CastOutcome::Hit { lambda, .. } if obstacle.is_known() => match truth {

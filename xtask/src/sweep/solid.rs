@@ -160,7 +160,7 @@ impl Form {
         }
     }
 
-    /// How far `p` is from it, or a little more; 0 in it.
+    /// How far `p` is from it, or beyond the planes of a hull; 0 in it.
     pub(super) fn outside(&self, p: Vec3<DoubleDouble>) -> f64 {
         let r = DoubleDouble::from;
         let zero = r(0.0);
@@ -175,20 +175,17 @@ impl Form {
                 (up * up + out * out).sqrt()
             }
             Self::Cone { half_height, radius } => {
-                // Both half-planes of the section that bound it above: by no less than the distance, at right angles or more.
-                let (h, out) = (r(*half_height), around());
-                let slant = (h * h * r(4.0) + r(*radius) * r(*radius)).sqrt();
-                let side = (out * h * r(2.0) - (h - p[1]) * r(*radius)) / slant;
-                // Above the apex the side's plane is nearer than the apex, by the sine of its half angle at most.
-                let sine = r(*radius) / slant;
-                (side.max(zero) / sine).max(zero) + (-h - p[1]).max(zero)
+                // In the section through p: the triangle of the apex, the rim and the middle of the base.
+                let (h, at) = (r(*half_height), [around(), p[1]]);
+                let (apex, rim, base) = ([zero, h], [r(*radius), -h], [zero, -h]);
+                if p[1] >= -h && at[0] * h * r(2.0) <= (h - p[1]) * r(*radius) {
+                    zero
+                } else {
+                    from_segment(at, apex, rim).min(from_segment(at, base, rim))
+                }
             }
             Self::Capsule { half_height, radius } => norm([p[0], beyond(p[1], *half_height), p[2]]) - r(*radius),
-            Self::Ellipsoid { semi_axes } => {
-                // Towards the centre it is no farther than p is beyond the surface there.
-                let gauge = norm([0, 1, 2].map(|i| p[i] / r(semi_axes[i])));
-                norm(p) * (gauge - r(1.0))
-            }
+            Self::Ellipsoid { semi_axes } => from_ellipsoid(p, semi_axes.map(r)),
             Self::RoundBox { half_extents, radius } => from_box(half_extents) - r(*radius),
             Self::Hull(hull) => hull.planes.beyond(p),
         };
@@ -216,6 +213,41 @@ impl Form {
 
 fn scaled(v: Vec3<f64>, by: Vec3<f64>) -> Vec3<f64> {
     [v[0] * by[0], v[1] * by[1], v[2] * by[2]]
+}
+
+/// The distance of a point of the plane from the segment between two others.
+fn from_segment(p: [DoubleDouble; 2], a: [DoubleDouble; 2], b: [DoubleDouble; 2]) -> DoubleDouble {
+    let minus = |p: [DoubleDouble; 2], q: [DoubleDouble; 2]| [p[0] - q[0], p[1] - q[1]];
+    let dot = |p: [DoubleDouble; 2], q: [DoubleDouble; 2]| p[0] * q[0] + p[1] * q[1];
+    let (along, seen) = (minus(b, a), minus(p, a));
+    let part = (dot(seen, along) / dot(along, along)).max(DoubleDouble::from(0.0)).min(DoubleDouble::from(1.0));
+    let off = minus(seen, along.map(|c| c * part));
+    dot(off, off).sqrt()
+}
+
+/// The distance of a point from the ellipsoid with these semi-axes; 0 in it.
+///
+/// Its nearest point x has `xᵢ = aᵢ²pᵢ/(aᵢ² + t)`, and with `t` the sum of `(xᵢ/aᵢ)²` falls and is convex: Newton's method rises
+/// from 0 to where it is 1.
+fn from_ellipsoid(p: Vec3<DoubleDouble>, a: Vec3<DoubleDouble>) -> DoubleDouble {
+    let (zero, one) = (DoubleDouble::from(0.0), DoubleDouble::from(1.0));
+    let mut t = zero;
+    for _ in 0..200 {
+        let (mut beyond, mut slope) = (-one, zero);
+        for i in 0..3 {
+            let denominator = a[i] * a[i] + t;
+            let part = a[i] * p[i] / denominator;
+            beyond = beyond + part * part;
+            slope = slope + part * part / denominator;
+        }
+        let step = beyond / (slope + slope);
+        if step > t * DoubleDouble::from(1e-30) {
+            t = t + step;
+        } else {
+            break;
+        }
+    }
+    norm([0, 1, 2].map(|i| p[i] * t / (a[i] * a[i] + t)))
 }
 
 /// Both roots of `aλ² + 2bλ + c`, the smaller first if `a > 0`, neither by a difference of like numbers.
@@ -401,7 +433,7 @@ impl Solid {
         self.form.support_value(self.turned_back(n))
     }
 
-    /// How far a point of the world is from it, or a little more; 0 in it.
+    /// How far a point of the world is from it; 0 in it.
     pub(super) fn outside(&self, p: Vec3<DoubleDouble>) -> f64 {
         self.form.outside(self.turned_back(sub(p, wide(self.translation))))
     }
