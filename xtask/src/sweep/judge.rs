@@ -245,13 +245,15 @@ impl Proof {
     pub(super) fn judge<V: Vector3>(self, answer: &Distance<V>, allowed: f64) -> Verdict {
         let number = |x: V::Scalar| DoubleDouble::from(x.as_f64());
         let distance = number(answer.distance);
+        // Planes that overlap bound no distance.
+        let least = self.least.max(DoubleDouble::from(0.0));
         Verdict {
             false_hit: answer.overlap && self.most.f64() > allowed && self.least.f64() > 0.0,
             missed: !answer.overlap && self.least.f64() <= 0.0 && distance.f64() > allowed,
             undecided: false,
             unconverged: answer.status != Status::Converged,
             violation: number(answer.upper) < self.least || number(answer.lower) > self.most,
-            error: Some((distance - self.least).abs().max((distance - self.most).abs()).f64()),
+            error: Some((distance - least).abs().max((distance - self.most).abs()).f64()),
             excess: Some(self.excess),
             iterations: answer.iterations,
         }
