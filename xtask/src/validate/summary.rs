@@ -132,11 +132,11 @@ pub(super) fn print(records: &[Record], output: &mut impl Write) -> io::Result<(
     let total = total(records);
     writeln!(
         output,
-        "{} cases: {} right, {} wrong ({} errors where an answer was due), {} right with a remark",
+        "{} cases: {} right, {} wrong ({} of them errors where an answer was due), {} right with a remark",
         total.cases,
         total.cases - total.wrong,
         total.wrong,
-        total.errored,
+        bad.iter().filter(|record| record.verdict.errored).count(),
         total.soft
     )
 }
