@@ -378,7 +378,8 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         }
         let off = simplex.weighted_point() - self.local.line.at(high);
         let within = self.radius + self.noise;
-        let slope = self.low_slope;
+        // Where no plane is crossed, as by a ray within the plane of a face, the bracket begins where the ray does.
+        let slope = if self.low_slope > ScalarOf::<B>::ZERO { self.low_slope } else { ScalarOf::<B>::ONE };
         let closed = (high - self.low) * slope <= self.noise.max(self.options.tolerance);
         if !(closed && off.length_squared() <= within * within && high + self.noise >= self.low) {
             return Err(None);

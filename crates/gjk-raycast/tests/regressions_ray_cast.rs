@@ -308,3 +308,16 @@ fn r30_a_posed_polytope_is_where_its_vertices_are() {
     }
     both(|| run::<Vec3A>(f64::from(1 << 20)), || run::<DVec3>(f64::from(1 << 30) * f64::from(1 << 19)));
 }
+
+/// A ray within the plane of a face, towards the face's edge: no plane is crossed, and a bracket that is scaled by the cosine
+/// of the last one was closed at once, at the source.
+#[test]
+fn a_ray_in_the_plane_of_a_face_meets_its_edge() {
+    fn run<V: Quaternion>() {
+        let corners = [[0.0, 1.0, -1.0], [1.0, 0.0, -1.0], [-2.0, -2.0, -1.0], [2.0, 2.0, 0.0]];
+        let target = Polytope::new(corners.map(v::<V>)).expect("finite");
+        let hit = lambda(&target, [1.0, 1.0, -1.0], [-1.0, -1.0, 0.0]).expect("it is hit");
+        assert!((hit - 0.5).abs() < ulps::<V>(64.0), "{hit}");
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
