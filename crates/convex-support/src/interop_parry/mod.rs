@@ -1,7 +1,7 @@
 //! Bridges to parry, for code that moves from it or uses both.
 //!
-//! parry is one crate for each dimension and precision, with the same names in each; so is this bridge: one text, compiled
-//! for each, and another that 3D space or the plane has beside.
+//! parry is one crate for each dimension and precision, with the same names in each. So is this bridge: `shapes.rs` is
+//! compiled for all of them, with `solid.rs` for 3D space or `planar.rs` for the plane.
 
 /// parry2d's shapes as shapes of this crate, and back; single precision.
 #[cfg(feature = "parry2d")]
@@ -41,4 +41,14 @@ pub mod parry3d_f64 {
 
     include!("shapes.rs");
     include!("solid.rs");
+}
+
+/// Asserts that two shapes reach equally far along some directions, to rounding in single precision.
+#[cfg(test)]
+fn same<V: crate::Vector>(a: &impl crate::SupportMap<Vector = V>, b: &impl crate::SupportMap<Vector = V>) {
+    for direction in [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.5, -0.25, 0.75], [-1.0, 2.0, 0.125]] {
+        let d = V::from_fn(|axis| crate::Scalar::from_f64(direction[axis]));
+        let (a, b) = (a.support_value(d).as_f64(), b.support_value(d).as_f64());
+        assert!((a - b).abs() <= 1e-6 * a.abs(), "along {direction:?}: {a} against {b}");
+    }
 }

@@ -1,4 +1,4 @@
-// What the bridges to parry's crates of the plane have beside.
+// What only the bridges to parry's crates of the plane have.
 
 use alloc::vec::Vec;
 
@@ -42,16 +42,8 @@ pub fn convex_polygon(polytope: &Polytope<V>) -> Option<theirs::ConvexPolygon> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::interop_parry::same;
     use crate::{Affine, Capsule};
-
-    const DIRECTIONS: [V; 4] = [V::X, V::NEG_Y, V::new(0.5, -0.25), V::new(-1.0, 2.0)];
-
-    fn same(a: &dyn SupportMap<Vector = V>, b: &dyn SupportMap<Vector = V>) {
-        for d in DIRECTIONS {
-            let (a, b) = (a.support_value(d), b.support_value(d));
-            assert!((a - b).abs() <= 1e-6 * a.abs(), "along {d}: {a} against {b}");
-        }
-    }
 
     #[test]
     fn parrys_shapes_are_ours() {
