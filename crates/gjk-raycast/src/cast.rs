@@ -1,13 +1,13 @@
 //! Algorithm 3 on a core: the ray cast that [`ray_cast`](crate::ray_cast) and [`linear_cast`](crate::linear_cast) share.
 //!
 //! The paper's loop moves a point `x` along the ray up to one supporting plane of the body after another, and finds the
-//! planes by GJK steps towards `x`. Four things are added to it here; `docs/ray-cast.md` derives them.
+//! planes by GJK steps towards `x` (`approach.rs`). Four things are added to it here; `docs/ray-cast.md` derives them.
 //!
 //! - In 3D, a quicker search is tried first (`portal.rs`, `swept.rs`); the one described here is what remains where that is
 //!   in doubt.
 //! - As soon as the simplex of support points is pierced by the ray, the hit is bracketed: behind the last plane, and
 //!   before the point where the ray enters the simplex. From then on, the simplex is refined where it is pierced
-//!   ([`Search::refine`]), and no vector has to tend to zero.
+//!   (`refine.rs`), and no vector has to tend to zero.
 //! - Where the ray runs nearly along the planes, a step along it gains nothing, and the steps of GJK are taken across
 //!   the ray, with the whole line for `x`.
 //! - A radius is never made of support points: the simplex is swept by it.
@@ -16,13 +16,9 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::body::{Body, power_of_two_near};
-use crate::closest::{Closest, nearest_face};
-use crate::decrease::Decrease;
-use crate::entry::{Entry, entry};
 use crate::line::LocalRay;
 use crate::ray_cast::Ray;
 use crate::simplex::{MAX_POINTS, Simplex};
-use crate::turn::{Condition, Found, Recent, Turn, turn};
 use crate::{CastMethod, Iterate, Miss, Outcome, RayCastOptions, Status};
 
 /// A hit, as the search knows it.
@@ -158,7 +154,7 @@ pub(crate) enum End<V> {
 }
 
 /// A support point and what it is made of, or how the search ends instead.
-type Probe<B> = Result<(<B as Body>::Vector, <B as Body>::Witness), End<<B as Body>::Vector>>;
+pub(crate) type Probe<B> = Result<(<B as Body>::Vector, <B as Body>::Witness), End<<B as Body>::Vector>>;
 
 pub(crate) struct Search<'a, B: Body, O> {
     pub(crate) body: &'a mut B,
@@ -190,15 +186,6 @@ pub(crate) struct Search<'a, B: Body, O> {
     pub(crate) iterations: usize,
 }
 
-/// Slopes of planes, as cosines of the angle between normal and ray, below which steps along the ray gain little.
-const GRAZING: f64 = 0.1;
-
-/// Exchanges of a point that gain nothing before the line is nudged.
-const PATIENCE: usize = 3;
-
-/// How often it is nudged at a time, each time twice as far, until it pierces the simplex.
-const MAX_NUDGES: usize = 6;
-
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     fn run(&mut self) -> End<B::Vector> {
         if B::Vector::DIM == 3
@@ -224,7 +211,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     ///
     /// The body is behind the plane `n·y = n·p + r`. A point `x` of the ray is before it by `n·(x − p) − r`, and if that
     /// is positive and the ray approaches, it crosses the plane after `(n·(x − p) − r)/(−n·d)`, and not before.
-    fn probe(&mut self, n: B::Vector) -> Probe<B> {
+    pub(crate) fn probe(&mut self, n: B::Vector) -> Probe<B> {
         let (point, witness) = self.sight(n)?;
         self.advance(n, point)?;
         Ok((point, witness))
@@ -280,244 +267,5 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             lower: self.local.lambda(self.low),
             upper: self.local.lambda(self.high),
         });
-    }
-
-    /// GJK steps, beginning along `n`, until the ray enters the simplex of support points, or touches the body.
-    fn approach(&mut self, mut n: B::Vector) -> Result<Option<Entry<B::Vector>>, End<B::Vector>> {
-        let zero = ScalarOf::<B>::ZERO;
-        let line = self.local.line;
-        let mut across = false;
-        // The distances of the simplex from x and from the line decrease while x stays; near contact by less than
-        // rounding for a few steps, while v turns.
-        let (mut nearing, mut nearing_across) = (Decrease::new(), Decrease::new());
-        loop {
-            let before = self.low;
-            let (point, witness) = self.probe(n)?;
-            if self.low > before {
-                nearing = Decrease::new();
-            }
-            if !self.simplex.points().contains(&point) {
-                self.simplex.push(point, n, witness);
-                let found = entry(self.simplex.points(), line, self.radius, self.noise);
-                if let Some(found) = found.filter(|e| e.mu >= self.low - self.low_error - self.noise) {
-                    return Ok(Some(found));
-                }
-            }
-            // The paper's step: the point of {x} − P closest to zero.
-            let x = line.at(self.low);
-            let Closest { v, face, weights } = self.toward(|p| x - p, B::Vector::DIM)?;
-            let length = v.norm();
-            if length - self.radius <= self.noise {
-                // x is in the body, or no farther from it than rounding.
-                self.simplex.retain(face, weights);
-                (self.high, self.high_error) = (self.low, self.low_error);
-                return Ok(None);
-            }
-            let slope = v.dot(line.direction) / length;
-            let progress = nearing.goes_on(length);
-            across |= slope < zero && (!progress || slope > -ScalarOf::<B>::from_f64(GRAZING));
-            if progress && (!across || slope >= zero) {
-                self.simplex.retain(face, weights);
-                (self.v, n) = (v, v / length);
-                continue;
-            }
-            // The same across the ray, with the whole line for x.
-            let Closest { v, face, weights } = self.toward(|p| line.across(line.foot - p), B::Vector::DIM - 1)?;
-            // A short vector that long ones cancelled to leans along the ray by their rounding, and a plane that leans
-            // does not stay before the whole ray.
-            let v = line.across(v);
-            let length = v.norm();
-            self.simplex.retain(face, weights);
-            if length - self.radius <= self.noise {
-                if slope >= zero {
-                    // Where it does, the ray may be past the simplex.
-                    return Err(End::Open(Status::Stalled));
-                }
-                // The line comes within rounding of the simplex without entering it ahead of x.
-                let mu = self.simplex.weighted_point().dot(line.direction).max(self.low);
-                let error = if self.low_slope > zero { self.noise / self.low_slope } else { self.noise };
-                (self.high, self.high_error, self.touched) = (mu, error, Some(mu));
-                self.normal = self.normal.or(v.unit());
-                return Ok(None);
-            }
-            if !nearing_across.goes_on(length) {
-                return Err(End::Open(Status::Stalled));
-            }
-            nearing = Decrease::new();
-            (self.v, n) = (v, v / length);
-        }
-    }
-
-    /// The point closest to zero of the simplex seen through `map`, in a space of `dimension` dimensions.
-    fn toward(
-        &self,
-        map: impl Fn(B::Vector) -> B::Vector,
-        dimension: usize,
-    ) -> Result<Closest<B::Vector>, End<B::Vector>> {
-        let mut seen = [B::Vector::ZERO; MAX_POINTS];
-        for (s, p) in seen.iter_mut().zip(self.simplex.points()) {
-            *s = map(*p);
-        }
-        let points = &seen[..self.simplex.points().len()];
-        self.options.sub_algorithm.closest(points, dimension).ok_or(End::Open(Status::Stalled))
-    }
-
-    /// Closes the bracket between the last plane and the entry into the simplex: the next plane is taken along the
-    /// normal at the entry, and the support point found there replaces one of the simplex such that the ray still
-    /// enters it, and earlier.
-    ///
-    /// A ray that runs through an edge or a vertex enters more than one facet there, and like the simplex method of
-    /// linear programming, the exchange of points can go round in circles. Then the line that the simplex is kept pierced
-    /// by is nudged into the facet; planes are still crossed by the ray itself.
-    fn refine(&mut self, entered: Option<Entry<B::Vector>>) -> Result<(), End<B::Vector>> {
-        let Some(mut at) = entered else { return Ok(()) };
-        let direction = self.local.line.direction;
-        let mut wanted = self.noise.max(self.options.tolerance);
-        let mut line = self.local.line;
-        let zero = ScalarOf::<B>::ZERO;
-        let (mut nudge, mut patience) = (zero, PATIENCE);
-        // Newton's steps are taken while they shrink, and the facet's normal after one that did not; between two pieces,
-        // every other step only goes back and forth.
-        let (mut last_gap, mut stuck) = (ScalarOf::<B>::infinity(), 0);
-        let unbounded = [ScalarOf::<B>::infinity(); 2];
-        let mut angles = unbounded;
-        let (mut recent, mut lead) = (Recent::new(), self.noise);
-        self.simplex.retain(at.face, at.weights);
-        loop {
-            let slope = -at.n.dot(direction);
-            // A point of the facet may be outside of the body by rounding, and is in it where the ray is that far behind the
-            // plane that is crossed less steeply.
-            let least = if self.low_slope > zero { slope.min(self.low_slope) } else { slope };
-            (self.high, self.high_error) = (at.mu.max(self.low), (self.noise + nudge) / least);
-            let shrunk = angles[0].max(angles[1]) * ScalarOf::<B>::from_f64(0.5);
-            let newton = if stuck > PATIENCE { None } else { self.newton(&recent, lead) };
-            let newton = newton.filter(|step| step.angle <= shrunk || stuck > 0);
-            angles = newton.map_or(unbounded, |step| [step.angle, angles[0]]);
-            let n = newton.map_or(at.n, |step| step.to);
-            self.v = n;
-            let (point, witness) = self.probe(n)?;
-            let gap = (self.high - self.low) * slope.max(self.low_slope);
-            if gap <= wanted {
-                return Ok(());
-            }
-            let touch = point + n * self.radius;
-            let progress = gap <= last_gap * ScalarOf::<B>::from_f64(0.5);
-            (last_gap, stuck) = (gap, if progress || newton.is_none() { 0 } else { stuck + 1 });
-            lead = if stuck == 0 { self.noise } else { lead * ScalarOf::<B>::from_f64(16.0) };
-            recent.push(Found { point: touch, along: n }, witness);
-            if self.touches(&recent, n) {
-                return Ok(());
-            }
-            let known = self.simplex.points().contains(&point);
-            if known && newton.is_none() {
-                return Err(End::Open(Status::Stalled));
-            }
-            if known {
-                continue;
-            }
-            let facet = self.simplex.middle();
-            let before = self.simplex;
-            self.simplex.push(point, n, witness);
-            let mut next = entry(self.simplex.points(), line, self.radius, self.noise);
-            if newton.is_some() && next.is_none_or(|next| next.mu >= at.mu) {
-                // Away from the facet's normal, there may be nothing before the facet.
-                self.simplex = before;
-                continue;
-            }
-            patience -= usize::from(next.is_none_or(|next| next.mu >= at.mu));
-            let mut step = ScalarOf::<B>::from_f64(8.0) * self.noise;
-            for _ in 0..MAX_NUDGES {
-                if next.is_some() && patience > 0 {
-                    break;
-                }
-                patience = PATIENCE;
-                let inward = line.across(facet - line.foot);
-                line.foot += inward.unit().unwrap_or(B::Vector::ZERO) * step.min(inward.norm());
-                nudge += step;
-                wanted += step;
-                step += step;
-                next = entry(self.simplex.points(), line, self.radius, self.noise);
-            }
-            match next {
-                Some(next) if next.mu > self.low => {
-                    at = next;
-                    self.simplex.retain(at.face, at.weights);
-                }
-                // The body has points of the line on both sides of the lower bound, which so is in the body.
-                Some(next) => {
-                    self.simplex.retain(next.face, next.weights);
-                    (self.high, self.high_error) = (
-                        self.low,
-                        self.low_error + if nudge > zero { nudge / slope.min(self.low_slope) } else { zero },
-                    );
-                    return Ok(());
-                }
-                None => return Err(End::Open(Status::Stalled)),
-            }
-        }
-    }
-
-    /// Whether the ray runs through the last support points, or through a segment or triangle of them, where that also
-    /// is where it crosses the plane; then the bracket is closed.
-    fn touches(&mut self, recent: &Recent<B::Vector, B::Witness>, n: B::Vector) -> bool {
-        let line = self.local.line;
-        let mut seen = [B::Vector::ZERO; MAX_POINTS];
-        for (s, f) in seen.iter_mut().zip(recent.found()) {
-            *s = line.across(f.point - line.foot);
-        }
-        let Some(nearest) = nearest_face(&seen[..recent.found().len()], B::Vector::DIM - 1) else { return false };
-        let mut touching = Simplex::new();
-        for (f, &witness) in recent.found().iter().zip(recent.witnesses()) {
-            touching.push(f.point, f.along, witness);
-        }
-        touching.retain(nearest.face, nearest.weights);
-        // Measured again, since the coordinates in a flat triangle may be nothing but rounding.
-        let passed = touching.weighted_point();
-        let aside = line.across(passed - line.foot).length();
-        let mu = passed.dot(line.direction);
-        let slope = -n.dot(line.direction);
-        let closed =
-            aside <= self.noise * ScalarOf::<B>::from_f64(0.5) && (mu - self.low) * slope <= self.noise + self.noise;
-        if closed {
-            self.simplex = touching;
-            (self.high, self.high_error) = (mu.max(self.low), self.noise / slope);
-        }
-        closed
-    }
-
-    /// The direction in which the plane crossed last should be crossed by the ray where it supports a curved body.
-    fn newton(&self, recent: &Recent<B::Vector, B::Witness>, lead: ScalarOf<B>) -> Option<Turn<B::Vector>> {
-        let line = self.local.line;
-        // The corners of the simplex first, since what was found last was found nearest the answer.
-        let mut found = [Found::default(); 2 * MAX_POINTS];
-        let mut len = 0;
-        for (&point, &along) in self.simplex.points().iter().zip(self.simplex.along()) {
-            found[len] = Found { point: point + along * self.radius, along };
-            len += 1;
-        }
-        for &last in recent.found() {
-            found[len] = last;
-            len += 1;
-        }
-        let condition = Condition {
-            axis: line.direction,
-            target: line.foot,
-            distance: ScalarOf::<B>::ZERO,
-            noise: self.noise,
-            lead,
-        };
-        let step = turn(&found[..len], condition, |n, change| self.derivative(n, change))?;
-        (step.to.dot(line.direction) < ScalarOf::<B>::ZERO).then_some(step)
-    }
-
-    /// The derivative of the swept body's support point; zero where the core is not curved, since a radius alone needs
-    /// no iteration.
-    fn derivative(&self, n: B::Vector, change: B::Vector) -> B::Vector {
-        let core = self.body.derivative(n, change);
-        if core == B::Vector::ZERO || self.radius == ScalarOf::<B>::ZERO {
-            return core;
-        }
-        let across = change - n * (change.dot(n) / n.length_squared());
-        core + across * (self.radius / n.norm())
     }
 }

@@ -51,6 +51,7 @@ extern crate std;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+mod approach;
 mod batch;
 mod body;
 mod cast;
@@ -69,13 +70,18 @@ mod line;
 mod linear_cast;
 mod newton;
 mod options;
+mod osculate;
+mod piece;
 mod portal;
 mod ray_cast;
+mod refine;
 mod regions;
 mod result;
 mod signed_volumes;
 mod simplex;
+mod summit;
 mod swept;
+mod symmetric;
 mod turn;
 
 pub use convex_support;

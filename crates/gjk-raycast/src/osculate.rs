@@ -1,0 +1,123 @@
+//! The search of `portal.rs` where the body is smooth: it is replaced by the ellipsoid about its origin that has the same support
+//! point and derivative where it is looked at.
+//!
+//! The support value of an ellipsoid is `h(n) = √(n·Qn)`, so its support point and the derivative of that are `p = Qn/h` and
+//! `D = (Q − p·pᵀ)/h`, whence `Q = h·D + p·pᵀ`. Where the ray enters it is known in closed form, and the next plane is the
+//! one there. An ellipsoid is its own model.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use crate::Iterate;
+use crate::body::Body;
+use crate::cast::{ScalarOf, Search};
+use crate::piece::{MAX_PIECES, Piece, Pieces};
+use crate::portal::{Best, Exit, Frame, Slant};
+use crate::symmetric::{Symmetric, dot};
+
+/// Support points of the search.
+const MAX_STEPS: usize = 12;
+
+impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
+    /// Replaces a smooth body by the ellipsoid that osculates it, takes the plane where the ray enters that, and so on.
+    pub(crate) fn osculate(&mut self, frame: &Frame<B::Vector>, first: B::Vector) -> Result<(), Exit<B>> {
+        let (zero, one) = (ScalarOf::<B>::ZERO, ScalarOf::<B>::ONE);
+        let direction = self.local.line.direction;
+        let foot = (self.local.line.foot.dot(frame.e1), self.local.line.foot.dot(frame.e2));
+        let wanted = self.noise.max(self.options.tolerance);
+        let end = self.end();
+        let (mut n, mut slant): (_, Option<Slant<ScalarOf<B>>>) = (first, None);
+        let mut best: Option<Best<B::Vector>> = None;
+        let mut pieces: Option<Pieces<B::Vector, B::Witness>> = None;
+        let mut last = ScalarOf::<B>::infinity();
+        for _ in 0..MAX_STEPS {
+            let moved = [frame.e1, frame.e2, -direction].map(|e| self.moved(n, e));
+            let bend = Symmetric { a: moved[0].dot(frame.e1), b: moved[0].dot(frame.e2), d: moved[1].dot(frame.e2) };
+            if !bend.is_regular() {
+                return Err(None);
+            }
+            let mut seen = self.look(frame, n)?;
+            seen.slant = slant;
+            match slant {
+                None => self.separate(n, &seen)?,
+                Some(slant) => {
+                    let tau = slant.crossing(&seen);
+                    if best.is_none_or(|best| tau > best.tau) {
+                        best = Some(Best { tau, slant, point: seen.point });
+                        if tau > end {
+                            self.separate(n, &seen)?;
+                        }
+                    }
+                    let piece = Piece { seen, slant, bend };
+                    match &mut pieces {
+                        Some(pieces) if pieces.len == MAX_PIECES => {
+                            pieces.kept.rotate_left(1);
+                            pieces.kept[MAX_PIECES - 1] = piece;
+                        }
+                        Some(pieces) => {
+                            pieces.kept[pieces.len] = piece;
+                            pieces.len += 1;
+                        }
+                        None => pieces = Some(Pieces::new(piece)),
+                    }
+                }
+            }
+            if let (Some(best), Some(pieces), Some(at)) = (&best, &pieces, slant) {
+                if let Some((corners, weights, len)) = pieces.passed(self.noise) {
+                    let corners = corners.map(|i| pieces.kept[i].seen);
+                    let mut high = zero;
+                    for (p, &weight) in corners[..len].iter().zip(&weights) {
+                        high += p.t * weight;
+                    }
+                    if high < self.low {
+                        return Err(None);
+                    }
+                    if high - best.tau <= wanted * best.slant.length() {
+                        return self.close(frame, &corners[..len], &weights[..len], high, best);
+                    }
+                }
+                // Near the end, Newton's step is the same, and does not cancel.
+                let (x, y) = bend.solve((seen.u, seen.v));
+                let rest = x * seen.u + y * seen.v;
+                if !(rest <= last * ScalarOf::<B>::from_f64(0.5)) {
+                    return Err(None);
+                }
+                last = rest;
+                let small = at.length() * ScalarOf::<B>::from_f64(0.05);
+                if x * x + y * y <= small * small {
+                    let to = Slant { a: at.a - x, b: at.b - y };
+                    (n, slant) = (frame.normal(direction, to), Some(to));
+                    continue;
+                }
+            }
+            // Q in the axes e₁, e₂ and −d: (A b; b·ᵀ c). With α = A⁻¹(s·φ − b) for the line's foot φ, and
+            // s² = n·Qn = (c − b·A⁻¹b)/(1 − φ·A⁻¹φ), the support point of the ellipsoid is on the line.
+            let touch = [seen.u + foot.0, seen.v + foot.1, -seen.t];
+            let value = n.dot(frame.e1) * touch[0] + n.dot(frame.e2) * touch[1] - n.dot(direction) * touch[2];
+            let across = Symmetric {
+                a: value * bend.a + touch[0] * touch[0],
+                b: value * bend.b + touch[0] * touch[1],
+                d: value * bend.d + touch[1] * touch[1],
+            };
+            let b = (
+                value * moved[2].dot(frame.e1) + touch[0] * touch[2],
+                value * moved[2].dot(frame.e2) + touch[1] * touch[2],
+            );
+            let c = -value * moved[2].dot(direction) + touch[2] * touch[2];
+            let (away, tilted) = (across.solve(foot), across.solve(b));
+            let rest = one - dot(foot, away);
+            if !(value > zero) {
+                return Err(None);
+            }
+            if rest > zero {
+                let s = ((c - dot(b, tilted)).max(zero) / rest).sqrt();
+                let to = Slant { a: s * away.0 - tilted.0, b: s * away.1 - tilted.1 };
+                (n, slant) = (frame.normal(direction, to), Some(to));
+            } else {
+                // The line misses the ellipsoid, and the plane between is along it.
+                (n, slant) = (frame.e1 * away.0 + frame.e2 * away.1, None);
+            }
+        }
+        Err(None)
+    }
+}

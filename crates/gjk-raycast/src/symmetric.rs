@@ -1,0 +1,63 @@
+//! Symmetric matrices and vectors across a ray.
+
+use convex_support::Scalar;
+
+/// A symmetric matrix `(a b; b d)` across the ray.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Symmetric<S> {
+    pub(crate) a: S,
+    pub(crate) b: S,
+    pub(crate) d: S,
+}
+
+impl<S: Scalar> Symmetric<S> {
+    pub(crate) fn times(self, (x, y): (S, S)) -> (S, S) {
+        (self.a * x + self.b * y, self.b * x + self.d * y)
+    }
+
+    pub(crate) fn determinant(self) -> S {
+        self.a * self.d - self.b * self.b
+    }
+
+    pub(crate) fn solve(self, (x, y): (S, S)) -> (S, S) {
+        let inverse = self.determinant().recip();
+        ((self.d * x - self.b * y) * inverse, (self.a * y - self.b * x) * inverse)
+    }
+
+    /// Whether there is a solution that is more than rounding.
+    pub(crate) fn is_regular(self) -> bool {
+        self.determinant() > S::EPSILON.sqrt() * self.a * self.d
+    }
+
+    pub(crate) fn blend(self, other: Self, share: S) -> Self {
+        let rest = S::ONE - share;
+        Self {
+            a: self.a * rest + other.a * share,
+            b: self.b * rest + other.b * share,
+            d: self.d * rest + other.d * share,
+        }
+    }
+
+    /// The eigenvalue of a matrix of rank one, and its unit eigenvector.
+    pub(crate) fn eigen_of_rank_one(self) -> Option<(S, (S, S))> {
+        let trace = self.a + self.d;
+        let column = if self.a > self.d { (self.a, self.b) } else { (self.b, self.d) };
+        let length = dot(column, column).sqrt();
+        (trace > S::ZERO && length > S::ZERO).then(|| (trace, (column.0 / length, column.1 / length)))
+    }
+
+    pub(crate) fn is_zero(self) -> bool {
+        self.a == S::ZERO && self.d == S::ZERO
+    }
+}
+
+/// A vector across the ray, or a change of the slant.
+pub(crate) type Across<S> = (S, S);
+
+pub(crate) fn dot<S: Scalar>(a: (S, S), b: (S, S)) -> S {
+    a.0 * b.0 + a.1 * b.1
+}
+
+pub(crate) fn cross<S: Scalar>(a: (S, S), b: (S, S)) -> S {
+    a.0 * b.1 - a.1 * b.0
+}
