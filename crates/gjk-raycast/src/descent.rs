@@ -190,6 +190,15 @@ pub(crate) fn descend<B: Body>(
         }
         let next = next.or_else(|| descent.step_carefully(wanted.sub_algorithm, &mut nearing));
         let Some(next) = next else {
+            // The light steps' normal of a sliver leans by its rounding, and what supports the body along it may be a corner
+            // already. Measured, it shows another.
+            if !descent.measured {
+                let _ = descent.measure();
+            }
+            if n != descent.normal && nearing.goes_on(descent.length) {
+                (n, size) = (descent.normal, descent.normal.length());
+                continue;
+            }
             descent.end = End::Stalled;
             break;
         };

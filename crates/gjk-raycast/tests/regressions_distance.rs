@@ -4,9 +4,9 @@
 mod common;
 
 use common::{Quaternion, apart, at, cuboid, directions, meets, s, turned, ulps, v};
-use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3A};
+use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3A};
 use convex_support::{
-    Cone, Cylinder, InvalidShape, Point, Polytope, Posed, Rounded, Scalar, SupportMap, Triangle, Vector,
+    Cone, Cuboid, Cylinder, InvalidShape, Point, Polytope, Posed, Rounded, Scalar, SupportMap, Triangle, Vector,
 };
 use gjk_raycast::{DistanceOptions, IntersectOptions, Status, distance, intersects};
 
@@ -334,5 +334,50 @@ fn a_vertex_just_off_the_slant_of_a_cone_converges() -> Result<(), InvalidShape>
     assert_eq!(answer.status, Status::Converged, "{answer:?}");
     assert!(answer.upper - answer.lower < 1e-13, "{answer:?}");
     assert!((answer.distance - 1.0000008467684762e-10).abs() < 1e-14, "{answer:?}");
+    Ok(())
+}
+
+/// The difference touches zero with an edge of two near vertices, and has a third far away. That one's share of zero's foot
+/// is the square of the distance, 1e-8 in `f32`, and was computed as one less the shares of the others: rounding. Without
+/// it the plane did not turn, the same support point came again, and the descent ended `Stalled` with an open bracket: of
+/// this cylinder and cone by 1e-4, of the cylinder and cuboid by 1e-9.
+#[test]
+fn a_far_vertex_turns_the_plane_about_an_edge_that_touches() -> Result<(), InvalidShape> {
+    let turn = [0.07825313, -0.6802188, -0.51086426, 0.51980436];
+    let translation = Vec3A::new(0.8087746, -0.9497469, -0.09637468);
+    let a = Posed::new(Cylinder::<Vec3A>::new(0.75, 0.5)?, Quat::from_array(turn), translation)?;
+    let turn = [-0.3072104, 0.038467664, 0.8950461, -0.32098988];
+    let translation = Vec3A::new(-0.37328133, -0.6406334, -0.6710066);
+    let b = Posed::new(Cone::<Vec3A>::new(0.75, 0.625)?, Quat::from_array(turn), translation)?;
+    let answer = distance(&a, &b, DistanceOptions::default());
+    assert!(answer.status == Status::Converged && answer.upper < 5e-6, "{answer:?}");
+
+    let turn = [0.0822107166219777, 0.7163947604598121, -0.6242301517153613, 0.30059385048208553];
+    let translation = DVec3::new(-0.7136184398150685, -1.2237953135294921, 1.1717931669939996);
+    let a = Posed::new(Cylinder::<DVec3>::new(0.75, 0.5)?, DQuat::from_array(turn), translation)?;
+    let turn = [0.15376861834199249, 0.4342551914012976, 0.8870618001631498, 0.02998338615848399];
+    let translation = DVec3::new(0.8817869004093968, -0.3818567767842252, 0.2768343625534068);
+    let b = Posed::new(Cuboid::new(DVec3::new(1.0, 0.5, 0.25))?, DQuat::from_array(turn), translation)?;
+    let answer = distance(&a, &b, DistanceOptions::default());
+    assert!(answer.status == Status::Converged && answer.upper < 1e-14, "{answer:?}");
+    Ok(())
+}
+
+/// A cone 5e-10 off a cuboid. Two corners of the last triangle are 1e-7 apart and the third is far; the triangle's normal, a
+/// cross product of edges from the far one, leaned by 1e-11, and the support point along it was a corner already. The
+/// triangle was measured then, but the plane across the measured normal never looked along, and the bracket stayed open by
+/// a twentieth.
+#[test]
+fn the_measured_normal_of_a_sliver_is_looked_along() -> Result<(), InvalidShape> {
+    let turn = [-0.16494649648666382, 0.32249489426612854, -0.31852206587791443, 0.8759756684303284];
+    let translation = DVec3::new(-1.5107576847076416, 0.36404669284820557, 1.0628018379211426);
+    let a = Posed::new(Cone::<DVec3>::new(0.75, 0.625)?, DQuat::from_array(turn), translation)?;
+    let turn = [-0.7768621444702148, 0.23174384236335754, 0.4487411081790924, 0.3760471045970917];
+    let translation = DVec3::new(-0.3446352779865265, -0.4309627115726471, 0.833965003490448);
+    let b = Posed::new(Cuboid::new(DVec3::new(1.0, 0.5, 0.25))?, DQuat::from_array(turn), translation)?;
+    let answer = distance(&a, &b, DistanceOptions::default());
+    assert_eq!(answer.status, Status::Converged, "{answer:?}");
+    assert!((answer.distance - 5.267_067_6e-10).abs() < 2e-14, "{answer:?}");
+    assert!(answer.upper - answer.lower < 3e-14, "{answer:?}");
     Ok(())
 }
