@@ -10,13 +10,17 @@
 //! - [`w4_enclosing`]: points to be enclosed by an ellipsoid.
 //! - [`w5_margin`]: pairs of ellipsoids.
 //!
-//! The same queries are answered by [`ours`] and by `parry`, each with the inputs in its own types, timed by
-//! [`measure`] and compared with the truth by [`score`]. [`rows`] does so for everything, [`report`] prints it beside
-//! the [`goals`].
+//! The same queries are answered by [`ours`] and by `parry`, `box3d` and `jolt`, where those features are on, each with the
+//! inputs in its own types, timed by [`measure`] and compared with the truth by [`score`]. [`rows`] does so for
+//! everything, [`report`] prints it beside the [`goals`].
 
+#[cfg(feature = "box3d")]
+pub mod box3d;
 mod convex_hull;
 pub mod digest;
 pub mod goals;
+#[cfg(feature = "jolt")]
+pub mod jolt;
 mod line_entry;
 pub mod measure;
 pub mod ours;

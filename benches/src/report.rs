@@ -81,8 +81,8 @@ fn goals(rows: &[Row]) -> String {
         rows.iter().find(|row| row.workload == workload && row.case == case && row.method == method)
     };
     let mut text = String::from(
-        "| workload | case | method | ns | best right peer | parry gjk f64 | ratio | goal | p99 error | goal | wrong | |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|\n",
+        "| workload | case | method | ns | best right peer | ratio | parry gjk f64 | ratio | goal | p99 error | goal | wrong | |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     let mut line = |row: &Row, goal_ns: f64, goal_p99: f64| {
         let parry = find(row.workload, row.case, Method::ParryGjkF64).map_or(f64::NAN, |parry| parry.ns);
@@ -91,7 +91,9 @@ fn goals(rows: &[Row]) -> String {
             .filter(|peer| peer.workload == row.workload && peer.case == row.case && peer.method.is_peer())
             .filter(|peer| peer.score.wrong() == 0)
             .min_by(|a, b| a.ns.total_cmp(&b.ns))
-            .map_or("-".into(), |peer| format!("{:.0} ({})", peer.ns, peer.method.name()));
+            .map_or("- | -".into(), |peer| {
+                format!("{:.0} ({}) | {:.3}", peer.ns, peer.method.name(), row.ns / peer.ns)
+            });
         let (ratio, goal) = (row.ns / parry, goal_ns / parry_ns(row.workload, row.case).unwrap_or(f64::NAN));
         let accurate = row.score.p99.is_nan() || row.score.p99 <= goal_p99;
         let verdict = match (ratio <= goal, accurate, row.score.wrong()) {

@@ -5,6 +5,10 @@ use std::time::Duration;
 
 use convex_support::glam::{DVec3, Vec3A};
 
+#[cfg(feature = "box3d")]
+use crate::box3d;
+#[cfg(feature = "jolt")]
+use crate::jolt;
 use crate::measure::Solver;
 use crate::ours::{self, Effort};
 use crate::pairs::{PAIR_NAMES, Pair};
@@ -70,11 +74,15 @@ pub enum Method {
     ParryF64,
     /// The same of parry3d.
     ParryF32,
+    /// `Box3D`.
+    Box3d,
+    /// Jolt.
+    Jolt,
 }
 
 impl Method {
     /// All of them, in the order of the columns.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::OursF64,
         Self::OursF32,
         Self::ClosedF64,
@@ -85,6 +93,8 @@ impl Method {
         Self::ParryGjkF32,
         Self::ParryF64,
         Self::ParryF32,
+        Self::Box3d,
+        Self::Jolt,
     ];
 
     /// Its column title.
@@ -101,13 +111,18 @@ impl Method {
             Self::ParryGjkF32 => "parry gjk f32",
             Self::ParryF64 => "parry f64",
             Self::ParryF32 => "parry f32",
+            Self::Box3d => "box3d f32",
+            Self::Jolt => "jolt f32",
         }
     }
 
     /// Whether it is another library's.
     #[must_use]
     pub const fn is_peer(self) -> bool {
-        matches!(self, Self::ParryGjkF64 | Self::ParryGjkF32 | Self::ParryF64 | Self::ParryF32)
+        matches!(
+            self,
+            Self::ParryGjkF64 | Self::ParryGjkF32 | Self::ParryF64 | Self::ParryF32 | Self::Box3d | Self::Jolt
+        )
     }
 
     /// The precision it works in.
@@ -115,7 +130,13 @@ impl Method {
     pub const fn precision(self) -> Precision {
         match self {
             Self::OursF64 | Self::ClosedF64 | Self::WarmF64 | Self::ParryGjkF64 | Self::ParryF64 => Precision::Double,
-            Self::OursF32 | Self::ClosedF32 | Self::WarmF32 | Self::ParryGjkF32 | Self::ParryF32 => Precision::Single,
+            Self::OursF32
+            | Self::ClosedF32
+            | Self::WarmF32
+            | Self::ParryGjkF32
+            | Self::ParryF32
+            | Self::Box3d
+            | Self::Jolt => Precision::Single,
         }
     }
 }
@@ -211,6 +232,10 @@ pub fn ray_casters(shape: &Shape, rays: &[w1_ray_cast::Ray]) -> Vec<(Method, Sol
         solvers.extend(double::front_door_ray_casts(shape, rays).map(|solver| (Method::ParryF64, solver)));
         solvers.extend(single::front_door_ray_casts(shape, rays).map(|solver| (Method::ParryF32, solver)));
     }
+    #[cfg(feature = "box3d")]
+    solvers.extend(box3d::ray_casts(shape, rays).map(|solver| (Method::Box3d, solver)));
+    #[cfg(feature = "jolt")]
+    solvers.extend(jolt::ray_casts(shape, rays).map(|solver| (Method::Jolt, solver)));
     solvers
 }
 
@@ -229,6 +254,10 @@ pub fn linear_casters(pair: &Pair, casts: &[w2_linear_cast::Cast]) -> Vec<(Metho
         solvers.extend(double::front_door_linear_casts(pair, casts).map(|solver| (Method::ParryF64, solver)));
         solvers.extend(single::front_door_linear_casts(pair, casts).map(|solver| (Method::ParryF32, solver)));
     }
+    #[cfg(feature = "box3d")]
+    solvers.extend(box3d::linear_casts(pair, casts).map(|solver| (Method::Box3d, solver)));
+    #[cfg(feature = "jolt")]
+    solvers.extend(jolt::linear_casts(pair, casts).map(|solver| (Method::Jolt, solver)));
     solvers
 }
 
@@ -247,6 +276,8 @@ pub fn distance_solvers(pair: &Pair, queries: &[w3_distance::DistanceQuery]) -> 
         solvers.extend(double::front_door_distances(pair, queries).map(|solver| (Method::ParryF64, solver)));
         solvers.extend(single::front_door_distances(pair, queries).map(|solver| (Method::ParryF32, solver)));
     }
+    #[cfg(feature = "box3d")]
+    solvers.extend(box3d::distances(pair, queries).map(|solver| (Method::Box3d, solver)));
     solvers
 }
 
@@ -265,6 +296,10 @@ pub fn intersection_testers(pair: &Pair, queries: &[w3b_intersect::IntersectQuer
         solvers.extend(double::front_door_intersections(pair, queries).map(|solver| (Method::ParryF64, solver)));
         solvers.extend(single::front_door_intersections(pair, queries).map(|solver| (Method::ParryF32, solver)));
     }
+    #[cfg(feature = "box3d")]
+    solvers.extend(box3d::intersections(pair, queries).map(|solver| (Method::Box3d, solver)));
+    #[cfg(feature = "jolt")]
+    solvers.extend(jolt::intersections(pair, queries).map(|solver| (Method::Jolt, solver)));
     solvers
 }
 

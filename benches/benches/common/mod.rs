@@ -40,5 +40,7 @@ fn row_name(method: Method) -> &'static str {
         Method::ParryGjkF32 => "parry gjk/f32",
         Method::ParryF64 => "parry/f64",
         Method::ParryF32 => "parry/f32",
+        Method::Box3d => "box3d/f32",
+        Method::Jolt => "jolt/f32",
     }
 }

@@ -27,11 +27,13 @@ const WORKLOADS: [(&str, &str, &str); 5] = [
 ];
 
 /// A method of ours beside one of theirs.
-const RIVALS: [(&str, &str, &str); 4] = [
+const RIVALS: [(&str, &str, &str); 6] = [
     ("ours f64", "parry gjk f64", "GJK, f64"),
     ("ours f32", "parry gjk f32", "GJK, f32"),
     ("ours closed f64", "parry f64", "closed forms, f64"),
     ("ours warm f64", "parry f64", "warm start, f64"),
+    ("ours f32", "box3d f32", "Box3D, f32"),
+    ("ours f32", "jolt f32", "Jolt, f32"),
 ];
 
 /// The chapter; empty where nothing is known of the peers.
@@ -112,8 +114,8 @@ const INPUTS: &str = "The peers are parry3d and parry3d-f64 0.31 with the tolera
      Wrong are false hits, false misses, no answer, an error above 1e-3 (above 1e-6 where the distance is 1e-6), and a \
      distance of 0 where it is 1e-6; in f32 that is below the rounding of the coordinates, and not summed up. \
      parry's user interface has closed forms for balls, boxes and capsules, compared with ours; warm queries are told the \
-     separating plane of the time before, which parry's interface has no place for. Jolt and box3d can be called through \
-     unsafe code only, which this workspace does without.";
+     separating plane of the time before, which parry's interface has no place for. Where Box3D and Jolt were built in as \
+     well, they are among the rows, through safe bindings whose checks are timed with them.";
 
 /// In this run, with other libraries built in.
 #[cfg(feature = "peers")]
@@ -161,8 +163,8 @@ fn measured(scope: &Scope) -> (String, Vec<Measured>) {
         })
     };
     let lead = format!(
-        "Recorded, not of this run: build with the feature peers (cargo run --release -p xtask --features peers -- validate) to \
-         measure it here. {when} {INPUTS}"
+        "Recorded, not of this run: build with the feature peers (cargo run --release -p xtask --features peers -- validate, or \
+         --features peers,benches/box3d,benches/jolt for all of them) to measure it here. {when} {INPUTS}"
     );
     (lead, csv.lines().skip(1).filter_map(parse).collect())
 }
