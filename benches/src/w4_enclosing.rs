@@ -1,4 +1,6 @@
-//! W4: points to be enclosed by an ellipsoid.
+//! W4: points to be enclosed by an ellipsoid; other clouds, boxes and half-spaces for the same benches.
+
+use lj_ellipsoid::Halfspace;
 
 use crate::rng::Rng;
 
@@ -29,4 +31,53 @@ pub fn points(cloud: Cloud, dimension: usize, count: usize) -> Vec<f64> {
         Cloud::Cube => Rng::signed,
     };
     (0..dimension * count).map(|_| draw(&mut rng)).collect()
+}
+
+/// `count` points uniform on the unit sphere.
+#[must_use]
+pub fn on_sphere<const N: usize>(count: usize) -> Vec<[f64; N]> {
+    let mut rng = Rng::new(60_000 + 10 * N as u64);
+    (0..count)
+        .map(|_| {
+            let (x, square) = within(&mut rng);
+            x.map(|x| x / square.sqrt())
+        })
+        .collect()
+}
+
+/// `count` points uniform in the unit ball.
+#[must_use]
+pub fn in_ball<const N: usize>(count: usize) -> Vec<[f64; N]> {
+    let mut rng = Rng::new(60_001 + 10 * N as u64);
+    (0..count).map(|_| within(&mut rng).0).collect()
+}
+
+/// A point of the unit ball but its very middle, by rejection, with its square.
+fn within<const N: usize>(rng: &mut Rng) -> ([f64; N], f64) {
+    loop {
+        let x: [f64; N] = std::array::from_fn(|_| rng.signed());
+        let square: f64 = x.iter().map(|x| x * x).sum();
+        if 1e-4 < square && square <= 1.0 {
+            return (x, square);
+        }
+    }
+}
+
+/// The corners of the box with a corner at the origin and these sides.
+#[must_use]
+pub fn corners<const N: usize>(sides: [f64; N]) -> Vec<[f64; N]> {
+    (0..1_usize << N).map(|i| std::array::from_fn(|k| if i >> k & 1 == 1 { sides[k] } else { 0.0 })).collect()
+}
+
+/// `count` half-spaces at 1 to 1.5 from the origin, so that all of them may matter.
+#[must_use]
+pub fn halfspaces<const N: usize>(count: usize) -> Vec<Halfspace<N>> {
+    let mut rng = Rng::new(70_000 + 10 * N as u64);
+    (0..count)
+        .map(|_| {
+            let normal: [f64; N] = std::array::from_fn(|_| rng.normal());
+            let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+            Halfspace { normal: normal.map(|x| x / length), offset: 1.25 + 0.25 * rng.signed() }
+        })
+        .collect()
 }

@@ -10,7 +10,7 @@
 
 use crate::dimension::Dimension;
 use crate::frame::Frame;
-use crate::linalg::{UNIT_ROUNDOFF, cholesky, dot, solve_lower};
+use crate::linalg::{UNIT_ROUNDOFF, cholesky_log_det, dot, solve_lower};
 use crate::points::Points;
 
 /// The points an iterate works on, with their weights, in the coordinates of a frame.
@@ -27,14 +27,14 @@ impl WorkingSet {
         self.index.len()
     }
 
-    /// Puts the points `index` with equal weights.
-    pub(crate) fn uniform(index: Vec<usize>) -> Self {
-        let weight = 1.0 / index.len() as f64;
-        Self { u: vec![weight; index.len()], y: Vec::new(), index }
+    /// The points `index` with these weights, or else with equal ones.
+    pub(crate) fn new(index: Vec<usize>, weights: Option<Vec<f64>>) -> Self {
+        let u = weights.unwrap_or_else(|| vec![1.0 / index.len() as f64; index.len()]);
+        Self { u, y: Vec::new(), index }
     }
 
     /// Computes the coordinates in `frame` afresh from the points.
-    pub(crate) fn locate<P: Points, R: Dimension>(&mut self, points: &P, rank: R, frame: &Frame) {
+    pub(crate) fn locate<P: Points, R: Dimension>(&mut self, points: &P, rank: R, frame: &Frame<P::Dim>) {
         let dim = points.dim();
         let r = rank.get();
         self.y.resize(self.len() * r, 0.0);
@@ -52,11 +52,11 @@ impl WorkingSet {
         self.y.extend_from_slice(y);
     }
 
-    /// Keeps the members for which `keep(position)` holds.
-    pub(crate) fn retain(&mut self, r: usize, mut keep: impl FnMut(usize) -> bool) {
+    /// Keeps the members for which `keep(position, weight)` holds.
+    pub(crate) fn retain(&mut self, r: usize, mut keep: impl FnMut(usize, f64) -> bool) {
         let mut kept = 0;
         for i in 0..self.len() {
-            if keep(i) {
+            if keep(i, self.u[i]) {
                 self.index[kept] = self.index[i];
                 self.u[kept] = self.u[i];
                 self.y.copy_within(i * r..(i + 1) * r, kept * r);
@@ -69,25 +69,26 @@ impl WorkingSet {
     }
 
     /// The weighted mean of the points themselves, formed from differences to the frame's origin.
-    pub(crate) fn mean<P: Points>(&self, points: &P, frame: &Frame) -> Vec<f64> {
+    pub(crate) fn mean<P: Points>(&self, points: &P, frame: &Frame<P::Dim>) -> <P::Dim as Dimension>::Point {
         let dim = points.dim();
         let n = dim.get();
         let mut v = dim.zero();
-        let mut shift = vec![0.0; n];
+        let mut shift = dim.zero();
+        let (v, shift, origin) = (&mut v.as_mut()[..n], &mut shift.as_mut()[..n], &frame.origin.as_ref()[..n]);
         for (&i, &u) in self.index.iter().zip(&self.u) {
-            if u > 0.0 {
-                points.read(i, v.as_mut());
+            if u != 0.0 {
+                points.read(i, v);
                 for k in 0..n {
-                    shift[k] += u * (v.as_ref()[k] - frame.origin[k]);
+                    shift[k] += u * (v[k] - origin[k]);
                 }
             }
         }
-        frame.origin.iter().zip(&shift).map(|(o, s)| o + s).collect()
+        dim.point(origin.iter().zip(shift).map(|(o, s)| o + *s))
     }
 
     /// A bound on |δy| over the weighted members, y + δy being the exact image of the point: each coordinate is a
     /// subtraction and a dot product of `n` terms, so |δyᵢ| ≤ (n + 2)u·Σₖ|Tᵢₖ||vₖ − oₖ|.
-    pub(crate) fn coordinate_error<P: Points>(&self, points: &P, frame: &Frame) -> f64 {
+    pub(crate) fn coordinate_error<P: Points>(&self, points: &P, frame: &Frame<P::Dim>) -> f64 {
         let dim = points.dim();
         let n = dim.get();
         let mut v = dim.zero();
@@ -95,9 +96,11 @@ impl WorkingSet {
         for (&i, _) in self.index.iter().zip(&self.u).filter(|(_, u)| **u > 0.0) {
             points.read(i, v.as_mut());
             let error: f64 = frame
-                .map
+                .map()
                 .chunks_exact(n)
-                .map(|row| (0..n).map(|k| row[k].abs() * (v.as_ref()[k] - frame.origin[k]).abs()).sum::<f64>().powi(2))
+                .map(|row| {
+                    (0..n).map(|k| row[k].abs() * (v.as_ref()[k] - frame.origin.as_ref()[k]).abs()).sum::<f64>().powi(2)
+                })
                 .sum();
             worst = worst.max(error);
         }
@@ -106,12 +109,13 @@ impl WorkingSet {
 }
 
 /// What follows from the weights of a working set.
-#[derive(Debug, Default)]
-pub(crate) struct Moments {
+#[derive(Clone, Debug)]
+pub(crate) struct Moments<R: Dimension> {
+    rank: R,
     /// c, the weighted mean.
-    pub(crate) mean: Vec<f64>,
+    mean: R::Point,
     /// L, the Cholesky factor of the scatter S; its upper triangle is not used.
-    pub(crate) factor: Vec<f64>,
+    pub(crate) factor: R::Matrix,
     pub(crate) log_det_scatter: f64,
     /// zᵢ = L⁻¹(yᵢ − c).
     pub(crate) z: Vec<f64>,
@@ -119,67 +123,92 @@ pub(crate) struct Moments {
     pub(crate) q: Vec<f64>,
 }
 
-impl Moments {
+impl<R: Dimension> Moments<R> {
+    /// Nothing computed yet.
+    pub(crate) fn new(rank: R) -> Self {
+        let (z, q) = (Vec::new(), Vec::new());
+        Self { rank, mean: rank.zero(), factor: rank.zero_matrix(), log_det_scatter: 0.0, z, q }
+    }
+
     /// Computes everything from the points `y` and weights `u`; false where the scatter is not positive definite.
-    pub(crate) fn compute<R: Dimension>(&mut self, rank: R, y: &[f64], u: &[f64]) -> bool {
-        self.compute_scatter(rank, y, u) && {
-            self.compute_distances(rank, y);
+    pub(crate) fn compute(&mut self, y: &[f64], u: &[f64]) -> bool {
+        self.compute_scatter(y, u) && {
+            self.compute_distances(y);
             true
         }
     }
 
     /// Mean, scatter and determinant only.
     #[inline(always)]
-    pub(crate) fn compute_scatter<R: Dimension>(&mut self, rank: R, y: &[f64], u: &[f64]) -> bool {
+    pub(crate) fn compute_scatter(&mut self, y: &[f64], u: &[f64]) -> bool {
+        let rank = self.rank;
         let r = rank.get();
-        self.mean.clear();
-        self.mean.resize(r, 0.0);
-        self.factor.clear();
-        self.factor.resize(r * r, 0.0);
-        let total: f64 = u.iter().sum();
+        let (mean, factor) = (&mut self.mean.as_mut()[..r], &mut self.factor.as_mut()[..r * r]);
+        mean.fill(0.0);
+        factor.fill(0.0);
+        let share = 1.0 / u.iter().sum::<f64>();
         for (y, &u) in y.chunks_exact(r).zip(u) {
             for k in 0..r {
-                self.mean[k] += u / total * y[k];
+                mean[k] += u * share * y[k];
             }
         }
         let mut d = rank.zero();
-        let d = d.as_mut();
+        let d = &mut d.as_mut()[..r];
         for (y, &u) in y.chunks_exact(r).zip(u) {
             if u == 0.0 {
                 continue;
             }
             for k in 0..r {
-                d[k] = y[k] - self.mean[k];
+                d[k] = y[k] - mean[k];
             }
             for i in 0..r {
-                let weighted = u / total * d[i];
+                let weighted = u * share * d[i];
                 for k in 0..=i {
-                    self.factor[i * r + k] += weighted * d[k];
+                    factor[i * r + k] += weighted * d[k];
                 }
             }
         }
-        match cholesky(rank, &mut self.factor) {
-            Some(log_det) => {
-                self.log_det_scatter = log_det;
-                true
-            }
-            None => false,
-        }
+        let log_det = cholesky_log_det(rank, factor);
+        self.log_det_scatter = log_det.unwrap_or(f64::NEG_INFINITY);
+        log_det.is_some()
     }
 
     #[inline(always)]
-    pub(crate) fn compute_distances<R: Dimension>(&mut self, rank: R, y: &[f64]) {
+    pub(crate) fn compute_distances(&mut self, y: &[f64]) {
+        let rank = self.rank;
         let r = rank.get();
+        let (mean, factor) = (&self.mean.as_ref()[..r], &self.factor.as_ref()[..r * r]);
         self.z.resize(y.len(), 0.0);
-        self.q.clear();
-        self.q.reserve(y.len() / r);
-        for (z, y) in self.z.chunks_exact_mut(r).zip(y.chunks_exact(r)) {
+        self.q.resize(y.len() / r, 0.0);
+        for ((z, y), q) in self.z.chunks_exact_mut(r).zip(y.chunks_exact(r)).zip(&mut self.q) {
             for k in 0..r {
-                z[k] = y[k] - self.mean[k];
+                z[k] = y[k] - mean[k];
             }
-            solve_lower(rank, &self.factor, z);
-            self.q.push(dot(z, z));
+            solve_lower(rank, factor, z);
+            *q = dot(z, z);
         }
+    }
+
+    /// Takes over mean, scatter and determinant.
+    pub(crate) fn take_scatter(&mut self, other: &Self) {
+        self.mean.clone_from(&other.mean);
+        self.factor.clone_from(&other.factor);
+        self.log_det_scatter = other.log_det_scatter;
+    }
+
+    /// Forgets the members for which `keep(|z|²)` does not hold; they have no weight, so nothing else changes.
+    pub(crate) fn retain(&mut self, mut keep: impl FnMut(f64) -> bool) {
+        let r = self.rank.get();
+        let mut kept = 0;
+        for i in 0..self.q.len() {
+            if keep(self.q[i]) {
+                self.q[kept] = self.q[i];
+                self.z.copy_within(i * r..(i + 1) * r, kept * r);
+                kept += 1;
+            }
+        }
+        self.q.truncate(kept);
+        self.z.truncate(kept * r);
     }
 
     /// max |zᵢ|², and who attains it.
@@ -189,7 +218,8 @@ impl Moments {
 
     /// N·ln(κ/N), κ = max |zᵢ|²: a bound on ln det X* − ln det X where E(c, S⁻¹/κ) is the ellipsoid X and the points are
     /// those of the working set. Below zero only by rounding.
-    pub(crate) fn log_det_gap(&self, r: usize) -> f64 {
-        r as f64 * (self.furthest().1 / r as f64).ln()
+    pub(crate) fn log_det_gap(&self) -> f64 {
+        let r = self.rank.get() as f64;
+        r * (self.furthest().1 / r).ln()
     }
 }

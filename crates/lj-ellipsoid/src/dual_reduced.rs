@@ -8,27 +8,22 @@
 //! # References
 //! P. Sun, R. M. Freund, *Computation of minimum-volume covering ellipsoids*, Oper. Res. 52 (2004).
 
-use crate::design::{Moments, WorkingSet};
 use crate::dimension::{Dimension, Dynamic};
+use crate::iterate::Iterate;
 use crate::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
 
 /// Newton steps along one path; twenty is typical.
 const MAX_STEPS: usize = 80;
 
 /// Improves the weights of `set` until the gap over it is at most `gap`; answers the number of steps.
-pub(crate) fn solve<R: Dimension>(
-    rank: R,
-    set: &mut WorkingSet,
-    moments: &mut Moments,
-    gap: f64,
-    max_steps: usize,
-) -> usize {
+pub(crate) fn solve<N: Dimension, R: Dimension>(at: &mut Iterate<N, R>, gap: f64, max_steps: usize) -> usize {
+    let Iterate { rank, set, moments, .. } = at;
     let r = rank.get();
     let k = set.len();
     let dimension = r as f64;
     // Equal weights make t positive once scaled: h is inverse to the size of u.
     let mut u = vec![dimension / (2.0 * k as f64); k];
-    if !moments.compute(rank, &set.y, &u) {
+    if !moments.compute(&set.y, &u) {
         return 0;
     }
     let grow = 1.05 * (moments.furthest().1 / dimension).max(1.0);
@@ -40,10 +35,10 @@ pub(crate) fn solve<R: Dimension>(
     let mut steps = 0;
     let (mut best, mut best_gap) = (u.clone(), f64::INFINITY);
     loop {
-        if !moments.compute(rank, &set.y, &u) {
+        if !moments.compute(&set.y, &u) {
             break;
         }
-        let now = moments.log_det_gap(r);
+        let now = moments.log_det_gap();
         if now < best_gap {
             best_gap = now;
             best.clone_from(&u);
@@ -70,7 +65,7 @@ pub(crate) fn solve<R: Dimension>(
         for i in 0..k {
             du[i] = -(r1[i] - (theta - u[i] * t[i]) / u[i]);
         }
-        if cholesky(Dynamic(k), &mut factor).is_none() {
+        if !cholesky(Dynamic(k), &mut factor) {
             break;
         }
         solve_lower(Dynamic(k), &factor, &mut du);
@@ -91,6 +86,6 @@ pub(crate) fn solve<R: Dimension>(
     set.u = best.iter().map(|u| if u / sum < negligible { 0.0 } else { u / sum }).collect();
     let sum: f64 = set.u.iter().sum();
     set.u.iter_mut().for_each(|u| *u /= sum);
-    moments.compute(rank, &set.y, &set.u);
+    moments.compute(&set.y, &set.u);
     steps
 }

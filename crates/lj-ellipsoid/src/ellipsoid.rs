@@ -1,7 +1,8 @@
 //! The ellipsoid as it is returned.
 
+use crate::dimension::Const;
 use crate::linalg::dot;
-use crate::solution::Shape;
+use crate::shape::Shape;
 
 /// The ellipsoid E(c, X) = { x : (x − c)ᵀX(x − c) ≤ 1 } in N dimensions.
 ///
@@ -18,22 +19,12 @@ pub struct Ellipsoid<const N: usize> {
 }
 
 impl<const N: usize> Ellipsoid<N> {
-    pub(crate) fn from_shape(shape: &Shape) -> Self {
-        let square = |flat: &[f64]| {
-            let mut rows = [[0.0; N]; N];
-            rows.as_flattened_mut().copy_from_slice(flat);
-            rows
-        };
-        let row = |flat: &[f64]| {
-            let mut row = [0.0; N];
-            row.copy_from_slice(flat);
-            row
-        };
+    pub(crate) const fn from_shape(shape: &Shape<Const<N>>) -> Self {
         Self {
-            center: row(&shape.center),
-            axes: square(&shape.axes),
-            semi_axes: row(&shape.semi_axes),
-            matrix: square(&shape.matrix),
+            center: shape.center,
+            axes: shape.axes.0,
+            semi_axes: shape.semi_axes,
+            matrix: shape.matrix.0,
             log_det: shape.log_det,
         }
     }
@@ -75,7 +66,7 @@ impl<const N: usize> Ellipsoid<N> {
     #[must_use]
     pub fn log_volume(&self) -> f64 {
         let rank = self.semi_axes.iter().filter(|a| **a > 0.0).count();
-        crate::solution::log_unit_ball_volume(rank) - 0.5 * self.log_det
+        crate::shape::log_unit_ball_volume(rank) - 0.5 * self.log_det
     }
 
     /// |diag(1/a)·Rᵀ(x − c)|: 1 on the surface, less inside. Components across the affine hull of a flat ellipsoid are

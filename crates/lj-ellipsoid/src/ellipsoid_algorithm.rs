@@ -15,16 +15,17 @@
 //! E. Rimon, S. P. Boyd, *Obstacle collision detection using best ellipsoid fit*, J. Intell. Robot. Syst. 18 (1997),
 //! Section 2 and Appendix A.
 
-use crate::design::{Moments, WorkingSet};
+use crate::design::WorkingSet;
 use crate::dimension::{Dimension, Dynamic};
 use crate::enclosing::EnclosingIterate;
 use crate::error::EnclosingError;
-use crate::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
+use crate::frame::Frame;
+use crate::iterate::Iterate;
+use crate::linalg::{cholesky, cholesky_log_det, dot, solve_lower, solve_lower_transpose};
 use crate::options::{EnclosingOptions, Status};
 use crate::points::Points;
 use crate::solution::{Certificate, Solution, finish};
 use crate::start::Start;
-use crate::working_set::recenter;
 
 /// The most cuts, unless the caller says otherwise.
 const DEFAULT_ITERATIONS: usize = 200_000;
@@ -33,23 +34,18 @@ const DEFAULT_ITERATIONS: usize = 200_000;
 pub(crate) fn solve<P: Points, R: Dimension + Sync>(
     points: &P,
     rank: R,
-    start: Start,
+    start: Start<P::Dim>,
     options: EnclosingOptions,
     mut observer: impl FnMut(EnclosingIterate<'_>),
-) -> Result<Solution, EnclosingError> {
+) -> Result<Solution<P::Dim>, EnclosingError> {
     let r = rank.get();
     let n = r + 1;
     let max_iterations = if options.max_iterations == 0 { DEFAULT_ITERATIONS } else { options.max_iterations };
-    let Start { mut frame, working, scans, .. } = start;
-    let mut set = WorkingSet::uniform(working);
-    let mut moments = Moments::default();
-    set.locate(points, rank, &frame);
-    if !moments.compute(rank, &set.y, &set.u) {
-        return Err(EnclosingError::OutOfRange);
-    }
-    recenter(points, rank, &mut frame, &mut set, &mut moments);
-    let mut all = WorkingSet::uniform((0..points.len()).collect());
-    all.locate(points, rank, &frame);
+    let Start { frame, working, scans, .. } = start;
+    let mut at = Iterate::new(points, rank, frame, WorkingSet::new(working, None), scans)?;
+    at.recenter(points);
+    let mut all = WorkingSet::new((0..points.len()).collect(), None);
+    all.locate(points, rank, &at.frame);
 
     let variables = n * (n + 1) / 2;
     let mut x = vec![0.0; variables];
@@ -60,7 +56,6 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
     let mut lower_bound = f64::NEG_INFINITY;
     let mut best = (f64::INFINITY, Vec::new());
     let mut gap = f64::INFINITY;
-    let mut iterations = 0;
     let mut factor = vec![0.0; n * n];
     let ended = loop {
         unpack(n, &x, &mut factor);
@@ -92,8 +87,8 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
             lower_bound = lower_bound.max(objective - width);
             gap = best.0 - lower_bound;
             observer(EnclosingIterate {
-                iteration: iterations,
-                scans: scans + iterations,
+                iteration: at.iterations,
+                scans: at.scans,
                 log_det_gap: gap.max(0.0),
                 indices: &all.index,
                 weights: &[],
@@ -105,10 +100,11 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
         if !(width > 0.0 && width.is_finite()) {
             break Status::Stalled;
         }
-        if iterations >= max_iterations {
+        if at.iterations >= max_iterations {
             break Status::IterationLimit;
         }
-        iterations += 1;
+        at.iterations += 1;
+        at.scans += 1;
         // X ← X − Ag̃/(D + 1), A ← D²/(D² − 1)·(A − 2/(D + 1)·Ag̃g̃ᵀA), g̃ = g/√(gᵀAg).
         let d = variables as f64;
         for i in 0..variables {
@@ -124,53 +120,35 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
     if best.1.is_empty() || !gap.is_finite() {
         // No feasible iterate yet: the unit ball of the frame grown around the points still encloses, with the bound of
         // the starting weights.
-        let certificate =
-            Certificate { weights: Vec::new(), ..Certificate::from_weights(points, rank, &frame, &set, &moments) };
-        return finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + iterations);
+        let certificate = Certificate { weights: Vec::new(), ..at.certificate(points) };
+        return finish(points, &at.frame, certificate, options.epsilon, ended, at.iterations, at.scans);
     }
 
     // The slice of P at height one: centre −P₁₁⁻¹P₁₂ (eq. 17), shape proportional to P₁₁.
     let p = &best.1;
     let mut p11: Vec<f64> = (0..r).flat_map(|i| p[i * n..i * n + r].iter().copied()).collect();
     let mut center: Vec<f64> = (0..r).map(|i| -p[i * n + r]).collect();
-    let log_det = cholesky(rank, &mut p11).ok_or(EnclosingError::OutOfRange)?;
+    let log_det = cholesky_log_det(rank, &mut p11).ok_or(EnclosingError::OutOfRange)?;
     solve_lower(rank, &p11, &mut center);
     solve_lower_transpose(rank, &p11, &mut center);
     // det X*₍N₎ follows from min f = n·ln n + ln det S* and ln det X*₍N₎ = −ln det S* − N·ln N.
     let r_float = r as f64;
     all.u.fill(1.0);
-    let rounding = 4.0 * r_float * all.coordinate_error(points, &frame);
+    let rounding = 4.0 * r_float * all.coordinate_error(points, &at.frame);
     let bound = -lower_bound + n as f64 * (n as f64).ln() - r_float * r_float.ln() + rounding;
     let certificate = Certificate { log_det_bound: bound - log_det, weights: Vec::new() };
     // As Σuᵢyᵢyᵢᵀ = I and Σuᵢyᵢ = 0 on the starting set, c = Σuᵢ(yᵢᵀc)yᵢ: its preimage is the same combination of points.
-    for (u, y) in set.u.iter_mut().zip(set.y.chunks_exact(r)) {
+    for (u, y) in at.set.u.iter_mut().zip(at.set.y.chunks_exact(r)) {
         *u *= dot(y, &center);
     }
-    let origin = shifted_origin(points, &set, &frame.origin);
+    let origin = at.set.mean(points, &at.frame);
     // T ← CᵀT with P₁₁ = C·Cᵀ: there the slice is a ball.
     let dim = points.dim().get();
-    let map = (0..r)
-        .flat_map(|i| {
-            let (frame, p11) = (&frame, &p11);
-            (0..dim).map(move |k| (i..r).map(|j| p11[j * r + i] * frame.map[j * dim + k]).sum::<f64>())
-        })
-        .collect();
-    frame.map = map;
-    frame.origin = origin;
-    finish(points, &frame, certificate, options.epsilon, ended, iterations, scans + iterations)
-}
-
-/// o + Σwᵢ(vᵢ − o).
-fn shifted_origin<P: Points>(points: &P, set: &WorkingSet, origin: &[f64]) -> Vec<f64> {
-    let mut v = points.dim().zero();
-    let mut shift = vec![0.0; origin.len()];
-    for (&i, w) in set.index.iter().zip(&set.u) {
-        points.read(i, v.as_mut());
-        for (s, (v, o)) in shift.iter_mut().zip(v.as_ref().iter().zip(origin)) {
-            *s += w * (v - o);
-        }
-    }
-    origin.iter().zip(&shift).map(|(o, s)| o + s).collect()
+    let map = at.frame.map();
+    let rows =
+        (0..r * dim).map(|entry| (entry / dim..r).map(|j| p11[j * r + entry / dim] * map[j * dim + entry % dim]).sum());
+    let frame = Frame::new(origin, points.dim().matrix(rows), r);
+    finish(points, &frame, certificate, options.epsilon, ended, at.iterations, at.scans)
 }
 
 /// The place of entry (i, j), i ≤ j, in svec.
@@ -239,7 +217,7 @@ fn furthest(r: usize, y: &[f64], matrix: &[f64]) -> (usize, f64) {
 fn negative_curvature(n: usize, matrix: &mut [f64]) -> Option<Vec<f64>> {
     for j in 1..=n {
         let mut leading: Vec<f64> = (0..j).flat_map(|i| matrix[i * n..i * n + j].iter().copied()).collect();
-        if cholesky(Dynamic(j), &mut leading).is_some() {
+        if cholesky(Dynamic(j), &mut leading) {
             continue;
         }
         let k = j - 1;

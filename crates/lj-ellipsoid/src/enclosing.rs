@@ -1,6 +1,6 @@
 //! The minimum-volume ellipsoid that contains given points.
 
-use crate::dimension::{Dimension, Dynamic};
+use crate::dimension::{Const, Dimension, Dynamic};
 use crate::ellipsoid::Ellipsoid;
 use crate::error::EnclosingError;
 use crate::options::{EnclosingMethod, EnclosingOptions, FlatPolicy, Status};
@@ -39,7 +39,7 @@ impl<const N: usize> Enclosing<N> {
         0.5 * self.log_det_gap
     }
 
-    pub(crate) fn from_solution(solution: Solution) -> Self {
+    pub(crate) fn from_solution(solution: Solution<Const<N>>) -> Self {
         Self {
             ellipsoid: Ellipsoid::from_shape(&solution.shape),
             log_det_gap: solution.log_det_gap,
@@ -112,7 +112,7 @@ pub(crate) fn solve<P: Points>(
     points: &P,
     options: EnclosingOptions,
     observer: impl FnMut(EnclosingIterate<'_>),
-) -> Result<Solution, EnclosingError> {
+) -> Result<Solution<P::Dim>, EnclosingError> {
     let dim = points.dim();
     let dimension = dim.get();
     let start = start(points, options.flat_tolerance)?;
@@ -122,7 +122,7 @@ pub(crate) fn solve<P: Points>(
     }
     match options.flat {
         FlatPolicy::Error => Err(EnclosingError::Flat { rank, dimension }),
-        FlatPolicy::AffineHull if rank == 0 => Ok(Solution::point(start.frame.origin, points.len(), start.scans)),
+        FlatPolicy::AffineHull if rank == 0 => Ok(Solution::point(dim, start.frame.origin, points.len(), start.scans)),
         FlatPolicy::AffineHull => solve_from(points, Dynamic(rank), start, options, observer),
     }
 }
@@ -131,10 +131,10 @@ pub(crate) fn solve<P: Points>(
 pub(crate) fn solve_from<P: Points, R: Dimension + Sync>(
     points: &P,
     rank: R,
-    start: Start,
+    start: Start<P::Dim>,
     options: EnclosingOptions,
     observer: impl FnMut(EnclosingIterate<'_>),
-) -> Result<Solution, EnclosingError> {
+) -> Result<Solution<P::Dim>, EnclosingError> {
     match options.method {
         EnclosingMethod::Newton | EnclosingMethod::DualReducedNewton => {
             working_set::solve(points, rank, start, options, observer)

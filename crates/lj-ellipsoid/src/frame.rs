@@ -9,23 +9,40 @@ use crate::linalg::solve_lower;
 /// The problem is affine invariant, so every step is taken where the current ellipsoid is the unit ball: no iterate ever
 /// meets the condition of the data.
 #[derive(Clone, Debug)]
-pub(crate) struct Frame {
+pub(crate) struct Frame<N: Dimension> {
     /// o, in the coordinates of the points.
-    pub(crate) origin: Vec<f64>,
-    /// T, r rows of N.
-    pub(crate) map: Vec<f64>,
+    pub(crate) origin: N::Point,
+    /// T, r rows of N; what is below them is not used.
+    rows: N::Matrix,
+    rank: usize,
 }
 
-impl Frame {
+impl<N: Dimension> Frame<N> {
+    /// The frame with this origin and these rows.
+    pub(crate) fn new(origin: N::Point, rows: N::Matrix, rank: usize) -> Self {
+        Self { origin, rows, rank }
+    }
+
     pub(crate) fn rank(&self) -> usize {
-        self.map.len() / self.origin.len()
+        self.rank
+    }
+
+    /// T, row by row.
+    #[inline(always)]
+    pub(crate) fn map(&self) -> &[f64] {
+        &self.rows.as_ref()[..self.rank * self.origin.as_ref().len()]
+    }
+
+    pub(crate) fn is_finite(&self) -> bool {
+        self.map().iter().chain(self.origin.as_ref()).all(|x| x.is_finite())
     }
 
     /// y = T·(v − o); overwrites `v` by v − o.
     #[inline(always)]
-    pub(crate) fn apply<N: Dimension, R: Dimension>(&self, ambient: N, rank: R, v: &mut [f64], y: &mut [f64]) {
+    pub(crate) fn apply<R: Dimension>(&self, ambient: N, rank: R, v: &mut [f64], y: &mut [f64]) {
         let (n, r) = (ambient.get(), rank.get());
-        let (origin, map) = (&self.origin[..n], &self.map[..r * n]);
+        let (origin, map) = (&self.origin.as_ref()[..n], &self.rows.as_ref()[..r * n]);
+        let (v, y) = (&mut v[..n], &mut y[..r]);
         for k in 0..n {
             v[k] -= origin[k];
         }
@@ -39,19 +56,21 @@ impl Frame {
     }
 
     /// Moves the frame to where the ellipsoid (y − c)ᵀ(L·Lᵀ)⁻¹(y − c) ≤ 1 of this one is the unit ball:
-    /// T ← L⁻¹·T, and o ← o + Tᵀ(T·Tᵀ)⁻¹c, found here as the combination of `points` with `weights` that c is.
-    pub(crate) fn recenter<R: Dimension>(&mut self, rank: R, origin: Vec<f64>, l: &[f64]) {
-        let n = self.origin.len();
-        let r = rank.get();
+    /// T ← L⁻¹·T, and o ← o + Tᵀ(T·Tᵀ)⁻¹c, found by the caller as the combination of points that c is.
+    pub(crate) fn recenter<R: Dimension>(&mut self, rank: R, origin: N::Point, l: &[f64]) {
         self.origin = origin;
-        let mut column = vec![0.0; r];
+        let n = self.origin.as_ref().len();
+        let r = rank.get();
+        let rows = self.rows.as_mut();
+        let mut column = rank.zero();
+        let column = column.as_mut();
         for k in 0..n {
             for i in 0..r {
-                column[i] = self.map[i * n + k];
+                column[i] = rows[i * n + k];
             }
-            solve_lower(rank, l, &mut column);
+            solve_lower(rank, l, column);
             for i in 0..r {
-                self.map[i * n + k] = column[i];
+                rows[i * n + k] = column[i];
             }
         }
     }

@@ -4,11 +4,11 @@ use crate::dimension::{Const, Dimension};
 use crate::ellipsoid::{Ellipsoid, reach_along};
 use crate::error::InscribedError;
 use crate::interior::{Coordinates, Polyhedron, round_coordinates};
-use crate::linalg::{UNIT_ROUNDOFF, dot, orthogonalize_rows, sum_of_logarithms, triangularize};
+use crate::linalg::{UNIT_ROUNDOFF, dot, orthogonalize_rows, power_of_two_inverse, sum_of_logarithms, triangularize};
 use crate::maximize::maximize;
 use crate::options::{InscribedOptions, Status};
-use crate::solution::{Shape, Weight, shape_from_axes};
-use crate::start::power_of_two_inverse;
+use crate::shape::{Shape, shape_from_axes};
+use crate::solution::Weight;
 
 /// The half-space { x : normal·x ≤ offset }. The normal points outward and need not be of unit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,8 +40,8 @@ pub struct Inscribed<const N: usize> {
 
 /// A solved inscribed problem of any dimension.
 #[derive(Clone, Debug)]
-pub(crate) struct InscribedSolution {
-    pub(crate) shape: Shape,
+pub(crate) struct InscribedSolution<D: Dimension> {
+    pub(crate) shape: Shape<D>,
     pub(crate) log_det_gap: f64,
     pub(crate) weights: Vec<Weight>,
     pub(crate) status: Status,
@@ -49,7 +49,7 @@ pub(crate) struct InscribedSolution {
 }
 
 impl<const N: usize> Inscribed<N> {
-    pub(crate) fn from_solution(solution: InscribedSolution) -> Self {
+    pub(crate) fn from_solution(solution: InscribedSolution<Const<N>>) -> Self {
         Self {
             ellipsoid: Ellipsoid::from_shape(&solution.shape),
             log_det_gap: solution.log_det_gap,
@@ -162,7 +162,7 @@ pub(crate) fn solve<D: Dimension>(
     rounding: f64,
     options: InscribedOptions,
     mut observer: impl FnMut(InscribedIterate),
-) -> Result<InscribedSolution, InscribedError> {
+) -> Result<InscribedSolution<D>, InscribedError> {
     let n = dim.get();
     // pᵢ = Mᵀaᵢ/sᵢ.
     let slacks = polyhedron.slacks(&coordinates.origin);
@@ -176,27 +176,27 @@ pub(crate) fn solve<D: Dimension>(
     let (point, dual, ended, iterations) = maximize(dim, &p, options, &mut observer)?;
     // Grow B until the first constraint is active.
     let growth = point.h.iter().zip(&point.c).fold(f64::INFINITY, |g: f64, (h, c)| g.min((h + c) / h));
-    let center = coordinates.image(&point.d);
     // The semi-axes are the singular values of M·B; as rows, of its transpose.
-    let mut rows = vec![0.0; n * n];
+    let mut rows = dim.zero_matrix();
     for k in 0..n {
         for i in 0..n {
-            rows[k * n + i] = growth * (0..n).map(|j| coordinates.map[i * n + j] * point.b[j * n + k]).sum::<f64>();
+            rows.as_mut()[k * n + i] =
+                growth * (0..n).map(|j| coordinates.map[i * n + j] * point.b[j * n + k]).sum::<f64>();
         }
     }
-    triangularize(n, &mut rows);
-    orthogonalize_rows(n, &mut rows);
-    let mut semi_axes = Vec::with_capacity(n);
-    for row in rows.chunks_exact_mut(n) {
-        let length = dot(row, row).sqrt();
-        semi_axes.push(length);
-        row.iter_mut().for_each(|x| *x /= length);
+    triangularize(dim, rows.as_mut());
+    orthogonalize_rows(dim, rows.as_mut());
+    let mut semi_axes = dim.zero();
+    for (row, a) in rows.as_mut().chunks_exact_mut(n).zip(semi_axes.as_mut()) {
+        *a = dot(row, row).sqrt();
+        row.iter_mut().for_each(|x| *x /= *a);
     }
-    let log_det_image = sum_of_logarithms(semi_axes.iter().copied());
-    let mut shape = shape_from_axes(n, semi_axes, rows);
-    shape.center = center;
+    let log_det_image = sum_of_logarithms(semi_axes.as_ref().iter().copied());
+    let mut shape = shape_from_axes(dim, n, semi_axes, rows);
+    shape.center = dim.point(coordinates.image(&point.d).into_iter());
     touch(polyhedron, &mut shape).ok_or(InscribedError::OutOfRange)?;
-    shape.log_det = -2.0 * sum_of_logarithms(shape.semi_axes.iter().copied());
+    let (center, axes, semi_axes) = (shape.center.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());
+    shape.log_det = -2.0 * sum_of_logarithms(semi_axes.iter().copied());
     if !shape.log_det.is_finite() {
         return Err(InscribedError::OutOfRange);
     }
@@ -206,15 +206,15 @@ pub(crate) fn solve<D: Dimension>(
     let y = dual.as_ref().map_or(&zero, |d| &d.y);
     let mut error_of_gap = 0.0;
     for ((a, b), y) in polyhedron.rows().zip(y).filter(|(_, y)| **y > 0.0) {
-        let size: f64 = (0..n).map(|k| (a[k] * shape.center[k]).abs() + (a[k] * polyhedron.origin[k]).abs()).sum();
-        let error = gamma * (size + b.abs() + shape.semi_axes[0] * dot(a, a).sqrt());
-        error_of_gap += y * (error / reach_along(&shape.axes, &shape.semi_axes, a) + rounding);
+        let size: f64 = (0..n).map(|k| (a[k] * center[k]).abs() + (a[k] * polyhedron.origin[k]).abs()).sum();
+        let error = gamma * (size + b.abs() + semi_axes[0] * dot(a, a).sqrt());
+        error_of_gap += y * (error / reach_along(axes, semi_axes, a) + rounding);
     }
     let n_float = n as f64;
     let log_det_gap = dual.as_ref().map_or(f64::INFINITY, |dual| {
         // ln det of M alone is that of M·B·growth less that of B·growth.
         let bound = dual.log_det_bound + log_det_image - point.log_det - n_float * growth.ln();
-        let logarithms: f64 = shape.semi_axes.iter().map(|a| a.ln().abs()).sum();
+        let logarithms: f64 = semi_axes.iter().map(|a| a.ln().abs()).sum();
         (2.0 * bound
             + shape.log_det
             + 4.0 * n_float * error_of_gap
@@ -235,11 +235,11 @@ pub(crate) fn solve<D: Dimension>(
 /// a·(c − o) + |diag(axes)·R·a| ≤ b. `None` where that leaves nothing.
 ///
 /// A scaling may by its own rounding leave a half-space a rounding behind: then it shrinks once more, twice as far every time.
-fn touch(polyhedron: &Polyhedron, shape: &mut Shape) -> Option<()> {
-    let center: Vec<f64> = shape.center.iter().zip(&polyhedron.origin).map(|(c, o)| c - o).collect();
+fn touch<D: Dimension>(polyhedron: &Polyhedron, shape: &mut Shape<D>) -> Option<()> {
+    let center: Vec<f64> = shape.center.as_ref().iter().zip(&polyhedron.origin).map(|(c, o)| c - o).collect();
     let room = polyhedron
         .rows()
-        .map(|(a, b)| (b - dot(a, &center)) / reach_along(&shape.axes, &shape.semi_axes, a))
+        .map(|(a, b)| (b - dot(a, &center)) / reach_along(shape.axes.as_ref(), shape.semi_axes.as_ref(), a))
         .fold(f64::INFINITY, f64::min);
     let mut scale = room;
     let mut shrinkage = UNIT_ROUNDOFF;
@@ -247,8 +247,10 @@ fn touch(polyhedron: &Polyhedron, shape: &mut Shape) -> Option<()> {
         if !(scale > 0.0 && scale.is_finite()) {
             return None;
         }
-        shape.semi_axes.iter_mut().for_each(|a| *a *= scale);
-        let within = |(a, b): (&[f64], f64)| dot(a, &center) + reach_along(&shape.axes, &shape.semi_axes, a) <= b;
+        shape.semi_axes.as_mut().iter_mut().for_each(|a| *a *= scale);
+        let within = |(a, b): (&[f64], f64)| {
+            dot(a, &center) + reach_along(shape.axes.as_ref(), shape.semi_axes.as_ref(), a) <= b
+        };
         if polyhedron.rows().all(within) {
             return Some(());
         }

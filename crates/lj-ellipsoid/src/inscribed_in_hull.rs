@@ -11,6 +11,7 @@ use crate::interior::{Coordinates, Polyhedron};
 use crate::linalg::{UNIT_ROUNDOFF, dot};
 use crate::options::{EnclosingOptions, InscribedOptions};
 use crate::points::{PointSlice, Points};
+use crate::shape::Shape;
 
 /// Heights over a plane below this many roundings of the coordinates are coplanar.
 const COPLANAR: f64 = 512.0;
@@ -58,7 +59,7 @@ pub(crate) fn solve_points<P: Points>(
     points: &P,
     options: InscribedOptions,
     observer: impl FnMut(InscribedIterate),
-) -> Result<InscribedSolution, InscribedError> {
+) -> Result<InscribedSolution<P::Dim>, InscribedError> {
     let dim = points.dim();
     let n = dim.get();
     let outer =
@@ -80,8 +81,8 @@ pub(crate) fn solve_points<P: Points>(
     let mut coordinate_error: f64 = 0.0;
     for i in 0..points.len() {
         points.read(i, v.as_mut());
-        v.as_mut().iter_mut().zip(&shape.center).for_each(|(v, c)| *v -= c);
-        for (axis, a) in shape.axes.chunks_exact(n).zip(&shape.semi_axes) {
+        v.as_mut().iter_mut().zip(shape.center.as_ref()).for_each(|(v, c)| *v -= c);
+        for (axis, a) in shape.axes.as_ref().chunks_exact(n).zip(shape.semi_axes.as_ref()) {
             images.push(dot(axis, v.as_ref()) / a);
             let size: f64 = axis.iter().zip(v.as_ref()).map(|(x, y)| (x * y).abs()).sum();
             coordinate_error = coordinate_error.max((n + 3) as f64 * UNIT_ROUNDOFF * size / a);
@@ -93,25 +94,26 @@ pub(crate) fn solve_points<P: Points>(
         let tolerance = (COPLANAR * UNIT_ROUNDOFF).max(4.0 * coordinate_error);
         hull3(images.as_chunks::<3>().0, tolerance).ok_or(InscribedError::Flat { rank: 2, dimension: 3 })?
     };
-    let (polyhedron, coordinates) = in_space(n, &facets, &shape);
+    let (polyhedron, coordinates) = in_space(dim, &facets, &shape);
     solve(dim, &polyhedron, coordinates, 4.0 * n as f64 * coordinate_error, options, observer)
 }
 
 /// The facets as half-spaces of the original space, and the coordinates in which they were found.
-fn in_space(n: usize, facets: &Facets, shape: &crate::solution::Shape) -> (Polyhedron, Coordinates) {
+fn in_space<N: Dimension>(dim: N, facets: &Facets, shape: &Shape<N>) -> (Polyhedron, Coordinates) {
+    let n = dim.get();
+    let (center, axes, semi_axes) = (shape.center.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());
     let mut polyhedron = Polyhedron {
         n,
         normals: Vec::with_capacity(facets.normals.len()),
         offsets: Vec::with_capacity(facets.offsets.len()),
-        origin: shape.center.clone(),
+        origin: center.to_vec(),
     };
     for (normal, offset) in facets.normals.chunks_exact(n).zip(&facets.offsets) {
-        let a: Vec<f64> =
-            (0..n).map(|i| (0..n).map(|k| normal[k] / shape.semi_axes[k] * shape.axes[k * n + i]).sum()).collect();
-        let length = a.iter().fold(0.0, |l: f64, x| l.hypot(*x));
-        polyhedron.normals.extend(a.iter().map(|x| x / length));
+        let a = dim.point((0..n).map(|i| (0..n).map(|k| normal[k] / semi_axes[k] * axes[k * n + i]).sum()));
+        let length = a.as_ref().iter().fold(0.0, |l: f64, x| l.hypot(*x));
+        polyhedron.normals.extend(a.as_ref().iter().map(|x| x / length));
         polyhedron.offsets.push(offset / length);
     }
-    let map = (0..n * n).map(|at| shape.axes[(at % n) * n + at / n] * shape.semi_axes[at % n]).collect();
-    (polyhedron, Coordinates { origin: shape.center.clone(), map })
+    let map = (0..n * n).map(|at| axes[(at % n) * n + at / n] * semi_axes[at % n]).collect();
+    (polyhedron, Coordinates { origin: center.to_vec(), map })
 }

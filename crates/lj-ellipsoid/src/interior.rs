@@ -92,7 +92,9 @@ pub(crate) fn round_coordinates(polyhedron: &Polyhedron) -> Result<Coordinates, 
                 }
             }
         }
-        cholesky(Dynamic(n), &mut l).ok_or(InscribedError::EmptyInterior)?;
+        if !cholesky(Dynamic(n), &mut l) {
+            return Err(InscribedError::EmptyInterior);
+        }
         coordinates.whiten(&l);
         let mut step = vec![0.0; n];
         for (a, s) in rows.chunks_exact_mut(n).zip(&slacks) {
@@ -310,7 +312,7 @@ fn interior_point(n: usize, rows: &[f64], offsets: &[f64]) -> Option<Vec<f64>> {
                 }
             }
         }
-        if cholesky(Dynamic(p), &mut hessian).is_none() {
+        if !cholesky(Dynamic(p), &mut hessian) {
             break;
         }
         solve_lower(Dynamic(p), &hessian, &mut step);

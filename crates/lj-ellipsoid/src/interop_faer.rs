@@ -11,17 +11,18 @@ use crate::interior::round_coordinates;
 use crate::linalg::dot;
 use crate::options::{EnclosingOptions, InscribedOptions, Status};
 use crate::points::Points;
-use crate::solution::{Shape, Solution, Weight};
+use crate::shape::Shape;
+use crate::solution::{Solution, Weight};
 
 /// The ellipsoid E(c, X) = { x : (x − c)ᵀX(x − c) ≤ 1 } in a dimension known at run time; see
 /// [`Ellipsoid`](crate::Ellipsoid).
 #[derive(Clone, Debug, PartialEq)]
 pub struct EllipsoidDyn {
-    shape: Shape,
+    shape: Shape<Dynamic>,
 }
 
 impl EllipsoidDyn {
-    pub(crate) fn from_shape(shape: Shape) -> Self {
+    pub(crate) fn from_shape(shape: Shape<Dynamic>) -> Self {
         Self { shape }
     }
 
@@ -98,7 +99,7 @@ impl EllipsoidDyn {
     #[must_use]
     pub fn log_volume(&self) -> f64 {
         let rank = self.shape.semi_axes.iter().filter(|a| **a > 0.0).count();
-        crate::solution::log_unit_ball_volume(rank) - 0.5 * self.shape.log_det
+        crate::shape::log_unit_ball_volume(rank) - 0.5 * self.shape.log_det
     }
 }
 
@@ -195,7 +196,7 @@ pub struct InscribedDyn {
 }
 
 impl InscribedDyn {
-    fn from_solution(solution: InscribedSolution) -> Self {
+    fn from_solution(solution: InscribedSolution<Dynamic>) -> Self {
         let InscribedSolution { shape, log_det_gap, weights, status, iterations } = solution;
         Self { ellipsoid: EllipsoidDyn::from_shape(shape), log_det_gap, weights, status, iterations }
     }

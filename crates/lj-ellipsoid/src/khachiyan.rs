@@ -5,15 +5,15 @@
 //! M. J. Todd, E. A. Yıldırım, *On Khachiyan's algorithm for the computation of minimum-volume enclosing ellipsoids*,
 //! Discrete Appl. Math. 155 (2007).
 
-use crate::design::{Moments, WorkingSet};
+use crate::design::WorkingSet;
 use crate::dimension::Dimension;
 use crate::enclosing::EnclosingIterate;
 use crate::error::EnclosingError;
+use crate::iterate::Iterate;
 use crate::options::{EnclosingOptions, Status};
 use crate::points::Points;
-use crate::solution::{Certificate, Solution, finish};
+use crate::solution::Solution;
 use crate::start::Start;
-use crate::working_set::recenter;
 
 /// The most moves, unless the caller says otherwise.
 const DEFAULT_ITERATIONS: usize = 1_000_000;
@@ -29,48 +29,38 @@ const REFRESH: usize = 200;
 pub(crate) fn solve<P: Points, R: Dimension + Sync>(
     points: &P,
     rank: R,
-    start: Start,
+    start: Start<P::Dim>,
     options: EnclosingOptions,
     mut observer: impl FnMut(EnclosingIterate<'_>),
-) -> Result<Solution, EnclosingError> {
+) -> Result<Solution<P::Dim>, EnclosingError> {
     let r = rank.get();
     let n = r as f64 + 1.0;
     let max_iterations = if options.max_iterations == 0 { DEFAULT_ITERATIONS } else { options.max_iterations };
-    let Start { mut frame, working, mut scans, .. } = start;
-    let mut set = WorkingSet::uniform((0..points.len()).collect());
-    set.u.fill(0.0);
+    let Start { frame, working, scans, .. } = start;
+    let mut weights = vec![0.0; points.len()];
     for &i in &working {
-        set.u[i] = 1.0 / working.len() as f64;
+        weights[i] = 1.0 / working.len() as f64;
     }
-    set.locate(points, rank, &frame);
-    let mut moments = Moments::default();
-    if !moments.compute(rank, &set.y, &set.u) {
-        return Err(EnclosingError::OutOfRange);
-    }
-    let mut iterations = 0;
+    let all = WorkingSet::new((0..points.len()).collect(), Some(weights));
+    let mut at = Iterate::new(points, rank, frame, all, scans)?;
     // Coordinates relative to the mean at the last refresh, in which M starts as the identity: the lifted qᵢ = (zᵢ; 1).
     let lifted = r + 1;
     let mut inverse = vec![0.0; lifted * lifted];
-    let mut omega = vec![0.0; set.len()];
+    let mut omega = vec![0.0; points.len()];
     let ended = 'outer: loop {
-        recenter(points, rank, &mut frame, &mut set, &mut moments);
-        scans += 1;
-        let gap = moments.log_det_gap(r);
-        observer(EnclosingIterate {
-            iteration: iterations,
-            scans,
-            log_det_gap: gap.max(0.0),
-            indices: &set.index,
-            weights: &set.u,
-        });
+        at.recenter(points);
+        at.scans += 1;
+        let gap = at.moments.log_det_gap();
+        observer(at.observed(gap));
         if gap <= 0.5 * options.epsilon {
             break Status::Converged;
         }
         inverse.fill(0.0);
         (0..lifted).for_each(|k| inverse[k * lifted + k] = 1.0);
+        let Iterate { set, moments, iterations, scans, .. } = &mut at;
         omega.iter_mut().zip(&moments.q).for_each(|(o, q)| *o = q + 1.0);
         for _ in 0..REFRESH {
-            if iterations >= max_iterations {
+            if *iterations >= max_iterations {
                 break 'outer Status::IterationLimit;
             }
             let (mut plus, mut minus) = (0, usize::MAX);
@@ -96,8 +86,8 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
             if !(beta.abs() > 0.0 && beta < 1.0) {
                 break;
             }
-            iterations += 1;
-            scans += 1;
+            *iterations += 1;
+            *scans += 1;
             rank_one_move(r, j, beta, &moments.z, &mut inverse, &mut omega);
             let dropped = away && beta == -set.u[j] / (1.0 - set.u[j]);
             set.u.iter_mut().for_each(|u| *u *= 1.0 - beta);
@@ -105,20 +95,13 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
         }
         let before = moments.log_det_scatter;
         let unchanged = moments.q.clone();
-        if !moments.compute(rank, &set.y, &set.u) {
-            break Status::Stalled;
-        }
-        if moments.log_det_scatter <= before && moments.q == unchanged {
+        if !at.update() || at.moments.log_det_scatter <= before && at.moments.q == unchanged {
             break Status::Stalled;
         }
     };
-    set.retain(r, {
-        let u = set.u.clone();
-        move |i| u[i] > 0.0
-    });
-    moments.compute(rank, &set.y, &set.u);
-    let certificate = Certificate::from_weights(points, rank, &frame, &set, &moments);
-    finish(points, &frame, certificate, options.epsilon, ended, iterations, scans)
+    at.set.retain(r, |_, u| u > 0.0);
+    at.update();
+    at.finish(points, options.epsilon, ended)
 }
 
 /// Updates M⁻¹ and every ω for u ← (1 − β)u + β·eⱼ: M' = (1 − β)M + β·qⱼqⱼᵀ, by Sherman and Morrison.

@@ -69,6 +69,7 @@ mod interior;
 mod interop_convex_support;
 #[cfg(feature = "faer")]
 mod interop_faer;
+mod iterate;
 mod khachiyan;
 mod linalg;
 mod maximize;
@@ -78,6 +79,7 @@ mod options;
 mod parallel;
 mod points;
 mod scan;
+mod shape;
 mod solution;
 mod start;
 mod violators;

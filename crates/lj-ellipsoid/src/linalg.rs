@@ -10,6 +10,16 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
+/// The power of two that brings `extent` near one, so that scaling by it is exact.
+pub(crate) fn power_of_two_inverse(extent: f64) -> f64 {
+    if extent == 0.0 {
+        return 1.0;
+    }
+    // Exponents are kept to where the power and its inverse are normal numbers.
+    let exponent = ((extent.to_bits() >> 52) as i64 - 1023).clamp(-1000, 1000);
+    f64::from_bits(((1023 - exponent) as u64) << 52)
+}
+
 /// Σ ln xᵢ of positive numbers, as the logarithm of their product: one rounding of a logarithm in the common case, none of
 /// whose products is extreme.
 #[inline(always)]
@@ -30,36 +40,46 @@ pub(crate) fn sum_of_logarithms(numbers: impl Iterator<Item = f64>) -> f64 {
     sum + product.ln()
 }
 
-/// Overwrites the lower triangle of the symmetric `a` by its Cholesky factor L, A = L·Lᵀ, and answers ln det A.
-/// `None` if a pivot is not positive (or NaN): then `a` is not numerically positive definite.
+/// Overwrites the lower triangle of the symmetric `a` by its Cholesky factor L, A = L·Lᵀ.
+/// False if a pivot is not positive (or NaN): then `a` is not numerically positive definite.
 #[inline(always)]
-pub(crate) fn cholesky<D: Dimension>(dim: D, a: &mut [f64]) -> Option<f64> {
+pub(crate) fn cholesky<D: Dimension>(dim: D, a: &mut [f64]) -> bool {
     let n = dim.get();
-    for j in 0..n {
-        let mut pivot = a[j * n + j];
-        for k in 0..j {
-            pivot -= a[j * n + k] * a[j * n + k];
+    let a = &mut a[..n * n];
+    for i in 0..n {
+        let (above, row) = a.split_at_mut(i * n);
+        for j in 0..i {
+            let other = &above[j * n..j * n + n];
+            let mut s = row[j];
+            for k in 0..j {
+                s -= row[k] * other[k];
+            }
+            row[j] = s / other[j];
+        }
+        let mut pivot = row[i];
+        for k in 0..i {
+            pivot -= row[k] * row[k];
         }
         if !(pivot > 0.0 && pivot.is_finite()) {
-            return None;
+            return false;
         }
-        let root = pivot.sqrt();
-        a[j * n + j] = root;
-        for i in j + 1..n {
-            let mut s = a[i * n + j];
-            for k in 0..j {
-                s -= a[i * n + k] * a[j * n + k];
-            }
-            a[i * n + j] = s / root;
-        }
+        row[i] = pivot.sqrt();
     }
-    Some(2.0 * sum_of_logarithms((0..n).map(|k| a[k * n + k])))
+    true
+}
+
+/// As [`cholesky`], answering ln det A; `None` where `a` is not numerically positive definite.
+#[inline(always)]
+pub(crate) fn cholesky_log_det<D: Dimension>(dim: D, a: &mut [f64]) -> Option<f64> {
+    let n = dim.get();
+    cholesky(dim, a).then(|| 2.0 * sum_of_logarithms((0..n).map(|k| a[k * n + k])))
 }
 
 /// Solves L·x = b in place, `l` lower triangular.
 #[inline(always)]
 pub(crate) fn solve_lower<D: Dimension>(dim: D, l: &[f64], x: &mut [f64]) {
     let n = dim.get();
+    let (l, x) = (&l[..n * n], &mut x[..n]);
     for i in 0..n {
         let mut s = x[i];
         for k in 0..i {
@@ -73,6 +93,7 @@ pub(crate) fn solve_lower<D: Dimension>(dim: D, l: &[f64], x: &mut [f64]) {
 #[inline(always)]
 pub(crate) fn solve_lower_transpose<D: Dimension>(dim: D, l: &[f64], x: &mut [f64]) {
     let n = dim.get();
+    let (l, x) = (&l[..n * n], &mut x[..n]);
     for i in (0..n).rev() {
         let mut s = x[i];
         for k in i + 1..n {
@@ -87,22 +108,32 @@ pub(crate) fn solve_lower_transpose<D: Dimension>(dim: D, l: &[f64], x: &mut [f6
 ///
 /// Householder's QR with column pivoting and rows sorted by size: its error is small row by row and column by column
 /// (Cox & Higham 1998), so axes of wildly different size survive, wherever the grading stands.
-pub(crate) fn triangularize(n: usize, t: &mut [f64]) {
+pub(crate) fn triangularize<D: Dimension>(dim: D, t: &mut [f64]) {
+    let n = dim.get();
     let rows = t.len() / n;
-    let mut eliminated = vec![false; n];
-    let mut v = vec![0.0; rows];
+    let mut eliminated = dim.indices(0);
+    let mut v = dim.zero();
+    let (eliminated, v) = (eliminated.as_mut(), v.as_mut());
     for k in 0..rows {
-        let size = |t: &[f64], i: usize| t[i * n..(i + 1) * n].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let largest = (k..rows).fold(k, |best, i| if size(t, i) > size(t, best) { i } else { best });
-        for j in 0..n {
-            t.swap(k * n + j, largest * n + j);
+        let size = |t: &[f64], i: usize| t[i * n..i * n + n].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let mut largest = (k, size(t, k));
+        for i in k + 1..rows {
+            let size = size(t, i);
+            if size > largest.1 {
+                largest = (i, size);
+            }
         }
-        let length = |t: &[f64], j: usize| (k..rows).map(|i| t[i * n + j] * t[i * n + j]).sum::<f64>();
-        let pivot = (0..n).filter(|&j| !eliminated[j]).fold((0, -1.0), |best, j| {
-            let length = length(t, j);
-            if length > best.1 { (j, length) } else { best }
-        });
-        eliminated[pivot.0] = true;
+        for j in 0..n {
+            t.swap(k * n + j, largest.0 * n + j);
+        }
+        let mut pivot = (0, -1.0);
+        for j in 0..n {
+            let length: f64 = (k..rows).map(|i| t[i * n + j] * t[i * n + j]).sum();
+            if eliminated[j] == 0 && length > pivot.1 {
+                pivot = (j, length);
+            }
+        }
+        eliminated[pivot.0] = 1;
         let head = t[k * n + pivot.0];
         let alpha = -pivot.1.sqrt().copysign(head);
         for i in k..rows {
@@ -133,7 +164,8 @@ pub(crate) fn triangularize(n: usize, t: &mut [f64]) {
 /// eigen-decomposition of `TᵀT` cannot. Rows count as orthogonal at |tᵢ·tⱼ| ≤ 4u·|tᵢ||tⱼ|.
 ///
 /// `t` holds rows of length `n`, at most `n` of them.
-pub(crate) fn orthogonalize_rows(n: usize, t: &mut [f64]) {
+pub(crate) fn orthogonalize_rows<D: Dimension>(dim: D, t: &mut [f64]) {
+    let n = dim.get();
     let rows = t.len() / n;
     // Convergence is quadratic after a few sweeps; thirty bound it for NaN and nothing else.
     for _ in 0..30 {
@@ -173,7 +205,7 @@ mod tests {
     fn cholesky_solves_and_gives_the_determinant() {
         let a = [4.0, 2.0, 1.0, 2.0, 5.0, 3.0, 1.0, 3.0, 6.0];
         let mut l = a;
-        let log_det = cholesky(Const::<3>, &mut l).expect("positive definite");
+        let log_det = cholesky_log_det(Const::<3>, &mut l).expect("positive definite");
         assert!((log_det - 67f64.ln()).abs() < 1e-15, "ln det = {log_det}");
         let mut x = [1.0, 2.0, 3.0];
         solve_lower(Const::<3>, &l, &mut x);
@@ -185,8 +217,8 @@ mod tests {
 
     #[test]
     fn cholesky_refuses_the_indefinite_and_nan() {
-        assert!(cholesky(Dynamic(2), &mut [1.0, 2.0, 2.0, 1.0]).is_none(), "indefinite");
-        assert!(cholesky(Dynamic(2), &mut [1.0, f64::NAN, f64::NAN, 1.0]).is_none(), "NaN");
+        assert!(!cholesky(Dynamic(2), &mut [1.0, 2.0, 2.0, 1.0]), "indefinite");
+        assert!(!cholesky(Dynamic(2), &mut [1.0, f64::NAN, f64::NAN, 1.0]), "NaN");
     }
 
     #[test]
@@ -196,8 +228,8 @@ mod tests {
         let det = 0.6 * (0.54 - 0.12) - 0.8 * (-0.72 - 0.06) + 0.1 * (-0.32 - 0.12);
         let d = [1e12, 1.0, 1e-12];
         let mut t: Vec<f64> = w.iter().flat_map(|row| row.iter().zip(d).map(|(w, d)| w * d)).collect();
-        triangularize(3, &mut t);
-        orthogonalize_rows(3, &mut t);
+        triangularize(Dynamic(3), &mut t);
+        orthogonalize_rows(Dynamic(3), &mut t);
         let product: f64 = t.chunks(3).map(|row| dot(row, row).sqrt()).product();
         assert!((product - det).abs() < 1e-14, "{product} against {det}");
     }
@@ -206,8 +238,8 @@ mod tests {
     fn orthogonalized_rows_keep_the_gram_matrix_of_columns() {
         let t = [1e8, 2e8, -1e8, 1.0, 3.0, 1.0, 1e-9, 0.0, 2e-9];
         let mut r = t;
-        triangularize(3, &mut r);
-        orthogonalize_rows(3, &mut r);
+        triangularize(Const::<3>, &mut r);
+        orthogonalize_rows(Const::<3>, &mut r);
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
             let (a, b) = (&r[3 * i..3 * i + 3], &r[3 * j..3 * j + 3]);
             let cosine = dot(a, b) / (dot(a, a).sqrt() * dot(b, b).sqrt());

@@ -18,7 +18,7 @@
 use crate::dimension::{Dimension, Dynamic, LANES};
 use crate::error::InscribedError;
 use crate::inscribed::InscribedIterate;
-use crate::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
+use crate::linalg::{cholesky, cholesky_log_det, dot, solve_lower, solve_lower_transpose};
 use crate::options::{InscribedOptions, Status};
 
 /// The unknowns of the program and what follows from them.
@@ -52,7 +52,7 @@ impl Point {
     fn evaluate<D: Dimension>(&mut self, dim: D, p: &[f64], factor: &mut Vec<f64>) -> bool {
         let n = dim.get();
         factor.clone_from(&self.b);
-        let Some(log_det) = cholesky(dim, factor) else { return false };
+        let Some(log_det) = cholesky_log_det(dim, factor) else { return false };
         self.log_det = log_det;
         let (b, d) = (&self.b[..n * n], &self.d[..n]);
         let outputs = self.v.chunks_exact_mut(n).zip(&mut self.h).zip(&mut self.c);
@@ -103,7 +103,9 @@ fn dual_bound<D: Dimension>(dim: D, p: &[f64], v: &[f64], y: &[f64]) -> Option<D
                 }
             }
         }
-        cholesky(dim, &mut gram)?;
+        if !cholesky(dim, &mut gram) {
+            return None;
+        }
         solve_lower(dim, &gram, &mut residual);
         solve_lower_transpose(dim, &gram, &mut residual);
         for (p, y) in p.chunks_exact(n).zip(&mut y) {
@@ -123,7 +125,7 @@ fn dual_bound<D: Dimension>(dim: D, p: &[f64], v: &[f64], y: &[f64]) -> Option<D
             }
         }
     }
-    let log_det = cholesky(dim, &mut s)?;
+    let log_det = cholesky_log_det(dim, &mut s)?;
     Some(Dual { log_det_bound: -(n as f64) * (n as f64).ln() - log_det, y })
 }
 
@@ -354,7 +356,7 @@ impl System {
                 a += 1;
             }
         }
-        if cholesky(Dynamic(size), &mut self.matrix).is_none() {
+        if !cholesky(Dynamic(size), &mut self.matrix) {
             return false;
         }
         solve_lower(Dynamic(size), &self.matrix, &mut self.right);
@@ -442,7 +444,9 @@ fn pair(n: usize, c: &[f64], w: &[f64], (i, j): (usize, usize), (k, l): (usize, 
 fn inverse<D: Dimension>(dim: D, b: &[f64]) -> Option<Vec<f64>> {
     let n = dim.get();
     let mut factor = b.to_vec();
-    cholesky(dim, &mut factor)?;
+    if !cholesky(dim, &mut factor) {
+        return None;
+    }
     let mut inverse = vec![0.0; n * n];
     for row in 0..n {
         let e = &mut inverse[row * n..(row + 1) * n];

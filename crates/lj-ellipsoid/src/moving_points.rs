@@ -1,10 +1,11 @@
 //! Points that come, go and move, and the enclosing ellipsoid that follows them.
 
-use crate::design::{Moments, WorkingSet};
-use crate::dimension::Const;
+use crate::design::WorkingSet;
+use crate::dimension::{Const, Square};
 use crate::enclosing::{Enclosing, solve, solve_from};
 use crate::error::EnclosingError;
 use crate::frame::Frame;
+use crate::iterate::Iterate;
 use crate::options::EnclosingOptions;
 use crate::points::PointSlice;
 use crate::start::Start;
@@ -142,22 +143,21 @@ impl<const N: usize> MovingPoints<N> {
     }
 
     /// The old ellipsoid as frame and its points with their weights, unless these no longer span the space.
-    fn warm_start(&self, answer: &Enclosing<N>) -> Option<Start> {
-        let (axes, lengths) = (answer.ellipsoid.axes(), answer.ellipsoid.semi_axes());
-        let map: Vec<f64> = axes.iter().zip(lengths).flat_map(|(axis, a)| axis.map(|x| x / a)).collect();
-        let frame = Frame { origin: answer.ellipsoid.center().to_vec(), map };
+    fn warm_start(&self, answer: &Enclosing<N>) -> Option<Start<Const<N>>> {
+        let (mut rows, lengths) = (answer.ellipsoid.axes(), answer.ellipsoid.semi_axes());
+        rows.iter_mut().zip(lengths).for_each(|(row, a)| row.iter_mut().for_each(|x| *x /= a));
+        let frame = Frame::new(answer.ellipsoid.center(), Square(rows), N);
         let working: Vec<usize> = answer.weights.iter().map(|w| w.index).collect();
         let total: f64 = answer.weights.iter().map(|w| w.weight).sum();
         let weights: Vec<f64> = answer.weights.iter().map(|w| w.weight / total).collect();
-        if !frame.map.iter().chain(&weights).all(|x| x.is_finite()) {
+        if !frame.is_finite() || !weights.iter().all(|x| x.is_finite()) {
             return None;
         }
-        let mut set = WorkingSet { u: weights, ..WorkingSet::uniform(working) };
-        set.locate(&PointSlice(&self.points), Const::<N>, &frame);
-        let mut moments = Moments::default();
+        let start = WorkingSet::new(working, Some(weights));
+        let Iterate { frame, set, moments, .. } =
+            Iterate::new(&PointSlice(&self.points), Const::<N>, frame, start, 0).ok()?;
         // A scatter far from the identity is no start worth having.
-        let round = moments.compute(Const::<N>, &set.y, &set.u)
-            && (0..N).all(|k| (1e-4..=1e4).contains(&moments.factor[k * N + k]));
+        let round = moments.factor.as_ref().iter().step_by(N + 1).all(|d| (1e-4..=1e4).contains(d));
         round.then_some(Start { frame, working: set.index, weights: Some(set.u), scans: 0 })
     }
 }

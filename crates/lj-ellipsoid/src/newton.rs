@@ -13,7 +13,9 @@
 //! nearest to u; it vanishes at the solution, so it moves no answer.
 
 use crate::design::{Moments, WorkingSet};
-use crate::dimension::Dimension;
+use crate::dimension::{Dimension, Dynamic};
+use crate::iterate::Iterate;
+use crate::linalg::{cholesky, solve_lower, solve_lower_transpose};
 use crate::violators::elimination_threshold;
 
 /// The proximal term relative to the largest diagonal of H: far above the rounding of its Cholesky factor, far below
@@ -24,38 +26,47 @@ const PROXIMAL: f64 = 1e-13;
 const MULTIPLICATIVE_STEPS: usize = 4;
 
 /// Room for the quadratic model, reused from step to step.
-#[derive(Debug, Default)]
-pub(crate) struct Workspace {
+pub(crate) struct Workspace<R: Dimension> {
+    /// H, its lower triangle.
     h: Vec<f64>,
     r: Vec<f64>,
     v: Vec<f64>,
+    /// The members with v > 0, and the optimum over them.
     free: Vec<usize>,
     factor: Vec<f64>,
     solution: Vec<f64>,
+    /// Weights a part of the way from u to v, and what follows from them.
     trial: Vec<f64>,
-    trial_moments: Moments,
+    trial_moments: Moments<R>,
+    /// The iterate of least gap.
     best: WorkingSet,
 }
 
-/// Improves the weights of `set` until the gap over it is at most `gap`, or rounding stops the ascent.
-/// `moments` are those of the weights, before and after. Answers the number of steps.
-pub(crate) fn solve<R: Dimension>(
-    rank: R,
-    set: &mut WorkingSet,
-    moments: &mut Moments,
-    work: &mut Workspace,
+impl<R: Dimension> Workspace<R> {
+    pub(crate) fn new(rank: R) -> Self {
+        let [h, r, v, factor, solution, trial] = Default::default();
+        let (free, best) = Default::default();
+        Self { h, r, v, free, factor, solution, trial, trial_moments: Moments::new(rank), best }
+    }
+}
+
+/// Improves the weights until the gap over the working set is at most `gap`, or rounding stops the ascent. Answers the
+/// number of steps.
+pub(crate) fn solve<N: Dimension, R: Dimension>(
+    at: &mut Iterate<N, R>,
+    work: &mut Workspace<R>,
     gap: f64,
     max_steps: usize,
 ) -> usize {
-    let r = rank.get();
+    let Iterate { rank, set, moments, .. } = at;
+    let rank = *rank;
     let mut steps = 0;
     let mut best_gap = f64::INFINITY;
     let mut without_progress = 0;
-    work.best.clone_from(set);
     thin_out(rank, set, moments);
     loop {
         lift_far_points(rank, set, moments);
-        let now = moments.log_det_gap(r);
+        let now = moments.log_det_gap();
         if now <= gap {
             return steps;
         }
@@ -78,21 +89,23 @@ pub(crate) fn solve<R: Dimension>(
         }
         steps += 1;
     }
-    set.clone_from(&work.best);
-    moments.compute(rank, &set.y, &set.u);
+    if best_gap < f64::INFINITY {
+        std::mem::swap(set, &mut work.best);
+        moments.compute(&set.y, &set.u);
+    }
     steps
 }
 
 /// Where every member has weight, as at the start, most will lose it, and Newton's model takes them out one by one. A few
 /// multiplicative steps u ← u·ω/n, which always ascend, bring the bound of [`eliminate`] to bear on them together.
-fn thin_out<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments) {
+fn thin_out<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments<R>) {
     let n = rank.get() as f64 + 1.0;
     for _ in 0..MULTIPLICATIVE_STEPS {
         if set.len() <= rank.get() + 3 || set.u.contains(&0.0) || moments.furthest().1 <= (n - 1.0) * (1.0 + 1e-9) {
             break;
         }
         set.u.iter_mut().zip(&moments.q).for_each(|(u, q)| *u *= (1.0 + q) / n);
-        if !moments.compute(rank, &set.y, &set.u) {
+        if !moments.compute(&set.y, &set.u) {
             break;
         }
         eliminate(rank, set, moments);
@@ -101,7 +114,7 @@ fn thin_out<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments) 
 
 /// The model of a point far outside with little weight is poor: Newton would only double its weight each step. The
 /// exact line search of the first-order method (Todd and Yıldırım), β = (ω − n)/(n(ω − 1)), brings such points in.
-fn lift_far_points<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments) {
+fn lift_far_points<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments<R>) {
     let n = rank.get() as f64 + 1.0;
     for _ in 0..set.len() {
         let (j, q) = moments.furthest();
@@ -112,37 +125,18 @@ fn lift_far_points<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Mo
         let beta = (omega - n) / (n * (omega - 1.0));
         set.u.iter_mut().for_each(|u| *u *= 1.0 - beta);
         set.u[j] += beta;
-        if !moments.compute(rank, &set.y, &set.u) {
+        if !moments.compute(&set.y, &set.u) {
             break;
         }
     }
 }
 
 /// One damped Newton step; false where no ascent is left.
-fn step<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments, work: &mut Workspace) -> bool {
+fn step<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments<R>, work: &mut Workspace<R>) -> bool {
     let r = rank.get();
-    let k = set.len();
     let n = r as f64 + 1.0;
-    // H = G∘G with Gᵢⱼ = 1 + zᵢ·zⱼ.
-    work.h.resize(k * k, 0.0);
-    for (i, zi) in moments.z.chunks_exact(r).enumerate() {
-        let row = &mut work.h[i * k..i * k + i + 1];
-        for (h, zj) in row.iter_mut().zip(moments.z.chunks_exact(r)) {
-            let mut g = 1.0;
-            for l in 0..r {
-                g += zi[l] * zj[l];
-            }
-            *h = g * g;
-        }
-    }
-    let proximal = PROXIMAL * moments.q.iter().fold(0.0, |m: f64, q| m.max((1.0 + q) * (1.0 + q)));
-    work.r.clear();
-    work.r.reserve(k);
-    for (i, (q, u)) in moments.q.iter().zip(&set.u).enumerate() {
-        work.h[i * k + i] += proximal;
-        work.r.push(2.0 * (q + 1.0) - n + proximal * u);
-    }
-    non_negative_quadratic(k, n, &set.u, work);
+    quadratic_model(rank, set, moments, work);
+    non_negative_quadratic(n, &set.u, work);
 
     // N + 1 points are a simplex: equal weights, whatever their places.
     if work.v.iter().filter(|v| **v > 0.0).count() == r + 1 {
@@ -163,12 +157,12 @@ fn step<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments, work
         work.trial.extend(u.iter().zip(v).map(|(u, v)| (u + t * (v - u)).max(0.0)));
         let total: f64 = work.trial.iter().sum();
         work.trial.iter_mut().for_each(|u| *u /= total);
-        if total > 0.0 && work.trial_moments.compute_scatter(rank, &set.y, &work.trial) {
+        if total > 0.0 && work.trial_moments.compute_scatter(&set.y, &work.trial) {
             let ascent = work.trial_moments.log_det_scatter - moments.log_det_scatter;
             if ascent >= 1e-4 * t * slope || slope < 1e-11 {
                 std::mem::swap(&mut set.u, &mut work.trial);
-                std::mem::swap(moments, &mut work.trial_moments);
-                moments.compute_distances(rank, &set.y);
+                moments.take_scatter(&work.trial_moments);
+                moments.compute_distances(&set.y);
                 return true;
             }
         }
@@ -177,20 +171,50 @@ fn step<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments, work
     false
 }
 
+/// Writes H = G∘G, Gᵢⱼ = 1 + zᵢ·zⱼ, and r = 2ω − n·1, both with the proximal term.
+fn quadratic_model<R: Dimension>(rank: R, set: &WorkingSet, moments: &Moments<R>, work: &mut Workspace<R>) {
+    let r = rank.get();
+    let n = r as f64 + 1.0;
+    let k = set.len();
+    let proximal = PROXIMAL * moments.q.iter().fold(0.0, |m: f64, q| m.max((1.0 + q) * (1.0 + q)));
+    work.h.resize(k * k, 0.0);
+    work.r.resize(k, 0.0);
+    let z = moments.z.chunks_exact(r);
+    for (i, (zi, row)) in z.clone().zip(work.h.chunks_exact_mut(k)).enumerate() {
+        for (h, zj) in row[..=i].iter_mut().zip(z.clone()) {
+            let mut g = 1.0;
+            for l in 0..r {
+                g += zi[l] * zj[l];
+            }
+            *h = g * g;
+        }
+        row[i] += proximal;
+    }
+    for ((to, q), u) in work.r.iter_mut().zip(&moments.q).zip(&set.u) {
+        *to = 2.0 * (q + 1.0) - n + proximal * u;
+    }
+}
+
 /// Forgets the members that cannot have weight at the optimum of this set, by Harman's and Pronzato's bound.
-fn eliminate<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments) {
+fn eliminate<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments<R>) {
     let r = rank.get();
     let threshold = elimination_threshold(r, moments.furthest().1);
-    if moments.q.iter().any(|q| *q < threshold) {
-        let weighted = set.u.iter().zip(&moments.q).any(|(u, q)| *u > 0.0 && *q < threshold);
-        let q = &moments.q;
-        let mut kept = q.iter().map(|q| !(*q < threshold));
-        set.retain(r, |_| kept.next().unwrap_or(true));
-        if weighted {
-            let total: f64 = set.u.iter().sum();
-            set.u.iter_mut().for_each(|u| *u /= total);
-        }
-        moments.compute(rank, &set.y, &set.u);
+    if !moments.q.iter().any(|q| *q < threshold) {
+        return;
+    }
+    let mut weighted = false;
+    let q = &moments.q;
+    set.retain(r, |i, u| {
+        let goes = q[i] < threshold;
+        weighted |= goes && u > 0.0;
+        !goes
+    });
+    if weighted {
+        let total: f64 = set.u.iter().sum();
+        set.u.iter_mut().for_each(|u| *u /= total);
+        moments.compute(&set.y, &set.u);
+    } else {
+        moments.retain(|q| !(q < threshold));
     }
 }
 
@@ -198,77 +222,73 @@ fn eliminate<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments)
 ///
 /// Leaves the result in `work.v`. Every pass either moves to a better v with fewer free members or to the optimum of the
 /// free ones, so it ends; should rounding make it cycle it stops with a v at least as good as u.
-fn non_negative_quadratic(k: usize, n: f64, u: &[f64], work: &mut Workspace) {
-    work.v.clear();
-    work.v.extend_from_slice(u);
-    work.free.clear();
-    work.free.reserve(k);
-    work.free.extend((0..k).filter(|&i| u[i] > 0.0));
+fn non_negative_quadratic<R: Dimension>(n: f64, u: &[f64], work: &mut Workspace<R>) {
+    let k = u.len();
+    let Workspace { h, r, v, free, factor, solution, .. } = work;
+    v.clear();
+    v.extend_from_slice(u);
+    free.clear();
+    free.reserve(k);
+    free.extend((0..k).filter(|&i| u[i] > 0.0));
     for _ in 0..3 * k + 10 {
-        let f = work.free.len();
-        if !solve_free(k, work) {
+        if !solve_free(k, h, r, free, factor, solution) {
             return;
         }
         // As far as v ≥ 0 allows towards the optimum of the free members.
         let mut alpha = 1.0;
         let mut blocking = None;
-        for a in 0..f {
-            let (v, s) = (work.v[work.free[a]], work.solution[a]);
+        for (&i, &s) in free.iter().zip(&*solution) {
             if s < 0.0 {
-                let limit = v / (v - s);
+                let limit = v[i] / (v[i] - s);
                 if limit < alpha {
-                    (alpha, blocking) = (limit, Some(work.free[a]));
+                    (alpha, blocking) = (limit, Some(i));
                 }
             }
         }
-        for a in 0..f {
-            let i = work.free[a];
-            let s = work.solution[a];
-            work.v[i] = if alpha == 1.0 { s } else { (work.v[i] + alpha * (s - work.v[i])).max(0.0) };
+        for (&i, &s) in free.iter().zip(&*solution) {
+            v[i] = if alpha == 1.0 { s } else { (v[i] + alpha * (s - v[i])).max(0.0) };
         }
         if let Some(blocking) = blocking {
-            work.v[blocking] = 0.0;
-            let v = &work.v;
-            work.free.retain(|&i| v[i] > 0.0);
+            v[blocking] = 0.0;
+            free.retain(|&i| v[i] > 0.0);
             continue;
         }
         // Optimal over the free: bring in the member whose multiplier is furthest from optimal.
         let mut enter = None;
         let mut largest = 1e-13 * n;
         for j in 0..k {
-            if work.v[j] == 0.0 && !work.free.contains(&j) {
-                let hv: f64 = work.free.iter().map(|&i| work.h[i.max(j) * k + i.min(j)] * work.v[i]).sum();
-                let multiplier = work.r[j] - hv;
+            if v[j] == 0.0 && !free.contains(&j) {
+                let hv: f64 = free.iter().map(|&i| h[i.max(j) * k + i.min(j)] * v[i]).sum();
+                let multiplier = r[j] - hv;
                 // A multiplier among the rounding of the terms it is the difference of says nothing.
-                if multiplier > largest.max(1e-14 * (work.r[j].abs() + hv.abs())) {
+                if multiplier > largest.max(1e-14 * (r[j].abs() + hv.abs())) {
                     (largest, enter) = (multiplier, Some(j));
                 }
             }
         }
         match enter {
-            Some(j) => work.free.push(j),
+            Some(j) => free.push(j),
             None => return,
         }
     }
 }
 
 /// Solves H·s = r over the free members by Cholesky; false where their H is not numerically positive definite.
-fn solve_free(k: usize, work: &mut Workspace) -> bool {
-    let f = work.free.len();
-    work.factor.resize(f * f, 0.0);
-    work.solution.clear();
-    work.solution.reserve(f);
-    for (a, &i) in work.free.iter().enumerate() {
-        for (b, &j) in work.free[..=a].iter().enumerate() {
-            work.factor[a * f + b] = work.h[i.max(j) * k + i.min(j)];
+fn solve_free(k: usize, h: &[f64], r: &[f64], free: &[usize], factor: &mut Vec<f64>, solution: &mut Vec<f64>) -> bool {
+    let f = free.len();
+    factor.resize(k * k, 0.0);
+    solution.clear();
+    solution.extend(free.iter().map(|&i| r[i]));
+    let factor = &mut factor[..f * f];
+    for ((a, &i), row) in free.iter().enumerate().zip(factor.chunks_exact_mut(f.max(1))) {
+        for (to, &j) in row.iter_mut().zip(&free[..=a]) {
+            *to = h[i.max(j) * k + i.min(j)];
         }
-        work.solution.push(work.r[i]);
     }
-    let dim = crate::dimension::Dynamic(f);
-    if crate::linalg::cholesky(dim, &mut work.factor).is_none() {
-        return false;
+    let dim = Dynamic(f);
+    cholesky(dim, factor) && {
+        solve_lower(dim, factor, solution);
+        solve_lower_transpose(dim, factor, solution);
+        true
     }
-    crate::linalg::solve_lower(dim, &work.factor, &mut work.solution);
-    crate::linalg::solve_lower_transpose(dim, &work.factor, &mut work.solution);
-    true
 }

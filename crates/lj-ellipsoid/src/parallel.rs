@@ -8,11 +8,16 @@ use rayon::prelude::*;
 /// Parts of this many points are worth a task.
 const PART: usize = 1 << 15;
 
+/// Whether so many points are looked at in more than one part.
+pub(crate) const fn worth_parts(len: usize) -> bool {
+    len >= 2 * PART
+}
+
 /// Applies `look` to ranges that together are `0..len`, and answers what it found in the order of the ranges.
 ///
 /// The ranges depend on `len` alone, with and without `rayon` and whatever the number of cores: so does the result.
 pub(crate) fn map_ranges<T: Send>(len: usize, look: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
-    if len < 2 * PART {
+    if !worth_parts(len) {
         return vec![look(0..len)];
     }
     let parts = 0..len.div_ceil(PART);

@@ -13,13 +13,13 @@ pub(crate) fn beyond<P: Points, R: Dimension>(
     points: &P,
     range: Range<usize>,
     rank: R,
-    frame: &Frame,
+    frame: &Frame<P::Dim>,
     mut cutoff: f64,
     mut visit: impl FnMut(usize, f64) -> f64,
 ) {
     let dim = points.dim();
     let (n, r) = (dim.get(), rank.get());
-    let (origin, map) = (&frame.origin[..n], &frame.map[..r * n]);
+    let (origin, map) = (&frame.origin.as_ref()[..n], &frame.map()[..r * n]);
     let mut v = dim.zero();
     let mut block = dim.zero_block();
     let mut at = range.start;

@@ -10,8 +10,8 @@ use std::ops::Range;
 use crate::dimension::{Dimension, LANES};
 use crate::error::EnclosingError;
 use crate::frame::Frame;
-use crate::linalg::dot;
-use crate::parallel::map_ranges;
+use crate::linalg::{dot, power_of_two_inverse};
+use crate::parallel::{map_ranges, worth_parts};
 use crate::points::Points;
 
 /// A spread of this many [`f64::EPSILON`] of the coordinates is rounding of the points, not thickness.
@@ -21,9 +21,9 @@ const ROUNDING_FLOOR: f64 = 32.0;
 const SMALL_SET: usize = 16;
 
 /// Where every method begins.
-pub(crate) struct Start {
+pub(crate) struct Start<N: Dimension> {
     /// Coordinates in which the affine hull of the points has unit size along every axis.
-    pub(crate) frame: Frame,
+    pub(crate) frame: Frame<N>,
     /// Points whose affine hull is that of all points, without repetition.
     pub(crate) working: Vec<usize>,
     /// Their weights, if an earlier answer supplies them; equal ones otherwise.
@@ -33,15 +33,14 @@ pub(crate) struct Start {
 }
 
 /// The bounding box of the points: extreme coordinates and who attains them.
-#[derive(Clone, Debug)]
-struct Bounds<V> {
-    low: V,
-    high: V,
-    argmin: Vec<usize>,
-    argmax: Vec<usize>,
+struct Bounds<N: Dimension> {
+    low: N::Point,
+    high: N::Point,
+    argmin: N::Indices,
+    argmax: N::Indices,
 }
 
-impl<V: AsRef<[f64]> + AsMut<[f64]>> Bounds<V> {
+impl<N: Dimension> Bounds<N> {
     fn include(&mut self, index: usize, v: &[f64]) -> Result<(), EnclosingError> {
         for (k, &x) in v.iter().enumerate() {
             if !x.is_finite() {
@@ -49,21 +48,24 @@ impl<V: AsRef<[f64]> + AsMut<[f64]>> Bounds<V> {
             }
             if x < self.low.as_ref()[k] {
                 self.low.as_mut()[k] = x;
-                self.argmin[k] = index;
+                self.argmin.as_mut()[k] = index;
             }
             if x > self.high.as_ref()[k] {
                 self.high.as_mut()[k] = x;
-                self.argmax[k] = index;
+                self.argmax.as_mut()[k] = index;
             }
         }
         Ok(())
     }
 }
 
-fn bounds<P: Points>(points: &P) -> Result<Bounds<<P::Dim as Dimension>::Point>, EnclosingError> {
+fn bounds<P: Points>(points: &P) -> Result<Bounds<P::Dim>, EnclosingError> {
     let n = points.dim().get();
     if points.len() == 0 || n == 0 {
         return Err(EnclosingError::Empty);
+    }
+    if !worth_parts(points.len()) {
+        return bounds_of(points, 0..points.len());
     }
     let mut parts = map_ranges(points.len(), |range| bounds_of(points, range)).into_iter();
     let mut all = parts.next().unwrap_or(Err(EnclosingError::Empty))?;
@@ -72,27 +74,24 @@ fn bounds<P: Points>(points: &P) -> Result<Bounds<<P::Dim as Dimension>::Point>,
         for k in 0..n {
             if part.low.as_ref()[k] < all.low.as_ref()[k] {
                 all.low.as_mut()[k] = part.low.as_ref()[k];
-                all.argmin[k] = part.argmin[k];
+                all.argmin.as_mut()[k] = part.argmin.as_ref()[k];
             }
             if part.high.as_ref()[k] > all.high.as_ref()[k] {
                 all.high.as_mut()[k] = part.high.as_ref()[k];
-                all.argmax[k] = part.argmax[k];
+                all.argmax.as_mut()[k] = part.argmax.as_ref()[k];
             }
         }
     }
     Ok(all)
 }
 
-fn bounds_of<P: Points>(
-    points: &P,
-    range: Range<usize>,
-) -> Result<Bounds<<P::Dim as Dimension>::Point>, EnclosingError> {
+fn bounds_of<P: Points>(points: &P, range: Range<usize>) -> Result<Bounds<P::Dim>, EnclosingError> {
     let dim = points.dim();
     let n = dim.get();
     let mut v = dim.zero();
     points.read(range.start, v.as_mut());
-    let (argmin, argmax) = (vec![range.start; n], vec![range.start; n]);
-    let mut b = Bounds { low: v.clone(), high: v.clone(), argmin, argmax };
+    let (argmin, argmax) = (dim.indices(range.start), dim.indices(range.start));
+    let mut b: Bounds<P::Dim> = Bounds { low: v.clone(), high: v.clone(), argmin, argmax };
     let mut block = dim.zero_block();
     let mut at = range.start;
     while at < range.end {
@@ -124,16 +123,6 @@ fn bounds_of<P: Points>(
     Ok(b)
 }
 
-/// The power of two that brings `extent` near one, so that scaling by it is exact.
-pub(crate) fn power_of_two_inverse(extent: f64) -> f64 {
-    if extent == 0.0 {
-        return 1.0;
-    }
-    // Exponents are kept to where the power and its inverse are normal numbers.
-    let exponent = ((extent.to_bits() >> 52) as i64 - 1023).clamp(-1000, 1000);
-    f64::from_bits(((1023 - exponent) as u64) << 52)
-}
-
 /// Finds the rank of the points, a frame, and a starting working set.
 ///
 /// Pass 1 takes the bounding box. Coordinates are scaled by powers of two so that its sides are near one: axes of
@@ -141,107 +130,119 @@ pub(crate) fn power_of_two_inverse(extent: f64) -> f64 {
 /// Otherwise each further pass takes the extreme points along a direction d orthogonal to the differences b found so
 /// far and to the normals found so far: their difference is a new b, or, where the spread is no more than rounding (or
 /// the tolerance asked for), d is a normal of the affine hull.
-pub(crate) fn start<P: Points>(points: &P, flat_tolerance: f64) -> Result<Start, EnclosingError> {
+pub(crate) fn start<P: Points>(points: &P, flat_tolerance: f64) -> Result<Start<P::Dim>, EnclosingError> {
     let dim = points.dim();
     let n = dim.get();
-    let b = bounds(points)?;
-    let (low, high) = (b.low.as_ref(), b.high.as_ref());
+    let bounds = bounds(points)?;
+    let (low, high) = (&bounds.low.as_ref()[..n], &bounds.high.as_ref()[..n]);
     // Halves first: the extent of finite coordinates may overflow.
-    let half_extent: Vec<f64> = (0..n).map(|k| 0.5 * high[k] - 0.5 * low[k]).collect();
-    let scale: Vec<f64> = half_extent.iter().map(|&e| 0.5 * power_of_two_inverse(e)).collect();
-    let center: Vec<f64> = (0..n).map(|k| 0.5 * low[k] + 0.5 * high[k]).collect();
-    let magnitude: Vec<f64> = (0..n).map(|k| low[k].abs().max(high[k].abs())).collect();
-
-    // Spreads below this along the unit vector d of scaled coordinates are not thickness.
-    let flat_below = |d: &[f64]| {
-        let rounding: f64 = (0..n).map(|k| d[k].abs() * (magnitude[k] * scale[k])).sum();
-        let extent: f64 = (0..n).map(|k| d[k].abs() * (2.0 * half_extent[k] * scale[k])).sum();
-        (ROUNDING_FLOOR * f64::EPSILON * rounding).max(flat_tolerance * extent)
-    };
-    let scaled = |index: usize| {
-        let mut v = dim.zero();
-        points.read(index, v.as_mut());
-        for k in 0..n {
-            v.as_mut()[k] = (v.as_ref()[k] - center[k]) * scale[k];
-        }
-        v
+    let half_extent = dim.point((0..n).map(|k| 0.5 * high[k] - 0.5 * low[k]));
+    let half_extent = &half_extent.as_ref()[..n];
+    let unit = Units {
+        center: dim.point((0..n).map(|k| 0.5 * low[k] + 0.5 * high[k])),
+        scale: dim.point(half_extent.iter().map(|&e| 0.5 * power_of_two_inverse(e))),
     };
 
-    let mut working: Vec<usize> = (0..n).flat_map(|k| [b.argmin[k], b.argmax[k]]).collect();
-    let differences: Vec<_> = (0..n)
-        .map(|k| {
-            let (mut high, low) = (scaled(b.argmax[k]), scaled(b.argmin[k]));
-            high.as_mut().iter_mut().zip(low.as_ref()).for_each(|(h, l)| *h -= l);
-            high
-        })
-        .collect();
+    let mut working = Vec::with_capacity(if points.len() <= SMALL_SET { points.len() } else { 4 * n });
+    working.extend(bounds.argmin.as_ref().iter().zip(bounds.argmax.as_ref()).flat_map(|(low, high)| [*low, *high]));
+    let mut basis = Basis::new(dim);
+    basis.extend_well_spread(&mut working.chunks_exact(2).map(|ends| unit.difference(points, ends[0], ends[1])), 0.1);
     let mut scans = 1;
-    let mut basis = well_spread_basis(n, &differences, 0.1);
-    if basis.rank() < n {
-        basis = Basis::new(n);
-        let mut normals = Basis::new(n);
-        while basis.rank() + normals.rank() < n {
-            let d = furthest_axis(n, &basis, &normals);
+    if basis.rank < n {
+        // Spreads below this along the unit vector d of scaled coordinates are not thickness.
+        let flat_below = |d: &[f64]| {
+            let (mut rounding, mut extent) = (0.0, 0.0);
+            for k in 0..n {
+                let scaled = d[k].abs() * unit.scale.as_ref()[k];
+                rounding += scaled * low[k].abs().max(high[k].abs());
+                extent += scaled * (2.0 * half_extent[k]);
+            }
+            (ROUNDING_FLOOR * f64::EPSILON * rounding).max(flat_tolerance * extent)
+        };
+        basis = Basis::new(dim);
+        let mut normals = Basis::new(dim);
+        while basis.rank + normals.rank < n {
+            let d = furthest_axis(dim, &basis, &normals);
             scans += 1;
-            let (lowest, highest) = extremes(points, &d, &center, &scale);
-            let mut z = scaled(highest);
-            let lowest_scaled = scaled(lowest);
-            z.as_mut().iter_mut().zip(lowest_scaled.as_ref()).for_each(|(h, l)| *h -= l);
-            if !(dot(z.as_ref(), &d) > flat_below(&d)) {
-                normals.push(d, 0.0);
+            let (lowest, highest) = extremes(points, d.as_ref(), &unit);
+            let mut z = unit.difference(points, lowest, highest);
+            if !(dot(z.as_ref(), d.as_ref()) > flat_below(d.as_ref())) {
+                normals.push(&d, 1.0, 0.0);
                 continue;
             }
             working.extend([lowest, highest]);
-            let mut z = z.as_ref().to_vec();
-            normals.project_out(&mut z);
-            basis.project_out(&mut z);
-            let spread = dot(&z, &z).sqrt();
-            z.iter_mut().for_each(|x| *x /= spread);
-            basis.push(z, spread);
+            normals.project_out(z.as_mut());
+            basis.project_out(z.as_mut());
+            let spread = dot(z.as_ref(), z.as_ref()).sqrt();
+            basis.push(&z, spread, spread);
         }
     }
     if points.len() <= SMALL_SET {
-        working = (0..points.len()).collect();
+        working.clear();
+        working.extend(0..points.len());
+    } else {
+        working.sort_unstable();
+        working.dedup();
     }
-    working.sort_unstable();
-    working.dedup();
+    let frame = if basis.rank == n { unit.frame(dim, &basis) } else { hull_frame(points, &basis, unit, &working) };
+    if frame.is_finite() { Ok(Start { frame, working, weights: None, scans }) } else { Err(EnclosingError::OutOfRange) }
+}
 
-    let frame = if basis.rank() == n {
-        let map = basis.rows().flat_map(|(b, spread)| b.iter().zip(&scale).map(move |(x, s)| x * s / spread)).collect();
-        Frame { origin: center, map }
-    } else {
-        hull_frame(points, &basis, center, &scale, &working)
-    };
-    if frame.map.iter().all(|x| x.is_finite()) && frame.origin.iter().all(|x| x.is_finite()) {
-        Ok(Start { frame, working, weights: None, scans })
-    } else {
-        Err(EnclosingError::OutOfRange)
+/// Coordinates (v − center)·scale in which the bounding box is about the origin, its sides near one.
+struct Units<N: Dimension> {
+    center: N::Point,
+    /// Powers of two.
+    scale: N::Point,
+}
+
+impl<N: Dimension> Units<N> {
+    /// Point `to` minus point `from`, in these coordinates.
+    fn difference<P: Points<Dim = N>>(&self, points: &P, from: usize, to: usize) -> N::Point {
+        let dim = points.dim();
+        let (mut a, mut b) = (dim.zero(), dim.zero());
+        points.read(from, a.as_mut());
+        points.read(to, b.as_mut());
+        let (center, scale) = (self.center.as_ref(), self.scale.as_ref());
+        let (a, to) = (a.as_ref(), b.as_mut());
+        for k in 0..dim.get() {
+            to[k] = (to[k] - center[k]) * scale[k] - (a[k] - center[k]) * scale[k];
+        }
+        b
+    }
+
+    /// The frame whose rows are the basis over its spreads.
+    fn frame(self, dim: N, basis: &Basis<N>) -> Frame<N> {
+        let scale = self.scale.as_ref();
+        let rows = basis.rows().flat_map(|(b, spread)| b.iter().zip(scale).map(move |(x, s)| x * s / spread));
+        Frame::new(self.center, dim.matrix(rows), basis.rank)
     }
 }
 
 /// Orthonormal vectors, each with the spread of the points along it.
-struct Basis {
-    n: usize,
-    vectors: Vec<f64>,
-    spreads: Vec<f64>,
+struct Basis<N: Dimension> {
+    dim: N,
+    rank: usize,
+    vectors: N::Matrix,
+    spreads: N::Point,
 }
 
-impl Basis {
-    fn new(n: usize) -> Self {
-        Self { n, vectors: Vec::with_capacity(n * n), spreads: Vec::with_capacity(n) }
+impl<N: Dimension> Basis<N> {
+    fn new(dim: N) -> Self {
+        Self { dim, rank: 0, vectors: dim.zero_matrix(), spreads: dim.zero() }
     }
 
-    fn rank(&self) -> usize {
-        self.spreads.len()
-    }
-
-    fn push(&mut self, vector: Vec<f64>, spread: f64) {
-        self.vectors.extend(vector);
-        self.spreads.push(spread);
+    /// Adds z/length with its spread.
+    fn push(&mut self, z: &N::Point, length: f64, spread: f64) {
+        let n = self.dim.get();
+        let row = &mut self.vectors.as_mut()[self.rank * n..(self.rank + 1) * n];
+        row.iter_mut().zip(z.as_ref()).for_each(|(to, x)| *to = x / length);
+        self.spreads.as_mut()[self.rank] = spread;
+        self.rank += 1;
     }
 
     fn rows(&self) -> impl Iterator<Item = (&[f64], f64)> {
-        self.vectors.chunks_exact(self.n).zip(self.spreads.iter().copied())
+        let n = self.dim.get();
+        self.vectors.as_ref().chunks_exact(n).zip(self.spreads.as_ref().iter().copied()).take(self.rank)
     }
 
     /// Removes from `z` its components along the basis; twice, which is enough for orthogonality to rounding.
@@ -253,52 +254,63 @@ impl Basis {
             }
         }
     }
-}
 
-/// Gram–Schmidt with pivoting over `vectors`: stops where no residual exceeds `threshold`.
-fn well_spread_basis(n: usize, vectors: &[impl AsRef<[f64]>], threshold: f64) -> Basis {
-    let mut basis = Basis::new(n);
-    let mut left: Vec<Vec<f64>> = vectors.iter().map(|v| v.as_ref().to_vec()).collect();
-    while !left.is_empty() {
-        left.iter_mut().for_each(|z| basis.project_out(z));
-        let lengths: Vec<f64> = left.iter().map(|z| dot(z, z).sqrt()).collect();
-        let longest = (0..left.len()).fold(0, |best, i| if lengths[i] > lengths[best] { i } else { best });
-        let spread = lengths[longest];
-        if !(spread > threshold) {
-            break;
+    /// Gram–Schmidt with pivoting over `vectors`, as many as there are dimensions: stops where no residual exceeds
+    /// `threshold`.
+    fn extend_well_spread(&mut self, vectors: &mut dyn Iterator<Item = N::Point>, threshold: f64) {
+        let n = self.dim.get();
+        let mut residuals = self.dim.zero_matrix();
+        let left = &mut residuals.as_mut()[..n * n];
+        for (row, vector) in left.chunks_exact_mut(n).zip(vectors) {
+            row.copy_from_slice(vector.as_ref());
         }
-        let mut z = left.swap_remove(longest);
-        z.iter_mut().for_each(|x| *x /= spread);
-        basis.push(z, spread);
+        while self.rank < n {
+            let mut longest = (0, 0.0);
+            for (i, z) in left.chunks_exact_mut(n).enumerate() {
+                self.project_out(z);
+                let square = dot(z, z);
+                if square > longest.1 {
+                    longest = (i, square);
+                }
+            }
+            let spread = longest.1.sqrt();
+            if !(spread > threshold) {
+                break;
+            }
+            let z = &mut left[longest.0 * n..(longest.0 + 1) * n];
+            let vector = self.dim.point(z.iter().copied());
+            z.fill(0.0);
+            self.push(&vector, spread, spread);
+        }
     }
-    basis
 }
 
 /// The unit vector orthogonal to both bases that is nearest to a coordinate axis.
-fn furthest_axis(n: usize, basis: &Basis, normals: &Basis) -> Vec<f64> {
-    let mut best = (vec![0.0; n], -1.0);
-    for k in 0..n {
-        let mut d = vec![0.0; n];
-        d[k] = 1.0;
-        basis.project_out(&mut d);
-        normals.project_out(&mut d);
-        let length = dot(&d, &d).sqrt();
+fn furthest_axis<N: Dimension>(dim: N, basis: &Basis<N>, normals: &Basis<N>) -> N::Point {
+    let mut best = (dim.zero(), -1.0);
+    for k in 0..dim.get() {
+        let mut d = dim.zero();
+        d.as_mut()[k] = 1.0;
+        basis.project_out(d.as_mut());
+        normals.project_out(d.as_mut());
+        let length = dot(d.as_ref(), d.as_ref()).sqrt();
         if length > best.1 {
             best = (d, length);
         }
     }
     let (mut d, length) = best;
-    d.iter_mut().for_each(|x| *x /= length);
+    d.as_mut().iter_mut().for_each(|x| *x /= length);
     // Normalising a short residual magnifies what was left of the bases.
-    basis.project_out(&mut d);
-    normals.project_out(&mut d);
+    basis.project_out(d.as_mut());
+    normals.project_out(d.as_mut());
     d
 }
 
 /// The points of least and greatest d·(v − center)·scale.
-fn extremes<P: Points>(points: &P, d: &[f64], center: &[f64], scale: &[f64]) -> (usize, usize) {
+fn extremes<P: Points>(points: &P, d: &[f64], unit: &Units<P::Dim>) -> (usize, usize) {
     let dim = points.dim();
     let n = dim.get();
+    let (center, scale) = (&unit.center.as_ref()[..n], &unit.scale.as_ref()[..n]);
     let mut v = dim.zero();
     let (mut lowest, mut highest) = ((0, f64::INFINITY), (0, f64::NEG_INFINITY));
     for index in 0..points.len() {
@@ -317,25 +329,28 @@ fn extremes<P: Points>(points: &P, d: &[f64], center: &[f64], scale: &[f64]) -> 
 
 /// The frame of a flat set: orthonormal directions of its affine hull in the original coordinates, each divided by the
 /// spread of the working points along it.
-fn hull_frame<P: Points>(points: &P, basis: &Basis, center: Vec<f64>, scale: &[f64], working: &[usize]) -> Frame {
+fn hull_frame<P: Points>(points: &P, basis: &Basis<P::Dim>, unit: Units<P::Dim>, working: &[usize]) -> Frame<P::Dim> {
     let dim = points.dim();
     let n = dim.get();
     let mut v = dim.zero();
+    let mut orthonormal = Basis::new(dim);
+    let scale = unit.scale.as_ref();
+    let directions = |(b, spread): (&[f64], f64)| dim.point(b.iter().zip(scale).map(|(x, s)| x * spread / s));
+    orthonormal.extend_well_spread(&mut basis.rows().map(directions), 0.0);
     // The hull is through the points, while the centre of the bounding box need not lie in it exactly: start at a point.
-    points.read(working[0], v.as_mut());
-    let origin = if basis.rank() == 0 { v.as_ref().to_vec() } else { center };
-    let directions: Vec<Vec<f64>> =
-        basis.rows().map(|(b, spread)| b.iter().zip(scale).map(|(x, s)| x * spread / s).collect()).collect();
-    let orthonormal = well_spread_basis(n, &directions, 0.0);
-    let mut map = Vec::with_capacity(basis.rank() * n);
-    for (b, _) in orthonormal.rows() {
+    let mut origin = unit.center;
+    if basis.rank == 0 {
+        points.read(working[0], origin.as_mut());
+    }
+    let mut map = dim.zero_matrix();
+    for (row, (b, _)) in map.as_mut().chunks_exact_mut(n).zip(orthonormal.rows()) {
         let mut spread: f64 = 0.0;
         for &index in working {
             points.read(index, v.as_mut());
-            let along: f64 = (0..n).map(|k| b[k] * (v.as_ref()[k] - origin[k])).sum();
+            let along: f64 = (0..n).map(|k| b[k] * (v.as_ref()[k] - origin.as_ref()[k])).sum();
             spread = spread.max(along.abs());
         }
-        map.extend(b.iter().map(|x| x / spread));
+        row.iter_mut().zip(b).for_each(|(to, x)| *to = x / spread);
     }
-    Frame { origin, map }
+    Frame::new(origin, map, orthonormal.rank)
 }

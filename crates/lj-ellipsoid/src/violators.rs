@@ -89,7 +89,7 @@ fn worth(r: f64, furthest: f64) -> f64 {
 pub(crate) fn look<P: Points, R: Dimension + Sync>(
     points: &P,
     rank: R,
-    frame: &Frame,
+    frame: &Frame<P::Dim>,
     expected: f64,
     capacity: usize,
 ) -> (Violators, Option<Survivors<P::Dim>>) {
@@ -126,7 +126,13 @@ pub(crate) fn look<P: Points, R: Dimension + Sync>(
 
 /// Whether a sample suggests that at most `capacity` points lie beyond `threshold`: to collect survivors only to find them
 /// too many is dear.
-fn few_beyond<P: Points, R: Dimension>(points: &P, rank: R, frame: &Frame, threshold: f64, capacity: usize) -> bool {
+fn few_beyond<P: Points, R: Dimension>(
+    points: &P,
+    rank: R,
+    frame: &Frame<P::Dim>,
+    threshold: f64,
+    capacity: usize,
+) -> bool {
     let mut v = points.dim().zero();
     let mut y = rank.zero();
     let step = (points.len() / SAMPLE).max(SAMPLED);
@@ -143,7 +149,7 @@ fn part<P: Points, R: Dimension>(
     points: &P,
     range: Range<usize>,
     rank: R,
-    frame: &Frame,
+    frame: &Frame<P::Dim>,
     keep: Option<(f64, usize)>,
 ) -> Part {
     let r = rank.get();
