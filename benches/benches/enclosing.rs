@@ -6,8 +6,7 @@
 use std::hint::black_box;
 use std::time::Duration;
 
-use benches::rng::Rng;
-use benches::w4_enclosing::{Cloud, points};
+use benches::w4_enclosing::{Cloud, corners, in_ball, on_sphere, points};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use lj_ellipsoid::{Enclosing, EnclosingMethod, EnclosingOptions, MovingPoints, enclosing};
 
@@ -21,19 +20,6 @@ const METHODS: [(&str, EnclosingMethod, &[f64], usize); 4] = [
 
 fn cloud<const N: usize>(kind: Cloud, count: usize) -> Vec<[f64; N]> {
     points(kind, N, count).as_chunks::<N>().0.to_vec()
-}
-
-/// Directions normalised: on the sphere; drawn to a radius: in the ball (uniform in the plane and in space by rejection).
-fn round<const N: usize>(count: usize, solid: bool) -> Vec<[f64; N]> {
-    let mut rng = Rng::new(60_000 + 10 * N as u64 + u64::from(solid));
-    let mut draw = || loop {
-        let x: [f64; N] = std::array::from_fn(|_| rng.signed());
-        let square: f64 = x.iter().map(|x| x * x).sum();
-        if 1e-4 < square && square <= 1.0 {
-            return if solid { x } else { x.map(|x| x / square.sqrt()) };
-        }
-    };
-    (0..count).map(|_| draw()).collect()
 }
 
 /// Agreement within the certified gaps: nobody is better than somebody else's bound.
@@ -79,19 +65,18 @@ fn workload(c: &mut Criterion) {
 }
 
 fn hard(c: &mut Criterion) {
-    let corners: Vec<[f64; 3]> =
-        (0..8u8).map(|i| std::array::from_fn(|k| if i >> k & 1 == 1 { 1.0 + k as f64 } else { 0.0 })).collect();
-    group::<3>(c, "box", &corners);
+    group::<2>(c, "box", &corners([2.0, 1.0]));
+    group::<3>(c, "box", &corners([3.0, 2.0, 1.0]));
     group::<3>(c, "normal", &cloud(Cloud::Normal, 1_000));
     for count in [1_000, 10_000, 1_000_000] {
-        group::<3>(c, "ball", &round(count, true));
-        group::<3>(c, "sphere", &round(count, false));
+        group::<3>(c, "ball", &in_ball(count));
+        group::<3>(c, "sphere", &on_sphere(count));
     }
 }
 
 /// One point of a thousand moves out and back: a warm solve against a cold one.
 fn moving(c: &mut Criterion) {
-    let points: Vec<[f64; 3]> = round(1_000, true);
+    let points: Vec<[f64; 3]> = in_ball(1_000);
     let options = EnclosingOptions::new().with_epsilon(1e-9);
     let mut group = c.benchmark_group("enclosing/moving/n3/m1000");
     let mut moving = MovingPoints::new(&points, options).expect("finite");

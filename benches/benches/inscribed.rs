@@ -3,22 +3,9 @@
 use std::hint::black_box;
 use std::time::Duration;
 
-use benches::rng::Rng;
-use benches::w4_enclosing::{Cloud, points};
+use benches::w4_enclosing::{Cloud, halfspaces, points};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use lj_ellipsoid::{Halfspace, InscribedOptions, Status, inscribed, inscribed_in_hull};
-
-/// Half-spaces that touch a ball or stay up to half its radius away, so that all of them may matter.
-fn halfspaces<const N: usize>(count: usize) -> Vec<Halfspace<N>> {
-    let mut rng = Rng::new(70_000 + 10 * N as u64);
-    (0..count)
-        .map(|_| {
-            let normal: [f64; N] = std::array::from_fn(|_| rng.normal());
-            let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
-            Halfspace { normal: normal.map(|x| x / length), offset: 1.25 + 0.25 * rng.signed() }
-        })
-        .collect()
-}
+use lj_ellipsoid::{InscribedOptions, Status, inscribed, inscribed_in_hull};
 
 fn from_halfspaces<const N: usize>(c: &mut Criterion) {
     let mut group = c.benchmark_group(format!("inscribed/halfspaces/n{N}"));

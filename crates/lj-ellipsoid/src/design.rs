@@ -14,7 +14,7 @@ use crate::linalg::{UNIT_ROUNDOFF, cholesky_log_det, dot, solve_lower};
 use crate::points::Points;
 
 /// The points an iterate works on, with their weights, in the coordinates of a frame.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct WorkingSet {
     pub(crate) index: Vec<usize>,
     pub(crate) u: Vec<f64>,
@@ -31,6 +31,13 @@ impl WorkingSet {
     pub(crate) fn new(index: Vec<usize>, weights: Option<Vec<f64>>) -> Self {
         let u = weights.unwrap_or_else(|| vec![1.0 / index.len() as f64; index.len()]);
         Self { u, y: Vec::new(), index }
+    }
+
+    /// Becomes a copy of `other`, in the room it has.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.index.clone_from(&other.index);
+        self.u.clone_from(&other.u);
+        self.y.clone_from(&other.y);
     }
 
     /// Computes the coordinates in `frame` afresh from the points.

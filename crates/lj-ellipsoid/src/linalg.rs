@@ -40,6 +40,12 @@ pub(crate) fn sum_of_logarithms(numbers: impl Iterator<Item = f64>) -> f64 {
     sum + product.ln()
 }
 
+/// x − a·b.
+#[inline(always)]
+fn reduced(x: f64, a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(x, |x, (a, b)| x - a * b)
+}
+
 /// Overwrites the lower triangle of the symmetric `a` by its Cholesky factor L, A = L·Lᵀ.
 /// False if a pivot is not positive (or NaN): then `a` is not numerically positive definite.
 #[inline(always)]
@@ -48,18 +54,10 @@ pub(crate) fn cholesky<D: Dimension>(dim: D, a: &mut [f64]) -> bool {
     let a = &mut a[..n * n];
     for i in 0..n {
         let (above, row) = a.split_at_mut(i * n);
-        for j in 0..i {
-            let other = &above[j * n..j * n + n];
-            let mut s = row[j];
-            for k in 0..j {
-                s -= row[k] * other[k];
-            }
-            row[j] = s / other[j];
+        for (j, other) in above.chunks_exact(n).enumerate() {
+            row[j] = reduced(row[j], &row[..j], &other[..j]) / other[j];
         }
-        let mut pivot = row[i];
-        for k in 0..i {
-            pivot -= row[k] * row[k];
-        }
+        let pivot = reduced(row[i], &row[..i], &row[..i]);
         if !(pivot > 0.0 && pivot.is_finite()) {
             return false;
         }
@@ -81,11 +79,8 @@ pub(crate) fn solve_lower<D: Dimension>(dim: D, l: &[f64], x: &mut [f64]) {
     let n = dim.get();
     let (l, x) = (&l[..n * n], &mut x[..n]);
     for i in 0..n {
-        let mut s = x[i];
-        for k in 0..i {
-            s -= l[i * n + k] * x[k];
-        }
-        x[i] = s / l[i * n + i];
+        let row = &l[i * n..i * n + n];
+        x[i] = reduced(x[i], &row[..i], &x[..i]) / row[i];
     }
 }
 

@@ -13,7 +13,7 @@
 //! nearest to u; it vanishes at the solution, so it moves no answer.
 
 use crate::design::{Moments, WorkingSet};
-use crate::dimension::{Dimension, Dynamic};
+use crate::dimension::{Const, Dimension, Dynamic};
 use crate::iterate::Iterate;
 use crate::linalg::{cholesky, solve_lower, solve_lower_transpose};
 use crate::violators::elimination_threshold;
@@ -22,12 +22,15 @@ use crate::violators::elimination_threshold;
 /// what ω could tell.
 const PROXIMAL: f64 = 1e-13;
 
+/// What [`thin_out`] takes to be left of the excess of κ when it forgets members: a step of Newton's method mostly leaves
+/// less. Should one that was needed go, a look at all points brings it back.
+const EAGER: f64 = 0.1;
+
 /// Steps of [`thin_out`].
 const MULTIPLICATIVE_STEPS: usize = 4;
 
 /// Room for the quadratic model, reused from step to step.
 pub(crate) struct Workspace<R: Dimension> {
-    /// H, its lower triangle.
     h: Vec<f64>,
     r: Vec<f64>,
     v: Vec<f64>,
@@ -63,7 +66,7 @@ pub(crate) fn solve<N: Dimension, R: Dimension>(
     let mut steps = 0;
     let mut best_gap = f64::INFINITY;
     let mut without_progress = 0;
-    thin_out(rank, set, moments);
+    thin_out(rank, set, moments, &mut work.best);
     loop {
         lift_far_points(rank, set, moments);
         let now = moments.log_det_gap();
@@ -74,11 +77,12 @@ pub(crate) fn solve<N: Dimension, R: Dimension>(
             // Quadratic convergence at least halves the gap; slower than that is rounding or a hard start.
             without_progress = if now < 0.5 * best_gap { 0 } else { without_progress + 1 };
             best_gap = now;
-            work.best.clone_from(set);
+            work.best.copy_from(set);
         } else {
             without_progress += 1;
         }
-        eliminate(rank, set, moments);
+        // None of these has weight at the optimum of this set (Harman and Pronzato).
+        forget(rank, set, moments, elimination_threshold(rank.get(), moments.furthest().1));
         if steps >= max_steps
             || (without_progress >= 3 && best_gap < 1e-9)
             || (without_progress >= 1 && best_gap < 1e-13)
@@ -97,18 +101,25 @@ pub(crate) fn solve<N: Dimension, R: Dimension>(
 }
 
 /// Where every member has weight, as at the start, most will lose it, and Newton's model takes them out one by one. A few
-/// multiplicative steps u ← u·ω/n, which always ascend, bring the bound of [`eliminate`] to bear on them together.
-fn thin_out<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments<R>) {
-    let n = rank.get() as f64 + 1.0;
+/// multiplicative steps u ← u·ω/n, which always ascend, tell them from the others, and they are forgotten together.
+fn thin_out<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments<R>, before: &mut WorkingSet) {
+    let r = rank.get() as f64;
     for _ in 0..MULTIPLICATIVE_STEPS {
-        if set.len() <= rank.get() + 3 || set.u.contains(&0.0) || moments.furthest().1 <= (n - 1.0) * (1.0 + 1e-9) {
+        if set.len() <= rank.get() + 3 || set.u.contains(&0.0) || moments.furthest().1 <= r * (1.0 + 1e-9) {
             break;
         }
-        set.u.iter_mut().zip(&moments.q).for_each(|(u, q)| *u *= (1.0 + q) / n);
-        if !moments.compute(&set.y, &set.u) {
+        set.u.iter_mut().zip(&moments.q).for_each(|(u, q)| *u *= (1.0 + q) / (r + 1.0));
+        before.copy_from(set);
+        let sound = moments.compute(&set.y, &set.u) && {
+            let expected = r + EAGER * (moments.furthest().1 - r);
+            forget(rank, set, moments, elimination_threshold(rank.get(), expected))
+        };
+        if !sound {
+            // The members left do not span the space.
+            std::mem::swap(set, before);
+            moments.compute(&set.y, &set.u);
             break;
         }
-        eliminate(rank, set, moments);
     }
 }
 
@@ -178,44 +189,41 @@ fn quadratic_model<R: Dimension>(rank: R, set: &WorkingSet, moments: &Moments<R>
     let k = set.len();
     let proximal = PROXIMAL * moments.q.iter().fold(0.0, |m: f64, q| m.max((1.0 + q) * (1.0 + q)));
     work.h.resize(k * k, 0.0);
-    work.r.resize(k, 0.0);
-    let z = moments.z.chunks_exact(r);
-    for (i, (zi, row)) in z.clone().zip(work.h.chunks_exact_mut(k)).enumerate() {
-        for (h, zj) in row[..=i].iter_mut().zip(z.clone()) {
+    let h = &mut work.h[..k * k];
+    for (i, zi) in moments.z.chunks_exact(r).enumerate() {
+        for (j, zj) in moments.z.chunks_exact(r).take(i + 1).enumerate() {
             let mut g = 1.0;
             for l in 0..r {
                 g += zi[l] * zj[l];
             }
-            *h = g * g;
+            h[i * k + j] = g * g;
+            h[j * k + i] = g * g;
         }
-        row[i] += proximal;
+        h[i * k + i] += proximal;
     }
-    for ((to, q), u) in work.r.iter_mut().zip(&moments.q).zip(&set.u) {
-        *to = 2.0 * (q + 1.0) - n + proximal * u;
-    }
+    work.r.clear();
+    work.r.extend(moments.q.iter().zip(&set.u).map(|(q, u)| 2.0 * (q + 1.0) - n + proximal * u));
 }
 
-/// Forgets the members that cannot have weight at the optimum of this set, by Harman's and Pronzato's bound.
-fn eliminate<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments<R>) {
-    let r = rank.get();
-    let threshold = elimination_threshold(r, moments.furthest().1);
-    if !moments.q.iter().any(|q| *q < threshold) {
-        return;
+/// Forgets the members with |z|² below `threshold`; false where the others do not span the space.
+fn forget<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments<R>, threshold: f64) -> bool {
+    let q = &moments.q;
+    if !q.iter().any(|q| *q < threshold) {
+        return true;
     }
     let mut weighted = false;
-    let q = &moments.q;
-    set.retain(r, |i, u| {
+    set.retain(rank.get(), |i, u| {
         let goes = q[i] < threshold;
         weighted |= goes && u > 0.0;
         !goes
     });
-    if weighted {
-        let total: f64 = set.u.iter().sum();
-        set.u.iter_mut().for_each(|u| *u /= total);
-        moments.compute(&set.y, &set.u);
-    } else {
+    if !weighted {
         moments.retain(|q| !(q < threshold));
+        return true;
     }
+    let total: f64 = set.u.iter().sum();
+    set.u.iter_mut().for_each(|u| *u /= total);
+    moments.compute(&set.y, &set.u)
 }
 
 /// Maximises rᵀv − ½vᵀHv over v ≥ 0 by the active-set method of Lawson and Hanson, from v = u.
@@ -258,7 +266,7 @@ fn non_negative_quadratic<R: Dimension>(n: f64, u: &[f64], work: &mut Workspace<
         let mut largest = 1e-13 * n;
         for j in 0..k {
             if v[j] == 0.0 && !free.contains(&j) {
-                let hv: f64 = free.iter().map(|&i| h[i.max(j) * k + i.min(j)] * v[i]).sum();
+                let hv: f64 = free.iter().map(|&i| h[j * k + i] * v[i]).sum();
                 let multiplier = r[j] - hv;
                 // A multiplier among the rounding of the terms it is the difference of says nothing.
                 if multiplier > largest.max(1e-14 * (r[j].abs() + hv.abs())) {
@@ -276,19 +284,29 @@ fn non_negative_quadratic<R: Dimension>(n: f64, u: &[f64], work: &mut Workspace<
 /// Solves H·s = r over the free members by Cholesky; false where their H is not numerically positive definite.
 fn solve_free(k: usize, h: &[f64], r: &[f64], free: &[usize], factor: &mut Vec<f64>, solution: &mut Vec<f64>) -> bool {
     let f = free.len();
-    factor.resize(k * k, 0.0);
+    factor.clear();
+    factor.reserve(k * k);
     solution.clear();
-    solution.extend(free.iter().map(|&i| r[i]));
-    let factor = &mut factor[..f * f];
-    for ((a, &i), row) in free.iter().enumerate().zip(factor.chunks_exact_mut(f.max(1))) {
-        for (to, &j) in row.iter_mut().zip(&free[..=a]) {
-            *to = h[i.max(j) * k + i.min(j)];
-        }
+    solution.reserve(k);
+    for &i in free {
+        let row = &h[i * k..i * k + k];
+        factor.extend(free.iter().map(|&j| row[j]));
+        solution.push(r[i]);
     }
-    let dim = Dynamic(f);
-    cholesky(dim, factor) && {
-        solve_lower(dim, factor, solution);
-        solve_lower_transpose(dim, factor, solution);
+    // A support has at most N(N + 3)/2 members, 5 in the plane and 9 in space: sizes worth unrolling.
+    match f {
+        3 => solve_definite(Const::<3>, factor, solution),
+        4 => solve_definite(Const::<4>, factor, solution),
+        5 => solve_definite(Const::<5>, factor, solution),
+        6 => solve_definite(Const::<6>, factor, solution),
+        _ => solve_definite(Dynamic(f), factor, solution),
+    }
+}
+
+fn solve_definite<D: Dimension>(dim: D, matrix: &mut [f64], x: &mut [f64]) -> bool {
+    cholesky(dim, matrix) && {
+        solve_lower(dim, matrix, x);
+        solve_lower_transpose(dim, matrix, x);
         true
     }
 }

@@ -8,25 +8,21 @@ use rayon::prelude::*;
 /// Parts of this many points are worth a task.
 const PART: usize = 1 << 15;
 
-/// Whether so many points are looked at in more than one part.
-pub(crate) const fn worth_parts(len: usize) -> bool {
-    len >= 2 * PART
-}
-
-/// Applies `look` to ranges that together are `0..len`, and answers what it found in the order of the ranges.
+/// Applies `look` to ranges that together are `0..len`, and merges what it found in the order of the ranges.
 ///
 /// The ranges depend on `len` alone, with and without `rayon` and whatever the number of cores: so does the result.
-pub(crate) fn map_ranges<T: Send>(len: usize, look: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
-    if !worth_parts(len) {
-        return vec![look(0..len)];
+pub(crate) fn in_parts<T: Send>(len: usize, look: impl Fn(Range<usize>) -> T + Sync, merge: impl Fn(T, T) -> T) -> T {
+    if len < 2 * PART {
+        return look(0..len);
     }
-    let parts = 0..len.div_ceil(PART);
-    let look = |k: usize| look(k * PART..((k + 1) * PART).min(len));
+    let part = |k: usize| look(k * PART..((k + 1) * PART).min(len));
+    let rest = 1..len.div_ceil(PART);
     #[cfg(feature = "rayon")]
     if !in_turn() {
-        return parts.into_par_iter().map(look).collect();
+        let (first, rest) = rayon::join(|| part(0), || rest.into_par_iter().map(part).collect::<Vec<_>>());
+        return rest.into_iter().fold(first, merge);
     }
-    parts.map(look).collect()
+    rest.map(part).fold(part(0), merge)
 }
 
 /// Whether this thread is to look at the parts one after the other, as it does without `rayon`; tests compare the two.
@@ -50,8 +46,11 @@ mod tests {
     #[test]
     fn the_parts_are_the_whole_in_order() {
         for len in [0, 1, PART, 2 * PART - 1, 2 * PART, 2 * PART + 1, 7 * PART + 12_345] {
-            let all = map_ranges(len, |range| range).into_iter().flatten();
-            assert!(all.eq(0..len), "{len} points in parts");
+            let merge = |a: Range<usize>, b: Range<usize>| {
+                assert_eq!(a.end, b.start, "{len} points in parts");
+                a.start..b.end
+            };
+            assert_eq!(in_parts(len, |range| range, merge), 0..len);
         }
     }
 

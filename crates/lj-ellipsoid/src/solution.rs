@@ -9,7 +9,7 @@ use crate::error::EnclosingError;
 use crate::frame::Frame;
 use crate::linalg::{UNIT_ROUNDOFF, dot, sum_of_logarithms};
 use crate::options::Status;
-use crate::parallel::map_ranges;
+use crate::parallel::in_parts;
 use crate::points::Points;
 use crate::scan::beyond;
 use crate::shape::{Shape, principal_axes, shape_from_axes};
@@ -78,13 +78,9 @@ impl Certificate {
         }
         let rounding = 2.0 * r.sqrt() * inverse_norm.sqrt() * set.coordinate_error(points, frame)
             + 4.0 * (r + 2.0) * r * UNIT_ROUNDOFF;
-        let weights = set
-            .index
-            .iter()
-            .zip(&set.u)
-            .filter(|(_, u)| **u > 0.0)
-            .map(|(&index, &weight)| Weight { index, weight })
-            .collect();
+        let weighted = set.index.iter().zip(&set.u).filter(|(_, u)| **u > 0.0);
+        let mut weights = Vec::with_capacity(set.len());
+        weights.extend(weighted.map(|(&index, &weight)| Weight { index, weight }));
         Self { log_det_bound: -moments.log_det_scatter - r * r.ln() + rounding, weights }
     }
 }
@@ -105,8 +101,34 @@ struct Reach<N: Dimension> {
     passes: usize,
 }
 
+/// What a pass found in a part of the points.
+struct Found {
+    /// max |diag(1/a)·R·(x − c)|².
+    furthest: f64,
+    /// The points near the furthest, unless they are too many.
+    list: Option<Vec<(usize, f64)>>,
+    /// No part had too many.
+    complete: bool,
+}
+
+impl Found {
+    /// What both parts found, at most `room` points within `near` of the furthest.
+    fn merge(self, part: Self, near: f64, room: usize) -> Self {
+        let furthest = self.furthest.max(part.furthest);
+        let list = self.list.zip(part.list).and_then(|(mut all, part)| {
+            all.extend(part);
+            all.retain(|(_, q)| *q >= near * furthest);
+            (all.len() <= room).then_some(all)
+        });
+        Self { furthest, list, complete: self.complete && part.complete }
+    }
+}
+
 /// Points whose rounding is bounded one by one.
 const MANY: usize = 256;
+
+/// Candidates that are mostly enough.
+const SOME: usize = 16;
 
 /// Turns the unit ball of `frame` into the ellipsoid that contains every point as evaluated in `f64`, with its gap.
 pub(crate) fn finish<P: Points>(
@@ -144,7 +166,11 @@ pub(crate) fn finish<P: Points>(
     };
     let nearest = growth * (1.0 - log_det_gap.max(1e-9));
     let contacts = match &reach.candidates {
-        Some(candidates) => candidates.iter().filter(|(_, q)| q.sqrt() >= nearest).map(|(i, _)| *i).collect(),
+        Some(candidates) => {
+            let mut contacts = Vec::with_capacity(candidates.len().min(SOME));
+            contacts.extend(candidates.iter().filter(|(_, q)| q.sqrt() >= nearest).map(|(i, _)| *i));
+            contacts
+        }
         None => beyond_radius(points, r, &reach.frame, nearest),
     };
     let scans = scans + reach.passes + usize::from(reach.candidates.is_none());
@@ -201,42 +227,40 @@ fn reach<P: Points>(points: &P, r: usize, shape: &Shape<P::Dim>, tolerance: f64)
     // Candidates take as much room as the points themselves where all are on the surface: then rather look once more.
     let room = MANY.max(points.len() / 8);
     let mut furthest: f64 = 0.0;
-    let mut candidates = None;
     // While the furthest is not known too many may seem near it; the second look knows it.
     let mut passes = 0;
-    while passes < 2 {
+    let candidates = loop {
         passes += 1;
-        let collect = |range| {
+        let collect = |range: Range<usize>| {
             let mut furthest = furthest;
-            let mut found = Some(Vec::new());
+            let mut list = Some(Vec::with_capacity(range.len().min(SOME)));
             in_rank(points, range, r, &frame, near * furthest, |i, q| {
                 furthest = furthest.max(q);
-                if let Some(list) = &mut found {
-                    list.push((i, q));
-                    if list.len() > room {
-                        found = None;
+                if let Some(found) = &mut list {
+                    found.push((i, q));
+                    if found.len() > room {
+                        list = None;
                     }
                 }
-                if found.is_some() { near * furthest } else { furthest }
+                if list.is_some() { near * furthest } else { furthest }
             });
-            (furthest, found)
+            Found { furthest, complete: list.is_some(), list }
         };
-        let parts = map_ranges(points.len(), collect);
-        furthest = parts.iter().fold(furthest, |m: f64, part| m.max(part.0));
-        let complete = parts.iter().all(|part| part.1.is_some());
-        candidates = parts.into_iter().try_fold(Vec::new(), |mut all, (_, part): (f64, Option<Vec<(usize, f64)>>)| {
-            all.extend(part?.into_iter().filter(|(_, q)| *q >= near * furthest));
-            (all.len() <= room).then_some(all)
-        });
-        if complete {
-            break;
+        let mut found = in_parts(points.len(), collect, |all, part| all.merge(part, near, room));
+        furthest = found.furthest;
+        if let Some(list) = &mut found.list {
+            list.retain(|(_, q)| *q >= near * furthest);
         }
-    }
+        if found.complete || passes == 2 {
+            break found.list;
+        }
+    };
 
     let least = furthest * (1.0 - 2.0 * largest_error);
     let leaders: Option<Vec<usize>> = candidates.as_ref().and_then(|candidates| {
         let mut leaders = candidates.iter().filter(|(_, q)| *q >= least).map(|(i, _)| *i);
-        let found: Vec<usize> = leaders.by_ref().take(MANY).collect();
+        let mut found = Vec::with_capacity(candidates.len().min(SOME));
+        found.extend(leaders.by_ref().take(MANY));
         leaders.next().is_none().then_some(found)
     });
     let (mut axes, mut matrix) = (furthest.sqrt() * (1.0 + error), furthest * (1.0 + largest_error));
@@ -285,7 +309,7 @@ fn touch<P: Points>(points: &P, shape: &mut Shape<P::Dim>, reach: &Reach<P::Dim>
 
 /// The points at least `radius` from the origin of the frame.
 fn beyond_radius<P: Points>(points: &P, r: usize, frame: &Frame<P::Dim>, radius: f64) -> Vec<usize> {
-    let parts = map_ranges(points.len(), |range| {
+    let look = |range| {
         let mut found = Vec::new();
         in_rank(points, range, r, frame, 0.0, |i, q| {
             if q.sqrt() >= radius {
@@ -294,8 +318,11 @@ fn beyond_radius<P: Points>(points: &P, r: usize, frame: &Frame<P::Dim>, radius:
             0.999_999 * radius * radius
         });
         found
-    });
-    parts.concat()
+    };
+    in_parts(points.len(), look, |mut all, mut part| {
+        all.append(&mut part);
+        all
+    })
 }
 
 /// [`beyond`], with the rank as constant as the dimension where they are equal.

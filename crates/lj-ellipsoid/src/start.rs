@@ -11,7 +11,7 @@ use crate::dimension::{Dimension, LANES};
 use crate::error::EnclosingError;
 use crate::frame::Frame;
 use crate::linalg::{dot, power_of_two_inverse};
-use crate::parallel::{map_ranges, worth_parts};
+use crate::parallel::in_parts;
 use crate::points::Points;
 
 /// A spread of this many [`f64::EPSILON`] of the coordinates is rounding of the points, not thickness.
@@ -64,25 +64,24 @@ fn bounds<P: Points>(points: &P) -> Result<Bounds<P::Dim>, EnclosingError> {
     if points.len() == 0 || n == 0 {
         return Err(EnclosingError::Empty);
     }
-    if !worth_parts(points.len()) {
-        return bounds_of(points, 0..points.len());
-    }
-    let mut parts = map_ranges(points.len(), |range| bounds_of(points, range)).into_iter();
-    let mut all = parts.next().unwrap_or(Err(EnclosingError::Empty))?;
-    for part in parts {
-        let part = part?;
-        for k in 0..n {
-            if part.low.as_ref()[k] < all.low.as_ref()[k] {
-                all.low.as_mut()[k] = part.low.as_ref()[k];
-                all.argmin.as_mut()[k] = part.argmin.as_ref()[k];
+    in_parts(
+        points.len(),
+        |range| bounds_of(points, range),
+        |all, part| {
+            let (mut all, part) = (all?, part?);
+            for k in 0..n {
+                if part.low.as_ref()[k] < all.low.as_ref()[k] {
+                    all.low.as_mut()[k] = part.low.as_ref()[k];
+                    all.argmin.as_mut()[k] = part.argmin.as_ref()[k];
+                }
+                if part.high.as_ref()[k] > all.high.as_ref()[k] {
+                    all.high.as_mut()[k] = part.high.as_ref()[k];
+                    all.argmax.as_mut()[k] = part.argmax.as_ref()[k];
+                }
             }
-            if part.high.as_ref()[k] > all.high.as_ref()[k] {
-                all.high.as_mut()[k] = part.high.as_ref()[k];
-                all.argmax.as_mut()[k] = part.argmax.as_ref()[k];
-            }
-        }
-    }
-    Ok(all)
+            Ok(all)
+        },
+    )
 }
 
 fn bounds_of<P: Points>(points: &P, range: Range<usize>) -> Result<Bounds<P::Dim>, EnclosingError> {

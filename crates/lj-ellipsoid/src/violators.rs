@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::dimension::Dimension;
 use crate::frame::Frame;
 use crate::linalg::dot;
-use crate::parallel::map_ranges;
+use crate::parallel::in_parts;
 use crate::points::Points;
 use crate::scan::beyond;
 
@@ -77,6 +77,24 @@ struct Part {
     kept: Option<Vec<usize>>,
 }
 
+impl Part {
+    /// What both parts found.
+    fn merge(mut self, part: Self, capacity: usize) -> Self {
+        self.furthest = self.furthest.max(part.furthest);
+        for (champion, other) in self.champions.iter_mut().zip(part.champions) {
+            if other.1 > champion.1 {
+                *champion = other;
+            }
+        }
+        self.kept = self.kept.zip(part.kept).map(|(mut all, mut part)| {
+            all.append(&mut part);
+            all
+        });
+        self.kept = self.kept.filter(|all| all.len() <= capacity);
+        self
+    }
+}
+
 /// What is worth a closer look: a violation worth adding, or at least the largest |y|².
 fn worth(r: f64, furthest: f64) -> f64 {
     if furthest > r { r + WORTH_ADDING * (furthest - r) } else { furthest }
@@ -98,24 +116,11 @@ pub(crate) fn look<P: Points, R: Dimension + Sync>(
     let n = dim.get();
     let keep_from = elimination_threshold(r, expected);
     let keeping = capacity > 0 && keep_from > 0.0 && few_beyond(points, rank, frame, keep_from, capacity);
-    let parts =
-        map_ranges(points.len(), |range| part(points, range, rank, frame, keeping.then_some((keep_from, capacity))));
-
-    let furthest = parts.iter().fold(0.0, |m: f64, part| m.max(part.furthest));
+    let keep = keeping.then_some((keep_from, capacity));
+    let Part { furthest, champions, kept } =
+        in_parts(points.len(), |range| part(points, range, rank, frame, keep), |all, part| all.merge(part, capacity));
     let cutoff = worth(r as f64, furthest);
-    let mut champions = vec![(usize::MAX, f64::NEG_INFINITY); 1 << r.min(ORTHANT_COORDINATES)];
-    for part in &parts {
-        for (champion, &other) in champions.iter_mut().zip(&part.champions) {
-            if other.1 > champion.1 {
-                *champion = other;
-            }
-        }
-    }
     let found = champions.iter().filter(|(_, q)| *q > r as f64 && *q >= cutoff).map(|(i, _)| *i).collect();
-    let kept = parts.into_iter().map(|part| part.kept).try_fold(Vec::new(), |mut all: Vec<usize>, part| {
-        all.append(&mut part?);
-        (all.len() <= capacity).then_some(all)
-    });
     let survivors = kept.filter(|_| furthest <= expected).map(|index| {
         let mut coordinates = vec![0.0; index.len() * n];
         index.iter().zip(coordinates.chunks_exact_mut(n)).for_each(|(&i, out)| points.read(i, out));
