@@ -63,7 +63,6 @@ mod hessian;
 mod hierarchy;
 mod inverse_iteration;
 mod margin;
-mod multipliers;
 mod options;
 mod pair;
 mod polynomial;

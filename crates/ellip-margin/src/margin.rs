@@ -3,7 +3,7 @@
 use convex_support::{Ellipsoid, Scalar, Vector};
 
 use crate::pair::{Pair, add, store};
-use crate::polynomial;
+use crate::polynomial::{self, Quick};
 use crate::secular::{self, Solution};
 use crate::{MarginOptions, Method, Status};
 
@@ -100,27 +100,80 @@ pub(crate) fn margin_from<V: Vector>(
     observer: impl FnMut(f64, f64),
 ) -> Margin<V> {
     if V::DIM == 2 {
-        let pair = Pair::<2>::new(e1, e2);
-        answer(&pair, solve(&pair, nu, options, observer))
+        margin_in::<V, 2>(e1, e2, nu, options, observer)
     } else {
-        let pair = Pair::<3>::new(e1, e2);
-        answer(&pair, solve(&pair, nu, options, observer))
+        margin_in::<V, 3>(e1, e2, nu, options, observer)
     }
+}
+
+#[inline]
+fn margin_in<V: Vector, const N: usize>(
+    e1: &Ellipsoid<V>,
+    e2: &Ellipsoid<V>,
+    nu: f64,
+    options: MarginOptions,
+    mut observer: impl FnMut(f64, f64),
+) -> Margin<V> {
+    let pair = Pair::<N>::new(e1, e2);
+    match quick(&pair, nu, options, &mut observer) {
+        Some(Quick { solution, is_sure: true }) => answer(&pair, solution),
+        quick => rest(e1, e2, quick, nu, options, observer),
+    }
+}
+
+/// What is seldom needed. It loads the bodies once more, so that those of the common case can stay in registers.
+#[cold]
+#[inline(never)]
+fn rest<V: Vector, const N: usize>(
+    e1: &Ellipsoid<V>,
+    e2: &Ellipsoid<V>,
+    quick: Option<Quick<N>>,
+    nu: f64,
+    options: MarginOptions,
+    observer: impl FnMut(f64, f64),
+) -> Margin<V> {
+    let pair = Pair::<N>::new(e1, e2);
+    answer(&pair, finished(&pair, quick, nu, options, observer))
 }
 
 /// By the polynomial where it keeps its digits, and in the singular basis where it does not.
 #[inline]
-pub(crate) fn solve<const N: usize>(
+pub(crate) fn solve<const N: usize>(pair: &Pair<N>, options: MarginOptions) -> Solution<N> {
+    match quick(pair, 0.0, options, |_, _| {}) {
+        Some(Quick { solution, is_sure: true }) => solution,
+        quick => finished(pair, quick, 0.0, options, |_, _| {}),
+    }
+}
+
+/// The answer of the polynomial, if it may be asked.
+#[inline]
+fn quick<const N: usize>(
     pair: &Pair<N>,
     nu: f64,
     options: MarginOptions,
-    mut observer: impl FnMut(f64, f64),
-) -> Solution<N> {
-    let quick = match options.method {
-        Method::Automatic => polynomial::solve(pair, nu, options, &mut observer),
+    observer: impl FnMut(f64, f64),
+) -> Option<Quick<N>> {
+    match options.method {
+        Method::Automatic => polynomial::solve(pair, nu, options, observer),
         Method::SingularBasis => None,
-    };
-    quick.unwrap_or_else(|| secular::solve(pair, nu, options, observer))
+    }
+}
+
+/// An answer of the polynomial with a margin that can be relied on; without one, that of the singular basis.
+fn finished<const N: usize>(
+    pair: &Pair<N>,
+    quick: Option<Quick<N>>,
+    nu: f64,
+    options: MarginOptions,
+    observer: impl FnMut(f64, f64),
+) -> Solution<N> {
+    match quick {
+        Some(Quick { solution, is_sure: true }) => solution,
+        Some(Quick { solution, is_sure: false }) => {
+            Solution { margin: pair.compensated_margin(solution.y, solution.nu), ..solution }
+        }
+        None => secular::solve(pair, nu, options, observer),
+    }
 }
 
 /// `solution` in world coordinates.

@@ -1,118 +1,24 @@
 //! The least margin of many links about many obstacles.
 
+mod brute_force;
 mod frame;
 mod least;
+mod result;
 mod search;
+mod seen;
 
 use alloc::vec::Vec;
 
 use convex_support::{Ellipsoid, Scalar, Vector};
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 
-use self::frame::{Frame, around, columns, displacement, padded, radius};
+pub use self::brute_force::clearance;
+use self::frame::{Frame, around, displacement, radius};
 use self::least::{Least, Limit};
+pub use self::result::{ClearanceResult, LeftOut, NearPair};
 use self::search::{Count, Normals, Search};
+use self::seen::Seen;
 use crate::hierarchy::{Aabb, Hierarchy, Node};
-use crate::pair::{dot, sub};
-use crate::{InvalidQuery, Margin, MarginOptions, free_margin};
-
-/// The least margin over all pairs of a link and an obstacle, and what was left out to find it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-#[must_use]
-pub struct ClearanceResult<V: Vector> {
-    /// The margin of the pair with the least one, E₁ being the link; among equal ones the first by link, then obstacle.
-    pub margin: Margin<V>,
-    /// The index of its link.
-    pub link: usize,
-    /// The index of its obstacle.
-    pub obstacle: usize,
-    /// How many pairs were solved.
-    pub pairs_evaluated: usize,
-    /// The pairs that were not, by the reason why they cannot be the least.
-    pub left_out: LeftOut,
-}
-
-/// Pairs that needed no margin, by reason.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct LeftOut {
-    /// The link has moved too little since its margins were last bounded.
-    pub by_motion: usize,
-    /// A box around the obstacle, or around a group of them, is too far from the link in the norm of the link.
-    pub by_box: usize,
-    /// A ball around the obstacle is too far from the ball around the grown link.
-    pub by_sphere: usize,
-    /// A plane across the line of centres separates the obstacle from the grown link.
-    pub by_plane: usize,
-    /// So does a plane across the normal at which the link was nearest to the obstacle when the two were last solved.
-    pub by_normal: usize,
-}
-
-impl LeftOut {
-    /// All of them.
-    #[must_use]
-    pub const fn total(&self) -> usize {
-        self.by_motion + self.by_box + self.by_sphere + self.by_plane + self.by_normal
-    }
-}
-
-/// A pair within a threshold; see [`Clearance::within`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct NearPair<V: Vector> {
-    /// The margin, E₁ being the link.
-    pub margin: Margin<V>,
-    /// The index of the link.
-    pub link: usize,
-    /// The index of the obstacle.
-    pub obstacle: usize,
-}
-
-/// The least margin of any of `links` about any of `obstacles`, every pair solved: n·m margins.
-///
-/// The plain reference; [`Clearance`] gives the same for a fraction of the work.
-///
-/// # Errors
-/// [`InvalidQuery`] if a list is empty.
-pub fn clearance<V: Vector>(
-    links: &[Ellipsoid<V>],
-    obstacles: &[Ellipsoid<V>],
-    options: MarginOptions,
-) -> Result<ClearanceResult<V>, InvalidQuery> {
-    if obstacles.is_empty() {
-        return Err(InvalidQuery::NoObstacles);
-    }
-    let of_link = |(link, e1): (usize, &Ellipsoid<V>)| {
-        let mut least = Least::default();
-        for (obstacle, e2) in obstacles.iter().enumerate() {
-            least.take(free_margin(e1, e2, options), link, obstacle);
-        }
-        least
-    };
-    let least = least_of(links, of_link);
-    let (margin, link, obstacle) = least.0.ok_or(InvalidQuery::NoLinks)?;
-    let pairs_evaluated = links.len() * obstacles.len();
-    Ok(ClearanceResult { margin, link, obstacle, pairs_evaluated, left_out: LeftOut::default() })
-}
-
-/// The least of what is found for each link: which core finds what does not matter, since ties go by index.
-#[cfg(feature = "rayon")]
-fn least_of<V: Vector>(
-    links: &[Ellipsoid<V>],
-    of_link: impl Fn((usize, &Ellipsoid<V>)) -> Least<V> + Sync + Send,
-) -> Least<V> {
-    use rayon::prelude::*;
-    links.par_iter().enumerate().map(of_link).reduce(Least::default, Least::or)
-}
-
-/// The least of what is found for each link.
-#[cfg(not(feature = "rayon"))]
-fn least_of<V: Vector>(links: &[Ellipsoid<V>], of_link: impl Fn((usize, &Ellipsoid<V>)) -> Least<V>) -> Least<V> {
-    links.iter().enumerate().map(of_link).fold(Least::default(), Least::or)
-}
+use crate::{InvalidQuery, MarginOptions, free_margin};
 
 /// The least margin of a robot's links about obstacles along a motion, without looking at most pairs.
 ///
@@ -264,48 +170,5 @@ impl<V: Vector> Clearance<V> {
             }
         }
         pairs
-    }
-}
-
-/// A link where its margins were last bounded.
-#[derive(Clone, Copy, Debug)]
-struct Seen<V: Vector> {
-    link: Ellipsoid<V>,
-    /// √(1 + m) ≥ this for every obstacle, then.
-    scale: f64,
-    /// The drift then.
-    drift: f64,
-    /// The pairs solved last, the newest first.
-    normals: Normals,
-}
-
-impl<V: Vector> Seen<V> {
-    /// A lower bound on √(1 + m) with the link at `now` and the obstacles drifted.
-    ///
-    /// A point with the coordinates p = diag(a)⁻¹Rᵀ(x − x₁) in the old ball has p′ = Gp + δ in the new one, with
-    /// G = diag(a)⁻¹R′ᵀR·diag(a), δ = diag(a)⁻¹R′ᵀ(x₁ − x₁′): ‖p′‖ ≥ (1 − ‖G − I‖)‖p‖ − ‖δ‖. And an obstacle's point that
-    /// moves by η moves by η/a_min in the ball at most.
-    fn bound_after(&self, now: &Ellipsoid<V>, drift: f64) -> f64 {
-        let a: [f64; 3] = padded(self.link.semi_axes());
-        if padded(now.semi_axes()) != a || self.scale == 0.0 {
-            return 0.0;
-        }
-        let n = V::DIM;
-        let (old, new) = (columns(self.link.axes()), columns(now.axes()));
-        let moved = sub(padded(self.link.center()), padded(now.center()));
-        let (mut turn, mut shift, mut least) = (0.0, 0.0, f64::INFINITY);
-        for i in 0..n {
-            for j in 0..n {
-                let entry = (dot(new[i], old[j]) - f64::from(u8::from(i == j))) * (a[j] / a[i]);
-                turn += entry * entry;
-            }
-            let delta = dot(new[i], moved) / a[i];
-            shift += delta * delta;
-            least = a[i].min(least);
-        }
-        // Rounding of axes and products, generously.
-        let aspect = a[..n].iter().fold(0.0f64, |m, x| m.max(*x)) / least;
-        let turn = turn.sqrt() + 64.0 * V::Scalar::EPSILON.as_f64() * aspect;
-        (1.0 - turn) * self.scale - shift.sqrt() * (1.0 + 1e-12) - (drift - self.drift) / least * (1.0 + 1e-12)
     }
 }

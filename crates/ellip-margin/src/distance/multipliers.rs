@@ -21,6 +21,7 @@
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use super::factor::Factor;
 use crate::pair::{Pair, Vec, combine, dot};
 
 /// The largest change of ln β in a step: beyond it the linear model says little.
@@ -35,7 +36,7 @@ const SMALL: f64 = 1e-4;
 
 /// d up to a factor, from a first guess of its direction and length, and the number of steps it took; `None` where the
 /// numbers leave the range.
-pub(crate) fn closest<const N: usize>(
+pub(super) fn closest<const N: usize>(
     pair: &Pair<N>,
     mut beta: [f64; 2],
     max_iterations: usize,
@@ -96,45 +97,4 @@ fn shape<const N: usize>(axes: &[Vec<N>; N], a: &Vec<N>) -> [Vec<N>; N] {
 /// S·d.
 fn times<const N: usize>(axes: &[Vec<N>; N], a: &Vec<N>, d: Vec<N>) -> Vec<N> {
     combine(*axes, core::array::from_fn(|k| a[k] * (a[k] * dot(axes[k], d))))
-}
-
-/// L·diag(D)·Lᵀ of a symmetric positive definite matrix, of which the lower triangle is read.
-struct Factor<const N: usize> {
-    l: [Vec<N>; N],
-    /// 1/D.
-    inverse: Vec<N>,
-}
-
-impl<const N: usize> Factor<N> {
-    fn new(mut a: [Vec<N>; N]) -> Self {
-        let mut inverse = [0.0; N];
-        for j in 0..N {
-            inverse[j] = 1.0 / a[j][j];
-            for i in j + 1..N {
-                let factor = a[i][j] * inverse[j];
-                for k in j + 1..=i {
-                    a[i][k] -= factor * a[k][j];
-                }
-            }
-            for row in a.iter_mut().skip(j + 1) {
-                row[j] *= inverse[j];
-            }
-        }
-        Self { l: a, inverse }
-    }
-
-    fn solve(&self, mut b: Vec<N>) -> Vec<N> {
-        for j in 0..N {
-            for i in j + 1..N {
-                b[i] -= self.l[i][j] * b[j];
-            }
-        }
-        for j in (0..N).rev() {
-            b[j] *= self.inverse[j];
-            for i in j + 1..N {
-                b[j] -= self.l[i][j] * b[i];
-            }
-        }
-        b
-    }
 }

@@ -1,0 +1,194 @@
+//! The slab between two bodies across a direction, and how it is widened.
+//!
+//! f is concave: on the unit sphere its gradient is the part of p₂ − p₁ across n, its Hessian −(f·I + H), with
+//! H = Σ(Sₖ/hₖ − Sₖnnᵀ Sₖ/hₖ³) ⪰ 0 and Hn = 0, so that Newton's step is to
+//!
+//! > n⁺ ∝ (f·I + H)⁻¹(p₂ − p₁),
+//!
+//! always an ascent direction while f > 0. Across a thin body hₖ has almost a kink, which Newton's step leaps over; there
+//! the step of iterated reweighting is taken,
+//!
+//! > n⁺ ∝ (f·I + S₁/h₁ + S₂/h₂)⁻¹r,
+//!
+//! which never descends, whatever the shape: since h(n′) ≤ (n′ᵀSn′/h + h)/2 with equality at n, it maximises a function
+//! that lies below n′·r − h₁(n′) − h₂(n′) − f‖n′‖²/2 and meets it at n. With the tangent θ of the angle between n and p₂ − p₁
+//! the bracket's relative width is θ²/2: it closes with twice the digits of n.
+
+use convex_support::{Scalar, Vector};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use super::DistanceBracket;
+use super::factor::Factor;
+use crate::double_double::DoubleDouble;
+use crate::pair::{Pair, Vec, add, combine, dot, store, sub};
+use crate::secular::Solution;
+
+/// A direction with what the two bodies say to it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slab<const N: usize> {
+    /// The unit direction from E₁ to E₂.
+    pub(super) n: Vec<N>,
+    /// uₖ = diag(aₖ)Rₖᵀn, whose lengths are the support values hₖ.
+    u: [Vec<N>; 2],
+    pub(super) h: [f64; 2],
+    /// pₖ − xₖ = ±Rₖ·diag(aₖ)uₖ/hₖ.
+    offset: [Vec<N>; 2],
+    /// p₂ − p₁.
+    across: Vec<N>,
+    /// f(n) = n·(p₂ − p₁).
+    pub(super) width: f64,
+}
+
+impl<const N: usize> Slab<N> {
+    /// The slab across the margin's normal; `None` where the bodies overlap.
+    pub(super) fn of_margin(pair: &Pair<N>, solution: &Solution<N>) -> Option<Self> {
+        if solution.margin.is_nan() || solution.margin <= 0.0 {
+            return None;
+        }
+        Self::across(pair, solution.y)
+    }
+
+    /// The slab whose normal is that of E₂ at its point y of the ball; `None` where that is not a number.
+    pub(super) fn across(pair: &Pair<N>, y: Vec<N>) -> Option<Self> {
+        // −z = −Q(x* − x₂) points from E₁ to E₂.
+        let n = unit(combine(pair.axes2, core::array::from_fn(|j| -y[j] / pair.a2[j])));
+        n.iter().all(|x| x.is_finite()).then(|| Self::new(pair, n))
+    }
+
+    pub(super) fn new(pair: &Pair<N>, n: Vec<N>) -> Self {
+        let side = |axes: &[Vec<N>; N], a: &Vec<N>, sign: f64| {
+            let u: Vec<N> = core::array::from_fn(|k| a[k] * dot(axes[k], n));
+            let h = dot(u, u).sqrt();
+            (u, h, combine(*axes, core::array::from_fn(|k| a[k] * (sign * u[k] / h))))
+        };
+        let (u1, h1, offset1) = side(&pair.axes1, &pair.a1, 1.0);
+        let (u2, h2, offset2) = side(&pair.axes2, &pair.a2, -1.0);
+        let r = pair.r();
+        let across: Vec<N> = core::array::from_fn(|i| (offset2[i] - r[i]) - offset1[i]);
+        Self { n, u: [u1, u2], h: [h1, h2], offset: [offset1, offset2], across, width: dot(n, across) }
+    }
+
+    /// ‖p₂ − p₁‖.
+    pub(super) fn length(&self) -> f64 {
+        dot(self.across, self.across).sqrt()
+    }
+
+    /// θ²: the squared tangent of the angle between n and p₂ − p₁; infinite where they do not agree at all.
+    pub(super) fn tangent_squared(&self) -> f64 {
+        if self.width > 0.0 {
+            let t: Vec<N> = core::array::from_fn(|i| (self.across[i] - self.width * self.n[i]) / self.width);
+            dot(t, t)
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// A wider slab; `None` where none is found.
+    pub(super) fn ascend(&self, pair: &Pair<N>) -> Option<Self> {
+        // Newton's step, if it does a quarter of what it foresees, or brings p₂ − p₁ nearer to n where that is too little
+        // for the width to show.
+        let tangent = sub(self.across, self.n.map(|x| x * self.width));
+        let step = Factor::new(self.curvature(pair, true)).solve(tangent);
+        let next = Self::new(pair, unit(add(self.n, step)));
+        let gain = 0.125 * dot(step, tangent);
+        let hidden = gain <= self.rounding(pair) && next.tangent_squared() <= 0.25 * self.tangent_squared();
+        if next.width >= self.width + gain || hidden {
+            return Some(next);
+        }
+        let reweighted = Self::new(pair, unit(Factor::new(self.curvature(pair, false)).solve(pair.r().map(|x| -x))));
+        let best = if reweighted.width > next.width { reweighted } else { next };
+        (best.width > self.width).then_some(best)
+    }
+
+    /// The lower triangle of f·I + Σ Sₖ/hₖ, or with `projected` of f·I + Σ (Sₖ/hₖ − Sₖnnᵀ Sₖ/hₖ³).
+    fn curvature(&self, pair: &Pair<N>, projected: bool) -> [Vec<N>; N] {
+        let floor = f64::EPSILON * (self.h[0] + self.h[1]);
+        let mut matrix = [[0.0; N]; N];
+        for (i, row) in matrix.iter_mut().enumerate() {
+            row[i] = self.width.max(floor);
+        }
+        for (body, (axes, a)) in [(&pair.axes1, &pair.a1), (&pair.axes2, &pair.a2)].into_iter().enumerate() {
+            // R·diag(a)·E·diag(a)·Rᵀ/h with E = I or E = I − ûûᵀ, û = u/h, 1 − ûₖ² as the sum of the other squares.
+            let h = self.h[body];
+            let e: Vec<N> = core::array::from_fn(|k| self.u[body][k] / h);
+            let inner: [Vec<N>; N] = core::array::from_fn(|k| {
+                core::array::from_fn(|l| {
+                    let entry = match (projected, k == l) {
+                        (true, true) => (0..N).filter(|&j| j != k).map(|j| e[j] * e[j]).sum(),
+                        (true, false) => -e[k] * e[l],
+                        (false, same) => f64::from(u8::from(same)),
+                    };
+                    a[k] * entry * (a[l] / h)
+                })
+            });
+            let half: [Vec<N>; N] = core::array::from_fn(|k| combine(*axes, inner[k])); // row k of inner·Rᵀ
+            for i in 0..N {
+                for j in 0..=i {
+                    matrix[i][j] += (0..N).map(|k| axes[k][i] * half[k][j]).sum::<f64>();
+                }
+            }
+        }
+        matrix
+    }
+
+    /// What rounding may do to `width`: the products with the axes have errors of ε times the bodies' extents.
+    fn rounding(&self, pair: &Pair<N>) -> f64 {
+        let r = pair.r();
+        let extent = pair.a1.iter().chain(&pair.a2).fold(dot(r, r).sqrt(), |m, a| m.max(*a));
+        16.0 * f64::EPSILON * extent
+    }
+
+    /// Whether rounding leaves more than twelve digits of `width`.
+    pub(super) fn is_wide(&self, pair: &Pair<N>) -> bool {
+        self.rounding(pair) <= 2.5e-13 * self.width
+    }
+
+    /// f(n) with the rounding errors kept where they would show.
+    pub(super) fn exact_width(&self, pair: &Pair<N>) -> f64 {
+        if self.is_wide(pair) { self.width } else { self.compensated_width(pair) }
+    }
+
+    /// (n·r − ‖diag(a₁)R₁ᵀn‖ − ‖diag(a₂)R₂ᵀn‖)/‖n‖ in double-double.
+    #[cold]
+    fn compensated_width(&self, pair: &Pair<N>) -> f64 {
+        let n = self.n;
+        let product = |x: Vec<N>| (0..N).fold(DoubleDouble::ZERO, |sum, i| sum + DoubleDouble::product(x[i], n[i]));
+        let support = |axes: &[Vec<N>; N], a: &Vec<N>| {
+            (0..N)
+                .fold(DoubleDouble::ZERO, |sum, k| {
+                    let u = product(axes[k]) * a[k];
+                    sum + u * u
+                })
+                .sqrt()
+        };
+        let along = (0..N).fold(DoubleDouble::ZERO, |sum, i| sum + DoubleDouble::sum(pair.x2[i], -pair.x1[i]) * n[i]);
+        let width = along - support(&pair.axes1, &pair.a1) - support(&pair.axes2, &pair.a2);
+        width.divided_by(product(n).sqrt().value()).value()
+    }
+
+    /// The bracket, given the [`exact_width`](Self::exact_width).
+    pub(super) fn bracket<V: Vector>(&self, pair: &Pair<N>, width: f64) -> DistanceBracket<V> {
+        let slack = if self.is_wide(pair) { self.rounding(pair) } else { 8.0 * f64::EPSILON * width.abs() };
+        // The lengths along and across n, so that the width's digits are not lost.
+        let t = sub(self.across, self.n.map(|x| x * self.width));
+        let upper = width.hypot(dot(t, t).sqrt());
+        // Rounding to an `f32` must not close the bracket either.
+        let coarse = V::Scalar::EPSILON;
+        DistanceBracket {
+            lower: (V::Scalar::from_f64((width - slack).max(0.0))) * (V::Scalar::ONE - coarse),
+            upper: V::Scalar::from_f64(upper + slack) * (V::Scalar::ONE + coarse),
+            point1: store(add(pair.x1, self.offset[0])),
+            point2: store(add(pair.x2, self.offset[1])),
+            normal: store(self.n),
+        }
+    }
+}
+
+/// The unit vector along `x`, of any magnitude.
+pub(super) fn unit<const N: usize>(x: Vec<N>) -> Vec<N> {
+    let largest = x.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    let x = x.map(|x| x / largest);
+    let norm = dot(x, x).sqrt();
+    x.map(|x| x / norm)
+}

@@ -1,0 +1,172 @@
+//! The coefficients of the polynomial from the axes of both bodies, and the answer to a root.
+
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use super::equation::{Equation, Taylor};
+use crate::pair::{Pair, Vec, dot, sub};
+
+/// The largest factor by which a sum of the coefficients may cancel: the relative errors of ν and y stay below this times
+/// a few ε, 1e-12. Beyond it the singular basis is worth its price.
+const MAX_LOSS: f64 = 2048.0;
+
+/// Sizes of ‖B‖² up to which sixth powers stay far from the range of `f64`.
+const MAX_SIZE: f64 = 1e20;
+
+/// The equation of a pair, and what its solution is turned into an answer with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Problem<const N: usize> {
+    /// x₁ lies in E₂, by far.
+    pub(super) inside: bool,
+    /// No digits are lost, and x₁ lies outside E₂ by far.
+    pub(super) fits: bool,
+    pub(super) equation: Equation<N>,
+    /// p(ν) = `low` + ν·`middle` + ν²b, or in the plane `low` + νb.
+    low: Vec<N>,
+    middle: Vec<N>,
+    b: Vec<N>,
+    /// bᵀCb.
+    bcb: f64,
+    /// B, row by row, and g.
+    rows: [Vec<N>; N],
+    g: Vec<N>,
+    r: Vec<N>,
+    /// 1/a₁.
+    i1: Vec<N>,
+    /// ‖B‖².
+    norm: f64,
+}
+
+impl<const N: usize> Problem<N> {
+    /// Straight through: no branch depends on the numbers, so that several pairs can be set up side by side.
+    #[inline(always)]
+    pub(super) fn new(pair: &Pair<N>) -> Self {
+        let r = pair.r();
+        let i1: Vec<N> = core::array::from_fn(|i| 1.0 / pair.a1[i]);
+        let g: Vec<N> = core::array::from_fn(|i| dot(pair.axes1[i], r) * i1[i]);
+        // B = diag(i₁)·M·diag(a₂) with M = R₁ᵀR₂
+        let scale: [Vec<N>; N] = core::array::from_fn(|i| core::array::from_fn(|j| i1[i] * pair.a2[j]));
+        let m: [Vec<N>; N] = core::array::from_fn(|i| core::array::from_fn(|j| dot(pair.axes1[i], pair.axes2[j])));
+        let rows: [Vec<N>; N] = core::array::from_fn(|i| core::array::from_fn(|j| m[i][j] * scale[i][j]));
+        let norm = squares(&rows);
+        let root_det = (1..N).fold(scale[0][0], |product, i| product * scale[i][i]);
+        let det = root_det * root_det;
+
+        let b = transposed_times(&rows, g);
+        let bb = dot(b, b);
+        let forward = apply(&rows, b);
+        let bcb = dot(forward, forward);
+        // det·c = det·diag(a₂)⁻¹R₂ᵀr, without the division.
+        let low: Vec<N> = core::array::from_fn(|j| {
+            let rest = if N == 2 { scale[1][1 - j] } else { scale[1][(j + 1) % 3] * scale[2][(j + 2) % 3] };
+            root_det * (rest * (i1[0] * dot(pair.axes2[j], r)))
+        });
+        let (n0, gg) = (dot(low, low), dot(g, g));
+        // Products of p's coefficients with one another, by c·Cc = ‖g‖², c·C²c = ‖b‖²: in the plane low·b = det‖g‖²,
+        let low_b = det * gg;
+        let (middle, equation, keeps);
+        if N == 3 {
+            let cb = transposed_times(&rows, forward);
+            // cof B = det(diag(i₁))·diag(i₁)⁻¹·M·diag(a₂)⁻¹·det(diag(a₂)): the cofactors of a rotation are itself.
+            let cofactors: [Vec<N>; N] = core::array::from_fn(|i| {
+                let (k, l) = ((i + 1) % 3, (i + 2) % 3);
+                core::array::from_fn(|j| m[i][j] * (scale[k][(j + 1) % 3] * scale[l][(j + 2) % 3]))
+            });
+            middle = core::array::from_fn(|j| norm * b[j] - cb[j]);
+            let mm = dot(middle, middle);
+            // and in space low·middle = det(‖B‖²‖g‖² − ‖b‖²), middle·b = ‖B‖²‖b‖² − bᵀCb too.
+            let (low_middle, middle_b) = (det * (norm * gg - bb), norm * bb - bcb);
+            equation = Equation {
+                n: [n0, 2.0 * low_middle, mm + 2.0 * low_b, 2.0 * middle_b, bb],
+                d: [det, squares(&cofactors), norm, 1.0],
+            };
+            keeps = norm * norm * bb < MAX_LOSS * MAX_LOSS * mm;
+        } else {
+            middle = [0.0; N];
+            equation = Equation { n: [n0, 2.0 * low_b, bb, 0.0, 0.0], d: [det, norm, 1.0, 0.0] };
+            keeps = true;
+        }
+        // ‖c‖² = n₀/det²
+        let square = det * det;
+        let fits = (n0 > 1.25 * square)
+            & (n0 < MAX_SIZE * square)
+            & (norm < MAX_SIZE)
+            & (norm > 1.0 / MAX_SIZE)
+            & (norm * gg < MAX_LOSS * MAX_LOSS * bb)
+            & keeps;
+        Self { inside: n0 < 0.75 * square, fits, equation, low, middle, b, bcb, rows, g, r, i1, norm }
+    }
+
+    /// A number below the root: a step of Newton's method from infinity, ‖b‖ − bᵀCb/bᵀb, or from 0.
+    #[inline(always)]
+    pub(super) fn start(&self) -> f64 {
+        let [n0, n1, ..] = self.equation.n;
+        let [d0, d1, ..] = self.equation.d;
+        let bb = self.equation.n[2 * N - 2];
+        let from_zero = Taylor { n: [n0, n1, 0.0, 0.0], d: [d0, d1, 0.0, 0.0] }.hebden();
+        (bb.sqrt() - self.bcb / bb).max(from_zero)
+    }
+
+    /// The answer to ν.
+    #[inline(always)]
+    pub(super) fn nearest(&self, pair: &Pair<N>, nu: f64) -> Nearest<N> {
+        let inverse = 1.0 / self.equation.determinant(nu);
+        let y: Vec<N> = core::array::from_fn(|j| {
+            let p = if N == 2 {
+                self.low[j] + nu * self.b[j]
+            } else {
+                self.low[j] + nu * (self.middle[j] + nu * self.b[j])
+            };
+            p * inverse
+        });
+        // The Lagrangian ‖w‖² − 1 + ν(‖y‖² − 1) is stationary in y: what y has of errors enters squared.
+        let w = sub(apply(&self.rows, y), self.g);
+        let squared = dot(w, w);
+        let margin = (squared - 1.0) + nu * (dot(y, y) - 1.0);
+        // An error of x* − x₁ in space of ε(‖v‖ + ‖r‖) changes m by its product with ∂m/∂x₁ = 2R₁·diag(a₁)⁻¹w: not by 32ε·m?
+        let v: Vec<N> = core::array::from_fn(|j| pair.a2[j] * y[j]);
+        let pw: Vec<N> = core::array::from_fn(|i| self.i1[i] * w[i]);
+        let is_sure = (dot(v, v) + dot(self.r, self.r)) * dot(pw, pw) < 1024.0 * (margin * margin);
+        // The margin's error is ‖Bδ‖² for an error δ of y, here up to 1e-12: it must stay below the last digit.
+        Nearest { y, margin, is_sure, is_sharp: self.norm < 1e9 * (1.0 + margin) }
+    }
+}
+
+/// What a root is turned into.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Nearest<const N: usize> {
+    pub(super) y: Vec<N>,
+    pub(super) margin: f64,
+    /// Rounding cannot show in the margin.
+    pub(super) is_sure: bool,
+    /// The errors of y cannot.
+    pub(super) is_sharp: bool,
+}
+
+/// The sum of the squares.
+#[inline(always)]
+fn squares<const N: usize>(m: &[Vec<N>; N]) -> f64 {
+    let mut sum = dot(m[0], m[0]);
+    for i in 1..N {
+        sum += dot(m[i], m[i]);
+    }
+    sum
+}
+
+/// `m·x`, for the rows of `m`.
+#[inline(always)]
+fn apply<const N: usize>(m: &[Vec<N>; N], x: Vec<N>) -> Vec<N> {
+    core::array::from_fn(|i| dot(m[i], x))
+}
+
+/// `mᵀ·x`, for the rows of `m`.
+#[inline(always)]
+fn transposed_times<const N: usize>(m: &[Vec<N>; N], x: Vec<N>) -> Vec<N> {
+    core::array::from_fn(|j| {
+        let mut sum = m[0][j] * x[0];
+        for i in 1..N {
+            sum += m[i][j] * x[i];
+        }
+        sum
+    })
+}
