@@ -106,16 +106,14 @@ fn some<'a, V: Vector>(
     options: MarginOptions,
     margins: &mut Vec<Margin<V>>,
 ) {
-    let Range { start: mut next, end } = range;
+    let Range { start, end } = range;
+    let mut next = start;
     if options.method == Method::Automatic && options.max_iterations >= STRAIGHT_STEPS {
-        while next + LANES <= end {
-            if V::DIM == 2 {
-                eight::<V, 2>(|k| of(next + k), options, margins);
-            } else {
-                eight::<V, 3>(|k| of(next + k), options, margins);
-            }
-            next += LANES;
-        }
+        next = if V::DIM == 2 {
+            by_eights::<V, 2>(start..end, &of, options, margins)
+        } else {
+            by_eights::<V, 3>(start..end, &of, options, margins)
+        };
     }
     margins.extend((next..end).map(|k| {
         let (e1, e2) = of(k);
@@ -123,11 +121,38 @@ fn some<'a, V: Vector>(
     }));
 }
 
+/// The margins of as many of a range as make whole lanes; where it ended.
+fn by_eights<'a, V: Vector, const N: usize>(
+    Range { start, end }: Range<usize>,
+    of: impl Fn(usize) -> (&'a Ellipsoid<V>, &'a Ellipsoid<V>),
+    options: MarginOptions,
+    margins: &mut Vec<Margin<V>>,
+) -> usize {
+    let (mut pairs, mut answers) = (Pairs::<N>::ZERO, Answers::<N>::ZERO);
+    let mut next = start;
+    while next + LANES <= end {
+        for lane in 0..LANES {
+            let (e1, e2) = of(next + lane);
+            pairs.set(lane, &Pair::new(e1, e2));
+        }
+        solve_lanes(&pairs, options.tolerance, &mut answers);
+        margins.extend((0..LANES).map(|lane| {
+            answers.get(lane).unwrap_or_else(|| {
+                let (e1, e2) = of(next + lane);
+                free_margin(e1, e2, options)
+            })
+        }));
+        next += LANES;
+    }
+    next
+}
+
 /// A number of each lane.
 type Lane = [f64; LANES];
 
+const NONE: Lane = [0.0; LANES];
+
 /// [`Pair`] of eight pairs.
-#[derive(Clone, Copy)]
 struct Pairs<const N: usize> {
     x1: [Lane; N],
     x2: [Lane; N],
@@ -138,6 +163,15 @@ struct Pairs<const N: usize> {
 }
 
 impl<const N: usize> Pairs<N> {
+    const ZERO: Self = Self {
+        x1: [NONE; N],
+        x2: [NONE; N],
+        axes1: [[NONE; N]; N],
+        axes2: [[NONE; N]; N],
+        a1: [NONE; N],
+        a2: [NONE; N],
+    };
+
     #[inline(always)]
     fn set(&mut self, lane: usize, pair: &Pair<N>) {
         for i in 0..N {
@@ -166,40 +200,6 @@ impl<const N: usize> Pairs<N> {
     }
 }
 
-/// The margins of eight pairs.
-fn eight<'a, V: Vector, const N: usize>(
-    of: impl Fn(usize) -> (&'a Ellipsoid<V>, &'a Ellipsoid<V>),
-    options: MarginOptions,
-    margins: &mut Vec<Margin<V>>,
-) {
-    let (zero, zeros) = ([[0.0; LANES]; N], [[[0.0; LANES]; N]; N]);
-    let mut pairs = Pairs { x1: zero, x2: zero, axes1: zeros, axes2: zeros, a1: zero, a2: zero };
-    for lane in 0..LANES {
-        let (e1, e2) = of(lane);
-        pairs.set(lane, &Pair::new(e1, e2));
-    }
-
-    let mut answers = Answers { is_answer: [0.0; LANES], nu: [0.0; LANES], y: zero, point: zero, margin: [0.0; LANES] };
-    solve_lanes(&pairs, options.tolerance, &mut answers);
-    let Answers { is_answer, nu, y, point, margin } = answers;
-
-    margins.extend((0..LANES).map(|lane| {
-        if is_answer[lane] == 1.0 {
-            Margin {
-                margin: V::Scalar::from_f64(margin[lane]),
-                nu: V::Scalar::from_f64(nu[lane]),
-                point: V::from_fn(|i| V::Scalar::from_f64(point[i][lane])),
-                status: Status::Converged,
-                iterations: STRAIGHT_STEPS,
-                ball_point: V::from_fn(|i| V::Scalar::from_f64(y[i][lane])),
-            }
-        } else {
-            let (e1, e2) = of(lane);
-            free_margin(e1, e2, options)
-        }
-    }));
-}
-
 /// [`Straight`](crate::polynomial::Straight) of eight pairs.
 struct Answers<const N: usize> {
     is_answer: Lane,
@@ -207,6 +207,24 @@ struct Answers<const N: usize> {
     y: [Lane; N],
     point: [Lane; N],
     margin: Lane,
+}
+
+impl<const N: usize> Answers<N> {
+    const ZERO: Self = Self { is_answer: NONE, nu: NONE, y: [NONE; N], point: [NONE; N], margin: NONE };
+
+    /// The margin of a lane, unless it has to be asked for again.
+    #[inline(always)]
+    fn get<V: Vector>(&self, lane: usize) -> Option<Margin<V>> {
+        let vector = |v: &[Lane; N]| V::from_fn(|i| V::Scalar::from_f64(v[i][lane]));
+        (self.is_answer[lane] == 1.0).then(|| Margin {
+            margin: V::Scalar::from_f64(self.margin[lane]),
+            nu: V::Scalar::from_f64(self.nu[lane]),
+            point: vector(&self.point),
+            status: Status::Converged,
+            iterations: STRAIGHT_STEPS,
+            ball_point: vector(&self.y),
+        })
+    }
 }
 
 /// [`loop_over_lanes`] in the widest vector instructions this processor has.

@@ -5,8 +5,10 @@
 //! finds the distance of the hulls.
 
 mod body;
+mod levels;
 mod picture;
 mod planar;
+mod report;
 mod robot;
 mod truth;
 
@@ -19,14 +21,14 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use convex_support::glam::{DQuat, DVec3};
-use ellip_margin::{Margin, MarginTracker};
-use gjk_raycast::{Distance, DistanceOptions, distance};
+use gjk_raycast::{DistanceOptions, distance};
 use serde::Deserialize;
 
 use self::body::{Body, Placed};
+pub(crate) use self::levels::embedded_levels;
+use self::levels::{Decided, Levels, Pair};
 use self::robot::{Pose, Robot};
 use crate::mesh::Meshes;
-use crate::plot::{Plot, Scale, Series};
 
 /// The scene that is run where none is named.
 pub(crate) const EMBEDDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/ur5_reach.json");
@@ -104,71 +106,6 @@ impl Scene {
     fn links_at(&self, values: &[f64]) -> Result<Vec<Placed>, String> {
         let place = |(body, pose): (&Body, Pose)| body.at(pose).map_err(|why| why.to_string());
         self.bodies.iter().zip(self.robot.poses(values)).map(place).collect()
-    }
-}
-
-/// Which level knew the answer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Decided {
-    OuterDisjoint,
-    InnerOverlap,
-    Hulls,
-}
-
-/// What is known of a pair.
-struct Answer {
-    decided: Decided,
-    overlap: bool,
-    /// The margin of the outer ellipsoids.
-    margin: Margin<DVec3>,
-    /// The exact distance, where it had to be asked for.
-    exact: Option<Distance<DVec3>>,
-}
-
-/// The memory of a pair along the trajectory.
-#[derive(Clone, Default)]
-struct Pair {
-    outer: MarginTracker,
-    inner: MarginTracker,
-    /// The direction of the last closest points.
-    axis: Option<DVec3>,
-}
-
-/// How often each level knew, and how long it took.
-#[derive(Default)]
-struct Levels {
-    asked: [u64; 3],
-    knew: [u64; 3],
-    time: [Duration; 3],
-}
-
-impl Pair {
-    fn ask(&mut self, link: &Placed, obstacle: &Placed, levels: &mut Levels) -> Answer {
-        let mut level = 0;
-        let mut timed = |knows: bool, start: Instant| {
-            levels.asked[level] += 1;
-            levels.knew[level] += u64::from(knows);
-            levels.time[level] += start.elapsed();
-            level += 1;
-            knows
-        };
-        let start = Instant::now();
-        let margin = self.outer.step(&link.outer, &obstacle.outer);
-        if timed(margin.margin > 0.0, start) {
-            return Answer { decided: Decided::OuterDisjoint, overlap: false, margin, exact: None };
-        }
-        let start = Instant::now();
-        let inner = self.inner.step(&link.inner, &obstacle.inner);
-        if timed(inner.margin <= 0.0, start) {
-            return Answer { decided: Decided::InnerOverlap, overlap: true, margin, exact: None };
-        }
-        let start = Instant::now();
-        let mut options = DistanceOptions::new();
-        options.axis = self.axis;
-        let exact = distance(&link.hull, &obstacle.hull, options);
-        self.axis = exact.normal;
-        timed(true, start);
-        Answer { decided: Decided::Hulls, overlap: exact.overlap, margin, exact: Some(exact) }
     }
 }
 
@@ -297,8 +234,8 @@ fn scene(file: &Path, truth: Option<&Path>, folder: &Path) -> Result<bool, Strin
     let every_pair = every_pair(&scene)?;
     let right = checked.as_ref().is_none_or(truth::Truth::holds);
     let outcome = Outcome { fitted, levels, every_pair, rows, truth: checked };
-    let written =
-        write(&outcome.rows, &frames, folder).and_then(|()| print(&scene, &outcome, folder, &mut io::stdout().lock()));
+    let written = report::write(&outcome.rows, &frames, folder)
+        .and_then(|()| report::print(&scene, &outcome, folder, &mut io::stdout().lock()));
     match written {
         Err(why) if why.kind() != io::ErrorKind::BrokenPipe => {
             Err(format!("cannot write to {}: {why}", folder.display()))
@@ -307,43 +244,10 @@ fn scene(file: &Path, truth: Option<&Path>, folder: &Path) -> Result<bool, Strin
     }
 }
 
-/// How often a level was asked and knew, over the whole embedded scene.
-pub(crate) struct Level {
-    pub(crate) name: &'static str,
-    pub(crate) asked: u64,
-    pub(crate) knew: u64,
-    /// Mean time of a question.
-    pub(crate) nanoseconds: f64,
-}
-
-/// The levels of the embedded scene.
-///
-/// # Errors
-/// If the scene cannot be read.
-pub(crate) fn embedded_levels() -> Result<Vec<Level>, String> {
-    let scene = Scene::read(Path::new(EMBEDDED))?;
-    let mut pairs = vec![Pair::default(); scene.bodies.len() * scene.obstacles.len()];
-    let mut levels = Levels::default();
-    for values in &scene.trajectory {
-        let links = scene.links_at(values)?;
-        let asked = links.iter().flat_map(|link| scene.obstacles.iter().map(move |obstacle| (link, obstacle)));
-        for (pair, (link, obstacle)) in pairs.iter_mut().zip(asked) {
-            let _ = pair.ask(link, obstacle, &mut levels);
-        }
-    }
-    let level = |i: usize, name| Level {
-        name,
-        asked: levels.asked[i],
-        knew: levels.knew[i],
-        nanoseconds: levels.time[i].as_nanos() as f64 / levels.asked[i].max(1) as f64,
-    };
-    Ok(vec![level(0, "outer ellipsoids"), level(1, "inner ellipsoids"), level(2, "exact hulls")])
-}
-
 /// The time per row for the exact distance of every pair, cold: what the ellipsoids and the memory of the last row
-/// leave out. A sample of the rows.
+/// leave out. The median over a sample of the rows.
 fn every_pair(scene: &Scene) -> Result<Duration, String> {
-    let (mut time, mut count) = (Duration::ZERO, 0);
+    let mut times = Vec::new();
     for values in scene.trajectory.iter().step_by(10) {
         let links = scene.links_at(values)?;
         let start = Instant::now();
@@ -352,79 +256,8 @@ fn every_pair(scene: &Scene) -> Result<Duration, String> {
                 std::hint::black_box(distance(&link.hull, &obstacle.hull, DistanceOptions::new()).distance);
             }
         }
-        time += start.elapsed();
-        count += 1;
+        times.push(start.elapsed());
     }
-    Ok(time / count.max(1))
-}
-
-fn write(rows: &[Row], frames: &picture::Frames, folder: &Path) -> io::Result<()> {
-    fs::create_dir_all(folder)?;
-    let mut csv = String::from("time_s,least_margin,least_exact_distance_m,overlapping_pairs,hull_queries\n");
-    for row in rows {
-        let distance = row.least_distance.map_or_else(String::new, |d| d.to_string());
-        csv += &format!("{},{},{distance},{},{}\n", row.time, row.least_margin, row.overlaps, row.hulls_asked);
-    }
-    fs::write(folder.join("rows.csv"), csv)?;
-    let plot = |title: &str, y: &str, colour: usize, value: &dyn Fn(&Row) -> Option<f64>| Plot {
-        title: title.to_owned(),
-        x: "time (s)".to_owned(),
-        y: y.to_owned(),
-        scales: [Scale::Linear, Scale::Linear],
-        floor: f64::NEG_INFINITY,
-        series: vec![Series {
-            name: y.to_owned(),
-            points: rows.iter().filter_map(|row| Some([row.time, value(row)?])).collect(),
-            joined: false,
-            colour,
-        }],
-    };
-    let margin = plot("Least margin of the outer ellipsoids", "margin", 0, &|row| Some(row.least_margin));
-    fs::write(folder.join("margin.svg"), margin.svg())?;
-    let distance = plot("Least exact distance, where the ellipsoids could not decide", "distance (mm)", 4, &|row| {
-        row.least_distance.map(|metres| metres * 1e3)
-    });
-    fs::write(folder.join("distance.svg"), distance.svg())?;
-    fs::write(folder.join("robot.svg"), frames.svg())
-}
-
-fn print(scene: &Scene, outcome: &Outcome, folder: &Path, output: &mut impl Write) -> io::Result<()> {
-    let Outcome { fitted, levels, every_pair, rows, truth } = outcome;
-    let (links, obstacles) = (scene.bodies.len(), scene.obstacles.len());
-    writeln!(output, "{links} links, {obstacles} obstacles, {} rows: {} pairs", rows.len(), levels.asked[0])?;
-    writeln!(output, "ellipsoids around and inside every mesh: {:.1} ms, once", fitted.as_secs_f64() * 1e3)?;
-    for (link, body) in scene.robot.links.iter().zip(&scene.bodies) {
-        writeln!(output, "  {:24} tightness {:.3}", link.name, body.tightness)?;
-    }
-    writeln!(output, "{:34} {:>9} {:>9} {:>7} {:>10}", "level", "asked", "decided", "share", "ns each")?;
-    let names = ["outer ellipsoids are disjoint", "inner ellipsoids overlap", "exact distance of the hulls"];
-    for (i, name) in names.iter().enumerate() {
-        writeln!(
-            output,
-            "{name:34} {:>9} {:>9} {:>6.2}% {:>10.0}",
-            levels.asked[i],
-            levels.knew[i],
-            100.0 * levels.knew[i] as f64 / levels.asked[0].max(1) as f64,
-            levels.time[i].as_nanos() as f64 / levels.asked[i].max(1) as f64,
-        )?;
-    }
-    let total: Duration = levels.time.iter().sum();
-    writeln!(
-        output,
-        "{:.1} µs per row of {} pairs",
-        total.as_secs_f64() * 1e6 / rows.len().max(1) as f64,
-        links * obstacles
-    )?;
-    writeln!(
-        output,
-        "{:.1} µs per row for the distance of every pair of hulls instead",
-        every_pair.as_secs_f64() * 1e6
-    )?;
-    let overlapping = rows.iter().filter(|row| row.overlaps > 0).count();
-    let least = rows.iter().filter_map(|row| row.least_distance).filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
-    writeln!(output, "{overlapping} rows with an overlap; least exact distance otherwise {least:.6} m")?;
-    if let Some(truth) = truth {
-        truth.print(output)?;
-    }
-    writeln!(output, "written: {}", folder.display())
+    times.sort_unstable();
+    Ok(times.get(times.len() / 2).copied().unwrap_or_default())
 }

@@ -158,10 +158,11 @@ impl Frames {
                 y - 4.5
             );
         };
-        for (row, state) in State::ALL.into_iter().enumerate() {
-            entry(row, state.colour(), state.name());
+        let occurs = |state: &State| self.frames.iter().any(|frame| frame.links.iter().any(|(_, s)| s == state));
+        let states = State::ALL.into_iter().filter(occurs).map(|state| (state.colour(), state.name()));
+        for (row, (colour, name)) in states.chain([(OBSTACLE, "obstacle")]).enumerate() {
+            entry(row, colour, name);
         }
-        entry(3, OBSTACLE, "obstacle");
         let _ = write!(svg, "<g fill=\"{OBSTACLE}\" fill-opacity=\".3\" stroke=\"#b57d00\">");
         svg.extend(self.obstacles.iter().map(ellipse));
         svg.push_str("</g>\n");

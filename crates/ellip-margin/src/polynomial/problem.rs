@@ -170,3 +170,46 @@ fn transposed_times<const N: usize>(m: &[Vec<N>; N], x: Vec<N>) -> Vec<N> {
         sum
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::{DQuat, DVec2, DVec3};
+    use convex_support::{Ellipsoid, InvalidShape};
+
+    use super::*;
+
+    /// N = ‖p‖², although its products are found by other ways, and p = adj(C + ν)·b.
+    fn check<const N: usize>(pair: &Pair<N>) {
+        let problem = Problem::new(pair);
+        assert!(problem.fits && !problem.inside, "a pair for the polynomial: {pair:?}");
+        for nu in [0.0, 1e-3, 0.7, 40.0, 1e4] {
+            let p: Vec<N> = core::array::from_fn(|j| {
+                let rest = if N == 2 { problem.b[j] } else { problem.middle[j] + nu * problem.b[j] };
+                problem.low[j] + nu * rest
+            });
+            let n = problem.equation.at(nu).n[0];
+            assert!((n - dot(p, p)).abs() <= 1e-13 * n, "N({nu}) = {n}, ‖p‖² = {}", dot(p, p));
+            // (C + ν)p = D·b with C = BᵀB
+            let cp = transposed_times(&problem.rows, apply(&problem.rows, p));
+            let d = problem.equation.determinant(nu);
+            let size = d * dot(problem.b, problem.b).sqrt();
+            for j in 0..N {
+                let error = (cp[j] + nu * p[j] - d * problem.b[j]).abs();
+                assert!(error <= 1e-12 * size, "row {j} at ν = {nu}: off by {error:e} of {size:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn coefficients_are_those_of_the_nearest_point() -> Result<(), InvalidShape> {
+        let (q1, q2) = (DQuat::from_xyzw(0.1, 0.7, -0.3, 0.4), DQuat::from_xyzw(-0.5, 0.2, 0.6, 0.1));
+        let e1 = Ellipsoid::new(DVec3::new(0.3, -0.2, 1.0), DVec3::new(1.0, 0.3, 0.1), q1)?;
+        let e2 = Ellipsoid::new(DVec3::new(2.0, 1.0, -0.5), DVec3::new(0.2, 0.9, 0.5), q2)?;
+        check(&Pair::<3>::new(&e1, &e2));
+        check(&Pair::<3>::new(&e2, &e1));
+        let e1 = Ellipsoid::new(DVec2::new(0.3, -0.2), DVec2::new(1.0, 0.1), 0.4)?;
+        let e2 = Ellipsoid::new(DVec2::new(2.0, 1.0), DVec2::new(0.2, 0.9), -1.3)?;
+        check(&Pair::<2>::new(&e1, &e2));
+        Ok(())
+    }
+}
