@@ -63,7 +63,7 @@ impl MarginTracker {
     }
 
     /// ν of the next step by the polynomial through the last k + 1 values, ν + ∇ν + … + ∇ᵏν, whose error at the last step was
-    /// ∇ᵏ⁺¹ν: that k is taken for which it was least. Where even that was more than a 32nd of ν there is no path to follow, and
+    /// ∇ᵏ⁺¹ν: that k is taken for which it was least. Where even that was more than a 256th of ν there is no path to follow, and
     /// the bound that a cold start begins with is the better guess: 0.
     fn forecast(&self) -> f64 {
         let (mut sum, mut best, mut least) = (0.0, 0.0, f64::INFINITY);
@@ -74,7 +74,7 @@ impl MarginTracker {
                 (best, least) = (sum, error);
             }
         }
-        if 32.0 * least < best { best } else { 0.0 }
+        if 256.0 * least < best { best } else { 0.0 }
     }
 
     /// The number of steps so far.

@@ -62,7 +62,7 @@ impl<const N: usize> Problem<N> {
             root_det * (rest * (i1[0] * dot(pair.axes2[j], r)))
         });
         let (n0, gg) = (dot(low, low), dot(g, g));
-        // Products of p's coefficients with one another, by c·Cc = ‖g‖², c·C²c = ‖b‖²: in the plane low·b = det‖g‖²,
+        // low·b = det·cᵀCc = det‖Bc‖²
         let low_b = det * gg;
         let (middle, equation, keeps);
         if N == 3 {
@@ -74,10 +74,8 @@ impl<const N: usize> Problem<N> {
             });
             middle = core::array::from_fn(|j| norm * b[j] - cb[j]);
             let mm = dot(middle, middle);
-            // and in space low·middle = det(‖B‖²‖g‖² − ‖b‖²), middle·b = ‖B‖²‖b‖² − bᵀCb too.
-            let (low_middle, middle_b) = (det * (norm * gg - bb), norm * bb - bcb);
             equation = Equation {
-                n: [n0, 2.0 * low_middle, mm + 2.0 * low_b, 2.0 * middle_b, bb],
+                n: [n0, 2.0 * dot(low, middle), mm + 2.0 * low_b, 2.0 * dot(middle, b), bb],
                 d: [det, squares(&cofactors), norm, 1.0],
             };
             keeps = norm * norm * bb < MAX_LOSS * MAX_LOSS * mm;
