@@ -23,6 +23,23 @@ use crate::symmetric::Symmetric;
 /// Support points of the search.
 const MAX_STEPS: usize = 40;
 
+/// Up to three points of the body, and a combination of them that is on the ray.
+struct Below<B: Body> {
+    corners: [SeenBy<B>; 3],
+    weights: [ScalarOf<B>; 3],
+    len: usize,
+    /// Where on the ray it is.
+    high: ScalarOf<B>,
+}
+
+impl<B: Body> Clone for Below<B> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<B: Body> Copy for Below<B> {}
+
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     /// The derivative of the swept body's support point at `n` along `change`.
     pub(crate) fn moved(&self, n: B::Vector, change: B::Vector) -> B::Vector {
@@ -73,8 +90,16 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         let start = self.low;
         let (mut gap, mut stuck) = (ScalarOf::<B>::infinity(), 0);
         let mut caution = ScalarOf::<B>::ONE;
+        // At a small slope, what closes the bracket to rounding of the planes is long along the ray, and there one more plane
+        // mostly shortens it by all of the rest: `λ` is where the last plane is crossed. Meanwhile this is what closes it.
+        let fine = (self.noise + self.noise).max(self.options.tolerance);
+        let mut closing: Option<Below<B>> = None;
         for _ in 0..MAX_STEPS {
-            let seen = self.look_slanted(frame, slant)?;
+            let seen = match self.look_slanted(frame, slant) {
+                Ok(seen) => seen,
+                Err(_) if closing.is_some() => break,
+                Err(exit) => return Err(exit),
+            };
             let tau = slant.crossing(&seen);
             if tau > best.tau {
                 best = Best { tau, slant, point: seen.point };
@@ -97,25 +122,30 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 // Nothing of the body is before the plane: zero was in the triangle by rounding alone.
                 portal.high = ScalarOf::<B>::infinity();
             } else if portal.high < start {
-                return Err(None);
+                break;
             }
             let within = wanted * best.slant.length();
             // A segment first, since the weights in a flat triangle may be nothing but rounding.
-            if let Some((corners, weights, len)) = pieces.passed(self.noise) {
+            let passed = pieces.passed(self.noise).map(|(corners, weights, len)| {
                 let corners = corners.map(|i| pieces.kept[i].seen);
                 let mut high = zero;
                 for (p, &weight) in corners[..len].iter().zip(&weights) {
                     high += p.t * weight;
                 }
-                if high - best.tau <= within && high >= start {
-                    match self.close(frame, &corners[..len], &weights[..len], high, &best) {
-                        Err(None) => {}
-                        end => return end,
-                    }
+                Below { corners, weights, len, high }
+            });
+            let pierced = Below { corners: portal.corners, weights: portal.weights, len: 3, high: portal.high };
+            let last = closing;
+            for below in [passed.filter(|below| below.high >= start), Some(pierced), last].into_iter().flatten() {
+                let gap = below.high - best.tau;
+                if !(gap <= within) {
+                    continue;
                 }
-            }
-            if portal.high - best.tau <= within {
-                match self.close(frame, &portal.corners, &portal.weights, portal.high, &best) {
+                if last.is_none() && gap > fine {
+                    closing = closing.or(Some(below));
+                    continue;
+                }
+                match self.close(frame, &below.corners[..below.len], &below.weights[..below.len], below.high, &best) {
                     Err(None) => {}
                     end => return end,
                 }
@@ -129,15 +159,20 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             stuck = if gone <= gap * half || stuck >= 3 { 0 } else { stuck + 1 };
             gap = gone;
             if suggested.is_none() && portal.high.is_infinite() {
-                return Err(None);
+                break;
             }
             let to = suggested.map_or_else(|| portal.slant(), |(slant, _)| slant);
             // What is looked at twice tells nothing new.
             if to.a == slant.a && to.b == slant.b {
-                return Err(None);
+                break;
             }
             slant = to;
         }
-        Err(None)
+        match closing {
+            Some(below) => {
+                self.close(frame, &below.corners[..below.len], &below.weights[..below.len], below.high, &best)
+            }
+            None => Err(None),
+        }
     }
 }

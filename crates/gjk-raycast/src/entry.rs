@@ -69,6 +69,10 @@ fn enter_facet<V: Vector>(corners: &[V], line: Line<V>, radius: V::Scalar, noise
     }
     let below = -line.across(n) * radius;
     let flat = Flat::new(&seen[..corners.len()]);
+    // A facet that is seen as narrow as rounding has edges only: neither where it is crossed nor its slope is known.
+    if !(flat.width() > noise) {
+        return None;
+    }
     let coordinates = flat.project(below - flat.corner()).coordinates;
     // Weights that are negative by rounding are none: then what the line passes is a point of the facet itself, and not
     // of its plane, which rounding may have turned along the line. It passes within the noise, or elsewhere.

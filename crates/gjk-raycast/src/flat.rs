@@ -3,6 +3,7 @@
 use core::cmp::Ordering;
 
 use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
 
 use crate::simplex::MAX_POINTS;
 
@@ -69,6 +70,19 @@ impl<V: Vector> Flat<V> {
     /// The point of it that is nearest to zero.
     pub(crate) fn corner(&self) -> V {
         self.y
+    }
+
+    /// The least height of a segment or triangle: its length; twice its area over its longest edge. No meaning otherwise.
+    pub(crate) fn width(&self) -> V::Scalar {
+        let [first, height, _] = self.squared;
+        if self.n < 2 {
+            return first.sqrt();
+        }
+        // The second edge, and the one from the first's end to the second's, are this far along the first.
+        let share = self.c[1][0];
+        let beyond = share - V::Scalar::ONE;
+        let longest = first.max(height + first * share * share).max(height + first * beyond * beyond);
+        (first * height / longest).sqrt()
     }
 
     /// Splits a vector. The coordinates follow from `v = Σ t_i·f_i + across` by back-substitution: with

@@ -5,9 +5,9 @@ use num_traits::Float as _;
 
 use crate::body::Body;
 use crate::cast::{End, ScalarOf, Search};
-use crate::closest::nearest_face;
 use crate::entry::{Entry, entry};
-use crate::simplex::{MAX_POINTS, Simplex};
+use crate::johnson::within;
+use crate::simplex::{MAX_POINTS, Simplex, faces};
 use crate::turn::{Condition, Found, Recent, Turn, turn};
 use crate::{Iterate, Status};
 
@@ -61,12 +61,15 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             (last_gap, stuck) = (gap, if progress || newton.is_none() { 0 } else { stuck + 1 });
             lead = if stuck == 0 { self.noise } else { lead * ScalarOf::<B>::from_f64(16.0) };
             recent.push(Found { point: touch, along: n }, witness);
-            if self.touches(&recent, n) {
+            if self.touches(recent.simplex()) {
                 return Ok(());
             }
             let known = self.simplex.points().contains(&point);
             if known && newton.is_none() {
-                return Err(End::Open(Status::Stalled));
+                // Nothing is before the facet. One that is seen as a sliver is entered at a spot that is mostly rounding, while
+                // the ray runs through an edge or a corner of it.
+                let closed = self.radius == zero && self.touches(self.simplex);
+                return if closed { Ok(()) } else { Err(End::Open(Status::Stalled)) };
             }
             if known {
                 continue;
@@ -113,32 +116,35 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         }
     }
 
-    /// Whether the ray runs through the last support points, or through a segment or triangle of them, where that also
-    /// is where it crosses the plane; then the bracket is closed.
-    fn touches(&mut self, recent: &Recent<B::Vector, B::Witness>, n: B::Vector) -> bool {
+    /// Whether the ray runs through one of some points of the body, or through a segment or triangle of them, where that also is
+    /// where it crosses the last plane; then the bracket is closed.
+    fn touches(&mut self, points: Simplex<B::Vector, B::Witness>) -> bool {
         let line = self.local.line;
+        let slope = if self.low_slope > ScalarOf::<B>::ZERO { self.low_slope } else { ScalarOf::<B>::ONE };
         let mut seen = [B::Vector::ZERO; MAX_POINTS];
-        for (s, f) in seen.iter_mut().zip(recent.found()) {
-            *s = line.across(f.point - line.foot);
+        for (s, &point) in seen.iter_mut().zip(points.points()) {
+            *s = line.across(point - line.foot);
         }
-        let Some(nearest) = nearest_face(&seen[..recent.found().len()], B::Vector::DIM - 1) else { return false };
-        let mut touching = Simplex::new();
-        for (f, &witness) in recent.found().iter().zip(recent.witnesses()) {
-            touching.push(f.point, f.along, witness);
+        let seen = &seen[..points.points().len()];
+        // Points first and triangles last, since the coordinates in a sliver are nothing but rounding.
+        for corners in 1..=B::Vector::DIM {
+            for face in faces(seen.len(), corners).filter(|face| face.len() == corners) {
+                let Some(nearest) = within(seen, face, B::Vector::DIM - 1) else { continue };
+                let mut touching = points;
+                touching.retain(face, nearest.weights);
+                // Measured again, for the same reason.
+                let passed = touching.weighted_point();
+                let aside = line.across(passed - line.foot).length();
+                let mu = passed.dot(line.direction);
+                let near = aside <= self.noise * ScalarOf::<B>::from_f64(0.5);
+                if near && (mu - self.low) * slope <= self.noise + self.noise {
+                    self.simplex = touching;
+                    (self.high, self.high_error) = (mu.max(self.low), self.noise / slope);
+                    return true;
+                }
+            }
         }
-        touching.retain(nearest.face, nearest.weights);
-        // Measured again, since the coordinates in a flat triangle may be nothing but rounding.
-        let passed = touching.weighted_point();
-        let aside = line.across(passed - line.foot).length();
-        let mu = passed.dot(line.direction);
-        let slope = -n.dot(line.direction);
-        let closed =
-            aside <= self.noise * ScalarOf::<B>::from_f64(0.5) && (mu - self.low) * slope <= self.noise + self.noise;
-        if closed {
-            self.simplex = touching;
-            (self.high, self.high_error) = (mu.max(self.low), self.noise / slope);
-        }
-        closed
+        false
     }
 
     /// The direction in which the plane crossed last should be crossed by the ray where it supports a curved body.

@@ -3,6 +3,8 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use crate::simplex::Simplex;
+
 /// A support point and the direction it was found along.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Found<V> {
@@ -41,8 +43,13 @@ impl<V: Vector, W: Copy + Default> Recent<V, W> {
         &self.found[..self.len]
     }
 
-    pub(crate) fn witnesses(&self) -> &[W] {
-        &self.witnesses[..self.len]
+    /// The simplex of the points, without weights.
+    pub(crate) fn simplex(&self) -> Simplex<V, W> {
+        let mut simplex = Simplex::new();
+        for (f, &witness) in self.found().iter().zip(&self.witnesses) {
+            simplex.push(f.point, f.along, witness);
+        }
+        simplex
     }
 }
 

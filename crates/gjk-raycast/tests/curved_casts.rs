@@ -1,6 +1,6 @@
 //! Casts at curved bodies that once stalled, or ended with a point that was not on the surface.
 
-use convex_support::glam::{DQuat, DVec3};
+use convex_support::glam::{DQuat, DVec3, Vec3A};
 use convex_support::{Cone, Cuboid, Cylinder, Ellipsoid, Posed, SupportMap};
 use gjk_raycast::{LinearCastOptions, Motion, Ray, RayCastOptions, Status, linear_cast, ray_cast};
 
@@ -170,4 +170,22 @@ fn a_portal_before_the_plane_is_none() {
         0.541_461_809_732_532,
     );
     assert!(iterations < 24, "{iterations} support points");
+}
+
+/// A ray in `f32` that meets the slant of a cone at a cosine of 0.04. What rounding leaves of the planes closed the bracket while
+/// it was 25 times as long along the ray, and `λ` was short by 2e-5 sizes; one more plane comes to a tenth of that.
+#[test]
+fn one_more_plane_where_the_ray_grazes() {
+    let (source, direction) = ([-1_645_990.9, -8_955_553.0, 4_133_859.0], [429_995.97, 2_527_059.8, -1_092_382.8]);
+    let single = Ray { source: Vec3A::from_array(source), direction: Vec3A::from_array(direction) };
+    let double = Ray { source: single.source.as_dvec3(), direction: single.direction.as_dvec3() };
+    let cone = Cone::<Vec3A>::new(7.5e5, 6.25e5).expect("valid");
+    let exact = Cone::<DVec3>::new(7.5e5, 6.25e5).expect("valid");
+    let lambda = f64::from(
+        ray_cast(&cone, single, RayCastOptions::default()).expect("finite").outcome.hit().expect("hits").lambda,
+    );
+    let truth =
+        ray_cast(&exact, double, RayCastOptions::default()).expect("finite").outcome.hit().expect("hits").lambda;
+    let error = (lambda - truth).abs() * double.direction.length() / 1e6;
+    assert!(error < 4e-6, "{error:e} sizes");
 }
