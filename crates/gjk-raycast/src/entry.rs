@@ -37,7 +37,7 @@ pub(crate) fn entry<V: Vector>(points: &[V], line: Line<V>, radius: V::Scalar, n
         let found = if is_facet {
             enter_facet(corners, line, radius, noise)
         } else {
-            enter_edge(&Flat::new(corners), line, radius.max(noise))
+            enter_edge(&Flat::new(corners), line, radius, noise)
         };
         let Some((mu, n, weights)) = found else { continue };
         let better = |b: Entry<V>| mu < b.mu || (is_facet && radius <= noise && b.face.len() < V::DIM);
@@ -75,8 +75,28 @@ fn enter_facet<V: Vector>(corners: &[V], line: Line<V>, radius: V::Scalar, noise
     }
     let coordinates = flat.project(below - flat.corner()).coordinates;
     // Weights that are negative by rounding are none: then what the line passes is a point of the facet itself, and not
-    // of its plane, which rounding may have turned along the line. It passes within the noise, or elsewhere.
-    let mut weights = coordinates.map(|b| b.max(V::Scalar::ZERO));
+    // of its plane, which rounding may have turned along the line. It passes within the noise, or elsewhere. The others are read
+    // off anew along their edge: in a sliver, what rounding leaves of a weight moves the point by much more than rounding.
+    let (mut rest, mut places, mut len) = ([V::ZERO; MAX_POINTS], [0; MAX_POINTS], 0);
+    for (i, &across) in seen[..corners.len()].iter().enumerate() {
+        if coordinates[i] >= V::Scalar::ZERO {
+            (rest[len], places[len]) = (across, i);
+            len += 1;
+        }
+    }
+    let mut weights = coordinates;
+    if len < corners.len() {
+        if len == 0 {
+            return None;
+        }
+        let edge = Flat::new(&rest[..len]);
+        let along = edge.project(below - edge.corner()).coordinates;
+        weights = [V::Scalar::ZERO; MAX_POINTS];
+        for (&place, &weight) in places[..len].iter().zip(&along) {
+            weights[place] = weight;
+        }
+    }
+    let mut weights = weights.map(|b| b.max(V::Scalar::ZERO));
     let sum = weights.iter().fold(V::Scalar::ZERO, |sum, &b| sum + b);
     let (mut mu, mut passed) = (radius * slope, V::ZERO);
     for ((&corner, &across), weight) in corners.iter().zip(&seen).zip(&mut weights) {
@@ -91,7 +111,9 @@ fn enter_facet<V: Vector>(corners: &[V], line: Line<V>, radius: V::Scalar, noise
 ///
 /// Seen along the flat, the line passes a point at the vector `m`, with velocity `d`. It is nearest at `μ₀ = −m·d/d·d`, and
 /// at distance `radius` half a chord earlier.
-fn enter_edge<V: Vector>(flat: &Flat<V>, line: Line<V>, radius: V::Scalar) -> Found<V> {
+fn enter_edge<V: Vector>(flat: &Flat<V>, line: Line<V>, radius: V::Scalar, noise: V::Scalar) -> Found<V> {
+    // Beyond the end of an edge is the sphere about its corner, which is no other place if its radius is rounding.
+    let (radius, slack) = if radius > noise { (radius, V::Scalar::ZERO) } else { (noise, noise) };
     let d = flat.project(line.direction).across;
     let m = flat.project(line.foot - flat.corner()).across;
     let squared = d.length_squared();
@@ -104,7 +126,8 @@ fn enter_edge<V: Vector>(flat: &Flat<V>, line: Line<V>, radius: V::Scalar) -> Fo
     let half = (rest / squared).sqrt();
     let (mu, n) = (nearest - half, (passing - d * half).unit()?);
     let below = flat.project(line.at(mu) - n * radius - flat.corner());
-    // Beyond the end of an edge is the sphere about its corner.
-    let within = below.coordinates.iter().all(|&b| b >= V::Scalar::ZERO);
-    (mu.is_finite() && within).then_some((mu, n, below.coordinates))
+    let length = flat.width();
+    let within = below.coordinates.iter().all(|&b| b * length >= -slack);
+    let weights = below.coordinates.map(|b| b.max(V::Scalar::ZERO).min(V::Scalar::ONE));
+    (mu.is_finite() && within).then_some((mu, n, weights))
 }
