@@ -6,8 +6,8 @@ use num_traits::Float as _;
 use super::equation::{Equation, Taylor};
 use crate::pair::{Pair, Vec, dot, sub};
 
-/// The largest factor by which a sum of the coefficients may cancel: the relative errors of ν and y stay below this times
-/// a few ε, 1e-12. Beyond it the singular basis is worth its price.
+/// The largest factor by which a sum of the coefficients may cancel: the relative errors of ν and y are at most this times
+/// a few ε, some 1e-12. Beyond it the singular basis is worth its price.
 const MAX_LOSS: f64 = 2048.0;
 
 /// Sizes of ‖B‖² up to which sixth powers stay far from the range of `f64`.
