@@ -118,7 +118,7 @@ pub fn inscribed_with<const N: usize>(
     observer: impl FnMut(InscribedIterate),
 ) -> Result<Inscribed<N>, InscribedError> {
     let polyhedron = polyhedron(N, halfspaces.iter().map(|h| (&h.normal[..], h.offset)))?;
-    let coordinates = round_coordinates(&polyhedron)?;
+    let coordinates = round_coordinates(Const::<N>, &polyhedron)?;
     solve(Const::<N>, &polyhedron, coordinates, 0.0, options, observer).map(Inscribed::from_solution)
 }
 

@@ -1,6 +1,6 @@
 //! The intersection of half-spaces: is it bounded, does it have an interior, and a frame in which it is round.
 
-use crate::dimension::Dynamic;
+use crate::dimension::{Dimension, Dynamic};
 use crate::error::InscribedError;
 use crate::linalg::{UNIT_ROUNDOFF, cholesky, dot, solve_lower};
 
@@ -44,9 +44,8 @@ impl Coordinates {
     }
 
     /// M ← M·L⁻ᵀ: every row m of M becomes L⁻¹m.
-    fn whiten(&mut self, l: &[f64]) {
-        let n = self.origin.len();
-        self.map.chunks_exact_mut(n).for_each(|row| solve_lower(Dynamic(n), l, row));
+    fn whiten<D: Dimension>(&mut self, dim: D, l: &[f64]) {
+        self.map.chunks_exact_mut(dim.get()).for_each(|row| solve_lower(dim, l, row));
     }
 }
 
@@ -59,8 +58,8 @@ impl Coordinates {
 ///
 /// # Errors
 /// [`InscribedError::Unbounded`], [`InscribedError::EmptyInterior`].
-pub(crate) fn round_coordinates(polyhedron: &Polyhedron) -> Result<Coordinates, InscribedError> {
-    let n = polyhedron.n;
+pub(crate) fn round_coordinates<D: Dimension>(dim: D, polyhedron: &Polyhedron) -> Result<Coordinates, InscribedError> {
+    let n = dim.get();
     let m = polyhedron.len();
     let mut rows = polyhedron.normals.clone();
     let mut coordinates = Coordinates { origin: polyhedron.origin.clone(), map: vec![0.0; n * n] };
@@ -82,7 +81,8 @@ pub(crate) fn round_coordinates(polyhedron: &Polyhedron) -> Result<Coordinates, 
     if slacks.iter().any(|s| !(*s > 0.0)) {
         return Err(InscribedError::EmptyInterior);
     }
-    let mut l = vec![0.0; n * n];
+    let mut l = dim.zero_matrix();
+    let l = &mut l.as_mut()[..n * n];
     for _ in 0..500 {
         l.fill(0.0);
         for (a, s) in rows.chunks_exact(n).zip(&slacks) {
@@ -92,23 +92,24 @@ pub(crate) fn round_coordinates(polyhedron: &Polyhedron) -> Result<Coordinates, 
                 }
             }
         }
-        if !cholesky(Dynamic(n), &mut l) {
+        if !cholesky(dim, l) {
             return Err(InscribedError::EmptyInterior);
         }
-        coordinates.whiten(&l);
-        let mut step = vec![0.0; n];
+        coordinates.whiten(dim, l);
+        let mut step = dim.zero();
+        let step = &mut step.as_mut()[..n];
         for (a, s) in rows.chunks_exact_mut(n).zip(&slacks) {
-            solve_lower(Dynamic(n), &l, a);
+            solve_lower(dim, l, a);
             step.iter_mut().zip(&*a).for_each(|(g, a)| *g -= a / s);
         }
         // The Hessian is the identity here, so the Newton step is −g and its decrement |g|.
-        let decrement = dot(&step, &step).sqrt();
+        let decrement = dot(step, step).sqrt();
         if decrement < 0.5 {
             return Ok(coordinates);
         }
         let damping = 1.0 / (1.0 + decrement);
         step.iter_mut().for_each(|x| *x *= damping);
-        coordinates.origin = coordinates.image(&step);
+        coordinates.origin = coordinates.image(step);
         let fresh = polyhedron.slacks(&coordinates.origin);
         for i in 0..m {
             // Recomputed slacks do not drift; a damped step cannot leave the interior but by rounding.

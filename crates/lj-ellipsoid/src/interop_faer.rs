@@ -220,7 +220,7 @@ pub fn inscribed_dyn(
     let rows: Vec<f64> = (0..m * n).map(|at| normals[(at / n, at % n)]).collect();
     let halfspaces = rows.chunks_exact(n.max(1)).zip(offsets.iter().copied());
     let polyhedron = crate::inscribed::polyhedron(n, halfspaces)?;
-    let coordinates = round_coordinates(&polyhedron)?;
+    let coordinates = round_coordinates(Dynamic(n), &polyhedron)?;
     crate::inscribed::solve(Dynamic(n), &polyhedron, coordinates, 0.0, options, |_| {}).map(InscribedDyn::from_solution)
 }
 

@@ -75,6 +75,7 @@ mod linalg;
 mod maximize;
 mod moving_points;
 mod newton;
+mod newton_system;
 mod options;
 mod parallel;
 mod points;

@@ -206,6 +206,35 @@ fn s11_far_offset() {
     }
 }
 
+/// The same in space, round and elongated, for both ellipsoids.
+#[test]
+fn s11_far_offset_in_space() {
+    for (seed, stretch) in [(1, [1.0; 3]), (2, [1.0, 0.1, 0.01])] {
+        let grid = |x: f64| (x * 2f64.powi(20)).round() * 2f64.powi(-20);
+        let points: Vec<[f64; 3]> =
+            Rng(seed).normals::<3>(300).into_iter().map(|p| std::array::from_fn(|k| grid(p[k] * stretch[k]))).collect();
+        let base = enclosing(&points, TIGHT).expect("full rank").ellipsoid;
+        let inner =
+            inscribed_in_hull(&points, InscribedOptions::new().with_epsilon(1e-12)).expect("full rank").ellipsoid;
+        let spread = 2.0 * base.semi_axes()[0];
+        // Doubles near 1e7 are 2^-29 apart. A centre rounded to them takes a thin ellipsoid away from its points by that
+        // share of its thickness, and to hold them all the same it grows as much.
+        let rounding = 2f64.powi(-29) * 3f64.sqrt() / base.semi_axes()[2];
+        let allowed = spread * rounding.max(1e-9);
+        for offset in [[1e7, 0.0, 0.0], [1e7, -1e7, 1e7]] {
+            let moved: Vec<[f64; 3]> = points.iter().map(|p| std::array::from_fn(|k| p[k] + offset[k])).collect();
+            let answer = enclosing(&moved, TIGHT).expect("full rank");
+            assert_contains(&answer, &moved);
+            let moved_inner = inscribed_in_hull(&moved, InscribedOptions::new()).expect("full rank").ellipsoid;
+            for k in 0..3 {
+                assert_near("centre", answer.ellipsoid.center()[k] - offset[k], base.center()[k], 1e-9 * spread);
+                assert_near("semi-axis", answer.ellipsoid.semi_axes()[k], base.semi_axes()[k], allowed);
+                assert_near("inner semi-axis", moved_inner.semi_axes()[k], inner.semi_axes()[k], allowed);
+            }
+        }
+    }
+}
+
 /// `MathWorks` 9542: fewer points than dimensions.
 #[test]
 fn s12_fewer_points_than_dimensions() {
