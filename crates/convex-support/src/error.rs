@@ -88,11 +88,13 @@ pub(crate) fn non_negative<S: crate::Scalar>(parameter: &'static str, value: S) 
 }
 
 /// `vector` if its coordinates are finite.
+#[inline]
 pub(crate) fn finite<V: crate::Vector>(parameter: &'static str, vector: V) -> Result<V, InvalidShape> {
-    match (0..V::DIM).find(|&i| !num_traits::Float::is_finite(vector.get(i))) {
-        Some(index) => Err(InvalidShape::NonFinite { parameter, index }),
-        None => Ok(vector),
+    if vector.is_finite() {
+        return Ok(vector);
     }
+    let index = (0..V::DIM).find(|&i| !num_traits::Float::is_finite(vector.get(i))).unwrap_or(0);
+    Err(InvalidShape::NonFinite { parameter, index })
 }
 
 /// `matrix` if its columns are orthonormal to half the digits of the scalar: enough to find a blunder, and not so strict as

@@ -28,7 +28,7 @@ macro_rules! pointer {
                 (**self).origin()
             }
 
-            #[inline]
+            #[inline(always)]
             fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
                 (**self).core_support(direction, hint)
             }

@@ -141,6 +141,7 @@ pub(crate) fn support_of_parts<S: SupportMap + ?Sized>(shape: &S, direction: S::
 }
 
 /// What the rounding of `a + b` loses (Knuth's two-sum).
+#[inline]
 pub(crate) fn lost_in_sum<V: Vector>(a: V, b: V) -> V {
     let sum = a + b;
     let seen = sum - a;

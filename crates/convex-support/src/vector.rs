@@ -391,18 +391,28 @@ impl Vector3 for glam::DVec3 {
 }
 
 /// A quaternion of any magnitude made unit; `None` for zero and where not finite.
+#[inline]
 fn unit_quat(q: glam::Quat) -> Option<glam::Quat> {
     unit_dquat(q.as_dquat()).map(|q| q.as_quat())
 }
 
 /// A quaternion of any magnitude made unit; `None` for zero and where not finite.
+#[inline]
 fn unit_dquat(q: glam::DQuat) -> Option<glam::DQuat> {
     let v = glam::DVec4::from(q);
     let squared = v.length_squared();
     if is_comfortable(squared) {
-        return Some(glam::DQuat::from_vec4(v * squared.sqrt().recip()));
+        Some(glam::DQuat::from_vec4(v * squared.sqrt().recip()))
+    } else {
+        unit_of_scaled(v.x, v.y, v.z, v.w)
     }
-    // Dividing by the largest magnitude first keeps the squares in range.
+}
+
+/// The same where squares could over- or underflow: dividing by the largest magnitude first keeps them in range.
+#[cold]
+#[inline(never)]
+fn unit_of_scaled(x: f64, y: f64, z: f64, w: f64) -> Option<glam::DQuat> {
+    let v = glam::DVec4::new(x, y, z, w);
     let v = v / v.abs().max_element();
     v.is_finite().then(|| glam::DQuat::from_vec4(v.normalize()))
 }

@@ -56,11 +56,19 @@ pub(crate) fn is_moderate<S: Scalar>(x: S) -> bool {
 
 /// The same direction at a length that is moderate, by a power of two and so without rounding. `None` for the zero vector
 /// and where a coordinate is not finite.
-#[inline]
+#[inline(always)]
 pub(crate) fn direction<V: Vector>(v: V) -> Option<V> {
     if is_moderate(v.length_squared()) {
         return Some(v);
     }
+    // One by one, since a vector would be written to memory in other pieces than it is read in, on the way above too.
+    made_moderate(v.get(0), v.get(1), if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO })
+}
+
+#[cold]
+#[inline(never)]
+fn made_moderate<V: Vector>(x: V::Scalar, y: V::Scalar, z: V::Scalar) -> Option<V> {
+    let v = V::from_fn(|i| [x, y, z][i]);
     let near_one = v * power_of_two_near(v.abs().max_element()).recip();
     if is_moderate(near_one.length_squared()) { Some(near_one) } else { v.unit() }
 }
@@ -82,7 +90,7 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
     type Vector = S::Vector;
     type Witness = ();
 
-    #[inline]
+    #[inline(always)]
     fn support(&mut self, direction: S::Vector) -> (S::Vector, ()) {
         self.hint.rewind();
         (self.shape.core_support(direction, &mut self.hint) * self.per_unit, ())

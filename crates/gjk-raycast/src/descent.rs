@@ -179,7 +179,7 @@ pub(crate) fn descend<B: Body>(
             light = false;
         }
         descent.simplex.push(w, -n, witness);
-        let next = if light { descent.step_lightly() } else { None };
+        let next = if light { descent.step_lightly(w) } else { None };
         if next.is_none() && newton.has_turned() {
             // A plane that was turned away from the shortest vector may be the better bound without its support point
             // bringing the simplex nearer.
@@ -203,12 +203,11 @@ pub(crate) fn descend<B: Body>(
             break;
         };
         let (along, along_size) = (n, size);
-        (n, size) = (descent.normal, next);
+        (n, size) = next;
         if descent.length <= touching {
             // A simplex of full dimension contains zero for certain; of any other it remains to be measured.
             if descent.length > Scalar::ZERO && !descent.measured {
-                size = descent.measure().unwrap_or(size);
-                n = descent.normal;
+                (n, size) = descent.measure().unwrap_or((n, size));
             }
             if descent.length <= touching {
                 descent.end = End::Overlap;
@@ -243,18 +242,19 @@ impl<V: Vector, W: Copy + Default> Descent<V, W> {
         (self.normal * (length / size), length)
     }
 
-    /// Goes on to the face of the simplex closest to zero, if that is clear and brings it nearer; its normal's length.
-    #[inline]
-    fn step_lightly(&mut self) -> Option<V::Scalar> {
+    /// Goes on to the face of the simplex closest to zero, if that is clear and brings it nearer; its normal, and the length
+    /// of that. The newest point is `y`.
+    #[inline(always)]
+    fn step_lightly(&mut self, y: V) -> Option<(V, V::Scalar)> {
         let (points, newest) = self.simplex.padded();
-        let next = nearest(points, newest)?;
-        let level = next.normal.dot(points[newest]);
+        let next = nearest(points, newest, y)?;
+        let level = next.normal.dot(y);
         let (normal, size) = comfortable(next.normal)?;
         let length = if size > V::Scalar::ZERO { level / size } else { size };
         if length < self.length {
             self.simplex.keep(next.face);
             (self.normal, self.length, self.measured) = (normal, length, false);
-            Some(size)
+            Some((normal, size))
         } else {
             None
         }
@@ -264,7 +264,11 @@ impl<V: Vector, W: Copy + Default> Descent<V, W> {
     /// with. `None`, and the newest point is not added, where there are too many of them.
     #[cold]
     #[inline(never)]
-    fn step_carefully(&mut self, sub_algorithm: SubAlgorithm, nearing: &mut Decrease<V::Scalar>) -> Option<V::Scalar> {
+    fn step_carefully(
+        &mut self,
+        sub_algorithm: SubAlgorithm,
+        nearing: &mut Decrease<V::Scalar>,
+    ) -> Option<(V, V::Scalar)> {
         let next = match self.simplex.points() {
             [known @ .., newest] if known.contains(newest) => None,
             points => sub_algorithm.closest(points, V::DIM),
@@ -278,7 +282,7 @@ impl<V: Vector, W: Copy + Default> Descent<V, W> {
 
     /// Measures the face closest to zero by orthogonal projection, whatever rounding the steps there left.
     #[inline(never)]
-    pub(crate) fn measure(&mut self) -> Option<V::Scalar> {
+    pub(crate) fn measure(&mut self) -> Option<(V, V::Scalar)> {
         let points = self.simplex.points();
         if points.is_empty() {
             return None;
@@ -287,11 +291,11 @@ impl<V: Vector, W: Copy + Default> Descent<V, W> {
         self.accept(found)
     }
 
-    fn accept(&mut self, Closest { v, face, weights }: Closest<V>) -> Option<V::Scalar> {
+    fn accept(&mut self, Closest { v, face, weights }: Closest<V>) -> Option<(V, V::Scalar)> {
         self.simplex.retain(face, weights);
         let (normal, size) = comfortable(v)?;
         (self.normal, self.length, self.measured) = (normal, v.norm(), true);
-        Some(size)
+        Some((normal, size))
     }
 }
 

@@ -26,7 +26,7 @@ use crate::{IntersectOptions, Intersection, Iterate, Status};
 /// assert_eq!((next.overlap, next.iterations), (false, 1));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[inline]
+#[inline(always)]
 pub fn intersects<A, B>(a: &A, b: &B, options: IntersectOptions<A::Vector>) -> Intersection<A::Vector>
 where
     A: SupportMap + ?Sized,
@@ -36,7 +36,7 @@ where
 }
 
 /// [`intersects`], showing an observer every iterate.
-#[inline]
+#[inline(always)]
 pub fn intersects_with<A, B>(
     a: &A,
     b: &B,

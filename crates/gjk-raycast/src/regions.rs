@@ -36,9 +36,10 @@ const FLAT: f64 = 64.0;
 ///
 /// A wrong sign costs no more than a step: whatever face is found, the points of its plane are no farther than the
 /// caller measures them to be. Only that zero is within needs proof here. `None` where no region fits.
-#[inline]
-pub(crate) fn nearest<V: Vector>(points: &[V; MAX_POINTS], newest: usize) -> Option<Nearest<V>> {
-    let y = points[newest];
+///
+/// It is compiled into its caller as one piece: vectors of `f64` that pass through memory are waited for.
+#[inline(always)]
+pub(crate) fn nearest<V: Vector>(points: &[V; MAX_POINTS], newest: usize, y: V) -> Option<Nearest<V>> {
     match newest {
         0 => Some(vertex(0, y)),
         1 => of_segment(y, points[0] - y),
@@ -47,13 +48,13 @@ pub(crate) fn nearest<V: Vector>(points: &[V; MAX_POINTS], newest: usize) -> Opt
     }
 }
 
-#[inline]
+#[inline(always)]
 fn vertex<V: Vector>(newest: usize, y: V) -> Nearest<V> {
     Nearest { face: Face::of_corners(&[newest]), normal: y }
 }
 
 /// The edge along `e` from the newest point to point `i`.
-#[inline]
+#[inline(always)]
 fn edge<V: Vector>(newest: usize, i: usize, y: V, e: V, squared: V::Scalar) -> Nearest<V> {
     let per_square = squared.recip();
     let across = |v: V| v - e * (v.dot(e) * per_square);
@@ -61,7 +62,7 @@ fn edge<V: Vector>(newest: usize, i: usize, y: V, e: V, squared: V::Scalar) -> N
     Nearest { face: Face::of_corners(&[newest, i]), normal: across(across(y)) }
 }
 
-#[inline]
+#[inline(always)]
 fn of_segment<V: Vector>(y: V, e: V) -> Option<Nearest<V>> {
     let (squared, g) = (e.length_squared(), -y.dot(e));
     if g >= squared {
@@ -70,7 +71,7 @@ fn of_segment<V: Vector>(y: V, e: V) -> Option<Nearest<V>> {
     Some(if g > V::Scalar::ZERO { edge(1, 0, y, e, squared) } else { vertex(1, y) })
 }
 
-#[inline]
+#[inline(always)]
 fn of_triangle<V: Vector>(y: V, e: [V; 2]) -> Option<Nearest<V>> {
     let zero = V::Scalar::ZERO;
     let (g00, g01, g11) = (e[0].length_squared(), e[0].dot(e[1]), e[1].length_squared());
@@ -100,7 +101,7 @@ fn of_triangle<V: Vector>(y: V, e: [V; 2]) -> Option<Nearest<V>> {
     }
 }
 
-#[inline]
+#[inline(always)]
 fn of_tetrahedron<V: Vector>(y: V, e: [V; 3]) -> Option<Nearest<V>> {
     let zero = V::Scalar::ZERO;
     let squared = [e[0].length_squared(), e[1].length_squared(), e[2].length_squared()];
@@ -124,10 +125,11 @@ fn of_tetrahedron<V: Vector>(y: V, e: [V; 3]) -> Option<Nearest<V>> {
     let (r01, r10) = (g[1] * squared[0] - g[0] * g01, g[0] * squared[1] - g[1] * g01);
     let (r12, r21) = (g[2] * squared[1] - g[1] * g12, g[1] * squared[2] - g[2] * g12);
     let (r20, r02) = (g[0] * squared[2] - g[2] * g20, g[2] * squared[0] - g[0] * g20);
+    // Where s is not positive, the normal that makes det positive points to the side of y.
     let facet = |k: usize, i: usize, j: usize, r: V::Scalar| {
         let area = n[k].length_squared();
         (r < area && area > flatness::<V>() * squared[i] * squared[j])
-            .then(|| Nearest { face: Face::of_corners(&[i, j, 3]), normal: towards(n[k], y) })
+            .then(|| Nearest { face: Face::of_corners(&[i, j, 3]), normal: n[k] * sign })
     };
     if s[0] <= zero && r12 > zero && r21 > zero {
         return facet(0, 1, 2, r12 + r21);
@@ -158,13 +160,13 @@ fn flatness<V: Vector>() -> V::Scalar {
 }
 
 /// The normal or its opposite, whichever points to the side of `y`.
-#[inline]
+#[inline(always)]
 fn towards<V: Vector>(normal: V, y: V) -> V {
     if normal.dot(y) < V::Scalar::ZERO { -normal } else { normal }
 }
 
 /// The cross product, in space.
-#[inline]
+#[inline(always)]
 pub(crate) fn cross<V: Vector>(a: V, b: V) -> V {
     debug_assert!(V::DIM == 3, "cross products are of space");
     V::from_fn(|i| {

@@ -28,7 +28,8 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
     }
 
     pub(crate) fn points(&self) -> &[V] {
-        &self.points[..self.len]
+        // Cannot panic, so that what is computed for an observer who does not look is not computed.
+        &self.points[..self.len.min(MAX_POINTS)]
     }
 
     /// Adds a support point found along a direction, with no weight yet.

@@ -87,7 +87,7 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         self.matrix * self.shape.origin() + self.translation
     }
 
-    #[inline]
+    #[inline(always)]
     fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
         let direction = self.onto_shape * direction;
         let core = self.shape.core_support(direction, hint);

@@ -56,7 +56,7 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
         self.a.origin() + self.b.origin()
     }
 
-    #[inline]
+    #[inline(always)]
     fn core_support(&self, direction: A::Vector, hint: &mut Hint) -> A::Vector {
         self.a.core_support(direction, hint) + self.b.core_support(direction, hint)
     }

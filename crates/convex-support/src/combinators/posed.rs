@@ -28,6 +28,7 @@ pub struct Posed<S: SupportMap> {
 }
 
 impl<S: SupportMap> Posed<S> {
+    #[inline(always)]
     fn at(shape: S, rotation: <S::Vector as Vector>::Matrix, translation: S::Vector) -> Result<Self, InvalidShape> {
         let translation = finite("translation", translation)?;
         let lost = lost_in_sum(rotation * shape.origin(), translation);
@@ -39,6 +40,7 @@ impl<S: SupportMap> Posed<S> {
     ///
     /// # Errors
     /// [`InvalidShape`] if a number is not finite or the rotation is the zero quaternion.
+    #[inline(always)]
     pub fn new(
         shape: S,
         rotation: <S::Vector as Vector>::Rotation,
@@ -70,6 +72,7 @@ impl<S: SupportMap> Posed<S> {
     ///
     /// # Errors
     /// [`InvalidShape::NonFinite`] if a coordinate is not finite.
+    #[inline]
     pub fn translated(shape: S, translation: S::Vector) -> Result<Self, InvalidShape> {
         Self::at(shape, Matrix::IDENTITY, translation)
     }
@@ -119,7 +122,7 @@ impl<S: SupportMap> SupportMap for Posed<S> {
         self.rotation * self.shape.origin() + self.translation
     }
 
-    #[inline]
+    #[inline(always)]
     fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
         self.rotation * self.shape.core_support(self.rotation.transpose_mul(direction), hint) + self.lost
     }

@@ -61,7 +61,7 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
         self.shape.origin()
     }
 
-    #[inline]
+    #[inline(always)]
     fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
         self.shape.core_support(direction, hint)
     }

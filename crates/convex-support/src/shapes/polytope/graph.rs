@@ -32,23 +32,43 @@ pub(super) struct Graph<V: Vector> {
     sizes: V,
     /// By face, then row, then column.
     cells: Vec<Cell>,
-    candidates: Vec<u32>,
+    /// Those that did not find a place in their cells.
+    further: Vec<u32>,
     resolution: usize,
     half_resolution: V::Scalar,
 }
 
-/// The vertices that are farthest along some direction of the cell are `candidates[begin..begin + count]`, those that
-/// come first in the list that was given first. Where `count` is 0 they are too many, and `begin` is one of them.
+/// The vertices that are farthest along some direction of the cell, those that come first in the list that was given first.
+///
+/// Four are always looked at: how many are needed cannot be foreseen, and to guess wrong takes a processor longer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cell {
-    begin: u32,
-    count: u32,
+    /// The first four; where there are fewer, the first again.
+    vertices: [u32; HELD],
+    rest: Rest,
 }
 
-/// Vertices for each cell of the grid. Fewer cells mean longer lists; more of them, that the grid leaves the cache.
-const VERTICES_PER_CELL: f64 = 1.0;
+/// What a cell does not hold itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Rest {
+    None,
+    /// `further[begin..end]`.
+    Further {
+        begin: u32,
+        end: u32,
+    },
+    /// They are too many, and the first held is one of them, to climb from.
+    Climbed,
+}
 
-/// The longest list that is looked through rather than climbed (measured: docs/support-maps.md).
+/// Vertices that a cell holds.
+const HELD: usize = 4;
+
+/// Vertices for each cell of the grid. With so many cells, nine in ten need no more than [`HELD`] vertices (measured:
+/// docs/support-maps.md).
+const VERTICES_PER_CELL: f64 = 0.25;
+
+/// The longest list that is looked through rather than climbed.
 const LISTED: usize = 24;
 
 /// Vertices that a cell is searched for before it is left to be climbed.
@@ -71,7 +91,7 @@ impl<V: Vector> Graph<V> {
             neighbours: vec![],
             sizes: size.max(V::splat(thinnest)),
             cells: vec![],
-            candidates: vec![],
+            further: vec![],
             resolution,
             half_resolution: V::Scalar::from_f64(0.5 * resolution as f64),
         };
@@ -119,10 +139,17 @@ impl<V: Vector> Graph<V> {
             found.retain(|&v| all.iter().all(|&u| cone.can_be_farther(self.vertex(v), self.vertex(u))));
             let cell = if all_are_found && found.len() <= LISTED {
                 found.sort_unstable_by_key(|&v| self.name(v));
-                self.candidates.extend(&found);
-                Cell { begin: (self.candidates.len() - found.len()) as u32, count: found.len() as u32 }
+                let (begin, rest) = (self.further.len() as u32, found.get(HELD..).unwrap_or(&[]));
+                self.further.extend(rest);
+                Cell {
+                    vertices: core::array::from_fn(|i| *found.get(i).unwrap_or(&found[0])),
+                    rest: match rest.len() as u32 {
+                        0 => Rest::None,
+                        count => Rest::Further { begin, end: begin + count },
+                    },
+                }
             } else {
-                Cell { begin: farthest, count: 0 }
+                Cell { vertices: [farthest; HELD], rest: Rest::Climbed }
             };
             self.cells.push(cell);
         }
@@ -194,17 +221,18 @@ impl<V: Vector> Graph<V> {
                 dz
             }
         });
-        let Cell { begin, count } = self.cells[self.cell(direction)];
-        if count == 0 {
-            return self.climb_from_nearer(direction, begin, hint);
+        let Cell { vertices, rest } = &self.cells[self.cell(direction)];
+        let [a, b, c, d] = vertices.map(|vertex| (vertex, direction.dot(self.vertex(vertex))));
+        let farther = |a: (u32, V::Scalar), b: (u32, V::Scalar)| if b.1 > a.1 { b } else { a };
+        let best = farther(farther(a, b), farther(c, d));
+        match rest {
+            Rest::None => best.0,
+            &Rest::Further { begin, end } => {
+                let further = self.further[begin as usize..end as usize].iter();
+                further.map(|&vertex| (vertex, direction.dot(self.vertex(vertex)))).fold(best, farther).0
+            }
+            Rest::Climbed => self.climb_from_nearer(direction, best.0, hint),
         }
-        let candidates = &self.candidates[begin as usize..][..count as usize];
-        let mut best = (candidates[0], direction.dot(self.vertex(candidates[0])));
-        for &candidate in &candidates[1..] {
-            let reach = direction.dot(self.vertex(candidate));
-            best = if reach > best.1 { (candidate, reach) } else { best };
-        }
-        best.0
     }
 
     #[cold]
@@ -245,27 +273,28 @@ impl<V: Vector> Graph<V> {
     }
 
     /// The cell of a direction.
-    #[inline]
+    #[inline(always)]
     fn cell(&self, direction: V) -> usize {
         // The polytope stretched to a cube, v/s, is seen along d∘s: d·v = (d∘s)·(v/s).
         self.cell_of_unstretched(direction * self.sizes)
     }
 
     /// The face of the cube that a direction leaves through, and where.
-    #[inline]
+    #[inline(always)]
     fn cell_of_unstretched(&self, direction: V) -> usize {
-        let magnitude = direction.abs();
-        let (mut axis, mut largest) = (0, magnitude.get(0));
+        // Looked up rather than asked for by `get`, which would branch.
+        let wrapped: [V::Scalar; 5] = core::array::from_fn(|i| direction.get(i % V::DIM));
+        let (mut axis, mut largest) = (0, wrapped[0].abs());
         for i in 1..V::DIM {
-            let candidate = magnitude.get(i);
+            let candidate = wrapped[i].abs();
             axis = if candidate > largest { i } else { axis };
             largest = if candidate > largest { candidate } else { largest };
         }
-        let mut cell = 2 * axis + usize::from(direction.get(axis) < V::Scalar::ZERO);
+        let mut cell = 2 * axis + usize::from(wrapped[axis] < V::Scalar::ZERO);
         let half = self.half_resolution;
         let scale = half / largest;
         for i in 1..V::DIM {
-            let place = direction.get((axis + i) % V::DIM) * scale + half;
+            let place = wrapped[axis + i] * scale + half;
             // A cast saturates, and makes 0 of a NaN; a place is never negative but for rounding.
             let place = place.as_f64() as i32;
             cell = cell * self.resolution + (place.max(0) as usize).min(self.resolution - 1);

@@ -10,7 +10,7 @@ use crate::error::InvalidShape;
 use crate::{Scalar, Vector};
 
 /// Up to this many vertices a scan takes no longer than looking them up (measured: docs/support-maps.md).
-const SCANNED: usize = 16;
+const SCANNED: usize = 8;
 
 impl<V: Vector> Polytope<V> {
     /// The convex hull of the points, reduced to its vertices, with the edges between them where there are many.

@@ -9,7 +9,7 @@ use crate::{Scalar, Vector};
 /// Points side by side: a multiple of what a vector register holds on every target.
 const WIDTH: usize = 4;
 
-/// Blocks of which only the farthest reach is kept, before it is looked up which of them it was.
+/// Blocks of which at first only the farthest reach is asked for, where there are more.
 const BLOCKS: usize = 16;
 
 /// Up to [`WIDTH`] points, coordinate by coordinate.
@@ -32,27 +32,26 @@ impl<V: Vector> Lanes<V> {
         Self { blocks: points.chunks(WIDTH).map(block).collect(), count: points.len() }
     }
 
-    /// The index of a point farthest along the direction `(dx, dy, dz)`; any index where that is not a number.
+    /// The index of the first point farthest along the direction `(dx, dy, dz)`; any index where that is not a number.
     ///
-    /// Twice: first how far the farthest point of each lane reaches, which is a multiplication, an addition and a maximum
-    /// for each coordinate; then which point of the best lane it was, among the few blocks where it is. Both times the
-    /// same operations are rounded alike, so that the reach is found again exactly.
+    /// Which point it is cannot be foreseen, so that nothing branches on it. To keep the index beside the reach costs half
+    /// as much again; of long lists it is done only for the chunk that the farthest point is in. Both times the same
+    /// operations are rounded alike, so that the reach is found again exactly.
     #[inline(never)]
     pub(super) fn farthest(&self, dx: V::Scalar, dy: V::Scalar, dz: V::Scalar) -> usize {
-        let (mut best, mut first, mut best_of_lanes) = (-V::Scalar::infinity(), 0, [V::Scalar::ZERO; WIDTH]);
-        for (k, blocks) in self.blocks.chunks(BLOCKS).enumerate() {
-            let of_lanes = farthest_reaches(blocks, dx, dy, dz);
-            let [a, b, c, d] = of_lanes;
-            let [a, b] = [if a > b { a } else { b }, if c > d { c } else { d }];
-            let most = if a > b { a } else { b };
-            if most > best {
-                (best, first, best_of_lanes) = (most, k * BLOCKS, of_lanes);
+        let (mut first, mut most) = (0, -V::Scalar::infinity());
+        if self.blocks.len() > BLOCKS {
+            for (k, blocks) in self.blocks.chunks(BLOCKS).enumerate() {
+                let [a, b, c, d] = farthest_reaches(blocks, dx, dy, dz);
+                let reach = a.max(b).max(c.max(d));
+                if reach > most {
+                    (first, most) = (k * BLOCKS, reach);
+                }
             }
         }
-        let lane = best_of_lanes.iter().position(|&reach| reach == best).unwrap_or(0);
-        let is_best = |&[x, y, z]: &Block<V::Scalar>| dx * x[lane] + dy * y[lane] + dz * z[lane] == best;
-        let found = self.blocks[first..].iter().position(is_best);
-        found.map_or(0, |block| ((first + block) * WIDTH + lane).min(self.count - 1))
+        let chunk = &self.blocks[first..self.blocks.len().min(first + BLOCKS)];
+        let place = place_of_farthest(chunk, dx, dy, dz).as_f64();
+        (first * WIDTH + place as usize).min(self.count - 1)
     }
 }
 
@@ -70,4 +69,27 @@ fn farthest_reaches<S: Scalar>(blocks: &[Block<S>], dx: S, dy: S, dz: S) -> [S; 
         }
     }
     best
+}
+
+/// The place of the first point farthest along a direction, point by point and block by block, as a whole number of the
+/// points' own type: then reach and place are chosen by the same vector instructions.
+#[inline(never)]
+fn place_of_farthest<S: Scalar>(blocks: &[Block<S>], dx: S, dy: S, dz: S) -> S {
+    let width = S::from_f64(WIDTH as f64);
+    let mut here: [S; WIDTH] = core::array::from_fn(|l| S::from_f64(l as f64));
+    let (mut best, mut place) = ([-S::infinity(); WIDTH], here);
+    for [x, y, z] in blocks {
+        for l in 0..WIDTH {
+            let reach = dx * x[l] + dy * y[l] + dz * z[l];
+            place[l] = if reach > best[l] { here[l] } else { place[l] };
+            best[l] = if reach > best[l] { reach } else { best[l] };
+            here[l] += width;
+        }
+    }
+    let first = |a: (S, S), b: (S, S)| {
+        let is_second = (b.0 > a.0) | ((b.0 == a.0) & (b.1 < a.1));
+        (if is_second { b.0 } else { a.0 }, if is_second { b.1 } else { a.1 })
+    };
+    let [a, b, c, d] = core::array::from_fn(|l| (best[l], place[l]));
+    first(first(a, b), first(c, d)).1
 }
