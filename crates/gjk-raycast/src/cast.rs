@@ -218,7 +218,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     }
 
     /// The next support point along any vector.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn sight(&mut self, n: B::Vector) -> Probe<B> {
         if self.iterations >= self.options.max_iterations {
             return Err(End::Open(Status::IterationLimit));
@@ -232,6 +232,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
 
     /// Moves the lower bound up to the plane across the unit vector `n` that supports the core at `point`, if it leaves
     /// anything of the ray.
+    #[inline(always)]
     pub(crate) fn advance(&mut self, n: B::Vector, point: B::Vector) -> Result<(), End<B::Vector>> {
         let zero = ScalarOf::<B>::ZERO;
         let x = self.local.line.at(self.low);
@@ -253,6 +254,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         Ok(())
     }
 
+    #[inline(always)]
     fn show(&mut self, x: B::Vector, w: B::Vector) {
         let mut seen = [B::Vector::ZERO; MAX_POINTS];
         for (s, p) in seen.iter_mut().zip(self.simplex.points()) {

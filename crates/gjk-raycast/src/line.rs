@@ -42,6 +42,7 @@ impl<V: Vector> LocalRay<V> {
     /// cancel. The subtraction of the origin is corrected by its rounding error (Knuth's two-sum), and `t·d + s` is
     /// rounded once, by a fused multiply-add; then the foot is right to rounding of its own length for this `t`. The
     /// error of `t` itself only shifts the foot along the line, where it is undone by a second projection.
+    #[inline(always)]
     pub(crate) fn new(ray: Ray<V>, origin: V, scale: V::Scalar) -> Self {
         let down = scale.recip();
         let (from, to) = (ray.source * down, origin * down);

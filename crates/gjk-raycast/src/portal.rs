@@ -24,7 +24,6 @@ use num_traits::Float as _;
 use crate::Iterate;
 use crate::body::Body;
 use crate::cast::{End, ScalarOf, Search};
-use crate::simplex::Simplex;
 
 /// A support point as it is seen along the ray.
 #[derive(Clone, Copy)]
@@ -195,12 +194,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             best = Best { tau, slant, point: q.point };
         }
         if !(toward.0 * q.u + toward.1 * q.v > zero) {
-            let across = frame.e1 * toward.0 + frame.e2 * toward.1;
-            q = self.look(frame, across)?;
-            self.separate(across, &q)?;
-            if !(toward.0 * q.u + toward.1 * q.v > zero) {
-                return Err(None);
-            }
+            q = self.look_across(frame, toward)?;
             reach = reach.max(one);
         }
 
@@ -230,12 +224,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 best = Best { tau, slant, point: s.point };
             }
             if !(toward.0 * s.u + toward.1 * s.v > zero) {
-                let across = frame.e1 * toward.0 + frame.e2 * toward.1;
-                s = self.look(frame, across)?;
-                self.separate(across, &s)?;
-                if !(toward.0 * s.u + toward.1 * s.v > zero) {
-                    return Err(None);
-                }
+                s = self.look_across(frame, toward)?;
                 reach = reach.max(one);
             }
             let weights = [q.cross(&s), s.cross(&p), w];
@@ -265,7 +254,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         let wanted = self.noise.max(self.options.tolerance);
         let mut last = ScalarOf::<B>::infinity();
         let mut patience = PATIENCE;
-        loop {
+        let (high, inverse) = loop {
             let sum = weights[0] + weights[1] + weights[2];
             if !(sum > zero) {
                 return Err(None);
@@ -288,7 +277,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             slant = Slant { a: (pt * qv - qt * pv) * inverse, b: (pu * qt - qu * pt) * inverse };
             let length = slant.length();
             if high - best.tau <= wanted * length {
-                return self.close(frame, &[p, q, s], &weights.map(|w| w * inverse), high, &best);
+                break (high, inverse);
             }
             let n = frame.normal(self.local.line.direction, slant);
             if self.is_curved(frame, n) {
@@ -304,7 +293,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                     end = self.end();
                 }
                 if high - best.tau <= wanted * length {
-                    return self.close(frame, &[p, q, s], &weights.map(|w| w * inverse), high, &best);
+                    break (high, inverse);
                 }
             }
             let (kp, kq, ks) = (p.cross(&r), q.cross(&r), s.cross(&r));
@@ -317,7 +306,8 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             } else {
                 return Err(None);
             }
-        }
+        };
+        self.close(frame, &[p, q, s], &weights.map(|w| w * inverse), high, &best)
     }
 
     /// Whether the core's support point moves as a plane turns.
@@ -327,7 +317,9 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     }
 
     /// The next support point along any vector.
-    #[inline]
+    ///
+    /// This, and what it calls, is compiled into its callers: vectors of `f64` that pass through memory are waited for.
+    #[inline(always)]
     pub(crate) fn look(&mut self, frame: &Frame<B::Vector>, n: B::Vector) -> Result<SeenBy<B>, Exit<B>> {
         let (point, witness) = self.sight(n).map_err(Some)?;
         let touch = if frame.lift > ScalarOf::<B>::ZERO { point + n * (frame.lift / n.norm()) } else { point };
@@ -336,7 +328,22 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         Ok(Seen { u: seen.dot(frame.e1), v: seen.dot(frame.e2), t, point, witness, slant: None })
     }
 
-    #[inline]
+    /// The next support point along a vector across the ray, if the plane there does not separate and the point is beyond
+    /// the line.
+    #[cold]
+    #[inline(never)]
+    fn look_across(
+        &mut self,
+        frame: &Frame<B::Vector>,
+        (a, b): (ScalarOf<B>, ScalarOf<B>),
+    ) -> Result<SeenBy<B>, Exit<B>> {
+        let across = frame.e1 * a + frame.e2 * b;
+        let seen = self.look(frame, across)?;
+        self.separate(across, &seen)?;
+        if a * seen.u + b * seen.v > ScalarOf::<B>::ZERO { Ok(seen) } else { Err(None) }
+    }
+
+    #[inline(always)]
     pub(crate) fn look_slanted(
         &mut self,
         frame: &Frame<B::Vector>,
@@ -353,6 +360,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     }
 
     /// The search ends if the plane across `n` that supports the body at a point leaves nothing of the ray.
+    #[inline(always)]
     pub(crate) fn separate(&mut self, n: B::Vector, p: &SeenBy<B>) -> Result<(), Exit<B>> {
         match n.unit() {
             Some(n) => self.advance(n, p.point).map_err(Some),
@@ -372,11 +380,8 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     ) -> Result<(), Exit<B>> {
         let n = frame.normal(self.local.line.direction, best.slant).unit().ok_or(None)?;
         self.advance(n, best.point).map_err(Some)?;
-        let mut simplex = Simplex::new();
-        for (p, &weight) in corners.iter().zip(weights) {
-            simplex.push_weighted(p.point, n, p.witness, weight);
-        }
-        let off = simplex.weighted_point() - self.local.line.at(high);
+        let passed = corners.iter().zip(weights).fold(B::Vector::ZERO, |sum, (p, &weight)| sum + p.point * weight);
+        let off = passed - self.local.line.at(high);
         let within = self.radius + self.noise;
         // Where no plane is crossed, as by a ray within the plane of a face, the bracket begins where the ray does.
         let slope = if self.low_slope > ScalarOf::<B>::ZERO { self.low_slope } else { ScalarOf::<B>::ONE };
@@ -384,7 +389,9 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         if !(closed && off.length_squared() <= within * within && high + self.noise >= self.low) {
             return Err(None);
         }
-        self.simplex = simplex;
+        for (p, &weight) in corners.iter().zip(weights) {
+            self.simplex.push_weighted(p.point, n, p.witness, weight);
+        }
         (self.high, self.high_error) = (high.max(self.low), self.noise / slope);
         Ok(())
     }
@@ -393,6 +400,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
 impl<V: Vector> Frame<V> {
     /// Unit vectors across a unit vector `d` and one another, after Duff et al., *Building an orthonormal basis,
     /// revisited* (2017).
+    #[inline(always)]
     pub(crate) fn new(d: V) -> Self {
         let one = V::Scalar::ONE;
         let (x, y, z) = (d.get(0), d.get(1), d.get(2));
@@ -405,6 +413,7 @@ impl<V: Vector> Frame<V> {
     }
 
     /// The normal of a plane.
+    #[inline(always)]
     pub(crate) fn normal(&self, direction: V, slant: Slant<V::Scalar>) -> V {
         self.e1 * slant.a + self.e2 * slant.b - direction
     }
