@@ -24,6 +24,7 @@ use num_traits::Float as _;
 use crate::Iterate;
 use crate::body::Body;
 use crate::cast::{End, ScalarOf, Search};
+use crate::line::Line;
 
 /// A support point as it is seen along the ray.
 #[derive(Clone, Copy)]
@@ -59,14 +60,39 @@ impl<S: Scalar> Slant<S> {
 
     /// The length of the normal: the reciprocal of the cosine at which the ray crosses the plane.
     pub(crate) fn length(self) -> S {
-        (S::ONE + self.a * self.a + self.b * self.b).sqrt()
+        self.length_squared().sqrt()
+    }
+
+    fn length_squared(self) -> S {
+        S::ONE + self.a * self.a + self.b * self.b
     }
 }
 
-/// The axes across the ray, and the radius that is added to what is seen.
+/// The same plane by a multiple of its normal, `a·e₁ + b·e₂ − c·d`. A support point does not wait for the division by `c`.
+#[derive(Clone, Copy)]
+struct Multiple<S> {
+    a: S,
+    b: S,
+    c: S,
+}
+
+impl<S: Scalar> Multiple<S> {
+    fn slant(self) -> Slant<S> {
+        let inverse = self.c.recip();
+        Slant { a: self.a * inverse, b: self.b * inverse }
+    }
+
+    fn normal<V: Vector<Scalar = S>>(self, frame: &Frame<V>, direction: V) -> V {
+        frame.e1 * self.a + frame.e2 * self.b - direction * self.c
+    }
+}
+
+/// The axes across the ray, where they cross, and the radius that is added to what is seen.
 pub(crate) struct Frame<V: Vector> {
     pub(crate) e1: V,
     pub(crate) e2: V,
+    /// The line's foot; or where the line only touches the body, a point nearer the body by less than rounding.
+    foot: V,
     pub(crate) lift: V::Scalar,
 }
 
@@ -137,7 +163,7 @@ pub(crate) const PATIENCE: usize = 12;
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     /// Closes the bracket, or finds a plane that the whole ray is before. `None` where that is in doubt.
     pub(crate) fn look_through(&mut self) -> Option<Result<(), End<B::Vector>>> {
-        let mut frame = Frame::new(self.local.line.direction);
+        let mut frame = Frame::new(self.local.line);
         // The first plane: the one given, or the tangent plane of the ball about the body where the ray enters it; and how
         // far it is tilted next.
         let (first, reach) = match self.options.axis.and_then(Vector::unit) {
@@ -147,14 +173,23 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         let curved = self.is_curved(&frame, first);
         let found = if !curved && self.radius > ScalarOf::<B>::ZERO {
             self.swept(&frame, first, reach)
-        } else if curved {
-            frame.lift = self.radius;
-            match self.osculate(&frame, first) {
-                Err(None) => self.portal(&frame, first, reach),
-                found => found,
-            }
         } else {
-            self.portal(&frame, first, reach)
+            let mut found = Err(None);
+            if curved {
+                frame.lift = self.radius;
+                found = self.osculate(&frame, first);
+            }
+            // A second time where the line was found to touch the body, and was moved inward.
+            for _ in 0..2 {
+                if matches!(found, Err(None)) {
+                    let before = frame.foot;
+                    found = self.portal(&mut frame, first, reach);
+                    if frame.foot == before {
+                        break;
+                    }
+                }
+            }
+            found
         };
         match found {
             Ok(()) => Some(Ok(())),
@@ -162,7 +197,12 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         }
     }
 
-    fn portal(&mut self, frame: &Frame<B::Vector>, first: B::Vector, mut reach: ScalarOf<B>) -> Result<(), Exit<B>> {
+    fn portal(
+        &mut self,
+        frame: &mut Frame<B::Vector>,
+        first: B::Vector,
+        mut reach: ScalarOf<B>,
+    ) -> Result<(), Exit<B>> {
         let zero = ScalarOf::<B>::ZERO;
         let one = ScalarOf::<B>::ONE;
         let facing = -first.dot(self.local.line.direction);
@@ -177,15 +217,19 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         }
         let mut end = self.end();
 
-        // A second point on the other side of the line.
-        let distance = (p.u * p.u + p.v * p.v).sqrt();
-        if !(distance > self.noise) {
-            return Err(None);
+        // A second point on the other side of the line, of a plane that is tilted towards it.
+        let squared = p.u * p.u + p.v * p.v;
+        if !(squared > self.noise * self.noise) {
+            // The line runs through the first one.
+            let found = best.tau > -ScalarOf::<B>::infinity();
+            return if found { self.close(frame, &[p], &[one], p.t, &best) } else { Err(None) };
         }
-        let toward = (-p.u / distance, -p.v / distance);
-        let tilt = reach * slant.length();
-        slant = Slant { a: slant.a + toward.0 * tilt, b: slant.b + toward.1 * tilt };
-        let mut q = self.look_slanted(frame, slant)?;
+        let toward = (-p.u, -p.v);
+        let rise = reach * (slant.length_squared() * squared).sqrt();
+        let plane =
+            Multiple { a: slant.a * squared + toward.0 * rise, b: slant.b * squared + toward.1 * rise, c: squared };
+        let mut q = self.look_along(frame, plane)?;
+        slant = plane.slant();
         let tau = slant.crossing(&q);
         if tau > end {
             self.separate(frame.normal(self.local.line.direction, slant), &q)?;
@@ -198,23 +242,23 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             reach = reach.max(one);
         }
 
-        // A third such that the triangle contains zero, which is kept on the left of the edge from p to q.
+        // A third such that the triangle contains zero.
         let mut outside = if self.body.is_curved() { MAX_OUTSIDE / 2 } else { MAX_OUTSIDE };
+        // The sign of the order in which p, q and the third go round: cheaper to keep than to put them in order.
+        let mut turn;
         let (mut s, mut weights) = loop {
-            let mut w = p.cross(&q);
-            if w < zero {
-                (p, q, w) = (q, p, -w);
-            }
+            let w = p.cross(&q);
+            turn = one.copysign(w);
             let (du, dv, dt) = (q.u - p.u, q.v - p.v, q.t - p.t);
             let squared = du * du + dv * dv;
-            let length = squared.sqrt();
-            let toward = (-dv / length, du / length);
-            // The plane through both points that is tilted from the last one, towards the line.
-            let along = dt / squared;
+            // The plane through both points that is tilted from the last one, towards the line: with w = (−dv, du) across
+            // the edge, α = (dt·e + k·w)/|e|², k = α·w + reach·√(|e|² + (α·w)²).
+            let toward = (-dv * turn, du * turn);
             let tilt = slant.a * toward.0 + slant.b * toward.1;
-            let tilt = tilt + reach * (one + tilt * tilt).sqrt();
-            slant = Slant { a: du * along + toward.0 * tilt, b: dv * along + toward.1 * tilt };
-            let mut s = self.look_slanted(frame, slant)?;
+            let rise = tilt + reach * (squared + tilt * tilt).sqrt();
+            let plane = Multiple { a: du * dt + toward.0 * rise, b: dv * dt + toward.1 * rise, c: squared };
+            let mut s = self.look_along(frame, plane)?;
+            slant = plane.slant();
             let tau = slant.crossing(&s);
             if tau > end {
                 self.separate(frame.normal(self.local.line.direction, slant), &s)?;
@@ -227,7 +271,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 s = self.look_across(frame, toward)?;
                 reach = reach.max(one);
             }
-            let weights = [q.cross(&s), s.cross(&p), w];
+            let weights = [q.cross(&s) * turn, s.cross(&p) * turn, w.abs()];
             if weights[0] >= zero && weights[1] >= zero {
                 break (s, weights);
             }
@@ -259,6 +303,9 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             if !(sum > zero) {
                 return Err(None);
             }
+            let (pu, pv, pt) = ((q.u - p.u) * turn, (q.v - p.v) * turn, (q.t - p.t) * turn);
+            let (qu, qv, qt) = (s.u - p.u, s.v - p.v, s.t - p.t);
+            let plane = Multiple { a: pt * qv - qt * pv, b: pu * qt - qu * pt, c: sum };
             let inverse = sum.recip();
             let high = (weights[0] * p.t + weights[1] * q.t + weights[2] * s.t) * inverse;
             if !(high < last) {
@@ -272,31 +319,30 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 // The ray begins behind the portal, in the body or past it.
                 return Err(None);
             }
-            let (pu, pv, pt) = (q.u - p.u, q.v - p.v, q.t - p.t);
-            let (qu, qv, qt) = (s.u - p.u, s.v - p.v, s.t - p.t);
-            slant = Slant { a: (pt * qv - qt * pv) * inverse, b: (pu * qt - qu * pt) * inverse };
+            slant = plane.slant();
             let length = slant.length();
             if high - best.tau <= wanted * length {
                 break (high, inverse);
             }
-            let n = frame.normal(self.local.line.direction, slant);
-            if self.is_curved(frame, n) {
+            if self.body.is_curved() && self.is_curved(frame, plane.normal(frame, self.local.line.direction)) {
                 let weights = weights.map(|w| w * inverse);
-                return self.curved(frame, Portal { corners: [p, q, s], weights, high }, best);
+                let (corners, weights) =
+                    if turn > zero { ([p, q, s], weights) } else { ([q, p, s], [weights[1], weights[0], weights[2]]) };
+                return self.curved(frame, Portal { corners, weights, high }, best);
             }
-            let r = self.look_slanted(frame, slant)?;
+            let r = self.look_along(frame, plane)?;
             let tau = slant.crossing(&r);
             if tau > best.tau {
                 best = Best { tau, slant, point: r.point };
                 if tau > end {
-                    self.separate(n, &r)?;
+                    self.separate(frame.normal(self.local.line.direction, slant), &r)?;
                     end = self.end();
                 }
                 if high - best.tau <= wanted * length {
                     break (high, inverse);
                 }
             }
-            let (kp, kq, ks) = (p.cross(&r), q.cross(&r), s.cross(&r));
+            let (kp, kq, ks) = (p.cross(&r) * turn, q.cross(&r) * turn, s.cross(&r) * turn);
             if kq >= zero && kp <= zero {
                 (s, weights) = (r, [kq, -kp, weights[2]]);
             } else if ks >= zero && kq <= zero {
@@ -323,24 +369,40 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     pub(crate) fn look(&mut self, frame: &Frame<B::Vector>, n: B::Vector) -> Result<SeenBy<B>, Exit<B>> {
         let (point, witness) = self.sight(n).map_err(Some)?;
         let touch = if frame.lift > ScalarOf::<B>::ZERO { point + n * (frame.lift / n.norm()) } else { point };
-        let seen = touch - self.local.line.foot;
+        let seen = touch - frame.foot;
         let t = touch.dot(self.local.line.direction);
         Ok(Seen { u: seen.dot(frame.e1), v: seen.dot(frame.e2), t, point, witness, slant: None })
     }
 
     /// The next support point along a vector across the ray, if the plane there does not separate and the point is beyond
-    /// the line.
+    /// the line. Where the line touches the body there, to rounding, it is taken to pass a little farther inside from now on.
     #[cold]
     #[inline(never)]
     fn look_across(
         &mut self,
-        frame: &Frame<B::Vector>,
+        frame: &mut Frame<B::Vector>,
         (a, b): (ScalarOf<B>, ScalarOf<B>),
     ) -> Result<SeenBy<B>, Exit<B>> {
-        let across = frame.e1 * a + frame.e2 * b;
+        let across = (frame.e1 * a + frame.e2 * b).unit().ok_or(None)?;
         let seen = self.look(frame, across)?;
         self.separate(across, &seen)?;
-        if a * seen.u + b * seen.v > ScalarOf::<B>::ZERO { Ok(seen) } else { Err(None) }
+        let beyond = (seen.point - frame.foot).dot(across);
+        if beyond > ScalarOf::<B>::ZERO {
+            return Ok(seen);
+        }
+        let inward = self.noise * ScalarOf::<B>::from_f64(0.5);
+        if self.radius == ScalarOf::<B>::ZERO && frame.foot == self.local.line.foot && beyond > -inward {
+            frame.foot -= across * inward;
+        }
+        Err(None)
+    }
+
+    /// The next support point of a plane.
+    #[inline(always)]
+    fn look_along(&mut self, frame: &Frame<B::Vector>, plane: Multiple<ScalarOf<B>>) -> Result<SeenBy<B>, Exit<B>> {
+        let mut seen = self.look(frame, plane.normal(frame, self.local.line.direction))?;
+        seen.slant = Some(plane.slant());
+        Ok(seen)
     }
 
     #[inline(always)]
@@ -398,10 +460,11 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
 }
 
 impl<V: Vector> Frame<V> {
-    /// Unit vectors across a unit vector `d` and one another, after Duff et al., *Building an orthonormal basis,
+    /// The unit vectors are across the line's `d` and one another, after Duff et al., *Building an orthonormal basis,
     /// revisited* (2017).
     #[inline(always)]
-    pub(crate) fn new(d: V) -> Self {
+    pub(crate) fn new(line: Line<V>) -> Self {
+        let d = line.direction;
         let one = V::Scalar::ONE;
         let (x, y, z) = (d.get(0), d.get(1), d.get(2));
         let sign = one.copysign(z);
@@ -409,7 +472,7 @@ impl<V: Vector> Frame<V> {
         let b = x * y * a;
         let e1 = [one + sign * x * x * a, sign * b, -sign * x];
         let e2 = [b, sign + y * y * a, -y];
-        Self { e1: V::from_fn(|i| e1[i]), e2: V::from_fn(|i| e2[i]), lift: V::Scalar::ZERO }
+        Self { e1: V::from_fn(|i| e1[i]), e2: V::from_fn(|i| e2[i]), foot: line.foot, lift: V::Scalar::ZERO }
     }
 
     /// The normal of a plane.
