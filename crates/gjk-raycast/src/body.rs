@@ -11,7 +11,7 @@ use num_traits::Float as _;
 pub(crate) trait Body {
     type Vector: Vector;
     /// What a support point is made of: the points of both shapes for a difference.
-    type Witness: Copy + Default;
+    type Witness: Witness<<Self::Vector as Vector>::Scalar>;
 
     /// The support point of the core, relative to the origin and in units of `scale`.
     fn support(&mut self, direction: Self::Vector) -> (Self::Vector, Self::Witness);
@@ -34,6 +34,17 @@ pub(crate) trait Body {
     fn extent(&self) -> <Self::Vector as Vector>::Scalar;
     /// Sets the unit to the given power of two.
     fn set_scale(&mut self, scale: <Self::Vector as Vector>::Scalar);
+}
+
+/// What a support point is made of.
+pub(crate) trait Witness<S>: Copy + Default {
+    /// The sum with a multiple of another.
+    fn plus(self, other: Self, weight: S) -> Self;
+}
+
+impl<S> Witness<S> for () {
+    #[inline]
+    fn plus(self, (): (), _weight: S) {}
 }
 
 /// A power of two near `size`, or 1 where there is none with a finite reciprocal.
@@ -151,6 +162,13 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
 pub(crate) struct PointPair<V> {
     pub(crate) a: V,
     pub(crate) b: V,
+}
+
+impl<V: Vector> Witness<V::Scalar> for PointPair<V> {
+    #[inline]
+    fn plus(self, other: Self, weight: V::Scalar) -> Self {
+        Self { a: self.a + other.a * weight, b: self.b + other.b * weight }
+    }
 }
 
 impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body for Pair<'_, A, B> {

@@ -15,7 +15,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Body, power_of_two_near};
+use crate::body::{Body, Witness, power_of_two_near};
 use crate::line::LocalRay;
 use crate::ray_cast::Ray;
 use crate::simplex::{MAX_POINTS, Simplex};
@@ -25,8 +25,8 @@ use crate::{CastMethod, Iterate, Miss, Outcome, RayCastOptions, Status};
 pub(crate) struct Contact<V: Vector, W> {
     pub(crate) lambda: V::Scalar,
     pub(crate) normal: Option<V>,
-    /// The points of the core whose weighted sum lies below the hit spot.
-    pub(crate) simplex: Simplex<V, W>,
+    /// What the core's point below the hit spot is made of.
+    pub(crate) witness: W,
 }
 
 /// What [`cast`] found; λ in units of the ray's direction.
@@ -36,7 +36,7 @@ pub(crate) struct Cast<V: Vector, W> {
     pub(crate) upper: V::Scalar,
     pub(crate) status: Status,
     pub(crate) iterations: usize,
-    /// The unit of the simplex.
+    /// The unit of the witness.
     pub(crate) scale: V::Scalar,
 }
 
@@ -56,13 +56,14 @@ pub(crate) fn cast<B: Body>(
     let size = extent + body.radius();
     let scale = power_of_two_near(if size > zero { size } else { (ray.source - origin).norm() });
     body.set_scale(scale);
-    let radius = body.radius() / scale;
-    let noise = number(8.0) * ScalarOf::<B>::EPSILON * (size / scale);
+    let per_unit = scale.recip();
+    let (radius, size) = (body.radius() * per_unit, size * per_unit);
+    let noise = number(8.0) * ScalarOf::<B>::EPSILON * size;
     let local = LocalRay::new(ray, origin, scale);
 
     // The body lies in a ball about its origin. A line that misses the ball misses the body, and on one that does not,
     // only the chord matters.
-    let reach = size / scale * (ScalarOf::<B>::ONE + number(16.0) * ScalarOf::<B>::EPSILON);
+    let reach = size * (ScalarOf::<B>::ONE + number(16.0) * ScalarOf::<B>::EPSILON);
     let across = local.line.foot.norm();
     let half_chord = ((reach - across).max(zero) * (reach + across)).sqrt();
     let low = local.start.max(-half_chord);
@@ -83,6 +84,7 @@ pub(crate) fn cast<B: Body>(
         high_error: zero,
         touched: None,
         normal: None,
+        witness: Default::default(),
         simplex: Simplex::new(),
         v: local.line.at(low),
         observer,
@@ -99,7 +101,7 @@ pub(crate) fn cast<B: Body>(
         search.run()
     };
 
-    let Search { low, low_error, high, high_error, touched, normal, simplex, iterations, .. } = search;
+    let Search { low, low_error, high, high_error, touched, normal, witness, iterations, .. } = search;
     let hit_at = touched.unwrap_or(low);
     let started_in = hit_at <= local.start;
     let lambda = if started_in { zero } else { local.lambda(hit_at).max(zero) };
@@ -109,7 +111,7 @@ pub(crate) fn cast<B: Body>(
         End::Contact if started_in => zero,
         _ => (local.lambda(high) + local.error(high, high_error + high_error)).max(lambda),
     };
-    let hit = || Outcome::Hit(Contact { lambda, normal, simplex });
+    let hit = || Outcome::Hit(Contact { lambda, normal, witness });
     let miss = |axis| Outcome::Miss(Miss { axis });
     let (outcome, status) = match end {
         End::Miss(n) => {
@@ -179,6 +181,8 @@ pub(crate) struct Search<'a, B: Body, O> {
     pub(crate) touched: Option<ScalarOf<B>>,
     /// The unit normal of a plane through the point at `low`, to rounding, that has the body behind it.
     pub(crate) normal: Option<B::Vector>,
+    /// What the core's point below the entry is made of.
+    pub(crate) witness: B::Witness,
     pub(crate) simplex: Simplex<B::Vector, B::Witness>,
     /// The paper's v.
     pub(crate) v: B::Vector,
@@ -195,8 +199,9 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             return found.map_or_else(|end| end, |()| End::Contact);
         }
         let first = self.options.axis.and_then(Vector::unit).or_else(|| self.v.unit());
-        let found = self.approach(first.unwrap_or(-self.local.line.direction));
-        match found.and_then(|entry| self.refine(entry)) {
+        let found = self.approach(first.unwrap_or(-self.local.line.direction)).and_then(|entry| self.refine(entry));
+        self.witness = self.simplex.weighted().fold(Default::default(), |sum: B::Witness, (w, p)| sum.plus(p, w));
+        match found {
             Ok(()) => End::Contact,
             Err(end) => end,
         }

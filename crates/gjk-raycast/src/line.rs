@@ -47,13 +47,12 @@ impl<V: Vector> LocalRay<V> {
         let down = scale.recip();
         let (from, to) = (ray.source * down, origin * down);
         let s = from - to;
-        let direction = ray.direction.unit().unwrap_or_else(|| V::axis(0));
-        let t = -s.dot(direction);
-        let speed = ray.direction.norm();
-        // In units of the ray's own direction, which unlike its unit vector is exact, brought near unit length.
-        let near_one = power_of_two_near(speed);
+        // The ray's own direction, brought near unit length, is exact, unlike its unit vector.
+        let near_one = power_of_two_near(ray.direction.abs().max_element());
         let exact = ray.direction * near_one.recip();
-        let t_exact = t / (speed / near_one);
+        let direction = exact.unit().unwrap_or_else(|| V::axis(0));
+        let (t, t_exact) = (-s.dot(direction), -s.dot(exact) / exact.length_squared());
+        let speed = exact.norm() * near_one;
         let foot = V::from_fn(|i| {
             let (a, b, sum) = (from.get(i), -to.get(i), s.get(i));
             let b_seen = sum - a;

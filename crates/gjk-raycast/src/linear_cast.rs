@@ -2,7 +2,7 @@
 
 use convex_support::{SupportMap, Vector};
 
-use crate::body::{Pair, PointPair};
+use crate::body::Pair;
 use crate::cast::{Contact, cast};
 use crate::error::RayCastError;
 use crate::ray_cast::{Ray, check_finite};
@@ -84,13 +84,9 @@ where
     }
     let cast = cast(&mut body, ray, wanted, observer);
     let outcome = match cast.outcome {
-        Outcome::Hit(Contact { lambda: time, normal, simplex }) => {
+        Outcome::Hit(Contact { lambda: time, normal, witness }) => {
             // The contact point as a point of b, which it is farthest along the normal of A − B.
-            let mut core = A::Vector::ZERO;
-            for (weight, PointPair { b, .. }) in simplex.weighted() {
-                core += b * weight;
-            }
-            let mut point = b.origin() + core * cast.scale + motion.velocity_b * time;
+            let mut point = b.origin() + witness.b * cast.scale + motion.velocity_b * time;
             if let Some(n) = normal {
                 point -= n * b.radius();
             }

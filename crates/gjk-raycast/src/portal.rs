@@ -22,7 +22,7 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::Iterate;
-use crate::body::Body;
+use crate::body::{Body, Witness};
 use crate::cast::{End, ScalarOf, Search};
 use crate::line::Line;
 
@@ -168,7 +168,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         // far it is tilted next.
         let (first, reach) = match self.options.axis.and_then(Vector::unit) {
             Some(axis) => (axis, ScalarOf::<B>::from_f64(0.03)),
-            None => (self.local.line.at(self.low), ScalarOf::<B>::from_f64(0.75)),
+            None => (self.local.line.at(self.low), ScalarOf::<B>::ONE),
         };
         let curved = self.is_curved(&frame, first);
         let found = if !curved && self.radius > ScalarOf::<B>::ZERO {
@@ -447,13 +447,13 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         let within = self.radius + self.noise;
         // Where no plane is crossed, as by a ray within the plane of a face, the bracket begins where the ray does.
         let slope = if self.low_slope > ScalarOf::<B>::ZERO { self.low_slope } else { ScalarOf::<B>::ONE };
-        let closed = (high - self.low) * slope <= self.noise.max(self.options.tolerance);
-        if !(closed && off.length_squared() <= within * within && high + self.noise >= self.low) {
+        let gap = (high - self.low) * slope;
+        let closed = gap <= self.noise.max(self.options.tolerance) && gap >= -self.noise;
+        if !(closed && off.length_squared() <= within * within) {
             return Err(None);
         }
-        for (p, &weight) in corners.iter().zip(weights) {
-            self.simplex.push_weighted(p.point, n, p.witness, weight);
-        }
+        let witnesses = corners.iter().zip(weights);
+        self.witness = witnesses.fold(Default::default(), |sum: B::Witness, (p, &weight)| sum.plus(p.witness, weight));
         (self.high, self.high_error) = (high.max(self.low), self.noise / slope);
         Ok(())
     }

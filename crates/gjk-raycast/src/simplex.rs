@@ -50,15 +50,6 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
         self.len = self.len.saturating_sub(1);
     }
 
-    /// Adds a support point found along a direction, with its weight.
-    ///
-    /// # Panics
-    /// If there are four already.
-    pub(crate) fn push_weighted(&mut self, point: V, along: V, witness: W, weight: V::Scalar) {
-        self.push(point, along, witness);
-        self.weights[self.len - 1] = weight;
-    }
-
     /// Keeps only a face, with these weights of its corners.
     pub(crate) fn retain(&mut self, face: Face, weights: [V::Scalar; MAX_POINTS]) {
         self.keep(face);
