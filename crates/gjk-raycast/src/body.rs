@@ -48,14 +48,12 @@ impl<S> Witness<S> for () {
 }
 
 /// A power of two near `size`, or 1 where there is none with a finite reciprocal.
+#[inline]
 pub(crate) fn power_of_two_near<S: Scalar>(size: S) -> S {
     const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
     let power = S::from_f64(f64::from_bits(size.as_f64().to_bits() & EXPONENT));
-    if power > S::ZERO && power.recip() > S::ZERO && power.is_finite() && power.recip().is_finite() {
-        power
-    } else {
-        S::ONE
-    }
+    // The reciprocal is finite, and not zero.
+    if power > S::max_value().recip() && power < S::infinity() { power } else { S::ONE }
 }
 
 /// Whether products of a few such numbers, and their rounding errors, are far from over- and underflow.

@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::flat::Flat;
+use crate::flat::project;
 use crate::johnson::johnson;
 use crate::signed_volumes::signed_volumes;
 use crate::simplex::{Face, MAX_POINTS, faces};
@@ -66,8 +66,7 @@ pub(crate) fn nearest_face<V: Vector>(points: &[V], dimension: usize) -> Option<
     // In the order of faces those without the newest point come first.
     for face in faces(points.len(), dimension + 1) {
         let mut corners = [V::ZERO; MAX_POINTS];
-        let flat = Flat::new(face.of(points, &mut corners));
-        let foot = flat.project(-flat.corner());
+        let foot = project(face.of(points, &mut corners), |corner| -corner);
         if !foot.coordinates[..face.len()].iter().all(|&b| b > V::Scalar::ZERO) {
             continue;
         }

@@ -291,6 +291,7 @@ impl<V: Vector, W: Copy + Default> Descent<V, W> {
         self.accept(found)
     }
 
+    #[inline(always)]
     fn accept(&mut self, Closest { v, face, weights }: Closest<V>) -> Option<(V, V::Scalar)> {
         self.simplex.retain(face, weights);
         let (normal, size) = comfortable(v)?;

@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::flat::Flat;
+use crate::flat::{project, width};
 use crate::line::Line;
 use crate::simplex::{Face, MAX_POINTS, faces};
 
@@ -37,7 +37,7 @@ pub(crate) fn entry<V: Vector>(points: &[V], line: Line<V>, radius: V::Scalar, n
         let found = if is_facet {
             enter_facet(corners, line, radius, noise)
         } else {
-            enter_edge(&Flat::new(corners), line, radius, noise)
+            enter_edge(corners, line, radius, noise)
         };
         let Some((mu, n, weights)) = found else { continue };
         let better = |b: Entry<V>| mu < b.mu || (is_facet && radius <= noise && b.face.len() < V::DIM);
@@ -56,7 +56,7 @@ type Found<V> = Option<(<V as Vector>::Scalar, V, [<V as Vector>::Scalar; MAX_PO
 /// Which point of the facet lies below the crossing is read off across the line, where the line is a point and the facet
 /// a triangle: the barycentric coordinates are the same there, and how flat the line meets the facet does not matter.
 fn enter_facet<V: Vector>(corners: &[V], line: Line<V>, radius: V::Scalar, noise: V::Scalar) -> Found<V> {
-    let d = Flat::new(corners).project(line.direction).across;
+    let d = project(corners, |_| line.direction).across;
     let slope = -d.length();
     // A facet along the line has nothing but rounding for d.
     if !(slope < V::Scalar::from_f64(-8.0) * V::Scalar::EPSILON) {
@@ -68,12 +68,11 @@ fn enter_facet<V: Vector>(corners: &[V], line: Line<V>, radius: V::Scalar, noise
         *s = line.across(corner - line.foot);
     }
     let below = -line.across(n) * radius;
-    let flat = Flat::new(&seen[..corners.len()]);
     // A facet that is seen as narrow as rounding has edges only: neither where it is crossed nor its slope is known.
-    if !(flat.width() > noise) {
+    if !(width(&seen[..corners.len()]) > noise) {
         return None;
     }
-    let coordinates = flat.project(below - flat.corner()).coordinates;
+    let coordinates = project(&seen[..corners.len()], |corner| below - corner).coordinates;
     // Weights that are negative by rounding are none: then what the line passes is a point of the facet itself, and not
     // of its plane, which rounding may have turned along the line. It passes within the noise, or elsewhere. The others are read
     // off anew along their edge: in a sliver, what rounding leaves of a weight moves the point by much more than rounding.
@@ -89,8 +88,7 @@ fn enter_facet<V: Vector>(corners: &[V], line: Line<V>, radius: V::Scalar, noise
         if len == 0 {
             return None;
         }
-        let edge = Flat::new(&rest[..len]);
-        let along = edge.project(below - edge.corner()).coordinates;
+        let along = project(&rest[..len], |corner| below - corner).coordinates;
         weights = [V::Scalar::ZERO; MAX_POINTS];
         for (&place, &weight) in places[..len].iter().zip(&along) {
             weights[place] = weight;
@@ -111,22 +109,22 @@ fn enter_facet<V: Vector>(corners: &[V], line: Line<V>, radius: V::Scalar, noise
 ///
 /// Seen along the flat, the line passes a point at the vector `m`, with velocity `d`. It is nearest at `μ₀ = −m·d/d·d`, and
 /// at distance `radius` half a chord earlier.
-fn enter_edge<V: Vector>(flat: &Flat<V>, line: Line<V>, radius: V::Scalar, noise: V::Scalar) -> Found<V> {
+fn enter_edge<V: Vector>(corners: &[V], line: Line<V>, radius: V::Scalar, noise: V::Scalar) -> Found<V> {
     // Beyond the end of an edge is the sphere about its corner, which is no other place if its radius is rounding.
     let (radius, slack) = if radius > noise { (radius, V::Scalar::ZERO) } else { (noise, noise) };
-    let d = flat.project(line.direction).across;
-    let m = flat.project(line.foot - flat.corner()).across;
+    let d = project(corners, |_| line.direction).across;
+    let m = project(corners, |corner| line.foot - corner).across;
     let squared = d.length_squared();
     let nearest = -m.dot(d) / squared;
-    let passing = flat.project(m + d * nearest).across;
+    let passing = project(corners, |_| m + d * nearest).across;
     let rest = radius * radius - passing.length_squared();
     if !(rest >= V::Scalar::ZERO) {
         return None;
     }
     let half = (rest / squared).sqrt();
     let (mu, n) = (nearest - half, (passing - d * half).unit()?);
-    let below = flat.project(line.at(mu) - n * radius - flat.corner());
-    let length = flat.width();
+    let below = project(corners, |corner| line.at(mu) - n * radius - corner);
+    let length = width(corners);
     let within = below.coordinates.iter().all(|&b| b * length >= -slack);
     let weights = below.coordinates.map(|b| b.max(V::Scalar::ZERO).min(V::Scalar::ONE));
     (mu.is_finite() && within).then_some((mu, n, weights))

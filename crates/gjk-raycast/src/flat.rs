@@ -1,7 +1,5 @@
 //! The affine hull of up to four points.
 
-use core::cmp::Ordering;
-
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
@@ -22,37 +20,76 @@ use crate::simplex::MAX_POINTS;
 /// The order is for simplices with a side that zero is near to and a corner far away, as near contact. That corner's share of
 /// zero's foot is as small as the square of the distance, yet it turns the shortest vector. Being last, it is the one
 /// coordinate that nothing is subtracted from; from the far corner itself it would be one less the others, and lost.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Flat<V: Vector> {
+///
+/// With the number of edges for a parameter, all of it is arithmetic on numbers in registers.
+struct Flat<V: Vector, const EDGES: usize> {
     y: V,
     /// The places of `y` and of the ends of the edges among the points.
     order: [usize; MAX_POINTS],
-    f: [V; 3],
-    c: [[V::Scalar; 3]; 3],
-    squared: [V::Scalar; 3],
-    /// The number of edges.
-    n: usize,
+    f: [V; EDGES],
+    c: [[V::Scalar; EDGES]; EDGES],
+    squared: [V::Scalar; EDGES],
 }
 
-/// A vector split into a part along a flat and a part across it.
+/// A vector split into a part along the affine hull of some points and a part across it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projection<V: Vector> {
     pub(crate) across: V,
-    /// The barycentric coordinates of `y` plus the part along the flat, in the order that the points were given in.
+    /// The barycentric coordinates of the point that the vector was given from plus the part along the hull, in the order
+    /// that the points were given in.
     pub(crate) coordinates: [V::Scalar; MAX_POINTS],
 }
 
-impl<V: Vector> Flat<V> {
-    /// The affine hull of one to four points.
-    pub(crate) fn new(points: &[V]) -> Self {
+/// Splits the vector that `v` says, given a point of the affine hull of one to four points: the one nearest to zero.
+///
+/// Coordinates are NaN or infinite where the points are affinely dependent.
+#[inline]
+pub(crate) fn project<V: Vector>(points: &[V], v: impl FnOnce(V) -> V) -> Projection<V> {
+    match points.len() {
+        1 => Flat::<V, 0>::new(points).project(v),
+        2 => Flat::<V, 1>::new(points).project(v),
+        3 => Flat::<V, 2>::new(points).project(v),
+        _ => Flat::<V, 3>::new(points).project(v),
+    }
+}
+
+/// The least height of a segment or triangle: its length; twice its area over its longest edge. Zero of a point.
+pub(crate) fn width<V: Vector>(points: &[V]) -> V::Scalar {
+    match points.len() {
+        1 => V::Scalar::ZERO,
+        2 => (points[1] - points[0]).length(),
+        _ => {
+            let Flat { squared: [first, height], c, .. } = Flat::<V, 2>::new(points);
+            // The second edge, and the one from the first's end to the second's, are this far along the first.
+            let share = c[1][0];
+            let beyond = share - V::Scalar::ONE;
+            let longest = first.max(height + first * share * share).max(height + first * beyond * beyond);
+            (first * height / longest).sqrt()
+        }
+    }
+}
+
+impl<V: Vector, const EDGES: usize> Flat<V, EDGES> {
+    #[inline(always)]
+    fn new(points: &[V]) -> Self {
         let zero = V::Scalar::ZERO;
-        let n = points.len() - 1;
         let mut order = [0, 1, 2, 3];
-        let distance = |i: usize| points[i].length_squared();
-        order[..=n].sort_unstable_by(|&i, &j| distance(i).partial_cmp(&distance(j)).unwrap_or(Ordering::Equal));
+        let mut distances = [zero; MAX_POINTS];
+        for (distance, point) in distances.iter_mut().zip(&points[..=EDGES]) {
+            *distance = point.length_squared();
+        }
+        for sorted in (1..=EDGES).rev() {
+            for i in 0..sorted {
+                let (first, second) = (distances[i], distances[i + 1]);
+                let swapped = first > second;
+                (distances[i], distances[i + 1]) = if swapped { (second, first) } else { (first, second) };
+                let (first, second) = (order[i], order[i + 1]);
+                (order[i], order[i + 1]) = if swapped { (second, first) } else { (first, second) };
+            }
+        }
         let y = points[order[0]];
-        let (mut f, mut c, mut squared) = ([V::ZERO; 3], [[zero; 3]; 3], [zero; 3]);
-        for i in 0..n {
+        let (mut f, mut c, mut squared) = ([V::ZERO; EDGES], [[zero; EDGES]; EDGES], [zero; EDGES]);
+        for i in 0..EDGES {
             let mut fi = points[order[i + 1]] - y;
             for _ in 0..2 {
                 for j in 0..i {
@@ -64,48 +101,29 @@ impl<V: Vector> Flat<V> {
             f[i] = fi;
             squared[i] = fi.length_squared();
         }
-        Self { y, order, f, c, squared, n }
+        Self { y, order, f, c, squared }
     }
 
-    /// The point of it that is nearest to zero.
-    pub(crate) fn corner(&self) -> V {
-        self.y
-    }
-
-    /// The least height of a segment or triangle: its length; twice its area over its longest edge. No meaning otherwise.
-    pub(crate) fn width(&self) -> V::Scalar {
-        let [first, height, _] = self.squared;
-        if self.n < 2 {
-            return first.sqrt();
-        }
-        // The second edge, and the one from the first's end to the second's, are this far along the first.
-        let share = self.c[1][0];
-        let beyond = share - V::Scalar::ONE;
-        let longest = first.max(height + first * share * share).max(height + first * beyond * beyond);
-        (first * height / longest).sqrt()
-    }
-
-    /// Splits a vector. The coordinates follow from `v = Σ t_i·f_i + across` by back-substitution: with
-    /// `v = Σ b_i·e_i + across`, `b_i = t_i − Σ_{k>i} b_k·c_ki`.
-    ///
-    /// Coordinates are NaN or infinite where the points are affinely dependent.
-    pub(crate) fn project(&self, v: V) -> Projection<V> {
+    /// The coordinates follow from `v = Σ t_i·f_i + across` by back-substitution: with `v = Σ b_i·e_i + across`,
+    /// `b_i = t_i − Σ_{k>i} b_k·c_ki`.
+    #[inline(always)]
+    fn project(&self, v: impl FnOnce(V) -> V) -> Projection<V> {
         let zero = V::Scalar::ZERO;
-        let mut across = v;
-        let mut t = [zero; 3];
+        let mut across = v(self.y);
+        let mut t = [zero; EDGES];
         for _ in 0..2 {
-            for (ti, (&fi, &squared)) in t.iter_mut().zip(self.f.iter().zip(&self.squared)).take(self.n) {
-                let part = across.dot(fi) / squared;
-                across -= fi * part;
-                *ti += part;
+            for i in 0..EDGES {
+                let part = across.dot(self.f[i]) / self.squared[i];
+                across -= self.f[i] * part;
+                t[i] += part;
             }
         }
-        let mut b = [zero; 3];
+        let mut b = [zero; EDGES];
         let mut coordinates = [zero; MAX_POINTS];
         let mut rest = V::Scalar::ONE;
-        for i in (0..self.n).rev() {
+        for i in (0..EDGES).rev() {
             b[i] = t[i];
-            for k in i + 1..self.n {
+            for k in i + 1..EDGES {
                 b[i] -= b[k] * self.c[k][i];
             }
             coordinates[self.order[i + 1]] = b[i];

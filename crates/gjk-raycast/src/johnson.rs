@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 
 use crate::closest::{Closest, nearest_face};
-use crate::flat::Flat;
+use crate::flat::project;
 use crate::simplex::{Face, MAX_POINTS, faces};
 
 /// The point of a simplex closest to zero, by Johnson's determinants.
@@ -55,8 +55,7 @@ pub(crate) fn johnson<V: Vector>(points: &[V], dimension: usize) -> Option<Close
 /// The closest point of the affine hull of a face, if it is in the face.
 pub(crate) fn within<V: Vector>(points: &[V], face: Face, dimension: usize) -> Option<Closest<V>> {
     let mut corners = [V::ZERO; MAX_POINTS];
-    let flat = Flat::new(face.of(points, &mut corners));
-    let foot = flat.project(-flat.corner());
+    let foot = project(face.of(points, &mut corners), |corner| -corner);
     let inside = foot.coordinates[..face.len()].iter().all(|&b| b > V::Scalar::ZERO);
     let v = if face.len() > dimension { V::ZERO } else { -foot.across };
     inside.then_some(Closest { v, face, weights: foot.coordinates })

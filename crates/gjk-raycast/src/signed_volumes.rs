@@ -4,6 +4,7 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::closest::{Closest, nearest_face};
+use crate::flat::project;
 use crate::johnson::within;
 use crate::simplex::{Face, MAX_POINTS, faces};
 
@@ -84,8 +85,7 @@ fn foot<V: Vector>(corners: &[V]) -> V {
     if corners.len() > V::DIM {
         return V::ZERO;
     }
-    let flat = crate::flat::Flat::new(corners);
-    -flat.project(-flat.corner()).across
+    -project(corners, |corner| -corner).across
 }
 
 /// The coordinate axes on whose plane or line the simplex has the largest volume.
