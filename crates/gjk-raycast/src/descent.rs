@@ -105,30 +105,21 @@ pub(crate) struct Descent<V: Vector, W> {
 /// taken again with care, by a search of all faces. The bounds that end the descent do not depend on how it came there:
 /// the lower one is that of a plane through a support point, and the upper one is measured again before it counts.
 ///
-/// `first` is the support point along the first direction, if it is known.
+/// `first` is the support point along the first direction, if it is known; `descent` is a new one.
 #[inline]
 pub(crate) fn descend<B: Body>(
+    descent: &mut Descent<B::Vector, B::Witness>,
     body: &mut B,
     frame: Frame<B::Vector>,
     wanted: Wanted<B::Vector>,
     mut first: Option<(B::Vector, B::Witness)>,
     mut observer: impl FnMut(Iterate<'_, B::Vector>),
-) -> Descent<B::Vector, B::Witness> {
+) {
     let Frame { scale, offset, radius, noise, .. } = frame;
     let infinity = <B::Vector as Vector>::Scalar::infinity();
     let touching = radius.max(noise);
     let regions = wanted.sub_algorithm == SubAlgorithm::Regions;
     let mut nearing = Decrease::new();
-    let mut descent = Descent {
-        simplex: Simplex::new(),
-        normal: wanted.first,
-        length: infinity,
-        lower: -infinity,
-        axis: wanted.first,
-        measured: false,
-        end: End::IterationLimit,
-        iterations: 0,
-    };
     let mut n = wanted.first;
     let mut size = n.length();
     let curved = wanted.closely && body.is_curved();
@@ -167,11 +158,11 @@ pub(crate) fn descend<B: Body>(
         }
         let wide =
             |descent: &Descent<_, _>| !(descent.length - descent.lower <= noise.max(wanted.tolerance * descent.lower));
-        if !wide(&descent) {
+        if !wide(descent) {
             if !descent.measured {
                 let _ = descent.measure();
             }
-            if !wide(&descent) {
+            if !wide(descent) {
                 descent.end = if descent.length - radius <= noise { End::Overlap } else { End::Separated };
                 break;
             }
@@ -184,7 +175,7 @@ pub(crate) fn descend<B: Body>(
             // A plane that was turned away from the shortest vector may be the better bound without its support point
             // bringing the simplex nearer.
             descent.simplex.pop();
-            let to = newton.next(body, &descent, w, n / size, reach);
+            let to = newton.next(body, descent, w, n / size, reach);
             (n, size) = to.map_or((descent.normal, descent.normal.length()), |to| (to, Scalar::ONE));
             continue;
         }
@@ -214,7 +205,7 @@ pub(crate) fn descend<B: Body>(
                 break;
             }
         }
-        if curved && let Some(to) = newton.next(body, &descent, w, along / along_size, reach) {
+        if curved && let Some(to) = newton.next(body, descent, w, along / along_size, reach) {
             (n, size) = (to, Scalar::ONE);
         }
     }
@@ -226,10 +217,24 @@ pub(crate) fn descend<B: Body>(
             descent.end = End::Overlap;
         }
     }
-    descent
 }
 
 impl<V: Vector, W: Copy + Default> Descent<V, W> {
+    /// The descent that begins along the given direction.
+    #[inline(always)]
+    pub(crate) fn new(first: V) -> Self {
+        Self {
+            simplex: Simplex::new(),
+            normal: first,
+            length: V::Scalar::infinity(),
+            lower: -V::Scalar::infinity(),
+            axis: first,
+            measured: false,
+            end: End::IterationLimit,
+            iterations: 0,
+        }
+    }
+
     /// The shortest vector found and its length; as long as there is none, the first direction and infinity.
     fn shortest(&self) -> (V, V::Scalar) {
         let size = self.normal.length();
@@ -287,8 +292,10 @@ impl<V: Vector, W: Copy + Default> Descent<V, W> {
         if points.is_empty() {
             return None;
         }
-        let found = within(points, all(points.len()), V::DIM).or_else(|| nearest_face(points, V::DIM))?;
-        self.accept(found)
+        match within(points, all(points.len()), V::DIM) {
+            Some(found) => self.accept(found),
+            None => nearest_face(points, V::DIM).and_then(|found| self.accept(found)),
+        }
     }
 
     #[inline(always)]

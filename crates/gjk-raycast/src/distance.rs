@@ -58,7 +58,8 @@ where
         max_iterations: options.max_iterations,
         sub_algorithm: options.sub_algorithm,
     };
-    let mut descent = descend(&mut pair, frame, wanted, None, observer);
+    let mut descent = Descent::new(wanted.first);
+    descend(&mut descent, &mut pair, frame, wanted, None, observer);
     if !descent.measured {
         let _ = descent.measure();
     }

@@ -4,7 +4,7 @@ use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use crate::body::{Body, Pair, Untraced, direction, is_moderate};
-use crate::descent::{End, Frame, Wanted, descend, rounding};
+use crate::descent::{Descent, End, Frame, Wanted, descend, rounding};
 use crate::{IntersectOptions, Intersection, Iterate, Status};
 
 /// Whether two shapes have a point in common, decided as soon as it can be.
@@ -110,7 +110,8 @@ where
         sub_algorithm: options.sub_algorithm,
     };
     let known = first.point.map(|point| (point * frame.per_unit, ()));
-    let descent = descend(&mut Untraced(pair), frame, wanted, known, observer);
+    let mut descent = Descent::new(wanted.first);
+    descend(&mut descent, &mut Untraced(pair), frame, wanted, known, observer);
     let overlap = match descent.end {
         End::Overlap => true,
         End::Separated => false,

@@ -53,6 +53,7 @@ pub(crate) fn johnson<V: Vector>(points: &[V], dimension: usize) -> Option<Close
 }
 
 /// The closest point of the affine hull of a face, if it is in the face.
+#[inline(always)]
 pub(crate) fn within<V: Vector>(points: &[V], face: Face, dimension: usize) -> Option<Closest<V>> {
     let mut corners = [V::ZERO; MAX_POINTS];
     let foot = project(face.of(points, &mut corners), |corner| -corner);
