@@ -353,7 +353,10 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 return Err(None);
             }
         };
-        self.close(frame, &[p, q, s], &weights.map(|w| w * inverse), high, &best)
+        let [w0, w1, w2] = weights.map(|w| w * inverse);
+        let passed = p.point * w0 + q.point * w1 + s.point * w2;
+        let witness = B::Witness::default().plus(p.witness, w0).plus(q.witness, w1).plus(s.witness, w2);
+        self.close_at(frame, passed, witness, high, &best)
     }
 
     /// Whether the core's support point moves as a plane turns.
@@ -440,9 +443,26 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         high: ScalarOf<B>,
         best: &Best<B::Vector>,
     ) -> Result<(), Exit<B>> {
+        let (mut passed, mut witness) = (B::Vector::ZERO, B::Witness::default());
+        for (p, &weight) in corners.iter().zip(weights) {
+            passed += p.point * weight;
+            witness = witness.plus(p.witness, weight);
+        }
+        self.close_at(frame, passed, witness, high, best)
+    }
+
+    /// The same, given the core's point and what it is made of.
+    #[inline(always)]
+    fn close_at(
+        &mut self,
+        frame: &Frame<B::Vector>,
+        passed: B::Vector,
+        witness: B::Witness,
+        high: ScalarOf<B>,
+        best: &Best<B::Vector>,
+    ) -> Result<(), Exit<B>> {
         let n = frame.normal(self.local.line.direction, best.slant).unit().ok_or(None)?;
         self.advance(n, best.point).map_err(Some)?;
-        let passed = corners.iter().zip(weights).fold(B::Vector::ZERO, |sum, (p, &weight)| sum + p.point * weight);
         let off = passed - self.local.line.at(high);
         let within = self.radius + self.noise;
         // Where no plane is crossed, as by a ray within the plane of a face, the bracket begins where the ray does.
@@ -452,9 +472,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         if !(closed && off.length_squared() <= within * within) {
             return Err(None);
         }
-        let witnesses = corners.iter().zip(weights);
-        self.witness = witnesses.fold(Default::default(), |sum: B::Witness, (p, &weight)| sum.plus(p.witness, weight));
-        (self.high, self.high_error) = (high.max(self.low), self.noise / slope);
+        (self.high, self.high_error, self.witness) = (high.max(self.low), self.noise / slope, witness);
         Ok(())
     }
 }
