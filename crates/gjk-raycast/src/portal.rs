@@ -315,7 +315,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 }
             }
             last = high;
-            if high < self.low {
+            if high < self.low - self.low_error {
                 // The ray begins behind the portal, in the body or past it.
                 return Err(None);
             }
