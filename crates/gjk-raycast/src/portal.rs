@@ -215,7 +215,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             p.slant = Some(slant);
             best = Best { tau: slant.crossing(&p), slant, point: p.point };
         }
-        let mut end = self.end();
+        let end = self.end();
 
         // A second point on the other side of the line, of a plane that is tilted towards it.
         let squared = p.u * p.u + p.v * p.v;
@@ -232,7 +232,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         slant = plane.slant();
         let tau = slant.crossing(&q);
         if tau > end {
-            self.separate(frame.normal(self.local.line.direction, slant), &q)?;
+            self.separate_end(frame.normal(self.local.line.direction, slant), &q)?;
         }
         if tau > best.tau {
             best = Best { tau, slant, point: q.point };
@@ -261,8 +261,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             slant = plane.slant();
             let tau = slant.crossing(&s);
             if tau > end {
-                self.separate(frame.normal(self.local.line.direction, slant), &s)?;
-                end = self.end();
+                self.separate_end(frame.normal(self.local.line.direction, slant), &s)?;
             }
             if tau > best.tau {
                 best = Best { tau, slant, point: s.point };
@@ -335,8 +334,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             if tau > best.tau {
                 best = Best { tau, slant, point: r.point };
                 if tau > end {
-                    self.separate(frame.normal(self.local.line.direction, slant), &r)?;
-                    end = self.end();
+                    self.separate_end(frame.normal(self.local.line.direction, slant), &r)?;
                 }
                 if high - best.tau <= wanted * length {
                     break (high, inverse);
@@ -431,6 +429,16 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             Some(n) => self.advance(n, p.point).map_err(Some),
             None => Ok(()),
         }
+    }
+
+    /// The same for a plane that is crossed where the ray ends or later. By rounding alone, that may be where the hit is;
+    /// then nothing changes, so that a ray that ends there finds the hit where a longer one does.
+    #[inline(never)]
+    pub(crate) fn separate_end(&mut self, n: B::Vector, p: &SeenBy<B>) -> Result<(), Exit<B>> {
+        let before = (self.low, self.low_error, self.low_slope, self.normal);
+        self.separate(n, p)?;
+        (self.low, self.low_error, self.low_slope, self.normal) = before;
+        Ok(())
     }
 
     /// Certifies that the bracket has closed: from the last plane to the point at `high`, which is no farther than the

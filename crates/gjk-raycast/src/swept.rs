@@ -94,7 +94,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 let mut next = self.look_slanted(frame, slant)?;
                 let tau = slant.crossing(&next) - radius * slant.length();
                 if tau > end {
-                    self.separate(frame.normal(direction, slant), &next)?;
+                    self.separate_end(frame.normal(direction, slant), &next)?;
                 }
                 if tau > best.tau {
                     best = Best { tau, slant, point: next.point };
@@ -141,7 +141,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             if tau > best.tau {
                 best = Best { tau, slant, point: next.point };
                 if tau > end {
-                    self.separate(n, &next)?;
+                    self.separate_end(n, &next)?;
                 }
                 if high - best.tau <= wanted * length {
                     return self.close(frame, &kept[..len], &at.weights, high, &best);
