@@ -13,7 +13,7 @@ use crate::{Scalar, Vector};
 ///
 /// The directions are sorted into the cells of a grid on the faces of a cube, which is stretched as the polytope is, so
 /// that a needle's cells are filled as evenly as a ball's. Each cell lists all vertices that are farthest along any
-/// of its directions: with about as many cells as vertices these are a handful, whatever their number.
+/// of its directions: with a few cells for each vertex these are a handful, whatever their number.
 ///
 /// Where they are not, as at a corner that is all tiny edges, the cell keeps a vertex to climb from. A corner that no
 /// neighbour is farther along than is farthest of all: its neighbours span the cone that the whole polytope is in. Not

@@ -32,8 +32,8 @@ use crate::{Hint, Scalar, SupportMap, Vector};
 ///
 /// # Speed
 /// [`new`](Self::new) keeps the points as they are and scans all of them in each query, several at a time. With the
-/// feature `hull`, `Polytope::hull_of` finds the vertices and edges of the hull first, and where there are more than a few
-/// dozen, which of them can be farthest along the directions of each cell of a grid: queries look at a handful, however
+/// feature `hull`, `Polytope::hull_of` finds the vertices and edges of the hull first, and where there are more than
+/// eight, which of them can be farthest along the directions of each cell of a grid: queries look at a handful, however
 /// many there are. In a cell of too many they climb along the edges, from a vertex of the cell or from the last answer
 /// ([`Hint`]).
 ///
