@@ -34,11 +34,8 @@ pub(crate) fn entry<V: Vector>(points: &[V], line: Line<V>, radius: V::Scalar, n
         let is_facet = face.len() == V::DIM;
         let mut corners = [V::ZERO; MAX_POINTS];
         let corners = face.of(points, &mut corners);
-        let found = if is_facet {
-            enter_facet(corners, line, radius, noise)
-        } else {
-            enter_edge(corners, line, radius, noise)
-        };
+        let found =
+            if is_facet { enter_facet(corners, line, radius, noise) } else { enter_edge(corners, line, radius, noise) };
         let Some((mu, n, weights)) = found else { continue };
         let better = |b: Entry<V>| mu < b.mu || (is_facet && radius <= noise && b.face.len() < V::DIM);
         let worse = |b: Entry<V>| !is_facet && radius <= noise && b.face.len() == V::DIM;
