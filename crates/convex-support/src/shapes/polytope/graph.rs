@@ -286,7 +286,7 @@ impl<V: Vector> Graph<V> {
         let wrapped: [V::Scalar; 5] = core::array::from_fn(|i| direction.get(i % V::DIM));
         let (mut axis, mut largest) = (0, wrapped[0].abs());
         for i in 1..V::DIM {
-            let candidate = wrapped[i].abs();
+            let candidate = direction.get(i).abs();
             axis = if candidate > largest { i } else { axis };
             largest = if candidate > largest { candidate } else { largest };
         }
