@@ -112,10 +112,10 @@ impl<V: Vector, const EDGES: usize> Flat<V, EDGES> {
         let mut across = v(self.y);
         let mut t = [zero; EDGES];
         for _ in 0..2 {
-            for i in 0..EDGES {
-                let part = across.dot(self.f[i]) / self.squared[i];
-                across -= self.f[i] * part;
-                t[i] += part;
+            for (ti, (&fi, &squared)) in t.iter_mut().zip(self.f.iter().zip(&self.squared)) {
+                let part = across.dot(fi) / squared;
+                across -= fi * part;
+                *ti += part;
             }
         }
         let mut b = [zero; EDGES];
