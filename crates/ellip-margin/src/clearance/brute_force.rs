@@ -8,7 +8,7 @@ use crate::{InvalidQuery, MarginOptions, free_margin};
 
 /// The least margin of any of `links` about any of `obstacles`, every pair solved: n·m margins.
 ///
-/// The plain reference; [`Clearance`] gives the same for a fraction of the work.
+/// The plain reference; [`Clearance`](super::Clearance) gives the same for a fraction of the work.
 ///
 /// # Errors
 /// [`InvalidQuery`] if a list is empty.

@@ -46,7 +46,7 @@ impl LeftOut {
     }
 }
 
-/// A pair within a threshold; see [`Clearance::within`].
+/// A pair within a threshold; see [`Clearance::within`](super::Clearance::within).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct NearPair<V: Vector> {
