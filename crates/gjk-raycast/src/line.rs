@@ -51,17 +51,17 @@ impl<V: Vector> LocalRay<V> {
         let near_one = power_of_two_near(ray.direction.abs().max_element());
         let exact = ray.direction * near_one.recip();
         let direction = exact.unit().unwrap_or_else(|| V::axis(0));
-        let (t, t_exact) = (-s.dot(direction), -s.dot(exact) / exact.length_squared());
-        let speed = exact.norm() * near_one;
+        let length = exact.norm();
+        let t = -s.dot(exact) / exact.length_squared();
         let foot = V::from_fn(|i| {
             let (a, b, sum) = (from.get(i), -to.get(i), s.get(i));
             let b_seen = sum - a;
             let lost = (a - (sum - b_seen)) + (b - b_seen);
-            t_exact.mul_add(exact.get(i), sum) + lost
+            t.mul_add(exact.get(i), sum) + lost
         });
         let rest = foot.dot(direction);
         let foot = foot - direction * rest;
-        Self { line: Line { foot, direction }, start: -(t - rest), per_unit: scale / speed }
+        Self { line: Line { foot, direction }, start: -(t * length - rest), per_unit: scale / (length * near_one) }
     }
 
     /// The parameter λ of the ray at `μ` on the line.

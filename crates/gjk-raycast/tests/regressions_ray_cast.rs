@@ -321,3 +321,23 @@ fn a_ray_in_the_plane_of_a_face_meets_its_edge() {
     }
     both(run::<Vec3A>, run::<DVec3>);
 }
+
+/// Where the ray begins on its line has to belong to the foot that was rounded, or the errors of both add up: four ulps of the
+/// source's distance in place of two, which is all that the bracket allows for.
+#[test]
+fn a_far_source_costs_two_and_a_half_ulps_of_its_distance() {
+    let ball = Ball::<Vec3A>::new(1.0).unwrap();
+    for i in 0..2000_u16 {
+        let turn = f32::from(i) * 0.1;
+        let source = Vec3A::new(turn.cos(), (turn * 0.37).sin(), (turn * 0.11).cos() - 0.3) * 1e6;
+        let direction = -source * (0.3 + f32::from(i) * 1e-3);
+        let cast = ray_cast(&ball, Ray { source, direction }, RayCastOptions::default()).unwrap();
+        let (s, d) = (source.as_dvec3(), direction.as_dvec3());
+        let foot = s - d * (s.dot(d) / d.length_squared());
+        let exact = (-s.dot(d) / d.length() - (1.0 - foot.length_squared()).sqrt()) / d.length();
+        let hit = cast.outcome.hit().expect("the ray goes to the centre");
+        let ulps = (f64::from(hit.lambda) - exact).abs() * d.length() / (s.length() * f64::from(f32::EPSILON));
+        assert!(ulps <= 2.5, "ray {i}: {ulps} ulps");
+        assert!(f64::from(cast.lower) <= exact && exact <= f64::from(cast.upper), "ray {i}: {cast:?} for {exact}");
+    }
+}
