@@ -6,7 +6,7 @@
 use std::hint::black_box;
 use std::time::Duration;
 
-use benches::w4_enclosing::{Cloud, corners, in_ball, on_sphere, points};
+use benches::w4_enclosing::{Cloud, cloud, corners, in_ball, on_sphere};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use lj_ellipsoid::{Enclosing, EnclosingMethod, EnclosingOptions, MovingPoints, enclosing};
 
@@ -17,10 +17,6 @@ const METHODS: [(&str, EnclosingMethod, &[f64], usize); 4] = [
     ("khachiyan away", EnclosingMethod::Khachiyan, &[1e-4, 1e-7], 10_000),
     ("ellipsoid algorithm", EnclosingMethod::EllipsoidAlgorithm, &[1e-2, 1e-4], 100),
 ];
-
-fn cloud<const N: usize>(kind: Cloud, count: usize) -> Vec<[f64; N]> {
-    points(kind, N, count).as_chunks::<N>().0.to_vec()
-}
 
 /// Agreement within the certified gaps: nobody is better than somebody else's bound.
 fn check<const N: usize>(answers: &[Enclosing<N>]) {

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Duration;
 
-use benches::w4_enclosing::{Cloud, halfspaces, points};
+use benches::w4_enclosing::{Cloud, cloud, halfspaces};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use lj_ellipsoid::{InscribedOptions, Status, inscribed, inscribed_in_hull};
 
@@ -25,12 +25,11 @@ fn from_points<const N: usize>(c: &mut Criterion) {
     let mut group = c.benchmark_group(format!("inscribed/hull of normal points/n{N}"));
     group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_secs(1));
     for count in [8, 100, 10_000] {
-        let cloud = points(Cloud::Normal, N, count);
-        let cloud = cloud.as_chunks::<N>().0;
-        let answer = inscribed_in_hull(cloud, InscribedOptions::new()).expect("the points span the space");
+        let cloud = cloud::<N>(Cloud::Normal, count);
+        let answer = inscribed_in_hull(&cloud, InscribedOptions::new()).expect("the points span the space");
         assert_eq!(answer.status, Status::Converged, "{count} points, gap {}", answer.log_det_gap);
         group.bench_function(BenchmarkId::from_parameter(count), |b| {
-            b.iter(|| inscribed_in_hull(black_box(cloud), InscribedOptions::new()));
+            b.iter(|| inscribed_in_hull(black_box(&cloud), InscribedOptions::new()));
         });
     }
     group.finish();

@@ -6,8 +6,8 @@
 //! that they do. Convex radii are zero, so that shapes have sharp edges.
 
 use oxijolt::{
-    BodySettings, CollideShape, PhysicsWorld, Quat, QueryFilter, RVec3, RayCast, Shape as Body, ShapeCast, Vec3,
-    WorldSettings,
+    BodySettings, CollideShape, PhysicsWorld, Quat, QueryError, QueryFilter, RVec3, RayCast, Shape as Body, ShapeCast,
+    Vec3, WorldSettings,
 };
 
 use crate::Pose;
@@ -29,9 +29,8 @@ const MAX_HULL_VERTICES: usize = 256;
 pub fn ray_casts(shape: &Shape, rays: &[Ray]) -> Option<Solver> {
     let world = world(&body(shape)?);
     let rays = rays.iter().map(|ray| RayCast::new(position(ray.origin), vector(ray.direction))).collect();
-    Some(Solver::new(rays, move |ray| match world.cast_ray(ray, &QueryFilter::new()) {
-        Ok(hit) => hit.map_or(f64::INFINITY, |hit| f64::from(hit.fraction)),
-        Err(_) => f64::NAN,
+    Some(Solver::new(rays, move |ray| {
+        lambda(world.cast_ray(ray, &QueryFilter::new()).map(|hit| hit.map(|hit| hit.fraction)))
     }))
 }
 
@@ -45,13 +44,8 @@ pub fn linear_casts(pair: &Pair, casts: &[Cast]) -> Option<Solver> {
     let world = world(&a);
     let queries = casts.iter().map(|cast| (placed(cast.pose), vector(cast.velocity))).collect();
     Some(Solver::new(queries, move |&((position, rotation), velocity)| {
-        match world.cast_shape(
-            &ShapeCast::new(&b, position, rotation, velocity).collide_with_back_faces(true),
-            &QueryFilter::new(),
-        ) {
-            Ok(hit) => hit.map_or(f64::INFINITY, |hit| f64::from(hit.fraction)),
-            Err(_) => f64::NAN,
-        }
+        let cast = ShapeCast::new(&b, position, rotation, velocity).collide_with_back_faces(true);
+        lambda(world.cast_shape(&cast, &QueryFilter::new()).map(|hit| hit.map(|hit| hit.fraction)))
     }))
 }
 
@@ -65,6 +59,11 @@ pub fn intersections(pair: &Pair, queries: &[IntersectQuery]) -> Option<Solver> 
         let hits = world.collide_shape(&CollideShape::new(&b, position, rotation), &QueryFilter::new());
         hits.map_or(f64::NAN, |hits| f64::from(u8::from(!hits.is_empty())))
     }))
+}
+
+/// Where a cast hit, if it was answered.
+fn lambda(fraction: Result<Option<f32>, QueryError>) -> f64 {
+    fraction.map_or(f64::NAN, |hit| hit.map_or(f64::INFINITY, f64::from))
 }
 
 /// A world in which that body rests at the origin, and nothing else is.

@@ -33,6 +33,12 @@ pub fn points(cloud: Cloud, dimension: usize, count: usize) -> Vec<f64> {
     (0..dimension * count).map(|_| draw(&mut rng)).collect()
 }
 
+/// The same points as arrays.
+#[must_use]
+pub fn cloud<const N: usize>(kind: Cloud, count: usize) -> Vec<[f64; N]> {
+    points(kind, N, count).as_chunks::<N>().0.to_vec()
+}
+
 /// `count` points uniform on the unit sphere.
 #[must_use]
 pub fn on_sphere<const N: usize>(count: usize) -> Vec<[f64; N]> {

@@ -12,7 +12,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use benches::rng::Rng;
-use benches::w4_enclosing::{Cloud, corners, halfspaces, in_ball, on_sphere, points};
+use benches::w4_enclosing::{Cloud, cloud, corners, halfspaces, in_ball, on_sphere};
 use cpu_time::ThreadTime;
 use lj_ellipsoid::{
     Enclosing, EnclosingMethod, EnclosingOptions, InscribedOptions, MovingPoints, enclosing, inscribed,
@@ -106,11 +106,6 @@ fn memory(name: &str, points: &[[f64; 3]]) {
     println!("memory beyond the input, {name}: {:.3} of its size", (after - before) / size_of_val(points) as f64);
 }
 
-fn cloud<const N: usize>(kind: Cloud, count: usize) -> Vec<[f64; N]> {
-    let mut numbers = points(kind, N, count).into_iter();
-    (0..count).map(|_| std::array::from_fn(|_| numbers.next().expect("count times N numbers"))).collect()
-}
-
 fn enclosed() {
     println!("\n| points | time | goal | | |\n|---|---|---|---|---|");
     measure("box, N = 2, m = 4", &corners([2.0, 1.0]), 2e-6);
@@ -172,20 +167,16 @@ fn moving() {
         _ = black_box(moving.enclosing());
     });
     println!("| a point that touches moves | {} |", shown(moved));
-    let outside = seconds(BUDGET, || {
-        let index = moving.insert(home.map(|x| 1.01 * x)).expect("finite");
-        _ = black_box(moving.enclosing());
-        moving.remove(index);
-        _ = black_box(moving.enclosing());
-    });
-    println!("| a point comes outside and goes: two solves | {} |", shown(outside));
-    let inside = seconds(BUDGET, || {
-        let index = moving.insert(home.map(|x| 0.5 * x)).expect("finite");
-        _ = black_box(moving.enclosing());
-        moving.remove(index);
-        _ = black_box(moving.enclosing());
-    });
-    println!("| a point comes inside and goes | {} |", shown(inside));
+    for (factor, name) in [(1.01, "a point comes outside and goes: two solves"), (0.5, "a point comes inside and goes")]
+    {
+        let visit = seconds(BUDGET, || {
+            let index = moving.insert(home.map(|x| factor * x)).expect("finite");
+            _ = black_box(moving.enclosing());
+            moving.remove(index);
+            _ = black_box(moving.enclosing());
+        });
+        println!("| {name} | {} |", shown(visit));
+    }
 }
 
 /// The vertices of an OBJ file.

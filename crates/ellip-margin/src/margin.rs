@@ -159,7 +159,7 @@ fn quick<const N: usize>(
     }
 }
 
-/// An answer of the polynomial with a margin that can be relied on; without one, that of the singular basis.
+/// An answer of the polynomial that is not sure, with a margin that can be relied on; without one, that of the singular basis.
 fn finished<const N: usize>(
     pair: &Pair<N>,
     quick: Option<Quick<N>>,
@@ -168,8 +168,7 @@ fn finished<const N: usize>(
     observer: impl FnMut(f64, f64),
 ) -> Solution<N> {
     match quick {
-        Some(Quick { solution, is_sure: true }) => solution,
-        Some(Quick { solution, is_sure: false }) => {
+        Some(Quick { solution, .. }) => {
             Solution { margin: pair.compensated_margin(solution.y, solution.nu), ..solution }
         }
         None => secular::solve(pair, nu, options, observer),

@@ -158,6 +158,14 @@ pub(crate) enum End<V> {
 /// A support point and what it is made of, or how the search ends instead.
 pub(crate) type Probe<B> = Result<(<B as Body>::Vector, <B as Body>::Witness), End<<B as Body>::Vector>>;
 
+/// Where the ray crosses a plane that the body is behind.
+pub(crate) struct Crossing<S> {
+    at: S,
+    error: S,
+    /// The cosine at which it is crossed.
+    slope: S,
+}
+
 pub(crate) struct Search<'a, B: Body, O> {
     pub(crate) body: &'a mut B,
     pub(crate) local: LocalRay<B::Vector>,
@@ -239,24 +247,36 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     /// anything of the ray.
     #[inline(always)]
     pub(crate) fn advance(&mut self, n: B::Vector, point: B::Vector) -> Result<(), End<B::Vector>> {
+        if let Some(Crossing { at, error, slope }) = self.crossing(n, point)?
+            && at - error >= self.low - self.low_error
+        {
+            (self.low, self.low_error, self.low_slope, self.normal) = (at, error, slope, Some(n));
+        }
+        Ok(())
+    }
+
+    /// Where the ray crosses the plane across the unit vector `n` that supports the body at `point` of the core, if that is
+    /// ahead; or that the plane leaves nothing of the ray.
+    #[inline(always)]
+    pub(crate) fn crossing(
+        &self,
+        n: B::Vector,
+        point: B::Vector,
+    ) -> Result<Option<Crossing<ScalarOf<B>>>, End<B::Vector>> {
         let zero = ScalarOf::<B>::ZERO;
         let x = self.local.line.at(self.low);
         let ahead = n.dot(x - point) - self.radius;
         let slope = n.dot(self.local.line.direction);
         if ahead > zero && slope < zero {
-            let (next, error) = (self.low - ahead / slope, -self.noise / slope);
+            let (at, error) = (self.low - ahead / slope, -self.noise / slope);
             // By products: for a plane along the ray the quotients overflow.
             let leaves_first = ahead - self.noise > (self.half_chord - self.low) * -slope;
-            if leaves_first || self.is_beyond(next, error) {
+            if leaves_first || self.is_beyond(at, error) {
                 return Err(End::Miss(n));
             }
-            if next - error >= self.low - self.low_error {
-                (self.low, self.low_error, self.low_slope, self.normal) = (next, error, -slope, Some(n));
-            }
-        } else if ahead > self.noise {
-            return Err(End::Miss(n));
+            return Ok(Some(Crossing { at, error, slope: -slope }));
         }
-        Ok(())
+        if ahead > self.noise { Err(End::Miss(n)) } else { Ok(None) }
     }
 
     #[inline(always)]

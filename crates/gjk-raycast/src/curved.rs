@@ -15,30 +15,13 @@ use num_traits::Float as _;
 use crate::Iterate;
 use crate::body::Body;
 use crate::cast::{ScalarOf, Search};
-use crate::piece::{Piece, Pieces};
+use crate::piece::{Below, Piece, Pieces};
 use crate::portal::{Best, Exit, Frame, Portal, SeenBy, Slant};
 use crate::summit::summit;
 use crate::symmetric::Symmetric;
 
 /// Support points of the search.
 const MAX_STEPS: usize = 40;
-
-/// Up to three points of the body, and a combination of them that is on the ray.
-struct Below<B: Body> {
-    corners: [SeenBy<B>; 3],
-    weights: [ScalarOf<B>; 3],
-    len: usize,
-    /// Where on the ray it is.
-    high: ScalarOf<B>,
-}
-
-impl<B: Body> Clone for Below<B> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<B: Body> Copy for Below<B> {}
 
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     /// The derivative of the swept body's support point at `n` along `change`.
@@ -93,7 +76,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         // At a small slope, what closes the bracket to rounding of the planes is long along the ray, and there one more plane
         // mostly shortens it by all of the rest: `λ` is where the last plane is crossed. Meanwhile this is what closes it.
         let fine = (self.noise + self.noise).max(self.options.tolerance);
-        let mut closing: Option<Below<B>> = None;
+        let mut closing: Option<Below<B::Vector, B::Witness>> = None;
         for _ in 0..MAX_STEPS {
             let seen = match self.look_slanted(frame, slant) {
                 Ok(seen) => seen,
@@ -126,17 +109,9 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             }
             let within = wanted * best.slant.length();
             // A segment first, since the weights in a flat triangle may be nothing but rounding.
-            let passed = pieces.passed(self.noise).map(|(corners, weights, len)| {
-                let corners = corners.map(|i| pieces.kept[i].seen);
-                let mut high = zero;
-                for (p, &weight) in corners[..len].iter().zip(&weights) {
-                    high += p.t * weight;
-                }
-                Below { corners, weights, len, high }
-            });
-            let pierced = Below { corners: portal.corners, weights: portal.weights, len: 3, high: portal.high };
+            let passed = pieces.passed(self.noise).filter(|below| below.high >= start);
             let last = closing;
-            for below in [passed.filter(|below| below.high >= start), Some(pierced), last].into_iter().flatten() {
+            for below in [passed, Some(Below::from(portal)), last].into_iter().flatten() {
                 let gap = below.high - best.tau;
                 if !(gap <= within) {
                     continue;
@@ -145,7 +120,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                     closing = closing.or(Some(below));
                     continue;
                 }
-                match self.close(frame, &below.corners[..below.len], &below.weights[..below.len], below.high, &best) {
+                match self.close(frame, below.corners(), below.weights(), below.high, &best) {
                     Err(None) => {}
                     end => return end,
                 }
@@ -169,9 +144,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             slant = to;
         }
         match closing {
-            Some(below) => {
-                self.close(frame, &below.corners[..below.len], &below.weights[..below.len], below.high, &best)
-            }
+            Some(below) => self.close(frame, below.corners(), below.weights(), below.high, &best),
             None => Err(None),
         }
     }

@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::flat::{project, width};
+use crate::flat::{Flat, project};
 use crate::line::Line;
 use crate::simplex::{Face, MAX_POINTS, faces};
 
@@ -34,8 +34,12 @@ pub(crate) fn entry<V: Vector>(points: &[V], line: Line<V>, radius: V::Scalar, n
         let is_facet = face.len() == V::DIM;
         let mut corners = [V::ZERO; MAX_POINTS];
         let corners = face.of(points, &mut corners);
-        let found =
-            if is_facet { enter_facet(corners, line, radius, noise) } else { enter_edge(corners, line, radius, noise) };
+        let found = match (is_facet, corners.len()) {
+            (true, 2) => enter_facet::<V, 1>(corners, line, radius, noise),
+            (true, _) => enter_facet::<V, 2>(corners, line, radius, noise),
+            (false, 1) => enter_edge(&Flat::<V, 0>::new(corners), line, radius, noise),
+            (false, _) => enter_edge(&Flat::<V, 1>::new(corners), line, radius, noise),
+        };
         let Some((mu, n, weights)) = found else { continue };
         let better = |b: Entry<V>| mu < b.mu || (is_facet && radius <= noise && b.face.len() < V::DIM);
         let worse = |b: Entry<V>| !is_facet && radius <= noise && b.face.len() == V::DIM;
@@ -52,8 +56,13 @@ type Found<V> = Option<(<V as Vector>::Scalar, V, [<V as Vector>::Scalar; MAX_PO
 ///
 /// Which point of the facet lies below the crossing is read off across the line, where the line is a point and the facet
 /// a triangle: the barycentric coordinates are the same there, and how flat the line meets the facet does not matter.
-fn enter_facet<V: Vector>(corners: &[V], line: Line<V>, radius: V::Scalar, noise: V::Scalar) -> Found<V> {
-    let d = project(corners, |_| line.direction).across;
+fn enter_facet<V: Vector, const EDGES: usize>(
+    corners: &[V],
+    line: Line<V>,
+    radius: V::Scalar,
+    noise: V::Scalar,
+) -> Found<V> {
+    let d = Flat::<V, EDGES>::new(corners).project(|_| line.direction).across;
     let slope = -d.length();
     // A facet along the line has nothing but rounding for d.
     if !(slope < V::Scalar::from_f64(-8.0) * V::Scalar::EPSILON) {
@@ -66,10 +75,11 @@ fn enter_facet<V: Vector>(corners: &[V], line: Line<V>, radius: V::Scalar, noise
     }
     let below = -line.across(n) * radius;
     // A facet that is seen as narrow as rounding has edges only: neither where it is crossed nor its slope is known.
-    if !(width(&seen[..corners.len()]) > noise) {
+    let flat = Flat::<V, EDGES>::new(&seen);
+    if !(flat.width() > noise) {
         return None;
     }
-    let coordinates = project(&seen[..corners.len()], |corner| below - corner).coordinates;
+    let coordinates = flat.project(|corner| below - corner).coordinates;
     // Weights that are negative by rounding are none: then what the line passes is a point of the facet itself, and not
     // of its plane, which rounding may have turned along the line. It passes within the noise, or elsewhere. The others are read
     // off anew along their edge: in a sliver, what rounding leaves of a weight moves the point by much more than rounding.
@@ -106,22 +116,27 @@ fn enter_facet<V: Vector>(corners: &[V], line: Line<V>, radius: V::Scalar, noise
 ///
 /// Seen along the flat, the line passes a point at the vector `m`, with velocity `d`. It is nearest at `μ₀ = −m·d/d·d`, and
 /// at distance `radius` half a chord earlier.
-fn enter_edge<V: Vector>(corners: &[V], line: Line<V>, radius: V::Scalar, noise: V::Scalar) -> Found<V> {
+fn enter_edge<V: Vector, const EDGES: usize>(
+    flat: &Flat<V, EDGES>,
+    line: Line<V>,
+    radius: V::Scalar,
+    noise: V::Scalar,
+) -> Found<V> {
     // Beyond the end of an edge is the sphere about its corner, which is no other place if its radius is rounding.
     let (radius, slack) = if radius > noise { (radius, V::Scalar::ZERO) } else { (noise, noise) };
-    let d = project(corners, |_| line.direction).across;
-    let m = project(corners, |corner| line.foot - corner).across;
+    let d = flat.project(|_| line.direction).across;
+    let m = flat.project(|corner| line.foot - corner).across;
     let squared = d.length_squared();
     let nearest = -m.dot(d) / squared;
-    let passing = project(corners, |_| m + d * nearest).across;
+    let passing = flat.project(|_| m + d * nearest).across;
     let rest = radius * radius - passing.length_squared();
     if !(rest >= V::Scalar::ZERO) {
         return None;
     }
     let half = (rest / squared).sqrt();
     let (mu, n) = (nearest - half, (passing - d * half).unit()?);
-    let below = project(corners, |corner| line.at(mu) - n * radius - corner);
-    let length = width(corners);
+    let below = flat.project(|corner| line.at(mu) - n * radius - corner);
+    let length = flat.width();
     let within = below.coordinates.iter().all(|&b| b * length >= -slack);
     let weights = below.coordinates.map(|b| b.max(V::Scalar::ZERO).min(V::Scalar::ONE));
     (mu.is_finite() && within).then_some((mu, n, weights))

@@ -22,7 +22,7 @@ use crate::simplex::MAX_POINTS;
 /// coordinate that nothing is subtracted from; from the far corner itself it would be one less the others, and lost.
 ///
 /// With the number of edges for a parameter, all of it is arithmetic on numbers in registers.
-struct Flat<V: Vector, const EDGES: usize> {
+pub(crate) struct Flat<V: Vector, const EDGES: usize> {
     y: V,
     /// The places of `y` and of the ends of the edges among the points.
     order: [usize; MAX_POINTS],
@@ -53,25 +53,10 @@ pub(crate) fn project<V: Vector>(points: &[V], v: impl FnOnce(V) -> V) -> Projec
     }
 }
 
-/// The least height of a segment or triangle: its length; twice its area over its longest edge. Zero of a point.
-pub(crate) fn width<V: Vector>(points: &[V]) -> V::Scalar {
-    match points.len() {
-        1 => V::Scalar::ZERO,
-        2 => (points[1] - points[0]).length(),
-        _ => {
-            let Flat { squared: [first, height], c, .. } = Flat::<V, 2>::new(points);
-            // The second edge, and the one from the first's end to the second's, are this far along the first.
-            let share = c[1][0];
-            let beyond = share - V::Scalar::ONE;
-            let longest = first.max(height + first * share * share).max(height + first * beyond * beyond);
-            (first * height / longest).sqrt()
-        }
-    }
-}
-
 impl<V: Vector, const EDGES: usize> Flat<V, EDGES> {
+    /// Of as many points as there are edges, and one more.
     #[inline(always)]
-    fn new(points: &[V]) -> Self {
+    pub(crate) fn new(points: &[V]) -> Self {
         let zero = V::Scalar::ZERO;
         let mut order = [0, 1, 2, 3];
         let mut distances = [zero; MAX_POINTS];
@@ -104,10 +89,29 @@ impl<V: Vector, const EDGES: usize> Flat<V, EDGES> {
         Self { y, order, f, c, squared }
     }
 
+    /// The least height of a segment or triangle: its length; twice its area over its longest edge. Zero of a point.
+    pub(crate) fn width(&self) -> V::Scalar {
+        let squared = |edge: usize| self.squared[edge];
+        match EDGES {
+            0 => V::Scalar::ZERO,
+            1 => squared(0).sqrt(),
+            _ => {
+                let (first, height) = (squared(0), squared(1));
+                // The second edge, and the one from the first's end to the second's, are this far along the first.
+                let share = self.c[1][0];
+                let beyond = share - V::Scalar::ONE;
+                let longest = first.max(height + first * share * share).max(height + first * beyond * beyond);
+                (first * height / longest).sqrt()
+            }
+        }
+    }
+
+    /// Splits the vector that `v` says, given the point nearest to zero.
+    ///
     /// The coordinates follow from `v = Σ t_i·f_i + across` by back-substitution: with `v = Σ b_i·e_i + across`,
     /// `b_i = t_i − Σ_{k>i} b_k·c_ki`.
     #[inline(always)]
-    fn project(&self, v: impl FnOnce(V) -> V) -> Projection<V> {
+    pub(crate) fn project(&self, v: impl FnOnce(V) -> V) -> Projection<V> {
         let zero = V::Scalar::ZERO;
         let mut across = v(self.y);
         let mut t = [zero; EDGES];

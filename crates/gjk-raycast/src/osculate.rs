@@ -11,7 +11,7 @@ use num_traits::Float as _;
 use crate::Iterate;
 use crate::body::Body;
 use crate::cast::{ScalarOf, Search};
-use crate::piece::{MAX_PIECES, Piece, Pieces};
+use crate::piece::{Piece, Pieces};
 use crate::portal::{Best, Exit, Frame, Slant};
 use crate::symmetric::{Symmetric, dot};
 
@@ -50,30 +50,18 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                     }
                     let piece = Piece { seen, slant, bend };
                     match &mut pieces {
-                        Some(pieces) if pieces.len == MAX_PIECES => {
-                            pieces.kept.rotate_left(1);
-                            pieces.kept[MAX_PIECES - 1] = piece;
-                        }
-                        Some(pieces) => {
-                            pieces.kept[pieces.len] = piece;
-                            pieces.len += 1;
-                        }
+                        Some(pieces) => pieces.follow(piece),
                         None => pieces = Some(Pieces::new(piece)),
                     }
                 }
             }
             if let (Some(best), Some(pieces), Some(at)) = (&best, &pieces, slant) {
-                if let Some((corners, weights, len)) = pieces.passed(self.noise) {
-                    let corners = corners.map(|i| pieces.kept[i].seen);
-                    let mut high = zero;
-                    for (p, &weight) in corners[..len].iter().zip(&weights) {
-                        high += p.t * weight;
-                    }
-                    if high < self.low {
+                if let Some(below) = pieces.passed(self.noise) {
+                    if below.high < self.low {
                         return Err(None);
                     }
-                    if high - best.tau <= wanted * best.slant.length() {
-                        return self.close(frame, &corners[..len], &weights[..len], high, best);
+                    if below.high - best.tau <= wanted * best.slant.length() {
+                        return self.close(frame, below.corners(), below.weights(), below.high, best);
                     }
                 }
                 // Near the end, Newton's step is the same, and does not cancel.

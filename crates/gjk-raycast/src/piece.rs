@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::portal::{Seen, Slant};
+use crate::portal::{Portal, Seen, Slant};
 use crate::symmetric::{Across, Symmetric, dot};
 
 /// A support point, where it was found, and how it moves from there.
@@ -74,10 +74,36 @@ pub(crate) const MAX_PIECES: usize = 4;
 /// How far, of the way that a point has moved, it may be from where it was expected to be the same piece's.
 const FORETOLD: f64 = 0.5;
 
+/// Up to three points of the body, and a combination of them that is on the ray.
+#[derive(Clone, Copy)]
+pub(crate) struct Below<V: Vector, W> {
+    corners: [Seen<V, W>; 3],
+    weights: [V::Scalar; 3],
+    len: usize,
+    /// Where on the ray it is.
+    pub(crate) high: V::Scalar,
+}
+
+impl<V: Vector, W> Below<V, W> {
+    pub(crate) fn corners(&self) -> &[Seen<V, W>] {
+        &self.corners[..self.len]
+    }
+
+    pub(crate) fn weights(&self) -> &[V::Scalar] {
+        &self.weights[..self.len]
+    }
+}
+
+impl<V: Vector, W> From<Portal<V, W>> for Below<V, W> {
+    fn from(portal: Portal<V, W>) -> Self {
+        Self { corners: portal.corners, weights: portal.weights, len: 3, high: portal.high }
+    }
+}
+
 /// The last pieces, the newest last.
 pub(crate) struct Pieces<V: Vector, W> {
-    pub(crate) kept: [Piece<V, W>; MAX_PIECES],
-    pub(crate) len: usize,
+    kept: [Piece<V, W>; MAX_PIECES],
+    len: usize,
 }
 
 impl<V: Vector, W: Copy> Pieces<V, W> {
@@ -128,14 +154,31 @@ impl<V: Vector, W: Copy> Pieces<V, W> {
         again
     }
 
-    /// The point, segment or triangle of pieces, the newest among them, that the line passes within `noise`: its
-    /// corners and their weights.
-    pub(crate) fn passed(&self, noise: V::Scalar) -> Option<([usize; 3], [V::Scalar; 3], usize)> {
+    /// Adds a piece, in place of the oldest where there are as many as are kept.
+    pub(crate) fn follow(&mut self, piece: Piece<V, W>) {
+        if self.len == MAX_PIECES {
+            self.kept.rotate_left(1);
+        } else {
+            self.len += 1;
+        }
+        self.kept[self.len - 1] = piece;
+    }
+
+    /// The point, segment or triangle of pieces, the newest among them, that the line passes within `noise`.
+    pub(crate) fn passed(&self, noise: V::Scalar) -> Option<Below<V, W>> {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
+        let below = |corners: [usize; 3], weights: [V::Scalar; 3], len| {
+            let corners = corners.map(|i| self.kept[i].seen);
+            let mut high = zero;
+            for (p, &weight) in corners[..len].iter().zip(&weights) {
+                high += p.t * weight;
+            }
+            Some(Below { corners, weights, len, high })
+        };
         let newest = self.len - 1;
         let p = &self.kept[newest].seen;
         if p.u * p.u + p.v * p.v <= noise * noise {
-            return Some(([newest; 3], [one, zero, zero], 1));
+            return below([newest; 3], [one, zero, zero], 1);
         }
         for i in 0..newest {
             let q = &self.kept[i].seen;
@@ -143,7 +186,7 @@ impl<V: Vector, W: Copy> Pieces<V, W> {
             let share = (-(p.u * du + p.v * dv) / (du * du + dv * dv)).max(zero).min(one);
             let (u, v) = (p.u + du * share, p.v + dv * share);
             if u * u + v * v <= noise * noise {
-                return Some(([newest, i, i], [one - share, share, zero], 2));
+                return below([newest, i, i], [one - share, share, zero], 2);
             }
         }
         for i in 0..newest {
@@ -154,7 +197,7 @@ impl<V: Vector, W: Copy> Pieces<V, W> {
                 let weights = weights.map(|w| w * inverse);
                 // NaN fails this too.
                 if weights.iter().all(|&w| w >= zero) && inverse.is_finite() {
-                    return Some(([newest, i, j], weights, 3));
+                    return below([newest, i, j], weights, 3);
                 }
             }
         }

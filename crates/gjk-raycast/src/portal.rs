@@ -434,11 +434,11 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     /// The same for a plane that is crossed where the ray ends or later. By rounding alone, that may be where the hit is;
     /// then nothing changes, so that a ray that ends there finds the hit where a longer one does.
     #[inline(never)]
-    pub(crate) fn separate_end(&mut self, n: B::Vector, p: &SeenBy<B>) -> Result<(), Exit<B>> {
-        let before = (self.low, self.low_error, self.low_slope, self.normal);
-        self.separate(n, p)?;
-        (self.low, self.low_error, self.low_slope, self.normal) = before;
-        Ok(())
+    pub(crate) fn separate_end(&self, n: B::Vector, p: &SeenBy<B>) -> Result<(), Exit<B>> {
+        match n.unit() {
+            Some(n) => self.crossing(n, p.point).map(drop).map_err(Some),
+            None => Ok(()),
+        }
     }
 
     /// Certifies that the bracket has closed: from the last plane to the point at `high`, which is no farther than the
