@@ -28,7 +28,7 @@ pub(super) fn section(records: &[Record]) -> Section {
         title: "Every case",
         lead: "Each case has a true answer and says what error its inputs allow: 1e-7 (in f32 1e-4) of the answer, and twice \
                what a change of the inputs by 1000 (in f32 16) ulps does to the truth. The column err/allow is the worst \
-               error in that unit; an answer is wrong where it exceeds 1, where a flag is, or where an error came in place of \
+               error in that unit, rel the relative error (of ellipsoids, that of the volume); an answer is wrong where it exceeds 1, where a flag is, or where an error came in place of \
                an answer. A case is soft, right with a remark, where a normal, a witness or a certificate is off."
             .to_owned(),
         blocks,
@@ -47,16 +47,11 @@ const QUERIES: [&str; 8] = [
     "clearance",
 ];
 
-/// The error that is plotted: relative, but for the logarithm of a volume its own, which is relative already.
-fn plotted(record: &Record) -> Option<f64> {
-    if record.query.ends_with("_ellipsoid") { record.verdict.error } else { record.verdict.relative }
-}
-
 /// Relative error against time, a colour for each query.
 fn scatter(records: &[Record], precision: &str) -> Option<Figure> {
     let series = |(colour, query): (usize, &&str)| {
         let of_query = records.iter().filter(|r| r.precision == precision && r.query == **query);
-        let points: Vec<[f64; 2]> = of_query.filter_map(|r| Some([r.time?, plotted(r)?.min(1.0)])).collect();
+        let points: Vec<[f64; 2]> = of_query.filter_map(|r| Some([r.time?, r.verdict.relative?.min(1.0)])).collect();
         (!points.is_empty()).then(|| Series { name: (*query).to_owned(), points, joined: false, colour })
     };
     let series: Vec<Series> = QUERIES.iter().enumerate().filter_map(series).collect();
@@ -65,7 +60,7 @@ fn scatter(records: &[Record], precision: &str) -> Option<Figure> {
         plot: Plot {
             title: format!("Each case in {precision}"),
             x: "time per query".to_owned(),
-            y: "relative error; of a log-volume, absolute".to_owned(),
+            y: "relative error; of ellipsoids, that of the volume".to_owned(),
             scales: [Scale::Time, Scale::Log],
             floor: FLOOR,
             series,

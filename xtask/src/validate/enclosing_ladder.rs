@@ -15,10 +15,10 @@ use crate::plot::{Plot, Scale, Series};
 
 /// The methods, the gap each is asked for, and how many iterations it may take.
 const METHODS: [(&str, EnclosingMethod, f64, usize); 4] = [
-    ("newton", EnclosingMethod::Newton, 1e-13, 0),
-    ("khachiyan", EnclosingMethod::Khachiyan, 1e-9, 40_000),
-    ("ellipsoid", EnclosingMethod::EllipsoidAlgorithm, 1e-10, 10_000),
-    ("dual_newton", EnclosingMethod::DualReducedNewton, 1e-13, 0),
+    ("Newton", EnclosingMethod::Newton, 1e-13, 0),
+    ("Khachiyan", EnclosingMethod::Khachiyan, 1e-9, 40_000),
+    ("ellipsoid algorithm", EnclosingMethod::EllipsoidAlgorithm, 1e-10, 10_000),
+    ("dual Newton", EnclosingMethod::DualReducedNewton, 1e-13, 0),
 ];
 
 /// How long a method may repeat itself for a steadier time.
@@ -46,6 +46,7 @@ pub(super) fn figures(scope: &Scope) -> Vec<Figure> {
 struct Kind {
     /// As in the name of a file.
     name: &'static str,
+    title: &'static str,
     points: Vec<[f64; 3]>,
     what: &'static str,
 }
@@ -54,16 +55,33 @@ fn kinds(count: usize) -> Vec<Kind> {
     let mut random = Random(0x10e9);
     let mut draw = |point: fn(&mut Random) -> [f64; 3]| (0..count).map(|_| point(&mut random)).collect::<Vec<_>>();
     let mut kinds = vec![
-        Kind { name: "normal", points: draw(Random::normals), what: "normal points: few touch" },
-        Kind { name: "ball", points: draw(Random::in_ball), what: "points spread evenly in a ball: many nearly touch" },
-        Kind { name: "sphere", points: draw(Random::on_sphere), what: "points on a sphere: all nearly touch" },
+        Kind {
+            name: "normal",
+            title: "normal points",
+            points: draw(Random::normals),
+            what: "normal points: few touch",
+        },
+        Kind {
+            name: "ball",
+            title: "points in a ball",
+            points: draw(Random::in_ball),
+            what: "points spread evenly in a ball: many nearly touch",
+        },
+        Kind {
+            name: "sphere",
+            title: "points on a sphere",
+            points: draw(Random::on_sphere),
+            what: "points on a sphere: all nearly touch",
+        },
         Kind {
             name: "lognormal",
+            title: "lognormal points",
             points: draw(|r| r.normals().map(f64::exp)),
             what: "exponentials of normal numbers: a long tail to one side",
         },
         Kind {
             name: "cauchy",
+            title: "Cauchy-scaled points",
             points: draw(|r| {
                 let scale = r.normal() / r.normal();
                 r.normals().map(|x| scale * x)
@@ -72,6 +90,7 @@ fn kinds(count: usize) -> Vec<Kind> {
         },
         Kind {
             name: "aspect",
+            title: "aspect 1e6",
             points: draw(|r| {
                 let [x, y, z] = r.normals();
                 let (y, z) = (1e-3 * y, 1e-6 * z);
@@ -83,7 +102,12 @@ fn kinds(count: usize) -> Vec<Kind> {
     ];
     if let Ok(mesh) = Meshes::relative_to(Path::new("")).load(Path::new(LINK)) {
         let points = mesh.points().iter().map(|p| p.to_array()).collect();
-        kinds.push(Kind { name: "mesh", points, what: "the vertices of the forearm of a UR5" });
+        kinds.push(Kind {
+            name: "mesh",
+            title: "a robot's link",
+            points,
+            what: "the vertices of the forearm of a UR5",
+        });
     }
     kinds
 }
@@ -132,10 +156,10 @@ fn gap_against_time(kind: &Kind) -> Figure {
     Figure {
         name: format!("ladder-enclosing-{}", kind.name),
         plot: Plot {
-            title: format!("enclosing_ellipsoid: gap against time, {}", kind.name),
-            x: "nanoseconds".to_owned(),
+            title: format!("Enclosing ellipsoid: {}", kind.title),
+            x: "time".to_owned(),
             y: "certified gap on ln det X".to_owned(),
-            scales: [Scale::Log, Scale::Log],
+            scales: [Scale::Time, Scale::Log],
             floor: FLOOR,
             series,
         },
@@ -161,7 +185,7 @@ fn cuts_against_gap(count: usize) -> Figure {
     Figure {
         name: "ladder-enclosing-cuts".to_owned(),
         plot: Plot {
-            title: "enclosing_ellipsoid: cuts of the ellipsoid algorithm".to_owned(),
+            title: "Enclosing ellipsoid: cuts of the ellipsoid algorithm".to_owned(),
             x: "certified gap on ln det X".to_owned(),
             y: "cuts".to_owned(),
             scales: [Scale::Log, Scale::Linear],
@@ -208,10 +232,10 @@ fn dimensions(count: usize) -> Figure {
     Figure {
         name: "ladder-enclosing-dimension".to_owned(),
         plot: Plot {
-            title: "enclosing_ellipsoid: time against dimension".to_owned(),
+            title: "Enclosing ellipsoid: time against dimension".to_owned(),
             x: "dimension".to_owned(),
-            y: "nanoseconds".to_owned(),
-            scales: [Scale::Linear, Scale::Log],
+            y: "time".to_owned(),
+            scales: [Scale::Linear, Scale::Time],
             floor: 1.0,
             series,
         },

@@ -39,6 +39,8 @@ pub(super) struct Table {
     pub(super) rows: Vec<Row>,
     /// Long tables are folded until somebody asks.
     pub(super) folded: bool,
+    /// Whether its cells are sentences, which run from the left and wrap, and not numbers.
+    pub(super) prose: bool,
 }
 
 /// One row of a table.
@@ -75,11 +77,17 @@ impl Table {
             headers: headers.iter().map(|h| (*h).to_owned()).collect(),
             rows,
             folded: false,
+            prose: false,
         }
     }
 
     pub(super) fn folded(mut self) -> Self {
         self.folded = true;
+        self
+    }
+
+    pub(super) fn prose(mut self) -> Self {
+        self.prose = true;
         self
     }
 
@@ -89,17 +97,16 @@ impl Table {
     }
 
     fn html(&self) -> String {
-        let mut html = format!("<div class=\"scroll\"><table id=\"{}\">\n<thead><tr>", self.name);
+        let class = if self.prose { " class=\"prose\"" } else { "" };
+        let mut html = format!("<div class=\"scroll\"><table id=\"{}\"{class}>\n<thead><tr>", self.name);
         for header in &self.headers {
             let _ = write!(html, "<th>{}", escape(header));
         }
         html.push_str("</thead>\n<tbody>\n");
         for row in &self.rows {
             html.push_str(if row.tone == Tone::Bad { "<tr class=\"wrong\">" } else { "<tr>" });
-            for (i, cell) in row.cells.iter().enumerate() {
-                // Sentences run from the left, numbers to the right.
-                let prose = i > 0 && cell.chars().filter(|c| c.is_alphabetic()).count() > 14;
-                let _ = write!(html, "{}{}", if prose { "<td class=\"prose\">" } else { "<td>" }, escape(cell));
+            for cell in &row.cells {
+                let _ = write!(html, "<td>{}", escape(cell));
             }
             html.push('\n');
         }

@@ -27,8 +27,8 @@ pub(crate) struct Verdict {
     pub(crate) soft: Vec<String>,
     /// Whether an error came where an answer was due.
     pub(crate) errored: bool,
-    /// The error of the scalar that is worst in units of what is allowed: absolute, and relative to the truth, where
-    /// that is not zero.
+    /// The error of the scalar that is worst in units of what is allowed: absolute, and relative to the truth where that is not
+    /// zero. That of the logarithm of a volume is relative already: to the volume.
     pub(crate) error: Option<f64>,
     pub(crate) relative: Option<f64>,
     /// The error over what is allowed.
@@ -124,7 +124,11 @@ fn judge_scalar(case: &Object, answer: &Object, name: &str, due: &Value, verdict
     let error = (got[worst] - due[worst]).abs();
     verdict.error = Some(error);
     verdict.ratio = Some(ratio(worst));
-    verdict.relative = (due[worst] != 0.0).then(|| error / due[worst].abs().max(f64::MIN_POSITIVE));
+    verdict.relative = match due[worst].abs() {
+        _ if name == "log_det" => Some(error),
+        0.0 => None,
+        due => Some(error / due.max(f64::MIN_POSITIVE)),
+    };
     if ratio(worst) > 1.0 {
         verdict.wrong.push(format!(
             "{name} {}, true {}, error {error:.3e} > {:.3e}{}",

@@ -50,61 +50,79 @@ pub(super) fn section(scope: &Scope, records: &[Record], cases: &[Case]) -> Sect
 /// The sweep of casts and distances: random bodies at every size and distance, against references in thirty digits.
 fn swept(scope: &Scope) -> Vec<Block> {
     let questions = [
-        (Question::Ray, "ray_cast", "Swept: ray casts, the source ever farther away"),
-        (Question::Linear, "linear_cast", "Swept: linear casts, the start ever farther away"),
-        (Question::Distance, "distance", "Swept: distances, the gap ever wider"),
-        (Question::Certificates, "intersect", "Swept: certificates of queries that are stopped early"),
+        (Question::Ray, "ray_cast", "ray casts", "the source ever farther away"),
+        (Question::Linear, "linear_cast", "linear casts", "the start ever farther away"),
+        (Question::Distance, "distance", "distances", "the gap ever wider"),
+        (Question::Certificates, "intersect", "certificates", "of queries of every kind, half of them stopped early"),
     ];
     let mut blocks = Vec::new();
-    for (question, _, title) in questions.into_iter().filter(|(_, query, _)| scope.holds(query)) {
-        let rows = sweep::rows(&sweep::Scope::quick(question), |row| progress(&format!("{title}: {}", row.subject)));
-        // All sizes and subjects together: neither makes a difference, which the task `sweep` shows one by one.
-        let mut by_distance = BTreeMap::<(Ordered, &str), Vec<sweep::Row>>::new();
-        for row in rows {
-            let precision = if row.is_single { "f32" } else { "f64" };
-            by_distance.entry((Ordered(row.distance), precision)).or_default().push(row);
-        }
-        let rows = by_distance.into_iter().map(|((Ordered(distance), precision), of)| {
-            let sum = |count: fn(&sweep::Row) -> u64| of.iter().map(count).sum::<u64>();
-            let most = |value: fn(&sweep::Row) -> f64| of.iter().map(value).fold(0.0, f64::max);
-            let wrong = of.iter().filter(|row| !row.is_right()).count();
-            Row::of([
-                format!("{distance:e}"),
-                precision.to_owned(),
-                of.len().to_string(),
-                sum(|r| r.queries).to_string(),
-                error(most(|r| r.worst)),
-                format!("{:.1}", most(sweep::Row::ulps)),
-                (sum(|r| r.false_hits) + sum(|r| r.missed)).to_string(),
-                sum(|r| r.undecided).to_string(),
-                sum(|r| r.violations).to_string(),
-                format!("{:.1}", sum(|r| r.iterations) as f64 / sum(|r| r.queries).max(1) as f64),
-                of.iter().map(|r| r.most_iterations).max().unwrap_or(0).to_string(),
-                wrong.to_string(),
-            ])
-            .bad_if(wrong > 0)
-        });
-        let name = format!(
-            "sweep-{}",
-            title.trim_start_matches("Swept: ").split(',').next().unwrap_or("all").replace(' ', "-")
-        );
-        blocks.push(Block::Heading(title.to_owned()));
-        blocks.push(Block::Table(Table::new(
-            &name,
-            "Random bodies of many kinds, aspects and sizes; distances and errors in sizes of the body, and in rounding errors of \
-             the distance. False: hits that are sure misses, and misses that are sure hits. Queries that were stopped early may \
-             be undecided, but must not be certain of what is wrong.",
-            &[
-                "distance", "precision", "cells", "queries", "worst error", "in ulps", "false", "undecided", "violations",
-                "iterations, mean", "most", "wrong cells",
-            ],
-            rows.collect(),
-        )));
+    for (question, _, what, how) in questions.into_iter().filter(|(_, query, ..)| scope.holds(query)) {
+        let cells =
+            sweep::rows(&sweep::Scope::quick(question), |row| progress(&format!("sweep of {what}: {}", row.subject)));
+        blocks.push(Block::Heading(format!("Swept: {what}, {how}")));
+        blocks.push(Block::Table(swept_table(question, what, cells)));
     }
     if !blocks.is_empty() {
         blocks.push(Block::Heading("Cases by kind and value of difficulty".to_owned()));
     }
     blocks
+}
+
+/// All sizes and subjects together: neither makes a difference, which the task `sweep` shows one by one.
+fn swept_table(question: Question, what: &str, cells: Vec<sweep::Row>) -> Table {
+    let mut by_distance = BTreeMap::<(Ordered, &str), Vec<sweep::Row>>::new();
+    for cell in cells {
+        let precision = if cell.is_single { "f32" } else { "f64" };
+        by_distance.entry((Ordered(cell.distance), precision)).or_default().push(cell);
+    }
+    let stopped = question == Question::Certificates;
+    let rows = by_distance.into_iter().map(|((Ordered(distance), precision), of)| {
+        let sum = |count: fn(&sweep::Row) -> u64| of.iter().map(count).sum::<u64>();
+        let most = |value: fn(&sweep::Row) -> f64| of.iter().map(value).fold(0.0, f64::max);
+        let wrong = of.iter().filter(|cell| !cell.is_right()).count();
+        let mut columns = vec![
+            precision.to_owned(),
+            of.len().to_string(),
+            sum(|c| c.queries).to_string(),
+            sum(|c| c.undecided).to_string(),
+            sum(|c| c.violations).to_string(),
+            format!("{:.1}", sum(|c| c.iterations) as f64 / sum(|c| c.queries).max(1) as f64),
+            of.iter().map(|c| c.most_iterations).max().unwrap_or(0).to_string(),
+            wrong.to_string(),
+        ];
+        // Of what was stopped at any distance, only the certificates count.
+        if !stopped {
+            columns.insert(0, format!("{distance:e}"));
+            let error = [error(most(|c| c.worst)), format!("{:.1}", most(sweep::Row::ulps))];
+            columns.splice(4..4, error.into_iter().chain([sum(|c| c.false_hits + c.missed).to_string()]));
+        }
+        Row::of(columns).bad_if(wrong > 0)
+    });
+    let name = format!("sweep-{}", what.replace(' ', "-"));
+    if stopped {
+        let caption = "Random bodies of many kinds, aspects, sizes and distances. A query that is stopped early may be undecided, but \
+                       a bound that it gives must hold: violations are bounds that do not.";
+        let headers =
+            ["precision", "cells", "queries", "undecided", "violations", "iterations, mean", "most", "wrong cells"];
+        return Table::new(&name, caption, &headers, rows.collect());
+    }
+    let caption = "Random bodies of many kinds, aspects and sizes; distances and errors in sizes of the body, and in rounding errors of \
+                   the distance. False: hits that are sure misses, and misses that are sure hits.";
+    let headers = [
+        "distance",
+        "precision",
+        "cells",
+        "queries",
+        "worst error",
+        "in ulps",
+        "false",
+        "undecided",
+        "violations",
+        "iterations, mean",
+        "most",
+        "wrong cells",
+    ];
+    Table::new(&name, caption, &headers, rows.collect())
 }
 
 /// For each query, precision, and kind and value of difficulty: how many, how right, how many iterations, how long.
@@ -123,7 +141,6 @@ fn table(records: &[Record]) -> Table {
         let wrong = of.iter().filter(|r| !r.verdict.wrong.is_empty()).count();
         let violations = of.iter().filter(|r| r.verdict.violates_certificate()).count();
         let times: Vec<f64> = of.iter().filter_map(|r| r.time).collect();
-        let log_volume = query.ends_with("_ellipsoid");
         let iterations = of.iter().filter_map(|r| r.iterations).max();
         Row::of([
             query.to_owned(),
@@ -136,7 +153,7 @@ fn table(records: &[Record]) -> Table {
             },
             precision.to_owned(),
             of.len().to_string(),
-            error(worst(|v| v.relative).min(if log_volume { worst(|v| v.error) } else { f64::INFINITY })),
+            error(worst(|v| v.relative)),
             error(worst(|v| v.ratio)),
             wrong.to_string(),
             violations.to_string(),
@@ -147,7 +164,7 @@ fn table(records: &[Record]) -> Table {
     });
     Table::new(
         "stiff",
-        "Worst error: relative, of a log-volume its own. Violations: certificates (brackets, gaps) that do not hold the truth.",
+        "Worst error: relative; of ellipsoids, that of the volume. Violations: certificates (brackets, gaps) that do not hold the truth.",
         &[
             "query",
             "difficulty",
@@ -250,7 +267,7 @@ fn figure(query: &str, kind: &str, methods: BTreeMap<String, Worst>) -> Option<F
             floor: 1e-17,
             series: series.collect(),
         },
-        caption: "What to see: ours stays under the line of what the inputs allow. The worst error among the cases of each value, in f64: relative, or that of ln det X itself. What is allowed \
+        caption: "What to see: ours stays under the line of what the inputs allow. The worst error among the cases of each value, in f64: relative; of ellipsoids, that of the volume. What is allowed \
                   is 1e-7 and twice what a change of the inputs by 1000 ulps does to the truth."
             .to_owned(),
     })
@@ -279,21 +296,17 @@ fn measure(case: &Case, method: Option<&str>) -> Option<(f64, f64)> {
     let answer = as_read(Line { id: Value::Null, line: 0, outcome: Ok(answer) });
     let verdict = score::judge(&object, &answer);
     let query = object.get("query").and_then(Value::as_str)?;
-    let error = verdict.error?;
-    // An exact answer has no error to divide by.
-    let allowed = match verdict.ratio {
-        Some(ratio) if ratio > 0.0 => error / ratio,
-        _ => object.get("allow").and_then(Value::as_f64)?,
-    };
-    if query.ends_with("_ellipsoid") {
-        return Some((error, allowed));
-    }
     let relative = verdict.relative?;
-    let due = object.get("expect")?.get(score::scalar_of(query)?)?.as_f64().map(f64::abs);
-    let allowed = match due {
-        Some(due) if due > 0.0 => allowed / due,
-        _ if error > 0.0 => allowed * relative / error,
-        _ => return None,
+    let allowed = match verdict.ratio {
+        Some(ratio) if ratio > 0.0 => relative / ratio,
+        // An exact answer has no error to divide.
+        _ => {
+            let allow = object.get("allow").and_then(Value::as_f64)?;
+            match score::scalar_of(query)? {
+                "log_det" => allow,
+                scalar => allow / object.get("expect")?.get(scalar)?.as_f64()?.abs(),
+            }
+        }
     };
     Some((relative, allowed))
 }

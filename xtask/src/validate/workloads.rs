@@ -57,8 +57,8 @@ const BUDGET: Duration = Duration::from_millis(3);
 
 /// Methods of ours with a knob, with their precision, in the order of the colours.
 const KNOBS: [(&str, Precision, SubAlgorithm); 4] = [
-    ("ours f64", Precision::Double, SubAlgorithm::NearestFace),
-    ("ours f32", Precision::Single, SubAlgorithm::NearestFace),
+    ("ours f64", Precision::Double, SubAlgorithm::Regions),
+    ("ours f32", Precision::Single, SubAlgorithm::Regions),
     ("Johnson f64", Precision::Double, SubAlgorithm::Johnson),
     ("signed volumes f64", Precision::Double, SubAlgorithm::SignedVolumes),
 ];

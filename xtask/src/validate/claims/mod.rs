@@ -34,7 +34,7 @@ pub(super) fn section(scope: &Scope, cases: &[Case]) -> Section {
             "van den Bergen, Ray Casting against General Convex Objects with Application to Continuous Collision Detection, 2004.",
             &HEADERS,
             ray_casts::claims(&spheres).into_iter().map(Claim::row).collect(),
-        )));
+        ).prose()));
         blocks.push(Block::Figure(ray_casts::convergence(&spheres)));
     }
     if scope.holds("enclosing_ellipsoid") || scope.holds("margin") {
@@ -45,7 +45,7 @@ pub(super) fn section(scope: &Scope, cases: &[Case]) -> Section {
              1997. Their times are those of a DEC 5000.",
             &HEADERS,
             ellipsoids::claims(cases).into_iter().map(Claim::row).collect(),
-        )));
+        ).prose()));
     }
     blocks.extend(random_walk::figures(scope).into_iter().map(Block::Figure));
     Section {
