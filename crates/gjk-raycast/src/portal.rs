@@ -319,8 +319,8 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 return Err(None);
             }
             slant = plane.slant();
-            let length = slant.length();
-            if high - best.tau <= wanted * length {
+            // The bracket closes between the best plane, at its own cosine, and the portal.
+            if high - best.tau <= wanted * best.slant.length() {
                 break (high, inverse);
             }
             if self.body.is_curved() && self.is_curved(frame, plane.normal(frame, self.local.line.direction)) {
@@ -336,7 +336,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 if tau > end {
                     self.separate_end(frame.normal(self.local.line.direction, slant), &r)?;
                 }
-                if high - best.tau <= wanted * length {
+                if high - best.tau <= wanted * slant.length() {
                     break (high, inverse);
                 }
             }

@@ -129,7 +129,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             if self.is_point {
                 best = Best { tau: high, slant, point: p.point };
             }
-            if high - best.tau <= wanted * length {
+            if high - best.tau <= wanted * best.slant.length() {
                 return self.close(frame, &kept[..len], &at.weights, high, &best);
             }
             let n = frame.normal(direction, slant);
