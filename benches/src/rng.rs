@@ -1,4 +1,4 @@
-//! The random numbers of every workload: splitmix64, and what is drawn from it.
+//! The random numbers of every workload, and of the report's and the sweep's questions: splitmix64, and what is drawn from it.
 //!
 //! Values are made with `+ − × ÷ √` only, in the order written here and without fused multiply-adds, so that any IEEE-754
 //! program that follows this text draws the same bits.
@@ -35,10 +35,20 @@ impl Rng {
         2.0 * self.unit() - 1.0
     }
 
+    /// A whole number below `count`, nearly uniform.
+    pub fn below(&mut self, count: u64) -> u64 {
+        self.bits() % count
+    }
+
+    /// Uniform in the cube [−1, 1)³.
+    pub fn cube(&mut self) -> Vec3 {
+        [self.signed(), self.signed(), self.signed()]
+    }
+
     /// Uniform on the unit sphere, by rejection from the cube.
     pub fn sphere(&mut self) -> Vec3 {
         loop {
-            let (x, y, z) = (self.signed(), self.signed(), self.signed());
+            let [x, y, z] = self.cube();
             let squared = x * x + y * y + z * z;
             if 1e-4 < squared && squared <= 1.0 {
                 let length = squared.sqrt();

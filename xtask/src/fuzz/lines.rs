@@ -11,8 +11,8 @@ use serde_json::Value;
 use super::Verdict;
 use crate::mesh::Meshes;
 use crate::query;
-use crate::sweep::Rng;
 use crate::validate::EMBEDDED;
+use benches::rng::Rng;
 
 /// Longer lines are left out: most of the time would go into a few of them.
 const LONGEST: usize = 4096;

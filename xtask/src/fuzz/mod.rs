@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use rayon::prelude::*;
 
-use crate::sweep::Rng;
+use benches::rng::Rng;
 
 /// How long, and from where.
 #[derive(Clone, Debug, Args)]

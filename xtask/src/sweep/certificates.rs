@@ -1,6 +1,7 @@
 //! Certificates under stress: random queries of every kind, at random scales and distances, most of them stopped before
 //! they are done. What an answer claims has to hold all the same.
 
+use benches::rng::Rng;
 use convex_support::glam::{DVec3, Vec3A};
 use convex_support::{Scalar, Vector3};
 use gjk_raycast::{
@@ -13,7 +14,7 @@ use super::obstacle::{Known, Obstacle};
 use super::questions::{BODIES, FINITE, PAIRS, apart, pair, ray};
 use super::real::norm;
 use super::solid::{Form, Solid, rounded, vector};
-use super::{Question, Rng, Row};
+use super::{Question, Row};
 
 /// Queries that share bodies.
 const PER_SCENE: u64 = 200;
@@ -67,7 +68,7 @@ impl<V: Vector3> Choice<V> {
 fn stress<V: Vector3>(mut cell: Row, queries: u64, rng: &mut Rng) -> Row {
     while cell.queries < queries {
         let size = magnitude(-6.0, 6.0, rng);
-        let turn = |rng: &mut Rng| rng.rotation().map(rounded::<V>);
+        let turn = |rng: &mut Rng| rng.quat().map(rounded::<V>);
         let place = rng.sphere().map(|c| rounded::<V>(c * size * magnitude(-3.0, 1.0, rng)));
         match pair(cell.subject) {
             None => {

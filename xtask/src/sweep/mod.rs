@@ -10,7 +10,6 @@ mod judge;
 mod obstacle;
 mod questions;
 mod real;
-mod rng;
 mod row;
 mod solid;
 
@@ -22,7 +21,6 @@ use std::process::ExitCode;
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 
-pub(crate) use rng::Rng;
 pub(crate) use row::Row;
 
 /// What is swept, and how finely.

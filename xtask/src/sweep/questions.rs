@@ -1,5 +1,6 @@
 //! The cells of the three tables.
 
+use benches::rng::Rng;
 use convex_support::glam::{DVec3, Vec3A};
 use convex_support::{Difference, SupportMap, Vector3};
 use gjk_raycast::{
@@ -11,7 +12,7 @@ use super::judge::{Cast, Proof};
 use super::obstacle::{Known, Obstacle};
 use super::real::norm;
 use super::solid::{Form, Solid, rounded, vector};
-use super::{Question, Rng, Row};
+use super::{Question, Row};
 
 /// The single bodies; `hull32-hull8` is the difference of two.
 pub(super) const BODIES: [&str; 12] = [
@@ -161,8 +162,8 @@ fn linear<V: Vector3>(mut cell: Row, queries: u64, rng: &mut Rng) -> Row {
     let forms = forms.map(|form| form.sized::<V>(cell.size));
     let mut left = queries;
     while left > 0 {
-        let turn_a = rng.rotation().map(rounded::<V>);
-        let turn_b = if cell.subject == "cylinder-cylinder" { turn_a } else { rng.rotation().map(rounded::<V>) };
+        let turn_a = rng.quat().map(rounded::<V>);
+        let turn_b = if cell.subject == "cylinder-cylinder" { turn_a } else { rng.quat().map(rounded::<V>) };
         let [form_a, form_b] = forms.clone();
         // b stays, and a comes from anywhere.
         let place = rng.sphere().map(|c| rounded::<V>(c * cell.size));
@@ -200,7 +201,7 @@ fn distances<V: Vector3>(mut cell: Row, queries: u64, rng: &mut Rng) -> Row {
     } * cell.distance.abs().max(1.0);
     let forms = forms.map(|form| form.sized::<V>(cell.size));
     for _ in 0..queries {
-        let [turn_a, turn_b] = [rng.rotation(), rng.rotation()].map(|turn| turn.map(rounded::<V>));
+        let [turn_a, turn_b] = [rng.quat(), rng.quat()].map(|turn| turn.map(rounded::<V>));
         let [form_a, form_b] = forms.clone();
         let place = rng.sphere().map(|c| rounded::<V>(c * cell.size));
         let (mut a, b) = (Solid::new(form_a, turn_a, place), Solid::new(form_b, turn_b, place));

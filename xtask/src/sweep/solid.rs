@@ -6,7 +6,7 @@ use convex_support::{
 
 use super::hull::{Hull, Skeleton};
 use super::real::{DoubleDouble, Real, Vec3, add, dot, norm, scale, sub, wide};
-use super::rng::Rng;
+use benches::rng::Rng;
 
 /// A convex set about the origin; the y axis is the axis of symmetry, and the apex of a cone is up.
 #[derive(Clone, Debug)]

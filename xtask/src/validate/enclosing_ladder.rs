@@ -7,6 +7,8 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use benches::rng::Rng;
+use benches::w4_enclosing::{Cloud, cloud, in_ball, on_sphere};
 use lj_ellipsoid::{EnclosingMethod, EnclosingOptions, Status, enclosing, enclosing_with};
 
 use super::{Figure, Scope, progress};
@@ -52,51 +54,47 @@ struct Kind {
 }
 
 fn kinds(count: usize) -> Vec<Kind> {
-    let mut random = Random(0x10e9);
-    let mut draw = |point: fn(&mut Random) -> [f64; 3]| (0..count).map(|_| point(&mut random)).collect::<Vec<_>>();
+    let normal = cloud::<3>(Cloud::Normal, count);
+    let mut random = Rng::new(0x10e9);
+    let cauchy = normal.iter().map(|p| {
+        let scale = random.normal() / random.normal();
+        p.map(|x| scale * x)
+    });
+    let aspect = normal.iter().map(|&[x, y, z]| {
+        let (y, z) = (1e-3 * y, 1e-6 * z);
+        // Turned, so that no coordinate is thin.
+        [0.6 * x - 0.8 * y, 0.48 * x + 0.36 * y - 0.8 * z, 0.64 * x + 0.48 * y + 0.6 * z]
+    });
     let mut kinds = vec![
-        Kind {
-            name: "normal",
-            title: "normal points",
-            points: draw(Random::normals),
-            what: "normal points: few touch",
-        },
+        Kind { name: "normal", title: "normal points", points: normal.clone(), what: "normal points: few touch" },
         Kind {
             name: "ball",
             title: "points in a ball",
-            points: draw(Random::in_ball),
+            points: in_ball(count),
             what: "points spread evenly in a ball: many nearly touch",
         },
         Kind {
             name: "sphere",
             title: "points on a sphere",
-            points: draw(Random::on_sphere),
+            points: on_sphere(count),
             what: "points on a sphere: all nearly touch",
         },
         Kind {
             name: "lognormal",
             title: "lognormal points",
-            points: draw(|r| r.normals().map(f64::exp)),
+            points: normal.iter().map(|p| p.map(f64::exp)).collect(),
             what: "exponentials of normal numbers: a long tail to one side",
         },
         Kind {
             name: "cauchy",
             title: "Cauchy-scaled points",
-            points: draw(|r| {
-                let scale = r.normal() / r.normal();
-                r.normals().map(|x| scale * x)
-            }),
+            points: cauchy.collect(),
             what: "normal points, each scaled by a Cauchy number: a few are far beyond the rest",
         },
         Kind {
             name: "aspect",
             title: "aspect 1e6",
-            points: draw(|r| {
-                let [x, y, z] = r.normals();
-                let (y, z) = (1e-3 * y, 1e-6 * z);
-                // Turned, so that no coordinate is thin.
-                [0.6 * x - 0.8 * y, 0.48 * x + 0.36 * y - 0.8 * z, 0.64 * x + 0.48 * y + 0.6 * z]
-            }),
+            points: aspect.collect(),
             what: "normal points a million times longer than thick",
         },
     ];
@@ -176,11 +174,10 @@ fn gap_against_time(kind: &Kind) -> Figure {
 
 /// The cuts of the ellipsoid algorithm: a straight line over log(1/ε), as Rimon and Boyd have it.
 fn cuts_against_gap(count: usize) -> Figure {
-    let mut random = Random(0xe11);
     let series = vec![
-        cuts("2 dimensions", 0, &random.cloud::<2>(count)),
-        cuts("3 dimensions", 1, &random.cloud::<3>(count)),
-        cuts("4 dimensions", 2, &random.cloud::<4>(count)),
+        cuts("2 dimensions", 0, &cloud::<2>(Cloud::Normal, count)),
+        cuts("3 dimensions", 1, &cloud::<3>(Cloud::Normal, count)),
+        cuts("4 dimensions", 2, &cloud::<4>(Cloud::Normal, count)),
     ];
     Figure {
         name: "ladder-enclosing-cuts".to_owned(),
@@ -222,13 +219,12 @@ fn dimensions(count: usize) -> Figure {
         .enumerate()
         .map(|(colour, (name, ..))| Series { name: name.to_owned(), points: Vec::new(), joined: true, colour })
         .collect();
-    let mut random = Random(0xd1);
-    dimension(&random.cloud::<2>(count), &mut series);
-    dimension(&random.cloud::<3>(count), &mut series);
-    dimension(&random.cloud::<4>(count), &mut series);
-    dimension(&random.cloud::<6>(count), &mut series);
-    dimension(&random.cloud::<8>(count), &mut series);
-    dimension(&random.cloud::<10>(count), &mut series);
+    dimension(&cloud::<2>(Cloud::Normal, count), &mut series);
+    dimension(&cloud::<3>(Cloud::Normal, count), &mut series);
+    dimension(&cloud::<4>(Cloud::Normal, count), &mut series);
+    dimension(&cloud::<6>(Cloud::Normal, count), &mut series);
+    dimension(&cloud::<8>(Cloud::Normal, count), &mut series);
+    dimension(&cloud::<10>(Cloud::Normal, count), &mut series);
     Figure {
         name: "ladder-enclosing-dimension".to_owned(),
         plot: Plot {
@@ -264,43 +260,5 @@ fn dimension<const N: usize>(points: &[[f64; N]], series: &mut [Series]) {
         if converged {
             series.points.push([N as f64, least]);
         }
-    }
-}
-
-/// Numbers that are the same on every machine (`SplitMix64`).
-struct Random(u64);
-
-impl Random {
-    /// Uniform in (0, 1].
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (((z ^ (z >> 31)) >> 11) + 1) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Standard normal, by Box and Muller.
-    fn normal(&mut self) -> f64 {
-        (-2.0 * self.unit().ln()).sqrt() * (std::f64::consts::TAU * self.unit()).cos()
-    }
-
-    fn normals<const N: usize>(&mut self) -> [f64; N] {
-        std::array::from_fn(|_| self.normal())
-    }
-
-    fn on_sphere(&mut self) -> [f64; 3] {
-        let x = self.normals();
-        let length = x.iter().map(|x: &f64| x * x).sum::<f64>().sqrt();
-        x.map(|x| x / length)
-    }
-
-    fn in_ball(&mut self) -> [f64; 3] {
-        let radius = self.unit().cbrt();
-        self.on_sphere().map(|x| radius * x)
-    }
-
-    fn cloud<const N: usize>(&mut self, count: usize) -> Vec<[f64; N]> {
-        (0..count).map(|_| self.normals()).collect()
     }
 }

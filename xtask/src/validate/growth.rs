@@ -10,9 +10,9 @@ use gjk_raycast::{Ray, RayCastOptions, ray_cast};
 use lj_ellipsoid::faer::Mat;
 use lj_ellipsoid::{EnclosingMethod, EnclosingOptions, enclosing, enclosing_dyn};
 
-use super::random::Random;
 use super::{Block, Figure, Scope, Section, progress};
 use crate::plot::{Plot, Scale, Series};
+use benches::rng::Rng;
 
 /// The chapter.
 pub(super) fn section(scope: &Scope) -> Section {
@@ -75,17 +75,17 @@ fn figure(name: &str, title: &str, x: &str, series: Vec<(String, Vec<[f64; 2]>)>
 
 /// Ray casts against the hull of points on a sphere.
 fn vertices() -> Figure {
-    let mut random = Random(1);
+    let mut random = Rng::new(1);
     let rays: Vec<Ray<DVec3>> = (0..64)
         .map(|_| {
-            let source = random.on_sphere() * 3.0;
-            Ray { source, direction: random.vector() * 0.9 - source }
+            let source = DVec3::from(random.sphere()) * 3.0;
+            Ray { source, direction: DVec3::from(random.cube()) * 0.9 - source }
         })
         .collect();
     let (mut scan, mut climb) = (Vec::new(), Vec::new());
     for n in [4, 12, 32, 100, 316, 1000, 3162, 10_000, 31_623, 100_000] {
         progress(&format!("ray casts against {n} vertices"));
-        let points: Vec<DVec3> = (0..n).map(|_| random.on_sphere()).collect();
+        let points: Vec<DVec3> = (0..n).map(|_| DVec3::from(random.sphere())).collect();
         let per_ray = |shape: &dyn SupportMap<Vector = DVec3>| {
             let cast = |ray: &Ray<DVec3>| black_box(ray_cast(shape, *ray, RayCastOptions::default()).is_ok());
             time(|| rays.iter().for_each(|ray| _ = cast(ray))) / rays.len() as f64
@@ -110,7 +110,7 @@ fn vertices() -> Figure {
 
 /// Enclosing ellipsoids of points in a ball.
 fn points() -> Figure {
-    let mut random = Random(2);
+    let mut random = Rng::new(2);
     let methods = [
         ("newton", EnclosingMethod::Newton),
         ("khachiyan", EnclosingMethod::Khachiyan),
@@ -121,7 +121,7 @@ fn points() -> Figure {
         methods.iter().map(|(name, _)| ((*name).to_owned(), vec![])).collect();
     for n in [5, 10, 100, 1000, 10_000, 100_000, 1_000_000] {
         let points: Vec<[f64; 3]> =
-            (0..n).map(|_| (random.on_sphere() * random.next().abs().cbrt()).to_array()).collect();
+            (0..n).map(|_| (DVec3::from(random.sphere()) * random.signed().abs().cbrt()).to_array()).collect();
         for ((name, method), (_, measured)) in methods.into_iter().zip(&mut series) {
             progress(&format!("{name} on {n} points"));
             // No point in waiting longer than a second for a method that has been outrun.
@@ -145,11 +145,11 @@ fn points() -> Figure {
 
 /// Enclosing ellipsoids of 200 points in many dimensions.
 fn dimension() -> Figure {
-    let mut random = Random(3);
+    let mut random = Rng::new(3);
     let mut measured = Vec::new();
     for n in 2..=10usize {
         progress(&format!("{n} dimensions"));
-        let cloud = Mat::from_fn(200, n, |_, _| random.next());
+        let cloud = Mat::from_fn(200, n, |_, _| random.signed());
         let run = || _ = black_box(enclosing_dyn(cloud.as_ref(), EnclosingOptions::default()).is_ok());
         measured.push([n as f64, time(run)]);
     }
@@ -164,7 +164,7 @@ fn dimension() -> Figure {
 
 /// A robot of 30 links along a smooth trajectory among obstacles.
 fn obstacles() -> Figure {
-    let mut random = Random(4);
+    let mut random = Rng::new(4);
     let (mut culled, mut brute) = (Vec::new(), Vec::new());
     for m in [10, 100, 1000, 10_000, 100_000] {
         progress(&format!("clearance among {m} obstacles"));
@@ -193,14 +193,14 @@ fn obstacles() -> Figure {
 }
 
 /// Ellipsoids around a robot. As many as there are, the space they fill grows: the density around the robot stays.
-pub(super) fn field(count: u32, random: &mut Random) -> Vec<Ellipsoid<DVec3>> {
+pub(super) fn field(count: u32, random: &mut Rng) -> Vec<Ellipsoid<DVec3>> {
     let extent = 2.0 * f64::from(count).cbrt();
     (0..count)
         .filter_map(|_| {
-            let center = random.vector() * extent;
+            let center = DVec3::from(random.cube()) * extent;
             let center = center + center.normalize() * 3.0;
-            let semi_axes = DVec3::splat(0.3) + random.vector().abs() * 0.4;
-            Ellipsoid::new(center, semi_axes, DQuat::from_scaled_axis(random.vector() * 3.0)).ok()
+            let semi_axes = DVec3::splat(0.3) + DVec3::from(random.cube()).abs() * 0.4;
+            Ellipsoid::new(center, semi_axes, DQuat::from_scaled_axis(DVec3::from(random.cube()) * 3.0)).ok()
         })
         .collect()
 }

@@ -10,10 +10,10 @@ use gjk_raycast::{IntersectOptions, Outcome, Ray, RayCastOptions, intersects, ra
 
 use super::page::{Row, Table};
 use super::paper;
-use super::random::Random;
 use super::{Block, Figure, Scope, Section, growth, progress};
 use crate::plot::{Plot, Scale, Series};
 use crate::scene;
+use benches::rng::Rng;
 
 /// The chapter.
 pub(super) fn section(scope: &Scope) -> Section {
@@ -47,15 +47,15 @@ pub(super) fn section(scope: &Scope) -> Section {
 type Body = Box<dyn SupportMap<Vector = DVec3>>;
 
 /// A polytope, an ellipsoid or a cylinder of about unit size, turned at random.
-fn body(random: &mut Random, kind: usize, center: DVec3) -> Result<Body, InvalidShape> {
-    let rotation = DQuat::from_scaled_axis(random.vector() * 3.0);
+fn body(random: &mut Rng, kind: usize, center: DVec3) -> Result<Body, InvalidShape> {
+    let rotation = DQuat::from_scaled_axis(DVec3::from(random.cube()) * 3.0);
     Ok(match kind % 3 {
         0 => {
-            let points: Vec<DVec3> = (0..16).map(|_| random.on_sphere()).collect();
+            let points: Vec<DVec3> = (0..16).map(|_| DVec3::from(random.sphere())).collect();
             Box::new(Posed::new(Polytope::new(points)?, rotation, center)?)
         }
         1 => {
-            let semi_axes = DVec3::splat(0.4) + random.vector().abs() * 0.6;
+            let semi_axes = DVec3::splat(0.4) + DVec3::from(random.cube()).abs() * 0.6;
             Box::new(Posed::new(Ellipsoid::new(DVec3::ZERO, semi_axes, DQuat::IDENTITY)?, rotation, center)?)
         }
         _ => Box::new(Posed::new(Cylinder::<DVec3>::new(0.8, 0.5)?, rotation, center)?),
@@ -72,18 +72,18 @@ pub(super) struct FiniteRays {
 /// Rays of one length after another through an environment of bodies: every ray is cast against every body.
 pub(super) fn finite_rays() -> FiniteRays {
     const SIZE: f64 = 40.0;
-    let mut random = Random(11);
+    let mut random = Rng::new(11);
     let bodies: Vec<Body> = (0..90)
         .filter_map(|i| {
-            let center = random.vector() * (SIZE / 2.0);
+            let center = DVec3::from(random.cube()) * (SIZE / 2.0);
             body(&mut random, i, center).ok()
         })
         .collect();
     // Each is aimed at a body, from anywhere.
     let rays: Vec<Ray<DVec3>> = (0..60)
         .map(|i| {
-            let source = random.vector() * (SIZE / 2.0);
-            let target = bodies[i].origin() + random.vector() * 0.4;
+            let source = DVec3::from(random.cube()) * (SIZE / 2.0);
+            let target = bodies[i].origin() + DVec3::from(random.cube()) * 0.4;
             Ray { source, direction: (target - source).normalize() }
         })
         .collect();
@@ -153,14 +153,14 @@ pub(super) struct Coherence {
 pub(super) fn coherence() -> Coherence {
     const FRAMES: u32 = 60;
     let rows = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3].map(|step| {
-        let mut random = Random(12);
+        let mut random = Rng::new(12);
         let (mut sums, mut frames) = ([0usize; 6], 0usize);
         for kind in 0..24 {
-            let (source, target) = (random.on_sphere() * 2.5, random.vector() * 1.1);
+            let (source, target) = (DVec3::from(random.sphere()) * 2.5, DVec3::from(random.cube()) * 1.1);
             let direction = (target - source) * 2.0;
             let ray = Ray { source, direction };
             let Ok(segment) = Segment::new([source, ray.at(1.0)]) else { continue };
-            let (turn, drift) = (random.on_sphere() * step, random.on_sphere() * step);
+            let (turn, drift) = (DVec3::from(random.sphere()) * step, DVec3::from(random.sphere()) * step);
             let Ok(resting) = body(&mut random, kind, DVec3::ZERO) else { continue };
             let mut axes: [Option<DVec3>; 3] = [None; 3];
             for frame in 0..FRAMES {
@@ -274,7 +274,7 @@ fn early_out() -> Table {
 /// Pairs of links and obstacles that needed no margin, and why.
 fn culled() -> Table {
     const STEPS: u32 = 60;
-    let mut random = Random(4);
+    let mut random = Rng::new(4);
     let rows = [10, 100, 1000, 10_000].into_iter().filter_map(|m| {
         let obstacles = growth::field(m, &mut random);
         let mut tracked = Clearance::new(&obstacles, MarginOptions::default()).ok()?;

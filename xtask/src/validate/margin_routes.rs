@@ -13,9 +13,9 @@ use lj_ellipsoid::faer::{Mat, Side};
 use qd::Quad;
 
 use super::growth::time;
-use super::random::Random;
 use super::{Figure, Scope, progress};
 use crate::plot::{Plot, Scale, Series};
+use benches::rng::Rng;
 
 /// Pairs of each condition.
 const PAIRS: usize = 60;
@@ -33,7 +33,7 @@ pub(super) fn figures(scope: &Scope) -> Vec<Figure> {
         ["secular equation", "in the singular basis", "2N×2N eigenvalues", "C formed, secular", "Corollary 4.1"];
     let mut errors: [Vec<[f64; 2]>; 6] = Default::default();
     let mut times: [Vec<[f64; 2]>; 4] = Default::default();
-    let mut random = Random(5);
+    let mut random = Rng::new(5);
     for exponent in (0..=14).step_by(2) {
         progress(&format!("routes to the margin at condition 1e{exponent}"));
         let condition = 10f64.powi(exponent);
@@ -124,11 +124,11 @@ fn figure(name: &str, title: &str, y: &str, floor: f64, series: Vec<(String, Vec
 }
 
 /// Pairs whose matrices have the given condition, their centres 3 apart.
-fn pairs(random: &mut Random, condition: f64) -> Vec<Pair> {
+fn pairs(random: &mut Rng, condition: f64) -> Vec<Pair> {
     let shortest = condition.sqrt().recip();
     let mut ellipsoid = |center: DVec3| {
-        let middle = shortest.powf(0.5 + 0.5 * random.next());
-        let turn = DQuat::from_scaled_axis(random.on_sphere() * 3.0 * random.next());
+        let middle = shortest.powf(0.5 + 0.5 * random.signed());
+        let turn = DQuat::from_scaled_axis(DVec3::from(random.sphere()) * 3.0 * random.signed());
         Ellipsoid::from_axes(center, DVec3::new(1.0, middle, shortest), DMat3::from_quat(turn)).ok()
     };
     let mut pairs = Vec::new();

@@ -11,7 +11,6 @@ mod page;
 mod paper;
 mod progress;
 mod provenance;
-mod random;
 mod random_walk;
 mod report;
 mod score;

@@ -12,9 +12,9 @@ use ellip_margin::eigen::free_margin_eigen;
 use ellip_margin::{InverseIterationTracker, MarginOptions, MarginTracker, free_margin};
 
 use super::growth::time;
-use super::random::Random;
 use super::{Figure, Scope, progress};
 use crate::plot::{Plot, Scale, Series};
+use benches::rng::Rng;
 
 const WALKS: usize = 40;
 const STEPS: usize = 200;
@@ -34,8 +34,8 @@ struct Walk {
 impl Walk {
     /// A walk that drifts from a corner to the opposite one, each step −1, 0 or 1 times `size` cells along both axes and as
     /// many degrees.
-    fn new(random: &mut Random, size: f64) -> Option<Self> {
-        let mut between = |low: f64, high: f64| low + (high - low) * 0.5 * (1.0 + random.next());
+    fn new(random: &mut Rng, size: f64) -> Option<Self> {
+        let mut between = |low: f64, high: f64| low + (high - low) * 0.5 * (1.0 + random.signed());
         let link = DVec2::new(between(0.06, 0.14), between(0.02, 0.05));
         let obstacle = Ellipsoid::new(
             DVec2::new(between(0.4, 0.6), between(0.4, 0.6)),
@@ -77,7 +77,7 @@ struct Row {
 type Quantity = (&'static str, fn(&Row) -> f64);
 
 fn measure(size: f64) -> Row {
-    let mut random = Random(7);
+    let mut random = Rng::new(7);
     let walks: Vec<Walk> = (0..WALKS).filter_map(|_| Walk::new(&mut random, size)).collect();
     let options = MarginOptions::default();
     let mut row = Row::default();

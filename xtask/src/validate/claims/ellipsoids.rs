@@ -10,12 +10,12 @@ use serde_json::Value;
 
 use super::super::growth::{self, time};
 use super::super::page::error;
-use super::super::random::Random;
 use super::super::{Case, as_read, progress, score};
 use super::Claim;
 use crate::engine;
 use crate::plot::duration;
 use crate::wire::answer::Line;
+use benches::rng::Rng;
 
 /// The claims, with the numbers that decide them.
 pub(super) fn claims(cases: &[Case]) -> Vec<Claim> {
@@ -34,16 +34,16 @@ pub(super) fn claims(cases: &[Case]) -> Vec<Claim> {
 /// Shrunk by the dimension, the enclosing ellipsoid lies in the hull: its reach along any direction is no more than that
 /// of the points.
 fn shrunk() -> Option<Claim> {
-    let mut random = Random(23);
+    let mut random = Rng::new(23);
     let mut worst = f64::NEG_INFINITY;
     for _ in 0..100 {
-        let points: Vec<DVec3> = (0..12).map(|_| random.vector() * DVec3::new(3.0, 1.0, 0.3)).collect();
+        let points: Vec<DVec3> = (0..12).map(|_| DVec3::from(random.cube()) * DVec3::new(3.0, 1.0, 0.3)).collect();
         let fit =
             enclosing(&points.iter().map(DVec3::to_array).collect::<Vec<_>>(), EnclosingOptions::default()).ok()?;
         let center = DVec3::from_array(fit.ellipsoid.center());
         let (axes, lengths) = (fit.ellipsoid.axes(), fit.ellipsoid.semi_axes());
         for _ in 0..200 {
-            let u = random.on_sphere();
+            let u = DVec3::from(random.sphere());
             let reach = |k: usize| lengths[k] * DVec3::from_array(axes[k]).dot(u);
             let ellipsoid = (0..3).map(|k| reach(k).powi(2)).sum::<f64>().sqrt() / 3.0;
             let hull = points.iter().map(|p| (*p - center).dot(u)).fold(f64::NEG_INFINITY, f64::max);
@@ -60,11 +60,11 @@ fn shrunk() -> Option<Claim> {
 
 /// The ellipsoid algorithm in the plane, and its place taken.
 fn fits() -> Option<Claim> {
-    let mut random = Random(24);
+    let mut random = Rng::new(24);
     let (mut iterations, mut newtons, mut times) = (0, 0, [0.0; 2]);
     const BODIES: usize = 20;
     for _ in 0..BODIES {
-        let points: Vec<[f64; 2]> = (0..8).map(|_| [2.0 * random.next(), random.next()]).collect();
+        let points: Vec<[f64; 2]> = (0..8).map(|_| [2.0 * random.signed(), random.signed()]).collect();
         let options = |method| EnclosingOptions::default().with_method(method).with_epsilon(1e-4);
         let (slow, fast) = (options(EnclosingMethod::EllipsoidAlgorithm), options(EnclosingMethod::Newton));
         iterations += enclosing(&points, slow).ok()?.iterations;
@@ -135,12 +135,12 @@ fn walks() -> Result<Vec<Claim>, InvalidShape> {
     let mut claims = Vec::new();
     let mut by_step = Vec::new();
     for step in [1.0, 5.0, 20.0] {
-        let mut random = Random(7);
+        let mut random = Rng::new(7);
         let (mut steps, mut wrong, mut ours_wrong, mut paper_sum, mut ours_sum) = (0u64, 0u64, 0u64, 0u64, 0u64);
         let mut failed = 0;
         let mut trajectories = Vec::new();
         for _ in 0..20 {
-            let unit = |random: &mut Random| f64::midpoint(random.next(), 1.0);
+            let unit = |random: &mut Rng| f64::midpoint(random.signed(), 1.0);
             let link = DVec2::new(0.06 + 0.08 * unit(&mut random), 0.02 + 0.03 * unit(&mut random));
             let obstacle = Ellipsoid::new(
                 DVec2::splat(0.4) + 0.2 * DVec2::new(unit(&mut random), unit(&mut random)),
@@ -237,9 +237,10 @@ fn walks() -> Result<Vec<Claim>, InvalidShape> {
 
 /// The margin of fitted ellipsoids beside the distance of the hulls, as these grow.
 fn constant_time() -> Option<Claim> {
-    let mut random = Random(25);
+    let mut random = Rng::new(25);
     let mut measure = |n: usize| {
-        let mut cloud = |at: f64| -> Vec<DVec3> { (0..n).map(|_| random.on_sphere() + DVec3::X * at).collect() };
+        let mut cloud =
+            |at: f64| -> Vec<DVec3> { (0..n).map(|_| DVec3::from(random.sphere()) + DVec3::X * at).collect() };
         let (a, b) = (cloud(0.0), cloud(2.5));
         let fit = |points: &[DVec3]| {
             let fit =
@@ -270,7 +271,7 @@ fn constant_time() -> Option<Claim> {
 
 /// n·m pairs, and how many of them have to be looked at.
 fn many_obstacles() -> Option<Claim> {
-    let mut random = Random(26);
+    let mut random = Rng::new(26);
     let mut solved = |m: u32| {
         let obstacles = growth::field(m, &mut random);
         let mut tracked = ellip_margin::Clearance::new(&obstacles, MarginOptions::default()).ok()?;

@@ -11,9 +11,9 @@ use super::super::growth::time;
 use super::super::left_out::{coherence, finite_rays};
 use super::super::page::{Figure, error};
 use super::super::paper;
-use super::super::random::Random;
 use super::Claim;
 use crate::plot::{Plot, Scale, Series, duration};
+use benches::rng::Rng;
 
 /// The unit sphere by its support points alone: no radius kept apart, and no derivative.
 struct PlainSphere;
@@ -37,19 +37,19 @@ pub(super) struct Spheres {
 }
 
 /// Random rays, nine in ten of which hit.
-fn rays(random: &mut Random, count: usize) -> Vec<Ray<DVec3>> {
+fn rays(random: &mut Rng, count: usize) -> Vec<Ray<DVec3>> {
     (0..count)
         .map(|_| {
-            let source = random.on_sphere() * 4.0;
-            Ray { source, direction: random.on_sphere() * (1.05 * random.next().abs().cbrt()) - source }
+            let source = DVec3::from(random.sphere()) * 4.0;
+            Ray { source, direction: DVec3::from(random.sphere()) * (1.05 * random.signed().abs().cbrt()) - source }
         })
         .collect()
 }
 
 pub(super) fn spheres() -> Spheres {
-    let mut random = Random(21);
+    let mut random = Rng::new(21);
     let rays = rays(&mut random, 400);
-    let points: Vec<DVec3> = (0..32).map(|_| random.on_sphere()).collect();
+    let points: Vec<DVec3> = (0..32).map(|_| DVec3::from(random.sphere())).collect();
     let (Ok(hull), Ok(ellipsoid), Ok(ball)) =
         (Polytope::new(points), Ellipsoid::new(DVec3::ZERO, DVec3::ONE, DQuat::IDENTITY), Ball::<DVec3>::new(1.0))
     else {
@@ -211,8 +211,8 @@ fn bounds() -> Vec<Claim> {
 
 /// Algorithm 1, nesting a distance in every step, against Algorithm 3.
 fn iterative() -> Option<Claim> {
-    let mut random = Random(22);
-    let points: Vec<DVec3> = (0..32).map(|_| random.on_sphere()).collect();
+    let mut random = Rng::new(22);
+    let points: Vec<DVec3> = (0..32).map(|_| DVec3::from(random.sphere())).collect();
     let hull = Polytope::new(points).ok()?;
     let rays = rays(&mut random, 200);
     let options = RayCastOptions::default().with_tolerance(1e-9);
