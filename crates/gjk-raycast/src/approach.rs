@@ -70,7 +70,10 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 let mu = self.simplex.weighted_point().dot(line.direction).max(self.low);
                 let error = if self.low_slope > zero { self.noise / self.low_slope } else { self.noise };
                 (self.high, self.high_error, self.touched) = (mu, error, Some(mu));
-                self.normal = self.normal.or(v.unit());
+                // The last plane is of elsewhere: where the ray grazes what is round, the shortest vector is the normal.
+                if self.normal.is_none() || self.radius > self.noise {
+                    self.normal = v.unit();
+                }
                 return Ok(None);
             }
             if !nearing_across.goes_on(length) {

@@ -25,7 +25,9 @@ use crate::{CastMethod, Iterate, Miss, Outcome, RayCastOptions, Status};
 pub(crate) struct Contact<V: Vector, W> {
     pub(crate) lambda: V::Scalar,
     pub(crate) normal: Option<V>,
-    /// What the core's point below the hit spot is made of.
+    /// The hit spot, relative to the body's origin and in units of the scale.
+    pub(crate) spot: V,
+    /// What the core's point below it is made of.
     pub(crate) witness: W,
 }
 
@@ -36,7 +38,7 @@ pub(crate) struct Cast<V: Vector, W> {
     pub(crate) upper: V::Scalar,
     pub(crate) status: Status,
     pub(crate) iterations: usize,
-    /// The unit of the witness.
+    /// The unit of the hit spot and of the witness.
     pub(crate) scale: V::Scalar,
 }
 
@@ -111,7 +113,8 @@ pub(crate) fn cast<B: Body>(
         End::Contact if started_in => zero,
         _ => (local.lambda(high) + local.error(high, high_error + high_error)).max(lambda),
     };
-    let hit = || Outcome::Hit(Contact { lambda, normal, witness });
+    let spot = local.line.at(hit_at);
+    let hit = || Outcome::Hit(Contact { lambda, normal, spot, witness });
     let miss = |axis| Outcome::Miss(Miss { axis });
     let (outcome, status) = match end {
         End::Miss(n) => {

@@ -6,7 +6,7 @@ use crate::body::Pair;
 use crate::cast::{Contact, cast};
 use crate::error::RayCastError;
 use crate::ray_cast::{Ray, check_finite};
-use crate::{Iterate, LinearCast, LinearCastOptions, LinearHit, Outcome, RayCastOptions};
+use crate::{DistanceOptions, Iterate, LinearCast, LinearCastOptions, LinearHit, Outcome, RayCastOptions, distance};
 
 /// The velocities of two shapes, in units of length per unit of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -83,13 +83,23 @@ where
         wanted.max_lambda = <A::Vector as Vector>::Scalar::default();
     }
     let cast = cast(&mut body, ray, wanted, observer);
+    let mut iterations = cast.iterations;
     let outcome = match cast.outcome {
-        Outcome::Hit(Contact { lambda: time, normal, witness }) => {
-            // The contact point as a point of b, which it is farthest along the normal of A − B.
-            let mut point = b.origin() + witness.b * cast.scale + motion.velocity_b * time;
-            if let Some(n) = normal {
-                point -= n * b.radius();
-            }
+        Outcome::Hit(Contact { lambda: time, normal, spot, witness }) => {
+            let zero = <A::Vector as Vector>::Scalar::default();
+            let point = if normal.is_none() && time == zero {
+                // The cast knows where the motion enters, which is behind the start or, sliding, ahead of it.
+                let start = DistanceOptions::new().with_max_iterations(options.max_iterations);
+                let start = distance(a, b, start.with_sub_algorithm(options.sub_algorithm));
+                iterations += start.iterations;
+                start.point_b
+            } else {
+                // With p a point of a's core and q one of b's, q − p + spot is what lies between them at the time, and is as
+                // long as both radii. The point that divides it as they do is on both shapes, however well the normal is known.
+                let between = (witness.b - witness.a + spot) * cast.scale;
+                let share = if b.radius() > zero { b.radius() / (a.radius() + b.radius()) } else { zero };
+                b.origin() + witness.b * cast.scale + motion.velocity_b * time - between * share
+            };
             Outcome::Hit(LinearHit { time, point, normal: normal.map(|n| -n) })
         }
         Outcome::Miss(mut miss) => {
@@ -98,5 +108,5 @@ where
         }
         Outcome::Undecided => Outcome::Undecided,
     };
-    Ok(LinearCast { outcome, lower: cast.lower, upper: cast.upper, status: cast.status, iterations: cast.iterations })
+    Ok(LinearCast { outcome, lower: cast.lower, upper: cast.upper, status: cast.status, iterations })
 }

@@ -153,7 +153,8 @@ pub struct LinearCast<V: Vector> {
 pub struct LinearHit<V: Vector> {
     /// The time of first contact; 0 where the shapes overlap at the start.
     pub time: V::Scalar,
-    /// A point of contact, in the world, at that time.
+    /// A point of contact, in the world, at that time; where the shapes overlap at the start, a point in or near both, as of
+    /// [`distance`](crate::distance).
     pub point: V,
     /// The unit normal of contact, out of `b` towards `a`; `None` where the shapes overlap at the start.
     pub normal: Option<V>,

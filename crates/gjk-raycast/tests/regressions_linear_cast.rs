@@ -4,9 +4,9 @@
 mod common;
 
 use common::{Quaternion, at, cuboid, directions, off, s, sweep, time, turned, ulps, v};
-use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
+use convex_support::glam::{DVec2, DVec3, Quat, Vec2, Vec3A};
 use convex_support::{Ball, Capsule, Cuboid, Cylinder, Point, Posed, Scalar, SupportMap, Vector};
-use gjk_raycast::{LinearCast, LinearCastOptions, Motion, Outcome, Status, linear_cast};
+use gjk_raycast::{CastMethod, LinearCast, LinearCastOptions, Motion, Outcome, Status, linear_cast};
 
 fn both(single: impl FnOnce(), double: impl FnOnce()) {
     single();
@@ -232,24 +232,27 @@ fn s25_far_from_the_origin_is_like_near_it() {
 }
 
 /// Jolt #1786 and #1787. A cast that starts touching, or within, was no hit at all where the deepest point was asked for.
-/// It is a hit at 0 in every direction, and the distance of the same pair is an overlap with a point in both.
+/// It is a hit at 0 in every direction at a point in both, and the distance of the same pair is an overlap with a point in both.
 #[test]
 fn s15_a_start_in_contact_is_a_hit_in_every_direction() {
     fn run<V: Quaternion>() {
         let floor = cuboid::<V>([4.0, 1.0, 4.0]);
         for depth in [0.0, ulps::<V>(1.0), 1e-3, 0.5] {
             let ball = at(Ball::<V>::new(s::<V>(0.5)).expect("positive"), [0.25, 1.5 - depth, -0.5]);
+            let in_both = |point: V| {
+                assert!(point.get(1).as_f64() <= 1.0 + ulps::<V>(16.0), "in the floor: {depth} {point:?}");
+                let from_center = (point - v::<V>([0.25, 1.5 - depth, -0.5])).norm().as_f64();
+                assert!(from_center <= 0.5 + ulps::<V>(16.0), "in the ball: {depth} {point:?}");
+            };
             for d in directions(40).chain([[0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]]) {
                 let hit = sweep(&ball, &floor, d).outcome.hit().unwrap_or_else(|| panic!("in contact: {depth} {d:?}"));
                 assert_eq!((hit.time.as_f64(), hit.normal), (0.0, None), "{depth} {d:?}");
+                in_both(hit.point);
             }
             let apart = common::apart(&ball, &floor);
             assert!(apart.overlap && apart.distance.as_f64() == 0.0, "{depth}: {apart:?}");
-            for point in [apart.point_a, apart.point_b] {
-                assert!(point.get(1).as_f64() <= 1.0 + ulps::<V>(16.0), "in the floor: {depth} {apart:?}");
-                let from_center = (point - v::<V>([0.25, 1.5 - depth, -0.5])).norm().as_f64();
-                assert!(from_center <= 0.5 + ulps::<V>(16.0), "in the ball: {depth} {apart:?}");
-            }
+            in_both(apart.point_a);
+            in_both(apart.point_b);
         }
     }
     both(run::<Vec3A>, run::<DVec3>);
@@ -348,4 +351,33 @@ fn equal_velocities_hit_only_what_overlaps() {
         assert_eq!(b.support(velocity), v([1.0; 3]), "the box is as it was");
     }
     both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// Found by the sweep: a capsule passes a ball by within rounding, which may be a hit, at the place where they are closest.
+/// The normal was that of the last plane on the way there, and the point of contact, found by it, was 0.3 sizes off one of
+/// them. The shortest vector from core to core is the normal, and the point between the cores is on both.
+#[test]
+fn a_graze_has_the_normal_of_where_it_is() {
+    let rotation = Quat::from_xyzw(-0.461_624_9, 0.242_144_24, 0.495_764_43, 0.694_612_3);
+    let start = Vec3A::new(-4_699_745_792.0, -2_734_962_688.0, -8_393_059_328.0);
+    let center = Vec3A::new(368_173.53, -665_707.9, -649_061.9);
+    let capsule = Capsule::new(625_000.0, 375_000.0).expect("positive");
+    let capsule = Posed::new(capsule, rotation, start).expect("a pose");
+    let ball = Posed::translated(Ball::new(1e6).expect("positive"), center).expect("a place");
+    let velocity_a = Vec3A::new(751_522.7, 437_034.44, 1_342_081.5);
+    let motion = Motion { velocity_a, velocity_b: Vec3A::ZERO };
+    for method in [CastMethod::Portal, CastMethod::Gjk] {
+        let options = LinearCastOptions::new().with_method(method);
+        let cast = linear_cast(&capsule, &ball, motion, options).expect("finite");
+        let hit = cast.outcome.hit().expect("as close as rounding");
+        let normal = hit.normal.expect("they start apart").as_dvec3();
+        assert!(normal.dot(velocity_a.as_dvec3().normalize()).abs() < 1e-5, "{method:?}: {hit:?}");
+        let from_center = (hit.point - center).as_dvec3();
+        assert!((from_center.length() - 1e6).abs() < 1.0, "{method:?}: {hit:?}");
+        // On the capsule as well, to the rounding of where it comes from: an ulp of 8e9 is 512.
+        let place = start.as_dvec3() + velocity_a.as_dvec3() * f64::from(hit.time);
+        let seen = rotation.as_dquat().normalize().inverse() * (hit.point.as_dvec3() - place);
+        let from_axis = (seen - DVec3::Y * seen.y.clamp(-625e3, 625e3)).length();
+        assert!((from_axis - 375e3).abs() < 4.0 * 512.0, "{method:?}: {from_axis}");
+    }
 }

@@ -3,13 +3,14 @@
 mod common;
 
 use common::{Quaternion, at, cuboid, directions, s, ulps, v};
-use convex_support::glam::{DVec3, Vec3A};
+use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{
     Ball, Capsule, Cone, Cylinder, Ellipsoid, Point, Polytope, Posed, Rounded, Scalar, ScalarOf, SupportMap, Vector,
 };
 use gjk_raycast::{
-    DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, Ray, RayCast, RayCastError, RayCastOptions,
-    Status, distance, intersects, linear_cast, ray_cast,
+    CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, Ray, RayCast, RayCastError,
+    RayCastOptions, Scene, Status, SubAlgorithm, distance, intersects, iterative_ray_cast, linear_cast, ray_cast,
+    ray_casts,
 };
 
 type Shape<V> = Box<dyn SupportMap<Vector = V>>;
@@ -189,56 +190,103 @@ fn bad_rays_are_errors() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// A user's support map that answers NaN or infinity: always, or from some call on. Every query ends, with a status.
-#[test]
-fn a_broken_support_map_ends_with_a_status() {
-    struct Broken<V: Vector> {
-        bad: V,
-        /// The half-space of directions in which it is broken; all of them if zero.
-        from: V,
-    }
-    impl<V: Vector> SupportMap for Broken<V> {
-        type Vector = V;
+/// A user's support map that answers NaN or infinity: always, or from some call on.
+struct Broken<V: Vector> {
+    bad: V,
+    /// The half-space of directions in which it is broken; all of them if zero.
+    from: V,
+}
 
-        fn support(&self, direction: V) -> V {
-            let zero = ScalarOf::<Self>::ZERO;
-            if self.from == V::ZERO || direction.dot(self.from) > zero {
-                self.bad
-            } else {
-                direction.unit().unwrap_or(V::ZERO)
-            }
+impl<V: Vector> SupportMap for Broken<V> {
+    type Vector = V;
+
+    fn support(&self, direction: V) -> V {
+        let zero = ScalarOf::<Self>::ZERO;
+        if self.from == V::ZERO || direction.dot(self.from) > zero {
+            self.bad
+        } else {
+            direction.unit().unwrap_or(V::ZERO)
         }
     }
-    fn run<V: Quaternion>() {
+}
+
+/// Every query ends, with a status, in space and in the plane, whichever way its steps are taken.
+#[test]
+fn a_broken_support_map_ends_with_a_status() {
+    fn ask<V: Vector>(broken: &Broken<V>, sub_algorithm: SubAlgorithm, method: CastMethod) {
+        let told = format!("{:?} {:?} {sub_algorithm:?} {method:?}", broken.bad, broken.from);
         let cube = at(cuboid::<V>([1.0; 3]), [0.5, 3.0, 0.25]);
+        let apart = distance(broken, &cube, DistanceOptions::new().with_sub_algorithm(sub_algorithm));
+        assert!(apart.iterations <= 200 && !apart.distance.as_f64().is_nan(), "{told}: {apart:?}");
+        let meets = intersects(&cube, broken, IntersectOptions::new().with_sub_algorithm(sub_algorithm));
+        assert!(meets.iterations <= 200, "{told}: {meets:?}");
+        let ray = Ray { source: v::<V>([0.2, 5.0, 0.1]), direction: v([0.0, -1.0, 0.0]) };
+        let options = RayCastOptions::new().with_sub_algorithm(sub_algorithm).with_method(method);
+        let cast = ray_cast(broken, ray, options).expect("a finite ray");
+        assert!(cast.iterations <= 200, "{told}: {cast:?}");
+        let motion = Motion { velocity_a: v::<V>([0.0, 1.0, 0.0]), velocity_b: V::ZERO };
+        let options = LinearCastOptions::new().with_sub_algorithm(sub_algorithm).with_method(method);
+        let sweep = linear_cast(broken, &cube, motion, options).expect("finite");
+        assert!(sweep.iterations <= 400, "{told}: {sweep:?}");
+        if broken.from == V::ZERO {
+            assert_ne!(apart.status, Status::Converged, "{told}: {apart:?}");
+            assert_eq!(meets.decided(), None, "{told}: {meets:?}");
+            assert_eq!(cast.outcome, Outcome::Undecided, "{told}: {cast:?}");
+            assert_eq!(sweep.outcome, Outcome::Undecided, "{told}: {sweep:?}");
+        }
+    }
+    fn run<V: Vector>() {
+        use SubAlgorithm::{Johnson, NearestFace, Regions, SignedVolumes};
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             for bad in [[bad, 0.0, 0.0], [0.0, bad, 0.0], [bad; 3]] {
                 for from in directions(20).chain([[0.0; 3]]) {
-                    let broken = Broken { bad: v::<V>(bad), from: v(from) };
-                    let apart = distance(&broken, &cube, DistanceOptions::default());
-                    assert!(
-                        apart.iterations <= 200 && !apart.distance.as_f64().is_nan(),
-                        "{bad:?} {from:?}: {apart:?}"
-                    );
-                    let meets = intersects(&cube, &broken, IntersectOptions::default());
-                    assert!(meets.iterations <= 200, "{bad:?} {from:?}: {meets:?}");
-                    let ray = Ray { source: v::<V>([0.2, 5.0, 0.1]), direction: v([0.0, -1.0, 0.0]) };
-                    let cast = ray_cast(&broken, ray, RayCastOptions::default()).expect("a finite ray");
-                    assert!(cast.iterations <= 200, "{bad:?} {from:?}: {cast:?}");
-                    let motion = Motion { velocity_a: v::<V>([0.0, 1.0, 0.0]), velocity_b: V::ZERO };
-                    let sweep = linear_cast(&broken, &cube, motion, LinearCastOptions::default()).expect("finite");
-                    assert!(sweep.iterations <= 200, "{bad:?} {from:?}: {sweep:?}");
-                    if from == [0.0; 3] {
-                        assert_ne!(apart.status, Status::Converged, "{bad:?}: {apart:?}");
-                        assert_eq!(meets.decided(), None, "{bad:?}: {meets:?}");
-                        assert_eq!(cast.outcome, Outcome::Undecided, "{bad:?}: {cast:?}");
-                        assert_eq!(sweep.outcome, Outcome::Undecided, "{bad:?}: {sweep:?}");
+                    for sub_algorithm in [Regions, NearestFace, Johnson, SignedVolumes] {
+                        for method in [CastMethod::Portal, CastMethod::Gjk] {
+                            ask(&Broken { bad: v::<V>(bad), from: v(from) }, sub_algorithm, method);
+                        }
                     }
                 }
             }
         }
     }
     both(run::<Vec3A>, run::<DVec3>);
+    both(run::<Vec2>, run::<DVec2>);
+}
+
+/// So do many rays against one such body, the body in a scene, which spoils no other's answer, and Algorithm 1 with closest
+/// points that are none.
+#[test]
+fn a_broken_body_spoils_no_batch() {
+    fn run<V: Vector + 'static>() {
+        let rays: Vec<_> = (0..20)
+            .map(|i| Ray { source: v::<V>([0.1 * f64::from(i) - 1.0, 5.0, 0.1]), direction: v([0.0, -1.0, 0.0]) })
+            .collect();
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let broken = Broken { bad: v::<V>([0.0, bad, 0.0]), from: V::ZERO };
+            for cast in ray_casts(&broken, &rays, RayCastOptions::default()) {
+                assert_eq!(cast.expect("a finite ray").outcome, Outcome::Undecided, "{bad}");
+            }
+            let scene = Scene::<Shape<V>>::new([
+                Box::new(broken) as Shape<V>,
+                Box::new(at(cuboid::<V>([2.0, 1.0, 1.0]), [0.0; 3])),
+            ]);
+            for &ray in &rays {
+                let answer = scene.ray_cast(ray, RayCastOptions::default()).expect("a finite ray");
+                let first = answer.first.expect("the cuboid is below");
+                assert_eq!((first.body, answer.undecided), (1, Some(0)), "{bad}: {answer:?}");
+                assert!((first.hit.lambda.as_f64() - 4.0).abs() < ulps::<V>(16.0), "{bad}: {answer:?}");
+                // What is undecided may be in the way from the start.
+                assert_eq!(answer.lower.as_f64(), 0.0, "{bad}: {answer:?}");
+                let closest = iterative_ray_cast(|_| v::<V>([bad; 3]), ray, RayCastOptions::default());
+                assert_eq!(closest.expect("a finite ray").outcome, Outcome::Undecided, "{bad}");
+                let sometimes = |x: V| if x.get(1).as_f64() < 4.0 { v::<V>([bad; 3]) } else { V::ZERO };
+                let closest = iterative_ray_cast(sometimes, ray, RayCastOptions::default());
+                assert!(closest.expect("a finite ray").iterations <= 200, "{bad}");
+            }
+        }
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+    both(run::<Vec2>, run::<DVec2>);
 }
 
 /// A point is the smallest body. A ray through it grazes it, and is decided; one that passes it by misses.
