@@ -101,8 +101,8 @@ pub(crate) struct Descent<V: Vector, W> {
 
 /// Algorithm 2 on the cores, until their distance is known to rounding, or to exceed the limit, or not to exceed the radii.
 ///
-/// Steps are taken lightly, by [`nearest`], and judged by what they achieve: one that brings the simplex no nearer is
-/// taken again with care, by a search of all faces. The bounds that end the descent do not depend on how it came there:
+/// Steps are taken lightly, by [`nearest`] or as asked, and judged by what they achieve: one that brings the simplex no nearer
+/// is taken again with care, by a search of all faces. The bounds that end the descent do not depend on how it came there:
 /// the lower one is that of a plane through a support point, and the upper one is measured again before it counts.
 ///
 /// `first` is the support point along the first direction, if it is known; `descent` is a new one.
@@ -147,7 +147,7 @@ pub(crate) fn descend<B: Body>(
             lower: descent.lower * scale,
             upper: length * scale,
         });
-        let mut light = regions;
+        let mut light = true;
         if descent.lower > wanted.limit + noise {
             // The first support points are a bound from above, if nothing better is known.
             if wanted.closely && descent.simplex.points().is_empty() {
@@ -170,7 +170,13 @@ pub(crate) fn descend<B: Body>(
             light = false;
         }
         descent.simplex.push(w, -n, witness);
-        let next = if light { descent.step_lightly(w) } else { None };
+        let next = if light && regions {
+            descent.step_lightly(w)
+        } else if light && descent.step_nearer(wanted.sub_algorithm) {
+            Some((descent.normal, descent.normal.length()))
+        } else {
+            None
+        };
         if next.is_none() && newton.has_turned() {
             // A plane that was turned away from the shortest vector may be the better bound without its support point
             // bringing the simplex nearer.
@@ -179,7 +185,7 @@ pub(crate) fn descend<B: Body>(
             (n, size) = to.map_or((descent.normal, descent.normal.length()), |to| (to, Scalar::ONE));
             continue;
         }
-        let next = next.or_else(|| descent.step_carefully(wanted.sub_algorithm, &mut nearing));
+        let next = next.or_else(|| descent.step_carefully(&mut nearing));
         let Some(next) = next else {
             // The light steps' normal of a sliver leans by its rounding, and what supports the body along it may be a corner
             // already. Measured, it shows another.
@@ -265,18 +271,22 @@ impl<V: Vector, W: Copy + Default> Descent<V, W> {
         }
     }
 
+    /// The same by another way to find the face; whether it did.
+    #[cold]
+    #[inline(never)]
+    fn step_nearer(&mut self, sub_algorithm: SubAlgorithm) -> bool {
+        let next = sub_algorithm.closest(self.simplex.points(), V::DIM);
+        next.filter(|next| next.v.norm() < self.length).and_then(|next| self.accept(next)).is_some()
+    }
+
     /// The same by a search of all faces. Where rounding is all that is left to gain, a few steps without a gain are borne
     /// with. `None`, and the newest point is not added, where there are too many of them.
     #[cold]
     #[inline(never)]
-    fn step_carefully(
-        &mut self,
-        sub_algorithm: SubAlgorithm,
-        nearing: &mut Decrease<V::Scalar>,
-    ) -> Option<(V, V::Scalar)> {
+    fn step_carefully(&mut self, nearing: &mut Decrease<V::Scalar>) -> Option<(V, V::Scalar)> {
         let next = match self.simplex.points() {
             [known @ .., newest] if known.contains(newest) => None,
-            points => sub_algorithm.closest(points, V::DIM),
+            points => nearest_face(points, V::DIM),
         };
         let Some(next) = next.filter(|next| nearing.goes_on(next.v.norm())) else {
             self.simplex.pop();

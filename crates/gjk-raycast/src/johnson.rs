@@ -11,11 +11,12 @@ use crate::simplex::{Face, MAX_POINTS, faces};
 /// With the vertices `y_i`, and `k` any index in `X`, the determinants are
 ///
 /// ```text
-/// Δ_i{i} = 1,   Δ_j(X ∪ {j}) = Σ_{i in X} Δ_i(X)·(y_i·y_k − y_i·y_j),
+/// Δ_i{i} = 1,   Δ_j(X ∪ {j}) = Σ_{i in X} Δ_i(X)·(y_k − y_j)·y_i,
 /// ```
 ///
 /// and the face is the `X` with `Δ_i(X) > 0` for all `i` in `X` and `Δ_j(X ∪ {j}) ≤ 0` for all others. Then
-/// `v = Σ Δ_i·y_i / Σ Δ_i`. The products `y_i·y_j` are computed once, and each determinant once.
+/// `v = Σ Δ_i·y_i / Σ Δ_i`. Each determinant is computed once. The differences are taken before the products: a product of
+/// long vectors less another has no digits left for a short edge.
 ///
 /// Rounding may turn the signs such that no face, or the wrong one, satisfies them. Where none does, the back-up is to
 /// look at every face for the nearest; and the point is recomputed in its face by orthogonal projection, because the
@@ -23,13 +24,6 @@ use crate::simplex::{Face, MAX_POINTS, faces};
 pub(crate) fn johnson<V: Vector>(points: &[V], dimension: usize) -> Option<Closest<V>> {
     let zero = V::Scalar::ZERO;
     let len = points.len();
-    let mut dot = [[zero; MAX_POINTS]; MAX_POINTS];
-    for i in 0..len {
-        for j in 0..=i {
-            dot[i][j] = points[i].dot(points[j]);
-            dot[j][i] = dot[i][j];
-        }
-    }
     let mut delta = [[zero; MAX_POINTS]; 1 << MAX_POINTS];
     // Supersets have larger numbers, so that each set is complete when its turn comes.
     for x in faces(len, len) {
@@ -38,9 +32,10 @@ pub(crate) fn johnson<V: Vector>(points: &[V], dimension: usize) -> Option<Close
             delta[x.index()][k] = V::Scalar::ONE;
         }
         for j in (0..len).filter(|&j| !x.has(j)) {
+            let difference = points[k] - points[j];
             let mut sum = zero;
             for i in (0..len).filter(|&i| x.has(i)) {
-                sum += delta[x.index()][i] * (dot[i][k] - dot[i][j]);
+                sum += delta[x.index()][i] * difference.dot(points[i]);
             }
             delta[x.with(j).index()][j] = sum;
         }
