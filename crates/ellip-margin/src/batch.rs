@@ -136,12 +136,12 @@ fn by_eights<'a, V: Vector, const N: usize>(
             pairs.set(lane, &Pair::new(e1, e2));
         }
         solve_lanes(&pairs, options.tolerance, &mut answers);
-        margins.extend((0..LANES).map(|lane| {
-            answers.get(lane).unwrap_or_else(|| {
-                let (e1, e2) = of(next + lane);
-                free_margin(e1, e2, options)
-            })
-        }));
+        let first = margins.len();
+        margins.extend((0..LANES).map(|lane| answers.get(lane)));
+        for lane in (0..LANES).filter(|&lane| answers.is_answer[lane] == 0.0) {
+            let (e1, e2) = of(next + lane);
+            margins[first + lane] = free_margin(e1, e2, options);
+        }
         next += LANES;
     }
     next
@@ -212,18 +212,18 @@ struct Answers<const N: usize> {
 impl<const N: usize> Answers<N> {
     const ZERO: Self = Self { is_answer: NONE, nu: NONE, y: [NONE; N], point: [NONE; N], margin: NONE };
 
-    /// The margin of a lane, unless it has to be asked for again.
+    /// The margin of a lane, which holds where `is_answer`.
     #[inline(always)]
-    fn get<V: Vector>(&self, lane: usize) -> Option<Margin<V>> {
+    fn get<V: Vector>(&self, lane: usize) -> Margin<V> {
         let vector = |v: &[Lane; N]| V::from_fn(|i| V::Scalar::from_f64(v[i][lane]));
-        (self.is_answer[lane] == 1.0).then(|| Margin {
+        Margin {
             margin: V::Scalar::from_f64(self.margin[lane]),
             nu: V::Scalar::from_f64(self.nu[lane]),
             point: vector(&self.point),
             status: Status::Converged,
             iterations: STRAIGHT_STEPS,
             ball_point: vector(&self.y),
-        })
+        }
     }
 }
 

@@ -1,7 +1,6 @@
 //! The margin along a trajectory.
 
-use convex_support::{Ellipsoid, Scalar, Vector};
-use num_traits::Float as _;
+use convex_support::{Ellipsoid, Vector};
 
 use crate::margin::margin_from;
 use crate::{Margin, MarginOptions};
@@ -48,18 +47,22 @@ impl MarginTracker {
 
     /// The margin of `e1` about `e2`, wherever they have moved since the last call.
     pub fn step<V: Vector>(&mut self, e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> Margin<V> {
-        let margin = margin_from(e1, e2, self.forecast(), self.options, |_, _| {});
+        margin_from(e1, e2, self.forecast(), self.options, |_, _| {}, |nu, iterations| self.note(nu, iterations))
+    }
+
+    /// Remembers a step.
+    #[inline]
+    fn note(&mut self, nu: f64, iterations: usize) {
         // A step with x₁ in E₂ says nothing about the next one outside.
-        if margin.nu > V::Scalar::ZERO && margin.nu.is_finite() {
-            let mut difference = margin.nu.as_f64();
+        if nu > 0.0 && nu.is_finite() {
+            let mut difference = nu;
             for past in &mut self.past {
                 let before = core::mem::replace(past, difference);
                 difference -= before;
             }
         }
         self.steps += 1;
-        self.iterations += margin.iterations as u64;
-        margin
+        self.iterations += iterations as u64;
     }
 
     /// ν of the next step by the polynomial through the last k + 1 values, ν + ∇ν + … + ∇ᵏν, whose error at the last step was
