@@ -1,6 +1,6 @@
 //! Where the points come from: a slice of anything that converts into `[f64; N]`, or rows of a matrix.
 
-use crate::dimension::{Const, Dimension};
+use crate::dimension::{Const, Dimension, LANES};
 
 /// A finite sequence of points, read by copy.
 pub(crate) trait Points: Sync {
@@ -13,6 +13,23 @@ pub(crate) trait Points: Sync {
 
     /// Copies point `i` into `out`, whose length is the dimension.
     fn read(&self, i: usize, out: &mut [f64]);
+
+    /// Copies the points from `at` on into the lanes of `block`, a row for each coordinate, by way of `v`; from `end` on the
+    /// point before it is repeated.
+    #[inline(always)]
+    fn read_block(&self, at: usize, end: usize, v: &mut [f64], block: &mut [[f64; LANES]]) {
+        read_lanes(self, at, end, v, block);
+    }
+}
+
+#[inline(always)]
+fn read_lanes<P: Points + ?Sized>(points: &P, at: usize, end: usize, v: &mut [f64], block: &mut [[f64; LANES]]) {
+    for lane in 0..LANES {
+        points.read((at + lane).min(end - 1), v);
+        for (row, &x) in block.iter_mut().zip(&*v) {
+            row[lane] = x;
+        }
+    }
 }
 
 /// Points of a dimension known at compile time.
@@ -35,5 +52,19 @@ impl<P: Into<[f64; N]> + Copy + Sync, const N: usize> Points for PointSlice<'_, 
     #[inline(always)]
     fn read(&self, i: usize, out: &mut [f64]) {
         out.copy_from_slice(&self.0[i].into());
+    }
+
+    /// Of all blocks but the last the bounds are checked once.
+    #[inline(always)]
+    fn read_block(&self, at: usize, end: usize, v: &mut [f64], block: &mut [[f64; LANES]]) {
+        let Some(points) = self.0[at..end].first_chunk::<LANES>() else {
+            return read_lanes(self, at, end, v, block);
+        };
+        for (lane, &point) in points.iter().enumerate() {
+            let point: [f64; N] = point.into();
+            for k in 0..N {
+                block[k][lane] = point[k];
+            }
+        }
     }
 }

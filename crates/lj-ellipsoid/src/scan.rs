@@ -25,18 +25,17 @@ pub(crate) fn beyond<P: Points, R: Dimension>(
     let mut at = range.start;
     while at < range.end {
         // The last block repeats the last point: a maximum does not mind, and no visit is beyond the range.
-        for lane in 0..LANES {
-            points.read((at + lane).min(range.end - 1), v.as_mut());
-            let (v, block) = (v.as_ref(), block.as_mut());
-            for k in 0..n {
-                block[k][lane] = v[k] - origin[k];
+        let block = &mut block.as_mut()[..n];
+        points.read_block(at, range.end, v.as_mut(), block);
+        for k in 0..n {
+            for lane in 0..LANES {
+                block[k][lane] -= origin[k];
             }
         }
-        let block = block.as_ref();
         let mut q = [0.0; LANES];
         for i in 0..r {
-            let mut y = [0.0; LANES];
-            for k in 0..n {
+            let mut y = block[0].map(|x| map[i * n] * x);
+            for k in 1..n {
                 let t = map[i * n + k];
                 for lane in 0..LANES {
                     y[lane] += t * block[k][lane];
@@ -46,10 +45,9 @@ pub(crate) fn beyond<P: Points, R: Dimension>(
                 q[lane] += y[lane] * y[lane];
             }
         }
-        let largest = q.iter().fold(0.0, |m: f64, &q| if q > m { q } else { m });
-        if largest >= cutoff {
-            for lane in 0..LANES.min(range.end - at) {
-                if q[lane] >= cutoff {
+        if q.iter().fold(false, |any, &q| any | (q >= cutoff)) {
+            for lane in 0..LANES {
+                if q[lane] >= cutoff && at + lane < range.end {
                     cutoff = visit(at + lane, q[lane]);
                 }
             }
