@@ -72,27 +72,39 @@ pub(crate) fn shape_from_axes<N: Dimension>(
 /// Replaces the rows from `r` on by ones that make all of them orthonormal, and the determinant +1.
 fn complete_rotation<N: Dimension>(dim: N, r: usize, axes: &mut [f64]) {
     let n = dim.get();
-    for k in r..n {
-        let (done, rest) = axes.split_at_mut(k * n);
-        let mut best = (dim.zero(), -1.0);
-        for j in 0..n {
-            let mut e = dim.zero();
-            e.as_mut()[j] = 1.0;
-            for _ in 0..2 {
-                for row in done.chunks_exact(n) {
-                    let along = dot(row, e.as_ref());
-                    e.as_mut().iter_mut().zip(row).for_each(|(x, y)| *x -= along * y);
-                }
-            }
-            let length = dot(e.as_ref(), e.as_ref()).sqrt();
-            if length > best.1 {
-                best = (e, length);
-            }
-        }
-        rest.iter_mut().zip(best.0.as_ref()).for_each(|(to, x)| *to = x / best.1);
+    if r < n {
+        complete_basis(dim, r, axes);
     }
     if determinant_sign(dim, axes) < 0.0 {
         axes[(n - 1) * n..].iter_mut().for_each(|x| *x = -*x);
+    }
+}
+
+/// Replaces the rows from `r` on by ones that make all of them orthonormal.
+///
+/// Householder's reflections I − 2vvᵀ/|v|², one for each row there is, take row k to ±eₖ. Backwards they take the unit
+/// vectors from eᵣ on to what is missing.
+fn complete_basis<N: Dimension>(dim: N, r: usize, axes: &mut [f64]) {
+    let n = dim.get();
+    let reflect = |v: &N::Point, x: &mut [f64]| {
+        let v = v.as_ref();
+        let twice = 2.0 * dot(v, x) / dot(v, v);
+        x.iter_mut().zip(v).for_each(|(x, v)| *x -= twice * v);
+    };
+    let (given, missing) = axes.split_at_mut(r * n);
+    let mut reflections: Vec<N::Point> = Vec::with_capacity(r);
+    for (k, row) in given.chunks_exact(n).enumerate() {
+        let mut reflected = dim.point(row.iter().copied());
+        reflections.iter().for_each(|earlier| reflect(earlier, reflected.as_mut()));
+        let v = reflected.as_mut();
+        v[..k].fill(0.0);
+        v[k] += dot(v, v).sqrt().copysign(v[k]);
+        reflections.push(reflected);
+    }
+    for (k, row) in missing.chunks_exact_mut(n).enumerate() {
+        row.fill(0.0);
+        row[r + k] = 1.0;
+        reflections.iter().rev().for_each(|v| reflect(v, row));
     }
 }
 

@@ -94,20 +94,17 @@ fn bounds_of<P: Points>(points: &P, range: Range<usize>) -> Result<Bounds<P::Dim
     let mut block = dim.zero_block();
     let mut at = range.start;
     while at < range.end {
-        for lane in 0..LANES {
-            points.read((at + lane).min(range.end - 1), v.as_mut());
-            for k in 0..n {
-                block.as_mut()[k][lane] = v.as_ref()[k];
-            }
-        }
+        points.read_block(at, range.end, v.as_mut(), &mut block.as_mut()[..n]);
         // Few blocks hold a new extreme, and a look at the lanes together tells which. x·0 is 0 unless x is NaN or infinite.
         let (low, high) = (b.low.as_ref(), b.high.as_ref());
         let mut extreme = false;
         let mut finite = [0.0; LANES];
         for k in 0..n {
             let x = &block.as_ref()[k];
+            let least = x.iter().fold(x[0], |m, &x| if x < m { x } else { m });
+            let most = x.iter().fold(x[0], |m, &x| if x > m { x } else { m });
+            extreme |= (least < low[k]) | (most > high[k]);
             for lane in 0..LANES {
-                extreme |= (x[lane] < low[k]) | (x[lane] > high[k]);
                 finite[lane] += x[lane] * 0.0;
             }
         }
@@ -160,7 +157,8 @@ pub(crate) fn start<P: Points>(points: &P, flat_tolerance: f64) -> Result<Start<
         };
         basis = Basis::new(dim);
         let mut normals = Basis::new(dim);
-        while basis.rank + normals.rank < n {
+        // What is orthogonal to one difference less than there are points is a normal.
+        while basis.rank + normals.rank < n && basis.rank + 1 < points.len() {
             let d = furthest_axis(dim, &basis, &normals);
             scans += 1;
             let (lowest, highest) = extremes(points, d.as_ref(), &unit);
@@ -254,29 +252,38 @@ impl<N: Dimension> Basis<N> {
         }
     }
 
-    /// Gram–Schmidt with pivoting over `vectors`, as many as there are dimensions: stops where no residual exceeds
+    /// Gram–Schmidt with pivoting over `vectors`, at most as many as there are dimensions: stops where no residual exceeds
     /// `threshold`.
     fn extend_well_spread(&mut self, vectors: &mut dyn Iterator<Item = N::Point>, threshold: f64) {
         let n = self.dim.get();
         let mut residuals = self.dim.zero_matrix();
         let left = &mut residuals.as_mut()[..n * n];
+        let mut count = 0;
         for (row, vector) in left.chunks_exact_mut(n).zip(vectors) {
             row.copy_from_slice(vector.as_ref());
+            count += 1;
         }
-        while self.rank < n {
+        let left = &mut left[..count * n];
+        debug_assert_eq!(self.rank, 0, "the vectors are made orthogonal to the last one of the basis only");
+        while self.rank < count {
             let mut longest = (0, 0.0);
             for (i, z) in left.chunks_exact_mut(n).enumerate() {
-                self.project_out(z);
+                // Of the others it is free already.
+                if let Some((b, _)) = self.rows().last() {
+                    let along = dot(b, z);
+                    z.iter_mut().zip(b).for_each(|(x, y)| *x -= along * y);
+                }
                 let square = dot(z, z);
                 if square > longest.1 {
                     longest = (i, square);
                 }
             }
-            let spread = longest.1.sqrt();
+            let z = &mut left[longest.0 * n..(longest.0 + 1) * n];
+            self.project_out(z);
+            let spread = dot(z, z).sqrt();
             if !(spread > threshold) {
                 break;
             }
-            let z = &mut left[longest.0 * n..(longest.0 + 1) * n];
             let vector = self.dim.point(z.iter().copied());
             z.fill(0.0);
             self.push(&vector, spread, spread);
@@ -286,22 +293,22 @@ impl<N: Dimension> Basis<N> {
 
 /// The unit vector orthogonal to both bases that is nearest to a coordinate axis.
 fn furthest_axis<N: Dimension>(dim: N, basis: &Basis<N>, normals: &Basis<N>) -> N::Point {
-    let mut best = (dim.zero(), -1.0);
-    for k in 0..dim.get() {
-        let mut d = dim.zero();
-        d.as_mut()[k] = 1.0;
+    // What is left of axis k is 1 − Σbₖ² long, squared, over the vectors b of both.
+    let mut within = dim.zero();
+    for (b, _) in basis.rows().chain(normals.rows()) {
+        within.as_mut().iter_mut().zip(b).for_each(|(sum, x)| *sum += x * x);
+    }
+    let within = within.as_ref();
+    let axis = (1..dim.get()).fold(0, |least, k| if within[k] < within[least] { k } else { least });
+    let mut d = dim.zero();
+    d.as_mut()[axis] = 1.0;
+    // Twice, since normalising a short residual magnifies what was left of the bases.
+    for _ in 0..2 {
         basis.project_out(d.as_mut());
         normals.project_out(d.as_mut());
         let length = dot(d.as_ref(), d.as_ref()).sqrt();
-        if length > best.1 {
-            best = (d, length);
-        }
+        d.as_mut().iter_mut().for_each(|x| *x /= length);
     }
-    let (mut d, length) = best;
-    d.as_mut().iter_mut().for_each(|x| *x /= length);
-    // Normalising a short residual magnifies what was left of the bases.
-    basis.project_out(d.as_mut());
-    normals.project_out(d.as_mut());
     d
 }
 

@@ -159,7 +159,7 @@ fn s09_heavy_tails() {
         .collect();
     let lognormal: Vec<[f64; 3]> = rng.normals(20_000).into_iter().map(|x: [f64; 3]| x.map(f64::exp)).collect();
     for points in [cauchy, lognormal] {
-        let answer = enclosing(&points, EnclosingOptions::new().with_epsilon(1e-10)).expect("full rank");
+        let answer = enclosing(&points, TIGHT).expect("full rank");
         assert_eq!(answer.status, Status::Converged, "gap {}", answer.log_det_gap);
         assert_contains(&answer, &points);
     }
@@ -244,6 +244,20 @@ fn s12_fewer_points_than_dimensions() {
     assert!(answer.ellipsoid.semi_axes()[6] > 0.0, "seven axes");
     assert_eq!(answer.ellipsoid.semi_axes()[7..], [0.0; 13]);
     assert_eq!(answer.contacts.len(), 8, "all corners of a simplex touch");
+}
+
+/// The same at its worst: 50 points in a thousand dimensions.
+#[test]
+#[cfg(feature = "faer")]
+fn s12_fifty_points_in_a_thousand_dimensions() {
+    let mut rng = Rng(12);
+    let points = faer::Mat::from_fn(50, 1000, |_, _| rng.normal());
+    let flat = EnclosingError::Flat { rank: 49, dimension: 1000 };
+    assert_eq!(lj_ellipsoid::enclosing_dyn(points.as_ref(), TIGHT).unwrap_err(), flat);
+    let in_hull = EnclosingOptions::new().with_flat(FlatPolicy::AffineHull);
+    let answer = lj_ellipsoid::enclosing_dyn(points.as_ref(), in_hull).expect("a simplex in its hull");
+    assert_eq!((answer.status, answer.contacts.len()), (Status::Converged, 50));
+    assert_eq!(answer.ellipsoid.semi_axes().iter().filter(|a| **a > 0.0).count(), 49);
 }
 
 /// dynesty #461 and #126: points left outside. (The property test in `laws.rs` looks further.)
