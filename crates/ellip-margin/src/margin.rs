@@ -93,7 +93,7 @@ pub fn free_margin_with<V: Vector>(
 /// The margin with the iteration started at `nu`; `solved` is told ν and the number of iterations.
 ///
 /// Asking the answer for them instead would have it built on the stack and copied, which waits for every number of it to be
-/// stored: a fifth of the time of a tracked step.
+/// stored: a twentieth of the time of a tracked step.
 #[inline]
 pub(crate) fn margin_from<V: Vector>(
     e1: &Ellipsoid<V>,

@@ -21,7 +21,7 @@ impl<const N: usize> Equation<N> {
     #[inline(always)]
     pub(super) fn determinant(&self, nu: f64) -> f64 {
         let d = &self.d;
-        if N == 2 { d[0] + nu * (d[1] + nu) } else { d[0] + nu * (d[1] + nu * (d[2] + nu)) }
+        if N == 2 { d[0] + nu * (d[1] + nu) } else { (d[0] + nu * d[1]) + nu * nu * (d[2] + nu) }
     }
 
     /// The Taylor coefficients of N and D about ν, up to the third.

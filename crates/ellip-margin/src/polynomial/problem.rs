@@ -4,7 +4,7 @@
 use num_traits::Float as _;
 
 use super::equation::{Equation, Taylor};
-use crate::pair::{Pair, Vec, dot, sub};
+use crate::pair::{Pair, Vec, dot};
 
 /// The largest factor by which a sum of the coefficients may cancel: the relative errors of ν and y are at most this times
 /// a few ε, some 1e-12. Beyond it the singular basis is worth its price.
@@ -109,16 +109,14 @@ impl<const N: usize> Problem<N> {
     #[inline(always)]
     pub(super) fn nearest(&self, pair: &Pair<N>, nu: f64) -> Nearest<N> {
         let inverse = 1.0 / self.equation.determinant(nu);
-        let y: Vec<N> = core::array::from_fn(|j| {
-            let p = if N == 2 {
-                self.low[j] + nu * self.b[j]
-            } else {
-                self.low[j] + nu * (self.middle[j] + nu * self.b[j])
-            };
-            p * inverse
+        let p: Vec<N> = core::array::from_fn(|j| {
+            if N == 2 { self.low[j] + nu * self.b[j] } else { self.low[j] + nu * (self.middle[j] + nu * self.b[j]) }
         });
+        let y = p.map(|p| p * inverse);
+        // w = By − g, with Bp found beside the division.
+        let bp = apply(&self.rows, p);
+        let w: Vec<N> = core::array::from_fn(|i| bp[i] * inverse - self.g[i]);
         // The Lagrangian ‖w‖² − 1 + ν(‖y‖² − 1) is stationary in y: what y has of errors enters squared.
-        let w = sub(apply(&self.rows, y), self.g);
         let squared = dot(w, w);
         let margin = (squared - 1.0) + nu * (dot(y, y) - 1.0);
         // An error of x* − x₁ in space of ε(‖v‖ + ‖r‖) changes m by its product with ∂m/∂x₁ = 2R₁·diag(a₁)⁻¹w: not by 32ε·m?
