@@ -11,8 +11,8 @@ use convex_support::{
     Ball, Capsule, ClosestPoint, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rounded, SupportMap,
 };
 use gjk_raycast::{
-    Distance, DistanceOptions, IntersectOptions, Outcome, Ray, RayCastOptions, SubAlgorithm, distance, distance_with,
-    intersects, iterative_ray_cast_with, ray_cast, ray_cast_with,
+    CastMethod, Distance, DistanceOptions, IntersectOptions, Outcome, Ray, RayCastOptions, Status, SubAlgorithm,
+    distance, distance_with, intersects, iterative_ray_cast_with, ray_cast, ray_cast_with,
 };
 use proptest::prelude::*;
 
@@ -132,6 +132,49 @@ impl<F: Fn(DVec3) -> DVec3> SupportMap for Bare<F> {
     fn support(&self, direction: DVec3) -> DVec3 {
         (self.0)(direction)
     }
+}
+
+/// "For a sphere, the average number of iterations is roughly proportional to −log ε": a sphere of which nothing is known but its
+/// support points, by the paper's own steps.
+#[test]
+fn iterations_on_a_sphere_grow_as_minus_log_epsilon() {
+    let sphere = Bare(|direction: DVec3| direction.normalize());
+    let mean = |decades: i32| {
+        let options = RayCastOptions::new().with_tolerance(10.0_f64.powi(-decades)).with_method(CastMethod::Gjk);
+        let steps = directions(200).enumerate().map(|(i, d)| {
+            let (source, aim) = (DVec3::from_array(d) * 3.0, DVec3::new(d[1], d[2], d[0]) * 0.004 * i as f64);
+            let cast = ray_cast(&sphere, Ray { source, direction: aim - source }, options).expect("finite");
+            assert_eq!(cast.status, Status::Converged, "{decades} {i}: {cast:?}");
+            cast.iterations as f64
+        });
+        steps.sum::<f64>() / 200.0
+    };
+    let means = [2, 4, 6, 8, 10, 12].map(mean);
+    // Four for each decade, all the way down.
+    for (i, pair) in means.windows(2).enumerate() {
+        let per_decade = 0.5 * (pair[1] - pair[0]);
+        assert!((3.5..5.0).contains(&per_decade), "decades {i}: {means:?}");
+    }
+}
+
+/// "As soon as the lower bound λ becomes larger than the given maximum parameter, Algorithm 3 may terminate": the shorter a ray that
+/// misses is, the less it costs.
+#[test]
+fn short_rays_end_early() {
+    let hull = Polytope::new(directions(100).map(|d| DVec3::new(d[0], 0.3 * d[1], 0.3 * d[2]))).expect("finite");
+    let steps = [f64::INFINITY, 0.9, 0.5].map(|part| {
+        let casts = directions(100).map(|d| {
+            let source = DVec3::from_array(d) * 1.5;
+            let ray = Ray { source, direction: DVec3::new(d[1], d[2], d[0]) * 0.2 - source };
+            let hit =
+                ray_cast(&hull, ray, RayCastOptions::new()).expect("finite").outcome.hit().expect("towards the middle");
+            let cast = ray_cast(&hull, ray, RayCastOptions::new().with_max_lambda(part * hit.lambda)).expect("finite");
+            assert_eq!(cast.outcome.is_miss(), part < 1.0, "{part}: {cast:?}");
+            cast.iterations
+        });
+        casts.sum::<usize>()
+    });
+    assert!(steps[1] < steps[0] && 2 * steps[2] < steps[1], "{steps:?}");
 }
 
 /// "By initializing v₀ with a previously returned separating axis, the number of iterations per frame can be reduced

@@ -6,7 +6,8 @@ mod common;
 use common::{Quaternion, at, cast, cuboid, directions, lambda, off, s, turned, ulps, v};
 use convex_support::glam::{DQuat, DVec3, Vec3A};
 use convex_support::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Hull, MinkowskiSum, Point, Polytope, Posed, Scalar, Segment, SupportMap,
+    Ball, Capsule, ClosestPoint, Cone, Cuboid, Cylinder, Hull, MinkowskiSum, Point, Polytope, Posed, Scalar, Segment,
+    SupportMap,
 };
 use gjk_raycast::{
     CastMethod, DistanceOptions, Outcome, Ray, RayCastOptions, Status, SubAlgorithm, distance, iterative_ray_cast,
@@ -88,11 +89,15 @@ fn r6_hit_point_is_at_the_hit_parameter() {
         let (source, direction) = ([11_835.0, 4.709_930_42, 1_705.919_43], [0.0, 0.0, 1.0]);
         let answer = cast(&cone, source, direction);
         assert_eq!(answer.status, Status::Converged);
-        if let Some(hit) = answer.outcome.hit() {
-            let along = v::<V>(source) + v::<V>(direction) * hit.lambda;
-            assert!((hit.point - along).norm().as_f64() < 1e-3, "{hit:?}");
-            assert!(hit.lambda.as_f64() <= 778.38, "{hit:?}");
-        }
+        let hit = answer.outcome.hit().expect("the cone is in the way");
+        let along = v::<V>(source) + v::<V>(direction) * hit.lambda;
+        assert!((hit.point - along).norm().as_f64() < 1e-3, "{hit:?}");
+        assert!(hit.lambda.as_f64() <= 778.38, "{hit:?}");
+        // Where closest points in closed form find it, to rounding of the coordinates.
+        let ray = Ray { source: v::<V>(source), direction: v(direction) };
+        let oracle = iterative_ray_cast(|x| cone.closest_point(x), ray, RayCastOptions::default());
+        let expected = oracle.expect("a finite ray").outcome.hit().expect("so it is for Algorithm 1");
+        assert!((hit.lambda - expected.lambda).as_f64().abs() < ulps::<V>(8.0) * 12e3, "{hit:?}, {expected:?}");
     }
     both(run::<Vec3A>, run::<DVec3>);
 }
