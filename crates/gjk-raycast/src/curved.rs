@@ -16,9 +16,10 @@ use crate::Iterate;
 use crate::body::Body;
 use crate::cast::{ScalarOf, Search};
 use crate::piece::{Below, Piece, Pieces};
-use crate::portal::{Best, Exit, Frame, Portal, SeenBy, Slant};
+use crate::portal::{Exit, SeenBy};
 use crate::summit::summit;
 use crate::symmetric::Symmetric;
+use crate::view::{Best, Frame, Portal, Slant};
 
 /// Support points of the search.
 const MAX_STEPS: usize = 40;

@@ -83,6 +83,7 @@ mod summit;
 mod swept;
 mod symmetric;
 mod turn;
+mod view;
 
 pub use convex_support;
 

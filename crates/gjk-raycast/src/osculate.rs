@@ -12,8 +12,9 @@ use crate::Iterate;
 use crate::body::Body;
 use crate::cast::{ScalarOf, Search};
 use crate::piece::{Piece, Pieces};
-use crate::portal::{Best, Exit, Frame, Slant};
+use crate::portal::Exit;
 use crate::symmetric::{Symmetric, dot};
+use crate::view::{Best, Frame, Slant};
 
 /// Support points of the search.
 const MAX_STEPS: usize = 12;

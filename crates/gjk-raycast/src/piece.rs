@@ -3,8 +3,8 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::portal::{Portal, Seen, Slant};
 use crate::symmetric::{Across, Symmetric, dot};
+use crate::view::{Portal, Seen, Slant};
 
 /// A support point, where it was found, and how it moves from there.
 pub(crate) struct Piece<V: Vector, W> {

@@ -4,8 +4,8 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::piece::{MAX_PIECES, Piece, Turned};
-use crate::portal::Slant;
 use crate::symmetric::{Across, cross, dot};
+use crate::view::Slant;
 
 /// Where the least of the models is greatest.
 ///

@@ -17,7 +17,8 @@ use num_traits::Float as _;
 use crate::Iterate;
 use crate::body::Body;
 use crate::cast::{ScalarOf, Search};
-use crate::portal::{Best, Exit, Frame, PATIENCE, Seen, SeenBy, Slant};
+use crate::portal::{Exit, PATIENCE, SeenBy};
+use crate::view::{Best, Frame, Seen, Slant};
 
 /// Where the ray enters the swept hull of some points.
 #[derive(Clone, Copy)]
