@@ -8,6 +8,7 @@ use crate::cast::{End, ScalarOf, Search};
 use crate::closest::Closest;
 use crate::decrease::Decrease;
 use crate::entry::{Entry, entry};
+use crate::flat::project;
 use crate::simplex::MAX_POINTS;
 use crate::{Iterate, Status};
 
@@ -44,6 +45,10 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 // x is in the body, or no farther from it than rounding.
                 self.simplex.retain(face, weights);
                 (self.high, self.high_error) = (self.low, self.low_error);
+                if self.low > self.local.start {
+                    // Where the search began and no plane was crossed, that of the ball about the body is the one.
+                    self.normal = self.normal.or_else(|| x.unit()).or(Some(-line.direction));
+                }
                 return Ok(None);
             }
             let slope = v.dot(line.direction) / length;
@@ -70,10 +75,14 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 let mu = self.simplex.weighted_point().dot(line.direction).max(self.low);
                 let error = if self.low_slope > zero { self.noise / self.low_slope } else { self.noise };
                 (self.high, self.high_error, self.touched) = (mu, error, Some(mu));
-                // The last plane is of elsewhere: where the ray grazes what is round, the shortest vector is the normal.
-                if self.normal.is_none() || self.radius > self.noise {
-                    self.normal = v.unit();
-                }
+                // Where the ray grazes what is round, the shortest vector is the normal, and the last plane is of elsewhere. Without a
+                // radius it has no digits; where no plane was crossed either, the ray meets the face of the simplex head-on.
+                self.normal = if self.radius > self.noise {
+                    v.unit()
+                } else {
+                    let head_on = || project(self.simplex.points(), |_| -line.direction).across.unit();
+                    self.normal.or_else(head_on).or(Some(-line.direction))
+                };
                 return Ok(None);
             }
             if !nearing_across.goes_on(length) {

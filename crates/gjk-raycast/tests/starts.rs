@@ -308,3 +308,43 @@ fn a_point_is_missed_where_it_is_not() {
     }
     both(run::<Vec3A>, run::<DVec3>);
 }
+
+/// A hit ahead has a normal, and one that supports the shape there: also of a point, of a needle met by its end, of a plate met
+/// by its rim, and of the vertex that reaches as far as the ball about the shape, where no plane is crossed on the way.
+#[test]
+fn a_hit_ahead_has_a_normal() {
+    fn run<V: Vector>() {
+        let clouds: [&[[f64; 3]]; 4] = [
+            &[[2.0, 2.0, 2.0]],
+            &[[0.0, 0.0, 0.0], [2.0, 1.0, -1.0]],
+            &[[0.0, 0.0, 0.0], [2.0, 1.0, 0.0], [1.0, -2.0, 0.0]],
+            &[[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]],
+        ];
+        let mut hits = 0;
+        for cloud in clouds {
+            let points = || cloud.iter().map(|&p| v::<V>(p));
+            let body = Polytope::new(points()).expect("finite");
+            for through in points() {
+                for i in 0..125 {
+                    let direction = v::<V>([i / 25, i / 5 % 5, i % 5].map(|c| f64::from(c) - 2.0));
+                    if direction == V::ZERO {
+                        continue;
+                    }
+                    let ray = Ray { source: through - direction * s::<V>(2.0), direction };
+                    for method in [CastMethod::Portal, CastMethod::Gjk] {
+                        let cast = ray_cast(&body, ray, RayCastOptions::new().with_method(method)).expect("finite");
+                        let Some(hit) = cast.outcome.hit().filter(|hit| hit.lambda.as_f64() > 0.0) else { continue };
+                        let n = hit.normal.unwrap_or_else(|| panic!("{cloud:?} {ray:?}: {cast:?}"));
+                        assert!(n.dot(direction).as_f64() < ulps::<V>(16.0), "{cloud:?} {ray:?}: {cast:?}");
+                        let beyond = body.support_value(n) - n.dot(hit.point);
+                        assert!(beyond.as_f64() < ulps::<V>(64.0), "{cloud:?} {ray:?}: {cast:?}");
+                        hits += 1;
+                    }
+                }
+            }
+        }
+        assert!(hits > 1000, "{hits}");
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+    both(run::<Vec2>, run::<DVec2>);
+}
