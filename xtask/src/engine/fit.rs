@@ -1,6 +1,6 @@
 //! What enclosing and inscribed ellipsoids have in common: points of any dimension in, an ellipsoid and its gap out.
 
-use lj_ellipsoid::faer::{Mat, MatRef};
+use lj_ellipsoid::faer::Mat;
 use lj_ellipsoid::{Ellipsoid, EllipsoidDyn, Enclosing, EnclosingDyn, Inscribed, InscribedDyn, Status, rows_to_matrix};
 
 use super::Question;
@@ -52,7 +52,7 @@ impl<Input, Options: Copy, Solution: Fitted> Question for Fitting<Input, Options
     }
 
     fn answer(&self, solution: Solution) -> Result<Answer, Problem> {
-        let Fit { gap, status, iterations } = solution.fit();
+        let Fit { center, matrix, log_det, gap, status, iterations } = solution.fit();
         let status = match status {
             Status::Converged => "converged",
             // Rounding allows no smaller gap; the one that is certified stands beside the answer.
@@ -69,80 +69,71 @@ impl<Input, Options: Copy, Solution: Fitted> Question for Fitting<Input, Options
             Precision::F32 => Number::of(value as f32),
             Precision::F64 => Number::of(value),
         };
-        let answer = solution.with_ellipsoid(|center, matrix, log_det| {
-            let row = |i| (0..center.len()).map(|j| number(matrix[(i, j)])).collect();
-            Answer::default()
-                .with("center", Field::Numbers(center.iter().copied().map(number).collect()))
-                .with("matrix", Field::Rows((0..center.len()).map(row).collect()))
-                .with("log_det", Field::Number(number(log_det)))
-        });
-        Ok(answer
+        let row = |i| (0..center.len()).map(|j| number(matrix[(i, j)])).collect();
+        Ok(Answer::default()
+            .with("center", Field::Numbers(center.iter().copied().map(number).collect()))
+            .with("matrix", Field::Rows((0..center.len()).map(row).collect()))
+            .with("log_det", Field::Number(number(log_det)))
             .with("gap", Field::Number(Number::of(gap)))
             .with("status", Field::Text(status))
             .with("iterations", Field::Count(iterations)))
     }
 }
 
-/// How a fit ended.
+/// What a fit found, and how it ended.
 pub(super) struct Fit {
+    center: Vec<f64>,
+    matrix: Mat<f64>,
+    log_det: f64,
     gap: f64,
     status: Status,
     iterations: usize,
 }
 
+impl Fit {
+    fn fixed<const N: usize>(e: &Ellipsoid<N>, gap: f64, status: Status, iterations: usize) -> Self {
+        let matrix = e.matrix();
+        let matrix = Mat::from_fn(N, N, |i, j| matrix[i][j]);
+        Self { center: e.center().to_vec(), matrix, log_det: e.log_det(), gap, status, iterations }
+    }
+
+    fn dynamic(e: &EllipsoidDyn, gap: f64, status: Status, iterations: usize) -> Self {
+        Self {
+            center: e.center().to_vec(),
+            matrix: e.matrix().to_owned(),
+            log_det: e.log_det(),
+            gap,
+            status,
+            iterations,
+        }
+    }
+}
+
 /// The solutions of lj-ellipsoid, of a dimension known to the compiler or not.
 pub(super) trait Fitted {
     fn fit(&self) -> Fit;
-
-    /// Shows the centre, the matrix and its log-determinant.
-    fn with_ellipsoid(&self, show: impl FnOnce(&[f64], MatRef<'_, f64>, f64) -> Answer) -> Answer;
-}
-
-fn show_fixed<const N: usize>(e: &Ellipsoid<N>, show: impl FnOnce(&[f64], MatRef<'_, f64>, f64) -> Answer) -> Answer {
-    let matrix = e.matrix();
-    show(&e.center(), MatRef::from_row_major_slice(matrix.as_flattened(), N, N), e.log_det())
-}
-
-fn show_dynamic(e: &EllipsoidDyn, show: impl FnOnce(&[f64], MatRef<'_, f64>, f64) -> Answer) -> Answer {
-    show(e.center(), e.matrix(), e.log_det())
 }
 
 impl<const N: usize> Fitted for Enclosing<N> {
     fn fit(&self) -> Fit {
-        Fit { gap: self.log_det_gap, status: self.status, iterations: self.iterations }
-    }
-
-    fn with_ellipsoid(&self, show: impl FnOnce(&[f64], MatRef<'_, f64>, f64) -> Answer) -> Answer {
-        show_fixed(&self.ellipsoid, show)
+        Fit::fixed(&self.ellipsoid, self.log_det_gap, self.status, self.iterations)
     }
 }
 
 impl Fitted for EnclosingDyn {
     fn fit(&self) -> Fit {
-        Fit { gap: self.log_det_gap, status: self.status, iterations: self.iterations }
-    }
-
-    fn with_ellipsoid(&self, show: impl FnOnce(&[f64], MatRef<'_, f64>, f64) -> Answer) -> Answer {
-        show_dynamic(&self.ellipsoid, show)
+        Fit::dynamic(&self.ellipsoid, self.log_det_gap, self.status, self.iterations)
     }
 }
 
 impl<const N: usize> Fitted for Inscribed<N> {
     fn fit(&self) -> Fit {
-        Fit { gap: self.log_det_gap, status: self.status, iterations: self.iterations }
-    }
-
-    fn with_ellipsoid(&self, show: impl FnOnce(&[f64], MatRef<'_, f64>, f64) -> Answer) -> Answer {
-        show_fixed(&self.ellipsoid, show)
+        Fit::fixed(&self.ellipsoid, self.log_det_gap, self.status, self.iterations)
     }
 }
 
 impl Fitted for InscribedDyn {
     fn fit(&self) -> Fit {
-        Fit { gap: self.log_det_gap, status: self.status, iterations: self.iterations }
-    }
-
-    fn with_ellipsoid(&self, show: impl FnOnce(&[f64], MatRef<'_, f64>, f64) -> Answer) -> Answer {
-        show_dynamic(&self.ellipsoid, show)
+        Fit::dynamic(&self.ellipsoid, self.log_det_gap, self.status, self.iterations)
     }
 }

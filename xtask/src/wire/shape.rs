@@ -194,13 +194,17 @@ pub(crate) trait Space: Vector + Wedge {
     ///
     /// # Panics
     /// In 2D, where the reader lets none pass.
-    fn upright(kind: Upright, half_height: f64, radius: f64) -> Result<Solid<Self>, InvalidShape>;
+    fn upright(_: Upright, _: f64, _: f64) -> Result<Solid<Self>, InvalidShape> {
+        unreachable!("the reader refuses cylinders and cones in 2D")
+    }
 
     /// The hull of a mesh.
     ///
     /// # Panics
     /// In 2D, where the reader lets none pass.
-    fn mesh(mesh: &Mesh) -> Result<Solid<Self>, InvalidShape>;
+    fn mesh(_: &Mesh) -> Result<Solid<Self>, InvalidShape> {
+        unreachable!("the reader refuses meshes in 2D")
+    }
 }
 
 impl Space for DVec2 {
@@ -212,14 +216,6 @@ impl Space for DVec2 {
             Rotation::Quaternion(_) => 0.0,
         }
     }
-
-    fn upright(_: Upright, _: f64, _: f64) -> Result<Solid<Self>, InvalidShape> {
-        unreachable!("the reader refuses cylinders and cones in 2D")
-    }
-
-    fn mesh(_: &Mesh) -> Result<Solid<Self>, InvalidShape> {
-        unreachable!("the reader refuses meshes in 2D")
-    }
 }
 
 impl Space for Vec2 {
@@ -227,14 +223,6 @@ impl Space for Vec2 {
 
     fn rotation(rotation: Rotation) -> f32 {
         f32::from_f64(DVec2::rotation(rotation))
-    }
-
-    fn upright(_: Upright, _: f64, _: f64) -> Result<Solid<Self>, InvalidShape> {
-        unreachable!("the reader refuses cylinders and cones in 2D")
-    }
-
-    fn mesh(_: &Mesh) -> Result<Solid<Self>, InvalidShape> {
-        unreachable!("the reader refuses meshes in 2D")
     }
 }
 
