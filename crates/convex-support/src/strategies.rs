@@ -244,7 +244,7 @@ pub fn matrix<V: Vector>() -> BoxedStrategy<V::Matrix> {
         2 => columns.prop_map(|c| V::Matrix::from_cols_fn(|j| c[j])),
         1 => vector::<V>(V::Scalar::ONE).prop_map(V::Matrix::from_diagonal),
         1 => (rotation::<V>(), positive_length(V::Scalar::ONE)).prop_map(|(r, s)| {
-            let rotation = V::rotation_matrix(r).unwrap_or(V::Matrix::IDENTITY);
+            let rotation = V::unit_rotation(r).map_or(V::Matrix::IDENTITY, V::rotation_matrix);
             V::Matrix::from_cols_fn(|j| rotation.col(j) * s)
         }),
     ]

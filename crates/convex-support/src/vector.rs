@@ -82,9 +82,13 @@ pub trait Vector:
     fn is_finite(self) -> bool;
     /// Whether any coordinate is `NaN`.
     fn is_nan(self) -> bool;
-    /// The rotation matrix of `rotation`, which is normalised first; `None` where it is not finite or is the zero
-    /// quaternion.
-    fn rotation_matrix(rotation: Self::Rotation) -> Option<Self::Matrix>;
+    /// The same rotation by a unit quaternion; `None` where it is not finite or is the zero quaternion.
+    ///
+    /// This and the matrix are apart because an `Option` of a matrix is copied in pieces that are not its columns, and a column
+    /// of `Vec3A` that is then read whole waits for them to be written.
+    fn unit_rotation(rotation: Self::Rotation) -> Option<Self::Rotation>;
+    /// The matrix of a rotation, which is by a unit quaternion in 3D.
+    fn rotation_matrix(unit: Self::Rotation) -> Self::Matrix;
     /// The rotation that the quaternion `x·i + y·j + z·k + w` stands for; in 2D by its angle about `z`, `2·atan2(z, w)`.
     fn rotation_from_xyzw(quaternion: [Self::Scalar; 4]) -> Self::Rotation;
 
@@ -254,7 +258,7 @@ mod sealed {
 
 /// Forwards the traits to one of glam's types.
 macro_rules! glam_vector {
-    ($V:ident, $M:ident, $S:ident, $R:ty, $dim:literal, $transpose_mul:ident, [$($i:literal),+], $rotation:expr, $from_xyzw:expr) => {
+    ($V:ident, $M:ident, $S:ident, $R:ty, $dim:literal, $transpose_mul:ident, [$($i:literal),+], $unit:expr, $matrix:expr, $from_xyzw:expr) => {
         impl sealed::Sealed for glam::$V {}
         impl sealed::Sealed for glam::$M {}
 
@@ -296,7 +300,9 @@ macro_rules! glam_vector {
             #[inline]
             fn is_nan(self) -> bool { self.is_nan() }
             #[inline]
-            fn rotation_matrix(rotation: $R) -> Option<glam::$M> { ($rotation)(rotation) }
+            fn unit_rotation(rotation: $R) -> Option<$R> { ($unit)(rotation) }
+            #[inline(always)]
+            fn rotation_matrix(unit: $R) -> glam::$M { ($matrix)(unit) }
             #[inline]
             fn rotation_from_xyzw(quaternion: [$S; 4]) -> $R { ($from_xyzw)(quaternion) }
         }
@@ -322,9 +328,19 @@ macro_rules! glam_vector {
     };
 }
 
-glam_vector!(Vec2, Mat2, f32, f32, 2, transpose_mul_vec2, [0, 1], turn_f32, |[_, _, z, w]: [f32; 4]| 2.0 * z.atan2(w));
-glam_vector!(DVec2, DMat2, f64, f64, 2, transpose_mul_vec2, [0, 1], turn_f64, |[_, _, z, w]: [f64; 4]| 2.0
-    * z.atan2(w));
+glam_vector!(Vec2, Mat2, f32, f32, 2, transpose_mul_vec2, [0, 1], finite_angle, glam::Mat2::from_angle, angle_about_z);
+glam_vector!(
+    DVec2,
+    DMat2,
+    f64,
+    f64,
+    2,
+    transpose_mul_vec2,
+    [0, 1],
+    finite_angle,
+    glam::DMat2::from_angle,
+    angle_about_z
+);
 glam_vector!(
     Vec3,
     Mat3,
@@ -333,7 +349,8 @@ glam_vector!(
     3,
     transpose_mul_vec3,
     [0, 1, 2],
-    |q| unit_quat(q).map(glam::Mat3::from_quat),
+    unit_quat,
+    glam::Mat3::from_quat,
     glam::Quat::from_array
 );
 glam_vector!(
@@ -344,7 +361,8 @@ glam_vector!(
     3,
     transpose_mul_vec3a,
     [0, 1, 2],
-    |q| unit_quat(q).map(glam::Mat3A::from_quat),
+    unit_quat,
+    glam::Mat3A::from_quat,
     glam::Quat::from_array
 );
 glam_vector!(
@@ -355,18 +373,19 @@ glam_vector!(
     3,
     transpose_mul_vec3,
     [0, 1, 2],
-    |q| unit_dquat(q).map(glam::DMat3::from_quat),
+    unit_dquat,
+    glam::DMat3::from_quat,
     glam::DQuat::from_array
 );
 
-/// The matrix of a turn by an angle in radians; `None` where it is not finite.
-fn turn_f32(angle: f32) -> Option<glam::Mat2> {
-    angle.is_finite().then(|| glam::Mat2::from_angle(angle))
+/// `None` where the angle is not finite.
+fn finite_angle<S: Scalar>(angle: S) -> Option<S> {
+    angle.is_finite().then_some(angle)
 }
 
-/// The matrix of a turn by an angle in radians; `None` where it is not finite.
-fn turn_f64(angle: f64) -> Option<glam::DMat2> {
-    angle.is_finite().then(|| glam::DMat2::from_angle(angle))
+/// The angle of a turn about `z` from its quaternion.
+fn angle_about_z<S: Scalar>([_, _, z, w]: [S; 4]) -> S {
+    S::from_f64(2.0) * z.atan2(w)
 }
 
 impl Vector3 for glam::Vec3 {
@@ -452,9 +471,9 @@ mod tests {
     #[test]
     fn rotations_are_normalised_first() {
         let q = DQuat::from_xyzw(0.0, 0.0, 3e-200, 3e-200);
-        let m = DVec3::rotation_matrix(q).expect("not zero");
+        let m = DVec3::rotation_matrix(DVec3::unit_rotation(q).expect("not zero"));
         assert!((m * DVec3::X - DVec3::Y).length() < 1e-15, "a quarter turn about z, got {m}");
-        assert_eq!(DVec3::rotation_matrix(DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0)), None, "the zero quaternion");
-        assert_eq!(DVec3::rotation_matrix(DQuat::from_xyzw(f64::NAN, 0.0, 0.0, 1.0)), None, "NaN");
+        assert_eq!(DVec3::unit_rotation(DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0)), None, "the zero quaternion");
+        assert_eq!(DVec3::unit_rotation(DQuat::from_xyzw(f64::NAN, 0.0, 0.0, 1.0)), None, "NaN");
     }
 }

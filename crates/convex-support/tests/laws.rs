@@ -182,7 +182,7 @@ impl Law for CombinatorsAreTheirFormulas {
         let formula = a.support_value(columns.transpose_mul(d)) + d.dot(shift);
         close("affine", affine.support_value(d), formula, within)?;
         let q = V::rotation_from_xyzw([0.1, 0.2, 0.3, 0.9].map(V::Scalar::from_f64));
-        let rotation = V::rotation_matrix(q).expect("not zero");
+        let rotation = V::rotation_matrix(V::unit_rotation(q).expect("not zero"));
         let formula = a.support_value(rotation.transpose_mul(d)) + d.dot(shift);
         close("posed", Posed::new(a, q, shift).expect("finite").support_value(d), formula, within)
     }

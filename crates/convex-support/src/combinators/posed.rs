@@ -46,8 +46,8 @@ impl<S: SupportMap> Posed<S> {
         rotation: <S::Vector as Vector>::Rotation,
         translation: S::Vector,
     ) -> Result<Self, InvalidShape> {
-        let rotation = S::Vector::rotation_matrix(rotation).ok_or(InvalidShape::ZeroRotation)?;
-        Self::at(shape, rotation, translation)
+        let unit = S::Vector::unit_rotation(rotation).ok_or(InvalidShape::ZeroRotation)?;
+        Self::at(shape, S::Vector::rotation_matrix(unit), translation)
     }
 
     /// The shape moved by a rotation matrix, then by `translation`: for poses that come as glam's `DAffine3` or as a

@@ -40,7 +40,7 @@ impl<V: Vector> Ellipsoid<V> {
     /// # Errors
     /// [`InvalidShape`] if a number is not finite, a semi-axis is not positive, or the rotation is the zero quaternion.
     pub fn new(center: V, semi_axes: V, rotation: V::Rotation) -> Result<Self, InvalidShape> {
-        let axes = V::rotation_matrix(rotation).ok_or(InvalidShape::ZeroRotation)?;
+        let axes = V::rotation_matrix(V::unit_rotation(rotation).ok_or(InvalidShape::ZeroRotation)?);
         Self::from_axes(center, semi_axes, axes)
     }
 
@@ -147,7 +147,7 @@ impl<V: Vector> Ellipsoid<V> {
     /// # Errors
     /// [`InvalidShape`] if a number is not finite or the rotation is the zero quaternion.
     pub fn posed(&self, rotation: V::Rotation, translation: V) -> Result<Self, InvalidShape> {
-        let rotation = V::rotation_matrix(rotation).ok_or(InvalidShape::ZeroRotation)?;
+        let rotation = V::rotation_matrix(V::unit_rotation(rotation).ok_or(InvalidShape::ZeroRotation)?);
         Self::from_axes(rotation * self.center + translation, self.semi_axes, rotation * self.axes)
     }
 }
