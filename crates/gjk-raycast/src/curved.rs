@@ -26,6 +26,7 @@ const MAX_STEPS: usize = 40;
 
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     /// The derivative of the swept body's support point at `n` along `change`.
+    #[inline(always)]
     pub(crate) fn moved(&self, n: B::Vector, change: B::Vector) -> B::Vector {
         let core = self.body.derivative(n, change);
         if self.radius > ScalarOf::<B>::ZERO {
@@ -95,7 +96,8 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             let pieces = match &mut pieces {
                 Some(pieces) => {
                     let again = pieces.push(piece, self.noise);
-                    caution = if again { caution * ScalarOf::<B>::from_f64(8.0) } else { ScalarOf::<B>::ONE };
+                    // Too little shows the same piece again; too much goes back and forth between two.
+                    caution = if again { caution * ScalarOf::<B>::from_f64(8.0) } else { half.powi(stuck) };
                     pieces
                 }
                 None => pieces.insert(Pieces::new(piece)),
@@ -111,14 +113,15 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             let within = wanted * best.slant.length();
             // A segment first, since the weights in a flat triangle may be nothing but rounding.
             let passed = pieces.passed(self.noise).filter(|below| below.high >= start);
-            let last = closing;
-            for below in [passed, Some(Below::from(portal)), last].into_iter().flatten() {
+            let enclosing = (portal.high - best.tau <= within).then(|| Below::from(portal));
+            let mut coarse = None;
+            for below in [&passed, &enclosing, &closing].into_iter().flatten() {
                 let gap = below.high - best.tau;
                 if !(gap <= within) {
                     continue;
                 }
-                if last.is_none() && gap > fine {
-                    closing = closing.or(Some(below));
+                if closing.is_none() && gap > fine {
+                    coarse = coarse.or(Some(*below));
                     continue;
                 }
                 match self.close(frame, below.corners(), below.weights(), below.high, &best) {
@@ -126,13 +129,14 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                     end => return end,
                 }
             }
+            closing = closing.or(coarse);
             let suggested = if stuck < 3 || portal.high.is_infinite() {
                 summit(pieces.all(), slant, self.noise, caution)
             } else {
                 None
             };
             let gone = suggested.map_or(portal.high, |(_, value)| value.min(portal.high)) - best.tau;
-            stuck = if gone <= gap * half || stuck >= 3 { 0 } else { stuck + 1 };
+            stuck = if gone <= gap * half || stuck >= 3 && portal.high.is_finite() { 0 } else { stuck + 1 };
             gap = gone;
             if suggested.is_none() && portal.high.is_infinite() {
                 break;

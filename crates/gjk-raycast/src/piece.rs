@@ -34,26 +34,58 @@ pub(crate) struct Turned<S> {
 impl<V: Vector, W: Copy> Piece<V, W> {
     /// The piece as seen from another slant, where nothing is crossed before `least`.
     ///
-    /// The plane through the point alone is crossed at `cut`, never before the body, and the point that supports the body
-    /// there `½·δ·Hδ` earlier, to second order. How wrong that may be is told by the angle that the plane turns by, and by how
-    /// far the point moves; where that is too far, or where it foretells less than was found, a point counts for itself
-    /// alone. Of what is in doubt the larger value is expected: where it is wrong, the piece shows itself, and is known anew.
+    /// With `n₀` the normal at which the point `p₀` was found, and `δ = n − n₀`, the plane through the point alone is crossed at
+    /// `−n·p₀`, never before the body, and the body's own plane earlier. The support value `h = −τ` is homogeneous. Scaled to
+    /// `n/s` with `s = n·n₀/|n₀|²`, the normal differs from `n₀` by a vector across it; there `h` is quadratic to third order on
+    /// a ball or a circle, and not only to second as in `n`. As `H·n₀ = 0`, with `g = Hδ`,
+    ///
+    /// ```text
+    /// h = s·h(n/s) ≈ n·p₀ + δ·g/(2s).
+    /// ```
+    ///
+    /// Its derivatives are the point and its own derivative. With `m` the part of `n₀` across the ray,
+    ///
+    /// ```text
+    /// p = p₀ + g/s − δ·g/(2s²|n₀|²)·m,   H' = H/s − (g·mᵀ + m·gᵀ)/(s²|n₀|²) + δ·g/(s³|n₀|⁴)·m·mᵀ.
+    /// ```
+    ///
+    /// How wrong that may be is told by the angle that the plane turns by, and by how far the point moves; where that is too
+    /// far, or where it foretells less than was found, a point counts for itself alone. Of what is in doubt the larger value is
+    /// expected: where it is wrong, the piece shows itself, and is known anew.
     pub(crate) fn turned(&self, slant: Slant<V::Scalar>, least: V::Scalar, caution: V::Scalar) -> Turned<V::Scalar> {
         let number = V::Scalar::from_f64;
         let zero = V::Scalar::ZERO;
-        let change = (slant.a - self.slant.a, slant.b - self.slant.b);
-        let shift = self.bend.times(change);
-        let angle = dot(change, change).sqrt() / slant.length();
-        let moved = dot(shift, shift).sqrt();
-        let cut = slant.crossing(&self.seen);
-        let sinks = number(0.5) * dot(change, shift);
-        let doubt = sinks * angle.max(moved + moved).max(number(0.125));
-        if angle.max(moved) > number(FAR) || cut - sinks + doubt < least {
-            let bend = Symmetric { a: zero, b: zero, d: zero };
-            return Turned { tau: cut, at: (self.seen.u, self.seen.v), bend };
+        let m = (self.slant.a, self.slant.b);
+        let (cut, at) = (slant.crossing(&self.seen), (self.seen.u, self.seen.v));
+        let alone = Turned { tau: cut, at, bend: Symmetric { a: zero, b: zero, d: zero } };
+        let change = (slant.a - m.0, slant.b - m.1);
+        let angle = dot(change, change) / slant.length_squared();
+        if angle > number(FAR * FAR) || self.bend.is_zero() {
+            return alone;
+        }
+        let squared = self.slant.length_squared();
+        // 1/s, and 1/(s|n₀|²).
+        let shrink = squared / (squared + dot(m, change));
+        let share = shrink / squared;
+        let g = self.bend.times(change);
+        let sinks = number(0.5) * dot(change, g) * shrink;
+        let lean = sinks * share;
+        let shift = (g.0 * shrink - m.0 * lean, g.1 * shrink - m.1 * lean);
+        let moved = dot(shift, shift);
+        let doubt = sinks * angle.max(number(4.0) * moved).max(number(1.0 / 64.0)).sqrt();
+        // NaN fails this too.
+        if !(moved <= number(FAR * FAR) && cut - sinks + doubt >= least) {
+            return alone;
         }
         let tau = ((cut - sinks).max(least) + caution * doubt).min(cut);
-        Turned { tau, at: (self.seen.u + shift.0, self.seen.v + shift.1), bend: self.bend }
+        // H' = H/s − (k·mᵀ + m·kᵀ) with half of the last term in each of the products.
+        let k = (shift.0 * share, shift.1 * share);
+        let bend = Symmetric {
+            a: self.bend.a * shrink - (k.0 * m.0 + k.0 * m.0),
+            b: self.bend.b * shrink - (k.0 * m.1 + k.1 * m.0),
+            d: self.bend.d * shrink - (k.1 * m.1 + k.1 * m.1),
+        };
+        Turned { tau, at: (at.0 + shift.0, at.1 + shift.1), bend }
     }
 }
 
@@ -66,7 +98,7 @@ impl<S: Scalar> Turned<S> {
 
 /// The angle that a plane may turn by, and the way that the point may move, in units of the body's size, for a piece to be a
 /// quadratic model.
-const FAR: f64 = 0.3;
+const FAR: f64 = 0.5;
 
 /// As many pieces as are kept.
 pub(crate) const MAX_PIECES: usize = 4;
@@ -118,7 +150,8 @@ impl<V: Vector, W: Copy> Pieces<V, W> {
     /// Adds a piece in place of those that are the same, or else of the one that is the farthest from being active. Tells
     /// whether it is the same as the last.
     ///
-    /// A point is the same piece's if it moved as the mean of both derivatives says, which is right to third order.
+    /// A point is the same piece's if it moved as the mean of both derivatives says, which is right to third order, and no
+    /// farther than by the body's size.
     pub(crate) fn push(&mut self, piece: Piece<V, W>, noise: V::Scalar) -> bool {
         let number = V::Scalar::from_f64;
         let foretold = |old: &Piece<V, W>| {
@@ -128,13 +161,15 @@ impl<V: Vector, W: Copy> Pieces<V, W> {
             let error = (moved.0 - expected.0, moved.1 - expected.1);
             let squared = dot(moved, moved);
             let allowed = (noise * noise).max(number(FORETOLD * FORETOLD) * squared);
-            squared <= number(FAR * FAR) && dot(error, error) <= allowed
+            squared <= V::Scalar::ONE && dot(error, error) <= allowed
         };
         let again = foretold(&self.kept[self.len - 1]);
         let mut len = 0;
         for i in 0..self.len {
             if !foretold(&self.kept[i]) {
-                self.kept[len] = self.kept[i];
+                if len < i {
+                    self.kept[len] = self.kept[i];
+                }
                 len += 1;
             }
         }
@@ -193,11 +228,10 @@ impl<V: Vector, W: Copy> Pieces<V, W> {
             for j in 0..i {
                 let (q, s) = (&self.kept[i].seen, &self.kept[j].seen);
                 let weights = [q.cross(s), s.cross(p), p.cross(q)];
-                let inverse = (weights[0] + weights[1] + weights[2]).recip();
-                let weights = weights.map(|w| w * inverse);
+                let sum = weights[0] + weights[1] + weights[2];
                 // NaN fails this too.
-                if weights.iter().all(|&w| w >= zero) && inverse.is_finite() {
-                    return below([newest, i, j], weights, 3);
+                if weights.iter().all(|&w| w * sum >= zero) && sum.recip().is_finite() {
+                    return below([newest, i, j], weights.map(|w| w * sum.recip()), 3);
                 }
             }
         }

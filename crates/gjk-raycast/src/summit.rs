@@ -18,6 +18,9 @@ use crate::view::Slant;
 ///
 /// One piece gives `δ = −H⁻¹P`, or where `H` is singular, [`along_edge`]. Of two, with `e = Pⱼ − Pᵢ`, the second condition to first order is `e·δ = τⱼ − τᵢ`, and the
 /// first one across `e` gives the rest. Three are alike at one `δ`.
+///
+/// The newest piece is the lowest where it was looked at, and mostly one of those. So those without it are tried only where none
+/// with it will do.
 pub(crate) fn summit<V: Vector, W: Copy>(
     pieces: &[Piece<V, W>],
     slant: Slant<V::Scalar>,
@@ -34,82 +37,78 @@ pub(crate) fn summit<V: Vector, W: Copy>(
     for (t, piece) in turned.iter_mut().zip(others) {
         *t = piece.turned(slant, last.tau, caution);
     }
-    let turned = &turned[..pieces.len()];
     let newest = pieces.len() - 1;
     // A vertex is known as well as it ever will be; of other pieces, those are wanted that were not looked at last.
-    let led = |i: usize| {
-        let t = &turned[i];
-        if i == newest {
-            t.tau
-        } else if t.bend.is_zero() {
-            t.tau - lead
-        } else {
-            t.tau + caution * lead
-        }
-    };
+    let mut led = turned.map(|t| if t.bend.is_zero() { t.tau - lead } else { t.tau + caution * lead });
+    led[newest] = last.tau;
+    let turned = &turned[..pieces.len()];
+    // Where some of the models are alike counts if they are the least ones there. `active` has a bit for each of them.
     let mut best: Option<(Across<V::Scalar>, V::Scalar)> = None;
-    let mut offer = |change: Across<V::Scalar>, corners: &[usize]| {
-        let least = |among: &dyn Fn(usize) -> bool| {
-            let mut least = V::Scalar::infinity();
-            for (i, t) in turned.iter().enumerate() {
-                if among(i) {
-                    least = least.min(t.model(change));
-                }
-            }
-            least
-        };
+    let offer = |best: &mut Option<(Across<V::Scalar>, V::Scalar)>, (x, y): Across<V::Scalar>, active: usize| {
+        let squared = x * x + y * y;
+        let least = V::Scalar::EPSILON * length;
         // NaN fails this too.
-        let angle = dot(change, change).sqrt();
-        if !(angle <= length && angle > V::Scalar::EPSILON * length) {
+        if !(squared <= length * length && squared > least * least) {
             return;
         }
-        let value = least(&|i| corners.contains(&i));
-        let other = least(&|i| !corners.contains(&i));
-        let slack = lead + lead + (value - led(newest)).abs() * V::Scalar::from_f64(0.1);
+        let (mut value, mut other) = (V::Scalar::infinity(), V::Scalar::infinity());
+        for (i, t) in turned.iter().enumerate() {
+            let model = t.model((x, y));
+            if active >> i & 1 == 1 {
+                value = value.min(model);
+            } else {
+                other = other.min(model);
+            }
+        }
+        let slack = lead + lead + (value - last.tau).abs() * V::Scalar::from_f64(0.1);
         if other >= value - slack && best.is_none_or(|(_, found)| value > found) && value.is_finite() {
-            best = Some((change, value));
+            *best = Some(((x, y), value));
         }
     };
 
-    for i in 0..turned.len() {
-        let t = &turned[i];
+    for (i, t) in turned.iter().enumerate().rev() {
+        if i < newest && best.is_some() {
+            break;
+        }
         if t.bend.is_regular() {
             let (x, y) = t.bend.solve(t.at);
-            offer((-x, -y), &[i]);
+            offer(&mut best, (-x, -y), 1 << i);
         } else if let Some(change) = along_edge(turned, i, noise * length, noise) {
-            offer(change, &[i]);
+            offer(&mut best, change, 1 << i);
         }
-        for j in 0..i {
-            let s = &turned[j];
+        for (j, s) in turned[..i].iter().enumerate() {
             let e = (s.at.0 - t.at.0, s.at.1 - t.at.1);
             let squared = dot(e, e);
             if !(squared > noise * noise) {
                 continue;
             }
+            let inverse = squared.recip();
             let across = (-e.1, e.0);
-            let share = (-dot(e, t.at) / squared).max(zero).min(one);
+            let share = (-dot(e, t.at) * inverse).max(zero).min(one);
             let bend = t.bend.blend(s.bend, share);
-            let stiffness = dot(across, bend.times(across));
+            let pulled = bend.times(across);
+            let stiffness = dot(across, pulled);
             if stiffness > V::Scalar::EPSILON.sqrt() * squared * (bend.a + bend.d) {
-                let along = (led(j) - led(i)) / squared;
-                let aside = -(dot(across, t.at) + along * dot(across, bend.times(e))) / stiffness;
+                let along = (led[j] - led[i]) * inverse;
+                let aside = -(dot(across, t.at) + along * dot(e, pulled)) / stiffness;
                 let change = (e.0 * along + across.0 * aside, e.1 * along + across.1 * aside);
-                let pulled = bend.times(change);
-                let share = -(dot(e, t.at) + dot(e, pulled)) / squared;
-                if share >= zero && share <= one {
-                    offer(change, &[i, j]);
+                let share = -dot(e, t.at) - dot(e, bend.times(change));
+                if share >= zero && share <= squared {
+                    offer(&mut best, change, 1 << i | 1 << j);
                 }
             }
             for (k, r) in turned[..j].iter().enumerate() {
                 let f = (r.at.0 - t.at.0, r.at.1 - t.at.1);
                 let area = cross(e, f);
-                let weights = [cross(s.at, r.at) / area, cross(r.at, t.at) / area, cross(t.at, s.at) / area];
+                let turn = one.copysign(area);
+                let weights = [cross(s.at, r.at) * turn, cross(r.at, t.at) * turn, cross(t.at, s.at) * turn];
                 // NaN fails this too.
                 if !weights.iter().all(|&w| w >= zero) {
                     continue;
                 }
-                let (g, h) = (led(j) - led(i), led(k) - led(i));
-                offer(((g * f.1 - h * e.1) / area, (e.0 * h - f.0 * g) / area), &[i, j, k]);
+                let (g, h) = (led[j] - led[i], led[k] - led[i]);
+                let change = ((g * f.1 - h * e.1) / area, (e.0 * h - f.0 * g) / area);
+                offer(&mut best, change, 1 << i | 1 << j | 1 << k);
             }
         }
     }
