@@ -6,7 +6,10 @@ use crate::body::Pair;
 use crate::cast::{Contact, cast};
 use crate::error::RayCastError;
 use crate::ray_cast::{Ray, check_finite};
-use crate::{DistanceOptions, Iterate, LinearCast, LinearCastOptions, LinearHit, Outcome, RayCastOptions, distance};
+use crate::{
+    Distance, DistanceOptions, Iterate, LinearCast, LinearCastOptions, LinearHit, Outcome, RayCastOptions,
+    distance_with,
+};
 
 /// The velocities of two shapes, in units of length per unit of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -89,8 +92,7 @@ where
             let zero = <A::Vector as Vector>::Scalar::default();
             let point = if normal.is_none() && time == zero {
                 // The cast knows where the motion enters, which is behind the start or, sliding, ahead of it.
-                let start = DistanceOptions::new().with_max_iterations(options.max_iterations);
-                let start = distance(a, b, start.with_sub_algorithm(options.sub_algorithm));
+                let start = start(a, b, options);
                 iterations += start.iterations;
                 start.point_b
             } else {
@@ -109,4 +111,17 @@ where
         Outcome::Undecided => Outcome::Undecided,
     };
     Ok(LinearCast { outcome, lower: cast.lower, upper: cast.upper, status: cast.status, iterations })
+}
+
+/// The distance at the start. Its observer is one of its own, so that the compiler makes it apart from the distances that
+/// users ask for, which are slower where they share their code with it.
+#[cold]
+#[inline(never)]
+fn start<A, B>(a: &A, b: &B, options: LinearCastOptions<A::Vector>) -> Distance<A::Vector>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let wanted = DistanceOptions::new().with_max_iterations(options.max_iterations);
+    distance_with(a, b, wanted.with_sub_algorithm(options.sub_algorithm), |_| {})
 }
