@@ -144,7 +144,8 @@ pub struct LinearCast<V: Vector> {
     pub upper: V::Scalar,
     /// How the iteration ended.
     pub status: Status,
-    /// The number of support points computed of each shape.
+    /// The number of support points computed of each shape; where they overlap at the start, those of
+    /// [`distance`](crate::distance) as well.
     pub iterations: usize,
 }
 
