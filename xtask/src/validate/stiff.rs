@@ -68,6 +68,23 @@ fn swept(scope: &Scope) -> Vec<Block> {
     blocks
 }
 
+/// The columns of a sweep, and whether they say something of queries that are stopped early, at any distance: of those, only
+/// the certificates count.
+const SWEPT: [(&str, bool); 12] = [
+    ("distance", false),
+    ("precision", true),
+    ("cells", true),
+    ("queries", true),
+    ("worst error", false),
+    ("in ulps", false),
+    ("false", false),
+    ("undecided", true),
+    ("violations", true),
+    ("iterations, mean", true),
+    ("most", true),
+    ("wrong cells", true),
+];
+
 /// All sizes and subjects together: neither makes a difference, which the task `sweep` shows one by one.
 fn swept_table(question: Question, what: &str, cells: Vec<sweep::Row>) -> Table {
     let mut by_distance = BTreeMap::<(Ordered, &str), Vec<sweep::Row>>::new();
@@ -76,53 +93,37 @@ fn swept_table(question: Question, what: &str, cells: Vec<sweep::Row>) -> Table 
         by_distance.entry((Ordered(cell.distance), precision)).or_default().push(cell);
     }
     let stopped = question == Question::Certificates;
+    let is_shown = |&(_, of_stopped): &(&str, bool)| of_stopped || !stopped;
     let rows = by_distance.into_iter().map(|((Ordered(distance), precision), of)| {
         let sum = |count: fn(&sweep::Row) -> u64| of.iter().map(count).sum::<u64>();
         let most = |value: fn(&sweep::Row) -> f64| of.iter().map(value).fold(0.0, f64::max);
         let wrong = of.iter().filter(|cell| !cell.is_right()).count();
-        let mut columns = vec![
+        let columns = [
+            format!("{distance:e}"),
             precision.to_owned(),
             of.len().to_string(),
             sum(|c| c.queries).to_string(),
+            error(most(|c| c.worst)),
+            format!("{:.1}", most(sweep::Row::ulps)),
+            sum(|c| c.false_hits + c.missed).to_string(),
             sum(|c| c.undecided).to_string(),
             sum(|c| c.violations).to_string(),
             format!("{:.1}", sum(|c| c.iterations) as f64 / sum(|c| c.queries).max(1) as f64),
             of.iter().map(|c| c.most_iterations).max().unwrap_or(0).to_string(),
             wrong.to_string(),
         ];
-        // Of what was stopped at any distance, only the certificates count.
-        if !stopped {
-            columns.insert(0, format!("{distance:e}"));
-            let error = [error(most(|c| c.worst)), format!("{:.1}", most(sweep::Row::ulps))];
-            columns.splice(4..4, error.into_iter().chain([sum(|c| c.false_hits + c.missed).to_string()]));
-        }
-        Row::of(columns).bad_if(wrong > 0)
+        let shown = columns.into_iter().zip(&SWEPT).filter(|(_, title)| is_shown(title));
+        Row::of(shown.map(|(column, _)| column)).bad_if(wrong > 0)
     });
-    let name = format!("sweep-{}", what.replace(' ', "-"));
-    if stopped {
-        let caption = "Random bodies of many kinds, aspects, sizes and distances. A query that is stopped early may be undecided, but \
-                       a bound that it gives must hold: violations are bounds that do not.";
-        let headers =
-            ["precision", "cells", "queries", "undecided", "violations", "iterations, mean", "most", "wrong cells"];
-        return Table::new(&name, caption, &headers, rows.collect());
-    }
-    let caption = "Random bodies of many kinds, aspects and sizes; distances and errors in sizes of the body, and in rounding errors of \
-                   the distance. False: hits that are sure misses, and misses that are sure hits.";
-    let headers = [
-        "distance",
-        "precision",
-        "cells",
-        "queries",
-        "worst error",
-        "in ulps",
-        "false",
-        "undecided",
-        "violations",
-        "iterations, mean",
-        "most",
-        "wrong cells",
-    ];
-    Table::new(&name, caption, &headers, rows.collect())
+    let caption = if stopped {
+        "Random bodies of many kinds, aspects, sizes and distances. A query that is stopped early may be undecided, but a bound \
+         that it gives must hold: violations are bounds that do not."
+    } else {
+        "Random bodies of many kinds, aspects and sizes; distances and errors in sizes of the body, and in rounding errors of the \
+         distance. False: hits that are sure misses, and misses that are sure hits."
+    };
+    let titles: Vec<&str> = SWEPT.iter().filter(|title| is_shown(title)).map(|(title, _)| *title).collect();
+    Table::new(&format!("sweep-{}", what.replace(' ', "-")), caption, &titles, rows.collect())
 }
 
 /// For each query, precision, and kind and value of difficulty: how many, how right, how many iterations, how long.
