@@ -63,9 +63,9 @@ pub(super) fn figures(scope: &Scope) -> Vec<Figure> {
             let each = time(|| pairs.iter().for_each(of)) / pairs.len() as f64;
             times[route].push([condition, each]);
         };
-        clock(0, &|[e1, e2]| _ = black_box(free_margin(black_box(e1), black_box(e2), options)));
-        clock(1, &|[e1, e2]| _ = black_box(free_margin(black_box(e1), black_box(e2), singular)));
-        clock(2, &|[e1, e2]| _ = black_box(free_margin_eigen(black_box(e1), black_box(e2))));
+        clock(0, &|[e1, e2]| _ = black_box(&free_margin(black_box(e1), black_box(e2), options)));
+        clock(1, &|[e1, e2]| _ = black_box(&free_margin(black_box(e1), black_box(e2), singular)));
+        clock(2, &|[e1, e2]| _ = black_box(&free_margin_eigen(black_box(e1), black_box(e2))));
         clock(3, &|[e1, e2]| _ = black_box(by_corollary(black_box(e1), black_box(e2)).lambda));
     }
 

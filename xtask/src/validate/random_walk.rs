@@ -104,16 +104,16 @@ fn measure(size: f64) -> Row {
     }
     let mut clock =
         |route: usize, walk: &dyn Fn(&Walk)| row.times[route] = time(|| walks.iter().for_each(walk)) / steps;
-    clock(0, &|w| w.poses.iter().for_each(|pose| _ = black_box(free_margin_eigen(black_box(pose), &w.obstacle))));
+    clock(0, &|w| w.poses.iter().for_each(|pose| _ = black_box(&free_margin_eigen(black_box(pose), &w.obstacle))));
     clock(1, &|w| {
         let mut track = InverseIterationTracker::new(PRECISION.0, PRECISION.1);
-        w.poses.iter().for_each(|pose| _ = black_box(track.step(black_box(pose), &w.obstacle)));
+        w.poses.iter().for_each(|pose| _ = black_box(&track.step(black_box(pose), &w.obstacle)));
     });
     clock(2, &|w| {
         let mut track = MarginTracker::default();
-        w.poses.iter().for_each(|pose| _ = black_box(track.step(black_box(pose), &w.obstacle)));
+        w.poses.iter().for_each(|pose| _ = black_box(&track.step(black_box(pose), &w.obstacle)));
     });
-    clock(3, &|w| w.poses.iter().for_each(|pose| _ = black_box(free_margin(black_box(pose), &w.obstacle, options))));
+    clock(3, &|w| w.poses.iter().for_each(|pose| _ = black_box(&free_margin(black_box(pose), &w.obstacle, options))));
     row
 }
 

@@ -186,15 +186,15 @@ fn walks() -> Result<Vec<Claim>, InvalidShape> {
                 time(|| trajectories.iter().for_each(|(poses, obstacle)| run(poses, obstacle))) / steps as f64
             };
             let qr = all(&|poses, obstacle| {
-                poses.iter().for_each(|p| _ = std::hint::black_box(free_margin_eigen(p, obstacle)));
+                poses.iter().for_each(|p| _ = std::hint::black_box(&free_margin_eigen(p, obstacle)));
             });
             let inverse = all(&|poses, obstacle| {
                 let mut tracker = InverseIterationTracker::new(1e-6, 14);
-                poses.iter().for_each(|p| _ = std::hint::black_box(tracker.step(p, obstacle)));
+                poses.iter().for_each(|p| _ = std::hint::black_box(&tracker.step(p, obstacle)));
             });
             let newton = all(&|poses, obstacle| {
                 let mut tracker = MarginTracker::default();
-                poses.iter().for_each(|p| _ = std::hint::black_box(tracker.step(p, obstacle)));
+                poses.iter().for_each(|p| _ = std::hint::black_box(&tracker.step(p, obstacle)));
             });
             claims.push(Claim {
                 place: "Sections 3 and 4",
@@ -250,7 +250,7 @@ fn constant_time() -> Option<Claim> {
         };
         let (outer, obstacle) = (fit(&a)?, fit(&b)?);
         let (hull, other) = (Polytope::new(a).ok()?, Polytope::new(b).ok()?);
-        let margin = time(|| _ = std::hint::black_box(free_margin(&outer, &obstacle, MarginOptions::default())));
+        let margin = time(|| _ = std::hint::black_box(&free_margin(&outer, &obstacle, MarginOptions::default())));
         let exact = time(|| _ = std::hint::black_box(distance(&hull, &other, DistanceOptions::new())));
         Some([margin, exact])
     };
