@@ -19,6 +19,9 @@ use crate::view::{Best, Frame, Slant};
 /// Support points of the search.
 const MAX_STEPS: usize = 12;
 
+/// Planes along the ray, between it and an ellipsoid that it misses, that do not separate it from the body.
+const MAX_MISSES: usize = 2;
+
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     /// Replaces a smooth body by the ellipsoid that osculates it, takes the plane where the ray enters that, and so on.
     pub(crate) fn osculate(&mut self, frame: &Frame<B::Vector>, first: B::Vector) -> Result<(), Exit<B>> {
@@ -31,16 +34,23 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         let mut best: Option<Best<B::Vector>> = None;
         let mut pieces: Option<Pieces<B::Vector, B::Witness>> = None;
         let mut last = ScalarOf::<B>::infinity();
+        let mut misses = 0;
         for _ in 0..MAX_STEPS {
             let moved = [frame.e1, frame.e2, -direction].map(|e| self.moved(n, e));
             let bend = Symmetric { a: moved[0].dot(frame.e1), b: moved[0].dot(frame.e2), d: moved[1].dot(frame.e2) };
-            if !bend.is_regular() {
+            // Of a plane along the ray it never is, since H·n = 0 and n is across the ray.
+            if (slant.is_some() || misses == 0) && !bend.is_regular() {
                 return Err(None);
             }
             let mut seen = self.look(frame, n)?;
             seen.slant = slant;
             match slant {
-                None => self.separate(n, &seen)?,
+                None => {
+                    self.separate(n, &seen)?;
+                    if misses == MAX_MISSES {
+                        return Err(None);
+                    }
+                }
                 Some(slant) => {
                     let tau = slant.crossing(&seen);
                     if best.is_none_or(|best| tau > best.tau) {
@@ -104,6 +114,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 (n, slant) = (frame.normal(direction, to), Some(to));
             } else {
                 // The line misses the ellipsoid, and the plane between is along it.
+                misses += 1;
                 (n, slant) = (frame.e1 * away.0 + frame.e2 * away.1, None);
             }
         }

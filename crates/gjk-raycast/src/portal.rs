@@ -256,7 +256,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         let across = (frame.e1 * a + frame.e2 * b).unit().ok_or(None)?;
         let seen = self.look(frame, across)?;
         self.separate(across, &seen)?;
-        let beyond = (seen.point - frame.foot).dot(across);
+        let beyond = (seen.point - frame.foot).dot(across) + frame.lift;
         if beyond > ScalarOf::<B>::ZERO {
             return Ok(seen);
         }
