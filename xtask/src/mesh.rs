@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use convex_support::glam::{DVec3, Vec3A};
-use convex_support::{Hint, InvalidShape, Polytope, SupportMap, Vector};
+use convex_support::{InvalidShape, Polytope};
 
 use crate::wire::error::{Kind, Problem};
 
@@ -15,8 +15,8 @@ use crate::wire::error::{Kind, Problem};
 #[derive(Debug)]
 pub(crate) struct Mesh {
     points: Vec<DVec3>,
-    hull_f64: OnceLock<Result<Shared<Polytope<DVec3>>, InvalidShape>>,
-    hull_f32: OnceLock<Result<Shared<Polytope<Vec3A>>, InvalidShape>>,
+    hull_f64: OnceLock<Result<Arc<Polytope<DVec3>>, InvalidShape>>,
+    hull_f32: OnceLock<Result<Arc<Polytope<Vec3A>>, InvalidShape>>,
 }
 
 impl Mesh {
@@ -30,66 +30,14 @@ impl Mesh {
     }
 
     /// The convex hull in double precision.
-    pub(crate) fn hull_f64(&self) -> Result<Shared<Polytope<DVec3>>, InvalidShape> {
-        self.hull_f64.get_or_init(|| Polytope::hull_of(self.points.iter().copied()).map(Shared::new)).clone()
+    pub(crate) fn hull_f64(&self) -> Result<Arc<Polytope<DVec3>>, InvalidShape> {
+        self.hull_f64.get_or_init(|| Polytope::hull_of(self.points.iter().copied()).map(Arc::new)).clone()
     }
 
     /// The convex hull of the vertices rounded to single precision.
-    pub(crate) fn hull_f32(&self) -> Result<Shared<Polytope<Vec3A>>, InvalidShape> {
+    pub(crate) fn hull_f32(&self) -> Result<Arc<Polytope<Vec3A>>, InvalidShape> {
         let rounded = || self.points.iter().map(|p| p.as_vec3a());
-        self.hull_f32.get_or_init(|| Polytope::hull_of(rounded()).map(Shared::new)).clone()
-    }
-}
-
-/// A shape that several queries hold at once.
-#[derive(Debug)]
-pub(crate) struct Shared<S>(Arc<S>);
-
-impl<S> Shared<S> {
-    fn new(shape: S) -> Self {
-        Self(Arc::new(shape))
-    }
-}
-
-impl<S> Clone for Shared<S> {
-    fn clone(&self) -> Self {
-        Self(Arc::clone(&self.0))
-    }
-}
-
-impl<S: SupportMap> SupportMap for Shared<S> {
-    type Vector = S::Vector;
-
-    fn support(&self, direction: S::Vector) -> S::Vector {
-        self.0.support(direction)
-    }
-
-    fn support_value(&self, direction: S::Vector) -> <S::Vector as Vector>::Scalar {
-        self.0.support_value(direction)
-    }
-
-    fn origin(&self) -> S::Vector {
-        self.0.origin()
-    }
-
-    fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
-        self.0.core_support(direction, hint)
-    }
-
-    fn core_support_derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
-        self.0.core_support_derivative(direction, change)
-    }
-
-    fn radius(&self) -> <S::Vector as Vector>::Scalar {
-        self.0.radius()
-    }
-
-    fn is_core_polyhedral(&self) -> bool {
-        self.0.is_core_polyhedral()
-    }
-
-    fn core_extent(&self) -> <S::Vector as Vector>::Scalar {
-        self.0.core_extent()
+        self.hull_f32.get_or_init(|| Polytope::hull_of(rounded()).map(Arc::new)).clone()
     }
 }
 

@@ -151,12 +151,17 @@ impl<V: Vector3> ClosestPoint for Cone<V> {
 
 impl<V: Vector> ClosestPoint for Ellipsoid<V> {
     fn closest_point(&self, x: V) -> V {
-        let y = self.axes().transpose_mul(x - self.center());
-        match closest_point_of_axis_aligned(self.semi_axes(), y) {
-            Some(z) => self.center() + self.axes() * z,
+        match closest_point_of_centred(self, x - self.center()) {
+            Some(z) => self.center() + z,
             None => x,
         }
     }
+}
+
+/// The point of an ellipsoid nearest `x`, both relative to its centre; `None` where `x` is inside.
+pub(crate) fn closest_point_of_centred<V: Vector>(ellipsoid: &Ellipsoid<V>, x: V) -> Option<V> {
+    let axes = ellipsoid.axes();
+    closest_point_of_axis_aligned(ellipsoid.semi_axes(), axes.transpose_mul(x)).map(|z| axes * z)
 }
 
 /// Newton's iteration below climbs through the scales of the semi-axes one after another and then doubles its digits:

@@ -48,6 +48,16 @@ macro_rules! pointer {
                 (**self).is_core_polyhedral()
             }
 
+            #[inline(always)]
+            fn core_point(&self) -> Option<S::Vector> {
+                (**self).core_point()
+            }
+
+            #[inline(always)]
+            fn core_closest_point(&self, x: S::Vector) -> Option<S::Vector> {
+                (**self).core_closest_point(x)
+            }
+
             #[inline]
             fn core_extent(&self) -> ScalarOf<S> {
                 (**self).core_extent()
@@ -91,7 +101,7 @@ pointer!(Arc<S>);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Capsule, Posed, Rounded};
+    use crate::{Affine, Ball, Capsule, Posed, Rounded};
     use glam::DVec3;
 
     /// A capsule has a radius, an extent and closed forms, all of which a forgotten method would lose.
@@ -105,6 +115,7 @@ mod tests {
         assert_eq!(pointer.radius(), 0.5);
         assert!(pointer.is_core_polyhedral(), "a segment is the core");
         assert_eq!(pointer.core_extent(), capsule.core_extent());
+        assert_eq!(pointer.core_closest_point(d), Some(DVec3::NEG_Y));
         assert_eq!(pointer.closest_point(d), capsule.closest_point(d));
         assert_eq!(pointer.line_crossing(aside - d, d), capsule.line_crossing(aside - d, d));
         let rounded = |radius| Capsule::<DVec3>::new(1.0, 0.5 + radius).expect("a thicker capsule");
@@ -114,6 +125,15 @@ mod tests {
         );
         let moved = Posed::translated(pointer, DVec3::X).expect("moved");
         assert_eq!(moved.support(d), capsule.support(d) + DVec3::X);
+    }
+
+    #[test]
+    fn a_point_is_one_behind_a_pointer() {
+        let ball: Box<dyn SupportMap<Vector = DVec3>> = Box::new(Ball::new(1.0).expect("a ball"));
+        let turned = Affine::new(ball, glam::DMat3::from_diagonal(DVec3::splat(-2.0)), DVec3::X).expect("moved");
+        assert_eq!(turned.core_point(), Some(DVec3::ZERO));
+        assert_eq!((&turned).core_closest_point(DVec3::Y), Some(DVec3::ZERO));
+        assert_eq!(Capsule::<DVec3>::new(1.0, 0.5).expect("a capsule").core_point(), None);
     }
 
     #[test]

@@ -110,6 +110,25 @@ pub trait SupportMap {
         false
     }
 
+    /// The core where it is a single point, relative to the [`origin`](Self::origin). Provided: `None`.
+    ///
+    /// A ball that meets a set with a [closest point](Self::core_closest_point) needs no iteration.
+    #[inline]
+    fn core_point(&self) -> Option<Self::Vector> {
+        None
+    }
+
+    /// The point of the core closest to `x`, both relative to the [`origin`](Self::origin), where it costs no more than a few
+    /// support points. Provided: `None`.
+    ///
+    /// It must be a point of the core. Whether it is the closest one is checked by a support point, and one that is not costs
+    /// time, never correctness.
+    #[inline]
+    fn core_closest_point(&self, x: Self::Vector) -> Option<Self::Vector> {
+        let _ = x;
+        None
+    }
+
     /// The radius of the ball that sweeps the core.
     #[inline]
     fn radius(&self) -> ScalarOf<Self> {

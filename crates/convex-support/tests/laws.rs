@@ -137,6 +137,33 @@ fn core_extent_bounds_the_core() {
     holds::<CoreExtentBoundsTheCore>();
 }
 
+struct ClosestPointOfTheCoreIsTheClosest;
+impl Law for ClosestPointOfTheCoreIsTheClosest {
+    fn check<V: Vector>(shape: &AnyShape<V>, d: V, e: V, tolerance: V::Scalar) -> Result<(), TestCaseError> {
+        let core = |d: V| shape.core_support(d, &mut Hint::new());
+        if let Some(point) = shape.core_point() {
+            prop_assert_eq!(point, core(d), "the only point of the core");
+        }
+        let rounding = V::Scalar::EPSILON * V::Scalar::from_f64(400.0);
+        let away = e * (tolerance / rounding / e.norm());
+        for x in [core(e) + away, core(e) - away, core(e) * V::Scalar::from_f64(0.5), e] {
+            let Some(p) = shape.core_closest_point(x) else { return Ok(()) };
+            let reach = d.dot(core(d));
+            prop_assert!(d.dot(p) <= reach + along(tolerance, d), "{p:?} is beyond {reach:?} along {d:?}");
+            // (x − p)·(k − p) ≤ 0 for every point k of the core; an error of p costs as much as x is away.
+            let out = x - p;
+            let (excess, lengths) = (out.dot(core(out)) - out.dot(p), x.norm() + shape.core_extent());
+            prop_assert!(excess <= rounding * lengths * lengths, "{p:?} is not the closest to {x:?}, by {excess:?}");
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn closest_point_of_the_core_is_the_closest() {
+    holds::<ClosestPointOfTheCoreIsTheClosest>();
+}
+
 struct HintsNeverChangeTheValue;
 impl Law for HintsNeverChangeTheValue {
     fn check<V: Vector>(shape: &AnyShape<V>, d: V, e: V, tolerance: V::Scalar) -> Result<(), TestCaseError> {

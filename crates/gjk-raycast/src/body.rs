@@ -153,6 +153,23 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
     pub(crate) fn size(&self, offset: A::Vector) -> <A::Vector as Vector>::Scalar {
         self.extent() + self.radius() + offset.norm()
     }
+
+    /// Points of the cores that are closest to one another, in units of the scale, where one core is a point and the other
+    /// says its closest one. For bodies of the given [size](Self::size) whose origins differ by `offset`, both in the world's unit.
+    #[inline(always)]
+    pub(crate) fn closest_points(
+        &self,
+        offset: A::Vector,
+        size: <A::Vector as Vector>::Scalar,
+    ) -> Option<PointPair<A::Vector>> {
+        let (a, b) = match (self.a.core_point(), self.b.core_point()) {
+            (Some(a), _) => (a, self.b.core_closest_point(a + offset)?),
+            (None, Some(b)) => (self.a.core_closest_point(b - offset)?, b),
+            (None, None) => return None,
+        };
+        // What closed forms compute of larger or smaller numbers may have left the range of the scalar.
+        is_moderate(size).then(|| PointPair { a: a * self.per_unit, b: b * self.per_unit })
+    }
 }
 
 /// The core points of two shapes, each relative to its shape's origin, in units of the scale.

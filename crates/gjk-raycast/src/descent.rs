@@ -10,7 +10,7 @@ use crate::decrease::Decrease;
 use crate::johnson::within;
 use crate::newton::Newton;
 use crate::regions::nearest;
-use crate::simplex::{Simplex, all};
+use crate::simplex::{MAX_POINTS, Simplex, all};
 use crate::{Iterate, Status, SubAlgorithm};
 
 /// Where the difference of two bodies is, and the unit it is measured in.
@@ -51,8 +51,6 @@ pub(crate) fn rounding<S: Scalar>(size: S) -> S {
 /// What a descent is to find out; lengths in units of the frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wanted<V: Vector> {
-    /// The first direction from zero to the difference, of any length but zero.
-    pub(crate) first: V,
     /// Stop where the cores are certainly farther apart than this.
     pub(crate) limit: V::Scalar,
     /// Stop where the bracket is as narrow as this, relative to its lower end.
@@ -105,7 +103,7 @@ pub(crate) struct Descent<V: Vector, W> {
 /// is taken again with care, by a search of all faces. The bounds that end the descent do not depend on how it came there:
 /// the lower one is that of a plane through a support point, and the upper one is measured again before it counts.
 ///
-/// `first` is the support point along the first direction, if it is known; `descent` is a new one.
+/// `first` is the support point along the descent's first direction, if it is known.
 #[inline]
 pub(crate) fn descend<B: Body>(
     descent: &mut Descent<B::Vector, B::Witness>,
@@ -120,7 +118,11 @@ pub(crate) fn descend<B: Body>(
     let touching = radius.max(noise);
     let regions = wanted.sub_algorithm == SubAlgorithm::Regions;
     let mut nearing = Decrease::new();
-    let mut n = wanted.first;
+    if descent.length <= touching {
+        descent.end = End::Overlap;
+        return;
+    }
+    let mut n = descent.normal;
     let mut size = n.length();
     let curved = wanted.closely && body.is_curved();
     let mut newton = Newton::new(noise);
@@ -238,6 +240,18 @@ impl<V: Vector, W: Copy + Default> Descent<V, W> {
             measured: false,
             end: End::IterationLimit,
             iterations: 0,
+        }
+    }
+
+    /// The descent that begins with a point of the difference, if that is finite, and the vector to it for first direction.
+    #[inline(always)]
+    pub(crate) fn begin_at(&mut self, point: V, witness: W) {
+        let mut weights = [V::Scalar::ZERO; MAX_POINTS];
+        weights[0] = V::Scalar::ONE;
+        self.simplex.push(point, -point, witness);
+        let found = Closest { v: point, face: all(1), weights };
+        if self.accept(found).is_none() {
+            self.simplex.pop();
         }
     }
 

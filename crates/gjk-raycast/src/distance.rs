@@ -51,14 +51,17 @@ where
     let frame = Frame::new(&mut pair, offset, size);
     let Frame { scale, per_unit, radius, noise, .. } = frame;
     let wanted = Wanted {
-        first: options.axis.and_then(direction).or_else(|| direction(frame.offset)).unwrap_or_else(|| Vector::axis(0)),
         limit: options.limit * per_unit + radius,
         tolerance: options.tolerance,
         closely: true,
         max_iterations: options.max_iterations,
         sub_algorithm: options.sub_algorithm,
     };
-    let mut descent = Descent::new(wanted.first);
+    let first = options.axis.and_then(direction).or_else(|| direction(frame.offset)).unwrap_or_else(|| Vector::axis(0));
+    let mut descent = Descent::new(first);
+    if let Some(points) = pair.closest_points(offset, size) {
+        descent.begin_at(points.a - points.b + frame.offset, points);
+    }
     descend(&mut descent, &mut pair, frame, wanted, None, observer);
     if !descent.measured {
         let _ = descent.measure();

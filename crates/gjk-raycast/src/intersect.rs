@@ -3,7 +3,7 @@
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float;
 
-use crate::body::{Body, Pair, Untraced, direction, is_moderate};
+use crate::body::{Body, Pair, PointPair, Untraced, direction, is_moderate};
 use crate::descent::{Descent, End, Frame, Wanted, descend, rounding};
 use crate::{IntersectOptions, Intersection, Iterate, Status};
 
@@ -102,15 +102,18 @@ where
     let size = pair.size(first.offset);
     let frame = Frame::new(pair, first.offset, size);
     let wanted = Wanted {
-        first: first.direction,
         limit: frame.radius,
         tolerance: Scalar::ZERO,
         closely: false,
         max_iterations: options.max_iterations,
         sub_algorithm: options.sub_algorithm,
     };
-    let known = first.point.map(|point| (point * frame.per_unit, ()));
-    let mut descent = Descent::new(wanted.first);
+    let mut known = first.point.map(|point| (point * frame.per_unit, ()));
+    let mut descent = Descent::new(first.direction);
+    if let Some(PointPair { a, b }) = pair.closest_points(first.offset, size) {
+        descent.begin_at(a - b + frame.offset, ());
+        known = None;
+    }
     descend(&mut descent, &mut Untraced(pair), frame, wanted, known, observer);
     let overlap = match descent.end {
         End::Overlap => true,

@@ -1,20 +1,21 @@
 //! A rigid body known at three levels of detail: an ellipsoid around it, an ellipsoid inside it, and its hull.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use convex_support::glam::DVec3;
 use convex_support::{Ellipsoid, InvalidShape, Matrix as _, Polytope, Posed, glam::DMat3};
 use lj_ellipsoid::{EnclosingOptions, InscribedOptions, enclosing, inscribed_in_hull};
 
 use super::robot::Pose;
-use crate::mesh::{Meshes, Shared};
+use crate::mesh::Meshes;
 
 /// The three levels, in the frame of the body.
 #[derive(Clone, Debug)]
 pub(super) struct Body {
     outer: Ellipsoid<DVec3>,
     inner: Ellipsoid<DVec3>,
-    hull: Shared<Polytope<DVec3>>,
+    hull: Arc<Polytope<DVec3>>,
     /// The volume of the inner ellipsoid over that of the outer, to the power 1/3.
     pub(super) tightness: f64,
 }
@@ -24,7 +25,7 @@ pub(super) struct Body {
 pub(super) struct Placed {
     pub(super) outer: Ellipsoid<DVec3>,
     pub(super) inner: Ellipsoid<DVec3>,
-    pub(super) hull: Posed<Shared<Polytope<DVec3>>>,
+    pub(super) hull: Posed<Arc<Polytope<DVec3>>>,
 }
 
 impl Body {

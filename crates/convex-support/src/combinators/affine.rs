@@ -118,6 +118,20 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         self.shape.is_core_polyhedral() && (self.scale.is_some() || self.shape.radius() == ScalarOf::<S>::ZERO)
     }
 
+    #[inline]
+    fn core_point(&self) -> Option<S::Vector> {
+        self.scale?;
+        Some(self.matrix * self.shape.core_point()? + self.lost)
+    }
+
+    /// A map that keeps angles keeps which point is closest.
+    #[inline]
+    fn core_closest_point(&self, x: S::Vector) -> Option<S::Vector> {
+        self.scale?;
+        let closest = self.shape.core_closest_point(self.inverse? * (x - self.lost))?;
+        Some(self.matrix * closest + self.lost)
+    }
+
     fn core_extent(&self) -> ScalarOf<S> {
         let extent = match self.scale {
             Some(scale) => scale * self.shape.core_extent(),

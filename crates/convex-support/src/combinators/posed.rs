@@ -143,6 +143,17 @@ impl<S: SupportMap> SupportMap for Posed<S> {
         self.shape.is_core_polyhedral()
     }
 
+    #[inline(always)]
+    fn core_point(&self) -> Option<S::Vector> {
+        Some(self.rotation * self.shape.core_point()? + self.lost)
+    }
+
+    #[inline(always)]
+    fn core_closest_point(&self, x: S::Vector) -> Option<S::Vector> {
+        let closest = self.shape.core_closest_point(self.rotation.transpose_mul(x - self.lost))?;
+        Some(self.rotation * closest + self.lost)
+    }
+
     #[inline]
     fn core_extent(&self) -> ScalarOf<S> {
         self.shape.core_extent() + self.lost.abs().max_element() * Scalar::from_f64(2.0)

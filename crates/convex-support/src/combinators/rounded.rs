@@ -82,6 +82,16 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
     }
 
     #[inline]
+    fn core_point(&self) -> Option<S::Vector> {
+        self.shape.core_point()
+    }
+
+    #[inline]
+    fn core_closest_point(&self, x: S::Vector) -> Option<S::Vector> {
+        self.shape.core_closest_point(x)
+    }
+
+    #[inline]
     fn core_extent(&self) -> ScalarOf<S> {
         self.shape.core_extent()
     }

@@ -68,6 +68,11 @@ impl<V: Vector> SupportMap for Capsule<V> {
     }
 
     #[inline]
+    fn core_closest_point(&self, x: V) -> Option<V> {
+        Some(V::axis(1) * x.get(1).max(-self.half_height).min(self.half_height))
+    }
+
+    #[inline]
     fn core_extent(&self) -> ScalarOf<Self> {
         self.half_height
     }

@@ -3,7 +3,7 @@
 use super::cylinder::across;
 use crate::error::{InvalidShape, non_negative};
 use crate::support::{ScalarOf, swept, swept_derivative};
-use crate::{Hint, Scalar, SupportMap, Vector3};
+use crate::{ClosestPoint, Hint, Scalar, SupportMap, Vector3};
 use num_traits::Float as _;
 
 /// The cone with its apex at `(0, half_height, 0)` and its base disc at `y = −half_height`.
@@ -95,6 +95,11 @@ impl<V: Vector3> SupportMap for Cone<V> {
             return V::ZERO;
         }
         swept_derivative(self.radius, from_axis, across(change))
+    }
+
+    #[inline]
+    fn core_closest_point(&self, x: V) -> Option<V> {
+        Some(self.closest_point(x))
     }
 
     #[inline]

@@ -2,7 +2,7 @@
 
 use crate::error::{InvalidShape, finite};
 use crate::support::ScalarOf;
-use crate::{Hint, Scalar, SupportMap, Vector};
+use crate::{ClosestPoint, Hint, Scalar, SupportMap, Vector};
 
 /// The box `|xᵢ| ≤ half_extentsᵢ`; a rectangle in 2D.
 ///
@@ -64,6 +64,11 @@ impl<V: Vector> SupportMap for Cuboid<V> {
     #[inline]
     fn is_core_polyhedral(&self) -> bool {
         true
+    }
+
+    #[inline]
+    fn core_closest_point(&self, x: V) -> Option<V> {
+        Some(self.closest_point(x))
     }
 
     #[inline]

@@ -4,7 +4,7 @@ use num_traits::Float as _;
 
 use crate::error::{InvalidShape, non_negative};
 use crate::support::{ScalarOf, swept, swept_derivative};
-use crate::{Hint, SupportMap, Vector3};
+use crate::{ClosestPoint, Hint, SupportMap, Vector3};
 
 /// The cylinder `x² + z² ≤ radius²`, `|y| ≤ half_height`.
 ///
@@ -73,6 +73,11 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
     #[inline(always)]
     fn core_support_derivative(&self, direction: V, change: V) -> V {
         swept_derivative(self.radius, across(direction), across(change))
+    }
+
+    #[inline]
+    fn core_closest_point(&self, x: V) -> Option<V> {
+        Some(self.closest_point(x))
     }
 
     #[inline]

@@ -2,6 +2,7 @@
 
 use num_traits::Float as _;
 
+use crate::closest_point::closest_point_of_centred;
 use crate::error::{InvalidShape, finite, finite_matrix, orthonormal};
 use crate::spd;
 use crate::support::{ScalarOf, swept_derivative};
@@ -183,6 +184,11 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
         let e = self.scaled_semi_axes * self.axes.transpose_mul(direction);
         let de = self.scaled_semi_axes * self.axes.transpose_mul(change);
         self.axes * (self.semi_axes * swept_derivative(V::Scalar::ONE, e, de))
+    }
+
+    #[inline]
+    fn core_closest_point(&self, x: V) -> Option<V> {
+        Some(closest_point_of_centred(self, x).unwrap_or(x))
     }
 
     #[inline]

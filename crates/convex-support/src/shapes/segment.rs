@@ -71,6 +71,12 @@ impl<V: Vector> SupportMap for Segment<V> {
     }
 
     #[inline]
+    fn core_closest_point(&self, x: V) -> Option<V> {
+        let origin = self.origin();
+        Some(clamp_to_segment(self.points.map(|point| point - origin), x))
+    }
+
+    #[inline]
     fn is_core_polyhedral(&self) -> bool {
         true
     }

@@ -1,7 +1,7 @@
 //! A flat triangle.
 
 use crate::error::{InvalidShape, finite};
-use crate::{Hint, SupportMap, Vector};
+use crate::{ClosestPoint, Hint, SupportMap, Vector};
 
 /// The triangle of three points, which may be collinear or coincide.
 ///
@@ -100,6 +100,12 @@ impl<V: Vector> SupportMap for Triangle<V> {
     #[inline]
     fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
         self.support(direction) - self.origin()
+    }
+
+    #[inline]
+    fn core_closest_point(&self, x: V) -> Option<V> {
+        let origin = self.origin();
+        Some(Self { points: self.points.map(|point| point - origin) }.closest_point(x))
     }
 
     #[inline]

@@ -1,0 +1,157 @@
+//! Where one core is a point and the other says its closest one, that is where a descent begins, and mostly ends.
+
+mod common;
+
+use common::{Quaternion, at, cuboid, s, turned, ulps, v};
+use convex_support::glam::{DVec2, DVec3, Vec3A};
+use convex_support::{
+    Ball, Capsule, Cone, Cylinder, Ellipsoid, Hint, Point, Rounded, ScalarOf, Segment, SupportMap, Triangle,
+};
+use gjk_raycast::{DistanceOptions, IntersectOptions, Status, distance, intersects};
+use num_traits::Float as _;
+
+const VALID: &str = "positive sizes";
+
+fn bodies<V: Quaternion>() -> Vec<(&'static str, Box<dyn SupportMap<Vector = V>>)> {
+    let n = s::<V>;
+    let rotation = V::quaternion([0.1, 0.2, 0.3, 0.9]);
+    vec![
+        ("point", Box::new(Point::new(v::<V>([0.3, -0.2, 0.1])).expect(VALID))),
+        ("ball", Box::new(Ball::<V>::new(n(0.75)).expect(VALID))),
+        ("segment", Box::new(Segment::new([v::<V>([0.5, 0.25, 0.0]), v([-1.0, 0.0, 0.125])]).expect(VALID))),
+        (
+            "triangle",
+            Box::new(Triangle::new([v::<V>([1.0, 0.5, 0.0]), v([-1.0, 0.25, 0.0]), v([0.0, -1.0, 0.5])]).expect(VALID)),
+        ),
+        ("capsule", Box::new(Capsule::<V>::new(n(0.5), n(0.25)).expect(VALID))),
+        ("cuboid", Box::new(turned(cuboid::<V>([1.0, 0.5, 0.25]), rotation, [0.1, 0.2, -0.3]))),
+        (
+            "rounded",
+            Box::new(at(Rounded::new(cuboid::<V>([0.75, 0.5, 0.25]), n(0.25)).expect(VALID), [0.5, 0.0, 0.25])),
+        ),
+        ("cylinder", Box::new(turned(Cylinder::<V>::new(n(0.5), n(0.75)).expect(VALID), rotation, [0.0, 0.5, 0.0]))),
+        ("cone", Box::new(turned(Cone::<V>::new(n(0.75), n(0.5)).expect(VALID), rotation, [0.25, 0.0, 0.0]))),
+        ("ellipsoid", Box::new(Ellipsoid::new(v::<V>([0.1, 0.0, 0.2]), v([1.0, 0.5, 0.25]), rotation).expect(VALID))),
+    ]
+}
+
+/// The same shape, of which only the support points are known.
+struct Plain<S>(S);
+
+impl<S: SupportMap> SupportMap for Plain<S> {
+    type Vector = S::Vector;
+
+    fn support(&self, direction: S::Vector) -> S::Vector {
+        self.0.support(direction)
+    }
+
+    fn origin(&self) -> S::Vector {
+        self.0.origin()
+    }
+
+    fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
+        self.0.core_support(direction, hint)
+    }
+
+    fn core_support_derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
+        self.0.core_support_derivative(direction, change)
+    }
+
+    fn radius(&self) -> ScalarOf<S> {
+        self.0.radius()
+    }
+
+    fn core_extent(&self) -> ScalarOf<S> {
+        self.0.core_extent()
+    }
+}
+
+/// Centres of a ball all around, near and far, in the bodies and out of them.
+fn centres() -> impl Iterator<Item = [f64; 3]> {
+    let grid = [-1.6, -0.7, -0.1, 0.0, 0.4, 1.1];
+    (0..216).map(move |n| [grid[n % 6], grid[n / 6 % 6], grid[n / 36]])
+}
+
+/// One support point certifies what the closed form says, and it is what the support points alone lead to.
+#[test]
+fn a_ball_needs_one_support_point() {
+    fn run<V: Quaternion>() {
+        for (name, body) in bodies::<V>() {
+            let plain = Plain(&body);
+            for centre in centres() {
+                let ball = at(Ball::<V>::new(s::<V>(0.3)).expect(VALID), centre);
+                let (found, other) = (
+                    distance(&ball, &body, DistanceOptions::default()),
+                    distance(&ball, &plain, DistanceOptions::default()),
+                );
+                let back = distance(&body, &ball, DistanceOptions::default());
+                let what = format!("{name} from {centre:?}: {found:?}, {other:?}");
+                assert_eq!((found.overlap, found.status), (other.overlap, Status::Converged), "{what}");
+                assert!(found.iterations <= 1 && back.iterations <= 1, "{what}");
+                // The bracket is 16ε of both sizes and the distance of the origins, which are 6 together at most.
+                let within = s::<V>(ulps::<V>(100.0));
+                assert!((found.distance - other.distance).abs() <= within, "{what}");
+                assert!((found.distance - back.distance).abs() <= within, "{what}");
+                assert!(found.lower <= found.distance && found.distance <= found.upper, "{what}");
+                assert!(found.upper - found.lower <= within, "{what}");
+                let apart = (found.point_a - found.point_b).norm();
+                assert!(found.overlap || (apart - found.distance).abs() <= within, "{what}");
+                let meeting = intersects(&ball, &body, IntersectOptions::default());
+                assert_eq!(meeting.decided(), Some(found.overlap), "{what}");
+                assert!(meeting.iterations <= 2, "{what}: {meeting:?}");
+            }
+        }
+    }
+    run::<DVec3>();
+    run::<Vec3A>();
+}
+
+#[test]
+fn circles_need_one_too() {
+    let disc = at(Ball::<DVec2>::new(0.5).expect(VALID), [2.0, 2.0, 0.0]);
+    let found = distance(&disc, &cuboid::<DVec2>([1.0, 1.0, 0.0]), DistanceOptions::default());
+    assert_eq!((found.iterations, found.distance), (1, 2.0_f64.sqrt() - 0.5));
+}
+
+/// A closest point that is none, though a point of the core, costs time and nothing else.
+#[test]
+fn a_wrong_closest_point_changes_no_answer() {
+    struct Astray;
+    impl SupportMap for Astray {
+        type Vector = DVec3;
+
+        fn support(&self, direction: DVec3) -> DVec3 {
+            DVec3::new(1.0, 0.5, 0.25).copysign(direction)
+        }
+
+        fn core_closest_point(&self, x: DVec3) -> Option<DVec3> {
+            Some(DVec3::new(-0.5, 0.25, 0.0).copysign(-x))
+        }
+    }
+    for centre in centres() {
+        let ball = at(Ball::<DVec3>::new(0.3).expect(VALID), centre);
+        let right = distance(&ball, &cuboid::<DVec3>([1.0, 0.5, 0.25]), DistanceOptions::default());
+        let found = distance(&ball, &Astray, DistanceOptions::default());
+        assert_eq!((found.overlap, found.status), (right.overlap, Status::Converged), "{centre:?}: {found:?}");
+        assert!((found.distance - right.distance).abs() <= 1e-15, "{centre:?}: {found:?}, {right:?}");
+        let meeting = intersects(&ball, &Astray, IntersectOptions::default());
+        assert_eq!(meeting.decided(), Some(right.overlap), "{centre:?}");
+    }
+}
+
+/// At sizes whose squares leave the range of the scalar, closed forms are not asked.
+#[test]
+fn sizes_beyond_squares_are_left_to_the_descent() {
+    for size in [1e-160, 1e160] {
+        let cone = Cone::<DVec3>::new(0.75 * size, 0.5 * size).expect(VALID);
+        let ball = at(Ball::<DVec3>::new(0.25 * size).expect(VALID), [size, 0.5 * size, 0.0]);
+        let unit = distance(
+            &at(Ball::<DVec3>::new(0.25).expect(VALID), [1.0, 0.5, 0.0]),
+            &Cone::<DVec3>::new(0.75, 0.5).expect(VALID),
+            DistanceOptions::default(),
+        );
+        let found = distance(&ball, &cone, DistanceOptions::default());
+        assert!((found.distance / size - unit.distance).abs() <= 1e-14, "{found:?}");
+        assert_eq!(intersects(&ball, &cone, IntersectOptions::default()).decided(), Some(false));
+    }
+}
