@@ -168,7 +168,8 @@ pub struct LinearHit<V: Vector> {
 /// `{x} − C` with the current point `x` of the ray for casts. So it is always zero that is looked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Iterate<'a, V: Vector> {
-    /// Counts from 0: the first iterate has an empty simplex and the first direction for its `v`.
+    /// Counts from 0: the first iterate has an empty simplex and the first direction for its `v`; or, where a shape says its
+    /// [closest point](convex_support::SupportMap::core_closest_point), that point for its simplex.
     pub iteration: usize,
     /// The vertices of the simplex that `v` lies in (the paper's `W`, `S_k` in the book); none at first. Relative to
     /// the query point, in units of `scale`.

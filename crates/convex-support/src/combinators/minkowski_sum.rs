@@ -77,6 +77,21 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
     }
 
     #[inline]
+    fn core_point(&self) -> Option<A::Vector> {
+        Some(self.a.core_point()? + self.b.core_point()?)
+    }
+
+    /// Where one of the cores is a point.
+    #[inline]
+    fn core_closest_point(&self, x: A::Vector) -> Option<A::Vector> {
+        match (self.a.core_point(), self.b.core_point()) {
+            (Some(a), _) => Some(a + self.b.core_closest_point(x - a)?),
+            (None, Some(b)) => Some(self.a.core_closest_point(x - b)? + b),
+            (None, None) => None,
+        }
+    }
+
+    #[inline]
     fn core_extent(&self) -> ScalarOf<A> {
         self.a.core_extent() + self.b.core_extent()
     }
