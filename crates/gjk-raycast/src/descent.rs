@@ -42,6 +42,14 @@ impl<V: Vector> Frame<V> {
     }
 }
 
+impl<V: Vector> Frame<V> {
+    /// Cores no farther apart than this touch.
+    #[inline(always)]
+    fn touching(&self) -> V::Scalar {
+        self.radius.max(self.noise)
+    }
+}
+
 /// What rounding may add to a bound on the distance of two bodies of the given size.
 #[inline]
 pub(crate) fn rounding<S: Scalar>(size: S) -> S {
@@ -51,6 +59,8 @@ pub(crate) fn rounding<S: Scalar>(size: S) -> S {
 /// What a descent is to find out; lengths in units of the frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wanted<V: Vector> {
+    /// The first direction from zero to the difference, of any length but zero.
+    pub(crate) first: V,
     /// Stop where the cores are certainly farther apart than this.
     pub(crate) limit: V::Scalar,
     /// Stop where the bracket is as narrow as this, relative to its lower end.
@@ -103,7 +113,8 @@ pub(crate) struct Descent<V: Vector, W> {
 /// is taken again with care, by a search of all faces. The bounds that end the descent do not depend on how it came there:
 /// the lower one is that of a plane through a support point, and the upper one is measured again before it counts.
 ///
-/// `first` is the support point along the descent's first direction, if it is known.
+/// `first` is the support point along the first direction, if it is known; `descent` is a new one, or one that
+/// [began](Descent::begin_at) with a point, and its normal for first direction.
 #[inline]
 pub(crate) fn descend<B: Body>(
     descent: &mut Descent<B::Vector, B::Witness>,
@@ -115,14 +126,10 @@ pub(crate) fn descend<B: Body>(
 ) {
     let Frame { scale, offset, radius, noise, .. } = frame;
     let infinity = <B::Vector as Vector>::Scalar::infinity();
-    let touching = radius.max(noise);
+    let touching = frame.touching();
     let regions = wanted.sub_algorithm == SubAlgorithm::Regions;
     let mut nearing = Decrease::new();
-    if descent.length <= touching {
-        descent.end = End::Overlap;
-        return;
-    }
-    let mut n = descent.normal;
+    let mut n = wanted.first;
     let mut size = n.length();
     let curved = wanted.closely && body.is_curved();
     let mut newton = Newton::new(noise);
@@ -243,15 +250,17 @@ impl<V: Vector, W: Copy + Default> Descent<V, W> {
         }
     }
 
-    /// The descent that begins with a point of the difference, if that is finite, and the vector to it for first direction.
+    /// The descent that begins with a point of the difference, if that is finite, and with the vector to it for first direction;
+    /// it ends there where the bodies meet to rounding.
     #[inline(always)]
-    pub(crate) fn begin_at(&mut self, point: V, witness: W) {
+    pub(crate) fn begin_at(&mut self, point: V, witness: W, frame: &Frame<V>) {
         let mut weights = [V::Scalar::ZERO; MAX_POINTS];
         weights[0] = V::Scalar::ONE;
         self.simplex.push(point, -point, witness);
-        let found = Closest { v: point, face: all(1), weights };
-        if self.accept(found).is_none() {
+        if self.accept(Closest { v: point, face: all(1), weights }).is_none() {
             self.simplex.pop();
+        } else if self.length <= frame.touching() {
+            self.end = End::Overlap;
         }
     }
 

@@ -50,19 +50,22 @@ where
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
     let Frame { scale, per_unit, radius, noise, .. } = frame;
+    let first = options.axis.and_then(direction).or_else(|| direction(frame.offset)).unwrap_or_else(|| Vector::axis(0));
+    let mut descent = Descent::new(first);
+    if let Some(points) = pair.closest_points(offset, size) {
+        descent.begin_at(points.a - points.b + frame.offset, points, &frame);
+    }
     let wanted = Wanted {
+        first: descent.normal,
         limit: options.limit * per_unit + radius,
         tolerance: options.tolerance,
         closely: true,
         max_iterations: options.max_iterations,
         sub_algorithm: options.sub_algorithm,
     };
-    let first = options.axis.and_then(direction).or_else(|| direction(frame.offset)).unwrap_or_else(|| Vector::axis(0));
-    let mut descent = Descent::new(first);
-    if let Some(points) = pair.closest_points(offset, size) {
-        descent.begin_at(points.a - points.b + frame.offset, points);
+    if descent.end != End::Overlap {
+        descend(&mut descent, &mut pair, frame, wanted, None, observer);
     }
-    descend(&mut descent, &mut pair, frame, wanted, None, observer);
     if !descent.measured {
         let _ = descent.measure();
     }

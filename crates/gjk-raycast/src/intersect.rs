@@ -49,13 +49,18 @@ where
 {
     let mut pair = Pair::new(a, b);
     let offset = a.origin() - b.origin();
-    let first = match options.axis {
-        Some(axis) if is_moderate(axis.length_squared()) => axis,
-        axis => axis.and_then(direction).or_else(|| direction(offset)).unwrap_or_else(|| Vector::axis(0)),
-    };
     // The first axis is tried in the world's unit, before anything else is set up; the sum of the coordinates bounds the
     // length of the offset without a root.
     let size = pair.extent() + pair.radius() + offset.abs().dot(Vector::ONE);
+    let closest = if options.axis.is_none() { pair.closest_points(offset, size) } else { None };
+    let shortest = closest.map(|PointPair { a, b }| a - b + offset);
+    if shortest.is_some_and(|v| v.length() <= pair.radius()) {
+        return Intersection { overlap: true, axis: None, status: Status::Converged, iterations: 0 };
+    }
+    let first = match options.axis.or(shortest) {
+        Some(axis) if is_moderate(axis.length_squared()) => axis,
+        axis => axis.and_then(direction).or_else(|| direction(offset)).unwrap_or_else(|| Vector::axis(0)),
+    };
     let mut known = None;
     if is_moderate(size) && options.max_iterations > 0 {
         let point = pair.support(-first).0;
@@ -101,20 +106,23 @@ where
 {
     let size = pair.size(first.offset);
     let frame = Frame::new(pair, first.offset, size);
+    let mut known = first.point.map(|point| (point * frame.per_unit, ()));
+    let mut descent = Descent::new(first.direction);
+    if let Some(PointPair { a, b }) = pair.closest_points(first.offset, size) {
+        descent.begin_at(a - b + frame.offset, (), &frame);
+        known = None;
+    }
     let wanted = Wanted {
+        first: descent.normal,
         limit: frame.radius,
         tolerance: Scalar::ZERO,
         closely: false,
         max_iterations: options.max_iterations,
         sub_algorithm: options.sub_algorithm,
     };
-    let mut known = first.point.map(|point| (point * frame.per_unit, ()));
-    let mut descent = Descent::new(first.direction);
-    if let Some(PointPair { a, b }) = pair.closest_points(first.offset, size) {
-        descent.begin_at(a - b + frame.offset, ());
-        known = None;
+    if descent.end != End::Overlap {
+        descend(&mut descent, &mut Untraced(pair), frame, wanted, known, observer);
     }
-    descend(&mut descent, &mut Untraced(pair), frame, wanted, known, observer);
     let overlap = match descent.end {
         End::Overlap => true,
         End::Separated => false,
