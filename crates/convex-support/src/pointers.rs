@@ -132,7 +132,7 @@ mod tests {
         let ball: Box<dyn SupportMap<Vector = DVec3>> = Box::new(Ball::new(1.0).expect("a ball"));
         let turned = Affine::new(ball, glam::DMat3::from_diagonal(DVec3::splat(-2.0)), DVec3::X).expect("moved");
         assert_eq!(turned.core_point(), Some(DVec3::ZERO));
-        assert_eq!((&turned).core_closest_point(DVec3::Y), Some(DVec3::ZERO));
+        assert_eq!(turned.core_closest_point(DVec3::Y), Some(DVec3::ZERO));
         assert_eq!(Capsule::<DVec3>::new(1.0, 0.5).expect("a capsule").core_point(), None);
     }
 
