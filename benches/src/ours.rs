@@ -2,8 +2,8 @@
 
 use convex_support::glam::{DQuat, DVec3, Quat, Vec3A};
 use convex_support::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, LineCrossing, Polytope, Posed, Rounded, Scalar,
-    SupportMap, Vector3,
+    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, InvalidShape, LineCrossing, Polytope, Posed, Rounded,
+    Scalar, SupportMap, Vector3,
 };
 use gjk_raycast::{
     DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, RayCastOptions, Status, SubAlgorithm,
@@ -142,7 +142,7 @@ pub fn closed_form_ray_casts<V: Space>(shape: &Shape, rays: &[Ray]) -> Option<So
             Cuboid::<V>::new(vector(half_extents)).and_then(|core| Rounded::new(core, number::<V>(radius))),
             rays,
         ),
-        Shape::Hull { .. } => return None,
+        Shape::Hull { ref points } => solver(Faceted::<V>::hull_of(points.iter().map(|&p| vector(p))), rays),
     })
 }
 

@@ -144,6 +144,11 @@ as_data! {
         where A, B;
 }
 
+#[cfg(feature = "hull")]
+as_data! {
+    [V: Vector] crate::Faceted<V> as Points { points: points } by |points: Vec<V>| Self::hull_of(points), where V;
+}
+
 /// A constructor that cannot fail, as one that could.
 fn sound<A, B, S>(constructor: impl FnOnce(A, B) -> S) -> impl FnOnce(A, B) -> Result<S, Infallible> {
     |a, b| Ok(constructor(a, b))

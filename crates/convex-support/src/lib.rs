@@ -31,7 +31,8 @@
 //! # Features
 //! - `std` (default): floating-point functions from the standard library.
 //! - `libm`: the same from the libm crate, for `no_std` targets; `alloc` is needed in any case.
-//! - `hull`: `Polytope::hull_of`, the exact convex hull of raw points, for polytopes of thousands of vertices.
+//! - `hull`: `Polytope::hull_of`, the exact convex hull of raw points, for polytopes of thousands of vertices; and `Faceted`, a
+//!   hull with its half-spaces.
 //! - `serde`: shapes as serde data, checked on the way in.
 //! - `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`: parry's shapes as shapes of this crate, and back.
 //! - `mint`: glam's conversions from and to mint's vectors.
@@ -84,6 +85,8 @@ pub use interop_parry::parry3d;
 pub use interop_parry::parry3d_f64;
 pub use line_crossing::{Crossing, LineCrossing, RoundedLineCrossing};
 pub use scalar::Scalar;
+#[cfg(feature = "hull")]
+pub use shapes::Faceted;
 pub use shapes::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Polytope, Segment, Triangle};
 pub use support::{ScalarOf, SupportMap};
 pub use vector::{Matrix, Vector, Vector3};

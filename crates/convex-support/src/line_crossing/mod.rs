@@ -13,6 +13,8 @@ mod cone;
 mod cuboid;
 mod cylinder;
 mod ellipsoid;
+#[cfg(feature = "hull")]
+mod faceted;
 mod rounded_cuboid;
 mod triangle;
 

@@ -12,6 +12,8 @@ mod segment;
 mod triangle;
 
 pub(crate) use cylinder::across;
+#[cfg(feature = "hull")]
+pub(crate) use polytope::{PLANES, Planes};
 pub(crate) use segment::clamp_to_segment;
 pub(crate) use triangle::Frame;
 
@@ -22,6 +24,8 @@ pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use ellipsoid::Ellipsoid;
 pub use point::Point;
+#[cfg(feature = "hull")]
+pub use polytope::Faceted;
 pub use polytope::Polytope;
 pub use segment::Segment;
 pub use triangle::Triangle;

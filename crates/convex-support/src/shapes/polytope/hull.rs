@@ -48,7 +48,7 @@ impl<V: Vector> Polytope<V> {
 }
 
 /// The points in three coordinates of double precision.
-fn coordinates<V: Vector>(points: &[V]) -> Vec<[f64; 3]> {
+pub(super) fn coordinates<V: Vector>(points: &[V]) -> Vec<[f64; 3]> {
     let coordinates = |p: &V| core::array::from_fn(|i| if i < V::DIM { p.get(i).as_f64() } else { 0.0 });
     points.iter().map(coordinates).collect()
 }

@@ -1,5 +1,7 @@
 //! The convex hull of points.
 
+#[cfg(feature = "hull")]
+mod faceted;
 mod graph;
 #[cfg(feature = "hull")]
 mod hull;
@@ -16,6 +18,11 @@ use crate::error::InvalidShape;
 use crate::support::ScalarOf;
 use crate::vector::{is_comfortable, power_of_two_below, scaled};
 use crate::{Hint, Scalar, SupportMap, Vector};
+
+#[cfg(feature = "hull")]
+pub use faceted::Faceted;
+#[cfg(feature = "hull")]
+pub(crate) use faceted::{Planes, WIDTH as PLANES};
 
 /// The convex hull of a list of points; a polygon in 2D, a polyhedron in 3D.
 ///

@@ -1,0 +1,206 @@
+//! Polytopes that know the planes of their facets.
+
+use alloc::vec::Vec;
+
+use super::hull::coordinates;
+use super::{Polytope, checked, middle, relative};
+use crate::convex_hull::{ConvexHull, convex_hull};
+use crate::error::InvalidShape;
+use crate::support::ScalarOf;
+use crate::{Hint, Scalar, SupportMap, Vector};
+
+/// Planes side by side: a multiple of what a vector register holds on every target.
+pub(crate) const WIDTH: usize = 4;
+
+/// [`WIDTH`] planes, each a unit outward normal by coordinates and how far the polytope reaches along it from the middle.
+pub(crate) type Planes<S> = [[S; WIDTH]; 4];
+
+/// The convex hull of points both ways: by its vertices, as a [`Polytope`], and by the half-spaces of its facets.
+///
+/// It is for lines: [`LineCrossing`](crate::LineCrossing) clips one by every facet and tells where it leaves, too. That takes time
+/// proportional to the number of facets, with little for each: up to a few hundred facets less than a ray cast by support points,
+/// which needs no facets and hardly grows (measured: docs/support-maps.md).
+///
+/// ```
+/// use convex_support::{Faceted, LineCrossing, glam::DVec3};
+///
+/// let octahedron = Faceted::hull_of([DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z])?;
+/// let source = DVec3::new(0.25, 0.25, 3.0);
+/// let crossing = octahedron.line_crossing(source, DVec3::NEG_Z).ok_or("a miss")?;
+/// assert!((crossing.entry - 2.5).abs() < 1e-15 && (crossing.exit - 3.5).abs() < 1e-15);
+/// assert!((crossing.normal - DVec3::ONE.normalize()).length() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Faceted<V: Vector> {
+    polytope: Polytope<V>,
+    planes: Vec<Planes<V::Scalar>>,
+    count: usize,
+}
+
+impl<V: Vector> Faceted<V> {
+    /// The convex hull of the points, as of [`Polytope::hull_of`], with its facets.
+    ///
+    /// # Errors
+    /// As [`Polytope::new`].
+    pub fn hull_of(points: impl IntoIterator<Item = V>) -> Result<Self, InvalidShape> {
+        let points = checked(points)?;
+        let (seen, _) = relative(&points, middle(points.iter().copied()));
+        let seen = coordinates(&seen);
+        // Without exact predicates, by points a hundred orders of magnitude apart, the bounding box is all that is known.
+        let hull = convex_hull(&seen).unwrap_or(ConvexHull::Point(0));
+        let mut normals: Vec<V> = normals(&hull, &seen, V::DIM)
+            .into_iter()
+            .filter_map(|n| V::from_fn(|i| V::Scalar::from_f64(n[i])).unit())
+            .collect();
+        distinct(&mut normals);
+        let polytope = Polytope::hull_of(points)?;
+        let plane = |n: &V| (*n, n.dot(polytope.core_support(*n, &mut Hint::new())));
+        let facets: Vec<(V, V::Scalar)> = normals.iter().map(plane).collect();
+        // The last block is filled up with the last plane.
+        let lane = |chunk: &[(V, V::Scalar)], l: usize| chunk[l.min(chunk.len() - 1)];
+        let row = |(n, reach): (V, V::Scalar), i: usize| match i {
+            3 => reach,
+            i if i < V::DIM => n.get(i),
+            _ => V::Scalar::ZERO,
+        };
+        let block =
+            |chunk: &[(V, V::Scalar)]| core::array::from_fn(|i| core::array::from_fn(|l| row(lane(chunk, l), i)));
+        Ok(Self { planes: facets.chunks(WIDTH).map(block).collect(), count: facets.len(), polytope })
+    }
+
+    /// The same set by its vertices.
+    #[must_use]
+    pub const fn polytope(&self) -> &Polytope<V> {
+        &self.polytope
+    }
+
+    /// The vertices.
+    #[must_use]
+    pub fn points(&self) -> &[V] {
+        self.polytope.points()
+    }
+
+    /// The half-spaces whose intersection the set is: unit outward normals `n` and how far the set reaches along them, so that it is
+    /// all `x` with `n·x ≤ b`, to rounding of its size. Triangles in one plane count once; a flat set has facets on both sides and
+    /// around it.
+    pub fn half_spaces(&self) -> impl ExactSizeIterator<Item = (V, V::Scalar)> + '_ {
+        (0..self.count).map(|i| {
+            let (n, reach) = self.facet(i);
+            (n, reach + n.dot(self.polytope.origin()))
+        })
+    }
+
+    /// The normal of a facet, and how far the polytope reaches along it from the middle.
+    pub(crate) fn facet(&self, index: usize) -> (V, V::Scalar) {
+        let (planes, l) = (&self.planes[index / WIDTH], index % WIDTH);
+        (V::from_fn(|i| planes[i][l]), planes[3][l])
+    }
+
+    pub(crate) fn planes(&self) -> &[Planes<V::Scalar>] {
+        &self.planes
+    }
+}
+
+/// Takes away what is another normal again to rounding: the triangles of one plane.
+fn distinct<V: Vector>(normals: &mut Vec<V>) {
+    let key = |n: &V| [0, 1, V::DIM - 1].map(|i| n.get(i).as_f64());
+    normals.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(core::cmp::Ordering::Equal));
+    let within = V::Scalar::from_f64(4.0) * V::Scalar::EPSILON;
+    normals.dedup_by(|a, b| (*a - *b).abs().max_element() <= within);
+}
+
+type Point = [f64; 3];
+
+fn minus(a: Point, b: Point) -> Point {
+    core::array::from_fn(|i| a[i] - b[i])
+}
+
+fn cross(a: Point, b: Point) -> Point {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Outward normals, of any length, of half-spaces whose intersection the hull is, in the first `dimension` coordinates.
+///
+/// A plane is laid as far out as the polytope reaches along its normal, so that rounding of a normal cuts nothing off. A sliver's
+/// normal is known across it only to `ε` by its width; but what it leaves uncut is as narrow as it is, between its neighbours.
+fn normals(hull: &ConvexHull, points: &[Point], dimension: usize) -> Vec<Point> {
+    let at = |i: u32| points[i as usize];
+    let both = |n: Point| [n, n.map(|x| -x)];
+    let axes = || (0..dimension).map(|i| core::array::from_fn(|k| f64::from(u8::from(i == k))));
+    match hull {
+        ConvexHull::Point(_) => axes().flat_map(both).collect(),
+        // Along it, and across: what is left of the axes, and in space what is across those too.
+        ConvexHull::Segment([a, b]) => {
+            let along = minus(at(*b), at(*a));
+            let shortest = (0..dimension).fold(0, |k, i| if along[i].abs() < along[k].abs() { i } else { k });
+            let third = if dimension == 2 { [0.0, 0.0, 1.0] } else { axes().nth(shortest).unwrap_or([0.0, 0.0, 1.0]) };
+            let across = cross(along, third);
+            let mut normals: Vec<Point> = both(along).into_iter().chain(both(across)).collect();
+            if dimension == 3 {
+                normals.extend(both(cross(along, across)));
+            }
+            normals
+        }
+        ConvexHull::Polygon(corners) => {
+            let next = || corners.iter().cycle().skip(1);
+            let first = at(corners[0]);
+            // Twice the area as a vector: the sum of the triangles from the first corner.
+            let area = corners.iter().zip(next()).fold([0.0; 3], |sum: Point, (&p, &q)| {
+                let triangle = cross(minus(at(p), first), minus(at(q), first));
+                core::array::from_fn(|i| sum[i] + triangle[i])
+            });
+            let side = |(&p, &q): (&u32, &u32)| cross(minus(at(q), at(p)), area);
+            let mut normals: Vec<Point> = corners.iter().zip(next()).map(side).collect();
+            if dimension == 3 {
+                normals.extend(both(area));
+            }
+            normals
+        }
+        ConvexHull::Polyhedron(triangles) => triangles
+            .iter()
+            .map(|&[a, b, c]| {
+                let [a, b, c] = [a, b, c].map(at);
+                // The two shorter edges lose the least.
+                let edges = [minus(b, a), minus(c, b), minus(a, c)];
+                let longest =
+                    (0..3).fold(0, |k, i| if dot(edges[i], edges[i]) > dot(edges[k], edges[k]) { i } else { k });
+                cross(edges[(longest + 1) % 3], edges[(longest + 2) % 3])
+            })
+            .collect(),
+    }
+}
+
+/// Everything as the polytope.
+impl<V: Vector> SupportMap for Faceted<V> {
+    type Vector = V;
+
+    #[inline]
+    fn support(&self, direction: V) -> V {
+        self.polytope.support(direction)
+    }
+
+    #[inline]
+    fn origin(&self) -> V {
+        self.polytope.origin()
+    }
+
+    #[inline(always)]
+    fn core_support(&self, direction: V, hint: &mut Hint) -> V {
+        self.polytope.core_support(direction, hint)
+    }
+
+    #[inline]
+    fn is_core_polyhedral(&self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn core_extent(&self) -> ScalarOf<Self> {
+        self.polytope.core_extent()
+    }
+}

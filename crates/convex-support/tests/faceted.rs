@@ -1,0 +1,161 @@
+//! Hulls with facets, against shapes with closed forms of their own.
+
+use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
+use convex_support::strategies as any;
+use convex_support::{Crossing, Cuboid, Faceted, LineCrossing, Posed, Scalar, SupportMap, Triangle, Vector};
+use num_traits::Float;
+use proptest::prelude::*;
+use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
+use std::cell::Cell;
+
+/// The corners of a box in a pose.
+fn corners<V: Vector>(half_extents: V, posed: &Posed<Cuboid<V>>) -> Vec<V> {
+    let corner = |n: usize| {
+        let sign = |i: usize| if n >> i & 1 == 1 { V::Scalar::ONE } else { -V::Scalar::ONE };
+        posed.rotation() * V::from_fn(|i| half_extents.get(i) * sign(i)) + posed.translation()
+    };
+    (0..1 << V::DIM).map(corner).collect()
+}
+
+/// A box is crossed where its corners' hull is.
+fn boxes<V: Vector>() {
+    let strategy = any::size::<V::Scalar>().prop_flat_map(|size| {
+        let side = || (0.05..1.0).prop_map(move |x| size * V::Scalar::from_f64(x));
+        let far = prop_oneof![Just(1.5), Just(4.0), Just(1e3)];
+        let source = far.prop_flat_map(move |r| any::vector::<V>(size * V::Scalar::from_f64(r)));
+        ([side(), side(), side()], any::pose::<V>(size), source, any::vector::<V>(size), Just(size))
+    });
+    let (hits, misses) = (Cell::new(0), Cell::new(0));
+    let config = ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) };
+    let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
+    runner
+        .run(&strategy, |(sides, (rotation, translation), source, target, size)| {
+            let half_extents = V::from_fn(|i| sides[i]);
+            let posed = Posed::new(Cuboid::new(half_extents).unwrap(), rotation, translation).unwrap();
+            let hull = Faceted::hull_of(corners(half_extents, &posed)).unwrap();
+            let (source, direction) = (source + translation, target - source);
+            prop_assume!(direction.norm() > size * V::Scalar::from_f64(0.1));
+            let unit = direction / direction.norm();
+            let error = V::Scalar::EPSILON * V::Scalar::from_f64(64.0) * (size + translation.norm() + source.norm());
+            match (posed.line_crossing(source, direction), hull.line_crossing(source, direction)) {
+                (Some(theirs), Some(ours)) => {
+                    hits.set(hits.get() + 1);
+                    let (along, long) = (unit.dot(theirs.normal).abs(), theirs.exit - theirs.entry);
+                    // Near an edge the two may enter by different faces; a short stretch may begin elsewhere on it.
+                    let within = error / direction.norm() / along.max(V::Scalar::from_f64(1e-3));
+                    prop_assert!((ours.entry - theirs.entry).abs() <= within.max(long), "{ours:?} against {theirs:?}");
+                    prop_assert!(
+                        (ours.entry - theirs.entry).abs() <= within || along < V::Scalar::from_f64(1e-3),
+                        "{ours:?} against {theirs:?}"
+                    );
+                    prop_assert!(
+                        (ours.normal.norm() - V::Scalar::ONE).abs() <= V::Scalar::EPSILON * V::Scalar::from_f64(4.0)
+                    );
+                }
+                (None, None) => misses.set(misses.get() + 1),
+                (Some(Crossing { entry, exit, .. }), None) | (None, Some(Crossing { entry, exit, .. })) => {
+                    // One by rounding: the stretch is as short as the square root of rounding, cut off a corner.
+                    let long = (exit - entry) * direction.norm();
+                    prop_assert!(long <= error * V::Scalar::from_f64(1e4), "{long:?} long for one of both");
+                }
+            }
+            Ok(())
+        })
+        .unwrap_or_else(|error| panic!("in {}: {error}", std::any::type_name::<V>()));
+    let (hits, misses) = (hits.get(), misses.get());
+    assert!(hits > 200 && misses > 200, "{hits} hits and {misses} misses are no fair sample");
+}
+
+#[test]
+fn a_hull_of_corners_is_crossed_as_the_box() {
+    boxes::<DVec2>();
+    boxes::<Vec2>();
+    boxes::<DVec3>();
+    boxes::<Vec3>();
+    boxes::<Vec3A>();
+}
+
+/// The half-spaces are all needed and contain all vertices, and each touches what spans it.
+#[test]
+fn half_spaces_are_the_facets() {
+    let cube = Cuboid::new(DVec3::new(1.0, 2.0, 3.0)).unwrap();
+    let turned = Posed::new(cube, DQuat::from_xyzw(0.1, 0.2, 0.3, 0.9), DVec3::new(100.0, -20.0, 3.0)).unwrap();
+    // Besides the corners, points on the faces and inside: triangles in one plane are one facet.
+    let mut points = corners(cube.half_extents(), &turned);
+    let mut more: Vec<DVec3> = points.iter().flat_map(|&p| points.iter().map(move |&q| (p + q) * 0.5)).collect();
+    points.append(&mut more);
+    let hull = Faceted::hull_of(points).unwrap();
+    for (n, reach) in hull.half_spaces() {
+        assert!((turned.support_value(n) - reach).abs() <= 1e-13, "{n} reaches {reach}");
+        let along = turned.rotation().transpose() * n;
+        assert!((along.abs().max_element() - 1.0).abs() <= 1e-13 || hull.half_spaces().len() > 6, "{along}");
+    }
+    let exact = Faceted::hull_of(corners(cube.half_extents(), &Posed::translated(cube, DVec3::ZERO).unwrap())).unwrap();
+    let mut faces: Vec<_> = exact.half_spaces().map(|(n, b)| (n.to_array(), b)).collect();
+    faces.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    let face =
+        |i: usize, side: f64| (DVec3::from_fn(|k| if k == i { side } else { 0.0 }).to_array(), [1.0, 2.0, 3.0][i]);
+    let mut expected: Vec<_> = (0..3).flat_map(|i| [face(i, -1.0), face(i, 1.0)]).collect();
+    expected.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    assert_eq!(faces, expected);
+}
+
+#[test]
+fn flat_hulls_have_two_sides() {
+    let at = [DVec3::new(1.0, 0.0, 0.5), DVec3::new(0.0, 1.0, 0.5), DVec3::new(-1.0, -1.0, 0.75)];
+    let (hull, triangle) = (Faceted::hull_of(at).unwrap(), Triangle::new(at).unwrap());
+    for source in [DVec3::new(0.1, 0.2, 4.0), DVec3::new(0.0, -0.1, -3.0), DVec3::new(3.0, 0.5, 1.0)] {
+        for target in [DVec3::new(0.0, 0.0, 0.5), DVec3::new(0.2, 0.1, 0.6), DVec3::new(2.0, 0.0, 0.0)] {
+            let (ours, theirs) =
+                (hull.line_crossing(source, target - source), triangle.line_crossing(source, target - source));
+            match (ours, theirs) {
+                (Some(ours), Some(theirs)) => {
+                    assert!((ours.entry - theirs.entry).abs() <= 1e-14, "{ours:?} against {theirs:?}");
+                    assert!((ours.normal - theirs.normal).length() <= 1e-14, "{ours:?} against {theirs:?}");
+                }
+                (ours, theirs) => assert_eq!(ours, theirs, "from {source} to {target}"),
+            }
+        }
+    }
+    // A segment in the plane and a point in either space, met head-on and missed.
+    let stick = Faceted::hull_of([DVec2::new(-1.0, 1.0), DVec2::new(1.0, 1.0)]).unwrap();
+    let hit = stick.line_crossing(DVec2::new(0.5, -1.0), DVec2::Y).expect("head-on");
+    assert_eq!((hit.entry, hit.exit, hit.normal), (2.0, 2.0, DVec2::NEG_Y));
+    assert_eq!(stick.line_crossing(DVec2::new(1.5, -1.0), DVec2::Y), None);
+    let dot = Faceted::hull_of([DVec3::ONE, DVec3::ONE]).unwrap();
+    assert_eq!(dot.line_crossing(DVec3::new(1.0, 1.0, -1.0), DVec3::Z).map(|hit| hit.entry), Some(2.0));
+    assert_eq!(dot.line_crossing(DVec3::new(1.0, 1.5, -1.0), DVec3::Z), None);
+    let rod = Faceted::hull_of([DVec3::ZERO, DVec3::new(1.0, 2.0, 2.0)]).unwrap();
+    let along = rod.line_crossing(DVec3::new(-1.0, -2.0, -2.0), DVec3::new(1.0, 2.0, 2.0)).expect("along it");
+    assert_eq!((along.entry, along.exit), (1.0, 2.0));
+}
+
+#[test]
+fn what_is_no_line_has_no_crossing() {
+    let hull = Faceted::hull_of([DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_ONE]).unwrap();
+    let source = DVec3::new(4.0, 0.25, 0.5);
+    assert!(hull.line_crossing(source, -source).is_some());
+    assert_eq!(hull.line_crossing(source, DVec3::ZERO), None);
+    assert_eq!(hull.line_crossing(DVec3::ZERO, DVec3::ZERO), None);
+    for i in 0..3 {
+        let broken = |v: DVec3| DVec3::from_fn(|k| if k == i { f64::NAN } else { v[k] });
+        assert_eq!(hull.line_crossing(broken(source), -source), None);
+        assert_eq!(hull.line_crossing(source, broken(-source)), None);
+    }
+}
+
+/// A power of two changes no digit of λ but the power.
+#[test]
+fn directions_may_have_any_length() {
+    let hull = Faceted::hull_of([DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_ONE]).unwrap();
+    let source = DVec3::new(4.0, 0.25, 0.5);
+    let unit = hull.line_crossing(source, -source).expect("a hit");
+    for power in [-1000, -700, -511, -1, 1, 511, 700, 1000] {
+        let scale = 2f64.powi(power);
+        let crossing = hull.line_crossing(source, -source * scale).expect("a hit");
+        assert_eq!(
+            (crossing.entry * scale, crossing.exit * scale, crossing.normal),
+            (unit.entry, unit.exit, unit.normal)
+        );
+    }
+}
