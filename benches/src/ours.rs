@@ -61,6 +61,8 @@ pub struct Effort {
     pub sub_algorithm: SubAlgorithm,
     /// Whether the support points that were computed of each body are told in place of the answer.
     pub iterations: bool,
+    /// Whether shapes come as `Box<dyn SupportMap>`.
+    pub boxed: bool,
 }
 
 impl Default for Effort {
@@ -71,6 +73,7 @@ impl Default for Effort {
             max_iterations: options.max_iterations,
             sub_algorithm: options.sub_algorithm,
             iterations: false,
+            boxed: false,
         }
     }
 }
@@ -109,7 +112,7 @@ pub fn ray_casts<V: Space>(shape: &Shape, rays: &[Ray], effort: Effort) -> Solve
             })
         }
     }
-    with_shape::<V, _>(shape, Cast(rays, effort))
+    with_shape::<V, _>(shape, Cast(rays, effort), effort.boxed)
 }
 
 /// Ray casts in closed form; `None` for shapes without one.
@@ -176,7 +179,7 @@ pub fn linear_casts<V: Space>(pair: &Pair, casts: &[Cast], effort: Effort) -> So
             })
         }
     }
-    with_pair::<V, _>(pair, Task(casts, effort))
+    with_pair::<V, _>(pair, Task(casts, effort), effort.boxed)
 }
 
 /// Distances.
@@ -202,7 +205,7 @@ pub fn distances<V: Space>(pair: &Pair, queries: &[DistanceQuery], effort: Effor
             })
         }
     }
-    with_pair::<V, _>(pair, Task(queries, effort))
+    with_pair::<V, _>(pair, Task(queries, effort), effort.boxed)
 }
 
 /// Intersection tests; `warm` ones are given the axis, if any, that the same query answered with before.
@@ -237,7 +240,7 @@ pub fn intersections<V: Space>(pair: &Pair, queries: &[IntersectQuery], warm: bo
             })
         }
     }
-    with_pair::<V, _>(pair, Task(queries, warm, effort))
+    with_pair::<V, _>(pair, Task(queries, warm, effort), effort.boxed)
 }
 
 fn placed<V: Space>(pose: Pose) -> (V::Rotation, V) {
@@ -257,7 +260,34 @@ trait PairTask<V: Space> {
         B: SupportMap<Vector = V> + 'static;
 }
 
-fn with_shape<V: Space, T: Task<V>>(shape: &Shape, task: T) -> Solver {
+/// Makes a task's solver from shapes behind `dyn SupportMap`.
+struct Boxed<T>(T);
+
+impl<V: Space, T: Task<V>> Task<V> for Boxed<T> {
+    fn solver<S: SupportMap<Vector = V> + 'static>(self, shape: S) -> Solver {
+        self.0.solver(boxed(shape))
+    }
+}
+
+impl<V: Space, T: PairTask<V>> PairTask<V> for Boxed<T> {
+    fn solver<A, B>(self, a: A, b: B) -> Solver
+    where
+        A: SupportMap<Vector = V> + 'static,
+        B: SupportMap<Vector = V> + 'static,
+    {
+        self.0.solver(boxed(a), boxed(b))
+    }
+}
+
+fn boxed<S: SupportMap + 'static>(shape: S) -> Box<dyn SupportMap<Vector = S::Vector>> {
+    Box::new(shape)
+}
+
+fn with_shape<V: Space, T: Task<V>>(shape: &Shape, task: T, is_boxed: bool) -> Solver {
+    if is_boxed { with_typed_shape(shape, Boxed(task)) } else { with_typed_shape(shape, task) }
+}
+
+fn with_typed_shape<V: Space, T: Task<V>>(shape: &Shape, task: T) -> Solver {
     match shape {
         Shape::Ball { radius } => task.solver(ball::<V>(*radius)),
         Shape::Cuboid { half_extents } => task.solver(cuboid::<V>(*half_extents)),
@@ -270,9 +300,13 @@ fn with_shape<V: Space, T: Task<V>>(shape: &Shape, task: T) -> Solver {
     }
 }
 
+fn with_pair<V: Space, T: PairTask<V>>(pair: &Pair, task: T, is_boxed: bool) -> Solver {
+    if is_boxed { with_typed_pair(pair, Boxed(task)) } else { with_typed_pair(pair, task) }
+}
+
 /// # Panics
 /// For two shapes that are no pair of the workloads.
-fn with_pair<V: Space, T: PairTask<V>>(pair: &Pair, task: T) -> Solver {
+fn with_typed_pair<V: Space, T: PairTask<V>>(pair: &Pair, task: T) -> Solver {
     match (&pair.a, &pair.b) {
         (Shape::Ball { radius }, Shape::Cuboid { half_extents }) => {
             task.solver(ball::<V>(*radius), cuboid::<V>(*half_extents))

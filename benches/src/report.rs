@@ -148,6 +148,18 @@ fn goals(rows: &[Row]) -> String {
             slower.join(", ")
         ),
     };
+    let dearest = |workload| {
+        let boxed = rows.iter().filter(|row| row.workload == workload && row.method == Method::DynF64);
+        let ratios = boxed.filter_map(|row| Some((row.case, row.ns / find(workload, row.case, Method::OursF64)?.ns)));
+        let most = ratios.max_by(|a, b| a.1.total_cmp(&b.1));
+        most.map(|(case, ratio)| format!("{} {ratio:.2} ({case})", workload.name()))
+    };
+    let dearest: Vec<_> = Workload::ALL.into_iter().filter_map(dearest).collect();
+    let _ = writeln!(
+        text,
+        "\nShapes behind `dyn SupportMap` take at most so many times as long as known ones: {}.",
+        dearest.join(", ")
+    );
     text
 }
 

@@ -58,6 +58,8 @@ pub enum Method {
     OursF64,
     /// `gjk-raycast` on `Vec3A`.
     OursF32,
+    /// `gjk-raycast` on `DVec3`, of shapes behind `dyn SupportMap`.
+    DynF64,
     /// `LineCrossing` on `DVec3`.
     ClosedF64,
     /// `LineCrossing` on `Vec3A`.
@@ -82,9 +84,10 @@ pub enum Method {
 
 impl Method {
     /// All of them, in the order of the columns.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::OursF64,
         Self::OursF32,
+        Self::DynF64,
         Self::ClosedF64,
         Self::ClosedF32,
         Self::WarmF64,
@@ -103,6 +106,7 @@ impl Method {
         match self {
             Self::OursF64 => "ours f64",
             Self::OursF32 => "ours f32",
+            Self::DynF64 => "ours dyn f64",
             Self::ClosedF64 => "ours closed f64",
             Self::ClosedF32 => "ours closed f32",
             Self::WarmF64 => "ours warm f64",
@@ -129,7 +133,9 @@ impl Method {
     #[must_use]
     pub const fn precision(self) -> Precision {
         match self {
-            Self::OursF64 | Self::ClosedF64 | Self::WarmF64 | Self::ParryGjkF64 | Self::ParryF64 => Precision::Double,
+            Self::OursF64 | Self::DynF64 | Self::ClosedF64 | Self::WarmF64 | Self::ParryGjkF64 | Self::ParryF64 => {
+                Precision::Double
+            }
             Self::OursF32
             | Self::ClosedF32
             | Self::WarmF32
@@ -222,6 +228,7 @@ pub fn ray_casters(shape: &Shape, rays: &[w1_ray_cast::Ray]) -> Vec<(Method, Sol
     let mut solvers = vec![
         (Method::OursF64, ours::ray_casts::<DVec3>(shape, rays, Effort::default())),
         (Method::OursF32, ours::ray_casts::<Vec3A>(shape, rays, Effort::default())),
+        (Method::DynF64, ours::ray_casts::<DVec3>(shape, rays, Effort { boxed: true, ..Effort::default() })),
     ];
     solvers.extend(ours::closed_form_ray_casts::<DVec3>(shape, rays).map(|solver| (Method::ClosedF64, solver)));
     solvers.extend(ours::closed_form_ray_casts::<Vec3A>(shape, rays).map(|solver| (Method::ClosedF32, solver)));
@@ -246,6 +253,7 @@ pub fn linear_casters(pair: &Pair, casts: &[w2_linear_cast::Cast]) -> Vec<(Metho
     let mut solvers = vec![
         (Method::OursF64, ours::linear_casts::<DVec3>(pair, casts, Effort::default())),
         (Method::OursF32, ours::linear_casts::<Vec3A>(pair, casts, Effort::default())),
+        (Method::DynF64, ours::linear_casts::<DVec3>(pair, casts, Effort { boxed: true, ..Effort::default() })),
     ];
     #[cfg(feature = "parry")]
     {
@@ -268,6 +276,7 @@ pub fn distance_solvers(pair: &Pair, queries: &[w3_distance::DistanceQuery]) -> 
     let mut solvers = vec![
         (Method::OursF64, ours::distances::<DVec3>(pair, queries, Effort::default())),
         (Method::OursF32, ours::distances::<Vec3A>(pair, queries, Effort::default())),
+        (Method::DynF64, ours::distances::<DVec3>(pair, queries, Effort { boxed: true, ..Effort::default() })),
     ];
     #[cfg(feature = "parry")]
     {
@@ -288,6 +297,10 @@ pub fn intersection_testers(pair: &Pair, queries: &[w3b_intersect::IntersectQuer
     let mut solvers = vec![
         (Method::OursF64, ours::intersections::<DVec3>(pair, queries, false, Effort::default())),
         (Method::OursF32, ours::intersections::<Vec3A>(pair, queries, false, Effort::default())),
+        (
+            Method::DynF64,
+            ours::intersections::<DVec3>(pair, queries, false, Effort { boxed: true, ..Effort::default() }),
+        ),
     ];
     #[cfg(feature = "parry")]
     {

@@ -32,6 +32,7 @@ fn row_name(method: Method) -> &'static str {
     match method {
         Method::OursF64 => "ours/DVec3",
         Method::OursF32 => "ours/Vec3A",
+        Method::DynF64 => "ours dyn/DVec3",
         Method::ClosedF64 => "ours closed form/DVec3",
         Method::ClosedF32 => "ours closed form/Vec3A",
         Method::WarmF64 => "ours warm/DVec3",
