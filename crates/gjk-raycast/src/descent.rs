@@ -7,10 +7,10 @@ use num_traits::Float as _;
 use crate::body::{Body, Pair, power_of_two_near};
 use crate::closest::{Closest, nearest_face};
 use crate::decrease::Decrease;
-use crate::johnson::within;
+use crate::flat::project;
 use crate::newton::Newton;
 use crate::regions::nearest;
-use crate::simplex::{MAX_POINTS, Simplex, all};
+use crate::simplex::{Face, MAX_POINTS, Simplex};
 use crate::{Iterate, Status, SubAlgorithm};
 
 /// Where the difference of two bodies is, and the unit it is measured in.
@@ -165,8 +165,10 @@ pub(crate) fn descend<B: Body>(
             descent.end = End::Separated;
             break;
         }
-        let wide =
-            |descent: &Descent<_, _>| !(descent.length - descent.lower <= noise.max(wanted.tolerance * descent.lower));
+        let wide = |descent: &Descent<_, _>| {
+            let gap = descent.length - descent.lower;
+            !(gap <= noise || gap <= wanted.tolerance * descent.lower)
+        };
         if !wide(descent) {
             if !descent.measured {
                 let _ = descent.measure();
@@ -257,7 +259,7 @@ impl<V: Vector, W: Copy + Default> Descent<V, W> {
         let mut weights = [V::Scalar::ZERO; MAX_POINTS];
         weights[0] = V::Scalar::ONE;
         self.simplex.push(point, -point, witness);
-        if self.accept(Closest { v: point, face: all(1), weights }).is_none() {
+        if self.accept(Closest { v: point, face: Face::of_corners(&[0]), weights }).is_none() {
             self.simplex.pop();
         } else if self.length <= frame.touching() {
             self.end = End::Overlap;
@@ -325,15 +327,24 @@ impl<V: Vector, W: Copy + Default> Descent<V, W> {
         if points.is_empty() {
             return None;
         }
-        match within(points, all(points.len()), V::DIM) {
-            Some(found) => self.accept(found),
-            None => nearest_face(points, V::DIM).and_then(|found| self.accept(found)),
+        let foot = project(points, |corner| -corner);
+        if !foot.coordinates[..points.len()].iter().all(|&b| b > V::Scalar::ZERO) {
+            return nearest_face(points, V::DIM).and_then(|found| self.accept(found));
         }
+        let v = if points.len() > V::DIM { V::ZERO } else { -foot.across };
+        self.simplex.weigh(foot.coordinates);
+        self.now_at(v)
     }
 
     #[inline(always)]
     fn accept(&mut self, Closest { v, face, weights }: Closest<V>) -> Option<(V, V::Scalar)> {
         self.simplex.retain(face, weights);
+        self.now_at(v)
+    }
+
+    /// Takes the measured shortest vector for the best known.
+    #[inline(always)]
+    fn now_at(&mut self, v: V) -> Option<(V, V::Scalar)> {
         let (normal, size) = comfortable(v)?;
         (self.normal, self.length, self.measured) = (normal, v.norm(), true);
         Some((normal, size))

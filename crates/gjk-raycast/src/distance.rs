@@ -71,7 +71,6 @@ where
     }
     let Descent { normal, length, lower, axis, ref simplex, .. } = descent;
     let overlap = descent.end == End::Overlap;
-    let n = normal.unit();
     let (mut point_a, mut point_b) = (A::Vector::ZERO, A::Vector::ZERO);
     for (weight, PointPair { a, b }) in simplex.weighted() {
         point_a += a * weight;
@@ -79,7 +78,8 @@ where
     }
     let (mut point_a, mut point_b) = (a.origin() + point_a * scale, b.origin() + point_b * scale);
     let zero = Scalar::ZERO;
-    if let Some(n) = n.filter(|_| length > zero) {
+    let n = if length > zero && (overlap || radius > zero || lower <= zero) { normal.unit() } else { None };
+    if let Some(n) = n {
         if !overlap {
             point_a -= n * a.radius();
             point_b += n * b.radius();
@@ -100,7 +100,13 @@ where
         overlap,
         point_a,
         point_b,
-        normal: if lower > zero { axis.unit() } else { n }.filter(|_| !overlap && length > zero),
+        normal: if overlap || length <= zero {
+            None
+        } else if lower > zero {
+            axis.unit()
+        } else {
+            n
+        },
         status: descent.end.status(),
         iterations: descent.iterations,
     }

@@ -53,6 +53,12 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
     /// Keeps only a face, with these weights of its corners.
     pub(crate) fn retain(&mut self, face: Face, weights: [V::Scalar; MAX_POINTS]) {
         self.keep(face);
+        self.weigh(weights);
+    }
+
+    /// Gives the points weights.
+    #[inline]
+    pub(crate) fn weigh(&mut self, weights: [V::Scalar; MAX_POINTS]) {
         self.weights = weights;
     }
 
@@ -112,11 +118,6 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
 /// Some of the points of a simplex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Face(u8);
-
-/// The face of all of `len` points.
-pub(crate) fn all(len: usize) -> Face {
-    Face((1 << len) - 1)
-}
 
 /// The faces with at most `most` corners of a simplex of `len` points.
 pub(crate) fn faces(len: usize, most: usize) -> impl Iterator<Item = Face> {
