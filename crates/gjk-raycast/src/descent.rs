@@ -101,11 +101,19 @@ pub(crate) struct Descent<V: Vector, W> {
     /// The best lower bound on the distance of the cores, before rounding, and the axis that proves it, of any length.
     pub(crate) lower: V::Scalar,
     pub(crate) axis: V,
+    axis_length: V::Scalar,
     /// Whether the corners have weights, and the length is that of an orthogonal projection.
     pub(crate) measured: bool,
     pub(crate) end: End,
     pub(crate) iterations: usize,
 }
+
+/// The shortest vector of a vertex or an edge is not trusted while the lower bound is below this part of its length.
+const VAGUE: f64 = 0.5;
+
+/// The weight of the lower bound's axis in a direction between it and the shortest vector. Of 1.5, 2 and 3 it takes the fewest
+/// support points on average of polytopes of 8 to 1024 vertices.
+const LEAN: f64 = 2.0;
 
 /// Algorithm 2 on the cores, until their distance is known to rounding, or to exceed the limit, or not to exceed the radii.
 ///
@@ -133,6 +141,7 @@ pub(crate) fn descend<B: Body>(
     let mut size = n.length();
     let curved = wanted.closely && body.is_curved();
     let mut newton = Newton::new(noise);
+    let mut leant = false;
     while descent.iterations < wanted.max_iterations {
         let (point, witness) = first.take().unwrap_or_else(|| body.support(-n));
         let w = point + offset;
@@ -144,7 +153,7 @@ pub(crate) fn descend<B: Body>(
             break;
         }
         if reach > descent.lower {
-            (descent.lower, descent.axis) = (reach, n);
+            (descent.lower, descent.axis, descent.axis_length) = (reach, n, size);
         }
         let (v, length) = descent.shortest();
         observer(Iterate {
@@ -188,12 +197,13 @@ pub(crate) fn descend<B: Body>(
         } else {
             None
         };
-        if next.is_none() && newton.has_turned() {
+        if next.is_none() && (leant || newton.has_turned()) {
             // A plane that was turned away from the shortest vector may be the better bound without its support point
             // bringing the simplex nearer.
             descent.simplex.pop();
-            let to = newton.next(body, descent, w, n / size, reach);
+            let to = if leant { None } else { newton.next(body, descent, w, n / size, reach) };
             (n, size) = to.map_or((descent.normal, descent.normal.length()), |to| (to, Scalar::ONE));
+            leant = false;
             continue;
         }
         let next = next.or_else(|| descent.step_carefully(&mut nearing));
@@ -222,8 +232,18 @@ pub(crate) fn descend<B: Body>(
                 break;
             }
         }
-        if curved && let Some(to) = newton.next(body, descent, w, along / along_size, reach) {
-            (n, size) = (to, Scalar::ONE);
+        if curved {
+            if let Some(to) = newton.next(body, descent, w, along / along_size, reach) {
+                (n, size) = (to, Scalar::ONE);
+            }
+        } else {
+            let to = if descent.is_vague() { descent.leaning(n, size) } else { B::Vector::ZERO };
+            let length = to.length();
+            // Both directions may cancel.
+            leant = length > Scalar::ZERO;
+            if leant {
+                (n, size) = (to, length);
+            }
         }
     }
     if descent.end == End::Stalled && descent.length < infinity {
@@ -246,6 +266,7 @@ impl<V: Vector, W: Copy + Default> Descent<V, W> {
             length: V::Scalar::infinity(),
             lower: -V::Scalar::infinity(),
             axis: first,
+            axis_length: first.length(),
             measured: false,
             end: End::IterationLimit,
             iterations: 0,
@@ -276,6 +297,32 @@ impl<V: Vector, W: Copy + Default> Descent<V, W> {
         let levels = self.simplex.points().iter().map(|p| self.normal.dot(*p) / size);
         let length = levels.fold(self.length, V::Scalar::max);
         (self.normal * (length / size), length)
+    }
+
+    /// Whether the simplex leaves open where to look next, and its shortest vector says little about that. A triangle leaves
+    /// nothing open, and polygons in the plane need few steps anyway.
+    #[inline(always)]
+    fn is_vague(&self) -> bool {
+        let is_open = V::DIM == 3 && self.simplex.points().len() < V::DIM;
+        is_open && self.lower < self.length * V::Scalar::from_f64(VAGUE)
+    }
+
+    /// A direction between that of the shortest vector, `n` of length `size`, and the axis of the lower bound.
+    ///
+    /// Among unit vectors, the distance of `C = A − B` from zero is the maximum of `f(n) = min n·x` over all `x` of `C`. The
+    /// points known of `C` bound `f` from above, and the shortest vector of their simplex is where that bound is largest. While
+    /// they are few it is far from where `f` is, and leaps from side to side, as cutting planes do. So, as in level bundle
+    /// methods (Lemaréchal, Nemirovskii, Nesterov, 1995), only part of the way to it is gone from the best direction known.
+    /// Where an edge is closest, both its ends should stay equally far: the way is across the edge.
+    #[inline(always)]
+    fn leaning(&self, n: V, size: V::Scalar) -> V {
+        let mut axis = self.axis;
+        if let &[p, q] = self.simplex.points() {
+            let e = q - p;
+            axis -= e * (axis.dot(e) / e.length_squared());
+        }
+        // The sum of the unit vectors, times both lengths.
+        n * self.axis_length + axis * (V::Scalar::from_f64(LEAN) * size)
     }
 
     /// Goes on to the face of the simplex closest to zero, if that is clear and brings it nearer; its normal, and the length

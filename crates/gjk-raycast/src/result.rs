@@ -176,7 +176,8 @@ pub struct Iterate<'a, V: Vector> {
     pub simplex: &'a [V],
     /// The point of the simplex closest to zero (`V_k`), in units of `scale`; the first direction at first.
     pub v: V,
-    /// The support point found along `v` (`W_k`), in units of `scale`.
+    /// The support point found along `v` (`W_k`), in units of `scale`; in space at times along a direction that has been
+    /// turned from it, by curvature or towards the best plane known.
     pub w: V,
     /// What the vectors above are to be multiplied by: a power of two.
     pub scale: V::Scalar,
