@@ -295,9 +295,7 @@ impl<V: Vector> Graph<V> {
         let scale = half / largest;
         for i in 1..V::DIM {
             let place = wrapped[axis + i] * scale + half;
-            // A cast saturates, and makes 0 of a NaN; a place is never negative but for rounding.
-            let place = place.as_f64() as i32;
-            cell = cell * self.resolution + (place.max(0) as usize).min(self.resolution - 1);
+            cell = cell * self.resolution + whole_part(place.as_f64()).min(self.resolution - 1);
         }
         cell
     }
@@ -327,6 +325,18 @@ impl<V: Vector> Graph<V> {
             rounding: thinnest * V::Scalar::EPSILON * V::Scalar::from_f64(64.0),
         }
     }
+}
+
+/// The whole part of a number below 2³¹, or either neighbour of a whole one; 0 of one that is negative by rounding, and
+/// anything of a NaN.
+///
+/// From 2⁵² to 2⁵³ the doubles are a unit apart: moved there, a number is rounded to its last bits. A cast takes twice as
+/// long, since it saturates.
+#[inline(always)]
+fn whole_part(x: f64) -> usize {
+    const AMONG_WHOLE_NUMBERS: f64 = 1.5 * (1_u64 << 52) as f64;
+    let bits = (x - 0.5 + AMONG_WHOLE_NUMBERS).to_bits();
+    (bits as i32).max(0) as usize
 }
 
 /// The directions `d` with `|d − middle| ≤ spread`, coordinate by coordinate.
