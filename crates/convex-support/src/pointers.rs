@@ -38,6 +38,11 @@ macro_rules! pointer {
                 (**self).core_support_derivative(direction, change)
             }
 
+            #[inline(always)]
+            fn core_support_hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> [ScalarOf<S>; 3] {
+                (**self).core_support_hessian(direction, changes)
+            }
+
             #[inline]
             fn radius(&self) -> ScalarOf<S> {
                 (**self).radius()

@@ -103,6 +103,18 @@ pub trait SupportMap {
         Self::Vector::ZERO
     }
 
+    /// The entries `u·Hu`, `u·Hw` and `w·Hw` of the Hessian `H` of the core's support value at `direction`: its
+    /// [derivative](Self::core_support_derivative) along two changes `u` and `w`, as seen along the two.
+    ///
+    /// Provided: by two of those derivatives. These numbers are less work than the vectors, and are what iterative methods
+    /// mostly need.
+    #[inline]
+    fn core_support_hessian(&self, direction: Self::Vector, [u, w]: [Self::Vector; 2]) -> [ScalarOf<Self>; 3] {
+        let along = |change| self.core_support_derivative(direction, change);
+        let (along_u, along_w) = (along(u), along(w));
+        [u.dot(along_u), u.dot(along_w), w.dot(along_w)]
+    }
+
     /// Whether the core is a polytope, whose support point jumps from vertex to vertex and does not move in between, so that
     /// [`core_support_derivative`](Self::core_support_derivative) is always zero and need not be asked for. Provided: `false`.
     #[inline]

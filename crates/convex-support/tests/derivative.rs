@@ -1,4 +1,4 @@
-//! The derivative of the support point against differences of support points.
+//! The derivative of the support point against differences of support points, and the Hessian against the derivative.
 
 use convex_support::glam::{DMat3, DQuat, DVec3};
 use convex_support::{
@@ -41,6 +41,12 @@ fn derivative_is_the_limit_of_differences() -> Result<(), InvalidShape> {
             let difference = (at(step) - at(-step)) / (2.0 * step);
             let derivative = shape.core_support_derivative(direction, change);
             assert!((difference - derivative).length() < 1e-6, "{name} {i}: {difference} {derivative}");
+            let other = DVec3::new(0.4, (1.1 * t).sin(), (0.3 * t).cos());
+            let along_other = shape.core_support_derivative(direction, other);
+            let seen = [change.dot(derivative), change.dot(along_other), other.dot(along_other)];
+            for (entry, seen) in shape.core_support_hessian(direction, [change, other]).into_iter().zip(seen) {
+                assert!((entry - seen).abs() < 1e-13, "{name} {i}: {entry} {seen}");
+            }
             moved += usize::from(derivative != DVec3::ZERO);
         }
     }

@@ -7,6 +7,8 @@
 use convex_support::{Hint, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
+use crate::symmetric::Symmetric;
+
 /// A core and its radius, as algorithms see it.
 pub(crate) trait Body {
     type Vector: Vector;
@@ -17,12 +19,12 @@ pub(crate) trait Body {
     fn support(&mut self, direction: Self::Vector) -> (Self::Vector, Self::Witness);
     /// The derivative of the support point at `direction` along `change`, in units of `scale`.
     fn derivative(&self, direction: Self::Vector, change: Self::Vector) -> Self::Vector;
-    /// The derivatives along two changes. Compiled as one piece, so that what depends on the direction alone, with its root
-    /// and quotients, is computed once.
-    #[inline(always)]
-    fn derivatives(&self, direction: Self::Vector, [u, w]: [Self::Vector; 2]) -> [Self::Vector; 2] {
-        [self.derivative(direction, u), self.derivative(direction, w)]
-    }
+    /// The derivatives along two changes `u` and `w` as seen along the two, by the entries `u·Hu`, `u·Hw` and `w·Hw`.
+    fn hessian(
+        &self,
+        direction: Self::Vector,
+        changes: [Self::Vector; 2],
+    ) -> Symmetric<<Self::Vector as Vector>::Scalar>;
     /// Whether that derivative may be anything but zero.
     fn is_curved(&self) -> bool;
     /// What positions are relative to, in the world; for a difference, that of the first shape alone, since subtracting
@@ -108,6 +110,12 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
     #[inline(always)]
     fn derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
         self.shape.core_support_derivative(direction, change) * self.per_unit
+    }
+
+    #[inline(always)]
+    fn hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> Symmetric<<S::Vector as Vector>::Scalar> {
+        let [a, b, d] = self.shape.core_support_hessian(direction, changes).map(|entry| entry * self.per_unit);
+        Symmetric { a, b, d }
     }
 
     #[inline]
@@ -206,6 +214,14 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
         (a - b) * self.per_unit
     }
 
+    #[inline(always)]
+    fn hessian(&self, direction: A::Vector, changes: [A::Vector; 2]) -> Symmetric<<A::Vector as Vector>::Scalar> {
+        let a = self.a.core_support_hessian(direction, changes);
+        let b = self.b.core_support_hessian(-direction, changes);
+        let sum = |i: usize| (a[i] + b[i]) * self.per_unit;
+        Symmetric { a: sum(0), b: sum(1), d: sum(2) }
+    }
+
     #[inline]
     fn is_curved(&self) -> bool {
         !(self.a.is_core_polyhedral() && self.b.is_core_polyhedral())
@@ -245,6 +261,11 @@ impl<B: Body> Body for Untraced<'_, B> {
     #[inline(always)]
     fn derivative(&self, direction: B::Vector, change: B::Vector) -> B::Vector {
         self.0.derivative(direction, change)
+    }
+
+    #[inline(always)]
+    fn hessian(&self, direction: B::Vector, changes: [B::Vector; 2]) -> Symmetric<<B::Vector as Vector>::Scalar> {
+        self.0.hessian(direction, changes)
     }
 
     #[inline]

@@ -25,15 +25,18 @@ use crate::view::{Best, Frame, Portal, Slant};
 const MAX_STEPS: usize = 40;
 
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
-    /// The derivative of the swept body's support point at `n` along `change`.
+    /// The derivative of the swept body's `(u, v)` at `n`.
     #[inline(always)]
-    pub(crate) fn moved(&self, n: B::Vector, change: B::Vector) -> B::Vector {
-        let core = self.body.derivative(n, change);
+    pub(crate) fn bend(&self, frame: &Frame<B::Vector>, n: B::Vector) -> Symmetric<ScalarOf<B>> {
+        let mut bend = self.body.hessian(n, [frame.e1, frame.e2]);
         if self.radius > ScalarOf::<B>::ZERO {
-            core + (change - n * (change.dot(n) / n.length_squared())) * (self.radius / n.norm())
-        } else {
-            core
+            let squared = n.length_squared();
+            let (lift, u) = (self.radius / n.norm(), (n.dot(frame.e1), n.dot(frame.e2)));
+            bend.a += lift * (ScalarOf::<B>::ONE - u.0 * u.0 / squared);
+            bend.b -= lift * (u.0 * u.1 / squared);
+            bend.d += lift * (ScalarOf::<B>::ONE - u.1 * u.1 / squared);
         }
+        bend
     }
 
     fn piece(
@@ -43,9 +46,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         slant: Slant<ScalarOf<B>>,
     ) -> Piece<B::Vector, B::Witness> {
         let n = frame.normal(self.local.line.direction, slant);
-        let (m1, m2) = (self.moved(n, frame.e1), self.moved(n, frame.e2));
-        let bend = Symmetric { a: m1.dot(frame.e1), b: m1.dot(frame.e2), d: m2.dot(frame.e2) };
-        Piece { seen, slant, bend }
+        Piece { seen, slant, bend: self.bend(frame, n) }
     }
 
     /// Brings a portal nearer, by planes that the curvature of the body suggests as long as they close the bracket fast,

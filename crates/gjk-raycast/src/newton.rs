@@ -6,6 +6,7 @@ use num_traits::Float as _;
 use crate::body::Body;
 use crate::descent::Descent;
 use crate::regions::cross;
+use crate::symmetric::{Across, Symmetric, dot};
 use crate::turn::Found;
 
 /// Chooses directions to look along by curvature, where the support map knows it.
@@ -57,38 +58,6 @@ const FORETOLD: f64 = 0.25;
 
 /// The largest tangent of an angle to turn by.
 const LARGEST: f64 = 0.5;
-
-/// A direction, the derivative of the support point there along `u` and `w` across the direction, and the matrix `H`.
-#[derive(Clone, Copy)]
-struct Curvature<S> {
-    uu: S,
-    uw: S,
-    ww: S,
-}
-
-impl<S: Scalar> Curvature<S> {
-    #[inline]
-    fn new<V: Vector<Scalar = S>>(moved: [V; 2], [u, w]: [V; 2]) -> Self {
-        Self { uu: u.dot(moved[0]), uw: u.dot(moved[1]), ww: w.dot(moved[1]) }
-    }
-
-    /// `(1 − β)·self + β·other + ρ`.
-    #[inline]
-    fn blended(self, other: Self, share: S, distance: S) -> Self {
-        let blend = |a: S, b: S| a + (b - a) * share;
-        Self {
-            uu: blend(self.uu, other.uu) + distance,
-            uw: blend(self.uw, other.uw),
-            ww: blend(self.ww, other.ww) + distance,
-        }
-    }
-
-    /// The matrix times a vector.
-    #[inline]
-    fn times(self, [x, y]: [S; 2]) -> [S; 2] {
-        [self.uu * x + self.uw * y, self.uw * x + self.ww * y]
-    }
-}
 
 impl<V: Vector> Newton<V> {
     pub(crate) fn new(noise: V::Scalar) -> Self {
@@ -154,25 +123,21 @@ impl<V: Vector> Newton<V> {
         let u = r / r_length;
         let basis = [u, if V::DIM == 2 { V::ZERO } else { cross(along, u) }];
         let [u, w] = basis;
-        let moved = body.derivatives(along, basis);
-        if moved == [V::ZERO; 2] {
+        let bend = body.hessian(along, basis);
+        if bend.is_zero() {
             return None;
         }
-        let flat = Curvature { uu: zero, uw: zero, ww: zero };
-        let curvature = Curvature::new(moved, basis);
 
         // One piece: (H + ρ)·δ = −r, no farther than is sensible, and the f foretold.
-        let h = curvature.blended(flat, zero, distance);
-        let determinant = h.uu * h.ww - h.uw * h.uw;
-        let d = [-(r_length * h.ww / determinant), r_length * h.uw / determinant];
-        let size = (d[0] * d[0] + d[1] * d[1]).sqrt();
+        let h = bend.plus(distance);
+        let d = h.solve((-r_length, zero));
+        let size = dot(d, d).sqrt();
         if !size.is_finite() {
             return None;
         }
-        let d = if size > largest { d.map(|d| d * (largest / size)) } else { d };
-        let hd = h.times(d);
-        let gain = -(r_length * d[0]) - (d[0] * hd[0] + d[1] * hd[1]) * half;
-        let to = (along + u * d[0] + w * d[1]).unit()?;
+        let d = if size > largest { (d.0 * (largest / size), d.1 * (largest / size)) } else { d };
+        let gain = -(r_length * d.0) - dot(d, h.times(d)) * half;
+        let to = (along + u * d.0 + w * d.1).unit()?;
 
         // The known point that lies farthest before the plane foretold.
         let mut least = reach + gain * V::Scalar::from_f64(1.0 - CONTRADICTION) - self.noise;
@@ -193,37 +158,64 @@ impl<V: Vector> Newton<V> {
         // Its piece, turned to n; a vertex stays, however far the turn.
         let from = from / from.dot(along);
         let change = along - from;
-        let moved = body.derivatives(from, basis);
-        let is_vertex = moved == [V::ZERO; 2];
+        let c = (u.dot(change), w.dot(change));
+        let other = body.hessian(from, basis);
+        let is_vertex = other.is_zero();
         // NaN fails this too.
-        if !(is_vertex || change.length() <= largest) {
+        if !(is_vertex || dot(c, c) <= largest * largest) {
             return None;
         }
-        // The change is across n, so that its derivative is made of those along the basis.
-        let shift = if is_vertex { V::ZERO } else { moved[0] * u.dot(change) + moved[1] * w.dot(change) };
-        let q = point + shift;
-        if (q - p).length() <= (point - p).length() * V::Scalar::from_f64(FORETOLD) + self.noise {
+        let (other, shift, bulge) = turned(other, c);
+        let p = (r_length, zero);
+        let seen = (u.dot(point), w.dot(point));
+        let (e, apart) = ((seen.0 + shift.0 - p.0, seen.1 + shift.1), (seen.0 - p.0, seen.1));
+        let squared = dot(e, e);
+        let foretold = V::Scalar::from_f64(FORETOLD) * dot(apart, apart).sqrt() + self.noise;
+        if squared <= foretold * foretold {
             return None;
         }
-        let bend = if is_vertex { zero } else { change.dot(shift) * half };
-        let level = -(along.dot(point) + bend);
+        let level = -(along.dot(point) + bulge);
         let lead = if is_vertex { -lead } else { lead };
 
         // Two pieces: along e the change is given, and what it is across e follows from the first equation.
-        let e = [u.dot(q - p), w.dot(q - p)];
-        let squared = e[0] * e[0] + e[1] * e[1];
-        let share = (-(e[0] * r_length) / squared).max(zero).min(one);
-        let h = curvature.blended(Curvature::new(moved, basis), share, distance);
+        let share = (-(e.0 * r_length) / squared).max(zero).min(one);
+        let h = bend.blend(other, share).plus(distance);
         let t = (level - reach + lead) / squared;
-        let across = [-e[1], e[0]];
+        let across = (-e.1, e.0);
         let h_across = h.times(across);
-        let stiffness = across[0] * h_across[0] + across[1] * h_across[1];
-        let s = (e[1] * r_length - (e[0] * h_across[0] + e[1] * h_across[1]) * t) / stiffness;
-        let d = [e[0] * t + across[0] * s, e[1] * t + across[1] * s];
+        let s = (e.1 * r_length - dot(e, h_across) * t) / dot(across, h_across);
+        let d = (e.0 * t + across.0 * s, e.1 * t + across.1 * s);
         // NaN fails this too.
-        if !(d[0] * d[0] + d[1] * d[1] <= largest * largest) {
+        if !(dot(d, d) <= largest * largest) {
             return None;
         }
-        (along + u * d[0] + w * d[1]).unit()
+        (along + u * d.0 + w * d.1).unit()
     }
+}
+
+/// A piece turned from the direction `n₀` at which its Hessian is `A`, as seen across the unit vector `n` with `n·n₀ = 1`,
+/// to `n = n₀ + c`: its Hessian, how far its point moves across `n`, and how much farther along `n` it then is than the
+/// point found.
+///
+/// The support value `h` is homogeneous, so that `H·n₀ = 0`, and `A` tells all of `H`. Scaled to `n/s` with
+/// `s = n·n₀/|n₀|² = 1/(1 + c²)`, the direction differs from `n₀` by a vector across it, and there `h` is quadratic to third
+/// order on a ball, not only to second as in `n`. With `g = A·c`,
+///
+/// ```text
+/// h = n·p₀ + c·g/(2s),   p = p₀ + g/s + c·g/(2s)·c,   H = (1 + c·cᵀ)·A·(1 + c·cᵀ)/s.
+/// ```
+fn turned<S: Scalar>(a: Symmetric<S>, c: Across<S>) -> (Symmetric<S>, Across<S>, S) {
+    let stretch = S::ONE + dot(c, c);
+    let g = a.times(c);
+    let sink = dot(c, g);
+    let bulge = sink * stretch * S::from_f64(0.5);
+    let shift = (g.0 * stretch + c.0 * bulge, g.1 * stretch + c.1 * bulge);
+    // With half of the last term in each of the products: k = g + c·g/2·c.
+    let k = (g.0 + c.0 * sink * S::from_f64(0.5), g.1 + c.1 * sink * S::from_f64(0.5));
+    let h = Symmetric {
+        a: (a.a + k.0 * c.0 + k.0 * c.0) * stretch,
+        b: (a.b + k.0 * c.1 + k.1 * c.0) * stretch,
+        d: (a.d + k.1 * c.1 + k.1 * c.1) * stretch,
+    };
+    (h, shift, bulge)
 }

@@ -23,6 +23,17 @@ const MAX_STEPS: usize = 12;
 const MAX_MISSES: usize = 2;
 
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
+    /// The derivative of the swept body's support point at `n` along `change`.
+    #[inline(always)]
+    fn moved(&self, n: B::Vector, change: B::Vector) -> B::Vector {
+        let core = self.body.derivative(n, change);
+        if self.radius > ScalarOf::<B>::ZERO {
+            core + (change - n * (change.dot(n) / n.length_squared())) * (self.radius / n.norm())
+        } else {
+            core
+        }
+    }
+
     /// Replaces a smooth body by the ellipsoid that osculates it, takes the plane where the ray enters that, and so on.
     pub(crate) fn osculate(&mut self, frame: &Frame<B::Vector>, first: B::Vector) -> Result<(), Exit<B>> {
         let (zero, one) = (ScalarOf::<B>::ZERO, ScalarOf::<B>::ONE);
@@ -36,8 +47,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         let mut last = ScalarOf::<B>::infinity();
         let mut misses = 0;
         for _ in 0..MAX_STEPS {
-            let moved = [frame.e1, frame.e2, -direction].map(|e| self.moved(n, e));
-            let bend = Symmetric { a: moved[0].dot(frame.e1), b: moved[0].dot(frame.e2), d: moved[1].dot(frame.e2) };
+            let bend = self.bend(frame, n);
             // Of a plane along the ray it never is, since H·n = 0 and n is across the ray.
             if (slant.is_some() || misses == 0) && !bend.is_regular() {
                 return Err(None);
@@ -92,17 +102,24 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             // Q in the axes e₁, e₂ and −d: (A b; b·ᵀ c). With α = A⁻¹(s·φ − b) for the line's foot φ, and
             // s² = n·Qn = (c − b·A⁻¹b)/(1 − φ·A⁻¹φ), the support point of the ellipsoid is on the line.
             let touch = [seen.u + foot.0, seen.v + foot.1, -seen.t];
-            let value = n.dot(frame.e1) * touch[0] + n.dot(frame.e2) * touch[1] - n.dot(direction) * touch[2];
+            let (within, facing) = ((n.dot(frame.e1), n.dot(frame.e2)), -n.dot(direction));
+            let value = within.0 * touch[0] + within.1 * touch[1] + facing * touch[2];
+            // The last column of D, from D·n = 0 unless the plane is nearly along the ray.
+            let (beside, ahead) = if facing * facing > n.length_squared() * ScalarOf::<B>::from_f64(0.01) {
+                let (x, y) = bend.times(within);
+                let beside = (-x / facing, -y / facing);
+                (beside, -dot(within, beside) / facing)
+            } else {
+                let moved = self.moved(n, -direction);
+                ((moved.dot(frame.e1), moved.dot(frame.e2)), -moved.dot(direction))
+            };
             let across = Symmetric {
                 a: value * bend.a + touch[0] * touch[0],
                 b: value * bend.b + touch[0] * touch[1],
                 d: value * bend.d + touch[1] * touch[1],
             };
-            let b = (
-                value * moved[2].dot(frame.e1) + touch[0] * touch[2],
-                value * moved[2].dot(frame.e2) + touch[1] * touch[2],
-            );
-            let c = -value * moved[2].dot(direction) + touch[2] * touch[2];
+            let b = (value * beside.0 + touch[0] * touch[2], value * beside.1 + touch[1] * touch[2]);
+            let c = value * ahead + touch[2] * touch[2];
             let (away, tilted) = (across.solve(foot), across.solve(b));
             let rest = one - dot(foot, away);
             if !(value > zero) {

@@ -228,8 +228,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
 
     /// Whether the core's support point moves as a plane turns.
     pub(crate) fn is_curved(&self, frame: &Frame<B::Vector>, n: B::Vector) -> bool {
-        let moves = |d: B::Vector| d != B::Vector::ZERO;
-        self.body.is_curved() && self.body.derivatives(n, [frame.e1, frame.e2]).into_iter().any(moves)
+        self.body.is_curved() && !self.body.hessian(n, [frame.e1, frame.e2]).is_zero()
     }
 
     /// The next support point along any vector.

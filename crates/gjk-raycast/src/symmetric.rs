@@ -29,6 +29,11 @@ impl<S: Scalar> Symmetric<S> {
         self.determinant() > S::EPSILON.sqrt() * self.a * self.d
     }
 
+    /// The sum with a multiple of the unit matrix.
+    pub(crate) fn plus(self, diagonal: S) -> Self {
+        Self { a: self.a + diagonal, b: self.b, d: self.d + diagonal }
+    }
+
     pub(crate) fn blend(self, other: Self, share: S) -> Self {
         let rest = S::ONE - share;
         Self {

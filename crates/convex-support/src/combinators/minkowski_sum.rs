@@ -67,6 +67,13 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
     }
 
     #[inline]
+    fn core_support_hessian(&self, direction: A::Vector, changes: [A::Vector; 2]) -> [ScalarOf<A>; 3] {
+        let a = self.a.core_support_hessian(direction, changes);
+        let b = self.b.core_support_hessian(direction, changes);
+        [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+    }
+
+    #[inline]
     fn radius(&self) -> ScalarOf<A> {
         self.a.radius() + self.b.radius()
     }

@@ -133,6 +133,12 @@ impl<S: SupportMap> SupportMap for Posed<S> {
         self.rotation * self.shape.core_support_derivative(direction, change)
     }
 
+    #[inline(always)]
+    fn core_support_hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> [ScalarOf<S>; 3] {
+        let turned = |v| self.rotation.transpose_mul(v);
+        self.shape.core_support_hessian(turned(direction), changes.map(turned))
+    }
+
     #[inline]
     fn radius(&self) -> ScalarOf<S> {
         self.shape.radius()

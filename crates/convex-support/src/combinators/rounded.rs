@@ -72,6 +72,11 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
     }
 
     #[inline]
+    fn core_support_hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> [ScalarOf<S>; 3] {
+        self.shape.core_support_hessian(direction, changes)
+    }
+
+    #[inline]
     fn radius(&self) -> ScalarOf<S> {
         self.shape.radius() + self.radius
     }

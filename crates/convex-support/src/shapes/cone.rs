@@ -1,6 +1,6 @@
 //! A solid cone about the y axis.
 
-use super::cylinder::across;
+use super::cylinder::{across, disc_hessian};
 use crate::error::{InvalidShape, non_negative};
 use crate::support::{ScalarOf, swept, swept_derivative};
 use crate::{ClosestPoint, Hint, Scalar, SupportMap, Vector3};
@@ -95,6 +95,14 @@ impl<V: Vector3> SupportMap for Cone<V> {
             return V::ZERO;
         }
         swept_derivative(self.radius, from_axis, across(change))
+    }
+
+    #[inline(always)]
+    fn core_support_hessian(&self, direction: V, changes: [V; 2]) -> [V::Scalar; 3] {
+        if self.is_apex_farthest(direction, across(direction)) {
+            return [V::Scalar::ZERO; 3];
+        }
+        disc_hessian(self.radius, direction, changes)
     }
 
     #[inline]

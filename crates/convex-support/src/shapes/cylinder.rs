@@ -4,6 +4,7 @@ use num_traits::Float as _;
 
 use crate::error::{InvalidShape, non_negative};
 use crate::support::{ScalarOf, swept, swept_derivative};
+use crate::vector::is_comfortable;
 use crate::{ClosestPoint, Hint, SupportMap, Vector3};
 
 /// The cylinder `x² + z² ≤ radius²`, `|y| ≤ half_height`.
@@ -52,6 +53,22 @@ pub(crate) fn across<V: Vector3>(direction: V) -> V {
     direction - V::axis(1) * direction.get(1)
 }
 
+/// The Hessian of the support value `r·|a|` of a disc across the y axis, with `a` the part of the direction across the axis, as
+/// seen along two changes. It is `r/|a|·t·tᵀ`, where the unit vector `t` is across the axis and `a`.
+#[inline(always)]
+pub(crate) fn disc_hessian<V: Vector3>(radius: V::Scalar, direction: V, [u, w]: [V; 2]) -> [V::Scalar; 3] {
+    let (x, z) = (direction.get(0), direction.get(2));
+    let squared = x * x + z * z;
+    if !is_comfortable(squared) {
+        let along = |change| swept_derivative(radius, across(direction), across(change));
+        let (along_u, along_w) = (along(u), along(w));
+        return [u.dot(along_u), u.dot(along_w), w.dot(along_w)];
+    }
+    let (tu, tw) = (u.get(0) * z - u.get(2) * x, w.get(0) * z - w.get(2) * x);
+    let bend = radius / (squared * squared.sqrt());
+    [tu * tu * bend, tu * tw * bend, tw * tw * bend]
+}
+
 impl<V: Vector3> SupportMap for Cylinder<V> {
     type Vector = V;
 
@@ -73,6 +90,11 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
     #[inline(always)]
     fn core_support_derivative(&self, direction: V, change: V) -> V {
         swept_derivative(self.radius, across(direction), across(change))
+    }
+
+    #[inline(always)]
+    fn core_support_hessian(&self, direction: V, changes: [V; 2]) -> [V::Scalar; 3] {
+        disc_hessian(self.radius, direction, changes)
     }
 
     #[inline]

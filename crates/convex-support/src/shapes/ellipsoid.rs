@@ -186,6 +186,16 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
         self.axes * (self.semi_axes * swept_derivative(V::Scalar::ONE, e, de))
     }
 
+    #[inline(always)]
+    fn core_support_hessian(&self, direction: V, changes: [V; 2]) -> [V::Scalar; 3] {
+        // By Rᵀu and Rᵀw in place of R times the derivatives.
+        let e = self.scaled_semi_axes * self.axes.transpose_mul(direction);
+        let [u, w] = changes.map(|change| self.axes.transpose_mul(change));
+        let moved = |change| self.semi_axes * swept_derivative(V::Scalar::ONE, e, self.scaled_semi_axes * change);
+        let (moved_u, moved_w) = (moved(u), moved(w));
+        [u.dot(moved_u), u.dot(moved_w), w.dot(moved_w)]
+    }
+
     #[inline]
     fn core_closest_point(&self, x: V) -> Option<V> {
         Some(closest_point_of_centred(self, x).unwrap_or(x))
