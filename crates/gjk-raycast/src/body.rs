@@ -52,11 +52,27 @@ impl<S> Witness<S> for () {
 /// A power of two near `size`, or 1 where there is none with a finite reciprocal.
 #[inline]
 pub(crate) fn power_of_two_near<S: Scalar>(size: S) -> S {
-    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
-    let power = S::from_f64(f64::from_bits(size.as_f64().to_bits() & EXPONENT));
-    // The reciprocal is finite, and not zero.
-    if power > S::max_value().recip() && power < S::infinity() { power } else { S::ONE }
+    // Positive numbers have the order of their bits. The reciprocal is to be finite, and not subnormal: half of the largest
+    // power is near enough to it.
+    let least = S::max_value().recip().as_f64().to_bits();
+    let largest = S::max_value().as_f64().to_bits() & EXPONENT;
+    let power = size.as_f64().to_bits() & EXPONENT;
+    if power > least && power <= largest {
+        S::from_f64(f64::from_bits(power.min(largest - EXPONENT_STEP)))
+    } else {
+        S::ONE
+    }
 }
+
+/// The reciprocal of what [`power_of_two_near`] answers, by its exponent: all that follows waits for the unit.
+#[inline]
+pub(crate) fn reciprocal_of_power<S: Scalar>(power: S) -> S {
+    S::from_f64(f64::from_bits(2 * 1.0_f64.to_bits() - power.as_f64().to_bits()))
+}
+
+/// The bits of the exponent of an `f64`, and the least of them.
+const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
+const EXPONENT_STEP: u64 = 0x0010_0000_0000_0000;
 
 /// Whether products of a few such numbers, and their rounding errors, are far from over- and underflow.
 #[inline]
@@ -136,7 +152,7 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
     }
 
     fn set_scale(&mut self, scale: <S::Vector as Vector>::Scalar) {
-        self.per_unit = scale.recip();
+        self.per_unit = reciprocal_of_power(scale);
     }
 }
 
@@ -242,7 +258,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
     }
 
     fn set_scale(&mut self, scale: <A::Vector as Vector>::Scalar) {
-        self.per_unit = scale.recip();
+        self.per_unit = reciprocal_of_power(scale);
     }
 }
 

@@ -15,7 +15,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Body, Witness, power_of_two_near};
+use crate::body::{Body, Witness, power_of_two_near, reciprocal_of_power};
 use crate::line::LocalRay;
 use crate::ray_cast::Ray;
 use crate::simplex::{MAX_POINTS, Simplex};
@@ -58,7 +58,7 @@ pub(crate) fn cast<B: Body>(
     let size = extent + body.radius();
     let scale = power_of_two_near(if size > zero { size } else { (ray.source - origin).norm() });
     body.set_scale(scale);
-    let per_unit = scale.recip();
+    let per_unit = reciprocal_of_power(scale);
     let (radius, size) = (body.radius() * per_unit, size * per_unit);
     let noise = number(8.0) * ScalarOf::<B>::EPSILON * size;
     let local = LocalRay::new(ray, origin, scale);
@@ -66,8 +66,10 @@ pub(crate) fn cast<B: Body>(
     // The body lies in a ball about its origin. A line that misses the ball misses the body, and on one that does not,
     // only the chord matters.
     let reach = size * (ScalarOf::<B>::ONE + number(16.0) * ScalarOf::<B>::EPSILON);
-    let across = local.line.foot.norm();
-    let half_chord = ((reach - across).max(zero) * (reach + across)).sqrt();
+    let across_squared = local.line.foot.length_squared();
+    let inside = reach * reach - across_squared;
+    // NaN, of a body that is none, stays NaN.
+    let half_chord = if inside < zero { zero } else { inside.sqrt() };
     let low = local.start.max(-half_chord);
 
     let mut search = Search {
@@ -85,6 +87,7 @@ pub(crate) fn cast<B: Body>(
         high: infinity,
         high_error: zero,
         touched: None,
+        inward: None,
         normal: None,
         witness: Default::default(),
         simplex: Simplex::new(),
@@ -97,8 +100,8 @@ pub(crate) fn cast<B: Body>(
         End::Miss(local.line.at(local.start).unit().unwrap_or(local.line.direction))
     } else if search.is_beyond(low, zero) {
         End::Miss((ray.at(options.max_lambda) - origin).unit().unwrap_or(-local.line.direction))
-    } else if across > reach {
-        End::Miss(local.line.foot / across)
+    } else if across_squared > reach * reach {
+        End::Miss(local.line.foot.unit().unwrap_or(local.line.direction))
     } else {
         search.run()
     };
@@ -190,6 +193,8 @@ pub(crate) struct Search<'a, B: Body, O> {
     pub(crate) high_error: ScalarOf<B>,
     /// Where the line passes the body within rounding without entering it, which no plane tells.
     pub(crate) touched: Option<ScalarOf<B>>,
+    /// The foot of a line nearer the body by less than rounding, where the line itself was found to touch it.
+    pub(crate) inward: Option<B::Vector>,
     /// The unit normal of a plane through the point at `low`, to rounding, that has the body behind it.
     pub(crate) normal: Option<B::Vector>,
     /// What the core's point below the entry is made of.
@@ -202,6 +207,8 @@ pub(crate) struct Search<'a, B: Body, O> {
 }
 
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
+    /// Compiled into its caller, as is all that most casts need: what was just computed of the ray stays in registers.
+    #[inline(always)]
     fn run(&mut self) -> End<B::Vector> {
         if B::Vector::DIM == 3
             && self.options.method == CastMethod::Portal
@@ -209,6 +216,12 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         {
             return found.map_or_else(|end| end, |()| End::Contact);
         }
+        self.run_gjk()
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn run_gjk(&mut self) -> End<B::Vector> {
         let first = self.options.axis.and_then(Vector::unit).or_else(|| self.v.unit());
         let found = self.approach(first.unwrap_or(-self.local.line.direction)).and_then(|entry| self.refine(entry));
         self.witness = self.simplex.weighted().fold(Default::default(), |sum: B::Witness, (w, p)| sum.plus(p, w));
@@ -271,7 +284,8 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         let ahead = n.dot(x - point) - self.radius;
         let slope = n.dot(self.local.line.direction);
         if ahead > zero && slope < zero {
-            let (at, error) = (self.low - ahead / slope, -self.noise / slope);
+            let per_slope = -slope.recip();
+            let (at, error) = (self.low + ahead * per_slope, self.noise * per_slope);
             // By products: for a plane along the ray the quotients overflow.
             let leaves_first = ahead - self.noise > (self.half_chord - self.low) * -slope;
             if leaves_first || self.is_beyond(at, error) {

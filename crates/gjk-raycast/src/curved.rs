@@ -90,7 +90,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             if tau > best.tau {
                 best = Best { tau, slant, point: seen.point };
                 if tau > end {
-                    self.separate_end(frame.normal(self.local.line.direction, slant), &seen)?;
+                    self.separate_end(frame.normal(self.local.line.direction, slant), seen.point)?;
                 }
             }
             let piece = self.piece(frame, seen, slant);

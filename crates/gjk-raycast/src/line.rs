@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::power_of_two_near;
+use crate::body::{power_of_two_near, reciprocal_of_power};
 use crate::ray_cast::Ray;
 
 /// The line `foot + μ·direction`, with `direction` of unit length and the foot its point closest to zero.
@@ -44,15 +44,18 @@ impl<V: Vector> LocalRay<V> {
     /// error of `t` itself only shifts the foot along the line, where it is undone by a second projection.
     #[inline(always)]
     pub(crate) fn new(ray: Ray<V>, origin: V, scale: V::Scalar) -> Self {
-        let down = scale.recip();
+        let down = reciprocal_of_power(scale);
         let (from, to) = (ray.source * down, origin * down);
         let s = from - to;
         // The ray's own direction, brought near unit length, is exact, unlike its unit vector.
         let near_one = power_of_two_near(ray.direction.abs().max_element());
-        let exact = ray.direction * near_one.recip();
-        let direction = exact.unit().unwrap_or_else(|| V::axis(0));
-        let length = exact.norm();
-        let t = -s.dot(exact) / exact.length_squared();
+        let to_near_one = reciprocal_of_power(near_one);
+        let exact = ray.direction * to_near_one;
+        let squared = exact.length_squared();
+        let length = squared.sqrt();
+        let per_length = length.recip();
+        let direction = exact * per_length;
+        let t = -s.dot(exact) / squared;
         let foot = V::from_fn(|i| {
             let (a, b, sum) = (from.get(i), -to.get(i), s.get(i));
             let b_seen = sum - a;
@@ -61,7 +64,7 @@ impl<V: Vector> LocalRay<V> {
         });
         let rest = foot.dot(direction);
         let foot = foot - direction * rest;
-        Self { line: Line { foot, direction }, start: -(t * length - rest), per_unit: scale / (length * near_one) }
+        Self { line: Line { foot, direction }, start: -(t * length - rest), per_unit: scale * per_length * to_near_one }
     }
 
     /// The parameter λ of the ray at `μ` on the line.

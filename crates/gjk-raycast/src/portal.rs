@@ -31,6 +31,7 @@ pub(crate) const PATIENCE: usize = 12;
 
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     /// Closes the bracket, or finds a plane that the whole ray is before. `None` where that is in doubt.
+    #[inline(always)]
     pub(crate) fn look_through(&mut self) -> Option<Result<(), End<B::Vector>>> {
         let mut frame = Frame::new(self.local.line);
         // The first plane: the one given, or the tangent plane of the ball about the body where the ray enters it; and how
@@ -48,14 +49,12 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 frame.lift = self.radius;
                 found = self.osculate(&frame, first);
             }
-            // A second time where the line was found to touch the body, and was moved inward.
+            // A second time where the line was found to touch the body, and is moved inward.
             for _ in 0..2 {
                 if matches!(found, Err(None)) {
-                    let before = frame.foot;
-                    found = self.portal(&mut frame, first, reach);
-                    if frame.foot == before {
-                        break;
-                    }
+                    found = self.portal(&frame, first, reach);
+                    let Some(foot) = self.inward.take() else { break };
+                    frame.foot = foot;
                 }
             }
             found
@@ -66,25 +65,24 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         }
     }
 
-    fn portal(
-        &mut self,
-        frame: &mut Frame<B::Vector>,
-        first: B::Vector,
-        mut reach: ScalarOf<B>,
-    ) -> Result<(), Exit<B>> {
+    fn portal(&mut self, frame: &Frame<B::Vector>, first: B::Vector, mut reach: ScalarOf<B>) -> Result<(), Exit<B>> {
         let zero = ScalarOf::<B>::ZERO;
         let one = ScalarOf::<B>::ONE;
         let facing = -first.dot(self.local.line.direction);
         let mut p = self.look(frame, first)?;
-        self.separate(first, &p)?;
         let mut slant = Slant { a: zero, b: zero };
         let mut best = Best { tau: -ScalarOf::<B>::infinity(), slant, point: p.point };
-        if facing > first.length() * ScalarOf::<B>::from_f64(0.125) {
-            slant = Slant { a: frame.e1.dot(first) / facing, b: frame.e2.dot(first) / facing };
+        let end = self.end();
+        let is_faced = facing > first.length() * ScalarOf::<B>::from_f64(0.125);
+        if is_faced {
+            let per_facing = facing.recip();
+            slant = Slant { a: frame.e1.dot(first) * per_facing, b: frame.e2.dot(first) * per_facing };
             p.slant = Some(slant);
             best = Best { tau: slant.crossing(&p), slant, point: p.point };
         }
-        let end = self.end();
+        if !is_faced || best.tau > end {
+            self.separate_end(first, p.point)?;
+        }
 
         // A second point on the other side of the line, of a plane that is tilted towards it.
         let squared = p.u * p.u + p.v * p.v;
@@ -101,7 +99,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         slant = plane.slant();
         let tau = slant.crossing(&q);
         if tau > end {
-            self.separate_end(frame.normal(self.local.line.direction, slant), &q)?;
+            self.separate_end(frame.normal(self.local.line.direction, slant), q.point)?;
         }
         if tau > best.tau {
             best = Best { tau, slant, point: q.point };
@@ -130,7 +128,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             slant = plane.slant();
             let tau = slant.crossing(&s);
             if tau > end {
-                self.separate_end(frame.normal(self.local.line.direction, slant), &s)?;
+                self.separate_end(frame.normal(self.local.line.direction, slant), s.point)?;
             }
             if tau > best.tau {
                 best = Best { tau, slant, point: s.point };
@@ -189,7 +187,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             }
             slant = plane.slant();
             // The bracket closes between the best plane, at its own cosine, and the portal.
-            if high - best.tau <= wanted * best.slant.length() {
+            if best.slant.is_within(high - best.tau, wanted) {
                 break (high, inverse);
             }
             if self.body.is_curved() && self.is_curved(frame, plane.normal(frame, self.local.line.direction)) {
@@ -203,9 +201,9 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             if tau > best.tau {
                 best = Best { tau, slant, point: r.point };
                 if tau > end {
-                    self.separate_end(frame.normal(self.local.line.direction, slant), &r)?;
+                    self.separate_end(frame.normal(self.local.line.direction, slant), r.point)?;
                 }
-                if high - best.tau <= wanted * slant.length() {
+                if slant.is_within(high - best.tau, wanted) {
                     break (high, inverse);
                 }
             }
@@ -244,12 +242,12 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     }
 
     /// The next support point along a vector across the ray, if the plane there does not separate and the point is beyond
-    /// the line. Where the line touches the body there, to rounding, it is taken to pass a little farther inside from now on.
+    /// the line. Where the line touches the body there, to rounding, it is to pass a little farther inside.
     #[cold]
     #[inline(never)]
     fn look_across(
         &mut self,
-        frame: &mut Frame<B::Vector>,
+        frame: &Frame<B::Vector>,
         (a, b): (ScalarOf<B>, ScalarOf<B>),
     ) -> Result<SeenBy<B>, Exit<B>> {
         let across = (frame.e1 * a + frame.e2 * b).unit().ok_or(None)?;
@@ -261,7 +259,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         }
         let inward = self.noise * ScalarOf::<B>::from_f64(0.5);
         if self.radius == ScalarOf::<B>::ZERO && frame.foot == self.local.line.foot && beyond > -inward {
-            frame.foot -= across * inward;
+            self.inward = Some(frame.foot - across * inward);
         }
         Err(None)
     }
@@ -270,7 +268,8 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     #[inline(always)]
     fn look_along(&mut self, frame: &Frame<B::Vector>, plane: Multiple<ScalarOf<B>>) -> Result<SeenBy<B>, Exit<B>> {
         let mut seen = self.look(frame, plane.normal(frame, self.local.line.direction))?;
-        seen.slant = Some(plane.slant());
+        // No polytope is asked where it was looked at along.
+        seen.slant = self.body.is_curved().then(|| plane.slant());
         Ok(seen)
     }
 
@@ -297,12 +296,15 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         }
     }
 
-    /// The same for a plane that is crossed where the ray ends or later. By rounding alone, that may be where the hit is;
-    /// then nothing changes, so that a ray that ends there finds the hit where a longer one does.
+    /// The same for a plane that leaves something of the ray otherwise: then nothing changes. By rounding alone, the end of the
+    /// ray may be where the hit is, and a ray that ends there finds the hit where a longer one does.
+    ///
+    /// It takes the point alone: a support point that is lent to a function has to stay in memory.
+    #[cold]
     #[inline(never)]
-    pub(crate) fn separate_end(&self, n: B::Vector, p: &SeenBy<B>) -> Result<(), Exit<B>> {
+    pub(crate) fn separate_end(&self, n: B::Vector, point: B::Vector) -> Result<(), Exit<B>> {
         match n.unit() {
-            Some(n) => self.crossing(n, p.point).map(drop).map_err(Some),
+            Some(n) => self.crossing(n, point).map(drop).map_err(Some),
             None => Ok(()),
         }
     }
@@ -346,7 +348,8 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         if !(closed && off.length_squared() <= within * within) {
             return Err(None);
         }
-        (self.high, self.high_error, self.witness) = (high.max(self.low), self.noise / slope, witness);
+        let error = if self.low_slope > ScalarOf::<B>::ZERO { self.low_error } else { self.noise };
+        (self.high, self.high_error, self.witness) = (high.max(self.low), error, witness);
         Ok(())
     }
 }

@@ -25,8 +25,11 @@ impl<V: Vector> Ray<V> {
 
     /// The error of a ray that cannot be cast.
     pub(crate) fn check(&self) -> Result<(), RayCastError> {
-        check_finite("source", self.source)?;
-        check_finite("direction", self.direction)?;
+        // Zero times what is not finite is NaN; a sum that overflows is looked at coordinate by coordinate.
+        if (self.source + self.direction).dot(V::ZERO) != V::Scalar::ZERO {
+            check_finite("source", self.source)?;
+            check_finite("direction", self.direction)?;
+        }
         if self.direction == V::ZERO { Err(RayCastError::ZeroDirection) } else { Ok(()) }
     }
 }

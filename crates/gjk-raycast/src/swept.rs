@@ -37,6 +37,9 @@ const MAX_STEPS: usize = 32;
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     /// Closes the bracket, or finds a plane that the whole ray is before; beginning across `first`, and with planes tilted
     /// by `reach` until the line enters the swept points.
+    ///
+    /// Within its caller it would be slower, for want of registers.
+    #[inline(never)]
     pub(crate) fn swept(
         &mut self,
         frame: &Frame<B::Vector>,
@@ -52,11 +55,15 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
         let mut best = Best { tau: -ScalarOf::<B>::infinity(), slant, point: p.point };
         let end = self.end();
         if !self.is_point {
-            self.separate(first, &p)?;
             let facing = -first.dot(direction);
-            if facing > first.length() * number(0.125) {
-                slant = Slant { a: frame.e1.dot(first) / facing, b: frame.e2.dot(first) / facing };
+            let is_faced = facing > first.length() * number(0.125);
+            if is_faced {
+                let per_facing = facing.recip();
+                slant = Slant { a: frame.e1.dot(first) * per_facing, b: frame.e2.dot(first) * per_facing };
                 best = Best { tau: slant.crossing(&p) - radius * slant.length(), slant, point: p.point };
+            }
+            if !is_faced || best.tau > end {
+                self.separate_end(first, p.point)?;
             }
         }
 
@@ -95,7 +102,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 let mut next = self.look_slanted(frame, slant)?;
                 let tau = slant.crossing(&next) - radius * slant.length();
                 if tau > end {
-                    self.separate_end(frame.normal(direction, slant), &next)?;
+                    self.separate_end(frame.normal(direction, slant), next.point)?;
                 }
                 if tau > best.tau {
                     best = Best { tau, slant, point: next.point };
@@ -130,7 +137,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             if self.is_point {
                 best = Best { tau: high, slant, point: p.point };
             }
-            if high - best.tau <= wanted * best.slant.length() {
+            if best.slant.is_within(high - best.tau, wanted) {
                 return self.close(frame, &kept[..len], &at.weights, high, &best);
             }
             let n = frame.normal(direction, slant);
@@ -142,7 +149,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             if tau > best.tau {
                 best = Best { tau, slant, point: next.point };
                 if tau > end {
-                    self.separate_end(n, &next)?;
+                    self.separate_end(n, next.point)?;
                 }
                 if high - best.tau <= wanted * length {
                     return self.close(frame, &kept[..len], &at.weights, high, &best);

@@ -50,6 +50,11 @@ impl<S: Scalar> Slant<S> {
         self.length_squared().sqrt()
     }
 
+    /// Whether planes that are crossed `gap` apart along the ray are at most `distance` apart, `gap ≤ distance·|n|`.
+    pub(crate) fn is_within(self, gap: S, distance: S) -> bool {
+        gap * gap.abs() <= distance * distance * self.length_squared()
+    }
+
     pub(crate) fn length_squared(self) -> S {
         S::ONE + self.a * self.a + self.b * self.b
     }
@@ -75,6 +80,7 @@ impl<S: Scalar> Multiple<S> {
 }
 
 /// The axes across the ray, where they cross, and the radius that is added to what is seen.
+#[derive(Clone, Copy)]
 pub(crate) struct Frame<V: Vector> {
     pub(crate) e1: V,
     pub(crate) e2: V,
