@@ -197,7 +197,7 @@ pub(crate) fn descend<B: Body>(
         } else {
             None
         };
-        if next.is_none() && (leant || newton.has_turned()) {
+        if next.is_none() && light && (leant || newton.has_turned()) {
             // A plane that was turned away from the shortest vector may be the better bound without its support point
             // bringing the simplex nearer.
             descent.simplex.pop();
@@ -222,6 +222,11 @@ pub(crate) fn descend<B: Body>(
         };
         let (along, along_size) = (n, size);
         (n, size) = next;
+        // No point is nearer than the lower bound: a sliver's light length is its rounding. Taken for progress, it would have the same
+        // two steps go on forever.
+        if descent.length < descent.lower && !descent.measured {
+            (n, size) = descent.measure().unwrap_or((n, size));
+        }
         if descent.length <= touching {
             // A simplex of full dimension contains zero for certain; of any other it remains to be measured.
             if descent.length > Scalar::ZERO && !descent.measured {

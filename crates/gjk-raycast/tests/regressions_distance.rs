@@ -422,3 +422,18 @@ fn the_measured_normal_of_a_sliver_is_looked_along() -> Result<(), InvalidShape>
     assert!(answer.upper - answer.lower < 3e-14, "{answer:?}");
     Ok(())
 }
+
+/// Two steps took turns forever: a light one to a length that was the rounding of a sliver, below the lower bound, and its
+/// measurement.
+#[test]
+fn a_length_below_the_lower_bound_is_no_progress() -> Result<(), InvalidShape> {
+    let rotation = DQuat::from_xyzw(0.29901780630354674, -0.706012690101277, 0.013755585448192352, 0.6418295854807181);
+    let translation = DVec3::new(-0.9283401322594869, -0.6831296415889271, 0.6609904898055177);
+    let cylinder = Cylinder::<DVec3>::new(0.75, 0.5)?;
+    let cone = Posed::new(Cone::<DVec3>::new(0.75, 0.625)?, rotation, translation)?;
+    let answer = distance(&cylinder, &cone, DistanceOptions::default());
+    assert_eq!(answer.status, Status::Converged, "{answer:?}");
+    assert!((answer.distance - 1e-6).abs() <= 1e-14, "{answer:?}");
+    assert!(answer.iterations < 50, "{answer:?}");
+    Ok(())
+}
