@@ -66,7 +66,10 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
             let v = line.across(v);
             let length = v.norm();
             self.simplex.retain(face, weights);
-            if length - self.radius <= self.noise {
+            // The body and v are each known to the noise only: where nothing brings the line nearer, both may be what is left.
+            let progress = nearing_across.goes_on(length);
+            let within = if progress { self.noise } else { self.noise + self.noise };
+            if length - self.radius <= within {
                 if slope >= zero {
                     // Where it does, the ray may be past the simplex.
                     return Err(End::Open(Status::Stalled));
@@ -85,7 +88,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 };
                 return Ok(None);
             }
-            if !nearing_across.goes_on(length) {
+            if !progress {
                 return Err(End::Open(Status::Stalled));
             }
             nearing = Decrease::new();

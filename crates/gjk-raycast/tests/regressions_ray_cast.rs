@@ -346,3 +346,27 @@ fn a_far_source_costs_two_and_a_half_ulps_of_its_distance() {
         assert!(f64::from(cast.lower) <= exact && exact <= f64::from(cast.upper), "ray {i}: {cast:?} for {exact}");
     }
 }
+
+/// The ray passes an edge at 1.05e-6, a little more than the noise, with nothing left to bring it nearer or to tell the two apart.
+#[test]
+fn a_ray_past_an_edge_by_rounding_is_decided() {
+    let points = [
+        [0.47474897, 0.35878596, 0.45436954],
+        [0.07933303, -0.76655847, -0.16493198],
+        [-0.22763959, 0.36330676, 0.5168167],
+        [-0.16308786, -0.675708, 0.30593768],
+        [-0.89813066, -0.29418707, -0.14466488],
+        [-0.61078364, 0.54298145, 0.24465969],
+        [0.985783, 0.08808521, -0.07615143],
+        [0.23867257, 0.7633723, -0.10818046],
+    ];
+    let hull = Polytope::new(points.map(Vec3A::from_array)).expect("finite points");
+    let ray = Ray {
+        source: Vec3A::new(-51.016_354, 55.713_276, -65.523_76),
+        direction: Vec3A::new(4.260_442_3, -4.685_431, 5.435_914),
+    };
+    let answer = ray_cast(&hull, ray, RayCastOptions::default()).expect("a finite ray");
+    assert_eq!(answer.status, Status::Converged, "{answer:?}");
+    // Whether it hits is decided by rounding; where, by the geometry.
+    assert!(answer.outcome.hit().is_none_or(|hit| (hit.lambda - 11.9725).abs() < 1e-4), "{answer:?}");
+}

@@ -18,8 +18,8 @@ pub(crate) type Planes<S> = [[S; WIDTH]; 4];
 /// The convex hull of points both ways: by its vertices, as a [`Polytope`], and by the half-spaces of its facets.
 ///
 /// It is for lines: [`LineCrossing`](crate::LineCrossing) clips one by every facet and tells where it leaves, too. That takes time
-/// proportional to the number of facets, with little for each: up to a few hundred facets less than a ray cast by support points,
-/// which needs no facets and hardly grows (measured: docs/support-maps.md).
+/// proportional to the number of facets. Up to about a hundred of them it is less than that of a ray cast by support points, which
+/// needs no facets and hardly grows (measured: docs/performance.md, W1).
 ///
 /// ```
 /// use convex_support::{Faceted, LineCrossing, glam::DVec3};
