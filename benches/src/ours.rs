@@ -115,9 +115,9 @@ pub fn ray_casts<V: Space>(shape: &Shape, rays: &[Ray], effort: Effort) -> Solve
     with_shape::<V, _>(shape, Cast(rays, effort), effort.boxed)
 }
 
-/// Ray casts in closed form; `None` for shapes without one.
+/// Ray casts in closed form.
 #[must_use]
-pub fn closed_form_ray_casts<V: Space>(shape: &Shape, rays: &[Ray]) -> Option<Solver> {
+pub fn closed_form_ray_casts<V: Space>(shape: &Shape, rays: &[Ray]) -> Solver {
     fn solver<S: LineCrossing<Vector: Space> + 'static>(target: Result<S, InvalidShape>, rays: &[Ray]) -> Solver {
         let target = target.expect(VALID);
         let rays = rays.iter().map(|ray| (vector(ray.origin), vector(ray.direction))).collect();
@@ -126,7 +126,7 @@ pub fn closed_form_ray_casts<V: Space>(shape: &Shape, rays: &[Ray]) -> Option<So
             hit.map_or(f64::INFINITY, Scalar::as_f64)
         })
     }
-    Some(match *shape {
+    match *shape {
         Shape::Ball { radius } => solver(Ball::<V>::new(number::<V>(radius)), rays),
         Shape::Cuboid { half_extents } => solver(Cuboid::<V>::new(vector(half_extents)), rays),
         Shape::Cylinder { half_height, radius } => {
@@ -146,7 +146,7 @@ pub fn closed_form_ray_casts<V: Space>(shape: &Shape, rays: &[Ray]) -> Option<So
             rays,
         ),
         Shape::Hull { ref points } => solver(Faceted::<V>::hull_of(points.iter().map(|&p| vector(p))), rays),
-    })
+    }
 }
 
 /// Linear casts. The body is posed within the measurement: every query comes with a new pose.

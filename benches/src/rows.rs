@@ -225,13 +225,14 @@ pub fn measure(workloads: &[Workload], budget: Duration, mut progress: impl FnMu
 /// Every method's solver of ray casts against one shape.
 #[must_use]
 pub fn ray_casters(shape: &Shape, rays: &[w1_ray_cast::Ray]) -> Vec<(Method, Solver)> {
+    #[allow(unused_mut, reason = "without peers there is nothing to add")]
     let mut solvers = vec![
         (Method::OursF64, ours::ray_casts::<DVec3>(shape, rays, Effort::default())),
+        (Method::ClosedF64, ours::closed_form_ray_casts::<DVec3>(shape, rays)),
         (Method::OursF32, ours::ray_casts::<Vec3A>(shape, rays, Effort::default())),
+        (Method::ClosedF32, ours::closed_form_ray_casts::<Vec3A>(shape, rays)),
         (Method::DynF64, ours::ray_casts::<DVec3>(shape, rays, Effort { boxed: true, ..Effort::default() })),
     ];
-    solvers.extend(ours::closed_form_ray_casts::<DVec3>(shape, rays).map(|solver| (Method::ClosedF64, solver)));
-    solvers.extend(ours::closed_form_ray_casts::<Vec3A>(shape, rays).map(|solver| (Method::ClosedF32, solver)));
     #[cfg(feature = "parry")]
     {
         solvers.push((Method::ParryGjkF64, double::ray_casts(shape, rays)));

@@ -131,14 +131,14 @@ pub trait SupportMap {
     }
 
     /// The point of the core closest to `x`, both relative to the [`origin`](Self::origin), where it costs no more than a few
-    /// support points. Provided: `None`.
+    /// support points. Provided: the [only point](Self::core_point), if the core is one.
     ///
     /// It must be a point of the core. Whether it is the closest one is checked by a support point, and one that is not costs
     /// time, never correctness.
     #[inline]
     fn core_closest_point(&self, x: Self::Vector) -> Option<Self::Vector> {
         let _ = x;
-        None
+        self.core_point()
     }
 
     /// The radius of the ball that sweeps the core.

@@ -4,7 +4,7 @@
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Body, Pair, power_of_two_near};
+use crate::body::{Body, Pair, power_of_two_near, reciprocal_of_power};
 use crate::closest::{Closest, nearest_face};
 use crate::decrease::Decrease;
 use crate::flat::project;
@@ -35,14 +35,12 @@ impl<V: Vector> Frame<V> {
         B: SupportMap<Vector = V> + ?Sized,
     {
         let scale = power_of_two_near(size);
-        let per_unit = scale.recip();
+        let per_unit = reciprocal_of_power(scale);
         pair.set_scale(scale);
         let (radius, noise) = (pair.radius() * per_unit, rounding(size) * per_unit);
         Self { scale, per_unit, offset: offset * per_unit, radius, noise }
     }
-}
 
-impl<V: Vector> Frame<V> {
     /// Cores no farther apart than this touch.
     #[inline(always)]
     fn touching(&self) -> V::Scalar {

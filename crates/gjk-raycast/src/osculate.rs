@@ -23,17 +23,6 @@ const MAX_STEPS: usize = 12;
 const MAX_MISSES: usize = 2;
 
 impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
-    /// The derivative of the swept body's support point at `n` along `change`.
-    #[inline(always)]
-    fn moved(&self, n: B::Vector, change: B::Vector) -> B::Vector {
-        let core = self.body.derivative(n, change);
-        if self.radius > ScalarOf::<B>::ZERO {
-            core + (change - n * (change.dot(n) / n.length_squared())) * (self.radius / n.norm())
-        } else {
-            core
-        }
-    }
-
     /// Replaces a smooth body by the ellipsoid that osculates it, takes the plane where the ray enters that, and so on.
     pub(crate) fn osculate(&mut self, frame: &Frame<B::Vector>, first: B::Vector) -> Result<(), Exit<B>> {
         let (zero, one) = (ScalarOf::<B>::ZERO, ScalarOf::<B>::ONE);
@@ -110,7 +99,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
                 let beside = (-x / facing, -y / facing);
                 (beside, -dot(within, beside) / facing)
             } else {
-                let moved = self.moved(n, -direction);
+                let moved = self.swept_derivative(self.body.derivative(n, -direction), n, -direction);
                 ((moved.dot(frame.e1), moved.dot(frame.e2)), -moved.dot(direction))
             };
             let across = Symmetric {

@@ -176,7 +176,13 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> Search<'_, B, O> {
     /// no iteration.
     fn derivative(&self, n: B::Vector, change: B::Vector) -> B::Vector {
         let core = self.body.derivative(n, change);
-        if core == B::Vector::ZERO || self.radius == ScalarOf::<B>::ZERO {
+        if core == B::Vector::ZERO { core } else { self.swept_derivative(core, n, change) }
+    }
+
+    /// The derivative of the swept body's support point at `n` along `change`, given that of the core's.
+    #[inline(always)]
+    pub(crate) fn swept_derivative(&self, core: B::Vector, n: B::Vector, change: B::Vector) -> B::Vector {
+        if self.radius == ScalarOf::<B>::ZERO {
             return core;
         }
         let across = change - n * (change.dot(n) / n.length_squared());

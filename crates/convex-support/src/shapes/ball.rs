@@ -62,11 +62,6 @@ impl<V: Vector> SupportMap for Ball<V> {
     }
 
     #[inline]
-    fn core_closest_point(&self, _x: V) -> Option<V> {
-        Some(V::ZERO)
-    }
-
-    #[inline]
     fn core_extent(&self) -> ScalarOf<Self> {
         V::Scalar::ZERO
     }

@@ -2,15 +2,15 @@
 
 use alloc::vec::Vec;
 
-use super::hull::coordinates;
-use super::{Polytope, checked, middle, relative};
-use crate::convex_hull::{ConvexHull, convex_hull};
+use glam::DVec3;
+
+use super::Polytope;
+use super::hull::FromPoints;
+use super::lanes::{WIDTH, coordinate, side_by_side};
+use crate::convex_hull::ConvexHull;
 use crate::error::InvalidShape;
 use crate::support::ScalarOf;
 use crate::{Hint, Scalar, SupportMap, Vector};
-
-/// Planes side by side: a multiple of what a vector register holds on every target.
-pub(crate) const WIDTH: usize = 4;
 
 /// [`WIDTH`] planes, each a unit outward normal by coordinates and how far the polytope reaches along it from the middle.
 pub(crate) type Planes<S> = [[S; WIDTH]; 4];
@@ -44,29 +44,17 @@ impl<V: Vector> Faceted<V> {
     /// # Errors
     /// As [`Polytope::new`].
     pub fn hull_of(points: impl IntoIterator<Item = V>) -> Result<Self, InvalidShape> {
-        let points = checked(points)?;
-        let (seen, _) = relative(&points, middle(points.iter().copied()));
-        let seen = coordinates(&seen);
-        // Without exact predicates, by points a hundred orders of magnitude apart, the bounding box is all that is known.
-        let hull = convex_hull(&seen).unwrap_or(ConvexHull::Point(0));
-        let mut normals: Vec<V> = normals(&hull, &seen, V::DIM)
+        let FromPoints { polytope, seen, hull } = FromPoints::new(points)?;
+        // Without a hull, the bounding box is all that is known.
+        let mut normals: Vec<V> = normals(&hull.unwrap_or(ConvexHull::Point(0)), &seen, V::DIM)
             .into_iter()
             .filter_map(|n| V::from_fn(|i| V::Scalar::from_f64(n[i])).unit())
             .collect();
         distinct(&mut normals);
-        let polytope = Polytope::hull_of(points)?;
-        let plane = |n: &V| (*n, n.dot(polytope.core_support(*n, &mut Hint::new())));
-        let facets: Vec<(V, V::Scalar)> = normals.iter().map(plane).collect();
-        // The last block is filled up with the last plane.
-        let lane = |chunk: &[(V, V::Scalar)], l: usize| chunk[l.min(chunk.len() - 1)];
-        let row = |(n, reach): (V, V::Scalar), i: usize| match i {
-            3 => reach,
-            i if i < V::DIM => n.get(i),
-            _ => V::Scalar::ZERO,
-        };
-        let block =
-            |chunk: &[(V, V::Scalar)]| core::array::from_fn(|i| core::array::from_fn(|l| row(lane(chunk, l), i)));
-        Ok(Self { planes: facets.chunks(WIDTH).map(block).collect(), count: facets.len(), polytope })
+        let facet = |n: &V| (*n, n.dot(polytope.core_support(*n, &mut Hint::new())));
+        let facets: Vec<(V, V::Scalar)> = normals.iter().map(facet).collect();
+        let planes = side_by_side(&facets, |(n, reach), i| if i == 3 { reach } else { coordinate(n, i) });
+        Ok(Self { planes, count: facets.len(), polytope })
     }
 
     /// The same set by its vertices.
@@ -110,39 +98,23 @@ fn distinct<V: Vector>(normals: &mut Vec<V>) {
     normals.dedup_by(|a, b| (*a - *b).abs().max_element() <= within);
 }
 
-type Point = [f64; 3];
-
-fn minus(a: Point, b: Point) -> Point {
-    core::array::from_fn(|i| a[i] - b[i])
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 /// Outward normals, of any length, of half-spaces whose intersection the hull is, in the first `dimension` coordinates.
 ///
 /// A plane is laid as far out as the polytope reaches along its normal, so that rounding of a normal cuts nothing off. A sliver's
 /// normal is known across it only to `ε` by its width; but what it leaves uncut is as narrow as it is, between its neighbours.
-fn normals(hull: &ConvexHull, points: &[Point], dimension: usize) -> Vec<Point> {
-    let at = |i: u32| points[i as usize];
-    let both = |n: Point| [n, n.map(|x| -x)];
-    let axes = || (0..dimension).map(|i| core::array::from_fn(|k| f64::from(u8::from(i == k))));
+fn normals(hull: &ConvexHull, points: &[[f64; 3]], dimension: usize) -> Vec<DVec3> {
+    let at = |i: u32| DVec3::from(points[i as usize]);
+    let both = |n: DVec3| [n, -n];
     match hull {
-        ConvexHull::Point(_) => axes().flat_map(both).collect(),
+        ConvexHull::Point(_) => DVec3::AXES[..dimension].iter().copied().flat_map(both).collect(),
         // Along it, and across: what is left of the axes, and in space what is across those too.
         ConvexHull::Segment([a, b]) => {
-            let along = minus(at(*b), at(*a));
-            let shortest = (0..dimension).fold(0, |k, i| if along[i].abs() < along[k].abs() { i } else { k });
-            let third = if dimension == 2 { [0.0, 0.0, 1.0] } else { axes().nth(shortest).unwrap_or([0.0, 0.0, 1.0]) };
-            let across = cross(along, third);
-            let mut normals: Vec<Point> = both(along).into_iter().chain(both(across)).collect();
+            let along = at(*b) - at(*a);
+            let third = if dimension == 2 { DVec3::Z } else { DVec3::AXES[along.abs().min_position()] };
+            let across = along.cross(third);
+            let mut normals: Vec<DVec3> = both(along).into_iter().chain(both(across)).collect();
             if dimension == 3 {
-                normals.extend(both(cross(along, across)));
+                normals.extend(both(along.cross(across)));
             }
             normals
         }
@@ -150,12 +122,10 @@ fn normals(hull: &ConvexHull, points: &[Point], dimension: usize) -> Vec<Point> 
             let next = || corners.iter().cycle().skip(1);
             let first = at(corners[0]);
             // Twice the area as a vector: the sum of the triangles from the first corner.
-            let area = corners.iter().zip(next()).fold([0.0; 3], |sum: Point, (&p, &q)| {
-                let triangle = cross(minus(at(p), first), minus(at(q), first));
-                core::array::from_fn(|i| sum[i] + triangle[i])
-            });
-            let side = |(&p, &q): (&u32, &u32)| cross(minus(at(q), at(p)), area);
-            let mut normals: Vec<Point> = corners.iter().zip(next()).map(side).collect();
+            let triangle = |(&p, &q): (&u32, &u32)| (at(p) - first).cross(at(q) - first);
+            let area: DVec3 = corners.iter().zip(next()).map(triangle).sum();
+            let side = |(&p, &q): (&u32, &u32)| (at(q) - at(p)).cross(area);
+            let mut normals: Vec<DVec3> = corners.iter().zip(next()).map(side).collect();
             if dimension == 3 {
                 normals.extend(both(area));
             }
@@ -166,10 +136,9 @@ fn normals(hull: &ConvexHull, points: &[Point], dimension: usize) -> Vec<Point> 
             .map(|&[a, b, c]| {
                 let [a, b, c] = [a, b, c].map(at);
                 // The two shorter edges lose the least.
-                let edges = [minus(b, a), minus(c, b), minus(a, c)];
-                let longest =
-                    (0..3).fold(0, |k, i| if dot(edges[i], edges[i]) > dot(edges[k], edges[k]) { i } else { k });
-                cross(edges[(longest + 1) % 3], edges[(longest + 2) % 3])
+                let edges = [b - a, c - b, a - c];
+                let longest = DVec3::from(edges.map(DVec3::length_squared)).max_position();
+                edges[(longest + 1) % 3].cross(edges[(longest + 2) % 3])
             })
             .collect(),
     }

@@ -23,12 +23,28 @@ impl<V: Vector> Polytope<V> {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn hull_of(points: impl IntoIterator<Item = V>) -> Result<Self, InvalidShape> {
+        FromPoints::new(points).map(|found| found.polytope)
+    }
+}
+
+/// A polytope and what it was found from.
+pub(super) struct FromPoints<V: Vector> {
+    pub(super) polytope: Polytope<V>,
+    /// The points seen from the middle.
+    pub(super) seen: Vec<[f64; 3]>,
+    /// The hull of those. There is none of points a hundred orders of magnitude apart: then nothing is lost of the polytope but the
+    /// time of a scan.
+    pub(super) hull: Option<ConvexHull>,
+}
+
+impl<V: Vector> FromPoints<V> {
+    pub(super) fn new(points: impl IntoIterator<Item = V>) -> Result<Self, InvalidShape> {
         let points = checked(points)?;
         let middle = middle(points.iter().copied());
         let (seen, unit) = relative(&points, middle);
-        let Some(hull) = convex_hull(&coordinates(&seen)) else {
-            // Points a hundred orders of magnitude apart: nothing is lost but the time of a scan.
-            return Self::new(points);
+        let coordinates = coordinates(&seen);
+        let Some(hull) = convex_hull(&coordinates) else {
+            return Ok(Self { polytope: Polytope::new(points)?, seen: coordinates, hull: None });
         };
         let edges = edges(&hull);
         let mut kept: Vec<u32> = edges.iter().map(|e| e[0]).collect();
@@ -43,12 +59,12 @@ impl<V: Vector> Polytope<V> {
             let edges: Vec<_> = edges.into_iter().map(|e| e.map(place)).collect();
             Search::Look { graph: Graph::new(&seen, &edges), unit }
         };
-        Ok(Self::searched_by(search, vertices, middle))
+        Ok(Self { polytope: Polytope::searched_by(search, vertices, middle), seen: coordinates, hull: Some(hull) })
     }
 }
 
 /// The points in three coordinates of double precision.
-pub(super) fn coordinates<V: Vector>(points: &[V]) -> Vec<[f64; 3]> {
+fn coordinates<V: Vector>(points: &[V]) -> Vec<[f64; 3]> {
     let coordinates = |p: &V| core::array::from_fn(|i| if i < V::DIM { p.get(i).as_f64() } else { 0.0 });
     points.iter().map(coordinates).collect()
 }

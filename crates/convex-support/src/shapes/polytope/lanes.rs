@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use crate::{Scalar, Vector};
 
 /// Points side by side: a multiple of what a vector register holds on every target.
-const WIDTH: usize = 4;
+pub(crate) const WIDTH: usize = 4;
 
 /// Blocks of which at first only the farthest reach is asked for, where there are more.
 const BLOCKS: usize = 16;
@@ -25,11 +25,7 @@ pub(super) struct Lanes<V: Vector> {
 impl<V: Vector> Lanes<V> {
     /// A non-empty list of points.
     pub(super) fn new(points: &[V]) -> Self {
-        let coordinate = |p: V, i: usize| if i < V::DIM { p.get(i) } else { V::Scalar::ZERO };
-        // The last block is filled up with the last point.
-        let lane = |chunk: &[V], l: usize| chunk[l.min(chunk.len() - 1)];
-        let block = |chunk: &[V]| core::array::from_fn(|i| core::array::from_fn(|l| coordinate(lane(chunk, l), i)));
-        Self { blocks: points.chunks(WIDTH).map(block).collect(), count: points.len() }
+        Self { blocks: side_by_side(points, coordinate), count: points.len() }
     }
 
     /// The index of the first point farthest along the direction `(dx, dy, dz)`; any index where that is not a number.
@@ -53,6 +49,21 @@ impl<V: Vector> Lanes<V> {
         let place = place_of_farthest(chunk, dx, dy, dz).as_f64();
         (first * WIDTH + place as usize).min(self.count - 1)
     }
+}
+
+/// A coordinate of a vector, of which the plane has two.
+pub(super) fn coordinate<V: Vector>(v: V, i: usize) -> V::Scalar {
+    if i < V::DIM { v.get(i) } else { V::Scalar::ZERO }
+}
+
+/// The numbers of each of a list, [`WIDTH`] of the list side by side; the last block is filled up with the last of the list.
+pub(super) fn side_by_side<T: Copy, S, const NUMBERS: usize>(
+    list: &[T],
+    number: impl Fn(T, usize) -> S,
+) -> Vec<[[S; WIDTH]; NUMBERS]> {
+    let lane = |chunk: &[T], l: usize| chunk[l.min(chunk.len() - 1)];
+    let block = |chunk: &[T]| core::array::from_fn(|i| core::array::from_fn(|l| number(lane(chunk, l), i)));
+    list.chunks(WIDTH).map(block).collect()
 }
 
 /// How far the farthest point of each lane reaches along a direction.

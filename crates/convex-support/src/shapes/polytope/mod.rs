@@ -22,7 +22,9 @@ use crate::{Hint, Scalar, SupportMap, Vector};
 #[cfg(feature = "hull")]
 pub use faceted::Faceted;
 #[cfg(feature = "hull")]
-pub(crate) use faceted::{Planes, WIDTH as PLANES};
+pub(crate) use faceted::Planes;
+#[cfg(feature = "hull")]
+pub(crate) use lanes::WIDTH as PLANES;
 
 /// The convex hull of a list of points; a polygon in 2D, a polyhedron in 3D.
 ///
