@@ -2,7 +2,7 @@
 
 use convex_support::glam::{DQuat, DVec3, Quat, Vec3A};
 use convex_support::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, InvalidShape, LineCrossing, Polytope, Posed, Rounded,
+    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, InvalidShape, Polytope, Posed, Rounded,
     Scalar, SupportMap, Vector3,
 };
 use gjk_raycast::{
@@ -118,11 +118,12 @@ pub fn ray_casts<V: Space>(shape: &Shape, rays: &[Ray], effort: Effort) -> Solve
 /// Ray casts in closed form.
 #[must_use]
 pub fn closed_form_ray_casts<V: Space>(shape: &Shape, rays: &[Ray]) -> Solver {
-    fn solver<S: LineCrossing<Vector: Space> + 'static>(target: Result<S, InvalidShape>, rays: &[Ray]) -> Solver {
+    fn solver<S: SupportMap<Vector: Space> + 'static>(target: Result<S, InvalidShape>, rays: &[Ray]) -> Solver {
         let target = target.expect(VALID);
         let rays = rays.iter().map(|ray| (vector(ray.origin), vector(ray.direction))).collect();
         Solver::new(rays, move |&(source, direction): &(S::Vector, S::Vector)| {
-            let hit = target.line_crossing(source, direction).and_then(|crossing| crossing.first_hit(Scalar::ONE));
+            let crossing = line_crossing(&target, source, direction).crossing();
+            let hit = crossing.and_then(|crossing| crossing.first_hit(Scalar::ONE));
             hit.map_or(f64::INFINITY, Scalar::as_f64)
         })
     }

@@ -60,9 +60,9 @@ pub enum Method {
     OursF32,
     /// `gjk-raycast` on `DVec3`, of shapes behind `dyn SupportMap`.
     DynF64,
-    /// `LineCrossing` on `DVec3`.
+    /// `line_crossing` on `DVec3`.
     ClosedF64,
-    /// `LineCrossing` on `Vec3A`.
+    /// `line_crossing` on `Vec3A`.
     ClosedF32,
     /// `intersects` on `DVec3` with the separating axis of the frame before.
     WarmF64,

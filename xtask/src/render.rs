@@ -218,8 +218,8 @@ where
     S: SupportMap<Vector = Vec3A> + Send + Sync + 'static,
 {
     let shape = Posed::new(shape, rotation, Vec3A::new(x, y, z))?;
-    let center = shape.origin();
-    let radius = shape.core_extent() + shape.radius();
+    let Core { origin: center, radius, extent, .. } = shape.core();
+    let radius = extent + radius;
     Ok(Thing {
         center,
         radius: radius * (1.0 + 4.0 * f32::EPSILON),

@@ -1,6 +1,6 @@
 //! Boxes and balls around shapes, for culling.
 
-use crate::{Hint, Scalar, ScalarOf, SupportMap, Vector};
+use crate::{Core, Hint, Scalar, SupportMap, Vector};
 
 /// A box along the coordinate axes: the points with `min ≤ x ≤ max`, coordinate by coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,7 +91,8 @@ pub fn bounding_sphere<S: SupportMap + ?Sized>(shape: &S) -> BoundingSphere<S::V
         min: S::Vector::from_fn(|i| -reach(-S::Vector::axis(i))),
         max: S::Vector::from_fn(|i| reach(S::Vector::axis(i))),
     };
-    let (extent, corner): (ScalarOf<S>, ScalarOf<S>) = (shape.core_extent(), core.half_extents().norm());
+    let Core { origin, radius, extent, .. } = shape.core();
+    let corner = core.half_extents().norm();
     let (offset, core_radius) = if extent <= corner { (S::Vector::ZERO, extent) } else { (core.center(), corner) };
-    BoundingSphere { center: shape.origin() + offset, radius: core_radius + shape.radius() }
+    BoundingSphere { center: origin + offset, radius: core_radius + radius }
 }

@@ -35,6 +35,11 @@ pub enum InvalidShape {
     },
     /// A list of points is empty.
     NoPoints,
+    /// Numbers are finite, but the shape they make is larger than the largest number.
+    TooLarge {
+        /// The parameter, as the constructor names it.
+        parameter: &'static str,
+    },
     /// The matrix of an ellipsoid is not symmetric to rounding.
     NotSymmetric {
         /// The row of the entry that differs from its mirror image.
@@ -47,8 +52,10 @@ pub enum InvalidShape {
     /// A rotation is the zero quaternion.
     ZeroRotation,
     /// The columns of a matrix that should be a rotation or a set of axes are not orthonormal, to half the digits of the
-    /// scalar, or a rotation mirrors.
+    /// scalar.
     NotOrthonormal,
+    /// The columns of a matrix that should be a rotation are orthonormal, but left-handed: it mirrors.
+    Mirrors,
 }
 
 impl fmt::Display for InvalidShape {
@@ -69,6 +76,10 @@ impl fmt::Display for InvalidShape {
             }
             Self::NotPositiveDefinite => f.write_str("the matrix must be positive definite, but it is not"),
             Self::NotOrthonormal => f.write_str("the columns of the matrix must be orthonormal, but they are not"),
+            Self::TooLarge { parameter } => {
+                write!(f, "{parameter} makes a shape that is larger than the largest number of its precision")
+            }
+            Self::Mirrors => f.write_str("the matrix must be a rotation, but it mirrors: its determinant is negative"),
             Self::ZeroRotation => f.write_str("the rotation must not be the zero quaternion"),
         }
     }
@@ -85,6 +96,11 @@ pub(crate) fn non_negative<S: crate::Scalar>(parameter: &'static str, value: S) 
     } else {
         Ok(value)
     }
+}
+
+/// The size of a shape if it did not overflow.
+pub(crate) fn measurable<S: crate::Scalar>(parameter: &'static str, size: S) -> Result<S, InvalidShape> {
+    if size.is_finite() { Ok(size) } else { Err(InvalidShape::TooLarge { parameter }) }
 }
 
 /// `vector` if its coordinates are finite.

@@ -135,7 +135,7 @@ as_data! {
         where S, S::Vector, <S::Vector as Vector>::Matrix;
     [S: SupportMap] Affine<S> as Mapped { shape: shape, matrix: matrix, translation: translation } by Self::new,
         where S, S::Vector, <S::Vector as Vector>::Matrix;
-    [S: SupportMap] Rounded<S> as Grown { shape: shape, radius: rounding } by Self::new, where S, ScalarOf<S>;
+    [S: SupportMap] Rounded<S> as Grown { shape: shape, radius: radius } by Self::new, where S, ScalarOf<S>;
     [A: SupportMap, B: SupportMap<Vector = A::Vector>] MinkowskiSum<A, B> as Pair { a: a, b: b } by sound(Self::new),
         where A, B;
     [A: SupportMap, B: SupportMap<Vector = A::Vector>] Difference<A, B> as Pair { a: a, b: b } by sound(Self::new),

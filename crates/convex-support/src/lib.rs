@@ -18,9 +18,9 @@
 //! ```
 //!
 //! # What is here
-//! - The traits: [`SupportMap`] (implement it for shapes of your own), [`Vector`] and [`Scalar`] (glam's types).
-//! - What some shapes can do beside: [`ClosestPoint`], [`LineCrossing`]; and what all can: [`bounding_box`],
-//!   [`bounding_sphere`].
+//! - The traits: [`SupportMap`] (implement it for shapes of your own), [`Vector`], [`Rotation`] and [`Scalar`] (glam's types).
+//! - What all shapes can be asked: [`bounding_box`], [`bounding_sphere`]; and what those with a closed form can: [`closest_point`],
+//!   [`line_crossing`].
 //! - Shapes in any dimension: [`Point`], [`Segment`], [`Triangle`], [`Ball`], [`Cuboid`], [`Capsule`], [`Ellipsoid`],
 //!   [`Polytope`]; in 3D [`Cylinder`] and [`Cone`].
 //! - Shapes made of shapes: [`Posed`], [`Affine`], [`MinkowskiSum`], [`Difference`], [`Hull`], [`Rounded`]. They nest,
@@ -50,19 +50,20 @@ extern crate std;
 mod bounds;
 mod closest_point;
 mod combinators;
-#[cfg(feature = "hull")]
-mod convex_hull;
+mod core_set;
 mod error;
+mod forward;
 mod hint;
 #[cfg(any(feature = "parry2d", feature = "parry2d-f64", feature = "parry3d", feature = "parry3d-f64"))]
 mod interop_parry;
 #[cfg(feature = "serde")]
 mod interop_serde;
 mod line_crossing;
-mod pointers;
+#[doc(hidden)]
+pub mod numerics;
+mod rotation;
 mod scalar;
 mod shapes;
-mod spd;
 #[cfg(feature = "proptest")]
 pub mod strategies;
 mod support;
@@ -71,8 +72,9 @@ mod vector;
 pub use glam;
 
 pub use bounds::{Aabb, BoundingSphere, bounding_box, bounding_sphere};
-pub use closest_point::ClosestPoint;
+pub use closest_point::closest_point;
 pub use combinators::{Affine, Difference, Hull, MinkowskiSum, Posed, Rounded};
+pub use core_set::{Core, CoreKind, Rounding};
 pub use error::InvalidShape;
 pub use hint::Hint;
 #[cfg(feature = "parry2d")]
@@ -83,7 +85,8 @@ pub use interop_parry::parry2d_f64;
 pub use interop_parry::parry3d;
 #[cfg(feature = "parry3d-f64")]
 pub use interop_parry::parry3d_f64;
-pub use line_crossing::{Crossing, LineCrossing, RoundedLineCrossing};
+pub use line_crossing::{Crossing, LineCrossing, line_crossing};
+pub use rotation::Rotation;
 pub use scalar::Scalar;
 #[cfg(feature = "hull")]
 pub use shapes::Faceted;

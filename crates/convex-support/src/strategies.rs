@@ -15,7 +15,7 @@ use proptest::sample::select;
 
 use crate::{
     Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Ellipsoid, Hull, InvalidShape, Matrix, MinkowskiSum,
-    Point, Polytope, Posed, Rounded, Scalar, Segment, SupportMap, Triangle, Vector, Vector3,
+    Point, Polytope, Posed, Rotation, Rounded, Scalar, Segment, SupportMap, Triangle, Vector, Vector3,
 };
 
 /// A shape that can be printed, as proptest requires of what it generates.
@@ -101,7 +101,7 @@ pub fn rotation<V: Vector>() -> BoxedStrategy<V::Rotation> {
         proptest::array::uniform4(-1.0..1.0f64),
     ];
     q.prop_map(|q| if q == [0.0; 4] { [0.0, 0.0, 0.0, 1.0] } else { q })
-        .prop_map(|q| V::rotation_from_xyzw(q.map(V::Scalar::from_f64)))
+        .prop_map(|q| V::Rotation::from_xyzw(q.map(V::Scalar::from_f64)))
         .boxed()
 }
 
@@ -244,7 +244,7 @@ pub fn matrix<V: Vector>() -> BoxedStrategy<V::Matrix> {
         2 => columns.prop_map(|c| V::Matrix::from_cols_fn(|j| c[j])),
         1 => vector::<V>(V::Scalar::ONE).prop_map(V::Matrix::from_diagonal),
         1 => (rotation::<V>(), positive_length(V::Scalar::ONE)).prop_map(|(r, s)| {
-            let rotation = V::unit_rotation(r).map_or(V::Matrix::IDENTITY, V::rotation_matrix);
+            let rotation = r.matrix();
             V::Matrix::from_cols_fn(|j| rotation.col(j) * s)
         }),
     ]

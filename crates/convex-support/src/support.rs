@@ -2,8 +2,8 @@
 
 use num_traits::Float as _;
 
-use crate::vector::is_comfortable;
-use crate::{Hint, Scalar, Vector};
+use crate::numerics::range::is_comfortable;
+use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, Vector};
 
 /// A nonempty, closed, bounded convex set, known by its support mapping.
 ///
@@ -46,17 +46,9 @@ use crate::{Hint, Scalar, Vector};
 /// - only the direction of `d` matters, not its length;
 /// - the same argument gives the same answer, and the provided methods describe the same set.
 ///
-/// # Core and radius
-/// A ball, a capsule and everything [rounded](crate::Rounded) is a smaller set, its *core*, swept by a ball. Iterative
-/// methods converge slowly on round surfaces and finish at once on a point or a segment, so they work on the core and
-/// add the radius at the end. And they work near the body rather than near the world's origin, where coordinates have
-/// digits to spare. So a set is also known as
-///
-/// > C = o + K ⊕ B(r)
-///
-/// with the [`origin`](Self::origin) `o`, the core `K` given by [`core_support`](Self::core_support), and the
-/// [`radius`](Self::radius) `r`. The provided methods say that `o = 0`, `r = 0` and the core is all there is; a shape
-/// that overrides one of them says what its set is split into.
+/// Beyond that, a shape may say what it is split into ([`core`](Self::core)), how it curves, which of its points is closest, where a
+/// line crosses it, and how well all that is known. What is not said costs time, never correctness. All of it is about the core:
+/// [`closest_point`](crate::closest_point) and [`line_crossing`](crate::line_crossing) ask for whole shapes.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a convex shape",
     note = "implement `SupportMap` for it: only `support` is required"
@@ -75,90 +67,78 @@ pub trait SupportMap {
         direction.dot(self.support(direction))
     }
 
-    /// A point near the set, which [`core_support`](Self::core_support) is relative to.
+    /// What the set is split into: an origin, a core and a radius. Algorithms ask once for each query.
+    ///
+    /// Provided: the core is all there is, about zero. A shape with an origin or a radius says so here and writes out
+    /// [`core_support`](Self::core_support) too.
     #[inline]
-    fn origin(&self) -> Self::Vector {
-        Self::Vector::ZERO
+    fn core(&self) -> Core<Self::Vector> {
+        let extent = extent_along_axes(|d| self.support(d)).norm();
+        Core { origin: Self::Vector::ZERO, radius: Scalar::ZERO, extent, kind: CoreKind::Curved }
     }
 
-    /// A point of the core farthest along `direction`, relative to the [`origin`](Self::origin).
+    /// A point of the core farthest along `direction`, relative to the [origin](Core::origin).
     ///
     /// `hint` carries what the previous call found, so that a large polytope need not start its search afresh. It
-    /// never changes how far along `direction` the answer lies.
+    /// never changes how far along `direction` the answer lies. Provided: [`support`](Self::support).
     #[inline]
     fn core_support(&self, direction: Self::Vector, hint: &mut Hint) -> Self::Vector {
         let _ = hint;
-        self.support(direction) - self.origin()
+        self.support(direction)
     }
 
-    /// How fast the core's support point moves as the direction turns: the derivative of
-    /// [`core_support`](Self::core_support) at `direction` along `change`, which is the Hessian of the core's support
-    /// value times `change`.
+    /// How the core curves: the entries `u·Hu`, `u·Hw` and `w·Hw` of the Hessian `H` of its support value at `direction`, which is
+    /// how fast the support point moves as the direction turns.
     ///
-    /// Provided: zero, as it is at the vertices of a polytope. A curved shape that says more lets iterative methods
-    /// double their digits with each step, where otherwise they gain a few; a wrong answer costs time, never correctness.
-    #[inline]
-    fn core_support_derivative(&self, direction: Self::Vector, change: Self::Vector) -> Self::Vector {
-        let _ = (direction, change);
-        Self::Vector::ZERO
-    }
-
-    /// The entries `u·Hu`, `u·Hw` and `w·Hw` of the Hessian `H` of the core's support value at `direction`: its
-    /// [derivative](Self::core_support_derivative) along two changes `u` and `w`, as seen along the two.
-    ///
-    /// Provided: by two of those derivatives. These numbers are less work than the vectors, and are what iterative methods
-    /// mostly need.
+    /// Provided: zeros, as they are at the vertices of a polytope. A curved shape that says more lets iterative methods
+    /// double their digits with each step, where otherwise they gain a few.
     #[inline]
     fn core_support_hessian(&self, direction: Self::Vector, [u, w]: [Self::Vector; 2]) -> [ScalarOf<Self>; 3] {
-        let along = |change| self.core_support_derivative(direction, change);
-        let (along_u, along_w) = (along(u), along(w));
-        [u.dot(along_u), u.dot(along_w), w.dot(along_w)]
+        let _ = (direction, u, w);
+        [Scalar::ZERO; 3]
     }
 
-    /// Whether the core is a polytope, whose support point jumps from vertex to vertex and does not move in between, so that
-    /// [`core_support_derivative`](Self::core_support_derivative) is always zero and need not be asked for. Provided: `false`.
-    #[inline]
-    fn is_core_polyhedral(&self) -> bool {
-        false
-    }
-
-    /// The core where it is a single point, relative to the [`origin`](Self::origin). Provided: `None`.
+    /// The point of the core closest to `x`, both relative to the [origin](Core::origin), where it costs no more than a few
+    /// support points; `x` itself within the core. Provided: `None`.
     ///
-    /// A ball that meets a set with a [closest point](Self::core_closest_point) needs no iteration.
-    #[inline]
-    fn core_point(&self) -> Option<Self::Vector> {
-        None
-    }
-
-    /// The point of the core closest to `x`, both relative to the [`origin`](Self::origin), where it costs no more than a few
-    /// support points. Provided: the [only point](Self::core_point), if the core is one.
-    ///
-    /// It must be a point of the core. Whether it is the closest one is checked by a support point, and one that is not costs
-    /// time, never correctness.
+    /// It must be a point of the core. Algorithms check by a support point whether it is the closest one.
     #[inline]
     fn core_closest_point(&self, x: Self::Vector) -> Option<Self::Vector> {
         let _ = x;
-        self.core_point()
+        None
     }
 
-    /// The radius of the ball that sweeps the core.
+    /// Where the line through `source` along `direction` is in the core swept by a ball of the given `radius ≥ 0`, in closed form;
+    /// `source` is relative to the [origin](Core::origin). Provided: it is unknown.
     #[inline]
-    fn radius(&self) -> ScalarOf<Self> {
-        ScalarOf::<Self>::ZERO
+    fn core_line_crossing(
+        &self,
+        source: Self::Vector,
+        direction: Self::Vector,
+        radius: ScalarOf<Self>,
+    ) -> LineCrossing<Self::Vector> {
+        let _ = (source, direction, radius);
+        LineCrossing::Unknown
     }
 
-    /// An upper bound on the length of every vector that [`core_support`](Self::core_support) computes with, which is
-    /// what its rounding errors are proportional to. Provided: the corner of the core's bounding box.
-    fn core_extent(&self) -> ScalarOf<Self> {
-        let corner = Self::Vector::from_fn(|i| {
-            let axis = Self::Vector::axis(i);
-            let reach = |d: Self::Vector| d.dot(self.core_support(d, &mut Hint::default())).abs();
-            // NaN, from a support map that is none, makes the whole extent NaN.
-            let (ahead, behind) = (reach(axis), reach(-axis));
-            if ahead < behind || behind.is_nan() { behind } else { ahead }
-        });
-        corner.norm()
+    /// How well the support points of the core are known. Algorithms ask once, at the end of a query, to prove what they found.
+    ///
+    /// Provided: the support points along the axes say how large the core is, and each is wrong by four units in the last place of
+    /// that.
+    fn rounding(&self) -> Rounding<Self::Vector> {
+        Rounding::relative(extent_along_axes(|d| self.core_support(d, &mut Hint::new())), 4.0)
     }
+}
+
+/// How far a set reaches along each axis, forwards or backwards.
+#[inline]
+fn extent_along_axes<V: Vector>(support: impl Fn(V) -> V) -> V {
+    V::from_fn(|i| {
+        let reach = |d: V| d.dot(support(d)).abs();
+        // NaN, from a support map that is none, makes the whole extent NaN.
+        let (ahead, behind) = (reach(V::axis(i)), reach(-V::axis(i)));
+        if ahead < behind || behind.is_nan() { behind } else { ahead }
+    })
 }
 
 /// The scalar of the space a shape lives in.
@@ -167,16 +147,8 @@ pub type ScalarOf<S> = <<S as SupportMap>::Vector as Vector>::Scalar;
 /// The support point of `origin + core ⊕ ball(radius)`, for shapes that are defined by their core.
 #[inline]
 pub(crate) fn support_of_parts<S: SupportMap + ?Sized>(shape: &S, direction: S::Vector) -> S::Vector {
-    let core = shape.core_support(direction, &mut Hint::default());
-    shape.origin() + core + swept(shape.radius(), direction)
-}
-
-/// What the rounding of `a + b` loses (Knuth's two-sum).
-#[inline]
-pub(crate) fn lost_in_sum<V: Vector>(a: V, b: V) -> V {
-    let sum = a + b;
-    let seen = sum - a;
-    (a - (sum - seen)) + (b - seen)
+    let Core { origin, radius, .. } = shape.core();
+    origin + shape.core_support(direction, &mut Hint::new()) + swept(radius, direction)
 }
 
 /// The point of the ball of the given radius about zero farthest along `direction`.
@@ -188,19 +160,26 @@ pub(crate) fn swept<V: Vector>(radius: V::Scalar, direction: V) -> V {
     direction.unit().unwrap_or_else(|| V::axis(0)) * radius
 }
 
-/// The derivative of [`swept`] at `direction` along `change`: with `u` the unit direction, the part of the change across
-/// `u`, times the radius by the length of the direction.
+/// The Hessian of the support value of a ball of the given radius about zero, as seen along two changes: with `e` the unit
+/// direction and `c` the length of the direction, `r/c·(u·w − (u·e)·(w·e))`.
 #[inline(always)]
-pub(crate) fn swept_derivative<V: Vector>(radius: V::Scalar, direction: V, change: V) -> V {
+pub(crate) fn swept_hessian<V: Vector>(radius: V::Scalar, direction: V, changes: [V; 2]) -> [V::Scalar; 3] {
     if radius == V::Scalar::ZERO {
-        return V::ZERO;
+        return [V::Scalar::ZERO; 3];
     }
     let squared = direction.length_squared();
-    if is_comfortable(squared) {
-        return (change - direction * (change.dot(direction) / squared)) * (radius / squared.sqrt());
+    if !is_comfortable(squared) {
+        // Of a unit direction, and once for its length.
+        let Some(e) = direction.unit() else { return [V::Scalar::ZERO; 3] };
+        return swept_hessian(radius / direction.norm(), e, changes);
     }
-    match direction.unit() {
-        Some(u) => (change - u * change.dot(u)) * (radius / direction.norm()),
-        None => V::ZERO,
-    }
+    let [u, w] = changes.map(|change| change - direction * (change.dot(direction) / squared));
+    let bend = radius / squared.sqrt();
+    [u.dot(u) * bend, u.dot(w) * bend, w.dot(w) * bend]
+}
+
+/// The sum of two Hessians.
+#[inline(always)]
+pub(crate) fn sum_of_hessians<S: Scalar>(a: [S; 3], b: [S; 3]) -> [S; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }

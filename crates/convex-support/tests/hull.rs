@@ -11,12 +11,11 @@ fn same_set<V: Vector>(points: &[V], directions: &[V]) -> Result<(), TestCaseErr
     let all = Polytope::new(points.iter().copied()).expect("valid points");
     let hull = Polytope::hull_of(points.iter().copied()).expect("valid points");
     prop_assert!(hull.points().iter().all(|p| points.contains(p)), "a vertex that is not among the points");
-    prop_assert_eq!(hull.origin(), all.origin());
-    prop_assert_eq!(hull.core_extent(), all.core_extent());
+    prop_assert_eq!(hull.core(), all.core());
     let mut hint = Hint::new();
     for &d in directions {
-        let tolerance = V::Scalar::EPSILON * V::Scalar::from_f64(8.0) * all.core_extent() * d.norm();
-        let seen = |p: V| d.dot(p - all.origin());
+        let tolerance = V::Scalar::EPSILON * V::Scalar::from_f64(8.0) * all.core().extent * d.norm();
+        let seen = |p: V| d.dot(p - all.core().origin);
         let best = seen(all.support(d));
         prop_assert!(seen(hull.support(d)) >= best - tolerance, "short of {best:?} along {d:?}: {:?}", hull.support(d));
         hint.rewind();
@@ -109,7 +108,7 @@ fn points_of_wild_magnitudes_are_handled() {
 
 /// The first of the points that reach farthest, by looking at all of them.
 fn first_farthest<V: Vector>(hull: &Polytope<V>, d: V) -> V {
-    let reach = |p: V| d.dot(p - hull.origin());
+    let reach = |p: V| d.dot(p - hull.core().origin);
     hull.points().iter().copied().reduce(|best, p| if reach(p) > reach(best) { p } else { best }).expect("not empty")
 }
 
@@ -120,7 +119,7 @@ fn of_vertices_equally_far_the_first_is_found() {
     for (n, size) in [(40, DVec3::ONE), (300, DVec3::new(1.0, 0.5, 0.25)), (2000, DVec3::new(1e6, 1.0, 1e-3))] {
         let half: Vec<DVec3> = spiral(n).map(|p| p * size).collect();
         let hull = Polytope::hull_of(half.iter().copied().chain(half.iter().map(|&p| -p))).expect("valid points");
-        assert_eq!(hull.origin(), DVec3::ZERO);
+        assert_eq!(hull.core().origin, DVec3::ZERO);
         let axes = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
         let any = spiral(3000).map(|d| d / size);
         let across = half.windows(3).map(|w| (w[1] - w[0]).cross(w[2] - w[0]));

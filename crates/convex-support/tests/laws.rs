@@ -3,8 +3,8 @@
 use convex_support::glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::strategies::{self, AnyShape};
 use convex_support::{
-    Affine, Ball, Difference, Hint, Hull, Matrix, MinkowskiSum, Posed, Rounded, Scalar, SupportMap, Vector,
-    bounding_box, bounding_sphere,
+    Affine, Ball, CoreKind, Difference, Hint, Hull, Matrix, MinkowskiSum, Posed, Rotation, Rounded, Scalar, SupportMap,
+    Vector, bounding_box, bounding_sphere,
 };
 use num_traits::Float;
 use proptest::prelude::*;
@@ -112,7 +112,7 @@ struct OriginCoreAndRadiusMakeTheSet;
 impl Law for OriginCoreAndRadiusMakeTheSet {
     fn check<V: Vector>(shape: &AnyShape<V>, d: V, _: V, tolerance: V::Scalar) -> Result<(), TestCaseError> {
         let core = shape.core_support(d, &mut Hint::new());
-        let value = d.dot(shape.origin()) + d.dot(core) + d.norm() * shape.radius();
+        let value = d.dot(shape.core().origin) + d.dot(core) + d.norm() * shape.core().radius;
         close("d·o + d·k(d) + r·|d| = h(d)", value, shape.support_value(d), along(tolerance, d))
     }
 }
@@ -125,7 +125,7 @@ fn origin_core_and_radius_make_the_set() {
 struct CoreExtentBoundsTheCore;
 impl Law for CoreExtentBoundsTheCore {
     fn check<V: Vector>(shape: &AnyShape<V>, d: V, _: V, _: V::Scalar) -> Result<(), TestCaseError> {
-        let (reach, extent) = (shape.core_support(d, &mut Hint::new()).norm(), shape.core_extent());
+        let (reach, extent) = (shape.core_support(d, &mut Hint::new()).norm(), shape.core().extent);
         let ulps = V::Scalar::ONE + V::Scalar::EPSILON * V::Scalar::from_f64(8.0);
         prop_assert!(reach <= extent * ulps, "the core reaches {reach:?}, beyond its extent {extent:?}");
         Ok(())
@@ -141,7 +141,7 @@ struct ClosestPointOfTheCoreIsTheClosest;
 impl Law for ClosestPointOfTheCoreIsTheClosest {
     fn check<V: Vector>(shape: &AnyShape<V>, d: V, e: V, tolerance: V::Scalar) -> Result<(), TestCaseError> {
         let core = |d: V| shape.core_support(d, &mut Hint::new());
-        if let Some(point) = shape.core_point() {
+        if let CoreKind::Point(point) = shape.core().kind {
             prop_assert_eq!(point, core(d), "the only point of the core");
         }
         let rounding = V::Scalar::EPSILON * V::Scalar::from_f64(400.0);
@@ -152,7 +152,7 @@ impl Law for ClosestPointOfTheCoreIsTheClosest {
             prop_assert!(d.dot(p) <= reach + along(tolerance, d), "{p:?} is beyond {reach:?} along {d:?}");
             // (x − p)·(k − p) ≤ 0 for every point k of the core; an error of p costs as much as x is away.
             let out = x - p;
-            let (excess, lengths) = (out.dot(core(out)) - out.dot(p), x.norm() + shape.core_extent());
+            let (excess, lengths) = (out.dot(core(out)) - out.dot(p), x.norm() + shape.core().extent);
             prop_assert!(excess <= rounding * lengths * lengths, "{p:?} is not the closest to {x:?}, by {excess:?}");
         }
         Ok(())
@@ -208,8 +208,8 @@ impl Law for CombinatorsAreTheirFormulas {
         let affine = Affine::new(a, columns, shift).expect("finite");
         let formula = a.support_value(columns.transpose_mul(d)) + d.dot(shift);
         close("affine", affine.support_value(d), formula, within)?;
-        let q = V::rotation_from_xyzw([0.1, 0.2, 0.3, 0.9].map(V::Scalar::from_f64));
-        let rotation = V::rotation_matrix(V::unit_rotation(q).expect("not zero"));
+        let q = V::Rotation::from_xyzw([0.1, 0.2, 0.3, 0.9].map(V::Scalar::from_f64));
+        let rotation = q.matrix();
         let formula = a.support_value(rotation.transpose_mul(d)) + d.dot(shift);
         close("posed", Posed::new(a, q, shift).expect("finite").support_value(d), formula, within)
     }
@@ -233,9 +233,10 @@ fn same_bits<V: Vector>(primitive: fn(V::Scalar) -> BoxedStrategy<AnyShape<V>>) 
         let ((d, unit), (_, scaled)) = (draw(V::Scalar::ONE), draw(factor));
         assert_eq!(scaled.support(d), unit.support(d) * factor, "{unit:?} along {d:?}");
         assert_eq!(scaled.support_value(d), unit.support_value(d) * factor, "{unit:?} along {d:?}");
-        assert_eq!(scaled.origin(), unit.origin() * factor, "{unit:?}");
-        assert_eq!(scaled.radius(), unit.radius() * factor, "{unit:?}");
-        assert_eq!(scaled.core_extent(), unit.core_extent() * factor, "{unit:?}");
+        let (unit_core, scaled_core) = (unit.core(), scaled.core());
+        assert_eq!(scaled_core.origin, unit_core.origin * factor, "{unit:?}");
+        assert_eq!(scaled_core.radius, unit_core.radius * factor, "{unit:?}");
+        assert_eq!(scaled_core.extent, unit_core.extent * factor, "{unit:?}");
         assert_eq!(unit.support(d * factor), unit.support(d), "{unit:?} along {d:?}");
     }
 }
@@ -254,7 +255,7 @@ impl Law for NothingPanics {
     fn check<V: Vector>(shape: &AnyShape<V>, d: V, e: V, _: V::Scalar) -> Result<(), TestCaseError> {
         let zero = shape.support(V::ZERO);
         let (reach, best) = (e.dot(zero), shape.support_value(e));
-        let slack = V::Scalar::EPSILON * V::Scalar::from_f64(400.0) * (e.norm() * (zero.norm() + shape.core_extent()));
+        let slack = V::Scalar::EPSILON * V::Scalar::from_f64(400.0) * (e.norm() * (zero.norm() + shape.core().extent));
         prop_assert!(zero.is_finite(), "the support point for no direction is a point, not {:?}", zero);
         prop_assert!(reach <= best + slack + best.abs() * slack, "and it is in the set: {:?} > {:?}", reach, best);
         for bad in [V::Scalar::nan(), V::Scalar::infinity(), V::Scalar::neg_infinity()] {
@@ -302,10 +303,11 @@ fn a_scaled_or_mirrored_ball_stays_a_ball() {
     let mirror = DMat3::from_diagonal(DVec3::new(-2.0, 2.0, 2.0));
     let turned = DMat3::from_quat(DQuat::from_xyzw(0.1, 0.2, 0.3, 0.9).normalize());
     let image = Affine::new(ball, mirror * turned, DVec3::X).expect("finite");
-    assert!((image.radius() - 1.0).abs() < 1e-15, "{}", image.radius());
+    let radius = image.core().radius;
+    assert!((radius - 1.0).abs() < 1e-15, "{radius}");
     assert_eq!(image.core_support(DVec3::ONE, &mut Hint::new()), DVec3::ZERO, "its core stays a point");
     let sheared = Affine::new(ball, DMat3::from_diagonal(DVec3::new(2.0, 2.0, 1.0)), DVec3::X).expect("finite");
-    assert_eq!(sheared.radius(), 0.0, "an ellipsoid is its own core");
+    assert_eq!(sheared.core().radius, 0.0, "an ellipsoid is its own core");
 }
 
 /// Sizes and directions whose products are out of range, in single precision: only the direction of the direction matters.
@@ -361,7 +363,7 @@ fn a_shape_placed_far_away_loses_nothing_of_itself() {
     for shape in [&posed as &dyn SupportMap<Vector = Vec3A>, &mapped] {
         for (corner, d) in corners.iter().zip([[-1.0, -2.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]) {
             // Exact: the origin and the translation are alike but for a few bits.
-            let seen = (shape.origin() - far) + shape.core_support(d.into(), &mut Hint::default());
+            let seen = (shape.core().origin - far) + shape.core_support(d.into(), &mut Hint::default());
             assert!((seen - *corner).abs().max_element() < 4.0 * f32::EPSILON, "{seen}, not {corner}");
         }
     }

@@ -2,20 +2,26 @@
 
 use convex_support::glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::strategies as any;
+use convex_support::strategies::{AnyShape, Shape};
 use convex_support::{
-    Affine, Ball, Capsule, ClosestPoint, Cone, Crossing, Cuboid, Cylinder, Ellipsoid, LineCrossing, Posed, Rounded,
-    RoundedLineCrossing, Scalar, SupportMap, Triangle, Vector,
+    Affine, Ball, Capsule, Cone, Crossing, Cuboid, Cylinder, Ellipsoid, LineCrossing, Posed, Rounded, Scalar,
+    SupportMap, Triangle, Vector, closest_point, line_crossing,
 };
 use num_traits::Float;
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::cell::Cell;
-use std::fmt::Debug;
 
-/// A shape that knows both capabilities, and can be printed.
-trait Shape: ClosestPoint + LineCrossing + Debug {}
-impl<S: ClosestPoint + LineCrossing + Debug> Shape for S {}
-type AnyShape<V> = Box<dyn Shape<Vector = V>>;
+/// The crossing of a shape that has a closed form of it.
+fn crossing_of<V: Vector>(shape: &impl SupportMap<Vector = V>, source: V, direction: V) -> Option<Crossing<V>> {
+    let crossing = line_crossing(shape, source, direction);
+    assert_ne!(crossing, LineCrossing::Unknown);
+    crossing.crossing()
+}
+
+fn nearest<V: Vector>(shape: &AnyShape<V>, x: V) -> V {
+    closest_point(shape, x).expect("a closed form")
+}
 
 fn boxed<S: Shape + 'static>(strategy: BoxedStrategy<S>) -> BoxedStrategy<AnyShape<S::Vector>> {
     strategy.prop_map(|s| Box::new(s) as AnyShape<S::Vector>).boxed()
@@ -23,7 +29,7 @@ fn boxed<S: Shape + 'static>(strategy: BoxedStrategy<S>) -> BoxedStrategy<AnySha
 
 fn rounded<S>(strategy: BoxedStrategy<S>, size: <S::Vector as Vector>::Scalar) -> BoxedStrategy<AnyShape<S::Vector>>
 where
-    S: RoundedLineCrossing + ClosestPoint + Debug + 'static,
+    S: Shape + 'static,
 {
     (strategy, any::length(size), any::pose::<S::Vector>(size))
         .prop_map(|(s, r, (q, t))| {
@@ -106,24 +112,24 @@ fn check<V: Vector>(
     prop_assume!(direction.norm() > scale * V::Scalar::from_f64(1e-3));
     let unit = direction / direction.norm();
     let ulps = |n: f64| V::Scalar::EPSILON * V::Scalar::from_f64(n);
-    let from = (source - shape.origin()).norm();
+    let from = (source - shape.core().origin).norm();
     let tolerance = ulps(64.0) * (scale + from);
     let (hit, miss) = hits.get();
-    match shape.line_crossing(source, direction) {
+    match crossing_of(shape, source, direction) {
         Some(Crossing { entry, exit, normal }) => {
             hits.set((hit + 1, miss));
             prop_assert!(entry <= exit, "entry {entry:?} after exit {exit:?}");
             let depth = depth_of_line(shape, source, unit);
             prop_assert!(depth >= -tolerance, "a hit, but the line is {depth:?} deep");
             // A shape smaller than the roundings of the source is hit somewhere within them.
-            let coarse = V::Scalar::ONE + tolerance / (shape.core_extent() + shape.radius());
+            let coarse = V::Scalar::ONE + tolerance / (shape.core().extent + shape.core().radius);
             prop_assert!(
                 (normal.norm() - V::Scalar::ONE).abs() <= ulps(16.0) * coarse,
                 "normal {normal:?} is not unit"
             );
             for (name, lambda) in [("entry", entry), ("exit", exit)] {
                 let p = source + direction * lambda;
-                let off = (p - shape.closest_point(p)).norm();
+                let off = (p - nearest(shape, p)).norm();
                 prop_assert!(off <= tolerance, "{name} {lambda:?} is {off:?} off the shape, allowed {tolerance:?}");
             }
             // The plane across the normal at the entry supports the shape. A point off by e along a line that grazes a
@@ -140,7 +146,7 @@ fn check<V: Vector>(
                         "before the entry is inside"
                     );
                 } else {
-                    let off = p - shape.closest_point(p);
+                    let off = p - nearest(shape, p);
                     let grazes = depth <= tolerance * V::Scalar::from_f64(32.0);
                     prop_assert!(off != V::ZERO || grazes, "behind the exit {exit:?} is inside");
                 }
@@ -202,43 +208,20 @@ fn around_zero() -> Vec<(&'static str, AnyShape<DVec3>)> {
         ("ellipsoid", Box::new(Ellipsoid::new(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0), DQuat::IDENTITY).unwrap())),
         ("rounded cuboid", Box::new(Rounded::new(cuboid, 0.25).unwrap())),
         ("rounded triangle", Box::new(Rounded::new(Triangle::new(corners).unwrap(), 0.25).unwrap())),
-        ("stretched cuboid", Box::new(Crossed(stretched))),
+        ("stretched cuboid", Box::new(stretched)),
     ]
-}
-
-/// A shape of which nobody asks the closest point.
-#[derive(Debug)]
-struct Crossed<S>(S);
-
-impl<S: SupportMap> SupportMap for Crossed<S> {
-    type Vector = S::Vector;
-    fn support(&self, direction: S::Vector) -> S::Vector {
-        self.0.support(direction)
-    }
-}
-
-impl<S: LineCrossing> LineCrossing for Crossed<S> {
-    fn line_crossing(&self, source: S::Vector, direction: S::Vector) -> Option<Crossing<S::Vector>> {
-        self.0.line_crossing(source, direction)
-    }
-}
-
-impl<S: SupportMap> ClosestPoint for Crossed<S> {
-    fn closest_point(&self, _x: S::Vector) -> S::Vector {
-        unreachable!("only crossings are tested")
-    }
 }
 
 #[test]
 fn directions_may_have_any_length() {
     for (name, shape) in around_zero() {
         let source = DVec3::new(4.0, 0.25, 0.5);
-        let unit = shape.line_crossing(source, -source).expect(name);
+        let unit = crossing_of(&shape, source, -source).expect(name);
         assert!(unit.entry > 0.5 && unit.exit < 1.5 && unit.entry <= unit.exit, "{name}: {unit:?}");
         // Exactly: a power of two changes no digit, not even where the square of the direction is not a number.
         for power in [-1010, -700, -511, -300, -1, 1, 300, 511, 700, 1020] {
             let scale = 2f64.powi(power);
-            let crossing = shape.line_crossing(source, -source * scale).expect(name);
+            let crossing = crossing_of(&shape, source, -source * scale).expect(name);
             let expected = Crossing { entry: unit.entry / scale, exit: unit.exit / scale, ..unit };
             let digits = if power < 1020 { 0.0 } else { 1e-14 }; // λ has few digits left where it is subnormal
             assert!((crossing.entry - expected.entry).abs() <= digits * expected.entry, "{name}, 2^{power}");
@@ -252,15 +235,15 @@ fn directions_may_have_any_length() {
 fn what_is_no_line_has_no_crossing() {
     let source = DVec3::new(4.0, 0.25, 0.5);
     for (name, shape) in around_zero() {
-        assert_eq!(shape.line_crossing(source, DVec3::ZERO), None, "{name}: a zero direction");
-        assert_eq!(shape.line_crossing(DVec3::ZERO, DVec3::ZERO), None, "{name}: a zero direction from inside");
+        assert_eq!(crossing_of(&shape, source, DVec3::ZERO), None, "{name}: a zero direction");
+        assert_eq!(crossing_of(&shape, DVec3::ZERO, DVec3::ZERO), None, "{name}: a zero direction from inside");
         for i in 0..3 {
             for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
                 let broken = |v: DVec3| DVec3::from_fn(|k| if k == i { bad } else { v[k] });
                 let nan = bad.is_nan();
-                let from = shape.line_crossing(broken(source), -source);
+                let from = crossing_of(&shape, broken(source), -source);
                 assert!(from.is_none() || !nan, "{name}: from {bad} in coordinate {i}: {from:?}");
-                let along = shape.line_crossing(source, broken(-source));
+                let along = crossing_of(&shape, source, broken(-source));
                 assert!(along.is_none() || !nan, "{name}: along {bad} in coordinate {i}: {along:?}");
             }
         }
@@ -274,11 +257,11 @@ fn lines_in_the_planes_of_faces_and_along_edges_are_within() {
         for towards in [1.0, -1.0] {
             for zero in [0.0, -0.0] {
                 let source = DVec3::new(-3.0 * towards, y, z);
-                let crossing = cuboid.line_crossing(source, DVec3::new(towards, zero, zero)).expect("closed");
+                let crossing = crossing_of(&cuboid, source, DVec3::new(towards, zero, zero)).expect("closed");
                 assert_eq!((crossing.entry, crossing.exit), (2.0, 4.0), "y = {y}, z = {z}");
                 assert_eq!(crossing.normal, DVec3::new(-towards, 0.0, 0.0), "y = {y}, z = {z}");
                 let beside = source + DVec3::new(0.0, 0.0, 2.5);
-                assert_eq!(cuboid.line_crossing(beside, DVec3::new(towards, zero, zero)), None, "beside");
+                assert_eq!(crossing_of(&cuboid, beside, DVec3::new(towards, zero, zero)), None, "beside");
             }
         }
     }

@@ -22,7 +22,7 @@ fn check<V: Vector<Scalar = f64>>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, width: f
         assert!(bracket.lower <= d.distance && d.distance <= bracket.upper, "{bracket:?} holds {}", d.distance);
         let n = bracket.normal;
         let slab = -(e1.support_value(n) + e2.support_value(-n));
-        let size = e1.core_extent() + e2.core_extent() + e1.center().norm() + e2.center().norm();
+        let size = e1.core().extent + e2.core().extent + e1.center().norm() + e2.center().norm();
         assert!(bracket.lower <= slab + 1e-14 * size, "a slab of width {slab}, not {}", bracket.lower);
         for (e, p) in [(e1, bracket.point1), (e2, bracket.point2)] {
             let u = e.axes().transpose_mul_of(p - e.center());

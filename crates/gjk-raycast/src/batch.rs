@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use convex_support::{
-    Ball, BoundingSphere, Crossing, LineCrossing, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere,
+    Ball, BoundingSphere, Crossing, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere, line_crossing,
 };
 use num_traits::Float;
 
@@ -205,7 +205,7 @@ fn reaches<V: Vector>(sphere: &BoundingSphere<V>, ray: Ray<V>) -> Option<V::Scal
     let radius = sphere.radius + rounding * (sphere.radius + from.norm());
     match Ball::<V>::new(radius) {
         Ok(ball) if is_comfortable(radius) && is_comfortable(from.norm()) => {
-            let Crossing { entry, exit, .. } = ball.line_crossing(from, ray.direction)?;
+            let Crossing { entry, exit, .. } = line_crossing(&ball, from, ray.direction).crossing()?;
             (exit >= V::Scalar::ZERO).then(|| entry.max(V::Scalar::ZERO))
         }
         _ => Some(V::Scalar::ZERO),

@@ -4,7 +4,7 @@
 //! Numbers of magnitude about one neither over- nor underflow when they are multiplied a few times, in `f32` as in
 //! `f64`; and since the unit is a power of two, scaling a scene by one changes nothing but the unit.
 
-use convex_support::{Hint, Scalar, SupportMap, Vector};
+use convex_support::{Core, CoreKind, Hint, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::symmetric::Symmetric;
@@ -17,8 +17,11 @@ pub(crate) trait Body {
 
     /// The support point of the core, relative to the origin and in units of `scale`.
     fn support(&mut self, direction: Self::Vector) -> (Self::Vector, Self::Witness);
-    /// The derivative of the support point at `direction` along `change`, in units of `scale`.
-    fn derivative(&self, direction: Self::Vector, change: Self::Vector) -> Self::Vector;
+    /// The derivative of the support point at `direction` along `change`, in units of `scale`: coordinate `i` is what the Hessian
+    /// says of the change as seen along that axis.
+    fn derivative(&self, direction: Self::Vector, change: Self::Vector) -> Self::Vector {
+        Vector::from_fn(|i| self.hessian(direction, [change, Vector::axis(i)]).b)
+    }
     /// The derivatives along two changes `u` and `w` as seen along the two, by the entries `u·Hu`, `u·Hw` and `w·Hw`.
     fn hessian(
         &self,
@@ -103,13 +106,14 @@ fn made_moderate<V: Vector>(x: V::Scalar, y: V::Scalar, z: V::Scalar) -> Option<
 /// One shape.
 pub(crate) struct Single<'a, S: SupportMap + ?Sized> {
     shape: &'a S,
+    core: Core<S::Vector>,
     hint: Hint,
     per_unit: <S::Vector as Vector>::Scalar,
 }
 
 impl<'a, S: SupportMap + ?Sized> Single<'a, S> {
     pub(crate) fn new(shape: &'a S) -> Self {
-        Self { shape, hint: Hint::new(), per_unit: Scalar::ONE }
+        Self { shape, core: shape.core(), hint: Hint::new(), per_unit: Scalar::ONE }
     }
 }
 
@@ -124,11 +128,6 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
     }
 
     #[inline(always)]
-    fn derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
-        self.shape.core_support_derivative(direction, change) * self.per_unit
-    }
-
-    #[inline(always)]
     fn hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> Symmetric<<S::Vector as Vector>::Scalar> {
         let [a, b, d] = self.shape.core_support_hessian(direction, changes).map(|entry| entry * self.per_unit);
         Symmetric { a, b, d }
@@ -136,19 +135,19 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
 
     #[inline]
     fn is_curved(&self) -> bool {
-        !self.shape.is_core_polyhedral()
+        matches!(self.core.kind, CoreKind::Curved)
     }
 
     fn origin(&self) -> S::Vector {
-        self.shape.origin()
+        self.core.origin
     }
 
     fn radius(&self) -> <S::Vector as Vector>::Scalar {
-        self.shape.radius()
+        self.core.radius
     }
 
     fn extent(&self) -> <S::Vector as Vector>::Scalar {
-        self.shape.core_extent()
+        self.core.extent
     }
 
     fn set_scale(&mut self, scale: <S::Vector as Vector>::Scalar) {
@@ -160,6 +159,8 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
 pub(crate) struct Pair<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
     pub(crate) a: &'a A,
     pub(crate) b: &'a B,
+    pub(crate) core_a: Core<A::Vector>,
+    pub(crate) core_b: Core<A::Vector>,
     hint_a: Hint,
     hint_b: Hint,
     per_unit: <A::Vector as Vector>::Scalar,
@@ -167,7 +168,8 @@ pub(crate) struct Pair<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vec
 
 impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'a, A, B> {
     pub(crate) fn new(a: &'a A, b: &'a B) -> Self {
-        Self { a, b, hint_a: Hint::new(), hint_b: Hint::new(), per_unit: Scalar::ONE }
+        let (core_a, core_b) = (a.core(), b.core());
+        Self { a, b, core_a, core_b, hint_a: Hint::new(), hint_b: Hint::new(), per_unit: Scalar::ONE }
     }
 }
 
@@ -186,10 +188,10 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
         offset: A::Vector,
         size: <A::Vector as Vector>::Scalar,
     ) -> Option<PointPair<A::Vector>> {
-        let (a, b) = match (self.a.core_point(), self.b.core_point()) {
-            (Some(a), _) => (a, self.b.core_closest_point(a + offset)?),
-            (None, Some(b)) => (self.a.core_closest_point(b - offset)?, b),
-            (None, None) => return None,
+        let (a, b) = match (self.core_a.kind, self.core_b.kind) {
+            (CoreKind::Point(a), _) => (a, self.b.core_closest_point(a + offset)?),
+            (_, CoreKind::Point(b)) => (self.a.core_closest_point(b - offset)?, b),
+            _ => return None,
         };
         // What closed forms compute of larger or smaller numbers may have left the range of the scalar.
         is_moderate(size).then(|| PointPair { a: a * self.per_unit, b: b * self.per_unit })
@@ -224,13 +226,6 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
     }
 
     #[inline(always)]
-    fn derivative(&self, direction: A::Vector, change: A::Vector) -> A::Vector {
-        let a = self.a.core_support_derivative(direction, change);
-        let b = self.b.core_support_derivative(-direction, -change);
-        (a - b) * self.per_unit
-    }
-
-    #[inline(always)]
     fn hessian(&self, direction: A::Vector, changes: [A::Vector; 2]) -> Symmetric<<A::Vector as Vector>::Scalar> {
         let a = self.a.core_support_hessian(direction, changes);
         let b = self.b.core_support_hessian(-direction, changes);
@@ -240,21 +235,21 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
 
     #[inline]
     fn is_curved(&self) -> bool {
-        !(self.a.is_core_polyhedral() && self.b.is_core_polyhedral())
+        matches!(self.core_a.kind, CoreKind::Curved) || matches!(self.core_b.kind, CoreKind::Curved)
     }
 
     fn origin(&self) -> A::Vector {
-        self.a.origin()
+        self.core_a.origin
     }
 
     #[inline]
     fn radius(&self) -> <A::Vector as Vector>::Scalar {
-        self.a.radius() + self.b.radius()
+        self.core_a.radius + self.core_b.radius
     }
 
     #[inline]
     fn extent(&self) -> <A::Vector as Vector>::Scalar {
-        self.a.core_extent() + self.b.core_extent()
+        self.core_a.extent + self.core_b.extent
     }
 
     fn set_scale(&mut self, scale: <A::Vector as Vector>::Scalar) {
@@ -272,11 +267,6 @@ impl<B: Body> Body for Untraced<'_, B> {
     #[inline(always)]
     fn support(&mut self, direction: B::Vector) -> (B::Vector, ()) {
         (self.0.support(direction).0, ())
-    }
-
-    #[inline(always)]
-    fn derivative(&self, direction: B::Vector, change: B::Vector) -> B::Vector {
-        self.0.derivative(direction, change)
     }
 
     #[inline(always)]

@@ -46,7 +46,8 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let mut pair = Pair::new(a, b);
-    let offset = a.origin() - b.origin();
+    let (core_a, core_b) = (pair.core_a, pair.core_b);
+    let offset = core_a.origin - core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
     let Frame { scale, per_unit, radius, noise, .. } = frame;
@@ -76,16 +77,16 @@ where
         point_a += a * weight;
         point_b += b * weight;
     }
-    let (mut point_a, mut point_b) = (a.origin() + point_a * scale, b.origin() + point_b * scale);
+    let (mut point_a, mut point_b) = (core_a.origin + point_a * scale, core_b.origin + point_b * scale);
     let zero = Scalar::ZERO;
     let n = if length > zero && (overlap || radius > zero || lower <= zero) { normal.unit() } else { None };
     if let Some(n) = n {
         if !overlap {
-            point_a -= n * a.radius();
-            point_b += n * b.radius();
+            point_a -= n * core_a.radius;
+            point_b += n * core_b.radius;
         } else {
             // The cores are apart by less than both radii: between them, a point in both.
-            let part = (a.radius() * per_unit / radius).min(Scalar::ONE);
+            let part = (core_a.radius * per_unit / radius).min(Scalar::ONE);
             if part.is_finite() {
                 point_a -= n * (length * part * scale);
                 point_b += n * (length * (<A::Vector as Vector>::Scalar::ONE - part) * scale);

@@ -17,6 +17,9 @@ pub enum RayCastError {
         /// Which coordinate, counted from 0.
         index: usize,
     },
+    /// The closest point of the set, which [`iterative_ray_cast`](crate::iterative_ray_cast) works with, is not known: the shape has no
+    /// closed form of it. [`ray_cast`](crate::ray_cast) needs only support points.
+    NoClosestPoint,
 }
 
 impl Display for RayCastError {
@@ -24,6 +27,7 @@ impl Display for RayCastError {
         match self {
             Self::ZeroDirection => f.write_str("the direction of the ray is the zero vector"),
             Self::NonFinite { parameter, index } => write!(f, "{parameter}[{index}] is not finite"),
+            Self::NoClosestPoint => f.write_str("the set has no closed form of its closest point"),
         }
     }
 }

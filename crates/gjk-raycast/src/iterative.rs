@@ -10,19 +10,20 @@ use crate::ray_cast::Ray;
 use crate::{Iterate, Miss, Outcome, RayCast, RayCastOptions, RayHit, Status};
 
 /// The first point of a ray in a convex set that is known by its closest points: `closest_point(x)` is the point of
-/// the set closest to `x`, which is `x` itself within the set.
+/// the set closest to `x`, which is `x` itself within the set, or `None` where that is not known.
 ///
 /// The method moves to the plane through the closest point, again and again. It is Newton's iteration for the distance
 /// along the ray: on a polytope it ends after finitely many steps, and on a curved surface the digits double with each.
-/// Shapes with a closed form of their closest point ([`ClosestPoint`](convex_support::ClosestPoint)) need nothing else.
+/// Any set will do that gives closest points, not only shapes: so it is taken as a function. That of a shape is
+/// [`closest_point`](convex_support::closest_point).
 ///
 /// ```
-/// use convex_support::{ClosestPoint, Cone, glam::DVec3};
+/// use convex_support::{Cone, closest_point, glam::DVec3};
 /// use gjk_raycast::{Ray, RayCastOptions, iterative_ray_cast};
 ///
 /// let cone = Cone::<DVec3>::new(1.0, 0.5)?;
 /// let ray = Ray { source: DVec3::new(-1e6, 0.0, 0.0), direction: DVec3::X };
-/// let cast = iterative_ray_cast(|x| cone.closest_point(x), ray, RayCastOptions::default())?;
+/// let cast = iterative_ray_cast(|x| closest_point(&cone, x), ray, RayCastOptions::default())?;
 /// let hit = cast.outcome.hit().ok_or("it hits")?;
 /// assert!((hit.lambda - (1e6 - 0.25)).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -34,9 +35,9 @@ use crate::{Iterate, Miss, Outcome, RayCast, RayCastOptions, RayHit, Status};
 /// own point closest to that, so that a far source costs nothing but its own digits.
 ///
 /// # Errors
-/// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+/// [`RayCastError`] if the direction is zero or a coordinate is not finite, or where a closest point is not known.
 pub fn iterative_ray_cast<V: Vector>(
-    closest_point: impl FnMut(V) -> V,
+    closest_point: impl FnMut(V) -> Option<V>,
     ray: Ray<V>,
     options: RayCastOptions<V>,
 ) -> Result<RayCast<V>, RayCastError> {
@@ -47,9 +48,9 @@ pub fn iterative_ray_cast<V: Vector>(
 /// the closest point.
 ///
 /// # Errors
-/// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+/// As [`iterative_ray_cast`].
 pub fn iterative_ray_cast_with<V: Vector>(
-    mut closest_point: impl FnMut(V) -> V,
+    mut closest_point: impl FnMut(V) -> Option<V>,
     ray: Ray<V>,
     options: RayCastOptions<V>,
     mut observer: impl FnMut(Iterate<'_, V>),
@@ -57,7 +58,7 @@ pub fn iterative_ray_cast_with<V: Vector>(
     ray.check()?;
     let zero = V::Scalar::ZERO;
     let rounding = V::Scalar::from_f64(8.0) * V::Scalar::EPSILON;
-    let origin = closest_point(ray.source);
+    let origin = closest_point(ray.source).ok_or(RayCastError::NoClosestPoint)?;
     let mut answer = RayCast {
         outcome: Outcome::Undecided,
         lower: zero,
@@ -82,7 +83,7 @@ pub fn iterative_ray_cast_with<V: Vector>(
         let from_start = mu <= local.start;
         let x = if from_start { ray.source } else { origin + line.at(mu) * scale };
         if answer.iterations > 1 || !from_start {
-            c = closest_point(x);
+            c = closest_point(x).ok_or(RayCastError::NoClosestPoint)?;
         }
         let v = (x - c) * down;
         let length = v.norm();

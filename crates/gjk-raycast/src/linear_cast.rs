@@ -70,6 +70,7 @@ where
     check_finite("velocity_a", motion.velocity_a)?;
     check_finite("velocity_b", motion.velocity_b)?;
     let mut body = Pair::new(a, b);
+    let (core_a, core_b) = (body.core_a, body.core_b);
     let mut wanted = RayCastOptions::new()
         .with_max_lambda(options.max_time)
         .with_tolerance(options.tolerance)
@@ -79,10 +80,10 @@ where
     // Seen from b, a is at the outside of the obstacle: normals of A − B point out of a.
     wanted.axis = options.axis.map(|axis| -axis);
     // The ray starts at zero, where both shapes are in place: at b's origin, seen from a's.
-    let mut ray = Ray { source: b.origin(), direction: motion.velocity_b - motion.velocity_a };
+    let mut ray = Ray { source: core_b.origin, direction: motion.velocity_b - motion.velocity_a };
     if ray.direction == A::Vector::ZERO {
         // Only the start counts, and any ray of length zero is the start.
-        ray.direction = (a.origin() - b.origin()).unit().unwrap_or_else(|| A::Vector::axis(0));
+        ray.direction = (core_a.origin - core_b.origin).unit().unwrap_or_else(|| A::Vector::axis(0));
         wanted.max_lambda = <A::Vector as Vector>::Scalar::default();
     }
     let cast = cast(&mut body, ray, wanted, observer);
@@ -99,8 +100,8 @@ where
                 // With p a point of a's core and q one of b's, q − p + spot is what lies between them at the time, and is as
                 // long as both radii. The point that divides it as they do is on both shapes, however well the normal is known.
                 let between = (witness.b - witness.a + spot) * cast.scale;
-                let share = if b.radius() > zero { b.radius() / (a.radius() + b.radius()) } else { zero };
-                b.origin() + witness.b * cast.scale + motion.velocity_b * time - between * share
+                let share = if core_b.radius > zero { core_b.radius / (core_a.radius + core_b.radius) } else { zero };
+                core_b.origin + witness.b * cast.scale + motion.velocity_b * time - between * share
             };
             Outcome::Hit(LinearHit { time, point, normal: normal.map(|n| -n) })
         }

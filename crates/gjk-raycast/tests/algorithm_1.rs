@@ -6,14 +6,15 @@ mod common;
 use common::{Quaternion, s, turned, v};
 use convex_support::glam::{DVec3, Vec3A};
 use convex_support::{
-    Ball, Capsule, ClosestPoint, Cone, Cuboid, Cylinder, Ellipsoid, Posed, Rounded, Scalar, SupportMap, Triangle,
+    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rounded, Scalar, SupportMap, Triangle,
+    closest_point,
 };
 use gjk_raycast::{
-    Outcome, Ray, RayCast, RayCastOptions, Status, iterative_ray_cast, iterative_ray_cast_with, ray_cast,
+    Outcome, Ray, RayCast, RayCastError, RayCastOptions, Status, iterative_ray_cast, iterative_ray_cast_with, ray_cast,
 };
 use proptest::prelude::*;
 
-type Shape<V> = Box<dyn ClosestPoint<Vector = V>>;
+type Shape<V> = Box<dyn SupportMap<Vector = V>>;
 
 /// One of eight shapes of size about one, turned and moved.
 fn shape<V: Quaternion>(kind: usize, rotation: [f64; 4], place: [f64; 3]) -> Posed<Shape<V>> {
@@ -37,7 +38,7 @@ fn shape<V: Quaternion>(kind: usize, rotation: [f64; 4], place: [f64; 3]) -> Pos
 }
 
 fn algorithm_1<V: Quaternion>(target: &Posed<Shape<V>>, ray: Ray<V>) -> RayCast<V> {
-    iterative_ray_cast(|x| target.closest_point(x), ray, RayCastOptions::default()).expect("a finite ray")
+    iterative_ray_cast(|x| closest_point(&target, x), ray, RayCastOptions::default()).expect("a finite ray")
 }
 
 /// Both find the same, wherever the source is. Where the surface is met at an angle, errors grow by its cosine.
@@ -93,7 +94,7 @@ const DIAMETER: f64 = 2.5;
 fn nearest<V: Quaternion>(target: &Posed<Shape<V>>, ray: Ray<V>) -> f64 {
     let distance = |lambda: f64| {
         let x = ray.at(s::<V>(lambda));
-        (x - target.closest_point(x)).norm().as_f64()
+        (x - closest_point(target, x).expect("a closed form")).norm().as_f64()
     };
     let (mut from, mut to) = (0.0, 2.0);
     for _ in 0..60 {
@@ -179,7 +180,8 @@ fn beginnings_and_ends() {
     let cube = Cuboid::new(DVec3::ONE).expect("positive");
     let cast = |source: [f64; 3], direction: [f64; 3], end: f64| {
         let ray = Ray { source: DVec3::from_array(source), direction: DVec3::from_array(direction) };
-        iterative_ray_cast(|x| cube.closest_point(x), ray, RayCastOptions::new().with_max_lambda(end)).expect("finite")
+        iterative_ray_cast(|x| closest_point(&cube, x), ray, RayCastOptions::new().with_max_lambda(end))
+            .expect("finite")
     };
     let infinity = f64::INFINITY;
     for inside in [[0.0; 3], [1.0, 0.3, 0.2], [1.0, 1.0, 1.0]] {
@@ -193,13 +195,13 @@ fn beginnings_and_ends() {
 
     let ray = Ray { source: DVec3::X * 3.0, direction: DVec3::NEG_X };
     for broken in [DVec3::NAN, DVec3::INFINITY] {
-        let cast = iterative_ray_cast(|_| broken, ray, RayCastOptions::default()).expect("a finite ray");
+        let cast = iterative_ray_cast(|_| Some(broken), ray, RayCastOptions::default()).expect("a finite ray");
         assert_eq!(cast.outcome, Outcome::Undecided, "{cast:?}");
     }
     let capped = RayCastOptions::new().with_max_iterations(2);
     let ball = Ball::<DVec3>::new(1.0).expect("positive");
     let ray = Ray { source: DVec3::new(-5.0, 0.9, 0.0), direction: DVec3::X };
-    let cast = iterative_ray_cast(|x| ball.closest_point(x), ray, capped).expect("a finite ray");
+    let cast = iterative_ray_cast(|x| closest_point(&ball, x), ray, capped).expect("a finite ray");
     assert_eq!((cast.status, cast.iterations), (Status::IterationLimit, 2));
     assert!(cast.lower < 5.0 - 0.19_f64.sqrt(), "a lower bound all the same: {cast:?}");
 }
@@ -213,7 +215,7 @@ fn it_converges_as_newtons_method_does() {
             let mut lambdas = Vec::new();
             let ray = Ray { source: DVec3::from_array(d) * -5.0, direction: DVec3::from_array(d) };
             let cast = iterative_ray_cast_with(
-                |x| target.closest_point(x),
+                |x| closest_point(&target, x),
                 ray,
                 RayCastOptions::default(),
                 |iterate| {
@@ -224,4 +226,12 @@ fn it_converges_as_newtons_method_does() {
             assert!(lambdas.is_sorted(), "λ never goes back: {kind} {d:?} {lambdas:?}");
         }
     }
+}
+
+#[test]
+fn a_set_without_closest_points_is_refused() {
+    let hull = Polytope::new([DVec3::X, DVec3::Y, DVec3::Z, DVec3::ZERO]).expect("four points");
+    let ray = Ray { source: DVec3::splat(2.0), direction: DVec3::NEG_ONE };
+    let cast = iterative_ray_cast(|x| closest_point(&hull, x), ray, RayCastOptions::default());
+    assert_eq!(cast, Err(RayCastError::NoClosestPoint));
 }

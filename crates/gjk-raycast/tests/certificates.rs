@@ -93,7 +93,7 @@ fn holds<V: Vector>(a: &Placed<V>, b: &Placed<V>, size: V::Scalar, velocity: V) 
         prop_assert!(false, "they overlap: {:?} {:?}", apart, cast);
     }
 
-    let ray = Ray { source: b.origin(), direction: velocity };
+    let ray = Ray { source: b.core().origin, direction: velocity };
     let cast = ray_cast(a, ray, RayCastOptions::default()).expect("a finite ray");
     prop_assert!(cast.lower <= cast.upper, "{:?}", cast);
     if let Outcome::Hit(hit) = cast.outcome {

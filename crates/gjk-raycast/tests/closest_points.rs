@@ -5,7 +5,7 @@ mod common;
 use common::{Quaternion, at, cuboid, s, turned, ulps, v};
 use convex_support::glam::{DVec2, DVec3, Vec3A};
 use convex_support::{
-    Ball, Capsule, Cone, Cylinder, Ellipsoid, Hint, Point, Rounded, ScalarOf, Segment, SupportMap, Triangle,
+    Ball, Capsule, Cone, Core, Cylinder, Ellipsoid, Hint, Point, Rounded, ScalarOf, Segment, SupportMap, Triangle,
 };
 use gjk_raycast::{DistanceOptions, IntersectOptions, Status, distance, intersects};
 use num_traits::Float as _;
@@ -45,24 +45,16 @@ impl<S: SupportMap> SupportMap for Plain<S> {
         self.0.support(direction)
     }
 
-    fn origin(&self) -> S::Vector {
-        self.0.origin()
+    fn core(&self) -> Core<S::Vector> {
+        self.0.core()
     }
 
     fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
         self.0.core_support(direction, hint)
     }
 
-    fn core_support_derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
-        self.0.core_support_derivative(direction, change)
-    }
-
-    fn radius(&self) -> ScalarOf<S> {
-        self.0.radius()
-    }
-
-    fn core_extent(&self) -> ScalarOf<S> {
-        self.0.core_extent()
+    fn core_support_hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> [ScalarOf<S>; 3] {
+        self.0.core_support_hessian(direction, changes)
     }
 }
 

@@ -8,7 +8,7 @@ use std::cell::Cell;
 use common::directions;
 use convex_support::glam::{DQuat, DVec3};
 use convex_support::{
-    Ball, Capsule, ClosestPoint, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rounded, SupportMap,
+    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rounded, SupportMap, closest_point,
 };
 use gjk_raycast::{
     CastMethod, Distance, DistanceOptions, IntersectOptions, Outcome, Ray, RayCastOptions, Status, SubAlgorithm,
@@ -18,8 +18,13 @@ use proptest::prelude::*;
 
 const VALID: &str = "positive sizes";
 
-fn shape(kind: usize, turn: DQuat) -> Posed<Box<dyn ClosestPoint<Vector = DVec3>>> {
-    let shape: Box<dyn ClosestPoint<Vector = DVec3>> = match kind {
+/// The point of a shape with a closed form nearest `x`.
+fn nearest(shape: &impl SupportMap<Vector = DVec3>, x: DVec3) -> DVec3 {
+    closest_point(shape, x).expect("a closed form")
+}
+
+fn shape(kind: usize, turn: DQuat) -> Posed<Box<dyn SupportMap<Vector = DVec3>>> {
+    let shape: Box<dyn SupportMap<Vector = DVec3>> = match kind {
         0 => Box::new(Cuboid::new(DVec3::new(1.0, 0.5, 0.25)).expect(VALID)),
         1 => Box::new(Ball::<DVec3>::new(0.75).expect(VALID)),
         2 => Box::new(Capsule::<DVec3>::new(0.5, 0.25).expect(VALID)),
@@ -50,7 +55,7 @@ proptest! {
     #[test]
     fn lemma_1(kind in 0_usize..7, turn in turn(), x1 in vector(4.0), x2 in vector(4.0)) {
         let shape = shape(kind, turn);
-        let (c1, c2) = (shape.closest_point(x1), shape.closest_point(x2));
+        let (c1, c2) = (nearest(&shape, x1), nearest(&shape, x2));
         prop_assert!((x2 - x1).dot(c2 - c1) >= (c2 - c1).length_squared() - ROUNDING, "{} {}", c1, c2);
     }
 
@@ -62,7 +67,7 @@ proptest! {
     ) {
         let shape = shape(kind, turn);
         let l2 = l1 + 10.0_f64.powf(step);
-        let (c1, c2) = (shape.closest_point(s + r * l1), shape.closest_point(s + r * l2));
+        let (c1, c2) = (nearest(&shape, s + r * l1), nearest(&shape, s + r * l2));
         prop_assert!((c2 - c1).length() <= (l2 - l1) * r.length() + ROUNDING, "{} {}", c1, c2);
     }
 
@@ -70,7 +75,7 @@ proptest! {
     #[test]
     fn theorem_3(kind in 0_usize..7, turn in turn(), s in vector(4.0), r in vector(2.0)) {
         let shape = shape(kind, turn);
-        let slopes = (0..60).map(|i| s + r * (0.05 * f64::from(i))).map(|x| (x - shape.closest_point(x)).dot(r));
+        let slopes = (0..60).map(|i| s + r * (0.05 * f64::from(i))).map(|x| (x - nearest(&shape, x)).dot(r));
         let slopes: Vec<f64> = slopes.collect();
         prop_assert!(slopes.windows(2).all(|w| w[0] <= w[1] + ROUNDING), "{:?}", slopes);
     }
@@ -83,7 +88,7 @@ proptest! {
         let source = from.normalize() * 4.0;
         let ray = Ray { source, direction: aim - source };
         let (mut first, mut third) = (Vec::new(), Vec::new());
-        let one = iterative_ray_cast_with(|x| shape.closest_point(x), ray, RayCastOptions::default(), |i| first.push(i.lower));
+        let one = iterative_ray_cast_with(|x| closest_point(&shape, x), ray, RayCastOptions::default(), |i| first.push(i.lower));
         let three = ray_cast_with(&shape, ray, RayCastOptions::default(), |i| third.push(i.lower));
         for (cast, lambdas) in [(one, first), (three, third)] {
             prop_assert!(lambdas.is_sorted_by(|a, b| a <= &(b + ROUNDING)), "{:?}", lambdas);
@@ -99,7 +104,7 @@ proptest! {
     #[test]
     fn v_and_w_bound_the_distance(kind in 0_usize..7, turn in turn(), x in vector(4.0)) {
         let shape = shape(kind, turn);
-        let nearest = x - shape.closest_point(x);
+        let nearest = x - nearest(&shape, x);
         prop_assume!(nearest.length() > 1e-3);
         let point = convex_support::Point::new(x).expect("finite");
         let mut seen = Vec::new();

@@ -6,8 +6,8 @@ mod common;
 use common::{Quaternion, at, cast, cuboid, directions, lambda, off, s, turned, ulps, v};
 use convex_support::glam::{DQuat, DVec3, Vec3A};
 use convex_support::{
-    Ball, Capsule, ClosestPoint, Cone, Cuboid, Cylinder, Hull, MinkowskiSum, Point, Polytope, Posed, Scalar, Segment,
-    SupportMap,
+    Ball, Capsule, Cone, Cuboid, Cylinder, Hull, MinkowskiSum, Point, Polytope, Posed, Scalar, Segment, SupportMap,
+    closest_point,
 };
 use gjk_raycast::{
     CastMethod, DistanceOptions, Outcome, Ray, RayCastOptions, Status, SubAlgorithm, distance, iterative_ray_cast,
@@ -95,7 +95,7 @@ fn r6_hit_point_is_at_the_hit_parameter() {
         assert!(hit.lambda.as_f64() <= 778.38, "{hit:?}");
         // Where closest points in closed form find it, to rounding of the coordinates.
         let ray = Ray { source: v::<V>(source), direction: v(direction) };
-        let oracle = iterative_ray_cast(|x| cone.closest_point(x), ray, RayCastOptions::default());
+        let oracle = iterative_ray_cast(|x| closest_point(&cone, x), ray, RayCastOptions::default());
         let expected = oracle.expect("a finite ray").outcome.hit().expect("so it is for Algorithm 1");
         assert!((hit.lambda - expected.lambda).as_f64().abs() < ulps::<V>(8.0) * 12e3, "{hit:?}, {expected:?}");
     }

@@ -396,7 +396,7 @@ impl Solid {
     }
 
     pub(super) fn build<V: Vector3>(&self) -> Built<V> {
-        let rotation = V::rotation_from_xyzw(self.rotation.map(V::Scalar::from_f64));
+        let rotation = V::Rotation::from_xyzw(self.rotation.map(V::Scalar::from_f64));
         Box::new(Posed::new(self.form.build::<V>(), rotation, vector(self.translation)).expect(VALID))
     }
 

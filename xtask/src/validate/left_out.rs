@@ -83,15 +83,15 @@ pub(super) fn finite_rays() -> FiniteRays {
     let rays: Vec<Ray<DVec3>> = (0..60)
         .map(|i| {
             let source = DVec3::from(random.cube()) * (SIZE / 2.0);
-            let target = bodies[i].origin() + DVec3::from(random.cube()) * 0.4;
+            let target = bodies[i].core().origin + DVec3::from(random.cube()) * 0.4;
             Ray { source, direction: (target - source).normalize() }
         })
         .collect();
     // What the endless ray passes far from is nobody's work.
     let is_near = |ray: &Ray<DVec3>, body: &Body| {
-        let to_center = body.origin() - ray.source;
+        let to_center = body.core().origin - ray.source;
         let along = to_center.dot(ray.direction).max(0.0);
-        (to_center - ray.direction * along).length() <= body.core_extent() + body.radius()
+        (to_center - ray.direction * along).length() <= body.core().extent + body.core().radius
     };
     let near: Vec<(&Ray<DVec3>, &Body)> = rays
         .iter()

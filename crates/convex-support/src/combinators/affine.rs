@@ -2,10 +2,12 @@
 
 use num_traits::Float as _;
 
+use super::placement::{Placement, lost_in_origin};
 use crate::error::{InvalidShape, finite, finite_matrix};
-use crate::support::{ScalarOf, lost_in_sum, swept, swept_derivative};
-use crate::vector::power_of_two_below;
-use crate::{Hint, Matrix, Scalar, SupportMap, Vector};
+use crate::numerics::bound::roundings;
+use crate::numerics::range::power_of_two_below;
+use crate::support::{ScalarOf, sum_of_hessians, swept, swept_hessian};
+use crate::{Core, CoreKind, Hint, LineCrossing, Matrix, Rounding, Scalar, SupportMap, Vector};
 
 /// The image `M·C + t` of a shape under an affine map: scaled, sheared, mirrored, or flattened where `M` is singular.
 ///
@@ -23,11 +25,15 @@ pub struct Affine<S: SupportMap> {
     matrix: <S::Vector as Vector>::Matrix,
     /// The transpose in units of a power of two near the largest entry: directions stay in range.
     onto_shape: <S::Vector as Vector>::Matrix,
+    /// That power of two.
+    unit: ScalarOf<S>,
     translation: S::Vector,
     /// What the rounding of the origin `M·c + t` loses; it stays with the core.
     lost: S::Vector,
     /// The factor `s` where the matrix is `s` times a rotation or reflection: a ball then stays a ball.
     scale: Option<ScalarOf<S>>,
+    /// The radius of the ball that does not stay one, and becomes part of the core.
+    swept: ScalarOf<S>,
     /// The inverse of the matrix; `None` where it is singular.
     inverse: Option<<S::Vector as Vector>::Matrix>,
 }
@@ -36,7 +42,7 @@ impl<S: SupportMap> Affine<S> {
     /// The image of the shape under `x ↦ matrix·x + translation`. The matrix may be singular.
     ///
     /// # Errors
-    /// [`InvalidShape::NonFinite`] if a number is not finite.
+    /// [`InvalidShape::NonFinite`] if a number is not finite, [`InvalidShape::TooLarge`] if the image is out of range.
     pub fn new(shape: S, matrix: <S::Vector as Vector>::Matrix, translation: S::Vector) -> Result<Self, InvalidShape> {
         let matrix = finite_matrix("matrix", matrix)?;
         let translation = finite("translation", translation)?;
@@ -45,8 +51,11 @@ impl<S: SupportMap> Affine<S> {
         let unit = power_of_two_below(largest);
         let transpose = matrix.transpose();
         let onto_shape = Matrix::from_cols_fn(|j| transpose.col(j) / unit);
-        let lost = lost_in_sum(matrix * shape.origin(), translation);
-        Ok(Self { shape, matrix, onto_shape, translation, lost, scale: uniform_scale(matrix), inverse })
+        let Core { origin, radius, .. } = shape.core();
+        let lost = lost_in_origin(&matrix, origin, translation)?;
+        let scale = uniform_scale(matrix);
+        let swept = if scale.is_some() { ScalarOf::<S>::ZERO } else { radius };
+        Ok(Self { shape, matrix, onto_shape, unit, translation, lost, scale, swept, inverse })
     }
 
     /// The shape before it is mapped.
@@ -59,11 +68,6 @@ impl<S: SupportMap> Affine<S> {
     #[must_use]
     pub fn matrix(&self) -> <S::Vector as Vector>::Matrix {
         self.matrix
-    }
-
-    /// The inverse of the matrix; `None` where it is singular.
-    pub(crate) fn inverse(&self) -> Option<<S::Vector as Vector>::Matrix> {
-        self.inverse
     }
 
     /// The translation, applied last.
@@ -83,45 +87,39 @@ impl<S: SupportMap> SupportMap for Affine<S> {
     }
 
     #[inline]
-    fn origin(&self) -> S::Vector {
-        self.matrix * self.shape.origin() + self.translation
+    fn core(&self) -> Core<S::Vector> {
+        let Core { origin, radius, extent, kind } = self.shape.core();
+        let kind = match kind {
+            _ if self.swept > ScalarOf::<S>::ZERO => CoreKind::Curved,
+            CoreKind::Point(at) => CoreKind::Point(self.matrix * at + self.lost),
+            kind => kind,
+        };
+        let (extent, radius) = match self.scale {
+            Some(scale) => (scale * extent, scale * radius),
+            // |M·x| and every product in it are bounded by the Frobenius norm of M times |x|.
+            None => (frobenius_norm(&self.matrix) * (extent + radius), ScalarOf::<S>::ZERO),
+        };
+        Core {
+            origin: self.matrix * origin + self.translation,
+            radius,
+            extent: extent + self.lost.abs().max_element() * Scalar::from_f64(2.0),
+            kind,
+        }
     }
 
     #[inline(always)]
     fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
         let direction = self.onto_shape * direction;
-        let core = self.shape.core_support(direction, hint);
-        match self.scale {
-            Some(_) => self.matrix * core + self.lost,
-            // A ball does not stay a ball, so it becomes part of the core.
-            None => self.matrix * (core + swept(self.shape.radius(), direction)) + self.lost,
-        }
+        self.matrix * (self.shape.core_support(direction, hint) + swept(self.swept, direction)) + self.lost
     }
 
+    /// The support value is `unit·h(onto_shape·d)` of the swept core.
     #[inline]
-    fn core_support_derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
-        let (direction, change) = (self.onto_shape * direction, self.onto_shape * change);
-        let core = self.shape.core_support_derivative(direction, change);
-        match self.scale {
-            Some(_) => self.matrix * core,
-            None => self.matrix * (core + swept_derivative(self.shape.radius(), direction, change)),
-        }
-    }
-
-    #[inline]
-    fn radius(&self) -> ScalarOf<S> {
-        self.scale.map_or(ScalarOf::<S>::ZERO, |scale| scale * self.shape.radius())
-    }
-
-    #[inline]
-    fn is_core_polyhedral(&self) -> bool {
-        self.shape.is_core_polyhedral() && (self.scale.is_some() || self.shape.radius() == ScalarOf::<S>::ZERO)
-    }
-
-    #[inline]
-    fn core_point(&self) -> Option<S::Vector> {
-        self.scale?;
-        Some(self.matrix * self.shape.core_point()? + self.lost)
+    fn core_support_hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> [ScalarOf<S>; 3] {
+        let direction = self.onto_shape * direction;
+        let changes = changes.map(|change| self.onto_shape * change);
+        let core = self.shape.core_support_hessian(direction, changes);
+        sum_of_hessians(core, swept_hessian(self.swept, direction, changes)).map(|entry| entry * self.unit)
     }
 
     /// A map that keeps angles keeps which point is closest.
@@ -132,17 +130,45 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         Some(self.matrix * closest + self.lost)
     }
 
-    fn core_extent(&self) -> ScalarOf<S> {
-        let extent = match self.scale {
-            Some(scale) => scale * self.shape.core_extent(),
-            // |M·x| and every product in it are bounded by the Frobenius norm of M times |x|.
-            None => {
-                let columns = S::Vector::from_fn(|j| self.matrix.col(j).norm());
-                columns.norm() * (self.shape.core_extent() + self.shape.radius())
-            }
+    /// Where a line is in a set is the same before and after an invertible map. A ball that sweeps the image is one before it only
+    /// where the map keeps angles. Where the matrix is singular the image is flat, and nothing is known.
+    #[inline]
+    fn core_line_crossing(
+        &self,
+        source: S::Vector,
+        direction: S::Vector,
+        radius: ScalarOf<S>,
+    ) -> LineCrossing<S::Vector> {
+        let Some(inverse) = self.inverse else { return LineCrossing::Unknown };
+        let radius = match self.scale {
+            Some(scale) => radius / scale,
+            None if radius == ScalarOf::<S>::ZERO => self.swept,
+            None => return LineCrossing::Unknown,
         };
-        extent + self.lost.abs().max_element() * Scalar::from_f64(2.0)
+        let crossing = self.shape.core_line_crossing(inverse * (source - self.lost), inverse * direction, radius);
+        crossing.with_normal(|normal| {
+            let normal = inverse.transpose_mul(normal);
+            normal.unit().unwrap_or(normal)
+        })
     }
+
+    fn rounding(&self) -> Rounding<S::Vector> {
+        let Core { origin, radius, extent, .. } = self.shape.core();
+        let placement = Placement {
+            matrix: &self.matrix,
+            matrix_error: Scalar::ZERO,
+            scale: self.scale,
+            translation: self.translation,
+            lost: self.lost,
+        };
+        let image = placement.image(self.shape.rounding().swept(self.swept), origin, extent);
+        // Where the matrix keeps lengths, all of them in one ratio, it does so to 16 roundings.
+        image.with_radius_error(self.scale.map_or(Scalar::ZERO, |scale| roundings(32.0, scale * radius)))
+    }
+}
+
+fn frobenius_norm<M: Matrix>(matrix: &M) -> <M::Vector as Vector>::Scalar {
+    M::Vector::from_fn(|j| matrix.col(j).norm()).norm()
 }
 
 /// The factor `s > 0` where the matrix is, to rounding, `s` times an orthogonal one.

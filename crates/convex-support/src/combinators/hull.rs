@@ -2,8 +2,10 @@
 
 use num_traits::Float as _;
 
-use crate::support::{ScalarOf, support_of_parts, swept, swept_derivative};
-use crate::{Hint, Scalar, SupportMap, Vector};
+use crate::numerics::bound::{roundings, roundings_of};
+use crate::numerics::twofold::{lost_in_sum, two_sum};
+use crate::support::{ScalarOf, sum_of_hessians, support_of_parts, swept, swept_hessian};
+use crate::{Core, CoreKind, Hint, Rounding, Scalar, SupportMap, Vector};
 
 /// The convex hull of the union of two shapes. Nest it for more than two.
 ///
@@ -19,15 +21,57 @@ use crate::{Hint, Scalar, SupportMap, Vector};
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hull<A, B> {
+pub struct Hull<A: SupportMap, B> {
     a: A,
     b: B,
+    part_a: Part<A::Vector>,
+    part_b: Part<A::Vector>,
+}
+
+/// How a part of a hull that is swept by the smaller ball as a whole sees itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Part<V: Vector> {
+    /// The part's origin, relative to the hull's.
+    offset: V,
+    /// By how much the part's ball is larger: `hull(A ⊕ B(r), …) = hull(A ⊕ B(r − ρ), …) ⊕ B(ρ)`.
+    excess: V::Scalar,
+}
+
+impl<V: Vector> Part<V> {
+    #[inline]
+    fn support<S: SupportMap<Vector = V>>(&self, shape: &S, direction: V, hint: &mut Hint) -> V {
+        self.offset + shape.core_support(direction, hint) + swept(self.excess, direction)
+    }
+
+    #[inline]
+    fn hessian<S: SupportMap<Vector = V>>(&self, shape: &S, direction: V, changes: [V; 2]) -> [V::Scalar; 3] {
+        let core = shape.core_support_hessian(direction, changes);
+        sum_of_hessians(core, swept_hessian(self.excess, direction, changes))
+    }
+
+    fn extent(&self, extent: V::Scalar) -> V::Scalar {
+        self.offset.norm() + extent + self.excess
+    }
+
+    /// As of the part, and what its offset and its radius lose, and the sum with the offset.
+    fn rounding<S: SupportMap<Vector = V>>(&self, shape: &S, hull: &Core<V>) -> Rounding<V> {
+        let (part, Core { origin, radius, .. }) = (shape.rounding().swept(self.excess), shape.core());
+        let [_, lost] = two_sum(radius, -hull.radius);
+        let extent = part.extent + self.offset.abs();
+        let zero = V::Scalar::ZERO;
+        let summed = V::from_fn(|i| if self.offset.get(i) == zero { zero } else { roundings(2.0, extent.get(i)) });
+        let placed = Rounding { extent, ..part }.with_error(lost_in_sum(origin, -hull.origin).abs() + summed);
+        placed.with_radius_error(lost.abs())
+    }
 }
 
 impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> Hull<A, B> {
     /// The hull of the two shapes.
-    pub const fn new(a: A, b: B) -> Self {
-        Self { a, b }
+    pub fn new(a: A, b: B) -> Self {
+        let (core_a, core_b) = (a.core(), b.core());
+        let (origin, radius) = (middle(&core_a, &core_b), core_a.radius.min(core_b.radius));
+        let part = |core: Core<A::Vector>| Part { offset: core.origin - origin, excess: core.radius - radius };
+        Self { part_a: part(core_a), part_b: part(core_b), a, b }
     }
 
     /// The first shape.
@@ -43,17 +87,9 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> Hull<A, B> {
     }
 }
 
-/// The support point, relative to `origin`, of a part of a hull that is swept by `radius` as a whole.
-#[inline]
-fn part<S: SupportMap + ?Sized>(
-    shape: &S,
-    direction: S::Vector,
-    hint: &mut Hint,
-    origin: S::Vector,
-    radius: ScalarOf<S>,
-) -> S::Vector {
-    // hull(A ⊕ B(r), …) = hull(A ⊕ B(r − ρ), …) ⊕ B(ρ)
-    (shape.origin() - origin) + shape.core_support(direction, hint) + swept(shape.radius() - radius, direction)
+fn middle<V: Vector>(a: &Core<V>, b: &Core<V>) -> V {
+    let half = V::Scalar::from_f64(0.5);
+    a.origin * half + b.origin * half
 }
 
 impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for Hull<A, B> {
@@ -65,46 +101,44 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for Hull<A, B>
     }
 
     #[inline]
-    fn origin(&self) -> A::Vector {
-        let half = ScalarOf::<A>::from_f64(0.5);
-        self.a.origin() * half + self.b.origin() * half
-    }
-
-    #[inline]
-    fn core_support(&self, direction: A::Vector, hint: &mut Hint) -> A::Vector {
-        let (origin, radius) = (self.origin(), self.radius());
-        let a = part(&self.a, direction, hint, origin, radius);
-        let b = part(&self.b, direction, hint, origin, radius);
-        if direction.dot(b - a) > ScalarOf::<A>::ZERO { b } else { a }
-    }
-
-    fn core_support_derivative(&self, direction: A::Vector, change: A::Vector) -> A::Vector {
-        let (origin, radius) = (self.origin(), self.radius());
-        let a = part(&self.a, direction, &mut Hint::new(), origin, radius);
-        let b = part(&self.b, direction, &mut Hint::new(), origin, radius);
-        if direction.dot(b - a) > ScalarOf::<A>::ZERO {
-            self.b.core_support_derivative(direction, change)
-                + swept_derivative(self.b.radius() - radius, direction, change)
-        } else {
-            self.a.core_support_derivative(direction, change)
-                + swept_derivative(self.a.radius() - radius, direction, change)
+    fn core(&self) -> Core<A::Vector> {
+        let (a, b) = (self.a.core(), self.b.core());
+        let is_polytope =
+            a.radius == b.radius && !matches!(a.kind, CoreKind::Curved) && !matches!(b.kind, CoreKind::Curved);
+        Core {
+            origin: middle(&a, &b),
+            radius: a.radius.min(b.radius),
+            extent: self.part_a.extent(a.extent).max(self.part_b.extent(b.extent)),
+            kind: if is_polytope { CoreKind::Polytope } else { CoreKind::Curved },
         }
     }
 
     #[inline]
-    fn radius(&self) -> ScalarOf<A> {
-        self.a.radius().min(self.b.radius())
+    fn core_support(&self, direction: A::Vector, hint: &mut Hint) -> A::Vector {
+        let a = self.part_a.support(&self.a, direction, hint);
+        let b = self.part_b.support(&self.b, direction, hint);
+        if direction.dot(b - a) > ScalarOf::<A>::ZERO { b } else { a }
     }
 
-    #[inline]
-    fn is_core_polyhedral(&self) -> bool {
-        self.a.radius() == self.b.radius() && self.a.is_core_polyhedral() && self.b.is_core_polyhedral()
+    fn core_support_hessian(&self, direction: A::Vector, changes: [A::Vector; 2]) -> [ScalarOf<A>; 3] {
+        let a = self.part_a.support(&self.a, direction, &mut Hint::new());
+        let b = self.part_b.support(&self.b, direction, &mut Hint::new());
+        if direction.dot(b - a) > ScalarOf::<A>::ZERO {
+            self.part_b.hessian(&self.b, direction, changes)
+        } else {
+            self.part_a.hessian(&self.a, direction, changes)
+        }
     }
 
-    fn core_extent(&self) -> ScalarOf<A> {
-        let origin = self.origin();
-        let a = (self.a.origin() - origin).norm() + self.a.core_extent() + self.a.radius();
-        let b = (self.b.origin() - origin).norm() + self.b.core_extent() + self.b.radius();
-        a.max(b)
+    /// As of the worse part. Which is farther is told by the product of the direction with the difference, 4 roundings.
+    fn rounding(&self) -> Rounding<A::Vector> {
+        let hull = self.core();
+        let (a, b) = (self.part_a.rounding(&self.a, &hull), self.part_b.rounding(&self.b, &hull));
+        let worse = Rounding {
+            extent: a.extent.max(b.extent),
+            error: a.error.max(b.error),
+            error_length: a.error_length.max(b.error_length),
+        };
+        worse.with_error(roundings_of(4.0, a.extent + b.extent)).raised()
     }
 }

@@ -1,7 +1,9 @@
 //! The Minkowski sum of two shapes.
 
-use crate::support::{ScalarOf, support_of_parts};
-use crate::{Hint, SupportMap};
+use crate::numerics::bound::roundings_of;
+use crate::numerics::twofold::lost_in_sum;
+use crate::support::{ScalarOf, sum_of_hessians, support_of_parts};
+use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
 /// The set `A + B = { a + b : a ∈ A, b ∈ B }`: one shape swept by the other. Nest it for more than two.
 ///
@@ -14,15 +16,18 @@ use crate::{Hint, SupportMap};
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MinkowskiSum<A, B> {
+pub struct MinkowskiSum<A: SupportMap, B> {
     a: A,
     b: B,
+    /// What the rounding of the sum of the origins loses; it stays with the core.
+    lost: A::Vector,
 }
 
 impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> MinkowskiSum<A, B> {
     /// The sum of the two shapes.
-    pub const fn new(a: A, b: B) -> Self {
-        Self { a, b }
+    pub fn new(a: A, b: B) -> Self {
+        let lost = lost_in_sum(a.core().origin, b.core().origin);
+        Self { a, b, lost }
     }
 
     /// The first shape.
@@ -52,54 +57,67 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
     }
 
     #[inline]
-    fn origin(&self) -> A::Vector {
-        self.a.origin() + self.b.origin()
+    fn core(&self) -> Core<A::Vector> {
+        let (a, b) = (self.a.core(), self.b.core());
+        Core {
+            origin: a.origin + b.origin,
+            radius: a.radius + b.radius,
+            extent: a.extent + b.extent + self.lost.abs().max_element() * Scalar::from_f64(2.0),
+            kind: a.kind.plus(b.kind, |a, b| a + b + self.lost),
+        }
     }
 
     #[inline(always)]
     fn core_support(&self, direction: A::Vector, hint: &mut Hint) -> A::Vector {
-        self.a.core_support(direction, hint) + self.b.core_support(direction, hint)
-    }
-
-    #[inline]
-    fn core_support_derivative(&self, direction: A::Vector, change: A::Vector) -> A::Vector {
-        self.a.core_support_derivative(direction, change) + self.b.core_support_derivative(direction, change)
+        self.a.core_support(direction, hint) + self.b.core_support(direction, hint) + self.lost
     }
 
     #[inline]
     fn core_support_hessian(&self, direction: A::Vector, changes: [A::Vector; 2]) -> [ScalarOf<A>; 3] {
         let a = self.a.core_support_hessian(direction, changes);
-        let b = self.b.core_support_hessian(direction, changes);
-        [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-    }
-
-    #[inline]
-    fn radius(&self) -> ScalarOf<A> {
-        self.a.radius() + self.b.radius()
-    }
-
-    #[inline]
-    fn is_core_polyhedral(&self) -> bool {
-        self.a.is_core_polyhedral() && self.b.is_core_polyhedral()
-    }
-
-    #[inline]
-    fn core_point(&self) -> Option<A::Vector> {
-        Some(self.a.core_point()? + self.b.core_point()?)
+        sum_of_hessians(a, self.b.core_support_hessian(direction, changes))
     }
 
     /// Where one of the cores is a point.
     #[inline]
     fn core_closest_point(&self, x: A::Vector) -> Option<A::Vector> {
-        match (self.a.core_point(), self.b.core_point()) {
-            (Some(a), _) => Some(a + self.b.core_closest_point(x - a)?),
-            (None, Some(b)) => Some(self.a.core_closest_point(x - b)? + b),
-            (None, None) => None,
+        let x = x - self.lost;
+        let closest = match (self.a.core().kind, self.b.core().kind) {
+            (CoreKind::Point(a), _) => a + self.b.core_closest_point(x - a)?,
+            (_, CoreKind::Point(b)) => self.a.core_closest_point(x - b)? + b,
+            _ => return None,
+        };
+        Some(closest + self.lost)
+    }
+
+    /// Where one of the cores is a point.
+    #[inline]
+    fn core_line_crossing(
+        &self,
+        source: A::Vector,
+        direction: A::Vector,
+        radius: ScalarOf<A>,
+    ) -> LineCrossing<A::Vector> {
+        let source = source - self.lost;
+        match (self.a.core().kind, self.b.core().kind) {
+            (CoreKind::Point(a), _) => self.b.core_line_crossing(source - a, direction, radius),
+            (_, CoreKind::Point(b)) => self.a.core_line_crossing(source - b, direction, radius),
+            _ => LineCrossing::Unknown,
         }
     }
 
-    #[inline]
-    fn core_extent(&self) -> ScalarOf<A> {
-        self.a.core_extent() + self.b.core_extent()
+    /// What is wrong adds up; the sum of the points is rounded, and again where something was lost is added.
+    fn rounding(&self) -> Rounding<A::Vector> {
+        let (a, b) = (self.a.rounding(), self.b.rounding());
+        let sum = Rounding {
+            extent: a.extent + b.extent + self.lost.abs(),
+            error: a.error + b.error,
+            error_length: a.error_length + b.error_length,
+        };
+        let zero = ScalarOf::<A>::ZERO;
+        let summands = |i: usize| [a.extent, b.extent, self.lost].into_iter().filter(|v| v.get(i) != zero).count();
+        let rounded = A::Vector::from_fn(|i| ScalarOf::<A>::from_f64(summands(i).saturating_sub(1) as f64));
+        let radius = lost_in_sum(A::Vector::splat(self.a.core().radius), A::Vector::splat(self.b.core().radius));
+        sum.with_error(rounded * roundings_of(1.0, sum.extent)).with_radius_error(radius.abs().max_element()).raised()
     }
 }

@@ -4,7 +4,9 @@ mod affine;
 mod difference;
 mod hull;
 mod minkowski_sum;
+mod placement;
 mod posed;
+mod reflected;
 mod rounded;
 
 pub use affine::Affine;

@@ -1,8 +1,11 @@
 //! A shape swept by a ball.
 
 use crate::error::{InvalidShape, non_negative};
+use num_traits::Float as _;
+
+use crate::numerics::twofold::two_sum;
 use crate::support::{ScalarOf, support_of_parts};
-use crate::{Hint, SupportMap, Vector};
+use crate::{Core, Hint, LineCrossing, Rounding, SupportMap, Vector};
 
 /// The Minkowski sum of a shape and a ball: the shape grown by a radius, its edges and corners rounded.
 ///
@@ -36,9 +39,9 @@ impl<S: SupportMap> Rounded<S> {
         &self.shape
     }
 
-    /// The radius of the ball that is added to the shape, which may have a [`radius`](SupportMap::radius) of its own.
+    /// The radius of the ball that is added to the shape, which may have a [radius](Core::radius) of its own.
     #[must_use]
-    pub fn rounding(&self) -> ScalarOf<S> {
+    pub fn radius(&self) -> ScalarOf<S> {
         self.radius
     }
 }
@@ -57,8 +60,9 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
     }
 
     #[inline]
-    fn origin(&self) -> S::Vector {
-        self.shape.origin()
+    fn core(&self) -> Core<S::Vector> {
+        let core = self.shape.core();
+        Core { radius: core.radius + self.radius, ..core }
     }
 
     #[inline(always)]
@@ -66,38 +70,29 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
         self.shape.core_support(direction, hint)
     }
 
-    #[inline]
-    fn core_support_derivative(&self, direction: S::Vector, change: S::Vector) -> S::Vector {
-        self.shape.core_support_derivative(direction, change)
-    }
-
-    #[inline]
+    #[inline(always)]
     fn core_support_hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> [ScalarOf<S>; 3] {
         self.shape.core_support_hessian(direction, changes)
     }
 
-    #[inline]
-    fn radius(&self) -> ScalarOf<S> {
-        self.shape.radius() + self.radius
-    }
-
-    #[inline]
-    fn is_core_polyhedral(&self) -> bool {
-        self.shape.is_core_polyhedral()
-    }
-
-    #[inline]
-    fn core_point(&self) -> Option<S::Vector> {
-        self.shape.core_point()
-    }
-
-    #[inline]
+    #[inline(always)]
     fn core_closest_point(&self, x: S::Vector) -> Option<S::Vector> {
         self.shape.core_closest_point(x)
     }
 
-    #[inline]
-    fn core_extent(&self) -> ScalarOf<S> {
-        self.shape.core_extent()
+    #[inline(always)]
+    fn core_line_crossing(
+        &self,
+        source: S::Vector,
+        direction: S::Vector,
+        radius: ScalarOf<S>,
+    ) -> LineCrossing<S::Vector> {
+        self.shape.core_line_crossing(source, direction, radius)
+    }
+
+    /// As of the shape; the sum of the radii is rounded.
+    fn rounding(&self) -> Rounding<S::Vector> {
+        let [_, lost] = two_sum(self.shape.core().radius, self.radius);
+        self.shape.rounding().with_radius_error(lost.abs())
     }
 }

@@ -20,7 +20,7 @@ fn parrys(v: V) -> ParryVector {
 /// [`InvalidShape`] if a number of the pose is not finite or its rotation is the zero quaternion.
 pub fn posed<S: SupportMap<Vector = V>>(shape: S, pose: &Pose) -> Result<Posed<S>, InvalidShape> {
     let q = pose.rotation;
-    Posed::new(shape, V::rotation_from_xyzw([q.x, q.y, q.z, q.w]), ours(pose.translation))
+    Posed::new(shape, Rotation::from_xyzw([q.x, q.y, q.z, q.w]), ours(pose.translation))
 }
 
 impl TryFrom<theirs::Cylinder> for Cylinder<V> {
@@ -70,7 +70,7 @@ pub fn convex_polyhedron(polytope: &Polytope<V>) -> Option<theirs::ConvexPolyhed
 mod tests {
     use super::*;
     use crate::interop_parry::same;
-    use crate::{ClosestPoint, Hint};
+    use crate::{closest_point, Hint};
 
     #[test]
     fn parrys_shapes_are_ours() {

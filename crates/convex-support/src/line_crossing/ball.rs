@@ -2,33 +2,12 @@
 
 use num_traits::Float as _;
 
-use super::{Chord, Crossing, LineCrossing, RoundedLineCrossing, comfortable};
-use crate::{Ball, Point, SupportMap, Vector};
-
-impl<V: Vector> LineCrossing for Ball<V> {
-    #[inline(always)]
-    fn line_crossing(&self, source: V, direction: V) -> Option<Crossing<V>> {
-        ball(self.radius(), source, direction)
-    }
-}
-
-impl<V: Vector> RoundedLineCrossing for Ball<V> {
-    #[inline(always)]
-    fn rounded_line_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
-        ball(self.radius() + radius, source, direction)
-    }
-}
-
-impl<V: Vector> RoundedLineCrossing for Point<V> {
-    #[inline(always)]
-    fn rounded_line_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
-        ball(radius, source - self.at(), direction)
-    }
-}
+use super::{Chord, Crossing, comfortable};
+use crate::Vector;
 
 /// The crossing of a ball about zero.
 #[inline(always)]
-pub(super) fn ball<V: Vector>(radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+pub(crate) fn ball<V: Vector>(radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
     let (direction, dd, unit) = comfortable(direction);
     let recip = dd.recip();
     let first = -source.dot(direction) * recip;

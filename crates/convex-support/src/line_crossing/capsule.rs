@@ -2,33 +2,17 @@
 
 use num_traits::Float as _;
 
-use super::{Chord, Crossing, LineCrossing, RoundedLineCrossing, comfortable, rebased};
-use crate::{Capsule, Scalar, Segment, SupportMap, Vector};
-
-impl<V: Vector> LineCrossing for Capsule<V> {
-    #[inline(always)]
-    fn line_crossing(&self, source: V, direction: V) -> Option<Crossing<V>> {
-        upright(self.half_height(), self.radius(), source, direction)
-    }
-}
-
-impl<V: Vector> RoundedLineCrossing for Capsule<V> {
-    #[inline(always)]
-    fn rounded_line_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
-        upright(self.half_height(), self.radius() + radius, source, direction)
-    }
-}
-
-impl<V: Vector> RoundedLineCrossing for Segment<V> {
-    #[inline]
-    fn rounded_line_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
-        edge(self.points(), radius, source, direction)
-    }
-}
+use super::{Chord, Crossing, comfortable, rebased};
+use crate::{Scalar, Vector};
 
 /// The crossing of the segment between `±half_height` on the second axis, swept by a ball.
 #[inline(always)]
-fn upright<V: Vector>(half_height: V::Scalar, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+pub(crate) fn upright<V: Vector>(
+    half_height: V::Scalar,
+    radius: V::Scalar,
+    source: V,
+    direction: V,
+) -> Option<Crossing<V>> {
     let (direction, dd, unit) = comfortable(direction);
     let recip = dd.recip();
     let (base, source) = rebased(source, direction, recip);
@@ -39,7 +23,7 @@ fn upright<V: Vector>(half_height: V::Scalar, radius: V::Scalar, source: V, dire
 
 /// The crossing of the segment between two points, swept by a ball.
 #[inline]
-pub(super) fn edge<V: Vector>([a, b]: [V; 2], radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+pub(crate) fn edge<V: Vector>([a, b]: [V; 2], radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
     let (direction, dd, unit) = comfortable(direction);
     let half = V::Scalar::from_f64(0.5);
     let to_b = (b - a) * half;

@@ -2,82 +2,80 @@
 
 use num_traits::Float as _;
 
-use super::{Crossing, LineCrossing, comfortable, rebased, slab};
+use super::{Crossing, comfortable, cylinder, rebased, slab};
 use crate::shapes::across;
-use crate::{Cone, Cylinder, Scalar, Vector3};
+use crate::{Cone, Scalar, Vector3};
 
-impl<V: Vector3> LineCrossing for Cone<V> {
-    /// Within its slab, the cone is `F(x) ≤ 0` below the apex, with `F(x) = cos²α·(x² + z²) − sin²α·(h − y)²` and `α` half
-    /// the opening angle. Along the line, counted from the apex, `F = Aλ² + 2Bλ + C`; and by Lagrange's identity the
-    /// discriminant is, with the moment `m = p × d`, `B² − AC = cos²α·(sin²α·(m_x² + m_z²) − cos²α·m_y²)`: no difference
-    /// of the products of `B` and `AC` is formed.
-    #[inline(always)]
-    fn line_crossing(&self, source: V, direction: V) -> Option<Crossing<V>> {
-        let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
-        let (h, r) = (self.half_height(), self.disc_radius());
-        if h == zero || r == zero {
-            return flat(h, r, source, direction);
-        }
-        let (direction, dd, unit) = comfortable(direction);
-        let recip = dd.recip();
-        let (base, source) = rebased(source, direction, recip);
-        // From here on near the cone, where a unit direction keeps the products of four lengths and directions in range.
-        let per_length = recip.sqrt();
-        let direction = direction * per_length;
-        let (y, rise) = (source.get(1), direction.get(1));
-        let (top, bottom) = slab(y, rise, h);
-
-        let (cosine, sine) = self.slant();
-        let (out, radial) = (across(source) * cosine, across(direction) * cosine);
-        let (drop, fall) = (sine * (h - y), -sine * rise);
-        let a = radial.length_squared() - fall * fall;
-        let b = out.dot(radial) - drop * fall;
-        let c = out.length_squared() - drop * drop;
-        let m = (source - V::axis(1) * h).cross(direction);
-        let (swing, twist) = (sine * across(m).length(), cosine * m.get(1).abs());
-        let discriminant = (swing - twist) * (swing + twist);
-        let root = cosine * discriminant.sqrt();
-        // The larger of the two in magnitude first, so that B and the root do not cancel; the other from the product.
-        let q = -(b + root.copysign(b));
-        let far = if a == zero { infinity.copysign(-q) } else { q / a };
-        let near = if q == zero { far } else { c / q };
-        let (low, high) = if near < far { (near, far) } else { (far, near) };
-        // Across the cone; or, where the line is steeper than the slant, into it for good, or out of it.
-        let steep = if fall > zero { (high, infinity) } else { (-infinity, low) };
-        let (enters, leaves) = if a > zero { (low, high) } else { steep };
-        // Across the cone, through that of its two nappes that is below the apex, at −B/A as anywhere between the roots.
-        let below = !(a > zero) | (drop * a >= fall * b);
-
-        // From above, the line passes the plane of the apex outside of the cone.
-        let through_slant = (enters > top) | (rise < zero);
-        let entry = if through_slant & !(enters < top) { enters } else { top };
-        let exit = if leaves < bottom { leaves } else { bottom };
-        // The slant and the base of a flat cone are nearly parallel, and rounding moves the place where they meet along
-        // both; but the rim is at a distance r from the axis, which the crossing neither begins beyond nor ends before.
-        let place = across(source + direction * entry);
-        let rounding = V::Scalar::EPSILON * V::Scalar::from_f64(8.0);
-        let within = place.length_squared() <= r * r * (V::Scalar::ONE + rounding);
-        let in_order = entry <= exit + rounding * (h + h + r + entry.abs());
-
-        let normal = if through_slant {
-            // At the apex one normal is as good as the other, as long as it looks against the line.
-            let facing = |out: V| out * cosine + V::axis(1) * sine;
-            let normal = place.unit().map(facing).filter(|n| n.dot(direction) <= zero);
-            normal.unwrap_or_else(|| across(direction).unit().map_or(V::axis(1), |out| facing(-out)))
-        } else {
-            V::axis(1) * V::Scalar::ONE.copysign(-rise)
-        };
-        ((discriminant >= zero) & below & within & in_order).then_some(Crossing {
-            entry: (base + entry * per_length) * unit,
-            exit: (base + if exit > entry { exit } else { entry } * per_length) * unit,
-            normal,
-        })
+/// Within its slab, the cone is `F(x) ≤ 0` below the apex, with `F(x) = cos²α·(x² + z²) − sin²α·(h − y)²` and `α` half
+/// the opening angle. Along the line, counted from the apex, `F = Aλ² + 2Bλ + C`; and by Lagrange's identity the
+/// discriminant is, with the moment `m = p × d`, `B² − AC = cos²α·(sin²α·(m_x² + m_z²) − cos²α·m_y²)`: no difference
+/// of the products of `B` and `AC` is formed.
+#[inline(always)]
+pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Option<Crossing<V>> {
+    let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+    let (h, r) = (cone.half_height(), cone.disc_radius());
+    if h == zero || r == zero {
+        return flat(h, r, source, direction);
     }
+    let (direction, dd, unit) = comfortable(direction);
+    let recip = dd.recip();
+    let (base, source) = rebased(source, direction, recip);
+    // From here on near the cone, where a unit direction keeps the products of four lengths and directions in range.
+    let per_length = recip.sqrt();
+    let direction = direction * per_length;
+    let (y, rise) = (source.get(1), direction.get(1));
+    let (top, bottom) = slab(y, rise, h);
+
+    let (cosine, sine) = cone.slant();
+    let (out, radial) = (across(source) * cosine, across(direction) * cosine);
+    let (drop, fall) = (sine * (h - y), -sine * rise);
+    let a = radial.length_squared() - fall * fall;
+    let b = out.dot(radial) - drop * fall;
+    let c = out.length_squared() - drop * drop;
+    let m = (source - V::axis(1) * h).cross(direction);
+    let (swing, twist) = (sine * across(m).length(), cosine * m.get(1).abs());
+    let discriminant = (swing - twist) * (swing + twist);
+    let root = cosine * discriminant.sqrt();
+    // The larger of the two in magnitude first, so that B and the root do not cancel; the other from the product.
+    let q = -(b + root.copysign(b));
+    let far = if a == zero { infinity.copysign(-q) } else { q / a };
+    let near = if q == zero { far } else { c / q };
+    let (low, high) = if near < far { (near, far) } else { (far, near) };
+    // Across the cone; or, where the line is steeper than the slant, into it for good, or out of it.
+    let steep = if fall > zero { (high, infinity) } else { (-infinity, low) };
+    let (enters, leaves) = if a > zero { (low, high) } else { steep };
+    // Across the cone, through that of its two nappes that is below the apex, at −B/A as anywhere between the roots.
+    let below = !(a > zero) | (drop * a >= fall * b);
+
+    // From above, the line passes the plane of the apex outside of the cone.
+    let through_slant = (enters > top) | (rise < zero);
+    let entry = if through_slant & !(enters < top) { enters } else { top };
+    let exit = if leaves < bottom { leaves } else { bottom };
+    // The slant and the base of a flat cone are nearly parallel, and rounding moves the place where they meet along
+    // both; but the rim is at a distance r from the axis, which the crossing neither begins beyond nor ends before.
+    let place = across(source + direction * entry);
+    let rounding = V::Scalar::EPSILON * V::Scalar::from_f64(8.0);
+    let within = place.length_squared() <= r * r * (V::Scalar::ONE + rounding);
+    let in_order = entry <= exit + rounding * (h + h + r + entry.abs());
+
+    let normal = if through_slant {
+        // At the apex one normal is as good as the other, as long as it looks against the line.
+        let facing = |out: V| out * cosine + V::axis(1) * sine;
+        let normal = place.unit().map(facing).filter(|n| n.dot(direction) <= zero);
+        normal.unwrap_or_else(|| across(direction).unit().map_or(V::axis(1), |out| facing(-out)))
+    } else {
+        V::axis(1) * V::Scalar::ONE.copysign(-rise)
+    };
+    ((discriminant >= zero) & below & within & in_order).then_some(Crossing {
+        entry: (base + entry * per_length) * unit,
+        exit: (base + if exit > entry { exit } else { entry } * per_length) * unit,
+        normal,
+    })
 }
 
 /// A disc or a segment.
 #[cold]
 #[inline(never)]
 fn flat<V: Vector3>(half_height: V::Scalar, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
-    Cylinder::new(half_height, radius).ok()?.line_crossing(source, direction)
+    cylinder(half_height, radius, source, direction)
 }

@@ -2,43 +2,41 @@
 
 use num_traits::Float as _;
 
-use super::{Crossing, LineCrossing, comfortable};
-use crate::{Cuboid, Scalar, Vector};
+use super::{Crossing, comfortable};
+use crate::{Scalar, Vector};
 
 /// The line is in the box while it is in all of its slabs.
 ///
 /// A line that is parallel to a slab divides by zero: it is then in the slab from `−∞` to `∞`, or from `±∞` to `±∞`, which
 /// the other slabs tell apart; and `0/0`, in the plane of a face, compares false and leaves things as they are.
-impl<V: Vector> LineCrossing for Cuboid<V> {
-    #[inline(always)]
-    fn line_crossing(&self, source: V, direction: V) -> Option<Crossing<V>> {
-        let per_unit = V::ONE / direction;
-        let near = self.half_extents().copysign(-direction);
-        let (enters, leaves) = ((near - source) * per_unit, (-near - source) * per_unit);
-        let (mut entry, mut exit, mut face) = (-V::Scalar::infinity(), V::Scalar::infinity(), 0);
-        for i in 0..V::DIM {
-            (entry, face) = if enters.get(i) > entry { (enters.get(i), i) } else { (entry, face) };
-            exit = if leaves.get(i) < exit { leaves.get(i) } else { exit };
-        }
-        // Some direction is across a slab, or all of them are so short that their reciprocals are infinite.
-        if !(entry > -V::Scalar::infinity() && exit < V::Scalar::infinity()) {
-            return along_no_axis(*self, source, direction);
-        }
-        let known = !(source.is_nan() || direction.is_nan());
-        let normal = V::axis(face) * V::Scalar::ONE.copysign(-direction.get(face));
-        ((entry <= exit) & known).then_some(Crossing { entry, exit, normal })
+#[inline(always)]
+pub(crate) fn cuboid<V: Vector>(half_extents: V, source: V, direction: V) -> Option<Crossing<V>> {
+    let per_unit = V::ONE / direction;
+    let near = half_extents.copysign(-direction);
+    let (enters, leaves) = ((near - source) * per_unit, (-near - source) * per_unit);
+    let (mut entry, mut exit, mut face) = (-V::Scalar::infinity(), V::Scalar::infinity(), 0);
+    for i in 0..V::DIM {
+        (entry, face) = if enters.get(i) > entry { (enters.get(i), i) } else { (entry, face) };
+        exit = if leaves.get(i) < exit { leaves.get(i) } else { exit };
     }
+    // Some direction is across a slab, or all of them are so short that their reciprocals are infinite.
+    if !(entry > -V::Scalar::infinity() && exit < V::Scalar::infinity()) {
+        return along_no_axis(half_extents, source, direction);
+    }
+    let known = !(source.is_nan() || direction.is_nan());
+    let normal = V::axis(face) * V::Scalar::ONE.copysign(-direction.get(face));
+    ((entry <= exit) & known).then_some(Crossing { entry, exit, normal })
 }
 
 /// A direction whose coordinates are zero, or have infinite reciprocals, or are `NaN`.
 #[cold]
 #[inline(never)]
-fn along_no_axis<V: Vector>(cuboid: Cuboid<V>, source: V, direction: V) -> Option<Crossing<V>> {
+fn along_no_axis<V: Vector>(half_extents: V, source: V, direction: V) -> Option<Crossing<V>> {
     // Nothing to be made longer; or so long already that a `NaN`, there or in the source, is what is wrong.
     let largest = direction.abs().max_element();
     if largest == V::Scalar::ZERO || !(largest.recip() == V::Scalar::infinity()) {
         return None;
     }
     let (direction, _, unit) = comfortable(direction);
-    cuboid.line_crossing(source, direction)?.shifted(V::Scalar::ZERO, unit)
+    cuboid(half_extents, source, direction)?.shifted(V::Scalar::ZERO, unit)
 }

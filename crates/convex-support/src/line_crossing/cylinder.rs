@@ -2,39 +2,42 @@
 
 use num_traits::Float as _;
 
-use super::{Chord, Crossing, LineCrossing, comfortable, rebased, slab};
+use super::{Chord, Crossing, comfortable, rebased, slab};
 use crate::shapes::across;
-use crate::{Cylinder, Scalar, Vector3};
+use crate::{Scalar, Vector3};
 
-impl<V: Vector3> LineCrossing for Cylinder<V> {
-    #[inline(always)]
-    fn line_crossing(&self, source: V, direction: V) -> Option<Crossing<V>> {
-        let (direction, dd, unit) = comfortable(direction);
-        let (base, source) = rebased(source, direction, dd.recip());
-        let r = self.disc_radius();
-        let rise = direction.get(1);
-        let (top, bottom) = slab(source.get(1), rise, self.half_height());
-        let lid = V::axis(1) * V::Scalar::ONE.copysign(-rise);
+/// The crossing of the cylinder of radius `r` about the second axis.
+#[inline(always)]
+pub(crate) fn cylinder<V: Vector3>(
+    half_height: V::Scalar,
+    r: V::Scalar,
+    source: V,
+    direction: V,
+) -> Option<Crossing<V>> {
+    let (direction, dd, unit) = comfortable(direction);
+    let (base, source) = rebased(source, direction, dd.recip());
+    let rise = direction.get(1);
+    let (top, bottom) = slab(source.get(1), rise, half_height);
+    let lid = V::axis(1) * V::Scalar::ONE.copysign(-rise);
 
-        let (out, radial) = (across(source), across(direction));
-        let slope = radial.length_squared();
-        if slope <= dd * (V::Scalar::EPSILON * V::Scalar::EPSILON) {
-            // Along the axis to rounding.
-            let within = out.length_squared() <= r * r;
-            let crossing = Crossing { entry: top, exit: bottom, normal: lid };
-            return if within { crossing.shifted(base, unit) } else { None };
-        }
-        let recip = slope.recip();
-        let middle = -out.dot(radial) * recip;
-        let side = Chord::about(middle, out + radial * middle, recip, r);
-        let (enters, leaves) = side.ends();
-        let through_side = enters > top;
-        Crossing {
-            // A `NaN`, where the line misses the side, must come through to where entry and exit are compared.
-            entry: if top >= enters { top } else { enters },
-            exit: if bottom < leaves { bottom } else { leaves },
-            normal: if through_side { side.normal(r, radial, recip) } else { lid },
-        }
-        .shifted(base, unit)
+    let (out, radial) = (across(source), across(direction));
+    let slope = radial.length_squared();
+    if slope <= dd * (V::Scalar::EPSILON * V::Scalar::EPSILON) {
+        // Along the axis to rounding.
+        let within = out.length_squared() <= r * r;
+        let crossing = Crossing { entry: top, exit: bottom, normal: lid };
+        return if within { crossing.shifted(base, unit) } else { None };
     }
+    let recip = slope.recip();
+    let middle = -out.dot(radial) * recip;
+    let side = Chord::about(middle, out + radial * middle, recip, r);
+    let (enters, leaves) = side.ends();
+    let through_side = enters > top;
+    Crossing {
+        // A `NaN`, where the line misses the side, must come through to where entry and exit are compared.
+        entry: if top >= enters { top } else { enters },
+        exit: if bottom < leaves { bottom } else { leaves },
+        normal: if through_side { side.normal(r, radial, recip) } else { lid },
+    }
+    .shifted(base, unit)
 }

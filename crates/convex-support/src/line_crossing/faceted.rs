@@ -2,25 +2,23 @@
 
 use num_traits::Float as _;
 
-use super::{Crossing, LineCrossing, comfortable, rebased};
+use super::{Crossing, comfortable, rebased};
 use crate::shapes::{PLANES, Planes};
-use crate::{Faceted, Scalar, SupportMap, Vector};
+use crate::{Faceted, Scalar, Vector};
 
 /// The line is in the hull while it is behind all facets. The exit and the entry are the least and the largest of the `λ` where
 /// it leaves, or enters, the half-space of a facet.
-impl<V: Vector> LineCrossing for Faceted<V> {
-    #[inline]
-    fn line_crossing(&self, source: V, direction: V) -> Option<Crossing<V>> {
-        let (direction, dd, unit) = comfortable(direction);
-        let (base, near) = rebased(source - self.origin(), direction, dd.recip());
-        let coordinates = |v: V| [v.get(0), v.get(1), if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO }];
-        let Clipped { entry, exit, place } = clip(self.planes(), coordinates(near), coordinates(direction));
-        // A line enters and leaves a bounded set, so that otherwise something is not a number.
-        if !(entry > -V::Scalar::infinity() && exit < V::Scalar::infinity()) {
-            return None;
-        }
-        Crossing { entry, exit, normal: self.facet(place).0 }.shifted(base, unit)
+#[inline]
+pub(crate) fn faceted<V: Vector>(hull: &Faceted<V>, source: V, direction: V) -> Option<Crossing<V>> {
+    let (direction, dd, unit) = comfortable(direction);
+    let (base, near) = rebased(source, direction, dd.recip());
+    let coordinates = |v: V| [v.get(0), v.get(1), if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO }];
+    let Clipped { entry, exit, place } = clip(hull.planes(), coordinates(near), coordinates(direction));
+    // A line enters and leaves a bounded set, so that otherwise something is not a number.
+    if !(entry > -V::Scalar::infinity() && exit < V::Scalar::infinity()) {
+        return None;
     }
+    Crossing { entry, exit, normal: hull.facet(place).0 }.shifted(base, unit)
 }
 
 /// The stretch of a line behind all planes, and the index of the plane it enters by.

@@ -8,7 +8,6 @@
 
 mod ball;
 mod capsule;
-mod combinators;
 mod cone;
 mod cuboid;
 mod cylinder;
@@ -20,8 +19,19 @@ mod triangle;
 
 use num_traits::Float as _;
 
-use crate::vector::is_comfortable;
-use crate::{Scalar, ScalarOf, SupportMap, Vector};
+pub(crate) use ball::ball;
+pub(crate) use capsule::{edge, upright};
+pub(crate) use cone::cone;
+pub(crate) use cuboid::cuboid;
+pub(crate) use cylinder::cylinder;
+pub(crate) use ellipsoid::ellipsoid;
+#[cfg(feature = "hull")]
+pub(crate) use faceted::faceted;
+pub(crate) use rounded_cuboid::rounded_cuboid;
+pub(crate) use triangle::triangle;
+
+use crate::numerics::range::is_comfortable;
+use crate::{Core, Scalar, SupportMap, Vector};
 
 /// The stretch of a line that lies in a convex set: `{ λ : source + λ·direction ∈ C }` is the interval from `entry` to
 /// `exit`, in units of the direction.
@@ -43,10 +53,10 @@ impl<V: Vector> Crossing<V> {
     /// The first `λ` in `[0, max_lambda]` that is in the interval: 0 for a source inside, `None` where the ray misses.
     ///
     /// ```
-    /// use convex_support::{Ball, LineCrossing, glam::DVec2};
+    /// use convex_support::{Ball, glam::DVec2, line_crossing};
     ///
     /// let disc = Ball::<DVec2>::new(1.0)?;
-    /// let crossing = disc.line_crossing(DVec2::new(-3.0, 0.0), DVec2::new(0.5, 0.0)).ok_or("a miss")?;
+    /// let crossing = line_crossing(&disc, DVec2::new(-3.0, 0.0), DVec2::new(0.5, 0.0)).crossing().ok_or("a miss")?;
     /// assert_eq!((crossing.entry, crossing.exit, crossing.normal), (4.0, 8.0, DVec2::NEG_X));
     /// assert_eq!(crossing.first_hit(f64::INFINITY), Some(4.0));
     /// assert_eq!(crossing.first_hit(3.0), None);
@@ -72,11 +82,65 @@ impl<V: Vector> Crossing<V> {
     }
 }
 
-/// A convex set whose crossing by a line has a closed form.
+/// What is known of the crossing of a convex set by a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub enum LineCrossing<V: Vector> {
+    /// There is no closed form here.
+    Unknown,
+    /// The line misses the set.
+    Misses,
+    /// The stretch of the line that is in the set.
+    Crosses(Crossing<V>),
+}
+
+impl<V: Vector> LineCrossing<V> {
+    /// The stretch of the line that is in the set; `None` where it misses or is unknown.
+    #[inline]
+    #[must_use]
+    pub fn crossing(self) -> Option<Crossing<V>> {
+        match self {
+            Self::Crosses(crossing) => Some(crossing),
+            Self::Unknown | Self::Misses => None,
+        }
+    }
+
+    /// The same crossing with another normal.
+    #[inline(always)]
+    pub(crate) fn with_normal(self, normal: impl FnOnce(V) -> V) -> Self {
+        match self {
+            Self::Crosses(crossing) => Self::Crosses(Crossing { normal: normal(crossing.normal), ..crossing }),
+            other => other,
+        }
+    }
+}
+
+/// Of a closed form: where the line misses, there is no crossing.
+impl<V: Vector> From<Option<Crossing<V>>> for LineCrossing<V> {
+    #[inline(always)]
+    fn from(crossing: Option<Crossing<V>>) -> Self {
+        crossing.map_or(Self::Misses, Self::Crosses)
+    }
+}
+
+/// Where the line through `source` along `direction` is in a shape.
 ///
-/// For ray tracers, and as the independent reference of ray casts that only use the support mapping. Poses and invertible
-/// affine maps pass it through, and so does [`Rounded`](crate::Rounded) for the shapes that know it
-/// ([`RoundedLineCrossing`]).
+/// For ray tracers, and as the independent reference of ray casts that only use the support mapping. Points, segments, triangles,
+/// balls, boxes, capsules, cylinders, cones and ellipsoids have closed forms, and so have the first six of these swept by a ball.
+/// Poses, invertible affine maps, roundings and sums with a point pass them through, behind any pointer.
+///
+/// ```
+/// use convex_support::{Cone, Cuboid, LineCrossing, Posed, Rounded, glam::DVec3, line_crossing};
+///
+/// let die = Posed::translated(Rounded::new(Cuboid::new(DVec3::ONE)?, 0.25)?, DVec3::new(5.0, 0.0, 0.0))?;
+/// let crossing = line_crossing(&die, DVec3::ZERO, DVec3::X).crossing().ok_or("a miss")?;
+/// assert_eq!((crossing.entry, crossing.exit), (3.75, 6.25));
+/// assert_eq!(line_crossing(&die, DVec3::ZERO, DVec3::Y), LineCrossing::Misses);
+///
+/// let rounded_cone = Rounded::new(Cone::<DVec3>::new(1.0, 1.0)?, 0.1)?;
+/// assert_eq!(line_crossing(&rounded_cone, DVec3::ZERO, DVec3::Y), LineCrossing::Unknown);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Accuracy
 /// Every method starts from the point of the line nearest the shape's centre, so that coordinates there are of the size
@@ -84,29 +148,15 @@ impl<V: Vector> Crossing<V> {
 /// error of a few units in the last place of the distance between source and centre. Where a line grazes a curved
 /// surface, at an angle `α`, this is magnified by `1/sin α`; whether a line hits that passes the boundary within that
 /// error is decided by rounding. Squares of lengths must stay in range (about 1e±150 in `f64`, 1e±18 in `f32`);
-/// directions may have any length. A zero direction has no line and a `NaN` no crossing: `None`.
-#[diagnostic::on_unimplemented(
-    message = "the crossing of `{Self}` by a line has no closed form here",
-    note = "implement `LineCrossing` for it, or use the GJK ray cast, which needs only `SupportMap`"
-)]
-pub trait LineCrossing: SupportMap {
-    /// Where the line through `source` along `direction` is in the set; `None` where it misses.
-    fn line_crossing(&self, source: Self::Vector, direction: Self::Vector) -> Option<Crossing<Self::Vector>>;
-}
-
-/// A convex set that has a closed form of its crossing also when it is swept by a ball.
-#[diagnostic::on_unimplemented(
-    message = "the crossing of a rounded `{Self}` by a line has no closed form here",
-    note = "use the GJK ray cast, to which rounding costs nothing"
-)]
-pub trait RoundedLineCrossing: SupportMap {
-    /// Where the line through `source` along `direction` is in the set swept by a ball of the given `radius ≥ 0`.
-    fn rounded_line_crossing(
-        &self,
-        radius: ScalarOf<Self>,
-        source: Self::Vector,
-        direction: Self::Vector,
-    ) -> Option<Crossing<Self::Vector>>;
+/// directions may have any length. A zero direction has no line and a `NaN` no crossing: a miss.
+#[inline(always)]
+pub fn line_crossing<S: SupportMap + ?Sized>(
+    shape: &S,
+    source: S::Vector,
+    direction: S::Vector,
+) -> LineCrossing<S::Vector> {
+    let Core { origin, radius, .. } = shape.core();
+    shape.core_line_crossing(source - origin, direction, radius)
 }
 
 /// The part of a line within a ball about zero, as `middle ± half`; `half` is `NaN` where the line misses the ball.

@@ -2,41 +2,35 @@
 
 use num_traits::Float as _;
 
-use super::{Chord, Crossing, LineCrossing, RoundedLineCrossing, comfortable, rebased};
-use crate::{Cuboid, Scalar, Vector};
+use super::{Chord, Crossing, comfortable, rebased};
+use crate::{Scalar, Vector};
 
 /// The squared distance from a box is `φ(λ) = Σ max(|xᵢ| − hᵢ, 0)²` along the line: convex, and one quadratic between
 /// any two neighbouring crossings of the planes `xᵢ = ±hᵢ`. The line enters the rounded box where `φ` falls to `radius²`,
 /// and not before it enters the box of half extents `hᵢ + radius`: from there, piece after piece is searched. Most lines
 /// enter through one of the flat sides, in the first piece. They leave where the reversed line enters.
-impl<V: Vector> RoundedLineCrossing for Cuboid<V> {
-    #[inline]
-    fn rounded_line_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
-        if radius == V::Scalar::ZERO {
-            return self.line_crossing(source, direction);
-        }
-        let (direction, dd, unit) = comfortable(direction);
-        let (base, source) = rebased(source, direction, dd.recip());
-        let h = self.half_extents();
-        let per_unit = V::ONE / direction;
-        let near = h.copysign(-direction);
-        let (enters, leaves) = ((near - source) * per_unit, (-near - source) * per_unit);
-        let margin = per_unit.abs() * radius;
-        let begin = largest(enters - margin);
-        let end = -largest(-(leaves + margin));
-        if !(begin <= end) {
-            return None;
-        }
-        let line = Line { source, direction, near, enters, leaves };
-        let entry = line.entry(radius, begin, end)?;
-        let reversed = Line { source, direction: -direction, near: -near, enters: -leaves, leaves: -enters };
-        let exit = reversed.entry(radius, -end, -begin).map_or(entry, |exit| -exit);
-
-        let at = source + direction * entry;
-        let excess = at - at.max(-h).min(h);
-        let normal = excess.unit().unwrap_or_else(|| -direction * dd.sqrt().recip());
-        Crossing { entry, exit: if exit > entry { exit } else { entry }, normal }.shifted(base, unit)
+#[inline]
+pub(crate) fn rounded_cuboid<V: Vector>(h: V, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+    let (direction, dd, unit) = comfortable(direction);
+    let (base, source) = rebased(source, direction, dd.recip());
+    let per_unit = V::ONE / direction;
+    let near = h.copysign(-direction);
+    let (enters, leaves) = ((near - source) * per_unit, (-near - source) * per_unit);
+    let margin = per_unit.abs() * radius;
+    let begin = largest(enters - margin);
+    let end = -largest(-(leaves + margin));
+    if !(begin <= end) {
+        return None;
     }
+    let line = Line { source, direction, near, enters, leaves };
+    let entry = line.entry(radius, begin, end)?;
+    let reversed = Line { source, direction: -direction, near: -near, enters: -leaves, leaves: -enters };
+    let exit = reversed.entry(radius, -end, -begin).map_or(entry, |exit| -exit);
+
+    let at = source + direction * entry;
+    let excess = at - at.max(-h).min(h);
+    let normal = excess.unit().unwrap_or_else(|| -direction * dd.sqrt().recip());
+    Crossing { entry, exit: if exit > entry { exit } else { entry }, normal }.shifted(base, unit)
 }
 
 /// The largest coordinate; `NaN` (of a line in a plane) is passed over.

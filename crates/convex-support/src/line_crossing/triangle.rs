@@ -3,43 +3,40 @@
 use num_traits::Float as _;
 
 use super::capsule::edge;
-use super::{Crossing, LineCrossing, RoundedLineCrossing, comfortable, rebased};
+use super::{Crossing, comfortable, rebased};
 use crate::shapes::Frame;
 use crate::{Scalar, Triangle, Vector};
 
-/// In 3D a line crosses it at a point, where `entry` and `exit` agree. A triangle without area, a segment, has no side to
-/// cross it by: `None`.
-impl<V: Vector> LineCrossing for Triangle<V> {
-    #[inline]
-    fn line_crossing(&self, source: V, direction: V) -> Option<Crossing<V>> {
-        self.rounded_line_crossing(V::Scalar::ZERO, source, direction)
-    }
-}
-
 /// The prism over the triangle, as thick as the ball, and the three edges swept by the ball: their union is convex, so
 /// the line is inside from the first entry to the last exit. In 2D the triangle itself stands for the prism.
-impl<V: Vector> RoundedLineCrossing for Triangle<V> {
-    fn rounded_line_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
-        let (direction, _, unit) = comfortable(direction);
-        let mut union = if V::DIM == 2 {
-            self.crossing_in_the_plane(source, direction)
-        } else {
-            self.prism_crossing(radius, source, direction)
-        };
-        if radius > V::Scalar::ZERO {
-            let [a, b, c] = self.points();
-            for side in [[a, b], [b, c], [c, a]] {
-                union = match (union, edge(side, radius, source, direction)) {
-                    (Some(p), Some(q)) => {
-                        let first = if q.entry < p.entry { q } else { p };
-                        Some(Crossing { exit: p.exit.max(q.exit), ..first })
-                    }
-                    (p, q) => p.or(q),
-                };
-            }
+///
+/// Without a ball, in 3D a line crosses the triangle at a point, where `entry` and `exit` agree. A triangle without area, a segment,
+/// has no side to cross it by: a miss.
+pub(crate) fn triangle<V: Vector>(
+    triangle: &Triangle<V>,
+    radius: V::Scalar,
+    source: V,
+    direction: V,
+) -> Option<Crossing<V>> {
+    let (direction, _, unit) = comfortable(direction);
+    let mut union = if V::DIM == 2 {
+        triangle.crossing_in_the_plane(source, direction)
+    } else {
+        triangle.prism_crossing(radius, source, direction)
+    };
+    if radius > V::Scalar::ZERO {
+        let [a, b, c] = triangle.points();
+        for side in [[a, b], [b, c], [c, a]] {
+            union = match (union, edge(side, radius, source, direction)) {
+                (Some(p), Some(q)) => {
+                    let first = if q.entry < p.entry { q } else { p };
+                    Some(Crossing { exit: p.exit.max(q.exit), ..first })
+                }
+                (p, q) => p.or(q),
+            };
         }
-        union?.shifted(V::Scalar::ZERO, unit)
     }
+    union?.shifted(V::Scalar::ZERO, unit)
 }
 
 impl<V: Vector> Triangle<V> {

@@ -1,8 +1,9 @@
 //! A ball about the origin.
 
 use crate::error::{InvalidShape, non_negative};
-use crate::support::{ScalarOf, swept};
-use crate::{Hint, Scalar, SupportMap, Vector};
+use crate::line_crossing::ball;
+use crate::support::swept;
+use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
 /// The ball `|x| ≤ radius`; a disc in 2D. Its core is a point.
 ///
@@ -26,6 +27,12 @@ impl<V: Vector> Ball<V> {
     pub fn new(radius: V::Scalar) -> Result<Self, InvalidShape> {
         Ok(Self { radius: non_negative("radius", radius)? })
     }
+
+    /// The radius.
+    #[must_use]
+    pub fn radius(&self) -> V::Scalar {
+        self.radius
+    }
 }
 
 impl<V: Vector> SupportMap for Ball<V> {
@@ -42,27 +49,26 @@ impl<V: Vector> SupportMap for Ball<V> {
     }
 
     #[inline]
+    fn core(&self) -> Core<V> {
+        Core { origin: V::ZERO, radius: self.radius, extent: V::Scalar::ZERO, kind: CoreKind::Point(V::ZERO) }
+    }
+
+    #[inline]
     fn core_support(&self, _direction: V, _hint: &mut Hint) -> V {
         V::ZERO
     }
 
     #[inline]
-    fn radius(&self) -> V::Scalar {
-        self.radius
-    }
-
-    #[inline]
-    fn is_core_polyhedral(&self) -> bool {
-        true
-    }
-
-    #[inline]
-    fn core_point(&self) -> Option<V> {
+    fn core_closest_point(&self, _x: V) -> Option<V> {
         Some(V::ZERO)
     }
 
-    #[inline]
-    fn core_extent(&self) -> ScalarOf<Self> {
-        V::Scalar::ZERO
+    #[inline(always)]
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        ball(radius, source, direction).into()
+    }
+
+    fn rounding(&self) -> Rounding<V> {
+        Rounding::exact(V::ZERO)
     }
 }

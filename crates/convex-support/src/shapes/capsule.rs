@@ -3,8 +3,9 @@
 use num_traits::Float as _;
 
 use crate::error::{InvalidShape, non_negative};
-use crate::support::{ScalarOf, support_of_parts};
-use crate::{Hint, SupportMap, Vector};
+use crate::line_crossing::upright;
+use crate::support::support_of_parts;
+use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, SupportMap, Vector};
 
 /// The segment from `(0, −half_height)` to `(0, half_height)` along the second axis, swept by a ball. Its core is the
 /// segment.
@@ -37,6 +38,12 @@ impl<V: Vector> Capsule<V> {
     pub fn half_height(&self) -> V::Scalar {
         self.half_height
     }
+
+    /// The radius around the segment.
+    #[must_use]
+    pub fn radius(&self) -> V::Scalar {
+        self.radius
+    }
 }
 
 impl<V: Vector> SupportMap for Capsule<V> {
@@ -53,18 +60,13 @@ impl<V: Vector> SupportMap for Capsule<V> {
     }
 
     #[inline]
+    fn core(&self) -> Core<V> {
+        Core { origin: V::ZERO, radius: self.radius, extent: self.half_height, kind: CoreKind::Polytope }
+    }
+
+    #[inline]
     fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
         V::axis(1) * self.half_height.copysign(direction.get(1))
-    }
-
-    #[inline]
-    fn radius(&self) -> V::Scalar {
-        self.radius
-    }
-
-    #[inline]
-    fn is_core_polyhedral(&self) -> bool {
-        true
     }
 
     #[inline]
@@ -72,8 +74,12 @@ impl<V: Vector> SupportMap for Capsule<V> {
         Some(V::axis(1) * x.get(1).max(-self.half_height).min(self.half_height))
     }
 
-    #[inline]
-    fn core_extent(&self) -> ScalarOf<Self> {
-        self.half_height
+    #[inline(always)]
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        upright(self.half_height, radius, source, direction).into()
+    }
+
+    fn rounding(&self) -> Rounding<V> {
+        Rounding::exact(V::axis(1) * self.half_height)
     }
 }

@@ -1,8 +1,8 @@
 //! A box about the origin, along the axes.
 
-use crate::error::{InvalidShape, finite};
-use crate::support::ScalarOf;
-use crate::{ClosestPoint, Hint, Scalar, SupportMap, Vector};
+use crate::error::{InvalidShape, finite, measurable};
+use crate::line_crossing::{cuboid, rounded_cuboid};
+use crate::{Core, CoreKind, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
 /// The box `|xᵢ| ≤ half_extentsᵢ`; a rectangle in 2D.
 ///
@@ -23,7 +23,7 @@ impl<V: Vector> Cuboid<V> {
     /// The box with the given half extents, any of which may be 0.
     ///
     /// # Errors
-    /// [`InvalidShape`] naming the half extent that is negative or not finite.
+    /// [`InvalidShape`] naming the half extent that is negative or not finite, or if the diagonal is longer than the largest number.
     pub fn new(half_extents: V) -> Result<Self, InvalidShape> {
         let half_extents = finite("half_extents", half_extents)?;
         match (0..V::DIM).find(|&i| half_extents.get(i) < V::Scalar::ZERO) {
@@ -32,7 +32,7 @@ impl<V: Vector> Cuboid<V> {
                 index,
                 value: half_extents.get(index).as_f64(),
             }),
-            None => Ok(Self { half_extents, extent: half_extents.norm() }),
+            None => Ok(Self { half_extents, extent: measurable("half_extents", half_extents.norm())? }),
         }
     }
 
@@ -57,22 +57,25 @@ impl<V: Vector> SupportMap for Cuboid<V> {
     }
 
     #[inline]
-    fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
-        self.support(direction)
-    }
-
-    #[inline]
-    fn is_core_polyhedral(&self) -> bool {
-        true
+    fn core(&self) -> Core<V> {
+        Core { origin: V::ZERO, radius: V::Scalar::ZERO, extent: self.extent, kind: CoreKind::Polytope }
     }
 
     #[inline]
     fn core_closest_point(&self, x: V) -> Option<V> {
-        Some(self.closest_point(x))
+        Some(x.max(-self.half_extents).min(self.half_extents))
     }
 
-    #[inline]
-    fn core_extent(&self) -> ScalarOf<Self> {
-        self.extent
+    #[inline(always)]
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        if radius == V::Scalar::ZERO {
+            cuboid(self.half_extents, source, direction).into()
+        } else {
+            rounded_cuboid(self.half_extents, radius, source, direction).into()
+        }
+    }
+
+    fn rounding(&self) -> Rounding<V> {
+        Rounding::exact(self.half_extents)
     }
 }

@@ -2,10 +2,13 @@
 
 use num_traits::Float as _;
 
-use crate::error::{InvalidShape, non_negative};
-use crate::support::{ScalarOf, swept, swept_derivative};
-use crate::vector::is_comfortable;
-use crate::{ClosestPoint, Hint, SupportMap, Vector3};
+use crate::closest_point::closest_of_ball;
+use crate::error::{InvalidShape, measurable, non_negative};
+use crate::line_crossing::cylinder;
+use crate::numerics::bound::roundings;
+use crate::numerics::range::is_comfortable;
+use crate::support::{swept, swept_hessian};
+use crate::{Core, CoreKind, LineCrossing, Rounding, Scalar, SupportMap, Vector3};
 
 /// The cylinder `x² + z² ≤ radius²`, `|y| ≤ half_height`.
 ///
@@ -27,11 +30,12 @@ impl<V: Vector3> Cylinder<V> {
     /// The cylinder of height `2·half_height`; either number may be 0.
     ///
     /// # Errors
-    /// [`InvalidShape`] naming the number that is negative or not finite.
+    /// [`InvalidShape`] naming the number that is negative or not finite, or if the diagonal is longer than the largest number.
     pub fn new(half_height: V::Scalar, radius: V::Scalar) -> Result<Self, InvalidShape> {
         let half_height = non_negative("half_height", half_height)?;
         let radius = non_negative("radius", radius)?;
-        Ok(Self { half_height, radius, extent: radius.hypot(half_height) })
+        let extent = measurable("half_height", radius.hypot(half_height))?;
+        Ok(Self { half_height, radius, extent })
     }
 
     /// Half the length of the axis.
@@ -60,9 +64,7 @@ pub(crate) fn disc_hessian<V: Vector3>(radius: V::Scalar, direction: V, [u, w]: 
     let (x, z) = (direction.get(0), direction.get(2));
     let squared = x * x + z * z;
     if !is_comfortable(squared) {
-        let along = |change| swept_derivative(radius, across(direction), across(change));
-        let (along_u, along_w) = (along(u), along(w));
-        return [u.dot(along_u), u.dot(along_w), w.dot(along_w)];
+        return swept_hessian(radius, across(direction), [across(u), across(w)]);
     }
     let (tu, tw) = (u.get(0) * z - u.get(2) * x, w.get(0) * z - w.get(2) * x);
     let bend = radius / (squared * squared.sqrt());
@@ -82,14 +84,9 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
         across(direction).norm() * self.radius + direction.get(1).abs() * self.half_height
     }
 
-    #[inline(always)]
-    fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
-        self.support(direction)
-    }
-
-    #[inline(always)]
-    fn core_support_derivative(&self, direction: V, change: V) -> V {
-        swept_derivative(self.radius, across(direction), across(change))
+    #[inline]
+    fn core(&self) -> Core<V> {
+        Core { origin: V::ZERO, radius: V::Scalar::ZERO, extent: self.extent, kind: CoreKind::Curved }
     }
 
     #[inline(always)]
@@ -99,11 +96,22 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
 
     #[inline]
     fn core_closest_point(&self, x: V) -> Option<V> {
-        Some(self.closest_point(x))
+        let y = x.get(1).max(-self.half_height).min(self.half_height);
+        Some(closest_of_ball(across(x), V::ZERO, self.radius) + V::axis(1) * y)
     }
 
-    #[inline]
-    fn core_extent(&self) -> ScalarOf<Self> {
-        self.extent
+    #[inline(always)]
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        if radius == V::Scalar::ZERO {
+            cylinder(self.half_height, self.radius, source, direction).into()
+        } else {
+            LineCrossing::Unknown
+        }
+    }
+
+    /// The heights are exact, and the unit vector times the radius is right to 6 roundings.
+    fn rounding(&self) -> Rounding<V> {
+        let extent = V::from_fn(|i| if i == 1 { self.half_height } else { self.radius });
+        Rounding::exact(extent).with_error(across(V::splat(roundings(6.0, self.radius))))
     }
 }

@@ -7,6 +7,7 @@ mod cuboid;
 mod cylinder;
 mod ellipsoid;
 mod point;
+mod points;
 mod polytope;
 mod segment;
 mod triangle;

@@ -1,8 +1,8 @@
 //! A single point.
 
 use crate::error::{InvalidShape, finite};
-use crate::support::ScalarOf;
-use crate::{Hint, Scalar, SupportMap, Vector};
+use crate::line_crossing::ball;
+use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
 /// The set of one point.
 ///
@@ -43,8 +43,9 @@ impl<V: Vector> SupportMap for Point<V> {
     }
 
     #[inline]
-    fn origin(&self) -> V {
-        self.at
+    fn core(&self) -> Core<V> {
+        let zero = V::Scalar::ZERO;
+        Core { origin: self.at, radius: zero, extent: zero, kind: CoreKind::Point(V::ZERO) }
     }
 
     #[inline]
@@ -53,17 +54,16 @@ impl<V: Vector> SupportMap for Point<V> {
     }
 
     #[inline]
-    fn is_core_polyhedral(&self) -> bool {
-        true
-    }
-
-    #[inline]
-    fn core_point(&self) -> Option<V> {
+    fn core_closest_point(&self, _x: V) -> Option<V> {
         Some(V::ZERO)
     }
 
-    #[inline]
-    fn core_extent(&self) -> ScalarOf<Self> {
-        V::Scalar::ZERO
+    #[inline(always)]
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        ball(radius, source, direction).into()
+    }
+
+    fn rounding(&self) -> Rounding<V> {
+        Rounding::exact(V::ZERO)
     }
 }

@@ -1,7 +1,10 @@
 //! A straight line segment.
 
-use crate::error::{InvalidShape, finite};
-use crate::{Hint, Scalar, SupportMap, Vector};
+use super::points::{extent, middle, relative, rounding_of_points};
+use crate::error::{InvalidShape, finite, measurable};
+use crate::line_crossing::edge;
+use crate::numerics::bound::roundings_of;
+use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
 /// The segment between two points, which may coincide.
 ///
@@ -21,9 +24,11 @@ impl<V: Vector> Segment<V> {
     /// The segment between the two points.
     ///
     /// # Errors
-    /// [`InvalidShape::NonFinite`] if a coordinate is not finite.
+    /// [`InvalidShape`] if a coordinate is not finite, or the segment is longer than the largest number.
     pub fn new(points: [V; 2]) -> Result<Self, InvalidShape> {
-        Ok(Self { points: [finite("points[0]", points[0])?, finite("points[1]", points[1])?] })
+        let points = [finite("points[0]", points[0])?, finite("points[1]", points[1])?];
+        measurable("points", (points[1] - points[0]).norm())?;
+        Ok(Self { points })
     }
 
     /// Its end points.
@@ -61,23 +66,29 @@ impl<V: Vector> SupportMap for Segment<V> {
     }
 
     #[inline]
-    fn origin(&self) -> V {
-        super::polytope::middle(self.points)
+    fn core(&self) -> Core<V> {
+        let (origin, extent) = (middle(self.points), extent(&self.points).norm());
+        Core { origin, radius: V::Scalar::ZERO, extent, kind: CoreKind::Polytope }
     }
 
     #[inline]
     fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
-        self.support(direction) - self.origin()
+        self.support(direction) - middle(self.points)
     }
 
     #[inline]
     fn core_closest_point(&self, x: V) -> Option<V> {
-        let origin = self.origin();
-        Some(clamp_to_segment(self.points.map(|point| point - origin), x))
+        Some(clamp_to_segment(relative(self.points), x))
     }
 
     #[inline]
-    fn is_core_polyhedral(&self) -> bool {
-        true
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        edge(relative(self.points), radius, source, direction).into()
+    }
+
+    /// Which end is farther is told by the product of the direction with the difference, 4 roundings.
+    fn rounding(&self) -> Rounding<V> {
+        let [a, b] = self.points;
+        rounding_of_points(&self.points).with_error(roundings_of(4.0, (b - a).abs()))
     }
 }

@@ -1,7 +1,13 @@
 //! A flat triangle.
 
-use crate::error::{InvalidShape, finite};
-use crate::{ClosestPoint, Hint, SupportMap, Vector};
+use num_traits::Float as _;
+
+use super::points::{extent, middle, relative, rounding_of_points};
+use crate::closest_point::closest_of_triangle;
+use crate::error::{InvalidShape, finite, measurable};
+use crate::line_crossing::triangle;
+use crate::numerics::bound::roundings_of;
+use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
 /// The triangle of three points, which may be collinear or coincide.
 ///
@@ -21,10 +27,12 @@ impl<V: Vector> Triangle<V> {
     /// The triangle of the three points.
     ///
     /// # Errors
-    /// [`InvalidShape::NonFinite`] if a coordinate is not finite.
+    /// [`InvalidShape`] if a coordinate is not finite, or an edge is longer than the largest number.
     pub fn new(points: [V; 3]) -> Result<Self, InvalidShape> {
         let [a, b, c] = points;
-        Ok(Self { points: [finite("points[0]", a)?, finite("points[1]", b)?, finite("points[2]", c)?] })
+        let points = [finite("points[0]", a)?, finite("points[1]", b)?, finite("points[2]", c)?];
+        measurable("points", (b - a).norm().max((c - b).norm()).max((a - c).norm()))?;
+        Ok(Self { points })
     }
 
     /// Its corners.
@@ -93,23 +101,29 @@ impl<V: Vector> SupportMap for Triangle<V> {
     }
 
     #[inline]
-    fn origin(&self) -> V {
-        super::polytope::middle(self.points)
+    fn core(&self) -> Core<V> {
+        let (origin, extent) = (middle(self.points), extent(&self.points).norm());
+        Core { origin, radius: V::Scalar::ZERO, extent, kind: CoreKind::Polytope }
     }
 
     #[inline]
     fn core_support(&self, direction: V, _hint: &mut Hint) -> V {
-        self.support(direction) - self.origin()
+        self.support(direction) - middle(self.points)
     }
 
     #[inline]
     fn core_closest_point(&self, x: V) -> Option<V> {
-        let origin = self.origin();
-        Some(Self { points: self.points.map(|point| point - origin) }.closest_point(x))
+        Some(closest_of_triangle(&Self { points: relative(self.points) }, x))
     }
 
     #[inline]
-    fn is_core_polyhedral(&self) -> bool {
-        true
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        triangle(&Self { points: relative(self.points) }, radius, source, direction).into()
+    }
+
+    /// Which corner is farthest is told by the products of the direction with two edges, 4 roundings each.
+    fn rounding(&self) -> Rounding<V> {
+        let [a, b, c] = self.points;
+        rounding_of_points(&self.points).with_error(roundings_of(8.0, (b - a).abs().max((c - a).abs())))
     }
 }

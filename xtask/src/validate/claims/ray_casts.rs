@@ -4,7 +4,7 @@ use benches::ours::{self, Effort};
 use benches::shapes::{SHAPE_NAMES, Shape};
 use benches::{score, w1_ray_cast};
 use convex_support::glam::{DQuat, DVec3};
-use convex_support::{Ball, Ellipsoid, LineCrossing, Polytope, SupportMap};
+use convex_support::{Ball, Ellipsoid, Polytope, SupportMap, line_crossing};
 use gjk_raycast::{DistanceOptions, Ray, RayCastOptions, distance, iterative_ray_cast, ray_cast};
 
 use super::super::growth::time;
@@ -70,7 +70,7 @@ pub(super) fn spheres() -> Spheres {
     let cast = |ray| ray_cast(&ball, ray, RayCastOptions::default());
     let mut errors = [0.0f64; 2];
     for ray in &rays {
-        let Some(crossing) = ball.line_crossing(ray.source, ray.direction) else { continue };
+        let Some(crossing) = line_crossing(&ball, ray.source, ray.direction).crossing() else { continue };
         let error = |lambda: f64| (lambda / crossing.entry - 1.0).abs();
         if let paper::End::Hit(lambda) = paper::ray_cast(&PlainSphere, *ray, f64::INFINITY, 1e-14, None).end {
             errors[0] = errors[0].max(error(lambda));

@@ -5,28 +5,28 @@ use alloc::vec::Vec;
 use glam::DVec3;
 
 use super::Polytope;
+use super::convex_hull::ConvexHull;
 use super::hull::FromPoints;
 use super::lanes::{WIDTH, coordinate, side_by_side};
-use crate::convex_hull::ConvexHull;
 use crate::error::InvalidShape;
-use crate::support::ScalarOf;
-use crate::{Hint, Scalar, SupportMap, Vector};
+use crate::line_crossing::faceted;
+use crate::{Core, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
 /// [`WIDTH`] planes, each a unit outward normal by coordinates and how far the polytope reaches along it from the middle.
 pub(crate) type Planes<S> = [[S; WIDTH]; 4];
 
 /// The convex hull of points both ways: by its vertices, as a [`Polytope`], and by the half-spaces of its facets.
 ///
-/// It is for lines: [`LineCrossing`](crate::LineCrossing) clips one by every facet and tells where it leaves, too. That takes time
+/// It is for lines: [`line_crossing`](crate::line_crossing) clips one by every facet and tells where it leaves, too. That takes time
 /// proportional to the number of facets. Up to about a hundred of them it is less than that of a ray cast by support points, which
 /// needs no facets and hardly grows (measured: docs/performance.md, W1).
 ///
 /// ```
-/// use convex_support::{Faceted, LineCrossing, glam::DVec3};
+/// use convex_support::{Faceted, glam::DVec3, line_crossing};
 ///
 /// let octahedron = Faceted::hull_of([DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z])?;
 /// let source = DVec3::new(0.25, 0.25, 3.0);
-/// let crossing = octahedron.line_crossing(source, DVec3::NEG_Z).ok_or("a miss")?;
+/// let crossing = line_crossing(&octahedron, source, DVec3::NEG_Z).crossing().ok_or("a miss")?;
 /// assert!((crossing.entry - 2.5).abs() < 1e-15 && (crossing.exit - 3.5).abs() < 1e-15);
 /// assert!((crossing.normal - DVec3::ONE.normalize()).length() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -75,7 +75,7 @@ impl<V: Vector> Faceted<V> {
     pub fn half_spaces(&self) -> impl ExactSizeIterator<Item = (V, V::Scalar)> + '_ {
         (0..self.count).map(|i| {
             let (n, reach) = self.facet(i);
-            (n, reach + n.dot(self.polytope.origin()))
+            (n, reach + n.dot(self.polytope.middle))
         })
     }
 
@@ -144,7 +144,7 @@ fn normals(hull: &ConvexHull, points: &[[f64; 3]], dimension: usize) -> Vec<DVec
     }
 }
 
-/// Everything as the polytope.
+/// Everything as the polytope, and the crossing by a line beside.
 impl<V: Vector> SupportMap for Faceted<V> {
     type Vector = V;
 
@@ -154,8 +154,8 @@ impl<V: Vector> SupportMap for Faceted<V> {
     }
 
     #[inline]
-    fn origin(&self) -> V {
-        self.polytope.origin()
+    fn core(&self) -> Core<V> {
+        self.polytope.core()
     }
 
     #[inline(always)]
@@ -164,12 +164,12 @@ impl<V: Vector> SupportMap for Faceted<V> {
     }
 
     #[inline]
-    fn is_core_polyhedral(&self) -> bool {
-        true
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        if radius == V::Scalar::ZERO { faceted(self, source, direction).into() } else { LineCrossing::Unknown }
     }
 
     #[inline]
-    fn core_extent(&self) -> ScalarOf<Self> {
-        self.polytope.core_extent()
+    fn rounding(&self) -> Rounding<V> {
+        self.polytope.rounding
     }
 }

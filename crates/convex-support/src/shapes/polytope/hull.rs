@@ -2,10 +2,10 @@
 
 use alloc::vec::Vec;
 
+use super::convex_hull::{ConvexHull, convex_hull};
 use super::graph::Graph;
 use super::lanes::Lanes;
 use super::{Polytope, Search, checked, middle, relative};
-use crate::convex_hull::{ConvexHull, convex_hull};
 use crate::error::InvalidShape;
 use crate::{Scalar, Vector};
 
@@ -59,7 +59,7 @@ impl<V: Vector> FromPoints<V> {
             let edges: Vec<_> = edges.into_iter().map(|e| e.map(place)).collect();
             Search::Look { graph: Graph::new(&seen, &edges), unit }
         };
-        Ok(Self { polytope: Polytope::searched_by(search, vertices, middle), seen: coordinates, hull: Some(hull) })
+        Ok(Self { polytope: Polytope::searched_by(search, vertices, middle)?, seen: coordinates, hull: Some(hull) })
     }
 }
 

@@ -1,6 +1,8 @@
 //! The convex hull of points.
 
 #[cfg(feature = "hull")]
+mod convex_hull;
+#[cfg(feature = "hull")]
 mod faceted;
 mod graph;
 #[cfg(feature = "hull")]
@@ -14,10 +16,11 @@ use alloc::vec::Vec;
 use graph::Graph;
 use lanes::Lanes;
 
-use crate::error::InvalidShape;
-use crate::support::ScalarOf;
-use crate::vector::{is_comfortable, power_of_two_below, scaled};
-use crate::{Hint, Scalar, SupportMap, Vector};
+use super::points::{middle, rounding_of_points};
+use crate::error::{InvalidShape, measurable};
+use crate::numerics::bound::roundings_of;
+use crate::numerics::range::{is_comfortable, power_of_two_below, scaled};
+use crate::{Core, CoreKind, Hint, Rounding, Scalar, SupportMap, Vector};
 
 #[cfg(feature = "hull")]
 pub use faceted::Faceted;
@@ -55,6 +58,7 @@ pub struct Polytope<V: Vector> {
     search: Search<V>,
     middle: V,
     extent: V::Scalar,
+    rounding: Rounding<V>,
 }
 
 /// How the farthest of the points, relative to the middle, is found.
@@ -72,17 +76,26 @@ impl<V: Vector> Polytope<V> {
     /// The convex hull of the points, each of which every query looks at.
     ///
     /// # Errors
-    /// [`InvalidShape::NoPoints`], or [`InvalidShape::NonFinite`] naming the index of the point that is not finite.
+    /// [`InvalidShape::NoPoints`], [`InvalidShape::NonFinite`] naming the index of the point that is not finite, or
+    /// [`InvalidShape::TooLarge`] if distances of the points overflow.
     pub fn new(points: impl IntoIterator<Item = V>) -> Result<Self, InvalidShape> {
         let points = checked(points)?;
         let middle = middle(points.iter().copied());
         let (seen, _) = relative(&points, middle);
-        Ok(Self::searched_by(Search::Scan(Lanes::new(&seen)), points, middle))
+        Self::searched_by(Search::Scan(Lanes::new(&seen)), points, middle)
     }
 
-    fn searched_by(search: Search<V>, points: Vec<V>, middle: V) -> Self {
+    fn searched_by(search: Search<V>, points: Vec<V>, middle: V) -> Result<Self, InvalidShape> {
         let extent = points.iter().map(|&p| (p - middle).norm()).fold(V::Scalar::ZERO, V::Scalar::max);
-        Self { points, search, middle, extent }
+        // Which point is farthest is told by comparing two products with the direction, of 3 roundings each; and a climb ends where
+        // every edge gains no more than 4 roundings of its own length, of which there are some on the way to the farthest.
+        let compared = match &search {
+            Search::Scan(_) => 6.0,
+            Search::Look { .. } => 16.0,
+        };
+        let rounding = rounding_of_points(&points);
+        let rounding = rounding.with_error(roundings_of(compared, rounding.extent));
+        Ok(Self { points, search, middle, extent: measurable("points", extent)?, rounding })
     }
 
     /// What the search calls the point farthest along `direction`; `hint` is such a number to begin at, or anything.
@@ -130,16 +143,6 @@ fn relative<V: Vector>(points: &[V], middle: V) -> (Vec<V>, V::Scalar) {
     (seen, unit)
 }
 
-/// The middle of the bounding box of a non-empty list of points.
-#[inline]
-pub(super) fn middle<V: Vector>(points: impl IntoIterator<Item = V>) -> V {
-    let mut points = points.into_iter();
-    let first = points.next().unwrap_or(V::ZERO);
-    let (low, high) = points.fold((first, first), |(low, high), p| (low.min(p), high.max(p)));
-    let half = V::Scalar::from_f64(0.5);
-    low * half + high * half
-}
-
 impl<V: Vector> SupportMap for Polytope<V> {
     type Vector = V;
 
@@ -153,8 +156,8 @@ impl<V: Vector> SupportMap for Polytope<V> {
     }
 
     #[inline]
-    fn origin(&self) -> V {
-        self.middle
+    fn core(&self) -> Core<V> {
+        Core { origin: self.middle, radius: V::Scalar::ZERO, extent: self.extent, kind: CoreKind::Polytope }
     }
 
     #[inline(always)]
@@ -171,12 +174,7 @@ impl<V: Vector> SupportMap for Polytope<V> {
     }
 
     #[inline]
-    fn is_core_polyhedral(&self) -> bool {
-        true
-    }
-
-    #[inline]
-    fn core_extent(&self) -> ScalarOf<Self> {
-        self.extent
+    fn rounding(&self) -> Rounding<V> {
+        self.rounding
     }
 }

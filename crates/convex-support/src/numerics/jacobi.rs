@@ -6,9 +6,10 @@ use num_traits::Float as _;
 use crate::InvalidShape;
 
 /// The eigenvectors (unit, one per row of `directions`, right-handed) and eigenvalues of a symmetric matrix.
-pub(crate) struct Axes {
-    pub(crate) directions: [[f64; 3]; 3],
-    pub(crate) eigenvalues: [f64; 3],
+#[derive(Clone, Copy, Debug)]
+pub struct Axes {
+    pub directions: [[f64; 3]; 3],
+    pub eigenvalues: [f64; 3],
 }
 
 /// One-sided Jacobi converges quadratically; a 3×3 matrix needs five sweeps or so.
@@ -22,7 +23,7 @@ const MAX_SWEEPS: usize = 40;
 /// that the matrix is taken at its word and is refused only if, as given, it is not positive definite. Then rotations of
 /// pairs of columns make them orthogonal, which leaves `G·Gᵀ` as it is; in the end the columns are `√λᵢ·vᵢ`. Unlike the QR
 /// method this finds small eigenvalues to high relative accuracy (Demmel and Veselić, *Jacobi's method is more accurate than QR*, 1992).
-pub(crate) fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes, InvalidShape> {
+pub fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes, InvalidShape> {
     let largest = x.iter().flatten().fold(0.0f64, |a, b| a.max(b.abs()));
     for (row, column) in [(1, 0), (2, 0), (2, 1)] {
         if row < n {

@@ -1,0 +1,100 @@
+//! What rounding does to a set that is mapped and moved.
+
+use num_traits::Float as _;
+
+use crate::error::InvalidShape;
+use crate::numerics::bound::{image, raised, raised_vector, roundings};
+use crate::numerics::twofold::{dot_minus, lost_in_sum};
+use crate::{Matrix, Rounding, Scalar, Vector};
+
+/// What the rounding of `matrix·origin + translation` loses.
+///
+/// # Errors
+/// [`InvalidShape::TooLarge`] if that overflows.
+#[inline(always)]
+pub(super) fn lost_in_origin<V: Vector>(matrix: &V::Matrix, origin: V, translation: V) -> Result<V, InvalidShape> {
+    // Most shapes are about zero, and then nothing is lost.
+    if origin == V::ZERO { Ok(V::ZERO) } else { lost_in_far_origin(matrix, origin, translation) }
+}
+
+#[inline(never)]
+fn lost_in_far_origin<V: Vector>(matrix: &V::Matrix, origin: V, translation: V) -> Result<V, InvalidShape> {
+    let moved = *matrix * origin + translation;
+    if !moved.is_finite() {
+        return Err(InvalidShape::TooLarge { parameter: "translation" });
+    }
+    if *matrix == V::Matrix::IDENTITY {
+        return Ok(lost_in_sum(origin, translation));
+    }
+    Ok(V::from_fn(|i| {
+        let row = (0..V::DIM).map(|j| (matrix.col(j).get(i), origin.get(j)));
+        dot_minus(row.chain([(V::Scalar::ONE, translation.get(i))]), moved.get(i))
+    }))
+}
+
+/// A linear map and a translation, and what is known of their rounding.
+pub(super) struct Placement<'a, V: Vector> {
+    pub(super) matrix: &'a V::Matrix,
+    /// A bound on what every entry of the matrix is wrong by, but for rows `±eⱼ`.
+    pub(super) matrix_error: V::Scalar,
+    /// How much longer a vector becomes at most, where the matrix keeps lengths, or all of them in one ratio, to rounding.
+    pub(super) scale: Option<V::Scalar>,
+    pub(super) translation: V,
+    /// What the rounding of the origin lost.
+    pub(super) lost: V,
+}
+
+impl<V: Vector> Placement<'_, V> {
+    /// What is known of the image `matrix·k(matrixᵀd) + lost` of a core about `origin`, whose points are at most `length` long.
+    ///
+    /// With `u = ε/2`, and with rows and columns `±eⱼ` exact, since a row has two exact zeros only where the rotation has:
+    /// - the product of a row with `k` is wrong by `3u·Σ|mᵢⱼ|·extentⱼ`, and the sum with what was lost by `u`;
+    /// - the direction in the shape's frame is wrong by `3u·|matrixᵀ|·|d|`, so that a point found along it may be short of the
+    ///   farthest by that times twice the extent: `|d|·(6u·|matrix|·extent)`;
+    /// - the matrix itself is wrong, which moves the core and its origin;
+    /// - what was lost is known to `u` of itself and `16ε²` of the numbers it comes of.
+    pub(super) fn image(&self, shape: Rounding<V>, origin: V, length: V::Scalar) -> Rounding<V> {
+        let (zero, one, m) = (V::Scalar::ZERO, V::Scalar::ONE, self.matrix);
+        let unit = |entry: V::Scalar| num_traits::Float::abs(entry) == one;
+        let entry = |i: usize, j: usize| m.col(j).get(i);
+        let lone = |entries: &dyn Fn(usize) -> V::Scalar| {
+            let others = (0..V::DIM).filter(|&k| entries(k) != zero).count();
+            others == 1 && (0..V::DIM).any(|k| unit(entries(k)))
+        };
+        let is_row_exact = |i: usize| lone(&|j| entry(i, j));
+        let is_column_exact = |j: usize| lone(&|i| entry(i, j));
+
+        let reached = image(m, shape.extent);
+        let within = self.scale.map_or(V::Scalar::infinity(), |scale| raised(scale * length));
+        let extent = raised_vector(reached.min(V::splat(within)) + self.lost.abs());
+        let turned = V::from_fn(|j| if is_column_exact(j) { zero } else { shape.extent.get(j) });
+        let sum = |v: V| (1..V::DIM).fold(v.get(0), |sum, i| sum + v.get(i));
+        let moved = roundings(2.0, sum(shape.extent) + sum(shape.error) + sum(origin.abs())) * self.matrix_error;
+        let (short, placed) = (image(m, turned), image(m, origin.abs()) + self.translation.abs());
+        let squared = V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(16.0);
+        let error = V::from_fn(|i| {
+            let (reached, lost) = (reached.get(i), num_traits::Float::abs(self.lost.get(i)));
+            let mut error = roundings(6.0, short.get(i));
+            if lost != zero {
+                error += roundings(1.0, extent.get(i));
+            }
+            if !is_row_exact(i) {
+                error += roundings(3.0, reached) + moved;
+                if origin != V::ZERO {
+                    error += roundings(1.0, lost) + squared * placed.get(i);
+                }
+            }
+            error
+        });
+        // Of a map that keeps lengths, what was wrong before is no longer than it was.
+        let (before, length) = match self.scale {
+            Some(scale) => (raised(scale * shape.error_length), scale * shape.error_length),
+            None => {
+                let columns = V::from_fn(|j| m.col(j).norm());
+                (V::Scalar::infinity(), columns.norm() * shape.error_length)
+            }
+        };
+        let before = image(m, shape.error).min(V::splat(before));
+        Rounding { extent, error: before, error_length: raised(length) }.with_error(error)
+    }
+}

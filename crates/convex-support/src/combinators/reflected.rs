@@ -1,0 +1,59 @@
+//! A shape mirrored through zero.
+
+use crate::support::ScalarOf;
+use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, SupportMap};
+
+/// The set `−C = { −x : x ∈ C }`: what a difference adds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Reflected<S>(pub(super) S);
+
+impl<S: SupportMap> SupportMap for Reflected<S> {
+    type Vector = S::Vector;
+
+    #[inline(always)]
+    fn support(&self, direction: S::Vector) -> S::Vector {
+        -self.0.support(-direction)
+    }
+
+    #[inline(always)]
+    fn support_value(&self, direction: S::Vector) -> ScalarOf<S> {
+        self.0.support_value(-direction)
+    }
+
+    #[inline(always)]
+    fn core(&self) -> Core<S::Vector> {
+        let core = self.0.core();
+        let kind = if let CoreKind::Point(at) = core.kind { CoreKind::Point(-at) } else { core.kind };
+        Core { origin: -core.origin, kind, ..core }
+    }
+
+    #[inline(always)]
+    fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
+        -self.0.core_support(-direction, hint)
+    }
+
+    #[inline(always)]
+    fn core_support_hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> [ScalarOf<S>; 3] {
+        self.0.core_support_hessian(-direction, changes)
+    }
+
+    #[inline(always)]
+    fn core_closest_point(&self, x: S::Vector) -> Option<S::Vector> {
+        self.0.core_closest_point(-x).map(|closest| -closest)
+    }
+
+    #[inline(always)]
+    fn core_line_crossing(
+        &self,
+        source: S::Vector,
+        direction: S::Vector,
+        radius: ScalarOf<S>,
+    ) -> LineCrossing<S::Vector> {
+        self.0.core_line_crossing(-source, -direction, radius).with_normal(|n| -n)
+    }
+
+    #[inline]
+    fn rounding(&self) -> Rounding<S::Vector> {
+        self.0.rounding()
+    }
+}

@@ -1,0 +1,115 @@
+//! What a set is split into, and how well its numbers are known.
+
+use crate::numerics::bound::{raised, raised_vector, roundings, roundings_of};
+use crate::{Scalar, Vector};
+
+/// What a convex set `C = o + K ⊕ B(r)` is split into: an origin `o`, a core `K` near zero, and a ball of radius `r` that sweeps it.
+///
+/// A ball, a capsule and everything [rounded](crate::Rounded) is a smaller set, its *core*, swept by a ball. Iterative methods
+/// converge slowly on round surfaces and finish at once on a point or a segment, so they work on the core and add the radius at
+/// the end. And they work near the body rather than near the world's origin, where coordinates have digits to spare.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Core<V: Vector> {
+    /// A point near the set, which the core is relative to.
+    pub origin: V,
+    /// The radius of the ball that sweeps the core.
+    pub radius: V::Scalar,
+    /// An upper bound on the length of every vector that [`core_support`](crate::SupportMap::core_support) computes with, which is
+    /// what its rounding errors are proportional to.
+    pub extent: V::Scalar,
+    /// What kind of set the core is.
+    pub kind: CoreKind<V>,
+}
+
+/// What kind of set a [core](Core) is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CoreKind<V> {
+    /// A single point, relative to the origin: a ball that meets a set with a closest point needs no iteration.
+    Point(V),
+    /// A polytope, whose support point jumps from vertex to vertex and does not move in between: its Hessian is always zero.
+    Polytope,
+    /// Anything else.
+    Curved,
+}
+
+impl<V> CoreKind<V> {
+    /// The kind of a Minkowski sum.
+    #[inline]
+    pub(crate) fn plus(self, other: Self, points: impl FnOnce(V, V) -> V) -> Self {
+        match (self, other) {
+            (Self::Point(a), Self::Point(b)) => Self::Point(points(a, b)),
+            (Self::Curved, _) | (_, Self::Curved) => Self::Curved,
+            _ => Self::Polytope,
+        }
+    }
+}
+
+/// How well the support points of a core are known: bounds on what rounding has moved them by, since the numbers that the shape was
+/// built from.
+///
+/// Let `K` be the core exactly as it follows from the numbers given to the constructors, relative to the computed
+/// [origin](Core::origin), with what the radius is wrong by counted in; and let `k(d)` be the computed
+/// [support point](crate::SupportMap::core_support). Then with `|·|` taken coordinate by coordinate
+///
+/// > |k(d) − x| ≤ error for a point x of K, and  max { d·y : y ∈ K } ≤ d·k(d) + |d|·error.
+///
+/// The first makes an upper bound of a distance rigorous, and the second a lower bound. A rotation counts as the exactly normalised
+/// quaternion or the exact angle it is given by, a matrix as it is given, and points as they are given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rounding<V: Vector> {
+    /// A bound on the coordinates of all points of the core.
+    pub extent: V,
+    /// The bound on what coordinates are wrong by.
+    pub error: V,
+    /// A bound on the length of that error. Rotations keep it, where coordinates would be counted up to `√3` times each.
+    pub error_length: V::Scalar,
+}
+
+impl<V: Vector> Rounding<V> {
+    /// A core of the given extents, all of whose support points are exact and farthest.
+    #[must_use]
+    pub fn exact(extent: V) -> Self {
+        Self { extent, error: V::ZERO, error_length: V::Scalar::ZERO }
+    }
+
+    /// A core of the given extents whose support points are wrong by a few units in the last place of these.
+    #[must_use]
+    pub fn relative(extent: V, units: f64) -> Self {
+        Self::exact(raised_vector(extent)).with_error(roundings_of(2.0 * units, extent))
+    }
+
+    /// The same with a further error.
+    #[must_use]
+    pub(crate) fn with_error(self, error: V) -> Self {
+        let error_length = raised(self.error_length + error.norm());
+        Self { error: raised_vector(self.error + error), error_length, ..self }
+    }
+
+    /// The same with the error of a radius, which may be in any direction.
+    #[must_use]
+    pub(crate) fn with_radius_error(self, error: V::Scalar) -> Self {
+        let error_length = raised(self.error_length + error);
+        Self { error: raised_vector(self.error + V::splat(error)), error_length, ..self }
+    }
+
+    /// With what sweeping the core by a ball adds to it, where that becomes part of the core.
+    #[must_use]
+    pub(crate) fn swept(self, radius: V::Scalar) -> Self {
+        if radius == V::Scalar::ZERO {
+            return self;
+        }
+        // The unit vector times the radius is right to 6 roundings, and the sum is rounded once.
+        let extent = raised_vector(self.extent + V::splat(radius));
+        Self { extent, ..self }.with_error(V::splat(roundings(6.0, radius)) + roundings_of(1.0, extent))
+    }
+
+    /// The same with all bounds raised by what their own computation may have lost.
+    #[must_use]
+    pub(crate) fn raised(self) -> Self {
+        Self {
+            extent: raised_vector(self.extent),
+            error: raised_vector(self.error),
+            error_length: raised(self.error_length),
+        }
+    }
+}

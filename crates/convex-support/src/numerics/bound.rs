@@ -1,0 +1,52 @@
+//! Upper bounds on magnitudes, which rounding must not bring below what they bound.
+//!
+//! Bounds are sums of products of non-negative numbers. A dozen of such operations lose a dozen halves of `ε` at most, which
+//! [`raised`] makes up for once at the end, unless a product underflows, which [`product`] makes up for at once. What is exactly
+//! zero stays so.
+
+use crate::{Matrix, Scalar, Vector};
+
+/// The smallest positive number: what a product or quotient loses at most where it is subnormal.
+#[inline]
+pub fn least<S: Scalar>() -> S {
+    S::min_positive_value() * S::EPSILON
+}
+
+/// A bound on the product of two magnitudes, but for its relative rounding.
+#[inline]
+pub fn product<S: Scalar>(a: S, b: S) -> S {
+    if a == S::ZERO || b == S::ZERO { S::ZERO } else { a * b + least::<S>() }
+}
+
+/// `count` half units in the last place of a number of at most the given magnitude: what so many roundings lose of it.
+#[inline]
+pub fn roundings<S: Scalar>(count: f64, magnitude: S) -> S {
+    product(S::from_f64(0.5 * count) * S::EPSILON, magnitude)
+}
+
+/// [`roundings`] coordinate by coordinate.
+#[inline]
+pub fn roundings_of<V: Vector>(count: f64, magnitudes: V) -> V {
+    V::from_fn(|i| roundings(count, magnitudes.get(i)))
+}
+
+/// A bound on the coordinates of `matrix·x` for all `x` whose coordinates are at most as large as those of `magnitudes`.
+#[inline]
+pub fn image<M: Matrix>(matrix: &M, magnitudes: M::Vector) -> M::Vector {
+    M::Vector::from_fn(|i| {
+        let term = |j: usize| product(num_traits::Float::abs(matrix.col(j).get(i)), magnitudes.get(j));
+        (1..M::Vector::DIM).fold(term(0), |sum, j| sum + term(j))
+    })
+}
+
+/// A bound that makes up for the rounding of up to 60 operations on non-negative numbers.
+#[inline]
+pub fn raised<S: Scalar>(bound: S) -> S {
+    bound + roundings(64.0, bound)
+}
+
+/// [`raised`] coordinate by coordinate.
+#[inline]
+pub fn raised_vector<V: Vector>(bounds: V) -> V {
+    V::from_fn(|i| raised(bounds.get(i)))
+}

@@ -1,0 +1,52 @@
+//! Lengths whose squares would over- or underflow, measured in units of a power of two.
+
+use crate::{Scalar, Vector};
+
+/// Whether a squared length carries full relative precision: it did not overflow, and a coordinate whose square
+/// underflowed is below its rounding error.
+#[inline]
+pub fn is_comfortable<S: Scalar>(squared: S) -> bool {
+    squared >= S::min_positive_value() / S::EPSILON && squared < S::infinity()
+}
+
+/// A power of two in which a quantity of size `largest` may be measured without its square over- or underflowing: 1
+/// wherever that will do.
+#[inline]
+pub fn comfortable_unit_of_length<S: Scalar>(largest: S) -> S {
+    if is_comfortable(largest * largest) { S::ONE } else { power_of_two_below(largest) }
+}
+
+/// The largest power of two that is not above `value`, or the smallest normal one; 1 where `value` is not positive or
+/// not finite.
+#[cold]
+pub fn power_of_two_below<S: Scalar>(value: S) -> S {
+    if value <= S::ZERO || !value.is_finite() {
+        return S::ONE;
+    }
+    let (_, exponent, _) = num_traits::Float::integer_decode(value);
+    // The mantissa is an integer of as many bits as EPSILON says.
+    let unit = num_traits::Float::powi(S::from_f64(2.0), i32::from(exponent)) / S::EPSILON;
+    if unit > S::ZERO { unit } else { S::min_positive_value() }
+}
+
+/// `v` divided by a power of two near its largest magnitude, and that power as two factors; `None` for zero and NaN.
+///
+/// The coordinates are passed on one by one: a vector of `f64` would go through memory, and since compilers put it there
+/// before they branch, written in other pieces than it is read in, those who never come here would wait for it.
+#[inline]
+pub fn scaled<V: Vector>(v: V) -> Option<(V, [V::Scalar; 2])> {
+    let z = if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO };
+    scaled_coordinates(v.get(0), v.get(1), z)
+}
+
+#[cold]
+#[inline(never)]
+fn scaled_coordinates<V: Vector>(x: V::Scalar, y: V::Scalar, z: V::Scalar) -> Option<(V, [V::Scalar; 2])> {
+    let v = V::from_fn(|i| [x, y, z][i]);
+    let largest = v.abs().max_element();
+    // Two factors, since those of subnormal numbers are below the smallest number, and their reciprocals not finite.
+    let (_, exponent, _) = num_traits::Float::integer_decode(largest);
+    let half = num_traits::Float::powi(V::Scalar::from_f64(2.0), i32::from(exponent) / 2);
+    let rest = num_traits::Float::powi(V::Scalar::from_f64(2.0), i32::from(exponent) - i32::from(exponent) / 2);
+    (largest > V::Scalar::ZERO).then(|| (v / half / rest, [half, rest]))
+}

@@ -1,0 +1,39 @@
+//! Sums and products without rounding: as the nearest number and what it loses.
+
+use crate::{Scalar, Vector};
+
+/// What the rounding of `a + b` loses (Knuth's two-sum), exactly.
+#[inline]
+pub fn lost_in_sum<V: Vector>(a: V, b: V) -> V {
+    let sum = a + b;
+    let seen = sum - a;
+    (a - (sum - seen)) + (b - seen)
+}
+
+/// `a + b` and what its rounding loses.
+#[inline]
+pub fn two_sum<S: Scalar>(a: S, b: S) -> [S; 2] {
+    let sum = a + b;
+    let seen = sum - a;
+    [sum, (a - (sum - seen)) + (b - seen)]
+}
+
+/// `a·b` and what its rounding loses, unless that is subnormal.
+#[inline]
+pub fn two_product<S: Scalar>(a: S, b: S) -> [S; 2] {
+    let product = a * b;
+    [product, a.mul_add(b, -product)]
+}
+
+/// `Σ aᵢ·bᵢ − subtracted`, as if computed in twice the precision and rounded once (Ogita, Rump and Oishi, *Accurate sum and dot
+/// product*, 2005): the error is at most `ε/2` of the result and, of `n` pairs, `(n + 1)²·ε²/4` of `Σ |aᵢ·bᵢ| + |subtracted|`.
+pub fn dot_minus<S: Scalar>(pairs: impl IntoIterator<Item = (S, S)>, subtracted: S) -> S {
+    let (mut sum, mut lost) = (-subtracted, S::ZERO);
+    for (a, b) in pairs {
+        let [product, lost_in_product] = two_product(a, b);
+        let [next, lost_in_sum] = two_sum(sum, product);
+        sum = next;
+        lost += lost_in_product + lost_in_sum;
+    }
+    sum + lost
+}

@@ -1,0 +1,174 @@
+//! How glam says *rotation*: an angle in 2D, a quaternion in 3D.
+
+use core::fmt::Debug;
+
+use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, DVec4, Mat2, Mat3, Mat3A, Quat, Vec2, Vec3, Vec3A};
+
+use crate::Vector;
+use crate::error::InvalidShape;
+use crate::numerics::range::is_comfortable;
+
+/// A rotation of the space of `V`: an angle in radians in 2D, a quaternion of any length in 3D.
+///
+/// What it stands for is exact: the sine and cosine of the angle, and the quaternion divided by its length.
+/// The trait is sealed; [`Vector::Rotation`] says which type rotates which vectors.
+pub trait Rotation<V: Vector>: Copy + Debug + Default + PartialEq + Send + Sync + 'static + sealed::Sealed {
+    /// A bound on the rounding error of each entry of [`matrix`](Self::matrix), in units of the scalar's epsilon.
+    const MATRIX_ERROR: f64;
+
+    /// The rotation that the quaternion `x·i + y·j + z·k + w` stands for; in 2D by its angle about `z`, `2·atan2(z, w)`.
+    fn from_xyzw(quaternion: [V::Scalar; 4]) -> Self;
+
+    /// The matrix; of NaNs where there is none.
+    fn matrix(self) -> V::Matrix;
+
+    /// The rotation if it has a matrix.
+    ///
+    /// # Errors
+    /// [`InvalidShape::NonFinite`] naming the number that is not finite, [`InvalidShape::ZeroRotation`] for the zero quaternion.
+    fn checked(self, parameter: &'static str) -> Result<Self, InvalidShape>;
+}
+
+mod sealed {
+    // Sealed because `MATRIX_ERROR` is a promise that certified bounds rest on, and because methods will be added.
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+    impl Sealed for glam::Quat {}
+    impl Sealed for glam::DQuat {}
+}
+
+/// Rotations of the plane. Sines and cosines of the standard library and of libm are right to less than an ulp.
+macro_rules! angle {
+    ($S:ident rotates $V:ident by $M:ident) => {
+        impl Rotation<$V> for $S {
+            const MATRIX_ERROR: f64 = 1.0;
+
+            #[inline]
+            fn from_xyzw([_, _, z, w]: [$S; 4]) -> Self {
+                2.0 * num_traits::Float::atan2(z, w)
+            }
+
+            #[inline(always)]
+            fn matrix(self) -> $M {
+                $M::from_angle(self)
+            }
+
+            #[inline]
+            fn checked(self, parameter: &'static str) -> Result<Self, InvalidShape> {
+                if self.is_finite() { Ok(self) } else { Err(InvalidShape::NonFinite { parameter, index: 0 }) }
+            }
+        }
+    };
+}
+
+angle!(f32 rotates Vec2 by Mat2);
+angle!(f64 rotates DVec2 by DMat2);
+
+/// With `u = ε/2`: the length is right to `3u`, and `1 − 2(y² + z²)`, with `2(y² + z²) ≤ 2`, loses `4·3u` of that, `4u` by the
+/// rounding of the quotients, and `5u` by its own operations; the other entries lose half as much.
+impl Rotation<DVec3> for DQuat {
+    const MATRIX_ERROR: f64 = 11.0;
+
+    #[inline]
+    fn from_xyzw(quaternion: [f64; 4]) -> Self {
+        Self::from_array(quaternion)
+    }
+
+    #[inline(always)]
+    fn matrix(self) -> DMat3 {
+        DMat3::from_quat(unit(self))
+    }
+
+    #[inline]
+    fn checked(self, parameter: &'static str) -> Result<Self, InvalidShape> {
+        let largest = DVec4::from(self).abs().max_element();
+        if self.is_finite() && largest > 0.0 { Ok(self) } else { Err(what_is_wrong(parameter, self.to_array())) }
+    }
+}
+
+/// Rotations in single precision, whose matrices are found in double precision and rounded once.
+macro_rules! quaternion {
+    ($V:ident by $M:ident, $rounded:expr) => {
+        impl Rotation<$V> for Quat {
+            const MATRIX_ERROR: f64 = 0.501;
+
+            #[inline]
+            fn from_xyzw(quaternion: [f32; 4]) -> Self {
+                Self::from_array(quaternion)
+            }
+
+            #[inline(always)]
+            fn matrix(self) -> $M {
+                $rounded(DMat3::from_quat(unit(self.as_dquat())))
+            }
+
+            #[inline]
+            fn checked(self, parameter: &'static str) -> Result<Self, InvalidShape> {
+                Rotation::<DVec3>::checked(self.as_dquat(), parameter).map(|_| self)
+            }
+        }
+    };
+}
+
+quaternion!(Vec3 by Mat3, |matrix: DMat3| matrix.as_mat3());
+quaternion!(Vec3A by Mat3A, |matrix: DMat3| Mat3A::from(matrix.as_mat3()));
+
+/// A quaternion of any length made unit.
+#[inline]
+fn unit(q: DQuat) -> DQuat {
+    let v = DVec4::from(q);
+    let squared = v.length_squared();
+    let excess = squared - 1.0;
+    if excess.abs() < 1e-6 {
+        // Nearly unit, as most are: three terms of the series of 1/√(1 + x) are right to rounding, and quicker.
+        DQuat::from_vec4(v * (1.0 - excess * (0.5 - 0.375 * excess)))
+    } else if is_comfortable(squared) {
+        DQuat::from_vec4(v * squared.sqrt().recip())
+    } else {
+        unit_of_scaled(v.x, v.y, v.z, v.w)
+    }
+}
+
+/// The same where squares could over- or underflow: dividing by a power of two near the largest magnitude keeps them in range.
+#[cold]
+#[inline(never)]
+fn unit_of_scaled(x: f64, y: f64, z: f64, w: f64) -> DQuat {
+    let v = DVec4::new(x, y, z, w);
+    let v = v / crate::numerics::range::power_of_two_below(v.abs().max_element());
+    DQuat::from_vec4(v * v.length_squared().sqrt().recip())
+}
+
+#[cold]
+fn what_is_wrong(parameter: &'static str, quaternion: [f64; 4]) -> InvalidShape {
+    match quaternion.iter().position(|c| !c.is_finite()) {
+        Some(index) => InvalidShape::NonFinite { parameter, index },
+        None => InvalidShape::ZeroRotation,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rotations_are_normalised_first() {
+        let q = DQuat::from_xyzw(0.0, 0.0, 3e-200, 3e-200);
+        let m = q.checked("rotation").expect("not zero").matrix();
+        assert!((m * DVec3::X - DVec3::Y).length() < 1e-15, "a quarter turn about z, got {m}");
+        let tiny = DQuat::from_xyzw(0.0, 0.0, 5e-324, 5e-324).matrix();
+        assert!((tiny * DVec3::X - DVec3::Y).length() < 1e-15, "also of subnormal numbers, got {tiny}");
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_rotation_is_said() {
+        let zero = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0);
+        assert_eq!(zero.checked("rotation"), Err(InvalidShape::ZeroRotation));
+        for bad in [f64::NAN, f64::INFINITY] {
+            let error = InvalidShape::NonFinite { parameter: "rotation", index: 2 };
+            assert_eq!(DQuat::from_xyzw(1.0, 0.0, bad, 1.0).checked("rotation"), Err(error));
+            let error = InvalidShape::NonFinite { parameter: "rotation", index: 0 };
+            assert_eq!(Rotation::<DVec2>::checked(bad, "rotation"), Err(error));
+        }
+    }
+}

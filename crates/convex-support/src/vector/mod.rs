@@ -1,0 +1,184 @@
+//! glam's vectors behind one trait.
+
+mod glam;
+mod matrix;
+
+pub use matrix::Matrix;
+
+use num_traits::Float as _;
+
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+use crate::numerics::range::{is_comfortable, scaled};
+use crate::{Rotation, Scalar};
+
+/// A vector of 2D or 3D space: glam's `Vec2`, `Vec3`, `Vec3A`, `DVec2` or `DVec3`.
+///
+/// The vector type is the only type parameter of this workspace: it fixes the dimension ([`DIM`](Self::DIM)) and the
+/// precision ([`Scalar`](Self::Scalar)). Methods keep glam's names and meanings, so that a generic body reads like a
+/// body written for one of glam's types.
+///
+/// The trait is sealed, so that methods may be added without breaking anybody.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a vector of this crate",
+    note = "the vectors are glam's `Vec2`, `Vec3`, `Vec3A`, `DVec2` and `DVec3`"
+)]
+pub trait Vector:
+    Copy
+    + Debug
+    + Default
+    + PartialEq
+    + Add<Output = Self>
+    + AddAssign
+    + Sub<Output = Self>
+    + SubAssign
+    + Neg<Output = Self>
+    + Mul<Output = Self>
+    + Mul<Self::Scalar, Output = Self>
+    + Div<Output = Self>
+    + Div<Self::Scalar, Output = Self>
+    + Send
+    + Sync
+    + 'static
+    + sealed::Sealed
+{
+    /// The type of the coordinates.
+    type Scalar: Scalar;
+    /// The square matrices that act on these vectors: `Mat2`, `Mat3`, `Mat3A`, `DMat2` or `DMat3`.
+    type Matrix: Matrix<Vector = Self>;
+    /// How glam says *rotation* in this space: an angle in radians in 2D, a quaternion in 3D.
+    type Rotation: Rotation<Self>;
+
+    /// The dimension of the space, 2 or 3.
+    const DIM: usize;
+    /// The zero vector.
+    const ZERO: Self;
+    /// The vector of ones.
+    const ONE: Self;
+
+    /// The vector whose coordinates are all `value`.
+    fn splat(value: Self::Scalar) -> Self;
+    /// The vector whose coordinate `i` is `f(i)`.
+    fn from_fn(f: impl FnMut(usize) -> Self::Scalar) -> Self;
+    /// Coordinate `index`, counted from 0.
+    ///
+    /// # Panics
+    /// If `index >= DIM`.
+    fn get(self, index: usize) -> Self::Scalar;
+    /// The dot product.
+    fn dot(self, rhs: Self) -> Self::Scalar;
+    /// The squared Euclidean length.
+    fn length_squared(self) -> Self::Scalar;
+    /// The Euclidean length; see [`norm`](Self::norm) where squares could over- or underflow.
+    fn length(self) -> Self::Scalar;
+    /// Absolute values, coordinate by coordinate.
+    fn abs(self) -> Self;
+    /// Minima, coordinate by coordinate.
+    fn min(self, rhs: Self) -> Self;
+    /// Maxima, coordinate by coordinate.
+    fn max(self, rhs: Self) -> Self;
+    /// The magnitudes of `self` with the signs of `sign`, coordinate by coordinate.
+    fn copysign(self, sign: Self) -> Self;
+    /// The largest coordinate.
+    fn max_element(self) -> Self::Scalar;
+    /// The smallest coordinate.
+    fn min_element(self) -> Self::Scalar;
+    /// Whether all coordinates are finite.
+    fn is_finite(self) -> bool;
+    /// Whether any coordinate is `NaN`.
+    fn is_nan(self) -> bool;
+    /// The unit vector along coordinate axis `index`.
+    #[inline]
+    #[must_use]
+    fn axis(index: usize) -> Self {
+        Self::from_fn(|i| if i == index { Self::Scalar::ONE } else { Self::Scalar::ZERO })
+    }
+
+    /// The Euclidean length for vectors of any magnitude: squares that would over- or underflow are avoided by
+    /// scaling with a power of two, so that the result is right to a few ulps wherever it is representable.
+    ///
+    /// ```
+    /// use convex_support::{Vector, glam::DVec3};
+    ///
+    /// assert_eq!(Vector::norm(DVec3::new(3e-200, 4e-200, 0.0)), 5e-200);
+    /// ```
+    #[inline]
+    #[must_use]
+    fn norm(self) -> Self::Scalar {
+        let squared = self.length_squared();
+        if is_comfortable(squared) {
+            squared.sqrt()
+        } else {
+            scaled(self).map_or(squared, |(v, [s, t])| v.length() * s * t)
+        }
+    }
+
+    /// The unit vector along `self` for vectors of any magnitude; `None` for the zero vector and where a coordinate
+    /// is not finite.
+    ///
+    /// ```
+    /// use convex_support::{Vector, glam::DVec2};
+    ///
+    /// assert_eq!(Vector::unit(DVec2::new(0.0, -1e-300)), Some(DVec2::NEG_Y));
+    /// assert_eq!(Vector::unit(DVec2::ZERO), None);
+    /// ```
+    #[inline]
+    #[must_use]
+    fn unit(self) -> Option<Self> {
+        let squared = self.length_squared();
+        if is_comfortable(squared) {
+            Some(self / squared.sqrt())
+        } else {
+            scaled(self).filter(|(v, _)| v.is_finite()).map(|(v, _)| v / v.length())
+        }
+    }
+}
+
+/// A vector of 3D space, where there is a cross product: `Vec3`, `Vec3A` or `DVec3`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a vector of 3D space",
+    note = "cylinders, cones and cross products need glam's `Vec3`, `Vec3A` or `DVec3`"
+)]
+pub trait Vector3: Vector {
+    /// The cross product.
+    fn cross(self, rhs: Self) -> Self;
+}
+
+mod sealed {
+    // Sealed because algorithms rely on these being plain Euclidean vectors, and because methods will be added.
+    pub trait Sealed {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ::glam::{DVec2, DVec3, Vec3A};
+
+    #[test]
+    fn unit_vectors_at_every_magnitude() {
+        for s in [1e-320, 1e-300, 1e-200, 1e-160, 1e-10, 1.0, 1e10, 1e160, 1e300] {
+            let u = Vector::unit(DVec3::new(3.0, -4.0, 12.0) * s).expect("not zero");
+            let error = (u - DVec3::new(3.0, -4.0, 12.0) / 13.0).length();
+            // 1e-320 is subnormal: the vector itself carries only three digits there.
+            assert!(error < if s == 1e-320 { 1e-2 } else { 1e-15 }, "{s}: {u}");
+        }
+        for s in [1e-40, 1e-20, 1.0, 1e20, 1e37] {
+            let u = Vector::unit(Vec3A::new(3.0, -4.0, 0.0) * s).expect("not zero");
+            assert!((u - Vec3A::new(0.6, -0.8, 0.0)).length() < if s == 1e-40 { 1e-4 } else { 1e-6 }, "{s}: {u}");
+        }
+        assert_eq!(Vector::unit(DVec2::new(f64::NAN, 1.0)), None, "NaN has no direction");
+        assert_eq!(Vector::unit(DVec2::new(f64::INFINITY, 1.0)), None, "an infinite vector has no direction");
+    }
+
+    #[test]
+    fn norms_at_every_magnitude() {
+        for s in [1e-300, 1e-160, 1.0, 1e160, 1e300] {
+            let n = Vector::norm(DVec2::new(3.0, 4.0) * s);
+            assert!((n / s - 5.0).abs() < 1e-14, "{s}: {n}");
+        }
+        assert_eq!(Vector::norm(DVec2::ZERO), 0.0, "the zero vector");
+        assert_eq!(Vector::norm(DVec2::new(3.0, 4.0) * 5e-324), 5.0 * 5e-324, "subnormal");
+        assert_eq!(Vector::norm(Vec3A::new(3.0, 0.0, 4.0) * 1e-45), 5.0 * 1e-45, "subnormal");
+    }
+}
