@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use convex_support::glam::{Quat, Vec3, Vec3A};
-use convex_support::{Ball, Scalar as _};
+use convex_support::{Ball, Core, Scalar as _};
 use convex_support::{
     Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Hull, InvalidShape, MinkowskiSum, Polytope, Posed, Rounded, SupportMap,
 };

@@ -61,10 +61,8 @@ impl<V: Space> Question for RayCastQuestion<V> {
         match self.method {
             Method::Gjk => ray_cast(&self.target, self.ray, self.options),
             Method::Iterative => {
-                let closest = |x: V| match Point::new(x) {
-                    Ok(x) => distance(&self.target, &x, DistanceOptions::new()).point_a,
-                    Err(_) => x,
-                };
+                let to_point = |x: Point<V>| distance(&self.target, &x, DistanceOptions::new()).point_a;
+                let closest = |x: V| Point::new(x).ok().map(to_point);
                 iterative_ray_cast(closest, self.ray, self.options)
             }
         }

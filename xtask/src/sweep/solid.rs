@@ -1,7 +1,8 @@
 //! The bodies of the sweep: what is asked of the library, and what is true of them.
 
 use convex_support::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rounded, Scalar, SupportMap, Vector, Vector3,
+    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rotation, Rounded, Scalar, SupportMap, Vector,
+    Vector3,
 };
 
 use super::hull::{Hull, Skeleton};

@@ -3,13 +3,15 @@
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use super::range::power_of_two_below;
 use crate::InvalidShape;
 
-/// The eigenvectors (unit, one per row of `directions`, right-handed) and eigenvalues of a symmetric matrix.
+/// The eigenvectors (unit, one per row of `directions`, right-handed) of a symmetric positive definite matrix, and the roots of its
+/// eigenvalues.
 #[derive(Clone, Copy, Debug)]
 pub struct Axes {
     pub directions: [[f64; 3]; 3],
-    pub eigenvalues: [f64; 3],
+    pub roots: [f64; 3],
 }
 
 /// One-sided Jacobi converges quadratically; a 3×3 matrix needs five sweeps or so.
@@ -24,6 +26,9 @@ const MAX_SWEEPS: usize = 40;
 /// pairs of columns make them orthogonal, which leaves `G·Gᵀ` as it is; in the end the columns are `√λᵢ·vᵢ`. Unlike the QR
 /// method this finds small eigenvalues to high relative accuracy (Demmel and Veselić, *Jacobi's method is more accurate than QR*, 1992).
 pub fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes, InvalidShape> {
+    // In units of an even power of two near the largest entry, neither products nor roots leave the range of numbers.
+    let root = power_of_two_below(x.iter().flatten().fold(0.0f64, |a, b| a.max(b.abs())).sqrt());
+    x = x.map(|row| row.map(|entry| entry / root / root));
     let largest = x.iter().flatten().fold(0.0f64, |a, b| a.max(b.abs()));
     for (row, column) in [(1, 0), (2, 0), (2, 1)] {
         if row < n {
@@ -48,8 +53,8 @@ pub fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes, Invali
             return Err(InvalidShape::NotPositiveDefinite);
         }
         left[p] = false;
-        let root = x[p][p].high.sqrt();
-        *column = core::array::from_fn(|i| if i == p || (i < n && left[i]) { x[i][p].high / root } else { 0.0 });
+        let pivot_root = x[p][p].high.sqrt();
+        *column = core::array::from_fn(|i| if i == p || (i < n && left[i]) { x[i][p].high / pivot_root } else { 0.0 });
         let pivot_row = x[p];
         for i in 0..n {
             let factor = pivot_row[i] / pivot_row[p];
@@ -71,18 +76,15 @@ pub fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes, Invali
         }
     }
 
-    let eigenvalues: [f64; 3] = core::array::from_fn(|k| dot(g[k], g[k]));
-    let mut directions: [[f64; 3]; 3] = core::array::from_fn(|k| {
-        let norm = eigenvalues[k].sqrt();
-        g[k].map(|c| c / norm)
-    });
-    if eigenvalues[..n].iter().any(|&l| !(l > 0.0 && l.is_finite())) {
+    let lengths: [f64; 3] = core::array::from_fn(|k| dot(g[k], g[k]).sqrt());
+    let mut directions: [[f64; 3]; 3] = core::array::from_fn(|k| g[k].map(|c| c / lengths[k]));
+    if lengths[..n].iter().any(|&l| !(l > 0.0 && l.is_finite())) {
         return Err(InvalidShape::NotPositiveDefinite);
     }
     if handedness(&directions, n) < 0.0 {
         directions[n - 1] = directions[n - 1].map(|c| -c);
     }
-    Ok(Axes { directions, eigenvalues })
+    Ok(Axes { directions, roots: lengths.map(|length| length * root) })
 }
 
 /// Rotates columns `i` and `j` of `g` within their plane until they are orthogonal; says whether it had to.
@@ -178,17 +180,17 @@ mod tests {
         let t = [[2.0, 1.0, 0.0], [1.0, 2.0, 1.0], [0.0, 1.0, 2.0]];
         let x = core::array::from_fn(|i| core::array::from_fn(|j| d[i] * t[i][j] * d[j]));
         let axes = axes(x, 3, f64::EPSILON).expect("positive definite");
-        let product: f64 = axes.eigenvalues.iter().product();
-        assert!((product / (4.0 * s.powi(6)) - 1.0).abs() < 1e-13, "{product}");
+        let product: f64 = axes.roots.iter().product();
+        assert!((product / (2.0 * s.powi(3)) - 1.0).abs() < 1e-13, "{product}");
     }
 
     #[test]
     fn rebuilds_the_matrix() {
         let x = [[4.0, 1.0, -2.0], [1.0, 3.0, 0.5], [-2.0, 0.5, 6.0]];
-        let Axes { directions, eigenvalues } = axes(x, 3, f64::EPSILON).expect("positive definite");
+        let Axes { directions, roots } = axes(x, 3, f64::EPSILON).expect("positive definite");
         for i in 0..3 {
             for j in 0..3 {
-                let entry: f64 = (0..3).map(|k| eigenvalues[k] * directions[k][i] * directions[k][j]).sum();
+                let entry: f64 = (0..3).map(|k| roots[k] * roots[k] * directions[k][i] * directions[k][j]).sum();
                 assert!((entry - x[i][j]).abs() < 1e-14, "entry ({i}, {j}): {entry}");
             }
         }

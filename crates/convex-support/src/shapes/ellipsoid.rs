@@ -80,7 +80,7 @@ impl<V: Vector> Ellipsoid<V> {
 
     /// The ellipsoid `{ x : (x − center)ᵀ·matrix·(x − center) ≤ 1 }`.
     ///
-    /// The axes are found from a pivoted Cholesky factor by one-sided Jacobi rotations in `f64`: semi-axes are
+    /// What it stands for from then on are the semi-axes that are found. The axes are found from a pivoted Cholesky factor by one-sided Jacobi rotations in `f64`: semi-axes are
     /// as accurate, relative to themselves, as the matrix determines them.
     ///
     /// # Errors
@@ -94,9 +94,9 @@ impl<V: Vector> Ellipsoid<V> {
                 *entry = matrix.col(j).get(i).as_f64();
             }
         }
-        let jacobi::Axes { directions, eigenvalues } = jacobi::axes(x, V::DIM, V::Scalar::EPSILON.as_f64())?;
+        let jacobi::Axes { directions, roots } = jacobi::axes(x, V::DIM, V::Scalar::EPSILON.as_f64())?;
         let axes = V::Matrix::from_cols_fn(|j| V::from_fn(|i| V::Scalar::from_f64(directions[j][i])));
-        let semi_axes = V::from_fn(|i| V::Scalar::from_f64(1.0 / eigenvalues[i].sqrt()));
+        let semi_axes = V::from_fn(|i| V::Scalar::from_f64(1.0 / roots[i]));
         Self::from_axes(center, semi_axes, axes)
     }
 

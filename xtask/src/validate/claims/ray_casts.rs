@@ -216,10 +216,8 @@ fn iterative() -> Option<Claim> {
     let hull = Polytope::new(points).ok()?;
     let rays = rays(&mut random, 200);
     let options = RayCastOptions::default().with_tolerance(1e-9);
-    let nested = |x: DVec3| match convex_support::Point::new(x) {
-        Ok(x) => distance(&hull, &x, DistanceOptions::new()).point_a,
-        Err(_) => x,
-    };
+    let to_point = |x: convex_support::Point<DVec3>| distance(&hull, &x, DistanceOptions::new()).point_a;
+    let nested = |x: DVec3| convex_support::Point::new(x).ok().map(to_point);
     let slow = time(|| rays.iter().for_each(|ray| _ = std::hint::black_box(iterative_ray_cast(nested, *ray, options))))
         / rays.len() as f64;
     let fast = time(|| rays.iter().for_each(|ray| _ = std::hint::black_box(ray_cast(&hull, *ray, options))))

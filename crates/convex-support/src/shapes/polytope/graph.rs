@@ -124,19 +124,24 @@ impl<V: Vector> Graph<V> {
     fn fill_cells(&mut self) {
         let mut seen_by = vec![u32::MAX; self.vertices.len()];
         let mut found = Vec::new();
-        let (mut farthest_of_face, mut last) = (0, 0);
+        let (mut start, mut last) = (0, 0);
         let cells_of_face = if V::DIM == 3 { self.resolution * self.resolution } else { self.resolution };
         for index in 0..2 * V::DIM * cells_of_face {
             if index % cells_of_face == 0 {
                 let (axis, is_negative) = (index / cells_of_face / 2, index / cells_of_face % 2 == 1);
-                farthest_of_face = self.farthest_along_axis(axis, is_negative);
+                start = self.farthest_along_axis(axis, is_negative);
+            } else if index % cells_of_face >= self.resolution {
+                // The cell next to it in the row before. From the end of that row, a climb could lead half around the polytope.
+                start = self.cells[index - self.resolution].vertices[0];
             }
             let cone = self.cone(index);
-            let farthest = self.climb_from_nearer(cone.middle, farthest_of_face, last);
+            let farthest = self.climb_from_nearer(cone.middle, start, last);
             last = farthest;
             let all_are_found = self.collect(&cone, farthest, index as u32, &mut seen_by, &mut found);
-            let all = found.clone();
-            found.retain(|&v| all.iter().all(|&u| cone.can_be_farther(self.vertex(v), self.vertex(u))));
+            if all_are_found {
+                let all = found.clone();
+                found.retain(|&v| all.iter().all(|&u| cone.can_be_farther(self.vertex(v), self.vertex(u))));
+            }
             let cell = if all_are_found && found.len() <= LISTED {
                 found.sort_unstable_by_key(|&v| self.name(v));
                 let (begin, rest) = (self.further.len() as u32, found.get(HELD..).unwrap_or(&[]));
