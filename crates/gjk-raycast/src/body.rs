@@ -4,7 +4,7 @@
 //! Numbers of magnitude about one neither over- nor underflow when they are multiplied a few times, in `f32` as in
 //! `f64`; and since the unit is a power of two, scaling a scene by one changes nothing but the unit.
 
-use convex_support::{Core, CoreKind, Hint, Scalar, SupportMap, Vector};
+use convex_support::{CoreKind, Hint, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::symmetric::Symmetric;
@@ -106,14 +106,13 @@ fn made_moderate<V: Vector>(x: V::Scalar, y: V::Scalar, z: V::Scalar) -> Option<
 /// One shape.
 pub(crate) struct Single<'a, S: SupportMap + ?Sized> {
     shape: &'a S,
-    core: Core<S::Vector>,
     hint: Hint,
     per_unit: <S::Vector as Vector>::Scalar,
 }
 
 impl<'a, S: SupportMap + ?Sized> Single<'a, S> {
     pub(crate) fn new(shape: &'a S) -> Self {
-        Self { shape, core: shape.core(), hint: Hint::new(), per_unit: Scalar::ONE }
+        Self { shape, hint: Hint::new(), per_unit: Scalar::ONE }
     }
 }
 
@@ -135,19 +134,19 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
 
     #[inline]
     fn is_curved(&self) -> bool {
-        matches!(self.core.kind, CoreKind::Curved)
+        matches!(self.shape.core().kind, CoreKind::Curved)
     }
 
     fn origin(&self) -> S::Vector {
-        self.core.origin
+        self.shape.core().origin
     }
 
     fn radius(&self) -> <S::Vector as Vector>::Scalar {
-        self.core.radius
+        self.shape.core().radius
     }
 
     fn extent(&self) -> <S::Vector as Vector>::Scalar {
-        self.core.extent
+        self.shape.core().extent
     }
 
     fn set_scale(&mut self, scale: <S::Vector as Vector>::Scalar) {
@@ -159,8 +158,6 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
 pub(crate) struct Pair<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
     pub(crate) a: &'a A,
     pub(crate) b: &'a B,
-    pub(crate) core_a: Core<A::Vector>,
-    pub(crate) core_b: Core<A::Vector>,
     hint_a: Hint,
     hint_b: Hint,
     per_unit: <A::Vector as Vector>::Scalar,
@@ -168,8 +165,7 @@ pub(crate) struct Pair<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vec
 
 impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'a, A, B> {
     pub(crate) fn new(a: &'a A, b: &'a B) -> Self {
-        let (core_a, core_b) = (a.core(), b.core());
-        Self { a, b, core_a, core_b, hint_a: Hint::new(), hint_b: Hint::new(), per_unit: Scalar::ONE }
+        Self { a, b, hint_a: Hint::new(), hint_b: Hint::new(), per_unit: Scalar::ONE }
     }
 }
 
@@ -188,7 +184,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
         offset: A::Vector,
         size: <A::Vector as Vector>::Scalar,
     ) -> Option<PointPair<A::Vector>> {
-        let (a, b) = match (self.core_a.kind, self.core_b.kind) {
+        let (a, b) = match (self.a.core().kind, self.b.core().kind) {
             (CoreKind::Point(a), _) => (a, self.b.core_closest_point(a + offset)?),
             (_, CoreKind::Point(b)) => (self.a.core_closest_point(b - offset)?, b),
             _ => return None,
@@ -235,21 +231,21 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
 
     #[inline]
     fn is_curved(&self) -> bool {
-        matches!(self.core_a.kind, CoreKind::Curved) || matches!(self.core_b.kind, CoreKind::Curved)
+        matches!(self.a.core().kind, CoreKind::Curved) || matches!(self.b.core().kind, CoreKind::Curved)
     }
 
     fn origin(&self) -> A::Vector {
-        self.core_a.origin
+        self.a.core().origin
     }
 
     #[inline]
     fn radius(&self) -> <A::Vector as Vector>::Scalar {
-        self.core_a.radius + self.core_b.radius
+        self.a.core().radius + self.b.core().radius
     }
 
     #[inline]
     fn extent(&self) -> <A::Vector as Vector>::Scalar {
-        self.core_a.extent + self.core_b.extent
+        self.a.core().extent + self.b.core().extent
     }
 
     fn set_scale(&mut self, scale: <A::Vector as Vector>::Scalar) {

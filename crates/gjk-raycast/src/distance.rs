@@ -46,7 +46,7 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let mut pair = Pair::new(a, b);
-    let (core_a, core_b) = (pair.core_a, pair.core_b);
+    let (core_a, core_b) = (a.core(), b.core());
     let offset = core_a.origin - core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);

@@ -48,7 +48,7 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let mut pair = Pair::new(a, b);
-    let offset = pair.core_a.origin - pair.core_b.origin;
+    let offset = a.core().origin - b.core().origin;
     // The first axis is tried in the world's unit, before anything else is set up; the sum of the coordinates bounds the
     // length of the offset without a root.
     let size = pair.extent() + pair.radius() + offset.abs().dot(Vector::ONE);

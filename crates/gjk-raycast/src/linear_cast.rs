@@ -70,7 +70,7 @@ where
     check_finite("velocity_a", motion.velocity_a)?;
     check_finite("velocity_b", motion.velocity_b)?;
     let mut body = Pair::new(a, b);
-    let (core_a, core_b) = (body.core_a, body.core_b);
+    let (core_a, core_b) = (a.core(), b.core());
     let mut wanted = RayCastOptions::new()
         .with_max_lambda(options.max_time)
         .with_tolerance(options.tolerance)

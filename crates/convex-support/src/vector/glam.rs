@@ -10,8 +10,7 @@ macro_rules! glam_vector {
         scalar: $S:ident,
         coordinates: [$($i:literal),+],
         rotation: $R:ident,
-        matrix: $M:ident,
-        transpose_mul: $transpose_mul:ident $(,)?
+        matrix: $M:ident $(,)?
     }) => {
         impl sealed::Sealed for $V {}
         impl sealed::Sealed for $M {}
@@ -67,7 +66,7 @@ macro_rules! glam_vector {
             #[inline]
             fn transpose(&self) -> Self { self.transpose() }
             #[inline]
-            fn transpose_mul(&self, rhs: $V) -> $V { self.$transpose_mul(rhs) }
+            fn transpose_mul(&self, rhs: $V) -> $V { $V::new($(self.col($i).dot(rhs)),+) }
             #[inline]
             fn determinant(&self) -> $S { self.determinant() }
             #[inline]
@@ -76,35 +75,11 @@ macro_rules! glam_vector {
     };
 }
 
-glam_vector!(Vec2 { scalar: f32, coordinates: [0, 1], rotation: f32, matrix: Mat2, transpose_mul: transpose_mul_vec2 });
-glam_vector!(DVec2 {
-    scalar: f64,
-    coordinates: [0, 1],
-    rotation: f64,
-    matrix: DMat2,
-    transpose_mul: transpose_mul_vec2
-});
-glam_vector!(Vec3 {
-    scalar: f32,
-    coordinates: [0, 1, 2],
-    rotation: Quat,
-    matrix: Mat3,
-    transpose_mul: transpose_mul_vec3
-});
-glam_vector!(Vec3A {
-    scalar: f32,
-    coordinates: [0, 1, 2],
-    rotation: Quat,
-    matrix: Mat3A,
-    transpose_mul: transpose_mul_vec3a,
-});
-glam_vector!(DVec3 {
-    scalar: f64,
-    coordinates: [0, 1, 2],
-    rotation: DQuat,
-    matrix: DMat3,
-    transpose_mul: transpose_mul_vec3,
-});
+glam_vector!(Vec2 { scalar: f32, coordinates: [0, 1], rotation: f32, matrix: Mat2 });
+glam_vector!(DVec2 { scalar: f64, coordinates: [0, 1], rotation: f64, matrix: DMat2 });
+glam_vector!(Vec3 { scalar: f32, coordinates: [0, 1, 2], rotation: Quat, matrix: Mat3 });
+glam_vector!(Vec3A { scalar: f32, coordinates: [0, 1, 2], rotation: Quat, matrix: Mat3A });
+glam_vector!(DVec3 { scalar: f64, coordinates: [0, 1, 2], rotation: DQuat, matrix: DMat3 });
 
 impl Vector3 for Vec3 {
     #[inline]
