@@ -31,6 +31,7 @@
 //! # Features
 //! - `std` (default): floating-point functions from the standard library.
 //! - `libm`: the same from the libm crate, for `no_std` targets; `alloc` is needed in any case.
+//! - `f64` (default): glam's double precision, to be left out with glam 0.32, which has no such feature.
 //! - `hull`: `Polytope::hull_of`, the exact convex hull of raw points, for polytopes of thousands of vertices; and `Faceted`, a
 //!   hull with its half-spaces.
 //! - `serde`: shapes as serde data, checked on the way in.

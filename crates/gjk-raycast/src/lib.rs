@@ -38,6 +38,7 @@
 //! # Features
 //! - `std` (default): floating-point functions from the standard library.
 //! - `libm`: the same from the libm crate, for `no_std` targets.
+//! - `f64` (default): as of `convex-support`, to be left out with glam 0.32.
 //! - `rayon`: batches on all threads, `par_ray_casts` and `Scene::par_ray_casts`.
 
 #![no_std]
