@@ -71,7 +71,7 @@ pub trait SupportMap {
     ///
     /// Provided: the core is all there is, about zero. A shape with an origin or a radius says so here and writes out
     /// [`core_support`](Self::core_support) too.
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<Self::Vector> {
         let extent = extent_along_axes(|d| self.support(d)).norm();
         Core { origin: Self::Vector::ZERO, radius: Scalar::ZERO, extent, kind: CoreKind::Curved }

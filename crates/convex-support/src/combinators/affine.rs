@@ -86,7 +86,7 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         self.matrix * self.shape.support(self.onto_shape * direction) + self.translation
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<S::Vector> {
         let Core { origin, radius, extent, kind } = self.shape.core();
         let kind = match kind {

@@ -100,7 +100,7 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for Hull<A, B>
         support_of_parts(self, direction)
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<A::Vector> {
         let (a, b) = (self.a.core(), self.b.core());
         let is_polytope =

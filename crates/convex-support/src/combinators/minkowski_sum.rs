@@ -1,7 +1,9 @@
 //! The Minkowski sum of two shapes.
 
+use num_traits::Float as _;
+
 use crate::numerics::bound::roundings_of;
-use crate::numerics::twofold::lost_in_sum;
+use crate::numerics::twofold::{lost_in_sum, two_sum};
 use crate::support::{ScalarOf, sum_of_hessians, support_of_parts};
 use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
@@ -56,7 +58,7 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
         self.a.support_value(direction) + self.b.support_value(direction)
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<A::Vector> {
         let (a, b) = (self.a.core(), self.b.core());
         Core {
@@ -117,7 +119,7 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
         let zero = ScalarOf::<A>::ZERO;
         let summands = |i: usize| [a.extent, b.extent, self.lost].into_iter().filter(|v| v.get(i) != zero).count();
         let rounded = A::Vector::from_fn(|i| ScalarOf::<A>::from_f64(summands(i).saturating_sub(1) as f64));
-        let radius = lost_in_sum(A::Vector::splat(self.a.core().radius), A::Vector::splat(self.b.core().radius));
-        sum.with_error(rounded * roundings_of(1.0, sum.extent)).with_radius_error(radius.abs().max_element()).raised()
+        let [_, radius] = two_sum(self.a.core().radius, self.b.core().radius);
+        sum.with_error(rounded * roundings_of(1.0, sum.extent)).with_radius_error(radius.abs()).raised()
     }
 }

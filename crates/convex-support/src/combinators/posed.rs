@@ -130,7 +130,7 @@ impl<S: SupportMap> SupportMap for Posed<S> {
         self.rotation * self.shape.support(self.rotation.transpose_mul(direction)) + self.translation
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<S::Vector> {
         let core = self.shape.core();
         Core {

@@ -59,7 +59,7 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
         self.shape.support_value(direction) + direction.norm() * self.radius
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<S::Vector> {
         let core = self.shape.core();
         Core { radius: core.radius + self.radius, ..core }

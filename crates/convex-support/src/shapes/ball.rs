@@ -48,7 +48,7 @@ impl<V: Vector> SupportMap for Ball<V> {
         direction.norm() * self.radius
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<V> {
         Core { origin: V::ZERO, radius: self.radius, extent: V::Scalar::ZERO, kind: CoreKind::Point(V::ZERO) }
     }

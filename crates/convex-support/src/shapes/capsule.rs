@@ -59,7 +59,7 @@ impl<V: Vector> SupportMap for Capsule<V> {
         direction.get(1).abs() * self.half_height + direction.norm() * self.radius
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<V> {
         Core { origin: V::ZERO, radius: self.radius, extent: self.half_height, kind: CoreKind::Polytope }
     }

@@ -87,7 +87,7 @@ impl<V: Vector3> SupportMap for Cone<V> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<V> {
         Core { origin: V::ZERO, radius: V::Scalar::ZERO, extent: self.extent, kind: CoreKind::Curved }
     }

@@ -56,7 +56,7 @@ impl<V: Vector> SupportMap for Cuboid<V> {
         direction.abs().dot(self.half_extents)
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<V> {
         Core { origin: V::ZERO, radius: V::Scalar::ZERO, extent: self.extent, kind: CoreKind::Polytope }
     }

@@ -84,7 +84,7 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
         across(direction).norm() * self.radius + direction.get(1).abs() * self.half_height
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<V> {
         Core { origin: V::ZERO, radius: V::Scalar::ZERO, extent: self.extent, kind: CoreKind::Curved }
     }

@@ -171,7 +171,7 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
         direction.dot(self.center) + (self.semi_axes * self.axes.transpose_mul(direction)).norm()
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<V> {
         let extent = self.semi_axes.max_element();
         Core { origin: self.center, radius: V::Scalar::ZERO, extent, kind: CoreKind::Curved }

@@ -42,7 +42,7 @@ impl<V: Vector> SupportMap for Point<V> {
         self.at
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<V> {
         let zero = V::Scalar::ZERO;
         Core { origin: self.at, radius: zero, extent: zero, kind: CoreKind::Point(V::ZERO) }

@@ -65,7 +65,7 @@ impl<V: Vector> SupportMap for Segment<V> {
         if direction.dot(b - a) > V::Scalar::ZERO { b } else { a }
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<V> {
         let (origin, extent) = (middle(self.points), extent(&self.points).norm());
         Core { origin, radius: V::Scalar::ZERO, extent, kind: CoreKind::Polytope }

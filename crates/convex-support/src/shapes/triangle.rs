@@ -100,7 +100,7 @@ impl<V: Vector> SupportMap for Triangle<V> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<V> {
         let (origin, extent) = (middle(self.points), extent(&self.points).norm());
         Core { origin, radius: V::Scalar::ZERO, extent, kind: CoreKind::Polytope }

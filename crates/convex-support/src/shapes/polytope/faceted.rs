@@ -153,7 +153,7 @@ impl<V: Vector> SupportMap for Faceted<V> {
         self.polytope.support(direction)
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<V> {
         self.polytope.core()
     }

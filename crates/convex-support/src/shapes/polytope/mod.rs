@@ -155,7 +155,7 @@ impl<V: Vector> SupportMap for Polytope<V> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn core(&self) -> Core<V> {
         Core { origin: self.middle, radius: V::Scalar::ZERO, extent: self.extent, kind: CoreKind::Polytope }
     }
