@@ -173,7 +173,7 @@ fn r12_all_algorithms_agree() {
         for d in directions(200) {
             let source = [0.6 - 3.0 * d[0], 0.3 - 3.0 * d[1], 0.1 - 3.0 * d[2]];
             let ray = Ray { source: v::<V>(source), direction: v(d) };
-            let oracle = iterative_ray_cast(|x: V| x.max(-h).min(h), ray, RayCastOptions::default());
+            let oracle = iterative_ray_cast(|x: V| Some(x.max(-h).min(h)), ray, RayCastOptions::default());
             let oracle = oracle.expect("a finite ray").outcome.hit().map(|hit| hit.lambda.as_f64());
             let answers = [oracle, lambda(&solid, source, d), lambda(&hull, source, d)];
             let expected = answers[0].expect("the ray runs through an inner point");
