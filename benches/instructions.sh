@@ -1,5 +1,5 @@
 #!/bin/sh
-# Counts the instructions of six rows of the workloads under callgrind and compares them with benches/instructions.txt:
+# Counts the instructions of some rows of the workloads under callgrind and compares them with benches/instructions.txt:
 # a row that takes over 3 % more or less fails. Counts do not depend on the load of the machine, but they do on the
 # compiler, so the table names the one it was made with.
 #

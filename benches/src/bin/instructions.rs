@@ -8,9 +8,11 @@ use std::process::ExitCode;
 use benches::measure::Solver;
 use benches::ours::{self, Effort};
 use benches::pairs::Pair;
-use benches::shapes::Shape;
+use benches::shapes::{Shape, hull_points};
 use benches::{w1_ray_cast, w2_linear_cast, w3_distance, w3b_intersect};
-use convex_support::glam::DVec3;
+use convex_support::Polytope;
+use convex_support::glam::{DVec2, DVec3};
+use gjk_raycast::{Ray, RayCastOptions};
 
 /// Queries of a row that are run.
 const QUERIES: usize = 500;
@@ -18,30 +20,57 @@ const QUERIES: usize = 500;
 /// A name, and how to make it.
 type Row = (&'static str, fn() -> Solver);
 
-/// Six rows that stand for the rest: polytope, smooth and rounded bodies, small and large, each kind of query.
-const ROWS: [Row; 6] = [
-    ("ray_cast/cuboid", || ray_cast("cuboid")),
-    ("ray_cast/hull1024", || ray_cast("hull1024")),
-    ("linear_cast/hull64-hull64", || {
-        let pair = Pair::named("hull64-hull64");
-        ours::linear_casts::<DVec3>(&pair, &w2_linear_cast::casts(&pair)[..QUERIES], Effort::default())
-    }),
-    ("linear_cast/capsule-capsule", || {
-        let pair = Pair::named("capsule-capsule");
-        ours::linear_casts::<DVec3>(&pair, &w2_linear_cast::casts(&pair)[..QUERIES], Effort::default())
-    }),
-    ("distance/ellipsoid-ellipsoid", || {
-        let pair = Pair::named("ellipsoid-ellipsoid");
-        ours::distances::<DVec3>(&pair, &w3_distance::queries(&pair)[..QUERIES], Effort::default())
-    }),
+/// Rows that stand for the rest: polytopes, smooth and rounded bodies, small and large, known and behind `dyn`, in space and
+/// in the plane, each kind of query.
+const ROWS: [Row; 14] = [
+    ("ray_cast/cuboid", || ray_cast("cuboid", Effort::default())),
+    ("ray_cast/hull1024", || ray_cast("hull1024", Effort::default())),
+    ("linear_cast/hull64-hull64", || linear_cast("hull64-hull64", Effort::default())),
+    ("linear_cast/capsule-capsule", || linear_cast("capsule-capsule", Effort::default())),
+    ("distance/ellipsoid-ellipsoid", || distance("ellipsoid-ellipsoid", Effort::default())),
     ("intersect/cuboid-cuboid", || {
         let pair = Pair::named("cuboid-cuboid");
         ours::intersections::<DVec3>(&pair, &w3b_intersect::queries(&pair)[..QUERIES], false, Effort::default())
     }),
+    ("ray_cast/ball", || ray_cast("ball", Effort::default())),
+    ("ray_cast/cylinder", || ray_cast("cylinder", Effort::default())),
+    ("ray_cast/plane-hull64", planar_ray_cast),
+    ("ray_cast/cuboid-dyn", || ray_cast("cuboid", boxed())),
+    ("linear_cast/cylinder-cone", || linear_cast("cylinder-cone", Effort::default())),
+    ("linear_cast/hull64-hull64-dyn", || linear_cast("hull64-hull64", boxed())),
+    ("distance/cylinder-cone", || distance("cylinder-cone", Effort::default())),
+    ("distance/cuboid-cuboid-dyn", || distance("cuboid-cuboid", boxed())),
 ];
 
-fn ray_cast(name: &str) -> Solver {
-    ours::ray_casts::<DVec3>(&Shape::named(name), &w1_ray_cast::rays(name)[..QUERIES], Effort::default())
+/// Shapes as `Box<dyn SupportMap>`.
+fn boxed() -> Effort {
+    Effort { boxed: true, ..Effort::default() }
+}
+
+fn ray_cast(name: &str, effort: Effort) -> Solver {
+    ours::ray_casts::<DVec3>(&Shape::named(name), &w1_ray_cast::rays(name)[..QUERIES], effort)
+}
+
+fn linear_cast(name: &str, effort: Effort) -> Solver {
+    let pair = Pair::named(name);
+    ours::linear_casts::<DVec3>(&pair, &w2_linear_cast::casts(&pair)[..QUERIES], effort)
+}
+
+fn distance(name: &str, effort: Effort) -> Solver {
+    let pair = Pair::named(name);
+    ours::distances::<DVec3>(&pair, &w3_distance::queries(&pair)[..QUERIES], effort)
+}
+
+/// The rays and points of `hull64`, seen along z.
+fn planar_ray_cast() -> Solver {
+    let seen = |v: [f64; 3]| DVec2::new(v[0], v[1]);
+    let target = Polytope::new(hull_points(64).into_iter().map(seen)).expect("64 points span a polygon");
+    let rays = w1_ray_cast::rays("hull64").into_iter().take(QUERIES);
+    let rays = rays.map(|ray| Ray { source: seen(ray.origin), direction: seen(ray.direction) });
+    Solver::new(rays.collect(), move |&ray| match gjk_raycast::ray_cast(&target, ray, RayCastOptions::default()) {
+        Ok(cast) => cast.outcome.hit().map_or(f64::INFINITY, |hit| hit.lambda),
+        Err(_) => f64::NAN,
+    })
 }
 
 fn main() -> ExitCode {

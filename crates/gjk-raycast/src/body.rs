@@ -1,13 +1,9 @@
-//! Shapes in the frame that algorithms work in: relative to the shape's origin, in units of a power of two near its
-//! size.
-//!
-//! Numbers of magnitude about one neither over- nor underflow when they are multiplied a few times, in `f32` as in
-//! `f64`; and since the unit is a power of two, scaling a scene by one changes nothing but the unit.
+//! Shapes as algorithms see them: a core and a radius, relative to the shape's origin and in [units](crate::unit) of its size.
 
 use convex_support::{CoreKind, Hint, Scalar, SupportMap, Vector};
-use num_traits::Float as _;
 
 use crate::symmetric::Symmetric;
+use crate::unit::{is_moderate, reciprocal_of_power};
 
 /// A core and its radius, as algorithms see it.
 pub(crate) trait Body {
@@ -17,18 +13,14 @@ pub(crate) trait Body {
 
     /// The support point of the core, relative to the origin and in units of `scale`.
     fn support(&mut self, direction: Self::Vector) -> (Self::Vector, Self::Witness);
-    /// The derivative of the support point at `direction` along `change`, in units of `scale`: coordinate `i` is what the Hessian
-    /// says of the change as seen along that axis.
-    fn derivative(&self, direction: Self::Vector, change: Self::Vector) -> Self::Vector {
-        Vector::from_fn(|i| self.hessian(direction, [change, Vector::axis(i)]).b)
-    }
-    /// The derivatives along two changes `u` and `w` as seen along the two, by the entries `u·Hu`, `u·Hw` and `w·Hw`.
+    /// The Hessian `H` of the support value, how fast the support point moves as the direction turns, as seen along two changes
+    /// `u` and `w`: the entries `u·Hu`, `u·Hw` and `w·Hw`.
     fn hessian(
         &self,
         direction: Self::Vector,
         changes: [Self::Vector; 2],
     ) -> Symmetric<<Self::Vector as Vector>::Scalar>;
-    /// Whether that derivative may be anything but zero.
+    /// Whether that may be anything but zero.
     fn is_curved(&self) -> bool;
     /// What positions are relative to, in the world; for a difference, that of the first shape alone, since subtracting
     /// the other's would round.
@@ -50,57 +42,6 @@ pub(crate) trait Witness<S>: Copy + Default {
 impl<S> Witness<S> for () {
     #[inline]
     fn plus(self, (): (), _weight: S) {}
-}
-
-/// A power of two near `size`, or 1 where there is none with a finite reciprocal.
-#[inline]
-pub(crate) fn power_of_two_near<S: Scalar>(size: S) -> S {
-    // Positive numbers have the order of their bits. The reciprocal is to be finite, and not subnormal: half of the largest
-    // power is near enough to it.
-    let least = S::max_value().recip().as_f64().to_bits();
-    let largest = S::max_value().as_f64().to_bits() & EXPONENT;
-    let power = size.as_f64().to_bits() & EXPONENT;
-    if power > least && power <= largest {
-        S::from_f64(f64::from_bits(power.min(largest - EXPONENT_STEP)))
-    } else {
-        S::ONE
-    }
-}
-
-/// The reciprocal of what [`power_of_two_near`] answers, by its exponent: all that follows waits for the unit.
-#[inline]
-pub(crate) fn reciprocal_of_power<S: Scalar>(power: S) -> S {
-    S::from_f64(f64::from_bits(2 * 1.0_f64.to_bits() - power.as_f64().to_bits()))
-}
-
-/// The bits of the exponent of an `f64`, and the least of them.
-const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
-const EXPONENT_STEP: u64 = 0x0010_0000_0000_0000;
-
-/// Whether products of a few such numbers, and their rounding errors, are far from over- and underflow.
-#[inline]
-pub(crate) fn is_moderate<S: Scalar>(x: S) -> bool {
-    let tiny = S::min_positive_value().sqrt().sqrt();
-    x > tiny && x < tiny.recip()
-}
-
-/// The same direction at a length that is moderate, by a power of two and so without rounding. `None` for the zero vector
-/// and where a coordinate is not finite.
-#[inline(always)]
-pub(crate) fn direction<V: Vector>(v: V) -> Option<V> {
-    if is_moderate(v.length_squared()) {
-        return Some(v);
-    }
-    // One by one, since a vector would be written to memory in other pieces than it is read in, on the way above too.
-    made_moderate(v.get(0), v.get(1), if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO })
-}
-
-#[cold]
-#[inline(never)]
-fn made_moderate<V: Vector>(x: V::Scalar, y: V::Scalar, z: V::Scalar) -> Option<V> {
-    let v = V::from_fn(|i| [x, y, z][i]);
-    let near_one = v * power_of_two_near(v.abs().max_element()).recip();
-    if is_moderate(near_one.length_squared()) { Some(near_one) } else { v.unit() }
 }
 
 /// One shape.

@@ -3,8 +3,9 @@
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Pair, PointPair, direction};
-use crate::descent::{Descent, End, Frame, Wanted, descend};
+use crate::body::{Pair, PointPair};
+use crate::gjk::{End, Frame, Gjk, GjkOptions, gjk};
+use crate::unit::moderate;
 use crate::{Distance, DistanceOptions, Iterate};
 
 /// The distance of two shapes, and where they are closest.
@@ -51,27 +52,22 @@ where
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
     let Frame { scale, per_unit, radius, noise, .. } = frame;
-    let first = options.axis.and_then(direction).or_else(|| direction(frame.offset)).unwrap_or_else(|| Vector::axis(0));
-    let mut descent = Descent::new(first);
-    if let Some(points) = pair.closest_points(offset, size) {
-        descent.begin_at(points.a - points.b + frame.offset, points, &frame);
-    }
-    let wanted = Wanted {
-        first: descent.normal,
+    let first = options.axis.and_then(moderate).or_else(|| moderate(frame.offset)).unwrap_or_else(|| Vector::axis(0));
+    let mut state = Gjk::new(first);
+    let closest = pair.closest_points(offset, size);
+    let meet = closest.is_some_and(|points| state.begin_at(points.a - points.b + frame.offset, points, &frame));
+    let options = GjkOptions {
+        first: state.normal,
         limit: options.limit * per_unit + radius,
         tolerance: options.tolerance,
-        closely: true,
+        closest_points: true,
         max_iterations: options.max_iterations,
         sub_algorithm: options.sub_algorithm,
     };
-    if descent.end != End::Overlap {
-        descend(&mut descent, &mut pair, frame, wanted, None, observer);
-    }
-    if !descent.measured {
-        let _ = descent.measure();
-    }
-    let Descent { normal, length, lower, axis, ref simplex, .. } = descent;
-    let overlap = descent.end == End::Overlap;
+    let end = if meet { End::Overlap } else { gjk(&mut state, &mut pair, frame, options, None, observer) };
+    state.ensure_measured();
+    let Gjk { normal, length, lower, axis, ref simplex, .. } = state;
+    let overlap = end == End::Overlap;
     let (mut point_a, mut point_b) = (A::Vector::ZERO, A::Vector::ZERO);
     for (weight, PointPair { a, b }) in simplex.weighted() {
         point_a += a * weight;
@@ -108,7 +104,7 @@ where
         } else {
             n
         },
-        status: descent.end.status(),
-        iterations: descent.iterations,
+        status: end.status(),
+        iterations: state.iterations,
     }
 }

@@ -52,51 +52,38 @@ extern crate std;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-mod approach;
-mod batch;
 mod body;
 mod cast;
-mod closest;
-mod curved;
-mod decrease;
-mod descent;
+mod curvature;
 mod distance;
-mod entry;
 mod error;
-mod flat;
-mod intersect;
-mod iterative;
-mod johnson;
-mod line;
+mod gjk;
+mod intersects;
+mod iterative_ray_cast;
 mod linear_cast;
-mod newton;
 mod options;
-mod osculate;
-mod piece;
-mod portal;
+mod ray;
 mod ray_cast;
-mod refine;
-mod regions;
+mod ray_casts;
 mod result;
-mod signed_volumes;
+mod scene;
 mod simplex;
-mod summit;
-mod swept;
 mod symmetric;
-mod turn;
-mod view;
+mod unit;
 
 pub use convex_support;
 
-#[cfg(feature = "rayon")]
-pub use batch::par_ray_casts;
-pub use batch::{FirstHit, Scene, SceneRayCast, ray_casts};
-pub use closest::SubAlgorithm;
 pub use distance::{distance, distance_with};
 pub use error::RayCastError;
-pub use intersect::{intersects, intersects_with};
-pub use iterative::{iterative_ray_cast, iterative_ray_cast_with};
+pub use intersects::{intersects, intersects_with};
+pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{Motion, linear_cast, linear_cast_with};
 pub use options::{CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, RayCastOptions};
-pub use ray_cast::{Ray, ray_cast, ray_cast_with};
+pub use ray::Ray;
+pub use ray_cast::{ray_cast, ray_cast_with};
+#[cfg(feature = "rayon")]
+pub use ray_casts::par_ray_casts;
+pub use ray_casts::ray_casts;
 pub use result::{Distance, Intersection, Iterate, LinearCast, LinearHit, Miss, Outcome, RayCast, RayHit, Status};
+pub use scene::{FirstHit, Scene, SceneRayCast};
+pub use simplex::SubAlgorithm;

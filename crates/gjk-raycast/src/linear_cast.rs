@@ -3,12 +3,11 @@
 use convex_support::{SupportMap, Vector};
 
 use crate::body::Pair;
-use crate::cast::{Contact, cast};
-use crate::error::RayCastError;
-use crate::ray_cast::{Ray, check_finite};
+use crate::cast::{CastHit, cast};
+use crate::ray::check_finite;
 use crate::{
-    Distance, DistanceOptions, Iterate, LinearCast, LinearCastOptions, LinearHit, Outcome, RayCastOptions,
-    distance_with,
+    Distance, DistanceOptions, Iterate, LinearCast, LinearCastOptions, LinearHit, Outcome, Ray, RayCastError,
+    RayCastOptions, distance_with,
 };
 
 /// The velocities of two shapes, in units of length per unit of time.
@@ -89,7 +88,7 @@ where
     let cast = cast(&mut body, ray, wanted, observer);
     let mut iterations = cast.iterations;
     let outcome = match cast.outcome {
-        Outcome::Hit(Contact { lambda: time, normal, spot, witness }) => {
+        Outcome::Hit(CastHit { lambda: time, normal, spot, witness }) => {
             let zero = <A::Vector as Vector>::Scalar::default();
             let point = if normal.is_none() && time == zero {
                 // The cast knows where the motion enters, which is behind the start or, sliding, ahead of it.

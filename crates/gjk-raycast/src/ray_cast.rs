@@ -1,46 +1,10 @@
 //! Where a ray enters a shape (the paper's Algorithm 3).
 
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{Scalar, SupportMap};
 
 use crate::body::Single;
-use crate::cast::{Contact, cast};
-use crate::error::RayCastError;
-use crate::{Iterate, Outcome, RayCast, RayCastOptions, RayHit};
-
-/// The ray of the points `source + λ·direction`, λ ≥ 0. The direction need not be of unit length.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray<V> {
-    /// Where it starts.
-    pub source: V,
-    /// Where it goes, and the unit of λ.
-    pub direction: V,
-}
-
-impl<V: Vector> Ray<V> {
-    /// The point at parameter `lambda`.
-    #[must_use]
-    pub fn at(&self, lambda: V::Scalar) -> V {
-        self.source + self.direction * lambda
-    }
-
-    /// The error of a ray that cannot be cast.
-    pub(crate) fn check(&self) -> Result<(), RayCastError> {
-        // Zero times what is not finite is NaN; a sum that overflows is looked at coordinate by coordinate.
-        if (self.source + self.direction).dot(V::ZERO) != V::Scalar::ZERO {
-            check_finite("source", self.source)?;
-            check_finite("direction", self.direction)?;
-        }
-        if self.direction == V::ZERO { Err(RayCastError::ZeroDirection) } else { Ok(()) }
-    }
-}
-
-pub(crate) fn check_finite<V: Vector>(parameter: &'static str, vector: V) -> Result<(), RayCastError> {
-    use num_traits::Float as _;
-    match (0..V::DIM).find(|&i| !vector.get(i).is_finite()) {
-        Some(index) => Err(RayCastError::NonFinite { parameter, index }),
-        None => Ok(()),
-    }
-}
+use crate::cast::{CastHit, cast};
+use crate::{Iterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit};
 
 /// The first point of a ray in a shape, with the normal there.
 ///
@@ -90,7 +54,7 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
     ray.check()?;
     let cast = cast(&mut Single::new(target), ray, options, observer);
     let outcome = match cast.outcome {
-        Outcome::Hit(Contact { lambda, normal, .. }) => {
+        Outcome::Hit(CastHit { lambda, normal, .. }) => {
             let point = if lambda > Scalar::ZERO { ray.at(lambda) } else { ray.source };
             Outcome::Hit(RayHit { lambda, point, normal })
         }

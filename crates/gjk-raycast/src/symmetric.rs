@@ -1,9 +1,9 @@
-//! Symmetric matrices and vectors across a ray.
+//! Symmetric matrices and vectors across an axis.
 
 use convex_support::Scalar;
 
-/// A symmetric matrix `(a b; b d)` across the ray.
-#[derive(Clone, Copy, Debug)]
+/// A symmetric matrix `(a b; b d)`.
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Symmetric<S> {
     pub(crate) a: S,
     pub(crate) b: S,
@@ -11,7 +11,9 @@ pub(crate) struct Symmetric<S> {
 }
 
 impl<S: Scalar> Symmetric<S> {
-    pub(crate) fn times(self, (x, y): (S, S)) -> (S, S) {
+    pub(crate) const ZERO: Self = Self { a: S::ZERO, b: S::ZERO, d: S::ZERO };
+
+    pub(crate) fn times(self, (x, y): Across<S>) -> Across<S> {
         (self.a * x + self.b * y, self.b * x + self.d * y)
     }
 
@@ -19,7 +21,8 @@ impl<S: Scalar> Symmetric<S> {
         self.a * self.d - self.b * self.b
     }
 
-    pub(crate) fn solve(self, (x, y): (S, S)) -> (S, S) {
+    /// `x` with `self·x` the given vector.
+    pub(crate) fn solve(self, (x, y): Across<S>) -> Across<S> {
         let inverse = self.determinant().recip();
         ((self.d * x - self.b * y) * inverse, (self.a * y - self.b * x) * inverse)
     }
@@ -34,6 +37,7 @@ impl<S: Scalar> Symmetric<S> {
         Self { a: self.a + diagonal, b: self.b, d: self.d + diagonal }
     }
 
+    /// `(1 − share)·self + share·other`.
     pub(crate) fn blend(self, other: Self, share: S) -> Self {
         let rest = S::ONE - share;
         Self {
@@ -44,25 +48,26 @@ impl<S: Scalar> Symmetric<S> {
     }
 
     /// The eigenvalue of a matrix of rank one, and its unit eigenvector.
-    pub(crate) fn eigen_of_rank_one(self) -> Option<(S, (S, S))> {
+    pub(crate) fn eigen_of_rank_one(self) -> Option<(S, Across<S>)> {
         let trace = self.a + self.d;
         let column = if self.a > self.d { (self.a, self.b) } else { (self.b, self.d) };
         let length = dot(column, column).sqrt();
         (trace > S::ZERO && length > S::ZERO).then(|| (trace, (column.0 / length, column.1 / length)))
     }
 
+    /// Whether all of it is zero, for a matrix without negative eigenvalues.
     pub(crate) fn is_zero(self) -> bool {
         self.a == S::ZERO && self.d == S::ZERO
     }
 }
 
-/// A vector across the ray, or a change of the slant.
+/// A vector across an axis, by two coordinates.
 pub(crate) type Across<S> = (S, S);
 
-pub(crate) fn dot<S: Scalar>(a: (S, S), b: (S, S)) -> S {
+pub(crate) fn dot<S: Scalar>(a: Across<S>, b: Across<S>) -> S {
     a.0 * b.0 + a.1 * b.1
 }
 
-pub(crate) fn cross<S: Scalar>(a: (S, S), b: (S, S)) -> S {
+pub(crate) fn cross<S: Scalar>(a: Across<S>, b: Across<S>) -> S {
     a.0 * b.1 - a.1 * b.0
 }

@@ -1,4 +1,4 @@
-//! Many rays against one body, and one ray against many bodies.
+//! One ray against many bodies.
 
 use alloc::vec::Vec;
 
@@ -7,60 +7,7 @@ use convex_support::{
 };
 use num_traits::Float;
 
-use crate::{Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, ray_cast};
-
-/// Rays after which a batch forgets the axis, so that its pieces can be cast on any number of threads and come out alike.
-const RAYS_PER_PIECE: usize = 256;
-
-/// Casts many rays against one shape, in their order; each begins with the axis that the one before ended with.
-///
-/// Rays that follow one another in space, those of a picture or a lidar, then take fewer support points each. Where a ray
-/// hits and where it misses is what [`ray_cast`] answers, within the same bounds; the last digits may differ from those of
-/// a cast that begins elsewhere. Every 256 rays the axis of the options is taken again.
-///
-/// ```
-/// use convex_support::{Ellipsoid, glam::DVec3};
-/// use gjk_raycast::{Ray, RayCastOptions, ray_casts};
-///
-/// let stone = Ellipsoid::new(DVec3::ZERO, DVec3::new(3.0, 2.0, 1.0), Default::default())?;
-/// let rays: Vec<_> = (0..100)
-///     .map(|i| Ray { source: DVec3::new(0.1 * f64::from(i) - 5.0, 0.0, 10.0), direction: DVec3::NEG_Z })
-///     .collect();
-/// let hits = ray_casts(&stone, &rays, RayCastOptions::default())
-///     .filter(|cast| cast.is_ok_and(|cast| cast.outcome.hit().is_some()))
-///     .count();
-/// assert_eq!(hits, 61); // from x = −3 to 3
-/// # Ok::<(), convex_support::InvalidShape>(())
-/// ```
-pub fn ray_casts<S: SupportMap + ?Sized>(
-    target: &S,
-    rays: &[Ray<S::Vector>],
-    options: RayCastOptions<S::Vector>,
-) -> impl Iterator<Item = Result<RayCast<S::Vector>, RayCastError>> {
-    rays.chunks(RAYS_PER_PIECE).flat_map(move |piece| {
-        let mut axis = options.axis;
-        piece.iter().map(move |&ray| {
-            let cast = ray_cast(target, ray, RayCastOptions { axis, ..options })?;
-            axis = match cast.outcome {
-                Outcome::Hit(hit) => hit.normal.or(axis),
-                Outcome::Miss(miss) => Some(miss.axis),
-                Outcome::Undecided => axis,
-            };
-            Ok(cast)
-        })
-    })
-}
-
-/// [`ray_casts`] on all threads of the current [rayon] pool, with the same answers to the last bit.
-#[cfg(feature = "rayon")]
-pub fn par_ray_casts<S: SupportMap + Sync + ?Sized>(
-    target: &S,
-    rays: &[Ray<S::Vector>],
-    options: RayCastOptions<S::Vector>,
-) -> Vec<Result<RayCast<S::Vector>, RayCastError>> {
-    use rayon::prelude::*;
-    rays.par_chunks(RAYS_PER_PIECE).flat_map_iter(|piece| ray_casts(target, piece, options)).collect()
-}
+use crate::{Outcome, Ray, RayCastError, RayCastOptions, RayHit, ray_cast};
 
 /// Bodies, each with a ball around it, for rays that ask which body they hit first.
 ///

@@ -22,7 +22,7 @@ use crate::simplex::MAX_POINTS;
 /// coordinate that nothing is subtracted from; from the far corner itself it would be one less the others, and lost.
 ///
 /// With the number of edges for a parameter, all of it is arithmetic on numbers in registers.
-pub(crate) struct Flat<V: Vector, const EDGES: usize> {
+pub(crate) struct AffineHull<V: Vector, const EDGES: usize> {
     y: V,
     /// The places of `y` and of the ends of the edges among the points.
     order: [usize; MAX_POINTS],
@@ -46,14 +46,14 @@ pub(crate) struct Projection<V: Vector> {
 #[inline]
 pub(crate) fn project<V: Vector>(points: &[V], v: impl FnOnce(V) -> V) -> Projection<V> {
     match points.len() {
-        1 => Flat::<V, 0>::new(points).project(v),
-        2 => Flat::<V, 1>::new(points).project(v),
-        3 => Flat::<V, 2>::new(points).project(v),
-        _ => Flat::<V, 3>::new(points).project(v),
+        1 => AffineHull::<V, 0>::new(points).project(v),
+        2 => AffineHull::<V, 1>::new(points).project(v),
+        3 => AffineHull::<V, 2>::new(points).project(v),
+        _ => AffineHull::<V, 3>::new(points).project(v),
     }
 }
 
-impl<V: Vector, const EDGES: usize> Flat<V, EDGES> {
+impl<V: Vector, const EDGES: usize> AffineHull<V, EDGES> {
     /// Of as many points as there are edges, and one more.
     #[inline(always)]
     pub(crate) fn new(points: &[V]) -> Self {

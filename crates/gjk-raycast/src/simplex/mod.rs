@@ -1,6 +1,20 @@
-//! The simplex that iterations carry: up to four points of a core, each with what it is made of.
+//! The simplex that iterations carry: up to four points of a core, each with what it is made of; and its point closest to
+//! zero.
+
+mod affine_hull;
+mod closest;
+mod johnson;
+mod regions;
+mod signed_volumes;
+mod sub_algorithm;
 
 use convex_support::{Scalar, Vector};
+
+use crate::body::Witness;
+pub(crate) use affine_hull::{AffineHull, project};
+pub(crate) use closest::{Closest, closest_in_face, nearest_face};
+pub(crate) use regions::{cross, nearest};
+pub use sub_algorithm::SubAlgorithm;
 
 /// As many points as a simplex in 3D can have.
 pub(crate) const MAX_POINTS: usize = 4;
@@ -50,6 +64,14 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
         self.len = self.len.saturating_sub(1);
     }
 
+    /// Takes a point away; the others keep their order.
+    pub(crate) fn remove(&mut self, index: usize) {
+        self.points[index..self.len].rotate_left(1);
+        self.along[index..self.len].rotate_left(1);
+        self.witnesses[index..self.len].rotate_left(1);
+        self.pop();
+    }
+
     /// Keeps only a face, with these weights of its corners.
     pub(crate) fn retain(&mut self, face: Face, weights: [V::Scalar; MAX_POINTS]) {
         self.keep(face);
@@ -93,6 +115,14 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
             sum += point * weight;
         }
         sum
+    }
+
+    /// What the weighted sum of the points is made of.
+    pub(crate) fn weighted_witness(&self) -> W
+    where
+        W: Witness<V::Scalar>,
+    {
+        self.weighted().fold(W::default(), |sum, (weight, witness)| sum.plus(witness, weight))
     }
 
     /// The mean of the points.

@@ -2,29 +2,29 @@
 
 use convex_support::Scalar;
 
-/// How many steps without progress are borne with.
-const PATIENCE: u8 = 8;
+/// Steps without progress after which there is none to be expected.
+const MAX_STEPS_WITHOUT: u8 = 8;
 
 /// Watches a quantity that decreases in exact arithmetic, in every step, but in rounded arithmetic only mostly.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Decrease<S> {
+pub(crate) struct Progress<S> {
     least: S,
-    patience: u8,
+    steps_left: u8,
 }
 
-impl<S: Scalar> Decrease<S> {
+impl<S: Scalar> Progress<S> {
     pub(crate) fn new() -> Self {
-        Self { least: S::infinity(), patience: PATIENCE }
+        Self { least: S::infinity(), steps_left: MAX_STEPS_WITHOUT }
     }
 
     /// Takes the next value. False where it is NaN, and after too many values in a row that are no less than one before.
     pub(crate) fn goes_on(&mut self, value: S) -> bool {
         if value < self.least {
-            *self = Self { least: value, patience: PATIENCE };
+            *self = Self { least: value, steps_left: MAX_STEPS_WITHOUT };
             true
         } else {
-            self.patience = self.patience.saturating_sub(1);
-            self.patience > 0 && value >= self.least
+            self.steps_left = self.steps_left.saturating_sub(1);
+            self.steps_left > 0 && value >= self.least
         }
     }
 }

@@ -3,9 +3,8 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::closest::{Closest, nearest_face};
-use crate::flat::project;
-use crate::johnson::within;
+use crate::simplex::affine_hull::project;
+use crate::simplex::closest::{Closest, closest_in_face, nearest_face};
 use crate::simplex::{Face, MAX_POINTS, faces};
 
 /// The face of a simplex closest to zero, by the signs of volumes, areas and lengths.
@@ -22,20 +21,20 @@ use crate::simplex::{Face, MAX_POINTS, faces};
 /// queries between convex objects*, ACM Transactions on Graphics 36(3), 2017.
 pub(crate) fn signed_volumes<V: Vector>(points: &[V], dimension: usize) -> Option<Closest<V>> {
     let all = faces(points.len(), points.len()).last()?;
-    descend(points, all, dimension).or_else(|| nearest_face(points, dimension))
+    closest_below(points, all, dimension).or_else(|| nearest_face(points, dimension))
 }
 
-fn descend<V: Vector>(points: &[V], face: Face, dimension: usize) -> Option<Closest<V>> {
+fn closest_below<V: Vector>(points: &[V], face: Face, dimension: usize) -> Option<Closest<V>> {
     let zero = V::Scalar::ZERO;
     if face.len() == 1 {
-        return within(points, face, dimension);
+        return closest_in_face(points, face, dimension);
     }
     let mut corners = [V::ZERO; MAX_POINTS];
     let corners = face.of(points, &mut corners);
     let (volume, parts) = if face.len() > dimension + 1 { (zero, [zero; MAX_POINTS]) } else { volumes(corners) };
     let same = |part: V::Scalar| (part > zero && volume > zero) || (part < zero && volume < zero);
     if parts[..corners.len()].iter().all(|&part| same(part)) {
-        return within(points, face, dimension);
+        return closest_in_face(points, face, dimension);
     }
     // The foot is beyond the faces opposite to the corners with another sign.
     let members = (0..points.len()).filter(|&i| face.has(i));
@@ -44,7 +43,7 @@ fn descend<V: Vector>(points: &[V], face: Face, dimension: usize) -> Option<Clos
         if same(part) {
             continue;
         }
-        if let Some(found) = descend(points, face.without(member), dimension)
+        if let Some(found) = closest_below(points, face.without(member), dimension)
             && best.is_none_or(|b| found.v.length_squared() < b.v.length_squared())
         {
             best = Some(found);

@@ -3,8 +3,9 @@
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float;
 
-use crate::body::{Body, Pair, PointPair, Untraced, direction, is_moderate};
-use crate::descent::{Descent, End, Frame, Wanted, descend, rounding};
+use crate::body::{Body, Pair, PointPair, Untraced};
+use crate::gjk::{End, Frame, Gjk, GjkOptions, gjk, rounding};
+use crate::unit::{is_moderate, moderate};
 use crate::{IntersectOptions, Intersection, Iterate, Status};
 
 /// Whether two shapes have a point in common, decided as soon as it can be.
@@ -59,7 +60,7 @@ where
     }
     let first = match options.axis.or(shortest) {
         Some(axis) if is_moderate(axis.length_squared()) => axis,
-        axis => axis.and_then(direction).or_else(|| direction(offset)).unwrap_or_else(|| Vector::axis(0)),
+        axis => axis.and_then(moderate).or_else(|| moderate(offset)).unwrap_or_else(|| Vector::axis(0)),
     };
     let mut known = None;
     if is_moderate(size) && options.max_iterations > 0 {
@@ -107,27 +108,26 @@ where
     let size = pair.size(first.offset);
     let frame = Frame::new(pair, first.offset, size);
     let mut known = first.point.map(|point| (point * frame.per_unit, ()));
-    let mut descent = Descent::new(first.direction);
-    if let Some(PointPair { a, b }) = pair.closest_points(first.offset, size) {
-        descent.begin_at(a - b + frame.offset, (), &frame);
+    let mut state = Gjk::new(first.direction);
+    let closest = pair.closest_points(first.offset, size);
+    if closest.is_some() {
         known = None;
     }
-    let wanted = Wanted {
-        first: descent.normal,
+    let meet = closest.is_some_and(|PointPair { a, b }| state.begin_at(a - b + frame.offset, (), &frame));
+    let options = GjkOptions {
+        first: state.normal,
         limit: frame.radius,
         tolerance: Scalar::ZERO,
-        closely: false,
+        closest_points: false,
         max_iterations: options.max_iterations,
         sub_algorithm: options.sub_algorithm,
     };
-    if descent.end != End::Overlap {
-        descend(&mut descent, &mut Untraced(pair), frame, wanted, known, observer);
-    }
-    let overlap = match descent.end {
+    let end = if meet { End::Overlap } else { gjk(&mut state, &mut Untraced(pair), frame, options, known, observer) };
+    let overlap = match end {
         End::Overlap => true,
         End::Separated => false,
-        End::IterationLimit | End::Stalled => descent.lower <= frame.radius,
+        End::IterationLimit | End::Stalled => state.lower <= frame.radius,
     };
-    let axis = descent.axis.unit().filter(|_| !overlap);
-    Intersection { overlap, axis, status: descent.end.status(), iterations: descent.iterations }
+    let axis = state.axis.unit().filter(|_| !overlap);
+    Intersection { overlap, axis, status: end.status(), iterations: state.iterations }
 }

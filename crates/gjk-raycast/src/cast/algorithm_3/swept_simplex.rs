@@ -3,21 +3,20 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::flat::{Flat, project};
-use crate::line::Line;
-use crate::simplex::{Face, MAX_POINTS, faces};
+use crate::cast::line::Line;
+use crate::simplex::{AffineHull, Face, MAX_POINTS, faces, project};
 
 /// The first point of a line in a simplex swept by a ball.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Entry<V: Vector> {
+pub(super) struct Entry<V: Vector> {
     /// Where on the line.
-    pub(crate) mu: V::Scalar,
+    pub(super) mu: V::Scalar,
     /// The unit outward normal of the swept simplex there.
-    pub(crate) n: V,
+    pub(super) n: V,
     /// The face below it.
-    pub(crate) face: Face,
+    pub(super) face: Face,
     /// The barycentric coordinates of the core's point below it, one for each corner of the face.
-    pub(crate) weights: [V::Scalar; MAX_POINTS],
+    pub(super) weights: [V::Scalar; MAX_POINTS],
 }
 
 /// The entry of the line into the hull of the points, swept by `radius`, through a face that has the last point for a
@@ -27,7 +26,7 @@ pub(crate) struct Entry<V: Vector> {
 /// facets, each at distance `radius`. Where the line enters one of them, and the core's point below lies within the
 /// face, that is a point of the swept simplex; and the first such point is the entry. Without a radius only the facets
 /// count, and where there is none, what lies within `noise`.
-pub(crate) fn entry<V: Vector>(points: &[V], line: Line<V>, radius: V::Scalar, noise: V::Scalar) -> Option<Entry<V>> {
+pub(super) fn entry<V: Vector>(points: &[V], line: Line<V>, radius: V::Scalar, noise: V::Scalar) -> Option<Entry<V>> {
     let newest = points.len().checked_sub(1)?;
     let mut best: Option<Entry<V>> = None;
     for face in faces(points.len(), V::DIM).filter(|face| face.has(newest)) {
@@ -37,8 +36,8 @@ pub(crate) fn entry<V: Vector>(points: &[V], line: Line<V>, radius: V::Scalar, n
         let found = match (is_facet, corners.len()) {
             (true, 2) => enter_facet::<V, 1>(corners, line, radius, noise),
             (true, _) => enter_facet::<V, 2>(corners, line, radius, noise),
-            (false, 1) => enter_edge(&Flat::<V, 0>::new(corners), line, radius, noise),
-            (false, _) => enter_edge(&Flat::<V, 1>::new(corners), line, radius, noise),
+            (false, 1) => enter_edge(&AffineHull::<V, 0>::new(corners), line, radius, noise),
+            (false, _) => enter_edge(&AffineHull::<V, 1>::new(corners), line, radius, noise),
         };
         let Some((mu, n, weights)) = found else { continue };
         let better = |b: Entry<V>| mu < b.mu || (is_facet && radius <= noise && b.face.len() < V::DIM);
@@ -62,7 +61,7 @@ fn enter_facet<V: Vector, const EDGES: usize>(
     radius: V::Scalar,
     noise: V::Scalar,
 ) -> Found<V> {
-    let d = Flat::<V, EDGES>::new(corners).project(|_| line.direction).across;
+    let d = AffineHull::<V, EDGES>::new(corners).project(|_| line.direction).across;
     let slope = -d.length();
     // A facet along the line has nothing but rounding for d.
     if !(slope < V::Scalar::from_f64(-8.0) * V::Scalar::EPSILON) {
@@ -75,7 +74,7 @@ fn enter_facet<V: Vector, const EDGES: usize>(
     }
     let below = -line.across(n) * radius;
     // A facet that is seen as narrow as rounding has edges only: neither where it is crossed nor its slope is known.
-    let flat = Flat::<V, EDGES>::new(&seen);
+    let flat = AffineHull::<V, EDGES>::new(&seen);
     if !(flat.width() > noise) {
         return None;
     }
@@ -117,7 +116,7 @@ fn enter_facet<V: Vector, const EDGES: usize>(
 /// Seen along the flat, the line passes a point at the vector `m`, with velocity `d`. It is nearest at `μ₀ = −m·d/d·d`, and
 /// at distance `radius` half a chord earlier.
 fn enter_edge<V: Vector, const EDGES: usize>(
-    flat: &Flat<V, EDGES>,
+    flat: &AffineHull<V, EDGES>,
     line: Line<V>,
     radius: V::Scalar,
     noise: V::Scalar,

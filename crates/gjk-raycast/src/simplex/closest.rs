@@ -1,11 +1,9 @@
-//! The point of a simplex closest to zero.
+//! The point of a simplex closest to zero, found by looking at every face.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::flat::project;
-use crate::johnson::johnson;
-use crate::signed_volumes::signed_volumes;
+use crate::simplex::affine_hull::project;
 use crate::simplex::{Face, MAX_POINTS, faces};
 
 /// The point of a simplex closest to zero.
@@ -17,37 +15,6 @@ pub(crate) struct Closest<V: Vector> {
     pub(crate) face: Face,
     /// Its barycentric coordinates there, one for each corner of the face.
     pub(crate) weights: [V::Scalar; MAX_POINTS],
-}
-
-/// How the point of a simplex closest to zero, and the smallest face that contains it, are found.
-///
-/// All share the orthogonal projection that computes the point once its face is known, and the back-up where signs
-/// are inconsistent; they differ in how they find the face.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum SubAlgorithm {
-    /// The regions of the faces that the newest point is a corner of; every face where that leaves a doubt: the fastest.
-    /// Casts look at every face at once.
-    #[default]
-    Regions,
-    /// Every face is projected upon, and the nearest taken that zero projects into: the most robust.
-    NearestFace,
-    /// Johnson's determinants, as in the paper.
-    Johnson,
-    /// The signs of volumes, after Montanari, Petrinic and Barbieri.
-    SignedVolumes,
-}
-
-impl SubAlgorithm {
-    /// The closest point of the points, in a space of `dimension` dimensions: that of the vectors, or one less for points
-    /// seen along a ray, where only [`nearest_face`] applies.
-    pub(crate) fn closest<V: Vector>(self, points: &[V], dimension: usize) -> Option<Closest<V>> {
-        match self {
-            Self::Johnson if dimension == V::DIM => johnson(points, dimension),
-            Self::SignedVolumes if dimension == V::DIM => signed_volumes(points, dimension),
-            _ => nearest_face(points, dimension),
-        }
-    }
 }
 
 /// The closest point found by looking at every face, and taking the nearest of those whose affine hull comes closest
@@ -83,4 +50,14 @@ pub(crate) fn nearest_face<V: Vector>(points: &[V], dimension: usize) -> Option<
         }
     }
     best
+}
+
+/// The closest point of the affine hull of a face, if it is in the face.
+#[inline(always)]
+pub(crate) fn closest_in_face<V: Vector>(points: &[V], face: Face, dimension: usize) -> Option<Closest<V>> {
+    let mut corners = [V::ZERO; MAX_POINTS];
+    let foot = project(face.of(points, &mut corners), |corner| -corner);
+    let inside = foot.coordinates[..face.len()].iter().all(|&b| b > V::Scalar::ZERO);
+    let v = if face.len() > dimension { V::ZERO } else { -foot.across };
+    inside.then_some(Closest { v, face, weights: foot.coordinates })
 }

@@ -2,8 +2,7 @@
 
 use convex_support::{Scalar, Vector};
 
-use crate::closest::{Closest, nearest_face};
-use crate::flat::project;
+use crate::simplex::closest::{Closest, closest_in_face, nearest_face};
 use crate::simplex::{Face, MAX_POINTS, faces};
 
 /// The point of a simplex closest to zero, by Johnson's determinants.
@@ -44,15 +43,5 @@ pub(crate) fn johnson<V: Vector>(points: &[V], dimension: usize) -> Option<Close
         (0..len).all(|i| if x.has(i) { delta[x.index()][i] > zero } else { delta[x.with(i).index()][i] <= zero })
     };
     let Some(face) = faces(len, dimension + 1).find(is_answer) else { return nearest_face(points, dimension) };
-    Some(within(points, face, dimension)).flatten().or_else(|| nearest_face(points, dimension))
-}
-
-/// The closest point of the affine hull of a face, if it is in the face.
-#[inline(always)]
-pub(crate) fn within<V: Vector>(points: &[V], face: Face, dimension: usize) -> Option<Closest<V>> {
-    let mut corners = [V::ZERO; MAX_POINTS];
-    let foot = project(face.of(points, &mut corners), |corner| -corner);
-    let inside = foot.coordinates[..face.len()].iter().all(|&b| b > V::Scalar::ZERO);
-    let v = if face.len() > dimension { V::ZERO } else { -foot.across };
-    inside.then_some(Closest { v, face, weights: foot.coordinates })
+    closest_in_face(points, face, dimension).or_else(|| nearest_face(points, dimension))
 }

@@ -3,8 +3,8 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::{power_of_two_near, reciprocal_of_power};
-use crate::ray_cast::Ray;
+use crate::Ray;
+use crate::unit::{power_of_two_near, reciprocal_of_power};
 
 /// The line `foot + μ·direction`, with `direction` of unit length and the foot its point closest to zero.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +16,24 @@ pub(crate) struct Line<V: Vector> {
 impl<V: Vector> Line<V> {
     pub(crate) fn at(&self, mu: V::Scalar) -> V {
         self.foot + self.direction * mu
+    }
+
+    /// Unit vectors across the line and one another, after Duff et al., *Building an orthonormal basis, revisited* (2017);
+    /// the second is zero in the plane.
+    #[inline(always)]
+    pub(crate) fn axes(&self) -> [V; 2] {
+        let one = V::Scalar::ONE;
+        let (x, y) = (self.direction.get(0), self.direction.get(1));
+        if V::DIM == 2 {
+            return [V::from_fn(|i| [-y, x][i]), V::ZERO];
+        }
+        let z = self.direction.get(2);
+        let sign = one.copysign(z);
+        let a = -(sign + z).recip();
+        let b = x * y * a;
+        let e1 = [one + sign * x * x * a, sign * b, -sign * x];
+        let e2 = [b, sign + y * y * a, -y];
+        [V::from_fn(|i| e1[i]), V::from_fn(|i| e2[i])]
     }
 
     /// The part of `v` across the line.

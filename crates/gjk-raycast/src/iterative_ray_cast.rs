@@ -3,11 +3,9 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::power_of_two_near;
-use crate::error::RayCastError;
-use crate::line::LocalRay;
-use crate::ray_cast::Ray;
-use crate::{Iterate, Miss, Outcome, RayCast, RayCastOptions, RayHit, Status};
+use crate::cast::LocalRay;
+use crate::unit::power_of_two_near;
+use crate::{Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, Status};
 
 /// The first point of a ray in a convex set that is known by its closest points: `closest_point(x)` is the point of
 /// the set closest to `x`, which is `x` itself within the set, or `None` where that is not known.

@@ -1,0 +1,152 @@
+//! The paper's Algorithm 3, for bodies that are a core swept by a ball.
+//!
+//! Its loop moves a point `x` along the ray up to one supporting plane of the body after another, and finds the planes by GJK
+//! steps towards `x`. Three things are added to it; `docs/ray-cast.md` derives them.
+//!
+//! - As soon as the simplex of support points is pierced by the ray, the hit is bracketed: behind the last plane, and
+//!   before the point where the ray enters the simplex. From then on, the simplex is refined where it is pierced
+//!   (`refine.rs`), and no vector has to tend to zero.
+//! - Where the ray runs nearly along the planes, a step along it gains nothing, and the steps of GJK are taken across
+//!   the ray, with the whole line for `x`.
+//! - A radius is never made of support points: the simplex is swept by it.
+
+mod newton;
+mod refine;
+mod swept_simplex;
+
+use convex_support::{Scalar, Vector};
+
+use super::bracket::{Bracket, ScalarOf};
+use super::{Contact, Stop};
+use crate::Iterate;
+use crate::body::Body;
+use crate::gjk::Progress;
+use crate::simplex::{Closest, MAX_POINTS, Simplex, project};
+use refine::refine;
+use swept_simplex::{Entry, entry};
+
+type SimplexOf<B> = Simplex<<B as Body>::Vector, <B as Body>::Witness>;
+
+/// Slopes of planes, as cosines of the angle between normal and ray, below which steps along the ray gain little.
+const GRAZING: f64 = 0.1;
+
+/// Closes the bracket, or finds a plane that the whole ray is before.
+#[cold]
+#[inline(never)]
+pub(super) fn algorithm_3<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
+    bracket: &mut Bracket<'_, B, O>,
+) -> Result<Contact<B>, Stop<B::Vector>> {
+    let mut simplex = Simplex::new();
+    match approach(bracket, &mut simplex)? {
+        Approach::Touches(contact) => Ok(contact),
+        Approach::Pierces(entry) => refine(bracket, simplex, entry),
+    }
+}
+
+/// How the approach ends.
+enum Approach<B: Body> {
+    /// At a point of the body.
+    Touches(Contact<B>),
+    /// The ray enters the swept simplex.
+    Pierces(Entry<B::Vector>),
+}
+
+/// GJK steps until the ray enters the simplex of support points, or touches the body.
+fn approach<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
+    bracket: &mut Bracket<'_, B, O>,
+    simplex: &mut SimplexOf<B>,
+) -> Result<Approach<B>, Stop<B::Vector>> {
+    let line = bracket.line();
+    // The paper's v.
+    let mut v = bracket.x();
+    let mut n = bracket.options.axis.and_then(Vector::unit).or_else(|| v.unit()).unwrap_or(-line.direction);
+    let mut across = false;
+    // The distances of the simplex from x and from the line decrease while x stays; near contact by less than
+    // rounding for a few steps, while v turns.
+    let (mut nearing, mut nearing_across) = (Progress::new(), Progress::new());
+    loop {
+        let before = bracket.low();
+        let (point, witness) = bracket.support(n, v, simplex.points())?;
+        bracket.advance(n, point)?;
+        if bracket.low() > before {
+            nearing = Progress::new();
+        }
+        if !simplex.points().contains(&point) {
+            simplex.push(point, n, witness);
+            let found = entry(simplex.points(), line, bracket.radius, bracket.noise);
+            if let Some(found) = found.filter(|e| e.mu >= bracket.earliest() - bracket.noise) {
+                return Ok(Approach::Pierces(found));
+            }
+        }
+        // The paper's step: the point of {x} − P closest to zero.
+        let x = bracket.x();
+        let Closest { v: to_x, face, weights } = closest(bracket, simplex, |p| x - p, B::Vector::DIM)?;
+        let length = to_x.norm();
+        if length - bracket.radius <= bracket.noise {
+            // x is in the body, or no farther from it than rounding.
+            simplex.retain(face, weights);
+            let contact = bracket.close_at_low(to_x, simplex.weighted_witness());
+            return contact.map(Approach::Touches).ok_or(Stop::InDoubt);
+        }
+        let slope = to_x.dot(line.direction) / length;
+        let progress = nearing.goes_on(length);
+        let grazes = slope < Scalar::ZERO && (!progress || slope > -ScalarOf::<B>::from_f64(GRAZING));
+        across |= grazes;
+        if progress && (!across || slope >= Scalar::ZERO) {
+            simplex.retain(face, weights);
+            (v, n) = (to_x, to_x / length);
+            continue;
+        }
+        // The same across the ray, with the whole line for x.
+        let Closest { v: aside, face, weights } =
+            closest(bracket, simplex, |p| line.across(line.foot - p), B::Vector::DIM - 1)?;
+        // A short vector that long ones cancelled to leans along the ray by their rounding, and a plane that leans
+        // does not stay before the whole ray.
+        v = line.across(aside);
+        simplex.retain(face, weights);
+        let length = v.norm();
+        // The body and v are each known to the noise only: where nothing brings the line nearer, both may be what is left.
+        let progress = nearing_across.goes_on(length);
+        let within = if progress { bracket.noise } else { bracket.noise + bracket.noise };
+        if length - bracket.radius <= within {
+            // With the slope of a plane ahead the ray may be past the simplex.
+            let contact = if slope < Scalar::ZERO { touch_beside(bracket, simplex, v, within) } else { None };
+            return contact.map(Approach::Touches).ok_or(Stop::InDoubt);
+        }
+        if !progress {
+            return Err(Stop::InDoubt);
+        }
+        nearing = Progress::new();
+        n = v / length;
+    }
+}
+
+/// The contact where the line comes within rounding of the simplex without entering it ahead of x.
+fn touch_beside<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
+    bracket: &mut Bracket<'_, B, O>,
+    simplex: &SimplexOf<B>,
+    v: B::Vector,
+    within: ScalarOf<B>,
+) -> Option<Contact<B>> {
+    let mut contact = bracket.close_beside(v, within, simplex.weighted_point(), simplex.weighted_witness())?;
+    // Where no plane was crossed, the ray meets the face of the simplex head-on.
+    let against = -bracket.line().direction;
+    let head_on = || project(simplex.points(), |_| against).across.unit();
+    contact.normal = contact.normal.or_else(head_on).or(Some(against));
+    Some(contact)
+}
+
+/// The point closest to zero of the simplex seen through `map`, in a space of `dimension` dimensions.
+fn closest<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
+    bracket: &Bracket<'_, B, O>,
+    simplex: &SimplexOf<B>,
+    map: impl Fn(B::Vector) -> B::Vector,
+    dimension: usize,
+) -> Result<Closest<B::Vector>, Stop<B::Vector>> {
+    let mut seen = [B::Vector::ZERO; MAX_POINTS];
+    for (s, p) in seen.iter_mut().zip(simplex.points()) {
+        *s = map(*p);
+    }
+    let points = &seen[..simplex.points().len()];
+    bracket.options.sub_algorithm.closest(points, dimension).ok_or(Stop::InDoubt)
+}

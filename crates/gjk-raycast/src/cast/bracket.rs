@@ -1,0 +1,369 @@
+//! What is certain about the first point of a ray in a body: the only code that decides about a miss, a lower bound, or
+//! whether the two bounds have met.
+//!
+//! A body lies behind each of its supporting planes, so that a ray is not in it before it has crossed the plane; and a ray
+//! is in it, at the latest, where it meets a point made of support points. The searches choose where to look, and may be as
+//! wrong as they like: what they find counts for what it is measured to be here.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use super::line::{Line, LocalRay};
+use super::{Contact, Stop};
+use crate::body::Body;
+use crate::simplex::MAX_POINTS;
+use crate::unit::{power_of_two_near, reciprocal_of_power};
+use crate::{Iterate, Ray, RayCastOptions, Status};
+
+pub(super) type ScalarOf<B> = <<B as Body>::Vector as Vector>::Scalar;
+
+/// A parameter of the line, and how far rounding may have moved it.
+#[derive(Clone, Copy, Debug)]
+struct Bound<S> {
+    at: S,
+    error: S,
+}
+
+/// Where the ray crosses a plane that the body is behind.
+#[derive(Clone, Copy, Debug)]
+struct Crossing<S> {
+    bound: Bound<S>,
+    /// The cosine at which it is crossed.
+    slope: S,
+}
+
+/// The part of a ray that its first point in a body may be on.
+pub(super) struct Bracket<'a, B: Body, O> {
+    pub(super) body: &'a mut B,
+    pub(super) ray: LocalRay<B::Vector>,
+    pub(super) options: RayCastOptions<B::Vector>,
+    pub(super) radius: ScalarOf<B>,
+    /// What rounding may have moved a plane or a point by.
+    pub(super) noise: ScalarOf<B>,
+    /// Whether the core is a single point.
+    pub(super) is_point: bool,
+    /// The unit of length.
+    pub(super) scale: ScalarOf<B>,
+    observer: O,
+    iterations: usize,
+    /// The body lies in a ball about its origin: the squared half of the chord that it cuts out of the line, negative where
+    /// the line misses it, and the half, which is then zero.
+    chord: (ScalarOf<B>, ScalarOf<B>),
+    /// Where the last plane is crossed.
+    low: Crossing<ScalarOf<B>>,
+    /// The unit normal of that plane; `None` as long as no plane was crossed.
+    normal: Option<B::Vector>,
+    /// Where the ray is in the body, at the latest.
+    high: Bound<ScalarOf<B>>,
+}
+
+impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
+    /// All of the ray, as far as it is in the ball about the body.
+    ///
+    /// Compiled into its caller, as is all that most casts need: what was just computed of the ray stays in registers.
+    #[inline(always)]
+    pub(super) fn new(body: &'a mut B, ray: Ray<B::Vector>, options: RayCastOptions<B::Vector>, observer: O) -> Self {
+        let number = ScalarOf::<B>::from_f64;
+        let zero = ScalarOf::<B>::ZERO;
+        let (origin, extent) = (body.origin(), body.extent());
+        let size = extent + body.radius();
+        let scale = power_of_two_near(if size > zero { size } else { (ray.source - origin).norm() });
+        body.set_scale(scale);
+        let per_unit = reciprocal_of_power(scale);
+        let (radius, size) = (body.radius() * per_unit, size * per_unit);
+        let ray = LocalRay::new(ray, origin, scale);
+        let reach = size * (ScalarOf::<B>::ONE + number(16.0) * ScalarOf::<B>::EPSILON);
+        let squared = reach * reach - ray.line.foot.length_squared();
+        // NaN, of a body that is none, stays NaN.
+        let half_chord = if squared < zero { zero } else { squared.sqrt() };
+        Self {
+            body,
+            ray,
+            options,
+            radius,
+            noise: number(8.0) * ScalarOf::<B>::EPSILON * size,
+            is_point: extent == zero,
+            scale,
+            observer,
+            iterations: 0,
+            chord: (squared, half_chord),
+            low: Crossing { bound: Bound { at: ray.start.max(-half_chord), error: zero }, slope: zero },
+            normal: None,
+            high: Bound { at: ScalarOf::<B>::infinity(), error: zero },
+        }
+    }
+
+    pub(super) fn line(&self) -> Line<B::Vector> {
+        self.ray.line
+    }
+
+    /// Where on the line the lower bound is.
+    pub(super) fn low(&self) -> ScalarOf<B> {
+        self.low.bound.at
+    }
+
+    /// The same, if rounding moved it as far back as it may have.
+    pub(super) fn earliest(&self) -> ScalarOf<B> {
+        self.low.bound.at - self.low.bound.error
+    }
+
+    /// The point of the line there (the paper's x).
+    pub(super) fn x(&self) -> B::Vector {
+        self.ray.line.at(self.low())
+    }
+
+    /// The cosine at which the last plane is crossed; or 1 where none was, as by a ray within the plane of a face: then the
+    /// bracket begins where the ray does.
+    fn slope_or_one(&self) -> ScalarOf<B> {
+        if self.low.slope > Scalar::ZERO { self.low.slope } else { Scalar::ONE }
+    }
+
+    /// How far the bounds may stay apart, across the last plane.
+    pub(super) fn tolerance(&self) -> ScalarOf<B> {
+        self.noise.max(self.options.tolerance)
+    }
+
+    /// Where on the line the ray ends, or leaves the ball about the body.
+    pub(super) fn end(&self) -> ScalarOf<B> {
+        self.chord.1.min(self.ray.mu(self.options.max_lambda))
+    }
+
+    /// A ray that misses the ball about the body misses the body: it begins behind the ball, ends before it, or passes it.
+    #[inline(always)]
+    pub(super) fn enter_ball(&self) -> Result<(), Stop<B::Vector>> {
+        let LocalRay { line, start, .. } = self.ray;
+        // The plane through the ray's point closest to the ball is before all of it.
+        if start > self.chord.1 {
+            Err(Stop::Miss(line.at(start).unit().unwrap_or(line.direction)))
+        } else if self.is_past_end(self.low.bound) {
+            let end = line.at(self.ray.mu(self.options.max_lambda));
+            Err(Stop::Miss(end.unit().unwrap_or(-line.direction)))
+        } else if self.chord.0 < Scalar::ZERO {
+            Err(Stop::Miss(line.foot.unit().unwrap_or(line.direction)))
+        } else {
+            Ok(())
+        }
+    }
+
+    /// The support point of the core along any vector `n`, and what it is made of.
+    ///
+    /// An observer sees it beside `v`, the vector that led to `n`, and the points of the simplex that `v` is of.
+    #[inline(always)]
+    pub(super) fn support(
+        &mut self,
+        n: B::Vector,
+        v: B::Vector,
+        simplex: &[B::Vector],
+    ) -> Result<(B::Vector, B::Witness), Stop<B::Vector>> {
+        if self.iterations >= self.options.max_iterations {
+            return Err(Stop::Exhausted(Status::IterationLimit));
+        }
+        let (point, witness) = self.body.support(n);
+        self.iterations += 1;
+        let x = self.x();
+        let mut seen = [B::Vector::ZERO; MAX_POINTS];
+        for (s, p) in seen.iter_mut().zip(simplex) {
+            *s = x - *p;
+        }
+        let (lower, upper) = (self.ray.lambda(self.low()), self.ray.lambda(self.high.at));
+        let simplex = &seen[..simplex.len().min(MAX_POINTS)];
+        let (iteration, scale) = (self.iterations - 1, self.scale);
+        (self.observer)(Iterate { iteration, simplex, v, w: x - point, scale, lower, upper });
+        if point.is_finite() { Ok((point, witness)) } else { Err(Stop::Exhausted(Status::Stalled)) }
+    }
+
+    /// Whether the ray ends before a parameter of the line, even if that is wrong by its error.
+    fn is_past_end(&self, bound: Bound<ScalarOf<B>>) -> bool {
+        self.ray.lambda(bound.at) - self.ray.error(bound.at, bound.error) > self.options.max_lambda
+    }
+
+    /// Moves the lower bound up to the plane across the unit vector `n` that supports the core at `point`, if it leaves
+    /// anything of the ray.
+    #[inline(always)]
+    pub(super) fn advance(&mut self, n: B::Vector, point: B::Vector) -> Result<(), Stop<B::Vector>> {
+        if let Some(crossing) = self.crossing(n, point)?
+            && crossing.bound.at - crossing.bound.error >= self.earliest()
+        {
+            (self.low, self.normal) = (crossing, Some(n));
+        }
+        Ok(())
+    }
+
+    /// The search ends if the plane across `n` that supports the core at `point` leaves nothing of the ray; otherwise nothing
+    /// changes. By rounding alone, the end of the ray may be where the hit is, and a ray that ends there finds the hit where a
+    /// longer one does.
+    ///
+    /// It takes the point alone: a support point that is lent to a function has to stay in memory.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn separate(&self, n: B::Vector, point: B::Vector) -> Result<(), Stop<B::Vector>> {
+        match n.unit() {
+            Some(n) => self.crossing(n, point).map(drop),
+            None => Ok(()),
+        }
+    }
+
+    /// Where the ray crosses the plane across the unit vector `n` that supports the core at `point`, if that is ahead; or that
+    /// the plane leaves nothing of the ray.
+    ///
+    /// The body is behind the plane `n·y = n·p + r`. A point `x` of the ray is before it by `n·(x − p) − r`, and if that
+    /// is positive and the ray approaches, it crosses the plane after `(n·(x − p) − r)/(−n·d)`, and not before.
+    #[inline(always)]
+    fn crossing(&self, n: B::Vector, point: B::Vector) -> Result<Option<Crossing<ScalarOf<B>>>, Stop<B::Vector>> {
+        let zero = ScalarOf::<B>::ZERO;
+        let ahead = n.dot(self.x() - point) - self.radius;
+        let slope = n.dot(self.ray.line.direction);
+        if ahead > zero && slope < zero {
+            let per_slope = -slope.recip();
+            let bound = Bound { at: self.low() + ahead * per_slope, error: self.noise * per_slope };
+            // By products: for a plane along the ray the quotients overflow.
+            let leaves_first = ahead - self.noise > (self.chord.1 - self.low()) * -slope;
+            if leaves_first || self.is_past_end(bound) {
+                return Err(Stop::Miss(n));
+            }
+            return Ok(Some(Crossing { bound, slope: -slope }));
+        }
+        if ahead > self.noise { Err(Stop::Miss(n)) } else { Ok(None) }
+    }
+
+    /// The contact where the last plane is crossed, if a point of the core, made of `witness`, is no farther than the radius
+    /// from the line at `high`, and that is no farther behind the plane than was asked for.
+    #[inline(always)]
+    pub(super) fn close(
+        &mut self,
+        point: B::Vector,
+        witness: B::Witness,
+        high: ScalarOf<B>,
+    ) -> Result<Contact<B>, Stop<B::Vector>> {
+        let aside = point - self.ray.line.at(high);
+        let within = self.radius + self.noise;
+        let gap = (high - self.low()) * self.slope_or_one();
+        let closed = gap <= self.tolerance() && gap >= -self.noise;
+        if !(closed && aside.length_squared() <= within * within) {
+            return Err(Stop::InDoubt);
+        }
+        let error = if self.low.slope > Scalar::ZERO { self.low.bound.error } else { self.noise };
+        self.high = Bound { at: high.max(self.low()), error };
+        Ok(Contact { mu: self.low(), normal: self.normal, witness })
+    }
+
+    /// The contact where the last plane is crossed, if `v`, the shortest vector there from a point of the core made of
+    /// `witness`, is no longer than the radius.
+    pub(super) fn close_at_low(&mut self, v: B::Vector, witness: B::Witness) -> Option<Contact<B>> {
+        if !(v.norm() - self.radius <= self.noise) {
+            return None;
+        }
+        self.high = self.low.bound;
+        let mut normal = self.normal;
+        if self.low() > self.ray.start {
+            // Where the search began and no plane was crossed, that of the ball about the body is the one.
+            normal = normal.or_else(|| self.x().unit()).or(Some(-self.ray.line.direction));
+        }
+        Some(Contact { mu: self.low(), normal, witness })
+    }
+
+    /// The contact where the line passes the core's `point` by the vector `v` across it, if that is no longer than the radius
+    /// and `within`; no plane need tell that. The normal is given, where that of the last plane is not the one.
+    pub(super) fn close_beside(
+        &mut self,
+        v: B::Vector,
+        within: ScalarOf<B>,
+        point: B::Vector,
+        witness: B::Witness,
+    ) -> Option<Contact<B>> {
+        if !(v.norm() - self.radius <= within) {
+            return None;
+        }
+        let mu = point.dot(self.ray.line.direction).max(self.low());
+        self.high = Bound { at: mu, error: self.noise / self.slope_or_one() };
+        // Where the ray grazes what is round, the shortest vector is the normal, and the last plane is of elsewhere. Without a
+        // radius it has no digits.
+        let normal = if self.radius > self.noise { v.unit() } else { self.normal };
+        Some(Contact { mu, normal, witness })
+    }
+
+    /// Moves the upper bound to where the line enters the hull of known points of the body, at `mu` to within `error` across a
+    /// surface that it meets at the cosine `slope`.
+    pub(super) fn enter_hull(&mut self, mu: ScalarOf<B>, error: ScalarOf<B>, slope: ScalarOf<B>) {
+        // A point of the facet may be outside of the body by rounding, and is in it where the ray is that far behind the
+        // plane that is crossed less steeply.
+        let least = if self.low.slope > Scalar::ZERO { slope.min(self.low.slope) } else { slope };
+        self.high = Bound { at: mu.max(self.low()), error: error / least };
+    }
+
+    /// How far the bounds are apart, across the last plane or across the surface that the line meets at the cosine `slope`.
+    pub(super) fn gap_to_hull(&self, slope: ScalarOf<B>) -> ScalarOf<B> {
+        (self.high.at - self.low()) * slope.max(self.low.slope)
+    }
+
+    /// The contact where the last plane is crossed, if the bounds are no farther apart than `wanted` across it or across
+    /// the surface that the line meets at the cosine `slope` behind it.
+    pub(super) fn close_to_hull(
+        &self,
+        slope: ScalarOf<B>,
+        wanted: ScalarOf<B>,
+        witness: impl FnOnce() -> B::Witness,
+    ) -> Option<Contact<B>> {
+        (self.gap_to_hull(slope) <= wanted).then(|| Contact { mu: self.low(), normal: self.normal, witness: witness() })
+    }
+
+    /// The contact where the last plane is crossed, where the line has points of the body on both sides of it, to within
+    /// `error` across a surface that it meets at the cosine `slope`.
+    pub(super) fn close_between(&mut self, error: ScalarOf<B>, slope: ScalarOf<B>, witness: B::Witness) -> Contact<B> {
+        let Bound { at, error: low_error } = self.low.bound;
+        let more = if error > Scalar::ZERO { error / slope.min(self.low.slope) } else { Scalar::ZERO };
+        self.high = Bound { at, error: low_error + more };
+        Contact { mu: at, normal: self.normal, witness }
+    }
+
+    /// The contact where the last plane is crossed, if the core has a `point` on the line, made of `witness`, that is no
+    /// farther behind the plane than rounding.
+    pub(super) fn close_at_point(&mut self, point: B::Vector, witness: B::Witness) -> Option<Contact<B>> {
+        let line = self.ray.line;
+        let aside = line.across(point - line.foot).length();
+        let mu = point.dot(line.direction);
+        let slope = self.slope_or_one();
+        let near = aside <= self.noise * ScalarOf::<B>::from_f64(0.5);
+        if !(near && (mu - self.low()) * slope <= self.noise + self.noise) {
+            return None;
+        }
+        self.high = Bound { at: mu.max(self.low()), error: self.noise / slope };
+        Some(Contact { mu: self.low(), normal: self.normal, witness })
+    }
+
+    /// Bounds on λ, for the λ of a contact if there is one. Wider by what rounding moved a crossing by, and as much again: the
+    /// support points were rounded before they came here.
+    pub(super) fn bounds(&self, contact: Option<ScalarOf<B>>) -> (ScalarOf<B>, ScalarOf<B>) {
+        let widened = |Bound { at, error }| self.ray.error(at, error + error);
+        let lower = (self.ray.lambda(self.low()) - widened(self.low.bound)).max(Scalar::ZERO);
+        let upper = self.ray.lambda(self.high.at) + widened(self.high);
+        (lower, upper.max(contact.unwrap_or(Scalar::ZERO)))
+    }
+
+    /// The axis of a plane before the whole ray, given one that is before what the last plane has left of it.
+    ///
+    /// A plane that comes nearer behind `x`, or crosses the ray ahead of it, leaves that to the last plane, or to the ball.
+    /// Both together are before the whole line: with slopes of opposite sign, `n·|m·d| + m·|n·d|` has none.
+    pub(super) fn axis_of_miss(&self, n: B::Vector) -> B::Vector {
+        let LocalRay { line, start, .. } = self.ray;
+        if self.iterations == 0 {
+            return n;
+        }
+        let zero = ScalarOf::<B>::ZERO;
+        let slope = n.dot(line.direction);
+        let other = if slope > zero && self.low() > start {
+            self.normal.or_else(|| self.x().unit())
+        } else if slope < zero && self.ray.lambda(self.chord.1) <= self.options.max_lambda {
+            line.at(self.chord.1).unit()
+        } else {
+            None
+        };
+        let other = other.filter(|m| (m.dot(line.direction) > zero) == (slope < zero));
+        other.and_then(|m| (n * m.dot(line.direction).abs() + m * slope.abs()).unit()).unwrap_or(n)
+    }
+
+    /// The number of support points taken.
+    pub(super) fn iterations(&self) -> usize {
+        self.iterations
+    }
+}

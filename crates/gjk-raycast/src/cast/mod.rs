@@ -1,0 +1,118 @@
+//! The ray cast on a body that [`ray_cast`](crate::ray_cast) and [`linear_cast`](crate::linear_cast) share.
+//!
+//! A [`Bracket`] holds what is certain; the searches only choose where to look. `docs/ray-cast.md` derives them.
+
+mod algorithm_3;
+mod bracket;
+mod line;
+mod portal;
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use crate::body::Body;
+use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCastOptions, Status};
+use algorithm_3::algorithm_3;
+use bracket::{Bracket, ScalarOf};
+pub(crate) use line::LocalRay;
+use portal::portal;
+
+/// Casts a ray, given in the world, against a body.
+pub(crate) fn cast<B: Body>(
+    body: &mut B,
+    ray: Ray<B::Vector>,
+    options: RayCastOptions<B::Vector>,
+    observer: impl FnMut(Iterate<'_, B::Vector>),
+) -> Cast<B::Vector, B::Witness> {
+    let mut bracket = Bracket::new(body, ray, options, observer);
+    let found = bracket.enter_ball().and_then(|()| search(&mut bracket));
+    conclude(&bracket, found)
+}
+
+/// The quicker search first, and Algorithm 3 where that is in doubt.
+#[inline(always)]
+fn search<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
+    bracket: &mut Bracket<'_, B, O>,
+) -> Result<Contact<B>, Stop<B::Vector>> {
+    if B::Vector::DIM == 3 && bracket.options.method == CastMethod::Portal {
+        match portal(bracket) {
+            Err(Stop::InDoubt | Stop::Touches(_)) => {}
+            found => return found,
+        }
+    }
+    algorithm_3(bracket)
+}
+
+/// Where the ray first meets the body, as a search finds it.
+pub(crate) struct Contact<B: Body> {
+    /// Where on the line.
+    mu: ScalarOf<B>,
+    /// The unit normal of a plane through that point, to rounding, that has the body behind it.
+    normal: Option<B::Vector>,
+    /// What the core's point below it is made of.
+    witness: B::Witness,
+}
+
+/// Why a search ends without a contact.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Stop<V> {
+    /// A plane across this unit vector has the body behind it, and before it all that was left of the ray.
+    Miss(V),
+    /// No more support points can be had: the iterations are used up, or the support map returned what is not finite.
+    Exhausted(Status),
+    /// This search cannot tell; another may.
+    InDoubt,
+    /// Nor can it here, where the line touches the body, to rounding; moved by this vector it runs inside.
+    Touches(V),
+}
+
+/// What [`cast`] found; λ in units of the ray's direction.
+pub(crate) struct Cast<V: Vector, W> {
+    pub(crate) outcome: Outcome<CastHit<V, W>, V>,
+    pub(crate) lower: V::Scalar,
+    pub(crate) upper: V::Scalar,
+    pub(crate) status: Status,
+    pub(crate) iterations: usize,
+    /// The unit of the hit spot and of the witness.
+    pub(crate) scale: V::Scalar,
+}
+
+/// Where the ray enters the body.
+pub(crate) struct CastHit<V: Vector, W> {
+    pub(crate) lambda: V::Scalar,
+    pub(crate) normal: Option<V>,
+    /// The hit spot, relative to the body's origin and in units of the scale.
+    pub(crate) spot: V,
+    /// What the core's point below it is made of.
+    pub(crate) witness: W,
+}
+
+/// The outcome and its bounds.
+#[inline(always)]
+fn conclude<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
+    bracket: &Bracket<'_, B, O>,
+    found: Result<Contact<B>, Stop<B::Vector>>,
+) -> Cast<B::Vector, B::Witness> {
+    let (zero, infinity) = (ScalarOf::<B>::ZERO, ScalarOf::<B>::infinity());
+    let ray = bracket.ray;
+    let (outcome, (lower, upper), status) = match found {
+        Ok(Contact { mu, normal, witness }) => {
+            let starts_inside = mu <= ray.start;
+            let lambda = if starts_inside { zero } else { ray.lambda(mu).max(zero) };
+            let (lower, upper) = bracket.bounds(Some(lambda));
+            // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
+            let outcome = if lambda > bracket.options.max_lambda {
+                Outcome::Miss(Miss { axis: normal.unwrap_or(-ray.line.direction) })
+            } else {
+                Outcome::Hit(CastHit { lambda, normal, spot: ray.line.at(mu), witness })
+            };
+            (outcome, (lower, if starts_inside { zero } else { upper }), Status::Converged)
+        }
+        Err(Stop::Miss(n)) => {
+            (Outcome::Miss(Miss { axis: bracket.axis_of_miss(n) }), (infinity, infinity), Status::Converged)
+        }
+        Err(Stop::Exhausted(status)) => (Outcome::Undecided, bracket.bounds(None), status),
+        Err(Stop::InDoubt | Stop::Touches(_)) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
+    };
+    Cast { outcome, lower, upper, status, iterations: bracket.iterations(), scale: bracket.scale }
+}

@@ -1,0 +1,336 @@
+//! A body as it is seen along a ray: support points, and planes that the ray crosses.
+//!
+//! With `e₁`, `e₂` and the unit direction `d` of the ray for axes and the line's foot for origin, a point has coordinates
+//! `(u, v, t)`, and the line is `u = v = 0`. A plane that the ray approaches has a normal `n = α₁·e₁ + α₂·e₂ − d`, and the core
+//! is behind it where `t ≥ α·(u, v) + τ`. So the hit is the lower hull of the core's points, taken at zero:
+//!
+//! ```text
+//! μ* = max over α of τ(α),   τ(α) = min over the core of t − α·(u, v).
+//! ```
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use crate::Iterate;
+use crate::body::{Body, Witness};
+use crate::cast::bracket::Bracket;
+use crate::cast::line::Line;
+use crate::cast::{Contact, Stop};
+use crate::curvature;
+use crate::symmetric::{Across, Symmetric, cross};
+
+/// A support point as it is seen along the ray.
+#[derive(Clone, Copy, Default)]
+pub(super) struct RayPoint<V: Vector, W> {
+    pub(super) u: V::Scalar,
+    pub(super) v: V::Scalar,
+    pub(super) t: V::Scalar,
+    /// The point of the core, and what it is made of.
+    pub(super) point: V,
+    pub(super) witness: W,
+    /// The plane it was found on, if the ray crosses it and the body is curved.
+    pub(super) alpha: Option<Alpha<V::Scalar>>,
+}
+
+pub(super) type RayPointOf<B> = RayPoint<<B as Body>::Vector, <B as Body>::Witness>;
+
+impl<V: Vector, W> RayPoint<V, W> {
+    pub(super) fn across(&self) -> Across<V::Scalar> {
+        (self.u, self.v)
+    }
+
+    /// Twice the area of the triangle from zero to `self` and `other`, positive if that turns left.
+    pub(super) fn cross(&self, other: &Self) -> V::Scalar {
+        cross(self.across(), other.across())
+    }
+
+    /// The vector from `self` to `to`, `(u, v)` and `t`.
+    pub(super) fn edge_to(&self, to: &Self) -> (Across<V::Scalar>, V::Scalar) {
+        ((to.u - self.u, to.v - self.v), to.t - self.t)
+    }
+}
+
+/// Zero's weights in a triangle, up to their sum: twice the areas of the triangles that zero and each two corners span.
+pub(super) fn weights_of_zero<S: Scalar>([p, q, s]: [Across<S>; 3]) -> [S; 3] {
+    [cross(q, s), cross(s, p), cross(p, q)]
+}
+
+/// A plane that the ray approaches, by the `α` of its normal `α₁·e₁ + α₂·e₂ − d`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Alpha<S> {
+    pub(super) a: S,
+    pub(super) b: S,
+}
+
+impl<S: Scalar> Alpha<S> {
+    pub(super) const ZERO: Self = Self { a: S::ZERO, b: S::ZERO };
+
+    /// The `τ` of the plane through a point.
+    pub(super) fn tau<V: Vector<Scalar = S>, W>(self, p: &RayPoint<V, W>) -> S {
+        p.t - self.a * p.u - self.b * p.v
+    }
+
+    pub(super) fn change_to(self, to: Self) -> Across<S> {
+        (to.a - self.a, to.b - self.b)
+    }
+
+    pub(super) fn across(self) -> Across<S> {
+        (self.a, self.b)
+    }
+
+    /// The length of the normal: the reciprocal of the cosine at which the ray crosses the plane.
+    pub(super) fn length(self) -> S {
+        self.length_squared().sqrt()
+    }
+
+    pub(super) fn length_squared(self) -> S {
+        S::ONE + self.a * self.a + self.b * self.b
+    }
+
+    /// Whether planes that are crossed `gap` apart along the ray are at most `distance` apart, `gap ≤ distance·|n|`.
+    pub(super) fn is_within(self, gap: S, distance: S) -> bool {
+        gap * gap.abs() <= distance * distance * self.length_squared()
+    }
+
+    pub(super) fn plane(self) -> Plane<S> {
+        Plane { a: self.a, b: self.b, c: S::ONE }
+    }
+}
+
+/// The same plane by a multiple of its normal, `a·e₁ + b·e₂ − c·d`. A support point does not wait for the division by `c`.
+#[derive(Clone, Copy)]
+pub(super) struct Plane<S> {
+    pub(super) a: S,
+    pub(super) b: S,
+    pub(super) c: S,
+}
+
+impl<S: Scalar> Plane<S> {
+    /// The plane that rises by `g` along `e` and by `h` along `f`: `e·α = g`, `f·α = h`; `c = e×f` is twice the area of the
+    /// triangle.
+    pub(super) fn rising((e, g): (Across<S>, S), (f, h): (Across<S>, S)) -> Self {
+        Self { a: g * f.1 - h * e.1, b: e.0 * h - f.0 * g, c: cross(e, f) }
+    }
+
+    /// The plane through three points.
+    pub(super) fn through<V: Vector<Scalar = S>, W>([p, q, s]: [&RayPoint<V, W>; 3]) -> Self {
+        Self::rising(p.edge_to(q), p.edge_to(s))
+    }
+
+    pub(super) fn alpha(self) -> Alpha<S> {
+        let inverse = self.c.recip();
+        Alpha { a: self.a * inverse, b: self.b * inverse }
+    }
+}
+
+/// The axes of the ray, where they cross, and the radius that is added to what is seen.
+#[derive(Clone, Copy)]
+pub(super) struct RayFrame<V: Vector> {
+    e1: V,
+    e2: V,
+    d: V,
+    /// The line's foot; or where the line only touches the body, a point nearer the body by less than rounding.
+    foot: V,
+    /// The part of the body's radius that support points are moved by: none where the search sweeps the core by itself.
+    radius: V::Scalar,
+}
+
+impl<V: Vector> RayFrame<V> {
+    #[inline(always)]
+    pub(super) fn new(line: Line<V>, radius: V::Scalar) -> Self {
+        let [e1, e2] = line.axes();
+        Self { e1, e2, d: line.direction, foot: line.foot, radius }
+    }
+
+    /// The same for the line moved by a vector across it.
+    #[inline(always)]
+    pub(super) fn moved(self, by: V) -> Self {
+        Self { foot: self.foot + by, ..self }
+    }
+
+    pub(super) fn foot(&self) -> V {
+        self.foot
+    }
+
+    pub(super) fn radius(&self) -> V::Scalar {
+        self.radius
+    }
+
+    /// The part of a vector across the ray, and the one against it.
+    #[inline(always)]
+    pub(super) fn split(&self, v: V) -> (Across<V::Scalar>, V::Scalar) {
+        ((v.dot(self.e1), v.dot(self.e2)), -v.dot(self.d))
+    }
+
+    /// The vector across the ray.
+    #[inline(always)]
+    pub(super) fn vector(&self, across: Across<V::Scalar>) -> V {
+        self.e1 * across.0 + self.e2 * across.1
+    }
+
+    /// A normal of a plane.
+    #[inline(always)]
+    pub(super) fn normal(&self, plane: Plane<V::Scalar>) -> V {
+        self.e1 * plane.a + self.e2 * plane.b - self.d * plane.c
+    }
+
+    /// The support point along any vector.
+    ///
+    /// This, and what it calls, is compiled into its callers: vectors of `f64` that pass through memory are waited for
+    /// (`docs/numerics.md`).
+    #[inline(always)]
+    pub(super) fn support<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+        &self,
+        bracket: &mut Bracket<'_, B, O>,
+        n: V,
+    ) -> Result<RayPointOf<B>, Stop<V>> {
+        let (point, witness) = bracket.support(n, n, &[])?;
+        let swept = if self.radius > Scalar::ZERO { point + n * (self.radius / n.norm()) } else { point };
+        let aside = swept - self.foot;
+        let (u, v, t) = (aside.dot(self.e1), aside.dot(self.e2), swept.dot(self.d));
+        Ok(RayPoint { u, v, t, point, witness, alpha: None })
+    }
+
+    /// The support point of a plane.
+    #[inline(always)]
+    pub(super) fn support_of<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+        &self,
+        bracket: &mut Bracket<'_, B, O>,
+        plane: Plane<V::Scalar>,
+    ) -> Result<RayPointOf<B>, Stop<V>> {
+        let mut seen = self.support(bracket, self.normal(plane))?;
+        // No polytope is asked where it was looked at along.
+        seen.alpha = bracket.body.is_curved().then(|| plane.alpha());
+        Ok(seen)
+    }
+
+    /// Whether the core's support point moves as a plane turns.
+    pub(super) fn is_curved<B: Body<Vector = V>>(&self, body: &B, n: V) -> bool {
+        body.is_curved() && !body.hessian(n, [self.e1, self.e2]).is_zero()
+    }
+
+    /// The derivative of `(u, v)` at `n`: that of the core's support point, and of the radius that it is moved by.
+    #[inline(always)]
+    pub(super) fn hessian<B: Body<Vector = V>>(&self, body: &B, n: V) -> Symmetric<V::Scalar> {
+        let core = body.hessian(n, [self.e1, self.e2]);
+        if self.radius > Scalar::ZERO {
+            curvature::swept(core, self.radius, self.split(n).0, n.length_squared())
+        } else {
+            core
+        }
+    }
+
+    /// The part across the ray, and the one against it, of the derivative of the support point at `n` as that turns against
+    /// the ray.
+    #[inline(always)]
+    pub(super) fn hessian_against<B: Body<Vector = V>>(&self, body: &B, n: V) -> (Across<V::Scalar>, V::Scalar) {
+        let against = -self.d;
+        let beside = [self.e1, self.e2].map(|e| body.hessian(n, [e, against]));
+        let (mut across, mut along) = ((beside[0].b, beside[1].b), beside[0].d);
+        if self.radius > Scalar::ZERO {
+            let (per_length, squared) = (self.radius / n.norm(), n.length_squared());
+            let (n_across, n_along) = self.split(n);
+            across.0 -= per_length * (n_across.0 * n_along / squared);
+            across.1 -= per_length * (n_across.1 * n_along / squared);
+            along += per_length * (V::Scalar::ONE - n_along * n_along / squared);
+        }
+        (across, along)
+    }
+}
+
+/// The plane that is crossed last, of those known.
+#[derive(Clone, Copy)]
+pub(super) struct BestPlane<V: Vector> {
+    pub(super) tau: V::Scalar,
+    pub(super) alpha: Alpha<V::Scalar>,
+    /// The core's support point on it.
+    point: V,
+    /// Behind this nothing of the ray is left.
+    end: V::Scalar,
+}
+
+impl<V: Vector> BestPlane<V> {
+    /// None so far, of a ray that ends at `end`.
+    #[inline(always)]
+    pub(super) fn none(end: V::Scalar) -> Self {
+        Self { tau: -V::Scalar::infinity(), alpha: Alpha::ZERO, point: V::ZERO, end }
+    }
+
+    pub(super) fn is_known(&self) -> bool {
+        self.tau > -V::Scalar::infinity()
+    }
+
+    #[inline(always)]
+    pub(super) fn set<W>(&mut self, tau: V::Scalar, alpha: Alpha<V::Scalar>, p: &RayPoint<V, W>) {
+        (self.tau, self.alpha, self.point) = (tau, alpha, p.point);
+    }
+
+    /// Begins with the plane across `n`, if the ray does not run too nearly along it.
+    #[inline(always)]
+    pub(super) fn begin<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+        &mut self,
+        bracket: &Bracket<'_, B, O>,
+        frame: &RayFrame<V>,
+        n: V,
+        p: &mut RayPoint<V, B::Witness>,
+        radius: V::Scalar,
+    ) -> Result<(), Stop<V>> {
+        let (across, facing) = frame.split(n);
+        let is_faced = facing > n.length() * V::Scalar::from_f64(0.125);
+        if is_faced {
+            let per_facing = facing.recip();
+            (self.alpha, self.point) = (Alpha { a: across.0 * per_facing, b: across.1 * per_facing }, p.point);
+            self.tau = self.alpha.tau(p) - swept(radius, self.alpha);
+            p.alpha = Some(self.alpha);
+        }
+        if !is_faced || self.tau > self.end { bracket.separate(n, p.point) } else { Ok(()) }
+    }
+
+    /// Takes the plane of a support point, if it is crossed later, and ends the search if nothing of the ray is left behind it.
+    /// Whether it is crossed later.
+    #[inline(always)]
+    pub(super) fn improve<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+        &mut self,
+        bracket: &Bracket<'_, B, O>,
+        frame: &RayFrame<V>,
+        alpha: Alpha<V::Scalar>,
+        p: &RayPoint<V, B::Witness>,
+        radius: V::Scalar,
+    ) -> Result<bool, Stop<V>> {
+        let tau = alpha.tau(p) - swept(radius, alpha);
+        if !(tau > self.tau) {
+            return Ok(false);
+        }
+        self.set(tau, alpha, p);
+        if tau > self.end {
+            bracket.separate(frame.normal(alpha.plane()), p.point)?;
+        }
+        Ok(true)
+    }
+
+    /// Closes the bracket between this plane and the weighted sum of the corners, which is on the line at `high`.
+    #[inline(always)]
+    pub(super) fn close<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+        &self,
+        bracket: &mut Bracket<'_, B, O>,
+        frame: &RayFrame<V>,
+        corners: &[RayPoint<V, B::Witness>],
+        weights: &[V::Scalar],
+        high: V::Scalar,
+    ) -> Result<Contact<B>, Stop<V>> {
+        let (mut point, mut witness) = (V::ZERO, B::Witness::default());
+        for (p, &weight) in corners.iter().zip(weights) {
+            point += p.point * weight;
+            witness = witness.plus(p.witness, weight);
+        }
+        let n = frame.normal(self.alpha.plane()).unit().ok_or(Stop::InDoubt)?;
+        bracket.advance(n, self.point)?;
+        bracket.close(point, witness, high)
+    }
+}
+
+/// How much earlier the ray crosses a plane that is moved by the radius: `ρ·|n|`.
+#[inline(always)]
+fn swept<S: Scalar>(radius: S, alpha: Alpha<S>) -> S {
+    if radius > S::ZERO { radius * alpha.length() } else { S::ZERO }
+}

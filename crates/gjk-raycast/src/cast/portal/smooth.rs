@@ -1,0 +1,142 @@
+//! The search where the body is smooth: it is replaced by the ellipsoid about its origin that osculates it, which has the same
+//! support point and Hessian where it is looked at.
+//!
+//! The support value of an ellipsoid is `h(n) = √(n·Qn)`, so its support point and Hessian are `p = Qn/h` and
+//! `H = (Q − p·pᵀ)/h`, whence `Q = h·H + p·pᵀ`. Where the ray enters it is known in closed form, and the next plane is the
+//! one there. An ellipsoid is its own model.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use super::pieces::{Piece, Pieces};
+use super::ray_frame::{Alpha, BestPlane, RayFrame, RayPointOf};
+use crate::Iterate;
+use crate::body::Body;
+use crate::cast::bracket::{Bracket, ScalarOf};
+use crate::cast::{Contact, Stop};
+use crate::symmetric::{Symmetric, dot};
+
+/// Support points of the search.
+const MAX_STEPS: usize = 12;
+
+/// Planes along the ray, between it and an ellipsoid that it misses, that do not separate it from the body.
+const MAX_MISSES: usize = 2;
+
+/// Replaces the body by the ellipsoid that osculates it, takes the plane where the ray enters that, and so on.
+pub(super) fn smooth<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
+    bracket: &mut Bracket<'_, B, O>,
+    frame: &RayFrame<B::Vector>,
+    first: B::Vector,
+) -> Result<Contact<B>, Stop<B::Vector>> {
+    let tolerance = bracket.tolerance();
+    let mut next = Next { n: first, alpha: None };
+    let mut best = BestPlane::none(bracket.end());
+    let mut pieces = Pieces::new();
+    let (mut last, mut misses) = (ScalarOf::<B>::infinity(), 0);
+    for _ in 0..MAX_STEPS {
+        let Next { n, alpha } = next;
+        let hessian = frame.hessian(bracket.body, n);
+        // Of a plane along the ray it never is, since H·n = 0 and n is across the ray.
+        if (alpha.is_some() || misses == 0) && !hessian.is_regular() {
+            return Err(Stop::InDoubt);
+        }
+        let mut p = frame.support(bracket, n)?;
+        p.alpha = alpha;
+        if let Some(alpha) = alpha {
+            best.improve(bracket, frame, alpha, &p, Scalar::ZERO)?;
+            pieces.follow(Piece { p, alpha, hessian });
+            if let Some(below) = pieces.passed(bracket.noise) {
+                if below.high < bracket.low() {
+                    return Err(Stop::InDoubt);
+                }
+                if below.high - best.tau <= tolerance * best.alpha.length() {
+                    return best.close(bracket, frame, below.corners(), below.weights(), below.high);
+                }
+            }
+            // Near the end, Newton's step H·δ = −(u, v) is the same, and does not cancel.
+            let (x, y) = hessian.solve(p.across());
+            let gain = dot((x, y), p.across());
+            if !(gain <= last * ScalarOf::<B>::from_f64(0.5)) {
+                return Err(Stop::InDoubt);
+            }
+            last = gain;
+            let small = alpha.length() * ScalarOf::<B>::from_f64(0.05);
+            if x * x + y * y <= small * small {
+                next = Next::crossed(frame, Alpha { a: alpha.a - x, b: alpha.b - y });
+                continue;
+            }
+        } else {
+            if let Some(n) = n.unit() {
+                bracket.advance(n, p.point)?;
+            }
+            if misses == MAX_MISSES {
+                return Err(Stop::InDoubt);
+            }
+        }
+        next = enter_ellipsoid(bracket, frame, n, &p, hessian)?;
+        misses += usize::from(next.alpha.is_none());
+    }
+    Err(Stop::InDoubt)
+}
+
+/// The normal of the next plane; by its `α`, if the ray crosses it.
+struct Next<V: Vector> {
+    n: V,
+    alpha: Option<Alpha<V::Scalar>>,
+}
+
+impl<V: Vector> Next<V> {
+    #[inline(always)]
+    fn crossed(frame: &RayFrame<V>, alpha: Alpha<V::Scalar>) -> Self {
+        Self { n: frame.normal(alpha.plane()), alpha: Some(alpha) }
+    }
+}
+
+/// The plane where the ray enters the ellipsoid with support point `p` and this Hessian at `n`; or if it misses that, the
+/// plane along the ray between them.
+///
+/// In the axes `e₁`, `e₂` and `−d` let `Q = (A b; bᵀ c)`, and `φ` be the line's foot. That the support point be on the line,
+/// `(A·α + b)/s = φ` with `s² = n·Qn`, gives
+///
+/// ```text
+/// α = A⁻¹(s·φ − b),   s² = (c − b·A⁻¹b)/(1 − φ·A⁻¹φ).
+/// ```
+#[inline(always)]
+fn enter_ellipsoid<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
+    bracket: &Bracket<'_, B, O>,
+    frame: &RayFrame<B::Vector>,
+    n: B::Vector,
+    p: &RayPointOf<B>,
+    hessian: Symmetric<ScalarOf<B>>,
+) -> Result<Next<B::Vector>, Stop<B::Vector>> {
+    let zero = ScalarOf::<B>::ZERO;
+    let foot = frame.split(frame.foot()).0;
+    let point = ((p.u + foot.0, p.v + foot.1), -p.t);
+    let (across, facing) = frame.split(n);
+    let h = dot(across, point.0) + facing * point.1;
+    // The last column of H, from H·n = 0 unless the plane is nearly along the ray.
+    let column = if facing * facing > n.length_squared() * ScalarOf::<B>::from_f64(0.01) {
+        let (x, y) = hessian.times(across);
+        let beside = (-x / facing, -y / facing);
+        (beside, -dot(across, beside) / facing)
+    } else {
+        frame.hessian_against(bracket.body, n)
+    };
+    let a = Symmetric {
+        a: h * hessian.a + point.0.0 * point.0.0,
+        b: h * hessian.b + point.0.0 * point.0.1,
+        d: h * hessian.d + point.0.1 * point.0.1,
+    };
+    let b = (h * column.0.0 + point.0.0 * point.1, h * column.0.1 + point.0.1 * point.1);
+    let c = h * column.1 + point.1 * point.1;
+    let (away, tilted) = (a.solve(foot), a.solve(b));
+    let rest = ScalarOf::<B>::ONE - dot(foot, away);
+    if !(h > zero) {
+        Err(Stop::InDoubt)
+    } else if rest > zero {
+        let s = ((c - dot(b, tilted)).max(zero) / rest).sqrt();
+        Ok(Next::crossed(frame, Alpha { a: s * away.0 - tilted.0, b: s * away.1 - tilted.1 }))
+    } else {
+        Ok(Next { n: frame.vector(away), alpha: None })
+    }
+}

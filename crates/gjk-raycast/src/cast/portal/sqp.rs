@@ -1,0 +1,219 @@
+//! The search where the body is curved in pieces.
+//!
+//! Near a direction where it is smooth, `τ(α) = min over the body of t − α·(u, v)` is twice differentiable: with `p(α)` the
+//! support point, its gradient is `−(u, v)` of `p`, and its Hessian is `−H`, where `H` is the derivative of `(u, v)` along `α`.
+//!
+//! Where pieces meet, such as the rims of a cylinder along its side, each is a quadratic model of its own (`pieces.rs`), and
+//! the next plane is where the least of the models is greatest (`best_plane.rs`): a step of sequential quadratic programming
+//! (Nocedal and Wright, *Numerical Optimization*, ch. 18), which for three pieces is the portal's own plane. Between two, both
+//! have to be looked at in turn, though only the one that reaches farther shows itself; so the plane is laid by a little more
+//! than the error of the older model on its side.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use super::best_plane::best_plane;
+use super::pieces::{OnLine, Piece, Pieces};
+use super::ray_frame::{Alpha, BestPlane, Plane, RayFrame, RayPoint, RayPointOf, weights_of_zero};
+use crate::Iterate;
+use crate::body::Body;
+use crate::cast::bracket::{Bracket, ScalarOf};
+use crate::cast::{Contact, Stop};
+use crate::symmetric::Symmetric;
+
+/// Support points of the search.
+const MAX_STEPS: usize = 40;
+
+/// Steps of the models that do not halve the bracket before the next one is the portal's own plane.
+const MAX_FAILURES: i32 = 3;
+
+/// Brings a portal nearer, by planes that the curvature of the body suggests as long as they close the bracket fast,
+/// and by the portal's own.
+pub(super) fn sqp<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
+    bracket: &mut Bracket<'_, B, O>,
+    frame: &RayFrame<B::Vector>,
+    mut portal: Portal<B::Vector, B::Witness>,
+    mut best: BestPlane<B::Vector>,
+) -> Result<Contact<B>, Stop<B::Vector>> {
+    let mut alpha = if portal.high.is_finite() { portal.alpha() } else { best.alpha };
+    let mut pieces = Pieces::new();
+    for p in &portal.corners {
+        pieces.push(piece(bracket, frame, *p, alpha), bracket.noise);
+    }
+    let start = bracket.low();
+    let mut steps = Steps { gap: ScalarOf::<B>::infinity(), failures: 0, error_weight: ScalarOf::<B>::ONE };
+    let mut coarse = None;
+    for _ in 0..MAX_STEPS {
+        let p = match frame.support_of(bracket, alpha.plane()) {
+            Ok(p) => p,
+            Err(_) if coarse.is_some() => break,
+            Err(stop) => return Err(stop),
+        };
+        best.improve(bracket, frame, alpha, &p, Scalar::ZERO)?;
+        let same = pieces.push(piece(bracket, frame, p, alpha), bracket.noise);
+        steps.weigh_error(same);
+        let floor = best.tau - bracket.noise * best.alpha.length();
+        portal.exchange(&p, floor);
+        if portal.high < floor {
+            // Nothing of the body is before the plane: zero was in the triangle by rounding alone.
+            portal.high = ScalarOf::<B>::infinity();
+        } else if portal.high < start {
+            break;
+        }
+        match close(bracket, frame, &best, &pieces, &portal, start, &mut coarse) {
+            Err(Stop::InDoubt) => {}
+            found => return found,
+        }
+        let Some(to) = steps.next(bracket, &pieces, &portal, &best, alpha) else { break };
+        alpha = to;
+    }
+    match coarse {
+        Some(below) => best.close(bracket, frame, below.corners(), below.weights(), below.high),
+        None => Err(Stop::InDoubt),
+    }
+}
+
+/// A point's piece at the plane it was found on. A point found on a plane along the ray counts for itself alone.
+#[inline(always)]
+fn piece<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
+    bracket: &Bracket<'_, B, O>,
+    frame: &RayFrame<B::Vector>,
+    p: RayPointOf<B>,
+    alpha: Alpha<ScalarOf<B>>,
+) -> Piece<B::Vector, B::Witness> {
+    match p.alpha {
+        Some(alpha) => Piece { p, alpha, hessian: frame.hessian(bracket.body, frame.normal(alpha.plane())) },
+        None => Piece { p, alpha, hessian: Symmetric::ZERO },
+    }
+}
+
+/// Closes the bracket by pieces that the line passes or a portal that it runs through.
+///
+/// At a small slope, what closes the bracket to rounding of the planes is long along the ray, and there one more plane
+/// mostly shortens it by all of the rest: `λ` is where the last plane is crossed. Meanwhile `coarse` is what closes it.
+#[inline(always)]
+fn close<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
+    bracket: &mut Bracket<'_, B, O>,
+    frame: &RayFrame<B::Vector>,
+    best: &BestPlane<B::Vector>,
+    pieces: &Pieces<B::Vector, B::Witness>,
+    portal: &Portal<B::Vector, B::Witness>,
+    start: ScalarOf<B>,
+    coarse: &mut Option<OnLine<B::Vector, B::Witness>>,
+) -> Result<Contact<B>, Stop<B::Vector>> {
+    let within = bracket.tolerance() * best.alpha.length();
+    let fine = (bracket.noise + bracket.noise).max(bracket.options.tolerance);
+    // A segment first, since the weights in a flat triangle may be nothing but rounding.
+    let passed = pieces.passed(bracket.noise).filter(|below| below.high >= start);
+    let enclosing = (portal.high - best.tau <= within).then(|| OnLine::from(*portal));
+    let before = *coarse;
+    for below in [&passed, &enclosing, &before].into_iter().flatten() {
+        let gap = below.high - best.tau;
+        if !(gap <= within) {
+            continue;
+        }
+        if before.is_none() && gap > fine {
+            *coarse = coarse.or(Some(*below));
+            continue;
+        }
+        match best.close(bracket, frame, below.corners(), below.weights(), below.high) {
+            Err(Stop::InDoubt) => {}
+            found => return found,
+        }
+    }
+    Err(Stop::InDoubt)
+}
+
+/// How well the steps go.
+struct Steps<S> {
+    /// What the last step was to leave of the bracket.
+    gap: S,
+    /// Steps in a row that did not halve it.
+    failures: i32,
+    /// How much of its error is added to an older model.
+    error_weight: S,
+}
+
+impl<S: Scalar> Steps<S> {
+    /// Too little of the error shows the same piece again; too much goes back and forth between two.
+    #[inline(always)]
+    fn weigh_error(&mut self, same_piece: bool) {
+        self.error_weight =
+            if same_piece { self.error_weight * S::from_f64(8.0) } else { S::from_f64(0.5).powi(self.failures) };
+    }
+
+    /// The next plane, if there is one.
+    #[inline(always)]
+    fn next<B: Body<Vector: Vector<Scalar = S>>, O: FnMut(Iterate<'_, B::Vector>)>(
+        &mut self,
+        bracket: &Bracket<'_, B, O>,
+        pieces: &Pieces<B::Vector, B::Witness>,
+        portal: &Portal<B::Vector, B::Witness>,
+        best: &BestPlane<B::Vector>,
+        alpha: Alpha<S>,
+    ) -> Option<Alpha<S>> {
+        let suggested = if self.failures < MAX_FAILURES || portal.high.is_infinite() {
+            best_plane(pieces.all(), alpha, bracket.noise, self.error_weight)
+        } else {
+            None
+        };
+        let gap = suggested.map_or(portal.high, |(_, value)| value.min(portal.high)) - best.tau;
+        let halved = gap <= self.gap * S::from_f64(0.5);
+        let restarts = self.failures >= MAX_FAILURES && portal.high.is_finite();
+        self.failures = if halved || restarts { 0 } else { self.failures + 1 };
+        self.gap = gap;
+        let to = match suggested {
+            Some((to, _)) => to,
+            None if portal.high.is_finite() => portal.alpha(),
+            None => return None,
+        };
+        // What is looked at twice tells nothing new.
+        (to != alpha).then_some(to)
+    }
+}
+
+/// Three points of the body, in anticlockwise order, whose triangle the line runs through; or where none is known, any, and
+/// `high` infinite.
+#[derive(Clone, Copy)]
+pub(super) struct Portal<V: Vector, W> {
+    pub(super) corners: [RayPoint<V, W>; 3],
+    /// The weights of the point where the line runs through, with sum 1.
+    pub(super) weights: [V::Scalar; 3],
+    /// Where the line runs through.
+    pub(super) high: V::Scalar,
+}
+
+impl<V: Vector, W: Copy> Portal<V, W> {
+    /// No portal, but points of the body.
+    pub(super) fn unknown(corners: [RayPoint<V, W>; 3]) -> Self {
+        Self { corners, weights: [V::Scalar::ZERO; 3], high: V::Scalar::infinity() }
+    }
+
+    /// Its plane.
+    fn alpha(&self) -> Alpha<V::Scalar> {
+        let [p, q, s] = &self.corners;
+        Plane::through([p, q, s]).alpha()
+    }
+
+    /// Puts a point in the place of one corner, if the line still runs through, and earlier; but no earlier than `floor`,
+    /// before which nothing of the body is: a triangle that is as flat as rounding may not contain zero.
+    fn exchange(&mut self, r: &RayPoint<V, W>, floor: V::Scalar) {
+        let zero = V::Scalar::ZERO;
+        for i in 0..3 {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            let (p, q) = (&self.corners[j], &self.corners[k]);
+            let weights = weights_of_zero([r.across(), p.across(), q.across()]);
+            let sum = weights[0] + weights[1] + weights[2];
+            if weights[1] >= zero && weights[2] >= zero && sum > zero {
+                let inverse = sum.recip();
+                let high = (weights[0] * r.t + weights[1] * p.t + weights[2] * q.t) * inverse;
+                if high < self.high && high >= floor {
+                    (self.corners[i], self.high) = (*r, high);
+                    (self.weights[i], self.weights[j]) = (weights[0] * inverse, weights[1] * inverse);
+                    self.weights[k] = weights[2] * inverse;
+                }
+                return;
+            }
+        }
+    }
+}

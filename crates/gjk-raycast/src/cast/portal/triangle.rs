@@ -1,0 +1,261 @@
+//! The search for a triangle of support points that the line runs through, a *portal*, as near as there is one.
+//!
+//! Seen along the ray, a portal contains zero, and the ray crosses it at `Σ wᵢ·tᵢ`: a bound from above. With the portal's own
+//! plane for `α`, the support point either is on that plane, and `τ(α)` is as high; or it is before it, and of the three
+//! triangles that it spans with the edges of the portal one contains zero, and is crossed earlier. That is the simplex
+//! method for a linear programme in the two unknowns `α`, whose constraints are the support points.
+//!
+//! The name, and the search for the first portal, are those of Gary Snethen's *Minkowski portal refinement* (XenoCollide:
+//! Complex Collision Made Simple, Game Programming Gems 7, 2008), whose ray runs from a point inside of the body.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use super::ray_frame::{Alpha, BestPlane, Plane, RayFrame, RayPoint, RayPointOf};
+use super::sqp::{Portal, sqp};
+use crate::Iterate;
+use crate::body::Body;
+use crate::cast::bracket::{Bracket, ScalarOf};
+use crate::cast::{Contact, Stop};
+use crate::symmetric::dot;
+
+/// Support points until the portal has to be found; half as many where curvature may tell more.
+const MAX_OUTSIDE: usize = 16;
+
+/// Exchanges of a point that bring the portal no nearer.
+pub(super) const MAX_EXCHANGES: usize = 12;
+
+/// Closes the bracket, beginning with a plane across `first`, and with planes tilted by `tilt` until a portal is found.
+#[inline(always)]
+pub(super) fn triangle<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
+    bracket: &mut Bracket<'_, B, O>,
+    frame: &RayFrame<B::Vector>,
+    first: B::Vector,
+    tilt: ScalarOf<B>,
+) -> Result<Contact<B>, Stop<B::Vector>> {
+    let mut p = frame.support(bracket, first)?;
+    let mut best = BestPlane::none(bracket.end());
+    best.begin(bracket, frame, first, &mut p, Scalar::ZERO)?;
+    if !(dot(p.across(), p.across()) > bracket.noise * bracket.noise) {
+        // The line runs through the first one.
+        return if best.is_known() {
+            best.close(bracket, frame, &[p], &[Scalar::ONE], p.t)
+        } else {
+            Err(Stop::InDoubt)
+        };
+    }
+    let mut planes = Planes { frame, alpha: best.alpha, best, tilt };
+    let mut q = planes.opposite(bracket, &p)?;
+    match planes.enclose(bracket, &mut p, &mut q)? {
+        Some(found) => planes.shrink(bracket, found),
+        // The line passes near where the body is seen to end, too near to be enclosed by points; but an edge or a smooth
+        // piece may be found that it runs through.
+        None if planes.best.is_known() && frame.is_curved(bracket.body, frame.normal(planes.best.alpha.plane())) => {
+            sqp(bracket, frame, Portal::unknown([p, q, q]), planes.best)
+        }
+        None => Err(Stop::InDoubt),
+    }
+}
+
+/// The planes of the search: the last, the best, and how far the next one is tilted towards the line.
+struct Planes<'f, V: Vector> {
+    frame: &'f RayFrame<V>,
+    alpha: Alpha<V::Scalar>,
+    best: BestPlane<V>,
+    tilt: V::Scalar,
+}
+
+/// Three points of the body whose triangle contains zero as seen along the ray.
+struct Triangle<B: Body> {
+    corners: [RayPointOf<B>; 3],
+    /// Zero's weights, up to their sum.
+    weights: [ScalarOf<B>; 3],
+    /// Whether the corners go round anticlockwise, 1, or clockwise, −1: cheaper to keep than to put them in order.
+    turn: ScalarOf<B>,
+}
+
+impl<V: Vector> Planes<'_, V> {
+    /// The support point of a plane, which is the last one then.
+    #[inline(always)]
+    fn support<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+        &mut self,
+        bracket: &mut Bracket<'_, B, O>,
+        plane: Plane<V::Scalar>,
+    ) -> Result<RayPointOf<B>, Stop<V>> {
+        let p = self.frame.support_of(bracket, plane)?;
+        self.alpha = plane.alpha();
+        self.best.improve(bracket, self.frame, self.alpha, &p, Scalar::ZERO)?;
+        Ok(p)
+    }
+
+    /// The support point of a plane that is tilted towards `toward`; or, if that is not on that side of the line, the one
+    /// along `toward` itself.
+    #[inline(always)]
+    fn support_toward<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+        &mut self,
+        bracket: &mut Bracket<'_, B, O>,
+        plane: Plane<V::Scalar>,
+        toward: (V::Scalar, V::Scalar),
+    ) -> Result<RayPointOf<B>, Stop<V>> {
+        let p = self.support(bracket, plane)?;
+        if toward.0 * p.u + toward.1 * p.v > V::Scalar::ZERO {
+            return Ok(p);
+        }
+        self.tilt = self.tilt.max(Scalar::ONE);
+        support_across(bracket, self.frame, toward)
+    }
+
+    /// A second point on the other side of the line, of a plane that is tilted towards it.
+    #[inline(always)]
+    fn opposite<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+        &mut self,
+        bracket: &mut Bracket<'_, B, O>,
+        p: &RayPointOf<B>,
+    ) -> Result<RayPointOf<B>, Stop<V>> {
+        let squared = p.u * p.u + p.v * p.v;
+        let toward = (-p.u, -p.v);
+        let rise = self.tilt * (self.alpha.length_squared() * squared).sqrt();
+        let Alpha { a, b } = self.alpha;
+        let plane = Plane { a: a * squared + toward.0 * rise, b: b * squared + toward.1 * rise, c: squared };
+        self.support_toward(bracket, plane, toward)
+    }
+
+    /// A third point such that the triangle contains zero. `None` where there are too many that do not.
+    #[inline(always)]
+    fn enclose<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+        &mut self,
+        bracket: &mut Bracket<'_, B, O>,
+        p: &mut RayPointOf<B>,
+        q: &mut RayPointOf<B>,
+    ) -> Result<Option<Triangle<B>>, Stop<V>> {
+        let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
+        let most = if bracket.body.is_curved() { MAX_OUTSIDE / 2 } else { MAX_OUTSIDE };
+        for _ in 0..most {
+            let area = p.cross(q);
+            let turn = one.copysign(area);
+            let ((du, dv), dt) = p.edge_to(q);
+            let squared = du * du + dv * dv;
+            // The plane through both points that is tilted from the last one, towards the line: with w = (−dv, du) across
+            // the edge e, α = (dt·e + k·w)/|e|², k = α·w + tilt·√(|e|² + (α·w)²).
+            let toward = (-dv * turn, du * turn);
+            let along = dot(self.alpha.across(), toward);
+            let k = along + self.tilt * (squared + along * along).sqrt();
+            let plane = Plane { a: du * dt + toward.0 * k, b: dv * dt + toward.1 * k, c: squared };
+            let s = self.support_toward(bracket, plane, toward)?;
+            let weights = [q.cross(&s) * turn, s.cross(p) * turn, area.abs()];
+            if weights[0] >= zero && weights[1] >= zero {
+                return Ok(Some(Triangle { corners: [*p, *q, s], weights, turn }));
+            }
+            *(if weights[0] < weights[1] { &mut *p } else { &mut *q }) = s;
+        }
+        Ok(None)
+    }
+
+    /// Brings the portal nearer until the bracket closes between the best plane, at its own cosine, and the portal.
+    #[inline(always)]
+    fn shrink<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+        &mut self,
+        bracket: &mut Bracket<'_, B, O>,
+        mut portal: Triangle<B>,
+    ) -> Result<Contact<B>, Stop<V>> {
+        let tolerance = bracket.tolerance();
+        let mut last = V::Scalar::infinity();
+        let mut exchanges = MAX_EXCHANGES;
+        loop {
+            let [w0, w1, w2] = portal.weights;
+            let sum = w0 + w1 + w2;
+            if !(sum > Scalar::ZERO) {
+                return Err(Stop::InDoubt);
+            }
+            let plane = portal.plane(sum);
+            let inverse = sum.recip();
+            let [p, q, s] = &portal.corners;
+            let high = (w0 * p.t + w1 * q.t + w2 * s.t) * inverse;
+            if !(high < last) {
+                exchanges -= 1;
+                if exchanges == 0 || !(high < V::Scalar::infinity()) {
+                    return Err(Stop::InDoubt);
+                }
+            }
+            last = high;
+            if high < bracket.earliest() {
+                // The ray begins behind the portal, in the body or past it.
+                return Err(Stop::InDoubt);
+            }
+            let closed = |best: &BestPlane<V>, alpha: Alpha<V::Scalar>| alpha.is_within(high - best.tau, tolerance);
+            let weights = portal.weights.map(|w| w * inverse);
+            if closed(&self.best, self.best.alpha) {
+                return self.best.close(bracket, self.frame, &portal.corners, &weights, high);
+            }
+            if bracket.body.is_curved() && self.frame.is_curved(bracket.body, self.frame.normal(plane)) {
+                return sqp(bracket, self.frame, portal.anticlockwise(weights, high), self.best);
+            }
+            let before = self.best.tau;
+            let r = self.support(bracket, plane)?;
+            if self.best.tau > before && closed(&self.best, self.alpha) {
+                return self.best.close(bracket, self.frame, &portal.corners, &weights, high);
+            }
+            portal.exchange(r)?;
+        }
+    }
+}
+
+impl<B: Body> Triangle<B> {
+    /// Its plane, where the sum of the weights is known.
+    #[inline(always)]
+    fn plane(&self, sum: ScalarOf<B>) -> Plane<ScalarOf<B>> {
+        let [p, q, s] = &self.corners;
+        let Plane { a, b, .. } = Plane::through([p, q, s]);
+        Plane { a: a * self.turn, b: b * self.turn, c: sum }
+    }
+
+    /// Puts a point before its plane in the place of the corner that leaves zero inside.
+    #[inline(always)]
+    fn exchange(&mut self, r: RayPointOf<B>) -> Result<(), Stop<B::Vector>> {
+        let zero = ScalarOf::<B>::ZERO;
+        let [p, q, s] = &mut self.corners;
+        let [wp, wq, ws] = self.weights;
+        let turn = self.turn;
+        let (kp, kq, ks) = (p.cross(&r) * turn, q.cross(&r) * turn, s.cross(&r) * turn);
+        if kq >= zero && kp <= zero {
+            (*s, self.weights) = (r, [kq, -kp, ws]);
+        } else if ks >= zero && kq <= zero {
+            (*p, self.weights) = (r, [wp, ks, -kq]);
+        } else if kp >= zero && ks <= zero {
+            (*q, self.weights) = (r, [-ks, wq, kp]);
+        } else {
+            return Err(Stop::InDoubt);
+        }
+        Ok(())
+    }
+
+    fn anticlockwise(&self, [wp, wq, ws]: [ScalarOf<B>; 3], high: ScalarOf<B>) -> Portal<B::Vector, B::Witness> {
+        let [p, q, s] = self.corners;
+        let (corners, weights) =
+            if self.turn > Scalar::ZERO { ([p, q, s], [wp, wq, ws]) } else { ([q, p, s], [wq, wp, ws]) };
+        Portal { corners, weights, high }
+    }
+}
+
+/// The support point along a vector across the ray, if the plane there does not separate and the point is beyond the line.
+/// Where the line touches the body there, to rounding, it is to pass a little farther inside.
+#[cold]
+#[inline(never)]
+fn support_across<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
+    bracket: &mut Bracket<'_, B, O>,
+    frame: &RayFrame<B::Vector>,
+    toward: (ScalarOf<B>, ScalarOf<B>),
+) -> Result<RayPointOf<B>, Stop<B::Vector>> {
+    let across = frame.vector(toward).unit().ok_or(Stop::InDoubt)?;
+    let p: RayPoint<_, _> = frame.support(bracket, across)?;
+    bracket.advance(across, p.point)?;
+    let beyond = (p.point - frame.foot()).dot(across) + frame.radius();
+    if beyond > Scalar::ZERO {
+        return Ok(p);
+    }
+    let inward = bracket.noise * ScalarOf::<B>::from_f64(0.5);
+    if bracket.radius == Scalar::ZERO && frame.foot() == bracket.line().foot && beyond > -inward {
+        return Err(Stop::Touches(-across * inward));
+    }
+    Err(Stop::InDoubt)
+}

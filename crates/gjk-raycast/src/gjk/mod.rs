@@ -1,0 +1,186 @@
+//! GJK: the closest points of two bodies' cores, for [`distance`](crate::distance) and [`intersects`](crate::intersects)
+//! (the paper's Algorithm 2).
+
+mod next_direction;
+mod progress;
+mod state;
+
+use convex_support::{Scalar, SupportMap, Vector};
+use num_traits::Float as _;
+
+use crate::body::{Body, Pair};
+use crate::unit::{power_of_two_near, reciprocal_of_power};
+use crate::{Iterate, Status, SubAlgorithm};
+use next_direction::NextDirection;
+pub(crate) use progress::Progress;
+pub(crate) use state::Gjk;
+
+/// Where the difference of two bodies is, and the unit it is measured in.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame<V: Vector> {
+    pub(crate) scale: V::Scalar,
+    pub(crate) per_unit: V::Scalar,
+    /// The difference of the origins: zero lies at minus this, seen from the origin of `A − B`.
+    pub(crate) offset: V,
+    /// The radii of both bodies.
+    pub(crate) radius: V::Scalar,
+    /// What rounding may have added to any bound.
+    pub(crate) noise: V::Scalar,
+}
+
+impl<V: Vector> Frame<V> {
+    /// The frame of a pair whose origins and sizes are these, which is set to the frame's unit.
+    #[inline]
+    pub(crate) fn new<A, B>(pair: &mut Pair<'_, A, B>, offset: V, size: V::Scalar) -> Self
+    where
+        A: SupportMap<Vector = V> + ?Sized,
+        B: SupportMap<Vector = V> + ?Sized,
+    {
+        let scale = power_of_two_near(size);
+        let per_unit = reciprocal_of_power(scale);
+        pair.set_scale(scale);
+        let (radius, noise) = (pair.radius() * per_unit, rounding(size) * per_unit);
+        Self { scale, per_unit, offset: offset * per_unit, radius, noise }
+    }
+
+    /// Cores no farther apart than this touch.
+    #[inline(always)]
+    fn touching(&self) -> V::Scalar {
+        self.radius.max(self.noise)
+    }
+}
+
+/// What rounding may add to a bound on the distance of two bodies of the given size.
+#[inline]
+pub(crate) fn rounding<S: Scalar>(size: S) -> S {
+    S::from_f64(8.0) * S::EPSILON * size
+}
+
+/// Where GJK begins and when it may end; lengths in units of the frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GjkOptions<V: Vector> {
+    /// The first direction from zero to the difference, of any length but zero.
+    pub(crate) first: V,
+    /// Stop where the cores are certainly farther apart than this.
+    pub(crate) limit: V::Scalar,
+    /// Stop where the bracket is as narrow as this, relative to its lower end.
+    pub(crate) tolerance: V::Scalar,
+    /// Whether the closest points are asked for, and not only which of two bounds comes first.
+    pub(crate) closest_points: bool,
+    pub(crate) max_iterations: usize,
+    pub(crate) sub_algorithm: SubAlgorithm,
+}
+
+/// How GJK ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum End {
+    Separated,
+    Overlap,
+    IterationLimit,
+    Stalled,
+}
+
+impl End {
+    pub(crate) fn status(self) -> Status {
+        match self {
+            Self::Separated | Self::Overlap => Status::Converged,
+            Self::IterationLimit => Status::IterationLimit,
+            Self::Stalled => Status::Stalled,
+        }
+    }
+}
+
+/// A direction of any length, and that length.
+#[derive(Clone, Copy, Debug)]
+struct Direction<V: Vector> {
+    n: V,
+    length: V::Scalar,
+}
+
+/// Runs GJK on the cores until their distance is known to rounding, or to exceed the limit, or not to exceed the radii.
+///
+/// A step is first taken the fast way, by the regions of the newest point or as asked, and judged by what it achieves: one
+/// that brings the simplex no nearer is taken again by a search of all faces. The bounds that end the loop do not depend on
+/// how it came there: the lower one is that of a plane through a support point, and the upper one is measured again before
+/// it counts.
+///
+/// `known` is the support point along the first direction, if there is one; the state is a new one, or one that
+/// [began](Gjk::begin_at) with a point, and the vector to it for first direction.
+#[inline]
+pub(crate) fn gjk<B: Body>(
+    state: &mut Gjk<B::Vector, B::Witness>,
+    body: &mut B,
+    frame: Frame<B::Vector>,
+    options: GjkOptions<B::Vector>,
+    known: Option<(B::Vector, B::Witness)>,
+    observer: impl FnMut(Iterate<'_, B::Vector>),
+) -> End {
+    let end = descend(state, body, &frame, &options, known, observer);
+    // Where no progress is possible any more, the cores may be within rounding of touching.
+    if end == End::Stalled && state.length < <B::Vector as Vector>::Scalar::infinity() {
+        state.ensure_measured();
+        if state.length - frame.radius <= frame.noise {
+            return End::Overlap;
+        }
+    }
+    end
+}
+
+#[inline(always)]
+fn descend<B: Body>(
+    state: &mut Gjk<B::Vector, B::Witness>,
+    body: &mut B,
+    frame: &Frame<B::Vector>,
+    options: &GjkOptions<B::Vector>,
+    mut known: Option<(B::Vector, B::Witness)>,
+    mut observer: impl FnMut(Iterate<'_, B::Vector>),
+) -> End {
+    let mut nearing = Progress::new();
+    let mut looked = Direction { n: options.first, length: options.first.length() };
+    let mut next_direction = NextDirection::new(options.closest_points && body.is_curved(), frame.noise);
+    while state.iterations < options.max_iterations {
+        let (point, witness) = known.take().unwrap_or_else(|| body.support(-looked.n));
+        let w = point + frame.offset;
+        let Some(reach) = state.advance(looked, w) else { return End::Stalled };
+        observer(state.iterate(w, frame.scale));
+        if state.lower > options.limit + frame.noise {
+            // The first support points are a bound from above, if nothing better is known.
+            if options.closest_points && state.simplex.points().is_empty() {
+                state.simplex.push(w, -looked.n, witness);
+            }
+            return End::Separated;
+        }
+        let seems_closed = state.is_closed(frame.noise, options.tolerance);
+        if seems_closed {
+            state.ensure_measured();
+            if state.is_closed(frame.noise, options.tolerance) {
+                return if state.length - frame.radius <= frame.noise { End::Overlap } else { End::Separated };
+            }
+        }
+        state.simplex.push(w, -looked.n, witness);
+        // Where the bracket only seemed closed, the fast steps were not as good as they seemed.
+        let fast = if seems_closed { None } else { state.step(w, options.sub_algorithm) };
+        if fast.is_none() && !seems_closed && next_direction.has_turned() {
+            // A plane that was turned away from the shortest vector may be the better bound without its support point
+            // bringing the simplex nearer.
+            state.simplex.pop();
+            looked = next_direction.turn_again(body, state, looked, w, reach);
+            continue;
+        }
+        let Some(mut v) = fast.or_else(|| state.step_by_all_faces(&mut nearing)) else {
+            // The fast steps' normal of a sliver leans by its rounding, and what supports the body along it may be a corner
+            // already. Measured, it shows another.
+            state.ensure_measured();
+            if looked.n != state.normal && nearing.goes_on(state.length) {
+                looked = state.along_normal();
+                continue;
+            }
+            return End::Stalled;
+        };
+        if state.overlaps(frame.touching(), &mut v) {
+            return End::Overlap;
+        }
+        looked = next_direction.after(body, state, looked, w, reach, v);
+    }
+    End::IterationLimit
+}

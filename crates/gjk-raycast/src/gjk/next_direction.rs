@@ -1,0 +1,295 @@
+//! Where GJK looks next: along its shortest vector, or along one that is turned from it by curvature or towards the best
+//! plane known.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use super::{Direction, Gjk};
+use crate::body::Body;
+use crate::curvature::{Turned, between, share_of_second, turned};
+use crate::simplex::cross;
+use crate::symmetric::{Symmetric, dot};
+
+/// Chooses the next direction.
+pub(super) struct NextDirection<V: Vector> {
+    curved: bool,
+    newton: Newton<V>,
+    /// Whether the last direction was chosen between the shortest vector and the best plane.
+    levelled: bool,
+}
+
+impl<V: Vector> NextDirection<V> {
+    /// `curved` where steps by curvature are worth while.
+    pub(super) fn new(curved: bool, noise: V::Scalar) -> Self {
+        Self { curved, newton: Newton::new(noise), levelled: false }
+    }
+
+    /// Whether the last direction is not that of the shortest vector.
+    pub(super) fn has_turned(&self) -> bool {
+        self.levelled || self.newton.before.is_some()
+    }
+
+    /// The direction after one that was turned, and whose support point `w`, with `reach` along it, brings the simplex no
+    /// nearer.
+    #[inline(always)]
+    pub(super) fn turn_again<B: Body<Vector = V>>(
+        &mut self,
+        body: &B,
+        state: &Gjk<V, B::Witness>,
+        looked: Direction<V>,
+        w: V,
+        reach: V::Scalar,
+    ) -> Direction<V> {
+        let turned =
+            if self.levelled { None } else { self.newton.next(body, state, w, looked.n / looked.length, reach) };
+        self.levelled = false;
+        turned.map_or_else(|| state.along_normal(), |n| Direction { n, length: Scalar::ONE })
+    }
+
+    /// The direction after a step to the shortest vector `v`, which support point `w`, with `reach` along the last one, led to.
+    #[inline(always)]
+    pub(super) fn after<B: Body<Vector = V>>(
+        &mut self,
+        body: &B,
+        state: &Gjk<V, B::Witness>,
+        looked: Direction<V>,
+        w: V,
+        reach: V::Scalar,
+        v: Direction<V>,
+    ) -> Direction<V> {
+        if self.curved {
+            let turned = self.newton.next(body, state, w, looked.n / looked.length, reach);
+            return turned.map_or(v, |n| Direction { n, length: Scalar::ONE });
+        }
+        let n = if leaves_open(state) { level(state, v) } else { V::ZERO };
+        let length = n.length();
+        // Both directions may cancel.
+        self.levelled = length > Scalar::ZERO;
+        if self.levelled { Direction { n, length } } else { v }
+    }
+}
+
+/// The shortest vector of a vertex or an edge is not trusted while the lower bound is below this part of its length.
+const TRUSTED: f64 = 0.5;
+
+/// The weight of the lower bound's axis in a direction between it and the shortest vector. Of 1.5, 2 and 3 it takes the fewest
+/// support points on average of polytopes of 8 to 1024 vertices.
+const AXIS_WEIGHT: f64 = 2.0;
+
+/// Whether the simplex leaves open where to look next, and its shortest vector says little about that. A triangle leaves
+/// nothing open, and polygons in the plane need few steps anyway.
+#[inline(always)]
+fn leaves_open<V: Vector, W: Copy + Default>(state: &Gjk<V, W>) -> bool {
+    let is_open = V::DIM == 3 && state.simplex.points().len() < V::DIM;
+    is_open && state.lower < state.length * V::Scalar::from_f64(TRUSTED)
+}
+
+/// A direction between the shortest vector `v` and the axis of the lower bound.
+///
+/// Among unit vectors, the distance of `C = A − B` from zero is the maximum of `f(n) = min n·x` over all `x` of `C`. The
+/// points known of `C` bound `f` from above, and the shortest vector of their simplex is where that bound is largest. While
+/// they are few it is far from where `f` is, and moves from side to side, as cutting planes do. So, as in level bundle
+/// methods (Lemaréchal, Nemirovskii, Nesterov, 1995), only part of the way to it is gone from the best direction known.
+/// Where an edge is closest, both its ends should stay equally far: the way is across the edge.
+#[inline(always)]
+fn level<V: Vector, W: Copy + Default>(state: &Gjk<V, W>, v: Direction<V>) -> V {
+    let mut axis = state.axis;
+    if let &[p, q] = state.simplex.points() {
+        let e = q - p;
+        axis -= e * (axis.dot(e) / e.length_squared());
+    }
+    // The sum of the unit vectors, times both lengths.
+    v.n * state.axis_length + axis * (V::Scalar::from_f64(AXIS_WEIGHT) * v.length)
+}
+
+/// Newton's method on the plane ([`curvature`](crate::curvature)), where the support map knows its curvature.
+///
+/// Among the unit vectors `n`, the distance of `C = A − B` from zero is the maximum of `f(n) = n·p(n)`, with `p(n)` the
+/// point of `C` lowest along `n`: all of `C` lies beyond the plane through it. There `p` points along `n`. With the
+/// Hessian `H` of the support value at `−n`, with `δ` the turn of `−n`, `P = p − f·n` and `ρ` the distance,
+///
+/// ```text
+/// f(n − δ) ≈ f − P·δ − δ·(H + ρ)·δ/2,   largest where   (H + ρ)·δ = −P.
+/// ```
+///
+/// `H` has no negative eigenvalue, so that the matrix is definite; the length of the shortest vector known is taken for
+/// `ρ`, which is too large at first and so shortens the first steps. Newton's steps double the digits, and then `f` and
+/// `|p|` are bounds that meet, as long as `p` moves on one smooth piece of the surface.
+///
+/// A known point of `C` that lies before the plane so foretold is on another piece, and tells that the closest point is
+/// between both. Three pieces that meet fix a plane by themselves: there GJK's own steps suffice, and they are taken too
+/// where steps by curvature do not shrink the bracket.
+struct Newton<V: Vector> {
+    noise: V::Scalar,
+    /// The support point found before the last one, and the direction it was found along.
+    last: Option<(V, V)>,
+    /// The width of the bracket before the last turn, if the last step was one.
+    before: Option<V::Scalar>,
+    /// Turns in a row that did not shrink the bracket.
+    failures: usize,
+}
+
+/// Turns that fail to halve the bracket before the next step is one of GJK.
+const MAX_FAILURES: usize = 2;
+
+/// How much lower than the first of two pieces the second is made, so that it is the one found next, relative to the
+/// bracket: more than the error of the model, by the number of failures before.
+const MODEL_ERROR: [f64; MAX_FAILURES] = [0.01, 0.2];
+
+/// A point contradicts the model where it takes away this much of the gain.
+const CONTRADICTION: f64 = 0.1;
+
+/// Two support points are of one smooth piece if the curvature at one foretells the other but for this part.
+const SAME_PIECE: f64 = 0.25;
+
+/// The largest tangent of an angle to turn by.
+const LARGEST: f64 = 0.5;
+
+impl<V: Vector> Newton<V> {
+    fn new(noise: V::Scalar) -> Self {
+        Self { noise, last: None, before: None, failures: 0 }
+    }
+
+    /// The next unit direction, after `p` was found as the lowest point along the unit vector `n`, with `reach = n·p`.
+    /// `None` where the next should be that of the shortest vector.
+    #[inline(never)]
+    fn next<B: Body<Vector = V>>(
+        &mut self,
+        body: &B,
+        state: &Gjk<V, B::Witness>,
+        p: V,
+        n: V,
+        reach: V::Scalar,
+    ) -> Option<V> {
+        let last = self.last.replace((p, -n));
+        let gap = state.length - state.lower;
+        if let Some(before) = self.before.take() {
+            if gap <= before * V::Scalar::from_f64(0.5) {
+                self.failures = 0;
+            } else {
+                self.failures += 1;
+                if self.failures >= MAX_FAILURES {
+                    self.failures = 0;
+                    return None;
+                }
+            }
+        }
+        // As far as below, the bodies are as likely to overlap.
+        if !(reach > -state.length) {
+            return None;
+        }
+        let model_error = self.noise + gap * V::Scalar::from_f64(MODEL_ERROR[self.failures]);
+        let to = self.turn(body, state, last, Piece::new(body, p, -n, reach)?, model_error)?;
+        self.before = Some(gap);
+        Some(-to)
+    }
+
+    /// The direction of the last piece, turned.
+    #[inline(always)]
+    fn turn<B: Body<Vector = V>>(
+        &self,
+        body: &B,
+        state: &Gjk<V, B::Witness>,
+        last: Option<(V, V)>,
+        piece: Piece<V>,
+        model_error: V::Scalar,
+    ) -> Option<V> {
+        // One piece: (H + ρ)·δ = −P, no farther than is sensible, and the gain of f foretold.
+        let h = piece.hessian.plus(state.length);
+        let d = h.solve((-piece.aside, V::Scalar::ZERO));
+        let size = dot(d, d).sqrt();
+        if !size.is_finite() {
+            return None;
+        }
+        let largest = V::Scalar::from_f64(LARGEST);
+        let d = if size > largest { (d.0 * (largest / size), d.1 * (largest / size)) } else { d };
+        let gain = -(piece.aside * d.0) - dot(d, h.times(d)) * V::Scalar::from_f64(0.5);
+        let to = piece.turned_by(d)?;
+
+        // The known point that lies farthest before the plane foretold.
+        let mut least = piece.reach + gain * V::Scalar::from_f64(1.0 - CONTRADICTION) - self.noise;
+        let mut second = None;
+        let corners = state.simplex.points().iter().zip(state.simplex.along());
+        for (&point, &along) in corners.chain(last.iter().map(|(point, along)| (point, along))) {
+            let level = -to.dot(point);
+            if level < least && point != piece.point {
+                least = level;
+                second = Some((point, along));
+            }
+        }
+        match second {
+            None => Some(to),
+            Some(_) if V::DIM == 2 => None,
+            Some((point, along)) => self.turn_between(body, &piece, point, along, state.length, model_error),
+        }
+    }
+
+    /// The direction at which the last piece and that of another point, found along `from`, support one plane.
+    #[inline(always)]
+    fn turn_between<B: Body<Vector = V>>(
+        &self,
+        body: &B,
+        piece: &Piece<V>,
+        point: V,
+        from: V,
+        distance: V::Scalar,
+        model_error: V::Scalar,
+    ) -> Option<V> {
+        // The other piece, turned to the direction of the last; a vertex stays, however far the turn.
+        let from = from / from.dot(piece.along);
+        let [u, w] = piece.basis;
+        let change = piece.along - from;
+        let change = (u.dot(change), w.dot(change));
+        let hessian = body.hessian(from, piece.basis);
+        let is_vertex = hessian.is_zero();
+        let largest = V::Scalar::from_f64(LARGEST * LARGEST);
+        // NaN fails this too.
+        if !(is_vertex || dot(change, change) <= largest) {
+            return None;
+        }
+        let Turned { shift, rise, hessian } = turned(hessian, (-change.0, -change.1), change);
+        let apart = (u.dot(point) - piece.aside, w.dot(point));
+        let e = (apart.0 + shift.0, apart.1 + shift.1);
+        let foretold = V::Scalar::from_f64(SAME_PIECE) * dot(apart, apart).sqrt() + self.noise;
+        if dot(e, e) <= foretold * foretold {
+            return None;
+        }
+        let higher = -(piece.along.dot(point) + rise) - piece.reach;
+        let g = if is_vertex { higher - model_error } else { higher + model_error };
+        let p = (piece.aside, V::Scalar::ZERO);
+        let h = piece.hessian.blend(hessian, share_of_second(p, e)).plus(distance);
+        let d = between(h, p, e, g);
+        // NaN fails this too.
+        if dot(d, d) <= largest { piece.turned_by(d) } else { None }
+    }
+}
+
+/// The piece of the surface that was looked at last.
+struct Piece<V: Vector> {
+    point: V,
+    /// The unit vector it was found along, and how far zero is from its plane.
+    along: V,
+    reach: V::Scalar,
+    /// Unit vectors across it, the first along the part of the point across it, and how long that is.
+    basis: [V; 2],
+    aside: V::Scalar,
+    hessian: Symmetric<V::Scalar>,
+}
+
+impl<V: Vector> Piece<V> {
+    /// `None` where the surface is not curved there.
+    #[inline(always)]
+    fn new<B: Body<Vector = V>>(body: &B, point: V, along: V, reach: V::Scalar) -> Option<Self> {
+        let across = point + along * reach;
+        let aside = across.length();
+        let u = across / aside;
+        let basis = [u, if V::DIM == 2 { V::ZERO } else { cross(along, u) }];
+        let hessian = body.hessian(along, basis);
+        (!hessian.is_zero()).then_some(Self { point, along, reach, basis, aside, hessian })
+    }
+
+    #[inline(always)]
+    fn turned_by(&self, d: (V::Scalar, V::Scalar)) -> Option<V> {
+        (self.along + self.basis[0] * d.0 + self.basis[1] * d.1).unit()
+    }
+}

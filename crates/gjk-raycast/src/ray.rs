@@ -1,0 +1,40 @@
+//! Rays.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use crate::RayCastError;
+
+/// The ray of the points `source + λ·direction`, λ ≥ 0. The direction need not be of unit length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray<V> {
+    /// Where it starts.
+    pub source: V,
+    /// Where it goes, and the unit of λ.
+    pub direction: V,
+}
+
+impl<V: Vector> Ray<V> {
+    /// The point at parameter `lambda`.
+    #[must_use]
+    pub fn at(&self, lambda: V::Scalar) -> V {
+        self.source + self.direction * lambda
+    }
+
+    /// The error of a ray that cannot be cast.
+    pub(crate) fn check(&self) -> Result<(), RayCastError> {
+        // Zero times what is not finite is NaN; a sum that overflows is looked at coordinate by coordinate.
+        if (self.source + self.direction).dot(V::ZERO) != V::Scalar::ZERO {
+            check_finite("source", self.source)?;
+            check_finite("direction", self.direction)?;
+        }
+        if self.direction == V::ZERO { Err(RayCastError::ZeroDirection) } else { Ok(()) }
+    }
+}
+
+pub(crate) fn check_finite<V: Vector>(parameter: &'static str, vector: V) -> Result<(), RayCastError> {
+    match (0..V::DIM).find(|&i| !vector.get(i).is_finite()) {
+        Some(index) => Err(RayCastError::NonFinite { parameter, index }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,38 @@
+//! Which algorithm finds the point of a simplex closest to zero.
+
+use convex_support::Vector;
+
+use crate::simplex::closest::{Closest, nearest_face};
+use crate::simplex::johnson::johnson;
+use crate::simplex::signed_volumes::signed_volumes;
+
+/// How the point of a simplex closest to zero, and the smallest face that contains it, are found.
+///
+/// All share the orthogonal projection that computes the point once its face is known, and the back-up where signs
+/// are inconsistent; they differ in how they find the face.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum SubAlgorithm {
+    /// The regions of the faces that the newest point is a corner of; every face where that leaves a doubt: the fastest.
+    /// Casts look at every face at once.
+    #[default]
+    Regions,
+    /// Every face is projected upon, and the nearest taken that zero projects into: the most robust.
+    NearestFace,
+    /// Johnson's determinants, as in the paper.
+    Johnson,
+    /// The signs of volumes, after Montanari, Petrinic and Barbieri.
+    SignedVolumes,
+}
+
+impl SubAlgorithm {
+    /// The closest point of the points, in a space of `dimension` dimensions: that of the vectors, or one less for points
+    /// seen along a ray, where only [`nearest_face`] applies.
+    pub(crate) fn closest<V: Vector>(self, points: &[V], dimension: usize) -> Option<Closest<V>> {
+        match self {
+            Self::Johnson if dimension == V::DIM => johnson(points, dimension),
+            Self::SignedVolumes if dimension == V::DIM => signed_volumes(points, dimension),
+            _ => nearest_face(points, dimension),
+        }
+    }
+}

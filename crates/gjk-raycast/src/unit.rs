@@ -1,0 +1,58 @@
+//! The unit of length that algorithms work in: a power of two near the size of what is compared.
+//!
+//! Numbers of magnitude about one neither over- nor underflow when they are multiplied a few times, in `f32` as in
+//! `f64`; and since the unit is a power of two, scaling a scene by one changes nothing but the unit.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+/// A power of two near `size`, or 1 where there is none with a finite reciprocal.
+#[inline]
+pub(crate) fn power_of_two_near<S: Scalar>(size: S) -> S {
+    // Positive numbers have the order of their bits. The reciprocal is to be finite, and not subnormal: half of the largest
+    // power is near enough to it.
+    let least = S::max_value().recip().as_f64().to_bits();
+    let largest = S::max_value().as_f64().to_bits() & EXPONENT;
+    let power = size.as_f64().to_bits() & EXPONENT;
+    if power > least && power <= largest {
+        S::from_f64(f64::from_bits(power.min(largest - EXPONENT_STEP)))
+    } else {
+        S::ONE
+    }
+}
+
+/// The reciprocal of what [`power_of_two_near`] answers, by its exponent: all that follows waits for the unit.
+#[inline]
+pub(crate) fn reciprocal_of_power<S: Scalar>(power: S) -> S {
+    S::from_f64(f64::from_bits(2 * 1.0_f64.to_bits() - power.as_f64().to_bits()))
+}
+
+/// The bits of the exponent of an `f64`, and the least of them.
+const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
+const EXPONENT_STEP: u64 = 0x0010_0000_0000_0000;
+
+/// Whether products of a few such numbers, and their rounding errors, are far from over- and underflow.
+#[inline]
+pub(crate) fn is_moderate<S: Scalar>(x: S) -> bool {
+    let tiny = S::min_positive_value().sqrt().sqrt();
+    x > tiny && x < tiny.recip()
+}
+
+/// The same direction at a length that is moderate, by a power of two and so without rounding. `None` for the zero vector
+/// and where a coordinate is not finite.
+#[inline(always)]
+pub(crate) fn moderate<V: Vector>(v: V) -> Option<V> {
+    if is_moderate(v.length_squared()) {
+        return Some(v);
+    }
+    // One by one, since a vector would be written to memory in other pieces than it is read in, on the way above too.
+    made_moderate(v.get(0), v.get(1), if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO })
+}
+
+#[cold]
+#[inline(never)]
+fn made_moderate<V: Vector>(x: V::Scalar, y: V::Scalar, z: V::Scalar) -> Option<V> {
+    let v = V::from_fn(|i| [x, y, z][i]);
+    let near_one = v * power_of_two_near(v.abs().max_element()).recip();
+    if is_moderate(near_one.length_squared()) { Some(near_one) } else { v.unit() }
+}
