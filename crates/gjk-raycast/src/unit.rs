@@ -45,7 +45,6 @@ pub(crate) fn moderate<V: Vector>(v: V) -> Option<V> {
     if is_moderate(v.length_squared()) {
         return Some(v);
     }
-    // One by one, since a vector would be written to memory in other pieces than it is read in, on the way above too.
     made_moderate(v.get(0), v.get(1), if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO })
 }
 

@@ -59,8 +59,6 @@ pub(super) struct Bracket<'a, B: Body, O> {
 
 impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     /// All of the ray, as far as it is in the ball about the body.
-    ///
-    /// Compiled into its caller, as is all that most casts need: what was just computed of the ray stays in registers.
     #[inline(always)]
     pub(super) fn new(body: &'a mut B, ray: Ray<B::Vector>, options: RayCastOptions<B::Vector>, observer: O) -> Self {
         let number = ScalarOf::<B>::from_f64;
@@ -192,8 +190,6 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     /// The search ends if the plane across `n` that supports the core at `point` leaves nothing of the ray; otherwise nothing
     /// changes. By rounding alone, the end of the ray may be where the hit is, and a ray that ends there finds the hit where a
     /// longer one does.
-    ///
-    /// It takes the point alone: a support point that is lent to a function has to stay in memory.
     #[cold]
     #[inline(never)]
     pub(super) fn separate(&self, n: B::Vector, point: B::Vector) -> Result<(), Stop<B::Vector>> {

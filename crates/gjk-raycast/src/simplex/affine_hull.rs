@@ -20,8 +20,6 @@ use crate::simplex::MAX_POINTS;
 /// The order is for simplices with a side that zero is near to and a corner far away, as near contact. That corner's share of
 /// zero's foot is as small as the square of the distance, yet it turns the shortest vector. Being last, it is the one
 /// coordinate that nothing is subtracted from; from the far corner itself it would be one less the others, and lost.
-///
-/// With the number of edges for a parameter, all of it is arithmetic on numbers in registers.
 pub(crate) struct AffineHull<V: Vector, const EDGES: usize> {
     y: V,
     /// The places of `y` and of the ends of the edges among the points.

@@ -36,8 +36,6 @@ const FLAT: f64 = 64.0;
 ///
 /// A wrong sign costs no more than a step: whatever face is found, the points of its plane are no farther than the
 /// caller measures them to be. Only that zero is within needs proof here. `None` where no region fits.
-///
-/// It is compiled into its caller as one piece: vectors of `f64` that pass through memory are waited for.
 #[inline(always)]
 pub(crate) fn nearest<V: Vector>(points: &[V; MAX_POINTS], newest: usize, y: V) -> Option<Nearest<V>> {
     match newest {

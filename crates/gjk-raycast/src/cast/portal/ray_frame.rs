@@ -175,9 +175,6 @@ impl<V: Vector> RayFrame<V> {
     }
 
     /// The support point along any vector.
-    ///
-    /// This, and what it calls, is compiled into its callers: vectors of `f64` that pass through memory are waited for
-    /// (`docs/numerics.md`).
     #[inline(always)]
     pub(super) fn support<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
         &self,

@@ -38,8 +38,6 @@ const MAX_STEPS: usize = 32;
 
 /// Closes the bracket, or finds a plane that the whole ray is before; beginning across `first`, and with planes tilted
 /// by `tilt` until the line enters the swept points.
-///
-/// Within its caller it would be slower, for want of registers.
 #[inline(never)]
 pub(super) fn rounded<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     bracket: &mut Bracket<'_, B, O>,
