@@ -2,8 +2,8 @@
 
 use convex_support::glam::{DQuat, DVec3, Quat, Vec3A};
 use convex_support::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, InvalidShape, Polytope, Posed, Rounded,
-    Scalar, SupportMap, Vector3, line_crossing,
+    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, InvalidShape, Polytope, Posed, Rounded, Scalar,
+    SupportMap, Vector3, line_crossing,
 };
 use gjk_raycast::{
     DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, RayCastOptions, Status, SubAlgorithm,

@@ -1,6 +1,6 @@
 //! Shapes as algorithms see them: a core and a radius, relative to the shape's origin and in [units](crate::unit) of its size.
 
-use convex_support::{CoreKind, Hint, Scalar, SupportMap, Vector};
+use convex_support::{Core, CoreKind, Crossing, Hint, LineCrossing, Scalar, SupportMap, Vector};
 
 use crate::symmetric::Symmetric;
 use crate::unit::{is_moderate, reciprocal_of_power};
@@ -22,6 +22,10 @@ pub(crate) trait Body {
     ) -> Symmetric<<Self::Vector as Vector>::Scalar>;
     /// Whether that may be anything but zero.
     fn is_curved(&self) -> bool;
+    /// Where the line through `source` along `direction` is in the body, in closed form; lengths in units of `scale`.
+    fn line_crossing(&self, source: Self::Vector, direction: Self::Vector) -> LineCrossing<Self::Vector>;
+    /// What a point of the core is made of, where [`line_crossing`](Self::line_crossing) is known.
+    fn witness(&self, point: Self::Vector) -> Self::Witness;
     /// What positions are relative to, in the world; for a difference, that of the first shape alone, since subtracting
     /// the other's would round.
     fn origin(&self) -> Self::Vector;
@@ -47,13 +51,14 @@ impl<S> Witness<S> for () {
 /// One shape.
 pub(crate) struct Single<'a, S: SupportMap + ?Sized> {
     shape: &'a S,
+    core: Core<S::Vector>,
     hint: Hint,
     per_unit: <S::Vector as Vector>::Scalar,
 }
 
 impl<'a, S: SupportMap + ?Sized> Single<'a, S> {
     pub(crate) fn new(shape: &'a S) -> Self {
-        Self { shape, hint: Hint::new(), per_unit: Scalar::ONE }
+        Self { shape, core: shape.core(), hint: Hint::new(), per_unit: Scalar::ONE }
     }
 }
 
@@ -75,19 +80,28 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
 
     #[inline]
     fn is_curved(&self) -> bool {
-        matches!(self.shape.core().kind, CoreKind::Curved)
+        matches!(self.core.kind, CoreKind::Curved)
     }
 
+    #[inline(always)]
+    fn line_crossing(&self, source: S::Vector, direction: S::Vector) -> LineCrossing<S::Vector> {
+        let to_world = reciprocal_of_power(self.per_unit);
+        in_units(self.shape.core_line_crossing(source * to_world, direction, self.core.radius), self.per_unit)
+    }
+
+    #[inline(always)]
+    fn witness(&self, _point: S::Vector) {}
+
     fn origin(&self) -> S::Vector {
-        self.shape.core().origin
+        self.core.origin
     }
 
     fn radius(&self) -> <S::Vector as Vector>::Scalar {
-        self.shape.core().radius
+        self.core.radius
     }
 
     fn extent(&self) -> <S::Vector as Vector>::Scalar {
-        self.shape.core().extent
+        self.core.extent
     }
 
     fn set_scale(&mut self, scale: <S::Vector as Vector>::Scalar) {
@@ -99,6 +113,8 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
 pub(crate) struct Pair<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
     pub(crate) a: &'a A,
     pub(crate) b: &'a B,
+    pub(crate) core_a: Core<A::Vector>,
+    pub(crate) core_b: Core<A::Vector>,
     hint_a: Hint,
     hint_b: Hint,
     per_unit: <A::Vector as Vector>::Scalar,
@@ -106,7 +122,8 @@ pub(crate) struct Pair<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vec
 
 impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'a, A, B> {
     pub(crate) fn new(a: &'a A, b: &'a B) -> Self {
-        Self { a, b, hint_a: Hint::new(), hint_b: Hint::new(), per_unit: Scalar::ONE }
+        let (core_a, core_b) = (a.core(), b.core());
+        Self { a, b, core_a, core_b, hint_a: Hint::new(), hint_b: Hint::new(), per_unit: Scalar::ONE }
     }
 }
 
@@ -125,7 +142,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
         offset: A::Vector,
         size: <A::Vector as Vector>::Scalar,
     ) -> Option<PointPair<A::Vector>> {
-        let (a, b) = match (self.a.core().kind, self.b.core().kind) {
+        let (a, b) = match (self.core_a.kind, self.core_b.kind) {
             (CoreKind::Point(a), _) => (a, self.b.core_closest_point(a + offset)?),
             (_, CoreKind::Point(b)) => (self.a.core_closest_point(b - offset)?, b),
             _ => return None,
@@ -172,21 +189,45 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
 
     #[inline]
     fn is_curved(&self) -> bool {
-        matches!(self.a.core().kind, CoreKind::Curved) || matches!(self.b.core().kind, CoreKind::Curved)
+        matches!(self.core_a.kind, CoreKind::Curved) || matches!(self.core_b.kind, CoreKind::Curved)
+    }
+
+    /// Known where one of the cores is a point, and the difference is the other body moved, or turned round and moved.
+    #[inline(always)]
+    fn line_crossing(&self, source: A::Vector, direction: A::Vector) -> LineCrossing<A::Vector> {
+        let (source, radius) = (source * reciprocal_of_power(self.per_unit), self.radius());
+        let crossing = match (self.core_a.kind, self.core_b.kind) {
+            (_, CoreKind::Point(b)) => self.a.core_line_crossing(source + b, direction, radius),
+            (CoreKind::Point(a), _) => match self.b.core_line_crossing(a - source, -direction, radius) {
+                LineCrossing::Crosses(at) => LineCrossing::Crosses(Crossing { normal: -at.normal, ..at }),
+                other => other,
+            },
+            _ => LineCrossing::Unknown,
+        };
+        in_units(crossing, self.per_unit)
+    }
+
+    #[inline(always)]
+    fn witness(&self, point: A::Vector) -> PointPair<A::Vector> {
+        match (self.core_a.kind, self.core_b.kind) {
+            (_, CoreKind::Point(b)) => PointPair { a: point + b * self.per_unit, b: b * self.per_unit },
+            (CoreKind::Point(a), _) => PointPair { a: a * self.per_unit, b: a * self.per_unit - point },
+            _ => PointPair::default(),
+        }
     }
 
     fn origin(&self) -> A::Vector {
-        self.a.core().origin
+        self.core_a.origin
     }
 
     #[inline]
     fn radius(&self) -> <A::Vector as Vector>::Scalar {
-        self.a.core().radius + self.b.core().radius
+        self.core_a.radius + self.core_b.radius
     }
 
     #[inline]
     fn extent(&self) -> <A::Vector as Vector>::Scalar {
-        self.a.core().extent + self.b.core().extent
+        self.core_a.extent + self.core_b.extent
     }
 
     fn set_scale(&mut self, scale: <A::Vector as Vector>::Scalar) {
@@ -216,6 +257,12 @@ impl<B: Body> Body for Untraced<'_, B> {
         self.0.is_curved()
     }
 
+    fn line_crossing(&self, source: B::Vector, direction: B::Vector) -> LineCrossing<B::Vector> {
+        self.0.line_crossing(source, direction)
+    }
+
+    fn witness(&self, _point: B::Vector) {}
+
     fn origin(&self) -> B::Vector {
         self.0.origin()
     }
@@ -230,5 +277,16 @@ impl<B: Body> Body for Untraced<'_, B> {
 
     fn set_scale(&mut self, scale: <B::Vector as Vector>::Scalar) {
         self.0.set_scale(scale);
+    }
+}
+
+/// A crossing in units of the scale.
+#[inline(always)]
+fn in_units<V: Vector>(crossing: LineCrossing<V>, per_unit: V::Scalar) -> LineCrossing<V> {
+    match crossing {
+        LineCrossing::Crosses(Crossing { entry, exit, normal }) => {
+            LineCrossing::Crosses(Crossing { entry: entry * per_unit, exit: exit * per_unit, normal })
+        }
+        other => other,
     }
 }

@@ -243,6 +243,13 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         Ok(Contact { mu: self.low(), normal: self.normal, witness })
     }
 
+    /// The contact at the source of the ray, where points of the body are known on both sides of it, by more than rounding.
+    pub(super) fn close_inside(&mut self) -> Contact<B> {
+        let mu = self.ray.start;
+        self.high = Bound { at: mu, error: Scalar::ZERO };
+        Contact { mu, normal: None, witness: self.body.witness(self.ray.line.at(mu)) }
+    }
+
     /// The contact where the last plane is crossed, if `v`, the shortest vector there from a point of the core made of
     /// `witness`, is no longer than the radius.
     pub(super) fn close_at_low(&mut self, v: B::Vector, witness: B::Witness) -> Option<Contact<B>> {

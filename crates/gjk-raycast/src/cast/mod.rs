@@ -4,6 +4,7 @@
 
 mod algorithm_3;
 mod bracket;
+mod closed_form;
 mod line;
 mod portal;
 
@@ -14,6 +15,7 @@ use crate::body::Body;
 use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCastOptions, Status};
 use algorithm_3::algorithm_3;
 use bracket::{Bracket, ScalarOf};
+use closed_form::closed_form;
 pub(crate) use line::LocalRay;
 use portal::portal;
 
@@ -29,13 +31,17 @@ pub(crate) fn cast<B: Body>(
     conclude(&bracket, found)
 }
 
-/// The quicker search first, and Algorithm 3 where that is in doubt.
+/// What the shape knows first, then the quicker search, and Algorithm 3 where both are in doubt.
 #[inline(always)]
 fn search<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     bracket: &mut Bracket<'_, B, O>,
 ) -> Result<Contact<B>, Stop<B::Vector>> {
-    if B::Vector::DIM == 3 && bracket.options.method == CastMethod::Portal {
-        match portal(bracket) {
+    if bracket.options.method == CastMethod::Portal {
+        match closed_form(bracket) {
+            Err(Stop::InDoubt) => {}
+            found => return found,
+        }
+        match if B::Vector::DIM == 3 { portal(bracket) } else { Err(Stop::InDoubt) } {
             Err(Stop::InDoubt | Stop::Touches(_)) => {}
             found => return found,
         }

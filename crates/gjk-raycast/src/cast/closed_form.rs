@@ -1,0 +1,59 @@
+//! The hit in closed form, where the shape knows the crossing of its core by a line.
+//!
+//! As with a search, what the shape says is where to look: the plane at the entry is that of a support point, and ends or
+//! begins the bracket. Points between entry and exit are taken for points of the body, as the shape promises; if they are not
+//! where the planes are, the answer is in doubt.
+
+use convex_support::{Crossing, LineCrossing, Vector};
+
+use super::bracket::Bracket;
+use super::{Contact, Stop};
+use crate::Iterate;
+use crate::body::Body;
+use crate::unit::is_moderate;
+
+/// Closes the bracket between the plane at the entry and the entry, or finds a plane that the whole ray is before.
+#[inline(always)]
+pub(super) fn closed_form<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
+    bracket: &mut Bracket<'_, B, O>,
+) -> Result<Contact<B>, Stop<B::Vector>> {
+    let line = bracket.line();
+    // Closed forms square lengths.
+    if !is_moderate(bracket.scale) {
+        return Err(Stop::InDoubt);
+    }
+    match bracket.body.line_crossing(line.foot, line.direction) {
+        LineCrossing::Unknown => Err(Stop::InDoubt),
+        LineCrossing::Misses => {
+            // The plane across the vector to the line is one along it.
+            let axis = bracket.options.axis.or_else(|| line.foot.unit()).ok_or(Stop::InDoubt)?;
+            support(bracket, axis)?;
+            Err(Stop::InDoubt)
+        }
+        LineCrossing::Crosses(Crossing { entry, exit, normal }) => {
+            let start = bracket.ray.start;
+            let margin = bracket.noise + bracket.noise;
+            if entry + margin < start && start + margin < exit {
+                return Ok(bracket.close_inside());
+            }
+            if entry < start {
+                return Err(Stop::InDoubt);
+            }
+            support(bracket, normal)?;
+            let point = line.at(entry) - normal * bracket.radius;
+            let witness = bracket.body.witness(point);
+            bracket.close(point, witness, entry)
+        }
+    }
+}
+
+/// Takes the plane across `n` that supports the body.
+#[inline(always)]
+fn support<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
+    bracket: &mut Bracket<'_, B, O>,
+    n: B::Vector,
+) -> Result<(), Stop<B::Vector>> {
+    let n = n.unit().ok_or(Stop::InDoubt)?;
+    let (point, _) = bracket.support(n, n, &[])?;
+    bracket.advance(n, point)
+}
