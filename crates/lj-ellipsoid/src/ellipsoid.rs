@@ -1,7 +1,7 @@
 //! The ellipsoid as it is returned.
 
-use crate::dimension::Const;
-use crate::linalg::dot;
+use crate::numerics::dimension::Const;
+use crate::numerics::linalg::dot;
 use crate::shape::Shape;
 
 /// The ellipsoid E(c, X) = { x : (x − c)ᵀX(x − c) ≤ 1 } in N dimensions.

@@ -28,6 +28,18 @@ pub enum EnclosingError {
         /// The dimension of the space.
         dimension: usize,
     },
+    /// [`EnclosingOptions::epsilon`](crate::EnclosingOptions::epsilon) is zero, negative or NaN.
+    #[error("epsilon must be positive, not {value}")]
+    InvalidEpsilon {
+        /// The value given.
+        value: f64,
+    },
+    /// [`EnclosingOptions::flat_tolerance`](crate::EnclosingOptions::flat_tolerance) is negative or NaN.
+    #[error("the flat tolerance must not be negative or NaN, but it is {value}")]
+    InvalidFlatTolerance {
+        /// The value given.
+        value: f64,
+    },
     /// The points are sound, but the lengths or their inverse squares leave the range of `f64`.
     #[error("the ellipsoid of these points is out of the range of f64")]
     OutOfRange,
@@ -60,8 +72,9 @@ pub enum InscribedError {
     /// is not looked into.)
     #[error("the intersection of the half-spaces is unbounded")]
     Unbounded,
-    /// The intersection has no interior point, up to rounding: it is empty or flat.
-    #[error("the intersection of the half-spaces has an empty interior")]
+    /// The intersection has no interior point whose coordinates are doubles: it is empty, flat, or thinner than the spacing of
+    /// doubles where it lies.
+    #[error("the intersection of the half-spaces is empty, flat, or thinner than the spacing of doubles")]
     EmptyInterior,
     /// All points lie in an affine subspace of `rank` dimensions, up to rounding: their hull has no interior.
     #[error("the points are flat: they span {rank} of {dimension} dimensions")]
@@ -76,6 +89,12 @@ pub enum InscribedError {
     HullDimension {
         /// The dimension of the points.
         dimension: usize,
+    },
+    /// [`InscribedOptions::epsilon`](crate::InscribedOptions::epsilon) is zero, negative or NaN.
+    #[error("epsilon must be positive, not {value}")]
+    InvalidEpsilon {
+        /// The value given.
+        value: f64,
     },
     /// The input is sound, but lengths or their inverse squares leave the range of `f64`.
     #[error("the ellipsoid in this body is out of the range of f64")]

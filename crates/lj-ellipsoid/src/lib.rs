@@ -40,7 +40,9 @@
 //! All tolerances are relative: scaling the input by a power of two changes no bit of any mantissa.
 //!
 //! # Features
-//! - `faer` (default): points and half-spaces as faer matrices, of a dimension known at run time.
+//! None is on by default.
+//!
+//! - `faer`: points and half-spaces as faer matrices, of a dimension known at run time.
 //! - `rayon`: passes over many points use all cores. The answer is the same to the last bit.
 //! - `convex-support`: conversions to that crate's `Ellipsoid`.
 #![allow(
@@ -50,57 +52,35 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0)` is how NaN takes the same exit as zero")]
 #![cfg_attr(
     not(feature = "faer"),
-    allow(rustdoc::broken_intra_doc_links, reason = "the crate docs name items of the default feature")
+    allow(rustdoc::broken_intra_doc_links, reason = "the crate docs name items of the feature `faer`")
 )]
 
-mod design;
-mod dimension;
-mod dual_reduced;
 mod ellipsoid;
-mod ellipsoid_algorithm;
 mod enclosing;
 mod error;
-mod frame;
-mod hull;
 mod inscribed;
-mod inscribed_in_hull;
-mod interior;
-#[cfg(feature = "convex-support")]
-mod interop_convex_support;
-#[cfg(feature = "faer")]
-mod interop_faer;
-mod iterate;
-mod khachiyan;
-mod linalg;
-mod maximize;
-mod moving_points;
-mod newton;
-mod newton_system;
+mod interop;
+mod numerics;
 mod options;
-mod parallel;
 mod points;
-mod scan;
 mod shape;
-mod solution;
-mod start;
-mod violators;
-mod working_set;
+mod weight;
 
 pub use ellipsoid::Ellipsoid;
-pub use enclosing::{Enclosing, EnclosingIterate, enclosing, enclosing_with};
+pub use enclosing::{Enclosing, EnclosingIterate, MovingPoints, enclosing, enclosing_with};
 pub use error::{EnclosingError, InscribedError};
 #[cfg(feature = "faer")]
 pub use faer;
-pub use inscribed::{Halfspace, Inscribed, InscribedIterate, inscribed, inscribed_with};
-pub use inscribed_in_hull::{inscribed_in_hull, inscribed_in_hull_with};
+pub use inscribed::{
+    Halfspace, Inscribed, InscribedIterate, inscribed, inscribed_in_hull, inscribed_in_hull_with, inscribed_with,
+};
 #[cfg(feature = "faer")]
-pub use interop_faer::{
+pub use interop::faer::{
     EllipsoidDyn, EnclosingDyn, InscribedDyn, enclosing_dyn, enclosing_dyn_with, inscribed_dyn, inscribed_in_hull_dyn,
     rows_to_matrix,
 };
-pub use moving_points::MovingPoints;
 pub use options::{EnclosingMethod, EnclosingOptions, FlatPolicy, InscribedOptions, Status};
-pub use solution::Weight;
+pub use weight::Weight;
 
 /// The README's example, compiled.
 #[cfg(doctest)]

@@ -1,5 +1,7 @@
 //! What the caller may choose, and how a solution says how far it got.
 
+use crate::error::{EnclosingError, InscribedError};
+
 /// How a computation ended. The certified gap beside it says how good the answer is in every case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
@@ -45,18 +47,19 @@ pub enum FlatPolicy {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct EnclosingOptions {
-    /// The certified gap on ln det X to reach (twice the gap on the log-volume). Default 1e-9; rounding usually allows
-    /// 1e-13.
+    /// The certified gap on ln det X to reach (twice the gap on the log-volume), a positive number. Default 1e-9; rounding
+    /// usually allows 1e-13.
     pub epsilon: f64,
     /// The algorithm. Default [`EnclosingMethod::Newton`].
     pub method: EnclosingMethod,
-    /// The most iterations of the algorithm; 0, the default, stands for one that suits the method.
-    pub max_iterations: usize,
+    /// The most iterations of the algorithm. Default `None`, a number that suits the method: 2,000 Newton steps, 1,000,000
+    /// moves of a weight, 200,000 cuts.
+    pub max_iterations: Option<usize>,
     /// What to do with points that span no volume. Default: an error.
     pub flat: FlatPolicy,
     /// Points whose spread across some direction is at most this fraction of their extent count as flat. Whatever is
     /// set, a spread within 32 units in the last place of the coordinates is flat: that much is rounding of the points.
-    /// Default 0.
+    /// Not negative. Default 0.
     pub flat_tolerance: f64,
 }
 
@@ -67,7 +70,7 @@ impl EnclosingOptions {
         Self {
             epsilon: 1e-9,
             method: EnclosingMethod::Newton,
-            max_iterations: 0,
+            max_iterations: None,
             flat: FlatPolicy::Error,
             flat_tolerance: 0.0,
         }
@@ -85,10 +88,10 @@ impl EnclosingOptions {
         Self { method, ..self }
     }
 
-    /// With at most this many iterations; 0 lets the method choose.
+    /// With at most this many iterations.
     #[must_use]
     pub const fn with_max_iterations(self, max_iterations: usize) -> Self {
-        Self { max_iterations, ..self }
+        Self { max_iterations: Some(max_iterations), ..self }
     }
 
     /// With this treatment of points that span no volume.
@@ -102,6 +105,17 @@ impl EnclosingOptions {
     pub const fn with_flat_tolerance(self, flat_tolerance: f64) -> Self {
         Self { flat_tolerance, ..self }
     }
+
+    /// Whether every number is in its range; NaN is in none.
+    pub(crate) fn check(&self) -> Result<(), EnclosingError> {
+        if !(self.epsilon > 0.0) {
+            return Err(EnclosingError::InvalidEpsilon { value: self.epsilon });
+        }
+        if !(self.flat_tolerance >= 0.0) {
+            return Err(EnclosingError::InvalidFlatTolerance { value: self.flat_tolerance });
+        }
+        Ok(())
+    }
 }
 
 impl Default for EnclosingOptions {
@@ -114,7 +128,7 @@ impl Default for EnclosingOptions {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct InscribedOptions {
-    /// The certified gap on ln det X to reach (twice the gap on the log-volume). Default 1e-9.
+    /// The certified gap on ln det X to reach (twice the gap on the log-volume), a positive number. Default 1e-9.
     pub epsilon: f64,
     /// The most Newton steps. Default 200.
     pub max_iterations: usize,
@@ -137,6 +151,11 @@ impl InscribedOptions {
     #[must_use]
     pub const fn with_max_iterations(self, max_iterations: usize) -> Self {
         Self { max_iterations, ..self }
+    }
+
+    /// Whether every number is in its range; NaN is in none.
+    pub(crate) fn check(&self) -> Result<(), InscribedError> {
+        if self.epsilon > 0.0 { Ok(()) } else { Err(InscribedError::InvalidEpsilon { value: self.epsilon }) }
     }
 }
 

@@ -1,7 +1,7 @@
 //! An ellipsoid by its axes: from a linear map to semi-axes, rotation and matrix.
 
-use crate::dimension::Dimension;
-use crate::linalg::{dot, orthogonalize_rows, power_of_two_inverse, sum_of_logarithms, triangularize};
+use crate::numerics::dimension::{Dimension, Dynamic};
+use crate::numerics::linalg::{dot, orthogonalize_rows, power_of_two_inverse, sum_of_logarithms, triangularize};
 
 /// An ellipsoid of any dimension: what [`Ellipsoid`](crate::Ellipsoid) holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +13,19 @@ pub(crate) struct Shape<N: Dimension> {
     pub(crate) semi_axes: N::Point,
     pub(crate) matrix: N::Matrix,
     pub(crate) log_det: f64,
+}
+
+impl Shape<Dynamic> {
+    /// The same where the dimension is that of `dim`.
+    pub(crate) fn in_dimension<N: Dimension>(self, dim: N) -> Shape<N> {
+        Shape {
+            center: dim.point(self.center.into_iter()),
+            axes: dim.matrix(self.axes.into_iter()),
+            semi_axes: dim.point(self.semi_axes.into_iter()),
+            matrix: dim.matrix(self.matrix.into_iter()),
+            log_det: self.log_det,
+        }
+    }
 }
 
 /// Axes, semi-axes (longest first) and matrix of { v : |T·v| ≤ 1 }, T the first r rows of `map`; the centre is zero.

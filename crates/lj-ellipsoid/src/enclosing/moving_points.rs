@@ -1,14 +1,14 @@
 //! Points that come, go and move, and the enclosing ellipsoid that follows them.
 
-use crate::design::WorkingSet;
-use crate::dimension::{Const, Square};
+use crate::enclosing::frame::Frame;
+use crate::enclosing::iterate::Iterate;
+use crate::enclosing::start::Start;
+use crate::enclosing::working_set::WorkingSet;
 use crate::enclosing::{Enclosing, solve, solve_from};
 use crate::error::EnclosingError;
-use crate::frame::Frame;
-use crate::iterate::Iterate;
+use crate::numerics::dimension::{Const, Square};
 use crate::options::EnclosingOptions;
 use crate::points::PointSlice;
-use crate::start::Start;
 
 /// Points with their minimum-volume enclosing ellipsoid, kept up to date when points are added, removed or moved.
 ///
@@ -127,8 +127,8 @@ impl<const N: usize> MovingPoints<N> {
                 self.solves += 1;
                 let points = PointSlice(&self.points);
                 let solution = match earlier.and_then(|answer| self.warm_start(&answer)) {
-                    Some(start) => solve_from(&points, Const::<N>, start, self.options, |_| {})?,
-                    None => solve(&points, self.options, |_| {})?,
+                    Some(start) => solve_from(&points, start, self.options, &mut |_| {})?,
+                    None => solve(&points, self.options, &mut |_| {})?,
                 };
                 self.current = true;
                 Enclosing::from_solution(solution)

@@ -1,16 +1,16 @@
 //! The outer loop: solve a small working set, look at all points, add the worst violators.
 
-use crate::design::WorkingSet;
-use crate::dimension::Dimension;
-use crate::enclosing::EnclosingIterate;
+use crate::enclosing::iterate::Iterate;
+use crate::enclosing::newton::Workspace;
+use crate::enclosing::solution::Solution;
+use crate::enclosing::start::Start;
+use crate::enclosing::violators::{Survivors, Violators, look};
+use crate::enclosing::working_set::WorkingSet;
+use crate::enclosing::{Observer, Problem};
 use crate::error::EnclosingError;
-use crate::iterate::Iterate;
+use crate::numerics::dimension::Dimension;
 use crate::options::{EnclosingMethod, EnclosingOptions, Status};
 use crate::points::Points;
-use crate::solution::Solution;
-use crate::start::Start;
-use crate::violators::{Survivors, Violators, look};
-use crate::{dual_reduced, newton};
 
 /// The most Newton steps over all working sets, unless the caller says otherwise.
 const DEFAULT_ITERATIONS: usize = 2_000;
@@ -27,15 +27,19 @@ const QUADRATIC: f64 = 1e-6;
 /// A gap that is rounding in any case.
 const ROUNDING: f64 = 1e-14;
 
-/// Solves by Newton's method (or the dual reduced Newton method) on a working set.
-pub(crate) fn solve<P: Points, R: Dimension + Sync>(
-    points: &P,
-    rank: R,
+/// Improves the weights of a working set until their gap over it is at most so much, in at most so many steps; answers the
+/// number of steps.
+pub(crate) type Improve<D> = fn(&mut Iterate<D>, &mut Workspace<D>, f64, usize) -> usize;
+
+/// Solves on a working set, whose weights `improve` finds.
+pub(crate) fn solve<P: Points>(
+    problem: &Problem<'_, P>,
+    improve: Improve<P::Dim>,
     start: Start<P::Dim>,
-    options: EnclosingOptions,
-    mut observer: impl FnMut(EnclosingIterate<'_>),
+    observer: &mut Observer<'_>,
 ) -> Result<Solution<P::Dim>, EnclosingError> {
-    let mut search = Search::new(points, rank, start, options)?;
+    let Problem { points, options, .. } = *problem;
+    let mut search = Search::new(problem, improve, start)?;
     let newton = options.method == EnclosingMethod::Newton;
     if search.complete && newton {
         // A few points are a working set that needs no pass: straight to rounding, and the final check.
@@ -81,12 +85,13 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
 }
 
 /// The working set and what steers it.
-struct Search<'a, P: Points, R: Dimension> {
+struct Search<'a, P: Points> {
     points: &'a P,
     options: EnclosingOptions,
     max_iterations: usize,
-    at: Iterate<P::Dim, R>,
-    work: newton::Workspace<R>,
+    improve: Improve<P::Dim>,
+    at: Iterate<P::Dim>,
+    work: Workspace<P::Dim>,
     /// The working set is all points.
     complete: bool,
     /// What is asked of a working set: a little below the gap over all points seen last…
@@ -99,8 +104,9 @@ struct Search<'a, P: Points, R: Dimension> {
     pool: Option<Survivors<P::Dim>>,
 }
 
-impl<'a, P: Points, R: Dimension + Sync> Search<'a, P, R> {
-    fn new(points: &'a P, rank: R, start: Start<P::Dim>, options: EnclosingOptions) -> Result<Self, EnclosingError> {
+impl<'a, P: Points> Search<'a, P> {
+    fn new(problem: &Problem<'a, P>, improve: Improve<P::Dim>, start: Start<P::Dim>) -> Result<Self, EnclosingError> {
+        let Problem { points, rank, options } = *problem;
         let Start { frame, working, weights, scans } = start;
         let complete = working.len() == points.len();
         let mut at = Iterate::new(points, rank, frame, WorkingSet::new(working, weights), scans)?;
@@ -114,8 +120,9 @@ impl<'a, P: Points, R: Dimension + Sync> Search<'a, P, R> {
         Ok(Self {
             points,
             options,
-            max_iterations: if options.max_iterations == 0 { DEFAULT_ITERATIONS } else { options.max_iterations },
-            work: newton::Workspace::new(rank),
+            max_iterations: options.max_iterations.unwrap_or(DEFAULT_ITERATIONS),
+            improve,
+            work: Workspace::new(rank),
             complete,
             inner_gap: if complete { tight } else { 1e-2 },
             tight,
@@ -131,10 +138,7 @@ impl<'a, P: Points, R: Dimension + Sync> Search<'a, P, R> {
 
     /// Improves the weights of the working set, and moves to where their ellipsoid is the unit ball.
     fn improve(&mut self, gap: f64, max_steps: usize) {
-        self.at.iterations += match self.options.method {
-            EnclosingMethod::DualReducedNewton => dual_reduced::solve(&mut self.at, gap, max_steps),
-            _ => newton::solve(&mut self.at, &mut self.work, gap, max_steps),
-        };
+        self.at.iterations += (self.improve)(&mut self.at, &mut self.work, gap, max_steps);
         self.at.recenter(self.points);
     }
 
@@ -147,8 +151,8 @@ impl<'a, P: Points, R: Dimension + Sync> Search<'a, P, R> {
             self.pool = survivors;
             return violators;
         };
-        let capacity = capacity(survivors.len());
-        let (mut violators, fewer) = look(survivors, self.at.rank, &self.at.frame, self.expected, capacity);
+        let capacity = capacity(survivors.index.len());
+        let (mut violators, fewer) = look(&survivors.points, self.at.rank, &self.at.frame, self.expected, capacity);
         violators.found.iter_mut().for_each(|i| *i = survivors.index[*i]);
         if let Some(mut fewer) = fewer {
             fewer.index.iter_mut().for_each(|i| *i = survivors.index[*i]);

@@ -1,14 +1,30 @@
 //! The minimum-volume ellipsoid that contains given points.
 
-use crate::dimension::{Const, Dimension, Dynamic};
+mod active_set;
+mod dual_reduced;
+mod ellipsoid_algorithm;
+mod frame;
+mod iterate;
+mod khachiyan;
+mod moments;
+mod moving_points;
+mod newton;
+mod outward;
+mod scan;
+mod solution;
+mod start;
+mod violators;
+mod working_set;
+
+pub use self::moving_points::MovingPoints;
+pub(crate) use self::solution::Solution;
+use self::start::{Start, start};
 use crate::ellipsoid::Ellipsoid;
 use crate::error::EnclosingError;
+use crate::numerics::dimension::{Const, Dimension, Dynamic};
 use crate::options::{EnclosingMethod, EnclosingOptions, FlatPolicy, Status};
-use crate::points::{PointSlice, Points};
-use crate::solution::{Solution, Weight};
-use crate::start::{Start, start};
-use crate::working_set;
-use crate::{ellipsoid_algorithm, khachiyan};
+use crate::points::{Copied, PointSlice, Points};
+use crate::weight::Weight;
 
 /// The minimum-volume ellipsoid around points, and the proof of how near to minimal it is.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,7 +91,9 @@ pub struct EnclosingIterate<'a> {
 /// # Errors
 /// [`EnclosingError::Empty`] without points, [`NonFinite`](EnclosingError::NonFinite) for NaN and infinities,
 /// [`Flat`](EnclosingError::Flat) where the points span no volume (unless
-/// [`FlatPolicy::AffineHull`] is asked for), [`OutOfRange`](EnclosingError::OutOfRange) where `f64` cannot hold the answer.
+/// [`FlatPolicy::AffineHull`] is asked for), [`OutOfRange`](EnclosingError::OutOfRange) where `f64` cannot hold the answer,
+/// [`InvalidEpsilon`](EnclosingError::InvalidEpsilon) and [`InvalidFlatTolerance`](EnclosingError::InvalidFlatTolerance)
+/// for options out of their range.
 ///
 /// # Examples
 /// ```
@@ -102,44 +120,69 @@ pub fn enclosing<P: Into<[f64; N]> + Copy + Sync, const N: usize>(
 pub fn enclosing_with<P: Into<[f64; N]> + Copy + Sync, const N: usize>(
     points: &[P],
     options: EnclosingOptions,
-    observer: impl FnMut(EnclosingIterate<'_>),
+    mut observer: impl FnMut(EnclosingIterate<'_>),
 ) -> Result<Enclosing<N>, EnclosingError> {
-    solve(&PointSlice(points), options, observer).map(Enclosing::from_solution)
+    solve(&PointSlice(points), options, &mut observer).map(Enclosing::from_solution)
+}
+
+/// Who sees the iterates. The solvers are compiled once for all observers: a call costs little beside the step it reports.
+pub(crate) type Observer<'a> = dyn FnMut(EnclosingIterate<'_>) + 'a;
+
+/// What every method is given.
+pub(crate) struct Problem<'a, P: Points> {
+    pub(crate) points: &'a P,
+    /// The dimension of their affine hull.
+    pub(crate) rank: P::Dim,
+    pub(crate) options: EnclosingOptions,
 }
 
 /// The dimension-free body of [`enclosing`](enclosing()).
 pub(crate) fn solve<P: Points>(
     points: &P,
     options: EnclosingOptions,
-    observer: impl FnMut(EnclosingIterate<'_>),
+    observer: &mut Observer<'_>,
 ) -> Result<Solution<P::Dim>, EnclosingError> {
+    options.check()?;
     let dim = points.dim();
-    let dimension = dim.get();
     let start = start(points, options.flat_tolerance)?;
-    let rank = start.frame.rank();
-    if rank == dimension {
-        return solve_from(points, dim, start, options, observer);
-    }
+    let (rank, dimension) = (start.frame.rank(), dim.get());
     match options.flat {
-        FlatPolicy::Error => Err(EnclosingError::Flat { rank, dimension }),
+        FlatPolicy::Error if rank < dimension => Err(EnclosingError::Flat { rank, dimension }),
         FlatPolicy::AffineHull if rank == 0 => Ok(Solution::point(dim, start.frame.origin, points.len(), start.scans)),
-        FlatPolicy::AffineHull => solve_from(points, Dynamic(rank), start, options, observer),
+        _ => solve_from(points, start, options, observer),
     }
 }
 
-/// Solves in the `rank` coordinates of a starting frame.
-pub(crate) fn solve_from<P: Points, R: Dimension + Sync>(
+/// Solves in the coordinates of a starting frame.
+///
+/// Newton's method around points that span the space is what is asked for nearly always: it is compiled for the dimension
+/// of the points. All else is compiled once, for a dimension known at run time, and works on a copy of the points.
+pub(crate) fn solve_from<P: Points>(
     points: &P,
-    rank: R,
     start: Start<P::Dim>,
     options: EnclosingOptions,
-    observer: impl FnMut(EnclosingIterate<'_>),
+    observer: &mut Observer<'_>,
 ) -> Result<Solution<P::Dim>, EnclosingError> {
+    let dim = points.dim();
+    if options.method == EnclosingMethod::Newton && start.frame.rank() == dim.get() {
+        return active_set::solve(&Problem { points, rank: dim, options }, newton::solve, start, observer);
+    }
+    let points = Copied::new(Dynamic(dim.get()), points, 0..points.len());
+    solve_at_run_time(&points, start.at_run_time(), options, observer).map(|solution| solution.in_dimension(dim))
+}
+
+/// Solves in the rank(start) coordinates of a starting frame, by any method.
+fn solve_at_run_time(
+    points: &Copied<Dynamic>,
+    start: Start<Dynamic>,
+    options: EnclosingOptions,
+    observer: &mut Observer<'_>,
+) -> Result<Solution<Dynamic>, EnclosingError> {
+    let problem = Problem { points, rank: Dynamic(start.frame.rank()), options };
     match options.method {
-        EnclosingMethod::Newton | EnclosingMethod::DualReducedNewton => {
-            working_set::solve(points, rank, start, options, observer)
-        }
-        EnclosingMethod::Khachiyan => khachiyan::solve(points, rank, start, options, observer),
-        EnclosingMethod::EllipsoidAlgorithm => ellipsoid_algorithm::solve(points, rank, start, options, observer),
+        EnclosingMethod::Newton => active_set::solve(&problem, newton::solve, start, observer),
+        EnclosingMethod::DualReducedNewton => active_set::solve(&problem, dual_reduced::solve, start, observer),
+        EnclosingMethod::Khachiyan => khachiyan::solve(&problem, start, observer),
+        EnclosingMethod::EllipsoidAlgorithm => ellipsoid_algorithm::solve(&problem, start, observer),
     }
 }

@@ -1,6 +1,8 @@
 //! Where the points come from: a slice of anything that converts into `[f64; N]`, or rows of a matrix.
 
-use crate::dimension::{Const, Dimension, LANES};
+pub(crate) mod parallel;
+
+use crate::numerics::dimension::{Const, Dimension, LANES};
 
 /// A finite sequence of points, read by copy.
 pub(crate) trait Points: Sync {
@@ -66,5 +68,51 @@ impl<P: Into<[f64; N]> + Copy + Sync, const N: usize> Points for PointSlice<'_, 
                 block[k][lane] = point[k];
             }
         }
+    }
+}
+
+/// Points copied together, one after the other.
+#[derive(Clone, Debug)]
+pub(crate) struct Copied<D> {
+    dim: D,
+    len: usize,
+    coordinates: Vec<f64>,
+}
+
+impl<D: Dimension> Copied<D> {
+    /// The points `index` of `points`, whose dimension is `dim`.
+    pub(crate) fn new<P: Points>(dim: D, points: &P, index: impl ExactSizeIterator<Item = usize>) -> Self {
+        let (n, len) = (dim.get(), index.len());
+        let mut coordinates = vec![0.0; len * n];
+        if n > 0 {
+            index.zip(coordinates.chunks_exact_mut(n)).for_each(|(i, out)| points.read(i, out));
+        }
+        Self { dim, len, coordinates }
+    }
+
+    /// `len` points with these coordinates, those of the first point first.
+    #[cfg(feature = "faer")]
+    pub(crate) const fn from_coordinates(dim: D, len: usize, coordinates: Vec<f64>) -> Self {
+        Self { dim, len, coordinates }
+    }
+}
+
+impl<D: Dimension + Sync> Points for Copied<D> {
+    type Dim = D;
+
+    #[inline(always)]
+    fn dim(&self) -> D {
+        self.dim
+    }
+
+    #[inline(always)]
+    fn len(&self) -> usize {
+        self.len
+    }
+
+    #[inline(always)]
+    fn read(&self, i: usize, out: &mut [f64]) {
+        let n = self.dim.get();
+        out.copy_from_slice(&self.coordinates[i * n..(i + 1) * n]);
     }
 }

@@ -5,15 +5,15 @@
 //! M. J. Todd, E. A. Yıldırım, *On Khachiyan's algorithm for the computation of minimum-volume enclosing ellipsoids*,
 //! Discrete Appl. Math. 155 (2007).
 
-use crate::design::WorkingSet;
-use crate::dimension::Dimension;
-use crate::enclosing::EnclosingIterate;
+use crate::enclosing::iterate::Iterate;
+use crate::enclosing::solution::Solution;
+use crate::enclosing::start::Start;
+use crate::enclosing::working_set::WorkingSet;
+use crate::enclosing::{Observer, Problem};
 use crate::error::EnclosingError;
-use crate::iterate::Iterate;
-use crate::options::{EnclosingOptions, Status};
+use crate::numerics::dimension::Dimension;
+use crate::options::Status;
 use crate::points::Points;
-use crate::solution::Solution;
-use crate::start::Start;
 
 /// The most moves, unless the caller says otherwise.
 const DEFAULT_ITERATIONS: usize = 1_000_000;
@@ -26,16 +26,15 @@ const REFRESH: usize = 200;
 /// With ω = qᵀM⁻¹q of every point, take j₊ of largest ω, and j₋ of smallest ω among those with weight. The one further
 /// from optimality (ω = n) moves: u ← (1 − β)u + β·eⱼ with β = (ωⱼ − n)/(n(ωⱼ − 1)), at least −uⱼ/(1 − uⱼ), where the
 /// weight is zero (a drop step). Then g = Q·M⁻¹qⱼ gives ω ← (ω − βg²/(1 − β + βωⱼ))/(1 − β).
-pub(crate) fn solve<P: Points, R: Dimension + Sync>(
-    points: &P,
-    rank: R,
+pub(crate) fn solve<P: Points>(
+    problem: &Problem<'_, P>,
     start: Start<P::Dim>,
-    options: EnclosingOptions,
-    mut observer: impl FnMut(EnclosingIterate<'_>),
+    observer: &mut Observer<'_>,
 ) -> Result<Solution<P::Dim>, EnclosingError> {
+    let Problem { points, rank, options } = *problem;
     let r = rank.get();
     let n = r as f64 + 1.0;
-    let max_iterations = if options.max_iterations == 0 { DEFAULT_ITERATIONS } else { options.max_iterations };
+    let max_iterations = options.max_iterations.unwrap_or(DEFAULT_ITERATIONS);
     let Start { frame, working, scans, .. } = start;
     let mut weights = vec![0.0; points.len()];
     for &i in &working {

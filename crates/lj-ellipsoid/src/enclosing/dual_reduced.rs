@@ -8,15 +8,16 @@
 //! # References
 //! P. Sun, R. M. Freund, *Computation of minimum-volume covering ellipsoids*, Oper. Res. 52 (2004).
 
-use crate::dimension::{Dimension, Dynamic};
-use crate::iterate::Iterate;
-use crate::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
+use crate::enclosing::iterate::Iterate;
+use crate::enclosing::newton::Workspace;
+use crate::numerics::dimension::{Dimension, Dynamic};
+use crate::numerics::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
 
 /// Newton steps along one path; twenty is typical.
 const MAX_STEPS: usize = 80;
 
 /// Improves the weights of `set` until the gap over it is at most `gap`; answers the number of steps.
-pub(crate) fn solve<N: Dimension, R: Dimension>(at: &mut Iterate<N, R>, gap: f64, max_steps: usize) -> usize {
+pub(crate) fn solve<D: Dimension>(at: &mut Iterate<D>, _: &mut Workspace<D>, gap: f64, max_steps: usize) -> usize {
     let Iterate { rank, set, moments, .. } = at;
     let r = rank.get();
     let k = set.len();

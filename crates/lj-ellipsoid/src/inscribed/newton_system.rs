@@ -11,9 +11,9 @@
 //!
 //! Along Δ: ∇f = −tr(B⁻¹Δ), ∇²f = tr(B⁻¹ΔB⁻¹Δ), ∇hᵢ = vᵢᵀΔpᵢ, ∇²hᵢ = (|Δpᵢ|² − (vᵢᵀΔpᵢ)²)/hᵢ.
 
-use crate::dimension::{Const, Dimension, Dynamic, LANES};
-use crate::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
-use crate::maximize::Point;
+use crate::inscribed::primal_dual::Point;
+use crate::numerics::dimension::{Const, Dimension, Dynamic, LANES};
+use crate::numerics::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
 
 /// The factored system at a point, and room for the next.
 pub(crate) struct System {

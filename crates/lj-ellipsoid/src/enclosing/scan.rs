@@ -2,17 +2,17 @@
 
 use std::ops::Range;
 
-use crate::dimension::{Dimension, LANES};
-use crate::frame::Frame;
+use crate::enclosing::frame::Frame;
+use crate::numerics::dimension::{Dimension, LANES};
 use crate::points::Points;
 
 /// Calls `visit(i, q)` for the points in `range` with qᵢ = |T·(vᵢ − o)|² at least the cutoff that the last visit answered
 /// (at first `cutoff`). Points below cost arithmetic only.
 #[inline(always)]
-pub(crate) fn beyond<P: Points, R: Dimension>(
+pub(crate) fn beyond<P: Points>(
     points: &P,
     range: Range<usize>,
-    rank: R,
+    rank: P::Dim,
     frame: &Frame<P::Dim>,
     mut cutoff: f64,
     mut visit: impl FnMut(usize, f64) -> f64,
@@ -34,8 +34,8 @@ pub(crate) fn beyond<P: Points, R: Dimension>(
         }
         let mut q = [0.0; LANES];
         for i in 0..r {
-            let mut y = block[0].map(|x| map[i * n] * x);
-            for k in 1..n {
+            let mut y = [0.0; LANES];
+            for k in 0..n {
                 let t = map[i * n + k];
                 for lane in 0..LANES {
                     y[lane] += t * block[k][lane];

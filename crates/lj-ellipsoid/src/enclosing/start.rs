@@ -7,12 +7,12 @@
 
 use std::ops::Range;
 
-use crate::dimension::{Dimension, LANES};
+use crate::enclosing::frame::Frame;
 use crate::error::EnclosingError;
-use crate::frame::Frame;
-use crate::linalg::{dot, power_of_two_inverse};
-use crate::parallel::in_parts;
+use crate::numerics::dimension::{Dimension, Dynamic, LANES};
+use crate::numerics::linalg::{dot, power_of_two_inverse};
 use crate::points::Points;
+use crate::points::parallel::in_parts;
 
 /// A spread of this many [`f64::EPSILON`] of the coordinates is rounding of the points, not thickness.
 const ROUNDING_FLOOR: f64 = 32.0;
@@ -30,6 +30,14 @@ pub(crate) struct Start<N: Dimension> {
     pub(crate) weights: Option<Vec<f64>>,
     /// Passes over all points so far.
     pub(crate) scans: usize,
+}
+
+impl<N: Dimension> Start<N> {
+    /// The same where the dimension is known at run time only.
+    pub(crate) fn at_run_time(self) -> Start<Dynamic> {
+        let Self { frame, working, weights, scans } = self;
+        Start { frame: frame.at_run_time(), working, weights, scans }
+    }
 }
 
 /// The bounding box of the points: extreme coordinates and who attains them.

@@ -1,33 +1,34 @@
 //! Where a method stands: a frame, weighted points in it, and what follows from the weights.
 
-use crate::design::{Moments, WorkingSet};
-use crate::dimension::Dimension;
 use crate::enclosing::EnclosingIterate;
+use crate::enclosing::frame::Frame;
+use crate::enclosing::moments::Moments;
+use crate::enclosing::solution::{Certificate, Ending, Solution, finish};
+use crate::enclosing::working_set::WorkingSet;
 use crate::error::EnclosingError;
-use crate::frame::Frame;
+use crate::numerics::dimension::Dimension;
 use crate::options::Status;
 use crate::points::Points;
-use crate::solution::{Certificate, Solution, finish};
 
 /// The weights of some points, in the coordinates of a frame.
-pub(crate) struct Iterate<N: Dimension, R: Dimension> {
-    pub(crate) rank: R,
-    pub(crate) frame: Frame<N>,
+pub(crate) struct Iterate<D: Dimension> {
+    pub(crate) rank: D,
+    pub(crate) frame: Frame<D>,
     pub(crate) set: WorkingSet,
     /// Those of the weights.
-    pub(crate) moments: Moments<R>,
+    pub(crate) moments: Moments<D>,
     /// Steps of the method so far.
     pub(crate) iterations: usize,
     /// Passes over all points so far.
     pub(crate) scans: usize,
 }
 
-impl<N: Dimension, R: Dimension> Iterate<N, R> {
+impl<D: Dimension> Iterate<D> {
     /// The members and weights of `set`, seen from `frame`.
-    pub(crate) fn new<P: Points<Dim = N>>(
+    pub(crate) fn new<P: Points<Dim = D>>(
         points: &P,
-        rank: R,
-        frame: Frame<N>,
+        rank: D,
+        frame: Frame<D>,
         set: WorkingSet,
         scans: usize,
     ) -> Result<Self, EnclosingError> {
@@ -42,7 +43,7 @@ impl<N: Dimension, R: Dimension> Iterate<N, R> {
     }
 
     /// Makes the ellipsoid of the weights, (y − c)ᵀS⁻¹(y − c) ≤ 1, the unit ball of the frame.
-    pub(crate) fn recenter<P: Points<Dim = N>>(&mut self, points: &P) {
+    pub(crate) fn recenter<P: Points<Dim = D>>(&mut self, points: &P) {
         let origin = self.set.mean(points, &self.frame);
         self.frame.recenter(self.rank, origin, self.moments.factor.as_ref());
         self.set.locate(points, self.rank, &self.frame);
@@ -50,7 +51,7 @@ impl<N: Dimension, R: Dimension> Iterate<N, R> {
     }
 
     /// Adds the points `found`, with weight zero; those that are members stay as they are.
-    pub(crate) fn add<P: Points<Dim = N>>(&mut self, points: &P, found: &[usize]) {
+    pub(crate) fn add<P: Points<Dim = D>>(&mut self, points: &P, found: &[usize]) {
         let mut v = points.dim().zero();
         let mut y = self.rank.zero();
         for &index in found {
@@ -74,17 +75,23 @@ impl<N: Dimension, R: Dimension> Iterate<N, R> {
     }
 
     /// The bound that the weights prove.
-    pub(crate) fn certificate<P: Points<Dim = N>>(&self, points: &P) -> Certificate {
+    pub(crate) fn certificate<P: Points<Dim = D>>(&self, points: &P) -> Certificate {
         Certificate::from_weights(points, self.rank, &self.frame, &self.set, &self.moments)
     }
 
     /// The ellipsoid of the weights around all points.
-    pub(crate) fn finish<P: Points<Dim = N>>(
+    pub(crate) fn finish<P: Points<Dim = D>>(
         &self,
         points: &P,
         epsilon: f64,
         ended: Status,
-    ) -> Result<Solution<N>, EnclosingError> {
-        finish(points, &self.frame, self.certificate(points), epsilon, ended, self.iterations, self.scans)
+    ) -> Result<Solution<D>, EnclosingError> {
+        let ending = Ending {
+            certificate: self.certificate(points),
+            status: ended,
+            iterations: self.iterations,
+            scans: self.scans,
+        };
+        finish(points, self.rank, &self.frame, epsilon, ending)
     }
 }

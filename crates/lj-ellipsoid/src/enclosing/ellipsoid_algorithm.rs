@@ -15,32 +15,31 @@
 //! E. Rimon, S. P. Boyd, *Obstacle collision detection using best ellipsoid fit*, J. Intell. Robot. Syst. 18 (1997),
 //! Section 2 and Appendix A.
 
-use crate::design::WorkingSet;
-use crate::dimension::{Dimension, Dynamic};
-use crate::enclosing::EnclosingIterate;
+use crate::enclosing::frame::Frame;
+use crate::enclosing::iterate::Iterate;
+use crate::enclosing::solution::{Certificate, Ending, Solution, finish};
+use crate::enclosing::start::Start;
+use crate::enclosing::working_set::WorkingSet;
+use crate::enclosing::{EnclosingIterate, Observer, Problem};
 use crate::error::EnclosingError;
-use crate::frame::Frame;
-use crate::iterate::Iterate;
-use crate::linalg::{cholesky, cholesky_log_det, dot, solve_lower, solve_lower_transpose};
-use crate::options::{EnclosingOptions, Status};
+use crate::numerics::dimension::{Dimension, Dynamic};
+use crate::numerics::linalg::{cholesky, cholesky_log_det, dot, solve_lower, solve_lower_transpose};
+use crate::options::Status;
 use crate::points::Points;
-use crate::solution::{Certificate, Solution, finish};
-use crate::start::Start;
 
 /// The most cuts, unless the caller says otherwise.
 const DEFAULT_ITERATIONS: usize = 200_000;
 
 /// Cuts the space of quadratic forms until f is known to `epsilon`.
-pub(crate) fn solve<P: Points, R: Dimension + Sync>(
-    points: &P,
-    rank: R,
+pub(crate) fn solve<P: Points>(
+    problem: &Problem<'_, P>,
     start: Start<P::Dim>,
-    options: EnclosingOptions,
-    mut observer: impl FnMut(EnclosingIterate<'_>),
+    observer: &mut Observer<'_>,
 ) -> Result<Solution<P::Dim>, EnclosingError> {
+    let Problem { points, rank, options } = *problem;
     let r = rank.get();
     let n = r + 1;
-    let max_iterations = if options.max_iterations == 0 { DEFAULT_ITERATIONS } else { options.max_iterations };
+    let max_iterations = options.max_iterations.unwrap_or(DEFAULT_ITERATIONS);
     let Start { frame, working, scans, .. } = start;
     let mut at = Iterate::new(points, rank, frame, WorkingSet::new(working, None), scans)?;
     at.recenter(points);
@@ -121,7 +120,8 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
         // No feasible iterate yet: the unit ball of the frame grown around the points still encloses, with the bound of
         // the starting weights.
         let certificate = Certificate { weights: Vec::new(), ..at.certificate(points) };
-        return finish(points, &at.frame, certificate, options.epsilon, ended, at.iterations, at.scans);
+        let ending = Ending { certificate, status: ended, iterations: at.iterations, scans: at.scans };
+        return finish(points, rank, &at.frame, options.epsilon, ending);
     }
 
     // The slice of P at height one: centre −P₁₁⁻¹P₁₂ (eq. 17), shape proportional to P₁₁.
@@ -148,7 +148,8 @@ pub(crate) fn solve<P: Points, R: Dimension + Sync>(
     let rows =
         (0..r * dim).map(|entry| (entry / dim..r).map(|j| p11[j * r + entry / dim] * map[j * dim + entry % dim]).sum());
     let frame = Frame::new(origin, points.dim().matrix(rows), r);
-    finish(points, &frame, certificate, options.epsilon, ended, at.iterations, at.scans)
+    let ending = Ending { certificate, status: ended, iterations: at.iterations, scans: at.scans };
+    finish(points, rank, &frame, options.epsilon, ending)
 }
 
 /// The place of entry (i, j), i ≤ j, in svec.

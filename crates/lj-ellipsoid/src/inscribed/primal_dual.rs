@@ -15,11 +15,11 @@
 //! Y. Zhang, L. Gao, *On numerical solution of the maximum volume ellipsoid problem*, SIAM J. Optim. 14 (2003), treat the
 //! same conditions with m × m systems.
 
-use crate::dimension::Dimension;
 use crate::error::InscribedError;
-use crate::inscribed::InscribedIterate;
-use crate::linalg::{cholesky, cholesky_log_det, dot, solve_lower, solve_lower_transpose};
-use crate::newton_system::{Direction, System};
+use crate::inscribed::newton_system::{Direction, System};
+use crate::inscribed::{InscribedIterate, Observer};
+use crate::numerics::dimension::Dimension;
+use crate::numerics::linalg::{cholesky, cholesky_log_det, dot, solve_lower, solve_lower_transpose};
 use crate::options::{InscribedOptions, Status};
 
 /// The unknowns of the program and what follows from them.
@@ -141,15 +141,23 @@ const ROUNDING: f64 = 1e-13;
 /// Below this gap steps are full ones, and polishing is worth its price.
 const NEAR: f64 = 1e-6;
 
-/// The best point, what its multipliers prove, how the iteration ended, and its steps.
-type Maximum = (Point, Option<Dual>, Status, usize);
+/// Where the iteration ended.
+pub(crate) struct Maximum {
+    /// The best point.
+    pub(crate) point: Point,
+    /// What its multipliers prove.
+    pub(crate) dual: Option<Dual>,
+    pub(crate) ended: Status,
+    /// Newton steps.
+    pub(crate) iterations: usize,
+}
 
 /// The primal–dual iteration over { z : pᵢ·z ≤ 1 }.
 pub(crate) fn maximize<D: Dimension>(
     dim: D,
     p: &[f64],
     options: InscribedOptions,
-    observer: &mut impl FnMut(InscribedIterate),
+    observer: &mut Observer<'_>,
 ) -> Result<Maximum, InscribedError> {
     let n = dim.get();
     let m = p.len() / n;
@@ -242,7 +250,7 @@ pub(crate) fn maximize<D: Dimension>(
             _ => 1.0,
         };
     };
-    Ok((point, best.1, ended, iteration))
+    Ok(Maximum { point, dual: best.1, ended, iterations: iteration })
 }
 
 /// How far y + length·Δy stays positive; infinite where it always does.

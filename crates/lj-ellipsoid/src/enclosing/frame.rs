@@ -1,7 +1,7 @@
 //! The coordinates in which an iterate is computed.
 
-use crate::dimension::Dimension;
-use crate::linalg::solve_lower;
+use crate::numerics::dimension::{Dimension, Dynamic};
+use crate::numerics::linalg::solve_lower;
 
 /// The affine map y = T·(v − o) from the N coordinates of the points to the r coordinates of an iterate; r = N unless
 /// the points are flat, and then r is the dimension of their affine hull.
@@ -23,6 +23,11 @@ impl<N: Dimension> Frame<N> {
         Self { origin, rows, rank }
     }
 
+    /// The same where the dimension is known at run time only.
+    pub(crate) fn at_run_time(&self) -> Frame<Dynamic> {
+        Frame { origin: self.origin.as_ref().to_vec(), rows: self.rows.as_ref().to_vec(), rank: self.rank }
+    }
+
     pub(crate) fn rank(&self) -> usize {
         self.rank
     }
@@ -39,7 +44,7 @@ impl<N: Dimension> Frame<N> {
 
     /// y = T·(v − o); overwrites `v` by v − o.
     #[inline(always)]
-    pub(crate) fn apply<R: Dimension>(&self, ambient: N, rank: R, v: &mut [f64], y: &mut [f64]) {
+    pub(crate) fn apply(&self, ambient: N, rank: N, v: &mut [f64], y: &mut [f64]) {
         let (n, r) = (ambient.get(), rank.get());
         let (origin, map) = (&self.origin.as_ref()[..n], &self.rows.as_ref()[..r * n]);
         let (v, y) = (&mut v[..n], &mut y[..r]);
@@ -57,7 +62,7 @@ impl<N: Dimension> Frame<N> {
 
     /// Moves the frame to where the ellipsoid (y − c)ᵀ(L·Lᵀ)⁻¹(y − c) ≤ 1 of this one is the unit ball:
     /// T ← L⁻¹·T, and o ← o + Tᵀ(T·Tᵀ)⁻¹c, found by the caller as the combination of points that c is.
-    pub(crate) fn recenter<R: Dimension>(&mut self, rank: R, origin: N::Point, l: &[f64]) {
+    pub(crate) fn recenter(&mut self, rank: N, origin: N::Point, l: &[f64]) {
         self.origin = origin;
         let n = self.origin.as_ref().len();
         let r = rank.get();

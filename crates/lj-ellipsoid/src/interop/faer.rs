@@ -2,17 +2,16 @@
 
 use faer::{Mat, MatRef};
 
-use crate::dimension::Dynamic;
 use crate::ellipsoid::{radius_at, reach_along};
-use crate::enclosing::EnclosingIterate;
+use crate::enclosing::{EnclosingIterate, Solution};
 use crate::error::{EnclosingError, InscribedError};
 use crate::inscribed::InscribedSolution;
-use crate::interior::round_coordinates;
-use crate::linalg::dot;
+use crate::numerics::dimension::Dynamic;
+use crate::numerics::linalg::dot;
 use crate::options::{EnclosingOptions, InscribedOptions, Status};
-use crate::points::Points;
+use crate::points::Copied;
 use crate::shape::Shape;
-use crate::solution::{Solution, Weight};
+use crate::weight::Weight;
 
 /// The ellipsoid E(c, X) = { x : (x − c)ᵀX(x − c) ≤ 1 } in a dimension known at run time; see
 /// [`Ellipsoid`](crate::Ellipsoid).
@@ -123,26 +122,11 @@ pub struct EnclosingDyn {
     pub scans: usize,
 }
 
-/// Rows of a matrix as points.
-struct Rows<'a>(MatRef<'a, f64>);
-
-impl Points for Rows<'_> {
-    type Dim = Dynamic;
-
-    fn dim(&self) -> Dynamic {
-        Dynamic(self.0.ncols())
-    }
-
-    fn len(&self) -> usize {
-        self.0.nrows()
-    }
-
-    #[inline]
-    fn read(&self, i: usize, out: &mut [f64]) {
-        for (k, out) in out.iter_mut().enumerate() {
-            *out = self.0[(i, k)];
-        }
-    }
+/// The rows of a matrix as points.
+fn copied(points: MatRef<'_, f64>) -> Copied<Dynamic> {
+    let (m, n) = (points.nrows(), points.ncols());
+    let rows = (0..m).flat_map(|i| (0..n).map(move |k| points[(i, k)]));
+    Copied::from_coordinates(Dynamic(n), m, rows.collect())
 }
 
 /// [`enclosing`](crate::enclosing()) for points of a dimension known at run time: one point per row of `points`.
@@ -171,10 +155,10 @@ pub fn enclosing_dyn(points: MatRef<'_, f64>, options: EnclosingOptions) -> Resu
 pub fn enclosing_dyn_with(
     points: MatRef<'_, f64>,
     options: EnclosingOptions,
-    observer: impl FnMut(EnclosingIterate<'_>),
+    mut observer: impl FnMut(EnclosingIterate<'_>),
 ) -> Result<EnclosingDyn, EnclosingError> {
     let Solution { shape, log_det_gap, weights, contacts, status, iterations, scans } =
-        crate::enclosing::solve(&Rows(points), options, observer)?;
+        crate::enclosing::solve(&copied(points), options, &mut observer)?;
     let ellipsoid = EllipsoidDyn::from_shape(shape);
     Ok(EnclosingDyn { ellipsoid, log_det_gap, weights, contacts, status, iterations, scans })
 }
@@ -219,9 +203,7 @@ pub fn inscribed_dyn(
     assert_eq!(m, offsets.len(), "{m} normals but {} offsets", offsets.len());
     let rows: Vec<f64> = (0..m * n).map(|at| normals[(at / n, at % n)]).collect();
     let halfspaces = rows.chunks_exact(n.max(1)).zip(offsets.iter().copied());
-    let polyhedron = crate::inscribed::polyhedron(n, halfspaces)?;
-    let coordinates = round_coordinates(Dynamic(n), &polyhedron)?;
-    crate::inscribed::solve(Dynamic(n), &polyhedron, coordinates, 0.0, options, |_| {}).map(InscribedDyn::from_solution)
+    crate::inscribed::solve(Dynamic(n), halfspaces, options, &mut |_| {}).map(InscribedDyn::from_solution)
 }
 
 /// [`inscribed_in_hull`](crate::inscribed_in_hull()) for points given as rows of a matrix; of 2 or 3 columns.
@@ -232,7 +214,7 @@ pub fn inscribed_in_hull_dyn(
     points: MatRef<'_, f64>,
     options: InscribedOptions,
 ) -> Result<InscribedDyn, InscribedError> {
-    crate::inscribed_in_hull::solve_points(&Rows(points), options, |_| {}).map(InscribedDyn::from_solution)
+    crate::inscribed::in_hull::solve_points(&copied(points), options, &mut |_| {}).map(InscribedDyn::from_solution)
 }
 
 /// `rows` as a matrix, one row each; for callers that hold vectors of run-time length.

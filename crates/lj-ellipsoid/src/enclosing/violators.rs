@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use crate::dimension::Dimension;
-use crate::frame::Frame;
-use crate::linalg::dot;
-use crate::parallel::in_parts;
-use crate::points::Points;
-use crate::scan::beyond;
+use crate::enclosing::frame::Frame;
+use crate::enclosing::scan::beyond;
+use crate::numerics::dimension::Dimension;
+use crate::numerics::linalg::dot;
+use crate::points::parallel::in_parts;
+use crate::points::{Copied, Points};
 
 /// Violators are sought per orthant of at most this many leading coordinates, so that those of one pass spread out.
 const ORTHANT_COORDINATES: usize = 5;
@@ -29,29 +29,8 @@ pub(crate) struct Violators {
 
 /// The points that may still touch the ellipsoid: a part of the input, copied together.
 pub(crate) struct Survivors<D> {
-    dim: D,
     pub(crate) index: Vec<usize>,
-    coordinates: Vec<f64>,
-}
-
-impl<D: Dimension + Sync> Points for Survivors<D> {
-    type Dim = D;
-
-    #[inline(always)]
-    fn dim(&self) -> D {
-        self.dim
-    }
-
-    #[inline(always)]
-    fn len(&self) -> usize {
-        self.index.len()
-    }
-
-    #[inline(always)]
-    fn read(&self, i: usize, out: &mut [f64]) {
-        let n = self.dim.get();
-        out.copy_from_slice(&self.coordinates[i * n..(i + 1) * n]);
-    }
+    pub(crate) points: Copied<D>,
 }
 
 /// The |y|² below which no point can touch the optimal ellipsoid, where the weights leave max |y|² at `furthest`.
@@ -104,16 +83,14 @@ fn worth(r: f64, furthest: f64) -> f64 {
 ///
 /// If κ turns out at most `expected`, and no more than `capacity` points lie beyond the elimination threshold of
 /// `expected`, these survivors are answered too: the threshold falls as κ grows, so theirs is on the safe side.
-pub(crate) fn look<P: Points, R: Dimension + Sync>(
+pub(crate) fn look<P: Points>(
     points: &P,
-    rank: R,
+    rank: P::Dim,
     frame: &Frame<P::Dim>,
     expected: f64,
     capacity: usize,
 ) -> (Violators, Option<Survivors<P::Dim>>) {
     let r = rank.get();
-    let dim = points.dim();
-    let n = dim.get();
     let keep_from = elimination_threshold(r, expected);
     let keeping = capacity > 0 && keep_from > 0.0 && few_beyond(points, rank, frame, keep_from, capacity);
     let keep = keeping.then_some((keep_from, capacity));
@@ -121,23 +98,15 @@ pub(crate) fn look<P: Points, R: Dimension + Sync>(
         in_parts(points.len(), |range| part(points, range, rank, frame, keep), |all, part| all.merge(part, capacity));
     let cutoff = worth(r as f64, furthest);
     let found = champions.iter().filter(|(_, q)| *q > r as f64 && *q >= cutoff).map(|(i, _)| *i).collect();
-    let survivors = kept.filter(|_| furthest <= expected).map(|index| {
-        let mut coordinates = vec![0.0; index.len() * n];
-        index.iter().zip(coordinates.chunks_exact_mut(n)).for_each(|(&i, out)| points.read(i, out));
-        Survivors { dim, index, coordinates }
-    });
+    let survivors = kept
+        .filter(|_| furthest <= expected)
+        .map(|index| Survivors { points: Copied::new(points.dim(), points, index.iter().copied()), index });
     (Violators { furthest, found }, survivors)
 }
 
 /// Whether a sample suggests that at most `capacity` points lie beyond `threshold`: to collect survivors only to find them
 /// too many is dear.
-fn few_beyond<P: Points, R: Dimension>(
-    points: &P,
-    rank: R,
-    frame: &Frame<P::Dim>,
-    threshold: f64,
-    capacity: usize,
-) -> bool {
+fn few_beyond<P: Points>(points: &P, rank: P::Dim, frame: &Frame<P::Dim>, threshold: f64, capacity: usize) -> bool {
     let mut v = points.dim().zero();
     let mut y = rank.zero();
     let step = (points.len() / SAMPLE).max(SAMPLED);
@@ -150,10 +119,10 @@ fn few_beyond<P: Points, R: Dimension>(
 }
 
 /// One range of a pass; `keep` is the elimination threshold and the most survivors wanted.
-fn part<P: Points, R: Dimension>(
+fn part<P: Points>(
     points: &P,
     range: Range<usize>,
-    rank: R,
+    rank: P::Dim,
     frame: &Frame<P::Dim>,
     keep: Option<(f64, usize)>,
 ) -> Part {

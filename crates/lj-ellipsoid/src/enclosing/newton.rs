@@ -12,11 +12,12 @@
 //! than n(n + 1)/2 points. M is still unique, u is not. A proximal term ½τ|v − u|² with τ some 1e-13 of H chooses the v
 //! nearest to u; it vanishes at the solution, so it moves no answer.
 
-use crate::design::{Moments, WorkingSet};
-use crate::dimension::{Const, Dimension, Dynamic};
-use crate::iterate::Iterate;
-use crate::linalg::{cholesky, solve_lower, solve_lower_transpose};
-use crate::violators::elimination_threshold;
+use crate::enclosing::iterate::Iterate;
+use crate::enclosing::moments::Moments;
+use crate::enclosing::violators::elimination_threshold;
+use crate::enclosing::working_set::WorkingSet;
+use crate::numerics::dimension::{Const, Dimension, Dynamic};
+use crate::numerics::linalg::{cholesky, solve_lower, solve_lower_transpose};
 
 /// The proximal term relative to the largest diagonal of H: far above the rounding of its Cholesky factor, far below
 /// what ω could tell.
@@ -30,7 +31,7 @@ const EAGER: f64 = 0.1;
 const MULTIPLICATIVE_STEPS: usize = 4;
 
 /// Room for the quadratic model, reused from step to step.
-pub(crate) struct Workspace<R: Dimension> {
+pub(crate) struct Workspace<D: Dimension> {
     h: Vec<f64>,
     r: Vec<f64>,
     v: Vec<f64>,
@@ -40,13 +41,13 @@ pub(crate) struct Workspace<R: Dimension> {
     solution: Vec<f64>,
     /// Weights a part of the way from u to v, and what follows from them.
     trial: Vec<f64>,
-    trial_moments: Moments<R>,
+    trial_moments: Moments<D>,
     /// The iterate of least gap.
     best: WorkingSet,
 }
 
-impl<R: Dimension> Workspace<R> {
-    pub(crate) fn new(rank: R) -> Self {
+impl<D: Dimension> Workspace<D> {
+    pub(crate) fn new(rank: D) -> Self {
         let [h, r, v, factor, solution, trial] = Default::default();
         let (free, best) = Default::default();
         Self { h, r, v, free, factor, solution, trial, trial_moments: Moments::new(rank), best }
@@ -55,12 +56,7 @@ impl<R: Dimension> Workspace<R> {
 
 /// Improves the weights until the gap over the working set is at most `gap`, or rounding stops the ascent. Answers the
 /// number of steps.
-pub(crate) fn solve<N: Dimension, R: Dimension>(
-    at: &mut Iterate<N, R>,
-    work: &mut Workspace<R>,
-    gap: f64,
-    max_steps: usize,
-) -> usize {
+pub(crate) fn solve<D: Dimension>(at: &mut Iterate<D>, work: &mut Workspace<D>, gap: f64, max_steps: usize) -> usize {
     let Iterate { rank, set, moments, .. } = at;
     let rank = *rank;
     let mut steps = 0;
@@ -102,7 +98,7 @@ pub(crate) fn solve<N: Dimension, R: Dimension>(
 
 /// Where every member has weight, as at the start, most will lose it, and Newton's model takes them out one by one. A few
 /// multiplicative steps u ← u·ω/n, which always ascend, tell them from the others, and they are forgotten together.
-fn thin_out<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments<R>, before: &mut WorkingSet) {
+fn thin_out<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D>, before: &mut WorkingSet) {
     let r = rank.get() as f64;
     for _ in 0..MULTIPLICATIVE_STEPS {
         if set.len() <= rank.get() + 3 || set.u.contains(&0.0) || moments.furthest().1 <= r * (1.0 + 1e-9) {
@@ -125,7 +121,7 @@ fn thin_out<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments<R
 
 /// The model of a point far outside with little weight is poor: Newton would only double its weight each step. The
 /// exact line search of the first-order method (Todd and Yıldırım), β = (ω − n)/(n(ω − 1)), brings such points in.
-fn lift_far_points<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments<R>) {
+fn lift_far_points<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D>) {
     let n = rank.get() as f64 + 1.0;
     for _ in 0..set.len() {
         let (j, q) = moments.furthest();
@@ -143,7 +139,7 @@ fn lift_far_points<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Mo
 }
 
 /// One damped Newton step; false where no ascent is left.
-fn step<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments<R>, work: &mut Workspace<R>) -> bool {
+fn step<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D>, work: &mut Workspace<D>) -> bool {
     let r = rank.get();
     let n = r as f64 + 1.0;
     quadratic_model(rank, set, moments, work);
@@ -183,7 +179,7 @@ fn step<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments<R>, w
 }
 
 /// Writes H = G∘G, Gᵢⱼ = 1 + zᵢ·zⱼ, and r = 2ω − n·1, both with the proximal term.
-fn quadratic_model<R: Dimension>(rank: R, set: &WorkingSet, moments: &Moments<R>, work: &mut Workspace<R>) {
+fn quadratic_model<D: Dimension>(rank: D, set: &WorkingSet, moments: &Moments<D>, work: &mut Workspace<D>) {
     let r = rank.get();
     let n = r as f64 + 1.0;
     let k = set.len();
@@ -206,7 +202,7 @@ fn quadratic_model<R: Dimension>(rank: R, set: &WorkingSet, moments: &Moments<R>
 }
 
 /// Forgets the members with |z|² below `threshold`; false where the others do not span the space.
-fn forget<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments<R>, threshold: f64) -> bool {
+fn forget<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D>, threshold: f64) -> bool {
     let q = &moments.q;
     if !q.iter().any(|q| *q < threshold) {
         return true;
@@ -230,7 +226,7 @@ fn forget<R: Dimension>(rank: R, set: &mut WorkingSet, moments: &mut Moments<R>,
 ///
 /// Leaves the result in `work.v`. Every pass either moves to a better v with fewer free members or to the optimum of the
 /// free ones, so it ends; should rounding make it cycle it stops with a v at least as good as u.
-fn non_negative_quadratic<R: Dimension>(n: f64, u: &[f64], work: &mut Workspace<R>) {
+fn non_negative_quadratic<D: Dimension>(n: f64, u: &[f64], work: &mut Workspace<D>) {
     let k = u.len();
     let Workspace { h, r, v, free, factor, solution, .. } = work;
     v.clear();

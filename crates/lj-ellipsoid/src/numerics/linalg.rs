@@ -1,6 +1,6 @@
 //! Small dense kernels on row-major `n × n` slices. Matrices here are at most some tens wide, so plain loops win.
 
-use crate::dimension::Dimension;
+use crate::numerics::dimension::Dimension;
 
 /// The unit roundoff of `f64`, 2⁻⁵³.
 pub(crate) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
@@ -194,7 +194,7 @@ pub(crate) fn orthogonalize_rows<D: Dimension>(dim: D, t: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dimension::{Const, Dynamic};
+    use crate::numerics::dimension::{Const, Dynamic};
 
     #[test]
     fn cholesky_solves_and_gives_the_determinant() {

@@ -1,0 +1,175 @@
+//! The maximum-volume ellipsoid inside an intersection of half-spaces.
+
+mod analytic_center;
+mod boundedness;
+mod chebyshev;
+mod coordinates;
+mod hull;
+pub(crate) mod in_hull;
+mod interior;
+mod newton_system;
+mod polyhedron;
+mod primal_dual;
+mod solution;
+
+pub use self::in_hull::{inscribed_in_hull, inscribed_in_hull_with};
+use self::interior::round_coordinates;
+use self::polyhedron::Polyhedron;
+pub(crate) use self::solution::InscribedSolution;
+use crate::ellipsoid::{Ellipsoid, reach_along};
+use crate::error::InscribedError;
+use crate::numerics::dimension::{Const, Dimension};
+use crate::numerics::linalg::{UNIT_ROUNDOFF, dot};
+use crate::options::{InscribedOptions, Status};
+use crate::shape::Shape;
+use crate::weight::Weight;
+
+/// The half-space { x : normal·x ≤ offset }. The normal points outward and need not be of unit length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Halfspace<const N: usize> {
+    /// The outward normal.
+    pub normal: [f64; N],
+    /// The value of normal·x on the boundary.
+    pub offset: f64,
+}
+
+/// The maximum-volume ellipsoid inside a body, and the proof of how near to maximal it is.
+#[derive(Clone, Debug, PartialEq)]
+#[must_use]
+pub struct Inscribed<const N: usize> {
+    /// The ellipsoid. Its [`support_value`](Ellipsoid::support_value) along the normal of every given half-space, as evaluated
+    /// in `f64`, is at most the offset.
+    pub ellipsoid: Ellipsoid<N>,
+    /// A certified bound: ln det X of `ellipsoid` exceeds that of the true optimum by at most this. It is twice the bound on
+    /// the lack of log-volume. Never negative.
+    pub log_det_gap: f64,
+    /// The multipliers y that prove the gap, positive ones only, with their half-spaces (facets of the hull, for points),
+    /// scaled to sum to one.
+    pub weights: Vec<Weight>,
+    /// How the computation ended.
+    pub status: Status,
+    /// Newton steps.
+    pub iterations: usize,
+}
+
+impl<const N: usize> Inscribed<N> {
+    pub(crate) fn from_solution(solution: InscribedSolution<Const<N>>) -> Self {
+        Self {
+            ellipsoid: Ellipsoid::from_shape(&solution.shape),
+            log_det_gap: solution.log_det_gap,
+            weights: solution.weights,
+            status: solution.status,
+            iterations: solution.iterations,
+        }
+    }
+
+    /// A certified bound on how much ln(volume) falls short of the largest possible.
+    #[must_use]
+    pub fn log_volume_gap(&self) -> f64 {
+        0.5 * self.log_det_gap
+    }
+}
+
+/// What an observer of [`inscribed_with`] sees after every Newton step.
+#[derive(Clone, Copy, Debug)]
+pub struct InscribedIterate {
+    /// Newton steps so far.
+    pub iteration: usize,
+    /// The barrier parameter the step aimed at.
+    pub mu: f64,
+    /// The bound on ln det X − ln det X* of this iterate; infinite while the multipliers prove nothing.
+    pub log_det_gap: f64,
+}
+
+/// The ellipsoid of greatest volume inside the intersection of `halfspaces`.
+///
+/// Normals of any length, redundant and repeated half-spaces are fine, and so are thin bodies, turned as they may be. What
+/// limits them is the answer: the axes of the ellipsoid are rounded to doubles, so that of a turned body some 1e-16 of its
+/// length is lost of its thickness, and a centre far from the origin loses as much of its own distance. The gap says how much that is.
+///
+/// # Errors
+/// [`InscribedError::Unbounded`] and [`InscribedError::EmptyInterior`] where there is no such ellipsoid;
+/// [`InscribedError::ZeroNormal`], [`InscribedError::NonFinite`] and [`InscribedError::Empty`] for bad input,
+/// [`InscribedError::InvalidEpsilon`] for a bad option.
+///
+/// # Examples
+/// ```
+/// use lj_ellipsoid::{Halfspace, InscribedOptions, inscribed};
+///
+/// // A box of 4 × 2 about (1, 0).
+/// let sides = [
+///     Halfspace { normal: [1.0, 0.0], offset: 3.0 },
+///     Halfspace { normal: [-1.0, 0.0], offset: 1.0 },
+///     Halfspace { normal: [0.0, 1.0], offset: 1.0 },
+///     Halfspace { normal: [0.0, -1.0], offset: 1.0 },
+/// ];
+/// let answer = inscribed(&sides, InscribedOptions::default())?;
+/// assert!((answer.ellipsoid.center()[0] - 1.0).abs() < 1e-9);
+/// assert!((answer.ellipsoid.semi_axes()[0] - 2.0).abs() < 1e-9);
+/// # Ok::<(), lj_ellipsoid::InscribedError>(())
+/// ```
+pub fn inscribed<const N: usize>(
+    halfspaces: &[Halfspace<N>],
+    options: InscribedOptions,
+) -> Result<Inscribed<N>, InscribedError> {
+    inscribed_with(halfspaces, options, |_| {})
+}
+
+/// [`inscribed`](inscribed()), showing every iterate to `observer`.
+///
+/// # Errors
+/// As [`inscribed`](inscribed()).
+pub fn inscribed_with<const N: usize>(
+    halfspaces: &[Halfspace<N>],
+    options: InscribedOptions,
+    mut observer: impl FnMut(InscribedIterate),
+) -> Result<Inscribed<N>, InscribedError> {
+    let halfspaces = halfspaces.iter().map(|h| (&h.normal[..], h.offset));
+    solve(Const::<N>, halfspaces, options, &mut observer).map(Inscribed::from_solution)
+}
+
+/// Who sees the iterates. The solver is compiled once for all observers.
+pub(crate) type Observer<'a> = dyn FnMut(InscribedIterate) + 'a;
+
+/// The dimension-free body of [`inscribed`](inscribed()).
+pub(crate) fn solve<'a, D: Dimension>(
+    dim: D,
+    halfspaces: impl ExactSizeIterator<Item = (&'a [f64], f64)>,
+    options: InscribedOptions,
+    observer: &mut Observer<'_>,
+) -> Result<InscribedSolution<D>, InscribedError> {
+    options.check()?;
+    let polyhedron = Polyhedron::new(dim.get(), halfspaces)?;
+    let (coordinates, rows) = round_coordinates(&polyhedron)?;
+    let mut within = |shape: &mut Shape<D>| touch(&polyhedron, shape);
+    solution::solve(dim, coordinates, &rows, &mut within, options, observer)
+}
+
+/// Scales the semi-axes so that the ellipsoid touches the first half-space, the most that keeps it in all of them as evaluated:
+/// a·c + |diag(axes)·R·a| ≤ b. `None` where that leaves nothing.
+///
+/// A scaling may by its own rounding leave a half-space a rounding behind: then it shrinks once more, twice as far every time.
+fn touch<D: Dimension>(polyhedron: &Polyhedron, shape: &mut Shape<D>) -> Option<()> {
+    let reach = |shape: &Shape<D>, a: &[f64]| reach_along(shape.axes.as_ref(), shape.semi_axes.as_ref(), a);
+    let room = polyhedron
+        .rows()
+        .map(|(a, b)| (b - dot(a, shape.center.as_ref())) / reach(shape, a))
+        .fold(f64::INFINITY, f64::min);
+    let mut scale = room;
+    let mut shrinkage = UNIT_ROUNDOFF;
+    for _ in 0..MOST_SHRINKS {
+        if !(scale > 0.0 && scale.is_finite()) {
+            return None;
+        }
+        shape.semi_axes.as_mut().iter_mut().for_each(|a| *a *= scale);
+        if polyhedron.rows().all(|(a, b)| dot(a, shape.center.as_ref()) + reach(shape, a) <= b) {
+            return Some(());
+        }
+        scale = 1.0 - shrinkage;
+        shrinkage *= 2.0;
+    }
+    None
+}
+
+/// Doubling shrinkages: the last is all of the size.
+const MOST_SHRINKS: usize = 54;

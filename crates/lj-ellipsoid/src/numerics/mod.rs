@@ -1,0 +1,5 @@
+//! The arithmetic under both wings: small dense matrices, and sums in twice the working precision.
+
+pub(crate) mod dimension;
+pub(crate) mod linalg;
+pub(crate) mod twofold;

@@ -1,0 +1,10 @@
+//! The weights and multipliers that prove a gap.
+
+/// The weight of a point, or the multiplier of a half-space, in the certificate of a gap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weight {
+    /// Which point or half-space.
+    pub index: usize,
+    /// Its weight, positive; the weights sum to one up to rounding.
+    pub weight: f64,
+}
