@@ -73,8 +73,8 @@ pub enum InscribedError {
     #[error("the intersection of the half-spaces is unbounded")]
     Unbounded,
     /// The intersection has no interior point whose coordinates are doubles: it is empty, flat, or thinner than the spacing of
-    /// doubles where it lies.
-    #[error("the intersection of the half-spaces is empty, flat, or thinner than the spacing of doubles")]
+    /// doubles where it lies (or, about the origin, than 1e-154).
+    #[error("the intersection of the half-spaces is empty, flat, or too thin to hold an ellipsoid in doubles")]
     EmptyInterior,
     /// All points lie in an affine subspace of `rank` dimensions, up to rounding: their hull has no interior.
     #[error("the points are flat: they span {rank} of {dimension} dimensions")]

@@ -25,17 +25,17 @@ use crate::error::EnclosingError;
 use crate::numerics::dimension::{Dimension, Dynamic};
 use crate::numerics::linalg::{cholesky, cholesky_log_det, dot, solve_lower, solve_lower_transpose};
 use crate::options::Status;
-use crate::points::Points;
+use crate::points::{Copied, Points};
 
 /// The most cuts, unless the caller says otherwise.
 const DEFAULT_ITERATIONS: usize = 200_000;
 
 /// Cuts the space of quadratic forms until f is known to `epsilon`.
-pub(crate) fn solve<P: Points>(
-    problem: &Problem<'_, P>,
-    start: Start<P::Dim>,
+pub(crate) fn solve(
+    problem: &Problem<'_, Copied<Dynamic>>,
+    start: Start<Dynamic>,
     observer: &mut Observer<'_>,
-) -> Result<Solution<P::Dim>, EnclosingError> {
+) -> Result<Solution<Dynamic>, EnclosingError> {
     let Problem { points, rank, options } = *problem;
     let r = rank.get();
     let n = r + 1;

@@ -11,7 +11,8 @@ use crate::enclosing::start::Start;
 use crate::enclosing::working_set::WorkingSet;
 use crate::enclosing::{Observer, Problem};
 use crate::error::EnclosingError;
-use crate::numerics::dimension::Dimension;
+use crate::numerics::dimension::{Const, Dimension, Dynamic};
+use crate::points::Copied;
 use crate::options::Status;
 use crate::points::Points;
 
@@ -26,11 +27,11 @@ const REFRESH: usize = 200;
 /// With ω = qᵀM⁻¹q of every point, take j₊ of largest ω, and j₋ of smallest ω among those with weight. The one further
 /// from optimality (ω = n) moves: u ← (1 − β)u + β·eⱼ with β = (ωⱼ − n)/(n(ωⱼ − 1)), at least −uⱼ/(1 − uⱼ), where the
 /// weight is zero (a drop step). Then g = Q·M⁻¹qⱼ gives ω ← (ω − βg²/(1 − β + βωⱼ))/(1 − β).
-pub(crate) fn solve<P: Points>(
-    problem: &Problem<'_, P>,
-    start: Start<P::Dim>,
+pub(crate) fn solve(
+    problem: &Problem<'_, Copied<Dynamic>>,
+    start: Start<Dynamic>,
     observer: &mut Observer<'_>,
-) -> Result<Solution<P::Dim>, EnclosingError> {
+) -> Result<Solution<Dynamic>, EnclosingError> {
     let Problem { points, rank, options } = *problem;
     let r = rank.get();
     let n = r as f64 + 1.0;
@@ -62,13 +63,14 @@ pub(crate) fn solve<P: Points>(
             if *iterations >= max_iterations {
                 break 'outer Status::IterationLimit;
             }
-            let (mut plus, mut minus) = (0, usize::MAX);
-            for i in 0..set.len() {
-                if omega[i] > omega[plus] {
-                    plus = i;
+            let (mut plus, mut most) = (0, f64::NEG_INFINITY);
+            let (mut minus, mut least) = (0, f64::INFINITY);
+            for (i, (&omega, &u)) in omega.iter().zip(&set.u).enumerate() {
+                if omega > most {
+                    (plus, most) = (i, omega);
                 }
-                if set.u[i] > 0.0 && (minus == usize::MAX || omega[i] < omega[minus]) {
-                    minus = i;
+                if u > 0.0 && omega < least {
+                    (minus, least) = (i, omega);
                 }
             }
             let away = n - omega[minus] > omega[plus] - n;
@@ -87,7 +89,11 @@ pub(crate) fn solve<P: Points>(
             }
             *iterations += 1;
             *scans += 1;
-            rank_one_move(r, j, beta, &moments.z, &mut inverse, &mut omega);
+            match r {
+                2 => rank_one_move(Const::<2>, j, beta, &moments.z, &mut inverse, &mut omega),
+                3 => rank_one_move(Const::<3>, j, beta, &moments.z, &mut inverse, &mut omega),
+                _ => rank_one_move(rank, j, beta, &moments.z, &mut inverse, &mut omega),
+            }
             let dropped = away && beta == -set.u[j] / (1.0 - set.u[j]);
             set.u.iter_mut().for_each(|u| *u *= 1.0 - beta);
             set.u[j] = if dropped { 0.0 } else { set.u[j] + beta };
@@ -104,7 +110,8 @@ pub(crate) fn solve<P: Points>(
 }
 
 /// Updates M⁻¹ and every ω for u ← (1 − β)u + β·eⱼ: M' = (1 − β)M + β·qⱼqⱼᵀ, by Sherman and Morrison.
-fn rank_one_move(r: usize, j: usize, beta: f64, z: &[f64], inverse: &mut [f64], omega: &mut [f64]) {
+fn rank_one_move<D: Dimension>(dim: D, j: usize, beta: f64, z: &[f64], inverse: &mut [f64], omega: &mut [f64]) {
+    let r = dim.get();
     let lifted = r + 1;
     let entry = |z: &[f64], k: usize| if k < r { z[k] } else { 1.0 };
     let zj = &z[j * r..(j + 1) * r];

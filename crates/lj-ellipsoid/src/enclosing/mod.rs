@@ -18,6 +18,7 @@ mod working_set;
 
 pub use self::moving_points::MovingPoints;
 pub(crate) use self::solution::Solution;
+use self::active_set::Improve;
 use self::start::{Start, start};
 use crate::ellipsoid::Ellipsoid;
 use crate::error::EnclosingError;
@@ -155,8 +156,8 @@ pub(crate) fn solve<P: Points>(
 
 /// Solves in the coordinates of a starting frame.
 ///
-/// Newton's method around points that span the space is what is asked for nearly always: it is compiled for the dimension
-/// of the points. All else is compiled once, for a dimension known at run time, and works on a copy of the points.
+/// The methods on a working set are compiled for the dimension of the points, where these span the space. All else is compiled
+/// once, for a dimension known at run time, and works on a copy of the points.
 pub(crate) fn solve_from<P: Points>(
     points: &P,
     start: Start<P::Dim>,
@@ -164,8 +165,8 @@ pub(crate) fn solve_from<P: Points>(
     observer: &mut Observer<'_>,
 ) -> Result<Solution<P::Dim>, EnclosingError> {
     let dim = points.dim();
-    if options.method == EnclosingMethod::Newton && start.frame.rank() == dim.get() {
-        return active_set::solve(&Problem { points, rank: dim, options }, newton::solve, start, observer);
+    if let (Some(improve), true) = (on_working_set(options.method), start.frame.rank() == dim.get()) {
+        return active_set::solve(&Problem { points, rank: dim, options }, improve, start, observer);
     }
     let points = Copied::new(Dynamic(dim.get()), points, 0..points.len());
     solve_at_run_time(&points, start.at_run_time(), options, observer).map(|solution| solution.in_dimension(dim))
@@ -179,10 +180,18 @@ fn solve_at_run_time(
     observer: &mut Observer<'_>,
 ) -> Result<Solution<Dynamic>, EnclosingError> {
     let problem = Problem { points, rank: Dynamic(start.frame.rank()), options };
-    match options.method {
-        EnclosingMethod::Newton => active_set::solve(&problem, newton::solve, start, observer),
-        EnclosingMethod::DualReducedNewton => active_set::solve(&problem, dual_reduced::solve, start, observer),
-        EnclosingMethod::Khachiyan => khachiyan::solve(&problem, start, observer),
-        EnclosingMethod::EllipsoidAlgorithm => ellipsoid_algorithm::solve(&problem, start, observer),
+    match (on_working_set(options.method), options.method) {
+        (Some(improve), _) => active_set::solve(&problem, improve, start, observer),
+        (None, EnclosingMethod::EllipsoidAlgorithm) => ellipsoid_algorithm::solve(&problem, start, observer),
+        (None, _) => khachiyan::solve(&problem, start, observer),
+    }
+}
+
+/// How the methods on a working set improve its weights; `None` for the others.
+fn on_working_set<D: Dimension>(method: EnclosingMethod) -> Option<Improve<D>> {
+    match method {
+        EnclosingMethod::Newton => Some(newton::solve),
+        EnclosingMethod::DualReducedNewton => Some(dual_reduced::solve),
+        EnclosingMethod::Khachiyan | EnclosingMethod::EllipsoidAlgorithm => None,
     }
 }

@@ -34,8 +34,9 @@ pub(crate) fn beyond<P: Points>(
         }
         let mut q = [0.0; LANES];
         for i in 0..r {
-            let mut y = [0.0; LANES];
-            for k in 0..n {
+            let mut y = block[0];
+            y.iter_mut().for_each(|x| *x *= map[i * n]);
+            for k in 1..n {
                 let t = map[i * n + k];
                 for lane in 0..LANES {
                     y[lane] += t * block[k][lane];

@@ -13,6 +13,9 @@ use crate::numerics::dimension::Dynamic;
 use crate::numerics::linalg::{UNIT_ROUNDOFF, dot, orthogonalize_rows, power_of_two_inverse, triangularize};
 use crate::numerics::twofold;
 
+/// Terms this many times as large as their sum cancel: then twice the precision is worth its price.
+const CANCELLING: f64 = 8.0;
+
 /// The map x = o + Rᵀ·diag(a)·z.
 #[derive(Clone, Debug)]
 pub(crate) struct Coordinates {
@@ -30,7 +33,7 @@ pub(crate) struct Rows {
     pub(crate) n: usize,
     pub(crate) p: Vec<f64>,
     pub(crate) s: Vec<f64>,
-    /// A bound on the relative error of pᵢ and sᵢ beyond a few roundings: of p to |aᵢ|'s image, of s to itself.
+    /// A bound on the error of every pᵢ and sᵢ, relative to their own size, beyond a rounding of each.
     pub(crate) error: f64,
 }
 
@@ -57,18 +60,32 @@ impl Coordinates {
             s: Vec::with_capacity(polyhedron.len()),
             error: 0.0,
         };
+        let twofold_error = ((n + 2) as f64 * UNIT_ROUNDOFF).powi(2);
         for (a, b) in polyhedron.rows() {
-            let mut size = 0.0;
+            let (mut largest, mut size): (f64, f64) = (0.0, 0.0);
             for column in columns.chunks_exact(n) {
-                rows.p.push(twofold::dot(column.iter().copied().zip(a.iter().copied())));
-                size += column.iter().zip(a).map(|(m, a)| (m * a).abs()).sum::<f64>();
+                let (mut along, mut terms) = (0.0, 0.0);
+                for (m, a) in column.iter().zip(a) {
+                    along += m * a;
+                    terms += (m * a).abs();
+                }
+                rows.p.push(along);
+                largest = largest.max(along.abs());
+                size += terms;
+            }
+            let mut error = (n as f64 + 1.0) * UNIT_ROUNDOFF * (size / largest);
+            if !(size <= CANCELLING * largest) {
+                let start = rows.p.len() - n;
+                for (p, column) in rows.p[start..].iter_mut().zip(columns.chunks_exact(n)) {
+                    *p = twofold::dot(column.iter().copied().zip(a.iter().copied()));
+                }
+                error = size / rows.p[start..].iter().fold(0.0, |m: f64, p| m.max(p.abs())) * twofold_error;
             }
             let against = a.iter().zip(&self.origin).map(|(a, o)| (*a, -o));
             let s = twofold::dot([(b, 1.0)].into_iter().chain(against));
-            size += b.abs() + a.iter().zip(&self.origin).map(|(a, o)| (a * o).abs()).sum::<f64>();
+            let size = b.abs() + a.iter().zip(&self.origin).map(|(a, o)| (a * o).abs()).sum::<f64>();
             rows.s.push(s);
-            let twofold_error = ((n + 2) as f64 * UNIT_ROUNDOFF).powi(2);
-            rows.error = rows.error.max(twofold_error * size / s.abs());
+            rows.error = rows.error.max(error + size / s.abs() * twofold_error);
         }
         rows
     }
@@ -79,10 +96,13 @@ impl Coordinates {
         self.axes.chunks_exact(n).zip(&self.lengths).flat_map(|(axis, a)| axis.iter().map(move |x| a * x)).collect()
     }
 
-    /// o ← o + M·z.
+    /// o ← o + M·z, rounded once: an intermediate sum may be far larger than what is left of it across a thin body.
     pub(crate) fn shift(&mut self, z: &[f64]) {
-        for (column, z) in self.columns().chunks_exact(z.len()).zip(z) {
-            self.origin.iter_mut().zip(column).for_each(|(o, m)| *o += m * z);
+        let n = z.len();
+        let columns = self.columns();
+        for (i, o) in self.origin.iter_mut().enumerate() {
+            let terms = columns.iter().skip(i).step_by(n).copied().zip(z.iter().copied());
+            *o = twofold::dot([(*o, 1.0)].into_iter().chain(terms));
         }
     }
 

@@ -52,7 +52,7 @@ pub(crate) fn solve<D: Dimension>(
     within(&mut shape).ok_or(InscribedError::EmptyInterior)?;
     let semi_axes = shape.semi_axes.as_ref();
     shape.log_det = -2.0 * sum_of_logarithms(semi_axes.iter().copied());
-    if !shape.log_det.is_finite() {
+    if !(shape.log_det.is_finite() && shape.matrix.as_ref().iter().all(|x| x.is_finite())) {
         return Err(InscribedError::OutOfRange);
     }
     let log_det_gap = dual.as_ref().map_or(f64::INFINITY, |dual| {
