@@ -6,9 +6,10 @@ use crate::shape::Shape;
 
 /// The ellipsoid E(c, X) = { x : (x − c)ᵀX(x − c) ≤ 1 } in N dimensions.
 ///
-/// It is kept by centre, orthonormal axes and semi-axes; [`matrix`](Self::matrix) is formed from them. The condition of X
-/// is the square of the aspect ratio, so at an aspect of 1e8 the doubles of X no longer tell the longest axis: prefer
-/// the axes there.
+/// It is kept by centre, orthonormal axes and semi-axes, which are accurate at any aspect ratio; [`matrix`](Self::matrix) is
+/// formed from them. The condition of X is the square of the aspect ratio, so beyond an aspect of 1e8 the doubles of X no longer
+/// tell the longest axis, and rounding may leave them without a Cholesky factor: use, store and print centre, semi-axes and axes
+/// (or the [rotation](Ellipsoid::<3>::rotation)) there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipsoid<const N: usize> {
     center: [f64; N],
@@ -48,7 +49,7 @@ impl<const N: usize> Ellipsoid<N> {
         self.semi_axes
     }
 
-    /// X, row by row, symmetric to the last bit. For an ellipsoid within an affine hull it measures within the hull only
+    /// X, row by row, symmetric to the last bit, but beyond an aspect ratio of 1e8 perhaps not positive definite. For an ellipsoid within an affine hull it measures within the hull only
     /// (it is zero along the normals). For an enclosing ellipsoid X is rounded outward by itself: it too holds every
     /// point in (x − c)ᵀX(x − c) ≤ 1, evaluated in `f64` in any order.
     #[must_use]
@@ -95,6 +96,61 @@ impl<const N: usize> Ellipsoid<N> {
     #[must_use]
     pub fn tightness(&self, outer: &Self) -> f64 {
         (0.5 * (outer.log_det - self.log_det) / N as f64).exp()
+    }
+}
+
+impl Ellipsoid<2> {
+    /// The angle in radians by which the frame of the ellipsoid is turned against the world, in (−π, π]: the direction of the
+    /// longest semi-axis is (cos, sin) of it.
+    #[must_use]
+    pub fn rotation(&self) -> f64 {
+        self.axes[0][1].atan2(self.axes[0][0])
+    }
+}
+
+impl Ellipsoid<3> {
+    /// The unit quaternion [x, y, z, w], w ≥ 0, of the rotation from the frame of the ellipsoid into the world: it takes the
+    /// coordinate axis k to `axes()[k]`.
+    ///
+    /// The largest of the four is found from the diagonal and the others from it, so nothing is lost near half a turn (S. W.
+    /// Shepperd, *Quaternion from rotation matrix*, J. Guid. Control 1, 1978).
+    ///
+    /// # Examples
+    /// ```
+    /// use lj_ellipsoid::{EnclosingOptions, enclosing};
+    ///
+    /// // A plate that stands in the plane of y and z: its longest axis is y, its shortest x.
+    /// let plate: Vec<[f64; 3]> = (0..8u8)
+    ///     .map(|i| [1e-12 * f64::from(i & 1), 4.0 * f64::from(i >> 1 & 1), 2.0 * f64::from(i >> 2)])
+    ///     .collect();
+    /// let ellipsoid = enclosing(&plate, EnclosingOptions::default())?.ellipsoid;
+    /// assert_eq!(ellipsoid.axes()[0].map(f64::abs), [0.0, 1.0, 0.0]);
+    /// assert!(ellipsoid.rotation().iter().all(|q| (q.abs() - 0.5).abs() < 1e-15)); // a third of a turn about a diagonal
+    /// # Ok::<(), lj_ellipsoid::EnclosingError>(())
+    /// ```
+    #[must_use]
+    pub fn rotation(&self) -> [f64; 4] {
+        // Column k of the rotation matrix is axis k.
+        let m = |i: usize, k: usize| self.axes[k][i];
+        // 4·q² of x, y, z and w.
+        let squares = [
+            1.0 + m(0, 0) - m(1, 1) - m(2, 2),
+            1.0 - m(0, 0) + m(1, 1) - m(2, 2),
+            1.0 - m(0, 0) - m(1, 1) + m(2, 2),
+            1.0 + m(0, 0) + m(1, 1) + m(2, 2),
+        ];
+        let largest = (1..4).fold(0, |best, i| if squares[i] > squares[best] { i } else { best });
+        // 4·q·r for every pair of components.
+        let (xy, xz, yz) = (m(0, 1) + m(1, 0), m(0, 2) + m(2, 0), m(1, 2) + m(2, 1));
+        let (xw, yw, zw) = (m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
+        let products = match largest {
+            0 => [squares[0], xy, xz, xw],
+            1 => [xy, squares[1], yz, yw],
+            2 => [xz, yz, squares[2], zw],
+            _ => [xw, yw, zw, squares[3]],
+        };
+        let length = products.iter().map(|p| p * p).sum::<f64>().sqrt().copysign(products[3]);
+        products.map(|p| p / length)
     }
 }
 

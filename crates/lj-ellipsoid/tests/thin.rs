@@ -45,7 +45,9 @@ fn stats() {
                     Err(_) => bad += 1,
                 }
             }
-            println!("slab {redundant} t=1e-{e}: bad {bad} converged {conv} gap {gap:.1e} logdet err {err:.1e} it {it}");
+            println!(
+                "slab {redundant} t=1e-{e}: bad {bad} converged {conv} gap {gap:.1e} logdet err {err:.1e} it {it}"
+            );
         }
     }
     for e in 0..16 {
@@ -54,7 +56,8 @@ fn stats() {
         let (mut bad, mut gap, mut err, mut conv) = (0, 0.0f64, 0.0f64, 0);
         for _ in 0..40 {
             let r = rng.rotation::<3>();
-            let pts: Vec<[f64; 3]> = corners([-1.0, -0.7, -t], [1.0, 0.7, t]).into_iter().map(|p| apply(&r, p)).collect();
+            let pts: Vec<[f64; 3]> =
+                corners([-1.0, -0.7, -t], [1.0, 0.7, t]).into_iter().map(|p| apply(&r, p)).collect();
             match inscribed_in_hull(&pts, InscribedOptions::new()) {
                 Ok(a) => {
                     gap = gap.max(a.log_det_gap);
@@ -92,16 +95,34 @@ fn aligned() {
     for e in [0, 10, 16, 20, 50, 100, 150, 200, 280, 290] {
         for c in [0.0, 0.5] {
             let t = 10f64.powi(-e);
-            let h: Vec<Halfspace<2>> = [([1.0, 0.0], 1.0 + c), ([-1.0, 0.0], 1.0 - c), ([0.0, 1.0], t), ([0.0, -1.0], t)].map(|(normal, offset)| Halfspace { normal, offset }).to_vec();
+            let h: Vec<Halfspace<2>> =
+                [([1.0, 0.0], 1.0 + c), ([-1.0, 0.0], 1.0 - c), ([0.0, 1.0], t), ([0.0, -1.0], t)]
+                    .map(|(normal, offset)| Halfspace { normal, offset })
+                    .to_vec();
             match inscribed(&h, InscribedOptions::new()) {
-                Ok(a) => println!("aligned 1e-{e} {c}: {:?} gap {:.1e} {:?} {:?}", a.status, a.log_det_gap, a.ellipsoid.semi_axes(), a.ellipsoid.center()),
+                Ok(a) => println!(
+                    "aligned 1e-{e} {c}: {:?} gap {:.1e} {:?} {:?}",
+                    a.status,
+                    a.log_det_gap,
+                    a.ellipsoid.semi_axes(),
+                    a.ellipsoid.center()
+                ),
                 Err(e2) => println!("aligned 1e-{e} {c}: {e2}"),
             }
         }
     }
-    for (name, h) in [("flat", vec![([1.0, 0.0], 1.0), ([-1.0, 0.0], -1.0), ([0.0, 1.0], 1.0), ([0.0, -1.0], 1.0)]), ("flat0", vec![([1.0, 0.0], 0.0), ([-1.0, 0.0], 0.0), ([0.0, 1.0], 1.0), ([0.0, -1.0], 1.0)]), ("flatturned", vec![([0.6, 0.8], 0.0), ([-0.6, -0.8], 0.0), ([-0.8, 0.6], 1.0), ([0.8, -0.6], 1.0)]), ("point", vec![([1.0, 0.0], 0.0), ([-1.0, 0.0], 0.0), ([0.0, 1.0], 0.0), ([0.0, -1.0], 0.0)])] {
+    for (name, h) in [
+        ("flat", vec![([1.0, 0.0], 1.0), ([-1.0, 0.0], -1.0), ([0.0, 1.0], 1.0), ([0.0, -1.0], 1.0)]),
+        ("flat0", vec![([1.0, 0.0], 0.0), ([-1.0, 0.0], 0.0), ([0.0, 1.0], 1.0), ([0.0, -1.0], 1.0)]),
+        ("flatturned", vec![([0.6, 0.8], 0.0), ([-0.6, -0.8], 0.0), ([-0.8, 0.6], 1.0), ([0.8, -0.6], 1.0)]),
+        ("point", vec![([1.0, 0.0], 0.0), ([-1.0, 0.0], 0.0), ([0.0, 1.0], 0.0), ([0.0, -1.0], 0.0)]),
+    ] {
         let h: Vec<Halfspace<2>> = h.into_iter().map(|(normal, offset)| Halfspace { normal, offset }).collect();
         let now = std::time::Instant::now();
-        println!("aligned {name} {:?} {:?}", inscribed(&h, InscribedOptions::new()).map(|a| a.ellipsoid), now.elapsed());
+        println!(
+            "aligned {name} {:?} {:?}",
+            inscribed(&h, InscribedOptions::new()).map(|a| a.ellipsoid),
+            now.elapsed()
+        );
     }
 }

@@ -12,8 +12,8 @@ use crate::enclosing::working_set::WorkingSet;
 use crate::enclosing::{Observer, Problem};
 use crate::error::EnclosingError;
 use crate::numerics::dimension::{Const, Dimension, Dynamic};
-use crate::points::Copied;
 use crate::options::Status;
+use crate::points::Copied;
 use crate::points::Points;
 
 /// The most moves, unless the caller says otherwise.

@@ -16,9 +16,9 @@ mod start;
 mod violators;
 mod working_set;
 
+use self::active_set::Improve;
 pub use self::moving_points::MovingPoints;
 pub(crate) use self::solution::Solution;
-use self::active_set::Improve;
 use self::start::{Start, start};
 use crate::ellipsoid::Ellipsoid;
 use crate::error::EnclosingError;

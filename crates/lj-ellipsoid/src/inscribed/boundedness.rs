@@ -2,18 +2,13 @@
 
 use crate::numerics::linalg::{UNIT_ROUNDOFF, dot};
 
-/// Whether the rows, which span the space, do so with non-negative combinations: then no direction z has aᵢ·z ≤ 0 for all.
+/// Whether the rows, of unit length, which span the space, do so with non-negative combinations: then no direction z has aᵢ·z ≤ 0 for all.
 ///
-/// By Stiemke's lemma this is so exactly if −g, g = Σaᵢ/|aᵢ|, is a non-negative combination of the rows. The residual of
+/// By Stiemke's lemma this is so exactly if −g, g = Σaᵢ, is a non-negative combination of the rows. The residual of
 /// the non-negative least-squares problem (Lawson and Hanson) is otherwise such a direction.
 pub(crate) fn positively_spans(n: usize, rows: &[f64]) -> bool {
-    let mut unit = rows.to_vec();
-    for row in unit.chunks_exact_mut(n) {
-        let length = dot(row, row).sqrt();
-        row.iter_mut().for_each(|x| *x /= length);
-    }
-    let m = unit.len() / n;
-    let unit = |i: usize| &unit[i * n..(i + 1) * n];
+    let m = rows.len() / n;
+    let unit = |i: usize| &rows[i * n..(i + 1) * n];
     let mut target = vec![0.0; n];
     for i in 0..m {
         target.iter_mut().zip(unit(i)).for_each(|(t, x)| *t -= x);

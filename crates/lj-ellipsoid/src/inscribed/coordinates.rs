@@ -9,7 +9,7 @@
 //! lose its short columns in the long ones.
 
 use crate::inscribed::polyhedron::Polyhedron;
-use crate::numerics::dimension::Dynamic;
+use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{UNIT_ROUNDOFF, dot, orthogonalize_rows, power_of_two_inverse, triangularize};
 use crate::numerics::twofold;
 
@@ -33,8 +33,8 @@ pub(crate) struct Rows {
     pub(crate) n: usize,
     pub(crate) p: Vec<f64>,
     pub(crate) s: Vec<f64>,
-    /// A bound on the error of every pᵢ and sᵢ, relative to their own size, beyond a rounding of each.
-    pub(crate) error: f64,
+    /// Bounds on the errors of pᵢ and sᵢ, relative to their own sizes, beyond a rounding of each.
+    pub(crate) error: Vec<f64>,
 }
 
 impl Rows {
@@ -51,43 +51,54 @@ impl Coordinates {
     }
 
     /// The half-spaces in these coordinates.
-    pub(crate) fn rows(&self, polyhedron: &Polyhedron) -> Rows {
-        let n = polyhedron.n;
+    pub(crate) fn rows<D: Dimension>(&self, dim: D, polyhedron: &Polyhedron) -> Rows {
+        let (n, m) = (dim.get(), polyhedron.len());
         let columns = self.columns();
-        let mut rows = Rows {
-            n,
-            p: Vec::with_capacity(polyhedron.normals.len()),
-            s: Vec::with_capacity(polyhedron.len()),
-            error: 0.0,
-        };
-        let twofold_error = ((n + 2) as f64 * UNIT_ROUNDOFF).powi(2);
-        for (a, b) in polyhedron.rows() {
-            let (mut largest, mut size): (f64, f64) = (0.0, 0.0);
-            for column in columns.chunks_exact(n) {
-                let (mut along, mut terms) = (0.0, 0.0);
-                for (m, a) in column.iter().zip(a) {
-                    along += m * a;
-                    terms += (m * a).abs();
-                }
-                rows.p.push(along);
-                largest = largest.max(along.abs());
-                size += terms;
-            }
-            let mut error = (n as f64 + 1.0) * UNIT_ROUNDOFF * (size / largest);
-            if !(size <= CANCELLING * largest) {
-                let start = rows.p.len() - n;
-                for (p, column) in rows.p[start..].iter_mut().zip(columns.chunks_exact(n)) {
-                    *p = twofold::dot(column.iter().copied().zip(a.iter().copied()));
-                }
-                error = size / rows.p[start..].iter().fold(0.0, |m: f64, p| m.max(p.abs())) * twofold_error;
-            }
-            let against = a.iter().zip(&self.origin).map(|(a, o)| (*a, -o));
-            let s = twofold::dot([(b, 1.0)].into_iter().chain(against));
-            let size = b.abs() + a.iter().zip(&self.origin).map(|(a, o)| (a * o).abs()).sum::<f64>();
+        let mut rows = Rows { n, p: vec![0.0; n * m], s: Vec::with_capacity(m), error: Vec::with_capacity(m) };
+        for (p, (a, b)) in rows.p.chunks_exact_mut(n).zip(polyhedron.rows()) {
+            let (s, error) = self.row(dim, &columns, a, b, p);
             rows.s.push(s);
-            rows.error = rows.error.max(error + size / s.abs() * twofold_error);
+            rows.error.push(error);
         }
         rows
+    }
+
+    /// Writes pᵢ, and answers sᵢ with a bound on the relative errors of both.
+    #[inline(always)]
+    fn row<D: Dimension>(&self, dim: D, columns: &[f64], a: &[f64], b: f64, p: &mut [f64]) -> (f64, f64) {
+        let n = dim.get();
+        let (columns, origin, a, p) = (&columns[..n * n], &self.origin[..n], &a[..n], &mut p[..n]);
+        let plain = (n as f64 + 2.0) * UNIT_ROUNDOFF;
+        let (mut size, mut largest): (f64, f64) = (0.0, 0.0);
+        let (mut s, mut size_of_s) = (b, b.abs());
+        for k in 0..n {
+            let column = &columns[k * n..(k + 1) * n];
+            let mut along = 0.0;
+            for i in 0..n {
+                let term = column[i] * a[i];
+                along += term;
+                size += term.abs();
+            }
+            p[k] = along;
+            largest = largest.max(along.abs());
+            let term = a[k] * origin[k];
+            s -= term;
+            size_of_s += term.abs();
+        }
+        let (mut error, mut error_of_s) = (plain, plain);
+        if !(size <= CANCELLING * largest) {
+            for (p, column) in p.iter_mut().zip(columns.chunks_exact(n)) {
+                *p = twofold::dot(column.iter().copied().zip(a.iter().copied()));
+            }
+            largest = p.iter().fold(0.0, |m: f64, p| m.max(p.abs()));
+            error = plain * plain;
+        }
+        if !(size_of_s <= CANCELLING * s.abs()) {
+            let against = a.iter().zip(origin).map(|(a, o)| (*a, -o));
+            s = twofold::dot([(b, 1.0)].into_iter().chain(against));
+            error_of_s = plain * plain;
+        }
+        (s, error * (size / largest) + error_of_s * (size_of_s / s.abs()))
     }
 
     /// The columns aₖ·rₖ of M, one after the other.
@@ -111,31 +122,36 @@ impl Coordinates {
     ///
     /// diag(a)·C = U·Σ·Vᵀ. Of T = Cᵀ·diag(a), whose columns are graded, Householder's and Jacobi's methods find Σ and Uᵀ to high
     /// relative accuracy, and M·C·V = (Rᵀ·U)·Σ.
-    pub(crate) fn stretch(&mut self, c: &[f64]) {
-        let n = self.lengths.len();
-        let mut t: Vec<f64> = (0..n * n).map(|at| c[at % n * n + at / n] * self.lengths[at % n]).collect();
+    pub(crate) fn stretch<D: Dimension>(&mut self, dim: D, c: &[f64]) {
+        let n = dim.get();
+        let mut t = dim.matrix((0..n * n).map(|at| c[at % n * n + at / n] * self.lengths[at % n]));
+        let t = &mut t.as_mut()[..n * n];
         // A power of two keeps the squares in range and moves no bit.
         let unit = power_of_two_inverse(t.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
         t.iter_mut().for_each(|x| *x *= unit);
-        triangularize(Dynamic(n), &mut t);
-        orthogonalize_rows(Dynamic(n), &mut t);
-        let mut rows: Vec<(f64, &[f64])> = t.chunks_exact(n).map(|row| (dot(row, row).sqrt(), row)).collect();
-        rows.sort_by(|x, y| y.0.total_cmp(&x.0));
-        let mut axes: Vec<f64> = Vec::with_capacity(n * n);
-        for (k, (length, row)) in rows.iter().enumerate() {
-            self.lengths[k] = length / unit;
-            let mut axis: Vec<f64> = (0..n)
-                .map(|i| row.iter().zip(self.axes.chunks_exact(n)).map(|(u, r)| u / length * r[i]).sum())
-                .collect();
+        triangularize(dim, t);
+        orthogonalize_rows(dim, t);
+        let mut sigma = dim.point(t.chunks_exact(n).map(|row| dot(row, row).sqrt()));
+        let sigma = &mut sigma.as_mut()[..n];
+        let mut axes = dim.zero_matrix();
+        for k in 0..n {
             // The longest first: the direction of a long axis matters to a thin body, that of a short one does not.
-            for earlier in axes.chunks_exact(n) {
-                let along = dot(earlier, &axis);
+            let longest = (1..n).fold(0, |best, j| if sigma[j] > sigma[best] { j } else { best });
+            let (earlier, rest) = axes.as_mut()[..n * n].split_at_mut(k * n);
+            let axis = &mut rest[..n];
+            for (u, r) in t[longest * n..(longest + 1) * n].iter().zip(self.axes.chunks_exact(n)) {
+                axis.iter_mut().zip(r).for_each(|(x, r)| *x += u / sigma[longest] * r);
+            }
+            for earlier in earlier.chunks_exact(n) {
+                let along = dot(earlier, axis);
                 axis.iter_mut().zip(earlier).for_each(|(x, e)| *x -= along * e);
             }
-            let norm = dot(&axis, &axis).sqrt();
-            axes.extend(axis.iter().map(|x| x / norm));
+            let norm = dot(axis, axis).sqrt();
+            axis.iter_mut().for_each(|x| *x /= norm);
+            self.lengths[k] = sigma[longest] / unit;
+            sigma[longest] = -1.0;
         }
-        self.axes = axes;
+        self.axes.copy_from_slice(&axes.as_ref()[..n * n]);
     }
 
     /// The ellipsoid of this centre, these axes and semi-axes in these coordinates: its centre, and E with the ellipsoid being

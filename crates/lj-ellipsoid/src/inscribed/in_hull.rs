@@ -82,7 +82,8 @@ pub(crate) fn solve_points<P: Points>(
         let tolerance = (COPLANAR * UNIT_ROUNDOFF).max(4.0 * error);
         hull3(images.as_chunks::<3>().0, tolerance).ok_or(InscribedError::Flat { rank: 2, dimension: 3 })?
     };
-    let rows = Rows { n, p: facets.normals, s: facets.offsets, error: 4.0 * n as f64 * error };
+    let error = vec![4.0 * n as f64 * error; facets.offsets.len()];
+    let rows = Rows { n, p: facets.normals, s: facets.offsets, error };
     let frame = coordinates.clone();
     let mut within = |shape: &mut Shape<P::Dim>| touch(&frame, &rows, shape);
     solution::solve(dim, coordinates, &rows, &mut within, options, observer)

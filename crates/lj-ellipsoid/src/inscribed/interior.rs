@@ -6,6 +6,7 @@ use crate::inscribed::boundedness::positively_spans;
 use crate::inscribed::chebyshev::{Depth, depth};
 use crate::inscribed::coordinates::{Coordinates, Rows};
 use crate::inscribed::polyhedron::Polyhedron;
+use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{UNIT_ROUNDOFF, dot};
 
 /// How often coordinates are stretched before a body is called empty. Every time a thin one becomes a million times thicker
@@ -22,28 +23,31 @@ const MOST_STRETCHES: usize = 120;
 ///
 /// # Errors
 /// [`InscribedError::Unbounded`], [`InscribedError::EmptyInterior`].
-pub(crate) fn round_coordinates(polyhedron: &Polyhedron) -> Result<(Coordinates, Rows), InscribedError> {
+pub(crate) fn round_coordinates<D: Dimension>(
+    dim: D,
+    polyhedron: &Polyhedron,
+) -> Result<(Coordinates, Rows), InscribedError> {
     let n = polyhedron.n;
     let mut coordinates = Coordinates::identity(n);
-    coordinates.stretch(&orthonormal_columns(n, polyhedron.normals.clone())?);
-    let mut rows = coordinates.rows(polyhedron);
-    if !positively_spans(n, &rows.p) {
-        return Err(InscribedError::Unbounded);
-    }
+    coordinates.stretch(dim, &orthonormal_columns(n, polyhedron.normals.clone())?);
+    let mut rows = coordinates.rows(dim, polyhedron);
     // The first coordinates know nothing of the size of the body.
     let mut reach = f64::INFINITY;
     let mut shortest = f64::INFINITY;
-    for _ in 0..MOST_STRETCHES {
-        let unit = unit_rows(&rows, reach);
+    for stretches in 0..MOST_STRETCHES {
+        let unit = unit_rows(dim, &rows, reach);
+        if stretches == 0 && !positively_spans(n, &unit.p) {
+            return Err(InscribedError::Unbounded);
+        }
         let (inside, relaxation) = match depth(&unit) {
             Depth::Inside(z) => (z, 0.0),
             Depth::Thin { at, relaxation } => (at, relaxation),
             Depth::Empty => return Err(InscribedError::EmptyInterior),
         };
-        let centered = center(&unit, inside, relaxation).ok_or(InscribedError::EmptyInterior)?;
+        let centered = center(dim, &unit, inside, relaxation).ok_or(InscribedError::EmptyInterior)?;
         coordinates.shift(&centered.z);
-        coordinates.stretch(&centered.round);
-        rows = coordinates.rows(polyhedron);
+        coordinates.stretch(dim, &centered.round);
+        rows = coordinates.rows(dim, polyhedron);
         if relaxation == 0.0 && centered.near {
             // The centre was rounded to doubles.
             let interior = rows.s.iter().all(|s| *s > 0.0);
@@ -71,9 +75,9 @@ fn resolved(coordinates: &Coordinates) -> bool {
 
 /// The half-spaces with normals of unit length, so that all are measured alike, and none further from the origin than twice
 /// `reach`, the radius of a ball around it that holds the body.
-fn unit_rows(rows: &Rows, reach: f64) -> Rows {
+fn unit_rows<D: Dimension>(dim: D, rows: &Rows, reach: f64) -> Rows {
     let mut unit = rows.clone();
-    for (p, s) in unit.p.chunks_exact_mut(rows.n).zip(&mut unit.s) {
+    for (p, s) in unit.p.chunks_exact_mut(dim.get()).zip(&mut unit.s) {
         let length = dot(p, p).sqrt();
         p.iter_mut().for_each(|x| *x /= length);
         *s = (*s / length).min(2.0 * reach);

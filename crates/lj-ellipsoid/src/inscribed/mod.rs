@@ -140,7 +140,7 @@ pub(crate) fn solve<'a, D: Dimension>(
 ) -> Result<InscribedSolution<D>, InscribedError> {
     options.check()?;
     let polyhedron = Polyhedron::new(dim.get(), halfspaces)?;
-    let (coordinates, rows) = round_coordinates(&polyhedron)?;
+    let (coordinates, rows) = round_coordinates(dim, &polyhedron)?;
     let mut within = |shape: &mut Shape<D>| touch(&polyhedron, shape);
     solution::solve(dim, coordinates, &rows, &mut within, options, observer)
 }

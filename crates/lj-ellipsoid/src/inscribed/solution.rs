@@ -44,7 +44,7 @@ pub(crate) fn solve<D: Dimension>(
     let growth = point.h.iter().zip(&point.c).fold(f64::INFINITY, |g: f64, (h, c)| g.min((h + c) / h));
     let b: Vec<f64> = point.b.iter().map(|b| growth * b).collect();
     coordinates.shift(&point.d);
-    coordinates.stretch(&b);
+    coordinates.stretch(dim, &b);
     let log_det_image = sum_of_logarithms(coordinates.lengths.iter().copied());
     let semi_axes = dim.point(coordinates.lengths.iter().copied());
     let mut shape = shape_from_axes(dim, n, semi_axes, dim.matrix(coordinates.axes.iter().copied()));
@@ -59,7 +59,7 @@ pub(crate) fn solve<D: Dimension>(
         // ln det of M alone is that of M·B·growth less that of B·growth.
         let bound = dual.log_det_bound + log_det_image - point.log_det - n as f64 * growth.ln();
         let logarithms: f64 = semi_axes.iter().map(|a| a.ln().abs()).sum();
-        let rounding = rounding_of_bound(&p, rows.error, &point, dual);
+        let rounding = rounding_of_bound(&p, &rows.error, &point, dual);
         (2.0 * bound + shape.log_det + rounding + 8.0 * UNIT_ROUNDOFF * (logarithms + (n * n) as f64)).max(0.0)
     });
     let status = match ended {
@@ -78,11 +78,11 @@ pub(crate) fn solve<D: Dimension>(
 /// If they stand for pᵢ + δpᵢ then Σyᵢ|B'pᵢ| ≤ Σyᵢ(1 + εᵢ) of every feasible (B', d'), εᵢ the largest |δpᵢ·z| in the body, so
 /// the bound on ln det B' grows by N·Σyᵢεᵢ, Σyᵢ = 1. The body lies in the largest ellipsoid grown by N about its centre (John);
 /// twice that allows for one that is not yet the largest.
-fn rounding_of_bound(p: &[f64], error: f64, point: &Point, dual: &Dual) -> f64 {
+fn rounding_of_bound(p: &[f64], error: &[f64], point: &Point, dual: &Dual) -> f64 {
     let n = point.d.len();
     let radius = dot(&point.d, &point.d).sqrt() + 2.0 * n as f64 * dot(&point.b, &point.b).sqrt();
-    let relative = 4.0 * UNIT_ROUNDOFF + error;
-    let weighted = p.chunks_exact(n).zip(&dual.y).filter(|(_, y)| **y > 0.0);
-    let sum: f64 = weighted.map(|(p, y)| y * relative * (1.0 + radius * dot(p, p).sqrt())).sum();
+    let weighted = p.chunks_exact(n).zip(error).zip(&dual.y).filter(|(_, y)| **y > 0.0);
+    let moved = |p: &[f64], error: f64| (4.0 * UNIT_ROUNDOFF + error) * (1.0 + radius * dot(p, p).sqrt());
+    let sum: f64 = weighted.map(|((p, error), y)| y * moved(p, *error)).sum();
     2.0 * n as f64 * sum
 }
