@@ -37,8 +37,6 @@ pub(crate) fn solve(
     observer: &mut Observer<'_>,
 ) -> Result<Solution<Dynamic>, EnclosingError> {
     let Problem { points, rank, options } = *problem;
-    let r = rank.get();
-    let n = r + 1;
     let max_iterations = options.max_iterations.unwrap_or(DEFAULT_ITERATIONS);
     let Start { frame, working, scans, .. } = start;
     let mut at = Iterate::new(points, rank, frame, WorkingSet::new(working, None), scans)?;
@@ -46,45 +44,17 @@ pub(crate) fn solve(
     let mut all = WorkingSet::new((0..points.len()).collect(), None);
     all.locate(points, rank, &at.frame);
 
-    let variables = n * (n + 1) / 2;
-    let mut x = vec![0.0; variables];
-    (0..n).for_each(|i| x[svec_index(n, i, i)] = 0.5);
-    let mut a = vec![0.0; variables * variables];
-    (0..variables).for_each(|i| a[i * variables + i] = 0.25 * n as f64);
-
+    let mut forms = Forms::new(rank.get());
     let mut lower_bound = f64::NEG_INFINITY;
-    let mut best = (f64::INFINITY, Vec::new());
     let mut gap = f64::INFINITY;
-    let mut factor = vec![0.0; n * n];
     let ended = loop {
-        unpack(n, &x, &mut factor);
-        let matrix = factor.clone();
-        let (gradient, objective) = match negative_curvature(n, &mut factor) {
-            // G = −vvᵀ for v with vᵀXv ≤ 0.
-            Some(v) => (rank_one(n, &v, -1.0), None),
-            None => {
-                let (worst, level) = furthest(r, &all.y, &matrix);
-                let log_det: f64 = (0..n).map(|i| 2.0 * factor[i * n + i].ln()).sum();
-                // X/level is feasible and no worse than X where level ≤ 1; where level > 1 it is a candidate all the same.
-                let value = -log_det + n as f64 * level.ln();
-                if value < best.0 {
-                    best = (value, matrix.iter().map(|x| x / level).collect());
-                }
-                if level > 1.0 {
-                    let mut q = all.y[worst * r..(worst + 1) * r].to_vec();
-                    q.push(1.0);
-                    (rank_one(n, &q, 1.0), None)
-                } else {
-                    (negative_inverse(n, &factor), Some(-log_det))
-                }
-            }
-        };
-        let ag: Vec<f64> = a.chunks_exact(variables).map(|row| dot(row, &gradient)).collect();
+        let (gradient, objective) = forms.gradient(&all.y);
+        let ag = forms.times(&gradient);
         let width = dot(&gradient, &ag).sqrt();
         if let Some(objective) = objective {
             // f(X*) ≥ f(X_k) − √(gᵀA_kg): the minimum of the linearisation over the ellipsoid that holds X*.
             lower_bound = lower_bound.max(objective - width);
-            gap = best.0 - lower_bound;
+            gap = forms.least - lower_bound;
             observer(EnclosingIterate {
                 iteration: at.iterations,
                 scans: at.scans,
@@ -104,28 +74,103 @@ pub(crate) fn solve(
         }
         at.iterations += 1;
         at.scans += 1;
-        // X ← X − Ag̃/(D + 1), A ← D²/(D² − 1)·(A − 2/(D + 1)·Ag̃g̃ᵀA), g̃ = g/√(gᵀAg).
-        let d = variables as f64;
-        for i in 0..variables {
-            x[i] -= ag[i] / width / (d + 1.0);
-            for j in 0..=i {
-                let updated = d * d / (d * d - 1.0)
-                    * (a[i * variables + j] - 2.0 / (d + 1.0) * (ag[i] / width) * (ag[j] / width));
-                a[i * variables + j] = updated;
-                a[j * variables + i] = updated;
-            }
-        }
+        forms.cut(&ag, width);
     };
-    if best.1.is_empty() || !gap.is_finite() {
+    let (frame, certificate) = if gap.is_finite() {
+        all.u.fill(1.0);
+        let error = all.coordinate_error(points, &at.frame);
+        slice(points, &mut at, &forms.best, lower_bound, error)?
+    } else {
         // No feasible iterate yet: the unit ball of the frame grown around the points still encloses, with the bound of
         // the starting weights.
         let certificate = Certificate { weights: Vec::new(), ..at.certificate(points) };
-        let ending = Ending { certificate, status: ended, iterations: at.iterations, scans: at.scans };
-        return finish(points, rank, &at.frame, options.epsilon, ending);
+        (at.frame.clone(), certificate)
+    };
+    let ending = Ending { certificate, status: ended, iterations: at.iterations, scans: at.scans };
+    finish(points, rank, &frame, options.epsilon, ending)
+}
+
+/// An ellipsoid in the space of quadratic forms that holds the optimum, as svec: its centre X and its shape A.
+struct Forms {
+    /// n = r + 1.
+    n: usize,
+    /// X, in D = n(n + 1)/2 variables.
+    x: Vec<f64>,
+    /// A, D × D.
+    a: Vec<f64>,
+    /// The feasible form of least f found so far, and its f.
+    best: Vec<f64>,
+    least: f64,
+}
+
+impl Forms {
+    /// The ball |X − I/2|_F ≤ √n/2.
+    fn new(r: usize) -> Self {
+        let n = r + 1;
+        let variables = n * (n + 1) / 2;
+        let mut x = vec![0.0; variables];
+        (0..n).for_each(|i| x[svec_index(n, i, i)] = 0.5);
+        let mut a = vec![0.0; variables * variables];
+        a.iter_mut().step_by(variables + 1).for_each(|a| *a = 0.25 * n as f64);
+        Self { n, x, a, best: Vec::new(), least: f64::INFINITY }
     }
 
-    // The slice of P at height one: centre −P₁₁⁻¹P₁₂ (eq. 17), shape proportional to P₁₁.
-    let p = &best.1;
+    /// The gradient of what X violates, or else of f, and then f(X).
+    fn gradient(&mut self, y: &[f64]) -> (Vec<f64>, Option<f64>) {
+        let n = self.n;
+        let mut matrix = vec![0.0; n * n];
+        unpack(n, &self.x, &mut matrix);
+        let mut factor = matrix.clone();
+        // G = −vvᵀ for v with vᵀXv ≤ 0.
+        if let Some(v) = negative_curvature(n, &mut factor) {
+            return (rank_one(n, &v, -1.0), None);
+        }
+        let (worst, level) = furthest(n - 1, y, &matrix);
+        let log_det: f64 = (0..n).map(|i| 2.0 * factor[i * n + i].ln()).sum();
+        // X/level is feasible and no worse than X where level ≤ 1; where level > 1 it is a candidate all the same.
+        let value = -log_det + n as f64 * level.ln();
+        if value < self.least {
+            self.least = value;
+            self.best = matrix.iter().map(|x| x / level).collect();
+        }
+        if level > 1.0 {
+            let mut q = y[worst * (n - 1)..(worst + 1) * (n - 1)].to_vec();
+            q.push(1.0);
+            return (rank_one(n, &q, 1.0), None);
+        }
+        (negative_inverse(n, &factor), Some(-log_det))
+    }
+
+    /// A·g.
+    fn times(&self, gradient: &[f64]) -> Vec<f64> {
+        self.a.chunks_exact(gradient.len()).map(|row| dot(row, gradient)).collect()
+    }
+
+    /// X ← X − Ag̃/(D + 1), A ← D²/(D² − 1)·(A − 2/(D + 1)·Ag̃g̃ᵀA), g̃ = g/√(gᵀAg), of which A·g and the root are given.
+    fn cut(&mut self, ag: &[f64], width: f64) {
+        let d = ag.len() as f64;
+        let (growth, share) = (d * d / (d * d - 1.0), 2.0 / (d + 1.0));
+        let step: Vec<f64> = ag.iter().map(|x| x / width).collect();
+        self.x.iter_mut().zip(&step).for_each(|(x, s)| *x -= s / (d + 1.0));
+        for (row, &s) in self.a.chunks_exact_mut(step.len()).zip(&step) {
+            // The product of the steps is formed first, so that A stays symmetric to the last bit.
+            row.iter_mut().zip(&step).for_each(|(a, t)| *a = growth * (*a - share * (s * t)));
+        }
+    }
+}
+
+/// The slice of the form P at height one, and what the lower bound on f proves of it: its centre is −P₁₁⁻¹P₁₂ (eq. 17), its shape
+/// proportional to P₁₁.
+fn slice(
+    points: &Copied<Dynamic>,
+    at: &mut Iterate<Dynamic>,
+    p: &[f64],
+    lower_bound: f64,
+    coordinate_error: f64,
+) -> Result<(Frame<Dynamic>, Certificate), EnclosingError> {
+    let rank = at.rank;
+    let r = rank.get();
+    let n = r + 1;
     let mut p11: Vec<f64> = (0..r).flat_map(|i| p[i * n..i * n + r].iter().copied()).collect();
     let mut center: Vec<f64> = (0..r).map(|i| -p[i * n + r]).collect();
     let log_det = cholesky_log_det(rank, &mut p11).ok_or(EnclosingError::OutOfRange)?;
@@ -133,9 +178,7 @@ pub(crate) fn solve(
     solve_lower_transpose(rank, &p11, &mut center);
     // det X*₍N₎ follows from min f = n·ln n + ln det S* and ln det X*₍N₎ = −ln det S* − N·ln N.
     let r_float = r as f64;
-    all.u.fill(1.0);
-    let rounding = 4.0 * r_float * all.coordinate_error(points, &at.frame);
-    let bound = -lower_bound + n as f64 * (n as f64).ln() - r_float * r_float.ln() + rounding;
+    let bound = -lower_bound + n as f64 * (n as f64).ln() - r_float * r_float.ln() + 4.0 * r_float * coordinate_error;
     let certificate = Certificate { log_det_bound: bound - log_det, weights: Vec::new() };
     // As Σuᵢyᵢyᵢᵀ = I and Σuᵢyᵢ = 0 on the starting set, c = Σuᵢ(yᵢᵀc)yᵢ: its preimage is the same combination of points.
     for (u, y) in at.set.u.iter_mut().zip(at.set.y.chunks_exact(r)) {
@@ -147,9 +190,7 @@ pub(crate) fn solve(
     let map = at.frame.map();
     let rows =
         (0..r * dim).map(|entry| (entry / dim..r).map(|j| p11[j * r + entry / dim] * map[j * dim + entry % dim]).sum());
-    let frame = Frame::new(origin, points.dim().matrix(rows), r);
-    let ending = Ending { certificate, status: ended, iterations: at.iterations, scans: at.scans };
-    finish(points, rank, &frame, options.epsilon, ending)
+    Ok((Frame::new(origin, points.dim().matrix(rows), r), certificate))
 }
 
 /// The place of entry (i, j), i ≤ j, in svec.
@@ -216,21 +257,19 @@ fn furthest(r: usize, y: &[f64], matrix: &[f64]) -> (usize, f64) {
 /// Factors X = C·Cᵀ in place, or answers v with vᵀXv ≤ 0: where pivot j fails, v = (−L⁻ᵀl, 1, 0…) with l the part of
 /// column j above the diagonal has vᵀXv equal to that pivot.
 fn negative_curvature(n: usize, matrix: &mut [f64]) -> Option<Vec<f64>> {
-    for j in 1..=n {
-        let mut leading: Vec<f64> = (0..j).flat_map(|i| matrix[i * n..i * n + j].iter().copied()).collect();
-        if cholesky(Dynamic(j), &mut leading) {
-            continue;
-        }
-        let k = j - 1;
-        let mut v: Vec<f64> = (0..k).map(|i| -matrix[i * n + k]).collect();
-        let mut sound: Vec<f64> = (0..k).flat_map(|i| matrix[i * n..i * n + k].iter().copied()).collect();
-        cholesky(Dynamic(k), &mut sound);
-        solve_lower(Dynamic(k), &sound, &mut v);
-        solve_lower_transpose(Dynamic(k), &sound, &mut v);
-        v.push(1.0);
-        v.resize(n, 0.0);
-        return Some(v);
+    let given = matrix.to_vec();
+    if cholesky(Dynamic(n), matrix) {
+        return None;
     }
-    cholesky(Dynamic(n), matrix);
-    None
+    let leading = |j: usize| -> Vec<f64> { (0..j).flat_map(|i| given[i * n..i * n + j].iter().copied()).collect() };
+    // The last pivot fails if none before it does.
+    let k = (0..n - 1).find(|k| !cholesky(Dynamic(k + 1), &mut leading(k + 1))).unwrap_or(n - 1);
+    let mut v: Vec<f64> = (0..k).map(|i| -given[i * n + k]).collect();
+    let mut sound = leading(k);
+    cholesky(Dynamic(k), &mut sound);
+    solve_lower(Dynamic(k), &sound, &mut v);
+    solve_lower_transpose(Dynamic(k), &sound, &mut v);
+    v.push(1.0);
+    v.resize(n, 0.0);
+    Some(v)
 }

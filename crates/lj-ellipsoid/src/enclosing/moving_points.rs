@@ -45,8 +45,10 @@ impl<const N: usize> MovingPoints<N> {
     /// Takes the points; nothing is computed yet. They may be none at first.
     ///
     /// # Errors
-    /// [`EnclosingError::NonFinite`].
+    /// [`EnclosingError::NonFinite`]; [`EnclosingError::InvalidEpsilon`] and [`EnclosingError::InvalidFlatTolerance`] for
+    /// options out of their range.
     pub fn new<P: Into<[f64; N]> + Copy>(points: &[P], options: EnclosingOptions) -> Result<Self, EnclosingError> {
+        options.check()?;
         let points: Vec<[f64; N]> = points.iter().map(|&p| p.into()).collect();
         for (index, point) in points.iter().enumerate() {
             check_finite(index, point)?;

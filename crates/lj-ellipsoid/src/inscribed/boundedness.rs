@@ -1,6 +1,6 @@
 //! Is an intersection of half-spaces bounded?
 
-use crate::numerics::linalg::{UNIT_ROUNDOFF, dot};
+use crate::numerics::linalg::dot;
 
 /// Whether the rows, of unit length, which span the space, do so with non-negative combinations: then no direction z has aᵢ·z ≤ 0 for all.
 ///
@@ -35,26 +35,17 @@ pub(crate) fn positively_spans(n: usize, rows: &[f64]) -> bool {
         passive.push(best.0);
         weights.push(0.0);
         while let Some(solution) = least_squares(&passive.iter().map(|&i| unit(i)).collect::<Vec<_>>(), &target) {
-            if solution.iter().all(|w| *w > 0.0) {
-                weights = solution;
-                break;
-            }
-            let mut alpha: f64 = 1.0;
-            for (w, s) in weights.iter().zip(&solution) {
-                if *s <= 0.0 {
-                    alpha = alpha.min(w / (w - s));
-                }
-            }
+            // As far as no weight becomes negative; the one that stops the way leaves.
+            let limits = weights.iter().zip(&solution).enumerate().filter(|(_, (_, s))| **s <= 0.0);
+            let (blocking, alpha) = limits
+                .map(|(k, (w, s))| (k, w / (w - s)))
+                .fold((usize::MAX, 1.0), |least, now| if now.1 <= least.1 { now } else { least });
             weights.iter_mut().zip(&solution).for_each(|(w, s)| *w += alpha * (s - *w));
-            let keep: Vec<bool> =
-                weights.iter().zip(&solution).map(|(w, s)| *s > 0.0 || *w > UNIT_ROUNDOFF * length).collect();
-            if keep.iter().all(|k| *k) {
+            if blocking == usize::MAX {
                 break;
             }
-            let mut kept = keep.iter();
-            passive.retain(|_| *kept.next().unwrap_or(&true));
-            let mut kept = keep.iter();
-            weights.retain(|_| *kept.next().unwrap_or(&true));
+            passive.remove(blocking);
+            weights.remove(blocking);
         }
     }
     false
