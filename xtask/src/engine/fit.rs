@@ -52,7 +52,7 @@ impl<Input, Options: Copy, Solution: Fitted> Question for Fitting<Input, Options
     }
 
     fn answer(&self, solution: Solution) -> Result<Answer, Problem> {
-        let Fit { center, matrix, log_det, gap, status, iterations } = solution.fit();
+        let Fit { center, axes, semi_axes, rotation, matrix, log_det, gap, status, iterations } = solution.fit();
         let status = match status {
             Status::Converged => "converged",
             // Rounding allows no smaller gap; the one that is certified stands beside the answer.
@@ -69,10 +69,21 @@ impl<Input, Options: Copy, Solution: Fitted> Question for Fitting<Input, Options
             Precision::F32 => Number::of(value as f32),
             Precision::F64 => Number::of(value),
         };
-        let row = |i| (0..center.len()).map(|j| number(matrix[(i, j)])).collect();
-        Ok(Answer::default()
-            .with("center", Field::Numbers(center.iter().copied().map(number).collect()))
-            .with("matrix", Field::Rows((0..center.len()).map(row).collect()))
+        let numbers = |values: &[f64]| values.iter().copied().map(number).collect();
+        let rows = |m: &Mat<f64>| {
+            Field::Rows((0..center.len()).map(|i| (0..center.len()).map(|j| number(m[(i, j)])).collect()).collect())
+        };
+        let answer = Answer::default()
+            .with("center", Field::Numbers(numbers(&center)))
+            .with("matrix", rows(&matrix))
+            .with("semi_axes", Field::Numbers(numbers(&semi_axes)))
+            .with("axes", rows(&axes));
+        let answer = match rotation {
+            Some(Rotation::Angle(angle)) => answer.with("rotation", Field::Number(number(angle))),
+            Some(Rotation::Quaternion(q)) => answer.with("rotation", Field::Numbers(numbers(&q))),
+            None => answer,
+        };
+        Ok(answer
             .with("log_det", Field::Number(number(log_det)))
             .with("gap", Field::Number(Number::of(gap)))
             .with("status", Field::Text(status))
@@ -83,6 +94,11 @@ impl<Input, Options: Copy, Solution: Fitted> Question for Fitting<Input, Options
 /// What a fit found, and how it ended.
 pub(super) struct Fit {
     center: Vec<f64>,
+    /// The directions of the semi-axes, one a row.
+    axes: Mat<f64>,
+    semi_axes: Vec<f64>,
+    /// In the plane and in space.
+    rotation: Option<Rotation>,
     matrix: Mat<f64>,
     log_det: f64,
     gap: f64,
@@ -90,16 +106,56 @@ pub(super) struct Fit {
     iterations: usize,
 }
 
+/// How an ellipsoid is turned.
+enum Rotation {
+    /// In the plane, in radians.
+    Angle(f64),
+    /// In space: x, y, z and w.
+    Quaternion([f64; 4]),
+}
+
+/// Ellipsoids of a dimension in which a rotation has a short form.
+trait Turned {
+    fn turn(&self) -> Rotation;
+}
+
+impl Turned for Ellipsoid<2> {
+    fn turn(&self) -> Rotation {
+        Rotation::Angle(self.rotation())
+    }
+}
+
+impl Turned for Ellipsoid<3> {
+    fn turn(&self) -> Rotation {
+        Rotation::Quaternion(self.rotation())
+    }
+}
+
 impl Fit {
-    fn fixed<const N: usize>(e: &Ellipsoid<N>, gap: f64, status: Status, iterations: usize) -> Self {
-        let matrix = e.matrix();
-        let matrix = Mat::from_fn(N, N, |i, j| matrix[i][j]);
-        Self { center: e.center().to_vec(), matrix, log_det: e.log_det(), gap, status, iterations }
+    fn fixed<const N: usize>(e: &Ellipsoid<N>, gap: f64, status: Status, iterations: usize) -> Self
+    where
+        Ellipsoid<N>: Turned,
+    {
+        let (axes, matrix) = (e.axes(), e.matrix());
+        Self {
+            center: e.center().to_vec(),
+            axes: Mat::from_fn(N, N, |i, j| axes[i][j]),
+            semi_axes: e.semi_axes().to_vec(),
+            rotation: Some(e.turn()),
+            matrix: Mat::from_fn(N, N, |i, j| matrix[i][j]),
+            log_det: e.log_det(),
+            gap,
+            status,
+            iterations,
+        }
     }
 
     fn dynamic(e: &EllipsoidDyn, gap: f64, status: Status, iterations: usize) -> Self {
         Self {
             center: e.center().to_vec(),
+            axes: e.axes().to_owned(),
+            semi_axes: e.semi_axes().to_vec(),
+            rotation: None,
             matrix: e.matrix().to_owned(),
             log_det: e.log_det(),
             gap,
@@ -114,7 +170,10 @@ pub(super) trait Fitted {
     fn fit(&self) -> Fit;
 }
 
-impl<const N: usize> Fitted for Enclosing<N> {
+impl<const N: usize> Fitted for Enclosing<N>
+where
+    Ellipsoid<N>: Turned,
+{
     fn fit(&self) -> Fit {
         Fit::fixed(&self.ellipsoid, self.log_det_gap, self.status, self.iterations)
     }
@@ -126,7 +185,10 @@ impl Fitted for EnclosingDyn {
     }
 }
 
-impl<const N: usize> Fitted for Inscribed<N> {
+impl<const N: usize> Fitted for Inscribed<N>
+where
+    Ellipsoid<N>: Turned,
+{
     fn fit(&self) -> Fit {
         Fit::fixed(&self.ellipsoid, self.log_det_gap, self.status, self.iterations)
     }
