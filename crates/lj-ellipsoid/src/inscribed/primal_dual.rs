@@ -159,98 +159,155 @@ pub(crate) fn maximize<D: Dimension>(
     options: InscribedOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Maximum, InscribedError> {
-    let n = dim.get();
-    let m = p.len() / n;
-    let reach = p.chunks_exact(n).fold(0.0, |r: f64, p| r.max(dot(p, p).sqrt()));
-    let mut point = Point::new(n, m);
-    (0..n).for_each(|k| point.b[k * n + k] = 0.5 / reach);
-    if !point.evaluate(dim, p) {
-        return Err(InscribedError::OutOfRange);
-    }
-    let mut trial = point.clone();
+    let mut at = Iterate::start(dim, p).ok_or(InscribedError::OutOfRange)?;
+    let m = at.y.len() as f64;
     // Σyᵢhᵢ = N at the solution.
-    let mut mu = n as f64 / m as f64;
-    let mut y: Vec<f64> = point.c.iter().map(|c| mu / c).collect();
-    let mut best: (f64, Option<Dual>) = (f64::INFINITY, None);
-    let mut system = System::new(n, m);
-    let mut direction = Direction::new(n, m);
+    let mut mu = dim.get() as f64 / m;
     let mut centring = 0.3;
-    let mut without_progress = 0;
+    let mut record = Record::new();
     let mut iteration = 0;
-    let mut polishing = POLISHING_STEPS;
-    let mut kept: Option<Point> = None;
     let ended = loop {
-        let growth = point.h.iter().zip(&point.c).fold(f64::INFINITY, |g: f64, (h, c)| g.min((h + c) / h));
-        // The complementarity Σyᵢcᵢ is about half the gap: while it is large the bound is not worth its price.
-        let complementarity = dot(&point.c, &y);
-        // The correction is exact but for rounding, which a second one removes.
-        let passes = if complementarity < NEAR { 2 } else { 1 };
-        let dual = if complementarity < WORTH_BOUNDING { dual_bound(dim, p, &point.v, &y, passes) } else { None };
-        let gap = dual
-            .as_ref()
-            .map_or(f64::INFINITY, |dual| 2.0 * (dual.log_det_bound - point.log_det - n as f64 * growth.ln()));
+        // The complementarity Σyᵢcᵢ is about half the gap.
+        let complementarity = dot(&at.point.c, &at.y);
+        let (gap, dual) = at.bound(complementarity);
         observer(InscribedIterate { iteration, mu, log_det_gap: gap.max(0.0) });
-        if gap < best.0 {
-            without_progress = 0;
-            best = (gap, dual);
-        } else {
-            without_progress += 1;
-            if let Some(kept) = kept.take() {
-                point = kept;
-                break Status::Converged;
-            }
-        }
-        if gap <= 0.5 * options.epsilon {
-            if gap <= ROUNDING || gap > NEAR || polishing == 0 || iteration >= options.max_iterations {
-                break Status::Converged;
-            }
-            // A step of rounding may lead anywhere: what is at hand is kept against it.
-            polishing -= 1;
-            kept = Some(point.clone());
-        }
-        if iteration >= options.max_iterations {
-            break Status::IterationLimit;
-        }
-        if without_progress > 10 && best.0 < 1e-3 || without_progress > 60 {
-            break Status::Stalled;
+        if let Some(ended) = record.judge(gap, dual, &mut at.point, iteration, options) {
+            break ended;
         }
         iteration += 1;
-        if !system.assemble(dim, p, &point, &y) {
-            break Status::Stalled;
-        }
-        mu = centring * complementarity / m as f64;
-        system.solve(&point.c, &y, mu, &mut direction);
+        mu = centring * complementarity / m;
         // The share of what is left to the boundary that no step takes, and near the end that of the products cᵢyᵢ to aim at.
         // Smaller ones than 1e-3 leave the products so uneven that the next steps pay for it.
         let boundary = complementarity.clamp(1e-3, 0.03);
-        let dual_length = ((1.0 - boundary) * length(&y, &direction.dy)).min(1.0);
-        let mut primal_length = ((1.0 - boundary) * direction.reach(dim, p, &point)).min(1.0);
-        let moved = loop {
-            direction.advance(n, primal_length, &point, &mut trial);
-            if trial.evaluate(dim, p) {
-                break true;
-            }
-            // B + ΔB is not definite.
-            primal_length *= 0.6;
-            if primal_length < 1e-9 {
-                break false;
-            }
-        };
-        if !moved {
-            break Status::Stalled;
-        }
-        std::mem::swap(&mut point, &mut trial);
-        y.iter_mut().zip(&direction.dy).for_each(|(y, d)| *y += dual_length * d);
+        let Some(length) = at.step(mu, boundary) else { break Status::Stalled };
         // Near the end full steps are taken and μ may fall fast; a bold step from afar costs several to recover.
-        centring = match primal_length.min(dual_length) {
-            length if length > 0.95 && dot(&point.c, &y) < 0.1 => boundary,
+        centring = match length {
+            length if length > 0.95 && dot(&at.point.c, &at.y) < 0.1 => boundary,
             length if length > 0.7 => 0.05,
             length if length > 0.3 => 0.3,
             // Products yᵢcᵢ too uneven for progress: even them out.
             _ => 1.0,
         };
     };
-    Ok(Maximum { point, dual: best.1, ended, iterations: iteration })
+    Ok(Maximum { point: at.point, dual: record.dual, ended, iterations: iteration })
+}
+
+/// The unknowns (B, d, y) of the iteration, and room for a step.
+struct Iterate<'a, D> {
+    dim: D,
+    p: &'a [f64],
+    point: Point,
+    y: Vec<f64>,
+    trial: Point,
+    system: System,
+    direction: Direction,
+}
+
+impl<'a, D: Dimension> Iterate<'a, D> {
+    /// A ball about the origin half as large as fits; `None` where that is out of the range of `f64`.
+    fn start(dim: D, p: &'a [f64]) -> Option<Self> {
+        let n = dim.get();
+        let m = p.len() / n;
+        let reach = p.chunks_exact(n).fold(0.0, |r: f64, p| r.max(dot(p, p).sqrt()));
+        let mut point = Point::new(n, m);
+        (0..n).for_each(|k| point.b[k * n + k] = 0.5 / reach);
+        if !point.evaluate(dim, p) {
+            return None;
+        }
+        let y = point.c.iter().map(|c| n as f64 / m as f64 / c).collect();
+        let trial = point.clone();
+        Some(Self { dim, p, point, y, trial, system: System::new(n, m), direction: Direction::new(n, m) })
+    }
+
+    /// The gap that the multipliers prove, and how; infinite while it is too large to be worth its price.
+    fn bound(&self, complementarity: f64) -> (f64, Option<Dual>) {
+        let Self { dim, p, point, y, .. } = self;
+        let n = dim.get() as f64;
+        if !(complementarity < WORTH_BOUNDING) {
+            return (f64::INFINITY, None);
+        }
+        // The correction is exact but for rounding, which a second one removes.
+        let passes = if complementarity < NEAR { 2 } else { 1 };
+        let Some(dual) = dual_bound(*dim, p, &point.v, y, passes) else { return (f64::INFINITY, None) };
+        let growth = point.h.iter().zip(&point.c).fold(f64::INFINITY, |g: f64, (h, c)| g.min((h + c) / h));
+        (2.0 * (dual.log_det_bound - point.log_det - n * growth.ln()), Some(dual))
+    }
+
+    /// One Newton step that aims at the products cᵢyᵢ = μ and leaves the share `boundary` of the way to the boundary. Answers the
+    /// shorter of its two lengths; `None` where there is no step to take.
+    fn step(&mut self, mu: f64, boundary: f64) -> Option<f64> {
+        let Self { dim, p, point, y, trial, system, direction } = self;
+        if !system.assemble(*dim, p, point, y) {
+            return None;
+        }
+        system.solve(&point.c, y, mu, direction);
+        let dual_length = ((1.0 - boundary) * length(y, &direction.dy)).min(1.0);
+        let mut primal_length = ((1.0 - boundary) * direction.reach(*dim, p, point)).min(1.0);
+        loop {
+            direction.advance(dim.get(), primal_length, point, trial);
+            if trial.evaluate(*dim, p) {
+                break;
+            }
+            // B + ΔB is not definite.
+            primal_length *= 0.6;
+            if !(primal_length >= 1e-9) {
+                return None;
+            }
+        }
+        std::mem::swap(point, trial);
+        y.iter_mut().zip(&direction.dy).for_each(|(y, d)| *y += dual_length * d);
+        Some(primal_length.min(dual_length))
+    }
+}
+
+/// What was best so far, and whether to go on.
+struct Record {
+    gap: f64,
+    dual: Option<Dual>,
+    without_progress: usize,
+    /// Steps left beyond the gap asked for, and the point before the last of them: a step of rounding may lead anywhere.
+    polishing: usize,
+    kept: Option<Point>,
+}
+
+impl Record {
+    const fn new() -> Self {
+        Self { gap: f64::INFINITY, dual: None, without_progress: 0, polishing: POLISHING_STEPS, kept: None }
+    }
+
+    /// Takes note of an iterate, and answers how the iteration ended if it did; `point` then is the best.
+    fn judge(
+        &mut self,
+        gap: f64,
+        dual: Option<Dual>,
+        point: &mut Point,
+        iteration: usize,
+        options: InscribedOptions,
+    ) -> Option<Status> {
+        let out_of_steps = iteration >= options.max_iterations;
+        if gap < self.gap {
+            self.without_progress = 0;
+            (self.gap, self.dual) = (gap, dual);
+        } else {
+            self.without_progress += 1;
+            if let Some(kept) = self.kept.take() {
+                *point = kept;
+                return Some(Status::Converged);
+            }
+        }
+        if gap <= 0.5 * options.epsilon {
+            if gap <= ROUNDING || gap > NEAR || self.polishing == 0 || out_of_steps {
+                return Some(Status::Converged);
+            }
+            self.polishing -= 1;
+            self.kept = Some(point.clone());
+        }
+        if out_of_steps {
+            return Some(Status::IterationLimit);
+        }
+        let stuck = self.without_progress > 10 && self.gap < 1e-3 || self.without_progress > 60;
+        stuck.then_some(Status::Stalled)
+    }
 }
 
 /// How far y + length·Δy stays positive; infinite where it always does.
