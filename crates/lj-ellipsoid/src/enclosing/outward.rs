@@ -85,7 +85,7 @@ impl<N: Dimension> Evaluation<'_, N> {
         (square.sqrt(), error.sqrt())
     }
 
-    /// eᵀXe, and a bound on the rounding of its evaluation. X itself is TᵀT only up to rounding of the same size.
+    /// eᵀXe, and a bound on the rounding of its evaluation. X itself is the product of T with itself only up to rounding of the same size.
     fn level(&self, e: &[f64]) -> (f64, f64) {
         let (mut value, mut size) = (0.0, 0.0);
         for i in 0..self.n {
