@@ -277,7 +277,7 @@ fn a_broken_body_spoils_no_batch() {
                 assert!((first.hit.lambda.as_f64() - 4.0).abs() < ulps::<V>(16.0), "{bad}: {answer:?}");
                 // What is undecided may be in the way from the start.
                 assert_eq!(answer.lower.as_f64(), 0.0, "{bad}: {answer:?}");
-                let closest = iterative_ray_cast(|_| v::<V>([bad; 3]), ray, RayCastOptions::default());
+                let closest = iterative_ray_cast(|_| Some(v::<V>([bad; 3])), ray, RayCastOptions::default());
                 assert_eq!(closest.expect("a finite ray").outcome, Outcome::Undecided, "{bad}");
                 let sometimes = |x: V| if x.get(1).as_f64() < 4.0 { v::<V>([bad; 3]) } else { V::ZERO };
                 let closest = iterative_ray_cast(sometimes, ray, RayCastOptions::default());
