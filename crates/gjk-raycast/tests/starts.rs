@@ -279,7 +279,7 @@ fn a_broken_body_spoils_no_batch() {
                 assert_eq!(answer.lower.as_f64(), 0.0, "{bad}: {answer:?}");
                 let closest = iterative_ray_cast(|_| Some(v::<V>([bad; 3])), ray, RayCastOptions::default());
                 assert_eq!(closest.expect("a finite ray").outcome, Outcome::Undecided, "{bad}");
-                let sometimes = |x: V| if x.get(1).as_f64() < 4.0 { v::<V>([bad; 3]) } else { V::ZERO };
+                let sometimes = |x: V| Some(if x.get(1).as_f64() < 4.0 { v::<V>([bad; 3]) } else { V::ZERO });
                 let closest = iterative_ray_cast(sometimes, ray, RayCastOptions::default());
                 assert!(closest.expect("a finite ray").iterations <= 200, "{bad}");
             }
