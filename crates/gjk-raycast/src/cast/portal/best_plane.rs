@@ -51,6 +51,8 @@ struct Models<S> {
     noise: S,
     /// The length of the normal that the models are turned to.
     length: S,
+    /// What rounding of the planes leaves open of `τ`.
+    margin: S,
     /// The best change so far, and the least of the models there.
     best: Option<(Across<S>, S)>,
 }
@@ -70,11 +72,11 @@ impl<S: Scalar> Models<S> {
             *t = piece.at(alpha, last.tau, error_weight);
         }
         let length = alpha.length();
-        let margin = margin(noise, length);
+        let margin = S::from_f64(0.5) * noise * length;
         // A vertex is known as well as it ever will be; of other pieces, those are wanted that were not looked at last.
         let mut tau = turned.map(|t| if t.hessian.is_zero() { t.tau - margin } else { t.tau + error_weight * margin });
         tau[others.len()] = last.tau;
-        Some(Self { turned, len: pieces.len(), tau, noise, length, best: None })
+        Some(Self { turned, len: pieces.len(), tau, noise, length, margin, best: None })
     }
 
     /// Takes a change where some of the models are alike, if they are the least ones there. `active` has a bit for each of
@@ -96,8 +98,7 @@ impl<S: Scalar> Models<S> {
                 other = other.min(model);
             }
         }
-        let margin = margin(self.noise, self.length);
-        let slack = margin + margin + (value - self.turned[self.len - 1].tau).abs() * S::from_f64(0.1);
+        let slack = self.margin + self.margin + (value - self.turned[self.len - 1].tau).abs() * S::from_f64(0.1);
         if other >= value - slack && self.best.is_none_or(|(_, found)| value > found) && value.is_finite() {
             self.best = Some((change, value));
         }
@@ -145,11 +146,6 @@ impl<S: Scalar> Models<S> {
             self.offer((plane.a / plane.c, plane.b / plane.c), 1 << i | 1 << j | 1 << k);
         }
     }
-}
-
-/// What rounding of the planes leaves open of `τ`.
-fn margin<S: Scalar>(noise: S, length: S) -> S {
-    S::from_f64(0.5) * noise * length
 }
 
 /// Where the model of a piece with `H = κ·q·qᵀ` is greatest: an edge of the body, curved or straight, that the line runs through

@@ -106,20 +106,23 @@ fn close<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     // A segment first, since the weights in a flat triangle may be nothing but rounding.
     let passed = pieces.passed(bracket.noise).filter(|below| below.high >= start);
     let enclosing = (portal.high - best.tau <= within).then(|| OnLine::from(*portal));
-    let before = *coarse;
-    for below in [&passed, &enclosing, &before].into_iter().flatten() {
+    let mut wide = None;
+    for below in [&passed, &enclosing, &*coarse].into_iter().flatten() {
         let gap = below.high - best.tau;
         if !(gap <= within) {
             continue;
         }
-        if before.is_none() && gap > fine {
-            *coarse = coarse.or(Some(*below));
+        if coarse.is_none() && gap > fine {
+            wide = wide.or(Some(*below));
             continue;
         }
         match best.close(bracket, frame, below.corners(), below.weights(), below.high) {
             Err(Stop::InDoubt) => {}
             found => return found,
         }
+    }
+    if coarse.is_none() {
+        *coarse = wide;
     }
     Err(Stop::InDoubt)
 }
