@@ -134,8 +134,9 @@ impl<V: Vector> Default for IntersectOptions<V> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum CastMethod {
-    /// In 3D, triangles of support points that the ray pierces are brought nearer, by the simplex method of linear
-    /// programming; where that is in doubt, and in 2D, as [`Gjk`](Self::Gjk): the fastest.
+    /// What the shape knows in [closed form](convex_support::SupportMap::core_line_crossing) is tried first. In 3D, triangles of
+    /// support points that the ray pierces are then brought nearer, by the simplex method of linear programming; where that is
+    /// in doubt, and in 2D, as [`Gjk`](Self::Gjk): the fastest.
     #[default]
     Portal,
     /// The vector from the ray's point to the simplex of support points, as in the paper's Algorithm 3.

@@ -1,0 +1,158 @@
+//! Casts against shapes that know where a line crosses them: the closed form is asked first, and certified like a search.
+
+mod common;
+
+use common::{directions, v};
+use convex_support::glam::DVec3;
+use convex_support::{
+    Affine, Ball, Capsule, Cone, Core, CoreKind, Crossing, Cuboid, Cylinder, Ellipsoid, Hint, LineCrossing, Posed,
+    Rounded, SupportMap,
+};
+use gjk_raycast::{
+    CastMethod, LinearCastOptions, Motion, Outcome, Ray, RayCast, RayCastOptions, Status, linear_cast, ray_cast,
+};
+
+type Body = Box<dyn SupportMap<Vector = DVec3>>;
+
+fn bodies() -> Result<Vec<Body>, convex_support::InvalidShape> {
+    let (size, at) = (DVec3::new(1.0, 0.6, 0.3), DVec3::new(0.3, -0.2, 0.1));
+    let turn = convex_support::glam::DQuat::from_rotation_arc(DVec3::X, DVec3::new(2.0, -1.0, 2.0).normalize());
+    let shear = convex_support::glam::DMat3::from_cols_array(&[1.0, 0.0, 0.0, 0.4, 1.2, 0.0, -0.3, 0.0, 0.8]);
+    Ok(vec![
+        Box::new(Ball::new(0.7)?),
+        Box::new(Cuboid::new(size)?),
+        Box::new(Capsule::new(0.8, 0.4)?),
+        Box::new(Cylinder::new(0.8, 0.4)?),
+        Box::new(Cone::new(0.8, 0.5)?),
+        Box::new(Ellipsoid::new(at, size, turn)?),
+        Box::new(Posed::new(Cylinder::new(0.5, 0.5)?, turn, at)?),
+        Box::new(Affine::new(Cone::new(0.5, 0.5)?, shear, at)?),
+        Box::new(Posed::new(Rounded::new(Cuboid::new(size)?, 0.2)?, turn, at)?),
+    ])
+}
+
+fn cast(body: &Body, ray: Ray<DVec3>, method: CastMethod) -> RayCast<DVec3> {
+    ray_cast(&**body, ray, RayCastOptions::default().with_method(method)).expect("a finite ray with a direction")
+}
+
+#[test]
+fn a_hit_takes_one_support_point_and_is_that_of_the_search() -> Result<(), convex_support::InvalidShape> {
+    let (mut hits, mut misses) = (0, 0);
+    for body in bodies()? {
+        for from in directions(40) {
+            for to in directions(7) {
+                let (source, target) = (v::<DVec3>(from) * 4.0, v::<DVec3>(to) * 0.6);
+                let ray = Ray { source, direction: target - source };
+                let (known, found) = (cast(&body, ray, CastMethod::Portal), cast(&body, ray, CastMethod::Gjk));
+                assert_eq!(known.status, Status::Converged);
+                match (known.outcome, found.outcome) {
+                    (Outcome::Hit(p), Outcome::Hit(q)) => {
+                        hits += 1;
+                        assert!(known.lower <= p.lambda && p.lambda <= known.upper, "{known:?}");
+                        assert!(known.lower <= found.upper && found.lower <= known.upper, "{known:?} {found:?}");
+                        assert!(known.upper - known.lower < 1e-12, "{known:?}");
+                        assert!((p.lambda - q.lambda).abs() < 1e-12, "{known:?} {found:?}");
+                        assert!(known.iterations == 1, "{known:?}");
+                    }
+                    (Outcome::Miss(_), Outcome::Miss(_)) => misses += 1,
+                    (Outcome::Hit(_) | Outcome::Miss(_), Outcome::Undecided) => {}
+                    _ => panic!("{known:?} {found:?}"),
+                }
+            }
+        }
+    }
+    assert!(hits > 500 && misses > 100, "{hits} hits, {misses} misses");
+    Ok(())
+}
+
+#[test]
+fn a_ball_that_moves_against_them_takes_one_support_point() -> Result<(), convex_support::InvalidShape> {
+    for body in bodies()? {
+        // Rounded by the ball's radius, not all of them have a closed form.
+        let has_one =
+            body.core_line_crossing(DVec3::X * 9.0, DVec3::NEG_X, body.core().radius + 0.25) != LineCrossing::Unknown;
+        for from in directions(40) {
+            let ball = Posed::translated(Ball::new(0.25)?, v::<DVec3>(from) * 5.0)?;
+            let motion = Motion { velocity_a: DVec3::ZERO, velocity_b: v::<DVec3>(from) };
+            let options = LinearCastOptions::default();
+            for (known, found) in [
+                (
+                    linear_cast(&ball, &*body, motion, options),
+                    linear_cast(&ball, &*body, motion, options.with_method(CastMethod::Gjk)),
+                ),
+                (
+                    linear_cast(&*body, &ball, Motion { velocity_a: motion.velocity_b, ..Motion::default() }, options),
+                    linear_cast(&ball, &*body, motion, options.with_method(CastMethod::Gjk)),
+                ),
+            ] {
+                let (known, found) = (known.expect("finite"), found.expect("finite"));
+                let (Some(p), Some(q)) = (known.outcome.hit(), found.outcome.hit()) else { panic!("{known:?}") };
+                assert!((p.time - q.time).abs() < 1e-12, "{known:?} {found:?}");
+                assert!(!has_one || known.iterations == 1, "{known:?}");
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A ball that is wrong about where lines cross it.
+struct Liar(Ball<DVec3>, fn(Crossing<DVec3>) -> LineCrossing<DVec3>);
+
+impl SupportMap for Liar {
+    type Vector = DVec3;
+
+    fn support(&self, direction: DVec3) -> DVec3 {
+        self.0.support(direction)
+    }
+
+    fn core(&self) -> Core<DVec3> {
+        Core { origin: DVec3::ZERO, radius: 0.0, extent: 1.0, kind: CoreKind::Curved }
+    }
+
+    fn core_support(&self, direction: DVec3, _: &mut Hint) -> DVec3 {
+        self.support(direction)
+    }
+
+    fn core_line_crossing(&self, source: DVec3, direction: DVec3, radius: f64) -> LineCrossing<DVec3> {
+        self.0.core_line_crossing(source, direction, radius + 1.0).crossing().map_or(LineCrossing::Misses, self.1)
+    }
+}
+
+#[test]
+fn what_is_not_certified_is_searched_for() -> Result<(), Box<dyn std::error::Error>> {
+    let lies: [fn(Crossing<DVec3>) -> LineCrossing<DVec3>; 5] = [
+        |at| LineCrossing::Crosses(Crossing { entry: at.entry + 0.01, ..at }),
+        |at| LineCrossing::Crosses(Crossing { normal: (at.normal + DVec3::new(0.1, 0.2, -0.1)).normalize(), ..at }),
+        |at| LineCrossing::Crosses(Crossing { entry: f64::NAN, ..at }),
+        |at| LineCrossing::Crosses(Crossing { normal: DVec3::ZERO, ..at }),
+        |_| LineCrossing::Misses,
+    ];
+    let ray = Ray { source: DVec3::new(-3.0, 0.3, 0.2), direction: DVec3::X };
+    let lambda = 3.0 - (1.0_f64 - 0.13).sqrt();
+    for lie in lies {
+        let cast = ray_cast(&Liar(Ball::new(1.0)?, lie), ray, RayCastOptions::default())?;
+        let hit = cast.outcome.hit().ok_or("it hits")?;
+        assert!((hit.lambda - lambda).abs() < 1e-9, "{cast:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_limit_of_iterations_is_neither_a_hit_nor_a_miss() -> Result<(), convex_support::InvalidShape> {
+    let mut undecided = 0;
+    for aspect in [1e1, 1e3, 1e5] {
+        let needle = Ellipsoid::new(DVec3::ZERO, DVec3::new(1.0, 1.0 / aspect, 1.0 / aspect), Default::default())?;
+        for from in directions(20) {
+            for max_iterations in 0..8 {
+                let source = v::<DVec3>(from) * 3.0;
+                let options =
+                    RayCastOptions::default().with_method(CastMethod::Gjk).with_max_iterations(max_iterations);
+                let cast = ray_cast(&needle, Ray { source, direction: -source }, options).expect("a finite ray");
+                assert_eq!(cast.outcome == Outcome::Undecided, cast.status != Status::Converged, "{cast:?}");
+                undecided += usize::from(cast.outcome == Outcome::Undecided);
+            }
+        }
+    }
+    assert!(undecided > 50, "{undecided}");
+    Ok(())
+}
