@@ -2,11 +2,11 @@
 
 use std::hint::black_box;
 
-use benches::rng::Rng;
 use convex_support::Ellipsoid;
 use convex_support::glam::{DQuat, DVec3};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use ellip_margin::{Clearance, MarginOptions, clearance};
+use workloads::rng::Rng;
 
 const LINKS: u32 = 30;
 const STEPS: u32 = 500;

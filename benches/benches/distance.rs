@@ -1,10 +1,10 @@
 //! How long does the distance of two bodies take, far from each other and near (W3)?
 
-use benches::pairs::{PAIR_NAMES, Pair};
 use benches::rows::distance_solvers;
-use benches::score::distances;
-use benches::w3_distance::{FAR, queries};
 use criterion::{Criterion, criterion_group, criterion_main};
+use workloads::pairs::{PAIR_NAMES, Pair};
+use workloads::score::distances;
+use workloads::w3_distance::{FAR, queries};
 
 mod common;
 

@@ -6,9 +6,9 @@
 use std::hint::black_box;
 use std::time::Duration;
 
-use benches::w4_enclosing::{Cloud, cloud, corners, in_ball, on_sphere};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use lj_ellipsoid::{Enclosing, EnclosingMethod, EnclosingOptions, MovingPoints, enclosing};
+use workloads::w4_enclosing::{Cloud, cloud, corners, in_ball, on_sphere};
 
 /// The certified gaps on ln det that each method is asked for, and the most points it is asked about.
 const METHODS: [(&str, EnclosingMethod, &[f64], usize); 4] = [

@@ -5,12 +5,12 @@
 
 use std::hint::black_box;
 
-use benches::rng::Rng;
 use convex_support::glam::DVec3;
 use convex_support::{Polytope, SupportMap};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 #[cfg(feature = "parry")]
 use parry3d_f64::{math::Vector, shape::ConvexPolyhedron};
+use workloads::rng::Rng;
 
 /// Points on a sphere, drawn towards the middle by a factor of each point's own.
 fn cloud(count: usize, factor: impl Fn(&mut Rng, DVec3) -> f64) -> Vec<DVec3> {

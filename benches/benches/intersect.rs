@@ -1,10 +1,10 @@
 //! How long does it take to tell whether two bodies meet (W3b)?
 
-use benches::pairs::{PAIR_NAMES, Pair};
 use benches::rows::{intersection_testers, warm_intersection_testers};
-use benches::score::intersections;
-use benches::w3b_intersect::queries;
 use criterion::{Criterion, criterion_group, criterion_main};
+use workloads::pairs::{PAIR_NAMES, Pair};
+use workloads::score::intersections;
+use workloads::w3b_intersect::queries;
 
 mod common;
 

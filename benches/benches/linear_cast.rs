@@ -1,10 +1,10 @@
 //! How long does it take to find when two moving bodies first touch (W2)?
 
-use benches::pairs::{PAIR_NAMES, Pair};
 use benches::rows::linear_casters;
-use benches::score::linear_casts;
-use benches::w2_linear_cast::{casts, grazing};
 use criterion::{Criterion, criterion_group, criterion_main};
+use workloads::pairs::{PAIR_NAMES, Pair};
+use workloads::score::linear_casts;
+use workloads::w2_linear_cast::{casts, grazing};
 
 mod common;
 

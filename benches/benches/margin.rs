@@ -4,13 +4,13 @@
 
 use std::hint::black_box;
 
-use benches::rng::Rng;
 use convex_support::Ellipsoid;
 use convex_support::glam::{DMat3, DQuat, DVec3};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use ellip_margin::eigen::free_margin_eigen;
 use ellip_margin::{MarginOptions, Method, distance, distance_bracket, free_margin, free_margins_into, scaling};
 use nalgebra::SMatrix;
+use workloads::rng::Rng;
 
 const PAIRS: usize = 2_000;
 

@@ -1,10 +1,10 @@
 //! How long does a ray cast against one body take (W1)?
 
 use benches::rows::ray_casters;
-use benches::score::{Precision, ray_casts};
-use benches::shapes::{SHAPE_NAMES, Shape};
-use benches::w1_ray_cast::rays;
 use criterion::{Criterion, criterion_group, criterion_main};
+use workloads::score::{Precision, ray_casts};
+use workloads::shapes::{SHAPE_NAMES, Shape};
+use workloads::w1_ray_cast::rays;
 
 mod common;
 

@@ -5,11 +5,11 @@
 
 use std::hint::black_box;
 
-use benches::rng::Rng;
 use convex_support::Ellipsoid;
 use convex_support::glam::{DQuat, DVec3};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use ellip_margin::{InverseIterationTracker, MarginOptions, MarginTracker, free_margin};
+use workloads::rng::Rng;
 
 const STEPS: u32 = 2_000;
 

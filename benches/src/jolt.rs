@@ -10,14 +10,14 @@ use oxijolt::{
     Vec3, WorldSettings,
 };
 
-use crate::Pose;
 use crate::measure::Solver;
-use crate::pairs::Pair;
-use crate::shapes::Shape;
-use crate::vec3;
-use crate::w1_ray_cast::Ray;
-use crate::w2_linear_cast::Cast;
-use crate::w3b_intersect::IntersectQuery;
+use workloads::Pose;
+use workloads::pairs::Pair;
+use workloads::shapes::Shape;
+use workloads::vec3;
+use workloads::w1_ray_cast::Ray;
+use workloads::w2_linear_cast::Cast;
+use workloads::w3b_intersect::IntersectQuery;
 
 const VALID: &str = "the shapes of the workloads are valid";
 

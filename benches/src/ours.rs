@@ -1,4 +1,5 @@
-//! The workloads answered by this workspace, in either precision.
+//! The workloads answered by this workspace, in either precision. Each method is compiled for each pair of types here and nowhere
+//! else: what calls these functions is not generic.
 
 use convex_support::glam::{DQuat, DVec3, Quat, Vec3A};
 use convex_support::{
@@ -10,31 +11,33 @@ use gjk_raycast::{
     distance, intersects, linear_cast, ray_cast,
 };
 
+use workloads::Pose;
+use workloads::pairs::Pair;
+use workloads::score::Precision;
+use workloads::shapes::Shape;
+use workloads::vec3::Vec3;
+use workloads::w1_ray_cast::Ray;
+use workloads::w2_linear_cast::Cast;
+use workloads::w3_distance::DistanceQuery;
+use workloads::w3b_intersect::IntersectQuery;
+
 use crate::measure::Solver;
-use crate::pairs::Pair;
-use crate::reference::Pose;
-use crate::shapes::Shape;
-use crate::vec3::Vec3;
-use crate::w1_ray_cast::Ray;
-use crate::w2_linear_cast::Cast;
-use crate::w3_distance::DistanceQuery;
-use crate::w3b_intersect::IntersectQuery;
 
 /// The vectors that are measured.
-pub trait Space: Vector3 {
+trait Space: Vector3 {
     /// A rotation from a unit quaternion.
-    fn rotation(q: crate::vec3::Quat) -> Self::Rotation;
+    fn rotation(q: workloads::vec3::Quat) -> Self::Rotation;
 }
 
 impl Space for DVec3 {
-    fn rotation(q: crate::vec3::Quat) -> DQuat {
+    fn rotation(q: workloads::vec3::Quat) -> DQuat {
         DQuat::from_array(q)
     }
 }
 
 impl Space for Vec3A {
     #[allow(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is the purpose")]
-    fn rotation(q: crate::vec3::Quat) -> Quat {
+    fn rotation(q: workloads::vec3::Quat) -> Quat {
         Quat::from_array(q.map(|x| x as f32))
     }
 }
@@ -87,7 +90,14 @@ impl Effort {
 
 /// Ray casts by GJK.
 #[must_use]
-pub fn ray_casts<V: Space>(shape: &Shape, rays: &[Ray], effort: Effort) -> Solver {
+pub fn ray_casts(precision: Precision, shape: &Shape, rays: &[Ray], effort: Effort) -> Solver {
+    match precision {
+        Precision::Double => ray_casts_in::<DVec3>(shape, rays, effort),
+        Precision::Single => ray_casts_in::<Vec3A>(shape, rays, effort),
+    }
+}
+
+fn ray_casts_in<V: Space>(shape: &Shape, rays: &[Ray], effort: Effort) -> Solver {
     struct Cast<'a>(&'a [Ray], Effort);
     impl<V: Space> Task<V> for Cast<'_> {
         fn solver<S: SupportMap<Vector = V> + 'static>(self, target: S) -> Solver {
@@ -117,7 +127,14 @@ pub fn ray_casts<V: Space>(shape: &Shape, rays: &[Ray], effort: Effort) -> Solve
 
 /// Ray casts in closed form.
 #[must_use]
-pub fn closed_form_ray_casts<V: Space>(shape: &Shape, rays: &[Ray]) -> Solver {
+pub fn closed_form_ray_casts(precision: Precision, shape: &Shape, rays: &[Ray]) -> Solver {
+    match precision {
+        Precision::Double => closed_form_ray_casts_in::<DVec3>(shape, rays),
+        Precision::Single => closed_form_ray_casts_in::<Vec3A>(shape, rays),
+    }
+}
+
+fn closed_form_ray_casts_in<V: Space>(shape: &Shape, rays: &[Ray]) -> Solver {
     fn solver<S: SupportMap<Vector: Space> + 'static>(target: Result<S, InvalidShape>, rays: &[Ray]) -> Solver {
         let target = target.expect(VALID);
         let rays = rays.iter().map(|ray| (vector(ray.origin), vector(ray.direction))).collect();
@@ -152,7 +169,14 @@ pub fn closed_form_ray_casts<V: Space>(shape: &Shape, rays: &[Ray]) -> Solver {
 
 /// Linear casts. The body is posed within the measurement: every query comes with a new pose.
 #[must_use]
-pub fn linear_casts<V: Space>(pair: &Pair, casts: &[Cast], effort: Effort) -> Solver {
+pub fn linear_casts(precision: Precision, pair: &Pair, casts: &[Cast], effort: Effort) -> Solver {
+    match precision {
+        Precision::Double => linear_casts_in::<DVec3>(pair, casts, effort),
+        Precision::Single => linear_casts_in::<Vec3A>(pair, casts, effort),
+    }
+}
+
+fn linear_casts_in<V: Space>(pair: &Pair, casts: &[Cast], effort: Effort) -> Solver {
     struct Task<'a>(&'a [Cast], Effort);
     impl<V: Space> PairTask<V> for Task<'_> {
         fn solver<A, B>(self, a: A, b: B) -> Solver
@@ -185,7 +209,14 @@ pub fn linear_casts<V: Space>(pair: &Pair, casts: &[Cast], effort: Effort) -> So
 
 /// Distances.
 #[must_use]
-pub fn distances<V: Space>(pair: &Pair, queries: &[DistanceQuery], effort: Effort) -> Solver {
+pub fn distances(precision: Precision, pair: &Pair, queries: &[DistanceQuery], effort: Effort) -> Solver {
+    match precision {
+        Precision::Double => distances_in::<DVec3>(pair, queries, effort),
+        Precision::Single => distances_in::<Vec3A>(pair, queries, effort),
+    }
+}
+
+fn distances_in<V: Space>(pair: &Pair, queries: &[DistanceQuery], effort: Effort) -> Solver {
     struct Task<'a>(&'a [DistanceQuery], Effort);
     impl<V: Space> PairTask<V> for Task<'_> {
         fn solver<A, B>(self, a: A, b: B) -> Solver
@@ -211,7 +242,20 @@ pub fn distances<V: Space>(pair: &Pair, queries: &[DistanceQuery], effort: Effor
 
 /// Intersection tests; `warm` ones are given the axis, if any, that the same query answered with before.
 #[must_use]
-pub fn intersections<V: Space>(pair: &Pair, queries: &[IntersectQuery], warm: bool, effort: Effort) -> Solver {
+pub fn intersections(
+    precision: Precision,
+    pair: &Pair,
+    queries: &[IntersectQuery],
+    warm: bool,
+    effort: Effort,
+) -> Solver {
+    match precision {
+        Precision::Double => intersections_in::<DVec3>(pair, queries, warm, effort),
+        Precision::Single => intersections_in::<Vec3A>(pair, queries, warm, effort),
+    }
+}
+
+fn intersections_in<V: Space>(pair: &Pair, queries: &[IntersectQuery], warm: bool, effort: Effort) -> Solver {
     struct Task<'a>(&'a [IntersectQuery], bool, Effort);
     impl<V: Space> PairTask<V> for Task<'_> {
         fn solver<A, B>(self, a: A, b: B) -> Solver

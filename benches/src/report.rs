@@ -1,8 +1,8 @@
 //! The measurements as text: Markdown tables for people, CSV for programs.
 
 use std::fmt::Write as _;
-use std::process::Command;
-use std::time::{SystemTime, UNIX_EPOCH};
+
+use workloads::provenance;
 
 use crate::goals::{GOALS, NEAR_P99, WARM_NS, parry_ns};
 use crate::rows::{Method, Row, Workload};
@@ -165,42 +165,11 @@ fn goals(rows: &[Row]) -> String {
 
 /// Processor, compiler and date.
 fn machine() -> String {
-    let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let processor = processor
-        .lines()
-        .find_map(|line| line.strip_prefix("model name")?.split_once(':'))
-        .map_or("an unknown processor", |(_, name)| name.trim());
-    let compiler = Command::new("rustc").arg("--version").output().ok();
-    let compiler = compiler.and_then(|output| String::from_utf8(output.stdout).ok());
-    let compiler = compiler.as_deref().map_or("an unknown compiler", str::trim);
+    let compiler = provenance::compiler().unwrap_or_else(|| "an unknown compiler".to_owned());
     let flags = if cfg!(target_feature = "avx2") { "with AVX2" } else { "baseline instruction set" };
-    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
-    format!("Measured on {processor}, one thread, {flags}, thin LTO, {compiler}, on {}.", date(seconds / 86_400))
-}
-
-/// The date so many days after 1970-01-01, by Hinnant's `civil_from_days`: years begin in March, so that leap days come
-/// last, and eras of 400 years all have 146,097 days.
-fn date(days: u64) -> String {
-    let days = days + 719_468;
-    let (era, day_of_era) = (days / 146_097, days % 146_097);
-    let year_of_era = (day_of_era - day_of_era / 1_460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
-    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let month = (5 * day_of_year + 2) / 153;
-    let day = day_of_year - (153 * month + 2) / 5 + 1;
-    let month = if month < 10 { month + 3 } else { month - 9 };
-    let year = era * 400 + year_of_era + u64::from(month <= 2);
-    format!("{year}-{month:02}-{day:02}")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::date;
-
-    #[test]
-    fn dates() {
-        assert_eq!(date(0), "1970-01-01");
-        assert_eq!(date(19_782), "2024-02-29");
-        assert_eq!(date(19_783), "2024-03-01");
-        assert_eq!(date(47_481), "2099-12-31");
-    }
+    format!(
+        "Measured on {}, one thread, {flags}, thin LTO, {compiler}, on {}.",
+        provenance::processor(),
+        provenance::today()
+    )
 }

@@ -3,20 +3,18 @@
 use std::ops::Range;
 use std::time::Duration;
 
-use convex_support::glam::{DVec3, Vec3A};
-
 #[cfg(feature = "box3d")]
 use crate::box3d;
 #[cfg(feature = "jolt")]
 use crate::jolt;
 use crate::measure::Solver;
 use crate::ours::{self, Effort};
-use crate::pairs::{PAIR_NAMES, Pair};
 #[cfg(feature = "parry")]
 use crate::parry::{double, single};
-use crate::score::{self, Precision, Score};
-use crate::shapes::{SHAPE_NAMES, Shape};
-use crate::{w1_ray_cast, w2_linear_cast, w3_distance, w3b_intersect};
+use workloads::pairs::{PAIR_NAMES, Pair};
+use workloads::score::{self, Precision, Score};
+use workloads::shapes::{SHAPE_NAMES, Shape};
+use workloads::{w1_ray_cast, w2_linear_cast, w3_distance, w3b_intersect};
 
 /// A workload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -227,11 +225,11 @@ pub fn measure(workloads: &[Workload], budget: Duration, mut progress: impl FnMu
 pub fn ray_casters(shape: &Shape, rays: &[w1_ray_cast::Ray]) -> Vec<(Method, Solver)> {
     #[allow(unused_mut, reason = "without peers there is nothing to add")]
     let mut solvers = vec![
-        (Method::OursF64, ours::ray_casts::<DVec3>(shape, rays, Effort::default())),
-        (Method::ClosedF64, ours::closed_form_ray_casts::<DVec3>(shape, rays)),
-        (Method::OursF32, ours::ray_casts::<Vec3A>(shape, rays, Effort::default())),
-        (Method::ClosedF32, ours::closed_form_ray_casts::<Vec3A>(shape, rays)),
-        (Method::DynF64, ours::ray_casts::<DVec3>(shape, rays, Effort { boxed: true, ..Effort::default() })),
+        (Method::OursF64, ours::ray_casts(Precision::Double, shape, rays, Effort::default())),
+        (Method::ClosedF64, ours::closed_form_ray_casts(Precision::Double, shape, rays)),
+        (Method::OursF32, ours::ray_casts(Precision::Single, shape, rays, Effort::default())),
+        (Method::ClosedF32, ours::closed_form_ray_casts(Precision::Single, shape, rays)),
+        (Method::DynF64, ours::ray_casts(Precision::Double, shape, rays, Effort { boxed: true, ..Effort::default() })),
     ];
     #[cfg(feature = "parry")]
     {
@@ -252,9 +250,12 @@ pub fn ray_casters(shape: &Shape, rays: &[w1_ray_cast::Ray]) -> Vec<(Method, Sol
 pub fn linear_casters(pair: &Pair, casts: &[w2_linear_cast::Cast]) -> Vec<(Method, Solver)> {
     #[allow(unused_mut, reason = "without peers there is nothing to add")]
     let mut solvers = vec![
-        (Method::OursF64, ours::linear_casts::<DVec3>(pair, casts, Effort::default())),
-        (Method::OursF32, ours::linear_casts::<Vec3A>(pair, casts, Effort::default())),
-        (Method::DynF64, ours::linear_casts::<DVec3>(pair, casts, Effort { boxed: true, ..Effort::default() })),
+        (Method::OursF64, ours::linear_casts(Precision::Double, pair, casts, Effort::default())),
+        (Method::OursF32, ours::linear_casts(Precision::Single, pair, casts, Effort::default())),
+        (
+            Method::DynF64,
+            ours::linear_casts(Precision::Double, pair, casts, Effort { boxed: true, ..Effort::default() }),
+        ),
     ];
     #[cfg(feature = "parry")]
     {
@@ -275,9 +276,12 @@ pub fn linear_casters(pair: &Pair, casts: &[w2_linear_cast::Cast]) -> Vec<(Metho
 pub fn distance_solvers(pair: &Pair, queries: &[w3_distance::DistanceQuery]) -> Vec<(Method, Solver)> {
     #[allow(unused_mut, reason = "without peers there is nothing to add")]
     let mut solvers = vec![
-        (Method::OursF64, ours::distances::<DVec3>(pair, queries, Effort::default())),
-        (Method::OursF32, ours::distances::<Vec3A>(pair, queries, Effort::default())),
-        (Method::DynF64, ours::distances::<DVec3>(pair, queries, Effort { boxed: true, ..Effort::default() })),
+        (Method::OursF64, ours::distances(Precision::Double, pair, queries, Effort::default())),
+        (Method::OursF32, ours::distances(Precision::Single, pair, queries, Effort::default())),
+        (
+            Method::DynF64,
+            ours::distances(Precision::Double, pair, queries, Effort { boxed: true, ..Effort::default() }),
+        ),
     ];
     #[cfg(feature = "parry")]
     {
@@ -296,11 +300,11 @@ pub fn distance_solvers(pair: &Pair, queries: &[w3_distance::DistanceQuery]) -> 
 pub fn intersection_testers(pair: &Pair, queries: &[w3b_intersect::IntersectQuery]) -> Vec<(Method, Solver)> {
     #[allow(unused_mut, reason = "without peers there is nothing to add")]
     let mut solvers = vec![
-        (Method::OursF64, ours::intersections::<DVec3>(pair, queries, false, Effort::default())),
-        (Method::OursF32, ours::intersections::<Vec3A>(pair, queries, false, Effort::default())),
+        (Method::OursF64, ours::intersections(Precision::Double, pair, queries, false, Effort::default())),
+        (Method::OursF32, ours::intersections(Precision::Single, pair, queries, false, Effort::default())),
         (
             Method::DynF64,
-            ours::intersections::<DVec3>(pair, queries, false, Effort { boxed: true, ..Effort::default() }),
+            ours::intersections(Precision::Double, pair, queries, false, Effort { boxed: true, ..Effort::default() }),
         ),
     ];
     #[cfg(feature = "parry")]
@@ -321,7 +325,7 @@ pub fn intersection_testers(pair: &Pair, queries: &[w3b_intersect::IntersectQuer
 #[must_use]
 pub fn warm_intersection_testers(pair: &Pair, apart: &[w3b_intersect::IntersectQuery]) -> Vec<(Method, Solver)> {
     vec![
-        (Method::WarmF64, ours::intersections::<DVec3>(pair, apart, true, Effort::default())),
-        (Method::WarmF32, ours::intersections::<Vec3A>(pair, apart, true, Effort::default())),
+        (Method::WarmF64, ours::intersections(Precision::Double, pair, apart, true, Effort::default())),
+        (Method::WarmF32, ours::intersections(Precision::Single, pair, apart, true, Effort::default())),
     ]
 }

@@ -9,7 +9,7 @@ use std::process::{Command, ExitCode};
 const LIBRARIES: [&str; 4] = ["convex-support", "gjk-raycast", "lj-ellipsoid", "ellip-margin"];
 
 /// Builds the pages, checks them and the notes, and says where they are.
-pub(crate) fn run() -> ExitCode {
+pub fn run() -> ExitCode {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
     match build(root).and_then(|pages| Ok((missing(root)?, fetched(&pages)?, pages))) {
         Ok((missing, fetched, pages)) => {

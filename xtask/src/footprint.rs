@@ -1,12 +1,12 @@
 //! `cargo xtask footprint`: what importing each crate alone costs. Packages in the tree, time of a clean build, and the
 //! code of a program that asks one question, beside a program that asks none.
 
-use crate::validate::provenance;
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::{Command, ExitCode};
+use workloads::provenance::provenance;
 
 /// A program that asks one question.
 struct Program {
@@ -85,7 +85,7 @@ struct Cost {
 const DOCUMENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/footprint.md");
 
 /// Builds the programs in `folder`, prints the table, and puts it into `docs/`.
-pub(crate) fn run(folder: &Path) -> ExitCode {
+pub fn run(folder: &Path) -> ExitCode {
     let written = measure(folder).and_then(|table| {
         let _ = io::stdout().write_all(table.as_bytes());
         let page = format!("{INTRODUCTION}{table}\nMeasured on {}.\n", provenance());

@@ -1,23 +1,15 @@
 //! The workspace's tasks: `cargo xtask --help`.
+//!
+//! What is asked of every newcomer's machine is small: queries, cases, damaged lines, documentation. Studies, which compile the
+//! algorithms for hundreds of types or draw pictures, are a package of their own, built when one of them is asked for.
 
-mod book2d;
-mod docs;
-mod engine;
-mod footprint;
-mod fuzz;
-mod mesh;
-mod plot;
-mod query;
-mod render;
-mod scene;
-mod sweep;
-mod validate;
-mod wire;
-
+use std::ffi::OsString;
+use std::io::{self, Write};
 use std::path::PathBuf;
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
+use xtask::{docs, footprint, fuzz, query, validate};
 
 /// Answers query files, validates the crates against true answers, and draws what they do.
 #[derive(Debug, Parser)]
@@ -36,42 +28,15 @@ enum Task {
     ///
     /// Exit status: 0 where every line was answered, 1 where some line got an error in place of an answer, 2 where a file
     /// could not be read or the arguments are wrong.
-    Query {
-        /// Query files; `-` is standard input.
-        #[arg(required = true, value_name = "FILE")]
-        files: Vec<PathBuf>,
-    },
+    Query(query::Choice),
     /// Compare answers with the truth, and write the report: error against run time.
     ///
     /// Exit status: 0 where everything is right, 1 where some answer is wrong, 2 where a file could not be read.
     Validate(validate::Scope),
-    /// Move a robot along its trajectory among obstacles: ellipsoids first, exact distances where they cannot decide.
-    ///
-    /// Exit status: 0, or 1 where an answer differs from the truth given, or 2 where a file could not be read.
-    Scene(scene::Choice),
-    /// Cast rays at every scale, and hold them against references in thirty digits; the same for linear casts and distances.
-    ///
-    /// Exit status: 0 where everything is right, 1 where some answer is wrong, 2 where the table could not be written.
-    Sweep(sweep::Scope),
     /// Try damaged query lines, and hulls of integers against an exact oracle, for a bounded time.
     ///
     /// Exit status: 0 where nothing failed, 1 where something did, 2 where the suite could not be read.
     Fuzz(fuzz::Scope),
-    /// Draw the descent of GJK in the plane, step by step.
-    Book2d {
-        /// Where the drawings go.
-        #[arg(long, value_name = "FOLDER", default_value = "target/book2d")]
-        output: PathBuf,
-    },
-    /// Render a picture by GJK ray casts.
-    Render {
-        /// The picture.
-        #[arg(value_name = "PNG", default_value = "target/render.png")]
-        file: PathBuf,
-        /// Its width in pixels; the height is 9/16 of it.
-        #[arg(long, default_value_t = 1280, value_parser = clap::value_parser!(u32).range(16..=16384))]
-        width: u32,
-    },
     /// Build the API documentation of the libraries as docs.rs does, and check that no link leads nowhere.
     ///
     /// Exit status: 0, or 1 where a note or page refers to what is not there, or 2 where the documentation does not build.
@@ -82,18 +47,49 @@ enum Task {
         #[arg(long, value_name = "FOLDER", default_value = "target/footprint")]
         output: PathBuf,
     },
+    /// Move a robot along its trajectory among obstacles (a study).
+    #[command(disable_help_flag = true)]
+    Scene(Passed),
+    /// Hold casts and distances at every scale against references in thirty digits (a study).
+    #[command(disable_help_flag = true)]
+    Sweep(Passed),
+    /// Draw the descent of GJK in the plane, step by step (a study).
+    #[command(disable_help_flag = true)]
+    Book2d(Passed),
+    /// Render a picture by GJK ray casts (a study).
+    #[command(disable_help_flag = true)]
+    Render(Passed),
+}
+
+/// What a study is told: `--help` says it.
+#[derive(Debug, Args)]
+struct Passed {
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+    _arguments: Vec<OsString>,
 }
 
 fn main() -> ExitCode {
     match Arguments::parse().task {
-        Task::Query { files } => query::run(&files),
-        Task::Validate(scope) => validate::run(&scope),
-        Task::Sweep(scope) => sweep::run(&scope),
+        Task::Query(choice) => query::run(&choice),
+        Task::Validate(scope) if scope.is_study() => study(scope.features()),
+        Task::Validate(scope) => validate::run(&scope, &validate::QUICK),
         Task::Fuzz(scope) => fuzz::run(&scope),
-        Task::Book2d { output } => book2d::run(&output),
-        Task::Render { file, width } => render::run(&file, width),
         Task::Docs => docs::run(),
         Task::Footprint { output } => footprint::run(&output),
-        Task::Scene(choice) => scene::run(&choice),
+        Task::Scene(_) | Task::Sweep(_) | Task::Book2d(_) | Task::Render(_) => study(""),
+    }
+}
+
+/// Builds the studies with these features, and gives them the arguments of this program.
+fn study(features: &str) -> ExitCode {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(["run", "--quiet", "--release", "--package", "studies", "--features", features]);
+    command.args(["--manifest-path", concat!(env!("CARGO_MANIFEST_DIR"), "/../Cargo.toml"), "--"]);
+    match command.args(std::env::args_os().skip(1)).status() {
+        Ok(status) => status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from),
+        Err(why) => {
+            let _ = writeln!(io::stderr(), "error: cannot run cargo: {why}");
+            ExitCode::from(2)
+        }
     }
 }

@@ -1,8 +1,9 @@
 //! Meshes from OBJ and STL files, as the hulls of their vertices.
 
-use std::collections::HashMap;
-use std::fs;
-use std::io::{Cursor, Read as _};
+use std::collections::{HashMap, HashSet};
+use std::fmt::{self, Display, Formatter};
+use std::fs::{self, File};
+use std::io::{self, Cursor, Read as _};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -13,7 +14,7 @@ use crate::wire::error::{Kind, Problem};
 
 /// The vertices of a mesh, and their hull once it has been asked for.
 #[derive(Debug)]
-pub(crate) struct Mesh {
+pub struct Mesh {
     points: Vec<DVec3>,
     hull_f64: OnceLock<Result<Arc<Polytope<DVec3>>, InvalidShape>>,
     hull_f32: OnceLock<Result<Arc<Polytope<Vec3A>>, InvalidShape>>,
@@ -25,17 +26,17 @@ impl Mesh {
     }
 
     /// The distinct vertices.
-    pub(crate) fn points(&self) -> &[DVec3] {
+    pub fn points(&self) -> &[DVec3] {
         &self.points
     }
 
     /// The convex hull in double precision.
-    pub(crate) fn hull_f64(&self) -> Result<Arc<Polytope<DVec3>>, InvalidShape> {
+    pub fn hull_f64(&self) -> Result<Arc<Polytope<DVec3>>, InvalidShape> {
         self.hull_f64.get_or_init(|| Polytope::hull_of(self.points.iter().copied()).map(Arc::new)).clone()
     }
 
     /// The convex hull of the vertices rounded to single precision.
-    pub(crate) fn hull_f32(&self) -> Result<Arc<Polytope<Vec3A>>, InvalidShape> {
+    pub fn hull_f32(&self) -> Result<Arc<Polytope<Vec3A>>, InvalidShape> {
         let rounded = || self.points.iter().map(|p| p.as_vec3a());
         self.hull_f32.get_or_init(|| Polytope::hull_of(rounded()).map(Arc::new)).clone()
     }
@@ -43,9 +44,10 @@ impl Mesh {
 
 /// The meshes in use, read once each. What is kept is bounded, whatever the number of files.
 #[derive(Debug)]
-pub(crate) struct Meshes {
+pub struct Meshes {
     /// What the paths of a query file are relative to.
     folder: PathBuf,
+    access: Access,
     kept: Mutex<Kept>,
 }
 
@@ -62,18 +64,24 @@ impl Kept {
 
 impl Meshes {
     /// Meshes whose paths are relative to `folder`.
-    pub(crate) fn relative_to(folder: impl Into<PathBuf>) -> Self {
-        Self { folder: folder.into(), kept: Mutex::default() }
+    pub fn relative_to(folder: impl Into<PathBuf>) -> Self {
+        Self { folder: folder.into(), access: Access::default(), kept: Mutex::default() }
+    }
+
+    /// The same, of which only those are read that `access` allows.
+    #[must_use]
+    pub fn with_access(self, access: Access) -> Self {
+        Self { access, ..self }
     }
 
     /// The mesh in the file at `path`.
-    pub(crate) fn load(&self, path: &Path) -> Result<Arc<Mesh>, Problem> {
+    pub fn load(&self, path: &Path) -> Result<Arc<Mesh>, Problem> {
         let path = self.folder.join(path);
         // A panic elsewhere leaves the map whole: it is only inserted into.
         if let Some(mesh) = self.kept.lock().unwrap_or_else(PoisonError::into_inner).meshes.get(&path) {
             return Ok(Arc::clone(mesh));
         }
-        let points = read(&path)
+        let points = read(&path, &self.access)
             .map_err(|why| Problem::new(Kind::Io, format!("the mesh \"{}\" cannot be read: {why}", path.display())))?;
         if points.is_empty() {
             return Err(Problem::new(Kind::InvalidShape, format!("the mesh \"{}\" has no vertices", path.display())));
@@ -89,18 +97,108 @@ impl Meshes {
     }
 }
 
+/// Which files may be read as meshes.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Access {
+    #[default]
+    Anywhere,
+    /// Below this folder, links resolved.
+    Below(PathBuf),
+    Nowhere,
+}
+
+impl Access {
+    /// `none`, a folder that is there, or nothing.
+    ///
+    /// # Errors
+    /// If there is no such folder.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        match text {
+            "" => Ok(Self::Anywhere),
+            "none" => Ok(Self::Nowhere),
+            folder => match fs::canonicalize(folder) {
+                Ok(folder) if folder.is_dir() => Ok(Self::Below(folder)),
+                Ok(_) => Err("it is no folder".to_owned()),
+                Err(why) => Err(why.to_string()),
+            },
+        }
+    }
+}
+
+/// The largest mesh that is read, in bytes: binary STL of more than five million triangles.
+const LARGEST: u64 = 1 << 28;
+
+/// Why a mesh was not read.
+#[derive(Debug)]
+enum Unread {
+    /// Its name ends otherwise.
+    Ending,
+    Forbidden,
+    /// It lies elsewhere.
+    Outside(PathBuf),
+    /// A folder, a device, a pipe: what may have no end, or never begin.
+    NotAFile,
+    TooLarge,
+    Io(io::Error),
+    /// What is written in it is no mesh.
+    Malformed(String),
+}
+
+impl Display for Unread {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Ending => write!(f, "its name must end in .obj or .stl"),
+            Self::Forbidden => write!(f, "this program was started with --meshes none"),
+            Self::Outside(folder) => write!(f, "it is not below \"{}\", as --meshes has it", folder.display()),
+            Self::NotAFile => write!(f, "it is not a regular file"),
+            Self::TooLarge => write!(f, "it has more than {} MiB, the most that is read", LARGEST >> 20),
+            Self::Io(why) => Display::fmt(why, f),
+            Self::Malformed(why) => f.write_str(why),
+        }
+    }
+}
+
+impl From<io::Error> for Unread {
+    fn from(why: io::Error) -> Self {
+        Self::Io(why)
+    }
+}
+
 /// The distinct vertices of an OBJ or STL file, told apart by the extension, in the order of the file.
-fn read(path: &Path) -> Result<Vec<DVec3>, String> {
-    let bytes = fs::read(path).map_err(|why| why.to_string())?;
+fn read(path: &Path, access: &Access) -> Result<Vec<DVec3>, Unread> {
+    type Parse = fn(Vec<u8>) -> Result<Vec<DVec3>, String>;
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let points = match extension.as_str() {
-        "obj" => read_obj(&bytes)?,
-        "stl" => read_stl(bytes)?,
-        _ => return Err("its name must end in .obj or .stl".to_owned()),
+    let parse: Parse = match extension.as_str() {
+        "obj" => |bytes| read_obj(&bytes),
+        "stl" => read_stl,
+        _ => return Err(Unread::Ending),
     };
-    let mut seen = std::collections::HashSet::with_capacity(points.len());
+    let points = parse(read_bytes(path, access)?).map_err(Unread::Malformed)?;
+    let mut seen = HashSet::with_capacity(points.len());
     // −0 and 0 are one coordinate.
     Ok(points.into_iter().filter(|p| seen.insert(p.to_array().map(|c| (c + 0.0).to_bits()))).collect())
+}
+
+/// All of a regular file, if that is allowed and not too much. Links are followed.
+///
+/// What it is, is asked before it is opened, as opening a pipe waits for somebody to write; and the size is counted while
+/// reading, as a file may grow, and those that the system makes up have none.
+fn read_bytes(path: &Path, access: &Access) -> Result<Vec<u8>, Unread> {
+    if *access == Access::Nowhere {
+        return Err(Unread::Forbidden);
+    }
+    let path = fs::canonicalize(path)?;
+    if let Access::Below(folder) = access
+        && !path.starts_with(folder)
+    {
+        return Err(Unread::Outside(folder.clone()));
+    }
+    if !fs::metadata(&path)?.is_file() {
+        return Err(Unread::NotAFile);
+    }
+    let mut bytes = Vec::new();
+    File::open(&path)?.take(LARGEST + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > LARGEST { Err(Unread::TooLarge) } else { Ok(bytes) }
 }
 
 fn read_obj(bytes: &[u8]) -> Result<Vec<DVec3>, String> {
@@ -113,7 +211,7 @@ fn read_obj(bytes: &[u8]) -> Result<Vec<DVec3>, String> {
     let elements = (1..=count).fold("\no all".to_owned(), |text, i| text + &format!("\nl {i}"));
     let mut text = bytes.chain(elements.as_bytes());
     let options = tobj::LoadOptions { single_index: true, ..Default::default() };
-    let (models, _) = tobj::load_obj_buf(&mut std::io::BufReader::new(&mut text), &options, |_| Ok(Default::default()))
+    let (models, _) = tobj::load_obj_buf(&mut io::BufReader::new(&mut text), &options, |_| Ok(Default::default()))
         .map_err(|why| broken_vertex(bytes).unwrap_or_else(|| why.to_string()))?;
     let last = models.last().map(|m| m.mesh.positions.as_slice()).unwrap_or_default();
     Ok(last.chunks_exact(3).map(DVec3::from_slice).collect())
@@ -150,6 +248,80 @@ fn read_stl(bytes: Vec<u8>) -> Result<Vec<DVec3>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A folder of its own for a test, and what it holds is gone afterwards.
+    struct Folder(PathBuf);
+
+    impl Folder {
+        fn new(name: &str) -> Self {
+            let folder = std::env::temp_dir().join(format!("mesh-{name}-{}", std::process::id()));
+            fs::create_dir_all(&folder).expect("a folder for temporary files");
+            Self(folder)
+        }
+
+        fn at(&self, name: &str) -> PathBuf {
+            self.0.join(name)
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    fn why(path: &Path, access: &Access) -> String {
+        read(path, access).expect_err("it is not to be read").to_string()
+    }
+
+    #[test]
+    fn the_name_is_looked_at_first() {
+        assert_eq!(why(Path::new("/dev/zero"), &Access::Anywhere), "its name must end in .obj or .stl");
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn only_regular_files_are_read_however_they_are_called() {
+        let folder = Folder::new("regular");
+        let (zeros, pipe) = (folder.at("zeros.stl"), folder.at("pipe.obj"));
+        std::os::unix::fs::symlink("/dev/zero", &zeros).expect("a link");
+        assert_eq!(why(&zeros, &Access::Anywhere), "it is not a regular file");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status().is_ok_and(|status| status.success());
+        assert!(made, "mkfifo makes a pipe");
+        assert_eq!(why(&pipe, &Access::Anywhere), "it is not a regular file");
+        fs::create_dir(folder.at("folder.obj")).expect("a folder");
+        assert_eq!(why(&folder.at("folder.obj"), &Access::Anywhere), "it is not a regular file");
+    }
+
+    #[test]
+    fn what_is_too_large_is_said_with_the_limit() {
+        let folder = Folder::new("large");
+        let path = folder.at("large.obj");
+        // A hole of that size: it takes no room on disk.
+        File::create(&path).and_then(|file| file.set_len(LARGEST + 1)).expect("a file");
+        assert_eq!(why(&path, &Access::Anywhere), "it has more than 256 MiB, the most that is read");
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_service_reads_below_its_folder_only() {
+        let folder = Folder::new("below");
+        fs::create_dir(folder.at("inside")).expect("a folder");
+        for name in ["outside.obj", "inside/inside.obj"] {
+            fs::write(folder.at(name), "v 1 2 3\n").expect("a file");
+        }
+        std::os::unix::fs::symlink(folder.at("outside.obj"), folder.at("inside/link.obj")).expect("a link");
+        let access = Access::parse(folder.at("inside").to_str().expect("its name is text")).expect("a folder");
+        assert!(read(&folder.at("inside/inside.obj"), &access).is_ok(), "below it");
+        for name in ["outside.obj", "inside/../outside.obj", "inside/link.obj"] {
+            let why = why(&folder.at(name), &access);
+            assert!(why.starts_with("it is not below "), "{name}: {why}");
+        }
+        assert_eq!(
+            why(&folder.at("inside/inside.obj"), &Access::Nowhere),
+            "this program was started with --meshes none"
+        );
+    }
 
     #[test]
     fn a_broken_vertex_is_named_by_its_line() {

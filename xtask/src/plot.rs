@@ -4,18 +4,18 @@ use std::fmt::Write as _;
 
 /// One set of points of a plot.
 #[derive(Clone, Debug)]
-pub(crate) struct Series {
-    pub(crate) name: String,
-    pub(crate) points: Vec<[f64; 2]>,
+pub struct Series {
+    pub name: String,
+    pub points: Vec<[f64; 2]>,
     /// Whether the points are joined, in the order given.
-    pub(crate) joined: bool,
+    pub joined: bool,
     /// Which of the colours and marks; plots side by side give the same thing the same one.
-    pub(crate) colour: usize,
+    pub colour: usize,
 }
 
 /// How numbers are laid out along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Scale {
+pub enum Scale {
     Linear,
     /// Logarithmic. What is not positive is drawn at the lower edge.
     Log,
@@ -25,14 +25,14 @@ pub(crate) enum Scale {
 
 /// Numbers against numbers.
 #[derive(Clone, Debug)]
-pub(crate) struct Plot {
-    pub(crate) title: String,
-    pub(crate) x: String,
-    pub(crate) y: String,
-    pub(crate) scales: [Scale; 2],
+pub struct Plot {
+    pub title: String,
+    pub x: String,
+    pub y: String,
+    pub scales: [Scale; 2],
     /// What is below is drawn there.
-    pub(crate) floor: f64,
-    pub(crate) series: Vec<Series>,
+    pub floor: f64,
+    pub series: Vec<Series>,
 }
 
 const WIDTH: f64 = 600.0;
@@ -52,7 +52,7 @@ const COLOURS: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b8860b
 
 impl Plot {
     /// The plot as an `<svg>` element.
-    pub(crate) fn svg(&self) -> String {
+    pub fn svg(&self) -> String {
         let xs = self.series.iter().flat_map(|s| s.points.iter().map(|p| p[0]));
         let ys = self.series.iter().flat_map(|s| s.points.iter().map(|p| p[1].max(self.floor)));
         let (x, y) = (Axis::around(self.scales[0], xs), Axis::around(self.scales[1], ys));
@@ -305,7 +305,7 @@ impl Axis {
 }
 
 /// A number of nanoseconds as people write it.
-pub(crate) fn duration(ns: f64) -> String {
+pub fn duration(ns: f64) -> String {
     let (scale, unit) = match ns {
         _ if ns.is_nan() => return "–".to_owned(),
         _ if ns < 999.5 => (1.0, "ns"),
@@ -346,7 +346,7 @@ fn power(value: f64) -> String {
 }
 
 /// Text for HTML and SVG.
-pub(crate) fn escape(text: &str) -> String {
+pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 

@@ -5,23 +5,37 @@ use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use clap::Args;
 use rayon::prelude::*;
 use serde_json::Value;
 
 use crate::engine;
-use crate::mesh::Meshes;
+use crate::mesh::{Access, Meshes};
 use crate::wire::answer::Line;
 use crate::wire::json;
 
 /// Lines are read as long as they are there already, and answered together: at most about this much of them at once.
 const BATCH_BYTES: usize = 1 << 18;
 
+/// What to answer.
+#[derive(Clone, Debug, Args)]
+pub struct Choice {
+    /// Query files; `-` is standard input.
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// The folder that `mesh` queries may read from, links resolved, or `none`; without it they read any OBJ or STL file that
+    /// this program may.
+    #[arg(long, value_name = "FOLDER|none", value_parser = Access::parse, default_value = "", hide_default_value = true)]
+    meshes: Access,
+}
+
 /// Answers the files to standard output.
-pub(crate) fn run(files: &[PathBuf]) -> ExitCode {
+#[must_use]
+pub fn run(Choice { files, meshes }: &Choice) -> ExitCode {
     let mut output = BufWriter::new(io::stdout().lock());
     let (mut any_error, mut any_failure) = (false, false);
     for file in files {
-        match answer_file(file, &mut output) {
+        match answer_file(file, meshes, &mut output) {
             Ok(Tally { errors, .. }) => any_error |= errors > 0,
             Err(Failure::Output(why)) if why.kind() == io::ErrorKind::BrokenPipe => break,
             Err(Failure::Output(why)) => {
@@ -61,12 +75,13 @@ enum Failure {
     Output(io::Error),
 }
 
-fn answer_file(file: &Path, output: &mut impl Write) -> Result<Tally, Failure> {
+fn answer_file(file: &Path, access: &Access, output: &mut impl Write) -> Result<Tally, Failure> {
+    let meshes = |folder| Meshes::relative_to(folder).with_access(access.clone());
     if file == Path::new("-") {
-        return answer_lines(io::stdin().lock(), &Meshes::relative_to(""), output);
+        return answer_lines(io::stdin().lock(), &meshes(Path::new("")), output);
     }
     let folder = file.parent().unwrap_or(Path::new(""));
-    answer_lines(File::open(file).map_err(Failure::Input)?, &Meshes::relative_to(folder), output)
+    answer_lines(File::open(file).map_err(Failure::Input)?, &meshes(folder), output)
 }
 
 /// Answers every line of `input`.
@@ -127,7 +142,8 @@ impl Lines {
 }
 
 /// The line of output for one line of input.
-pub(crate) fn answer(text: &[u8], meshes: &Meshes) -> Vec<u8> {
+#[must_use]
+pub fn answer(text: &[u8], meshes: &Meshes) -> Vec<u8> {
     answer_line(&Numbered { line: 1, text: text.to_vec() }, meshes).1
 }
 

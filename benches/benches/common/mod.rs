@@ -2,9 +2,9 @@
 
 use benches::measure::Solver;
 use benches::rows::Method;
-use benches::score::{Precision, Score};
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput};
+use workloads::score::{Precision, Score};
 
 /// Queries in one iteration.
 const QUERIES: usize = 500;

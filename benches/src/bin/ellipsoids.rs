@@ -11,12 +11,12 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use benches::rng::Rng;
-use benches::w4_enclosing::{Cloud, cloud, corners, halfspaces, in_ball, on_sphere};
 use cpu_time::ThreadTime;
 use lj_ellipsoid::{
-    Enclosing, EnclosingMethod, EnclosingOptions, InscribedOptions, MovingPoints, enclosing, inscribed,
+    Enclosing, EnclosingMethod, EnclosingOptions, Halfspace, InscribedOptions, MovingPoints, enclosing, inscribed,
 };
+use workloads::rng::Rng;
+use workloads::w4_enclosing::{Cloud, cloud, corners, halfspaces, in_ball, on_sphere};
 
 /// The gap on ln det of every row that does not say otherwise.
 const TIGHT: EnclosingOptions = EnclosingOptions::new().with_epsilon(1e-12);
@@ -142,7 +142,8 @@ fn compared() {
 
 fn inscribed_ellipsoids() {
     println!("\n| half-spaces | time | goal | | |\n|---|---|---|---|---|");
-    let body = halfspaces::<3>(60);
+    let body: Vec<Halfspace<3>> =
+        halfspaces(60).into_iter().map(|(normal, offset)| Halfspace { normal, offset }).collect();
     let options = InscribedOptions::new();
     let answer = inscribed(&body, options).expect("a bounded body");
     let time = seconds(BUDGET, || _ = black_box(inscribed(black_box(&body), options)));

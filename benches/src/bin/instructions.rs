@@ -7,12 +7,13 @@ use std::process::ExitCode;
 
 use benches::measure::Solver;
 use benches::ours::{self, Effort};
-use benches::pairs::Pair;
-use benches::shapes::{Shape, hull_points};
-use benches::{w1_ray_cast, w2_linear_cast, w3_distance, w3b_intersect};
 use convex_support::Polytope;
-use convex_support::glam::{DVec2, DVec3};
+use convex_support::glam::DVec2;
 use gjk_raycast::{Ray, RayCastOptions};
+use workloads::pairs::Pair;
+use workloads::score::Precision;
+use workloads::shapes::{Shape, hull_points};
+use workloads::{w1_ray_cast, w2_linear_cast, w3_distance, w3b_intersect};
 
 /// Queries of a row that are run.
 const QUERIES: usize = 500;
@@ -30,7 +31,7 @@ const ROWS: [Row; 14] = [
     ("distance/ellipsoid-ellipsoid", || distance("ellipsoid-ellipsoid", Effort::default())),
     ("intersect/cuboid-cuboid", || {
         let pair = Pair::named("cuboid-cuboid");
-        ours::intersections::<DVec3>(&pair, &w3b_intersect::queries(&pair)[..QUERIES], false, Effort::default())
+        ours::intersections(Precision::Double, &pair, &w3b_intersect::queries(&pair)[..QUERIES], false, Effort::default())
     }),
     ("ray_cast/ball", || ray_cast("ball", Effort::default())),
     ("ray_cast/cylinder", || ray_cast("cylinder", Effort::default())),
@@ -48,17 +49,17 @@ fn boxed() -> Effort {
 }
 
 fn ray_cast(name: &str, effort: Effort) -> Solver {
-    ours::ray_casts::<DVec3>(&Shape::named(name), &w1_ray_cast::rays(name)[..QUERIES], effort)
+    ours::ray_casts(Precision::Double, &Shape::named(name), &w1_ray_cast::rays(name)[..QUERIES], effort)
 }
 
 fn linear_cast(name: &str, effort: Effort) -> Solver {
     let pair = Pair::named(name);
-    ours::linear_casts::<DVec3>(&pair, &w2_linear_cast::casts(&pair)[..QUERIES], effort)
+    ours::linear_casts(Precision::Double, &pair, &w2_linear_cast::casts(&pair)[..QUERIES], effort)
 }
 
 fn distance(name: &str, effort: Effort) -> Solver {
     let pair = Pair::named(name);
-    ours::distances::<DVec3>(&pair, &w3_distance::queries(&pair)[..QUERIES], effort)
+    ours::distances(Precision::Double, &pair, &w3_distance::queries(&pair)[..QUERIES], effort)
 }
 
 /// The rays and points of `hull64`, seen along z.

@@ -8,13 +8,13 @@ use parry::shape::{
 };
 
 use crate::measure::Solver;
-use crate::pairs::Pair;
-use crate::shapes::Shape;
-use crate::vec3::Vec3;
-use crate::w1_ray_cast::Ray;
-use crate::w2_linear_cast::Cast;
-use crate::w3_distance::DistanceQuery;
-use crate::w3b_intersect::IntersectQuery;
+use workloads::pairs::Pair;
+use workloads::shapes::Shape;
+use workloads::vec3::Vec3;
+use workloads::w1_ray_cast::Ray;
+use workloads::w2_linear_cast::Cast;
+use workloads::w3_distance::DistanceQuery;
+use workloads::w3b_intersect::IntersectQuery;
 
 /// Ray casts by parry's GJK.
 #[must_use]

@@ -30,8 +30,8 @@
 //!
 //! Inside a body: [`inscribed()`] for half-spaces, [`inscribed_in_hull()`] for the hull of points in 2D and 3D.
 //!
-//! Points are anything that converts into `[f64; N]`: arrays, glam's `DVec2` and `DVec3`, your own. With the feature `faer` the
-//! dimension may be known at run time only: [`enclosing_dyn`], [`inscribed_dyn`].
+//! Points are anything that converts into `[f64; N]`: arrays, glam's `DVec2` and `DVec3`, your own. Where the
+//! dimension is known at run time only, they are slices of one length: [`enclosing_dyn`], [`inscribed_dyn`].
 //!
 //! # What every answer says
 //! The gap is *certified*: computed from the duality of the problem, not from the size of the last step, with the rounding
@@ -42,7 +42,6 @@
 //! # Features
 //! None is on by default.
 //!
-//! - `faer`: points and half-spaces as faer matrices, of a dimension known at run time.
 //! - `rayon`: passes over many points use all cores. The answer is the same to the last bit.
 //! - `convex-support`: conversions to that crate's `Ellipsoid`.
 #![allow(
@@ -50,11 +49,8 @@
     reason = "formulas index several arrays at once; the loops read as the sums they compute"
 )]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0)` is how NaN takes the same exit as zero")]
-#![cfg_attr(
-    not(feature = "faer"),
-    allow(rustdoc::broken_intra_doc_links, reason = "the crate docs name items of the feature `faer`")
-)]
 
+mod dynamic;
 mod ellipsoid;
 mod enclosing;
 mod error;
@@ -66,18 +62,14 @@ mod points;
 mod shape;
 mod weight;
 
+pub use dynamic::{
+    EllipsoidDyn, EnclosingDyn, InscribedDyn, enclosing_dyn, enclosing_dyn_with, inscribed_dyn, inscribed_in_hull_dyn,
+};
 pub use ellipsoid::Ellipsoid;
 pub use enclosing::{Enclosing, EnclosingIterate, MovingPoints, enclosing, enclosing_with};
 pub use error::{EnclosingError, InscribedError};
-#[cfg(feature = "faer")]
-pub use faer;
 pub use inscribed::{
     Halfspace, Inscribed, InscribedIterate, inscribed, inscribed_in_hull, inscribed_in_hull_with, inscribed_with,
-};
-#[cfg(feature = "faer")]
-pub use interop::faer::{
-    EllipsoidDyn, EnclosingDyn, InscribedDyn, enclosing_dyn, enclosing_dyn_with, inscribed_dyn, inscribed_in_hull_dyn,
-    rows_to_matrix,
 };
 pub use options::{EnclosingMethod, EnclosingOptions, FlatPolicy, InscribedOptions, Status};
 pub use weight::Weight;

@@ -1,9 +1,9 @@
 //! `enclosing_ellipsoid`.
 
-use lj_ellipsoid::{EnclosingError, EnclosingMethod, EnclosingOptions, enclosing, enclosing_dyn};
+use lj_ellipsoid::{EnclosingError, EnclosingMethod, EnclosingOptions, enclosing_dyn};
 
 use super::Ask;
-use super::fit::{Cloud, Fitting};
+use super::fit::{Fitting, cloud};
 use super::method::choose;
 use crate::mesh::Meshes;
 use crate::wire::error::{Kind, Problem};
@@ -26,23 +26,8 @@ pub(super) fn question(
     let mut options = EnclosingOptions::default().with_method(choose(method, METHODS)?);
     options.epsilon = epsilon.unwrap_or(options.epsilon);
     let epsilon = options.epsilon;
-    Ok(match Cloud::of(points, meshes)? {
-        Cloud::Plane(input) => {
-            let solve = |p: &Vec<[f64; 2]>, options| enclosing(p, options).map_err(problem);
-            Box::new(Fitting { input, options, solve, epsilon, precision })
-        }
-        Cloud::Space(input) => {
-            let solve = |p: &Vec<[f64; 3]>, options| enclosing(p, options).map_err(problem);
-            Box::new(Fitting { input, options, solve, epsilon, precision })
-        }
-        Cloud::Higher(input) => Box::new(Fitting {
-            input,
-            options,
-            solve: |p, o| enclosing_dyn(p.as_ref(), o).map_err(problem),
-            epsilon,
-            precision,
-        }),
-    })
+    let solve = |points: &Vec<Vec<f64>>, options| enclosing_dyn(points, options).map_err(problem);
+    Ok(Box::new(Fitting { input: cloud(points, meshes)?, options, solve, epsilon, precision }))
 }
 
 fn problem(why: EnclosingError) -> Problem {

@@ -1,10 +1,12 @@
 //! `margin`, `track` and `clearance`.
 
 use convex_support::{Ellipsoid, Vector};
+#[cfg(feature = "paper")]
+use ellip_margin::InverseIterationTracker;
+#[cfg(feature = "paper")]
 use ellip_margin::eigen::free_margin_eigen;
 use ellip_margin::{
-    Clearance, ClearanceResult, InverseIterationTracker, Margin, MarginGradient, MarginOptions, MarginTracker, Status,
-    clearance, free_margin,
+    Clearance, ClearanceResult, Margin, MarginGradient, MarginOptions, MarginTracker, Status, clearance, free_margin,
 };
 
 use super::Question;
@@ -47,6 +49,7 @@ enum MarginMethod {
     /// The secular equation.
     Secular,
     /// The paper's 2N×2N eigenvalue problem.
+    #[cfg(feature = "paper")]
     Eigen,
 }
 
@@ -57,7 +60,12 @@ impl<V: Space> MarginQuestion<V> {
         tol: Option<f64>,
         method: Option<&str>,
     ) -> Result<Self, Problem> {
-        let method = choose(method, &[("secular", MarginMethod::Secular), ("eigen", MarginMethod::Eigen)])?;
+        let methods = [
+            ("secular", MarginMethod::Secular),
+            #[cfg(feature = "paper")]
+            ("eigen", MarginMethod::Eigen),
+        ];
+        let method = choose(method, &methods)?;
         Ok(Self { e1: e1.build("e1")?, e2: e2.build("e2")?, gradient, options: options(tol), method })
     }
 }
@@ -68,6 +76,7 @@ impl<V: Space> Question for MarginQuestion<V> {
     fn solve(&self) -> Result<Self::Solution, Problem> {
         let margin = match self.method {
             MarginMethod::Secular => free_margin(&self.e1, &self.e2, self.options),
+            #[cfg(feature = "paper")]
             MarginMethod::Eigen => free_margin_eigen(&self.e1, &self.e2),
         };
         Ok((margin, self.gradient.then(|| margin.gradient(&self.e1, &self.e2))))
@@ -107,11 +116,13 @@ enum Tracker {
     /// Newton's method for the secular equation, started from the last pose.
     Newton(MarginTracker),
     /// The paper's inverse iteration.
+    #[cfg(feature = "paper")]
     Inverse(InverseIterationTracker),
 }
 
 /// The change of the unit eigenvector at which the inverse iteration ends, and the most steps: the eigenvalue's error is
 /// of second order in it.
+#[cfg(feature = "paper")]
 const INVERSE: (f64, usize) = (1e-8, 40);
 
 impl<V: Space> TrackQuestion<V> {
@@ -121,9 +132,12 @@ impl<V: Space> TrackQuestion<V> {
         tol: Option<f64>,
         method: Option<&str>,
     ) -> Result<Self, Problem> {
-        let newton = Tracker::Newton(MarginTracker::new(options(tol)));
-        let inverse = Tracker::Inverse(InverseIterationTracker::new(tol.unwrap_or(INVERSE.0), INVERSE.1));
-        let tracker = choose(method, &[("newton", newton), ("inverse", inverse)])?;
+        let methods = [
+            ("newton", Tracker::Newton(MarginTracker::new(options(tol)))),
+            #[cfg(feature = "paper")]
+            ("inverse", Tracker::Inverse(InverseIterationTracker::new(tol.unwrap_or(INVERSE.0), INVERSE.1))),
+        ];
+        let tracker = choose(method, &methods)?;
         let at = |(i, pose)| e1.build_posed("e1", pose, &format!("poses[{i}]"));
         let moving = poses.iter().enumerate().map(at).collect::<Result<_, _>>()?;
         Ok(Self { moving, e2: e2.build("e2")?, tracker })
@@ -137,6 +151,7 @@ impl<V: Space> Question for TrackQuestion<V> {
         Ok(match self.tracker {
             // Newton's method converges from any start: there is nothing to fall back on.
             Tracker::Newton(mut tracker) => (self.moving.iter().map(|e1| tracker.step(e1, &self.e2)).collect(), 0),
+            #[cfg(feature = "paper")]
             Tracker::Inverse(mut tracker) => {
                 let margins = self.moving.iter().map(|e1| tracker.step(e1, &self.e2)).collect();
                 (margins, tracker.fallbacks())

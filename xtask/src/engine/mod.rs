@@ -37,7 +37,7 @@ trait Question {
 }
 
 /// Any question.
-pub(crate) trait Ask {
+pub trait Ask {
     /// Solves the question once.
     fn ask(&self) -> Result<Answer, Problem>;
 
@@ -71,7 +71,7 @@ impl<Q: Question> Ask for Q {
 }
 
 /// The question that a JSON object asks.
-pub(crate) fn question(object: &Object, meshes: &Meshes) -> Result<Box<dyn Ask>, Problem> {
+pub fn question(object: &Object, meshes: &Meshes) -> Result<Box<dyn Ask>, Problem> {
     let request = Request::read(object)?;
     match (request.precision, request.dimension) {
         (Precision::F64, 2) => in_space::<DVec2>(request, meshes),

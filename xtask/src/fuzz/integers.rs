@@ -9,7 +9,7 @@ use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
 use self::exact::Point;
 use self::exact::agree::{distance_agrees, linear_cast_agrees, ray_agrees};
 use super::Verdict;
-use benches::rng::Rng;
+use workloads::rng::Rng;
 
 /// A whole number of magnitude up to `most`.
 fn whole(most: i64, rng: &mut Rng) -> i128 {

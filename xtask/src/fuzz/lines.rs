@@ -12,7 +12,7 @@ use super::Verdict;
 use crate::mesh::Meshes;
 use crate::query;
 use crate::validate::EMBEDDED;
-use benches::rng::Rng;
+use workloads::rng::Rng;
 
 /// Longer lines are left out: most of the time would go into a few of them.
 const LONGEST: usize = 4096;

@@ -12,11 +12,11 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use rayon::prelude::*;
 
-use benches::rng::Rng;
+use workloads::rng::Rng;
 
 /// How long, and from where.
 #[derive(Clone, Debug, Args)]
-pub(crate) struct Scope {
+pub struct Scope {
     /// How long it takes.
     #[arg(long, value_name = "N", default_value_t = 10)]
     seconds: u64,
@@ -28,7 +28,7 @@ pub(crate) struct Scope {
 /// Failures that are told; one is enough to fail.
 const MOST_TOLD: usize = 10;
 
-pub(crate) fn run(scope: &Scope) -> ExitCode {
+pub fn run(scope: &Scope) -> ExitCode {
     match fuzz(scope, &mut io::stdout().lock()) {
         Ok(0) => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,

@@ -11,7 +11,7 @@ use crate::plot::{Plot, Scale, Series};
 const FLOOR: f64 = 1e-17;
 
 /// The chapter.
-pub(super) fn section(records: &[Record]) -> Section {
+pub fn section(records: &[Record]) -> Section {
     let mut blocks: Vec<Block> =
         ["f64", "f32"].into_iter().filter_map(|p| scatter(records, p)).map(Block::Figure).collect();
     let groups = [

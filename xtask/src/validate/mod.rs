@@ -1,23 +1,12 @@
 //! `cargo xtask validate [FILE…]`: answers against the truth, error against run time.
 
-mod cases;
-mod claims;
-mod enclosing_ladder;
-mod growth;
-mod headline;
-mod left_out;
-mod margin_routes;
-mod page;
-mod paper;
+pub mod cases;
+pub mod page;
 mod progress;
-mod provenance;
-mod random_walk;
 mod report;
-mod score;
-mod stiff;
-mod summary;
-mod work_precision;
-mod workloads;
+pub mod score;
+pub mod stiff;
+pub mod summary;
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
@@ -28,9 +17,8 @@ use std::sync::Arc;
 use clap::Args;
 use serde_json::Value;
 
-use self::page::{Block, Figure, Section};
-use self::progress::progress;
-pub(crate) use self::provenance::provenance;
+use self::page::Section;
+pub use self::progress::progress;
 use self::score::Verdict;
 use crate::engine;
 use crate::mesh::Meshes;
@@ -40,39 +28,43 @@ use crate::wire::json;
 use crate::wire::reader::Object;
 
 /// What is validated where no files are named.
-pub(crate) const EMBEDDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/suite");
+pub const EMBEDDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/suite");
 
 /// One case and what became of it.
 #[derive(Clone, Debug)]
-pub(crate) struct Record {
+pub struct Record {
     /// The stem of the file's name.
-    file: String,
-    id: String,
-    query: String,
-    precision: &'static str,
-    tags: Vec<String>,
-    verdict: Verdict,
+    pub file: String,
+    pub id: String,
+    pub query: String,
+    pub precision: &'static str,
+    pub tags: Vec<String>,
+    pub verdict: Verdict,
     /// Nanoseconds to solve it, once its shapes are built; none for a line that asks nothing.
-    time: Option<f64>,
+    pub time: Option<f64>,
     /// Iterations, of all poses together for `track`.
-    iterations: Option<u64>,
+    pub iterations: Option<u64>,
 }
 
 /// A case that was answered, to be asked again in other ways.
-struct Case {
-    object: Object,
-    meshes: Arc<Meshes>,
+#[derive(Debug)]
+pub struct Case {
+    pub object: Object,
+    pub meshes: Arc<Meshes>,
 }
 
 /// What to validate, and how thoroughly.
 #[derive(Clone, Debug, Args)]
-pub(crate) struct Scope {
+pub struct Scope {
     /// Query files with `expect`; without any, the embedded suite.
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// The cases and what needs no long measurements: done in well under a minute.
+    /// The cases alone: nothing is compiled for it but the engine of the queries, and it runs for seconds.
     #[arg(long)]
-    quick: bool,
+    pub quick: bool,
+    /// Also the papers' own routes to the margin, by eigenvalues: their library takes a minute or two more to build.
+    #[arg(long)]
+    paper: bool,
     /// Only this query, the queries of this crate, or this chapter of the report; or both, as in `gjk-raycast/growth`.
     #[arg(long, value_name = "QUERY|CRATE|CHAPTER", value_parser = Only::parse)]
     only: Option<Only>,
@@ -88,15 +80,29 @@ const CRATES: [(&str, &[&str]); 3] = [
     ("ellip-margin", &["margin", "track", "clearance"]),
 ];
 
-/// The chapters of the report, in their order, and whether a quick run has them.
-const CHAPTERS: [(&str, bool); 7] = [
-    ("headline", false),
-    ("ladders", false),
-    ("stiff", true),
-    ("growth", false),
-    ("left-out", true),
-    ("claims", true),
-    ("cases", true),
+/// The chapters of the report, in their order.
+const CHAPTERS: [&str; 7] = ["headline", "ladders", "stiff", "growth", "left-out", "claims", "cases"];
+
+/// A chapter of the report, and who writes it.
+#[derive(Clone, Copy, Debug)]
+pub struct Chapter {
+    /// One of [`CHAPTERS`].
+    pub name: &'static str,
+    pub write: fn(&Material<'_>) -> Section,
+}
+
+/// What chapters are written from.
+#[derive(Debug)]
+pub struct Material<'a> {
+    pub scope: &'a Scope,
+    pub records: &'a [Record],
+    pub cases: &'a [Case],
+}
+
+/// The chapters of a quick run; the others are studies.
+pub const QUICK: [Chapter; 2] = [
+    Chapter { name: "stiff", write: |material| stiff::section(material.records) },
+    Chapter { name: "cases", write: |material| cases::section(material.records) },
 ];
 
 /// A part of the work.
@@ -114,12 +120,12 @@ impl Only {
             let known = CRATES.iter().flat_map(|(_, queries)| *queries).find(|query| **query == part);
             if let Some(queries) = of_crate.or(known.map(|query| vec![*query])) {
                 only.queries = Some(queries.into_iter().map(str::to_owned).collect());
-            } else if CHAPTERS.iter().any(|(chapter, _)| *chapter == part) {
+            } else if CHAPTERS.contains(&part) {
                 only.chapter = Some(part.to_owned());
             } else {
                 let crates =
                     CRATES.iter().flat_map(|(name, queries)| [*name].into_iter().chain(queries.iter().copied()));
-                let names: Vec<&str> = crates.chain(CHAPTERS.iter().map(|(chapter, _)| *chapter)).collect();
+                let names: Vec<&str> = crates.chain(CHAPTERS).collect();
                 return Err(format!("{part:?} is none of {}", names.join(", ")));
             }
         }
@@ -129,7 +135,8 @@ impl Only {
 
 impl Scope {
     /// Whether a query is asked for.
-    fn holds(&self, query: &str) -> bool {
+    #[must_use]
+    pub fn holds(&self, query: &str) -> bool {
         let queries = self.only.as_ref().and_then(|only| only.queries.as_ref());
         queries.is_none_or(|queries| queries.iter().any(|q| q == query))
     }
@@ -138,14 +145,26 @@ impl Scope {
     fn shows(&self, chapter: &str) -> bool {
         match self.only.as_ref().and_then(|only| only.chapter.as_ref()) {
             Some(only) => only == chapter,
-            None => !self.quick || CHAPTERS.iter().any(|(name, quick)| *name == chapter && *quick),
+            None => !self.quick || QUICK.iter().any(|quick| quick.name == chapter),
         }
+    }
+
+    /// Whether a chapter is asked for that is none of [`QUICK`].
+    #[must_use]
+    pub fn is_study(&self) -> bool {
+        CHAPTERS.into_iter().any(|chapter| self.shows(chapter) && QUICK.iter().all(|quick| quick.name != chapter))
+    }
+
+    /// The features that studies are built with.
+    #[must_use]
+    pub fn features(&self) -> &'static str {
+        if self.paper { "paper" } else { "" }
     }
 }
 
 /// Validates and writes the report.
-pub(crate) fn run(scope: &Scope) -> ExitCode {
-    match validate(scope) {
+pub fn run(scope: &Scope, chapters: &[Chapter]) -> ExitCode {
+    match validate(scope, chapters) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(why) => {
@@ -156,7 +175,7 @@ pub(crate) fn run(scope: &Scope) -> ExitCode {
 }
 
 /// Whether everything was right.
-fn validate(scope: &Scope) -> Result<bool, String> {
+fn validate(scope: &Scope, chapters: &[Chapter]) -> Result<bool, String> {
     let embedded;
     let files = if scope.files.is_empty() {
         embedded = suite()?;
@@ -165,8 +184,8 @@ fn validate(scope: &Scope) -> Result<bool, String> {
         &scope.files
     };
     let (mut records, mut cases) = (Vec::new(), Vec::new());
-    let chapters = CHAPTERS.iter().filter(|(chapter, _)| scope.shows(chapter)).count();
-    progress::begin(chapters + 1, "cases");
+    let chapters: Vec<&Chapter> = chapters.iter().filter(|chapter| scope.shows(chapter.name)).collect();
+    progress::begin(chapters.len() + 1, "cases");
     for file in files {
         validate_file(file, scope, &mut records, &mut cases)
             .map_err(|why| format!("cannot read {}: {why}", file.display()))?;
@@ -174,33 +193,11 @@ fn validate(scope: &Scope) -> Result<bool, String> {
     if records.is_empty() {
         return Err("there is nothing to validate".to_owned());
     }
+    let material = Material { scope, records: &records, cases: &cases };
     let mut sections = Vec::new();
-    for (chapter, _) in CHAPTERS.into_iter().filter(|(chapter, _)| scope.shows(chapter)) {
-        progress::chapter(chapter);
-        let section = match chapter {
-            "headline" => headline::section(scope),
-            "ladders" => {
-                let mut section = workloads::section(scope);
-                section.blocks.extend(work_precision::blocks(&cases));
-                let figures = enclosing_ladder::figures(scope);
-                if !figures.is_empty() {
-                    section
-                        .blocks
-                        .push(Block::Heading("Enclosing ellipsoids: the certified gap against time".to_owned()));
-                }
-                section.blocks.extend(figures.into_iter().map(Block::Figure));
-                section
-            }
-            "stiff" => {
-                let mut section = stiff::section(scope, &records, if scope.quick { &[] } else { &cases });
-                section.blocks.extend(margin_routes::figures(scope).into_iter().map(Block::Figure));
-                section
-            }
-            "growth" => growth::section(scope),
-            "left-out" => left_out::section(scope),
-            "claims" => claims::section(scope, &cases),
-            _ => cases::section(&records),
-        };
+    for chapter in chapters {
+        progress::chapter(chapter.name);
+        let section = (chapter.write)(&material);
         if !section.blocks.is_empty() {
             sections.push(section);
         }
@@ -298,6 +295,7 @@ fn iterations(value: &Value) -> Option<u64> {
 const MICROSECONDS: u64 = 100;
 
 /// The answer as whoever reads the line of output gets it.
-fn as_read(line: Line) -> Object {
+#[must_use]
+pub fn as_read(line: Line) -> Object {
     serde_json::to_vec(&line).ok().and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default()
 }

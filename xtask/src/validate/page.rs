@@ -5,72 +5,76 @@ use std::fmt::Write as _;
 use crate::plot::{Plot, escape};
 
 /// A chapter of the report.
-pub(super) struct Section {
+#[derive(Clone, Debug)]
+pub struct Section {
     /// The anchor, which is also what `--only` calls it.
-    pub(super) id: &'static str,
-    pub(super) title: &'static str,
+    pub id: &'static str,
+    pub title: &'static str,
     /// What to see in it.
-    pub(super) lead: String,
-    pub(super) blocks: Vec<Block>,
+    pub lead: String,
+    pub blocks: Vec<Block>,
 }
 
 /// What a section is made of.
-pub(super) enum Block {
+#[derive(Clone, Debug)]
+pub enum Block {
     Heading(String),
     Figure(Figure),
     Table(Table),
 }
 
 /// A plot with its caption.
-pub(super) struct Figure {
+#[derive(Clone, Debug)]
+pub struct Figure {
     /// The stem of its files.
-    pub(super) name: String,
-    pub(super) plot: Plot,
+    pub name: String,
+    pub plot: Plot,
     /// A sentence that says what to see, and how it was measured.
-    pub(super) caption: String,
+    pub caption: String,
 }
 
 /// Numbers in rows.
-pub(super) struct Table {
+#[derive(Clone, Debug)]
+pub struct Table {
     /// The stem of its file.
-    pub(super) name: String,
-    pub(super) caption: String,
-    pub(super) headers: Vec<String>,
-    pub(super) rows: Vec<Row>,
+    pub name: String,
+    pub caption: String,
+    pub headers: Vec<String>,
+    pub rows: Vec<Row>,
     /// Long tables are folded until somebody asks.
-    pub(super) folded: bool,
+    pub folded: bool,
     /// Whether its cells are sentences, which run from the left and wrap, and not numbers.
-    pub(super) prose: bool,
+    pub prose: bool,
 }
 
 /// One row of a table.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Row {
-    pub(super) cells: Vec<String>,
-    pub(super) tone: Tone,
+pub struct Row {
+    pub cells: Vec<String>,
+    pub tone: Tone,
 }
 
 /// How a row stands out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Tone {
+pub enum Tone {
     #[default]
     Plain,
     Bad,
 }
 
 impl Row {
-    pub(super) fn of(cells: impl IntoIterator<Item = impl Into<String>>) -> Self {
+    pub fn of(cells: impl IntoIterator<Item = impl Into<String>>) -> Self {
         Self { cells: cells.into_iter().map(Into::into).collect(), tone: Tone::Plain }
     }
 
-    pub(super) fn bad_if(mut self, bad: bool) -> Self {
+    pub fn bad_if(mut self, bad: bool) -> Self {
         self.tone = if bad { Tone::Bad } else { Tone::Plain };
         self
     }
 }
 
 impl Table {
-    pub(super) fn new(name: &str, caption: &str, headers: &[&str], rows: Vec<Row>) -> Self {
+    pub fn new(name: &str, caption: &str, headers: &[&str], rows: Vec<Row>) -> Self {
         Self {
             name: name.to_owned(),
             caption: caption.to_owned(),
@@ -81,12 +85,12 @@ impl Table {
         }
     }
 
-    pub(super) fn folded(mut self) -> Self {
+    pub fn folded(mut self) -> Self {
         self.folded = true;
         self
     }
 
-    pub(super) fn prose(mut self) -> Self {
+    pub fn prose(mut self) -> Self {
         self.prose = true;
         self
     }
@@ -147,7 +151,7 @@ impl Figure {
 }
 
 impl Section {
-    pub(super) fn html(&self) -> String {
+    pub fn html(&self) -> String {
         let mut html =
             format!("<section id=\"{}\">\n<h2>{}</h2>\n<p>{}</p>\n", self.id, escape(self.title), escape(&self.lead));
         // Figures in a row share a grid.
@@ -174,7 +178,7 @@ impl Section {
     }
 
     /// Names and contents of the CSV files beside the page.
-    pub(super) fn files(&self) -> impl Iterator<Item = (String, String)> {
+    pub fn files(&self) -> impl Iterator<Item = (String, String)> {
         self.blocks.iter().filter_map(|block| match block {
             Block::Heading(_) => None,
             Block::Figure(figure) => Some((format!("{}.csv", figure.name), figure.csv())),
@@ -184,11 +188,11 @@ impl Section {
 }
 
 /// A field of CSV.
-pub(super) fn quoted(text: &str) -> String {
+pub fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('"', "\"\""))
 }
 
 /// An error as people read it.
-pub(super) fn error(value: f64) -> String {
+pub fn error(value: f64) -> String {
     if value.is_nan() { "–".to_owned() } else { format!("{value:.1e}") }
 }

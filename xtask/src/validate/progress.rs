@@ -29,7 +29,7 @@ pub(super) fn chapter(name: &'static str) {
 }
 
 /// Shows what is being done in a chapter.
-pub(super) fn progress(what: &str) {
+pub fn progress(what: &str) {
     if io::stderr().is_terminal()
         && let Ok(State { chapters, begun, name }) = STATE.lock().as_deref()
     {

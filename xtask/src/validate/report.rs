@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 use super::Record;
 use super::page::{Section, quoted};
-use super::provenance::provenance;
 use super::summary::total;
 use crate::plot::escape;
+use workloads::provenance::provenance;
 
 const STYLE: &str = include_str!("report.css");
 

@@ -5,7 +5,7 @@ use serde_json::Value;
 use crate::wire::reader::Object;
 
 /// The field that holds the scalar of an answer.
-pub(crate) fn scalar_of(query: &str) -> Option<&'static str> {
+pub fn scalar_of(query: &str) -> Option<&'static str> {
     Some(match query {
         "ray_cast" => "lambda",
         "distance" => "distance",
@@ -20,24 +20,24 @@ pub(crate) fn scalar_of(query: &str) -> Option<&'static str> {
 
 /// What became of one case.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Verdict {
+pub struct Verdict {
     /// What makes the answer wrong; none if it is right.
-    pub(crate) wrong: Vec<String>,
+    pub wrong: Vec<String>,
     /// What else is amiss: other fields, normals, certificates.
-    pub(crate) soft: Vec<String>,
+    pub soft: Vec<String>,
     /// Whether an error came where an answer was due.
-    pub(crate) errored: bool,
+    pub errored: bool,
     /// The error of the scalar that is worst in units of what is allowed: absolute, and relative to the truth where that is not
     /// zero. That of the logarithm of a volume is relative already: to the volume.
-    pub(crate) error: Option<f64>,
-    pub(crate) relative: Option<f64>,
+    pub error: Option<f64>,
+    pub relative: Option<f64>,
     /// The error over what is allowed.
-    pub(crate) ratio: Option<f64>,
+    pub ratio: Option<f64>,
 }
 
 impl Verdict {
     /// Whether a bound that the answer certifies does not hold the truth.
-    pub(crate) fn violates_certificate(&self) -> bool {
+    pub fn violates_certificate(&self) -> bool {
         self.soft.iter().any(|why| why.starts_with("bracket") || why.starts_with("gap"))
     }
 
@@ -47,7 +47,7 @@ impl Verdict {
 }
 
 /// Judges the answer to a line that is not even an object: it must be a parse error.
-pub(crate) fn judge_unreadable(answer: &Object) -> Verdict {
+pub fn judge_unreadable(answer: &Object) -> Verdict {
     match error_kind(answer) {
         Some("parse") => Verdict::default(),
         kind => Verdict::wrong(format!("not a parse error: {kind:?}")),
@@ -58,7 +58,7 @@ pub(crate) fn judge_unreadable(answer: &Object) -> Verdict {
 ///
 /// Where `allow` is absent, it is the first term of the format's formula: 1e-7 (in `f32` 1e-4) of the scalar, for
 /// `log_det` 1e-7.
-pub(crate) fn judge(case: &Object, answer: &Object) -> Verdict {
+pub fn judge(case: &Object, answer: &Object) -> Verdict {
     let Some(expect) = case.get("expect").and_then(Value::as_object) else {
         return Verdict { errored: error_kind(answer).is_some(), ..Verdict::default() };
     };

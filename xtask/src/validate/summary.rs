@@ -7,11 +7,11 @@ use super::Record;
 
 /// Counts and quantiles of a group of cases.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Group {
-    pub(super) cases: usize,
-    pub(super) wrong: usize,
-    pub(super) errored: usize,
-    pub(super) soft: usize,
+pub struct Group {
+    pub cases: usize,
+    pub wrong: usize,
+    pub errored: usize,
+    pub soft: usize,
     relative: Vec<f64>,
     ratio: Vec<f64>,
     time: Vec<f64>,
@@ -31,7 +31,7 @@ impl Group {
     }
 
     /// The columns of [`HEADERS`], after the name.
-    pub(super) fn columns(&self) -> [String; 12] {
+    pub fn columns(&self) -> [String; 12] {
         let whole = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.0}"));
         [
             self.cases.to_string(),
@@ -51,7 +51,7 @@ impl Group {
 }
 
 /// What the columns of a group are.
-pub(super) const HEADERS: [&str; 12] = [
+pub const HEADERS: [&str; 12] = [
     "cases",
     "right",
     "wrong",
@@ -71,7 +71,7 @@ fn error(value: Option<f64>) -> String {
 }
 
 /// The smallest value that at least the fraction `p` of the values does not exceed.
-pub(super) fn quantile(values: &[f64], p: f64) -> Option<f64> {
+pub fn quantile(values: &[f64], p: f64) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let rank = (p * sorted.len() as f64).ceil() as usize;
@@ -79,7 +79,7 @@ pub(super) fn quantile(values: &[f64], p: f64) -> Option<f64> {
 }
 
 /// Groups of cases by what `names` calls them.
-pub(super) fn groups<'r>(records: &'r [Record], names: impl Fn(&'r Record) -> Vec<String>) -> BTreeMap<String, Group> {
+pub fn groups<'r>(records: &'r [Record], names: impl Fn(&'r Record) -> Vec<String>) -> BTreeMap<String, Group> {
     let mut groups = BTreeMap::<String, Group>::new();
     for record in records {
         for name in names(record) {
@@ -89,22 +89,22 @@ pub(super) fn groups<'r>(records: &'r [Record], names: impl Fn(&'r Record) -> Ve
     groups
 }
 
-pub(super) fn by_query(records: &[Record]) -> BTreeMap<String, Group> {
+pub fn by_query(records: &[Record]) -> BTreeMap<String, Group> {
     groups(records, |r| vec![format!("{} {}", r.query, r.precision)])
 }
 
-pub(super) fn by_tag(records: &[Record]) -> BTreeMap<String, Group> {
+pub fn by_tag(records: &[Record]) -> BTreeMap<String, Group> {
     groups(records, |r| {
         let tags = if r.tags.is_empty() { vec!["untagged"] } else { r.tags.iter().map(String::as_str).collect() };
         tags.iter().map(|tag| format!("{}: {tag}", r.query)).collect()
     })
 }
 
-pub(super) fn by_file(records: &[Record]) -> BTreeMap<String, Group> {
+pub fn by_file(records: &[Record]) -> BTreeMap<String, Group> {
     groups(records, |r| vec![r.file.clone()])
 }
 
-pub(super) fn total(records: &[Record]) -> Group {
+pub fn total(records: &[Record]) -> Group {
     let mut total = Group::default();
     records.iter().for_each(|record| total.add(record));
     total
@@ -114,7 +114,7 @@ pub(super) fn total(records: &[Record]) -> Group {
 const TOLD: usize = 20;
 
 /// Prints the summary.
-pub(super) fn print(records: &[Record], output: &mut impl Write) -> io::Result<()> {
+pub fn print(records: &[Record], output: &mut impl Write) -> io::Result<()> {
     table(output, "file", &by_file(records))?;
     table(output, "query: tag", &by_tag(records))?;
     table(output, "query", &by_query(records))?;

@@ -8,13 +8,13 @@ use super::error::Problem;
 
 /// A number in the precision of the query, printed with the fewest digits that tell it from its neighbours.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Number {
+pub enum Number {
     Single(f32),
     Double(f64),
 }
 
 impl Number {
-    pub(crate) fn of<S: Scalar>(value: S) -> Self {
+    pub fn of<S: Scalar>(value: S) -> Self {
         if size_of::<S>() == size_of::<f32>() {
             Self::Single(f32::from_f64(value.as_f64()))
         } else {
@@ -42,7 +42,7 @@ impl Serialize for Number {
 /// The value of a field.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[serde(untagged)]
-pub(crate) enum Field {
+pub enum Field {
     Null,
     Flag(bool),
     Count(usize),
@@ -54,16 +54,16 @@ pub(crate) enum Field {
 }
 
 impl Field {
-    pub(crate) fn number<S: Scalar>(value: S) -> Self {
+    pub fn number<S: Scalar>(value: S) -> Self {
         Self::Number(Number::of(value))
     }
 
-    pub(crate) fn vector<V: Vector>(vector: V) -> Self {
+    pub fn vector<V: Vector>(vector: V) -> Self {
         Self::Numbers((0..V::DIM).map(|i| Number::of(vector.get(i))).collect())
     }
 
     /// The vector, or null.
-    pub(crate) fn maybe_vector<V: Vector>(vector: Option<V>) -> Self {
+    pub fn maybe_vector<V: Vector>(vector: Option<V>) -> Self {
         vector.map_or(Self::Null, Self::vector)
     }
 
@@ -80,35 +80,35 @@ impl Field {
 
 /// The fields of an answer, in the order they are written.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Answer {
+pub struct Answer {
     fields: Vec<(&'static str, Field)>,
 }
 
 impl Answer {
-    pub(crate) fn with(mut self, name: &'static str, field: Field) -> Self {
+    pub fn with(mut self, name: &'static str, field: Field) -> Self {
         self.fields.push((name, field));
         self
     }
 
     /// With the number, where JSON can hold it: the open end of a bracket is left out.
-    pub(crate) fn with_finite<S: Scalar>(self, name: &'static str, value: S) -> Self {
+    pub fn with_finite<S: Scalar>(self, name: &'static str, value: S) -> Self {
         if value.is_finite() { self.with(name, Field::number(value)) } else { self }
     }
 
     /// The first field that JSON cannot hold.
-    pub(crate) fn non_finite(&self) -> Option<&'static str> {
+    pub fn non_finite(&self) -> Option<&'static str> {
         self.fields.iter().find(|(_, field)| !field.is_finite()).map(|(name, _)| *name)
     }
 }
 
 /// One line of output.
 #[derive(Debug)]
-pub(crate) struct Line {
+pub struct Line {
     /// What the query calls itself; the number of its line otherwise.
-    pub(crate) id: Value,
+    pub id: Value,
     /// The line in its file, counted from 1.
-    pub(crate) line: u64,
-    pub(crate) outcome: Result<Answer, Problem>,
+    pub line: u64,
+    pub outcome: Result<Answer, Problem>,
 }
 
 impl Serialize for Line {

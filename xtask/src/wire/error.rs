@@ -6,7 +6,7 @@ use serde::Serialize;
 /// The kinds of errors of the format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Kind {
+pub enum Kind {
     /// Not JSON, not an object, or a field is missing or of the wrong type.
     Parse,
     /// The `query` is not one of the format's.
@@ -33,24 +33,24 @@ pub(crate) enum Kind {
 
 /// Why a line has no answer.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Problem {
-    pub(crate) kind: Kind,
+pub struct Problem {
+    pub kind: Kind,
     /// Where and what, in a sentence.
-    pub(crate) message: String,
+    pub message: String,
 }
 
 impl Problem {
-    pub(crate) fn new(kind: Kind, message: impl Into<String>) -> Self {
+    pub fn new(kind: Kind, message: impl Into<String>) -> Self {
         Self { kind, message: message.into() }
     }
 
     /// The same, said of the field at `place`.
-    pub(crate) fn at(self, place: &str) -> Self {
+    pub fn at(self, place: &str) -> Self {
         Self { message: format!("{place}: {}", self.message), ..self }
     }
 
     /// A shape that could not be built from the field at `place`.
-    pub(crate) fn invalid_shape(place: &str, why: InvalidShape) -> Self {
+    pub fn invalid_shape(place: &str, why: InvalidShape) -> Self {
         let item = |parameter: &str, index: usize, lone: bool| {
             if lone { format!("{place}.{parameter}") } else { format!("{place}.{parameter}[{index}]") }
         };

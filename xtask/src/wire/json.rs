@@ -16,7 +16,7 @@ const DEEPEST: usize = 128;
 ///
 /// # Errors
 /// [`Kind::Parse`] where it is not JSON, not an object, or nested deeper than 128 levels.
-pub(crate) fn object(line: &[u8]) -> Result<Object, Problem> {
+pub fn object(line: &[u8]) -> Result<Object, Problem> {
     if deepest(line) > DEEPEST {
         return Err(Problem::new(Kind::Parse, format!("lists and objects are nested deeper than {DEEPEST} levels")));
     }
@@ -40,7 +40,7 @@ pub(crate) fn object(line: &[u8]) -> Result<Object, Problem> {
 }
 
 /// What a line that could not be read calls itself, as far as that can be told.
-pub(crate) fn id_of(line: &[u8]) -> Option<Value> {
+pub fn id_of(line: &[u8]) -> Option<Value> {
     #[derive(serde::Deserialize)]
     struct Named {
         id: Option<Value>,
@@ -50,7 +50,7 @@ pub(crate) fn id_of(line: &[u8]) -> Option<Value> {
 }
 
 /// What a line that could not be read says is expected of it: a case without its query.
-pub(crate) fn expectation_of(line: &[u8]) -> Option<Object> {
+pub fn expectation_of(line: &[u8]) -> Option<Object> {
     #[derive(serde::Deserialize)]
     struct Expecting {
         id: Option<Value>,

@@ -11,25 +11,25 @@ use super::shape::{EllipsoidSpec, Shape};
 
 /// The precision to answer in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Precision {
+pub enum Precision {
     F32,
     F64,
 }
 
 /// A query and what all queries have in common.
 #[derive(Debug)]
-pub(crate) struct Request {
-    pub(crate) precision: Precision,
+pub struct Request {
+    pub precision: Precision,
     /// The dimension of the space, 2 or 3; 3 where nothing in the query says. Ellipsoid fits have their own.
-    pub(crate) dimension: usize,
-    pub(crate) tol: Option<f64>,
-    pub(crate) method: Option<String>,
-    pub(crate) query: Query,
+    pub dimension: usize,
+    pub tol: Option<f64>,
+    pub method: Option<String>,
+    pub query: Query,
 }
 
 /// The nine questions.
 #[derive(Debug)]
-pub(crate) enum Query {
+pub enum Query {
     RayCast { target: Shape, source: Coordinates, direction: Coordinates, max_lambda: Option<f64> },
     Distance { a: Shape, b: Shape },
     Intersect { a: Shape, b: Shape },
@@ -43,7 +43,7 @@ pub(crate) enum Query {
 
 /// Points of any dimension.
 #[derive(Debug)]
-pub(crate) enum Points {
+pub enum Points {
     /// As a list, all of the same length.
     Listed(Vec<Vec<f64>>),
     /// The vertices of a mesh.
@@ -52,7 +52,7 @@ pub(crate) enum Points {
 
 /// What to inscribe an ellipsoid in.
 #[derive(Debug)]
-pub(crate) enum Body {
+pub enum Body {
     /// The hull of points.
     Points(Points),
     /// The intersection of half-spaces, all of the same dimension.
@@ -61,21 +61,21 @@ pub(crate) enum Body {
 
 /// `normal·x ≤ offset`.
 #[derive(Clone, Debug)]
-pub(crate) struct HalfSpace {
-    pub(crate) normal: Vec<f64>,
-    pub(crate) offset: f64,
+pub struct HalfSpace {
+    pub normal: Vec<f64>,
+    pub offset: f64,
 }
 
 /// Where a body is.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pose {
-    pub(crate) translation: Coordinates,
-    pub(crate) rotation: Option<Rotation>,
+pub struct Pose {
+    pub translation: Coordinates,
+    pub rotation: Option<Rotation>,
 }
 
 impl Request {
     /// The query in a JSON object.
-    pub(crate) fn read(object: &Object) -> Result<Self, Problem> {
+    pub fn read(object: &Object) -> Result<Self, Problem> {
         let reader = &mut Reader::default();
         let name = reader.required(object, "query", Reader::text)?;
         let precision = reader.optional(object, "precision", |r, v| match r.text(v)?.as_str() {

@@ -8,14 +8,14 @@ use super::error::{Kind, Problem};
 use super::form;
 
 /// A JSON object.
-pub(crate) type Object = Map<String, Value>;
+pub type Object = Map<String, Value>;
 
 /// Up to three coordinates; those beyond the dimension of the query are zero.
-pub(crate) type Coordinates = [f64; 3];
+pub type Coordinates = [f64; 3];
 
 /// A rotation as written: an angle makes the query 2D, a quaternion 3D.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Rotation {
+pub enum Rotation {
     /// Radians, counter-clockwise.
     Angle(f64),
     /// `[x, y, z, w]`, of any length but zero.
@@ -31,7 +31,7 @@ enum Step {
 
 /// A walk through one query.
 #[derive(Debug, Default)]
-pub(crate) struct Reader {
+pub struct Reader {
     place: Vec<Step>,
     /// The dimension, and the first place that says so.
     dimension: Option<(usize, String)>,
@@ -39,12 +39,12 @@ pub(crate) struct Reader {
 
 impl Reader {
     /// The dimension that the vectors read so far have.
-    pub(crate) fn dimension(&self) -> Option<usize> {
+    pub fn dimension(&self) -> Option<usize> {
         self.dimension.as_ref().map(|(dimension, _)| *dimension)
     }
 
     /// Where the walk is, as in `target.of.points[3]`.
-    pub(crate) fn place(&self) -> String {
+    pub fn place(&self) -> String {
         let mut text = String::new();
         for step in &self.place {
             match step {
@@ -61,7 +61,7 @@ impl Reader {
     }
 
     /// A problem at the present place.
-    pub(crate) fn problem(&self, kind: Kind, message: impl AsRef<str>) -> Problem {
+    pub fn problem(&self, kind: Kind, message: impl AsRef<str>) -> Problem {
         let (place, message) = (self.place(), message.as_ref());
         if place.is_empty() { Problem::new(kind, message) } else { Problem::new(kind, format!("{place} {message}")) }
     }
@@ -74,7 +74,7 @@ impl Reader {
     }
 
     /// The field `key`, which must be there.
-    pub(crate) fn required<T>(
+    pub fn required<T>(
         &mut self,
         object: &Object,
         key: &'static str,
@@ -92,7 +92,7 @@ impl Reader {
     }
 
     /// The field `key`, if it is there.
-    pub(crate) fn optional<T>(
+    pub fn optional<T>(
         &mut self,
         object: &Object,
         key: &'static str,
@@ -102,7 +102,7 @@ impl Reader {
     }
 
     /// Every item of a list.
-    pub(crate) fn list<T>(
+    pub fn list<T>(
         &mut self,
         value: &Value,
         read: impl FnMut(&mut Self, &Value) -> Result<T, Problem>,
@@ -121,19 +121,19 @@ impl Reader {
         items.iter().enumerate().map(|(i, item)| self.inside(Step::Index(i), |reader| read(reader, item))).collect()
     }
 
-    pub(crate) fn object<'v>(&self, value: &'v Value) -> Result<&'v Object, Problem> {
+    pub fn object<'v>(&self, value: &'v Value) -> Result<&'v Object, Problem> {
         value.as_object().ok_or_else(|| self.expected("an object", value))
     }
 
-    pub(crate) fn text(&mut self, value: &Value) -> Result<String, Problem> {
+    pub fn text(&mut self, value: &Value) -> Result<String, Problem> {
         value.as_str().map(str::to_owned).ok_or_else(|| self.expected("a string", value))
     }
 
-    pub(crate) fn flag(&mut self, value: &Value) -> Result<bool, Problem> {
+    pub fn flag(&mut self, value: &Value) -> Result<bool, Problem> {
         value.as_bool().ok_or_else(|| self.expected("true or false", value))
     }
 
-    pub(crate) fn number(&mut self, value: &Value) -> Result<f64, Problem> {
+    pub fn number(&mut self, value: &Value) -> Result<f64, Problem> {
         match value.as_f64() {
             Some(number) if number.is_finite() => Ok(number),
             Some(_) => Err(self.problem(Kind::NonFinite, "is too large for a double")),
@@ -142,7 +142,7 @@ impl Reader {
     }
 
     /// A number that must be greater than zero.
-    pub(crate) fn positive(&mut self, value: &Value) -> Result<f64, Problem> {
+    pub fn positive(&mut self, value: &Value) -> Result<f64, Problem> {
         let number = self.number(value)?;
         if number > 0.0 {
             Ok(number)
@@ -152,12 +152,12 @@ impl Reader {
     }
 
     /// A list of numbers of any length.
-    pub(crate) fn numbers(&mut self, value: &Value) -> Result<Vec<f64>, Problem> {
+    pub fn numbers(&mut self, value: &Value) -> Result<Vec<f64>, Problem> {
         self.list_called("a vector, a list of numbers", value, Self::number)
     }
 
     /// A vector of the space of the query.
-    pub(crate) fn vector(&mut self, value: &Value) -> Result<Coordinates, Problem> {
+    pub fn vector(&mut self, value: &Value) -> Result<Coordinates, Problem> {
         let numbers = self.numbers(value)?;
         self.found_dimension(numbers.len(), "coordinates")?;
         let mut coordinates = [0.0; 3];
@@ -166,7 +166,7 @@ impl Reader {
     }
 
     /// A square matrix of the space of the query, as a list of rows.
-    pub(crate) fn matrix(&mut self, value: &Value) -> Result<[Coordinates; 3], Problem> {
+    pub fn matrix(&mut self, value: &Value) -> Result<[Coordinates; 3], Problem> {
         let rows = self.list_called("a matrix, a list of rows", value, Self::vector)?;
         self.found_dimension(rows.len(), "rows")?;
         let mut matrix = [[0.0; 3]; 3];
@@ -175,7 +175,7 @@ impl Reader {
     }
 
     /// A rotation: a number in 2D, four numbers in 3D.
-    pub(crate) fn rotation(&mut self, value: &Value) -> Result<Rotation, Problem> {
+    pub fn rotation(&mut self, value: &Value) -> Result<Rotation, Problem> {
         if value.is_array() {
             let numbers = self.numbers(value)?;
             let quaternion: [f64; 4] = numbers.try_into().map_err(|numbers: Vec<f64>| {
@@ -197,7 +197,7 @@ impl Reader {
     }
 
     /// Notes that the present place has `count` of something that a space has as many of as dimensions.
-    pub(crate) fn found_dimension(&mut self, count: usize, of: &str) -> Result<(), Problem> {
+    pub fn found_dimension(&mut self, count: usize, of: &str) -> Result<(), Problem> {
         if !matches!(count, 2 | 3) {
             let one = if count == 1 { of.trim_end_matches('s') } else { of };
             return Err(self.problem(Kind::DimensionMismatch, format!("has {count} {one}, but a space has 2 or 3")));
@@ -206,7 +206,7 @@ impl Reader {
     }
 
     /// Notes that what is at the present place belongs to a space of this dimension.
-    pub(crate) fn is_of_dimension(&mut self, dimension: usize, because: &str) -> Result<(), Problem> {
+    pub fn is_of_dimension(&mut self, dimension: usize, because: &str) -> Result<(), Problem> {
         match &self.dimension {
             Some((known, _)) if *known == dimension => Ok(()),
             Some((known, place)) => {
@@ -220,7 +220,7 @@ impl Reader {
     }
 
     /// `value` is not what it should be.
-    pub(crate) fn expected(&self, what: &str, value: &Value) -> Problem {
+    pub fn expected(&self, what: &str, value: &Value) -> Problem {
         let found = match value {
             Value::Null => "null".to_owned(),
             Value::Bool(flag) => flag.to_string(),

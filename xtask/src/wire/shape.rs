@@ -18,7 +18,7 @@ use crate::mesh::{Mesh, Meshes};
 
 /// A shape as the query says it.
 #[derive(Debug)]
-pub(crate) enum Shape {
+pub enum Shape {
     Point(Coordinates),
     Segment([Coordinates; 2]),
     Triangle([Coordinates; 3]),
@@ -39,14 +39,14 @@ pub(crate) enum Shape {
 
 /// The shapes with a disc for a base, which exist in 3D only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Upright {
+pub enum Upright {
     Cylinder,
     Cone,
 }
 
 /// An ellipsoid as the query says it.
 #[derive(Clone, Debug)]
-pub(crate) struct EllipsoidSpec {
+pub struct EllipsoidSpec {
     center: Coordinates,
     form: EllipsoidForm,
 }
@@ -58,7 +58,7 @@ enum EllipsoidForm {
 }
 
 impl Shape {
-    pub(crate) fn read(reader: &mut Reader, value: &Value) -> Result<Self, Problem> {
+    pub fn read(reader: &mut Reader, value: &Value) -> Result<Self, Problem> {
         let object = reader.object(value)?;
         let kind = reader.required(object, "type", Reader::text)?;
         let radius = |r: &mut Reader| r.required(object, "radius", Reader::number);
@@ -120,7 +120,7 @@ fn corners<const N: usize>(reader: &mut Reader, object: &Object) -> Result<[Coor
 }
 
 impl EllipsoidSpec {
-    pub(crate) fn read(reader: &mut Reader, value: &Value) -> Result<Self, Problem> {
+    pub fn read(reader: &mut Reader, value: &Value) -> Result<Self, Problem> {
         let object = reader.object(value)?;
         let center = reader.required(object, "center", Reader::vector)?;
         let matrix = reader.optional(object, "matrix", Reader::matrix)?;
@@ -144,17 +144,12 @@ impl EllipsoidSpec {
     /// The ellipsoid; `place` is where the query says it, for errors.
     ///
     /// Its axes are found in double precision and then rounded: that loses least where the matrix is given.
-    pub(crate) fn build<V: Space>(&self, place: &str) -> Result<Ellipsoid<V>, Problem> {
+    pub fn build<V: Space>(&self, place: &str) -> Result<Ellipsoid<V>, Problem> {
         self.wide::<V::Wide>().and_then(round).map_err(|why| Problem::invalid_shape(place, why))
     }
 
     /// The ellipsoid at a pose, which is written at `pose_place`.
-    pub(crate) fn build_posed<V: Space>(
-        &self,
-        place: &str,
-        pose: &Pose,
-        pose_place: &str,
-    ) -> Result<Ellipsoid<V>, Problem> {
+    pub fn build_posed<V: Space>(&self, place: &str, pose: &Pose, pose_place: &str) -> Result<Ellipsoid<V>, Problem> {
         let body = self.wide::<V::Wide>().map_err(|why| Problem::invalid_shape(place, why))?;
         body.posed(rotation_of::<V::Wide>(pose.rotation), vector(&pose.translation))
             .and_then(round)
@@ -180,10 +175,10 @@ fn round<V: Space>(wide: Ellipsoid<V::Wide>) -> Result<Ellipsoid<V>, InvalidShap
 }
 
 /// A shape of any kind.
-pub(crate) type Solid<V> = Box<dyn SupportMap<Vector = V> + Send + Sync>;
+pub type Solid<V> = Box<dyn SupportMap<Vector = V> + Send + Sync>;
 
 /// The spaces of the format: what depends on the precision or the dimension and is not the vector's own.
-pub(crate) trait Space: Vector + Wedge {
+pub trait Space: Vector + Wedge {
     /// The space of the same dimension in double precision.
     type Wide: Space<Scalar = f64>;
 
@@ -276,7 +271,7 @@ impl Space for Vec3A {
 }
 
 /// The vector with these coordinates, rounded to its precision.
-pub(crate) fn vector<V: Vector>(coordinates: &Coordinates) -> V {
+pub fn vector<V: Vector>(coordinates: &Coordinates) -> V {
     V::from_fn(|i| V::Scalar::from_f64(coordinates[i]))
 }
 
@@ -285,13 +280,13 @@ fn matrix_of_rows<M: Matrix>(rows: &[Coordinates; 3]) -> M {
 }
 
 /// The rotation, or none.
-pub(crate) fn rotation_of<V: Space>(rotation: Option<Rotation>) -> V::Rotation {
+pub fn rotation_of<V: Space>(rotation: Option<Rotation>) -> V::Rotation {
     rotation.map_or_else(V::Rotation::default, V::rotation)
 }
 
 impl Shape {
     /// The support map of the shape; `place` is where the query says it, for errors.
-    pub(crate) fn build<V: Space>(&self, place: &str, meshes: &Meshes) -> Result<Solid<V>, Problem> {
+    pub fn build<V: Space>(&self, place: &str, meshes: &Meshes) -> Result<Solid<V>, Problem> {
         let s = V::Scalar::from_f64;
         let invalid = |why| Problem::invalid_shape(place, why);
         let inner = |of: &Self| of.build::<V>(&format!("{place}.of"), meshes);

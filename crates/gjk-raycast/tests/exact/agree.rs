@@ -1,6 +1,6 @@
 //! The crate's answers held against the oracle.
 
-use convex_support::{Polytope, Scalar, Vector};
+use convex_support::{Polytope, Scalar, SupportMap, Vector};
 use gjk_raycast::{
     DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions, Status, distance,
     intersects, linear_cast, ray_cast,
@@ -20,8 +20,9 @@ fn vector<V: Vector>(p: Point) -> V {
     V::from_fn(|i| V::Scalar::from_f64(p[i] as f64))
 }
 
-fn polytope<V: Vector>(points: &[Point]) -> Polytope<V> {
-    Polytope::new(points.iter().map(|&p| vector(p))).expect("finite points")
+/// Behind `dyn`, so that everything is compiled once for all shapes.
+fn polytope<V: Vector>(points: &[Point]) -> Box<dyn SupportMap<Vector = V> + Send + Sync> {
+    Box::new(Polytope::new(points.iter().map(|&p| vector(p))).expect("finite points"))
 }
 
 /// The length scale that rounding errors are relative to.

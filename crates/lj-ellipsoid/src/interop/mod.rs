@@ -2,5 +2,3 @@
 
 #[cfg(feature = "convex-support")]
 mod convex_support;
-#[cfg(feature = "faer")]
-pub(crate) mod faer;

@@ -91,7 +91,6 @@ impl<D: Dimension> Copied<D> {
     }
 
     /// `len` points with these coordinates, those of the first point first.
-    #[cfg(feature = "faer")]
     pub(crate) const fn from_coordinates(dim: D, len: usize, coordinates: Vec<f64>) -> Self {
         Self { dim, len, coordinates }
     }

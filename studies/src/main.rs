@@ -1,0 +1,69 @@
+//! What takes long to compile or to run: the whole report of `cargo xtask validate`, sweeps, a robot's scene, pictures.
+//!
+//! `cargo xtask` builds and starts it when one of these is asked for.
+
+mod book2d;
+mod render;
+mod report;
+mod scene;
+mod sweep;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use xtask::validate;
+
+/// The studies of the workspace.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Debug, Subcommand)]
+enum Task {
+    /// Compare answers with the truth, and write the report: error against run time.
+    ///
+    /// Exit status: 0 where everything is right, 1 where some answer is wrong, 2 where a file could not be read.
+    Validate(validate::Scope),
+    /// Move a robot along its trajectory among obstacles: ellipsoids first, exact distances where they cannot decide.
+    ///
+    /// Exit status: 0, or 1 where an answer differs from the truth given, or 2 where a file could not be read.
+    Scene(scene::Choice),
+    /// Cast rays at every scale, and hold them against references in thirty digits; the same for linear casts and distances.
+    ///
+    /// Exit status: 0 where everything is right, 1 where some answer is wrong, 2 where the table could not be written.
+    Sweep(sweep::Scope),
+    /// Draw the descent of GJK in the plane, step by step.
+    Book2d {
+        /// Where the drawings go.
+        #[arg(long, value_name = "FOLDER", default_value = "target/book2d")]
+        output: PathBuf,
+    },
+    /// Render a picture by GJK ray casts.
+    Render {
+        /// The picture.
+        #[arg(value_name = "PNG", default_value = "target/render.png")]
+        file: PathBuf,
+        /// Its width in pixels; the height is 9/16 of it.
+        #[arg(long, default_value_t = 1280, value_parser = clap::value_parser!(u32).range(16..=16384))]
+        width: u32,
+    },
+}
+
+fn main() -> ExitCode {
+    match Arguments::parse().task {
+        Task::Validate(scope) => validate::run(&scope, &report::CHAPTERS),
+        Task::Scene(choice) => scene::run(&choice),
+        Task::Sweep(scope) => sweep::run(&scope),
+        Task::Book2d { output } => book2d::run(&output),
+        Task::Render { file, width } => render::run(&file, width),
+    }
+}
+
+/// Compiles and runs the examples of the workspace's README: no library sees all four crates.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;

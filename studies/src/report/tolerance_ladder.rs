@@ -1,0 +1,202 @@
+//! Error against run time on the workloads of `benches`: hundreds of queries of one kind, whose answers are known in closed
+//! form or by construction, down a ladder of tolerances; other methods and other libraries as single marks beside it.
+
+use std::time::Duration;
+
+use benches::measure::Solver;
+use benches::ours::{self, Effort};
+use benches::rows::{self, Method};
+use gjk_raycast::SubAlgorithm;
+use workloads::pairs::Pair;
+use workloads::score::{self, Precision, Score};
+use workloads::shapes::Shape;
+use workloads::{w1_ray_cast, w2_linear_cast, w3_distance, w3b_intersect};
+
+use xtask::plot::{Plot, Scale, Series};
+use xtask::validate::page::{Block, Figure, Section};
+use xtask::validate::{Scope, progress};
+
+/// The chapter, but for what the cases show.
+pub(super) fn section(scope: &Scope) -> Section {
+    let mut blocks = Vec::new();
+    let mut add = |query: &str, heading: &str, figures: &mut dyn Iterator<Item = Figure>| {
+        if scope.holds(query) {
+            blocks.push(Block::Heading(heading.to_owned()));
+            blocks.extend(figures.map(Block::Figure));
+        }
+    };
+    let shapes = ["cuboid", "hull64", "hull1024", "roundbox", "cylinder", "ellipsoid"];
+    add("ray_cast", "Ray cast: rays against one body", &mut shapes.into_iter().map(ray_cast));
+    let pairs = ["cuboid-cuboid", "hull64-hull64", "cylinder-cone", "ellipsoid-ellipsoid"];
+    add("linear_cast", "Linear cast: when two moving bodies meet", &mut pairs.into_iter().map(linear_cast));
+    add("distance", "Distance: from 3 to 0.01", &mut pairs.into_iter().map(distance));
+    add("intersect", "Boolean: within 1/2 to 1/1024 of contact", &mut pairs.into_iter().map(intersect));
+    Section {
+        id: "ladders",
+        title: "Error against run time",
+        lead: "Each line is a method in a precision, each mark on it a tolerance: lower is more accurate, further left is \
+               faster. What to see: after a few steps the lines fall steeply to the level of rounding, so a loose tolerance \
+               saves little; that is why the default is no tolerance at all. Single marks are methods without a knob: closed \
+               forms, and other libraries with the tolerance they come with."
+            .to_owned(),
+        blocks,
+    }
+}
+
+/// From coarse to as fine as rounding lets it be, which is the default.
+const TOLERANCES: [f64; 9] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 0.0];
+
+/// Most iterations of a boolean query: what it has in place of a tolerance.
+const CAPS: [usize; 10] = [1, 2, 3, 4, 5, 6, 8, 11, 16, 200];
+
+/// The queries of a workload that are asked.
+const QUERIES: usize = 500;
+
+/// What timing a row may cost at least.
+const BUDGET: Duration = Duration::from_millis(3);
+
+/// Methods of ours with a knob, with their precision, and their sub-algorithm where that is not the default, in the order of the colours.
+const KNOBS: [(&str, Precision, Option<SubAlgorithm>); 4] = [
+    ("ours f64", Precision::Double, None),
+    ("ours f32", Precision::Single, None),
+    ("Johnson f64", Precision::Double, Some(SubAlgorithm::Johnson)),
+    ("signed volumes f64", Precision::Double, Some(SubAlgorithm::SignedVolumes)),
+];
+
+/// What the other methods are called here, and their colours.
+fn single(method: Method) -> Option<(&'static str, usize)> {
+    Some(match method {
+        Method::ClosedF64 => ("closed form f64", 4),
+        Method::ClosedF32 => ("closed form f32", 5),
+        Method::WarmF64 => ("ours warm f64", 4),
+        Method::WarmF32 => ("ours warm f32", 5),
+        Method::ParryGjkF64 => ("parry GJK f64", 6),
+        Method::ParryGjkF32 => ("parry GJK f32", 7),
+        _ => return None,
+    })
+}
+
+/// The error that 99 % of the answers stay below; 1 where more than 1 % of the queries got none or the opposite one.
+fn p99(score: &Score) -> f64 {
+    let lost = score.false_hits + score.false_misses + score.undecided + score.said_zero;
+    if lost * 100 > QUERIES { 1.0 } else { score.p99.min(1.0) }
+}
+
+/// The share of the queries that got no answer, or the opposite one.
+fn share(score: &Score) -> f64 {
+    score.wrong() as f64 / QUERIES as f64
+}
+
+/// Makes a solver of ours.
+type Make<'a> = &'a dyn Fn(Precision, Effort) -> Solver;
+/// Scores the answers of a solver that works in a precision.
+type Judge<'a> = &'a dyn Fn(&[f64], Precision) -> Score;
+
+/// The lines of our methods, then the marks of the others.
+fn series(
+    make: Make<'_>,
+    others: Vec<(Method, Solver)>,
+    judge: Judge<'_>,
+    efforts: &[Effort],
+    error: fn(&Score) -> f64,
+) -> Vec<Series> {
+    let point = |solver: &Solver, precision| {
+        let range = 0..solver.count();
+        [solver.nanoseconds(range, BUDGET), error(&judge(&solver.answers(), precision))]
+    };
+    let lines = KNOBS.iter().enumerate().map(|(colour, (name, precision, sub_algorithm))| {
+        let at = |effort: &Effort| {
+            let sub_algorithm = sub_algorithm.unwrap_or(effort.sub_algorithm);
+            point(&make(*precision, Effort { sub_algorithm, ..*effort }), *precision)
+        };
+        Series { name: (*name).to_owned(), points: efforts.iter().map(at).collect(), joined: true, colour }
+    });
+    let mut series: Vec<Series> = lines.collect();
+    series.extend(others.into_iter().filter_map(|(method, solver)| {
+        let (name, colour) = single(method)?;
+        let wrong = judge(&solver.answers(), method.precision()).wrong();
+        let name = if wrong > 0 { format!("{name}, {wrong} wrong") } else { name.to_owned() };
+        Some(Series { name, points: vec![point(&solver, method.precision())], joined: false, colour })
+    }));
+    series
+}
+
+fn tolerances() -> Vec<Effort> {
+    TOLERANCES.map(|tolerance| Effort { tolerance, ..Effort::default() }).to_vec()
+}
+
+fn figure(name: String, title: String, truth: &str, series: Vec<Series>) -> Figure {
+    Figure {
+        name,
+        plot: Plot {
+            title,
+            x: "median time per query".to_owned(),
+            y: "relative error, 99th percentile".to_owned(),
+            scales: [Scale::Time, Scale::Log],
+            floor: 1e-17,
+            series,
+        },
+        caption: format!("{QUERIES} queries, tolerance from 0.1 to 0. {truth}"),
+    }
+}
+
+fn ray_cast(case: &'static str) -> Figure {
+    progress(&format!("ray casts against {case}"));
+    let shape = Shape::named(case);
+    let mut rays = w1_ray_cast::rays(case);
+    rays.truncate(QUERIES);
+    let make = |precision, effort| ours::ray_casts(precision, &shape, &rays, effort);
+    let judge = |answers: &[f64], precision| score::ray_casts(&rays, answers, precision);
+    let series = series(&make, rows::ray_casters(&shape, &rays), &judge, &tolerances(), p99);
+    figure(format!("ray-cast-{case}"), format!("Ray casts: {case}"), "Truth in closed form.", series)
+}
+
+fn linear_cast(case: &'static str) -> Figure {
+    progress(&format!("linear casts of {case}"));
+    let pair = Pair::named(case);
+    let mut casts = w2_linear_cast::casts(&pair);
+    casts.truncate(QUERIES);
+    let grazing = w2_linear_cast::grazing(&pair, &casts);
+    let make = |precision, effort| ours::linear_casts(precision, &pair, &casts, effort);
+    let judge = |answers: &[f64], _| score::linear_casts(&casts, &grazing, answers);
+    let series = series(&make, rows::linear_casters(&pair, &casts), &judge, &tolerances(), p99);
+    let truth = "Truth by construction, to about 1e-14.";
+    figure(format!("linear-cast-{case}"), format!("Linear casts: {case}"), truth, series)
+}
+
+fn distance(case: &'static str) -> Figure {
+    progress(&format!("distances of {case}"));
+    let pair = Pair::named(case);
+    let mut queries = w3_distance::queries(&pair);
+    queries.truncate(QUERIES);
+    let make = |precision, effort| ours::distances(precision, &pair, &queries, effort);
+    let judge = |answers: &[f64], _| score::distances(&queries, answers);
+    let series = series(&make, rows::distance_solvers(&pair, &queries), &judge, &tolerances(), p99);
+    let truth = "Truth by construction, to about 1e-13 of the distance: the lines cannot fall further.";
+    figure(format!("distance-{case}"), format!("Distances: {case}"), truth, series)
+}
+
+fn intersect(case: &'static str) -> Figure {
+    progress(&format!("intersections of {case}"));
+    let pair = Pair::named(case);
+    // Bodies that are apart, so that the same queries can be asked warm.
+    let queries: Vec<_> = w3b_intersect::queries(&pair).into_iter().filter(|query| !query.meet).take(QUERIES).collect();
+    let make = |precision, effort| ours::intersections(precision, &pair, &queries, false, effort);
+    let judge = |answers: &[f64], _| score::intersections(&queries, answers);
+    let mut others = rows::warm_intersection_testers(&pair, &queries);
+    others.extend(rows::intersection_testers(&pair, &queries));
+    let efforts = CAPS.map(|max_iterations| Effort { max_iterations, ..Effort::default() });
+    let mut figure = figure(
+        format!("intersect-{case}"),
+        format!("Boolean: {case}"),
+        "",
+        series(&make, others, &judge, &efforts, share),
+    );
+    figure.plot.y = "share of queries without the right answer".to_owned();
+    figure.plot.floor = 0.5 / QUERIES as f64;
+    figure.caption = format!(
+        "{QUERIES} pairs that are apart; from 1 to 200 iterations allowed. Most are decided by the first few separating \
+         planes; warm queries, which start from the plane of the time before, by the first."
+    );
+    figure
+}

@@ -1,0 +1,33 @@
+//! Inputs from fixed seeds, and what is true of them.
+//!
+//! Every workload is drawn with `+ − × ÷ √` only, so that any program can make the same inputs bit by bit;
+//! `tests/digests.rs` compares their fingerprints. Nothing here knows how a query is answered: this package depends on
+//! `convex-support` alone, to build the shapes that it describes.
+//!
+//! - [`shapes`] and [`pairs`]: the eleven shapes, and twelve pairs of them.
+//! - [`w1_ray_cast`]: rays against one body, with `λ` in closed form.
+//! - [`w2_linear_cast`]: a body moving past or into another, with `λ` by construction.
+//! - [`w3_distance`], [`w3b_intersect`]: two bodies, with their distance by construction.
+//! - [`w4_enclosing`]: points to be enclosed by an ellipsoid.
+//! - [`w5_margin`]: pairs of ellipsoids.
+//! - [`score`]: answers compared with the truth.
+//! - [`provenance`]: where and when a measurement was made.
+
+mod convex_hull;
+pub mod digest;
+mod line_entry;
+pub mod pairs;
+pub mod provenance;
+mod reference;
+pub mod rng;
+pub mod score;
+pub mod shapes;
+pub mod vec3;
+pub mod w1_ray_cast;
+pub mod w2_linear_cast;
+pub mod w3_distance;
+pub mod w3b_intersect;
+pub mod w4_enclosing;
+pub mod w5_margin;
+
+pub use reference::Pose;
