@@ -20,7 +20,7 @@ if [ "${1-}" != --write ] && ! grep -qxF "# $compiler" "$table"; then
     exit 0
 fi
 
-program=$(cargo build --quiet --profile bench -p benches --no-default-features --bin instructions \
+program=$(cargo build --quiet --profile bench -p benches --bin instructions \
     --message-format=json-render-diagnostics | sed -n 's/.*"executable":"\([^"]*\)".*/\1/p')
 [ -n "$program" ] || exit 1
 scratch=$(mktemp -d)

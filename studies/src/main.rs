@@ -62,8 +62,3 @@ fn main() -> ExitCode {
         Task::Render { file, width } => render::run(&file, width),
     }
 }
-
-/// Compiles and runs the examples of the workspace's README: no library sees all four crates.
-#[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
-struct Readme;

@@ -15,3 +15,13 @@ pub mod plot;
 pub mod query;
 pub mod validate;
 pub mod wire;
+
+/// Compiles and runs the examples of the workspace's README: no library sees all four crates.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
+
+/// Compiles and runs the examples of the note on porting, which ask parry the same.
+#[cfg(all(doctest, feature = "parry"))]
+#[doc = include_str!("../../docs/porting-from-parry.md")]
+struct PortingFromParry;

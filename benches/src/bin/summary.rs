@@ -14,7 +14,7 @@ use benches::rows::{Workload, measure};
 const INTRODUCTION: &str = "\
 # Performance
 
-Written by `cargo run --profile bench -p benches --bin summary -- --write`, to which `--features box3d,jolt` adds the columns
+Written by `cargo run --profile bench -p benches --features parry --bin summary -- --write`, to which `--features box3d,jolt` adds the columns
 of those two; `benches/README.md` says what is measured and how to read it. A cell is `ns / p99 error / wrong answers`:
 nanoseconds of thread CPU time for one query (the smallest over passes of the median), the error that 99 % of the answers stay
 below, and how many of the answers are wrong. Only rows without wrong answers compete. A goal is a ratio to parry3d-f64's GJK

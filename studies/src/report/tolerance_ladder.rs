@@ -37,7 +37,8 @@ pub(super) fn section(scope: &Scope) -> Section {
         lead: "Each line is a method in a precision, each mark on it a tolerance: lower is more accurate, further left is \
                faster. What to see: after a few steps the lines fall steeply to the level of rounding, so a loose tolerance \
                saves little; that is why the default is no tolerance at all. Single marks are methods without a knob: closed \
-               forms, and other libraries with the tolerance they come with."
+               forms, and other libraries with the tolerance they come with. Here everything is compiled for the types of its shapes; where all \
+               kinds of cases stand together, they are behind `dyn SupportMap`, and of a dimension known at run time."
             .to_owned(),
         blocks,
     }

@@ -61,8 +61,10 @@ fn html(records: &[Record], sections: &[Section]) -> String {
          <p class=\"summary\">{} cases with true answers: {} right, <b class=\"{}\">{} wrong</b>, {} right with a remark.</p>\n\
          <p class=\"provenance\">{}</p>\n\
          <p>Errors are those against true answers: computed in exact rationals, in 90 digits and more, in closed form, or \
-         known by construction; never against this workspace itself. Release build, one thread. A time is that of solving \
-         one query once its shapes are built; compare times within a page only.</p>\n<nav><ol>\n",
+         known by construction; never against this workspace itself. A time is thread CPU time in the plain release profile \
+         (no link-time optimisation), once the shapes are built. Those of cases are of shapes behind <code>dyn SupportMap</code> and of \
+         dimensions known at run time, as a query file has them; where code is compiled for the types of its shapes, a chapter \
+         says so. Compare times within a page only.</p>\n<nav><ol>\n",
         total.cases,
         total.cases - total.wrong,
         if total.wrong > 0 { "wrong" } else { "right" },
