@@ -8,7 +8,7 @@ use xtask::validate::page::{Block, Figure};
 use xtask::validate::summary::quantile;
 use xtask::validate::{Case, as_read, progress, score};
 use xtask::wire::answer::Line;
-use xtask::wire::reader::Object;
+use xtask::wire::fields::Object;
 
 /// A query, the knob that trades time for error, and what to try.
 struct Ladder {

@@ -2,12 +2,11 @@
 
 use lj_ellipsoid::{EnclosingError, EnclosingMethod, EnclosingOptions, enclosing_dyn};
 
-use super::Ask;
-use super::fit::{Fitting, cloud};
-use super::method::choose;
-use crate::mesh::Meshes;
+use super::fit::{Fitting, Points};
+use super::{Ask, How, Query};
 use crate::wire::error::{Kind, Problem};
-use crate::wire::query::{Points, Precision};
+use crate::wire::fields::Fields;
+use crate::wire::shape::Space;
 
 const METHODS: &[(&str, EnclosingMethod)] = &[
     ("newton", EnclosingMethod::Newton),
@@ -16,18 +15,25 @@ const METHODS: &[(&str, EnclosingMethod)] = &[
     ("dual_newton", EnclosingMethod::DualReducedNewton),
 ];
 
-pub(super) fn question(
+/// The query as written.
+pub(super) struct Enclosing {
     points: Points,
     epsilon: Option<f64>,
-    method: Option<&str>,
-    precision: Precision,
-    meshes: &Meshes,
-) -> Result<Box<dyn Ask>, Problem> {
-    let mut options = EnclosingOptions::default().with_method(choose(method, METHODS)?);
-    options.epsilon = epsilon.unwrap_or(options.epsilon);
-    let epsilon = options.epsilon;
-    let solve = |points: &Vec<Vec<f64>>, options| enclosing_dyn(points, options).map_err(problem);
-    Ok(Box::new(Fitting { input: cloud(points, meshes)?, options, solve, epsilon, precision }))
+}
+
+impl Query for Enclosing {
+    fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+        Ok(Self { points: Points::read(fields)?, epsilon: fields.positive("epsilon")? })
+    }
+
+    /// The same in every space: the points have a dimension of their own.
+    fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
+        let mut options = EnclosingOptions::default().with_method(how.method(METHODS)?);
+        options.epsilon = self.epsilon.or(how.tol).unwrap_or(options.epsilon);
+        let solve = |points: &Vec<Vec<f64>>, options| enclosing_dyn(points, options).map_err(problem);
+        let (input, epsilon) = (self.points.listed(how.meshes)?, options.epsilon);
+        Ok(Box::new(Fitting { input, options, solve, epsilon, precision: how.precision }))
+    }
 }
 
 fn problem(why: EnclosingError) -> Problem {

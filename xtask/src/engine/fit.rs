@@ -2,20 +2,72 @@
 //!
 //! The dimension is known at run time only, also where it is 2 or 3: the solvers are compiled once.
 
+use std::path::PathBuf;
+
 use lj_ellipsoid::{EllipsoidDyn, EnclosingDyn, InscribedDyn, Status};
 
-use super::Question;
+use super::{Precision, Question};
 use crate::mesh::Meshes;
 use crate::wire::answer::{Answer, Field, Number};
 use crate::wire::error::{Kind, Problem};
-use crate::wire::query::{Points, Precision};
+use crate::wire::fields::Fields;
+use crate::wire::shape::Shape;
 
-/// Points as lists of numbers.
-pub(super) fn cloud(points: Points, meshes: &Meshes) -> Result<Vec<Vec<f64>>, Problem> {
-    Ok(match points {
-        Points::Mesh(path) => meshes.load(&path)?.points().iter().map(|p| p.to_array().to_vec()).collect(),
-        Points::Listed(rows) => rows,
-    })
+/// Points of any dimension.
+pub(super) enum Points {
+    /// As lists of numbers, all of the same length.
+    Listed(Vec<Vec<f64>>),
+    /// The vertices of a mesh.
+    Mesh(PathBuf),
+}
+
+impl Points {
+    /// Those of the field `points`, or of the polytope or mesh `target`.
+    pub(super) fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+        if fields.has("points") || !fields.has("target") {
+            return lists(fields, "points").map(Self::Listed);
+        }
+        let target = fields.within("target")?;
+        // A polytope is read here rather than as a shape: its points may have any number of coordinates.
+        match target.get::<String>("type")?.as_str() {
+            "polytope" => lists(&target, "points").map(Self::Listed),
+            "mesh" => Ok(Self::Mesh(target.get("path")?)),
+            _ => match Shape::read(&target) {
+                Err(problem) if problem.kind == Kind::UnknownShape => Err(problem),
+                _ => Err(Problem::new(Kind::InvalidShape, format!("{} must be a polytope or a mesh", target.place()))),
+            },
+        }
+    }
+
+    /// The points as lists of numbers.
+    pub(super) fn listed(&self, meshes: &Meshes) -> Result<Vec<Vec<f64>>, Problem> {
+        Ok(match self {
+            Self::Listed(rows) => rows.clone(),
+            Self::Mesh(path) => meshes.load(path)?.points().iter().map(|p| p.to_array().to_vec()).collect(),
+        })
+    }
+}
+
+/// The points of a field, of one length.
+fn lists(fields: &Fields<'_>, key: &str) -> Result<Vec<Vec<f64>>, Problem> {
+    let points: Vec<Vec<f64>> = fields.get(key)?;
+    same_length(points.iter().map(Vec::len), &fields.at(key))?;
+    Ok(points)
+}
+
+/// Checks that the vectors of the list at `place` are of one dimension.
+pub(super) fn same_length(mut lengths: impl Iterator<Item = usize>, place: &str) -> Result<(), Problem> {
+    let Some(first) = lengths.next() else { return Ok(()) };
+    let wrong = |i: usize, length: usize, due: &str| {
+        Err(Problem::new(Kind::DimensionMismatch, format!("{place}[{i}] has {length} coordinates, but {due}")))
+    };
+    if first < 2 {
+        return wrong(0, first, "a space has 2 or more");
+    }
+    match lengths.enumerate().find(|(_, length)| *length != first) {
+        Some((i, length)) => wrong(i + 1, length, &format!("{place}[0] has {first}")),
+        None => Ok(()),
+    }
 }
 
 /// An ellipsoid to be fitted. It is found in double precision, and rounded where single precision is asked for.

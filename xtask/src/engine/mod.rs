@@ -1,28 +1,36 @@
 //! From a query to its answer: the one place where precision and dimension become types.
 
 mod cast;
+mod clearance;
 mod distance;
 mod enclosing;
 mod fit;
 mod inscribed;
+mod intersect;
 mod linear_cast;
 mod margin;
 mod method;
 mod ray_cast;
+mod track;
 
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{Scalar as _, Vector};
 use cpu_time::ThreadTime;
+use serde::Deserialize;
 
-use self::distance::{DistanceQuestion, IntersectQuestion};
-use self::linear_cast::LinearCastQuestion;
-use self::margin::{ClearanceQuestion, MarginQuestion, TrackQuestion};
-use self::ray_cast::RayCastQuestion;
+use self::clearance::Clearance;
+use self::distance::Distance;
+use self::enclosing::Enclosing;
+use self::inscribed::Inscribed;
+use self::intersect::Intersect;
+use self::linear_cast::LinearCast;
+use self::margin::Margin;
+use self::ray_cast::RayCast;
+use self::track::Track;
 use crate::mesh::Meshes;
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
-use crate::wire::query::{Precision, Query, Request};
-use crate::wire::reader::Object;
+use crate::wire::fields::{Dimension, Fields, Object};
 use crate::wire::shape::Space;
 
 /// A query with its shapes built, ready to be solved.
@@ -70,55 +78,101 @@ impl<Q: Question> Ask for Q {
     }
 }
 
+/// The kinds of queries, as written; a file each.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Name {
+    RayCast,
+    Distance,
+    Intersect,
+    LinearCast,
+    EnclosingEllipsoid,
+    InscribedEllipsoid,
+    Margin,
+    Track,
+    Clearance,
+}
+
 /// The question that a JSON object asks.
+///
+/// # Errors
+/// Where it asks none.
 pub fn question(object: &Object, meshes: &Meshes) -> Result<Box<dyn Ask>, Problem> {
-    let request = Request::read(object)?;
-    match (request.precision, request.dimension) {
-        (Precision::F64, 2) => in_space::<DVec2>(request, meshes),
-        (Precision::F64, _) => in_space::<DVec3>(request, meshes),
-        (Precision::F32, 2) => in_space::<Vec2>(request, meshes),
-        (Precision::F32, _) => in_space::<Vec3A>(request, meshes),
+    let dimension = Dimension::default();
+    let fields = Fields::new(object, &dimension);
+    let ask = match fields.name("query", Kind::UnknownQuery)? {
+        Name::RayCast => read::<RayCast>,
+        Name::Distance => read::<Distance>,
+        Name::Intersect => read::<Intersect>,
+        Name::LinearCast => read::<LinearCast>,
+        Name::EnclosingEllipsoid => read::<Enclosing>,
+        Name::InscribedEllipsoid => read::<Inscribed>,
+        Name::Margin => read::<Margin>,
+        Name::Track => read::<Track>,
+        Name::Clearance => read::<Clearance>,
+    };
+    ask(&fields, &dimension, meshes)
+}
+
+/// The precision to answer in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Precision {
+    F32,
+    #[default]
+    F64,
+}
+
+/// How a query is to be answered, whatever it asks.
+struct How<'a> {
+    precision: Precision,
+    tol: Option<f64>,
+    method: Option<String>,
+    meshes: &'a Meshes,
+}
+
+/// A kind of query.
+trait Query: Sized {
+    /// Its own fields, as written.
+    fn read(fields: &Fields<'_>) -> Result<Self, Problem>;
+
+    /// The question in a space.
+    fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem>;
+}
+
+/// Reads a query. Its vectors say which dimension it has; 3 where there are none.
+fn read<Q: Query>(fields: &Fields<'_>, dimension: &Dimension, meshes: &Meshes) -> Result<Box<dyn Ask>, Problem> {
+    let precision = fields.maybe("precision")?.unwrap_or_default();
+    let how = How { precision, tol: fields.positive("tol")?, method: fields.maybe("method")?, meshes };
+    let query = Q::read(fields)?;
+    match (precision, dimension.known().unwrap_or(3)) {
+        (Precision::F64, 2) => query.question::<DVec2>(&how),
+        (Precision::F64, _) => query.question::<DVec3>(&how),
+        (Precision::F32, 2) => query.question::<Vec2>(&how),
+        (Precision::F32, _) => query.question::<Vec3A>(&how),
     }
 }
 
-fn in_space<V: Space>(request: Request, meshes: &Meshes) -> Result<Box<dyn Ask>, Problem> {
-    let Request { precision, dimension: _, tol, method, query } = request;
-    let method = method.as_deref();
-    Ok(match query {
-        Query::RayCast { target, source, direction, max_lambda } => {
-            Box::new(RayCastQuestion::<V>::new(&target, [source, direction], max_lambda, tol, method, meshes)?)
+impl How<'_> {
+    /// The variant of the algorithm that is asked for; the first where none is.
+    fn method<M: Copy>(&self, methods: &[(&str, M)]) -> Result<M, Problem> {
+        method::choose(self.method.as_deref(), methods)
+    }
+
+    /// The relative tolerance in a precision, if one is asked for.
+    fn tolerance<V: Vector>(&self) -> Result<Option<V::Scalar>, Problem> {
+        match self.tol {
+            Some(tol) if tol >= 1.0 => {
+                Err(Problem::new(Kind::Parse, format!("tol is {tol}, but a relative tolerance is less than 1")))
+            }
+            tol => Ok(tol.map(scalar::<V>)),
         }
-        Query::Distance { a, b } => Box::new(DistanceQuestion::<V>::new([&a, &b], tol, method, meshes)?),
-        Query::Intersect { a, b } => Box::new(IntersectQuestion::<V>::new([&a, &b], method, meshes)?),
-        Query::LinearCast { a, b, velocity_a, velocity_b, max_time } => {
-            Box::new(LinearCastQuestion::<V>::new([&a, &b], [velocity_a, velocity_b], max_time, tol, method, meshes)?)
-        }
-        Query::EnclosingEllipsoid { points, epsilon } => {
-            enclosing::question(points, epsilon.or(tol), method, precision, meshes)?
-        }
-        Query::InscribedEllipsoid { body, epsilon } => {
-            inscribed::question(body, epsilon.or(tol), method, precision, meshes)?
-        }
-        Query::Margin { e1, e2, gradient } => Box::new(MarginQuestion::<V>::new([&e1, &e2], gradient, tol, method)?),
-        Query::Track { e1, e2, poses } => Box::new(TrackQuestion::<V>::new([&e1, &e2], &poses, tol, method)?),
-        Query::Clearance { links, obstacles } => {
-            Box::new(ClearanceQuestion::<V>::new(&links, &obstacles, tol, method)?)
-        }
-    })
+    }
 }
 
 /// A number of the query in the precision asked for.
 fn scalar<V: Vector>(value: f64) -> V::Scalar {
     V::Scalar::from_f64(value)
-}
-
-/// A relative tolerance in the precision asked for.
-fn tolerance<V: Vector>(tol: f64) -> Result<V::Scalar, Problem> {
-    if tol < 1.0 {
-        Ok(scalar::<V>(tol))
-    } else {
-        Err(Problem::new(Kind::Parse, format!("tol is {tol}, but a relative tolerance is less than 1")))
-    }
 }
 
 /// How an iteration of gjk-raycast ended.
@@ -128,4 +182,72 @@ fn status(status: gjk_raycast::Status) -> Field {
         gjk_raycast::Status::IterationLimit => "iteration_limit",
         gjk_raycast::Status::Stalled => "stalled",
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::json;
+
+    /// What is said of a line that cannot be answered.
+    fn refused(line: &str) -> Problem {
+        let object = json::object(line.as_bytes()).expect("JSON");
+        question(&object, &Meshes::relative_to("")).err().expect("it cannot be asked")
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_with_its_place_and_what_would_be_right() {
+        let cast_at =
+            |shape: &str| format!(r#"{{"query":"ray_cast","target":{shape},"source":[5,0,0],"direction":[-1,0,0]}}"#);
+        let cases = [
+            (r#"{"query":"distance","a":{"type":"ball","radius":1}}"#.to_owned(), Kind::Parse, "the field \"b\" is missing"),
+            (cast_at(r#"{"type":"ball"}"#), Kind::Parse, "the field \"radius\" of target is missing"),
+            (
+                cast_at(r#"{"type":"hull","of":[{"type":"ball","radius":[1]}]}"#),
+                Kind::Parse,
+                "target.of[0].radius: invalid type: sequence, expected f64",
+            ),
+            (cast_at(r#"{"type":"ball","radius":null}"#), Kind::Parse, "target.radius: invalid type: null, expected f64"),
+            (
+                cast_at(r#"{"type":"cuboid","half_extents":[1,"2",3]}"#),
+                Kind::Parse,
+                "target.half_extents[1]: invalid type: string \"2\", expected f64",
+            ),
+            (
+                cast_at(r#"{"type":"polytope","points":[[0,0,0],[1,0]]}"#),
+                Kind::DimensionMismatch,
+                "target.points[1] has 2 coordinates, but target.points[0] makes the query 3D",
+            ),
+            (
+                cast_at(r#"{"type":"posed","rotation":true,"of":{"type":"ball","radius":1}}"#),
+                Kind::Parse,
+                "target.rotation: expected an angle or a quaternion [x, y, z, w]",
+            ),
+            (
+                r#"{"query":"inscribed_ellipsoid","halfspaces":[{"normal":[1,0]}]}"#.to_owned(),
+                Kind::Parse,
+                "halfspaces[0]: missing field `offset`",
+            ),
+            (
+                r#"{"query":"ray_cast","target":{"type":"cuboid","half_extents":[1,1,1]},"source":[5,0],"direction":[1,0]}"#
+                    .to_owned(),
+                Kind::DimensionMismatch,
+                "source has 2 coordinates, but target.half_extents makes the query 3D",
+            ),
+        ];
+        for (line, kind, message) in cases {
+            let problem = refused(&line);
+            assert_eq!((problem.kind, problem.message.as_str()), (kind, message), "{line}");
+        }
+    }
+
+    #[test]
+    fn names_that_are_unknown_are_told_from_those_that_are_not() {
+        let (query, shape) = (refused(r#"{"query":"raycast"}"#), refused(r#"{"query":"distance","a":{"type":"sphere"}}"#));
+        assert_eq!(query.kind, Kind::UnknownQuery, "{query:?}");
+        assert!(query.message.starts_with("query: unknown variant `raycast`, expected one of `ray_cast`, "), "{query:?}");
+        assert_eq!(shape.kind, Kind::UnknownShape, "{shape:?}");
+        assert!(shape.message.starts_with("a.type: unknown variant `sphere`, expected one of `point`, "), "{shape:?}");
+        assert_eq!(refused(r#"{"query":7}"#).kind, Kind::Parse, "no name at all");
+    }
 }

@@ -1,63 +1,69 @@
 //! `ray_cast`.
 
 use convex_support::{Point, Vector};
-use gjk_raycast::{DistanceOptions, Ray, RayCast, RayCastOptions, RayHit, distance, iterative_ray_cast, ray_cast};
+use gjk_raycast::{DistanceOptions, Ray, RayCastOptions, RayHit, distance, iterative_ray_cast, ray_cast};
 
 use super::cast::{self, problem};
-use super::method::choose;
-use super::{Question, scalar, tolerance};
-use crate::mesh::Meshes;
+use super::{Ask, How, Query, Question, scalar};
 use crate::wire::answer::Answer;
 use crate::wire::error::Problem;
-use crate::wire::reader::Coordinates;
+use crate::wire::fields::{Coordinates, Fields};
 use crate::wire::shape::{Shape, Solid, Space, vector};
+
+/// The query as written.
+pub(super) struct RayCast {
+    target: Shape,
+    source: Coordinates,
+    direction: Coordinates,
+    max_lambda: Option<f64>,
+}
 
 #[derive(Clone, Copy)]
 enum Method {
-    /// GJK ray cast, Algorithm 3.
+    /// The crate's default: planes by a portal, or by GJK where that is in doubt.
     Gjk,
     /// Algorithm 1 on the closest points of GJK distance.
     Iterative,
 }
 
-const METHODS: &[(&str, Method)] = &[("gjk", Method::Gjk), ("iterative", Method::Iterative)];
+impl Query for RayCast {
+    fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+        Ok(Self {
+            target: Shape::read(&fields.within("target")?)?,
+            source: fields.vector("source")?,
+            direction: fields.vector("direction")?,
+            max_lambda: fields.maybe("max_lambda")?,
+        })
+    }
 
-pub(super) struct RayCastQuestion<V: Vector> {
+    fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
+        let mut options = RayCastOptions::new();
+        if let Some(max_lambda) = self.max_lambda {
+            options = options.with_max_lambda(scalar::<V>(max_lambda));
+        }
+        if let Some(tolerance) = how.tolerance::<V>()? {
+            options = options.with_tolerance(tolerance);
+        }
+        Ok(Box::new(Cast::<V> {
+            target: self.target.build("target", how.meshes)?,
+            ray: Ray { source: vector(&self.source), direction: vector(&self.direction) },
+            options,
+            method: how.method(&[("gjk", Method::Gjk), ("iterative", Method::Iterative)])?,
+        }))
+    }
+}
+
+struct Cast<V: Vector> {
     target: Solid<V>,
     ray: Ray<V>,
     options: RayCastOptions<V>,
     method: Method,
 }
 
-impl<V: Space> RayCastQuestion<V> {
-    pub(super) fn new(
-        target: &Shape,
-        [source, direction]: [Coordinates; 2],
-        max_lambda: Option<f64>,
-        tol: Option<f64>,
-        method: Option<&str>,
-        meshes: &Meshes,
-    ) -> Result<Self, Problem> {
-        let mut options = RayCastOptions::new();
-        if let Some(max_lambda) = max_lambda {
-            options = options.with_max_lambda(scalar::<V>(max_lambda));
-        }
-        if let Some(tol) = tol {
-            options = options.with_tolerance(tolerance::<V>(tol)?);
-        }
-        Ok(Self {
-            target: target.build("target", meshes)?,
-            ray: Ray { source: vector(&source), direction: vector(&direction) },
-            options,
-            method: choose(method, METHODS)?,
-        })
-    }
-}
+impl<V: Space> Question for Cast<V> {
+    type Solution = gjk_raycast::RayCast<V>;
 
-impl<V: Space> Question for RayCastQuestion<V> {
-    type Solution = RayCast<V>;
-
-    fn solve(&self) -> Result<RayCast<V>, Problem> {
+    fn solve(&self) -> Result<Self::Solution, Problem> {
         match self.method {
             Method::Gjk => ray_cast(&self.target, self.ray, self.options),
             Method::Iterative => {
@@ -69,8 +75,8 @@ impl<V: Space> Question for RayCastQuestion<V> {
         .map_err(problem)
     }
 
-    fn answer(&self, RayCast { outcome, lower, upper, status, iterations, .. }: RayCast<V>) -> Result<Answer, Problem> {
+    fn answer(&self, cast: Self::Solution) -> Result<Answer, Problem> {
         let show = |hit: RayHit<V>| (hit.lambda, hit.point, hit.normal);
-        cast::answer("lambda", outcome, show, [lower, upper], status, iterations)
+        cast::answer("lambda", cast.outcome, show, [cast.lower, cast.upper], cast.status, cast.iterations)
     }
 }

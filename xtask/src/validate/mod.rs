@@ -24,8 +24,8 @@ use crate::engine;
 use crate::mesh::Meshes;
 use crate::wire::answer::Line;
 use crate::wire::error::Problem;
+use crate::wire::fields::Object;
 use crate::wire::json;
-use crate::wire::reader::Object;
 
 /// What is validated where no files are named.
 pub const EMBEDDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/suite");

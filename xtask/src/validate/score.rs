@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::wire::reader::Object;
+use crate::wire::fields::Object;
 
 /// The field that holds the scalar of an answer.
 pub fn scalar_of(query: &str) -> Option<&'static str> {

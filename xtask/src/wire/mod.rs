@@ -1,9 +1,7 @@
-//! The query format: JSON lines in, JSON lines out. Nothing but this module and its children knows JSON's shape.
+//! The query format: lines of JSON, their fields, shapes, answers and errors.
 
 pub mod answer;
 pub mod error;
-mod form;
+pub mod fields;
 pub mod json;
-pub mod query;
-pub mod reader;
 pub mod shape;

@@ -8,12 +8,10 @@ use convex_support::{
     Point, Polytope, Posed, Rounded, Scalar, Segment, SupportMap, Triangle, Vector, glam,
 };
 use ellip_margin::Wedge;
-use serde_json::Value;
+use serde::Deserialize;
 
 use super::error::{Kind, Problem};
-use super::form;
-use super::query::Pose;
-use super::reader::{Coordinates, Object, Reader, Rotation};
+use super::fields::{Coordinates, Fields, Rotation};
 use crate::mesh::{Mesh, Meshes};
 
 /// A shape as the query says it.
@@ -57,85 +55,104 @@ enum EllipsoidForm {
     Axes { semi_axes: Coordinates, rotation: Option<Rotation> },
 }
 
+/// The types of shapes, as written.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Type {
+    Point,
+    Segment,
+    Triangle,
+    Ball,
+    Cuboid,
+    Capsule,
+    Cylinder,
+    Cone,
+    Ellipsoid,
+    Polytope,
+    Mesh,
+    Posed,
+    Affine,
+    MinkowskiSum,
+    Difference,
+    Hull,
+    Rounded,
+}
+
 impl Shape {
-    pub fn read(reader: &mut Reader, value: &Value) -> Result<Self, Problem> {
-        let object = reader.object(value)?;
-        let kind = reader.required(object, "type", Reader::text)?;
-        let radius = |r: &mut Reader| r.required(object, "radius", Reader::number);
-        let half_height = |r: &mut Reader| r.required(object, "half_height", Reader::number);
-        let of = |r: &mut Reader| r.required(object, "of", Self::read).map(Box::new);
-        let several = |r: &mut Reader| r.required(object, "of", |r, v| r.list(v, Self::read));
-        Ok(match kind.as_str() {
-            "point" => Self::Point(reader.required(object, "at", Reader::vector)?),
-            "segment" => Self::Segment(corners(reader, object)?),
-            "triangle" => Self::Triangle(corners(reader, object)?),
-            "ball" => Self::Ball { radius: radius(reader)? },
-            "cuboid" => Self::Cuboid { half_extents: reader.required(object, "half_extents", Reader::vector)? },
-            "capsule" => Self::Capsule { half_height: half_height(reader)?, radius: radius(reader)? },
-            "cylinder" | "cone" => {
-                reader.is_of_dimension(3, &format!("is a {kind}, which is 3D"))?;
-                let kind = if kind == "cone" { Upright::Cone } else { Upright::Cylinder };
-                Self::Upright { kind, half_height: half_height(reader)?, radius: radius(reader)? }
+    /// The shape that an object is.
+    pub fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+        let of = || Ok(Box::new(Self::read(&fields.within("of")?)?));
+        let several = || fields.each("of")?.iter().map(Self::read).collect::<Result<Vec<_>, _>>();
+        Ok(match fields.name("type", Kind::UnknownShape)? {
+            Type::Point => Self::Point(fields.vector("at")?),
+            Type::Segment => Self::Segment(fields.corners("points")?),
+            Type::Triangle => Self::Triangle(fields.corners("points")?),
+            Type::Ball => Self::Ball { radius: fields.get("radius")? },
+            Type::Cuboid => Self::Cuboid { half_extents: fields.vector("half_extents")? },
+            Type::Capsule => Self::Capsule { half_height: fields.get("half_height")?, radius: fields.get("radius")? },
+            Type::Cylinder => Self::upright(fields, Upright::Cylinder, "cylinder")?,
+            Type::Cone => Self::upright(fields, Upright::Cone, "cone")?,
+            Type::Ellipsoid => Self::Ellipsoid(EllipsoidSpec::read(fields)?),
+            Type::Polytope => Self::Polytope(fields.vectors("points")?),
+            Type::Mesh => {
+                fields.is_3d("mesh")?;
+                Self::Mesh(fields.get("path")?)
             }
-            "ellipsoid" => Self::Ellipsoid(EllipsoidSpec::read(reader, value)?),
-            "polytope" => Self::Polytope(reader.required(object, "points", |r, v| r.list(v, Reader::vector))?),
-            "mesh" => {
-                reader.is_of_dimension(3, "is a mesh, which is 3D")?;
-                Self::Mesh(reader.required(object, "path", Reader::text)?.into())
+            Type::Posed => {
+                let Pose { translation, rotation } = Pose::read(fields)?;
+                Self::Posed { translation, rotation, of: of()? }
             }
-            "posed" => Self::Posed {
-                translation: reader.optional(object, "translation", Reader::vector)?.unwrap_or_default(),
-                rotation: reader.optional(object, "rotation", Reader::rotation)?,
-                of: of(reader)?,
+            Type::Affine => Self::Affine {
+                matrix: fields.matrix("matrix")?,
+                translation: fields.vector_or_zero("translation")?,
+                of: of()?,
             },
-            "affine" => Self::Affine {
-                matrix: reader.required(object, "matrix", Reader::matrix)?,
-                translation: reader.optional(object, "translation", Reader::vector)?.unwrap_or_default(),
-                of: of(reader)?,
-            },
-            "minkowski_sum" => Self::MinkowskiSum(several(reader)?),
-            "difference" => Self::Difference(Box::new([
-                reader.required(object, "a", Self::read)?,
-                reader.required(object, "b", Self::read)?,
-            ])),
-            "hull" => Self::Hull(several(reader)?),
-            "rounded" => Self::Rounded { radius: radius(reader)?, of: of(reader)? },
-            _ => {
-                let message = format!("is of the unknown type {kind:?}; {}", form::known(&kind, form::SHAPES, "types"));
-                return Err(reader.problem(Kind::UnknownShape, message));
+            Type::MinkowskiSum => Self::MinkowskiSum(several()?),
+            Type::Difference => {
+                Self::Difference(Box::new([Self::read(&fields.within("a")?)?, Self::read(&fields.within("b")?)?]))
             }
+            Type::Hull => Self::Hull(several()?),
+            Type::Rounded => Self::Rounded { radius: fields.get("radius")?, of: of()? },
         })
+    }
+
+    /// A cylinder or cone.
+    fn upright(fields: &Fields<'_>, kind: Upright, what: &str) -> Result<Self, Problem> {
+        fields.is_3d(what)?;
+        Ok(Self::Upright { kind, half_height: fields.get("half_height")?, radius: fields.get("radius")? })
     }
 }
 
-/// The corners of a segment or triangle.
-fn corners<const N: usize>(reader: &mut Reader, object: &Object) -> Result<[Coordinates; N], Problem> {
-    reader.required(object, "points", |reader, value| {
-        let points = reader.list(value, Reader::vector)?;
-        let count = points.len();
-        points
-            .try_into()
-            .map_err(|_| reader.problem(Kind::InvalidShape, format!("must be {N} points, but there are {count}")))
-    })
+/// Where a body is.
+#[derive(Clone, Debug)]
+pub struct Pose {
+    pub translation: Coordinates,
+    pub rotation: Option<Rotation>,
+}
+
+impl Pose {
+    /// The pose that an object is.
+    pub fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+        Ok(Self { translation: fields.vector_or_zero("translation")?, rotation: fields.rotation("rotation")? })
+    }
 }
 
 impl EllipsoidSpec {
-    pub fn read(reader: &mut Reader, value: &Value) -> Result<Self, Problem> {
-        let object = reader.object(value)?;
-        let center = reader.required(object, "center", Reader::vector)?;
-        let matrix = reader.optional(object, "matrix", Reader::matrix)?;
-        let semi_axes = reader.optional(object, "semi_axes", Reader::vector)?;
-        let rotation = reader.optional(object, "rotation", Reader::rotation)?;
-        let form = match (matrix, semi_axes) {
-            (Some(matrix), None) => EllipsoidForm::Matrix(matrix),
-            (None, Some(semi_axes)) => EllipsoidForm::Axes { semi_axes, rotation },
-            (Some(_), Some(_)) => {
-                return Err(reader.problem(Kind::Parse, "has both \"matrix\" and \"semi_axes\"; give one of them"));
+    /// The ellipsoid that an object is.
+    pub fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+        let center = fields.vector("center")?;
+        let form = match (fields.has("matrix"), fields.has("semi_axes")) {
+            (true, false) => EllipsoidForm::Matrix(fields.matrix("matrix")?),
+            (false, true) => {
+                let (semi_axes, rotation) = (fields.vector("semi_axes")?, fields.rotation("rotation")?);
+                EllipsoidForm::Axes { semi_axes, rotation }
             }
-            (None, None) => {
-                return Err(
-                    reader.problem(Kind::Parse, "needs \"matrix\", or \"semi_axes\" and if wanted \"rotation\"")
+            _ => {
+                let message = format!(
+                    "{} must have either \"matrix\", or \"semi_axes\" and if wanted \"rotation\"",
+                    fields.place()
                 );
+                return Err(Problem::new(Kind::Parse, message));
             }
         };
         Ok(Self { center, form })
@@ -151,7 +168,7 @@ impl EllipsoidSpec {
     /// The ellipsoid at a pose, which is written at `pose_place`.
     pub fn build_posed<V: Space>(&self, place: &str, pose: &Pose, pose_place: &str) -> Result<Ellipsoid<V>, Problem> {
         let body = self.wide::<V::Wide>().map_err(|why| Problem::invalid_shape(place, why))?;
-        body.posed(rotation_of::<V::Wide>(pose.rotation), vector(&pose.translation))
+        body.posed(rotation_of::<V::Wide>(pose.rotation.as_ref()), vector(&pose.translation))
             .and_then(round)
             .map_err(|why| Problem::invalid_shape(pose_place, why))
     }
@@ -161,7 +178,7 @@ impl EllipsoidSpec {
         match &self.form {
             EllipsoidForm::Matrix(matrix) => Ellipsoid::from_matrix(vector(&self.center), matrix_of_rows(matrix)),
             EllipsoidForm::Axes { semi_axes, rotation } => {
-                Ellipsoid::new(vector(&self.center), vector(semi_axes), rotation_of::<W>(*rotation))
+                Ellipsoid::new(vector(&self.center), vector(semi_axes), rotation_of::<W>(rotation.as_ref()))
             }
         }
     }
@@ -183,7 +200,7 @@ pub trait Space: Vector + Wedge {
     type Wide: Space<Scalar = f64>;
 
     /// The rotation, rounded to this precision; that of another dimension is a broken contract and gives none.
-    fn rotation(rotation: Rotation) -> Self::Rotation;
+    fn rotation(rotation: &Rotation) -> Self::Rotation;
 
     /// A cylinder or cone.
     ///
@@ -205,9 +222,9 @@ pub trait Space: Vector + Wedge {
 impl Space for DVec2 {
     type Wide = Self;
 
-    fn rotation(rotation: Rotation) -> f64 {
+    fn rotation(rotation: &Rotation) -> f64 {
         match rotation {
-            Rotation::Angle(angle) => angle,
+            Rotation::Angle(angle) => *angle,
             Rotation::Quaternion(_) => 0.0,
         }
     }
@@ -216,7 +233,7 @@ impl Space for DVec2 {
 impl Space for Vec2 {
     type Wide = DVec2;
 
-    fn rotation(rotation: Rotation) -> f32 {
+    fn rotation(rotation: &Rotation) -> f32 {
         f32::from_f64(DVec2::rotation(rotation))
     }
 }
@@ -224,10 +241,10 @@ impl Space for Vec2 {
 impl Space for DVec3 {
     type Wide = Self;
 
-    fn rotation(rotation: Rotation) -> glam::DQuat {
+    fn rotation(rotation: &Rotation) -> glam::DQuat {
         match rotation {
-            Rotation::Angle(_) => glam::DQuat::IDENTITY,
-            Rotation::Quaternion(q) => glam::DQuat::from_array(q),
+            Rotation::Quaternion(q) if q.len() == 4 => glam::DQuat::from_slice(q),
+            _ => glam::DQuat::IDENTITY,
         }
     }
 
@@ -246,7 +263,7 @@ impl Space for DVec3 {
 impl Space for Vec3A {
     type Wide = DVec3;
 
-    fn rotation(rotation: Rotation) -> glam::Quat {
+    fn rotation(rotation: &Rotation) -> glam::Quat {
         // Made unit in double precision, so that its length, whatever it is, survives the rounding.
         let q = glam::DVec4::from(DVec3::rotation(rotation));
         let unit = q / q.abs().max_element();
@@ -280,7 +297,7 @@ fn matrix_of_rows<M: Matrix>(rows: &[Coordinates; 3]) -> M {
 }
 
 /// The rotation, or none.
-pub fn rotation_of<V: Space>(rotation: Option<Rotation>) -> V::Rotation {
+pub fn rotation_of<V: Space>(rotation: Option<&Rotation>) -> V::Rotation {
     rotation.map_or_else(V::Rotation::default, V::rotation)
 }
 
@@ -310,7 +327,7 @@ impl Shape {
                 Box::new(Posed::translated(inner(of)?, vector(translation)).map_err(invalid)?)
             }
             Self::Posed { translation, rotation, of } => {
-                let rotation = rotation_of::<V>(*rotation);
+                let rotation = rotation_of::<V>(rotation.as_ref());
                 Box::new(Posed::new(inner(of)?, rotation, vector(translation)).map_err(invalid)?)
             }
             Self::Affine { matrix, translation, of } => {

@@ -1,0 +1,229 @@
+//! The fields of a JSON object, read by serde, with the place of whatever is wrong and the dimension of the query.
+
+use std::cell::OnceCell;
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
+
+use super::error::{Kind, Problem};
+
+/// A JSON object.
+pub type Object = Map<String, Value>;
+
+/// Up to three coordinates; those beyond the dimension of the query are zero.
+pub type Coordinates = [f64; 3];
+
+/// A rotation as written: an angle makes the query 2D, a quaternion 3D.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "expected an angle or a quaternion [x, y, z, w]")]
+pub enum Rotation {
+    /// Radians, counter-clockwise.
+    Angle(f64),
+    /// `[x, y, z, w]`, of any length but zero.
+    Quaternion(Vec<f64>),
+}
+
+/// The dimension of a query, and the first place that says so.
+#[derive(Debug, Default)]
+pub struct Dimension(OnceCell<(usize, String)>);
+
+impl Dimension {
+    /// The dimension that the vectors read so far have.
+    #[must_use]
+    pub fn known(&self) -> Option<usize> {
+        self.0.get().map(|(dimension, _)| *dimension)
+    }
+
+    /// Notes that what is at `place` belongs to a space of this dimension, and why it does.
+    fn note(&self, dimension: usize, place: &str, because: &str) -> Result<(), Problem> {
+        let (known, first) = self.0.get_or_init(|| (dimension, place.to_owned()));
+        if *known == dimension {
+            return Ok(());
+        }
+        let message = format!("{place} {because}, but {first} makes the query {known}D");
+        Err(Problem::new(Kind::DimensionMismatch, message))
+    }
+
+    /// Notes that the list at `place` has as many items as the space has dimensions.
+    fn count(&self, count: usize, place: &str, items: &str) -> Result<(), Problem> {
+        if !matches!(count, 2 | 3) {
+            let message = format!("{place} has {count} {items}, but a space has 2 or 3");
+            return Err(Problem::new(Kind::DimensionMismatch, message));
+        }
+        self.note(count, place, &format!("has {count} {items}"))
+    }
+
+    /// The vector at `place`.
+    fn vector(&self, numbers: &[f64], place: &str) -> Result<Coordinates, Problem> {
+        self.count(numbers.len(), place, "coordinates")?;
+        let mut coordinates = [0.0; 3];
+        coordinates[..numbers.len()].copy_from_slice(numbers);
+        Ok(coordinates)
+    }
+
+    fn vectors(&self, lists: &[Vec<f64>], place: &str) -> Result<Vec<Coordinates>, Problem> {
+        lists.iter().enumerate().map(|(i, numbers)| self.vector(numbers, &format!("{place}[{i}]"))).collect()
+    }
+}
+
+/// An object of the query, and where it is.
+#[derive(Clone, Debug)]
+pub struct Fields<'v> {
+    object: &'v Object,
+    /// As in `target.of[1]`; empty for the query itself.
+    place: String,
+    dimension: &'v Dimension,
+}
+
+/// The value at `place` as a `T`.
+fn typed<T: DeserializeOwned>(value: &Value, place: &str) -> Result<T, Problem> {
+    serde_path_to_error::deserialize(value).map_err(|why| {
+        let within = why.path().to_string();
+        let place = match within.as_str() {
+            "." => place.to_owned(),
+            item if item.starts_with('[') => format!("{place}{item}"),
+            field => format!("{place}.{field}"),
+        };
+        Problem::new(Kind::Parse, format!("{place}: {}", why.into_inner()))
+    })
+}
+
+impl<'v> Fields<'v> {
+    /// Those of a query.
+    #[must_use]
+    pub fn new(object: &'v Object, dimension: &'v Dimension) -> Self {
+        Self { object, place: String::new(), dimension }
+    }
+
+    /// Where the object is, as in `target.of[1]`.
+    #[must_use]
+    pub fn place(&self) -> &str {
+        &self.place
+    }
+
+    /// Where a field is.
+    #[must_use]
+    pub fn at(&self, key: &str) -> String {
+        if self.place.is_empty() { key.to_owned() } else { format!("{}.{key}", self.place) }
+    }
+
+    #[must_use]
+    pub fn has(&self, key: &str) -> bool {
+        self.object.contains_key(key)
+    }
+
+    fn value(&self, key: &str) -> Result<&'v Value, Problem> {
+        self.object.get(key).ok_or_else(|| {
+            let of = if self.place.is_empty() { String::new() } else { format!(" of {}", self.place) };
+            Problem::new(Kind::Parse, format!("the field {key:?}{of} is missing"))
+        })
+    }
+
+    /// A field that must be there.
+    pub fn get<T: DeserializeOwned>(&self, key: &str) -> Result<T, Problem> {
+        typed(self.value(key)?, &self.at(key))
+    }
+
+    /// A field that may be left out; null is no value.
+    pub fn maybe<T: DeserializeOwned>(&self, key: &str) -> Result<Option<T>, Problem> {
+        self.object.get(key).map(|value| typed(value, &self.at(key))).transpose()
+    }
+
+    /// A name out of a list, an error of this `kind` where it is another.
+    pub fn name<T: DeserializeOwned>(&self, key: &str, kind: Kind) -> Result<T, Problem> {
+        let found = self.get(key);
+        if self.object.get(key).is_some_and(Value::is_string) {
+            found.map_err(|why| Problem { kind, ..why })
+        } else {
+            found
+        }
+    }
+
+    /// A number that must be greater than zero, if it is there.
+    pub fn positive(&self, key: &str) -> Result<Option<f64>, Problem> {
+        match self.maybe(key)? {
+            Some(number) if number <= 0.0 => {
+                let message = format!("{} is {number}, but must be greater than zero", self.at(key));
+                Err(Problem::new(Kind::Parse, message))
+            }
+            number => Ok(number),
+        }
+    }
+
+    /// The object that a field is.
+    pub fn within(&self, key: &str) -> Result<Self, Problem> {
+        self.of(self.value(key)?, self.at(key))
+    }
+
+    /// The objects that a field lists.
+    pub fn each(&self, key: &str) -> Result<Vec<Self>, Problem> {
+        let Some(items) = self.value(key)?.as_array() else {
+            return Err(Problem::new(Kind::Parse, format!("{}: expected a list of objects", self.at(key))));
+        };
+        items.iter().enumerate().map(|(i, item)| self.of(item, format!("{}[{i}]", self.at(key)))).collect()
+    }
+
+    fn of(&self, value: &'v Value, place: String) -> Result<Self, Problem> {
+        match value {
+            Value::Object(object) => Ok(Self { object, place, dimension: self.dimension }),
+            _ => Err(Problem::new(Kind::Parse, format!("{place}: expected an object, but it is {value:.40}"))),
+        }
+    }
+
+    /// A vector of the space of the query.
+    pub fn vector(&self, key: &str) -> Result<Coordinates, Problem> {
+        self.dimension.vector(&self.get::<Vec<f64>>(key)?, &self.at(key))
+    }
+
+    /// The same, zero where it is left out.
+    pub fn vector_or_zero(&self, key: &str) -> Result<Coordinates, Problem> {
+        if self.has(key) { self.vector(key) } else { Ok([0.0; 3]) }
+    }
+
+    /// Vectors of the space of the query.
+    pub fn vectors(&self, key: &str) -> Result<Vec<Coordinates>, Problem> {
+        self.dimension.vectors(&self.get::<Vec<Vec<f64>>>(key)?, &self.at(key))
+    }
+
+    /// So many vectors.
+    pub fn corners<const N: usize>(&self, key: &str) -> Result<[Coordinates; N], Problem> {
+        let points = self.vectors(key)?;
+        let count = points.len();
+        points.try_into().map_err(|_| {
+            Problem::new(Kind::InvalidShape, format!("{} must be {N} points, but there are {count}", self.at(key)))
+        })
+    }
+
+    /// A square matrix of the space of the query, as a list of rows.
+    pub fn matrix(&self, key: &str) -> Result<[Coordinates; 3], Problem> {
+        let rows = self.vectors(key)?;
+        self.dimension.count(rows.len(), &self.at(key), "rows")?;
+        let mut matrix = [[0.0; 3]; 3];
+        matrix[..rows.len()].copy_from_slice(&rows);
+        Ok(matrix)
+    }
+
+    /// A rotation of the space of the query, if it is there.
+    pub fn rotation(&self, key: &str) -> Result<Option<Rotation>, Problem> {
+        let rotation = self.maybe(key)?;
+        let place = self.at(key);
+        match &rotation {
+            None => {}
+            Some(Rotation::Angle(_)) => self.dimension.note(2, &place, "is an angle, which is 2D")?,
+            Some(Rotation::Quaternion(numbers)) if numbers.len() == 4 => {
+                self.dimension.note(3, &place, "is a quaternion, which is 3D")?;
+            }
+            Some(Rotation::Quaternion(numbers)) => {
+                let message = format!("{place} has {} numbers, but a quaternion [x, y, z, w] has 4", numbers.len());
+                return Err(Problem::new(Kind::DimensionMismatch, message));
+            }
+        }
+        Ok(rotation)
+    }
+
+    /// Notes that the object is 3D, being what it is.
+    pub fn is_3d(&self, what: &str) -> Result<(), Problem> {
+        self.dimension.note(3, &self.place, &format!("is a {what}, which is 3D"))
+    }
+}
