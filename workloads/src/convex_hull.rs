@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use crate::real::Real;
 use crate::vec3::{Vec3, cross, dot, norm, scale, sub};
 
 /// The plane `{ x : normal·x = offset }`, with the hull on its lower side.
@@ -14,11 +15,13 @@ pub(crate) struct Plane {
 /// The triangular facets of the hull of at least four points in general position, counter-clockwise from outside.
 ///
 /// The first four points make a tetrahedron. Each further point that sees some of the facets replaces them by the
-/// triangles between itself and the horizon, `[a, b, point]` for the horizon's edge `a → b`.
-pub(crate) fn facets(points: &[Vec3]) -> Vec<[usize; 3]> {
+/// triangles between itself and the horizon, `[a, b, point]` for the horizon's edge `a → b`. What a point sees is computed
+/// in numbers of the type `R`.
+#[must_use]
+pub fn facets<R: Real>(points: &[Vec3]) -> Vec<[usize; 3]> {
     let sees = |facet: [usize; 3], p: Vec3| {
-        let [a, b, c] = facet.map(|i| points[i]);
-        dot(cross(sub(b, a), sub(c, a)), sub(p, a)) > 0.0
+        let [a, b, c] = facet.map(|i| points[i].map(R::from));
+        dot(cross(sub(b, a), sub(c, a)), sub(p.map(R::from), a)) > R::from(0.0)
     };
     let center = [0, 1, 2].map(|k| (points[0][k] + points[1][k] + points[2][k] + points[3][k]) / 4.0);
     let mut facets: Vec<[usize; 3]> = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]
@@ -42,5 +45,5 @@ pub(crate) fn planes(points: &[Vec3]) -> Vec<Plane> {
         let normal = scale(normal, 1.0 / norm(normal));
         Plane { normal, offset: dot(normal, a) }
     };
-    facets(points).into_iter().map(plane).collect()
+    facets::<f64>(points).into_iter().map(plane).collect()
 }

@@ -10,14 +10,16 @@
 //! - [`w3_distance`], [`w3b_intersect`]: two bodies, with their distance by construction.
 //! - [`w4_enclosing`]: points to be enclosed by an ellipsoid.
 //! - [`w5_margin`]: pairs of ellipsoids.
+//! - [`line_entry`], [`convex_hull`], [`real`]: truths in closed form, in doubles or in thirty digits.
 //! - [`score`]: answers compared with the truth.
 //! - [`provenance`]: where and when a measurement was made.
 
-mod convex_hull;
+pub mod convex_hull;
 pub mod digest;
-mod line_entry;
+pub mod line_entry;
 pub mod pairs;
 pub mod provenance;
+pub mod real;
 mod reference;
 pub mod rng;
 pub mod score;

@@ -1,6 +1,7 @@
-//! Where a line enters a shape, in closed form: the true answers of the ray casts.
+//! Where a line enters a shape, in closed form, in doubles or in sums of two doubles.
 
 use crate::convex_hull::{Plane, planes};
+use crate::real::Real;
 use crate::shapes::Shape;
 use crate::vec3::{Vec3, add, dot, scale, sub};
 
@@ -25,62 +26,80 @@ impl<'a> LineEntry<'a> {
     pub(crate) fn entry(&self, o: Vec3, d: Vec3, size: f64) -> Option<f64> {
         let closest = -dot(o, d) / dot(d, d);
         let p = add(o, scale(d, closest));
-        let from_closest = match *self.shape {
-            Shape::Ball { radius } => ball(p, d, radius * size),
-            Shape::Cuboid { half_extents } => cuboid(p, d, scale(half_extents, size)),
-            Shape::Cylinder { half_height, radius } => cylinder(p, d, 1, half_height * size, radius * size),
-            Shape::Cone { half_height, radius } => cone(p, d, half_height * size, radius * size),
-            Shape::Capsule { half_height, radius } => capsule(p, d, half_height * size, radius * size),
-            Shape::Ellipsoid { semi_axes } => {
-                let [a, b, c] = scale(semi_axes, size);
-                ball([p[0] / a, p[1] / b, p[2] / c], [d[0] / a, d[1] / b, d[2] / c], 1.0)
-            }
+        let from_closest = match self.shape {
             Shape::Hull { .. } => hull(p, d, &self.facets, size),
-            Shape::RoundBox { half_extents, radius } => round_box(p, d, scale(half_extents, size), radius * size),
+            shape => entry(shape, p, d, size),
         }?;
         Some(closest + from_closest)
     }
 }
 
+/// The smallest `λ` with `p + λ·d` in the shape scaled by `size`; `None` if the line misses it, and for hulls, whose planes are
+/// not part of them.
+pub fn entry<R: Real>(shape: &Shape, p: Vec3<R>, d: Vec3<R>, size: f64) -> Option<R> {
+    let g = |x: f64| R::from(x) * R::from(size);
+    match *shape {
+        Shape::Ball { radius } => ball(p, d, g(radius)),
+        Shape::Cuboid { half_extents } => cuboid(p, d, half_extents.map(g)),
+        Shape::Cylinder { half_height, radius } => cylinder(p, d, 1, g(half_height), g(radius)),
+        Shape::Cone { half_height, radius } => cone(p, d, g(half_height), g(radius)),
+        Shape::Capsule { half_height, radius } => capsule(p, d, 1, g(half_height), g(radius)),
+        Shape::Ellipsoid { semi_axes } => {
+            let unit = |v: Vec3<R>| [0, 1, 2].map(|i| v[i] / g(semi_axes[i]));
+            ball(unit(p), unit(d), R::from(1.0))
+        }
+        Shape::RoundBox { half_extents, radius } => round_box(p, d, half_extents.map(g), g(radius)),
+        Shape::Hull { .. } => None,
+    }
+}
+
 /// From the point of the line closest to the centre, half a chord back.
-fn ball(p: Vec3, d: Vec3, radius: f64) -> Option<f64> {
+fn ball<R: Real>(p: Vec3<R>, d: Vec3<R>, radius: R) -> Option<R> {
     let a = dot(d, d);
     let closest = -dot(p, d) / a;
     let q = add(p, scale(d, closest));
     let square = radius * radius - dot(q, q);
-    (square >= 0.0).then(|| closest - (square / a).sqrt())
-}
-
-/// The latest entry into the three slabs, if it precedes the earliest exit.
-fn cuboid(p: Vec3, d: Vec3, half: Vec3) -> Option<f64> {
-    let slabs = [0, 1, 2].map(|i| slab(p[i], d[i], half[i]));
-    let entry = slabs.iter().fold(f64::NEG_INFINITY, |latest, slab| latest.max(slab.0));
-    let exit = slabs.iter().fold(f64::INFINITY, |earliest, slab| earliest.min(slab.1));
-    (entry <= exit).then_some(entry)
+    (square >= R::from(0.0)).then(|| closest - (square / a).sqrt())
 }
 
 /// Where `|p + λ·d| ≤ half` begins and ends.
-fn slab(p: f64, d: f64, half: f64) -> (f64, f64) {
+fn slab<R: Real>(p: R, d: R, half: R) -> (R, R) {
+    if d == R::from(0.0) {
+        let everywhere = R::from(f64::MAX);
+        return if p.abs() <= half { (-everywhere, everywhere) } else { (everywhere, -everywhere) };
+    }
     let (low, high) = ((-half - p) / d, (half - p) / d);
     (low.min(high), low.max(high))
 }
 
+/// The box about the origin: the latest entry into the three slabs, if it precedes the earliest exit.
+#[must_use]
+pub fn cuboid<R: Real>(p: Vec3<R>, d: Vec3<R>, half: Vec3<R>) -> Option<R> {
+    let [x, y, z] = [0, 1, 2].map(|i| slab(p[i], d[i], half[i]));
+    let (entry, exit) = (x.0.max(y.0).max(z.0), x.1.min(y.1).min(z.1));
+    (entry <= exit).then_some(entry)
+}
+
 /// Both roots of `aλ² + 2bλ + c`, the smaller first if `a > 0`, neither by a difference of like numbers.
-fn roots(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
+fn roots<R: Real>(a: R, b: R, c: R) -> Option<(R, R)> {
+    let zero = R::from(0.0);
     let discriminant = b * b - a * c;
-    if discriminant < 0.0 {
+    if discriminant < zero {
         return None;
     }
     let root = discriminant.sqrt();
-    Some(if b > 0.0 { ((-b - root) / a, c / (-b - root)) } else { (c / (-b + root), (-b + root) / a) })
+    Some(if b > zero { ((-b - root) / a, c / (-b - root)) } else { (c / (root - b), (root - b) / a) })
 }
 
 /// The cylinder about the given coordinate axis.
-fn cylinder(p: Vec3, d: Vec3, axis: usize, half_height: f64, radius: f64) -> Option<f64> {
+fn cylinder<R: Real>(p: Vec3<R>, d: Vec3<R>, axis: usize, half_height: R, radius: R) -> Option<R> {
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-    let round =
-        roots(d[i] * d[i] + d[j] * d[j], p[i] * d[i] + p[j] * d[j], p[i] * p[i] + p[j] * p[j] - radius * radius)?;
+    let (a, c) = (d[i] * d[i] + d[j] * d[j], p[i] * p[i] + p[j] * p[j] - radius * radius);
     let flat = slab(p[axis], d[axis], half_height);
+    if a == R::from(0.0) {
+        return (c <= a).then_some(flat.0);
+    }
+    let round = roots(a, p[i] * d[i] + p[j] * d[j], c)?;
     let (entry, exit) = (round.0.max(flat.0), round.1.min(flat.1));
     (entry <= exit).then_some(entry)
 }
@@ -89,7 +108,7 @@ fn cylinder(p: Vec3, d: Vec3, axis: usize, half_height: f64, radius: f64) -> Opt
 ///
 /// With `w` the depth below the apex and `k` the slope of the side, the double cone is `x² + z² = k²w²`; of its two roots
 /// only those between base and apex belong to the cone.
-fn cone(p: Vec3, d: Vec3, half_height: f64, radius: f64) -> Option<f64> {
+fn cone<R: Real>(p: Vec3<R>, d: Vec3<R>, half_height: R, radius: R) -> Option<R> {
     let slope = radius / (half_height + half_height);
     let (k2, w) = (slope * slope, half_height - p[1]);
     let side = roots(
@@ -97,17 +116,23 @@ fn cone(p: Vec3, d: Vec3, half_height: f64, radius: f64) -> Option<f64> {
         p[0] * d[0] + p[2] * d[2] + k2 * w * d[1],
         p[0] * p[0] + p[2] * p[2] - k2 * w * w,
     );
-    let on_side = side.into_iter().flat_map(|(s, t)| [s, t]).filter(|t| (p[1] + t * d[1]).abs() <= half_height);
+    let on_side = side.into_iter().flat_map(|(s, t)| [s, t]).filter(|&t| (p[1] + t * d[1]).abs() <= half_height);
     let base = (-half_height - p[1]) / d[1];
     let [x, _, z] = add(p, scale(d, base));
     let on_base = (x * x + z * z <= radius * radius).then_some(base);
-    on_side.chain(on_base).reduce(f64::min)
+    on_side.chain(on_base).reduce(Real::min)
 }
 
-/// The union of a cylinder and two balls.
-fn capsule(p: Vec3, d: Vec3, half_height: f64, radius: f64) -> Option<f64> {
-    let end = |y: f64| ball(sub(p, [0.0, y, 0.0]), d, radius);
-    [cylinder(p, d, 1, half_height, radius), end(half_height), end(-half_height)].into_iter().flatten().reduce(f64::min)
+/// The union of a cylinder and two balls, about the given coordinate axis.
+#[must_use]
+pub fn capsule<R: Real>(p: Vec3<R>, d: Vec3<R>, axis: usize, half_height: R, radius: R) -> Option<R> {
+    let end = |height: R| {
+        let mut center = [R::from(0.0); 3];
+        center[axis] = height;
+        ball(sub(p, center), d, radius)
+    };
+    let parts = [cylinder(p, d, axis, half_height, radius), end(half_height), end(-half_height)];
+    parts.into_iter().flatten().reduce(Real::min)
 }
 
 /// The latest entry into the half-spaces, if it precedes the earliest exit.
@@ -126,25 +151,19 @@ fn hull(p: Vec3, d: Vec3, facets: &[Plane], size: f64) -> Option<f64> {
     (entry <= exit).then_some(entry)
 }
 
-/// The union of three boxes, twelve cylinders and eight balls.
-fn round_box(p: Vec3, d: Vec3, half: Vec3, radius: f64) -> Option<f64> {
-    const SIGNS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
-    let mut parts = Vec::with_capacity(23);
+/// The union of three boxes and twelve capsules.
+fn round_box<R: Real>(p: Vec3<R>, d: Vec3<R>, half: Vec3<R>, radius: R) -> Option<R> {
+    let mut parts = Vec::with_capacity(15);
     for axis in 0..3 {
         let mut widened = half;
-        widened[axis] += radius;
+        widened[axis] = widened[axis] + radius;
         parts.push(cuboid(p, d, widened));
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        for [s, t] in SIGNS {
-            let mut edge = [0.0; 3];
-            (edge[i], edge[j]) = (s * half[i], t * half[j]);
-            parts.push(cylinder(sub(p, edge), d, axis, half[axis], radius));
+        for (s, t) in [(half[i], half[j]), (half[i], -half[j]), (-half[i], half[j]), (-half[i], -half[j])] {
+            let mut edge = [R::from(0.0); 3];
+            (edge[i], edge[j]) = (s, t);
+            parts.push(capsule(sub(p, edge), d, axis, half[axis], radius));
         }
     }
-    for side in [1.0, -1.0] {
-        for [s, t] in SIGNS {
-            parts.push(ball(sub(p, [side * half[0], s * half[1], t * half[2]]), d, radius));
-        }
-    }
-    parts.into_iter().flatten().reduce(f64::min)
+    parts.into_iter().flatten().reduce(Real::min)
 }

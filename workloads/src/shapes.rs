@@ -1,5 +1,9 @@
 //! The eleven shapes of the workloads, as plain numbers.
 
+use convex_support::{
+    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Rounded, Scalar, SupportMap, Vector3,
+};
+
 use crate::rng::{Rng, round_to_f32};
 use crate::vec3::{Vec3, add, dot, scale};
 
@@ -71,7 +75,7 @@ pub const SHAPE_NAMES: [&str; 11] = [
     "roundbox",
 ];
 
-/// The points of `hull16`, `hull64`, `hull256` and `hull1024`: `count` of them on an ellipsoid, exact in `f32`.
+/// The points of `hull16`, `hull64` and so on: `count` of them on an ellipsoid, exact in `f32`.
 #[must_use]
 pub fn hull_points(count: u16) -> Vec<Vec3> {
     let mut rng = Rng::new(100 + u64::from(count));
@@ -83,7 +87,7 @@ impl Shape {
     /// The shape of that name.
     ///
     /// # Panics
-    /// If it is none of [`SHAPE_NAMES`].
+    /// If it is none of [`SHAPE_NAMES`], and no hull of another number of points.
     #[must_use]
     pub fn named(name: &str) -> Self {
         match name {
@@ -93,12 +97,11 @@ impl Shape {
             "cone" => Self::Cone { half_height: 0.75, radius: 0.625 },
             "capsule" => Self::Capsule { half_height: 0.625, radius: 0.375 },
             "ellipsoid" => Self::Ellipsoid { semi_axes: [1.0, 0.5, 0.1] },
-            "hull16" => Self::Hull { points: hull_points(16) },
-            "hull64" => Self::Hull { points: hull_points(64) },
-            "hull256" => Self::Hull { points: hull_points(256) },
-            "hull1024" => Self::Hull { points: hull_points(1024) },
             "roundbox" => Self::RoundBox { half_extents: [0.75, 0.375, 0.125], radius: 0.125 },
-            _ => panic!("no shape is called {name:?}: there are {SHAPE_NAMES:?}"),
+            _ => match name.strip_prefix("hull").and_then(|count| count.parse().ok()) {
+                Some(count) => Self::Hull { points: hull_points(count) },
+                None => panic!("no shape is called {name:?}: there are {SHAPE_NAMES:?}"),
+            },
         }
     }
 
@@ -115,6 +118,55 @@ impl Shape {
             Self::Ellipsoid { semi_axes } => semi_axes,
             Self::Hull { .. } => [1.0, 0.8, 0.6],
             Self::RoundBox { half_extents, radius } => add(half_extents, [radius; 3]),
+        }
+    }
+
+    /// The shape whose every number is what `f` makes of it.
+    #[must_use]
+    pub fn map(&self, f: impl Fn(f64) -> f64) -> Self {
+        match self {
+            Self::Ball { radius } => Self::Ball { radius: f(*radius) },
+            Self::Cuboid { half_extents } => Self::Cuboid { half_extents: half_extents.map(f) },
+            Self::Cylinder { half_height, radius } => {
+                Self::Cylinder { half_height: f(*half_height), radius: f(*radius) }
+            }
+            Self::Cone { half_height, radius } => Self::Cone { half_height: f(*half_height), radius: f(*radius) },
+            Self::Capsule { half_height, radius } => Self::Capsule { half_height: f(*half_height), radius: f(*radius) },
+            Self::Ellipsoid { semi_axes } => Self::Ellipsoid { semi_axes: semi_axes.map(f) },
+            Self::Hull { points } => Self::Hull { points: points.iter().map(|point| point.map(&f)).collect() },
+            Self::RoundBox { half_extents, radius } => {
+                Self::RoundBox { half_extents: half_extents.map(&f), radius: f(*radius) }
+            }
+        }
+    }
+
+    /// The shape as one of `convex-support`, its numbers rounded to the precision of `V`. A hull scans all of its points.
+    ///
+    /// # Panics
+    /// If its numbers are out of the range of that precision.
+    #[must_use]
+    pub fn build<V: Vector3>(&self) -> Box<dyn SupportMap<Vector = V> + Send + Sync> {
+        const VALID: &str = "the numbers are positive, and in the range of the precision";
+        let s = V::Scalar::from_f64;
+        let vector = |v: Vec3| V::from_fn(|i| s(v[i]));
+        match self {
+            Self::Ball { radius } => Box::new(Ball::<V>::new(s(*radius)).expect(VALID)),
+            Self::Cuboid { half_extents } => Box::new(Cuboid::<V>::new(vector(*half_extents)).expect(VALID)),
+            Self::Cylinder { half_height, radius } => {
+                Box::new(Cylinder::<V>::new(s(*half_height), s(*radius)).expect(VALID))
+            }
+            Self::Cone { half_height, radius } => Box::new(Cone::<V>::new(s(*half_height), s(*radius)).expect(VALID)),
+            Self::Capsule { half_height, radius } => {
+                Box::new(Capsule::<V>::new(s(*half_height), s(*radius)).expect(VALID))
+            }
+            Self::Ellipsoid { semi_axes } => {
+                Box::new(Ellipsoid::<V>::new(V::ZERO, vector(*semi_axes), V::Rotation::default()).expect(VALID))
+            }
+            Self::Hull { points } => Box::new(Polytope::<V>::new(points.iter().map(|&p| vector(p))).expect(VALID)),
+            Self::RoundBox { half_extents, radius } => {
+                let core = Cuboid::<V>::new(vector(*half_extents)).expect(VALID);
+                Box::new(Rounded::new(core, s(*radius)).expect(VALID))
+            }
         }
     }
 

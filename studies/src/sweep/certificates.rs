@@ -12,9 +12,9 @@ use workloads::rng::Rng;
 use super::judge::{Cast, Proof, judge_intersection};
 use super::obstacle::{Known, Obstacle};
 use super::questions::{BODIES, FINITE, PAIRS, apart, pair, ray};
-use super::real::norm;
 use super::solid::{Form, Solid, rounded, vector};
 use super::{Question, Row};
+use workloads::vec3::norm;
 
 /// Queries that share bodies.
 const PER_SCENE: u64 = 200;

@@ -1,8 +1,8 @@
 //! Polytopes as tables of planes.
 
-use std::collections::BTreeSet;
-
-use super::real::{DoubleDouble, Real, Vec3, cross, dot, narrow, norm, scale, sub, wide};
+use workloads::convex_hull::facets;
+use workloads::real::{DoubleDouble, Real};
+use workloads::vec3::{Vec3, cross, dot, narrow, norm, scale, sub, wide};
 
 /// A half-space `normal·y ≤ offset` that touches a polytope, with a unit normal but for rounding.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +22,7 @@ impl Plane {
 #[derive(Clone, Debug)]
 pub(super) struct Planes {
     exact: Vec<Plane>,
-    rounded: Vec<(Vec3<f64>, f64)>,
+    rounded: Vec<(Vec3, f64)>,
     size: f64,
 }
 
@@ -67,7 +67,7 @@ impl Planes {
         let (at_entry, at_exit) = ([0, 1, 2].map(|i| x[i] + r[i] * entry), [0, 1, 2].map(|i| x[i] + r[i] * exit));
         let (mut first, mut last) = (DoubleDouble::from(f64::NEG_INFINITY), DoubleDouble::from(f64::INFINITY));
         for (plane, &(normal, offset)) in self.exact.iter().zip(&self.rounded) {
-            let is_near = |at: Vec3<f64>| (offset * growth - dot(normal, at)).abs() <= slack;
+            let is_near = |at: Vec3| (offset * growth - dot(normal, at)).abs() <= slack;
             if !(is_near(at_entry) || is_near(at_exit)) {
                 continue;
             }
@@ -89,20 +89,19 @@ impl Planes {
 /// The convex hull of points in general position.
 #[derive(Clone, Debug)]
 pub(super) struct Hull {
-    pub(super) vertices: Vec<Vec3<f64>>,
     pub(super) skeleton: Skeleton,
     pub(super) planes: Planes,
 }
 
 impl Hull {
-    pub(super) fn of(points: Vec<Vec3<f64>>) -> Self {
-        let facets = facets(&points);
+    pub(super) fn of(points: &[Vec3]) -> Self {
+        let facets = facets::<DoubleDouble>(points);
         let vertices: Vec<_> = points.iter().map(|&v| wide(v)).collect();
-        let normals: Vec<_> = facets.iter().map(|facet| normal(&points, *facet)).collect();
+        let normals: Vec<_> = facets.iter().map(|facet| normal(points, *facet)).collect();
         let edges = facets.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).filter(|(a, b)| a < b);
         let edges = edges.map(|(a, b)| [vertices[a], sub(vertices[b], vertices[a])]).collect();
         let planes: Vec<_> = normals.iter().map(|&n| Plane::new(n, |n| support_value(&vertices, n))).collect();
-        Self { vertices: points, skeleton: Skeleton { vertices, normals, edges }, planes: Planes::from(planes) }
+        Self { skeleton: Skeleton { vertices, normals, edges }, planes: Planes::from(planes) }
     }
 
     pub(super) fn support_value(&self, n: Vec3<DoubleDouble>) -> DoubleDouble {
@@ -121,31 +120,9 @@ fn support_value(vertices: &[Vec3<DoubleDouble>], n: Vec3<DoubleDouble>) -> Doub
     close.map(|&v| dot(v, n)).fold(DoubleDouble::from(f64::NEG_INFINITY), Real::max)
 }
 
-fn normal(vertices: &[Vec3<f64>], [a, b, c]: [usize; 3]) -> Vec3<DoubleDouble> {
-    let [a, b, c] = [a, b, c].map(|i| wide(vertices[i]));
+fn normal(vertices: &[Vec3], facet: [usize; 3]) -> Vec3<DoubleDouble> {
+    let [a, b, c] = facet.map(|i| wide(vertices[i]));
     cross(sub(b, a), sub(c, a))
-}
-
-/// The triangular facets, counter-clockwise from outside, by incremental insertion.
-///
-/// The first four points make a tetrahedron. Each further point that sees some of the facets replaces them by the
-/// triangles between itself and the horizon, `[a, b, point]` for the horizon's edge `a → b`.
-fn facets(points: &[Vec3<f64>]) -> Vec<[usize; 3]> {
-    let sees = |facet: [usize; 3], p: Vec3<DoubleDouble>| {
-        dot(normal(points, facet), sub(p, wide(points[facet[0]]))) > DoubleDouble::from(0.0)
-    };
-    let center = [0, 1, 2].map(|k| (points[0][k] + points[1][k] + points[2][k] + points[3][k]) / 4.0);
-    let mut facets: Vec<[usize; 3]> = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]
-        .into_iter()
-        .map(|[a, b, c]| if sees([a, b, c], wide(center)) { [a, c, b] } else { [a, b, c] })
-        .collect();
-    for (i, &point) in points.iter().enumerate().skip(4) {
-        let visible: Vec<_> = facets.extract_if(.., |facet| sees(*facet, wide(point))).collect();
-        let edges: BTreeSet<_> = visible.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).collect();
-        let horizon = edges.iter().filter(|&&(a, b)| !edges.contains(&(b, a)));
-        facets.extend(horizon.map(|&(a, b)| [a, b, i]));
-    }
-    facets
 }
 
 /// A polytope as seen from the world: what spans its boundary.
@@ -175,7 +152,7 @@ pub(super) fn difference(a: &Skeleton, b: &Skeleton) -> Planes {
     let vertices = |s: &Skeleton| s.vertices.iter().map(|&v| narrow(v)).collect::<Vec<_>>();
     let (of_a, of_b) = (vertices(a), vertices(b));
     let size = of_a.iter().chain(&of_b).map(|&v| norm(v)).fold(0.0, f64::max);
-    let is_farthest = |start: Vec3<DoubleDouble>, n: Vec3<f64>, all: &[Vec3<f64>]| {
+    let is_farthest = |start: Vec3<DoubleDouble>, n: Vec3, all: &[Vec3]| {
         let reach = dot(narrow(start), n) + 1e-9 * size * norm(n);
         all.iter().all(|&v| dot(v, n) <= reach)
     };

@@ -8,8 +8,9 @@ use convex_support::{Scalar, Vector3};
 use gjk_raycast::{Distance, Intersection, LinearCast, Outcome, RayCast, Status};
 
 use super::obstacle::Obstacle;
-use super::real::{DoubleDouble, Real, Vec3, add, dot, norm, scale, sub, wide};
 use super::solid::{Solid, coordinates};
+use workloads::real::{DoubleDouble, Real};
+use workloads::vec3::{Vec3, add, dot, norm, scale, sub, wide};
 
 /// What is wrong with an answer, and how wrong.
 #[derive(Clone, Copy, Debug, Default)]
@@ -49,11 +50,11 @@ pub(super) enum CastOutcome {
     /// `excess` is how far the point of contact is from the bodies.
     Hit {
         lambda: f64,
-        normal: Option<Vec3<f64>>,
+        normal: Option<Vec3>,
         excess: f64,
     },
     Miss {
-        axis: Vec3<f64>,
+        axis: Vec3,
     },
     Undecided,
 }
@@ -69,12 +70,7 @@ const STEEP: f64 = 0.3;
 const GRAZE: f64 = 64.0;
 
 impl Cast {
-    pub(super) fn of_ray<V: Vector3>(
-        source: Vec3<f64>,
-        direction: Vec3<f64>,
-        max_lambda: f64,
-        cast: &RayCast<V>,
-    ) -> Self {
+    pub(super) fn of_ray<V: Vector3>(source: Vec3, direction: Vec3, max_lambda: f64, cast: &RayCast<V>) -> Self {
         let outcome = match cast.outcome {
             Outcome::Hit(hit) => {
                 CastOutcome::Hit { lambda: hit.lambda.as_f64(), normal: hit.normal.map(coordinates), excess: 0.0 }
@@ -97,15 +93,15 @@ impl Cast {
     /// The same question on the obstacle: `A + t·v_A` and `B + t·v_B` meet where `t·(v_B − v_A)` is in `A − B`.
     pub(super) fn of_motion<V: Vector3>(
         [a, b]: [&Solid; 2],
-        [velocity_a, velocity_b]: [Vec3<f64>; 2],
+        [velocity_a, velocity_b]: [Vec3; 2],
         max_time: f64,
         cast: &LinearCast<V>,
     ) -> Self {
-        let minus = |v: Vec3<f64>| v.map(|c| -c);
+        let minus = |v: Vec3| v.map(|c| -c);
         let outcome = match cast.outcome {
             Outcome::Hit(hit) => {
                 let (point, time) = (wide(coordinates(hit.point)), DoubleDouble::from(hit.time.as_f64()));
-                let seen = |velocity: Vec3<f64>| sub(point, scale(wide(velocity), time));
+                let seen = |velocity: Vec3| sub(point, scale(wide(velocity), time));
                 CastOutcome::Hit {
                     lambda: hit.time.as_f64(),
                     normal: hit.normal.map(|n| minus(coordinates(n))),
@@ -128,7 +124,7 @@ impl Cast {
     }
 
     /// The same ray, seen from a place.
-    pub(super) fn relative_to(mut self, place: Vec3<f64>) -> Self {
+    pub(super) fn relative_to(mut self, place: Vec3) -> Self {
         self.source = sub(self.source, wide(place));
         self
     }
@@ -276,7 +272,7 @@ pub(super) fn judge_intersection<V: Vector3>([a, b]: [&Solid; 2], answer: &Inter
 }
 
 /// How far apart the planes of support across `n` are, from `b`'s to `a`'s: no more than the bodies are.
-fn gap_along([a, b]: [&Solid; 2], n: Vec3<f64>) -> DoubleDouble {
+fn gap_along([a, b]: [&Solid; 2], n: Vec3) -> DoubleDouble {
     let n = wide(n);
     let between = dot(n, sub(wide(a.translation), wide(b.translation)));
     (between - a.support_value(n.map(|c| -c)) - b.support_value(n)) / norm(n)

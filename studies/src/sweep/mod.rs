@@ -9,7 +9,6 @@ mod hull;
 mod judge;
 mod obstacle;
 mod questions;
-mod real;
 mod row;
 mod solid;
 

@@ -1,8 +1,12 @@
 //! The configuration space obstacle of two bodies, as far as it has a closed form.
 
+use workloads::line_entry::{capsule, cuboid};
+use workloads::real::{DoubleDouble, Real};
+use workloads::shapes::Shape;
+use workloads::vec3::{Vec3, cross, dot, norm, scale, sub};
+
 use super::hull::{Planes, difference};
-use super::real::{DoubleDouble, Real, Vec3, cross, dot, norm, scale, sub};
-use super::solid::{Form, Solid, capsule, cuboid};
+use super::solid::{Form, Solid};
 
 /// `A − B` relative to the difference of the places of `A` and `B`; or `A` alone, if there is no `B`.
 #[derive(Clone, Copy, Debug)]
@@ -36,20 +40,20 @@ impl Known {
     /// The difference of two, wherever they are, if it has a closed form.
     pub(super) fn of(a: &Solid, b: &Solid) -> Option<Self> {
         let upright = |s: &Solid, half_height: f64| s.turned([0.0, half_height, 0.0].map(DoubleDouble::from));
-        match (&a.form, &b.form) {
-            (Form::Ball { radius }, other) => swept(other, *radius).map(Self::LikeB),
-            (other, Form::Ball { radius }) => swept(other, *radius).map(Self::LikeA),
-            (Form::Capsule { half_height: h_a, radius: r_a }, Form::Capsule { half_height: h_b, radius: r_b }) => {
+        match (&a.form.shape, &b.form.shape) {
+            (Shape::Ball { radius }, other) => swept(other, *radius).map(Self::LikeB),
+            (other, Shape::Ball { radius }) => swept(other, *radius).map(Self::LikeA),
+            (Shape::Capsule { half_height: h_a, radius: r_a }, Shape::Capsule { half_height: h_b, radius: r_b }) => {
                 Some(Self::Parallelogram {
                     u: upright(a, *h_a),
                     w: upright(b, *h_b),
                     radius: DoubleDouble::from(*r_a) + DoubleDouble::from(*r_b),
                 })
             }
-            (Form::Cylinder { half_height: h_a, radius: r_a }, Form::Cylinder { half_height: h_b, radius: r_b })
+            (Shape::Cylinder { half_height: h_a, radius: r_a }, Shape::Cylinder { half_height: h_b, radius: r_b })
                 if a.rotation == b.rotation =>
             {
-                Some(Self::LikeA(Form::Cylinder { half_height: h_a + h_b, radius: r_a + r_b }))
+                Some(Self::LikeA(Shape::Cylinder { half_height: h_a + h_b, radius: r_a + r_b }.into()))
             }
             _ => Some(Self::Polytope(difference(&a.skeleton()?, &b.skeleton()?))),
         }
@@ -85,7 +89,7 @@ impl<'a> Obstacle<'a> {
     }
 
     /// Half the size of its bounding box, for aiming at it.
-    pub(super) fn bounds(&self) -> Vec3<f64> {
+    pub(super) fn bounds(&self) -> Vec3 {
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|n| self.support_value(n.map(DoubleDouble::from)).f64())
     }
 
@@ -95,15 +99,16 @@ impl<'a> Obstacle<'a> {
     }
 }
 
-/// The form swept by a ball, and mirrored about the origin, which changes none of these.
-fn swept(form: &Form, by: f64) -> Option<Form> {
-    match *form {
-        Form::Ball { radius } => Some(Form::Ball { radius: radius + by }),
-        Form::Capsule { half_height, radius } => Some(Form::Capsule { half_height, radius: radius + by }),
-        Form::Cuboid { half_extents } => Some(Form::RoundBox { half_extents, radius: by }),
-        Form::RoundBox { half_extents, radius } => Some(Form::RoundBox { half_extents, radius: radius + by }),
-        Form::Cylinder { .. } | Form::Cone { .. } | Form::Ellipsoid { .. } | Form::Hull(_) => None,
-    }
+/// The shape swept by a ball, and mirrored about the origin, which changes none of these.
+fn swept(shape: &Shape, by: f64) -> Option<Form> {
+    let swept = match *shape {
+        Shape::Ball { radius } => Shape::Ball { radius: radius + by },
+        Shape::Capsule { half_height, radius } => Shape::Capsule { half_height, radius: radius + by },
+        Shape::Cuboid { half_extents } => Shape::RoundBox { half_extents, radius: by },
+        Shape::RoundBox { half_extents, radius } => Shape::RoundBox { half_extents, radius: radius + by },
+        Shape::Cylinder { .. } | Shape::Cone { .. } | Shape::Ellipsoid { .. } | Shape::Hull { .. } => return None,
+    };
+    Some(swept.into())
 }
 
 /// The union of a plate, twice the radius thick, and four capsules along its edges.

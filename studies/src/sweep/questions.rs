@@ -10,9 +10,9 @@ use workloads::rng::Rng;
 
 use super::judge::{Cast, Proof};
 use super::obstacle::{Known, Obstacle};
-use super::real::norm;
 use super::solid::{Form, Solid, rounded, vector};
 use super::{Question, Row};
+use workloads::vec3::norm;
 
 /// The single bodies; `hull32-hull8` is the difference of two.
 pub(super) const BODIES: [&str; 12] = [

@@ -243,9 +243,13 @@ mod tests {
 
     #[test]
     fn names_that_are_unknown_are_told_from_those_that_are_not() {
-        let (query, shape) = (refused(r#"{"query":"raycast"}"#), refused(r#"{"query":"distance","a":{"type":"sphere"}}"#));
+        let (query, shape) =
+            (refused(r#"{"query":"raycast"}"#), refused(r#"{"query":"distance","a":{"type":"sphere"}}"#));
         assert_eq!(query.kind, Kind::UnknownQuery, "{query:?}");
-        assert!(query.message.starts_with("query: unknown variant `raycast`, expected one of `ray_cast`, "), "{query:?}");
+        assert!(
+            query.message.starts_with("query: unknown variant `raycast`, expected one of `ray_cast`, "),
+            "{query:?}"
+        );
         assert_eq!(shape.kind, Kind::UnknownShape, "{shape:?}");
         assert!(shape.message.starts_with("a.type: unknown variant `sphere`, expected one of `point`, "), "{shape:?}");
         assert_eq!(refused(r#"{"query":7}"#).kind, Kind::Parse, "no name at all");

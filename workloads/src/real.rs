@@ -1,14 +1,14 @@
-//! Numbers for reference answers: doubles, and unevaluated sums of two doubles.
+//! Numbers that truths are computed in: doubles, and unevaluated sums of two doubles.
 //!
 //! Sums and products are error-free transformations (Dekker, *A floating-point technique for extending the available
 //! precision*, 1971; Knuth's two-sum), so that a reference is right to some thirty digits and shares no rounding with what
-//! it is held against. Numbers of the sweep are far from over- and underflow.
+//! it is held against. Numbers are to be far from over- and underflow.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A double or a sum of two, for vectors of either.
-pub(super) trait Real:
+pub trait Real:
     Copy
     + PartialOrd
     + From<f64>
@@ -19,17 +19,27 @@ pub(super) trait Real:
     + Neg<Output = Self>
 {
     /// The nearest double.
+    #[must_use]
     fn f64(self) -> f64;
+
+    /// The root, rounded.
+    #[must_use]
     fn sqrt(self) -> Self;
 
+    /// The greater of two.
+    #[must_use]
     fn max(self, other: Self) -> Self {
         if other > self { other } else { self }
     }
 
+    /// The smaller of two.
+    #[must_use]
     fn min(self, other: Self) -> Self {
         if other < self { other } else { self }
     }
 
+    /// Without its sign.
+    #[must_use]
     fn abs(self) -> Self {
         if self < Self::from(0.0) { -self } else { self }
     }
@@ -47,7 +57,7 @@ impl Real for f64 {
 
 /// The sum `high + low`, where `low` is at most half an ulp of `high`: 106 bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct DoubleDouble {
+pub struct DoubleDouble {
     high: f64,
     low: f64,
 }
@@ -153,41 +163,6 @@ impl Real for DoubleDouble {
         let rest = self - Self::from(root) * Self::from(root);
         quick_two_sum(root, rest.high / (root + root))
     }
-}
-
-/// A point or vector.
-pub(super) type Vec3<R> = [R; 3];
-
-pub(super) fn wide(v: Vec3<f64>) -> Vec3<DoubleDouble> {
-    v.map(DoubleDouble::from)
-}
-
-pub(super) fn narrow<R: Real>(v: Vec3<R>) -> Vec3<f64> {
-    v.map(R::f64)
-}
-
-pub(super) fn add<R: Real>(a: Vec3<R>, b: Vec3<R>) -> Vec3<R> {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-pub(super) fn sub<R: Real>(a: Vec3<R>, b: Vec3<R>) -> Vec3<R> {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(super) fn scale<R: Real>(a: Vec3<R>, s: R) -> Vec3<R> {
-    a.map(|c| c * s)
-}
-
-pub(super) fn dot<R: Real>(a: Vec3<R>, b: Vec3<R>) -> R {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(super) fn cross<R: Real>(a: Vec3<R>, b: Vec3<R>) -> Vec3<R> {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-pub(super) fn norm<R: Real>(a: Vec3<R>) -> R {
-    dot(a, a).sqrt()
 }
 
 #[cfg(test)]
