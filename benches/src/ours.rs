@@ -7,7 +7,7 @@ use convex_support::{
     SupportMap, Vector3, line_crossing,
 };
 use gjk_raycast::{
-    DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, RayCastOptions, Status, SubAlgorithm,
+    CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, RayCastOptions, Status, SubAlgorithm,
     distance, intersects, linear_cast, ray_cast,
 };
 
@@ -62,6 +62,8 @@ pub struct Effort {
     pub max_iterations: usize,
     /// How the closest point of a simplex is found.
     pub sub_algorithm: SubAlgorithm,
+    /// How the planes of a ray cast are found.
+    pub method: CastMethod,
     /// Whether the support points that were computed of each body are told in place of the answer.
     pub iterations: bool,
     /// Whether shapes come as `Box<dyn SupportMap>`.
@@ -75,6 +77,7 @@ impl Default for Effort {
             tolerance: options.tolerance,
             max_iterations: options.max_iterations,
             sub_algorithm: options.sub_algorithm,
+            method: RayCastOptions::<DVec3>::default().method,
             iterations: false,
             boxed: false,
         }
@@ -110,7 +113,8 @@ fn ray_casts_in<V: Space>(shape: &Shape, rays: &[Ray], effort: Effort) -> Solver
                 .with_max_lambda(V::Scalar::ONE)
                 .with_tolerance(number::<V>(effort.tolerance))
                 .with_max_iterations(effort.max_iterations)
-                .with_sub_algorithm(effort.sub_algorithm);
+                .with_sub_algorithm(effort.sub_algorithm)
+                .with_method(effort.method);
             Solver::new(rays.collect(), move |&ray| {
                 let Ok(cast) = ray_cast(&target, ray, options) else { return f64::NAN };
                 let answer = match cast.outcome {
