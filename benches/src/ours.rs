@@ -7,8 +7,8 @@ use convex_support::{
     SupportMap, Vector3, line_crossing,
 };
 use gjk_raycast::{
-    CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, RayCastOptions, Status, SubAlgorithm,
-    distance, intersects, linear_cast, ray_cast,
+    CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, RayCastOptions, Status,
+    SubAlgorithm, distance, intersects, linear_cast, ray_cast,
 };
 
 use workloads::Pose;

@@ -10,8 +10,7 @@ use workloads::score::Precision;
 use workloads::shapes::Shape;
 use workloads::w1_ray_cast;
 
-const SHAPES: [&str; 8] =
-    ["cuboid", "capsule", "roundbox", "hull64", "hull1024", "ellipsoid", "cone", "cylinder"];
+const SHAPES: [&str; 8] = ["cuboid", "capsule", "roundbox", "hull64", "hull1024", "ellipsoid", "cone", "cylinder"];
 
 /// What a cell may spend.
 const BUDGET: Duration = Duration::from_millis(200);
