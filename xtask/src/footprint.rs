@@ -61,7 +61,6 @@ const PROGRAMS: &[Program] = &[
     Program { name: "gjk-raycast", import: Some(("gjk-raycast", "\"std\"")), body: RAY },
     Program { name: "gjk-raycast, libm", import: Some(("gjk-raycast", "\"libm\"")), body: RAY },
     Program { name: "lj-ellipsoid", import: Some(("lj-ellipsoid", "")), body: ENCLOSING },
-    Program { name: "lj-ellipsoid, faer", import: Some(("lj-ellipsoid", "\"faer\"")), body: ENCLOSING },
     Program { name: "lj-ellipsoid, rayon", import: Some(("lj-ellipsoid", "\"rayon\"")), body: ENCLOSING },
     Program {
         name: "lj-ellipsoid, convex-support",
