@@ -31,7 +31,13 @@ const ROWS: [Row; 14] = [
     ("distance/ellipsoid-ellipsoid", || distance("ellipsoid-ellipsoid", Effort::default())),
     ("intersect/cuboid-cuboid", || {
         let pair = Pair::named("cuboid-cuboid");
-        ours::intersections(Precision::Double, &pair, &w3b_intersect::queries(&pair)[..QUERIES], false, Effort::default())
+        ours::intersections(
+            Precision::Double,
+            &pair,
+            &w3b_intersect::queries(&pair)[..QUERIES],
+            false,
+            Effort::default(),
+        )
     }),
     ("ray_cast/ball", || ray_cast("ball", Effort::default())),
     ("ray_cast/cylinder", || ray_cast("cylinder", Effort::default())),

@@ -156,10 +156,7 @@ fn copied<P: AsRef<[f64]>>(points: &[P]) -> Copied<Dynamic> {
 /// assert!(answer.ellipsoid.log_det().abs() < 1e-13);
 /// # Ok::<(), lj_ellipsoid::EnclosingError>(())
 /// ```
-pub fn enclosing_dyn<P: AsRef<[f64]>>(
-    points: &[P],
-    options: EnclosingOptions,
-) -> Result<EnclosingDyn, EnclosingError> {
+pub fn enclosing_dyn<P: AsRef<[f64]>>(points: &[P], options: EnclosingOptions) -> Result<EnclosingDyn, EnclosingError> {
     enclosing_dyn_with(points, options, |_| {})
 }
 
