@@ -94,14 +94,14 @@ mod tests {
     fn what_is_not_json_is_said_with_its_place() {
         let cases: [(&[u8], Kind, &str); 6] = [
             (br#"{"a":NaN}"#, Kind::Parse, "the line is not JSON: a: expected value at column 6"),
-            (br#"{"a":{"b":[1,2"#, Kind::Parse, "the line is not JSON: a.b[1]: EOF while parsing a list at column 14"),
+            (br#"{"a":{"b":[1,2"#, Kind::Parse, "the line is not JSON: a.b: EOF while parsing a list at column 14"),
             (br#"{"a":1} {}"#, Kind::Parse, "the line is not JSON: after the object: trailing characters at column 9"),
             (b"hello", Kind::Parse, "the line is not JSON: expected value at column 1"),
             (b"[1]", Kind::Parse, "the line must be an object, {\"query\": …}, but is [1]"),
             (
                 br#"{"a":{"half_extents":[1,1e999,1]}}"#,
                 Kind::NonFinite,
-                "a.half_extents[1]: too large for a double, number out of range at column 30",
+                "a.half_extents[1]: too large for a double, number out of range at column 29",
             ),
         ];
         for (line, kind, message) in cases {
