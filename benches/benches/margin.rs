@@ -7,8 +7,10 @@ use std::hint::black_box;
 use convex_support::Ellipsoid;
 use convex_support::glam::{DMat3, DQuat, DVec3};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use ellip_margin::eigen::free_margin_eigen;
-use ellip_margin::{MarginOptions, Method, distance, distance_bracket, free_margin, free_margins_into, scaling};
+use ellip_margin::paper::free_margin_eigen;
+use ellip_margin::{
+    EllipsoidPair, MarginOptions, Method, distance, distance_bracket, free_margin, free_margins_into, scaling,
+};
 use nalgebra::SMatrix;
 use workloads::rng::Rng;
 
@@ -84,7 +86,7 @@ fn bench(c: &mut Criterion) {
             black_box(&free_margin(a, b, options));
         });
         row("cold, with gradient", &|a, b| {
-            black_box(&free_margin(a, b, options).gradient(a, b));
+            black_box(&EllipsoidPair::new(a, b, options).margin().gradient());
         });
         row("cold, singular basis", &|a, b| {
             black_box(&free_margin(a, b, singular));

@@ -8,7 +8,8 @@ use std::hint::black_box;
 use convex_support::Ellipsoid;
 use convex_support::glam::{DQuat, DVec3};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use ellip_margin::{InverseIterationTracker, MarginOptions, MarginTracker, free_margin};
+use ellip_margin::paper::InverseIterationTracker;
+use ellip_margin::{MarginOptions, MarginTracker, free_margin};
 use workloads::rng::Rng;
 
 const STEPS: u32 = 2_000;
@@ -44,7 +45,7 @@ fn bench(c: &mut Criterion) {
         });
         group.bench_function("inverse iteration", |b| {
             b.iter(|| {
-                let mut track = InverseIterationTracker::new(1e-6, 40);
+                let mut track = InverseIterationTracker::new(1e-6, 40).expect("a positive tolerance");
                 for [e1, e2] in &path {
                     black_box(&track.step(black_box(e1), black_box(e2)));
                 }

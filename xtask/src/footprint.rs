@@ -49,7 +49,7 @@ const MARGIN: &str = "
 const EIGEN: &str = "
     use ellip_margin::convex_support::{Ellipsoid, glam::{DQuat, DVec3}};
     let at = |x| Ellipsoid::new(DVec3::splat(x), DVec3::new(1.0, 2.0, input()), DQuat::IDENTITY).unwrap();
-    println!(\"{}\", ellip_margin::eigen::free_margin_eigen(&at(0.0), &at(9.0)).margin);";
+    println!(\"{}\", ellip_margin::paper::free_margin_eigen(&at(0.0), &at(9.0)).margin);";
 
 const PROGRAMS: &[Program] = &[
     Program { name: "nothing", import: None, body: "println!(\"{}\", input());" },
@@ -69,7 +69,7 @@ const PROGRAMS: &[Program] = &[
     },
     Program { name: "ellip-margin", import: Some(("ellip-margin", "\"std\"")), body: MARGIN },
     Program { name: "ellip-margin, libm", import: Some(("ellip-margin", "\"libm\"")), body: MARGIN },
-    Program { name: "ellip-margin, eigen", import: Some(("ellip-margin", "\"std\", \"eigen\"")), body: EIGEN },
+    Program { name: "ellip-margin, paper", import: Some(("ellip-margin", "\"std\", \"paper\"")), body: EIGEN },
     Program { name: "ellip-margin, simd", import: Some(("ellip-margin", "\"std\", \"simd\"")), body: MARGIN },
 ];
 

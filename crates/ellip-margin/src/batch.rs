@@ -11,7 +11,8 @@ use core::ops::Range;
 use convex_support::{Ellipsoid, Scalar, Vector};
 
 use crate::margin::free_margin;
-use crate::pair::{self, Pair, add};
+use crate::numerics::{self, add};
+use crate::pair::Pair;
 use crate::polynomial::{STRAIGHT_STEPS, solve_straight};
 use crate::{InvalidQuery, Margin, MarginOptions, Method, Status};
 
@@ -135,7 +136,7 @@ fn by_eights<'a, V: Vector, const N: usize>(
             let (e1, e2) = of(next + lane);
             pairs.set(lane, &Pair::new(e1, e2));
         }
-        solve_lanes(&pairs, options.tolerance, &mut answers);
+        solve_lanes(&pairs, options.tolerance(), &mut answers);
         let first = margins.len();
         margins.extend((0..LANES).map(|lane| answers.get(lane)));
         for lane in (0..LANES).filter(|&lane| answers.is_answer[lane] == 0.0) {
@@ -188,7 +189,7 @@ impl<const N: usize> Pairs<N> {
 
     #[inline(always)]
     fn get(&self, lane: usize) -> Pair<N> {
-        let vector = |v: &[Lane; N]| -> pair::Vec<N> { core::array::from_fn(|i| v[i][lane]) };
+        let vector = |v: &[Lane; N]| -> numerics::Vec<N> { core::array::from_fn(|i| v[i][lane]) };
         Pair {
             x1: vector(&self.x1),
             x2: vector(&self.x2),

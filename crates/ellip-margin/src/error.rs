@@ -1,13 +1,18 @@
-//! What can be wrong with the lists a clearance is asked for.
+//! What can be wrong with what is asked.
 
 use core::fmt;
 
-/// Why a clearance could not be computed.
+/// Why a question cannot be answered.
 ///
-/// A single ellipsoid is checked when it is built ([`InvalidShape`](convex_support::InvalidShape)); what is left are lists.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A single ellipsoid is checked when it is built ([`InvalidShape`](convex_support::InvalidShape)); what is left are options and
+/// lists.
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum InvalidQuery {
+    /// The tolerance given to [`MarginOptions`](crate::MarginOptions) is not positive and finite.
+    Tolerance(f64),
+    /// The threshold below which pairs are asked for is not a number.
+    ThresholdNotANumber,
     /// There is no link, hence no pair to take the minimum over.
     NoLinks,
     /// There is no obstacle, hence no pair to take the minimum over.
@@ -34,6 +39,10 @@ pub enum InvalidQuery {
 impl fmt::Display for InvalidQuery {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
+            Self::Tolerance(tolerance) => {
+                write!(f, "the tolerance must be a positive, finite number, but is {tolerance}")
+            }
+            Self::ThresholdNotANumber => f.write_str("the threshold of margins is not a number"),
             Self::NoLinks => f.write_str("at least one link is needed, but the list of links is empty"),
             Self::NoObstacles => f.write_str("at least one obstacle is needed, but the list of obstacles is empty"),
             Self::LengthsDiffer { first, second } => {

@@ -52,23 +52,20 @@ extern crate std;
 
 mod batch;
 mod clearance;
+mod derivative;
 mod distance;
-mod double_double;
-#[cfg(feature = "eigen")]
-pub mod eigen;
-mod eigenvalue;
+mod ellipsoid_pair;
 mod error;
-mod gradient;
-mod hessian;
 mod hierarchy;
-mod inverse_iteration;
 mod margin;
+mod numerics;
 mod options;
 mod pair;
+#[cfg(feature = "paper")]
+pub mod paper;
 mod polynomial;
 mod scaling;
 mod secular;
-mod svd;
 mod track;
 mod wedge;
 
@@ -76,11 +73,10 @@ pub use convex_support;
 
 pub use batch::{free_margins, free_margins_into};
 pub use clearance::{Clearance, ClearanceResult, LeftOut, NearPair, clearance};
+pub use derivative::{MotionGradient, MotionHessian, ShapeGradient};
 pub use distance::{Distance, DistanceBracket, distance, distance_bracket};
-pub use eigenvalue::{EigenvalueGradient, eigenvalue_gradient};
+pub use ellipsoid_pair::{Answer, EllipsoidPair};
 pub use error::InvalidQuery;
-pub use gradient::{MarginGradient, ShapeGradient};
-pub use inverse_iteration::InverseIterationTracker;
 pub use margin::{Margin, free_margin, free_margin_with};
 pub use options::{MarginOptions, Method, Status};
 pub use scaling::{Scaling, scaling};

@@ -2,7 +2,8 @@
 
 use convex_support::{Ellipsoid, Scalar, Vector};
 
-use crate::pair::{Pair, add, store};
+use crate::numerics::{add, store};
+use crate::pair::Pair;
 use crate::polynomial::{self, Quick};
 use crate::secular::{self, Solution};
 use crate::{MarginOptions, Method, Status};
@@ -87,102 +88,44 @@ pub fn free_margin_with<V: Vector>(
     options: MarginOptions,
     observer: impl FnMut(f64, f64),
 ) -> Margin<V> {
-    margin_from(e1, e2, 0.0, options, observer, |_, _| {})
-}
-
-/// The margin with the iteration started at `nu`; `solved` is told ν and the number of iterations.
-///
-/// Asking the answer for them instead would have it built on the stack and copied, which waits for every number of it to be
-/// stored: a twentieth of the time of a tracked step.
-#[inline]
-pub(crate) fn margin_from<V: Vector>(
-    e1: &Ellipsoid<V>,
-    e2: &Ellipsoid<V>,
-    nu: f64,
-    options: MarginOptions,
-    observer: impl FnMut(f64, f64),
-    solved: impl FnOnce(f64, usize),
-) -> Margin<V> {
+    #[inline]
+    fn in_dimension<V: Vector, const N: usize>(
+        e1: &Ellipsoid<V>,
+        e2: &Ellipsoid<V>,
+        options: MarginOptions,
+        observer: impl FnMut(f64, f64),
+    ) -> Margin<V> {
+        let pair = Pair::<N>::new(e1, e2);
+        answer(&pair, solve(&pair, 0.0, options, observer))
+    }
     if V::DIM == 2 {
-        margin_in::<V, 2>(e1, e2, nu, options, observer, solved)
+        in_dimension::<V, 2>(e1, e2, options, observer)
     } else {
-        margin_in::<V, 3>(e1, e2, nu, options, observer, solved)
+        in_dimension::<V, 3>(e1, e2, options, observer)
     }
 }
 
+/// By the polynomial, refined where rounding could show in its margin, and where it would lose digits by the singular basis;
+/// from `start`, 0 for none known.
+///
+/// The seldom ways are given the pair by value, so that the pair of the common way can stay in registers.
 #[inline]
-fn margin_in<V: Vector, const N: usize>(
-    e1: &Ellipsoid<V>,
-    e2: &Ellipsoid<V>,
-    nu: f64,
+pub(crate) fn solve<const N: usize>(
+    pair: &Pair<N>,
+    start: f64,
     options: MarginOptions,
     mut observer: impl FnMut(f64, f64),
-    solved: impl FnOnce(f64, usize),
-) -> Margin<V> {
-    let pair = Pair::<N>::new(e1, e2);
-    match quick(&pair, nu, options, &mut observer) {
-        Some(Quick { solution, is_sure: true }) => {
-            solved(solution.nu, solution.iterations);
-            answer(&pair, solution)
-        }
-        quick => rest(e1, e2, quick, nu, options, observer, solved),
-    }
-}
-
-/// What is seldom needed. It loads the bodies once more, so that those of the common case can stay in registers.
-#[cold]
-#[inline(never)]
-fn rest<V: Vector, const N: usize>(
-    e1: &Ellipsoid<V>,
-    e2: &Ellipsoid<V>,
-    quick: Option<Quick<N>>,
-    nu: f64,
-    options: MarginOptions,
-    observer: impl FnMut(f64, f64),
-    solved: impl FnOnce(f64, usize),
-) -> Margin<V> {
-    let pair = Pair::<N>::new(e1, e2);
-    let solution = finished(&pair, quick, nu, options, observer);
-    solved(solution.nu, solution.iterations);
-    answer(&pair, solution)
-}
-
-/// By the polynomial where it keeps its digits, and in the singular basis where it does not.
-#[inline]
-pub(crate) fn solve<const N: usize>(pair: &Pair<N>, options: MarginOptions) -> Solution<N> {
-    match quick(pair, 0.0, options, |_, _| {}) {
-        Some(Quick { solution, is_sure: true }) => solution,
-        quick => finished(pair, quick, 0.0, options, |_, _| {}),
-    }
-}
-
-/// The answer of the polynomial, if it may be asked.
-#[inline]
-fn quick<const N: usize>(
-    pair: &Pair<N>,
-    nu: f64,
-    options: MarginOptions,
-    observer: impl FnMut(f64, f64),
-) -> Option<Quick<N>> {
-    match options.method {
-        Method::Automatic => polynomial::solve(pair, nu, options, observer),
-        Method::SingularBasis => None,
-    }
-}
-
-/// An answer of the polynomial that is not sure, with a margin that can be relied on; without one, that of the singular basis.
-fn finished<const N: usize>(
-    pair: &Pair<N>,
-    quick: Option<Quick<N>>,
-    nu: f64,
-    options: MarginOptions,
-    observer: impl FnMut(f64, f64),
 ) -> Solution<N> {
+    let quick = match options.method {
+        Method::Automatic => polynomial::solve(pair, start, options, &mut observer),
+        Method::SingularBasis => None,
+    };
     match quick {
-        Some(Quick { solution, .. }) => {
+        Some(Quick { solution, is_sure: true }) => solution,
+        Some(Quick { solution, is_sure: false }) => {
             Solution { margin: pair.compensated_margin(solution.y, solution.nu), ..solution }
         }
-        None => secular::solve(pair, nu, options, observer),
+        None => secular::solve(*pair, start, options, observer),
     }
 }
 

@@ -1,20 +1,24 @@
 //! How a margin is asked for, and how the answer ended.
 
+use crate::InvalidQuery;
+
 /// What [`free_margin`](crate::free_margin) may spend.
 ///
 /// ```
 /// use ellip_margin::MarginOptions;
 ///
-/// let quick = MarginOptions::default().with_tolerance(1e-3);
-/// assert_eq!(quick.max_iterations, MarginOptions::default().max_iterations);
+/// let quick = MarginOptions::default().with_tolerance(1e-3)?;
+/// assert_eq!((quick.tolerance(), quick.max_iterations), (1e-3, MarginOptions::default().max_iterations));
+/// assert!(MarginOptions::default().with_tolerance(f64::NAN).is_err());
+/// # Ok::<(), ellip_margin::InvalidQuery>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MarginOptions {
-    /// The relative error of ν to reach, as foreseen from the last step and the order of the method. The default, 1e-15,
-    /// leaves nothing but rounding; the margin's own error is about the square of this.
-    pub tolerance: f64,
+    /// Positive and finite.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "checked"))]
+    tolerance: f64,
     /// The largest number of steps; the default, 64, is several times what any pair has been seen to need.
     pub max_iterations: usize,
     /// How the equation is set up.
@@ -48,10 +52,22 @@ impl MarginOptions {
         Self { tolerance: 1e-15, max_iterations: 64, method: Method::Automatic }
     }
 
-    /// The same options with another [`tolerance`](Self::tolerance).
+    /// The relative error of ν to reach, as foreseen from the last step and the order of the method. The default, 1e-15,
+    /// leaves nothing but rounding; the margin's own error is about the square of this.
     #[must_use]
-    pub const fn with_tolerance(self, tolerance: f64) -> Self {
-        Self { tolerance, ..self }
+    pub const fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// The same options with another [`tolerance`](Self::tolerance).
+    ///
+    /// # Errors
+    /// [`InvalidQuery::Tolerance`] unless it is positive and finite.
+    pub const fn with_tolerance(self, tolerance: f64) -> Result<Self, InvalidQuery> {
+        match check(tolerance) {
+            Ok(tolerance) => Ok(Self { tolerance, ..self }),
+            Err(why) => Err(why),
+        }
     }
 
     /// The same options with another [`max_iterations`](Self::max_iterations).
@@ -65,6 +81,18 @@ impl MarginOptions {
     pub const fn with_method(self, method: Method) -> Self {
         Self { method, ..self }
     }
+}
+
+/// `tolerance`, if it is positive and finite.
+pub(crate) const fn check(tolerance: f64) -> Result<f64, InvalidQuery> {
+    if tolerance > 0.0 && tolerance < f64::INFINITY { Ok(tolerance) } else { Err(InvalidQuery::Tolerance(tolerance)) }
+}
+
+/// A tolerance read from data.
+#[cfg(feature = "serde")]
+fn checked<'de, D: serde::Deserializer<'de>>(data: D) -> Result<f64, D::Error> {
+    let tolerance = serde::Deserialize::deserialize(data)?;
+    check(tolerance).map_err(serde::de::Error::custom)
 }
 
 /// How an iteration ended.

@@ -11,11 +11,9 @@
 //! Everything is computed in `f64`, for bodies in `f32` too: the processor is as fast, no square leaves the range, and
 //! an `f32` answer then is the true one rounded, whatever the aspect.
 
-use convex_support::{Ellipsoid, Matrix, Scalar, Vector};
+use convex_support::{Ellipsoid, Vector};
 
-use crate::double_double::DoubleDouble;
-
-pub(crate) type Vec<const N: usize> = [f64; N];
+use crate::numerics::{DoubleDouble, Vec, combine, dot, load, load_columns, power_of_two_near, size, sub};
 
 /// Two ellipsoids; `axes[k]` is the direction of semi-axis `k`.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +40,23 @@ impl<const N: usize> Pair<N> {
             a1: load(e1.semi_axes()),
             a2: load(e2.semi_axes()),
         }
+    }
+
+    /// The same pair with a power of two for unit of length, near the greatest length in it; and that unit.
+    ///
+    /// No bit is lost, and squares of lengths are far from the ends of the range.
+    #[inline]
+    pub(crate) fn in_own_unit(&self) -> (Self, f64) {
+        let unit = power_of_two_near(self.a1.iter().chain(&self.a2).fold(size(self.r()), |m, a| m.max(*a)));
+        let inverse = 1.0 / unit;
+        let scaled = |x: Vec<N>| x.map(|x| x * inverse);
+        let (x1, x2, a1, a2) = (scaled(self.x1), scaled(self.x2), scaled(self.a1), scaled(self.a2));
+        (Self { x1, x2, a1, a2, ..*self }, unit)
+    }
+
+    /// E₂ and E₁.
+    pub(crate) fn swapped(&self) -> Self {
+        Self { x1: self.x2, x2: self.x1, axes1: self.axes2, axes2: self.axes1, a1: self.a2, a2: self.a1 }
     }
 
     /// r = x₁ − x₂.
@@ -92,8 +107,11 @@ impl<const N: usize> Pair<N> {
     ///
     /// This Lagrangian of the margin's problem is stationary at the solution in `y` and in ν, so that their rounding
     /// errors enter squared: it is the margin of the bodies as stored, to some ten digits more than `y` and ν have.
+    ///
+    /// Seldom needed: the pair is taken by value, so that the caller's can stay in registers.
     #[cold]
-    pub(crate) fn compensated_margin(&self, y: Vec<N>, nu: f64) -> f64 {
+    #[inline(never)]
+    pub(crate) fn compensated_margin(self, y: Vec<N>, nu: f64) -> f64 {
         // p = x − x₁ = R₂·diag(a₂)·y − r
         let mut p: [DoubleDouble; N] = core::array::from_fn(|i| DoubleDouble::sum(self.x2[i], -self.x1[i]));
         let mut sphere = DoubleDouble::from(-1.0);
@@ -115,50 +133,4 @@ impl<const N: usize> Pair<N> {
         }
         margin.value()
     }
-}
-
-#[inline]
-pub(crate) fn load<V: Vector, const N: usize>(v: V) -> Vec<N> {
-    core::array::from_fn(|i| v.get(i).as_f64())
-}
-
-#[inline]
-pub(crate) fn load_columns<M: Matrix, const N: usize>(m: M) -> [Vec<N>; N] {
-    core::array::from_fn(|j| load(m.col(j)))
-}
-
-#[inline]
-pub(crate) fn store<V: Vector, const N: usize>(v: Vec<N>) -> V {
-    V::from_fn(|i| V::Scalar::from_f64(v[i]))
-}
-
-#[inline]
-pub(crate) fn dot<const N: usize>(a: Vec<N>, b: Vec<N>) -> f64 {
-    let mut sum = a[0] * b[0];
-    for i in 1..N {
-        sum += a[i] * b[i];
-    }
-    sum
-}
-
-#[inline]
-pub(crate) fn add<const N: usize>(a: Vec<N>, b: Vec<N>) -> Vec<N> {
-    core::array::from_fn(|i| a[i] + b[i])
-}
-
-#[inline]
-pub(crate) fn sub<const N: usize>(a: Vec<N>, b: Vec<N>) -> Vec<N> {
-    core::array::from_fn(|i| a[i] - b[i])
-}
-
-/// Σₖ eₖ·columnₖ.
-#[inline]
-pub(crate) fn combine<const N: usize>(columns: [Vec<N>; N], e: Vec<N>) -> Vec<N> {
-    core::array::from_fn(|i| {
-        let mut sum = columns[0][i] * e[0];
-        for k in 1..N {
-            sum += columns[k][i] * e[k];
-        }
-        sum
-    })
 }

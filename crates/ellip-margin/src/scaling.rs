@@ -14,8 +14,8 @@ use convex_support::{Ellipsoid, Scalar, Vector};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use crate::pair::{Pair, Vec, add, combine, dot, store};
-use crate::svd::{Svd, svd};
+use crate::numerics::{Svd, Vec, add, combine, dot, power_of_two_near, size, store, svd, unit};
+use crate::pair::Pair;
 use crate::{MarginOptions, Status};
 
 /// The common scale at which two ellipsoids touch; see [`scaling`].
@@ -28,21 +28,25 @@ pub struct Scaling<V: Vector> {
     pub scale: V::Scalar,
     /// Where they touch then.
     pub point: V,
-    /// The unit normal of the common tangent plane there, from E₁ to E₂; zero for concentric bodies.
+    /// The unit normal of the common tangent plane there, from E₁ to E₂. Zero for concentric bodies: it jumps where the centres meet.
     pub normal: V,
-    /// The signed separation of the bodies along `normal`: at most the distance where they are disjoint; minus a
-    /// length by which moving one along `normal` separates them where they overlap.
+    /// (α − 1)(a₁ + a₂) with the least semi-axis of each: a length that is negative where the bodies overlap, continuous and as
+    /// smooth as α. It is exact for balls. For others its magnitude is a lower bound, where they are disjoint of their distance,
+    /// and where they overlap of the depth: no shorter translation of one separates them.
     pub separation: V::Scalar,
     /// How the iteration ended.
     pub status: Status,
     /// The steps it took.
     pub iterations: usize,
+    /// Where they touch as each of them sees it, as unit vectors of the balls they are images of, that of E₂ with the opposite sign;
+    /// zero for concentric bodies. Kept because derivatives from `point` or `normal` would lose digits.
+    pub(crate) ball_points: [V; 2],
 }
 
 /// The scale α about their own centres at which `e1` and `e2` touch (Perram and Wertheim's contact function is α²).
 ///
-/// α − 1 has the sign of the margin, and is smooth and informative where the margin has reached its floor of −1; it
-/// is symmetric in the two.
+/// α − 1 has the sign of the margin, and is smooth and informative at any depth, where the margin has reached its floor of −1
+/// too; it is symmetric in the two. Its derivatives are asked of [`EllipsoidPair::scaling`](crate::EllipsoidPair::scaling).
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec3};
@@ -64,86 +68,91 @@ pub fn scaling<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: MarginO
 fn scaling_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: MarginOptions) -> Scaling<V> {
     let pair = Pair::<N>::new(e1, e2);
     let (c, g) = pair.c_and_g();
-    let norm_c = dot(c, c).sqrt();
+    // α is proportional to r. With centres nearly together squares of c would leave the range.
+    let unit_of_r = power_of_two_near(size(c).max(size(g)));
+    let (c, g) = (c.map(|x| x / unit_of_r), g.map(|x| x / unit_of_r));
+    let least = |a: Vec<N>| a.iter().fold(a[0], |m, x| m.min(*x));
+    let apart = |scale: f64| V::Scalar::from_f64((scale - 1.0) * (least(pair.a1) + least(pair.a2)));
+    let (norm_c, norm_g) = (dot(c, c).sqrt(), dot(g, g).sqrt());
     if norm_c == 0.0 {
-        let scale = V::Scalar::ZERO;
-        let separation = V::Scalar::from_f64(-(least(pair.a1) + least(pair.a2)));
         return Scaling {
-            scale,
+            scale: V::Scalar::ZERO,
             point: e2.center(),
             normal: V::ZERO,
-            separation,
+            separation: apart(0.0),
             status: Status::Converged,
             iterations: 0,
+            ball_points: [V::ZERO; 2],
         };
     }
     let Svd { sigma, u, v } = svd(pair.b());
-    let norm_g = dot(g, g).sqrt();
     let ball: Vec<N> =
         core::array::from_fn(|i| if norm_g < sigma[i] * norm_c { dot(u[i], g) / sigma[i] } else { dot(v[i], c) });
+    let Root { nu, x, status, iterations } = root(sigma, ball, options);
+    // α² = t(1 − t)rᵀ[…]⁻¹r = ν/(1 + ν)·Σ ĉᵢx̂ᵢ, stationary in ν.
+    let scale = (nu / (1.0 + nu) * dot(ball, x)).sqrt() * unit_of_r;
+    let y = combine(v, x.map(|x| x * unit_of_r));
+    // x* − x₁ = R₁·diag(a₁)Uŵ with the sign that Pw = −νQv has.
+    let (e1, e2) = (unit(combine(u, core::array::from_fn(|i| -x[i] / sigma[i]))), unit(y.map(|y| -y)));
+    let normal = unit(combine(pair.axes2, core::array::from_fn(|j| e2[j] / pair.a2[j])));
+    Scaling {
+        scale: V::Scalar::from_f64(scale),
+        point: store(add(pair.x2, pair.out_of_ball(y))),
+        normal: store(normal),
+        separation: apart(scale),
+        status: if scale.is_finite() { status } else { Status::Stalled },
+        iterations,
+        ball_points: [store(e1), store(e2)],
+    }
+}
 
-    let largest = sigma.iter().fold(0.0f64, |m, s| m.max(*s));
-    let (mut low, mut high) = (least(sigma), largest);
+/// ν with its x̂, and how it was found.
+struct Root<const N: usize> {
+    nu: f64,
+    x: Vec<N>,
+    status: Status,
+    iterations: usize,
+}
+
+/// Solves ‖ŵ‖ = ‖x̂‖ for the singular values σ and ĉ.
+fn root<const N: usize>(sigma: Vec<N>, ball: Vec<N>, options: MarginOptions) -> Root<N> {
+    let (mut low, mut high) = sigma.iter().fold((sigma[0], sigma[0]), |(low, high), s| (low.min(*s), high.max(*s)));
     // Exact for round bodies.
     let mut nu = (low.sqrt() * high.sqrt()).max(low).min(high);
     let (mut status, mut iterations) = (Status::IterationLimit, 0);
-    let (mut x, mut w) = ([0.0; N], [0.0; N]);
     loop {
+        let mut x = [0.0; N];
         let (mut xx, mut ww, mut slope_x, mut slope_w) = (0.0, 0.0, 0.0, 0.0);
         for i in 0..N {
             // νsᵢ without squares that leave the range
             let k = (nu / sigma[i]) / sigma[i];
             let denominator = 1.0 + k;
             x[i] = ball[i] / denominator;
-            w[i] = (nu / sigma[i]) * x[i];
+            let w = (nu / sigma[i]) * x[i];
             xx += x[i] * x[i];
-            ww += w[i] * w[i];
+            ww += w * w;
             // d ln/d ln ν of x̂ᵢ is −k/(1 + k), of ŵᵢ 1/(1 + k)
             slope_x += x[i] * x[i] * (k / denominator);
-            slope_w += w[i] * w[i] / denominator;
+            slope_w += w * w / denominator;
         }
         let difference = 0.5 * (ww / xx).ln();
         if status == Status::Converged || iterations == options.max_iterations {
-            break;
+            return Root { nu, x, status, iterations };
         }
         iterations += 1;
+        // An exact root is an end of the bracket.
         if difference < 0.0 {
             low = nu;
         } else {
             high = nu;
         }
         let newton = nu * (-difference / (slope_w / ww + slope_x / xx)).exp();
-        let next = if newton > low && newton < high { newton } else { low.sqrt() * high.sqrt() };
+        let next = if newton >= low && newton <= high { newton } else { low.sqrt() * high.sqrt() };
         let next = if next.is_finite() { next } else { nu };
         let change = ((next - nu) / next).abs();
         nu = next;
-        if change * change <= options.tolerance || high <= low * (1.0 + 2.0 * f64::EPSILON) {
+        if change * change <= options.tolerance() || high <= low * (1.0 + 2.0 * f64::EPSILON) {
             status = Status::Converged; // after one more evaluation
         }
     }
-
-    // α² = t(1 − t)rᵀ[…]⁻¹r = ν/(1 + ν)·Σ ĉᵢx̂ᵢ, stationary in ν.
-    let scale = (nu / (1.0 + nu) * dot(ball, x)).sqrt();
-    let status = if scale.is_finite() { status } else { Status::Stalled };
-    let y = combine(v, x);
-    let z = combine(pair.axes2, core::array::from_fn(|j| -y[j] / pair.a2[j]));
-    let norm = dot(z, z).sqrt();
-    let n = z.map(|z| z / norm);
-    let height = |axes: &[Vec<N>; N], a: Vec<N>| {
-        let u: Vec<N> = core::array::from_fn(|k| a[k] * dot(axes[k], n));
-        dot(u, u).sqrt()
-    };
-    let heights = height(&pair.axes1, pair.a1) + height(&pair.axes2, pair.a2);
-    Scaling {
-        scale: V::Scalar::from_f64(scale),
-        point: store(add(pair.x2, pair.out_of_ball(y))),
-        normal: store(n),
-        separation: V::Scalar::from_f64((scale - 1.0) * heights),
-        status,
-        iterations,
-    }
-}
-
-fn least<const N: usize>(a: Vec<N>) -> f64 {
-    a.iter().fold(a[0], |m, x| m.min(*x))
 }

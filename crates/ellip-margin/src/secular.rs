@@ -12,8 +12,8 @@
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use crate::pair::{Pair, Vec, combine, dot, sub};
-use crate::svd::{Svd, svd};
+use crate::numerics::{Svd, Vec, combine, dot, size, sub, svd};
+use crate::pair::Pair;
 use crate::{MarginOptions, Status};
 
 /// The nearest point of E₂ in coordinates of the ball, with ν, m, and how they were found.
@@ -42,14 +42,16 @@ pub(crate) fn excess<const N: usize>(pair: &Pair<N>, c: Vec<N>) -> f64 {
 }
 
 /// Solves from `nu` (0 for none known), reporting each iterate (ν, φ).
+#[cold]
+#[inline(never)]
 pub(crate) fn solve<const N: usize>(
-    pair: &Pair<N>,
+    pair: Pair<N>,
     start: f64,
     options: MarginOptions,
     mut observer: impl FnMut(f64, f64),
 ) -> Solution<N> {
     let (c, g) = pair.c_and_g();
-    let excess = excess(pair, c);
+    let excess = excess(&pair, c);
     if excess <= 0.0 {
         return Solution::inside(c);
     }
@@ -102,7 +104,7 @@ pub(crate) fn solve<const N: usize>(
         tau = next;
         // Newton's method squares the error. After its first step it is below the root, and only rounding takes it back: where
         // φ is flat, no more digits of τ are to be had.
-        if change * change <= options.tolerance * (tau * tau) || (iterations > 1 && step <= 0.0) {
+        if change * change <= options.tolerance() * (tau * tau) || (iterations > 1 && step <= 0.0) {
             status = Status::Converged;
             break;
         }
@@ -115,7 +117,7 @@ pub(crate) fn solve<const N: usize>(
     let x = x.map(|x| x / norm);
     let nu = tau * scale;
     let y = combine(v, x);
-    let margin = margin(pair, y, nu);
+    let margin = margin(&pair, y, nu);
     // Sizes beyond the square root of the range of `f64`.
     let status = if margin.is_finite() && nu.is_finite() { status } else { Status::Stalled };
     Solution { nu, y, margin, status, iterations }
@@ -134,7 +136,7 @@ pub(crate) fn margin<const N: usize>(pair: &Pair<N>, y: Vec<N>, nu: f64) -> f64 
     let squared = dot(w, w);
     let plain = squared - 1.0;
     let least = (1..N).fold(pair.a1[0], |m, i| m.min(pair.a1[i]));
-    // (‖v‖² + ‖r‖²)‖w‖²/a₁² against (32·m)²
-    let sure = (dot(v, v) + dot(r, r)) * squared < 1024.0 * (plain * plain) * (least * least);
+    // (‖v‖ + ‖r‖)‖w‖/a₁ against 64·m
+    let sure = (size(v) + size(r)) * squared.sqrt() < 64.0 * (plain.abs() * least);
     if sure || !squared.is_finite() { plain } else { pair.compensated_margin(y, nu) }
 }

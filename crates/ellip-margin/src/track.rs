@@ -2,7 +2,8 @@
 
 use convex_support::{Ellipsoid, Vector};
 
-use crate::margin::margin_from;
+use crate::margin::{answer, solve};
+use crate::pair::Pair;
 use crate::{Margin, MarginOptions};
 
 /// The margin of one pair along a trajectory, each step started from the last.
@@ -47,7 +48,14 @@ impl MarginTracker {
 
     /// The margin of `e1` about `e2`, wherever they have moved since the last call.
     pub fn step<V: Vector>(&mut self, e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> Margin<V> {
-        margin_from(e1, e2, self.forecast(), self.options, |_, _| {}, |nu, iterations| self.note(nu, iterations))
+        if V::DIM == 2 { self.step_in::<V, 2>(e1, e2) } else { self.step_in::<V, 3>(e1, e2) }
+    }
+
+    fn step_in<V: Vector, const N: usize>(&mut self, e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> Margin<V> {
+        let pair = Pair::<N>::new(e1, e2);
+        let solution = solve(&pair, self.forecast(), self.options, |_, _| {});
+        self.note(solution.nu, solution.iterations);
+        answer(&pair, solution)
     }
 
     /// Remembers a step.

@@ -22,6 +22,9 @@ pub trait Wedge: Vector {
     /// An infinitesimal rotation: the scalar in 2D, the vector in 3D.
     type Bivector: Copy + core::fmt::Debug + Default + PartialEq + Send + Sync + 'static;
 
+    /// The second derivatives by a translation and a rotation: 3 by 3 numbers in 2D, 6 by 6 in 3D, as an array of rows.
+    type MotionMatrix: Copy + core::fmt::Debug + PartialEq + Send + Sync + 'static;
+
     /// `self ∧ rhs`.
     fn wedge(self, rhs: Self) -> Self::Bivector;
 
@@ -33,6 +36,12 @@ pub trait Wedge: Vector {
 
     /// The rotation whose coordinate `i` is `f(i)`.
     fn bivector(f: impl FnMut(usize) -> Self::Scalar) -> Self::Bivector;
+
+    /// The matrix whose entry in row `i`, column `j` is `f(i, j)`.
+    fn motion_matrix(f: impl Fn(usize, usize) -> Self::Scalar) -> Self::MotionMatrix;
+
+    /// The entry in row `i`, column `j`.
+    fn motion_entry(matrix: &Self::MotionMatrix, i: usize, j: usize) -> Self::Scalar;
 }
 
 /// Forwards to the plane's perpendicular product.
@@ -40,6 +49,7 @@ macro_rules! plane {
     ($V:ident, $S:ident) => {
         impl Wedge for $V {
             type Bivector = $S;
+            type MotionMatrix = [[$S; 3]; 3];
 
             #[inline]
             fn wedge(self, rhs: Self) -> $S {
@@ -57,6 +67,12 @@ macro_rules! plane {
             fn bivector(mut f: impl FnMut(usize) -> $S) -> $S {
                 f(0)
             }
+            fn motion_matrix(f: impl Fn(usize, usize) -> $S) -> Self::MotionMatrix {
+                core::array::from_fn(|i| core::array::from_fn(|j| f(i, j)))
+            }
+            fn motion_entry(matrix: &Self::MotionMatrix, i: usize, j: usize) -> $S {
+                matrix[i][j]
+            }
         }
     };
 }
@@ -66,6 +82,7 @@ macro_rules! space {
     ($V:ident, $S:ident) => {
         impl Wedge for $V {
             type Bivector = Self;
+            type MotionMatrix = [[$S; 6]; 6];
 
             #[inline]
             fn wedge(self, rhs: Self) -> Self {
@@ -83,6 +100,12 @@ macro_rules! space {
             #[inline]
             fn bivector(f: impl FnMut(usize) -> $S) -> Self {
                 Self::from_fn(f)
+            }
+            fn motion_matrix(f: impl Fn(usize, usize) -> $S) -> Self::MotionMatrix {
+                core::array::from_fn(|i| core::array::from_fn(|j| f(i, j)))
+            }
+            fn motion_entry(matrix: &Self::MotionMatrix, i: usize, j: usize) -> $S {
+                matrix[i][j]
             }
         }
     };

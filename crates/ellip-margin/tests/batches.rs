@@ -33,7 +33,7 @@ proptest! {
         let (e1, e2): (Vec<_>, Vec<_>) = pairs.into_iter().unzip();
         assert_same(&e1, &e2, MarginOptions::default());
         assert_same(&e1, &e2, MarginOptions::default().with_method(Method::SingularBasis));
-        assert_same(&e1, &e2, MarginOptions::default().with_max_iterations(3).with_tolerance(1e-6));
+        assert_same(&e1, &e2, MarginOptions::default().with_max_iterations(3).with_tolerance(1e-6).expect("positive"));
         let single = |e: &Ellipsoid<DVec3>| {
             let axes = Matrix::from_cols_fn(|j| Vector::from_fn(|i| e.axes().col(j)[i] as f32));
             Ellipsoid::from_axes(e.center().as_vec3(), e.semi_axes().as_vec3(), axes).expect("in range")

@@ -20,7 +20,8 @@ fn assert_same<V: Vector>(scene: &mut Clearance<V>, links: &[Ellipsoid<V>]) {
     assert_eq!(quick.pairs_evaluated + quick.left_out.total(), pairs, "each pair once: {quick:?}");
 
     let threshold = quick.margin.margin + V::Scalar::from_f64(0.5);
-    let mut near: Vec<_> = scene.within(links, threshold).iter().map(|p| (p.link, p.obstacle)).collect();
+    let mut near: Vec<_> =
+        scene.within(links, threshold).expect("a number").iter().map(|p| (p.link, p.obstacle)).collect();
     near.sort_unstable();
     let all = (0..links.len()).flat_map(|l| (0..scene.obstacles().len()).map(move |o| (l, o)));
     let expected: Vec<_> = all
@@ -101,6 +102,7 @@ fn empty_lists_and_other_counts() {
     assert_eq!(clearance(&[e], &[], o).err(), Some(InvalidQuery::NoObstacles), "no obstacles");
     assert_eq!(Clearance::<DVec2>::new(&[], o).err(), Some(InvalidQuery::NoObstacles), "no obstacles");
     let mut scene = Clearance::new(&[e], o).expect("not empty");
+    assert_eq!(scene.within(&[e], f64::NAN).err(), Some(InvalidQuery::ThresholdNotANumber), "NaN");
     assert_eq!(scene.step(&[]).err(), Some(InvalidQuery::NoLinks), "no links");
     let error = scene.move_obstacles(&[e, e]).expect_err("one more than before");
     assert_eq!(error, InvalidQuery::CountChanged { list: "obstacles", before: 1, now: 2 }, "the counts");

@@ -5,7 +5,7 @@ mod common;
 use common::{close, ellipsoid2, ellipsoid3, rotation, within};
 use convex_support::glam::{DMat3, DVec3, Vec3, Vec3A};
 use convex_support::{Ellipsoid, Matrix, Scalar, Vector};
-use ellip_margin::{MarginOptions, distance, free_margin, scaling};
+use ellip_margin::{EllipsoidPair, MarginOptions, distance, free_margin, scaling};
 use proptest::prelude::*;
 
 /// All lengths times `s`.
@@ -22,7 +22,8 @@ fn assert_scale_free<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, s: f64) {
     assert_eq!(a.distance * k, b.distance, "scaled by {s}");
     assert_eq!(a.bracket.lower * k, b.bracket.lower, "scaled by {s}");
     assert_eq!(a.bracket.upper * k, b.bracket.upper, "scaled by {s}");
-    assert_eq!(scaling(e1, e2, o).scale, scaling(&scaled(e1, k), &scaled(e2, k), o).scale, "scaled by {s}");
+    let (a, b) = (scaling(e1, e2, o), scaling(&scaled(e1, k), &scaled(e2, k), o));
+    assert_eq!((a.scale, a.normal, a.separation * k), (b.scale, b.normal, b.separation), "scaled by {s}");
 }
 
 /// The same body in single precision.
@@ -40,6 +41,22 @@ proptest! {
         assert_scale_free(&e1, &e2, s);
         assert_scale_free(&f1, &f2, s);
         assert_scale_free(&single(&e1), &single(&e2), s);
+    }
+
+    /// Squares of such lengths are no numbers any more. Aspects are moderate, so that nothing leaves the range that need not.
+    #[test]
+    fn great_powers_of_two(e1 in ellipsoid3(3.0, 2.0), e2 in ellipsoid3(3.0, 2.0), f1 in ellipsoid2(3.0, 2.0), f2 in ellipsoid2(3.0, 2.0), k in 500i32..900, down: bool) {
+        let s = 2f64.powi(if down { -k } else { k });
+        assert_scale_free(&e1, &e2, s);
+        assert_scale_free(&f1, &f2, s);
+        let (t1, t2) = (scaled(&e1, s), scaled(&e2, s));
+        let gradients = |e1: &Ellipsoid<DVec3>, e2: &Ellipsoid<DVec3>| {
+            let pair = EllipsoidPair::new(e1, e2, MarginOptions::default());
+            (pair.margin().gradient(), pair.distance().gradient(), pair.scaling().gradient())
+        };
+        let ((m, d, a), (n, e, b)) = (gradients(&e1, &e2), gradients(&t1, &t2));
+        prop_assert_eq!((m.rotation, d.rotation * s, a.rotation), (n.rotation, e.rotation, b.rotation));
+        prop_assert_eq!((m.translation, d.translation, a.translation), (n.translation * s, e.translation, b.translation * s));
     }
 
     #[test]

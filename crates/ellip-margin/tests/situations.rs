@@ -5,7 +5,7 @@ mod common;
 use common::{close, ellipsoid2, ellipsoid3};
 use convex_support::glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
 use convex_support::{Ellipsoid, Vector};
-use ellip_margin::{MarginOptions, Method, Status, distance, free_margin, scaling};
+use ellip_margin::{EllipsoidPair, MarginOptions, Method, Status, distance, free_margin, scaling};
 use proptest::prelude::*;
 
 fn margin<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> V::Scalar {
@@ -200,16 +200,16 @@ fn gradient_towards_the_floor() {
     let mut last = f64::INFINITY;
     for k in 1..50 {
         let e1 = aligned([2.0 + 0.5f64.powi(k), 0.0, 0.0], [1.0, 0.5, 0.25]);
-        let m = free_margin(&e1, &e2, MarginOptions::default());
-        let g = m.gradient(&e1, &e2).translation.length();
+        let m = EllipsoidPair::new(&e1, &e2, MarginOptions::default()).margin();
+        let g = m.gradient().translation.length();
         assert!(close(g, 2.0 * 0.5f64.powi(k), 1e-9, 0.0) && g < last, "(x − 2)² has the slope 2(x − 2): {g}");
-        assert!(close(m.hessian(&e1, &e2).x_axis.x, 2.0, 1e-9, 0.0), "and the curvature 2");
+        assert!(close(m.hessian().translation().x_axis.x, 2.0, 1e-9, 0.0), "and the curvature 2");
         last = g;
     }
     let e1 = aligned([1.5, 0.0, 0.0], [1.0, 0.5, 0.25]);
-    let m = free_margin(&e1, &e2, MarginOptions::default());
-    assert_eq!(m.gradient(&e1, &e2).translation, DVec3::ZERO, "inside");
-    assert_eq!(m.hessian(&e1, &e2), DMat3::ZERO, "inside");
+    let m = EllipsoidPair::new(&e1, &e2, MarginOptions::default()).margin();
+    assert_eq!(m.gradient().translation, DVec3::ZERO, "inside");
+    assert_eq!(m.hessian().translation(), DMat3::ZERO, "inside");
 }
 
 /// No finite numbers panic, hang, or come out as a converged NaN.
@@ -221,10 +221,11 @@ fn the_ends_of_the_range() {
             for d in sizes {
                 let e1 = Ellipsoid::new(DVec2::ZERO, DVec2::new(a, b), 0.3).expect("valid");
                 let e2 = Ellipsoid::new(DVec2::new(d, -0.3 * d), DVec2::new(b, a), 1.0).expect("valid");
-                let m = free_margin(&e1, &e2, MarginOptions::default());
+                let m = EllipsoidPair::new(&e1, &e2, MarginOptions::default()).margin();
                 assert!(m.status != Status::Converged || !m.margin.is_nan(), "{a} {b} {d}: {m:?}");
                 let _ = (distance(&e1, &e2, MarginOptions::default()), scaling(&e1, &e2, MarginOptions::default()));
-                let _ = (m.gradient(&e1, &e2), m.hessian(&e1, &e2));
+                let pair = EllipsoidPair::new(&e1, &e2, MarginOptions::default());
+                let _ = (m.gradient(), m.hessian(), pair.distance().hessian(), pair.scaling().hessian());
             }
         }
     }

@@ -3,9 +3,8 @@
 mod common;
 
 use common::{close, ellipsoid3};
-use convex_support::Ellipsoid;
-use convex_support::glam::{DQuat, DVec2, DVec3};
-use ellip_margin::{InverseIterationTracker, MarginOptions, MarginTracker, free_margin};
+use convex_support::glam::DQuat;
+use ellip_margin::{MarginOptions, MarginTracker, free_margin};
 use proptest::prelude::*;
 
 proptest! {
@@ -38,32 +37,4 @@ proptest! {
         }
         prop_assert!(track.iterations() <= 500, "{} iterations", track.iterations());
     }
-
-    /// The paper's method gives the right margin too: where it fails it says so and falls back.
-    #[test]
-    fn inverse_iteration(link in ellipsoid3(0.5, 0.01), obstacle in ellipsoid3(0.5, 0.5), step in 0.0..0.5f64) {
-        let mut track = InverseIterationTracker::new(1e-9, 200);
-        for k in 0..30 {
-            let t = f64::from(k) * step;
-            let e1 = link.posed(DQuat::from_rotation_z(t), DVec3::new(3.0 * t.cos(), 3.0 * t.sin(), 0.3)).expect("finite");
-            let (tracked, exact) = (track.step(&e1, &obstacle), free_margin(&e1, &obstacle, MarginOptions::default()));
-            prop_assert!(close(1.0 + tracked.margin, 1.0 + exact.margin, 1e-6, 0.0), "{} and {}", tracked.margin, exact.margin);
-        }
-        prop_assert!(track.fallbacks() >= 1 && track.steps() == 30, "the first step has nothing to start from");
-    }
-}
-
-/// One degree a step is within reach of inverse iteration: it never falls back after the first pose.
-#[test]
-fn small_steps_do_not_fall_back() {
-    let obstacle = Ellipsoid::new(DVec2::new(3.0, 0.0), DVec2::new(1.0, 0.4), 0.3).expect("valid");
-    let mut paper = InverseIterationTracker::new(1e-6, 40);
-    let mut ours = MarginTracker::default();
-    for k in 0..360 {
-        let link = Ellipsoid::new(DVec2::ZERO, DVec2::new(1.5, 0.5), f64::from(k).to_radians()).expect("valid");
-        let (a, b) = (paper.step(&link, &obstacle), ours.step(&link, &obstacle));
-        assert!(close(a.margin, b.margin, 1e-4, 0.0), "{} and {} at {k} degrees", a.margin, b.margin);
-    }
-    assert_eq!(paper.fallbacks(), 1, "the first pose only");
-    assert!(ours.iterations() < 3 * 360 && ours.iterations() < paper.iterations(), "{ours:?} {paper:?}");
 }

@@ -7,8 +7,8 @@ use std::hint::black_box;
 
 use convex_support::Ellipsoid;
 use convex_support::glam::{DMat3, DQuat, DVec3};
-use ellip_margin::eigen::free_margin_eigen;
-use ellip_margin::{MarginOptions, Method, eigenvalue_gradient, free_margin};
+use ellip_margin::paper::{eigenvalue_gradient, free_margin_eigen};
+use ellip_margin::{MarginOptions, Method, free_margin};
 use faer::{Mat, Side};
 use qd::Quad;
 

@@ -8,8 +8,8 @@ use std::hint::black_box;
 
 use convex_support::Ellipsoid;
 use convex_support::glam::DVec2;
-use ellip_margin::eigen::free_margin_eigen;
-use ellip_margin::{InverseIterationTracker, MarginOptions, MarginTracker, free_margin};
+use ellip_margin::paper::{InverseIterationTracker, free_margin_eigen};
+use ellip_margin::{MarginOptions, MarginTracker, free_margin};
 
 use super::growth::time;
 use workloads::rng::Rng;
@@ -83,7 +83,7 @@ fn measure(size: f64) -> Row {
     let options = MarginOptions::default();
     let mut row = Row::default();
     for Walk { poses, obstacle } in &walks {
-        let (mut paper, mut ours) = (InverseIterationTracker::new(PRECISION.0, PRECISION.1), MarginTracker::default());
+        let (mut paper, mut ours) = (InverseIterationTracker::new(PRECISION.0, PRECISION.1).expect("a positive tolerance"), MarginTracker::default());
         for pose in poses {
             let cold = free_margin(pose, obstacle, options);
             row.cold_iterations += cold.iterations as f64;
@@ -107,7 +107,7 @@ fn measure(size: f64) -> Row {
         |route: usize, walk: &dyn Fn(&Walk)| row.times[route] = time(|| walks.iter().for_each(walk)) / steps;
     clock(0, &|w| w.poses.iter().for_each(|pose| _ = black_box(&free_margin_eigen(black_box(pose), &w.obstacle))));
     clock(1, &|w| {
-        let mut track = InverseIterationTracker::new(PRECISION.0, PRECISION.1);
+        let mut track = InverseIterationTracker::new(PRECISION.0, PRECISION.1).expect("a positive tolerance");
         w.poses.iter().for_each(|pose| _ = black_box(&track.step(black_box(pose), &w.obstacle)));
     });
     clock(2, &|w| {

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use convex_support::glam::DVec2;
 use convex_support::{Ellipsoid, InvalidShape};
-use ellip_margin::{Clearance, LeftOut, MarginOptions, MarginTracker};
+use ellip_margin::{Clearance, EllipsoidPair, LeftOut, MarginOptions, MarginTracker};
 
 use super::picture;
 use xtask::plot::{Plot, Scale, Series};
@@ -61,7 +61,8 @@ pub(super) fn run(links: u32, folder: &Path) -> Result<(), String> {
         let (bodies, joints) = chain(links, now).map_err(invalid)?;
         let start = Instant::now();
         let least = clearance.step(&bodies).map_err(|why| why.to_string())?;
-        let gradient = least.margin.gradient(&bodies[least.link], &obstacles[least.obstacle]);
+        let pair = EllipsoidPair::new(&bodies[least.link], &obstacles[least.obstacle], MarginOptions::default());
+        let gradient = pair.margin().gradient();
         time += start.elapsed();
         // Joints beyond the link do not move it.
         let slopes = joints.iter().take(least.link + 1).map(|&joint| gradient.revolute(joint, 1.0)).enumerate();
@@ -87,7 +88,8 @@ pub(super) fn run(links: u32, folder: &Path) -> Result<(), String> {
         );
         if step.is_multiple_of(10) {
             // A margin of 0 or less is an overlap of what is drawn.
-            let overlaps: Vec<usize> = clearance.within(&bodies, 0.0).iter().map(|pair| pair.link).collect();
+            let near = clearance.within(&bodies, 0.0).map_err(|why| why.to_string())?;
+            let overlaps: Vec<usize> = near.iter().map(|pair| pair.link).collect();
             let state =
                 |i: usize| if overlaps.contains(&i) { picture::State::Overlapping } else { picture::State::Clear };
             frames.add(picture::Frame {

@@ -37,7 +37,7 @@ impl Query for Clearance {
         Ok(Box::new(Crowd::<V> {
             links: build("links", &self.links)?,
             obstacles: build("obstacles", &self.obstacles)?,
-            options: options(how.tol),
+            options: options(how.tol)?,
             method: how.method(&[("culled", Method::Culled), ("all_pairs", Method::AllPairs)])?,
         }))
     }

@@ -2,8 +2,8 @@
 
 use convex_support::{Ellipsoid, Vector};
 #[cfg(feature = "paper")]
-use ellip_margin::eigen::free_margin_eigen;
-use ellip_margin::{MarginGradient, MarginOptions, Status, free_margin};
+use ellip_margin::paper::free_margin_eigen;
+use ellip_margin::{EllipsoidPair, InvalidQuery, MarginOptions, MotionGradient, Status};
 
 use super::{Ask, How, Query, Question};
 use crate::wire::answer::{Answer, Field, Number};
@@ -11,10 +11,13 @@ use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
 use crate::wire::shape::{EllipsoidSpec, Space};
 
-pub(super) fn options(tol: Option<f64>) -> MarginOptions {
-    let mut options = MarginOptions::default();
-    options.tolerance = tol.unwrap_or(options.tolerance);
-    options
+pub(super) fn options(tol: Option<f64>) -> Result<MarginOptions, Problem> {
+    let options = MarginOptions::default();
+    tol.map_or(Ok(options), |tol| options.with_tolerance(tol).map_err(invalid))
+}
+
+pub(super) fn invalid(why: InvalidQuery) -> Problem {
+    Problem::new(Kind::Parse, why.to_string())
 }
 
 /// Says that the iteration of a margin did not get as far as it was to.
@@ -63,7 +66,7 @@ impl Query for Margin {
             ("eigen", Method::Eigen),
         ])?;
         let (e1, e2) = (self.e1.build("e1")?, self.e2.build("e2")?);
-        Ok(Box::new(Pair::<V> { e1, e2, gradient: self.gradient, options: options(how.tol), method }))
+        Ok(Box::new(Pair::<V> { e1, e2, gradient: self.gradient, options: options(how.tol)?, method }))
     }
 }
 
@@ -76,15 +79,15 @@ struct Pair<V: Vector> {
 }
 
 impl<V: Space> Question for Pair<V> {
-    type Solution = (ellip_margin::Margin<V>, Option<MarginGradient<V>>);
+    type Solution = (ellip_margin::Margin<V>, Option<MotionGradient<V>>);
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
         let margin = match self.method {
-            Method::Secular => free_margin(&self.e1, &self.e2, self.options),
+            Method::Secular => EllipsoidPair::new(&self.e1, &self.e2, self.options).margin(),
             #[cfg(feature = "paper")]
             Method::Eigen => free_margin_eigen(&self.e1, &self.e2),
         };
-        Ok((margin, self.gradient.then(|| margin.gradient(&self.e1, &self.e2))))
+        Ok((*margin, self.gradient.then(|| margin.gradient())))
     }
 
     fn answer(&self, (margin, gradient): Self::Solution) -> Result<Answer, Problem> {

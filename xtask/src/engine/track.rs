@@ -2,9 +2,11 @@
 
 use convex_support::{Ellipsoid, Vector};
 #[cfg(feature = "paper")]
-use ellip_margin::InverseIterationTracker;
+use ellip_margin::paper::InverseIterationTracker;
 use ellip_margin::{Margin, MarginTracker};
 
+#[cfg(feature = "paper")]
+use super::margin::invalid;
 use super::margin::{certain, options};
 use super::{Ask, How, Query, Question};
 use crate::wire::answer::{Answer, Field, Number};
@@ -30,9 +32,12 @@ impl Query for Track {
 
     fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
         let tracker = how.method(&[
-            ("newton", Tracker::Newton(MarginTracker::new(options(how.tol)))),
+            ("newton", Tracker::Newton(MarginTracker::new(options(how.tol)?))),
             #[cfg(feature = "paper")]
-            ("inverse", Tracker::Inverse(InverseIterationTracker::new(how.tol.unwrap_or(INVERSE.0), INVERSE.1))),
+            ("inverse", {
+                let tracker = InverseIterationTracker::new(how.tol.unwrap_or(INVERSE.0), INVERSE.1);
+                Tracker::Inverse(tracker.map_err(invalid)?)
+            }),
         ])?;
         let at = |(i, pose)| self.e1.build_posed("e1", pose, &format!("poses[{i}]"));
         let moving = self.poses.iter().enumerate().map(at).collect::<Result<_, _>>()?;

@@ -5,7 +5,7 @@ use convex_support::{Ellipsoid, Matrix, Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::hierarchy::Aabb;
-use crate::pair::{dot, sub};
+use crate::numerics::{dot, sub};
 
 /// A link's own coordinates: rows Rᵀ/a of the map to the ball.
 pub(super) struct Frame {

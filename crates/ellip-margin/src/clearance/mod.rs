@@ -142,8 +142,13 @@ impl<V: Vector> Clearance<V> {
     }
 
     /// All pairs whose margin is at most `threshold`, by link, in no particular order within one.
-    #[must_use]
-    pub fn within(&self, links: &[Ellipsoid<V>], threshold: V::Scalar) -> Vec<NearPair<V>> {
+    ///
+    /// # Errors
+    /// [`InvalidQuery::ThresholdNotANumber`] if `threshold` is not a number.
+    pub fn within(&self, links: &[Ellipsoid<V>], threshold: V::Scalar) -> Result<Vec<NearPair<V>>, InvalidQuery> {
+        if threshold.as_f64().is_nan() {
+            return Err(InvalidQuery::ThresholdNotANumber);
+        }
         let mut pairs = Vec::new();
         let limit = Limit(threshold.as_f64(), V::Scalar::EPSILON.as_f64());
         for (index, link) in links.iter().enumerate() {
@@ -169,6 +174,6 @@ impl<V: Vector> Clearance<V> {
                 }
             }
         }
-        pairs
+        Ok(pairs)
     }
 }

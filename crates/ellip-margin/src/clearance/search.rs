@@ -8,7 +8,7 @@ use super::LeftOut;
 use super::frame::{Frame, columns, padded};
 use super::least::{Least, scale};
 use crate::hierarchy::{Hierarchy, Node};
-use crate::pair::dot;
+use crate::numerics::dot;
 use crate::{Margin, MarginOptions, free_margin};
 
 /// A link's boxes are searched to this multiple of the least √(1 + m), although farther ones than the least need not be: the

@@ -6,7 +6,7 @@ use num_traits::Float as _;
 
 use super::frame::{columns, padded};
 use super::search::Normals;
-use crate::pair::{dot, sub};
+use crate::numerics::{dot, sub};
 
 /// A link where its margins were last bounded.
 #[derive(Clone, Copy, Debug)]

@@ -13,15 +13,15 @@
 //! p₂ = x*. It is closed in two stages: [`multipliers`] finds the direction of the distance by two numbers, however thin the
 //! bodies are, and [`Slab::ascend`] its last digits.
 
-mod factor;
 mod multipliers;
 mod slab;
 
 use convex_support::{Ellipsoid, Scalar, Vector};
 
-use self::slab::{Slab, unit};
+use self::slab::Slab;
 use crate::margin::solve;
-use crate::pair::{Pair, add, store};
+use crate::numerics::{add, store, unit};
+use crate::pair::Pair;
 use crate::polynomial;
 use crate::secular::Solution;
 use crate::{MarginOptions, Status};
@@ -84,10 +84,11 @@ fn bracket_in<V: Vector, const N: usize>(
     e2: &Ellipsoid<V>,
     options: MarginOptions,
 ) -> DistanceBracket<V> {
-    let (there, back) = (Pair::<N>::new(e1, e2), Pair::<N>::new(e2, e1));
-    let first = solve(&there, options);
-    let Some(slab) = Slab::of_margin(&there, &first) else { return overlapping(&there, &first) };
-    let second = solve(&back, options);
+    let (there, length) = Pair::<N>::new(e1, e2).in_own_unit();
+    let back = there.swapped();
+    let first = solve(&there, 0.0, options, |_, _| {});
+    let Some(slab) = Slab::of_margin(&there, &first) else { return overlapping(&there, &first, length) };
+    let second = solve(&back, 0.0, options, |_, _| {});
     // The slab of the other margin runs from E₂ to E₁.
     let other = Slab::of_margin(&back, &second).map(|s| Slab::new(&there, s.n.map(|x| -x)));
     let best = |a: Slab<N>, b: Option<Slab<N>>, better: fn(&Slab<N>, &Slab<N>) -> bool| match b {
@@ -96,7 +97,7 @@ fn bracket_in<V: Vector, const N: usize>(
     };
     let low = best(slab, other, |a, b| a.width > b.width);
     let high = best(slab, other, |a, b| a.length() < b.length());
-    let bracket = |slab: Slab<N>| slab.bracket::<V>(&there, slab.exact_width(&there));
+    let bracket = |slab: Slab<N>| slab.bracket::<V>(&there, slab.exact_width(&there), length);
     DistanceBracket { lower: bracket(low).lower, normal: store(low.n), ..bracket(high) }
 }
 
@@ -122,22 +123,22 @@ pub fn distance<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: Margin
 }
 
 fn distance_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, options: MarginOptions) -> Distance<V> {
-    let pair = Pair::<N>::new(e1, e2);
+    let (pair, length) = Pair::<N>::new(e1, e2).in_own_unit();
     // A slab that separates the bodies settles that they are disjoint, however its normal was found.
     let rough = polynomial::rough(&pair).and_then(|y| Slab::across(&pair, y)).filter(|slab| slab.is_wide(&pair));
     let mut slab = match rough {
         Some(slab) => slab,
         None => {
-            let margin = solve(&pair, options);
+            let margin = solve(&pair, 0.0, options, |_, _| {});
             let Some(slab) = Slab::of_margin(&pair, &margin) else {
-                let bracket = overlapping(&pair, &margin);
+                let bracket = overlapping(&pair, &margin, length);
                 return Distance { distance: V::Scalar::ZERO, bracket, status: margin.status, iterations: 0 };
             };
             slab
         }
     };
     let (mut status, mut iterations) = (Status::IterationLimit, 0);
-    if slab.width > 0.0 && slab.tangent_squared() > 2.0 * options.tolerance {
+    if slab.width > 0.0 && slab.tangent_squared() > 2.0 * options.tolerance() {
         let beta = slab.h.map(|h| h * slab.width);
         // An eighth of the steps is left for the slab to close by itself, should this end before it is at rest.
         let most = options.max_iterations - options.max_iterations / 8;
@@ -148,7 +149,7 @@ fn distance_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, 
         }
     }
     loop {
-        if slab.tangent_squared() <= 2.0 * options.tolerance {
+        if slab.tangent_squared() <= 2.0 * options.tolerance() {
             status = Status::Converged;
             break;
         }
@@ -166,12 +167,13 @@ fn distance_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, 
         }
     }
     let width = slab.exact_width(&pair);
-    let distance = V::Scalar::from_f64(width.max(0.0));
-    Distance { distance, bracket: slab.bracket(&pair, width), status, iterations }
+    let distance = V::Scalar::from_f64(width.max(0.0) * length);
+    Distance { distance, bracket: slab.bracket(&pair, width, length), status, iterations }
 }
 
 /// The bracket of two bodies with a common point.
-fn overlapping<V: Vector, const N: usize>(pair: &Pair<N>, solution: &Solution<N>) -> DistanceBracket<V> {
-    let point = store(if solution.nu > 0.0 { add(pair.x2, pair.out_of_ball(solution.y)) } else { pair.x1 });
+fn overlapping<V: Vector, const N: usize>(pair: &Pair<N>, solution: &Solution<N>, unit: f64) -> DistanceBracket<V> {
+    let point = if solution.nu > 0.0 { add(pair.x2, pair.out_of_ball(solution.y)) } else { pair.x1 };
+    let point = store(point.map(|x| x * unit));
     DistanceBracket { lower: V::Scalar::ZERO, upper: V::Scalar::ZERO, point1: point, point2: point, normal: V::ZERO }
 }

@@ -21,8 +21,8 @@
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use super::factor::Factor;
-use crate::pair::{Pair, Vec, combine, dot};
+use crate::numerics::{Factor, Vec, combine, dot};
+use crate::pair::Pair;
 
 /// The largest change of ln β in a step: beyond it the linear model says little.
 const TRUST: f64 = 2.0;

@@ -19,9 +19,8 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::DistanceBracket;
-use super::factor::Factor;
-use crate::double_double::DoubleDouble;
-use crate::pair::{Pair, Vec, add, combine, dot, store, sub};
+use crate::numerics::{DoubleDouble, Factor, Vec, add, combine, dot, store, sub, unit};
+use crate::pair::Pair;
 use crate::secular::Solution;
 
 /// A direction with what the two bodies say to it.
@@ -167,8 +166,8 @@ impl<const N: usize> Slab<N> {
         width.divided_by(product(n).sqrt().value()).value()
     }
 
-    /// The bracket, given the [`exact_width`](Self::exact_width).
-    pub(super) fn bracket<V: Vector>(&self, pair: &Pair<N>, width: f64) -> DistanceBracket<V> {
+    /// The bracket, given the [`exact_width`](Self::exact_width) and the unit of length of `pair`.
+    pub(super) fn bracket<V: Vector>(&self, pair: &Pair<N>, width: f64, unit: f64) -> DistanceBracket<V> {
         let slack = if self.is_wide(pair) { self.rounding(pair) } else { 8.0 * f64::EPSILON * width.abs() };
         // The lengths along and across n, so that the width's digits are not lost.
         let t = sub(self.across, self.n.map(|x| x * self.width));
@@ -176,19 +175,11 @@ impl<const N: usize> Slab<N> {
         // Rounding to an `f32` must not close the bracket either.
         let coarse = V::Scalar::EPSILON;
         DistanceBracket {
-            lower: (V::Scalar::from_f64((width - slack).max(0.0))) * (V::Scalar::ONE - coarse),
-            upper: V::Scalar::from_f64(upper + slack) * (V::Scalar::ONE + coarse),
-            point1: store(add(pair.x1, self.offset[0])),
-            point2: store(add(pair.x2, self.offset[1])),
+            lower: (V::Scalar::from_f64((width - slack).max(0.0) * unit)) * (V::Scalar::ONE - coarse),
+            upper: V::Scalar::from_f64((upper + slack) * unit) * (V::Scalar::ONE + coarse),
+            point1: store(add(pair.x1, self.offset[0]).map(|x| x * unit)),
+            point2: store(add(pair.x2, self.offset[1]).map(|x| x * unit)),
             normal: store(self.n),
         }
     }
-}
-
-/// The unit vector along `x`, of any magnitude.
-pub(super) fn unit<const N: usize>(x: Vec<N>) -> Vec<N> {
-    let largest = x.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-    let x = x.map(|x| x / largest);
-    let norm = dot(x, x).sqrt();
-    x.map(|x| x / norm)
 }

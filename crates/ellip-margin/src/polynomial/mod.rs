@@ -17,7 +17,8 @@ mod equation;
 mod problem;
 
 use self::problem::{Nearest, Problem};
-use crate::pair::{Pair, Vec};
+use crate::numerics::Vec;
+use crate::pair::Pair;
 use crate::secular::Solution;
 use crate::{MarginOptions, Status};
 
@@ -57,7 +58,7 @@ pub(crate) fn solve<const N: usize>(
             return None;
         }
         nu = next;
-        if error <= options.tolerance * nu {
+        if error <= options.tolerance() * nu {
             status = Status::Converged;
             break;
         }

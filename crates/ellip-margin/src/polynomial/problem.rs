@@ -4,7 +4,8 @@
 use num_traits::Float as _;
 
 use super::equation::{Equation, Taylor};
-use crate::pair::{Pair, Vec, dot};
+use crate::numerics::{Vec, dot, size};
+use crate::pair::Pair;
 
 /// The largest factor by which a sum of the coefficients may cancel: the relative errors of ν and y are at most this times
 /// a few ε, some 1e-12. Beyond it the singular basis is worth its price.
@@ -119,10 +120,11 @@ impl<const N: usize> Problem<N> {
         // The Lagrangian ‖w‖² − 1 + ν(‖y‖² − 1) is stationary in y: what y has of errors enters squared.
         let squared = dot(w, w);
         let margin = (squared - 1.0) + nu * (dot(y, y) - 1.0);
-        // An error of x* − x₁ in space of ε(‖v‖ + ‖r‖) changes m by its product with ∂m/∂x₁ = 2R₁·diag(a₁)⁻¹w: not by 32ε·m?
+        // An error of x* − x₁ in space of ε(‖v‖ + ‖r‖) changes m by its product with ∂m/∂x₁ = 2R₁·diag(a₁)⁻¹w: not by 64ε·m?
+        // Lengths times their inverses, never squared: at any scale the answer is the same.
         let v: Vec<N> = core::array::from_fn(|j| pair.a2[j] * y[j]);
         let pw: Vec<N> = core::array::from_fn(|i| self.i1[i] * w[i]);
-        let is_sure = (dot(v, v) + dot(self.r, self.r)) * dot(pw, pw) < 1024.0 * (margin * margin);
+        let is_sure = (size(v) + size(self.r)) * size(pw) < 64.0 * margin.abs();
         // The margin's error is ‖Bδ‖² for an error δ of y, here up to 1e-12: it must stay below the last digit.
         Nearest { y, margin, is_sure, is_sharp: self.norm < 1e9 * (1.0 + margin) }
     }

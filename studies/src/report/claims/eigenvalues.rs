@@ -2,8 +2,8 @@
 
 use convex_support::glam::DVec2;
 use convex_support::{Ellipsoid, InvalidShape};
-use ellip_margin::eigen::free_margin_eigen;
-use ellip_margin::{InverseIterationTracker, MarginOptions, MarginTracker, free_margin};
+use ellip_margin::paper::{InverseIterationTracker, free_margin_eigen};
+use ellip_margin::{MarginOptions, MarginTracker, free_margin};
 use serde_json::Value;
 use workloads::rng::Rng;
 use xtask::engine;
@@ -101,7 +101,7 @@ fn walks() -> Result<Vec<Claim>, InvalidShape> {
                 at = (at + cells * (step / 128.0)).clamp(DVec2::ZERO, DVec2::ONE);
                 angle += draw(unit(&mut random)) * f64::to_radians(step);
             }
-            let (mut paper, mut ours) = (InverseIterationTracker::new(1e-6, 14), MarginTracker::default());
+            let (mut paper, mut ours) = (InverseIterationTracker::new(1e-6, 14).expect("a positive tolerance"), MarginTracker::default());
             for pose in &poses {
                 let exact = free_margin(pose, &obstacle, MarginOptions::default()).margin;
                 let close = |m: f64, tolerance: f64| (m - exact).abs() <= tolerance * (1.0 + exact);
@@ -125,7 +125,7 @@ fn walks() -> Result<Vec<Claim>, InvalidShape> {
                 poses.iter().for_each(|p| _ = std::hint::black_box(&free_margin_eigen(p, obstacle)));
             });
             let inverse = all(&|poses, obstacle| {
-                let mut tracker = InverseIterationTracker::new(1e-6, 14);
+                let mut tracker = InverseIterationTracker::new(1e-6, 14).expect("a positive tolerance");
                 poses.iter().for_each(|p| _ = std::hint::black_box(&tracker.step(p, obstacle)));
             });
             let newton = all(&|poses, obstacle| {

@@ -9,7 +9,7 @@
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use crate::pair::{Vec, dot};
+use super::{Vec, dot};
 
 /// `B = Σₖ σₖ·uₖ·vₖᵀ`; the vectors are unit and mutually orthogonal, the values in no particular order.
 #[derive(Clone, Copy, Debug)]

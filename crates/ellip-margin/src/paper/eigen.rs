@@ -10,7 +10,8 @@ use convex_support::{Ellipsoid, Vector};
 use faer::Mat;
 
 use crate::margin::answer;
-use crate::pair::{Pair, Vec, dot, sub};
+use crate::numerics::{Vec, dot, sub};
+use crate::pair::Pair;
 use crate::secular::Solution;
 use crate::{Margin, Status};
 
@@ -21,7 +22,7 @@ use crate::{Margin, Status};
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec2};
-/// use ellip_margin::{MarginOptions, eigen::free_margin_eigen, free_margin};
+/// use ellip_margin::{MarginOptions, free_margin, paper::free_margin_eigen};
 ///
 /// let e1 = Ellipsoid::new(DVec2::ZERO, DVec2::new(2.0, 1.0), 0.3)?;
 /// let e2 = Ellipsoid::new(DVec2::new(4.0, 1.0), DVec2::new(1.0, 0.5), -0.8)?;

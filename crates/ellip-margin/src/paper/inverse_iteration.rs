@@ -14,30 +14,35 @@ use convex_support::{Ellipsoid, Vector};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use crate::margin::answer;
-use crate::pair::{Pair, Vec, add, dot, sub};
+use crate::margin::{answer, solve};
+use crate::numerics::{Vec, add, combine, dot, sub, unit};
+use crate::options::check;
+use crate::pair::Pair;
 use crate::secular::{self, Solution};
-use crate::{Margin, MarginOptions, Status};
+use crate::{InvalidQuery, Margin, MarginOptions, Status};
 
 /// The paper's tracker of one pair along a trajectory, for comparison with [`MarginTracker`](crate::MarginTracker).
 ///
 /// Inverse iteration converges to the eigenvalue nearest to the last one, which is the minimal one only while steps
-/// are small: about five degrees. A step where it ends at another eigenvalue or not at all is seen, solved by
-/// [`free_margin`](crate::free_margin) instead, and counted as a fallback. Like the paper's, it forms C, whose condition
-/// is the square of that of the bodies.
+/// are small: about five degrees. Like the paper's, it forms C, whose condition is the square of that of the bodies: at an aspect of
+/// 1e8 no digit of it is left, and a residual in terms of C is small for a wrong eigenvalue too. So what it finds is held against
+/// the bodies themselves. The point it leads to is a point of E₂, so that 1 + m is at most its squared distance from x₁ in the norm of E₁;
+/// the plane across the gradient there bounds 1 + m from below. A step where the two differ by more than the tolerance, relative to
+/// the lesser of m and 1 + m, or that ends at another eigenvalue or not at all, is solved by [`free_margin`](crate::free_margin)
+/// instead, and counted as a fallback.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec2};
-/// use ellip_margin::InverseIterationTracker;
+/// use ellip_margin::paper::InverseIterationTracker;
 ///
 /// let obstacle = Ellipsoid::new(DVec2::new(3.0, 0.0), DVec2::new(1.0, 0.5), 0.2)?;
-/// let mut track = InverseIterationTracker::new(1e-6, 14);
+/// let mut track = InverseIterationTracker::new(1e-6, 14)?;
 /// for step in 0..90 {
 ///     let link = Ellipsoid::new(DVec2::ZERO, DVec2::new(1.5, 0.8), f64::from(step).to_radians())?;
 ///     assert!(track.step(&link, &obstacle).margin > 0.0);
 /// }
 /// assert_eq!(track.fallbacks(), 1); // the first step, which has nothing to start from
-/// # Ok::<(), convex_support::InvalidShape>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InverseIterationTracker {
@@ -53,9 +58,14 @@ pub struct InverseIterationTracker {
 impl InverseIterationTracker {
     /// A tracker that stops when the unit eigenvector changes by `tolerance` (the paper's ε), and gives up after
     /// `max_iterations` (its K; ln(1/ε) there).
-    #[must_use]
-    pub const fn new(tolerance: f64, max_iterations: usize) -> Self {
-        Self { tolerance, max_iterations, start: None, steps: 0, iterations: 0, fallbacks: 0 }
+    ///
+    /// # Errors
+    /// [`InvalidQuery::Tolerance`] unless the tolerance is positive and finite.
+    pub const fn new(tolerance: f64, max_iterations: usize) -> Result<Self, InvalidQuery> {
+        match check(tolerance) {
+            Ok(tolerance) => Ok(Self { tolerance, max_iterations, start: None, steps: 0, iterations: 0, fallbacks: 0 }),
+            Err(why) => Err(why),
+        }
     }
 
     /// The margin of `e1` about `e2` where they are now.
@@ -103,23 +113,39 @@ impl InverseIterationTracker {
             let (found, iterations) = self.iterate(matrix, b, shift, start.map(shrink));
             self.iterations += iterations as u64;
             if let Some((lambda, [y, z])) = found {
-                self.start = Some((lambda, [y, z].map(grow)));
-                // (10): z = [C − λI]⁻¹b, the point in the ball, where bᵀy = 1.
-                let scale = dot(b, y);
-                let x = z.map(|z| z / scale);
-                let w = sub(rows.map(|row| dot(row, x)), g);
-                let margin = dot(w, w) - 1.0;
-                return Solution { nu: -lambda, y: x, margin, status: Status::Converged, iterations };
+                // (10): z = [C − λI]⁻¹b where bᵀy = 1, the point in the ball, of length 1.
+                let side = dot(b, y).signum();
+                let point = unit(z).map(|z| side * z);
+                if self.is_nearest(pair, point) {
+                    self.start = Some((lambda, [y, z].map(grow)));
+                    let margin = secular::margin(pair, point, -lambda);
+                    return Solution { nu: -lambda, y: point, margin, status: Status::Converged, iterations };
+                }
             }
         }
 
         self.fallbacks += 1;
-        let solution = secular::solve(pair, 0.0, MarginOptions::default(), |_, _| {});
+        let solution = solve(pair, 0.0, MarginOptions::default(), |_, _| {});
         // The eigenvector: z = x̄, y = [C − λI]⁻¹z.
         let y = times(inverse(shifted(matrix, -solution.nu)), solution.y);
         let norm = (dot(y, y) + dot(solution.y, solution.y)).sqrt();
         self.start = Some((-solution.nu, [y, solution.y].map(|v| grow(v.map(|v| v / norm)))));
         solution
+    }
+
+    /// Whether the point of E₂ with the coordinates `y` in its ball is that nearest to x₁ in the norm of E₁, to the tolerance.
+    ///
+    /// With w = x − x₁, β = diag(a₁)⁻¹R₁ᵀw and the normal N = −R₁·diag(a₁)⁻¹β towards x₁, h₁(N) = ‖β‖. Since all of E₂ lies on one side
+    /// of its tangent plane across N, ‖β‖² ≥ 1 + m ≥ ρ², ρ = (N·(x₁ − x₂) − h₂(N))/‖β‖.
+    fn is_nearest<const N: usize>(&self, pair: &Pair<N>, y: Vec<N>) -> bool {
+        let w = sub(pair.out_of_ball(y), pair.r());
+        let beta: Vec<N> = core::array::from_fn(|i| dot(pair.axes1[i], w) / pair.a1[i]);
+        let normal = combine(pair.axes1, core::array::from_fn(|i| -beta[i] / pair.a1[i]));
+        let height: Vec<N> = core::array::from_fn(|j| pair.a2[j] * dot(pair.axes2[j], normal));
+        let above = dot(beta, beta);
+        let rho = (dot(normal, pair.r()) - dot(height, height).sqrt()) / above.sqrt();
+        let below = rho.max(0.0) * rho;
+        above - below <= self.tolerance * below.min((below - 1.0).abs())
     }
 
     /// Inverse iteration from the unit vector `x` with the shift λ̂; the minimal eigenvalue with its vector, if that is

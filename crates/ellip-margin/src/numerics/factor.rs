@@ -1,16 +1,16 @@
 //! The factorisation of small symmetric positive definite matrices.
 
-use crate::pair::Vec;
+use super::Vec;
 
 /// L·diag(D)·Lᵀ of a symmetric positive definite matrix, of which the lower triangle is read.
-pub(super) struct Factor<const N: usize> {
+pub(crate) struct Factor<const N: usize> {
     l: [Vec<N>; N],
     /// 1/D.
     inverse: Vec<N>,
 }
 
 impl<const N: usize> Factor<N> {
-    pub(super) fn new(mut a: [Vec<N>; N]) -> Self {
+    pub(crate) fn new(mut a: [Vec<N>; N]) -> Self {
         let mut inverse = [0.0; N];
         for j in 0..N {
             inverse[j] = 1.0 / a[j][j];
@@ -27,7 +27,7 @@ impl<const N: usize> Factor<N> {
         Self { l: a, inverse }
     }
 
-    pub(super) fn solve(&self, mut b: Vec<N>) -> Vec<N> {
+    pub(crate) fn solve(&self, mut b: Vec<N>) -> Vec<N> {
         for j in 0..N {
             for i in j + 1..N {
                 b[i] -= self.l[i][j] * b[j];

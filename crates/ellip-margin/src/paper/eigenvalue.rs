@@ -16,11 +16,11 @@ pub struct EigenvalueGradient<V: Vector> {
 /// Corollary 4.1 of Rimon and Boyd: how the minimal eigenvalue λ* changes with b̄ = Rᵀb and the eigenvalues λᵢ of C.
 ///
 /// The formula is right, but it is the gradient of λ*, not of the margin, and it lives in a basis that is undefined where
-/// two eigenvalues meet, as for spheroids. [`Margin::gradient`](crate::Margin::gradient) has neither limit.
+/// two eigenvalues meet, as for spheroids. The gradient of [`EllipsoidPair::margin`](crate::EllipsoidPair::margin) has neither limit.
 ///
 /// ```
 /// use convex_support::glam::DVec2;
-/// use ellip_margin::eigenvalue_gradient;
+/// use ellip_margin::paper::eigenvalue_gradient;
 ///
 /// // b̄ = (3, 0), λ = (1, 2): 9/(1 − λ*)² = 1 at λ* = −2, which falls as b̄₁ grows.
 /// let gradient = eigenvalue_gradient(DVec2::new(3.0, 0.0), DVec2::new(1.0, 2.0), -2.0);

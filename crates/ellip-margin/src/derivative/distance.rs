@@ -1,0 +1,73 @@
+//! How the Euclidean distance changes as a body moves.
+
+use super::contact::{Contact, Mover, Quantity};
+use super::motion::{MotionGradient, MotionHessian};
+use crate::numerics::load;
+use crate::pair::Pair;
+use crate::{Answer, Distance, Wedge};
+
+impl<V: Wedge> Answer<'_, V, Distance<V>> {
+    /// The gradient of the distance with respect to the motion of the first ellipsoid: minus the unit normal, as a force at its
+    /// closest point. Zero where the bodies overlap.
+    ///
+    /// ```
+    /// use convex_support::{Ellipsoid, glam::DVec3};
+    /// use ellip_margin::{EllipsoidPair, MarginOptions};
+    ///
+    /// let link = Ellipsoid::new(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.0), Default::default())?;
+    /// let obstacle = Ellipsoid::new(DVec3::new(6.0, 0.0, 0.0), DVec3::ONE, Default::default())?;
+    /// let distance = EllipsoidPair::new(&link, &obstacle, MarginOptions::default()).distance();
+    /// assert_eq!(distance.gradient().translation, DVec3::new(-1.0, 0.0, 0.0));
+    /// // The tip at (2, 0, 0) swings away from the obstacle to second order only, by (r + r²/ρ)/2·ω², …
+    /// assert_eq!(distance.gradient().rotation, DVec3::ZERO);
+    /// assert!(distance.hessian().along(DVec3::ZERO, DVec3::Z) > 0.0);
+    /// # Ok::<(), convex_support::InvalidShape>(())
+    /// ```
+    pub fn gradient(&self) -> MotionGradient<V> {
+        self.gradient_of(Mover::First)
+    }
+
+    /// The gradient with respect to the motion of the second ellipsoid.
+    pub fn gradient_of_second(&self) -> MotionGradient<V> {
+        self.gradient_of(Mover::Second)
+    }
+
+    /// The second derivatives with respect to the motion of the first ellipsoid. The block of translations is positive
+    /// semidefinite, with the normal in its kernel. Zero where the bodies overlap; it grows without bound for bodies of no extent.
+    pub fn hessian(&self) -> MotionHessian<V> {
+        self.hessian_of(Mover::First)
+    }
+
+    /// The second derivatives with respect to the motion of the second ellipsoid.
+    pub fn hessian_of_second(&self) -> MotionHessian<V> {
+        self.hessian_of(Mover::Second)
+    }
+
+    fn gradient_of(&self, mover: Mover) -> MotionGradient<V> {
+        let body = match mover {
+            Mover::First => self.first(),
+            Mover::Second => self.second(),
+        };
+        let gradient = if V::DIM == 2 {
+            self.contact::<2>().map(|contact| MotionGradient::of_contact(&contact, mover, body))
+        } else {
+            self.contact::<3>().map(|contact| MotionGradient::of_contact(&contact, mover, body))
+        };
+        gradient.unwrap_or_else(|| MotionGradient::zero(body))
+    }
+
+    fn hessian_of(&self, mover: Mover) -> MotionHessian<V> {
+        let hessian = if V::DIM == 2 {
+            self.contact::<2>().map(|contact| MotionHessian::of_contact(&contact, mover, 1.0, 0.0))
+        } else {
+            self.contact::<3>().map(|contact| MotionHessian::of_contact(&contact, mover, 1.0, 0.0))
+        };
+        hessian.unwrap_or_else(MotionHessian::zero)
+    }
+
+    fn contact<const N: usize>(&self) -> Option<Contact<N>> {
+        let pair = Pair::<N>::new(self.first(), self.second());
+        let normal = load(self.bracket.normal);
+        Contact::new(&pair, Quantity::DISTANCE, normal).map(|contact| contact.refined(&pair))
+    }
+}

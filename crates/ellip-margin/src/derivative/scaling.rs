@@ -1,0 +1,74 @@
+//! How the common scale changes as a body moves.
+
+use super::contact::{Contact, Mover, Quantity};
+use super::motion::{MotionGradient, MotionHessian};
+use crate::numerics::{Vec, combine, load};
+use crate::pair::Pair;
+use crate::{Answer, Scaling, Wedge};
+
+impl<V: Wedge> Answer<'_, V, Scaling<V>> {
+    /// The gradient of the scale α with respect to the motion of the first ellipsoid, at any depth: it tells the way out where the
+    /// margin has reached its floor. Zero where the bodies are concentric, which is the least α can be.
+    ///
+    /// ```
+    /// use convex_support::{Ellipsoid, glam::DVec3};
+    /// use ellip_margin::{EllipsoidPair, MarginOptions};
+    ///
+    /// // Balls of radius 2 and 1, their centres 0.6 apart: α = distance of the centres/3.
+    /// let e1 = Ellipsoid::new(DVec3::ZERO, DVec3::splat(2.0), Default::default())?;
+    /// let e2 = Ellipsoid::new(DVec3::new(0.6, 0.0, 0.0), DVec3::ONE, Default::default())?;
+    /// let pair = EllipsoidPair::new(&e1, &e2, MarginOptions::default());
+    /// assert_eq!(pair.margin().gradient().translation, DVec3::ZERO);
+    /// assert!(pair.scaling().gradient().translation.abs_diff_eq(DVec3::new(-1.0 / 3.0, 0.0, 0.0), 1e-15));
+    /// # Ok::<(), convex_support::InvalidShape>(())
+    /// ```
+    pub fn gradient(&self) -> MotionGradient<V> {
+        self.gradient_of(Mover::First)
+    }
+
+    /// The gradient with respect to the motion of the second ellipsoid.
+    pub fn gradient_of_second(&self) -> MotionGradient<V> {
+        self.gradient_of(Mover::Second)
+    }
+
+    /// The second derivatives of the scale α with respect to the motion of the first ellipsoid. α is homogeneous in the line of centres:
+    /// its second derivatives grow as its inverse towards concentric bodies, where there are none and zero is the answer.
+    pub fn hessian(&self) -> MotionHessian<V> {
+        self.hessian_of(Mover::First)
+    }
+
+    /// The second derivatives with respect to the motion of the second ellipsoid.
+    pub fn hessian_of_second(&self) -> MotionHessian<V> {
+        self.hessian_of(Mover::Second)
+    }
+
+    fn gradient_of(&self, mover: Mover) -> MotionGradient<V> {
+        let body = match mover {
+            Mover::First => self.first(),
+            Mover::Second => self.second(),
+        };
+        let gradient = if V::DIM == 2 {
+            self.contact::<2>().map(|contact| MotionGradient::of_contact(&contact, mover, body))
+        } else {
+            self.contact::<3>().map(|contact| MotionGradient::of_contact(&contact, mover, body))
+        };
+        gradient.unwrap_or_else(|| MotionGradient::zero(body))
+    }
+
+    fn hessian_of(&self, mover: Mover) -> MotionHessian<V> {
+        let hessian = if V::DIM == 2 {
+            self.contact::<2>().map(|contact| MotionHessian::of_contact(&contact, mover, 1.0, 0.0))
+        } else {
+            self.contact::<3>().map(|contact| MotionHessian::of_contact(&contact, mover, 1.0, 0.0))
+        };
+        hessian.unwrap_or_else(MotionHessian::zero)
+    }
+
+    fn contact<const N: usize>(&self) -> Option<Contact<N>> {
+        let pair = Pair::<N>::new(self.first(), self.second());
+        let [e1, e2]: [Vec<N>; 2] = self.ball_points.map(load);
+        // Qv, against E₂'s own normal there.
+        let normal = combine(pair.axes2, core::array::from_fn(|j| e2[j] / pair.a2[j]));
+        Contact::at_points(&pair, Quantity::SCALE, normal, [e1, e2])
+    }
+}
