@@ -14,7 +14,7 @@ use crate::margin::free_margin;
 use crate::numerics::{self, add};
 use crate::pair::Pair;
 use crate::polynomial::{STRAIGHT_STEPS, solve_straight};
-use crate::{InvalidQuery, Margin, MarginOptions, Method, Status};
+use crate::{Answer, EllipsoidPair, InvalidQuery, Margin, MarginOptions, Method, Status};
 
 const LANES: usize = 8;
 
@@ -62,16 +62,97 @@ pub fn free_margins_into<V: Vector>(
     options: MarginOptions,
     margins: &mut Vec<Margin<V>>,
 ) -> Result<(), InvalidQuery> {
-    let count = match (e1.len(), e2.len()) {
-        (first, second) if first == second => first,
-        (1, second) => second,
-        (first, 1) => first,
-        (first, second) => return Err(InvalidQuery::LengthsDiffer { first, second }),
-    };
+    let (count, of) = (count(e1, e2)?, pairs(e1, e2));
     margins.reserve(count);
-    let of = |k: usize| (&e1[if e1.len() == 1 { 0 } else { k }], &e2[if e2.len() == 1 { 0 } else { k }]);
     in_parts(count, margins, |part, margins| some(part, of, options, margins));
     Ok(())
+}
+
+/// What `ask` makes of the margin of each pair, solved side by side as by [`free_margins`]: gradients and Hessians, for instance.
+///
+/// ```
+/// use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};
+/// use ellip_margin::{MarginOptions, map_margins};
+///
+/// let link = Ellipsoid::new(DVec2::ZERO, DVec2::new(2.0, 0.5), 0.0)?;
+/// let obstacles = [1.0, 2.0, 3.0].map(|y| Ellipsoid::new(DVec2::new(1.0, y), DVec2::new(0.3, 0.2), 0.7));
+/// let obstacles = obstacles.into_iter().collect::<Result<Vec<_>, _>>()?;
+/// let gradients = map_margins(&[link], &obstacles, MarginOptions::default(), |m| m.gradient())?;
+/// assert!(gradients.iter().all(|gradient| gradient.translation.y < 0.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`InvalidQuery::LengthsDiffer`] if the lists are of different lengths, neither of them 1.
+pub fn map_margins<'a, V: Vector, T: Send>(
+    e1: &'a [Ellipsoid<V>],
+    e2: &'a [Ellipsoid<V>],
+    options: MarginOptions,
+    ask: impl Fn(Answer<'a, V, Margin<V>>) -> T + Sync,
+) -> Result<Vec<T>, InvalidQuery> {
+    let (count, of) = (count(e1, e2)?, pairs(e1, e2));
+    let mut answers = Vec::with_capacity(count);
+    in_parts(count, &mut answers, |part, answers| {
+        let first = part.start;
+        let mut margins = Vec::with_capacity(part.len());
+        some(part, of, options, &mut margins);
+        answers.extend(margins.into_iter().enumerate().map(|(k, margin)| {
+            let (e1, e2) = of(first + k);
+            ask(EllipsoidPair::new(e1, e2, options).answer(margin))
+        }));
+    });
+    Ok(answers)
+}
+
+/// What `ask` makes of each pair, on all cores with the feature `rayon`: distances, common scales, and their derivatives.
+///
+/// ```
+/// use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};
+/// use ellip_margin::{MarginOptions, map_pairs};
+///
+/// let link = Ellipsoid::new(DVec2::ZERO, DVec2::new(2.0, 0.5), 0.0)?;
+/// let obstacles = [0.1, 2.0, 3.0].map(|y| Ellipsoid::new(DVec2::new(1.0, y), DVec2::new(0.3, 0.2), 0.7));
+/// let obstacles = obstacles.into_iter().collect::<Result<Vec<_>, _>>()?;
+/// let ways = map_pairs(&[link], &obstacles, MarginOptions::default(), |pair| pair.scaling().gradient())?;
+/// assert!(ways[0].translation.y < 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`InvalidQuery::LengthsDiffer`] if the lists are of different lengths, neither of them 1.
+pub fn map_pairs<'a, V: Vector, T: Send>(
+    e1: &'a [Ellipsoid<V>],
+    e2: &'a [Ellipsoid<V>],
+    options: MarginOptions,
+    ask: impl Fn(EllipsoidPair<'a, V>) -> T + Sync,
+) -> Result<Vec<T>, InvalidQuery> {
+    let (count, of) = (count(e1, e2)?, pairs(e1, e2));
+    let mut answers = Vec::with_capacity(count);
+    in_parts(count, &mut answers, |part, answers| {
+        answers.extend(part.map(|k| {
+            let (e1, e2) = of(k);
+            ask(EllipsoidPair::new(e1, e2, options))
+        }));
+    });
+    Ok(answers)
+}
+
+/// How many pairs two lists make.
+fn count<V: Vector>(e1: &[Ellipsoid<V>], e2: &[Ellipsoid<V>]) -> Result<usize, InvalidQuery> {
+    match (e1.len(), e2.len()) {
+        (first, second) if first == second => Ok(first),
+        (1, second) => Ok(second),
+        (first, 1) => Ok(first),
+        (first, second) => Err(InvalidQuery::LengthsDiffer { first, second }),
+    }
+}
+
+/// Pair number `k` of two lists: a single ellipsoid stands for as many of it as the other list has.
+fn pairs<'a, V: Vector>(
+    e1: &'a [Ellipsoid<V>],
+    e2: &'a [Ellipsoid<V>],
+) -> impl Fn(usize) -> (&'a Ellipsoid<V>, &'a Ellipsoid<V>) + Copy + Sync {
+    move |k| (&e1[if e1.len() == 1 { 0 } else { k }], &e2[if e2.len() == 1 { 0 } else { k }])
 }
 
 /// How many pairs a core takes at a time: whole lanes, so that each pair is solved as it is in one go.

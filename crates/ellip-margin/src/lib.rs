@@ -7,34 +7,34 @@
 //!
 //! ```
 //! use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};
-//! use ellip_margin::{MarginOptions, free_margin};
+//! use ellip_margin::{EllipsoidPair, MarginOptions};
 //!
 //! // May this link move up? The obstacle is above it.
 //! let link = Ellipsoid::new(DVec2::ZERO, DVec2::new(2.0, 0.5), 0.0)?;
 //! let obstacle = Ellipsoid::new(DVec2::new(1.0, 2.0), DVec2::new(1.0, 0.5), 0.7)?;
-//! let m = free_margin(&link, &obstacle, MarginOptions::default());
-//! assert!(m.margin > 0.0 && m.gradient(&link, &obstacle).translation.y < 0.0);
+//! let m = EllipsoidPair::new(&link, &obstacle, MarginOptions::default()).margin();
+//! assert!(m.margin > 0.0 && m.gradient().translation.y < 0.0);
 //! # Ok::<(), convex_support::InvalidShape>(())
 //! ```
 //!
 //! # One pair
 //! - [`free_margin`]: value, multiplier and nearest point; [`free_margin_with`] to watch it converge.
-//! - [`Margin::gradient`], [`Margin::gradient_of_second`]: by the motion of either body, as a wrench, or per joint.
-//! - [`Margin::shape_gradient`], [`Margin::hessian`].
 //! - [`distance`], [`distance_bracket`]: the Euclidean distance, exact or bounded, certified either way.
-//! - [`free_margins`]: many pairs side by side, in vector registers.
 //! - [`scaling`]: the common scale at which both touch, symmetric, informative at any depth.
+//! - [`EllipsoidPair`]: the same three with their derivatives. Each answers `gradient` and `hessian`, and these `_of_second`, by the
+//!   motion of either body, as a wrench or per joint.
+//! - [`free_margins`], [`map_margins`], [`map_pairs`]: many pairs; margins side by side in vector registers.
 //!
 //! # Along a motion
 //! - [`MarginTracker`]: one pair. [`Clearance`]: many links against many obstacles; [`clearance`] is its plain reference.
 //!
 //! # The paper's own routes, corrected
-//! - `eigen::free_margin_eigen` (feature `eigen`), [`InverseIterationTracker`], [`eigenvalue_gradient`].
+//! - Feature `paper`: `paper::free_margin_eigen`, `paper::InverseIterationTracker`, `paper::eigenvalue_gradient`.
 //!
 //! # Features
 //! - `std` (default): floating-point functions from the standard library; `libm`: the same from the libm crate, for `no_std`
 //!   targets. `alloc` is needed in any case.
-//! - `eigen`: the eigenvalue route, by faer.
+//! - `paper`: the paper's own routes, with eigenvalues by faer.
 //! - `rayon`: [`free_margins`] and [`clearance`] use all cores. The answers are the same to the last bit.
 //! - `serde`: options, margins and trackers as data, beside convex-support's shapes.
 //! - `simd`: batches take the widest vector instructions of the processor, found at run time by pulp. The answers are the same.
@@ -71,7 +71,7 @@ mod wedge;
 
 pub use convex_support;
 
-pub use batch::{free_margins, free_margins_into};
+pub use batch::{free_margins, free_margins_into, map_margins, map_pairs};
 pub use clearance::{Clearance, ClearanceResult, LeftOut, NearPair, clearance};
 pub use derivative::{MotionGradient, MotionHessian, ShapeGradient};
 pub use distance::{Distance, DistanceBracket, distance, distance_bracket};

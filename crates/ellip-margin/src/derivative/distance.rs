@@ -1,7 +1,7 @@
 //! How the Euclidean distance changes as a body moves.
 
 use super::contact::{Contact, Mover, Quantity};
-use super::motion::{MotionGradient, MotionHessian};
+use super::motion::{MotionGradient, MotionHessian, Units};
 use crate::numerics::load;
 use crate::pair::Pair;
 use crate::{Answer, Distance, Wedge};
@@ -49,25 +49,26 @@ impl<V: Wedge> Answer<'_, V, Distance<V>> {
             Mover::Second => self.second(),
         };
         let gradient = if V::DIM == 2 {
-            self.contact::<2>().map(|contact| MotionGradient::of_contact(&contact, mover, body))
+            self.contact::<2>().map(|(contact, units)| MotionGradient::of_contact(&contact, mover, body, units))
         } else {
-            self.contact::<3>().map(|contact| MotionGradient::of_contact(&contact, mover, body))
+            self.contact::<3>().map(|(contact, units)| MotionGradient::of_contact(&contact, mover, body, units))
         };
         gradient.unwrap_or_else(|| MotionGradient::zero(body))
     }
 
     fn hessian_of(&self, mover: Mover) -> MotionHessian<V> {
         let hessian = if V::DIM == 2 {
-            self.contact::<2>().map(|contact| MotionHessian::of_contact(&contact, mover, 1.0, 0.0))
+            self.contact::<2>().map(|(contact, units)| MotionHessian::of_contact(&contact, mover, 1.0, 0.0, units))
         } else {
-            self.contact::<3>().map(|contact| MotionHessian::of_contact(&contact, mover, 1.0, 0.0))
+            self.contact::<3>().map(|(contact, units)| MotionHessian::of_contact(&contact, mover, 1.0, 0.0, units))
         };
         hessian.unwrap_or_else(MotionHessian::zero)
     }
 
-    fn contact<const N: usize>(&self) -> Option<Contact<N>> {
-        let pair = Pair::<N>::new(self.first(), self.second());
+    fn contact<const N: usize>(&self) -> Option<(Contact<N>, Units)> {
+        let (pair, length) = Pair::<N>::new(self.first(), self.second()).in_own_unit();
         let normal = load(self.bracket.normal);
-        Contact::new(&pair, Quantity::DISTANCE, normal).map(|contact| contact.refined(&pair))
+        let contact = Contact::new(&pair, Quantity::DISTANCE, normal)?.refined(&pair);
+        Some((contact, Units { value: length, length }))
     }
 }

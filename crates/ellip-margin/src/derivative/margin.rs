@@ -14,7 +14,7 @@
 use convex_support::{Ellipsoid, Scalar, Vector};
 
 use super::contact::{Contact, Mover, Quantity};
-use super::motion::{MotionGradient, MotionHessian, torque};
+use super::motion::{MotionGradient, MotionHessian, Units, torque};
 use crate::numerics::{combine, dot, load, size, store, sub, unit};
 use crate::pair::Pair;
 use crate::{Answer, Margin, Wedge};
@@ -148,8 +148,9 @@ fn hessian<V: Wedge, const N: usize>(
     // N points along −z; E₁ touches at β, E₂ at y.
     let (beta, z) = beta_and_z::<V, N>(m, e1, e2);
     let points = [unit(beta), load::<V, N>(m.ball_point).map(|y| -y)];
-    let contact = Contact::at_points(&Pair::<N>::new(e1, e2), Quantity::GROWTH, z.map(|z| -z), points);
+    let (pair, length) = Pair::<N>::new(e1, e2).in_own_unit();
+    let contact = Contact::at_points(&pair, Quantity::GROWTH, z.map(|z| -z), points);
     contact.map_or_else(MotionHessian::zero, |contact| {
-        MotionHessian::of_contact(&contact, mover, 2.0 * contact.value, 2.0)
+        MotionHessian::of_contact(&contact, mover, 2.0 * contact.value, 2.0, Units { value: 1.0, length })
     })
 }

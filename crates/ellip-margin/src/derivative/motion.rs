@@ -49,10 +49,26 @@ impl<V: Wedge> MotionGradient<V> {
     }
 
     /// Of the value of a contact.
-    pub(super) fn of_contact<const N: usize>(contact: &Contact<N>, mover: Mover, body: &Ellipsoid<V>) -> Self {
+    pub(super) fn of_contact<const N: usize>(
+        contact: &Contact<N>,
+        mover: Mover,
+        body: &Ellipsoid<V>,
+        units: Units,
+    ) -> Self {
         let (force, e, factor) = contact.gradient(mover);
-        Self { translation: store(force), rotation: torque(body, e, factor), center: body.center() }
+        Self {
+            translation: store(force.map(|x| x * (units.value / units.length))),
+            rotation: torque(body, e, factor * units.value),
+            center: body.center(),
+        }
     }
+}
+
+/// The units in which a contact was computed: of its value, and of length.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Units {
+    pub(super) value: f64,
+    pub(super) length: f64,
 }
 
 /// The second derivatives of a quantity by the motion of one of the two ellipsoids.
@@ -99,9 +115,18 @@ impl<V: Wedge> MotionHessian<V> {
     }
 
     /// Of `slope`·s + ½·`curvature`·s², s the value of a contact less what it is: slope·s″ + curvature·s′s′ᵀ.
-    pub(super) fn of_contact<const N: usize>(contact: &Contact<N>, mover: Mover, slope: f64, curvature: f64) -> Self {
+    pub(super) fn of_contact<const N: usize>(
+        contact: &Contact<N>,
+        mover: Mover,
+        slope: f64,
+        curvature: f64,
+        units: Units,
+    ) -> Self {
         let (second, first) = contact.hessian(mover);
-        let entry = |i: usize, j: usize| slope * second[i][j] + curvature * (first[i] * first[j]);
+        let per = |i: usize| if i < N { units.length } else { 1.0 };
+        let entry = |i: usize, j: usize| {
+            (slope * second[i][j] + curvature * (first[i] * first[j])) * units.value / per(i) / per(j)
+        };
         Self { matrix: V::motion_matrix(|i, j| V::Scalar::from_f64(entry(i, j))) }
     }
 }

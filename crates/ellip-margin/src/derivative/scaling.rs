@@ -1,7 +1,7 @@
 //! How the common scale changes as a body moves.
 
 use super::contact::{Contact, Mover, Quantity};
-use super::motion::{MotionGradient, MotionHessian};
+use super::motion::{MotionGradient, MotionHessian, Units};
 use crate::numerics::{Vec, combine, load};
 use crate::pair::Pair;
 use crate::{Answer, Scaling, Wedge};
@@ -48,27 +48,28 @@ impl<V: Wedge> Answer<'_, V, Scaling<V>> {
             Mover::Second => self.second(),
         };
         let gradient = if V::DIM == 2 {
-            self.contact::<2>().map(|contact| MotionGradient::of_contact(&contact, mover, body))
+            self.contact::<2>().map(|(contact, units)| MotionGradient::of_contact(&contact, mover, body, units))
         } else {
-            self.contact::<3>().map(|contact| MotionGradient::of_contact(&contact, mover, body))
+            self.contact::<3>().map(|(contact, units)| MotionGradient::of_contact(&contact, mover, body, units))
         };
         gradient.unwrap_or_else(|| MotionGradient::zero(body))
     }
 
     fn hessian_of(&self, mover: Mover) -> MotionHessian<V> {
         let hessian = if V::DIM == 2 {
-            self.contact::<2>().map(|contact| MotionHessian::of_contact(&contact, mover, 1.0, 0.0))
+            self.contact::<2>().map(|(contact, units)| MotionHessian::of_contact(&contact, mover, 1.0, 0.0, units))
         } else {
-            self.contact::<3>().map(|contact| MotionHessian::of_contact(&contact, mover, 1.0, 0.0))
+            self.contact::<3>().map(|(contact, units)| MotionHessian::of_contact(&contact, mover, 1.0, 0.0, units))
         };
         hessian.unwrap_or_else(MotionHessian::zero)
     }
 
-    fn contact<const N: usize>(&self) -> Option<Contact<N>> {
-        let pair = Pair::<N>::new(self.first(), self.second());
+    fn contact<const N: usize>(&self) -> Option<(Contact<N>, Units)> {
+        let (pair, length) = Pair::<N>::new(self.first(), self.second()).in_own_unit();
         let [e1, e2]: [Vec<N>; 2] = self.ball_points.map(load);
         // Qv, against E₂'s own normal there.
         let normal = combine(pair.axes2, core::array::from_fn(|j| e2[j] / pair.a2[j]));
-        Contact::at_points(&pair, Quantity::SCALE, normal, [e1, e2])
+        let contact = Contact::at_points(&pair, Quantity::SCALE, normal, [e1, e2])?;
+        Some((contact, Units { value: 1.0, length }))
     }
 }

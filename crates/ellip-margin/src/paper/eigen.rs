@@ -13,7 +13,7 @@ use crate::margin::answer;
 use crate::numerics::{Vec, dot, sub};
 use crate::pair::Pair;
 use crate::secular::Solution;
-use crate::{Margin, Status};
+use crate::{Answer, EllipsoidPair, Margin, MarginOptions, Status};
 
 /// [`free_margin`](crate::free_margin) by the eigenvalues of `[[C, −I], [−bbᵀ, C]]`, all of them computed by faer.
 ///
@@ -30,14 +30,15 @@ use crate::{Margin, Status};
 /// assert!(difference.abs() < 1e-12);
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
-pub fn free_margin_eigen<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> Margin<V> {
-    if V::DIM == 2 {
+pub fn free_margin_eigen<'a, V: Vector>(e1: &'a Ellipsoid<V>, e2: &'a Ellipsoid<V>) -> Answer<'a, V, Margin<V>> {
+    let margin = if V::DIM == 2 {
         let pair = Pair::<2>::new(e1, e2);
         answer(&pair, solve(&pair))
     } else {
         let pair = Pair::<3>::new(e1, e2);
         answer(&pair, solve(&pair))
-    }
+    };
+    EllipsoidPair::new(e1, e2, MarginOptions::default()).answer(margin)
 }
 
 /// The paper's C = Q^-½PQ^-½, b = Q^-½P(x₁ − x₂) and the minimal eigenvalue of its matrix.
