@@ -6,7 +6,7 @@
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 use ellip_margin::convex_support::{Ellipsoid, InvalidShape, glam::DVec2};
-use ellip_margin::{InvalidQuery, MarginOptions, clearance};
+use ellip_margin::{EllipsoidPair, InvalidQuery, MarginOptions, clearance};
 
 const LENGTHS: [f64; 3] = [1.0, 0.8, 0.6];
 
@@ -39,7 +39,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     for step in 0..12 {
         let (joints, links, least) = margin(angles)?;
-        let gradient = least.margin.gradient(&links[least.link], &obstacles[least.obstacle]);
+        let pair = EllipsoidPair::new(&links[least.link], &obstacles[least.obstacle], MarginOptions::default());
+        let gradient = pair.margin().gradient();
         // A joint moves the links beyond it, itself included.
         let slope: [f64; 3] =
             std::array::from_fn(|k| if k <= least.link { gradient.revolute(joints[k], 1.0) } else { 0.0 });
