@@ -202,23 +202,25 @@ impl<const N: usize> Contact<N> {
         let count = N + N * (N - 1) / 2;
         let is_seen = self.is_stiffer(mover);
         let (side, k, _) = self.of(if is_seen { mover.other() } else { mover });
-        let rates: [Option<Rate<N>>; 6] = core::array::from_fn(|i| match i {
-            i if i < N => Some(self.translation(mover, i)),
-            i if i < count => Some(self.rotation(mover, i - N, is_seen)),
-            _ => None,
-        });
-        let entry = |x: &Rate<N>, y: &Rate<N>| {
-            let turned = k
-                * (0.5 * (dot(x.turn.m, y.turn.b) + dot(y.turn.m, x.turn.b)) + side.h * (x.turn.t * y.turn.t))
-                - 0.5 * (dot(x.spun[0], y.spun[1]) + dot(y.spun[0], x.spun[1]));
-            let followed = x.whitened[0] * y.whitened[0] + x.whitened[1] * y.whitened[1];
-            turned + followed - (x.value * y.constraint + y.value * x.constraint)
-        };
-        let both = |i: usize, j: usize| rates[i].as_ref().zip(rates[j].as_ref());
-        (
-            core::array::from_fn(|i| core::array::from_fn(|j| both(i, j).map_or(0.0, |(x, y)| entry(x, y)))),
-            rates.map(|rate| rate.map_or(0.0, |rate| rate.value)),
-        )
+        let mut rates = [Rate::ZERO; 6];
+        let (mut second, mut first) = ([[0.0; 6]; 6], [0.0; 6]);
+        for i in 0..count {
+            rates[i] = if i < N { self.translation(mover, i) } else { self.rotation(mover, i - N, is_seen) };
+            first[i] = rates[i].value;
+            for j in 0..=i {
+                let (x, y) = (&rates[i], &rates[j]);
+                let followed = x.whitened[0] * y.whitened[0] + x.whitened[1] * y.whitened[1];
+                let mut entry = followed - (x.value * y.constraint + y.value * x.constraint);
+                // L_θφ; two translations have none.
+                if i >= N {
+                    entry += k * (0.5 * (dot(x.turn.m, y.turn.b) + dot(y.turn.m, x.turn.b)))
+                        + k * side.h * (x.turn.t * y.turn.t)
+                        - 0.5 * (dot(x.spun[0], y.spun[1]) + dot(y.spun[0], x.spun[1]));
+                }
+                (second[i][j], second[j][i]) = (entry, entry);
+            }
+        }
+        (second, first)
     }
 
     /// Whether L_ωω of the body that moves is the greater: about k·(a_max² − a_min²)‖N‖²/h.
@@ -239,7 +241,7 @@ impl<const N: usize> Contact<N> {
             value,
             constraint: 0.0,
             whitened: self.followed(delta.map(|x| -x), value),
-            turn: Turn { t: 0.0, m: [0.0; N], b: [0.0; N] },
+            turn: Turn::ZERO,
             spun: [[0.0; N], delta.map(|x| 2.0 * x)],
         }
     }
@@ -281,7 +283,13 @@ impl<const N: usize> Contact<N> {
     }
 }
 
+impl<const N: usize> Rate<N> {
+    const ZERO: Self = Self { value: 0.0, constraint: 0.0, whitened: [0.0; 2], turn: Turn::ZERO, spun: [[0.0; N]; 2] };
+}
+
 impl<const N: usize> Turn<N> {
+    const ZERO: Self = Self { t: 0.0, m: [0.0; N], b: [0.0; N] };
+
     /// Of `sign` times the unit rotation about world axis number `about`, in 2D the only one.
     fn new(side: &Side<N>, about: usize, sign: f64) -> Self {
         let Side { axes, a, e, h, .. } = *side;
