@@ -128,7 +128,7 @@ struct Turn<const N: usize> {
 impl<const N: usize> Contact<N> {
     /// At the normal along `direction`, from E₁ to E₂; `None` where that is not a direction.
     pub(super) fn new(pair: &Pair<N>, quantity: Quantity, direction: Vec<N>) -> Option<Self> {
-        let e = heights(pair, direction).map(|u| unit(u));
+        let e = heights(pair, direction).map(unit);
         Self::at_points(pair, quantity, direction, e)
     }
 

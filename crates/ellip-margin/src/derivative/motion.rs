@@ -103,7 +103,7 @@ impl<V: Wedge> MotionHessian<V> {
         let mut sum = V::Scalar::ZERO;
         for i in 0..count {
             for j in 0..count {
-                sum = sum + theta(i) * theta(j) * V::motion_entry(&self.matrix, i, j);
+                sum += theta(i) * theta(j) * V::motion_entry(&self.matrix, i, j);
             }
         }
         sum
