@@ -28,6 +28,13 @@ impl<V: Vector> Aabb<V> {
         self.max * half - self.min * half
     }
 
+    /// The smallest box that contains both.
+    #[inline]
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
     /// Whether the two boxes have a point in common.
     #[inline]
     #[must_use]

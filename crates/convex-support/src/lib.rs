@@ -49,6 +49,7 @@ extern crate alloc;
 extern crate std;
 
 mod bounds;
+mod bvh;
 mod closest_point;
 mod combinators;
 mod core_set;
@@ -74,6 +75,7 @@ pub use glam;
 
 pub use bounds::{Aabb, BoundingSphere, bounding_box, bounding_sphere};
 pub use closest_point::closest_point;
+pub use bvh::{Bound, BoxDistance, Boxes, Bvh, PairSearch, SweptBox, WIDTH, outer_box};
 pub use combinators::{Affine, Difference, Hull, MinkowskiSum, Posed, Rounded};
 pub use core_set::{Core, CoreKind, Rounding};
 pub use error::InvalidShape;

@@ -1,0 +1,87 @@
+//! A bounding volume hierarchy: which of many boxes a question concerns, without looking at each.
+
+mod bound;
+mod build;
+mod change;
+mod node;
+mod outer_box;
+mod pairs;
+mod search;
+
+use alloc::vec::Vec;
+
+use crate::{Aabb, Vector};
+
+pub use self::bound::{Bound, BoxDistance, SweptBox};
+pub use self::node::{Boxes, WIDTH};
+use self::node::{Node, Slot};
+pub use self::outer_box::outer_box;
+pub use self::pairs::PairSearch;
+
+/// A tree over the boxes of items, which are numbers from 0 to 2³⁰ − 1 of the caller's choice.
+///
+/// A node holds the boxes of its four children side by side, so that one pass of arithmetic bounds all of them; a child is a
+/// node or an item. The tree is [built](Self::new) by the surface area heuristic, follows boxes that move
+/// ([`refit`](Self::refit), [`set`](Self::set)), and takes items in and out ([`insert`](Self::insert),
+/// [`remove`](Self::remove)). Its depth stays below 36 whatever the boxes and their order: where a part has become lopsided,
+/// that part is built anew. So a question needs a stack of fixed size, and no memory.
+///
+/// [`search`](Self::search) asks a question that concerns items by a [`Bound`], nearest first; [`pairs_within`](Self::pairs_within) and
+/// [`pairs_between`](Self::pairs_between) ask about pairs of boxes.
+///
+/// Boxes must be finite, with `min ≤ max`. A box that is not loses its own item and may slow others down; nothing panics.
+///
+/// ```
+/// use core::ops::ControlFlow;
+/// use convex_support::{Aabb, BoxDistance, Bvh, glam::DVec2};
+///
+/// let square = |x: f64| Aabb { min: DVec2::new(x, 0.0), max: DVec2::new(x + 1.0, 1.0) };
+/// let tree = Bvh::new(&[square(0.0), square(4.0), square(9.0)]);
+/// let mut nearest = None;
+/// tree.search(&BoxDistance::new(square(6.0)), f64::INFINITY, |item, bound| {
+///     nearest = Some((item, bound));
+///     ControlFlow::Continue(bound) // what is farther need not be shown
+/// });
+/// let (item, bound) = nearest.ok_or("three boxes")?;
+/// assert_eq!(item, 1);
+/// assert!(bound <= 1.0 && bound > 0.999_999); // conservative: rounded towards zero
+/// # Ok::<(), &str>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Bvh<V: Vector> {
+    /// Node 0 is the root. Children come after their parents, so that one pass from the end meets them first.
+    nodes: Vec<Node<V>>,
+    /// Where each item is.
+    slots: Vec<Slot>,
+    /// How many nodes are no longer part of the tree.
+    dead: usize,
+    /// The measure of how well the tree culls, when it was last built.
+    built_cost: V::Scalar,
+}
+
+impl<V: Vector> Bvh<V> {
+    /// The number of items.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.nodes[0].count as usize
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The box of an item; `None` if it is not in the tree.
+    #[must_use]
+    pub fn get(&self, item: usize) -> Option<Aabb<V>> {
+        let slot = *self.slots.get(item)?;
+        (slot != Slot::NONE).then(|| self.nodes[slot.node()].boxes.get(slot.lane()))
+    }
+}
+
+impl<V: Vector> Default for Bvh<V> {
+    fn default() -> Self {
+        Self::new(&[])
+    }
+}

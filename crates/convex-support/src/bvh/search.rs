@@ -1,0 +1,69 @@
+//! Items in the order of a bound, with a limit that shrinks.
+
+use core::ops::ControlFlow;
+
+use num_traits::Float as _;
+
+use super::bound::Bound;
+use super::node::{Child, Link, WIDTH};
+use super::{Bvh, node::lesser};
+use crate::{Scalar, Vector};
+
+/// The greatest number of nodes from the root to an item; `change.rs` says why.
+pub(super) const MAX_DEPTH: usize = 36;
+
+/// A level leaves at most three children behind while the fourth is looked into.
+const STACK: usize = (WIDTH - 1) * MAX_DEPTH + 1;
+
+impl<V: Vector> Bvh<V> {
+    /// Shows the items whose bound is at most `limit`, mostly the least bound first, and returns the number of nodes that were
+    /// looked into.
+    ///
+    /// `visit` is given an item and its bound, and answers with the limit from then on, or breaks off. An item whose bound
+    /// exceeds the limit that holds at the end may have been shown or not; every other has been.
+    pub fn search<B: Bound<V>>(
+        &self,
+        question: &B,
+        limit: V::Scalar,
+        mut visit: impl FnMut(usize, V::Scalar) -> ControlFlow<(), V::Scalar>,
+    ) -> usize {
+        let huge = V::Scalar::max_value();
+        let mut limit = lesser(limit, huge);
+        let mut stack = [(Link::NONE, V::Scalar::ZERO); STACK];
+        stack[0] = (Link::node(0), V::Scalar::ZERO);
+        let (mut top, mut nodes) = (1, 0);
+        while top > 0 {
+            top -= 1;
+            let (link, bound) = stack[top];
+            if !(bound <= limit) {
+                continue;
+            }
+            match link.child() {
+                Child::None => {}
+                Child::Item(item) => match visit(item, bound) {
+                    ControlFlow::Continue(next) => limit = lesser(next, huge),
+                    ControlFlow::Break(()) => return nodes,
+                },
+                Child::Node(index) => {
+                    nodes += 1;
+                    let node = &self.nodes[index];
+                    let bounds = question.bounds(&node.boxes);
+                    let bottom = top;
+                    for (link, bound) in node.children.into_iter().zip(bounds) {
+                        if bound <= limit && link != Link::NONE {
+                            // Sorted with the least on top.
+                            let mut place = top;
+                            while place > bottom && stack[place - 1].1 < bound {
+                                stack[place] = stack[place - 1];
+                                place -= 1;
+                            }
+                            stack[place] = (link, bound);
+                            top += 1;
+                        }
+                    }
+                }
+            }
+        }
+        nodes
+    }
+}
