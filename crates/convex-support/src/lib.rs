@@ -74,8 +74,8 @@ mod vector;
 pub use glam;
 
 pub use bounds::{Aabb, BoundingSphere, bounding_box, bounding_sphere};
+pub use bvh::{Bound, BoxDistance, Boxes, Bvh, Lanes, PairSearch, SweptBox, WIDTH, outer_box};
 pub use closest_point::closest_point;
-pub use bvh::{Bound, BoxDistance, Boxes, Bvh, PairSearch, SweptBox, WIDTH, outer_box};
 pub use combinators::{Affine, Difference, Hull, MinkowskiSum, Posed, Rounded};
 pub use core_set::{Core, CoreKind, Rounding};
 pub use error::InvalidShape;

@@ -2,7 +2,8 @@
 
 use num_traits::Float as _;
 
-use super::node::{Boxes, WIDTH, greater, lesser};
+use super::lanes::Lanes;
+use super::node::{Boxes, LanesOf};
 use crate::vector::comfortable_unit_of_length;
 use crate::{Aabb, Scalar, Vector};
 
@@ -15,7 +16,7 @@ use crate::{Aabb, Scalar, Vector};
 pub trait Bound<V: Vector> {
     /// The bounds of four boxes; infinity where nothing in a box concerns the question. Those of places without a child do
     /// not matter.
-    fn bounds(&self, boxes: &Boxes<V>) -> [V::Scalar; WIDTH];
+    fn bounds(&self, boxes: &Boxes<V>) -> LanesOf<V>;
 }
 
 /// The rounding of the few operations that a bound is made of, relative to the bound.
@@ -37,13 +38,13 @@ fn rounding<S: Scalar>() -> S {
 #[derive(Clone, Copy, Debug)]
 pub struct SweptBox<V: Vector> {
     /// By coordinate, what the smallest and the largest of a box are compared with: s + h and s − h.
-    from: [[V::Scalar; 2]; 3],
+    from: [[LanesOf<V>; 2]; 3],
     /// 1/d, in a unit of d in which its square is an ordinary number.
-    inverse: [V::Scalar; 3],
+    inverse: [LanesOf<V>; 3],
     /// The side of a box that is met first.
     first: [usize; 3],
     /// From the unit of d to λ, rounded down.
-    deflate: V::Scalar,
+    deflate: LanesOf<V>,
 }
 
 impl<V: Vector> SweptBox<V> {
@@ -53,15 +54,17 @@ impl<V: Vector> SweptBox<V> {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
         let unit = comfortable_unit_of_length(direction.abs().max_element());
         let mut swept = Self {
-            from: [[zero; 2]; 3],
-            inverse: [one; 3],
+            from: [[Lanes::splat(zero); 2]; 3],
+            inverse: [Lanes::splat(one); 3],
             first: [0; 3],
-            deflate: (one - rounding::<V::Scalar>()) / unit,
+            deflate: Lanes::splat((one - rounding::<V::Scalar>()) / unit),
         };
         for i in 0..V::DIM {
-            swept.from[i] = [source.get(i) + half_extents.get(i), source.get(i) - half_extents.get(i)];
-            swept.inverse[i] = (direction.get(i) / unit).recip();
-            swept.first[i] = usize::from(swept.inverse[i].is_sign_negative());
+            let (s, h) = (source.get(i), half_extents.get(i));
+            let inverse = (direction.get(i) / unit).recip();
+            swept.from[i] = [Lanes::splat(s + h), Lanes::splat(s - h)];
+            swept.inverse[i] = Lanes::splat(inverse);
+            swept.first[i] = usize::from(inverse.is_sign_negative());
         }
         swept
     }
@@ -69,27 +72,20 @@ impl<V: Vector> SweptBox<V> {
 
 impl<V: Vector> Bound<V> for SweptBox<V> {
     #[inline]
-    fn bounds(&self, boxes: &Boxes<V>) -> [V::Scalar; WIDTH] {
-        let mut entry = [V::Scalar::ZERO; WIDTH];
-        let mut exit = [V::Scalar::infinity(); WIDTH];
+    fn bounds(&self, boxes: &Boxes<V>) -> LanesOf<V> {
+        let infinity = Lanes::splat(V::Scalar::infinity());
+        let (mut entry, mut exit): (LanesOf<V>, LanesOf<V>) = (Lanes::splat(V::Scalar::ZERO), infinity);
         for i in 0..V::DIM {
             let (near, far) = (self.first[i], 1 - self.first[i]);
-            for lane in 0..WIDTH {
-                // Where d is zero, the quotient is ±∞ by the side of the plane, and NaN on it, which is then passed over.
-                let begins = (boxes.side(i, near)[lane] - self.from[i][near]) * self.inverse[i];
-                let ends = (boxes.side(i, far)[lane] - self.from[i][far]) * self.inverse[i];
-                entry[lane] = greater(begins, entry[lane]);
-                exit[lane] = lesser(ends, exit[lane]);
-            }
+            let (from, inverse) = (self.from[i], self.inverse[i]);
+            // Where d is zero, the quotient is ±∞ by the side of the plane, and NaN on it, which is then passed over.
+            let begins: LanesOf<V> = (boxes.side(i, near) - from[near]) * inverse;
+            let ends: LanesOf<V> = (boxes.side(i, far) - from[far]) * inverse;
+            (entry, exit) = (begins.max(entry), ends.min(exit));
         }
-        let inflate = V::Scalar::ONE + rounding::<V::Scalar>();
-        core::array::from_fn(|lane| {
-            if entry[lane] <= exit[lane] * inflate {
-                lesser(entry[lane] * self.deflate, V::Scalar::max_value())
-            } else {
-                V::Scalar::infinity()
-            }
-        })
+        let latest = exit * Lanes::splat(V::Scalar::ONE + rounding::<V::Scalar>());
+        let bound = (entry * self.deflate).min(Lanes::splat(V::Scalar::max_value()));
+        entry.if_at_most(latest, bound, infinity)
     }
 }
 
@@ -98,34 +94,36 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
 /// Coordinate by coordinate the gap is what one begins after the other ends, or 0; the distance is the length of the gaps.
 #[derive(Clone, Copy, Debug)]
 pub struct BoxDistance<V: Vector> {
-    of: Aabb<V>,
+    /// By coordinate, the smallest and the largest.
+    of: [[LanesOf<V>; 2]; 3],
 }
 
 impl<V: Vector> BoxDistance<V> {
     /// The distance from this box.
     #[must_use]
     pub fn new(of: Aabb<V>) -> Self {
-        Self { of }
+        let mut sides = [[Lanes::splat(V::Scalar::ZERO); 2]; 3];
+        for (i, side) in sides.iter_mut().enumerate().take(V::DIM) {
+            *side = [Lanes::splat(of.min.get(i)), Lanes::splat(of.max.get(i))];
+        }
+        Self { of: sides }
     }
 }
 
 impl<V: Vector> Bound<V> for BoxDistance<V> {
     #[inline]
-    fn bounds(&self, boxes: &Boxes<V>) -> [V::Scalar; WIDTH] {
-        let (zero, huge) = (V::Scalar::ZERO, V::Scalar::max_value());
-        let mut squared = [zero; WIDTH];
-        let mut largest = [zero; WIDTH];
+    fn bounds(&self, boxes: &Boxes<V>) -> LanesOf<V> {
+        let (zero, huge): (LanesOf<V>, LanesOf<V>) =
+            (Lanes::splat(V::Scalar::ZERO), Lanes::splat(V::Scalar::max_value()));
+        let (mut squared, mut largest) = (zero, zero);
         for i in 0..V::DIM {
-            for lane in 0..WIDTH {
-                let before = boxes.min(i)[lane] - self.of.max.get(i);
-                let behind = self.of.min.get(i) - boxes.max(i)[lane];
-                let gap = greater(greater(before, behind), zero);
-                squared[lane] = squared[lane] + gap * gap;
-                largest[lane] = greater(gap, largest[lane]);
-            }
+            let before = boxes.min(i) - self.of[i][1];
+            let behind = self.of[i][0] - boxes.max(i);
+            let gap = before.max(behind).max(zero);
+            (squared, largest) = (squared + gap * gap, gap.max(largest));
         }
         // A length is at least its largest coordinate, which is what remains where squares under- or overflow.
-        let deflate = V::Scalar::ONE - rounding::<V::Scalar>();
-        core::array::from_fn(|lane| lesser(greater(lesser(squared[lane], huge).sqrt(), largest[lane]) * deflate, huge))
+        let length = squared.min(huge).sqrt().max(largest);
+        (length * Lanes::splat(V::Scalar::ONE - rounding::<V::Scalar>())).min(huge)
     }
 }

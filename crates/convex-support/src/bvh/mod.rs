@@ -3,6 +3,7 @@
 mod bound;
 mod build;
 mod change;
+mod lanes;
 mod node;
 mod outer_box;
 mod pairs;
@@ -13,6 +14,7 @@ use alloc::vec::Vec;
 use crate::{Aabb, Vector};
 
 pub use self::bound::{Bound, BoxDistance, SweptBox};
+pub use self::lanes::Lanes;
 pub use self::node::{Boxes, WIDTH};
 use self::node::{Node, Slot};
 pub use self::outer_box::outer_box;

@@ -2,22 +2,26 @@
 
 use num_traits::Float as _;
 
+use super::lanes::Lanes;
 use crate::{Aabb, Scalar, Vector};
 
 /// The number of children of a node.
 pub const WIDTH: usize = 4;
 
+/// Four numbers of a space side by side.
+pub(super) type LanesOf<V> = <<V as Vector>::Scalar as Scalar>::Lanes;
+
 /// The boxes of a node's children, coordinate by coordinate and side by side, so that the same arithmetic on all four is
 /// one vector instruction. A place without a child has `min = ∞` and `max = −∞`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Boxes<V: Vector> {
-    /// By coordinate, of which only [`Vector::DIM`] are used; then the smallest and the largest; then by child.
-    planes: [[[V::Scalar; WIDTH]; 2]; 3],
+    /// By coordinate, of which only [`Vector::DIM`] are used; then the smallest and the largest.
+    planes: [[LanesOf<V>; 2]; 3],
 }
 
 impl<V: Vector> Boxes<V> {
     pub(super) fn empty() -> Self {
-        Self { planes: [[[V::Scalar::infinity(); WIDTH], [V::Scalar::neg_infinity(); WIDTH]]; 3] }
+        Self { planes: [[Lanes::splat(V::Scalar::infinity()), Lanes::splat(V::Scalar::neg_infinity())]; 3] }
     }
 
     /// The smallest values of coordinate `axis`, by child.
@@ -26,8 +30,8 @@ impl<V: Vector> Boxes<V> {
     /// If `axis >= DIM`.
     #[inline]
     #[must_use]
-    pub fn min(&self, axis: usize) -> &[V::Scalar; WIDTH] {
-        &self.planes[axis][0]
+    pub fn min(&self, axis: usize) -> LanesOf<V> {
+        self.planes[axis][0]
     }
 
     /// The largest values of coordinate `axis`, by child.
@@ -36,14 +40,14 @@ impl<V: Vector> Boxes<V> {
     /// If `axis >= DIM`.
     #[inline]
     #[must_use]
-    pub fn max(&self, axis: usize) -> &[V::Scalar; WIDTH] {
-        &self.planes[axis][1]
+    pub fn max(&self, axis: usize) -> LanesOf<V> {
+        self.planes[axis][1]
     }
 
     /// The smallest values for side 0, the largest for side 1.
     #[inline]
-    pub(super) fn side(&self, axis: usize, side: usize) -> &[V::Scalar; WIDTH] {
-        &self.planes[axis][side]
+    pub(super) fn side(&self, axis: usize, side: usize) -> LanesOf<V> {
+        self.planes[axis][side]
     }
 
     /// The box of child `lane`.
@@ -53,34 +57,32 @@ impl<V: Vector> Boxes<V> {
     #[inline]
     #[must_use]
     pub fn get(&self, lane: usize) -> Aabb<V> {
-        Aabb { min: V::from_fn(|axis| self.planes[axis][0][lane]), max: V::from_fn(|axis| self.planes[axis][1][lane]) }
+        Aabb {
+            min: V::from_fn(|axis| self.planes[axis][0].get(lane)),
+            max: V::from_fn(|axis| self.planes[axis][1].get(lane)),
+        }
     }
 
     #[inline]
     pub(super) fn set(&mut self, lane: usize, b: Aabb<V>) {
         for axis in 0..V::DIM {
-            self.planes[axis][0][lane] = b.min.get(axis);
-            self.planes[axis][1][lane] = b.max.get(axis);
+            self.planes[axis][0].set(lane, b.min.get(axis));
+            self.planes[axis][1].set(lane, b.max.get(axis));
         }
     }
 
     #[inline]
     pub(super) fn clear(&mut self, lane: usize) {
         for axis in 0..V::DIM {
-            self.planes[axis][0][lane] = V::Scalar::infinity();
-            self.planes[axis][1][lane] = V::Scalar::neg_infinity();
+            self.planes[axis][0].set(lane, V::Scalar::infinity());
+            self.planes[axis][1].set(lane, V::Scalar::neg_infinity());
         }
     }
 
     /// The box around all four.
     #[inline]
     pub(super) fn union(&self) -> Aabb<V> {
-        let least = |[a, b, c, d]: [V::Scalar; WIDTH]| lesser(lesser(a, b), lesser(c, d));
-        let greatest = |[a, b, c, d]: [V::Scalar; WIDTH]| greater(greater(a, b), greater(c, d));
-        Aabb {
-            min: V::from_fn(|axis| least(self.planes[axis][0])),
-            max: V::from_fn(|axis| greatest(self.planes[axis][1])),
-        }
+        (1..WIDTH).fold(self.get(0), |sum, lane| sum.union(&self.get(lane)))
     }
 }
 
@@ -88,12 +90,6 @@ impl<V: Vector> Boxes<V> {
 #[inline]
 pub(super) fn lesser<S: Scalar>(a: S, b: S) -> S {
     if a < b { a } else { b }
-}
-
-/// The greater of two; the second where one is NaN.
-#[inline]
-pub(super) fn greater<S: Scalar>(a: S, b: S) -> S {
-    if a > b { a } else { b }
 }
 
 /// A child in four bytes: nothing, an item, or a node.

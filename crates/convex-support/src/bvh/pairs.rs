@@ -6,6 +6,7 @@ use core::ops::ControlFlow;
 
 use super::Bvh;
 use super::bound::{Bound, BoxDistance};
+use super::lanes::Lanes;
 use super::node::{Child, Link, Slot, WIDTH};
 use super::search::MAX_DEPTH;
 use crate::{Aabb, Vector};
@@ -136,9 +137,12 @@ impl<'t, V: Vector> PairSearch<'t, V> {
     fn near(&self, around: Aabb<V>, tree: &Bvh<V>, node: usize, first: usize, mut push: impl FnMut(Slot, V::Scalar)) {
         let holder = &tree.nodes[node];
         let bounds = BoxDistance::new(around).bounds(&holder.boxes);
-        for (lane, &bound) in bounds.iter().enumerate().skip(first) {
-            if bound <= self.distance && holder.children[lane] != Link::NONE {
-                push(Slot::new(node, lane), bound);
+        let mut near = bounds.at_most(self.distance) & !((1 << first) - 1);
+        while near != 0 {
+            let lane = near.trailing_zeros() as usize;
+            near &= near - 1;
+            if holder.children[lane] != Link::NONE {
+                push(Slot::new(node, lane), bounds.get(lane));
             }
         }
     }

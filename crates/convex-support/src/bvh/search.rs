@@ -5,6 +5,7 @@ use core::ops::ControlFlow;
 use num_traits::Float as _;
 
 use super::bound::Bound;
+use super::lanes::Lanes;
 use super::node::{Child, Link, WIDTH};
 use super::{Bvh, node::lesser};
 use crate::{Scalar, Vector};
@@ -48,18 +49,19 @@ impl<V: Vector> Bvh<V> {
                     nodes += 1;
                     let node = &self.nodes[index];
                     let bounds = question.bounds(&node.boxes);
+                    let (mut near, bounds) = (bounds.at_most(limit), bounds.to_array());
                     let bottom = top;
-                    for (link, bound) in node.children.into_iter().zip(bounds) {
-                        if bound <= limit && link != Link::NONE {
-                            // Sorted with the least on top.
-                            let mut place = top;
-                            while place > bottom && stack[place - 1].1 < bound {
-                                stack[place] = stack[place - 1];
-                                place -= 1;
-                            }
-                            stack[place] = (link, bound);
-                            top += 1;
+                    while near != 0 {
+                        let lane = near.trailing_zeros() as usize;
+                        near &= near - 1;
+                        // Sorted with the least on top.
+                        let (bound, mut place) = (bounds[lane], top);
+                        while place > bottom && stack[place - 1].1 < bound {
+                            stack[place] = stack[place - 1];
+                            place -= 1;
                         }
+                        stack[place] = (node.children[lane], bound);
+                        top += 1;
                     }
                 }
             }
