@@ -85,5 +85,8 @@ pub use ray_cast::{ray_cast, ray_cast_with};
 pub use ray_casts::par_ray_casts;
 pub use ray_casts::ray_casts;
 pub use result::{Distance, Intersection, Iterate, LinearCast, LinearHit, Miss, Outcome, RayCast, RayHit, Status};
-pub use scene::{FirstHit, Scene, SceneRayCast};
+pub use scene::{
+    Among, Body, BodyDistance, BodyHit, HalfSpace, PairDistance, Scene, SceneAnyHit, SceneCast, SceneDistance,
+    SceneError, SceneHits, SceneLinearCast, SceneRayCast, Work,
+};
 pub use simplex::SubAlgorithm;

@@ -19,6 +19,14 @@ pub struct Motion<V> {
     pub velocity_b: V,
 }
 
+impl<V: Vector> Motion<V> {
+    /// The error of a motion that is none.
+    pub(crate) fn check(&self) -> Result<(), RayCastError> {
+        check_finite("velocity_a", self.velocity_a)?;
+        check_finite("velocity_b", self.velocity_b)
+    }
+}
+
 /// When two shapes first touch that move at constant velocities without turning, and where.
 ///
 /// A ray is cast against their configuration space obstacle: `A + t·v_A` and `B + t·v_B` have a point in common just
@@ -66,8 +74,7 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    check_finite("velocity_a", motion.velocity_a)?;
-    check_finite("velocity_b", motion.velocity_b)?;
+    motion.check()?;
     let mut body = Pair::new(a, b);
     let (core_a, core_b) = (a.core(), b.core());
     let mut wanted = RayCastOptions::new()

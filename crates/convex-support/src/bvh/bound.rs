@@ -4,7 +4,7 @@ use num_traits::Float as _;
 
 use super::lanes::Lanes;
 use super::node::{Boxes, LanesOf};
-use crate::vector::comfortable_unit_of_length;
+use crate::numerics::range::comfortable_unit_of_length;
 use crate::{Aabb, Scalar, Vector};
 
 /// A lower bound on a quantity, such as a distance, of everything that lies in a box.

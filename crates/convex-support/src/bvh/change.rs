@@ -23,6 +23,8 @@ const WORSE: f64 = 1.5;
 impl<V: Vector> Bvh<V> {
     /// Gives every item the box that `box_of` says, in time proportional to their number; where the boxes have moved so far that
     /// the tree has become half as costly again as when it was built, it is built anew.
+    ///
+    /// Items are asked for in no particular order.
     pub fn refit(&mut self, mut box_of: impl FnMut(usize) -> Aabb<V>) {
         // Children come after their parents, so that a node is complete before its box is wanted.
         for index in (0..self.nodes.len()).rev() {

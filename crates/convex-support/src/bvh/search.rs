@@ -29,7 +29,8 @@ impl<V: Vector> Bvh<V> {
         mut visit: impl FnMut(usize, V::Scalar) -> ControlFlow<(), V::Scalar>,
     ) -> usize {
         let huge = V::Scalar::max_value();
-        let mut limit = lesser(limit, huge);
+        // NaN stays NaN, which nothing is within.
+        let mut limit = lesser(huge, limit);
         let mut stack = [(Link::NONE, V::Scalar::ZERO); STACK];
         stack[0] = (Link::node(0), V::Scalar::ZERO);
         let (mut top, mut nodes) = (1, 0);
@@ -42,7 +43,7 @@ impl<V: Vector> Bvh<V> {
             match link.child() {
                 Child::None => {}
                 Child::Item(item) => match visit(item, bound) {
-                    ControlFlow::Continue(next) => limit = lesser(next, huge),
+                    ControlFlow::Continue(next) => limit = lesser(huge, next),
                     ControlFlow::Break(()) => return nodes,
                 },
                 Child::Node(index) => {

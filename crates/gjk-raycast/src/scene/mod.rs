@@ -1,19 +1,46 @@
-//! One ray against many bodies.
+//! Many bodies, of which a question concerns few.
+
+mod all_within;
+mod among;
+mod cast;
+mod error;
+mod half_space;
+mod mesh;
+mod nearest;
+mod pairs;
+mod result;
+mod single;
 
 use alloc::vec::Vec;
 
-use convex_support::{
-    Ball, BoundingSphere, Crossing, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere, line_crossing,
+use convex_support::{Aabb, Bvh, SupportMap, outer_box};
+
+pub use self::among::Among;
+pub use self::error::SceneError;
+pub use self::half_space::HalfSpace;
+pub use self::result::{
+    BodyDistance, BodyHit, PairDistance, SceneAnyHit, SceneCast, SceneDistance, SceneHits, SceneLinearCast,
+    SceneRayCast, Work,
 };
-use num_traits::Float;
 
-use crate::{Outcome, Ray, RayCastError, RayCastOptions, RayHit, ray_cast};
-
-/// Bodies, each with a ball around it, for rays that ask which body they hit first.
+/// Bodies that are asked together: which is hit first, which is nearest, which pairs are near each other.
+///
+/// A body is any [`SupportMap`]: of one type, of an enum of yours, or `Box<dyn SupportMap<Vector = DVec3>>`; by value or by
+/// reference. It is known by its index, which stays as long as the body does. Half-spaces, which are no support maps since they have no
+/// end, can be bodies too ([`insert_half_space`](Self::insert_half_space)).
+///
+/// # Answers
+/// Every answer is that of the single query asked of each body (or pair) in the order of their indices, *to the last bit*, with the lowest index of equals; on one thread
+/// or on many, however the scene came about. A tree of boxes tells which bodies need not be asked: the box of a body has
+/// room for the rounding of its queries, so that a box which is too far is a proof about the query, not only about the body. How
+/// much was left out is part of every answer ([`Work`]).
+///
+/// What a box proves of a body is never less than what its own query does: where a query ends undecided, or with a hit whose bracket
+/// is still open, the body counts from where its bracket begins or from where its box begins, whichever is later.
 ///
 /// ```
 /// use convex_support::{Ball, Cuboid, Posed, SupportMap, glam::DVec3};
-/// use gjk_raycast::{Ray, RayCastOptions, Scene};
+/// use gjk_raycast::{DistanceOptions, Ray, RayCastOptions, Scene};
 ///
 /// type Body = Box<dyn SupportMap<Vector = DVec3>>;
 /// let at = |x, y| DVec3::new(x, y, 0.0);
@@ -21,146 +48,190 @@ use crate::{Outcome, Ray, RayCastError, RayCastOptions, RayHit, ray_cast};
 ///     Box::new(Posed::translated(Ball::new(1.0)?, at(20.0, 0.0))?) as Body,
 ///     Box::new(Posed::translated(Cuboid::new(DVec3::ONE)?, at(10.0, 0.0))?) as Body,
 ///     Box::new(Posed::translated(Cuboid::new(DVec3::ONE)?, at(10.0, 8.0))?) as Body,
-/// ]);
+/// ])?;
 /// let ray = Ray { source: DVec3::ZERO, direction: DVec3::X };
 /// let answer = scene.ray_cast(ray, RayCastOptions::default())?;
 /// let first = answer.first.ok_or("two are in the way")?;
 /// assert_eq!((first.body, first.hit.lambda), (1, 9.0));
-/// assert_eq!((answer.tested, answer.culled), (1, 2)); // one is beside the ray, and one behind the hit
+/// assert_eq!((answer.work.tested, answer.work.culled), (1, 2)); // one is beside the ray, and one behind the hit
+///
+/// let nearest = scene.nearest(&Ball::new(0.5)?, DistanceOptions::default());
+/// assert_eq!(nearest.nearest.map(|n| (n.body, n.distance.distance)), Some((1, 8.5)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// # Bodies that move
+/// [`update`](Self::update) moves all, [`replace`](Self::replace) one; [`insert`](Self::insert) and [`remove`](Self::remove) bring and take
+/// them. The tree follows, and is built anew where that is worth it. A body that moves along a straight line during a step covers its
+/// `MinkowskiSum` with a `Segment`, which is a body as well: pairs of such that are within 0 are the ones that may meet in the step.
+///
+/// # Groups
+/// A compound is several bodies that are moved together, and a link's pieces are asked about by [`Among`], which leaves out bodies and
+/// pairs by closures.
 #[derive(Clone, Debug)]
 pub struct Scene<S: SupportMap> {
-    bodies: Vec<S>,
-    spheres: Vec<BoundingSphere<S::Vector>>,
+    bodies: Vec<Option<Body<S>>>,
+    tree: Bvh<S::Vector>,
+    /// The indices of half-spaces, which no box contains, in their order.
+    half_spaces: Vec<usize>,
+    /// Indices of bodies that were removed, for new ones.
+    free: Vec<usize>,
+    /// The boxes of an update, kept for the next.
+    moved: Vec<Aabb<S::Vector>>,
 }
 
-/// The first body in the way of a ray, and what was done to find it.
-#[derive(Clone, Debug, PartialEq)]
-#[must_use]
-pub struct SceneRayCast<V: Vector> {
-    /// The first hit; `None` where every body is missed. Of bodies hit at the same λ, the one with the lowest index.
-    pub first: Option<FirstHit<V>>,
-    /// No point of the ray before this parameter is in any body.
-    pub lower: V::Scalar,
-    /// Bodies that a cast was made for.
-    pub tested: usize,
-    /// Bodies that were left out, because the ray misses the ball around them or reaches it only behind the first hit.
-    pub culled: usize,
-    /// The lowest index of a body whose cast was [undecided](Outcome::Undecided), if there is one: it may be in the way
-    /// from [`lower`](Self::lower) on.
-    pub undecided: Option<usize>,
-}
-
-/// Which body is hit, and where.
+/// What is in a [`Scene`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FirstHit<V: Vector> {
-    /// The index of the body.
-    pub body: usize,
-    /// The hit, as [`ray_cast`] answers it for this body alone.
-    pub hit: RayHit<V>,
+pub enum Body<S: SupportMap> {
+    /// A bounded convex body.
+    Convex(S),
+    /// All on one side of a plane.
+    HalfSpace(HalfSpace<S::Vector>),
+}
+
+impl<S: SupportMap> Body<S> {
+    /// The bounded body, if it is one.
+    #[must_use]
+    pub fn convex(&self) -> Option<&S> {
+        match self {
+            Self::Convex(body) => Some(body),
+            Self::HalfSpace(_) => None,
+        }
+    }
 }
 
 impl<S: SupportMap> Scene<S> {
-    /// The scene of these bodies; their balls are found now.
-    pub fn new(bodies: impl IntoIterator<Item = S>) -> Self {
-        let bodies: Vec<S> = bodies.into_iter().collect();
-        let spheres = bodies.iter().map(bounding_sphere).collect();
-        Self { bodies, spheres }
-    }
-
-    /// The bodies, in the order given.
-    #[must_use]
-    pub fn bodies(&self) -> &[S] {
-        &self.bodies
-    }
-
-    /// The balls around them.
-    #[must_use]
-    pub fn spheres(&self) -> &[BoundingSphere<S::Vector>] {
-        &self.spheres
-    }
-
-    /// The first body that the ray hits. The answer is that of [`ray_cast`] for each body, to the last bit; bodies whose
-    /// balls rule them out are not asked.
+    /// The scene of these bodies, with indices in their order.
     ///
     /// # Errors
-    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
-    pub fn ray_cast(
-        &self,
-        ray: Ray<S::Vector>,
-        options: RayCastOptions<S::Vector>,
-    ) -> Result<SceneRayCast<S::Vector>, RayCastError> {
-        ray.check()?;
-        // Nearest balls first: what they hit rules out most of the others.
-        let mut in_the_way: Vec<(ScalarOf<S>, usize)> = Vec::new();
-        for (body, sphere) in self.spheres.iter().enumerate() {
-            if let Some(lambda) = reaches(sphere, ray).filter(|&lambda| !(lambda > options.max_lambda)) {
-                in_the_way.push((lambda, body));
-            }
+    /// [`SceneError::NotFinite`] for the first body whose box is not finite.
+    pub fn new(bodies: impl IntoIterator<Item = S>) -> Result<Self, SceneError> {
+        let bodies: Vec<_> = bodies.into_iter().map(|body| Some(Body::Convex(body))).collect();
+        let mut boxes = Vec::with_capacity(bodies.len());
+        for (index, body) in bodies.iter().enumerate() {
+            let around = body.as_ref().and_then(Body::convex).and_then(outer_box);
+            boxes.push(around.ok_or(SceneError::NotFinite { body: index })?);
         }
-        in_the_way
-            .sort_unstable_by(|(p, i), (q, j)| p.partial_cmp(q).unwrap_or(core::cmp::Ordering::Equal).then(i.cmp(j)));
-
-        let mut answer =
-            SceneRayCast { first: None, lower: ScalarOf::<S>::infinity(), tested: 0, culled: 0, undecided: None };
-        for (lambda, body) in in_the_way {
-            if answer.first.is_some_and(|first: FirstHit<S::Vector>| lambda > first.hit.lambda) {
-                break;
-            }
-            answer.tested += 1;
-            let cast = ray_cast(&self.bodies[body], ray, options)?;
-            match cast.outcome {
-                Outcome::Hit(hit) => {
-                    answer.lower = Float::min(answer.lower, cast.lower);
-                    let is_first = |first: FirstHit<S::Vector>| (hit.lambda, body) < (first.hit.lambda, first.body);
-                    if answer.first.is_none_or(is_first) {
-                        answer.first = Some(FirstHit { body, hit });
-                    }
-                }
-                Outcome::Undecided => {
-                    answer.lower = Float::min(answer.lower, cast.lower);
-                    answer.undecided = Some(answer.undecided.map_or(body, |lowest| lowest.min(body)));
-                }
-                Outcome::Miss(_) => {}
-            }
-        }
-        answer.culled = self.bodies.len() - answer.tested;
-        Ok(answer)
+        Ok(Self { bodies, tree: Bvh::new(&boxes), half_spaces: Vec::new(), free: Vec::new(), moved: boxes })
     }
 
-    /// [`ray_cast`](Self::ray_cast) for each of many rays, on all threads of the current [rayon] pool.
-    #[cfg(feature = "rayon")]
-    pub fn par_ray_casts(
-        &self,
-        rays: &[Ray<S::Vector>],
-        options: RayCastOptions<S::Vector>,
-    ) -> Vec<Result<SceneRayCast<S::Vector>, RayCastError>>
-    where
-        S: Sync,
-    {
-        use rayon::prelude::*;
-        rays.par_iter().map(|&ray| self.ray_cast(ray, options)).collect()
+    /// The number of bodies.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.bodies.len() - self.free.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The body with this index.
+    #[must_use]
+    pub fn get(&self, body: usize) -> Option<&Body<S>> {
+        self.bodies.get(body)?.as_ref()
+    }
+
+    /// The bodies with their indices, which need not follow one another where bodies were removed.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, &Body<S>)> {
+        self.bodies.iter().enumerate().filter_map(|(index, body)| Some((index, body.as_ref()?)))
+    }
+
+    /// The tree of the bodies' boxes: its items are the indices of the bodies.
+    #[must_use]
+    pub fn tree(&self) -> &Bvh<S::Vector> {
+        &self.tree
+    }
+
+    /// Adds a body, and returns its index: the one that became free last, or a new one.
+    ///
+    /// # Errors
+    /// [`SceneError::NotFinite`], with the index that it would have had, if its box is not finite.
+    pub fn insert(&mut self, body: S) -> Result<usize, SceneError> {
+        let index = self.free.last().copied().unwrap_or(self.bodies.len());
+        let around = outer_box(&body).ok_or(SceneError::NotFinite { body: index })?;
+        self.put(index, Body::Convex(body));
+        self.tree.insert(index, around);
+        Ok(index)
+    }
+
+    /// Adds a half-space, and returns its index.
+    pub fn insert_half_space(&mut self, half_space: HalfSpace<S::Vector>) -> usize {
+        let index = self.free.last().copied().unwrap_or(self.bodies.len());
+        self.put(index, Body::HalfSpace(half_space));
+        let place = self.half_spaces.partition_point(|&other| other < index);
+        self.half_spaces.insert(place, index);
+        index
+    }
+
+    fn put(&mut self, index: usize, body: Body<S>) {
+        if self.free.last() == Some(&index) {
+            self.free.pop();
+            self.bodies[index] = Some(body);
+        } else {
+            self.bodies.push(Some(body));
+        }
+    }
+
+    /// Takes a body out; `None` if there is none with this index, which a later body may be given.
+    pub fn remove(&mut self, body: usize) -> Option<Body<S>> {
+        let removed = self.bodies.get_mut(body)?.take()?;
+        self.free.push(body);
+        self.tree.remove(body);
+        self.half_spaces.retain(|&half_space| half_space != body);
+        Some(removed)
+    }
+
+    /// Puts another body in the place of one, moved or different, and returns the one that was there.
+    ///
+    /// # Errors
+    /// [`SceneError::NoSuchBody`] if no bounded body has this index; [`SceneError::NotFinite`] if the box of the new one is not
+    /// finite. The scene is then as before.
+    pub fn replace(&mut self, index: usize, body: S) -> Result<S, SceneError> {
+        let Some(Some(Body::Convex(place))) = self.bodies.get_mut(index) else {
+            return Err(SceneError::NoSuchBody { body: index });
+        };
+        let around = outer_box(&body).ok_or(SceneError::NotFinite { body: index })?;
+        self.tree.set(index, around);
+        Ok(core::mem::replace(place, body))
+    }
+
+    /// Replaces every bounded body by what `moved` makes of it, in the order of the indices, in time proportional to their number.
+    ///
+    /// # Errors
+    /// [`SceneError::NotFinite`] for the first body whose box would not be finite: it and others like it stay as they were; the
+    /// rest are moved.
+    pub fn update(&mut self, mut moved: impl FnMut(usize, &S) -> S) -> Result<(), SceneError> {
+        let Self { bodies, tree, moved: boxes, .. } = self;
+        let mut refused = None;
+        let nowhere = Aabb { min: S::Vector::default(), max: S::Vector::default() };
+        boxes.clear();
+        for (index, place) in bodies.iter_mut().enumerate() {
+            let mut around = nowhere;
+            if let Some(Body::Convex(body)) = place {
+                let next = moved(index, body);
+                if let Some(outer) = outer_box(&next) {
+                    (*body, around) = (next, outer);
+                } else {
+                    refused = refused.or(Some(index));
+                    around = tree.get(index).unwrap_or(nowhere);
+                }
+            }
+            boxes.push(around);
+        }
+        tree.refit(|index| boxes[index]);
+        refused.map_or(Ok(()), |body| Err(SceneError::NotFinite { body }))
+    }
+
+    /// Builds the tree anew. Nothing else changes; after many insertions, questions may become faster.
+    pub fn rebuild(&mut self) {
+        self.tree.rebuild();
     }
 }
 
-/// Where the ray can be in the ball at the earliest; `None` where it passes it. In doubt it is in the ball from the start.
-fn reaches<V: Vector>(sphere: &BoundingSphere<V>, ray: Ray<V>) -> Option<V::Scalar> {
-    let from = ray.source - sphere.center;
-    // A ball's radius is rounded, and the crossing to ulps of the distance.
-    let rounding = V::Scalar::from_f64(32.0) * V::Scalar::EPSILON;
-    let radius = sphere.radius + rounding * (sphere.radius + from.norm());
-    match Ball::<V>::new(radius) {
-        Ok(ball) if is_comfortable(radius) && is_comfortable(from.norm()) => {
-            let Crossing { entry, exit, .. } = line_crossing(&ball, from, ray.direction).crossing()?;
-            (exit >= V::Scalar::ZERO).then(|| entry.max(V::Scalar::ZERO))
-        }
-        _ => Some(V::Scalar::ZERO),
+impl<S: SupportMap> Default for Scene<S> {
+    fn default() -> Self {
+        Self { bodies: Vec::new(), tree: Bvh::default(), half_spaces: Vec::new(), free: Vec::new(), moved: Vec::new() }
     }
-}
-
-/// Whether a length can be squared without over- or underflow.
-fn is_comfortable<S: Scalar>(length: S) -> bool {
-    let square = length * length;
-    square < S::infinity() && square > S::min_positive_value() / S::EPSILON
 }

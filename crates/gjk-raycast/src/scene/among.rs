@@ -1,0 +1,116 @@
+//! Which bodies and pairs are asked about, and until when.
+
+use convex_support::SupportMap;
+
+use super::{Body, Scene, Work};
+
+/// The bodies of a scene that a question is about: all, or those that a closure picks.
+///
+/// ```
+/// use convex_support::{Ball, Posed, glam::DVec2};
+/// use gjk_raycast::{DistanceOptions, Scene};
+///
+/// let ball = |x: f64| Posed::translated(Ball::new(1.0)?, DVec2::new(x, 0.0));
+/// let scene = Scene::new([ball(0.0)?, ball(3.0)?, ball(7.0)?])?;
+/// // The nearest to body 1, apart from itself.
+/// let other = scene.among(&|body| body != 1).nearest(&ball(3.0)?, DistanceOptions::default());
+/// assert_eq!(other.nearest.map(|n| n.body), Some(0));
+/// // Bodies 0 and 1 are pieces of one link, and may touch.
+/// let mut pairs = Vec::new();
+/// let _ = scene.all().without_pairs(&|i, j| (i, j) == (0, 1)).pairs_within(2.0, DistanceOptions::default(), &mut pairs);
+/// assert_eq!(pairs.iter().map(|p| (p.a, p.b)).collect::<Vec<_>>(), [(1, 2)]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Among<'s, S: SupportMap> {
+    pub(super) scene: &'s Scene<S>,
+    bodies: Option<&'s Picks<'s>>,
+    without_pairs: Option<&'s Pairs<'s>>,
+    until: Option<&'s Stop<'s>>,
+}
+
+/// Tells by its index whether a body is asked about.
+type Picks<'f> = dyn Fn(usize) -> bool + Sync + 'f;
+/// Tells by their indices whether two bodies are not asked about.
+type Pairs<'f> = dyn Fn(usize, usize) -> bool + Sync + 'f;
+/// Tells whether to stop.
+type Stop<'f> = dyn Fn() -> bool + Sync + 'f;
+
+impl<S: SupportMap> Clone for Among<'_, S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S: SupportMap> Copy for Among<'_, S> {}
+
+impl<S: SupportMap> core::fmt::Debug for Among<'_, S> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Among")
+            .field("bodies", &self.scene.len())
+            .field("picked", &self.bodies.is_some())
+            .field("without_pairs", &self.without_pairs.is_some())
+            .field("until", &self.until.is_some())
+            .finish()
+    }
+}
+
+impl<S: SupportMap> Scene<S> {
+    /// Questions about all bodies: the same as asking the scene itself, unless more is said.
+    #[must_use]
+    pub fn all(&self) -> Among<'_, S> {
+        Among { scene: self, bodies: None, without_pairs: None, until: None }
+    }
+
+    /// Questions about the bodies that `picked` says, by layers, groups or whatever is known of an index.
+    #[must_use]
+    pub fn among<'s>(&'s self, picked: &'s (dyn Fn(usize) -> bool + Sync + 's)) -> Among<'s, S> {
+        Among { bodies: Some(picked), ..self.all() }
+    }
+}
+
+impl<'s, S: SupportMap> Among<'s, S> {
+    /// Without the pairs that `left_out` says: of one group, or allowed to collide. It is asked once for each pair whose boxes
+    /// are near, with the lower index first, or that in the first scene.
+    #[must_use]
+    pub fn without_pairs(self, left_out: &'s (dyn Fn(usize, usize) -> bool + Sync + 's)) -> Self {
+        Self { without_pairs: Some(left_out), ..self }
+    }
+
+    /// Until `stop` says so, which is asked before each single query.
+    #[must_use]
+    pub fn until(self, stop: &'s (dyn Fn() -> bool + Sync + 's)) -> Self {
+        Self { until: Some(stop), ..self }
+    }
+
+    /// The body with this index, if it is asked about.
+    #[inline]
+    pub(super) fn body(&self, index: usize) -> Option<&'s Body<S>> {
+        if self.bodies.is_some_and(|picks| !picks(index)) {
+            return None;
+        }
+        self.scene.get(index)
+    }
+
+    /// The half-spaces that are asked about.
+    pub(super) fn half_spaces(&self) -> impl Iterator<Item = (usize, &'s Body<S>)> {
+        let among = *self;
+        self.scene.half_spaces.iter().filter_map(move |&index| Some((index, among.body(index)?)))
+    }
+
+    #[inline]
+    pub(super) fn is_pair_left_out(&self, a: usize, b: usize) -> bool {
+        self.without_pairs.is_some_and(|left_out| left_out(a, b))
+    }
+
+    /// Whether to stop, which is noted.
+    #[inline]
+    pub(super) fn stops(&self, work: &mut Work) -> bool {
+        work.cancelled |= self.until.is_some_and(|stop| stop());
+        work.cancelled
+    }
+
+    /// The work with what was left out of all bodies.
+    pub(super) fn finish(&self, work: &mut Work) {
+        work.culled = self.scene.len() - work.tested;
+    }
+}

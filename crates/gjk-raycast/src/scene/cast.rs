@@ -1,0 +1,308 @@
+//! Which bodies a ray or a moving shape hits.
+
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+
+use convex_support::{Aabb, Bound, Scalar, SupportMap, SweptBox, Vector, outer_box};
+use num_traits::Float;
+
+use super::result::{SceneAnyHit, SceneCast, SceneHits, SceneLinearCast, SceneRayCast, Work, reuse};
+use super::single::Single;
+use super::{Among, Body, BodyHit, Scene};
+use crate::{LinearCastOptions, Motion, Ray, RayCastError, RayCastOptions, RayHit};
+
+/// A hit of a ray and the body that it is of.
+type RayBodyHit<V> = BodyHit<RayHit<V>, <V as Vector>::Scalar>;
+
+impl<S: SupportMap> Scene<S> {
+    /// The first body that the ray hits: the least λ of [`ray_cast`](crate::ray_cast) for each body.
+    ///
+    /// # Errors
+    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+    pub fn ray_cast(
+        &self,
+        ray: Ray<S::Vector>,
+        options: RayCastOptions<S::Vector>,
+    ) -> Result<SceneRayCast<S::Vector>, RayCastError> {
+        self.all().ray_cast(ray, options)
+    }
+
+    /// All bodies that the ray hits, in the order of λ and then of their indices, into `hits`, which is emptied first.
+    ///
+    /// # Errors
+    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+    pub fn ray_cast_all(
+        &self,
+        ray: Ray<S::Vector>,
+        options: RayCastOptions<S::Vector>,
+        hits: &mut Vec<RayBodyHit<S::Vector>>,
+    ) -> Result<SceneHits, RayCastError> {
+        self.all().ray_cast_all(ray, options, hits)
+    }
+
+    /// Whether the ray hits any body: a shadow ray.
+    ///
+    /// # Errors
+    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+    pub fn any_hit(
+        &self,
+        ray: Ray<S::Vector>,
+        options: RayCastOptions<S::Vector>,
+    ) -> Result<SceneAnyHit, RayCastError> {
+        self.all().any_hit(ray, options)
+    }
+
+    /// The first body that the moving shape meets: the least time of [`linear_cast`](crate::linear_cast) of the shape, `a`, against each
+    /// body, `b`. All bodies move alike.
+    ///
+    /// # Errors
+    /// [`RayCastError::NonFinite`] if a velocity is not finite.
+    pub fn linear_cast<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: Motion<S::Vector>,
+        options: LinearCastOptions<S::Vector>,
+    ) -> Result<SceneLinearCast<S::Vector>, RayCastError> {
+        self.all().linear_cast(shape, motion, options)
+    }
+
+    /// [`ray_cast`](Self::ray_cast) for each of many rays, on all threads of the current [rayon] pool.
+    #[cfg(feature = "rayon")]
+    pub fn par_ray_casts(
+        &self,
+        rays: &[Ray<S::Vector>],
+        options: RayCastOptions<S::Vector>,
+    ) -> Vec<Result<SceneRayCast<S::Vector>, RayCastError>>
+    where
+        S: Sync,
+    {
+        use rayon::prelude::*;
+        rays.par_iter().map(|&ray| self.ray_cast(ray, options)).collect()
+    }
+}
+
+impl<S: SupportMap> Among<'_, S> {
+    /// [`Scene::ray_cast`] among these bodies.
+    ///
+    /// # Errors
+    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+    pub fn ray_cast(
+        &self,
+        ray: Ray<S::Vector>,
+        options: RayCastOptions<S::Vector>,
+    ) -> Result<SceneRayCast<S::Vector>, RayCastError> {
+        ray.check()?;
+        self.first(&swept_point(ray), options.max_lambda, |body| Ok(body.ray_cast(ray, options)?.into()))
+    }
+
+    /// [`Scene::ray_cast_all`] among these bodies.
+    ///
+    /// # Errors
+    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+    pub fn ray_cast_all(
+        &self,
+        ray: Ray<S::Vector>,
+        options: RayCastOptions<S::Vector>,
+        hits: &mut Vec<RayBodyHit<S::Vector>>,
+    ) -> Result<SceneHits, RayCastError> {
+        ray.check()?;
+        let hits = reuse(hits);
+        let mut undecided = None;
+        let work = self.each(&swept_point(ray), options.max_lambda, |index, body| {
+            let single = Single::from(body.ray_cast(ray, options)?);
+            if single.is_undecided {
+                undecided = Some(undecided.map_or(index, |lowest: usize| lowest.min(index)));
+            }
+            hits.extend(single.of(index));
+            Ok(ControlFlow::Continue(()))
+        })?;
+        hits.sort_unstable_by(|p, q| {
+            let (a, b) = (p.hit.lambda, q.hit.lambda);
+            a.partial_cmp(&b).unwrap_or(core::cmp::Ordering::Equal).then(p.body.cmp(&q.body))
+        });
+        Ok(SceneHits { undecided, work })
+    }
+
+    /// [`Scene::any_hit`] among these bodies.
+    ///
+    /// # Errors
+    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+    pub fn any_hit(
+        &self,
+        ray: Ray<S::Vector>,
+        options: RayCastOptions<S::Vector>,
+    ) -> Result<SceneAnyHit, RayCastError> {
+        ray.check()?;
+        let (mut hit, mut undecided) = (false, None);
+        let work = self.each(&swept_point(ray), options.max_lambda, |index, body| {
+            let single = Single::from(body.ray_cast(ray, options)?);
+            hit = single.hit.is_some();
+            if single.is_undecided {
+                undecided = Some(undecided.map_or(index, |lowest: usize| lowest.min(index)));
+            }
+            Ok(if hit { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        })?;
+        Ok(SceneAnyHit { hit, undecided: undecided.filter(|_| !hit), work })
+    }
+
+    /// [`Scene::linear_cast`] among these bodies.
+    ///
+    /// # Errors
+    /// [`RayCastError::NonFinite`] if a velocity is not finite.
+    pub fn linear_cast<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: Motion<S::Vector>,
+        options: LinearCastOptions<S::Vector>,
+    ) -> Result<SceneLinearCast<S::Vector>, RayCastError> {
+        motion.check()?;
+        let swept = swept_box(outer_box_of_question(shape), motion.velocity_a - motion.velocity_b);
+        self.first(&swept, options.max_time, |body| Ok(body.linear_cast(shape, motion, options)?.into()))
+    }
+
+    /// The first hit of all bodies that `bound` does not leave out; `ask` makes the single cast.
+    pub(super) fn first<H: Copy, B: Bound<S::Vector>>(
+        &self,
+        bound: &B,
+        end: Number<S>,
+        mut ask: impl FnMut(&Body<S>) -> Result<Single<H, Number<S>>, RayCastError>,
+    ) -> Result<SceneCast<H, Number<S>>, RayCastError> {
+        let mut first = First { hit: None, open: None, lower: Number::<S>::infinity() };
+        let (mut work, mut error) = (Work::default(), None);
+        let mut look = |index: usize, from: Number<S>, body: &Body<S>, work: &mut Work| {
+            if self.stops(work) {
+                return ControlFlow::Break(());
+            }
+            work.tested += 1;
+            match ask(body) {
+                Ok(single) => first.take(index, from, single),
+                Err(refused) => {
+                    error = Some(refused);
+                    return ControlFlow::Break(());
+                }
+            }
+            ControlFlow::Continue(first.hit.map_or((end, usize::MAX), |(key, hit)| (key, hit.body)))
+        };
+        let mut limit = ControlFlow::Continue((end, usize::MAX));
+        for (index, body) in self.half_spaces() {
+            limit = look(index, Number::<S>::ZERO, body, &mut work);
+            if limit.is_break() {
+                break;
+            }
+        }
+        if let ControlFlow::Continue((end, best)) = limit {
+            let (mut end, mut best) = (end, best);
+            work.nodes = self.scene.tree.search(bound, end, |index, from| {
+                // Of equals the lowest index counts, and this body is hit where its box begins at the earliest.
+                if (from < end || index < best)
+                    && let Some(body) = self.body(index)
+                {
+                    match look(index, from, body, &mut work) {
+                        ControlFlow::Continue(limit) => (end, best) = limit,
+                        ControlFlow::Break(()) => return ControlFlow::Break(()),
+                    }
+                }
+                ControlFlow::Continue(end)
+            });
+        }
+        self.finish(&mut work);
+        if let Some(error) = error {
+            return Err(error);
+        }
+        let First { hit, open, lower } = first;
+        let undecided = open.filter(|&open| hit.is_none_or(|(key, hit)| open < (key, hit.body))).map(|(_, body)| body);
+        let lower = if work.cancelled { Number::<S>::ZERO } else { lower };
+        Ok(SceneCast { first: hit.map(|(_, hit)| hit), lower, undecided, work })
+    }
+
+    /// Shows every body that `bound` does not leave out, those with the least bound mostly first.
+    fn each<B: Bound<S::Vector>>(
+        &self,
+        bound: &B,
+        end: Number<S>,
+        mut ask: impl FnMut(usize, &Body<S>) -> Result<ControlFlow<()>, RayCastError>,
+    ) -> Result<Work, RayCastError> {
+        let (mut work, mut outcome) = (Work::default(), Ok(ControlFlow::Continue(())));
+        let mut look = |index: usize, body: &Body<S>, work: &mut Work| {
+            if self.stops(work) {
+                return ControlFlow::Break(());
+            }
+            work.tested += 1;
+            outcome = ask(index, body);
+            if matches!(outcome, Ok(ControlFlow::Continue(()))) {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        };
+        let ended = self.half_spaces().try_for_each(|(index, body)| look(index, body, &mut work));
+        if ended.is_continue() {
+            work.nodes = self.scene.tree.search(bound, end, |index, _| {
+                if let Some(body) = self.body(index) {
+                    look(index, body, &mut work)?;
+                }
+                ControlFlow::Continue(end)
+            });
+        }
+        self.finish(&mut work);
+        outcome.map(|_| work)
+    }
+}
+
+/// The scalar of a scene.
+type Number<S> = convex_support::ScalarOf<S>;
+
+/// The first hit so far.
+///
+/// A body counts from its *key*: the λ of its hit, or where its box begins if that is later, as it cannot be where the hit's bracket is
+/// closed. Keys, and all that is kept here, are minima over bodies, in which one that was left out by its box takes no part:
+/// so the order in which bodies are met does not matter, nor which others were met.
+struct First<H, S> {
+    /// The least key, with the hit.
+    hit: Option<(S, BodyHit<H, S>)>,
+    /// Where an undecided body may be hit at the earliest, and which.
+    open: Option<(S, usize)>,
+    /// Nothing is hit before.
+    lower: S,
+}
+
+impl<H: Copy, S: Scalar> First<H, S> {
+    /// Takes the cast of a body whose box begins at `from`.
+    fn take(&mut self, body: usize, from: S, single: Single<H, S>) {
+        let start = Float::max(single.lower, from);
+        if single.is_undecided {
+            self.lower = Float::min(self.lower, start);
+            if self.open.is_none_or(|open| (start, body) < open) {
+                self.open = Some((start, body));
+            }
+        }
+        if let Some((value, _)) = single.hit {
+            self.lower = Float::min(self.lower, start);
+            let key = Float::max(value, from);
+            if self.hit.is_none_or(|(least, hit)| (key, body) < (least, hit.body)) {
+                self.hit = single.of(body).map(|hit| (key, hit));
+            }
+        }
+    }
+}
+
+/// A ray, with room for the rounding of its points: 32 ε of the source.
+fn swept_point<V: Vector>(ray: Ray<V>) -> SweptBox<V> {
+    let room = V::Scalar::from_f64(32.0) * V::Scalar::EPSILON * ray.source.abs().dot(V::ONE);
+    SweptBox::new(V::splat(room), ray.source, ray.direction)
+}
+
+/// A box that moves.
+fn swept_box<V: Vector>(around: Aabb<V>, velocity: V) -> SweptBox<V> {
+    let (center, half) = (around.center(), around.half_extents());
+    // The two are rounded.
+    let room = (center.abs() + half) * (V::Scalar::from_f64(4.0) * V::Scalar::EPSILON);
+    SweptBox::new(half + room, center, velocity)
+}
+
+/// The box of a shape that a scene is asked about: one that contains everything where a number of the shape is not finite, so that
+/// no body is left out and every single query says so.
+pub(super) fn outer_box_of_question<S: SupportMap + ?Sized>(shape: &S) -> Aabb<S::Vector> {
+    let all = S::Vector::splat(Number::<S>::max_value());
+    outer_box(shape).unwrap_or(Aabb { min: -all, max: all })
+}

@@ -1,0 +1,41 @@
+//! Bodies that cannot be in a scene.
+
+use core::error::Error;
+use core::fmt::{self, Display, Formatter};
+
+/// Why a scene refused a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// The box of the body is not finite: one of its support points is NaN or infinite.
+    NotFinite {
+        /// The index of the body.
+        body: usize,
+    },
+    /// No bounded body has this index.
+    NoSuchBody {
+        /// The index.
+        body: usize,
+    },
+    /// A triangle names a vertex that is not there.
+    NoSuchVertex {
+        /// The index of the triangle.
+        triangle: usize,
+        /// The index of the vertex.
+        vertex: usize,
+    },
+}
+
+impl Display for SceneError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { body } => write!(f, "the box of body {body} is not finite"),
+            Self::NoSuchBody { body } => write!(f, "no bounded body has the index {body}"),
+            Self::NoSuchVertex { triangle, vertex } => {
+                write!(f, "triangle {triangle} names vertex {vertex}, which is not there")
+            }
+        }
+    }
+}
+
+impl Error for SceneError {}

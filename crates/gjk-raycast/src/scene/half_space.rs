@@ -1,0 +1,221 @@
+//! Half-spaces: floors and walls without an end.
+
+use convex_support::{Bound, Boxes, Core, InvalidShape, Lanes, Rounding, Scalar, SupportMap, Vector};
+use num_traits::Float;
+
+use crate::{
+    Distance, LinearCast, LinearCastOptions, LinearHit, Miss, Motion, Outcome, Ray, RayCast, RayCastError,
+    RayCastOptions, RayHit, Status,
+};
+
+/// The points x with n·x ≤ offset: everything on one side of a plane.
+///
+/// It is no [`SupportMap`], since it has no farthest point along most directions; but along −n, a shape's nearest point to it is its support point, so that
+/// casts and distances are closed forms of one support point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfSpace<V: Vector> {
+    normal: V,
+    offset: V::Scalar,
+    /// The length of the normal.
+    length: V::Scalar,
+}
+
+impl<V: Vector> HalfSpace<V> {
+    /// The half-space of the points x with `normal·x ≤ offset`. The normal points out of it and need not be of unit length.
+    ///
+    /// # Errors
+    /// [`InvalidShape::NonFinite`] if a number is not finite, [`InvalidShape::NotPositive`] if the normal is zero or so long or short
+    /// that its length is not a number of full precision.
+    pub fn new(normal: V, offset: V::Scalar) -> Result<Self, InvalidShape> {
+        if let Some(index) = (0..V::DIM).find(|&i| !normal.get(i).is_finite()) {
+            return Err(InvalidShape::NonFinite { parameter: "normal", index });
+        }
+        if !offset.is_finite() {
+            return Err(InvalidShape::NonFinite { parameter: "offset", index: 0 });
+        }
+        let length = normal.norm();
+        if !(length >= V::Scalar::min_positive_value() / V::Scalar::EPSILON && length.is_finite()) {
+            return Err(InvalidShape::NotPositive { parameter: "normal", index: 0, value: length.as_f64() });
+        }
+        Ok(Self { normal, offset, length })
+    }
+
+    /// The normal as it was given.
+    #[must_use]
+    pub fn normal(&self) -> V {
+        self.normal
+    }
+
+    /// The offset as it was given.
+    #[must_use]
+    pub fn offset(&self) -> V::Scalar {
+        self.offset
+    }
+
+    /// How far a point is above the plane, in lengths of the normal, and what rounding may have moved that by if the point's coordinates
+    /// are off by `error`.
+    ///
+    /// A dot product of two or three terms and a difference are off by 4 ε of the sum of all magnitudes at most.
+    fn height(&self, point: V, error: V) -> [V::Scalar; 2] {
+        let magnitude = self.normal.abs().dot(point.abs()) + self.offset.abs();
+        let rounding = V::Scalar::from_f64(4.0) * V::Scalar::EPSILON * magnitude + self.normal.abs().dot(error);
+        [self.normal.dot(point) - self.offset, rounding]
+    }
+
+    /// The point of a shape nearest to the half-space, or deepest in it, and by how much its coordinates may be off: by what the core's
+    /// are, and by the sums and the products that add the origin and the radius.
+    fn nearest_of<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A) -> (V, V) {
+        let (Core { origin, radius, .. }, Rounding { extent, error, .. }) = (shape.core(), shape.rounding());
+        let magnitude = origin.abs() + extent + V::splat(radius);
+        (shape.support(-self.normal), error + magnitude * (V::Scalar::from_f64(4.0) * V::Scalar::EPSILON))
+    }
+
+    /// The ray's first point in the half-space: where n·(s + λd) = offset, λ = (n·s − offset)/(−n·d).
+    ///
+    /// # Errors
+    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+    pub fn ray_cast(&self, ray: Ray<V>, options: RayCastOptions<V>) -> Result<RayCast<V>, RayCastError> {
+        ray.check()?;
+        let (lambda, bracket) = self.crossing(ray, V::ZERO, options.max_lambda);
+        let normal = self.normal / self.length;
+        let outcome = match lambda {
+            Outcome::Hit(lambda) if lambda > V::Scalar::ZERO => {
+                Outcome::Hit(RayHit { lambda, point: ray.at(lambda), normal: Some(normal) })
+            }
+            Outcome::Hit(lambda) => Outcome::Hit(RayHit { lambda, point: ray.source, normal: None }),
+            Outcome::Miss(miss) => Outcome::Miss(miss),
+            Outcome::Undecided => Outcome::Undecided,
+        };
+        let Bracket { lower, upper, status } = bracket;
+        Ok(RayCast { outcome, lower, upper, status, iterations: 0 })
+    }
+
+    /// When a moving shape, `a`, first touches the half-space, `b`: the ray of its nearest point.
+    ///
+    /// # Errors
+    /// [`RayCastError::NonFinite`] if a velocity is not finite.
+    pub fn linear_cast<A: SupportMap<Vector = V> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: Motion<V>,
+        options: LinearCastOptions<V>,
+    ) -> Result<LinearCast<V>, RayCastError> {
+        motion.check()?;
+        let (source, error) = self.nearest_of(shape);
+        let ray = Ray { source, direction: motion.velocity_a - motion.velocity_b };
+        let (time, Bracket { lower, upper, status }) = self.crossing(ray, error, options.max_time);
+        let outcome = match time {
+            Outcome::Hit(time) => Outcome::Hit(LinearHit {
+                time,
+                point: source + motion.velocity_a * time,
+                normal: (time > V::Scalar::ZERO).then(|| self.normal / self.length),
+            }),
+            Outcome::Miss(miss) => Outcome::Miss(miss),
+            Outcome::Undecided => Outcome::Undecided,
+        };
+        Ok(LinearCast { outcome, lower, upper, status, iterations: 1 })
+    }
+
+    /// The distance from a shape, `a`, to the half-space, `b`.
+    pub fn distance_from<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A) -> Distance<V> {
+        let (zero, two) = (V::Scalar::ZERO, V::Scalar::from_f64(2.0));
+        let (point_a, error) = self.nearest_of(shape);
+        let [height, rounding] = self.height(point_a, error);
+        // The length and the quotient are rounded as well.
+        let [less, more] = [-two, two].map(|ulps| V::Scalar::ONE + ulps * V::Scalar::EPSILON);
+        let overlap = !(height > zero);
+        let normal = self.normal / self.length;
+        let distance = Float::max(height / self.length, zero);
+        Distance {
+            distance,
+            lower: Float::max((height - rounding) / self.length * less, zero),
+            upper: Float::max((height + rounding) / self.length * more, zero),
+            overlap,
+            point_a,
+            point_b: if overlap { point_a } else { point_a - normal * distance },
+            normal: (!overlap).then_some(normal),
+            status: Status::Converged,
+            iterations: 1,
+        }
+    }
+
+    /// The distance from the half-space, `a`, to a shape, `b`.
+    pub(super) fn distance_to<B: SupportMap<Vector = V> + ?Sized>(&self, shape: &B) -> Distance<V> {
+        let Distance { point_a, point_b, normal, .. } = self.distance_from(shape);
+        Distance { point_a: point_b, point_b: point_a, normal: normal.map(|n| -n), ..self.distance_from(shape) }
+    }
+
+    /// Where the ray crosses the plane inwards, of a source whose coordinates are off by `error`.
+    fn crossing(&self, ray: Ray<V>, error: V, end: V::Scalar) -> (Outcome<V::Scalar, V>, Bracket<V::Scalar>) {
+        let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+        let [height, rounding] = self.height(ray.source, error);
+        let closed = |lower, upper| Bracket { lower, upper, status: Status::Converged };
+        if height <= zero && end >= zero {
+            return (Outcome::Hit(zero), closed(zero, zero));
+        }
+        let speed = -self.normal.dot(ray.direction);
+        let doubt = V::Scalar::from_f64(4.0) * V::Scalar::EPSILON * self.normal.abs().dot(ray.direction.abs());
+        let miss = (Outcome::Miss(Miss { axis: self.normal / self.length }), closed(infinity, infinity));
+        if speed <= zero {
+            return miss;
+        }
+        let [less, more] = [-2.0, 2.0].map(|ulps| V::Scalar::ONE + V::Scalar::from_f64(ulps) * V::Scalar::EPSILON);
+        let lower = Float::max((height - rounding) / (speed + doubt) * less, zero);
+        if speed <= doubt {
+            return (Outcome::Undecided, Bracket { lower, upper: infinity, status: Status::Stalled });
+        }
+        let lambda = height / speed;
+        if !(lambda <= end) {
+            return miss;
+        }
+        (Outcome::Hit(lambda), closed(lower, (height + rounding) / (speed - doubt) * more))
+    }
+}
+
+/// What is certain of a crossing.
+struct Bracket<S> {
+    lower: S,
+    upper: S,
+    status: Status,
+}
+
+/// The distance of a box from a half-space, from below: that of its lowest corner.
+pub(super) struct HeightBound<V: Vector> {
+    /// The unit normal; coordinates that are not used are zero.
+    normal: [V::Scalar; 3],
+    /// The side of a box that is nearest.
+    nearest: [usize; 3],
+    /// The offset with room for its rounding.
+    offset: V::Scalar,
+}
+
+impl<V: Vector> HeightBound<V> {
+    pub(super) fn new(half_space: &HalfSpace<V>) -> Self {
+        let unit = half_space.normal / half_space.length;
+        let normal = core::array::from_fn(|i| if i < V::DIM { unit.get(i) } else { V::Scalar::ZERO });
+        let offset = half_space.offset / half_space.length;
+        Self {
+            normal,
+            nearest: normal.map(|n| usize::from(n < V::Scalar::ZERO)),
+            offset: offset + V::Scalar::from_f64(32.0) * V::Scalar::EPSILON * offset.abs(),
+        }
+    }
+}
+
+/// Four scalars.
+type LanesOf<V> = <<V as Vector>::Scalar as Scalar>::Lanes;
+
+impl<V: Vector> Bound<V> for HeightBound<V> {
+    fn bounds(&self, boxes: &Boxes<V>) -> LanesOf<V> {
+        let zero = LanesOf::<V>::splat(V::Scalar::ZERO);
+        let mut height = zero - LanesOf::<V>::splat(self.offset);
+        for i in 0..V::DIM {
+            let side = if self.nearest[i] == 0 { boxes.min(i) } else { boxes.max(i) };
+            height = height + side * LanesOf::<V>::splat(self.normal[i]);
+        }
+        let deflate = V::Scalar::ONE - V::Scalar::from_f64(8.0) * V::Scalar::EPSILON;
+        // A sum that overflows says nothing.
+        let bound = height.max(zero) * LanesOf::<V>::splat(deflate);
+        bound.min(LanesOf::<V>::splat(V::Scalar::max_value()))
+    }
+}

@@ -1,0 +1,119 @@
+//! What a scene answers.
+
+use alloc::vec::Vec;
+
+use convex_support::Vector;
+
+use crate::{Distance, LinearHit, RayHit, Status};
+
+/// What was done for an answer, and what was left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Nodes of the tree that were looked into; for pairs, pairs of nodes.
+    pub nodes: usize,
+    /// Bodies, or pairs, that a single query was made for.
+    pub tested: usize,
+    /// Bodies, or pairs, that none was made for.
+    pub culled: usize,
+    /// Whether the closure of [`Among::until`](crate::Among::until) ended the search early: the answer is then that of the bodies
+    /// tested so far, and lower bounds are 0.
+    pub cancelled: bool,
+}
+
+/// The first body hit by a ray or by a moving shape.
+///
+/// `H` is what the single query says of a hit, and `S` the scalar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub struct SceneCast<H, S> {
+    /// The first hit; `None` where every body is missed. Of bodies hit at the same λ or time, the one with the lowest index.
+    pub first: Option<BodyHit<H, S>>,
+    /// No body is hit before this λ or time; infinite where all are missed.
+    pub lower: S,
+    /// Of the bodies whose cast was [undecided](crate::Outcome::Undecided) and that may be hit before the first hit, the one that may be
+    /// hit earliest.
+    pub undecided: Option<usize>,
+    /// What was done and what was left out.
+    pub work: Work,
+}
+
+/// The answer of [`Scene::ray_cast`](crate::Scene::ray_cast).
+pub type SceneRayCast<V> = SceneCast<RayHit<V>, <V as Vector>::Scalar>;
+
+/// The answer of [`Scene::linear_cast`](crate::Scene::linear_cast).
+pub type SceneLinearCast<V> = SceneCast<LinearHit<V>, <V as Vector>::Scalar>;
+
+/// Which body is hit, and what the single query for it answers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyHit<H, S> {
+    /// The index of the body.
+    pub body: usize,
+    /// The hit.
+    pub hit: H,
+    /// The lower end of its bracket.
+    pub lower: S,
+    /// The upper end of its bracket.
+    pub upper: S,
+    /// How the iteration ended.
+    pub status: Status,
+}
+
+/// The answer of [`Scene::ray_cast_all`](crate::Scene::ray_cast_all).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+pub struct SceneHits {
+    /// The lowest index of a body whose cast was undecided.
+    pub undecided: Option<usize>,
+    /// What was done and what was left out.
+    pub work: Work,
+}
+
+/// The answer of [`Scene::any_hit`](crate::Scene::any_hit).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+pub struct SceneAnyHit {
+    /// Whether a body is hit.
+    pub hit: bool,
+    /// Where none is, the lowest index of a body whose cast was undecided.
+    pub undecided: Option<usize>,
+    /// What was done and what was left out. It depends on which of several bodies was met first.
+    pub work: Work,
+}
+
+/// The answer of [`Scene::nearest`](crate::Scene::nearest).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub struct SceneDistance<V: Vector> {
+    /// The nearest body; `None` where none is within the limit. Of bodies equally near, the one with the lowest index.
+    pub nearest: Option<BodyDistance<V>>,
+    /// No body is nearer than this: the least of the limit and of the lower ends of all brackets.
+    pub lower: V::Scalar,
+    /// What was done and what was left out.
+    pub work: Work,
+}
+
+/// A body, and its distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyDistance<V: Vector> {
+    /// The index of the body.
+    pub body: usize,
+    /// The distance from the shape, `a`, to the body, `b`.
+    pub distance: Distance<V>,
+}
+
+/// Two bodies, and their distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PairDistance<V: Vector> {
+    /// The index of the first: the lower one, or that in the first scene.
+    pub a: usize,
+    /// The index of the second.
+    pub b: usize,
+    /// The distance from the first to the second.
+    pub distance: Distance<V>,
+}
+
+/// Empties a list of the caller's and keeps its memory.
+pub(super) fn reuse<T>(list: &mut Vec<T>) -> &mut Vec<T> {
+    list.clear();
+    list
+}

@@ -1,0 +1,62 @@
+//! Every single query, one after the other.
+
+use convex_support::{SupportMap, Vector};
+use gjk_raycast::{
+    Body, BodyDistance, Distance, DistanceOptions, LinearCast, LinearCastOptions, Motion, PairDistance, Ray, RayCast,
+    RayCastOptions, distance, linear_cast, ray_cast,
+};
+
+use crate::worlds::{Shape, Space, World};
+
+pub(crate) fn rays<V: Space>(world: &World<V>, ray: Ray<V>, options: RayCastOptions<V>) -> Vec<(usize, RayCast<V>)> {
+    let cast = |body: &Body<Shape<V>>| match body {
+        Body::Convex(body) => ray_cast(body, ray, options),
+        Body::HalfSpace(half_space) => half_space.ray_cast(ray, options),
+    };
+    world.scene.iter().map(|(index, body)| (index, cast(body).expect("a good ray"))).collect()
+}
+
+pub(crate) fn casts<V: Space>(
+    world: &World<V>,
+    shape: &Shape<V>,
+    motion: Motion<V>,
+    options: LinearCastOptions<V>,
+) -> Vec<(usize, LinearCast<V>)> {
+    let cast = |body: &Body<Shape<V>>| match body {
+        Body::Convex(body) => linear_cast(shape, body, motion, options),
+        Body::HalfSpace(half_space) => half_space.linear_cast(shape, motion, options),
+    };
+    world.scene.iter().map(|(index, body)| (index, cast(body).expect("a good motion"))).collect()
+}
+
+pub(crate) fn distances<V: Space>(world: &World<V>, shape: &Shape<V>) -> Vec<BodyDistance<V>> {
+    let from = |body: &Body<Shape<V>>| match body {
+        Body::Convex(body) => distance(shape, body, DistanceOptions::default()),
+        Body::HalfSpace(half_space) => half_space.distance_from(shape),
+    };
+    world.scene.iter().map(|(body, other)| BodyDistance { body, distance: from(other) }).collect()
+}
+
+/// All pairs of bodies, half-spaces apart.
+pub(crate) fn pairs<V: Space>(world: &World<V>, within: V::Scalar) -> Vec<PairDistance<V>> {
+    let mut found = Vec::new();
+    for (a, first) in world.scene.iter() {
+        for (b, second) in world.scene.iter().filter(|&(b, _)| b > a) {
+            let (Some(first), Some(second)) = (first.convex(), second.convex()) else { continue };
+            let distance: Distance<V> = distance(first, second, DistanceOptions::default());
+            if distance.distance <= within {
+                found.push(PairDistance { a, b, distance });
+            }
+        }
+    }
+    found
+}
+
+/// The pairs without half-spaces.
+pub(crate) fn bounded<V: Vector, S: SupportMap<Vector = V>>(
+    pairs: &[PairDistance<V>],
+    scene: &gjk_raycast::Scene<S>,
+) -> Vec<PairDistance<V>> {
+    let is_bounded = |index| scene.get(index).is_some_and(|body| body.convex().is_some());
+    pairs.iter().copied().filter(|pair| is_bounded(pair.a) && is_bounded(pair.b)).collect()
+}

@@ -1,0 +1,220 @@
+//! Questions to a scene, and the same to every body.
+
+use convex_support::{Scalar, bounding_box};
+use gjk_raycast::{BodyHit, DistanceOptions, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions, Status};
+use num_traits::Float;
+
+use crate::brute_force;
+use crate::numbers::Numbers;
+use crate::worlds::{Space, World, body};
+
+/// How many questions were asked, and how they came out.
+#[derive(Debug, Default)]
+pub(crate) struct Count {
+    pub(crate) questions: usize,
+    hits: usize,
+    starts: usize,
+    open: usize,
+    undecided: usize,
+    within: usize,
+    pairs: usize,
+    tested: usize,
+    culled: usize,
+}
+
+impl Count {
+    pub(crate) fn is_fair(&self) -> bool {
+        let many = self.questions / 50;
+        self.hits > many
+            && self.starts > many / 10
+            && self.within > many
+            && self.pairs > many
+            && self.culled > self.tested
+    }
+}
+
+/// Asks everything once.
+pub(crate) fn ask<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
+    for _ in 0..4 {
+        ray(world, numbers, count);
+        linear_cast(world, numbers, count);
+        distances(world, numbers, count);
+    }
+    pairs(world, numbers, count);
+}
+
+/// A length at the scale of the world, and a point in it or about.
+fn scale<V: Space>(world: &World<V>, numbers: &mut Numbers) -> (f64, V) {
+    let count = world.scene.len().max(1);
+    let near = world.scene.iter().nth(numbers.below(count)).and_then(|(_, body)| Some(bounding_box(body.convex()?)));
+    let Some(near) = near else { return (1.0, numbers.vector(2.0)) };
+    let size = near.half_extents().max_element().as_f64().max(V::Scalar::min_positive_value().as_f64() * 1e6);
+    let reach = size * [0.5, 3.0, 20.0][numbers.below(3)];
+    (size, near.center() + numbers.vector(reach))
+}
+
+fn ray<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
+    let (size, source) = scale(world, numbers);
+    let (_, goal) = scale(world, numbers);
+    let mut direction = if numbers.below(3) == 0 { numbers.vector(1.0) } else { goal - source };
+    if direction == V::ZERO {
+        direction = V::axis(0);
+    }
+    let (ray, mut options) = (Ray { source, direction }, RayCastOptions::default());
+    match numbers.below(4) {
+        0 => options.max_lambda = V::Scalar::from_f64(0.9),
+        1 => options.max_lambda = V::Scalar::from_f64(size / direction.norm().as_f64()),
+        // Brackets that stay open.
+        2 => options.max_iterations = 1 + numbers.below(6),
+        _ => {}
+    }
+    let casts = brute_force::rays(world, ray, options);
+    let answer = world.scene.ray_cast(ray, options).expect("a good ray");
+    let singles = casts.iter().map(|&(body, cast)| {
+        let hit = cast
+            .outcome
+            .hit()
+            .map(|hit| (hit.lambda, BodyHit { body, hit, lower: cast.lower, upper: cast.upper, status: cast.status }));
+        (body, hit, matches!(cast.outcome, Outcome::Undecided), cast.lower)
+    });
+    first(&answer, singles, &format!("kind {}, {ray:?}, {options:?}", world.kind), count);
+
+    let mut hits = Vec::new();
+    let all = world.scene.ray_cast_all(ray, options, &mut hits).expect("a good ray");
+    let mut due: Vec<_> = casts.iter().filter_map(|(body, cast)| Some((cast.outcome.hit()?.lambda, *body))).collect();
+    due.sort_by(|a, b| a.partial_cmp(b).expect("no NaN"));
+    assert_eq!(hits.iter().map(|hit| (hit.hit.lambda, hit.body)).collect::<Vec<_>>(), due, "all hits of {ray:?}");
+    let any = world.scene.any_hit(ray, options).expect("a good ray");
+    assert_eq!(any.hit, !due.is_empty(), "any hit of {ray:?}");
+    assert!(any.hit || any.undecided == all.undecided, "who is undecided");
+    count.questions += 3;
+}
+
+fn linear_cast<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
+    let (size, _) = scale(world, numbers);
+    let (goal, shape) = (scale(world, numbers).1, body::<V>(numbers, world.kind, 1));
+    let from = bounding_box(&shape).center();
+    let velocity_a = if numbers.below(4) == 0 { numbers.vector(size) } else { goal - from };
+    let velocity_b = if numbers.below(2) == 0 { V::ZERO } else { numbers.vector(size) };
+    let motion = Motion { velocity_a, velocity_b };
+    let mut options = LinearCastOptions::default();
+    if numbers.below(3) == 0 {
+        options.max_time = V::Scalar::from_f64(0.8);
+    }
+    let casts = brute_force::casts(world, &shape, motion, options);
+    let answer = world.scene.linear_cast(&shape, motion, options).expect("a good motion");
+    let singles = casts.iter().map(|&(body, cast)| {
+        let hit = cast
+            .outcome
+            .hit()
+            .map(|hit| (hit.time, BodyHit { body, hit, lower: cast.lower, upper: cast.upper, status: cast.status }));
+        (body, hit, matches!(cast.outcome, Outcome::Undecided), cast.lower)
+    });
+    first(&answer, singles, &format!("kind {}, {motion:?}, {options:?}", world.kind), count);
+    count.questions += 1;
+}
+
+/// The first hit is that of the single casts; where a bracket stayed open, the box may know better, and then the answer
+/// keeps to what both say.
+fn first<H: Copy + PartialEq + std::fmt::Debug, S: Scalar>(
+    answer: &gjk_raycast::SceneCast<H, S>,
+    singles: impl Iterator<Item = (usize, Option<(S, BodyHit<H, S>)>, bool, S)>,
+    question: &str,
+    count: &mut Count,
+) {
+    let (mut due, mut lower, mut is_open, mut undecided): (Option<(S, BodyHit<H, S>)>, _, _, _) =
+        (None, S::infinity(), false, Vec::new());
+    for (body, hit, is_undecided, from) in singles {
+        if is_undecided || hit.is_some() {
+            lower = Float::min(lower, from);
+        }
+        if is_undecided {
+            undecided.push(body);
+        }
+        if let Some((value, hit)) = hit {
+            is_open |= hit.status != Status::Converged;
+            if due.is_none_or(|(least, _)| value < least) {
+                due = Some((value, hit));
+            }
+        }
+    }
+    count.tested += answer.work.tested;
+    count.culled += answer.work.culled;
+    count.hits += usize::from(due.is_some());
+    count.starts += usize::from(due.is_some_and(|(value, _)| value == S::ZERO));
+    count.open += usize::from(is_open);
+    count.undecided += usize::from(!undecided.is_empty());
+    if !is_open {
+        assert_eq!(answer.first, due.map(|(_, hit)| hit), "{question}");
+    }
+    assert!(answer.lower >= lower, "{} is below {lower}, which no single cast is: {question}", answer.lower);
+    assert!(answer.undecided.is_none_or(|body| undecided.contains(&body)), "{question}");
+}
+
+fn distances<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
+    let (size, _) = scale(world, numbers);
+    let shape = body::<V>(numbers, world.kind, 1);
+    let all = brute_force::distances(world, &shape);
+    let limit = if numbers.below(2) == 0 { V::Scalar::infinity() } else { V::Scalar::from_f64(size * numbers.unit()) };
+    let answer = world.scene.nearest(&shape, DistanceOptions::default().with_limit(limit));
+    let near = all.iter().filter(|body| body.distance.distance <= limit);
+    let due = near.copied().reduce(|a, b| if b.distance.distance < a.distance.distance { b } else { a });
+    assert_eq!(answer.nearest, due, "kind {}, the nearest within {limit}", world.kind);
+    assert!(answer.lower <= due.map_or(limit, |due| due.distance.distance), "kind {}, {answer:?}", world.kind);
+    count.tested += answer.work.tested;
+    count.culled += answer.work.culled;
+
+    let within = V::Scalar::from_f64(size * numbers.unit());
+    let mut found = Vec::new();
+    let work = world.scene.all_within(&shape, within, DistanceOptions::default(), &mut found);
+    let due: Vec<_> = all.iter().copied().filter(|body| body.distance.distance <= within).collect();
+    assert_eq!(found, due, "kind {}, within {within}", world.kind);
+    assert_eq!(work.tested + work.culled, world.scene.len(), "every body is one or the other");
+    count.within += found.len();
+    // Some bodies do not count.
+    let even = |index: usize| index % 2 == 0;
+    let answer = world.scene.among(&even).nearest(&shape, DistanceOptions::default());
+    let even = all.iter().filter(|body| even(body.body)).copied();
+    let due = even.reduce(|a, b| if b.distance.distance < a.distance.distance { b } else { a });
+    assert_eq!(answer.nearest, due, "kind {}, the nearest of every other", world.kind);
+    count.questions += 3;
+}
+
+fn pairs<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
+    let (size, _) = scale(world, numbers);
+    let within = V::Scalar::from_f64([0.0, size, size * 0.1][numbers.below(3)]);
+    let mut found = Vec::new();
+    let work = world.scene.pairs_within(within, DistanceOptions::default(), &mut found);
+    let due = brute_force::pairs(world, within);
+    assert_eq!(brute_force::bounded(&found, &world.scene), due, "kind {}, pairs within {within}", world.kind);
+    let is_sorted = found.windows(2).all(|w| (w[0].a, w[0].b) < (w[1].a, w[1].b));
+    assert!(is_sorted, "pairs are in order, each once");
+    count.tested += work.tested;
+    count.culled += work.culled;
+    count.pairs += found.len();
+    // Those with half-spaces are what the half-space says.
+    for (index, half_space) in world.scene.iter().filter(|(_, body)| body.convex().is_none()) {
+        let gjk_raycast::Body::HalfSpace(half_space) = half_space else { continue };
+        let near = |(i, body): (usize, &gjk_raycast::Body<_>)| {
+            let distance = half_space.distance_from(body.convex()?).distance;
+            (distance <= within).then_some((i.min(index), i.max(index)))
+        };
+        let mut due: Vec<_> = world.scene.iter().filter_map(near).collect();
+        due.sort_unstable();
+        let with = found.iter().map(|pair| (pair.a, pair.b)).filter(|&(a, b)| a == index || b == index);
+        assert_eq!(with.collect::<Vec<_>>(), due, "pairs with a half-space");
+    }
+    // Between two scenes; of a scene and itself each pair twice, and every body with itself.
+    let mut between = Vec::new();
+    let _ = world.scene.pairs_between(&world.scene, within, DistanceOptions::default(), &mut between);
+    between.retain(|pair| pair.a < pair.b);
+    let ours: Vec<_> = between.iter().map(|pair| (pair.a, pair.b, pair.distance)).collect();
+    assert_eq!(ours, found.iter().map(|pair| (pair.a, pair.b, pair.distance)).collect::<Vec<_>>(), "between two");
+    #[cfg(feature = "rayon")]
+    {
+        let mut parallel = Vec::new();
+        let _ = world.scene.all().par_pairs_within(within, DistanceOptions::default(), &mut parallel);
+        assert_eq!(parallel, found, "on all threads");
+    }
+    count.questions += 2;
+}

@@ -1,0 +1,183 @@
+//! What can happen to a scene.
+
+use std::cell::Cell;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use convex_support::glam::{DVec2, DVec3};
+use convex_support::{Ball, Cuboid, Point, Posed, SupportMap};
+use gjk_raycast::{
+    DistanceOptions, HalfSpace, LinearCastOptions, Motion, Ray, RayCastError, RayCastOptions, Scene, SceneError,
+    distance,
+};
+
+fn ball(x: f64) -> Posed<Ball<DVec3>> {
+    Posed::translated(Ball::new(0.5).unwrap(), DVec3::X * x).unwrap()
+}
+
+fn along_x() -> Ray<DVec3> {
+    Ray { source: DVec3::X * -5.0, direction: DVec3::X }
+}
+
+#[test]
+fn an_empty_scene_answers() {
+    let mut scene = Scene::<Ball<DVec3>>::default();
+    let cast = scene.ray_cast(along_x(), RayCastOptions::default()).unwrap();
+    assert_eq!((cast.first, cast.lower, cast.work.tested), (None, f64::INFINITY, 0), "nothing is in the way");
+    let bad = Ray { source: DVec3::ZERO, direction: DVec3::ZERO };
+    assert_eq!(
+        scene.ray_cast(bad, RayCastOptions::default()).unwrap_err(),
+        RayCastError::ZeroDirection,
+        "though empty"
+    );
+    let point = Point::new(DVec3::ZERO).unwrap();
+    assert_eq!(scene.nearest(&point, DistanceOptions::default()).nearest, None, "nothing is near");
+    let mut pairs = Vec::new();
+    assert_eq!(scene.pairs_within(1.0, DistanceOptions::default(), &mut pairs).tested, 0, "no pairs");
+    assert_eq!(scene.remove(0), None, "nothing to remove");
+    assert_eq!(scene.insert(Ball::new(1.0).unwrap()), Ok(0), "the first");
+    assert_eq!(scene.ray_cast(along_x(), RayCastOptions::default()).unwrap().first.unwrap().hit.lambda, 4.0, "and hit");
+}
+
+/// A support map that is none.
+#[derive(Clone, Copy, Debug)]
+struct Broken(f64);
+
+impl SupportMap for Broken {
+    type Vector = DVec2;
+
+    fn support(&self, _: DVec2) -> DVec2 {
+        DVec2::splat(self.0)
+    }
+}
+
+#[test]
+fn bodies_that_are_none_are_refused_by_index() {
+    let refused = Scene::new([Broken(1.0), Broken(f64::NAN), Broken(f64::INFINITY)]).unwrap_err();
+    assert_eq!(refused, SceneError::NotFinite { body: 1 }, "the first that is none");
+    let mut scene = Scene::new([Broken(1.0), Broken(2.0), Broken(3.0)]).unwrap();
+    assert_eq!(scene.insert(Broken(f64::INFINITY)), Err(SceneError::NotFinite { body: 3 }), "the index it would have");
+    assert_eq!(scene.replace(1, Broken(f64::NAN)).unwrap_err(), SceneError::NotFinite { body: 1 }, "replaced by none");
+    assert_eq!(scene.replace(7, Broken(0.0)).unwrap_err(), SceneError::NoSuchBody { body: 7 }, "there is none");
+    let moved = scene.update(|index, &Broken(x)| Broken(if index == 1 { f64::NAN } else { x + 10.0 }));
+    assert_eq!(moved, Err(SceneError::NotFinite { body: 1 }), "one did not move");
+    let nearest = |x| {
+        let point = Point::new(DVec2::splat(x)).unwrap();
+        scene.nearest(&point, DistanceOptions::default()).nearest.map(|n| (n.body, n.distance.distance))
+    };
+    assert_eq!([nearest(2.0), nearest(11.0), nearest(13.0)], [1, 0, 2].map(|i| Some((i, 0.0))), "the others did");
+    // One that becomes none inside the scene: single queries of it are undecided, and nothing panics.
+    let shape = Broken(f64::NAN);
+    let _ = scene.nearest(&shape, DistanceOptions::default());
+    let motion = Motion { velocity_a: DVec2::X, velocity_b: DVec2::ZERO };
+    let _ = scene.linear_cast(&shape, motion, LinearCastOptions::default());
+}
+
+#[test]
+fn indices_are_kept_and_given_again() {
+    let mut scene = Scene::new([ball(0.0), ball(2.0), ball(4.0)]).unwrap();
+    assert!(scene.remove(1).is_some() && scene.remove(1).is_none(), "once");
+    assert_eq!((scene.len(), scene.iter().map(|(i, _)| i).collect::<Vec<_>>()), (2, vec![0, 2]), "the others stay");
+    assert_eq!((scene.insert(ball(6.0)), scene.insert(ball(8.0))), (Ok(1), Ok(3)), "the free one first");
+    let first =
+        scene.ray_cast(Ray { source: DVec3::X * 10.0, direction: DVec3::NEG_X }, RayCastOptions::default()).unwrap();
+    assert_eq!(first.first.unwrap().body, 3, "the last one comes first from there");
+}
+
+#[test]
+fn of_equals_the_lowest_index_whatever_the_order() {
+    let mut scene = Scene::new((0..50).map(|_| ball(0.0))).unwrap();
+    scene.remove(0);
+    let first = scene.ray_cast(along_x(), RayCastOptions::default()).unwrap().first.unwrap();
+    let nearest = scene.nearest(&ball(3.0), DistanceOptions::default()).nearest.unwrap();
+    assert_eq!((first.body, nearest.body), (1, 1), "the lowest that is there");
+    scene.insert(ball(0.0)).unwrap();
+    let first = scene.ray_cast(along_x(), RayCastOptions::default()).unwrap().first.unwrap();
+    assert_eq!(first.body, 0, "it is back, though last in the tree");
+}
+
+#[test]
+fn half_spaces_have_no_end() {
+    let mut scene = Scene::new([ball(0.0)]).unwrap();
+    let floor = scene.insert_half_space(HalfSpace::new(DVec3::Y * 2.0, -2.0).unwrap()); // y ≤ −1
+    let down = Ray { source: DVec3::new(1e12, 5.0, -1e12), direction: DVec3::NEG_Y };
+    let cast = scene.ray_cast(down, RayCastOptions::default()).unwrap();
+    let first = cast.first.unwrap();
+    assert_eq!((first.body, first.hit.lambda, first.hit.normal), (floor, 6.0, Some(DVec3::Y)), "far out");
+    assert!(cast.lower <= 6.0 && first.upper >= 6.0, "{first:?}");
+    let fall = Motion { velocity_a: DVec3::NEG_Y, velocity_b: DVec3::ZERO };
+    let landed = scene.linear_cast(&ball(7.0), fall, LinearCastOptions::default()).unwrap().first.unwrap();
+    assert_eq!(
+        (landed.body, landed.hit.time, landed.hit.point),
+        (floor, 0.5, DVec3::new(7.0, -1.0, 0.0)),
+        "on the floor"
+    );
+    let mut pairs = Vec::new();
+    let _ = scene.pairs_within(0.5, DistanceOptions::default(), &mut pairs);
+    assert_eq!(pairs.len(), 1, "the ball is 0.5 above the floor");
+    assert_eq!((pairs[0].a, pairs[0].b, pairs[0].distance.normal), (0, floor, Some(DVec3::Y)), "{:?}", pairs[0]);
+    let below = scene.nearest(&Point::new(DVec3::Y * -3.0).unwrap(), DistanceOptions::default()).nearest.unwrap();
+    assert!(below.body == floor && below.distance.overlap && below.distance.distance == 0.0, "{below:?}");
+    assert!(HalfSpace::new(DVec3::ZERO, 1.0).is_err() && HalfSpace::new(DVec3::NAN, 1.0).is_err(), "no half-spaces");
+    assert!(scene.remove(floor).is_some_and(|body| body.convex().is_none()), "taken out");
+    assert!(scene.ray_cast(down, RayCastOptions::default()).unwrap().first.is_none(), "nothing is left to fall on");
+}
+
+#[test]
+fn a_search_can_be_stopped() {
+    let scene = Scene::new((0..100).map(|i| ball(f64::from(i) * 0.1))).unwrap();
+    let asked = AtomicUsize::new(0);
+    let stop = || asked.fetch_add(1, Ordering::Relaxed) >= 10;
+    let mut pairs = Vec::new();
+    let work = scene.all().until(&stop).pairs_within(1.0, DistanceOptions::default(), &mut pairs);
+    assert_eq!((work.cancelled, work.tested), (true, 10), "{work:?}");
+    let stop = || true;
+    let cast = scene.all().until(&stop).ray_cast(along_x(), RayCastOptions::default()).unwrap();
+    assert_eq!((cast.first, cast.lower, cast.work.cancelled), (None, 0.0, true), "nothing is known");
+}
+
+#[test]
+fn pieces_of_a_link_do_not_meet_each_other() {
+    let scene = Scene::new((0..6).map(|i| ball(f64::from(i) * 0.9))).unwrap();
+    let link = |piece: usize| piece / 2;
+    let mut pairs = Vec::new();
+    let same = |i, j| link(i) == link(j);
+    let _ = scene.all().without_pairs(&same).pairs_within(0.0, DistanceOptions::default(), &mut pairs);
+    assert_eq!(pairs.iter().map(|p| (p.a, p.b)).collect::<Vec<_>>(), [(1, 2), (3, 4)], "links next to each other");
+    let odd = |i: usize| i % 2 == 1;
+    let _ = scene.among(&odd).pairs_within(1.0, DistanceOptions::default(), &mut pairs);
+    assert_eq!(pairs.iter().map(|p| (p.a, p.b)).collect::<Vec<_>>(), [(1, 3), (3, 5)], "both have to be picked");
+}
+
+/// What the narrow phase does is near the least that could decide.
+#[test]
+fn few_bodies_are_asked() {
+    let at = |i: usize| DVec3::new((i % 20) as f64, (i / 20 % 20) as f64, (i / 400) as f64) * 2.0;
+    let boxes = (0..8000).map(|i| Posed::translated(Cuboid::new(DVec3::splat(0.5)).unwrap(), at(i)).unwrap());
+    let scene = Scene::new(boxes).unwrap();
+    let (mut tested, mut least) = (0, 0);
+    for i in 0..500 {
+        let turn = 0.1 + f64::from(i);
+        let direction = DVec3::new(turn.sin(), turn.cos(), (turn * 0.7).sin());
+        let ray = Ray { source: DVec3::splat(-3.0) + DVec3::splat(0.07 * turn), direction };
+        let answer = scene.ray_cast(ray, RayCastOptions::default()).unwrap();
+        tested += answer.work.tested;
+        least += usize::from(answer.first.is_some());
+        let point = Point::new(ray.source).unwrap();
+        let answer = scene.nearest(&point, DistanceOptions::default());
+        tested += answer.work.tested;
+        least += 1;
+    }
+    // Boxes along the axes are their own boxes, so that one query each would do.
+    assert!(tested * 2 <= least * 3, "{tested} queries where {least} could decide");
+}
+
+#[test]
+fn a_filter_is_asked_for_bodies_near_only() {
+    let scene = Scene::new((0..1000).map(|i| ball(f64::from(i) * 3.0))).unwrap();
+    let asked = Cell::new(0);
+    let near = scene.nearest(&ball(1500.0), DistanceOptions::default());
+    asked.set(near.work.tested);
+    assert!(asked.get() < 10, "{near:?}");
+    let alone = distance(&ball(1500.0), scene.get(500).unwrap().convex().unwrap(), DistanceOptions::default());
+    assert_eq!(near.nearest.unwrap().distance, alone, "the single query");
+}
