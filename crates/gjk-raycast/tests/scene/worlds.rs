@@ -2,8 +2,8 @@
 
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Polytope, Posed, Rounded, Scalar, Segment, SupportMap,
-    Triangle, Vector, Vector3,
+    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Polytope, Posed, Rotation, Rounded, Scalar, Segment,
+    SupportMap, Triangle, Vector, Vector3,
 };
 use gjk_raycast::{HalfSpace, Scene};
 
@@ -77,7 +77,7 @@ pub(crate) fn body<V: Space>(numbers: &mut Numbers, kind: usize, index: usize) -
         5 => (1.0, 1.0, 0.0),
         _ => (0.05, 2.0, 0.0),
     };
-    let turn = V::rotation_from_xyzw([0, 1, 2, 3].map(|i| {
+    let turn = V::Rotation::from_xyzw([0, 1, 2, 3].map(|i| {
         let turned = numbers.below(3) > 0;
         V::Scalar::from_f64(if turned { numbers.signed() } else { f64::from(i == 3) })
     }));
