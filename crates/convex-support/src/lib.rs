@@ -19,8 +19,9 @@
 //!
 //! # What is here
 //! - The traits: [`SupportMap`] (implement it for shapes of your own), [`Vector`], [`Rotation`] and [`Scalar`] (glam's types).
-//! - What all shapes can be asked: [`bounding_box`], [`bounding_sphere`]; and what those with a closed form can: [`closest_point`],
+//! - What all shapes can be asked: [`bounding_box`], [`bounding_sphere`], [`outer_box`]; and what those with a closed form can: [`closest_point`],
 //!   [`line_crossing`].
+//! - A tree of boxes, [`Bvh`], for questions to many shapes.
 //! - Shapes in any dimension: [`Point`], [`Segment`], [`Triangle`], [`Ball`], [`Cuboid`], [`Capsule`], [`Ellipsoid`],
 //!   [`Polytope`]; in 3D [`Cylinder`] and [`Cone`].
 //! - Shapes made of shapes: [`Posed`], [`Affine`], [`MinkowskiSum`], [`Difference`], [`Hull`], [`Rounded`]. They nest,

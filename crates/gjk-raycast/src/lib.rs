@@ -23,7 +23,8 @@
 //! - *How far apart are two shapes, and where are they closest?* [`distance`] (GJK, Algorithm 2 of the paper).
 //! - *Do they meet?* [`intersects`], which stops at the first separating axis and can start from the last one.
 //! - *Where does a ray enter a shape?* [`ray_cast`] (Algorithm 3).
-//! - *Many rays at once, or the first of many bodies?* [`ray_casts`] and [`Scene`].
+//! - *Many rays at once?* [`ray_casts`].
+//! - *Many bodies?* [`Scene`]: the first hit, the nearest, all within a distance, and pairs.
 //! - *When do two shapes meet that move without turning?* [`linear_cast`] (Algorithm 3 on their difference).
 //! - *The same from closest points alone:* [`iterative_ray_cast`] (Algorithm 1), for shapes with a closed form.
 //!
@@ -39,7 +40,7 @@
 //! - `std` (default): floating-point functions from the standard library.
 //! - `libm`: the same from the libm crate, for `no_std` targets.
 //! - `f64` (default): as of `convex-support`, to be left out with glam 0.32.
-//! - `rayon`: batches on all threads, `par_ray_casts` and `Scene::par_ray_casts`.
+//! - `rayon`: batches on all threads, `par_ray_casts`, `Scene::par_ray_casts` and `Among::par_pairs_within`.
 
 #![no_std]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "comparisons are written so that NaN ends the loop they are in")]
