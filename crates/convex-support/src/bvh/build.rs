@@ -1,8 +1,9 @@
 //! Building by the surface area heuristic, in bins.
 //!
 //! A question meets a box about as often as its surface is large, so that a split into two parts costs about
-//! n₁·area₁ + n₂·area₂ (MacDonald and Booth 1990). Of the splits between 16 bins of the centres along the longest axis the
-//! cheapest is taken (Wald 2007), and a node's range is split three times for its four children.
+//! n₁·area₁ + n₂·area₂. Of the splits between 16 bins of the centres along the longest axis the cheapest is taken, and a node's
+//! range is split three times for its four children (I. Wald, *On fast construction of SAH-based bounding volume hierarchies*,
+//! 2007).
 
 use alloc::vec::Vec;
 

@@ -34,7 +34,7 @@ pub trait Lanes<S>:
 
 /// Forwards to one of glam's types.
 macro_rules! glam_lanes {
-    ($V:ident, $S:ident) => {
+    ($V:ident, $S:ident, $select:expr) => {
         impl Lanes<$S> for glam::$V {
             #[inline]
             fn splat(value: $S) -> Self {
@@ -66,7 +66,7 @@ macro_rules! glam_lanes {
             }
             #[inline]
             fn if_at_most(self, rhs: Self, then: Self, otherwise: Self) -> Self {
-                Self::select(self.cmple(rhs), then, otherwise)
+                ($select)(self, rhs, then, otherwise)
             }
             #[inline]
             fn at_most(self, limit: $S) -> u32 {
@@ -76,5 +76,14 @@ macro_rules! glam_lanes {
     };
 }
 
-glam_lanes!(Vec4, f32);
-glam_lanes!(DVec4, f64);
+glam_lanes!(Vec4, f32, |a: glam::Vec4, b: glam::Vec4, then, otherwise| glam::Vec4::select(a.cmple(b), then, otherwise));
+// By coordinates, since glam's own choice in double precision is a branch for each, and none of them is foreseeable.
+glam_lanes!(DVec4, f64, |a: glam::DVec4, b: glam::DVec4, then: glam::DVec4, otherwise: glam::DVec4| {
+    let choose = |a: f64, b: f64, then: f64, otherwise: f64| if a <= b { then } else { otherwise };
+    glam::DVec4::new(
+        choose(a.x, b.x, then.x, otherwise.x),
+        choose(a.y, b.y, then.y, otherwise.y),
+        choose(a.z, b.z, then.z, otherwise.z),
+        choose(a.w, b.w, then.w, otherwise.w),
+    )
+});

@@ -31,13 +31,14 @@ impl<V: Vector> Bvh<V> {
         let huge = V::Scalar::max_value();
         // NaN stays NaN, which nothing is within.
         let mut limit = lesser(huge, limit);
-        let mut stack = [(Link::NONE, V::Scalar::ZERO); STACK];
-        stack[0] = (Link::node(0), V::Scalar::ZERO);
+        // The root, and places that are not read before they are written: all bits zero, which is soon done.
+        let mut stack = [(Link::node(0), V::Scalar::ZERO); STACK];
         let (mut top, mut nodes) = (1, 0);
         while top > 0 {
             top -= 1;
             let (link, bound) = stack[top];
-            if !(bound <= limit) {
+            let is_near = bound <= limit;
+            if !is_near {
                 continue;
             }
             match link.child() {
