@@ -172,7 +172,7 @@ fn distances<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Coun
     assert_eq!(work.tested + work.culled, world.scene.len(), "every body is one or the other");
     count.within += found.len();
     // Some bodies do not count.
-    let even = |index: usize| index % 2 == 0;
+    let even = |index: usize| index.is_multiple_of(2);
     let answer = world.scene.among(&even).nearest(&shape, DistanceOptions::default());
     let even = all.iter().filter(|body| even(body.body)).copied();
     let due = even.reduce(|a, b| if b.distance.distance < a.distance.distance { b } else { a });
