@@ -124,7 +124,7 @@ fn unit(q: DQuat) -> DQuat {
         // Nearly unit, as most are: three terms of the series of 1/√(1 + x) are right to rounding, and quicker.
         DQuat::from_vec4(v * (1.0 - excess * (0.5 - 0.375 * excess)))
     } else if is_comfortable(squared) {
-        DQuat::from_vec4(v * squared.sqrt().recip())
+        DQuat::from_vec4(v * num_traits::Float::sqrt(squared).recip())
     } else {
         unit_of_scaled(v.x, v.y, v.z, v.w)
     }
@@ -136,7 +136,7 @@ fn unit(q: DQuat) -> DQuat {
 fn unit_of_scaled(x: f64, y: f64, z: f64, w: f64) -> DQuat {
     let v = DVec4::new(x, y, z, w);
     let v = v / crate::numerics::range::power_of_two_below(v.abs().max_element());
-    DQuat::from_vec4(v * v.length_squared().sqrt().recip())
+    DQuat::from_vec4(v * num_traits::Float::sqrt(v.length_squared()).recip())
 }
 
 #[cold]

@@ -109,6 +109,6 @@ impl From<&Triangle<V>> for theirs::Triangle {
 impl From<&Rounded<Segment<V>>> for theirs::Capsule {
     fn from(capsule: &Rounded<Segment<V>>) -> Self {
         let [a, b] = capsule.shape().points().map(parrys);
-        Self::new(a, b, capsule.rounding())
+        Self::new(a, b, capsule.radius())
     }
 }

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use parry::math::Pose;
 
-use crate::{Cone, Cylinder, Polytope, Posed, Vector};
+use crate::{Cone, Cylinder, Polytope, Posed, Rotation};
 
 fn ours(v: ParryVector) -> V {
     V::new(v.x, v.y, v.z)
