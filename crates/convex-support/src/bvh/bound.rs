@@ -11,8 +11,8 @@ use crate::{Aabb, Scalar, Vector};
 ///
 /// An implementor must obey one law, *to the last bit*: the bound of a box is not greater than that of any box within it.
 /// Bounds computed by the same monotone operations (sums, differences, products with a constant, minima and maxima, as
-/// rounded by IEEE 754) obey it. Then which items a [search](super::Bvh::search) leaves out depends on their boxes alone, not on
-/// the tree.
+/// rounded by IEEE 754) obey it. Then which items a [search](super::Bvh::search) leaves out depends on their boxes alone,
+/// not on the tree.
 pub trait Bound<V: Vector> {
     /// The bounds of four boxes; infinity where nothing in a box concerns the question. Those of places without a child do
     /// not matter.
@@ -33,8 +33,8 @@ fn rounding<S: Scalar>() -> S {
 ///
 /// an interval of λ each, and the answer is where they all have begun, if none has ended by then (the slab method).
 ///
-/// Operations are rounded towards an earlier time, relatively; rounding of the coordinates themselves has to be in the boxes
-/// or the half extents (see [`outer_box`](super::outer_box)).
+/// Operations are rounded towards an earlier time, relatively; rounding of the coordinates themselves has to be in the
+/// boxes or the half extents (see [`outer_box`](super::outer_box)).
 #[derive(Clone, Copy, Debug)]
 pub struct SweptBox<V: Vector> {
     /// By coordinate, what the smallest and the largest of a box are compared with: s + h and s − h.

@@ -1,8 +1,8 @@
 //! Building by the surface area heuristic, in bins.
 //!
-//! A question meets a box about as often as its surface is large, so that a split into two parts costs about
-//! n₁·area₁ + n₂·area₂. Of the splits between 16 bins of the centres along the longest axis the cheapest is taken, and a node's
-//! range is split three times for its four children (I. Wald, *On fast construction of SAH-based bounding volume hierarchies*,
+//! A question meets a box about as often as its surface is large, so that a split into two parts costs about n₁·area₁ +
+//! n₂·area₂. Of the splits between 16 bins of the centres along the longest axis the cheapest is taken, and a node's range
+//! is split three times for its four children (I. Wald, *On fast construction of SAH-based bounding volume hierarchies*,
 //! 2007).
 
 use alloc::vec::Vec;
@@ -110,8 +110,8 @@ fn allowed_levels(count: usize) -> u32 {
 
 /// Up to four parts of the range, of which there is at least one unless it is empty.
 ///
-/// The part with the largest surface is split first. Where the levels that remain are only just enough, the largest part is split in
-/// halves instead: a quarter of the items needs a level less.
+/// The part with the largest surface is split first. Where the levels that remain are only just enough, the largest part is
+/// split in halves instead: a quarter of the items needs a level less.
 fn split_in_four<V: Vector>(entries: &mut [Entry<V>], range: Range<V>, levels: u32) -> ([Range<V>; WIDTH], usize) {
     let mut parts = [range; WIDTH];
     let length = |part: &Range<V>| part.end - part.start;

@@ -3,8 +3,8 @@
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Sub};
 
-/// Four numbers of a [`Scalar`](crate::Scalar), as glam's vectors of four coordinates: their operations are vector instructions where the processor
-/// has them.
+/// Four numbers of a [`Scalar`](crate::Scalar), as glam's vectors of four coordinates: their operations are vector
+/// instructions where the processor has them.
 pub trait Lanes<S>:
     Copy + Debug + PartialEq + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Send + Sync + 'static
 {

@@ -22,14 +22,14 @@ pub use self::pairs::PairSearch;
 
 /// A tree over the boxes of items, which are numbers from 0 to 2³⁰ − 1 of the caller's choice.
 ///
-/// A node holds the boxes of its four children side by side, so that one pass of arithmetic bounds all of them; a child is a
-/// node or an item. The tree is [built](Self::new) by the surface area heuristic, follows boxes that move
+/// A node holds the boxes of its four children side by side, so that one pass of arithmetic bounds all of them; a child is
+/// a node or an item. The tree is [built](Self::new) by the surface area heuristic, follows boxes that move
 /// ([`refit`](Self::refit), [`set`](Self::set)), and takes items in and out ([`insert`](Self::insert),
-/// [`remove`](Self::remove)). Its depth stays below 36 whatever the boxes and their order: where a part has become lopsided,
-/// that part is built anew. So a question needs a stack of fixed size, and no memory.
+/// [`remove`](Self::remove)). Its depth stays below 36 whatever the boxes and their order: where a part has become
+/// lopsided, that part is built anew. So a question needs a stack of fixed size, and no memory.
 ///
-/// [`search`](Self::search) asks a question that concerns items by a [`Bound`], nearest first; [`pairs_within`](Self::pairs_within) and
-/// [`pairs_between`](Self::pairs_between) ask about pairs of boxes.
+/// [`search`](Self::search) asks a question that concerns items by a [`Bound`], nearest first;
+/// [`pairs_within`](Self::pairs_within) and [`pairs_between`](Self::pairs_between) ask about pairs of boxes.
 ///
 /// Boxes must be finite, with `min ≤ max`. A box that is not loses its own item and may slow others down; nothing panics.
 ///

@@ -4,13 +4,13 @@ use num_traits::Float as _;
 
 use crate::{Aabb, Core, Rounding, Scalar, ScalarOf, SupportMap, Vector, bounding_box};
 
-/// A box that contains the set that the shape stands for, and every point that a query computes of it: the [`bounding_box`] grown by 32 ε of
-/// the numbers that the shape is computed from, and by what its support points are [known](Rounding) to. `None` if a number is not
-/// finite.
+/// A box that contains the set that the shape stands for, and every point that a query computes of it: the [`bounding_box`]
+/// grown by 32 ε of the numbers that the shape is computed from, and by what its support points are [known](Rounding) to.
+/// `None` if a number is not finite.
 ///
-/// A query's answer is that of a shape which is off by its rounding, a few ε of the origin, the core's extent and the radius.
-/// Since the box has room for that, a body whose box shows it to be farther than an answer is also farther by its own
-/// query, not only in truth.
+/// A query's answer is that of a shape which is off by its rounding, a few ε of the origin, the core's extent and the
+/// radius. Since the box has room for that, a body whose box shows it to be farther than an answer is also farther by its
+/// own query, not only in truth.
 #[must_use]
 pub fn outer_box<S: SupportMap + ?Sized>(shape: &S) -> Option<Aabb<S::Vector>> {
     let Aabb { min, max } = bounding_box(shape);

@@ -14,7 +14,8 @@ use crate::{Aabb, Vector};
 /// Two nodes leave at most 15 of 16 pairs of children behind, a node and an item 3 of 4.
 const STACK: usize = (WIDTH * WIDTH + WIDTH) * MAX_DEPTH;
 
-/// The pairs of items whose boxes are within a distance; asked by [`visit`](Self::visit), in [pieces](Self::split) if need be.
+/// The pairs of items whose boxes are within a distance; asked by [`visit`](Self::visit), in [pieces](Self::split) if need
+/// be.
 #[derive(Clone, Copy, Debug)]
 pub struct PairSearch<'t, V: Vector> {
     a: &'t Bvh<V>,

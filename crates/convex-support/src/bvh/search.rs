@@ -17,8 +17,8 @@ pub(super) const MAX_DEPTH: usize = 36;
 const STACK: usize = (WIDTH - 1) * MAX_DEPTH + 1;
 
 impl<V: Vector> Bvh<V> {
-    /// Shows the items whose bound is at most `limit`, mostly the least bound first, and returns the number of nodes that were
-    /// looked into.
+    /// Shows the items whose bound is at most `limit`, mostly the least bound first, and returns the number of nodes that
+    /// were looked into.
     ///
     /// `visit` is given an item and its bound, and answers with the limit from then on, or breaks off. An item whose bound
     /// exceeds the limit that holds at the end may have been shown or not; every other has been.

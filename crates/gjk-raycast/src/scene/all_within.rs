@@ -11,8 +11,8 @@ use super::{Among, Body, Scene};
 use crate::DistanceOptions;
 
 impl<S: SupportMap> Scene<S> {
-    /// All bodies that are no farther than `within` from the shape by [`distance`](crate::distance()), in the order of their indices, into
-    /// `bodies`, which is emptied first.
+    /// All bodies that are no farther than `within` from the shape by [`distance`](crate::distance()), in the order of
+    /// their indices, into `bodies`, which is emptied first.
     pub fn all_within<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
         shape: &A,

@@ -69,8 +69,8 @@ impl<S: SupportMap> Scene<S> {
 }
 
 impl<'s, S: SupportMap> Among<'s, S> {
-    /// Without the pairs that `left_out` says: of one group, or allowed to collide. It is asked once for each pair whose boxes
-    /// are near, with the lower index first, or that in the first scene.
+    /// Without the pairs that `left_out` says: of one group, or allowed to collide. It is asked once for each pair whose
+    /// boxes are near, with the lower index first, or that in the first scene.
     #[must_use]
     pub fn without_pairs(self, left_out: &'s (dyn Fn(usize, usize) -> bool + Sync + 's)) -> Self {
         Self { without_pairs: Some(left_out), ..self }

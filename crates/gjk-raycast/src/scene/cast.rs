@@ -52,8 +52,8 @@ impl<S: SupportMap> Scene<S> {
         self.all().any_hit(ray, options)
     }
 
-    /// The first body that the moving shape meets: the least time of [`linear_cast`](crate::linear_cast) of the shape, `a`, against each
-    /// body, `b`. All bodies move alike.
+    /// The first body that the moving shape meets: the least time of [`linear_cast`](crate::linear_cast) of the shape, `a`,
+    /// against each body, `b`. All bodies move alike.
     ///
     /// # Errors
     /// [`RayCastError::NonFinite`] if a velocity is not finite.
@@ -254,9 +254,9 @@ type Number<S> = convex_support::ScalarOf<S>;
 
 /// The first hit so far.
 ///
-/// A body counts from its *key*: the λ of its hit, or where its box begins if that is later, as it cannot be where the hit's bracket is
-/// closed. Keys, and all that is kept here, are minima over bodies, in which one that was left out by its box takes no part:
-/// so the order in which bodies are met does not matter, nor which others were met.
+/// A body counts from its *key*: the λ of its hit, or where its box begins if that is later, as it cannot be where the
+/// hit's bracket is closed. Keys, and all that is kept here, are minima over bodies, in which one that was left out by its
+/// box takes no part: so the order in which bodies are met does not matter, nor which others were met.
 struct First<H, S> {
     /// The least key, with the hit.
     hit: Option<(S, BodyHit<H, S>)>,
@@ -300,8 +300,8 @@ fn swept_box<V: Vector>(around: Aabb<V>, velocity: V) -> SweptBox<V> {
     SweptBox::new(half + room, center, velocity)
 }
 
-/// The box of a shape that a scene is asked about: one that contains everything where a number of the shape is not finite, so that
-/// no body is left out and every single query says so.
+/// The box of a shape that a scene is asked about: one that contains everything where a number of the shape is not finite,
+/// so that no body is left out and every single query says so.
 pub(super) fn outer_box_of_question<S: SupportMap + ?Sized>(shape: &S) -> Aabb<S::Vector> {
     let all = S::Vector::splat(Number::<S>::max_value());
     outer_box(shape).unwrap_or(Aabb { min: -all, max: all })

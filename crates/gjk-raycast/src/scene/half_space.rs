@@ -10,8 +10,8 @@ use crate::{
 
 /// The points x with n·x ≤ offset: everything on one side of a plane.
 ///
-/// It is no [`SupportMap`], since it has no farthest point along most directions; but along −n, a shape's nearest point to it is its support point, so that
-/// casts and distances are closed forms of one support point.
+/// It is no [`SupportMap`], since it has no farthest point along most directions; but along −n, a shape's nearest point to
+/// it is its support point, so that casts and distances are closed forms of one support point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace<V: Vector> {
     normal: V,
@@ -24,8 +24,8 @@ impl<V: Vector> HalfSpace<V> {
     /// The half-space of the points x with `normal·x ≤ offset`. The normal points out of it and need not be of unit length.
     ///
     /// # Errors
-    /// [`InvalidShape::NonFinite`] if a number is not finite, [`InvalidShape::NotPositive`] if the normal is zero or so long or short
-    /// that its length is not a number of full precision.
+    /// [`InvalidShape::NonFinite`] if a number is not finite, [`InvalidShape::NotPositive`] if the normal is zero or so
+    /// long or short that its length is not a number of full precision.
     pub fn new(normal: V, offset: V::Scalar) -> Result<Self, InvalidShape> {
         if let Some(index) = (0..V::DIM).find(|&i| !normal.get(i).is_finite()) {
             return Err(InvalidShape::NonFinite { parameter: "normal", index });
@@ -52,8 +52,8 @@ impl<V: Vector> HalfSpace<V> {
         self.offset
     }
 
-    /// How far a point is above the plane, in lengths of the normal, and what rounding may have moved that by if the point's coordinates
-    /// are off by `error`.
+    /// How far a point is above the plane, in lengths of the normal, and what rounding may have moved that by if the
+    /// point's coordinates are off by `error`.
     ///
     /// A dot product of two or three terms and a difference are off by 4 ε of the sum of all magnitudes at most.
     fn height(&self, point: V, error: V) -> [V::Scalar; 2] {
@@ -62,8 +62,8 @@ impl<V: Vector> HalfSpace<V> {
         [self.normal.dot(point) - self.offset, rounding]
     }
 
-    /// The point of a shape nearest to the half-space, or deepest in it, and by how much its coordinates may be off: by what the core's
-    /// are, and by the sums and the products that add the origin and the radius.
+    /// The point of a shape nearest to the half-space, or deepest in it, and by how much its coordinates may be off: by
+    /// what the core's are, and by the sums and the products that add the origin and the radius.
     fn nearest_of<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A) -> (V, V) {
         let (Core { origin, radius, .. }, Rounding { extent, error, .. }) = (shape.core(), shape.rounding());
         let magnitude = origin.abs() + extent + V::splat(radius);
@@ -141,8 +141,8 @@ impl<V: Vector> HalfSpace<V> {
 
     /// The distance from the half-space, `a`, to a shape, `b`.
     pub(super) fn distance_to<B: SupportMap<Vector = V> + ?Sized>(&self, shape: &B) -> Distance<V> {
-        let Distance { point_a, point_b, normal, .. } = self.distance_from(shape);
-        Distance { point_a: point_b, point_b: point_a, normal: normal.map(|n| -n), ..self.distance_from(shape) }
+        let from = self.distance_from(shape);
+        Distance { point_a: from.point_b, point_b: from.point_a, normal: from.normal.map(|n| -n), ..from }
     }
 
     /// Where the ray crosses the plane inwards, of a source whose coordinates are off by `error`.

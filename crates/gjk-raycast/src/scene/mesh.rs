@@ -10,8 +10,8 @@ impl<V: Vector> Scene<Triangle<V>> {
     /// The mesh of these triangles, each three indices of vertices. Body `i` is triangle `i`; both of its sides are met.
     ///
     /// # Errors
-    /// [`SceneError::NoSuchVertex`] if an index is that of no vertex; [`SceneError::NotFinite`] if a coordinate of a triangle is not
-    /// finite.
+    /// [`SceneError::NoSuchVertex`] if an index is that of no vertex; [`SceneError::NotFinite`] if a coordinate of a
+    /// triangle is not finite.
     pub fn mesh(vertices: &[V], triangles: &[[usize; 3]]) -> Result<Self, SceneError> {
         let mut bodies = Vec::with_capacity(triangles.len());
         for (triangle, corners) in triangles.iter().enumerate() {
@@ -26,8 +26,8 @@ impl<V: Vector> Scene<Triangle<V>> {
 }
 
 impl<V: Vector3> Scene<Triangle<V>> {
-    /// Whether something that moves along `direction` meets the front of a triangle, the side from which its corners are seen
-    /// anticlockwise; `false` where no triangle has this index. For questions about one side of a mesh:
+    /// Whether something that moves along `direction` meets the front of a triangle, the side from which its corners are
+    /// seen anticlockwise; `false` where no triangle has this index. For questions about one side of a mesh:
     ///
     /// ```
     /// use convex_support::glam::DVec3;

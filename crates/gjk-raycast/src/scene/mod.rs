@@ -26,17 +26,18 @@ pub use self::result::{
 /// Bodies that are asked together: which is hit first, which is nearest, which pairs are near each other.
 ///
 /// A body is any [`SupportMap`]: of one type, of an enum of yours, or `Box<dyn SupportMap<Vector = DVec3>>`; by value or by
-/// reference. It is known by its index, which stays as long as the body does. Half-spaces, which are no support maps since they have no
-/// end, can be bodies too ([`insert_half_space`](Self::insert_half_space)).
+/// reference. It is known by its index, which stays as long as the body does. Half-spaces, which are no support maps since
+/// they have no end, can be bodies too ([`insert_half_space`](Self::insert_half_space)).
 ///
 /// # Answers
-/// Every answer is that of the single query asked of each body (or pair) in the order of their indices, *to the last bit*, with the lowest index of equals; on one thread
-/// or on many, however the scene came about. A tree of boxes tells which bodies need not be asked: the box of a body has
-/// room for the rounding of its queries, so that a box which is too far is a proof about the query, not only about the body. How
-/// much was left out is part of every answer ([`Work`]).
+/// Every answer is that of the single query asked of each body (or pair) in the order of their indices, *to the last bit*,
+/// with the lowest index of equals; on one thread or on many, however the scene came about. A tree of boxes tells which
+/// bodies need not be asked: the box of a body has room for the rounding of its queries, so that a box which is too far is
+/// a proof about the query, not only about the body. How much was left out is part of every answer ([`Work`]).
 ///
-/// What a box proves of a body is never less than what its own query does: where a query ends undecided, or with a hit whose bracket
-/// is still open, the body counts from where its bracket begins or from where its box begins, whichever is later.
+/// What a box proves of a body is never less than what its own query does: where a query ends undecided, or with a hit
+/// whose bracket is still open, the body counts from where its bracket begins or from where its box begins, whichever is
+/// later.
 ///
 /// ```
 /// use convex_support::{Ball, Cuboid, Posed, SupportMap, glam::DVec3};
@@ -61,13 +62,14 @@ pub use self::result::{
 /// ```
 ///
 /// # Bodies that move
-/// [`update`](Self::update) moves all, [`replace`](Self::replace) one; [`insert`](Self::insert) and [`remove`](Self::remove) bring and take
-/// them. The tree follows, and is built anew where that is worth it. A body that moves along a straight line during a step covers its
-/// `MinkowskiSum` with a `Segment`, which is a body as well: pairs of such that are within 0 are the ones that may meet in the step.
+/// [`update`](Self::update) moves all, [`replace`](Self::replace) one; [`insert`](Self::insert) and
+/// [`remove`](Self::remove) bring and take them. The tree follows, and is built anew where that is worth it. A body that
+/// moves along a straight line during a step covers its `MinkowskiSum` with a `Segment`, which is a body as well: pairs of
+/// such that are within 0 are the ones that may meet in the step.
 ///
 /// # Groups
-/// A compound is several bodies that are moved together, and a link's pieces are asked about by [`Among`], which leaves out bodies and
-/// pairs by closures.
+/// A compound is several bodies that are moved together, and a link's pieces are asked about by [`Among`], which leaves out
+/// bodies and pairs by closures.
 #[derive(Clone, Debug)]
 pub struct Scene<S: SupportMap> {
     bodies: Vec<Option<Body<S>>>,
@@ -186,8 +188,8 @@ impl<S: SupportMap> Scene<S> {
     /// Puts another body in the place of one, moved or different, and returns the one that was there.
     ///
     /// # Errors
-    /// [`SceneError::NoSuchBody`] if no bounded body has this index; [`SceneError::NotFinite`] if the box of the new one is not
-    /// finite. The scene is then as before.
+    /// [`SceneError::NoSuchBody`] if no bounded body has this index; [`SceneError::NotFinite`] if the box of the new one is
+    /// not finite. The scene is then as before.
     pub fn replace(&mut self, index: usize, body: S) -> Result<S, SceneError> {
         let Some(Some(Body::Convex(place))) = self.bodies.get_mut(index) else {
             return Err(SceneError::NoSuchBody { body: index });
@@ -197,11 +199,12 @@ impl<S: SupportMap> Scene<S> {
         Ok(core::mem::replace(place, body))
     }
 
-    /// Replaces every bounded body by what `moved` makes of it, in the order of the indices, in time proportional to their number.
+    /// Replaces every bounded body by what `moved` makes of it, in the order of the indices, in time proportional to their
+    /// number.
     ///
     /// # Errors
-    /// [`SceneError::NotFinite`] for the first body whose box would not be finite: it and others like it stay as they were; the
-    /// rest are moved.
+    /// [`SceneError::NotFinite`] for the first body whose box would not be finite: it and others like it stay as they were;
+    /// the rest are moved.
     pub fn update(&mut self, mut moved: impl FnMut(usize, &S) -> S) -> Result<(), SceneError> {
         let Self { bodies, tree, moved: boxes, .. } = self;
         let mut refused = None;

@@ -82,7 +82,8 @@ impl<S: SupportMap> Among<'_, S> {
     }
 }
 
-/// The nearest body so far. As for casts, a body counts from its distance or from where its box begins, whichever is farther.
+/// The nearest body so far. As for casts, a body counts from its distance or from where its box begins, whichever is
+/// farther.
 struct Nearest<V: convex_support::Vector> {
     body: Option<BodyDistance<V>>,
     /// What it counts from, or the limit.

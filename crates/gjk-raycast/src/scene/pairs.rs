@@ -11,8 +11,8 @@ use super::{Among, Body, Scene};
 use crate::{Distance, DistanceOptions, distance};
 
 impl<S: SupportMap> Scene<S> {
-    /// All pairs of bodies that are no farther than `within` from each other by [`distance`](crate::distance()), in the order of their
-    /// indices, into `pairs`, which is emptied first. Half-spaces make no pairs with each other.
+    /// All pairs of bodies that are no farther than `within` from each other by [`distance`](crate::distance()), in the
+    /// order of their indices, into `pairs`, which is emptied first. Half-spaces make no pairs with each other.
     pub fn pairs_within(
         &self,
         within: ScalarOf<S>,
@@ -64,8 +64,8 @@ impl<S: SupportMap> Among<'_, S> {
         asking.finish(self.scene.len() * other.len() - self.scene.half_spaces.len() * other.half_spaces.len())
     }
 
-    /// [`pairs_within`](Self::pairs_within) on all threads of the current [rayon] pool, with the same pairs to the last bit. The nodes of the
-    /// [`Work`] are those of the pieces that the search is cut into.
+    /// [`pairs_within`](Self::pairs_within) on all threads of the current [rayon] pool, with the same pairs to the last
+    /// bit. The nodes of the [`Work`] are those of the pieces that the search is cut into.
     #[cfg(feature = "rayon")]
     pub fn par_pairs_within(
         &self,
