@@ -62,6 +62,17 @@ macro_rules! forward {
             }
 
             #[inline]
+            fn core_support_feature(
+                &self,
+                direction: $V,
+                slab: <$V as $crate::Vector>::Scalar,
+                feature: &mut $crate::Feature<$V>,
+            ) {
+                let $this = self;
+                $inner.core_support_feature(direction, slab, feature);
+            }
+
+            #[inline]
             fn rounding(&self) -> $crate::Rounding<$V> {
                 let $this = self;
                 $inner.rounding()

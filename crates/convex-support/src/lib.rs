@@ -70,6 +70,7 @@ mod shapes;
 #[cfg(feature = "proptest")]
 pub mod strategies;
 mod support;
+mod support_feature;
 mod vector;
 
 pub use glam;
@@ -96,6 +97,7 @@ pub use scalar::Scalar;
 pub use shapes::Faceted;
 pub use shapes::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Polytope, Segment, Triangle};
 pub use support::{ScalarOf, SupportMap};
+pub use support_feature::Feature;
 pub use vector::{Matrix, Vector, Vector3};
 
 /// Compiles and runs the example of the README.

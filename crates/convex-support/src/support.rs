@@ -3,7 +3,7 @@
 use num_traits::Float as _;
 
 use crate::numerics::range::is_comfortable;
-use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, Vector};
+use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Rounding, Scalar, Vector};
 
 /// A nonempty, closed, bounded convex set, known by its support mapping.
 ///
@@ -119,6 +119,16 @@ pub trait SupportMap {
     ) -> LineCrossing<Self::Vector> {
         let _ = (source, direction, radius);
         LineCrossing::Unknown
+    }
+
+    /// Adds to a feature the points of the core that lie within a slab behind its supporting plane, relative to the
+    /// [origin](Core::origin): those `p` of its vertices with `direction·p ≥ h(direction) − slab`. So a face against the plane, or
+    /// nearly so, shows its corners, and an edge its ends. Provided: the support point, as of a smooth surface.
+    ///
+    /// Where two shapes touch, the points of both features tell where they carry each other.
+    fn core_support_feature(&self, direction: Self::Vector, slab: ScalarOf<Self>, feature: &mut Feature<Self::Vector>) {
+        let _ = slab;
+        feature.push(self.core_support(direction, &mut Hint::new()), 0);
     }
 
     /// How well the support points of the core are known. Algorithms ask once, at the end of a query, to prove what they found.

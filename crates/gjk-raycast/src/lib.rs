@@ -21,6 +21,8 @@
 //!
 //! # Questions it answers
 //! - *How far apart are two shapes, and where are they closest?* [`distance`] (GJK, Algorithm 2 of the paper).
+//! - *How far apart, or how deep in one another, and which way out?* [`signed_distance`] (GJK, then expanding polytopes).
+//! - *In which points do they carry each other?* [`contact`], a manifold of up to four points.
 //! - *Do they meet?* [`intersects`], which stops at the first separating axis and can start from the last one.
 //! - *Where does a ray enter a shape?* [`ray_cast`] (Algorithm 3).
 //! - *Many rays at once?* [`ray_casts`].
@@ -55,6 +57,7 @@ struct Readme;
 
 mod body;
 mod cast;
+mod contact;
 mod curvature;
 mod distance;
 mod error;
@@ -74,6 +77,9 @@ mod unit;
 
 pub use convex_support;
 
+pub use contact::{
+    Contact, ContactPoint, SignedDistance, SignedDistanceOptions, contact, signed_distance, signed_distance_with,
+};
 pub use distance::{distance, distance_with};
 pub use error::RayCastError;
 pub use intersects::{intersects, intersects_with};

@@ -7,7 +7,7 @@ use crate::error::{InvalidShape, finite, finite_matrix};
 use crate::numerics::bound::roundings;
 use crate::numerics::range::power_of_two_below;
 use crate::support::{ScalarOf, sum_of_hessians, swept, swept_hessian};
-use crate::{Core, CoreKind, Hint, LineCrossing, Matrix, Rounding, Scalar, SupportMap, Vector};
+use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Matrix, Rounding, Scalar, SupportMap, Vector};
 
 /// The image `M·C + t` of a shape under an affine map: scaled, sheared, mirrored, or flattened where `M` is singular.
 ///
@@ -150,6 +150,13 @@ impl<S: SupportMap> SupportMap for Affine<S> {
             let normal = inverse.transpose_mul(normal);
             normal.unit().unwrap_or(normal)
         })
+    }
+
+    fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {
+        let direction = self.onto_shape * direction;
+        self.shape.core_support_feature(direction, slab / self.unit, feature);
+        let swept = swept(self.swept, direction);
+        feature.map(|point| self.matrix * (point + swept) + self.lost);
     }
 
     fn rounding(&self) -> Rounding<S::Vector> {

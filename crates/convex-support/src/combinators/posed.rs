@@ -5,7 +5,7 @@ use num_traits::Float as _;
 use super::placement::{Placement, lost_in_origin};
 use crate::error::{InvalidShape, finite, orthonormal};
 use crate::support::ScalarOf;
-use crate::{Core, CoreKind, Hint, LineCrossing, Matrix, Rotation, Rounding, Scalar, SupportMap, Vector};
+use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Matrix, Rotation, Rounding, Scalar, SupportMap, Vector};
 
 /// The image `R·C + t` of a shape under a rotation and then a translation.
 ///
@@ -171,6 +171,11 @@ impl<S: SupportMap> SupportMap for Posed<S> {
         let local = self.rotation.transpose_mul(source - self.lost);
         let crossing = self.shape.core_line_crossing(local, self.rotation.transpose_mul(direction), radius);
         crossing.with_normal(|normal| self.rotation * normal)
+    }
+
+    fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {
+        self.shape.core_support_feature(self.rotation.transpose_mul(direction), slab, feature);
+        feature.map(|point| self.rotation * point + self.lost);
     }
 
     fn rounding(&self) -> Rounding<S::Vector> {

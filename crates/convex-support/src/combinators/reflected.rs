@@ -1,7 +1,7 @@
 //! A shape mirrored through zero.
 
 use crate::support::ScalarOf;
-use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, SupportMap};
+use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Rounding, SupportMap};
 
 /// The set `−C = { −x : x ∈ C }`: what a difference adds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +50,11 @@ impl<S: SupportMap> SupportMap for Reflected<S> {
         radius: ScalarOf<S>,
     ) -> LineCrossing<S::Vector> {
         self.0.core_line_crossing(-source, -direction, radius).with_normal(|n| -n)
+    }
+
+    fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {
+        self.0.core_support_feature(-direction, slab, feature);
+        feature.map(|point| -point);
     }
 
     #[inline]

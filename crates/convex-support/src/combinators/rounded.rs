@@ -5,7 +5,7 @@ use num_traits::Float as _;
 
 use crate::numerics::twofold::two_sum;
 use crate::support::{ScalarOf, support_of_parts};
-use crate::{Core, Hint, LineCrossing, Rounding, SupportMap, Vector};
+use crate::{Core, Feature, Hint, LineCrossing, Rounding, SupportMap, Vector};
 
 /// The Minkowski sum of a shape and a ball: the shape grown by a radius, its edges and corners rounded.
 ///
@@ -88,6 +88,10 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
         radius: ScalarOf<S>,
     ) -> LineCrossing<S::Vector> {
         self.shape.core_line_crossing(source, direction, radius)
+    }
+
+    fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {
+        self.shape.core_support_feature(direction, slab, feature);
     }
 
     /// As of the shape; the sum of the radii is rounded.

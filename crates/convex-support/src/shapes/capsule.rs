@@ -5,7 +5,7 @@ use num_traits::Float as _;
 use crate::error::{InvalidShape, non_negative};
 use crate::line_crossing::upright;
 use crate::support::support_of_parts;
-use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, SupportMap, Vector};
+use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Rounding, SupportMap, Vector};
 
 /// The segment from `(0, −half_height)` to `(0, half_height)` along the second axis, swept by a ball. Its core is the
 /// segment.
@@ -77,6 +77,11 @@ impl<V: Vector> SupportMap for Capsule<V> {
     #[inline(always)]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
         upright(self.half_height, radius, source, direction).into()
+    }
+
+    fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
+        let end = V::axis(1) * self.half_height;
+        feature.collect(direction, slab, 2, |i| if i == 0 { end } else { -end });
     }
 
     fn rounding(&self) -> Rounding<V> {

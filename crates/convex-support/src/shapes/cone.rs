@@ -6,7 +6,7 @@ use crate::error::{InvalidShape, measurable, non_negative};
 use crate::line_crossing::cone;
 use crate::numerics::bound::roundings;
 use crate::support::swept;
-use crate::{Core, CoreKind, LineCrossing, Rounding, Scalar, SupportMap, Vector3};
+use crate::{Core, CoreKind, Feature, LineCrossing, Rounding, Scalar, SupportMap, Vector3};
 use num_traits::Float as _;
 
 /// The cone with its apex at `(0, half_height, 0)` and its base disc at `y = −half_height`.
@@ -108,6 +108,11 @@ impl<V: Vector3> SupportMap for Cone<V> {
     #[inline(always)]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
         if radius == V::Scalar::ZERO { cone(self, source, direction).into() } else { LineCrossing::Unknown }
+    }
+
+    fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
+        let discs = [(self.half_height, V::Scalar::ZERO), (-self.half_height, self.radius)];
+        feature.collect_discs(direction, slab, discs);
     }
 
     /// The heights are exact, and the unit vector times the radius is right to 6 roundings. Cosine, sine and what they are multiplied

@@ -2,7 +2,7 @@
 
 use crate::error::{InvalidShape, finite, measurable};
 use crate::line_crossing::{cuboid, rounded_cuboid};
-use crate::{Core, CoreKind, LineCrossing, Rounding, Scalar, SupportMap, Vector};
+use crate::{Core, CoreKind, Feature, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
 /// The box `|xᵢ| ≤ half_extentsᵢ`; a rectangle in 2D.
 ///
@@ -73,6 +73,14 @@ impl<V: Vector> SupportMap for Cuboid<V> {
         } else {
             rounded_cuboid(self.half_extents, radius, source, direction).into()
         }
+    }
+
+    fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
+        let corner = |i: usize| {
+            let sign = V::from_fn(|axis| if i >> axis & 1 == 1 { -V::Scalar::ONE } else { V::Scalar::ONE });
+            self.half_extents * sign
+        };
+        feature.collect(direction, slab, 1 << V::DIM, corner);
     }
 
     fn rounding(&self) -> Rounding<V> {

@@ -8,7 +8,7 @@ use crate::line_crossing::cylinder;
 use crate::numerics::bound::roundings;
 use crate::numerics::range::is_comfortable;
 use crate::support::{swept, swept_hessian};
-use crate::{Core, CoreKind, LineCrossing, Rounding, Scalar, SupportMap, Vector3};
+use crate::{Core, CoreKind, Feature, LineCrossing, Rounding, Scalar, SupportMap, Vector3};
 
 /// The cylinder `x² + z² ≤ radius²`, `|y| ≤ half_height`.
 ///
@@ -107,6 +107,11 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
         } else {
             LineCrossing::Unknown
         }
+    }
+
+    fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
+        let discs = [(self.half_height, self.radius), (-self.half_height, self.radius)];
+        feature.collect_discs(direction, slab, discs);
     }
 
     /// The heights are exact, and the unit vector times the radius is right to 6 roundings.

@@ -4,7 +4,7 @@ use super::points::{extent, middle, relative, rounding_of_points};
 use crate::error::{InvalidShape, finite, measurable};
 use crate::line_crossing::edge;
 use crate::numerics::bound::roundings_of;
-use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
+use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
 /// The segment between two points, which may coincide.
 ///
@@ -84,6 +84,11 @@ impl<V: Vector> SupportMap for Segment<V> {
     #[inline]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
         edge(relative(self.points), radius, source, direction).into()
+    }
+
+    fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
+        let points = relative(self.points);
+        feature.collect(direction, slab, 2, |i| points[i]);
     }
 
     /// Which end is farther is told by the product of the direction with the difference, 4 roundings.

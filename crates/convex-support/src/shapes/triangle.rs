@@ -7,7 +7,7 @@ use crate::closest_point::closest_of_triangle;
 use crate::error::{InvalidShape, finite, measurable};
 use crate::line_crossing::triangle;
 use crate::numerics::bound::roundings_of;
-use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
+use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
 /// The triangle of three points, which may be collinear or coincide.
 ///
@@ -119,6 +119,11 @@ impl<V: Vector> SupportMap for Triangle<V> {
     #[inline]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
         triangle(&Self { points: relative(self.points) }, radius, source, direction).into()
+    }
+
+    fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
+        let points = relative(self.points);
+        feature.collect(direction, slab, 3, |i| points[i]);
     }
 
     /// Which corner is farthest is told by the products of the direction with two edges, 4 roundings each.

@@ -10,7 +10,7 @@ use super::hull::FromPoints;
 use super::lanes::{WIDTH, coordinate, side_by_side};
 use crate::error::InvalidShape;
 use crate::line_crossing::faceted;
-use crate::{Core, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
+use crate::{Core, Feature, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
 /// [`WIDTH`] planes, each a unit outward normal by coordinates and how far the polytope reaches along it from the middle.
 pub(crate) type Planes<S> = [[S; WIDTH]; 4];
@@ -166,6 +166,10 @@ impl<V: Vector> SupportMap for Faceted<V> {
     #[inline]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
         if radius == V::Scalar::ZERO { faceted(self, source, direction).into() } else { LineCrossing::Unknown }
+    }
+
+    fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
+        self.polytope.core_support_feature(direction, slab, feature);
     }
 
     #[inline]

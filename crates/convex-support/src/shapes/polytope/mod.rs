@@ -20,7 +20,7 @@ use super::points::{middle, rounding_of_points};
 use crate::error::{InvalidShape, measurable};
 use crate::numerics::bound::roundings_of;
 use crate::numerics::range::{is_comfortable, power_of_two_below, scaled};
-use crate::{Core, CoreKind, Hint, Rounding, Scalar, SupportMap, Vector};
+use crate::{Core, CoreKind, Feature, Hint, Rounding, Scalar, SupportMap, Vector};
 
 #[cfg(feature = "hull")]
 pub use faceted::Faceted;
@@ -171,6 +171,10 @@ impl<V: Vector> SupportMap for Polytope<V> {
                 graph.vertex(*last) * *unit
             }
         }
+    }
+
+    fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
+        feature.collect(direction, slab, self.points.len(), |i| self.points[i] - self.middle);
     }
 
     #[inline]

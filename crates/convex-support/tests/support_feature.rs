@@ -1,0 +1,58 @@
+//! Features of shapes: vertices, edges and faces within a slab.
+
+use convex_support::strategies::{AnyShape, direction, primitive_3d};
+use convex_support::{Cuboid, Cylinder, Feature, Hint, Posed, Rounded, SupportMap, Vector, glam};
+use glam::{DQuat, DVec3};
+use proptest::prelude::*;
+
+fn feature<S: SupportMap>(shape: &S, direction: S::Vector, slab: f64) -> Feature<S::Vector>
+where
+    S::Vector: Vector<Scalar = f64>,
+{
+    let mut feature = Feature::new();
+    shape.core_support_feature(direction, slab, &mut feature);
+    feature
+}
+
+#[test]
+fn a_box_shows_a_face_an_edge_or_a_vertex() {
+    let cuboid = Cuboid::new(DVec3::new(1.0, 2.0, 3.0)).expect("positive half extents");
+    let count = |direction: DVec3| feature(&cuboid, direction.normalize(), 0.01).points().len();
+    assert_eq!(count(DVec3::Y), 4);
+    assert_eq!(count(DVec3::new(1.0, 1.0, 0.0)), 2);
+    assert_eq!(count(DVec3::ONE), 1);
+    // The same through a pose and a rounding, with the same numbers.
+    let turn = DQuat::from_rotation_x(0.3);
+    let posed = Posed::new(Rounded::new(cuboid, 0.5).expect("a radius"), turn, DVec3::ONE).expect("a pose");
+    let (there, here) = (feature(&posed, turn * DVec3::Y, 0.01), feature(&cuboid, DVec3::Y, 0.01));
+    assert_eq!(there.ids(), here.ids());
+    for (p, q) in there.points().iter().zip(here.points()) {
+        assert!((*p - turn * *q).length() < 1e-15, "{p} {q}");
+    }
+}
+
+#[test]
+fn a_cylinder_shows_a_disc_a_side_or_a_rim() {
+    let cylinder = Cylinder::<DVec3>::new(1.0, 0.5).expect("positive sizes");
+    assert_eq!(feature(&cylinder, DVec3::NEG_Y, 0.01).points().len(), 8);
+    assert_eq!(feature(&cylinder, DVec3::X, 0.01).points(), [DVec3::new(0.5, 1.0, 0.0), DVec3::new(0.5, -1.0, 0.0)]);
+    assert_eq!(feature(&cylinder, DVec3::new(0.6, 0.8, 0.0), 0.01).points(), [DVec3::new(0.5, 1.0, 0.0)]);
+}
+
+fn any_solid() -> BoxedStrategy<AnyShape<DVec3>> {
+    primitive_3d(1.0)
+}
+
+proptest! {
+    #[test]
+    fn features_are_near_the_supporting_plane(shape in any_solid(), d in direction::<DVec3>(), slab in 0.0..0.5) {
+        let n = d.normalize();
+        let height = n.dot(shape.core_support(n, &mut Hint::new()));
+        let feature = feature(&shape, n, slab);
+        prop_assert!(!feature.points().is_empty(), "there is always a support point");
+        for point in feature.points() {
+            let level = n.dot(*point);
+            prop_assert!(level <= height + 1e-14 && level >= height - slab - 1e-14, "{level} of {height}");
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! The bottom of a basin of the support value among unit vectors.
+
+use convex_support::{Scalar, SupportMap, Vector};
+use num_traits::Float as _;
+
+use super::SignedDistanceOptions;
+use super::boundary::Boundary;
+use super::cores::{Cores, Vertex};
+use super::expansion::WayOut;
+use super::newton::{Piece, Side};
+
+/// Newton's steps from one direction.
+const MAX_STEPS: usize = 12;
+
+/// Steps in a row that may find nothing lower: of two pieces that meet, one is foretold from farther away until it is seen again.
+const PATIENCE: usize = 2;
+
+/// Newton's method from a direction to the bottom of its basin, on one smooth piece of the boundary or along the fold between two.
+/// `others` are support points near by, one of which may be of the second piece. Whatever support points are found make the
+/// polytope larger as well. `None` where a support point is not finite.
+pub(super) fn descend<A, B>(
+    cores: &mut Cores<'_, A, B>,
+    boundary: &mut Boundary<A::Vector>,
+    mut way: WayOut<A::Vector>,
+    others: &[Vertex<A::Vector>],
+    options: &SignedDistanceOptions<A::Vector>,
+) -> Option<WayOut<A::Vector>>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let mut first = Piece::new(cores, &way.vertex);
+    let mut second = None;
+    let other = contradiction(&first, others);
+    if let Some(other) = other {
+        second = Some(Piece::new(cores, other));
+    }
+    let (mut failures, mut stale) = (0, Side::Far);
+    for _ in 0..MAX_STEPS {
+        let u = match &second {
+            Some(second) => first.step_along_fold(second, stale),
+            None => first.step(),
+        };
+        let Some(u) = u.filter(|_| cores.iterations < options.max_iterations && failures < PATIENCE) else { break };
+        let next = WayOut::new(cores.support(u)?);
+        let _ = boundary.insert_anywhere(next.vertex);
+        let piece = Piece::new(cores, &next.vertex);
+        let is_lower = next.h < way.h;
+        let is_lowest = (next.h - way.h).abs() <= cores.error_along(u);
+        if first.foretells(&next.vertex) {
+            (first, stale) = (piece, Side::Far);
+        } else if is_lower {
+            (second, stale) = (Some(core::mem::replace(&mut first, piece)), Side::Far);
+        } else {
+            (second, stale) = (Some(piece), Side::Near);
+        }
+        if is_lower {
+            (way, failures) = (next, 0);
+        } else {
+            failures += 1;
+        }
+        if is_lowest {
+            break;
+        }
+    }
+    Some(way)
+}
+
+/// The support point that is farthest beyond a piece where that piece alone would lead; where it would lead nowhere, the one that it
+/// foretells worst.
+fn contradiction<'v, V: Vector>(piece: &Piece<V>, others: &'v [Vertex<V>]) -> Option<&'v Vertex<V>> {
+    let foretold_worse = others.iter().filter(|vertex| !piece.foretells(vertex));
+    let to = piece.step();
+    let excess = |vertex: &Vertex<V>| match to {
+        Some(u) => piece.exceeded_by(vertex.point, u),
+        None => piece.surprise(vertex),
+    };
+    let mut most = (V::Scalar::ZERO, None);
+    for vertex in foretold_worse {
+        let excess = excess(vertex);
+        if excess > most.0 {
+            most = (excess, Some(vertex));
+        }
+    }
+    most.1
+}

@@ -1,0 +1,107 @@
+//! Where two outlines overlap.
+
+use convex_support::Scalar;
+use smallvec::SmallVec;
+
+use super::outline::{Corner, Outline, Part};
+use crate::symmetric::{Across, cross, dot};
+
+/// A corner of the overlap, and what it is of the outline that was clipped and of the other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clipped<S> {
+    pub(super) at: Across<S>,
+    pub(super) parts: [Part; 2],
+    /// The edge that begins here.
+    edge: Edge,
+}
+
+/// An edge of the overlap: of the clipped outline, by the numbers of its ends, or the edge of the other with this index.
+#[derive(Clone, Copy, Debug)]
+enum Edge {
+    Own(u32, u32),
+    Other(usize),
+}
+
+/// The corners of an overlap.
+pub(super) type Overlap<S> = SmallVec<[Clipped<S>; 32]>;
+
+/// The overlap of two outlines by Sutherland's and Hodgman's method: the first is cut along the edges of the second, one after the
+/// other. A segment is clipped by a polygon, and two segments by each other where they are parallel. Empty where there is none.
+pub(super) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> Overlap<S> {
+    let mut overlap = corners_of(&own.corners);
+    let count = other.corners.len();
+    if count == 2 {
+        let [from, to] = [other.corners[0], other.corners[1]];
+        let e = difference(to.at, from.at);
+        let across = difference(own.corners[own.corners.len() - 1].at, own.corners[0].at);
+        if own.corners.len() > 2 || !are_parallel(e, across) {
+            return SmallVec::new();
+        }
+        overlap = cut(&overlap, 0, Part::Vertex(from.id), |at| dot(difference(at, from.at), e), other);
+        return cut(&overlap, 1, Part::Vertex(to.id), |at| dot(difference(to.at, at), e), other);
+    }
+    for i in 0..count {
+        let [from, to] = [other.corners[i], other.corners[(i + 1) % count]];
+        let e = difference(to.at, from.at);
+        overlap = cut(&overlap, i, Part::Edge(from.id, to.id), |at| cross(e, difference(at, from.at)), other);
+    }
+    overlap
+}
+
+fn difference<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
+    (a.0 - b.0, a.1 - b.1)
+}
+
+/// Segments are parallel where they are so to within about a degree.
+fn are_parallel<S: Scalar>(a: Across<S>, b: Across<S>) -> bool {
+    let turn = cross(a, b);
+    turn * turn <= S::from_f64(3e-4) * dot(a, a) * dot(b, b)
+}
+
+fn corners_of<S: Scalar>(corners: &[Corner<S>]) -> Overlap<S> {
+    let next = |i: usize| corners[(i + 1) % corners.len()].id;
+    let corner = |(i, c): (usize, &Corner<S>)| Clipped {
+        at: c.at,
+        parts: [Part::Vertex(c.id), Part::Face],
+        edge: Edge::Own(c.id, next(i)),
+    };
+    corners.iter().enumerate().map(corner).collect()
+}
+
+/// What of a polygon or a segment is where `inside` is not negative. The cut is along the part `along` of the other outline, which
+/// is its edge of index `index`.
+fn cut<S: Scalar>(
+    polygon: &[Clipped<S>],
+    index: usize,
+    along: Part,
+    inside: impl Fn(Across<S>) -> S,
+    other: &Outline<S>,
+) -> Overlap<S> {
+    let mut kept = Overlap::new();
+    let is_segment = polygon.len() == 2;
+    for (i, from) in polygon.iter().enumerate() {
+        let to = &polygon[(i + 1) % polygon.len()];
+        let (d, e) = (inside(from.at), inside(to.at));
+        let is_crossed = (d >= S::ZERO) != (e >= S::ZERO) && !(is_segment && i == 1);
+        if d >= S::ZERO {
+            kept.push(*from);
+        }
+        if is_crossed {
+            let share = d / (d - e);
+            let at = (from.at.0 + (to.at.0 - from.at.0) * share, from.at.1 + (to.at.1 - from.at.1) * share);
+            let parts = match from.edge {
+                Edge::Own(p, q) => [Part::Edge(p, q), along],
+                Edge::Other(before) => [Part::Face, Part::Vertex(shared_corner(before, index, other))],
+            };
+            let edge = if d >= S::ZERO { Edge::Other(index) } else { from.edge };
+            kept.push(Clipped { at, parts, edge });
+        }
+    }
+    kept
+}
+
+/// The number of the corner between two edges of an outline.
+fn shared_corner<S: Scalar>(before: usize, after: usize, outline: &Outline<S>) -> u32 {
+    let count = outline.corners.len();
+    outline.corners[if (before + 1) % count == after { after } else { before }].id
+}

@@ -1,0 +1,50 @@
+//! The contact of two shapes: which way, how deep, and in which points.
+
+use convex_support::{SupportMap, Vector};
+
+use super::manifold::{MAX_POINTS, manifold};
+use super::{Contact, ContactPoint, SignedDistanceOptions, signed_distance};
+use num_traits::Float as _;
+
+/// The contact of two shapes that are no farther apart than `within`; `None` where they are. The options are those of the signed
+/// distance, of which [`axis`](SignedDistanceOptions::axis) may be the normal of the last frame; the limit is `within`.
+///
+/// ```
+/// use convex_support::{Cuboid, Posed, glam::DVec3};
+/// use gjk_raycast::{SignedDistanceOptions, contact};
+///
+/// // A box of half extent 0.5 stands on the floor, over its edge by half.
+/// let floor = Cuboid::new(DVec3::new(5.0, 1.0, 5.0))?;
+/// let parcel = Posed::translated(Cuboid::new(DVec3::splat(0.5))?, DVec3::new(5.0, 1.5, 0.0))?;
+/// let contact = contact(&parcel, &floor, 0.01, SignedDistanceOptions::default()).expect("they touch");
+/// assert_eq!(contact.normal, DVec3::Y);
+/// assert_eq!(contact.points().len(), 4);
+/// assert!(contact.points().iter().all(|p| p.point_a.x <= 5.0 && p.signed_distance.abs() < 1e-15));
+/// # Ok::<(), convex_support::InvalidShape>(())
+/// ```
+///
+/// The features of both shapes that face each other, each a vertex, an edge or a face
+/// ([`core_support_feature`](SupportMap::core_support_feature)), are clipped against each other in the plane of contact. Of the
+/// corners of their overlap at most four are kept, in 2D two, that carry as the whole does.
+pub fn contact<A, B>(
+    a: &A,
+    b: &B,
+    within: <A::Vector as Vector>::Scalar,
+    options: SignedDistanceOptions<A::Vector>,
+) -> Option<Contact<A::Vector>>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let answer = signed_distance(a, b, SignedDistanceOptions { limit: options.limit.min(within), ..options });
+    // NaN is farther than anything.
+    if !(answer.signed_distance <= within) {
+        return None;
+    }
+    let found = manifold(a, b, &answer, within);
+    let mut points = [ContactPoint::default(); MAX_POINTS];
+    for (point, &found) in points.iter_mut().zip(&found) {
+        *point = found;
+    }
+    Some(Contact { normal: answer.normal, distance: answer, points, len: found.len() })
+}

@@ -1,0 +1,133 @@
+//! The expanding polytope: the shortest way out of the difference of two cores.
+
+use convex_support::{Scalar, SupportMap, Vector};
+use num_traits::Float as _;
+
+use super::boundary::Boundary;
+use super::cores::{Cores, Vertex};
+use super::{SignedDistanceOptions, basin, start, witness};
+use crate::body::PointPair;
+use crate::{Iterate, Status};
+
+/// A plane that supports the difference, by the support point, which knows the outward unit normal that it was found along.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WayOut<V: Vector> {
+    /// The support value along it, which is negative where its plane separates the cores.
+    pub(super) h: V::Scalar,
+    pub(super) vertex: Vertex<V>,
+}
+
+impl<V: Vector> WayOut<V> {
+    pub(super) fn new(vertex: Vertex<V>) -> Self {
+        Self { h: vertex.along.dot(vertex.point), vertex }
+    }
+
+    /// The unit vector out of the difference.
+    pub(super) fn u(&self) -> V {
+        self.vertex.along
+    }
+}
+
+/// What an expansion knows at its end; lengths in the unit of the cores.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Expanded<V: Vector> {
+    pub(super) way: WayOut<V>,
+    /// The points of both cores where the way ends; `None` where it has no length, and any that coincide will do.
+    pub(super) points: Option<PointPair<V>>,
+    /// The ball of this radius about zero is certain to be within the difference. A negative number says how far zero is certain
+    /// to be no farther from it.
+    pub(super) inner: V::Scalar,
+    pub(super) status: Status,
+    pub(super) unexpanded: usize,
+}
+
+/// The search for the direction `u` in which the difference `K` of two cores reaches least far beyond zero.
+///
+/// Every unit vector bounds the depth from above, by its support value `h(u)`; a polytope of support points with zero within bounds
+/// it from below, by the facet nearest to zero. So that facet is the only one worth a look: the support point along its normal
+/// either shows that it is of the boundary of `K`, and then it decides, or makes the polytope larger (van den Bergen, *Proximity
+/// queries and penetration depth computation on 3D game objects*, 2001). Zero need not be within the polytope at first. Facets that
+/// it is beyond are the nearest by their sign, and grow until it is within, or one of them separates it from `K`.
+///
+/// Where `K` is smooth its facets never are of the boundary, and the polytope is only to show that there is no shorter way; the
+/// way itself is found by Newton's method, in each basin that a facet leads to.
+pub(super) fn expand<A, B>(
+    cores: &mut Cores<'_, A, B>,
+    simplex: &[Vertex<A::Vector>],
+    reach: <A::Vector as Vector>::Scalar,
+    options: &SignedDistanceOptions<A::Vector>,
+    mut observer: impl FnMut(Iterate<'_, A::Vector>),
+) -> Option<Expanded<A::Vector>>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    // In its place from the beginning: it is a large object to move.
+    let mut boundary = Boundary::new();
+    let mut way = match start::start(cores, simplex, &mut boundary)? {
+        start::Start::Flat(way) => return Some(flat(way, reach)),
+        start::Start::Full(way) => way,
+    };
+    let is_curved = cores.is_curved();
+    let tolerance = if is_curved { options.tolerance * cores.size } else { Scalar::ZERO };
+    let depth_limit = options.depth_limit / cores.scale();
+    let status = loop {
+        let (nearest, inner) = boundary.nearest();
+        let facet = *boundary.facet_at(nearest);
+        // NaN fails this too.
+        if !(way.h - inner.max(-reach) > tolerance.max(cores.rounding_along(way.u()))) {
+            break Status::Converged;
+        }
+        if inner > depth_limit {
+            break Status::Converged;
+        }
+        if cores.iterations >= options.max_iterations {
+            break Status::IterationLimit;
+        }
+        let Some(vertex) = cores.support(facet.normal) else { break Status::Stalled };
+        let seen = WayOut::new(vertex);
+        if seen.h < way.h {
+            way = seen;
+        }
+        observer(Iterate {
+            iteration: cores.iterations - 1,
+            simplex: &boundary.corners(nearest).map(|v| v.point)[..A::Vector::DIM],
+            v: facet.normal * inner,
+            w: vertex.point,
+            scale: cores.scale(),
+            lower: -way.h * cores.scale(),
+            upper: -inner.max(-reach) * cores.scale(),
+        });
+        let corners = boundary.corners(nearest);
+        if !boundary.insert(nearest, vertex) {
+            // The facet is of the boundary of K, and by the rounding of its plane farther in than the support value says.
+            if boundary.measure(nearest) {
+                continue;
+            }
+            break Status::Stalled;
+        }
+        if is_curved && seen.h == way.h {
+            way = basin::descend(cores, &mut boundary, way, &corners[..A::Vector::DIM], options)?;
+        }
+    };
+    let certain = boundary.certain_inner(|n| cores.error_along(n));
+    let (nearest, _) = boundary.nearest();
+    let status = match status {
+        Status::Stalled if way.h - certain.max(-reach) <= cores.rounding_along(way.u()) * Scalar::from_f64(2.0) => {
+            Status::Converged
+        }
+        status => status,
+    };
+    Some(Expanded {
+        way,
+        points: Some(witness::points(&boundary, nearest, &way)),
+        inner: certain.max(-reach),
+        status,
+        unexpanded: boundary.len(),
+    })
+}
+
+/// A difference without an inside: the way out is across it, and no length.
+fn flat<V: Vector>(way: WayOut<V>, reach: V::Scalar) -> Expanded<V> {
+    Expanded { way, points: None, inner: -reach, status: Status::Converged, unexpanded: 0 }
+}

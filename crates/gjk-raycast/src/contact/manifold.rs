@@ -1,0 +1,165 @@
+//! The points in which two shapes in contact carry each other.
+
+use convex_support::{Feature, Scalar, SupportMap, Vector};
+use num_traits::Float as _;
+use smallvec::SmallVec;
+
+use super::clip::{Overlap, clip};
+use super::newton::across;
+use super::outline::{ContactPlane, Outline, Part};
+use super::{ContactPoint, SignedDistance};
+use crate::symmetric::{Across, cross, dot};
+
+/// As many points as a manifold has.
+pub(super) const MAX_POINTS: usize = 4;
+
+/// How deep behind its supporting plane a shape is taken for its feature, as a part of the smaller shape's size.
+const SLAB: f64 = 1.0 / 64.0;
+
+/// The points of a manifold.
+pub(super) type Points<V> = SmallVec<[ContactPoint<V>; MAX_POINTS]>;
+
+/// The points where the features of both shapes that face each other overlap, at most four; the closest points alone where one of
+/// the features is a vertex, or where edges cross.
+pub(super) fn manifold<A, B>(a: &A, b: &B, answer: &SignedDistance<A::Vector>, within: ScalarOf<A>) -> Points<A::Vector>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let normal = answer.normal;
+    let half: ScalarOf<A> = Scalar::from_f64(0.5);
+    let origin = answer.point_a * half + answer.point_b * half;
+    let plane = ContactPlane { normal, across: across(normal), origin };
+    let (core_a, core_b) = (a.core(), b.core());
+    let smaller = (core_a.extent + core_a.radius).min(core_b.extent + core_b.radius);
+    let near = smaller * ScalarOf::<A>::from_f64(SLAB);
+    let slab = near + within.max(Scalar::ZERO);
+    let outline = |shape: &dyn Fn(&mut Feature<A::Vector>), origin| {
+        let mut feature = Feature::new();
+        shape(&mut feature);
+        Outline::new(&feature, origin, &plane)
+    };
+    let of_a =
+        outline(&|feature| a.core_support_feature(-normal, slab, feature), core_a.origin - normal * core_a.radius);
+    let of_b =
+        outline(&|feature| b.core_support_feature(normal, slab, feature), core_b.origin + normal * core_b.radius);
+    let facing = Facing { plane, of_a, of_b };
+    let points = facing.points(within + slab, near);
+    if points.is_empty() { SmallVec::from_slice(&[facing.closest(answer)]) } else { points }
+}
+
+type ScalarOf<A> = <<A as SupportMap>::Vector as Vector>::Scalar;
+
+/// The outlines of both features in the plane of contact.
+struct Facing<V: Vector> {
+    plane: ContactPlane<V>,
+    of_a: Outline<V::Scalar>,
+    of_b: Outline<V::Scalar>,
+}
+
+/// A point of contact in the plane: where it is, how high the features of both shapes are there, and what it is of each.
+#[derive(Clone, Copy)]
+struct Candidate<S> {
+    at: Across<S>,
+    heights: [S; 2],
+    parts: [Part; 2],
+}
+
+impl<S: Scalar> Candidate<S> {
+    fn gap(&self) -> S {
+        self.heights[0] - self.heights[1]
+    }
+}
+
+impl<V: Vector> Facing<V> {
+    /// The corners of the overlap where the features are no farther apart than `within`, reduced to four. Those `near` the same
+    /// corner of a feature are one.
+    fn points(&self, within: V::Scalar, near: V::Scalar) -> Points<V> {
+        let (of_a, of_b) = (&self.of_a, &self.of_b);
+        if of_a.corners.len() < 2 || of_b.corners.len() < 2 {
+            return SmallVec::new();
+        }
+        // A segment is clipped by a polygon.
+        let is_swapped = of_a.corners.len() > of_b.corners.len();
+        let overlap: Overlap<V::Scalar> = if is_swapped { clip(of_b, of_a) } else { clip(of_a, of_b) };
+        let mut candidates: SmallVec<[Candidate<V::Scalar>; 32]> = SmallVec::new();
+        for corner in &overlap {
+            let [own, other] = corner.parts;
+            let parts = if is_swapped { [other, own] } else { [own, other] };
+            let heights = [of_a.height(corner.at), of_b.height(corner.at)];
+            let candidate = Candidate { at: corner.at, heights, parts: self.settled(corner.at, parts, near) };
+            if candidate.gap() <= within && candidates.iter().all(|known| known.parts != candidate.parts) {
+                candidates.push(candidate);
+            }
+        }
+        reduced(&candidates).iter().map(|candidate| self.point(candidate)).collect()
+    }
+
+    /// What a point is of both shapes: a corner of a feature that it is near to, or else what clipping says. Where corners of both lie
+    /// on one another, as of boxes stacked, it would change from frame to frame which of them is within the other's outline.
+    fn settled(&self, at: Across<V::Scalar>, parts: [Part; 2], near: V::Scalar) -> [Part; 2] {
+        let corner = |outline: &Outline<V::Scalar>| {
+            let is_near = |from: Across<V::Scalar>| {
+                let e = (at.0 - from.0, at.1 - from.1);
+                dot(e, e) <= near * near
+            };
+            outline.corners.iter().find(|corner| is_near(corner.at)).map(|corner| Part::Vertex(corner.id))
+        };
+        match (corner(&self.of_a), corner(&self.of_b)) {
+            (Some(vertex), _) => [vertex, Part::Face],
+            (None, Some(vertex)) => [Part::Face, vertex],
+            (None, None) => parts,
+        }
+    }
+
+    fn point(&self, candidate: &Candidate<V::Scalar>) -> ContactPoint<V> {
+        let [feature_a, feature_b] = candidate.parts.map(Part::code);
+        ContactPoint {
+            point_a: self.plane.point(candidate.at, candidate.heights[0]),
+            point_b: self.plane.point(candidate.at, candidate.heights[1]),
+            signed_distance: candidate.gap(),
+            feature_a,
+            feature_b,
+        }
+    }
+
+    /// The closest points.
+    fn closest(&self, answer: &SignedDistance<V>) -> ContactPoint<V> {
+        let part = |outline: &Outline<V::Scalar>| match outline.corners.as_slice() {
+            [] => Part::Face,
+            [corner] => Part::Vertex(corner.id),
+            [from, to] => Part::Edge(from.id, to.id),
+            _ => Part::Face,
+        };
+        ContactPoint {
+            point_a: answer.point_a,
+            point_b: answer.point_b,
+            signed_distance: answer.signed_distance,
+            feature_a: part(&self.of_a).code(),
+            feature_b: part(&self.of_b).code(),
+        }
+    }
+}
+
+/// At most four of the candidates: the deepest, the farthest from it, and those that make most area with the two on either side.
+fn reduced<S: Scalar>(candidates: &[Candidate<S>]) -> SmallVec<[Candidate<S>; MAX_POINTS]> {
+    if candidates.len() <= MAX_POINTS {
+        return SmallVec::from_slice(candidates);
+    }
+    let best = |value: &dyn Fn(&Candidate<S>) -> S| {
+        candidates.iter().fold(&candidates[0], |best, c| if value(c) > value(best) { c } else { best })
+    };
+    let between = |a: &Candidate<S>, b: &Candidate<S>| (b.at.0 - a.at.0, b.at.1 - a.at.1);
+    let first = best(&|c| -c.gap());
+    let second = best(&|c| dot(between(first, c), between(first, c)));
+    let side = |c: &Candidate<S>| cross(between(first, second), between(first, c));
+    let (left, right) = (best(&side), best(&|c| -side(c)));
+    let mut chosen = SmallVec::from_slice(&[*first, *second]);
+    if side(left) > S::ZERO {
+        chosen.push(*left);
+    }
+    if side(right) < S::ZERO {
+        chosen.push(*right);
+    }
+    chosen
+}

@@ -1,0 +1,190 @@
+//! Steps towards a local minimum of the support value among unit vectors, by curvature.
+
+use convex_support::{Scalar, SupportMap, Vector};
+use num_traits::Float as _;
+
+use super::cores::{Cores, Vertex};
+use crate::simplex::cross;
+use crate::symmetric::{Across, Symmetric, dot};
+
+/// The largest tangent of an angle to turn by.
+const LARGEST: f64 = 0.5;
+
+/// Two support points are of one smooth piece if the curvature at one foretells the other but for this part.
+const FORETOLD: f64 = 0.25;
+
+/// How far past the fold a step leads, as a part of the square of the angle between both pieces.
+const LEAD: f64 = 0.1;
+
+/// A side of a fold: that of the piece that a step begins on, or the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    Near,
+    Far,
+}
+
+/// A smooth piece of the boundary of the cores' difference: a support point, the unit direction `n` it was found along, and the
+/// Hessian `H` of the support value there, for which `H·n = 0`, by its entries along two unit vectors across `n`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece<V: Vector> {
+    n: V,
+    point: V,
+    across: [V; 2],
+    hessian: Symmetric<V::Scalar>,
+}
+
+/// The same piece as seen along another unit vector `u`: its support point across `u`, its support value, and its Hessian.
+struct Seen<S> {
+    slope: Across<S>,
+    value: S,
+    hessian: Symmetric<S>,
+}
+
+impl<V: Vector> Piece<V> {
+    pub(super) fn new<A, B>(cores: &Cores<'_, A, B>, vertex: &Vertex<V>) -> Self
+    where
+        A: SupportMap<Vector = V> + ?Sized,
+        B: SupportMap<Vector = V> + ?Sized,
+    {
+        let across = across(vertex.along);
+        Self { n: vertex.along, point: vertex.point, across, hessian: cores.hessian(vertex.along, across) }
+    }
+
+    /// How far the point moves as the direction turns from `n` to `n + c`.
+    fn shift(&self, c: V) -> V {
+        let [e, f] = self.across;
+        let (x, y) = self.hessian.times((c.dot(e), c.dot(f)));
+        e * x + f * y
+    }
+
+    /// With `u/(u·n) = n + c`, the support value is `u·n` times that along `n + c`, whose expansion is `(n + c)·p + c·Hc/2`, its
+    /// gradient `p + Hc`.
+    fn seen(&self, u: V, [e, f]: [V; 2]) -> Seen<V::Scalar> {
+        let cosine = u.dot(self.n);
+        let c = u / cosine - self.n;
+        let shift = self.shift(c);
+        let point = self.point + shift;
+        let value = u.dot(point) - cosine * c.dot(shift) * V::Scalar::from_f64(0.5);
+        let (along_e, along_f) = (self.shift(e), self.shift(f));
+        let per = cosine.recip();
+        let hessian = Symmetric { a: e.dot(along_e) * per, b: e.dot(along_f) * per, d: f.dot(along_f) * per };
+        Seen { slope: (e.dot(point), f.dot(point)), value, hessian }
+    }
+
+    /// How far a support point is from what this piece foretells along its direction, as a part of its distance from the piece's
+    /// own point; infinite where it is too far around.
+    pub(super) fn surprise(&self, vertex: &Vertex<V>) -> V::Scalar {
+        let cosine = vertex.along.dot(self.n);
+        if !(cosine > V::Scalar::from_f64(LARGEST)) {
+            return V::Scalar::infinity();
+        }
+        let from = vertex.point - self.point;
+        (from - self.shift(vertex.along / cosine - self.n)).length() / from.length()
+    }
+
+    /// How much farther along a unit vector a point lies than this piece does.
+    pub(super) fn exceeded_by(&self, point: V, u: V) -> V::Scalar {
+        u.dot(point) - self.seen(u, self.across).value
+    }
+
+    /// Whether a support point is of this piece.
+    pub(super) fn foretells(&self, vertex: &Vertex<V>) -> bool {
+        self.surprise(vertex) < V::Scalar::from_f64(FORETOLD)
+    }
+
+    /// The unit vector where the piece's support value is to be least.
+    ///
+    /// A step `δ` across `n` and back to unit length changes the support value `h` to
+    ///
+    /// ```text
+    /// h((n + δ)/|n + δ|) = (h + p·δ + δ·Hδ/2)/√(1 + δ²) ≈ h + p·δ + δ·(H − h)·δ/2,   least where   (H − h)·δ = −p across n,
+    /// ```
+    ///
+    /// if `H − h` is positive definite. It is so near a minimum on a smooth boundary, whose radii of curvature are the eigenvalues
+    /// of `H`: a ball about zero that touches it from within is no larger than these.
+    pub(super) fn step(&self) -> Option<V> {
+        let [e, f] = self.across;
+        let bend = self.hessian.plus(-self.n.dot(self.point));
+        let slope = (e.dot(self.point), f.dot(self.point));
+        if !(bend.a > Scalar::ZERO) {
+            return None;
+        }
+        let step = if V::DIM == 2 {
+            (-slope.0 / bend.a, Scalar::ZERO)
+        } else {
+            bend.is_regular().then(|| bend.solve((-slope.0, -slope.1)))?
+        };
+        turned(self.n, self.across, step)
+    }
+
+    /// The unit vector where the larger support value of two pieces is to be least, at a fold of the support value.
+    ///
+    /// There both values are alike, and some share `β` of the other's slope and the rest of this one's cancel. With `p` and `q` the
+    /// slopes, `h` and `k` the values, and the Hessians `H_β = (1 − β)·H + β·K`,
+    ///
+    /// ```text
+    /// (H_β − h)·δ + p + β·e = 0,   e·δ = h − k,   e = q − p,
+    /// ```
+    ///
+    /// of which the second gives `δ` along `e`, and the first what it is across.
+    ///
+    /// What is foretold of a piece is off by the cube of the angle to where it was seen. So the step leads past the fold by a part of
+    /// the angle's square, onto the piece that is to be `seen` again.
+    pub(super) fn step_along_fold(&self, other: &Self, seen: Side) -> Option<V> {
+        let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
+        let value = self.n.dot(self.point);
+        let [e, f] = self.across;
+        let p = (e.dot(self.point), f.dot(self.point));
+        let Seen { slope: q, value: other_value, hessian } = other.seen(self.n, self.across);
+        let e = (q.0 - p.0, q.1 - p.1);
+        let squared = dot(e, e);
+        let share = -dot(e, p) / squared;
+        // Where the slopes do not cancel, the minimum is on one side of the fold.
+        if share < zero || share > one {
+            return if share < zero { self.step() } else { other.step() };
+        }
+        let bend = self.hessian.blend(hessian, share).plus(-value);
+        let lead = V::Scalar::from_f64(LEAD) * (self.n - other.n).length_squared() * squared.sqrt();
+        let lead = match seen {
+            Side::Near if !self.hessian.is_zero() => -lead,
+            Side::Far if !other.hessian.is_zero() => lead,
+            // A vertex is known as well as it ever will be.
+            Side::Near | Side::Far => zero,
+        };
+        let along = (value - other_value + lead) / squared;
+        let mut step = (e.0 * along, e.1 * along);
+        if V::DIM == 3 {
+            let across = (-e.1, e.0);
+            let stiffness = dot(across, bend.times(across));
+            if !(stiffness > zero) {
+                return None;
+            }
+            let aside = -(dot(across, p) + dot(across, bend.times(step))) / stiffness;
+            step = (step.0 + across.0 * aside, step.1 + across.1 * aside);
+        }
+        turned(self.n, self.across, step)
+    }
+}
+
+/// A unit vector turned by a step across it, or by the largest part of it that is sensible.
+fn turned<V: Vector>(n: V, [e, f]: [V; 2], step: Across<V::Scalar>) -> Option<V> {
+    let size = dot(step, step).sqrt();
+    // NaN fails this too.
+    if !(size > Scalar::ZERO && size.is_finite()) {
+        return None;
+    }
+    let part = (V::Scalar::from_f64(LARGEST) / size).min(Scalar::ONE);
+    (n + (e * step.0 + f * step.1) * part).unit()
+}
+
+/// Unit vectors that span what is across a unit vector; in 2D one, and zero.
+pub(super) fn across<V: Vector>(u: V) -> [V; 2] {
+    if V::DIM == 2 {
+        let turned = [-u.get(1), u.get(0)];
+        return [V::from_fn(|i| turned[i]), V::ZERO];
+    }
+    let a = u.abs();
+    let least = (1..3).fold(0, |least, i| if a.get(i) < a.get(least) { i } else { least });
+    let e = cross(u, V::axis(least)).unit().unwrap_or(V::ZERO);
+    [e, cross(u, e)]
+}

@@ -1,0 +1,81 @@
+//! What can be asked of a contact query beside its shapes.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+/// Support points after which a signed distance is given up. Polytopes need some dozens, smooth shapes about a hundred; the
+/// cap bounds the time that ties take, such as an ellipsoid of revolution within another about the same axis.
+const MAX_ITERATIONS: usize = 500;
+
+/// Options of [`signed_distance`](crate::signed_distance).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SignedDistanceOptions<V: Vector> {
+    /// The width of the bracket at which to stop in overlap, relative to the size of what is compared. It concerns curved shapes;
+    /// of polytopes the facet that decides is found exactly. Default: 1e-9 in `f64`, 8ε in `f32`.
+    pub tolerance: V::Scalar,
+    /// Stop as soon as the shapes are certain to be farther apart than this. Default: infinity.
+    pub limit: V::Scalar,
+    /// Stop as soon as the shapes are certain to be deeper in one another than this. Default: infinity.
+    pub depth_limit: V::Scalar,
+    /// The support points of each shape after which to give up. Default: 500.
+    pub max_iterations: usize,
+    /// A first guess of the direction from `b` to `a`, such as the normal of the last answer. Default: none.
+    pub axis: Option<V>,
+}
+
+impl<V: Vector> SignedDistanceOptions<V> {
+    /// The default options.
+    #[must_use]
+    pub fn new() -> Self {
+        let least = V::Scalar::from_f64(8.0) * V::Scalar::EPSILON;
+        Self {
+            tolerance: V::Scalar::from_f64(1e-9).max(least),
+            limit: V::Scalar::infinity(),
+            depth_limit: V::Scalar::infinity(),
+            max_iterations: MAX_ITERATIONS,
+            axis: None,
+        }
+    }
+
+    /// With another [`tolerance`](Self::tolerance).
+    #[must_use]
+    pub const fn with_tolerance(mut self, tolerance: V::Scalar) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// With a [`limit`](Self::limit).
+    #[must_use]
+    pub const fn with_limit(mut self, limit: V::Scalar) -> Self {
+        self.limit = limit;
+        self
+    }
+
+    /// With a [`depth_limit`](Self::depth_limit).
+    #[must_use]
+    pub const fn with_depth_limit(mut self, depth_limit: V::Scalar) -> Self {
+        self.depth_limit = depth_limit;
+        self
+    }
+
+    /// With another cap on the [iterations](Self::max_iterations).
+    #[must_use]
+    pub const fn with_max_iterations(mut self, max_iterations: usize) -> Self {
+        self.max_iterations = max_iterations;
+        self
+    }
+
+    /// With a first [`axis`](Self::axis).
+    #[must_use]
+    pub const fn with_axis(mut self, axis: V) -> Self {
+        self.axis = Some(axis);
+        self
+    }
+}
+
+impl<V: Vector> Default for SignedDistanceOptions<V> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

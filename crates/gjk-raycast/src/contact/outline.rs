@@ -1,0 +1,135 @@
+//! The outlines of features in the plane of contact.
+
+use convex_support::{Feature, Scalar, Vector};
+use smallvec::SmallVec;
+
+use crate::symmetric::{Across, cross, dot};
+
+/// What a point of contact is of one shape: a corner of its feature, a point of an edge, or one of the face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    Vertex(u32),
+    Edge(u32, u32),
+    Face,
+}
+
+impl Part {
+    /// A number that is the same as long as the part is. The upper two bits tell the kind.
+    pub(super) fn code(self) -> u32 {
+        const PAYLOAD: u32 = u32::MAX >> 2;
+        match self {
+            Self::Vertex(id) => id & PAYLOAD,
+            Self::Edge(a, b) => {
+                // Multiplied by an odd number, so that edges of a few hundred vertices have numbers of their own.
+                let ends = a.min(b).wrapping_mul(0x9e37_79b1).wrapping_add(a.max(b).wrapping_mul(0x0001_0001));
+                ends & PAYLOAD | 1 << 30
+            }
+            Self::Face => 2 << 30,
+        }
+    }
+}
+
+/// A plane of contact: its unit normal, unit vectors across it, and a point of it. In 2D it is a line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ContactPlane<V: Vector> {
+    pub(super) normal: V,
+    pub(super) across: [V; 2],
+    pub(super) origin: V,
+}
+
+impl<V: Vector> ContactPlane<V> {
+    /// The point at a place in the plane and a height above it.
+    pub(super) fn point(&self, (x, y): Across<V::Scalar>, height: V::Scalar) -> V {
+        self.origin + self.across[0] * x + self.across[1] * y + self.normal * height
+    }
+}
+
+/// A corner of an outline.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner<S> {
+    pub(super) at: Across<S>,
+    pub(super) height: S,
+    pub(super) id: u32,
+}
+
+/// A convex polygon in the plane of contact, counterclockwise, a segment or a point, and the height of the feature above it.
+#[derive(Clone, Debug)]
+pub(super) struct Outline<S: Scalar> {
+    pub(super) corners: SmallVec<[Corner<S>; 16]>,
+}
+
+impl<S: Scalar> Outline<S> {
+    /// The outline of a feature whose points are relative to `origin`.
+    pub(super) fn new<V: Vector<Scalar = S>>(feature: &Feature<V>, origin: V, plane: &ContactPlane<V>) -> Self {
+        let from = origin - plane.origin;
+        let seen = |(&point, &id): (&V, &u32)| {
+            let p = from + point;
+            let [e, f] = plane.across;
+            Corner { at: (e.dot(p), f.dot(p)), height: plane.normal.dot(p), id }
+        };
+        let points: SmallVec<[_; 16]> = feature.points().iter().zip(feature.ids()).map(seen).collect();
+        Self { corners: wrapped(&points) }
+    }
+
+    /// The height of the feature at a place: that of the plane through the three corners that span most; linear along a segment.
+    pub(super) fn height(&self, at: Across<S>) -> S {
+        let first = self.corners[0];
+        let edge = |c: &Corner<S>| (c.at.0 - first.at.0, c.at.1 - first.at.1);
+        let to = (at.0 - first.at.0, at.1 - first.at.1);
+        let mut most = (S::ZERO, first.height);
+        for pair in self.corners[1..].windows(2) {
+            let [p, q] = [edge(&pair[0]), edge(&pair[1])];
+            let area = cross(p, q);
+            if area > most.0 {
+                let (along_p, along_q) = (cross(to, q) / area, cross(p, to) / area);
+                let rise = (pair[0].height - first.height) * along_p + (pair[1].height - first.height) * along_q;
+                most = (area, first.height + rise);
+            }
+        }
+        match self.corners.as_slice() {
+            [_, second] => {
+                let e = edge(second);
+                first.height + (second.height - first.height) * (dot(to, e) / dot(e, e))
+            }
+            _ => most.1,
+        }
+    }
+}
+
+/// The convex hull of points in the plane, counterclockwise, by wrapping: from each corner the next is the one that has no point to
+/// its right. Points within rounding of an edge are none of the corners.
+fn wrapped<S: Scalar>(points: &[Corner<S>]) -> SmallVec<[Corner<S>; 16]> {
+    let mut corners: SmallVec<[Corner<S>; 16]> = SmallVec::new();
+    let is_before = |a: &Corner<S>, b: &Corner<S>| a.at.0 < b.at.0 || (a.at.0 == b.at.0 && a.at.1 < b.at.1);
+    let Some(first) = points.iter().reduce(|a, b| if is_before(b, a) { b } else { a }) else { return corners };
+    let edge = |a: &Corner<S>, b: &Corner<S>| (b.at.0 - a.at.0, b.at.1 - a.at.1);
+    let reach = points.iter().map(|p| edge(first, p)).map(|e| dot(e, e)).fold(S::ZERO, S::max);
+    let rounding = S::EPSILON * S::from_f64(64.0) * reach;
+    let mut last = *first;
+    for _ in 0..points.len() {
+        corners.push(last);
+        let mut next: Option<&Corner<S>> = None;
+        for point in points {
+            let e = edge(&last, point);
+            // The same point twice is one corner.
+            if dot(e, e) <= rounding * S::EPSILON {
+                continue;
+            }
+            let is_better = next.is_none_or(|next| {
+                let best = edge(&last, next);
+                let turn = cross(best, e);
+                turn < -rounding || (turn <= rounding && dot(best, e) > S::ZERO && dot(e, e) > dot(best, best))
+            });
+            if is_better {
+                next = Some(point);
+            }
+        }
+        let Some(next) = next else { break };
+        let back = edge(next, first);
+        if dot(back, back) <= rounding * S::EPSILON {
+            break;
+        }
+        last = *next;
+    }
+    corners
+}

@@ -1,0 +1,73 @@
+//! What contact queries answer.
+
+use convex_support::Vector;
+
+use super::manifold::MAX_POINTS;
+use crate::Status;
+
+/// The answer of [`signed_distance`](crate::signed_distance).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub struct SignedDistance<V: Vector> {
+    /// The distance where the shapes are apart; where they overlap, minus the penetration depth: the length of the shortest
+    /// translation of `a` after which they have no interior point in common.
+    pub signed_distance: V::Scalar,
+    /// The signed distance is certainly not less: along [`normal`](Self::normal), no points of the shapes are nearer, or deeper
+    /// in one another. Minus infinity where a support map returned numbers that are not finite.
+    pub lower: V::Scalar,
+    /// The signed distance is certainly not more: two points of the shapes are this far apart, or a polytope within the
+    /// difference `A − B` reaches this far around zero. Infinity where a support map returned numbers that are not finite.
+    pub upper: V::Scalar,
+    /// The unit vector from `b` to `a`: `a` moved by the depth along it no longer overlaps. Where several directions are equally
+    /// short, one of them.
+    pub normal: V,
+    /// The point of `a` closest to `b`, or deepest in it.
+    pub point_a: V,
+    /// The point of `b` such that `point_a − point_b` is the signed distance times the normal.
+    pub point_b: V,
+    /// Whether the shapes have a point in common, touching included: whether `signed_distance` is not positive. It is certain
+    /// where `lower` and `upper` have the same sign.
+    pub overlap: bool,
+    /// How the search ended. The bounds hold in every case.
+    pub status: Status,
+    /// The number of support points computed of each shape.
+    pub iterations: usize,
+    /// Facets of the last polytope that were left as they were, since the shapes cannot leave one another through them on a
+    /// shorter way. 0 where no polytope was needed.
+    pub unexpanded: usize,
+}
+
+/// The answer of [`contact`](crate::contact).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub struct Contact<V: Vector> {
+    /// The unit vector from `b` to `a`.
+    pub normal: V,
+    /// The signed distance of the shapes, with its bounds and closest points.
+    pub distance: SignedDistance<V>,
+    pub(super) points: [ContactPoint<V>; MAX_POINTS],
+    pub(super) len: usize,
+}
+
+impl<V: Vector> Contact<V> {
+    /// The points of the manifold: one to four, in 2D one or two.
+    #[must_use]
+    pub fn points(&self) -> &[ContactPoint<V>] {
+        &self.points[..self.len]
+    }
+}
+
+/// A point of a contact manifold.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactPoint<V: Vector> {
+    /// The point of `a`.
+    pub point_a: V,
+    /// The point of `b` before or behind it along the normal.
+    pub point_b: V,
+    /// How far `point_a` is before `point_b` along the normal; negative where the shapes overlap.
+    pub signed_distance: V::Scalar,
+    /// What the point is of `a`, a vertex, an edge or a face: a number that stays the same while that does.
+    pub feature_a: u32,
+    /// What the point is of `b`.
+    pub feature_b: u32,
+}

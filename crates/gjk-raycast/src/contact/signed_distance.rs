@@ -1,0 +1,171 @@
+//! The signed distance of two shapes: how far apart, or how deep in one another.
+
+use convex_support::{Scalar, SupportMap, Vector};
+use num_traits::Float as _;
+use smallvec::SmallVec;
+
+use super::cores::{Cores, Vertex};
+use super::expansion::{Expanded, expand};
+use super::{SignedDistance, SignedDistanceOptions};
+use crate::body::{PointPair, Witness as _};
+use crate::gjk::{End, Gjk};
+use crate::simplex::MAX_POINTS;
+use crate::{Iterate, Status};
+
+/// How far apart two shapes are, or how deep in one another, and which way out is the shortest.
+///
+/// ```
+/// use convex_support::{Cuboid, Posed, glam::DVec3};
+/// use gjk_raycast::{SignedDistanceOptions, signed_distance};
+///
+/// // A box of half extent 0.5 has sunk 0.1 into the floor.
+/// let floor = Cuboid::new(DVec3::new(50.0, 1.0, 50.0))?;
+/// let parcel = Posed::translated(Cuboid::new(DVec3::splat(0.5))?, DVec3::new(3.0, 1.4, 0.0))?;
+/// let answer = signed_distance(&parcel, &floor, SignedDistanceOptions::default());
+/// assert!((answer.signed_distance + 0.1).abs() < 1e-15);
+/// assert!(answer.lower <= answer.signed_distance && answer.signed_distance <= answer.upper);
+/// assert_eq!(answer.normal, DVec3::Y); // the parcel leaves upwards
+/// # Ok::<(), convex_support::InvalidShape>(())
+/// ```
+///
+/// With `C = A − B` and its support value `h`, the signed distance is `−min h(u)` over all unit vectors `u`, and the normal is `−u`:
+/// where zero is outside `C`, the plane farthest from it that separates; where it is inside, the nearest plane that supports. Cores
+/// that are apart answer both by their distance, less the radii. Of cores that overlap, an [expanding
+/// polytope](SignedDistance::unexpanded) proves that no way out is shorter than the one found.
+pub fn signed_distance<A, B>(a: &A, b: &B, options: SignedDistanceOptions<A::Vector>) -> SignedDistance<A::Vector>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    signed_distance_with(a, b, options, |_| {})
+}
+
+/// [`signed_distance`], showing an observer every iterate: those of [`distance`](crate::distance) as long as the cores may be
+/// apart. After that the simplex is the facet nearest to zero, `v` its foot, `w` the support point along its normal, and the bounds
+/// are those of the signed distance of the cores.
+pub fn signed_distance_with<A, B>(
+    a: &A,
+    b: &B,
+    options: SignedDistanceOptions<A::Vector>,
+    mut observer: impl FnMut(Iterate<'_, A::Vector>),
+) -> SignedDistance<A::Vector>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let mut cores = Cores::new(a, b);
+    let (state, end) = cores.approach(&options, &mut observer);
+    let apart = Reached::of_gjk(&cores, &state, end);
+    let reached = if end == End::Separated || !state.length.is_finite() {
+        apart
+    } else {
+        let simplex: SmallVec<[_; MAX_POINTS]> = vertices(&state).collect();
+        match expand(&mut cores, &simplex, -apart.inner, &options, &mut observer) {
+            Some(expanded) => Reached::of_expansion(&cores, &expanded, &apart, end),
+            None => Reached { status: Status::Stalled, ..apart },
+        }
+    };
+    reached.answer(&cores)
+}
+
+/// The points that GJK ended with.
+fn vertices<V: Vector>(state: &Gjk<V, PointPair<V>>) -> impl Iterator<Item = Vertex<V>> {
+    let (points, along) = (state.simplex.points().iter(), state.simplex.along().iter());
+    let corners = points.zip(along).zip(state.simplex.weighted());
+    corners.map(|((&point, &along), (_, pair))| Vertex { point, along: along.unit().unwrap_or(along), pair })
+}
+
+/// What is known of the cores; lengths in their unit.
+struct Reached<V: Vector> {
+    /// The unit vector out of their difference, and how far that reaches along it: minus their signed distance.
+    u: V,
+    depth: V::Scalar,
+    /// Bounds on the depth.
+    inner: V::Scalar,
+    outer: V::Scalar,
+    points: PointPair<V>,
+    status: Status,
+    unexpanded: usize,
+}
+
+impl<V: Vector> Reached<V> {
+    /// By GJK alone.
+    fn of_gjk<A, B>(cores: &Cores<'_, A, B>, state: &Gjk<V, PointPair<V>>, end: End) -> Self
+    where
+        A: SupportMap<Vector = V> + ?Sized,
+        B: SupportMap<Vector = V> + ?Sized,
+    {
+        let (mut points, mut closest, mut sum) = (PointPair::default(), V::ZERO, V::Scalar::ZERO);
+        for (&point, (weight, pair)) in state.simplex.points().iter().zip(state.simplex.weighted()) {
+            points = points.plus(pair, weight);
+            closest += point * weight;
+            sum += weight;
+        }
+        let closest = closest / sum;
+        let infinity = V::Scalar::infinity();
+        // The direction of the closest points, or where rounding may have made that up, of the last plane.
+        let direction = if cores.is_well_known(closest) { closest } else { state.axis };
+        let n = direction.unit().or_else(|| state.normal.unit()).unwrap_or_else(|| V::axis(0));
+        let is_known = state.length.is_finite() && sum > V::Scalar::ZERO;
+        Self {
+            u: -n,
+            depth: -state.length,
+            inner: if is_known { -cores.greatest_length(closest) } else { -infinity },
+            outer: state.axis.unit().map_or(infinity, |n| cores.error_along(n) - state.lower),
+            points,
+            status: end.status(),
+            unexpanded: 0,
+        }
+    }
+
+    /// By an expansion, after GJK had come to an end.
+    fn of_expansion<A, B>(cores: &Cores<'_, A, B>, expanded: &Expanded<V>, apart: &Self, end: End) -> Self
+    where
+        A: SupportMap<Vector = V> + ?Sized,
+        B: SupportMap<Vector = V> + ?Sized,
+    {
+        let &Expanded { way, points, inner, status, unexpanded } = expanded;
+        let outer = (way.h + cores.error_along(way.u())).min(apart.outer);
+        // Where the cores turn out to be apart, GJK's points are nearer than those of a facet.
+        let is_apart = way.h < Scalar::ZERO && end != End::Overlap;
+        if is_apart {
+            return Self { outer, ..Self { points: apart.points, ..*apart } };
+        }
+        Self { u: way.u(), depth: way.h, inner, outer, points: points.unwrap_or(apart.points), status, unexpanded }
+    }
+
+    /// The answer in the world's unit, with the radii.
+    fn answer<A, B>(&self, cores: &Cores<'_, A, B>) -> SignedDistance<V>
+    where
+        A: SupportMap<Vector = V> + ?Sized,
+        B: SupportMap<Vector = V> + ?Sized,
+    {
+        let scale = cores.scale();
+        let [a, b] = &cores.parts;
+        let radius = a.radius + b.radius;
+        // Unit vectors are so to 2ε, and the sum of the radii and the two sums below round to half of that.
+        let rounding = V::Scalar::from_f64(3.0) * V::Scalar::EPSILON;
+        let world = |depth: V::Scalar| -(depth * scale) - radius;
+        let slack = |x: V::Scalar| rounding * (x.abs() + radius);
+        let (lower, upper) = (world(self.outer), world(self.inner));
+        let (lower, upper) = (lower - slack(lower), upper + slack(upper));
+        // Numbers that are not finite, or contradict one another, are of a support map that is none, and bound nothing.
+        let is_bounded = lower.is_finite() && upper.is_finite() && lower <= upper;
+        let infinity = V::Scalar::infinity();
+        let (lower, upper) = if is_bounded { (lower, upper) } else { (-infinity, infinity) };
+        let status = if is_bounded || self.status != Status::Converged { self.status } else { Status::Stalled };
+        let signed_distance = world(self.depth).max(lower).min(upper);
+        SignedDistance {
+            signed_distance,
+            lower,
+            upper,
+            normal: -self.u,
+            point_a: a.origin + self.points.a * scale + self.u * a.radius,
+            point_b: b.origin + self.points.b * scale - self.u * b.radius,
+            overlap: signed_distance <= V::Scalar::ZERO,
+            status,
+            iterations: cores.iterations,
+            unexpanded: self.unexpanded,
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! The first polytope of an expansion.
+
+use convex_support::{SupportMap, Vector};
+
+use super::boundary::Boundary;
+use super::cores::{Cores, Vertex};
+use super::expansion::WayOut;
+use crate::simplex::MAX_POINTS;
+use crate::simplex::cross;
+
+/// Where an expansion begins, with the best way out that was met on the way there.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Start<V: Vector> {
+    /// The boundary of a simplex.
+    Full(WayOut<V>),
+    /// The difference is no thicker than rounding along this direction.
+    Flat(WayOut<V>),
+}
+
+/// A simplex of support points, beginning with those that GJK ended with; `None` where a support point is not finite.
+///
+/// As long as the points span no volume, the points farthest both ways across them are looked for, and the farther one is added.
+pub(super) fn start<A, B>(
+    cores: &mut Cores<'_, A, B>,
+    simplex: &[Vertex<A::Vector>],
+    boundary: &mut Boundary<A::Vector>,
+) -> Option<Start<A::Vector>>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let mut span = Span::new();
+    for &vertex in simplex {
+        let _ = span.add(vertex, |u| cores.rounding_along(u));
+    }
+    let mut best: Option<WayOut<A::Vector>> = None;
+    while span.len < A::Vector::DIM + 1 {
+        let u = span.across();
+        let ways = [WayOut::new(cores.support(u)?), WayOut::new(cores.support(-u)?)];
+        let least = if ways[1].h < ways[0].h { ways[1] } else { ways[0] };
+        if best.is_none_or(|best| least.h < best.h) {
+            best = Some(least);
+        }
+        if span.len == 0 {
+            let _ = span.add(ways[0].vertex, |u| cores.rounding_along(u));
+        }
+        let height = |way: &WayOut<A::Vector>| way.h - way.u().dot(span.points[0].point);
+        let farther = if height(&ways[1]) > height(&ways[0]) { ways[1] } else { ways[0] };
+        if !span.add(farther.vertex, |u| cores.rounding_along(u)) {
+            return Some(Start::Flat(least));
+        }
+    }
+    if !boundary.begin(&span.points[..span.len]) {
+        return None;
+    }
+    let best = match best {
+        Some(best) => best,
+        None => {
+            let (nearest, _) = boundary.nearest();
+            let u = boundary.facet_at(nearest).normal;
+            WayOut::new(cores.support(u)?)
+        }
+    };
+    Some(Start::Full(best))
+}
+
+/// Affinely independent points.
+struct Span<V: Vector> {
+    points: [Vertex<V>; MAX_POINTS],
+    len: usize,
+    /// Orthogonal unit vectors along the edges from the first point.
+    basis: [V; MAX_POINTS],
+}
+
+impl<V: Vector> Span<V> {
+    fn new() -> Self {
+        let none = Vertex { point: V::ZERO, along: V::ZERO, pair: Default::default() };
+        Self { points: [none; MAX_POINTS], len: 0, basis: [V::ZERO; MAX_POINTS] }
+    }
+
+    /// Adds a point, unless it is no farther from the span of the others than rounding, of which `rounding` says how much it is
+    /// along a unit vector; whether it was added.
+    fn add(&mut self, vertex: Vertex<V>, rounding: impl Fn(V) -> V::Scalar) -> bool {
+        if self.len > 0 {
+            let edge = self.orthogonal(vertex.point - self.points[0].point);
+            match edge.unit() {
+                Some(u) if u.dot(edge) > rounding(u) => self.basis[self.len - 1] = u,
+                _ => return false,
+            }
+        }
+        self.points[self.len] = vertex;
+        self.len += 1;
+        true
+    }
+
+    /// The part of a vector across the span. Done twice, it is so to rounding.
+    fn orthogonal(&self, mut v: V) -> V {
+        for _ in 0..2 {
+            for &e in &self.basis[..self.len.saturating_sub(1)] {
+                v -= e * e.dot(v);
+            }
+        }
+        v
+    }
+
+    /// A unit vector across the span.
+    fn across(&self) -> V {
+        if V::DIM == 3 && self.len == 3 {
+            return cross(self.basis[0], self.basis[1]).unit().unwrap_or_else(|| V::axis(0));
+        }
+        let mut best = V::ZERO;
+        for i in 0..V::DIM {
+            let v = self.orthogonal(V::axis(i));
+            if v.length_squared() > best.length_squared() {
+                best = v;
+            }
+        }
+        best.unit().unwrap_or_else(|| V::axis(0))
+    }
+}
+
+/// So that no more points are asked for than there is room for.
+const _: () = assert!(MAX_POINTS == 4, "a simplex of space has four points");

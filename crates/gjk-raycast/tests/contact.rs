@@ -1,0 +1,126 @@
+//! Contact manifolds.
+
+mod common;
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+use common::{at, cuboid, turned};
+use convex_support::glam::{DQuat, DVec2, DVec3};
+use convex_support::{Affine, Ball, Capsule, Cone, Cylinder, Matrix, Polytope, Rounded, SupportMap, Vector, glam};
+use gjk_raycast::{Contact, SignedDistanceOptions, contact};
+
+const VALID: &str = "positive sizes";
+
+fn touch<V, A, B>(a: &A, b: &B) -> Contact<V>
+where
+    V: Vector,
+    A: SupportMap<Vector = V>,
+    B: SupportMap<Vector = V>,
+{
+    contact(a, b, V::Scalar::default(), SignedDistanceOptions::default()).expect("they touch")
+}
+
+/// So many points, each as deep as given, in both shapes' places along the normal.
+fn has<V: Vector<Scalar = f64>>(contact: &Contact<V>, count: usize, depth: f64) {
+    assert_eq!(contact.points().len(), count, "{contact:?}");
+    for point in contact.points() {
+        assert!((point.signed_distance + depth).abs() < 1e-9, "{contact:?}");
+        let apart = point.point_a - point.point_b - contact.normal * point.signed_distance;
+        assert!(apart.norm() < 1e-12, "{contact:?}");
+    }
+}
+
+fn floor() -> convex_support::Posed<convex_support::Cuboid<DVec3>> {
+    at(cuboid([5.0, 1.0, 5.0]), [0.0, -1.0, 0.0])
+}
+
+#[test]
+fn faces_edges_and_vertices_touch_the_floor() {
+    let unit = cuboid::<DVec3>([0.5, 0.5, 0.5]);
+    has(&touch(&at(unit, [0.0, 0.49, 0.0]), &floor()), 4, 0.01);
+    let edge = DQuat::from_rotation_z(FRAC_PI_4);
+    has(&touch(&turned(unit, edge, [0.0, 0.5_f64.sqrt() - 0.01, 0.0]), &floor()), 2, 0.01);
+    let vertex = DQuat::from_rotation_arc(DVec3::ONE.normalize(), DVec3::NEG_Y);
+    has(&touch(&turned(unit, vertex, [0.0, 0.75_f64.sqrt() - 0.01, 0.0]), &floor()), 1, 0.01);
+    // Only what is above the floor carries.
+    let over = touch(&at(unit, [5.0, 0.49, 0.2]), &floor());
+    has(&over, 4, 0.01);
+    assert!(over.points().iter().all(|p| p.point_b.x <= 5.0), "{over:?}");
+}
+
+#[test]
+fn edges_that_cross_touch_in_a_point() {
+    let unit = cuboid::<DVec3>([0.5, 0.5, 0.5]);
+    let below = turned(unit, DQuat::from_rotation_x(FRAC_PI_4), [0.0; 3]);
+    let above = turned(unit, DQuat::from_rotation_z(FRAC_PI_4), [0.0, 2.0_f64.sqrt() - 0.02, 0.0]);
+    has(&touch(&above, &below), 1, 0.02);
+}
+
+#[test]
+fn round_shapes_touch_where_they_carry() {
+    has(&touch(&at(Ball::<DVec3>::new(0.5).expect(VALID), [0.0, 0.49, 0.0]), &floor()), 1, 0.01);
+    let capsule = Capsule::<DVec3>::new(0.5, 0.25).expect(VALID);
+    let lying = DQuat::from_rotation_z(FRAC_PI_2);
+    has(&touch(&turned(capsule, lying, [0.0, 0.24, 0.0]), &floor()), 2, 0.01);
+    has(&touch(&at(capsule, [0.0, 0.74, 0.0]), &floor()), 1, 0.01);
+    let cylinder = Cylinder::<DVec3>::new(0.5, 0.25).expect(VALID);
+    has(&touch(&at(cylinder, [0.0, 0.49, 0.0]), &floor()), 4, 0.01);
+    has(&touch(&turned(cylinder, lying, [0.0, 0.24, 0.0]), &floor()), 2, 0.01);
+    has(&touch(&at(Cone::<DVec3>::new(0.5, 0.25).expect(VALID), [0.0, 0.49, 0.0]), &floor()), 4, 0.01);
+    let rounded = Rounded::new(cuboid::<DVec3>([0.4, 0.4, 0.4]), 0.1).expect(VALID);
+    has(&touch(&at(rounded, [0.0, 0.49, 0.0]), &floor()), 4, 0.01);
+    let sheared = glam::DMat3::from_cols(DVec3::X, DVec3::new(0.3, 1.0, 0.0), DVec3::Z);
+    let affine = Affine::new(cuboid::<DVec3>([0.5, 0.5, 0.5]), sheared, DVec3::new(0.0, 0.49, 0.0)).expect("finite");
+    assert!(Matrix::is_finite(&sheared), "a map");
+    has(&touch(&affine, &floor()), 4, 0.01);
+}
+
+#[test]
+fn polygons_keep_four_corners_that_span_them() {
+    let prism = |count: u32| {
+        let corner = move |i: u32, y: f64| {
+            let (sine, cosine) = (std::f64::consts::TAU * f64::from(i) / f64::from(count)).sin_cos();
+            DVec3::new(cosine, y, sine)
+        };
+        Polytope::new((0..count).flat_map(move |i| [corner(i, 0.0), corner(i, 1.0)])).expect("points")
+    };
+    for count in [5, 12, 40] {
+        let contact = touch(&at(prism(count), [0.0, -0.01, 0.0]), &floor());
+        has(&contact, 4, 0.01);
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| contact.points()[i].point_a);
+        // The first two are a diagonal, the others on either side.
+        let area = (b - a).cross(d - c).length() / 2.0;
+        assert!(area > 1.2, "{count}: {area} {contact:?}");
+    }
+}
+
+#[test]
+fn in_the_plane_there_are_two_points() {
+    let ground = at(cuboid::<DVec2>([5.0, 1.0, 0.0]), [0.0, -1.0, 0.0]);
+    has(&touch(&at(cuboid::<DVec2>([0.5, 0.5, 0.0]), [4.8, 0.49, 0.0]), &ground), 2, 0.01);
+    has(&touch(&at(Ball::<DVec2>::new(0.5).expect(VALID), [0.0, 0.49, 0.0]), &ground), 1, 0.01);
+}
+
+#[test]
+fn farther_than_asked_there_is_no_contact() {
+    let above = at(cuboid::<DVec3>([0.5, 0.5, 0.5]), [0.0, 0.6, 0.0]);
+    assert_eq!(contact(&above, &floor(), 0.05, SignedDistanceOptions::default()), None);
+    let near = contact(&above, &floor(), 0.2, SignedDistanceOptions::default()).expect("within 0.2");
+    has(&near, 4, -0.1);
+}
+
+#[test]
+fn numbers_of_features_stay_while_shapes_move_a_little() {
+    let unit = cuboid::<DVec3>([0.5, 0.5, 0.5]);
+    let numbers = |x: f64, angle: f64| {
+        let moved =
+            turned(unit, DQuat::from_euler(glam::EulerRot::XYZ, angle, 0.5 * angle, -angle), [x, 0.999, 0.5 * x]);
+        let mut numbers: Vec<_> = touch(&moved, &unit).points().iter().map(|p| (p.feature_a, p.feature_b)).collect();
+        numbers.sort_unstable();
+        numbers
+    };
+    let first = numbers(0.0, 0.0);
+    for (x, angle) in [(1e-4, 0.0), (-1e-4, 1e-5), (1e-3, -1e-4), (-1e-3, 1e-4)] {
+        assert_eq!(numbers(x, angle), first, "{x} {angle}");
+    }
+}

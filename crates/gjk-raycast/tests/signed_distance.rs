@@ -1,0 +1,242 @@
+//! Signed distances that are known in closed form or by looking at every facet, and shapes that are none.
+
+mod common;
+
+use std::cell::Cell;
+
+use common::{at, cuboid, s, turned, v};
+use convex_support::glam::{DQuat, DVec2, DVec3, Vec3, Vec3A};
+use convex_support::{
+    Ball, Capsule, Cylinder, Ellipsoid, Point, Polytope, Posed, Rounded, Scalar, Segment, SupportMap, Triangle, Vector,
+};
+use gjk_raycast::{SignedDistance, SignedDistanceOptions, Status, signed_distance, signed_distance_with};
+
+const VALID: &str = "positive sizes";
+
+fn ask<A, B>(a: &A, b: &B) -> SignedDistance<A::Vector>
+where
+    A: SupportMap,
+    B: SupportMap<Vector = A::Vector>,
+{
+    signed_distance(a, b, SignedDistanceOptions::default())
+}
+
+/// The answer is converged, is the truth to a few roundings, and has a bracket as narrow as asked for that holds it.
+fn is<V: Vector>(answer: SignedDistance<V>, truth: f64, width: f64) {
+    let SignedDistance { signed_distance, lower, upper, status, .. } = answer;
+    assert_eq!(status, Status::Converged, "{answer:?}");
+    let error = (signed_distance.as_f64() - truth).abs();
+    assert!(error <= 16.0 * V::Scalar::EPSILON.as_f64() * (1.0 + truth.abs()), "{truth}: {answer:?}");
+    assert!(lower.as_f64() <= truth && truth <= upper.as_f64(), "{truth}: {answer:?}");
+    assert!((upper - lower).as_f64() <= width, "{truth}: {answer:?}");
+}
+
+#[test]
+fn balls_and_capsules_overlap_by_their_radii() {
+    let ball = Ball::<DVec3>::new(1.0).expect(VALID);
+    let answer = ask(&at(ball, [1.5, 0.0, 0.0]), &ball);
+    is(answer, -0.5, 1e-14);
+    assert_eq!((answer.normal, answer.point_a), (DVec3::X, DVec3::new(0.5, 0.0, 0.0)));
+    is(ask(&ball, &ball), -2.0, 1e-14);
+
+    // Two capsules crossed at a height of 0.3.
+    let capsule = Capsule::<DVec3>::new(1.0, 0.25).expect(VALID);
+    let across = turned(capsule, DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2), [0.3, 0.0, 0.0]);
+    let answer = ask(&across, &capsule);
+    is(answer, -0.2, 1e-14);
+    assert!((answer.normal - DVec3::X).length() < 1e-15, "{answer:?}");
+}
+
+#[test]
+fn boxes_leave_through_the_nearest_face() {
+    let answer = ask(&at(cuboid::<DVec3>([1.0, 1.0, 1.0]), [0.5, 1.75, 0.25]), &cuboid([1.0, 1.0, 1.0]));
+    is(answer, -0.25, 1e-14);
+    assert_eq!(answer.normal, DVec3::Y);
+    assert!((answer.point_a - answer.point_b + DVec3::Y * 0.25).length() < 1e-15, "{answer:?}");
+    // Edge against edge: each leans by a quarter turn about another axis.
+    let lean = |axis: DVec3| DQuat::from_axis_angle(axis, std::f64::consts::FRAC_PI_4);
+    let (root, depth) = (2.0_f64.sqrt(), 0.125);
+    let below = turned(cuboid::<DVec3>([1.0, 1.0, 1.0]), lean(DVec3::X), [0.0; 3]);
+    let above = turned(cuboid::<DVec3>([1.0, 1.0, 1.0]), lean(DVec3::Z), [0.0, 2.0 * root - depth, 0.0]);
+    is(ask(&above, &below), -depth, 1e-13);
+    // In the plane.
+    is(ask(&at(cuboid::<DVec2>([1.0, 0.5, 0.0]), [0.25, 0.75, 0.0]), &cuboid([1.0, 0.5, 0.0])), -0.25, 1e-14);
+}
+
+#[test]
+fn curved_shapes_have_a_narrow_bracket_too() {
+    // The ellipsoid reaches 0.5 along x, the shortest way out.
+    let ellipsoid = Ellipsoid::new(DVec3::ZERO, DVec3::new(0.5, 1.0, 2.0), DQuat::IDENTITY).expect(VALID);
+    is(ask(&ellipsoid, &at(cuboid([3.0, 4.0, 5.0]), [3.25, 0.0, 0.0])), -0.25, 2e-8);
+    // A cylinder lies on the ground, a bit deep; another stands on it.
+    let ground = cuboid::<DVec3>([5.0, 1.0, 5.0]);
+    let cylinder = Cylinder::<DVec3>::new(1.0, 0.5).expect(VALID);
+    let lying = turned(cylinder, DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2), [0.3, 1.45, 0.2]);
+    is(ask(&lying, &ground), -0.05, 2e-8);
+    is(ask(&at(cylinder, [0.0, 1.875, 0.0]), &ground), -0.125, 1e-13);
+    let rounded = Rounded::new(cuboid::<DVec3>([0.5, 0.5, 0.5]), 0.25).expect(VALID);
+    is(ask(&at(rounded, [0.0, 1.625, 0.0]), &ground), -0.125, 1e-13);
+}
+
+#[test]
+fn small_gaps_above_large_floors_are_known_in_single_precision() {
+    for half in [50.0, 500.0, 5000.0] {
+        for gap in [1e-5, 1e-4, 1e-3, -1e-5, -1e-3] {
+            let height: Vec3A = v([0.25, 0.5 + gap, -0.125]);
+            let parcel = Posed::translated(cuboid::<Vec3A>([0.5, 0.5, 0.5]), height).expect("finite");
+            let answer = ask(&parcel, &at(cuboid::<Vec3A>([half, 1.0, half]), [0.0, -1.0, 0.0]));
+            let truth = f64::from(height.y) - 0.5;
+            assert!((f64::from(answer.signed_distance) - truth).abs() < 5e-7, "{half} {gap}: {answer:?}");
+            assert!(f64::from(answer.lower) <= truth && truth <= f64::from(answer.upper), "{half} {gap}: {answer:?}");
+            assert!((answer.normal - Vec3A::Y).length() < 1e-6, "{half} {gap}: {answer:?}");
+        }
+    }
+}
+
+#[test]
+fn the_unit_of_length_does_not_matter() {
+    let points = |unit: f64| {
+        [[0.9, 0.1, 0.2], [-0.7, 0.3, 0.1], [0.2, -0.8, 0.4], [0.1, 0.2, -0.9], [-0.3, 0.4, 0.8]]
+            .map(|p| v::<DVec3>(p) * unit)
+    };
+    let pair = |unit: f64| {
+        let a = Polytope::new(points(unit)).expect("points");
+        let b = Cylinder::<DVec3>::new(0.7 * unit, 0.4 * unit).expect(VALID);
+        ask(&a, &at(b, [0.3 * unit, 0.2 * unit, 0.1 * unit]))
+    };
+    let one = pair(1.0);
+    for power in [-300, -40, 3, 200] {
+        let unit = 2.0_f64.powi(power);
+        let answer = pair(unit);
+        assert_eq!(answer.signed_distance, one.signed_distance * unit, "2^{power}");
+        assert_eq!((answer.lower, answer.upper), (one.lower * unit, one.upper * unit), "2^{power}");
+        assert_eq!((answer.normal, answer.iterations), (one.normal, one.iterations), "2^{power}");
+    }
+}
+
+/// The least support value of `A − B` along the normal of any plane that can be of a facet of it: of three points of one, or along an
+/// edge of each.
+fn least_of_all_facets(a: &[DVec3], b: &[DVec3]) -> f64 {
+    let edges = |points: &[DVec3]| -> Vec<DVec3> {
+        (0..points.len()).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| points[i] - points[j]).collect()
+    };
+    let (of_a, of_b) = (edges(a), edges(b));
+    let pairs = [(&of_a, &of_a), (&of_b, &of_b), (&of_a, &of_b)];
+    let normals = pairs.into_iter().flat_map(|(p, q)| p.iter().flat_map(|p| q.iter().map(|q| p.cross(*q))));
+    let reach = |points: &[DVec3], n: DVec3| points.iter().map(|p| n.dot(*p)).fold(f64::NEG_INFINITY, f64::max);
+    let depths = normals.filter_map(DVec3::try_normalize).flat_map(|n| [n, -n]).map(|n| reach(a, n) + reach(b, -n));
+    depths.fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn polytopes_leave_through_the_nearest_of_all_facets() {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut uniform = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / 2.0_f64.powi(52) - 1.0
+    };
+    let mut deep = 0;
+    for round in 0..400 {
+        let mut cloud = || -> Vec<DVec3> {
+            let thin = if round % 2 == 0 { 1.0 } else { 10.0_f64.powf(-3.0 * uniform().abs()) };
+            let offset = DVec3::new(uniform(), uniform(), uniform()) * 0.5;
+            (0..6).map(|_| DVec3::new(uniform(), uniform(), uniform() * thin) + offset).collect()
+        };
+        let (a, b) = (cloud(), cloud());
+        let answer = ask(&Polytope::new(a.clone()).expect("points"), &Polytope::new(b.clone()).expect("points"));
+        let depth = least_of_all_facets(&a, &b);
+        if depth > 0.0 {
+            deep += 1;
+            is(answer, -depth, 1e-13);
+        } else {
+            assert!(answer.lower > -1e-14 && !answer.upper.is_sign_negative(), "{depth} {answer:?}");
+        }
+    }
+    assert!(deep > 150, "most overlap, but {deep}");
+}
+
+#[test]
+fn flat_and_identical_shapes_have_an_answer() {
+    let cube = cuboid::<DVec3>([1.0, 1.0, 1.0]);
+    is(ask(&cube, &cube), -2.0, 1e-13);
+    let plate = cuboid::<DVec3>([1.0, 1.0, 0.0]);
+    is(ask(&plate, &plate), 0.0, 1e-13);
+    is(ask(&plate, &cube), -1.0, 1e-13);
+    let point = Point::new(DVec3::ZERO).expect("finite");
+    is(ask(&point, &point), 0.0, 1e-13);
+    is(ask(&point, &cube), -1.0, 1e-13);
+    let segment = Segment::new([DVec3::NEG_X, DVec3::X]).expect("finite");
+    is(ask(&segment, &segment), 0.0, 1e-13);
+    is(ask(&segment, &plate), 0.0, 1e-13);
+    let triangle = Triangle::new([DVec3::ZERO, DVec3::X, DVec3::Y]).expect("finite");
+    is(ask(&triangle, &triangle), 0.0, 1e-13);
+    is(ask(&cuboid::<Vec3>([1.0, 1.0, 1.0]), &cuboid([1.0, 1.0, 1.0])), -2.0, 1e-5);
+}
+
+#[test]
+fn ties_end_with_a_bracket() {
+    // Every direction is as good as any other, and no facet is of the boundary.
+    let ball = Ellipsoid::new(DVec3::ZERO, DVec3::ONE, DQuat::IDENTITY).expect(VALID);
+    let answer = ask(&ball, &ball);
+    assert_eq!((answer.status, answer.iterations), (Status::IterationLimit, 500));
+    assert!(answer.lower <= -2.0 && -2.0 <= answer.upper && answer.upper < -1.9, "{answer:?}");
+    assert!((answer.signed_distance + 2.0).abs() < 1e-14, "{answer:?}");
+}
+
+#[test]
+fn limits_end_the_search_early() {
+    let cube = cuboid::<DVec3>([1.0, 1.0, 1.0]);
+    let apart = at(cube, [5.0, 0.1, 0.2]);
+    let near = signed_distance(&cube, &apart, SignedDistanceOptions::default().with_limit(1.0));
+    assert!(near.lower > 1.0 && near.lower <= 3.0 && near.upper >= 3.0, "{near:?}");
+    let ball = Ellipsoid::new(DVec3::ZERO, DVec3::ONE, DQuat::IDENTITY).expect(VALID);
+    let deep = signed_distance(&ball, &ball, SignedDistanceOptions::default().with_depth_limit(1.0));
+    assert!(deep.upper < -1.0 && deep.iterations < 50, "{deep:?}");
+    let few = signed_distance(&ball, &cube, SignedDistanceOptions::default().with_max_iterations(8));
+    assert_eq!(few.status, Status::IterationLimit);
+    assert!(few.lower <= -2.0 && few.upper >= -2.0, "{few:?}");
+}
+
+#[test]
+fn an_observer_sees_the_bounds_close() {
+    let cylinder = Cylinder::<DVec3>::new(0.5, 0.3).expect(VALID);
+    let mut gaps = Vec::new();
+    let answer =
+        signed_distance_with(&cylinder, &at(cylinder, [0.1, 0.2, 0.3]), SignedDistanceOptions::default(), |i| {
+            gaps.push(i.upper - i.lower);
+        });
+    assert!(gaps.len() > 5 && gaps.len() <= answer.iterations, "{} {answer:?}", gaps.len());
+    assert!(gaps.last().is_some_and(|&gap| gap < 1e-6), "{gaps:?}");
+}
+
+/// A support map that says whatever it likes.
+struct Liar<F>(F, Cell<u32>);
+
+impl<F: Fn(DVec3, u32) -> DVec3> SupportMap for Liar<F> {
+    type Vector = DVec3;
+
+    fn support(&self, direction: DVec3) -> DVec3 {
+        self.1.set(self.1.get() + 1);
+        (self.0)(direction, self.1.get())
+    }
+}
+
+#[test]
+fn shapes_that_are_none_end_the_search() {
+    let cube = cuboid::<DVec3>([1.0, 1.0, 1.0]);
+    let check = |lie: &dyn Fn(DVec3, u32) -> DVec3| {
+        let answer = ask(&Liar(lie, Cell::new(0)), &cube);
+        assert!(answer.lower <= answer.upper && !answer.signed_distance.is_nan(), "{answer:?}");
+        assert!((answer.normal.length() - 1.0).abs() < 1e-14, "{answer:?}");
+    };
+    check(&|_, _| DVec3::NAN);
+    check(&|d, _| d * f64::INFINITY);
+    check(&|d, _| -DVec3::ONE.copysign(d));
+    check(&|d, n| d * f64::from(n * 7919 % 13) + DVec3::new(f64::from(n * 31 % 7), f64::from(n * 17 % 5), 0.3));
+    for k in 1..40 {
+        check(&|d, n| if n == k { DVec3::NAN } else { DVec3::ONE.copysign(d) * s::<DVec3>(1.0) });
+        check(&|d, n| if n == k { DVec3::ZERO } else { DVec3::new(3.0, 2.0, 1.0).copysign(d) });
+    }
+}
