@@ -49,6 +49,7 @@ extern crate alloc;
 #[cfg(any(feature = "std", test))]
 extern crate std;
 
+mod angular_velocity;
 mod bounds;
 mod bvh;
 mod closest_point;
@@ -75,6 +76,7 @@ mod vector;
 
 pub use glam;
 
+pub use angular_velocity::AngularVelocity;
 pub use bounds::{Aabb, BoundingSphere, bounding_box, bounding_sphere};
 pub use bvh::{Bound, BoxDistance, Boxes, Bvh, Lanes, PairSearch, SweptBox, WIDTH, outer_box};
 pub use closest_point::closest_point;

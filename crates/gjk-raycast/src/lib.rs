@@ -28,6 +28,8 @@
 //! - *Many rays at once?* [`ray_casts`].
 //! - *Many bodies?* [`Scene`]: the first hit, the nearest, all within a distance, and pairs.
 //! - *When do two shapes meet that move without turning?* [`linear_cast`] (Algorithm 3 on their difference).
+//! - *When do two shapes meet that move and turn?* [`motion_cast`], along [rigid motions](RigidMotion), [chains of joints](ChainMotion)
+//!   or a [`Trajectory`] of your own.
 //! - *The same from closest points alone:* [`iterative_ray_cast`] (Algorithm 1), for shapes with a closed form.
 //!
 //! Each has a variant `…_with` that shows an [observer](Iterate) every iterate, and every answer says how it ended
@@ -65,6 +67,7 @@ mod gjk;
 mod intersects;
 mod iterative_ray_cast;
 mod linear_cast;
+mod motion;
 mod options;
 mod ray;
 mod ray_cast;
@@ -85,6 +88,10 @@ pub use error::RayCastError;
 pub use intersects::{intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{Motion, linear_cast, linear_cast_with};
+pub use motion::{
+    ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionHit, MotionIterate, MovingBall, Pose, RigidMotion,
+    StartInContact, Trajectory, TurningPlane, motion_cast, motion_cast_with,
+};
 pub use options::{CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, RayCastOptions};
 pub use ray::Ray;
 pub use ray_cast::{ray_cast, ray_cast_with};

@@ -10,6 +10,7 @@ macro_rules! glam_vector {
         scalar: $S:ident,
         coordinates: [$($i:literal),+],
         rotation: $R:ident,
+        angular_velocity: $W:ident,
         matrix: $M:ident $(,)?
     }) => {
         impl sealed::Sealed for $V {}
@@ -19,6 +20,7 @@ macro_rules! glam_vector {
             type Scalar = $S;
             type Matrix = $M;
             type Rotation = $R;
+            type AngularVelocity = $W;
 
             const DIM: usize = [$($i),+].len();
             const ZERO: Self = Self::ZERO;
@@ -75,11 +77,41 @@ macro_rules! glam_vector {
     };
 }
 
-glam_vector!(Vec2 { scalar: f32, coordinates: [0, 1], rotation: f32, matrix: Mat2 });
-glam_vector!(DVec2 { scalar: f64, coordinates: [0, 1], rotation: f64, matrix: DMat2 });
-glam_vector!(Vec3 { scalar: f32, coordinates: [0, 1, 2], rotation: Quat, matrix: Mat3 });
-glam_vector!(Vec3A { scalar: f32, coordinates: [0, 1, 2], rotation: Quat, matrix: Mat3A });
-glam_vector!(DVec3 { scalar: f64, coordinates: [0, 1, 2], rotation: DQuat, matrix: DMat3 });
+glam_vector!(Vec2 {
+    scalar: f32,
+    coordinates: [0, 1],
+    rotation: f32,
+    angular_velocity: f32,
+    matrix: Mat2,
+});
+glam_vector!(DVec2 {
+    scalar: f64,
+    coordinates: [0, 1],
+    rotation: f64,
+    angular_velocity: f64,
+    matrix: DMat2,
+});
+glam_vector!(Vec3 {
+    scalar: f32,
+    coordinates: [0, 1, 2],
+    rotation: Quat,
+    angular_velocity: Vec3,
+    matrix: Mat3,
+});
+glam_vector!(Vec3A {
+    scalar: f32,
+    coordinates: [0, 1, 2],
+    rotation: Quat,
+    angular_velocity: Vec3A,
+    matrix: Mat3A,
+});
+glam_vector!(DVec3 {
+    scalar: f64,
+    coordinates: [0, 1, 2],
+    rotation: DQuat,
+    angular_velocity: DVec3,
+    matrix: DMat3,
+});
 
 impl Vector3 for Vec3 {
     #[inline]

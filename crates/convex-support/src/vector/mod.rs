@@ -11,7 +11,7 @@ use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use crate::numerics::range::{is_comfortable, scaled};
-use crate::{Rotation, Scalar};
+use crate::{AngularVelocity, Rotation, Scalar};
 
 /// A vector of 2D or 3D space: glam's `Vec2`, `Vec3`, `Vec3A`, `DVec2` or `DVec3`.
 ///
@@ -49,6 +49,8 @@ pub trait Vector:
     type Matrix: Matrix<Vector = Self>;
     /// How glam says *rotation* in this space: an angle in radians in 2D, a quaternion in 3D.
     type Rotation: Rotation<Self>;
+    /// How fast a body turns in this space: a number in 2D, a vector in 3D.
+    type AngularVelocity: AngularVelocity<Self>;
 
     /// The dimension of the space, 2 or 3.
     const DIM: usize;

@@ -1,0 +1,110 @@
+//! The motion of what several joints carry, such as a link of a robot.
+
+use convex_support::{AngularVelocity, BoundingSphere, Matrix, Scalar, Vector};
+use num_traits::Float as _;
+
+use super::rigid_motion::{RigidMotion, rate};
+use super::trajectory::{Displacement, Trajectory, TurningPlane};
+
+/// The motion of a body at the end of a chain of joints, each of which moves at a constant rate: a link of a robot along a straight
+/// edge in joint space.
+///
+/// Every joint is said as what it would do alone to the links beyond it from where they are at time 0: a revolute joint is the
+/// [rotation](RigidMotion::rotation) at its rate about a point of its axis in the world, a prismatic one the
+/// [translation](RigidMotion::translation), a helical one a screw. They compose to
+///
+/// > x(t) = J₁(t)∘J₂(t)∘…∘Jₙ(t) (x),
+///
+/// the first joint being the one nearest to the base (Brockett's product of exponentials, Murray, Li and Sastry, *A Mathematical
+/// Introduction to Robotic Manipulation*, 1994, section 3.2). A base that moves is one more joint in front.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChainMotion<'j, V: Vector> {
+    joints: &'j [RigidMotion<V>],
+}
+
+impl<'j, V: Vector> ChainMotion<'j, V> {
+    /// The motion by the given joints, from the base to the body.
+    #[must_use]
+    pub const fn new(joints: &'j [RigidMotion<V>]) -> Self {
+        Self { joints }
+    }
+
+    /// Bounds on the speed and the acceleration of all points of a ball until `end`.
+    ///
+    /// Let `y` be a point as the joints beyond joint `k` have moved it, at most at the speed `s` and the acceleration `a`. Joint `k`
+    /// takes it to `c + t·v + R·(y − c)`, with the derivatives
+    ///
+    /// > v + ω × R(y − c) + Rẏ   and   ω × (ω × R(y − c)) + 2ω × Rẏ + Rÿ.
+    ///
+    /// So with `r ≥ |y − c|` they are at most `|v| + |ω|·r + s` and `|ω|²·r + 2|ω|·s + a`. That `r` is the distance from the centre of
+    /// the next joint at time 0, what that may have moved until `end`, and the next joint's `r`, whatever the angles.
+    fn bounds(&self, ball: BoundingSphere<V>, end: V::Scalar) -> (V::Scalar, V::Scalar) {
+        let two = V::Scalar::from_f64(2.0);
+        let (mut near, mut reach) = (ball.center, ball.radius);
+        let (mut speed, mut acceleration) = (V::Scalar::ZERO, V::Scalar::ZERO);
+        for joint in self.joints.iter().rev() {
+            let (v, w) = (joint.velocity.norm(), rate(&joint.angular_velocity.cross_matrix()));
+            // A joint that does not turn has no centre.
+            if w > V::Scalar::ZERO {
+                reach += (near - joint.center).norm();
+                near = joint.center;
+                acceleration += w * (w * reach + two * speed);
+            }
+            speed += v + w * reach;
+            reach += v * end;
+        }
+        (speed, acceleration)
+    }
+}
+
+impl<V: Vector> Trajectory for ChainMotion<'_, V> {
+    type Vector = V;
+
+    fn displacement(&self, time: V::Scalar) -> Displacement<V> {
+        let mut whole = Displacement::shifted(V::ZERO);
+        let mut reach = V::Scalar::ZERO;
+        for joint in self.joints.iter().rev() {
+            let next = joint.displacement(time);
+            if whole.turn_error == V::Scalar::ZERO {
+                whole.pivot = next.pivot;
+            }
+            // x ↦ p + s + (1 + T)(x − p) comes to p + s + s' + T'(p + s − p') + (1 + T')(1 + T)(x − p).
+            let arm = whole.pivot + whole.shift - next.pivot;
+            let turned = next.turn * arm;
+            let units = V::Scalar::EPSILON * V::Scalar::from_f64(4.0);
+            reach += arm.norm() + next.shift.norm();
+            whole.shift_error += next.shift_error + next.turn_error * arm.norm() + units * reach;
+            whole.turn_error += next.turn_error + units;
+            whole.shift += next.shift + turned;
+            whole.turn = whole.turn + next.turn + next.turn * whole.turn;
+        }
+        whole
+    }
+
+    fn velocity(&self, time: V::Scalar, point: V) -> V {
+        let mut velocity = V::ZERO;
+        let mut rotation = <V::Matrix as Matrix>::IDENTITY;
+        // The point as the joints from here on have moved it.
+        let mut point = point;
+        for joint in self.joints {
+            let displacement = joint.displacement(time);
+            velocity += rotation * joint.velocity(time, point);
+            let local = point - displacement.pivot - displacement.shift;
+            point = displacement.pivot + displacement.rotation().transpose_mul(local);
+            rotation = rotation * displacement.rotation();
+        }
+        velocity
+    }
+
+    fn acceleration_along(
+        &self,
+        ball: BoundingSphere<V>,
+        TurningPlane { from, to }: TurningPlane<V>,
+        [start, end]: [V::Scalar; 2],
+    ) -> V::Scalar {
+        let (speed, acceleration) = self.bounds(ball, end);
+        let rate = if from == to { V::Scalar::ZERO } else { (to - from).norm() / (end - start) };
+        let longest = from.norm().max(to.norm());
+        V::Scalar::from_f64(2.0) * rate * speed + longest * acceleration
+    }
+}

@@ -1,0 +1,121 @@
+//! Bodies in contact: bracketing the one that the search has come to, and what to answer where it starts in one.
+
+use convex_support::{Scalar, ScalarOf, SupportMap};
+use num_traits::Float as _;
+
+use super::first_contact::{AIM, End, Search};
+use super::instant::{Instant, Limits};
+use super::options::StartInContact;
+use super::result::MotionIterate;
+use super::trajectory::Trajectory;
+use crate::Status;
+
+/// How much deeper than touching an overlap is looked for, in units of what the distance may be wrong by.
+const DEPTH: f64 = 1.5;
+
+impl<A, MA, B, MB, F> Search<'_, A, MA, B, MB, F>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+    MA: Trajectory<Vector = A::Vector>,
+    MB: Trajectory<Vector = A::Vector>,
+    F: FnMut(MotionIterate<A::Vector>),
+{
+    /// Where the contact is as near as can be told: looks for a time just after it at which the bodies overlap. `None` where they are
+    /// proved apart there, and the search goes on.
+    pub(super) fn close_in(&mut self) -> Option<End<A::Vector>> {
+        let (zero, two) = (ScalarOf::<A>::ZERO, ScalarOf::<A>::from_f64(2.0));
+        let end = self.options.max_time.min(self.upper);
+        let Instant { time, distance, error, closing, .. } = self.near;
+        let deep = distance + error.max(self.closest() * Scalar::from_f64(0.25)) * ScalarOf::<A>::from_f64(DEPTH);
+        // As fast as it closes, or after the time that it would take to come so deep from rest.
+        let (at_speed, from_rest) = (deep / closing, (two * deep / self.expected_acceleration()).sqrt());
+        let mut step = if closing > zero && at_speed < from_rest { at_speed } else { from_rest };
+        while self.looks < self.options.max_iterations {
+            let next = (time + step).max(next_after(time)).min(end);
+            if !(next > time) {
+                return Some(End::Undecided(Status::Stalled));
+            }
+            if next >= self.upper {
+                return Some(End::Contact);
+            }
+            let there = self.look(next, Limits { distance: ScalarOf::<A>::infinity(), depth: zero });
+            if there.overlap {
+                self.block(&there);
+                return Some(End::Contact);
+            }
+            if there.gap > zero {
+                self.ahead = Some(there);
+                if self.take_ahead() {
+                    self.beyond = None;
+                    return None;
+                }
+                // They are apart again after a graze that nobody can tell from a contact.
+                if there.gap > self.closest() && there.closing <= zero {
+                    return Some(End::Undecided(Status::Stalled));
+                }
+            }
+            if next >= end {
+                // The end belongs to the motion.
+                let touches = there.distance <= zero && end == self.options.max_time;
+                return Some(if touches { End::Contact } else { End::Undecided(Status::Stalled) });
+            }
+            step = step * two;
+        }
+        Some(End::Undecided(Status::IterationLimit))
+    }
+
+    /// What to answer where the bodies are not certainly apart at the start.
+    pub(super) fn start_in_contact(&mut self) -> End<A::Vector> {
+        let zero = ScalarOf::<A>::ZERO;
+        if self.near.overlap {
+            self.upper = zero;
+        }
+        if self.options.start_in_contact == StartInContact::IfDeeper && self.leave_contact() {
+            self.upper = ScalarOf::<A>::infinity();
+            return self.advance();
+        }
+        if !self.near.overlap && self.near.closing > zero {
+            // They touch to rounding: when do they overlap?
+            let touching = self.near;
+            let _ = self.close_in();
+            self.near = touching;
+        }
+        End::Contact
+    }
+
+    /// Goes on to a time at which the bodies, which touch or overlap, are apart; whether there is one, and they come no nearer before.
+    fn leave_contact(&mut self) -> bool {
+        let from_f64 = ScalarOf::<A>::from_f64;
+        let rounding = from_f64(16.0) * ScalarOf::<A>::EPSILON;
+        let start = self.near;
+        let mut there = start;
+        let mut step = ScalarOf::<A>::ZERO;
+        while self.looks < self.options.max_iterations {
+            let speed = self.pair.speed_at(&there);
+            if there.closing > speed * rounding || !(there.time < self.options.max_time) {
+                break;
+            }
+            let apart = (there.error * from_f64(AIM) - there.distance) / -there.closing;
+            let least = there.error / speed;
+            step = (step + step).max(if apart > least { apart } else { least });
+            // NaN ends here.
+            if !(step > Scalar::ZERO) {
+                break;
+            }
+            let everything = Limits { distance: ScalarOf::<A>::infinity(), depth: ScalarOf::<A>::infinity() };
+            there = self.look((start.time + step).min(self.options.max_time), everything);
+            if there.gap > Scalar::ZERO {
+                self.near = there;
+                return true;
+            }
+        }
+        self.near = start;
+        false
+    }
+}
+
+/// The next larger number of a time, or a little more.
+fn next_after<S: Scalar>(time: S) -> S {
+    (time + time.abs() * S::EPSILON).max(time + S::min_positive_value())
+}

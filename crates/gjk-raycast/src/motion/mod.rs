@@ -1,0 +1,21 @@
+//! Motion: the first contact of bodies that turn, and motions of any kind.
+
+mod chain_motion;
+mod contact;
+mod first_contact;
+mod free_interval;
+mod instant;
+mod motion_cast;
+mod moved;
+mod next_time;
+mod options;
+mod result;
+mod rigid_motion;
+mod trajectory;
+
+pub use chain_motion::ChainMotion;
+pub use motion_cast::{motion_cast, motion_cast_with};
+pub use options::{MotionCastOptions, StartInContact};
+pub use result::{MotionCast, MotionHit, MotionIterate};
+pub use rigid_motion::{Pose, RigidMotion};
+pub use trajectory::{Displacement, MovingBall, Trajectory, TurningPlane};

@@ -1,0 +1,156 @@
+//! When two bodies meet that move and turn.
+
+use convex_support::{AngularVelocity, Core, Matrix, Scalar, ScalarOf, SupportMap, Vector};
+use num_traits::Float as _;
+
+use super::first_contact::Search;
+use super::instant::{MovingBody, MovingPair};
+use super::moved::Moved;
+use super::options::MotionCastOptions;
+use super::result::{MotionCast, MotionHit, MotionIterate};
+use super::rigid_motion::RigidMotion;
+use super::trajectory::Trajectory;
+use crate::error::RayCastError;
+use crate::ray::check_finite;
+use crate::{LinearCastOptions, LinearHit, Motion, Outcome, linear_cast};
+
+/// When two moving bodies first touch, and where.
+///
+/// ```
+/// use convex_support::{Ball, Capsule, Posed, glam::DVec3};
+/// use gjk_raycast::{MotionCastOptions, RigidMotion, motion_cast};
+///
+/// // A blade of length 2 turns about z, once a second, with its middle at zero. A ball of radius 1/2 lies at x = 1.
+/// let blade = Capsule::new(1.0, 0.0)?; // along y
+/// let ball = Posed::translated(Ball::new(0.5)?, DVec3::X)?;
+/// let turning = RigidMotion::rotation(DVec3::Z * std::f64::consts::TAU, DVec3::ZERO);
+/// let options = MotionCastOptions::new().with_max_time(1.0);
+/// let cast = motion_cast(&blade, turning, &ball, RigidMotion::default(), options)?;
+///
+/// // It touches where it comes within asin(1/2) = 30° of x: its other half, after 60°.
+/// let hit = cast.outcome.hit().ok_or("they meet")?;
+/// assert!((hit.time - 1.0 / 6.0).abs() < 1e-15);
+/// assert!(cast.lower <= hit.time && hit.time <= cast.upper && cast.upper - cast.lower < 1e-13);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// The motions are [`RigidMotion`]s or any other [`Trajectory`]. Up to `lower` the bodies are proved to be apart at all times, not
+/// only at those looked at; at `upper` they overlap. A miss is proved for the whole motion. Where the bodies graze one another, so
+/// that rounding decides, the answer is [`Outcome::Undecided`], with the time of it for `lower`.
+///
+/// Where nothing turns this is [`linear_cast`].
+///
+/// # Errors
+/// [`RayCastError::NonFinite`] if a number of a [`RigidMotion`] is not finite, or [`max_time`](MotionCastOptions::max_time),
+/// [`tolerance`](MotionCastOptions::tolerance) or [`target_distance`](MotionCastOptions::target_distance) is NaN.
+pub fn motion_cast<A, B>(
+    a: &A,
+    motion_a: impl Trajectory<Vector = A::Vector>,
+    b: &B,
+    motion_b: impl Trajectory<Vector = A::Vector>,
+    options: MotionCastOptions<A::Vector>,
+) -> Result<MotionCast<A::Vector>, RayCastError>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    motion_cast_with(a, motion_a, b, motion_b, options, |_| {})
+}
+
+/// [`motion_cast`], showing an observer every time that is looked at. Where nothing turns none is.
+///
+/// # Errors
+/// As of [`motion_cast`].
+pub fn motion_cast_with<A, B>(
+    a: &A,
+    motion_a: impl Trajectory<Vector = A::Vector>,
+    b: &B,
+    motion_b: impl Trajectory<Vector = A::Vector>,
+    options: MotionCastOptions<A::Vector>,
+    observer: impl FnMut(MotionIterate<A::Vector>),
+) -> Result<MotionCast<A::Vector>, RayCastError>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let options = checked(options)?;
+    let margin = options.target_distance;
+    if let (Some(rigid_a), Some(rigid_b)) = (motion_a.as_rigid_motion(), motion_b.as_rigid_motion()) {
+        check("motion_a", &rigid_a)?;
+        check("motion_b", &rigid_b)?;
+        let turns = |motion: &RigidMotion<A::Vector>| motion.angular_velocity != Default::default();
+        let alike = rigid_a == rigid_b;
+        if alike || !(turns(&rigid_a) || turns(&rigid_b)) {
+            let velocity = |motion: RigidMotion<A::Vector>| if alike { A::Vector::ZERO } else { motion.velocity };
+            let motion = Motion { velocity_a: velocity(rigid_a), velocity_b: velocity(rigid_b) };
+            return without_turning(a, b, motion, options);
+        }
+    }
+    let pair = MovingPair {
+        a: MovingBody::new(a, motion_a, margin),
+        b: MovingBody::new(b, motion_b, Scalar::ZERO),
+    };
+    Ok(Search::run(&pair, options, observer))
+}
+
+/// The cast of bodies that do not turn.
+fn without_turning<A, B>(
+    a: &A,
+    b: &B,
+    motion: Motion<A::Vector>,
+    options: MotionCastOptions<A::Vector>,
+) -> Result<MotionCast<A::Vector>, RayCastError>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let mut wanted = LinearCastOptions::new()
+        .with_max_time(options.max_time)
+        .with_tolerance(options.tolerance)
+        .with_max_iterations(options.max_iterations);
+    wanted.axis = options.axis;
+    let cast = if options.target_distance > Scalar::ZERO {
+        linear_cast(&grown(a, options.target_distance), b, motion, wanted)?
+    } else {
+        linear_cast(a, b, motion, wanted)?
+    };
+    let outcome = match cast.outcome {
+        Outcome::Hit(LinearHit { time, point, normal }) => Outcome::Hit(MotionHit { time, point, normal }),
+        Outcome::Miss(miss) => Outcome::Miss(miss),
+        Outcome::Undecided => Outcome::Undecided,
+    };
+    // What comes after the end of the motion is not said of other motions either.
+    let (lower, upper) = (cast.lower.min(options.max_time), cast.upper);
+    Ok(MotionCast { outcome, lower, upper, status: cast.status, iterations: cast.iterations })
+}
+
+/// A shape with its radius grown.
+fn grown<S: SupportMap + ?Sized>(shape: &S, margin: ScalarOf<S>) -> Moved<'_, S> {
+    let core = shape.core();
+    Moved::new(shape, Core { radius: core.radius + margin, ..core }, Matrix::IDENTITY, shape.rounding(), Scalar::ZERO)
+}
+
+/// The options, if they are numbers, with what is below zero taken for zero.
+fn checked<V: Vector>(options: MotionCastOptions<V>) -> Result<MotionCastOptions<V>, RayCastError> {
+    let MotionCastOptions { max_time, tolerance, target_distance, .. } = options;
+    for (parameter, value) in
+        [("max_time", max_time), ("tolerance", tolerance), ("target_distance", target_distance)]
+    {
+        if value.is_nan() {
+            return Err(RayCastError::NonFinite { parameter, index: 0 });
+        }
+    }
+    let zero = V::Scalar::ZERO;
+    let (max_time, target_distance) = (max_time.max(zero), target_distance.max(zero));
+    Ok(MotionCastOptions { max_time, target_distance, ..options })
+}
+
+/// Whether all numbers of a motion are finite.
+fn check<V: Vector>(which: &'static str, motion: &RigidMotion<V>) -> Result<(), RayCastError> {
+    check_finite(which, motion.velocity)?;
+    check_finite(which, motion.center)?;
+    match motion.angular_velocity.non_finite() {
+        None => Ok(()),
+        Some(index) => Err(RayCastError::NonFinite { parameter: which, index }),
+    }
+}

@@ -1,0 +1,72 @@
+//! A shape somewhere on its way.
+
+use convex_support::{Core, CoreKind, Hint, Matrix, Rounding, Scalar, ScalarOf, SupportMap, Vector};
+
+/// A shape turned by a rotation, whose origin is put where one wants it, and whose radius may be grown.
+pub(super) struct Moved<'s, S: SupportMap + ?Sized> {
+    shape: &'s S,
+    rotation: <S::Vector as Vector>::Matrix,
+    core: Core<S::Vector>,
+    rounding: Rounding<S::Vector>,
+}
+
+impl<'s, S: SupportMap + ?Sized> Moved<'s, S> {
+    /// The shape with the given core, which may have another origin and another radius than its own, turned by `rotation` about the
+    /// origin. Before that its points were known as `rounding` says, and moving it took them where they should be but for `error`.
+    pub(super) fn new(
+        shape: &'s S,
+        core: Core<S::Vector>,
+        rotation: <S::Vector as Vector>::Matrix,
+        rounding: Rounding<S::Vector>,
+        error: ScalarOf<S>,
+    ) -> Self {
+        let kind = match core.kind {
+            CoreKind::Point(at) => CoreKind::Point(rotation * at),
+            kind => kind,
+        };
+        let rounding = if rotation == Matrix::IDENTITY {
+            let error_length = rounding.error_length + error;
+            Rounding { error: rounding.error + Vector::splat(error), error_length, ..rounding }
+        } else {
+            // The length of an error stays. The product with the matrix is wrong by at most three ε of the extent, and so may be the
+            // support value along a direction that is turned.
+            let error = rounding.error_length + error + ScalarOf::<S>::from_f64(6.0) * Scalar::EPSILON * core.extent;
+            Rounding { extent: Vector::splat(core.extent), error: Vector::splat(error), error_length: error }
+        };
+        Self { shape, rotation, core: Core { kind, ..core }, rounding }
+    }
+}
+
+impl<S: SupportMap + ?Sized> SupportMap for Moved<'_, S> {
+    type Vector = S::Vector;
+
+    fn support(&self, direction: S::Vector) -> S::Vector {
+        let swept = direction.unit().unwrap_or_else(|| Vector::axis(0)) * self.core.radius;
+        self.core.origin + self.core_support(direction, &mut Hint::new()) + swept
+    }
+
+    #[inline]
+    fn core(&self) -> Core<S::Vector> {
+        self.core
+    }
+
+    #[inline(always)]
+    fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
+        self.rotation * self.shape.core_support(self.rotation.transpose_mul(direction), hint)
+    }
+
+    #[inline(always)]
+    fn core_support_hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> [ScalarOf<S>; 3] {
+        let turned = |v| self.rotation.transpose_mul(v);
+        self.shape.core_support_hessian(turned(direction), changes.map(turned))
+    }
+
+    #[inline]
+    fn core_closest_point(&self, x: S::Vector) -> Option<S::Vector> {
+        Some(self.rotation * self.shape.core_closest_point(self.rotation.transpose_mul(x))?)
+    }
+
+    fn rounding(&self) -> Rounding<S::Vector> {
+        self.rounding
+    }
+}

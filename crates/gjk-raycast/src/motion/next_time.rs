@@ -1,0 +1,103 @@
+//! Which time the search for a first contact looks at next. That decides how long it takes, and nothing of what is proved.
+
+use convex_support::{Scalar, ScalarOf, SupportMap};
+use num_traits::Float as _;
+
+use super::first_contact::{AIM, Search};
+use super::instant::Instant;
+use super::result::MotionIterate;
+use super::trajectory::{Trajectory, TurningPlane};
+
+/// How much of the farthest end that can be expected to be proved is asked for.
+const CAUTION: f64 = 0.9;
+/// The part of the second-order change of a step that is left to go.
+const LEFT: f64 = 0.05;
+/// How often in a row the search for a contact may come nearer by less than half before it halves the interval.
+const PATIENCE: u8 = 2;
+
+impl<A, MA, B, MB, F> Search<'_, A, MA, B, MB, F>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+    MA: Trajectory<Vector = A::Vector>,
+    MB: Trajectory<Vector = A::Vector>,
+    F: FnMut(MotionIterate<A::Vector>),
+{
+    /// Where to look next; `None` where no time lies between those known.
+    ///
+    /// With the gap `g` and the speed `w` at which it closes, it is expected to be `g − w·s` after the time `s`. So with `k = √(M/2)`
+    /// an interval can be expected to be proved if `√g + √(g − w·s) > k·s`, which ends at `s = (2√g − w/k)/k` if the gap is still
+    /// open then, that is if `w < k·√g`. Otherwise the contact itself is within reach.
+    pub(super) fn next_time(&self) -> Option<ScalarOf<A>> {
+        let from_f64 = ScalarOf::<A>::from_f64;
+        let Instant { time, gap, distance, error, closing, .. } = self.near;
+        let end = self.options.max_time.min(self.upper);
+        let (k, root) = ((self.expected_acceleration() * from_f64(0.5)).sqrt(), gap.sqrt());
+        let step = if closing > k * root {
+            self.newton(distance - error * from_f64(AIM))
+        } else {
+            (root + root - closing / k) / k * from_f64(CAUTION)
+        };
+        let next = time + step;
+        if let Some(ahead) = self.ahead {
+            // It was too far to be proved.
+            let nearer = time + (ahead.time - time) * from_f64(0.5);
+            return Some(if next < nearer { next } else { nearer }).filter(|&next| next > time && next < ahead.time);
+        }
+        if let Some(beyond) = self.beyond {
+            return Some(self.between(next, &beyond)).filter(|&next| next > time && next < beyond.time);
+        }
+        // NaN goes to the end, which may be infinitely far.
+        let next = if next < end { next } else { end };
+        let next = if next.is_finite() { next } else { time + time.max(self.step) };
+        Some(next).filter(|&next| next > time)
+    }
+
+    /// Where to look between [`near`](Self::near) and a time at which the bodies are not certainly apart, if from here it seemed to
+    /// be `next`: Newton's method from the end that is nearer to contact; where that leaves the interval, the secant; and where
+    /// neither comes nearer, or a distance is not known, the middle.
+    fn between(&self, next: ScalarOf<A>, beyond: &Instant<A::Vector>) -> ScalarOf<A> {
+        let Instant { time, distance, error, .. } = self.near;
+        let aim = error * Scalar::from_f64(AIM);
+        let (width, way) = (beyond.time - time, distance - aim);
+        let is_inside = |next: &ScalarOf<A>| *next > time && *next < beyond.time;
+        let from_beyond = beyond.time + (beyond.distance - aim) / beyond.closing;
+        let secant = time + width * (way / (distance - beyond.distance));
+        let methods = if beyond.distance.abs() < way { [from_beyond, secant] } else { [next, secant] };
+        let quick = methods.into_iter().find(is_inside).filter(|_| self.slow <= PATIENCE);
+        quick.unwrap_or(time + width * Scalar::from_f64(0.5))
+    }
+
+    /// The bound `M` of a step like the last one.
+    pub(super) fn expected_acceleration(&self) -> ScalarOf<A> {
+        let Instant { time, normal, .. } = self.near;
+        let plane = TurningPlane { from: normal, to: normal + self.turned };
+        self.pair.acceleration_along(plane, [time, time + self.step]).max(Scalar::ZERO)
+    }
+
+    /// The time after which the bodies have come nearer by `way`, by Newton's method of the second order: with the closing speed `w`
+    /// and its growth `c` that is where `w·s + c·s²/2` is. A small part of what the growth changes is left to go, so that the next
+    /// step starts on this side of the contact.
+    fn newton(&self, way: ScalarOf<A>) -> ScalarOf<A> {
+        let (two, w, c) = (ScalarOf::<A>::from_f64(2.0), self.near.closing, self.sped_up / self.step);
+        let after = |way: ScalarOf<A>| {
+            let squared = w * w + two * c * way;
+            if squared > Scalar::ZERO { two * way / (w + squared.sqrt()) } else { way / w }
+        };
+        let straight = way / w;
+        let changed = (c * straight * straight).abs() * ScalarOf::<A>::from_f64(LEFT);
+        after((way - changed).max(way * ScalarOf::<A>::from_f64(0.5)))
+    }
+
+    /// The distance at a time that would be enough to prove the rest of the motion along the present normal; infinity elsewhere.
+    pub(super) fn enough_at(&self, time: ScalarOf<A>) -> ScalarOf<A> {
+        if time < self.options.max_time {
+            return ScalarOf::<A>::infinity();
+        }
+        let plane = TurningPlane { from: self.near.normal, to: self.near.normal };
+        let m = self.pair.acceleration_along(plane, [self.near.time, time]);
+        let root = (time - self.near.time) * (m * Scalar::from_f64(0.5)).sqrt() - self.near.gap.sqrt();
+        let root = root.max(Scalar::ZERO);
+        root * root * Scalar::from_f64(1.01)
+    }
+}

@@ -1,0 +1,103 @@
+//! What can be asked of a motion cast beside the bodies and their motions.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+/// Times to look at, after which to give up. A contact takes about ten and each turn near another body about as many; bodies that
+/// spin for long very near one another take the most.
+const MAX_ITERATIONS: usize = 10_000;
+
+/// Options of [`motion_cast`](crate::motion_cast).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MotionCastOptions<V: Vector> {
+    /// The end of the motion; it belongs to the motion. Below zero it is taken for zero. Default: infinity.
+    pub max_time: V::Scalar,
+    /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
+    /// of rounding always ends the search. Default: 0.
+    pub tolerance: V::Scalar,
+    /// The distance at which bodies count as touching: the cast stops that far from contact. Below zero it is taken for zero.
+    /// Default: 0.
+    pub target_distance: V::Scalar,
+    /// What to answer where the bodies touch at the start. Default: [`StartInContact::Report`].
+    pub start_in_contact: StartInContact,
+    /// A first guess of the direction from `b` to `a` at the start, such as the axis of the last miss. Default: none.
+    pub axis: Option<V>,
+    /// The times to look at, after which to give up. Default: 10 000.
+    pub max_iterations: usize,
+}
+
+/// What a cast answers where the bodies touch at the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum StartInContact {
+    /// A hit at time 0, whatever the motion.
+    #[default]
+    Report,
+    /// A hit at time 0 only if the motion brings the bodies deeper into one another. If it takes them apart, the first contact
+    /// after they are.
+    IfDeeper,
+}
+
+impl<V: Vector> MotionCastOptions<V> {
+    /// The default options.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            max_time: V::Scalar::infinity(),
+            tolerance: V::Scalar::ZERO,
+            target_distance: V::Scalar::ZERO,
+            start_in_contact: StartInContact::Report,
+            axis: None,
+            max_iterations: MAX_ITERATIONS,
+        }
+    }
+
+    /// With an [end of the motion](Self::max_time).
+    #[must_use]
+    pub const fn with_max_time(mut self, max_time: V::Scalar) -> Self {
+        self.max_time = max_time;
+        self
+    }
+
+    /// With another [`tolerance`](Self::tolerance).
+    #[must_use]
+    pub const fn with_tolerance(mut self, tolerance: V::Scalar) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// With a [`target_distance`](Self::target_distance).
+    #[must_use]
+    pub const fn with_target_distance(mut self, target_distance: V::Scalar) -> Self {
+        self.target_distance = target_distance;
+        self
+    }
+
+    /// With another answer where the bodies [touch at the start](Self::start_in_contact).
+    #[must_use]
+    pub const fn with_start_in_contact(mut self, start_in_contact: StartInContact) -> Self {
+        self.start_in_contact = start_in_contact;
+        self
+    }
+
+    /// With a first [`axis`](Self::axis).
+    #[must_use]
+    pub const fn with_axis(mut self, axis: V) -> Self {
+        self.axis = Some(axis);
+        self
+    }
+
+    /// With another cap on the [times to look at](Self::max_iterations).
+    #[must_use]
+    pub const fn with_max_iterations(mut self, max_iterations: usize) -> Self {
+        self.max_iterations = max_iterations;
+        self
+    }
+}
+
+impl<V: Vector> Default for MotionCastOptions<V> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

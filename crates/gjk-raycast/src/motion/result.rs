@@ -1,0 +1,51 @@
+//! What a motion cast answers.
+
+use convex_support::Vector;
+
+use crate::{Outcome, Status};
+
+/// The answer of [`motion_cast`](crate::motion_cast).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub struct MotionCast<V: Vector> {
+    /// Hit, miss, or undecided. A miss is proved over the whole motion; its axis, from `b` to `a`, is that of the last separating
+    /// plane.
+    pub outcome: Outcome<MotionHit<V>, V>,
+    /// The bodies have no point in common before this time; of a miss, the end of the motion.
+    pub lower: V::Scalar,
+    /// The bodies have a point in common at this time, though it need not be their first; infinite where no such time is known.
+    pub upper: V::Scalar,
+    /// How the search ended.
+    pub status: Status,
+    /// The number of support points computed of each shape.
+    pub iterations: usize,
+}
+
+/// The first contact of two moving bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionHit<V: Vector> {
+    /// The time of first contact; 0 where the bodies overlap at the start.
+    pub time: V::Scalar,
+    /// A point of contact, in the world, at that time: a point of `b`, if a target distance was asked for; where the bodies overlap
+    /// at the start, a point in or near both, as of [`distance`](crate::distance).
+    pub point: V,
+    /// The unit normal of contact, out of `b` towards `a`; `None` where the bodies overlap at the start.
+    pub normal: Option<V>,
+}
+
+/// What an observer of a motion cast is shown of every time that is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionIterate<V: Vector> {
+    /// Counts from 0.
+    pub iteration: usize,
+    /// The time looked at.
+    pub time: V::Scalar,
+    /// By how much a plane certainly separates the bodies then; not positive where none is known.
+    pub gap: V::Scalar,
+    /// The unit normal of that plane, from `b` to `a`.
+    pub normal: V,
+    /// The bodies have no point in common up to this time.
+    pub lower: V::Scalar,
+    /// The bodies have a point in common at this time; infinite where none is known.
+    pub upper: V::Scalar,
+}

@@ -1,0 +1,190 @@
+//! Motion at constant linear and angular velocity.
+
+use convex_support::{AngularVelocity, BoundingSphere, Matrix, Scalar, Vector};
+use num_traits::Float as _;
+
+use super::trajectory::{Displacement, MovingBall, Trajectory, TurningPlane};
+
+/// A body's motion at a constant velocity and a constant angular velocity about a centre that moves with it:
+///
+/// > x(t) = c + t·v + R(t)·(x − c),   with R(t) the rotation by |ω|·t about ω,
+///
+/// in world axes, for any number of turns. The default is rest.
+///
+/// ```
+/// use convex_support::glam::DVec3;
+/// use gjk_raycast::{RigidMotion, Trajectory};
+///
+/// // A wheel of radius 1/2 that rolls along x: its lowest point is at rest.
+/// let rolling = RigidMotion { velocity: DVec3::X, angular_velocity: DVec3::new(0.0, 0.0, -2.0), center: DVec3::ZERO };
+/// assert_eq!(rolling.velocity(0.0, DVec3::new(0.0, -0.5, 0.0)), DVec3::ZERO);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RigidMotion<V: Vector> {
+    /// The velocity `v` of the centre, in units of length per unit of time.
+    pub velocity: V,
+    /// The angular velocity `ω`, in radians per unit of time: a vector in 3D, a number in 2D.
+    pub angular_velocity: V::AngularVelocity,
+    /// The centre `c` of the rotation at time 0, in the world. Any point will do that moves at the velocity above, such as the
+    /// centre of mass.
+    pub center: V,
+}
+
+/// Where a body is: it is turned about zero, then moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pose<V: Vector> {
+    /// The rotation: an angle in 2D, a quaternion of any length in 3D.
+    pub rotation: V::Rotation,
+    /// The translation.
+    pub translation: V,
+}
+
+impl<V: Vector> RigidMotion<V> {
+    /// The motion without turning.
+    #[must_use]
+    pub fn translation(velocity: V) -> Self {
+        Self { velocity, ..Self::default() }
+    }
+
+    /// The rotation about a centre that stays where it is.
+    #[must_use]
+    pub fn rotation(angular_velocity: V::AngularVelocity, center: V) -> Self {
+        Self { velocity: V::ZERO, angular_velocity, center }
+    }
+
+    /// The motion that takes a body from one pose to another within `duration`: its own origin moves straight, and it turns at a
+    /// constant rate the short way round. It is a motion of the body as it is in the world in its first pose, such as a
+    /// [`Posed`](convex_support::Posed) shape.
+    ///
+    /// ```
+    /// use convex_support::glam::DVec2;
+    /// use gjk_raycast::{Pose, RigidMotion, Trajectory};
+    ///
+    /// let from = Pose { rotation: 3.0, translation: DVec2::new(1.0, 0.0) };
+    /// let to = Pose { rotation: -3.0, translation: DVec2::new(5.0, 2.0) };
+    /// let motion = RigidMotion::between(from, to, 2.0);
+    /// assert_eq!(motion.velocity, DVec2::new(2.0, 1.0));
+    /// assert!((motion.angular_velocity - (std::f64::consts::PI - 3.0)).abs() < 1e-15);
+    /// assert_eq!(motion.displacement(2.0).of(from.translation), to.translation);
+    /// ```
+    #[must_use]
+    pub fn between(from: Pose<V>, to: Pose<V>, duration: V::Scalar) -> Self {
+        let turn = V::AngularVelocity::between(from.rotation, to.rotation);
+        Self {
+            velocity: (to.translation - from.translation) / duration,
+            angular_velocity: turn.scaled(duration.recip()),
+            center: from.translation,
+        }
+    }
+
+    /// The same between two times of any unit, along a screw (Chasles): a rotation about an axis and a translation along it, which
+    /// has the same points of the body on the axis all the way. In 2D, where the axis is a point, a rotation about that. Where
+    /// nothing turns, a translation.
+    #[must_use]
+    pub fn screw_between(from: Pose<V>, to: Pose<V>, duration: V::Scalar) -> Self {
+        let straight = Self::between(from, to, duration);
+        let turn = V::AngularVelocity::between(from.rotation, to.rotation);
+        let w = turn.cross_matrix();
+        let (angle, moved) = (rate(&w), to.translation - from.translation);
+        if angle == V::Scalar::ZERO {
+            return straight;
+        }
+        // With a = ω/|ω| and p the way of the origin across the axis: the point of the axis nearest to the middle of p is off by
+        // cot(θ/2)·(a × p)/2, and what is left of the way is along the axis.
+        let (half, axis) = (V::Scalar::from_f64(0.5), w * moved / angle);
+        let across = -(w * axis) / angle;
+        let center = from.translation + (across + axis * (angle * half).tan().recip()) * half;
+        Self { velocity: (moved - across) / duration, center, ..straight }
+    }
+
+    /// `|ω|`, and the distance from the axis through the centre within which all of a ball stays.
+    fn lever(&self, ball: BoundingSphere<V>) -> (V::Scalar, V::Scalar) {
+        let w = self.angular_velocity.cross_matrix();
+        let rate = rate(&w);
+        let off = if rate > V::Scalar::ZERO { (w * (ball.center - self.center)).norm() / rate } else { rate };
+        (rate, off + ball.radius)
+    }
+}
+
+/// `|ω|` of the matrix `ω×`, whose entries are those of `ω` twice; in 2D its second column is `(−ω, 0)`.
+pub(super) fn rate<M: Matrix>(w: &M) -> <M::Vector as Vector>::Scalar {
+    if M::Vector::DIM == 2 {
+        return w.col(0).abs().max_element();
+    }
+    M::Vector::from_fn(|i| w.col((i + 1) % 3).get((i + 2) % 3)).norm()
+}
+
+impl<V: Vector> Trajectory for RigidMotion<V> {
+    type Vector = V;
+
+    #[inline]
+    fn displacement(&self, time: V::Scalar) -> Displacement<V> {
+        let mut displacement = Displacement::shifted(self.velocity * time);
+        if self.angular_velocity != Default::default() {
+            let turn = self.angular_velocity.turn(time);
+            let squared = (0..V::DIM).fold(V::Scalar::ZERO, |sum, j| sum + turn.col(j).length_squared());
+            // Four more for the product with a vector.
+            let units = <V::AngularVelocity as AngularVelocity<V>>::TURN_ERROR + 4.0;
+            displacement.turn_error = squared.sqrt() * V::Scalar::EPSILON * V::Scalar::from_f64(units);
+            displacement.pivot = self.center;
+            displacement.turn = turn;
+        }
+        displacement
+    }
+
+    #[inline]
+    fn velocity(&self, time: V::Scalar, point: V) -> V {
+        let w = self.angular_velocity.cross_matrix();
+        self.velocity + w * (point - self.center - self.velocity * time)
+    }
+
+    /// With `y` the vector to the point from the centre, `ẋ = v + Wy` and `ẍ = W²y` for `W = ω×`, whose transpose is `−W`. So
+    ///
+    /// > 2·r·ẋ + n·ẍ = 2·r·v + y·W(Wn − 2r),
+    ///
+    /// and the last vector is across ω, along which `y` reaches no farther than from the axis to the far side of the ball. Of a normal
+    /// that turns with the body, `r = Wn`, no more is left than of one that does not turn.
+    #[inline]
+    fn acceleration_along(
+        &self,
+        ball: BoundingSphere<V>,
+        TurningPlane { from, to }: TurningPlane<V>,
+        interval: [V::Scalar; 2],
+    ) -> V::Scalar {
+        let two = V::Scalar::from_f64(2.0);
+        let twice_rate = if from == to { V::ZERO } else { (to - from) * (two / (interval[1] - interval[0])) };
+        let straight = twice_rate.dot(self.velocity);
+        if self.angular_velocity == Default::default() {
+            return straight;
+        }
+        let w = self.angular_velocity.cross_matrix();
+        let [bent_from, bent_to] = [from, to].map(|n| (w * (w * n - twice_rate)).length_squared());
+        let bent = if bent_from > bent_to { bent_from } else { bent_to };
+        straight + bent.sqrt() * self.lever(ball).1
+    }
+
+    /// About the centre, which moves at constant velocity, or about the middle of the ball, which leaves its chord by
+    /// `1 − cos(ωs/2) ≤ (ωs)²/8` of its distance from the axis, where that is less.
+    fn moving_ball(&self, ball: BoundingSphere<V>, [from, to]: [V::Scalar; 2]) -> MovingBall<V> {
+        let arm = ball.center - self.center;
+        let about_center = MovingBall {
+            start: self.center + self.velocity * from,
+            velocity: self.velocity,
+            radius: arm.norm() + ball.radius,
+        };
+        let duration = to - from;
+        let (rate, off_axis) = self.lever(BoundingSphere { radius: V::Scalar::ZERO, ..ball });
+        let angle = rate * duration;
+        let sagitta = off_axis * angle * angle * V::Scalar::from_f64(0.125);
+        if !(sagitta < arm.norm()) {
+            return about_center;
+        }
+        let [start, end] = [from, to].map(|time| self.displacement(time).of(ball.center));
+        let velocity = if duration > V::Scalar::ZERO { (end - start) / duration } else { V::ZERO };
+        MovingBall { start, velocity, radius: ball.radius + sagitta }
+    }
+
+    fn as_rigid_motion(&self) -> Option<Self> {
+        Some(*self)
+    }
+}

@@ -1,0 +1,170 @@
+//! What the first contact of moving bodies needs to know of a motion.
+
+use convex_support::{BoundingSphere, Matrix, Scalar, Vector};
+use num_traits::Float as _;
+
+use super::RigidMotion;
+use super::instant::length_bound;
+
+/// A rigid motion: where the body is at any time, and how unevenly its points may move in between.
+///
+/// Times are ≥ 0, and a body is where its shape says at time 0 displaced by the [displacement](Self::displacement) of time 0, which
+/// for most motions is none. [`RigidMotion`] is the motion at constant velocities. A motion of your own, such as a link of a robot
+/// whose joints move linearly, says the same things of itself.
+///
+/// # What an implementor must obey
+/// A first contact is certified by the bounds. They must hold for all points of the body, and for all times of the interval:
+/// [`acceleration_along`](Self::acceleration_along) above all, since no time between two that are looked at is left out because of
+/// it. A larger bound costs time; a smaller one may let bodies pass through one another. [`velocity`](Self::velocity) steers the
+/// search, and where it is wrong, that costs time, never correctness.
+pub trait Trajectory {
+    /// The space the body moves in.
+    type Vector: Vector;
+
+    /// Where the body is at a time, as seen from where its shape says.
+    fn displacement(&self, time: ScalarOf<Self>) -> Displacement<Self::Vector>;
+
+    /// The velocity, at a time, of the body's point that is at `point` then.
+    fn velocity(&self, time: ScalarOf<Self>, point: Self::Vector) -> Self::Vector;
+
+    /// An upper bound of `2·r·ẋ(t) + n·ẍ(t)`, for all points `x` of the body that start in the ball, all times `t` of the interval,
+    /// and all normals `n` of the plane, which change at the rate `r`. It is to be finite for finite intervals at least.
+    ///
+    /// That is the second derivative of `n(t)·x(t)`, the height of the point over a plane that turns. Since it is linear in `n`, a
+    /// bound that holds for the first and the last normal holds for those in between.
+    fn acceleration_along(
+        &self,
+        ball: BoundingSphere<Self::Vector>,
+        plane: TurningPlane<Self::Vector>,
+        interval: [ScalarOf<Self>; 2],
+    ) -> ScalarOf<Self>;
+
+    /// A ball that moves at constant velocity and contains, throughout the interval, what starts in `ball`. The interval may be
+    /// infinite. Provided: the ball moved along the chord of the motion of its centre, grown by what the motion may leave the chord.
+    fn moving_ball(
+        &self,
+        ball: BoundingSphere<Self::Vector>,
+        [from, to]: [ScalarOf<Self>; 2],
+    ) -> MovingBall<Self::Vector> {
+        let duration = to - from;
+        let [start, end] = [from, to].map(|time| self.displacement(time).of(ball.center));
+        let velocity = (end - start) / duration;
+        // A curve leaves its chord by at most s²/8 times the largest second derivative, in any direction.
+        let center = BoundingSphere { center: ball.center, radius: Scalar::ZERO };
+        let mut squared = ScalarOf::<Self>::ZERO;
+        for axis in (0..Self::Vector::DIM).map(Self::Vector::axis) {
+            let along = |normal| {
+                self.acceleration_along(center, TurningPlane { from: normal, to: normal }, [from, to])
+            };
+            let most = along(axis).max(along(-axis));
+            squared += most * most;
+        }
+        let sagitta = squared.sqrt() * duration * duration * Scalar::from_f64(0.125);
+        MovingBall { start, velocity, radius: ball.radius + sagitta }
+    }
+
+    /// The same motion as a [`RigidMotion`], if it is one. Provided: `None`. What does not turn is cast by
+    /// [`linear_cast`](crate::linear_cast), and what moves alike does not meet.
+    fn as_rigid_motion(&self) -> Option<RigidMotion<Self::Vector>> {
+        None
+    }
+}
+
+/// The scalar of the space a body moves in.
+pub(crate) type ScalarOf<M> = <<M as Trajectory>::Vector as Vector>::Scalar;
+
+/// Where a rigid motion has taken a body: `x ↦ x + shift + turn·(x − pivot)`, with `1 + turn` for the rotation.
+///
+/// It is said by what it adds, so that bodies far from the world's origin or from what they turn about keep the digits of what lies
+/// between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Displacement<V: Vector> {
+    /// The point that the body is turned about, in the world at time 0.
+    pub pivot: V,
+    /// How far that point has moved.
+    pub shift: V,
+    /// The rotation about it, less the identity.
+    pub turn: V::Matrix,
+    /// A bound on the error of the turn as an operator, its product with a vector included: how far it may take a vector from where it
+    /// should, relative to the vector's length.
+    pub turn_error: V::Scalar,
+    /// A bound on the length of the error of the shift.
+    pub shift_error: V::Scalar,
+}
+
+impl<V: Vector> Displacement<V> {
+    /// The displacement by `shift`, to rounding.
+    #[must_use]
+    pub fn shifted(shift: V) -> Self {
+        // One rounding of each coordinate.
+        let shift_error = length_bound(shift) * V::Scalar::EPSILON * V::Scalar::from_f64(0.5);
+        let turn = V::Matrix::from_cols_fn(|_| V::ZERO);
+        Self { pivot: V::ZERO, shift, turn, turn_error: V::Scalar::ZERO, shift_error }
+    }
+
+    /// Where it takes a point.
+    #[must_use]
+    pub fn of(&self, point: V) -> V {
+        point + self.shift + self.turned(point)
+    }
+
+    /// What turning adds to a point.
+    pub(super) fn turned(&self, point: V) -> V {
+        self.turn * (point - self.pivot)
+    }
+
+    /// The rotation.
+    #[must_use]
+    pub fn rotation(&self) -> V::Matrix {
+        <V::Matrix as Matrix>::IDENTITY + self.turn
+    }
+}
+
+/// A plane through zero that turns: its normal goes straight, at a constant rate, from one vector to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurningPlane<V> {
+    /// The normal at the start of the interval.
+    pub from: V,
+    /// The normal at the end of it.
+    pub to: V,
+}
+
+/// A ball that moves at constant velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MovingBall<V: Vector> {
+    /// Its centre at the start of the interval.
+    pub start: V,
+    /// Its velocity.
+    pub velocity: V,
+    /// Its radius.
+    pub radius: V::Scalar,
+}
+
+impl<M: Trajectory + ?Sized> Trajectory for &M {
+    type Vector = M::Vector;
+
+    fn displacement(&self, time: ScalarOf<Self>) -> Displacement<M::Vector> {
+        (**self).displacement(time)
+    }
+
+    fn velocity(&self, time: ScalarOf<Self>, point: M::Vector) -> M::Vector {
+        (**self).velocity(time, point)
+    }
+
+    fn acceleration_along(
+        &self,
+        ball: BoundingSphere<M::Vector>,
+        plane: TurningPlane<M::Vector>,
+        interval: [ScalarOf<Self>; 2],
+    ) -> ScalarOf<Self> {
+        (**self).acceleration_along(ball, plane, interval)
+    }
+
+    fn moving_ball(&self, ball: BoundingSphere<M::Vector>, interval: [ScalarOf<Self>; 2]) -> MovingBall<M::Vector> {
+        (**self).moving_ball(ball, interval)
+    }
+
+    fn as_rigid_motion(&self) -> Option<RigidMotion<M::Vector>> {
+        (**self).as_rigid_motion()
+    }
+}

@@ -1,0 +1,268 @@
+//! Motion casts whose answers are known in closed form, and what is answered at the edges: at the start, at the end, for bad input.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, TAU};
+
+use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3A};
+use convex_support::{Ball, Capsule, Cuboid, Ellipsoid, Posed, Rounded, Segment, SupportMap};
+use gjk_raycast::{
+    MotionCast, MotionCastOptions, Outcome, Pose, RayCastError, RigidMotion, StartInContact, Status, Trajectory, motion_cast,
+};
+
+const REST: RigidMotion<DVec2> = RigidMotion { velocity: DVec2::ZERO, angular_velocity: 0.0, center: DVec2::ZERO };
+const STILL: RigidMotion<DVec3> =
+    RigidMotion { velocity: DVec3::ZERO, angular_velocity: DVec3::ZERO, center: DVec3::ZERO };
+
+fn at<S: SupportMap>(shape: S, translation: S::Vector) -> Posed<S> {
+    Posed::translated(shape, translation).expect("finite")
+}
+
+fn until<V: convex_support::Vector>(max_time: V::Scalar) -> MotionCastOptions<V> {
+    MotionCastOptions::new().with_max_time(max_time)
+}
+
+/// The answer is a hit whose narrow bracket holds the true time.
+fn holds(cast: MotionCast<DVec2>, time: f64) {
+    let hit = cast.outcome.hit().unwrap_or_else(|| panic!("{cast:?} is no hit"));
+    // The truth is rounded, by a few ulps of its formula.
+    let slack = 4.0 * f64::EPSILON * time;
+    assert!(cast.lower <= time + slack && time - slack <= cast.upper, "{time} is not in {cast:?}");
+    assert!(cast.upper - cast.lower < 1e-12 * time.max(1.0), "{cast:?} is wide");
+    assert!((hit.time - time).abs() < 1e-13 * time.max(1.0), "{time} is not the time of {cast:?}");
+}
+
+#[test]
+fn the_tip_of_a_rod_meets_a_wall() {
+    let wall = at(Cuboid::new(DVec2::new(5.0, 1.0)).expect("positive"), DVec2::new(0.0, 2.0));
+    for length in [1.01, 1.5, 4.0] {
+        let rod = Segment::new([DVec2::ZERO, DVec2::new(length, 0.0)]).expect("finite");
+        for rate in [1e-3, 0.7, 50.0] {
+            let truth = (1.0 / length).asin() / rate;
+            let swing = RigidMotion::rotation(rate, DVec2::ZERO);
+            holds(motion_cast(&rod, swing, &wall, REST, until(10.0 / rate)).expect("finite"), truth);
+            holds(motion_cast(&wall, REST, &rod, swing, until(10.0 / rate)).expect("finite"), truth);
+        }
+    }
+}
+
+#[test]
+fn the_corner_of_a_box_that_spins_meets_a_wall() {
+    // A square of half extent 1 reaches √2 at its corners, after an eighth of a turn.
+    let square = Cuboid::new(DVec2::ONE).expect("positive");
+    for distance in [1.001, 1.2, 1.4142] {
+        let wall = at(Cuboid::new(DVec2::new(0.5, 9.0)).expect("positive"), DVec2::new(distance + 0.5, 0.0));
+        let truth = TAU / 8.0 - (distance / 2.0_f64.sqrt()).acos();
+        let cast = motion_cast(&square, RigidMotion::rotation(1.0, DVec2::ZERO), &wall, REST, until(10.0)).expect("finite");
+        let hit = cast.outcome.hit().expect("it meets");
+        let slow = (TAU / 8.0 - truth).sin();
+        assert!(cast.lower <= truth + 1e-15 / slow && truth - 1e-15 / slow <= cast.upper, "{truth} is not in {cast:?}");
+        assert!((hit.time - truth).abs() < 1e-14 / slow, "{truth} is not the time of {cast:?}");
+    }
+    let wall = at(Cuboid::new(DVec2::new(0.5, 9.0)).expect("positive"), DVec2::new(1.9143, 0.0));
+    let cast = motion_cast(&square, RigidMotion::rotation(1.0, DVec2::ZERO), &wall, REST, until(10.0)).expect("finite");
+    assert!(cast.outcome.is_miss() && cast.lower == 10.0, "the corners pass by 1e-4, many times: {cast:?}");
+}
+
+#[test]
+fn balls_that_spin_meet_as_if_they_did_not() {
+    let ball = at(Ball::new(0.5).expect("positive"), DVec3::new(-4.0, 0.3, 0.0));
+    let other = Ball::new(0.7).expect("positive");
+    let spin = RigidMotion {
+        velocity: DVec3::new(2.0, 0.0, 0.0),
+        angular_velocity: DVec3::new(30.0, -20.0, 11.0),
+        center: DVec3::new(-4.0, 0.3, 0.0),
+    };
+    let truth = (4.0 - (1.2_f64 * 1.2 - 0.3 * 0.3).sqrt()) / 2.0;
+    let cast = motion_cast(&ball, spin, &other, STILL, until(5.0)).expect("finite");
+    let hit = cast.outcome.hit().expect("they meet");
+    assert!(cast.lower <= truth && truth <= cast.upper && cast.upper - cast.lower < 1e-13, "{truth} is not in {cast:?}");
+    let normal = DVec3::new(-4.0 + 2.0 * truth, 0.3, 0.0) / 1.2;
+    assert!((hit.normal.expect("apart at first") - normal).length() < 1e-13, "{hit:?} has another normal than {normal}");
+    assert!((hit.point - normal * 0.7).length() < 1e-13, "{hit:?} is elsewhere");
+}
+
+#[test]
+fn a_ball_is_carried_round_against_a_wall() {
+    // About zero at radius 3: its side is at y = 2 where 3·sin t + 0.5 = 2.
+    let ball = at(Ball::new(0.5).expect("positive"), DVec3::new(3.0, 0.0, 0.0));
+    let wall = at(Cuboid::new(DVec3::new(9.0, 1.0, 9.0)).expect("positive"), DVec3::new(0.0, 3.0, 0.0));
+    let cast = motion_cast(&ball, RigidMotion::rotation(DVec3::Z, DVec3::ZERO), &wall, STILL, until(6.0)).expect("finite");
+    assert!(cast.lower <= FRAC_PI_6 && FRAC_PI_6 <= cast.upper && cast.upper - cast.lower < 1e-13, "{cast:?}");
+}
+
+#[test]
+fn a_capsule_sweeps_onto_a_ball() {
+    // Along x at first, with radius 0.1; it touches the ball of radius 0.2 at distance 1 where sin(α) = 0.3.
+    let rod = Rounded::new(Segment::new([DVec2::ZERO, DVec2::new(2.0, 0.0)]).expect("finite"), 0.1).expect("positive");
+    let ball = at(Ball::new(0.2).expect("positive"), DVec2::new(0.0, 1.0));
+    let truth = FRAC_PI_2 - 0.3_f64.asin();
+    holds(motion_cast(&rod, RigidMotion::rotation(1.0, DVec2::ZERO), &ball, REST, until(6.0)).expect("finite"), truth);
+}
+
+#[test]
+fn an_ellipse_that_spins_meets_a_wall() {
+    // It reaches √(a²cos² + b²sin²) along x.
+    let ellipse = Ellipsoid::new(DVec2::ZERO, DVec2::new(1.0, 2.0), 0.0).expect("positive");
+    let wall = at(Cuboid::new(DVec2::new(1.0, 9.0)).expect("positive"), DVec2::new(2.5, 0.0));
+    let truth = (1.25_f64 / 3.0).sqrt().asin();
+    holds(motion_cast(&ellipse, RigidMotion::rotation(1.0, DVec2::ZERO), &wall, REST, until(6.0)).expect("finite"), truth);
+}
+
+#[test]
+fn thin_things_are_not_stepped_over() {
+    for thickness in [1e-2, 1e-4, 1e-6] {
+        let plate = Cuboid::new(DVec3::new(thickness, 1.0, 1.0)).expect("positive");
+        let bullet = at(Capsule::new(0.1, 0.01).expect("positive"), DVec3::new(-500.0, 0.0, 0.0));
+        let shot = RigidMotion {
+            velocity: DVec3::new(1000.0, 0.0, 0.0),
+            angular_velocity: DVec3::new(0.0, 0.0, 60.0),
+            center: DVec3::new(-500.0, 0.0, 0.0),
+        };
+        let cast = motion_cast(&bullet, shot, &plate, STILL, until(1.0)).expect("finite");
+        let hit = cast.outcome.hit().expect("it strikes");
+        assert!((0.4998..0.5).contains(&hit.time) && cast.upper - cast.lower < 1e-12, "{thickness}: {cast:?}");
+    }
+}
+
+#[test]
+fn a_motion_between_poses_takes_one_to_the_other() {
+    let (p, q) = (DVec3::new(1.0, 2.0, -1.0), DVec3::new(-3.0, 0.5, 2.0));
+    let from = Pose { rotation: DQuat::from_xyzw(0.1, 0.7, -0.2, 0.6), translation: p };
+    let to = Pose { rotation: DQuat::from_xyzw(-0.5, 0.4, 0.3, -0.9), translation: q };
+    let place = |pose: Pose<DVec3>, x: DVec3| pose.rotation.normalize() * x + pose.translation;
+    for motion in [RigidMotion::between(from, to, 2.5), RigidMotion::screw_between(from, to, 2.5)] {
+        for x in [DVec3::ZERO, DVec3::X, DVec3::new(3.0, -2.0, 5.0)] {
+            let moved = motion.displacement(2.5).of(place(from, x));
+            assert!((moved - place(to, x)).length() < 1e-14, "{moved} is not {}", place(to, x));
+        }
+    }
+    let screw = RigidMotion::screw_between(from, to, 2.5);
+    let along = screw.velocity.cross(screw.angular_velocity).length();
+    assert!(along < 1e-14, "a screw moves along its axis: {screw:?}");
+}
+
+#[test]
+fn a_motion_ends_when_it_ends() {
+    let rod = Segment::new([DVec2::ZERO, DVec2::new(2.0, 0.0)]).expect("finite");
+    let wall = at(Cuboid::new(DVec2::new(5.0, 1.0)).expect("positive"), DVec2::new(0.0, 2.0));
+    let swing = RigidMotion::rotation(1.0, DVec2::ZERO);
+    let cast = |end| motion_cast(&rod, swing, &wall, REST, until(end)).expect("finite");
+    let whole = cast(10.0);
+    assert!(cast(whole.upper).outcome.hit().is_some(), "the end belongs to the motion");
+    assert!(cast(whole.lower).outcome.is_miss(), "before, it misses");
+    assert!(cast(0.0).outcome.is_miss(), "at the start they are apart");
+    assert!(cast(-1.0).outcome.is_miss(), "no end before the start");
+}
+
+#[test]
+fn no_end_is_an_end_too() {
+    let rod = Segment::new([DVec2::ZERO, DVec2::new(2.0, 0.0)]).expect("finite");
+    let swing = RigidMotion { velocity: DVec2::new(0.0, -1.0), angular_velocity: 1.0, center: DVec2::ZERO };
+    let above = at(Ball::new(1.0).expect("positive"), DVec2::new(0.0, 3.5));
+    let cast = motion_cast(&rod, swing, &above, REST, MotionCastOptions::new()).expect("finite");
+    assert!(cast.outcome.is_miss(), "it leaves for ever: {cast:?}");
+    let below = at(Ball::new(1.0).expect("positive"), DVec2::new(0.0, -350.0));
+    let cast = motion_cast(&rod, swing, &below, REST, MotionCastOptions::new()).expect("finite");
+    assert!(cast.outcome.hit().is_some(), "it gets there at last: {cast:?}");
+}
+
+#[test]
+fn contact_at_the_start() {
+    let floor = Cuboid::new(DVec2::new(10.0, 1.0)).expect("positive");
+    let parcel = at(Cuboid::new(DVec2::ONE).expect("positive"), DVec2::new(0.0, 2.0));
+    let tilt = |velocity: f64| RigidMotion {
+        velocity: DVec2::new(0.0, velocity),
+        angular_velocity: 0.1,
+        center: DVec2::new(0.0, 2.0),
+    };
+    for velocity in [-1.0, 5.0] {
+        let cast = motion_cast(&parcel, tilt(velocity), &floor, REST, until(1.0)).expect("finite");
+        assert_eq!((cast.outcome.hit().map(|hit| hit.time), cast.lower), (Some(0.0), 0.0), "they touch: {cast:?}");
+    }
+    let leaving = until(1.0).with_start_in_contact(StartInContact::IfDeeper);
+    let cast = motion_cast(&parcel, tilt(5.0), &floor, REST, leaving).expect("finite");
+    assert!(cast.outcome.is_miss(), "it leaves: {cast:?}");
+    let cast = motion_cast(&parcel, tilt(-1.0), &floor, REST, leaving).expect("finite");
+    assert_eq!(cast.outcome.hit().map(|hit| hit.time), Some(0.0), "it does not: {cast:?}");
+
+    let sunk = at(Cuboid::new(DVec2::ONE).expect("positive"), DVec2::new(0.0, 1.9));
+    let cast = motion_cast(&sunk, tilt(5.0), &floor, REST, until(1.0)).expect("finite");
+    assert_eq!((cast.outcome.hit().map(|hit| hit.time), cast.lower, cast.upper), (Some(0.0), 0.0, 0.0), "{cast:?}");
+    let cast = motion_cast(&sunk, tilt(5.0), &floor, REST, leaving).expect("finite");
+    assert!(cast.outcome.is_miss(), "it gets out: {cast:?}");
+}
+
+#[test]
+fn a_target_distance_stops_short() {
+    let rod = Segment::new([DVec2::ZERO, DVec2::new(2.0, 0.0)]).expect("finite");
+    let wall = at(Cuboid::new(DVec2::new(5.0, 1.0)).expect("positive"), DVec2::new(0.0, 2.0));
+    let options = until(10.0).with_target_distance(0.25);
+    let swing = RigidMotion::rotation(1.0, DVec2::ZERO);
+    holds(motion_cast(&rod, swing, &wall, REST, options).expect("finite"), 0.375_f64.asin());
+    let lift = RigidMotion::translation(DVec2::new(0.0, 1.0));
+    holds(motion_cast(&rod, lift, &wall, REST, options).expect("finite"), 0.75);
+}
+
+#[test]
+fn what_nobody_can_know_is_not_claimed() {
+    let square = Cuboid::new(DVec2::ONE).expect("positive");
+    let wall = at(Cuboid::new(DVec2::new(0.5, 9.0)).expect("positive"), DVec2::new(1.75, 0.0));
+    let far = at(Cuboid::new(DVec2::new(0.5, 9.0)).expect("positive"), DVec2::new(17.5, 0.0));
+    let spin = RigidMotion { velocity: DVec2::ZERO, angular_velocity: 1e300, center: DVec2::ZERO };
+    let cast = motion_cast(&square, spin, &far, REST, until(1.0)).expect("finite");
+    assert!(cast.outcome.is_miss(), "however fast it spins it does not reach: {cast:?}");
+    let cast = motion_cast(&square, spin, &wall, REST, until(1e10)).expect("finite");
+    let sound = match cast.outcome {
+        Outcome::Hit(hit) => hit.time < 1e-299,
+        Outcome::Undecided => cast.status != Status::Converged,
+        Outcome::Miss(_) => false,
+    };
+    assert!(sound, "it meets the wall at once: {cast:?}");
+
+    // It touches once a turn, to rounding.
+    let touched = at(Cuboid::new(DVec2::new(0.5, 9.0)).expect("positive"), DVec2::new(0.5 + 2.0_f64.sqrt(), 0.0));
+    let cast = motion_cast(&square, RigidMotion::rotation(1.0, DVec2::ZERO), &touched, REST, until(1.0)).expect("finite");
+    assert!(cast.lower <= TAU / 8.0 && (cast.upper >= TAU / 8.0), "{cast:?}");
+    assert!(!cast.outcome.is_miss(), "a graze is no miss: {cast:?}");
+}
+
+#[test]
+fn bad_input_is_refused() {
+    let ball = Ball::new(1.0).expect("positive");
+    let other = at(ball, DVec3::new(5.0, 0.0, 0.0));
+    let nan = f64::NAN;
+    let cast = |motion, options| motion_cast(&ball, motion, &other, STILL, options);
+    for motion in [
+        RigidMotion { velocity: DVec3::new(0.0, nan, 0.0), ..STILL },
+        RigidMotion { angular_velocity: DVec3::new(0.0, f64::INFINITY, 0.0), ..STILL },
+        RigidMotion { center: DVec3::new(0.0, nan, 0.0), ..STILL },
+    ] {
+        let refused = Err(RayCastError::NonFinite { parameter: "motion_a", index: 1 });
+        assert_eq!(cast(motion, until(1.0)), refused, "{motion:?}");
+    }
+    for (options, parameter) in [
+        (until(nan), "max_time"),
+        (until(1.0).with_tolerance(nan), "tolerance"),
+        (until(1.0).with_target_distance(nan), "target_distance"),
+    ] {
+        assert_eq!(cast(STILL, options), Err(RayCastError::NonFinite { parameter, index: 0 }));
+    }
+    let cast = cast(STILL, until(1.0)).expect("finite");
+    assert!(cast.outcome.is_miss(), "nothing moves: {cast:?}");
+}
+
+#[test]
+fn single_precision() {
+    let rod = Segment::new([Vec2::ZERO, Vec2::new(2.0, 0.0)]).expect("finite");
+    let wall = at(Cuboid::new(Vec2::new(5.0, 1.0)).expect("positive"), Vec2::new(0.0, 2.0));
+    let swing = RigidMotion::rotation(1.0_f32, Vec2::ZERO);
+    let cast = motion_cast(&rod, swing, &wall, RigidMotion::default(), until(10.0_f32)).expect("finite");
+    assert!(f64::from(cast.lower) <= FRAC_PI_6 && FRAC_PI_6 <= f64::from(cast.upper), "{cast:?}");
+    assert!(cast.upper - cast.lower < 1e-5, "{cast:?}");
+
+    let ball = at(Ball::new(0.5).expect("positive"), Vec3A::new(3.0, 0.0, 0.0));
+    let wall = at(Cuboid::new(Vec3A::new(9.0, 1.0, 9.0)).expect("positive"), Vec3A::new(0.0, 3.0, 0.0));
+    let carried = RigidMotion::rotation(Vec3A::Z, Vec3A::ZERO);
+    let cast = motion_cast(&ball, carried, &wall, RigidMotion::default(), until(6.0_f32)).expect("finite");
+    assert!(f64::from(cast.lower) <= FRAC_PI_6 && FRAC_PI_6 <= f64::from(cast.upper), "{cast:?}");
+    assert!(cast.upper - cast.lower < 1e-5, "{cast:?}");
+}
