@@ -12,7 +12,9 @@ use crate::{Scalar, Vector};
 /// along the axis, after the right-hand rule.
 ///
 /// The trait is sealed; [`Vector::AngularVelocity`] says which type turns which vectors.
-pub trait AngularVelocity<V: Vector>: Copy + Debug + Default + PartialEq + Send + Sync + 'static + sealed::Sealed {
+pub trait AngularVelocity<V: Vector>:
+    Copy + Debug + Default + PartialEq + Send + Sync + 'static + sealed::Sealed
+{
     /// A bound on the error of [`turn`](Self::turn) as an operator, relative to the square root of the sum of its squared entries
     /// and in units of the scalar's epsilon.
     const TURN_ERROR: f64;

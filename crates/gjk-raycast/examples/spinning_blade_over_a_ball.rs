@@ -22,12 +22,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("{radius} from the axis: {looks} times looked at");
         match cast.outcome {
             Outcome::Hit(hit) => {
-                println!("  struck at {:.12} s, {:.4}, in [{:.15}, {:.15}]", hit.time, hit.point, cast.lower, cast.upper);
+                println!(
+                    "  struck at {:.12} s, {:.4}, in [{:.15}, {:.15}]",
+                    hit.time, hit.point, cast.lower, cast.upper
+                );
                 assert_eq!(radius, 0.8, "the blade does not reach {radius}");
                 // The ball reaches the lower side of the blade at 0.38 s, and the blade comes by every eightieth of a second.
                 assert!((0.38..0.38 + 1.0 / 80.0).contains(&hit.time), "struck at {}", hit.time);
                 let apart = |time: f64| {
-                    let turned = Posed::from_matrix(blade, spin.displacement(time).rotation(), DVec3::ZERO).expect("a rotation");
+                    let turned =
+                        Posed::from_matrix(blade, spin.displacement(time).rotation(), DVec3::ZERO).expect("a rotation");
                     let raised = Posed::translated(start, rise.velocity * time).expect("finite");
                     distance(&turned, &raised, DistanceOptions::default()).distance
                 };

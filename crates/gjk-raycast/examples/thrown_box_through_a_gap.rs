@@ -25,7 +25,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         };
         let mut first: Option<f64> = None;
         for post in &posts {
-            let cast = motion_cast(&parcel, thrown, post.as_ref().map_err(Clone::clone)?, RigidMotion::default(), options)?;
+            let cast =
+                motion_cast(&parcel, thrown, post.as_ref().map_err(Clone::clone)?, RigidMotion::default(), options)?;
             match cast.outcome {
                 Outcome::Hit(hit) => first = Some(first.map_or(hit.time, |time| time.min(hit.time))),
                 Outcome::Miss(_) => {}

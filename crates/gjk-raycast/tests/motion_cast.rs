@@ -5,7 +5,8 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, TAU};
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{Ball, Capsule, Cuboid, Ellipsoid, Posed, Rounded, Segment, SupportMap};
 use gjk_raycast::{
-    MotionCast, MotionCastOptions, Outcome, Pose, RayCastError, RigidMotion, StartInContact, Status, Trajectory, motion_cast,
+    MotionCast, MotionCastOptions, Outcome, Pose, RayCastError, RigidMotion, StartInContact, Status, Trajectory,
+    motion_cast,
 };
 
 const REST: RigidMotion<DVec2> = RigidMotion { velocity: DVec2::ZERO, angular_velocity: 0.0, center: DVec2::ZERO };
@@ -51,7 +52,8 @@ fn the_corner_of_a_box_that_spins_meets_a_wall() {
     for distance in [1.001, 1.2, 1.4142] {
         let wall = at(Cuboid::new(DVec2::new(0.5, 9.0)).expect("positive"), DVec2::new(distance + 0.5, 0.0));
         let truth = TAU / 8.0 - (distance / 2.0_f64.sqrt()).acos();
-        let cast = motion_cast(&square, RigidMotion::rotation(1.0, DVec2::ZERO), &wall, REST, until(10.0)).expect("finite");
+        let cast =
+            motion_cast(&square, RigidMotion::rotation(1.0, DVec2::ZERO), &wall, REST, until(10.0)).expect("finite");
         let hit = cast.outcome.hit().expect("it meets");
         let slow = (TAU / 8.0 - truth).sin();
         assert!(cast.lower <= truth + 1e-15 / slow && truth - 1e-15 / slow <= cast.upper, "{truth} is not in {cast:?}");
@@ -74,9 +76,15 @@ fn balls_that_spin_meet_as_if_they_did_not() {
     let truth = (4.0 - (1.2_f64 * 1.2 - 0.3 * 0.3).sqrt()) / 2.0;
     let cast = motion_cast(&ball, spin, &other, STILL, until(5.0)).expect("finite");
     let hit = cast.outcome.hit().expect("they meet");
-    assert!(cast.lower <= truth && truth <= cast.upper && cast.upper - cast.lower < 1e-13, "{truth} is not in {cast:?}");
+    assert!(
+        cast.lower <= truth && truth <= cast.upper && cast.upper - cast.lower < 1e-13,
+        "{truth} is not in {cast:?}"
+    );
     let normal = DVec3::new(-4.0 + 2.0 * truth, 0.3, 0.0) / 1.2;
-    assert!((hit.normal.expect("apart at first") - normal).length() < 1e-13, "{hit:?} has another normal than {normal}");
+    assert!(
+        (hit.normal.expect("apart at first") - normal).length() < 1e-13,
+        "{hit:?} has another normal than {normal}"
+    );
     assert!((hit.point - normal * 0.7).length() < 1e-13, "{hit:?} is elsewhere");
 }
 
@@ -85,7 +93,8 @@ fn a_ball_is_carried_round_against_a_wall() {
     // About zero at radius 3: its side is at y = 2 where 3·sin t + 0.5 = 2.
     let ball = at(Ball::new(0.5).expect("positive"), DVec3::new(3.0, 0.0, 0.0));
     let wall = at(Cuboid::new(DVec3::new(9.0, 1.0, 9.0)).expect("positive"), DVec3::new(0.0, 3.0, 0.0));
-    let cast = motion_cast(&ball, RigidMotion::rotation(DVec3::Z, DVec3::ZERO), &wall, STILL, until(6.0)).expect("finite");
+    let cast =
+        motion_cast(&ball, RigidMotion::rotation(DVec3::Z, DVec3::ZERO), &wall, STILL, until(6.0)).expect("finite");
     assert!(cast.lower <= FRAC_PI_6 && FRAC_PI_6 <= cast.upper && cast.upper - cast.lower < 1e-13, "{cast:?}");
 }
 
@@ -104,7 +113,10 @@ fn an_ellipse_that_spins_meets_a_wall() {
     let ellipse = Ellipsoid::new(DVec2::ZERO, DVec2::new(1.0, 2.0), 0.0).expect("positive");
     let wall = at(Cuboid::new(DVec2::new(1.0, 9.0)).expect("positive"), DVec2::new(2.5, 0.0));
     let truth = (1.25_f64 / 3.0).sqrt().asin();
-    holds(motion_cast(&ellipse, RigidMotion::rotation(1.0, DVec2::ZERO), &wall, REST, until(6.0)).expect("finite"), truth);
+    holds(
+        motion_cast(&ellipse, RigidMotion::rotation(1.0, DVec2::ZERO), &wall, REST, until(6.0)).expect("finite"),
+        truth,
+    );
 }
 
 #[test]
@@ -220,7 +232,8 @@ fn what_nobody_can_know_is_not_claimed() {
 
     // It touches once a turn, to rounding.
     let touched = at(Cuboid::new(DVec2::new(0.5, 9.0)).expect("positive"), DVec2::new(0.5 + 2.0_f64.sqrt(), 0.0));
-    let cast = motion_cast(&square, RigidMotion::rotation(1.0, DVec2::ZERO), &touched, REST, until(1.0)).expect("finite");
+    let cast =
+        motion_cast(&square, RigidMotion::rotation(1.0, DVec2::ZERO), &touched, REST, until(1.0)).expect("finite");
     assert!(cast.lower <= TAU / 8.0 && (cast.upper >= TAU / 8.0), "{cast:?}");
     assert!(!cast.outcome.is_miss(), "a graze is no miss: {cast:?}");
 }

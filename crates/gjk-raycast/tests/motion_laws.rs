@@ -88,8 +88,7 @@ fn body(x: f64) -> impl Strategy<Value = Body> {
     (0..8_usize, sizes(), rotation(), vector(0.5), vector(1.5), vector(1.0), vector(1.0), spin).prop_map(
         move |(kind, sizes, rotation, offset, goal, spin, off, rate)| {
             let place = DVec3::X * x + offset;
-            let motion =
-                RigidMotion { velocity: goal - place, angular_velocity: spin * rate, center: place + off };
+            let motion = RigidMotion { velocity: goal - place, angular_velocity: spin * rate, center: place + off };
             Body { kind, sizes, rotation, place, motion }
         },
     )

@@ -9,8 +9,8 @@ use convex_support::{
 };
 use gjk_raycast::{
     CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, Ray, RayCast, RayCastError,
-    RayCastOptions, Scene, SceneError, Status, SubAlgorithm, distance, intersects, iterative_ray_cast, linear_cast, ray_cast,
-    ray_casts,
+    RayCastOptions, Scene, SceneError, Status, SubAlgorithm, distance, intersects, iterative_ray_cast, linear_cast,
+    ray_cast, ray_casts,
 };
 
 type Shape<V> = Box<dyn SupportMap<Vector = V>>;

@@ -83,7 +83,10 @@ fn measure(size: f64) -> Row {
     let options = MarginOptions::default();
     let mut row = Row::default();
     for Walk { poses, obstacle } in &walks {
-        let (mut paper, mut ours) = (InverseIterationTracker::new(PRECISION.0, PRECISION.1).expect("a positive tolerance"), MarginTracker::default());
+        let (mut paper, mut ours) = (
+            InverseIterationTracker::new(PRECISION.0, PRECISION.1).expect("a positive tolerance"),
+            MarginTracker::default(),
+        );
         for pose in poses {
             let cold = free_margin(pose, obstacle, options);
             row.cold_iterations += cold.iterations as f64;

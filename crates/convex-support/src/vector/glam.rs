@@ -77,41 +77,11 @@ macro_rules! glam_vector {
     };
 }
 
-glam_vector!(Vec2 {
-    scalar: f32,
-    coordinates: [0, 1],
-    rotation: f32,
-    angular_velocity: f32,
-    matrix: Mat2,
-});
-glam_vector!(DVec2 {
-    scalar: f64,
-    coordinates: [0, 1],
-    rotation: f64,
-    angular_velocity: f64,
-    matrix: DMat2,
-});
-glam_vector!(Vec3 {
-    scalar: f32,
-    coordinates: [0, 1, 2],
-    rotation: Quat,
-    angular_velocity: Vec3,
-    matrix: Mat3,
-});
-glam_vector!(Vec3A {
-    scalar: f32,
-    coordinates: [0, 1, 2],
-    rotation: Quat,
-    angular_velocity: Vec3A,
-    matrix: Mat3A,
-});
-glam_vector!(DVec3 {
-    scalar: f64,
-    coordinates: [0, 1, 2],
-    rotation: DQuat,
-    angular_velocity: DVec3,
-    matrix: DMat3,
-});
+glam_vector!(Vec2 { scalar: f32, coordinates: [0, 1], rotation: f32, angular_velocity: f32, matrix: Mat2 });
+glam_vector!(DVec2 { scalar: f64, coordinates: [0, 1], rotation: f64, angular_velocity: f64, matrix: DMat2 });
+glam_vector!(Vec3 { scalar: f32, coordinates: [0, 1, 2], rotation: Quat, angular_velocity: Vec3, matrix: Mat3 });
+glam_vector!(Vec3A { scalar: f32, coordinates: [0, 1, 2], rotation: Quat, angular_velocity: Vec3A, matrix: Mat3A });
+glam_vector!(DVec3 { scalar: f64, coordinates: [0, 1, 2], rotation: DQuat, angular_velocity: DVec3, matrix: DMat3 });
 
 impl Vector3 for Vec3 {
     #[inline]

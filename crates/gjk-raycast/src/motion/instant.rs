@@ -34,12 +34,7 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'
     }
 
     /// The shape as turned by a displacement, with its origin at the given point, which is wrong by `error` at most.
-    fn moved(
-        &self,
-        displacement: &Displacement<S::Vector>,
-        origin: S::Vector,
-        error: ScalarOf<S>,
-    ) -> Moved<'s, S> {
+    fn moved(&self, displacement: &Displacement<S::Vector>, origin: S::Vector, error: ScalarOf<S>) -> Moved<'s, S> {
         Moved::new(self.shape, Core { origin, ..self.core }, displacement.rotation(), self.rounding, error)
     }
 
@@ -102,12 +97,7 @@ where
     MB: Trajectory<Vector = A::Vector>,
 {
     /// The pair at a time, looked at first along `axis`.
-    pub(super) fn at(
-        &self,
-        time: ScalarOf<A>,
-        axis: A::Vector,
-        limits: Limits<ScalarOf<A>>,
-    ) -> Instant<A::Vector> {
+    pub(super) fn at(&self, time: ScalarOf<A>, axis: A::Vector, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
         let (da, db) = (self.a.motion.displacement(time), self.b.motion.displacement(time));
         // What lies between is of the order of the bodies, however far from the world's origin they are.
         let between = self.a.core.origin - self.b.core.origin;
@@ -120,10 +110,8 @@ where
             + (self.a.displacement_error(&da) + self.b.displacement_error(&db));
         let (a, b) = (self.a.moved(&da, offset, placing), self.b.moved(&db, A::Vector::ZERO, Scalar::ZERO));
 
-        let wanted = SignedDistanceOptions::new()
-            .with_axis(axis)
-            .with_limit(limits.distance)
-            .with_depth_limit(limits.depth);
+        let wanted =
+            SignedDistanceOptions::new().with_axis(axis).with_limit(limits.distance).with_depth_limit(limits.depth);
         let answer = signed_distance(&a, &b, wanted);
         let place = db.of(self.b.core.origin);
         let (point_a, point) = (answer.point_a + place, answer.point_b + place);
@@ -155,11 +143,7 @@ where
 
     /// An upper bound of the second derivative, throughout an interval, of the distance of any point of `a` from any point of `b`
     /// along a normal that changes at a constant rate.
-    pub(super) fn acceleration_along(
-        &self,
-        plane: TurningPlane<A::Vector>,
-        interval: [ScalarOf<A>; 2],
-    ) -> ScalarOf<A> {
+    pub(super) fn acceleration_along(&self, plane: TurningPlane<A::Vector>, interval: [ScalarOf<A>; 2]) -> ScalarOf<A> {
         let opposite = TurningPlane { from: -plane.from, to: -plane.to };
         self.a.motion.acceleration_along(self.a.ball(), plane, interval)
             + self.b.motion.acceleration_along(self.b.ball(), opposite, interval)
@@ -178,7 +162,8 @@ where
         let between = start + velocity * nearest;
         let reach = a.radius + b.radius + self.a.core.radius + self.b.core.radius;
         let moved = (length_bound(a.velocity) + length_bound(b.velocity)) * nearest;
-        let margin = (reach + length_bound(a.start) + length_bound(b.start) + moved) * Scalar::from_f64(32.0) * Scalar::EPSILON;
+        let margin =
+            (reach + length_bound(a.start) + length_bound(b.start) + moved) * Scalar::from_f64(32.0) * Scalar::EPSILON;
         // NaN is not apart.
         if between.norm() > reach + margin { between.unit() } else { None }
     }

@@ -86,10 +86,7 @@ where
             return without_turning(a, b, motion, options);
         }
     }
-    let pair = MovingPair {
-        a: MovingBody::new(a, motion_a, margin),
-        b: MovingBody::new(b, motion_b, Scalar::ZERO),
-    };
+    let pair = MovingPair { a: MovingBody::new(a, motion_a, margin), b: MovingBody::new(b, motion_b, Scalar::ZERO) };
     Ok(Search::run(&pair, options, observer))
 }
 
@@ -133,9 +130,7 @@ fn grown<S: SupportMap + ?Sized>(shape: &S, margin: ScalarOf<S>) -> Moved<'_, S>
 /// The options, if they are numbers, with what is below zero taken for zero.
 fn checked<V: Vector>(options: MotionCastOptions<V>) -> Result<MotionCastOptions<V>, RayCastError> {
     let MotionCastOptions { max_time, tolerance, target_distance, .. } = options;
-    for (parameter, value) in
-        [("max_time", max_time), ("tolerance", tolerance), ("target_distance", target_distance)]
-    {
+    for (parameter, value) in [("max_time", max_time), ("tolerance", tolerance), ("target_distance", target_distance)] {
         if value.is_nan() {
             return Err(RayCastError::NonFinite { parameter, index: 0 });
         }

@@ -53,9 +53,7 @@ pub trait Trajectory {
         let center = BoundingSphere { center: ball.center, radius: Scalar::ZERO };
         let mut squared = ScalarOf::<Self>::ZERO;
         for axis in (0..Self::Vector::DIM).map(Self::Vector::axis) {
-            let along = |normal| {
-                self.acceleration_along(center, TurningPlane { from: normal, to: normal }, [from, to])
-            };
+            let along = |normal| self.acceleration_along(center, TurningPlane { from: normal, to: normal }, [from, to]);
             let most = along(axis).max(along(-axis));
             squared += most * most;
         }

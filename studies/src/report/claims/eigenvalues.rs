@@ -101,7 +101,8 @@ fn walks() -> Result<Vec<Claim>, InvalidShape> {
                 at = (at + cells * (step / 128.0)).clamp(DVec2::ZERO, DVec2::ONE);
                 angle += draw(unit(&mut random)) * f64::to_radians(step);
             }
-            let (mut paper, mut ours) = (InverseIterationTracker::new(1e-6, 14).expect("a positive tolerance"), MarginTracker::default());
+            let (mut paper, mut ours) =
+                (InverseIterationTracker::new(1e-6, 14).expect("a positive tolerance"), MarginTracker::default());
             for pose in &poses {
                 let exact = free_margin(pose, &obstacle, MarginOptions::default()).margin;
                 let close = |m: f64, tolerance: f64| (m - exact).abs() <= tolerance * (1.0 + exact);
