@@ -13,7 +13,7 @@ use std::cell::Cell;
 /// The crossing of a shape that has a closed form of it.
 fn crossing_of<V: Vector>(shape: &impl SupportMap<Vector = V>, source: V, direction: V) -> Option<Crossing<V>> {
     let crossing = line_crossing(shape, source, direction);
-    assert_ne!(crossing, LineCrossing::Unknown);
+    assert_ne!(crossing, LineCrossing::Unknown, "a closed form");
     crossing.crossing()
 }
 

@@ -14,7 +14,7 @@ where
 {
     let text = to_string(&shape).expect("every shape can be written");
     let read = from_str::<S>(&text).expect("what was written can be read");
-    assert_eq!(to_string(&read).expect("and written again"), text);
+    assert_eq!(to_string(&read).expect("and written again"), text, "written again");
     assert_eq!(from_str::<S>(&text).expect("and read again"), read, "{text}");
     text
 }

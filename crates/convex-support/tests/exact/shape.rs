@@ -92,7 +92,7 @@ impl Tree {
                     [a] => boxed(Point::new(a)),
                     [a, b] => boxed(Segment::new([a, b])),
                     [a, b, c] => boxed(Triangle::new([a, b, c])),
-                    _ if p.len() % 2 == 0 => boxed(Polytope::new(p)),
+                    _ if p.len().is_multiple_of(2) => boxed(Polytope::new(p)),
                     _ => boxed(Polytope::hull_of(p)),
                 }
             }
