@@ -41,7 +41,7 @@ pub struct Margin<V: Vector> {
 ///
 /// m = min { (x − x₁)ᵀP(x − x₁) : x ∈ E₂ } − 1. It is not symmetric, but its sign is: positive means disjoint, 0 touching,
 /// negative overlapping. As a function of the bodies it is continuously differentiable everywhere
-/// ([`Margin::gradient`]) and analytic except where x₁ crosses the boundary of E₂, where m reaches −1, its
+/// (see [`EllipsoidPair::margin`](crate::EllipsoidPair::margin)) and analytic except where x₁ crosses the boundary of E₂, where m reaches −1, its
 /// least value, with gradient zero.
 ///
 /// The secular equation is solved from the semi-axes and axes; no matrix is formed whose condition is the square of an

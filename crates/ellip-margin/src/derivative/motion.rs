@@ -75,7 +75,7 @@ pub(super) struct Units {
 ///
 /// The motion is a translation δ and a rotation vector ω, both in world axes, the rotation about the body's own centre:
 ///
-/// > centre x ↦ x + δ, axes R ↦ exp([ω]×)R, f ↦ f + gᵀθ + ½θᵀHθ + O(‖θ‖³) with θ = (δ, ω),
+/// > centre x ↦ x + δ, axes R ↦ exp(\[ω\]×)R, f ↦ f + gᵀθ + ½θᵀHθ + O(‖θ‖³) with θ = (δ, ω),
 ///
 /// in 2D with the angle ω, counter-clockwise. H is symmetric. (A gradient taken anew in world axes at the moved body is
 /// g + Hθ + ½(0, ω × ∂f/∂ω) + O(‖θ‖²), since rotations do not commute.)
