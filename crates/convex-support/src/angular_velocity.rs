@@ -182,7 +182,7 @@ fn turn_between(from: DQuat, to: DQuat) -> DVec3 {
 /// [`LARGEST_ANGLE`].
 #[inline]
 fn sin_cos([angle, rest]: [f64; 2]) -> [f64; 2] {
-    if !(angle.abs() <= LARGEST_ANGLE) {
+    if angle.is_nan() || angle.abs() > LARGEST_ANGLE {
         return [f64::NAN; 2];
     }
     let (sin, cos) = num_traits::Float::sin_cos(angle);

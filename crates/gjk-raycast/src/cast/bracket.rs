@@ -17,6 +17,9 @@ use crate::{Iterate, Ray, RayCastOptions, Status};
 
 pub(super) type ScalarOf<B> = <<B as Body>::Vector as Vector>::Scalar;
 
+/// A support point of the core, and what it is made of.
+pub(super) type SupportPoint<B> = (<B as Body>::Vector, <B as Body>::Witness);
+
 /// A parameter of the line, and how far rounding may have moved it.
 #[derive(Clone, Copy, Debug)]
 struct Bound<S> {
@@ -152,7 +155,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         n: B::Vector,
         v: B::Vector,
         simplex: &[B::Vector],
-    ) -> Result<(B::Vector, B::Witness), Stop<B::Vector>> {
+    ) -> Result<SupportPoint<B>, Stop<B::Vector>> {
         if self.iterations >= self.options.max_iterations {
             return Err(Stop::Exhausted(Status::IterationLimit));
         }

@@ -60,7 +60,7 @@ where
                 let touches = there.distance <= zero && end == self.options.max_time;
                 return Some(if touches { End::Contact } else { End::Undecided(Status::Stalled) });
             }
-            step = step * two;
+            step *= two;
         }
         Some(End::Undecided(Status::IterationLimit))
     }

@@ -107,6 +107,9 @@ impl<S: Scalar> Piece<S> {
     }
 }
 
+/// The piece to go between, if there is one, and the change to the normal that suits the first alone, if one does.
+type SecondPiece<S> = (Option<Piece<S>>, Option<Across<S>>);
+
 /// Points and planes as they are seen along the ray; normals have length one against it.
 struct SeenAlongRay<'k, 'b, B: Body, O> {
     bracket: &'k Bracket<'b, B, O>,
@@ -150,7 +153,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> SeenAlongRay<'_, '_, B, O> {
         first: &Piece<ScalarOf<B>>,
         others: &[(B::Vector, B::Vector)],
         n: B::Vector,
-    ) -> (Option<Piece<ScalarOf<B>>>, Option<Across<ScalarOf<B>>>) {
+    ) -> SecondPiece<ScalarOf<B>> {
         let noise = self.bracket.noise;
         let p = first.p;
         let alone = first.hessian.is_regular().then(|| first.hessian.solve((-p.0, -p.1)));

@@ -5,7 +5,7 @@
 //! triangles that it spans with the edges of the portal one contains zero, and is crossed earlier. That is the simplex
 //! method for a linear programme in the two unknowns `α`, whose constraints are the support points.
 //!
-//! The name, and the search for the first portal, are those of Gary Snethen's *Minkowski portal refinement* (XenoCollide:
+//! The name, and the search for the first portal, are those of Gary Snethen's *Minkowski portal refinement* (`XenoCollide`:
 //! Complex Collision Made Simple, Game Programming Gems 7, 2008), whose ray runs from a point inside of the body.
 
 use convex_support::{Scalar, Vector};

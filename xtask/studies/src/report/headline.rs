@@ -145,7 +145,7 @@ fn measured(scope: &Scope) -> (String, Vec<Measured>) {
 /// As recorded by `benches`, where other libraries are built by default.
 #[cfg(not(feature = "peers"))]
 fn measured(scope: &Scope) -> (String, Vec<Measured>) {
-    let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs");
+    let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs");
     let csv = fs::read_to_string(format!("{docs}/performance.csv")).unwrap_or_default();
     let when = fs::read_to_string(format!("{docs}/performance.md")).unwrap_or_default();
     let when = when.lines().find(|line| line.starts_with("Measured on")).unwrap_or("Measured earlier.").to_owned();

@@ -31,7 +31,7 @@ const PATIENCE: Duration = Duration::from_millis(60);
 const FLOOR: f64 = 1e-16;
 
 /// A mesh of a real robot link.
-const LINK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/robots/ur5/meshes/forearm_link.obj");
+const LINK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/robots/ur5/meshes/forearm_link.obj");
 
 /// The figures, where enclosing ellipsoids are asked for; on a tenth of the points where it must be quick.
 pub(super) fn figures(scope: &Scope) -> Vec<Figure> {

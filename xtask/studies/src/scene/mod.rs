@@ -31,7 +31,7 @@ use self::robot::{Pose, Robot};
 use xtask::mesh::Meshes;
 
 /// The scene that is run where none is named.
-pub(crate) const EMBEDDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/ur5_reach.json");
+pub(crate) const EMBEDDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/scenes/ur5_reach.json");
 
 /// One row in so many is drawn.
 const STRIDE: usize = 12;
