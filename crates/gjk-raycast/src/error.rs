@@ -12,7 +12,7 @@ pub enum RayCastError {
     ZeroDirection,
     /// A coordinate is NaN or infinite.
     NonFinite {
-        /// The name of the vector: `"source"`, `"direction"`, `"velocity_a"` or `"velocity_b"`.
+        /// The name of the vector, such as `"source"`, `"velocity_a"` or `"motion_a"`, or of the option.
         parameter: &'static str,
         /// Which coordinate, counted from 0.
         index: usize,

@@ -75,6 +75,10 @@ where
             self.upper = ScalarOf::<A>::infinity();
             return self.advance();
         }
+        if !self.near.overlap && !(self.near.distance <= self.near.error) {
+            // Neither is known, such as of a support map that returns NaN.
+            return End::Undecided(Status::Stalled);
+        }
         if !self.near.overlap && self.near.closing > zero {
             // They touch to rounding: when do they overlap?
             let touching = self.near;

@@ -185,13 +185,14 @@ where
     }
 
     fn answer(&self, end: End<A::Vector>) -> MotionCast<A::Vector> {
-        let Instant { time: lower, point, normal, distance, closing, overlap, .. } = self.near;
+        let Instant { time: lower, point, normal, gap, distance, closing, overlap, .. } = self.near;
         let (outcome, status) = match end {
             End::Miss(axis) => (Outcome::Miss(Miss { axis }), Status::Converged),
             End::Undecided(status) => (Outcome::Undecided, status),
             End::Contact => {
                 let step = distance / closing;
-                let step = if step > Scalar::ZERO { step } else { Scalar::ZERO };
+                // Where they touch at the start, that is when they do.
+                let step = if step > Scalar::ZERO && gap > Scalar::ZERO { step } else { Scalar::ZERO };
                 let time = (lower + step).min(self.upper).min(self.options.max_time);
                 let point = point + self.pair.b.velocity(lower, point) * (time - lower);
                 let normal = if overlap { None } else { Some(normal) };

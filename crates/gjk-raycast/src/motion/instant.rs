@@ -1,6 +1,8 @@
 //! Two moving bodies at one time.
 
-use convex_support::{BoundingSphere, Core, Rounding, Scalar, ScalarOf, SupportMap, Vector};
+use core::cell::Cell;
+
+use convex_support::{BoundingSphere, Core, Hint, Rounding, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::moved::Moved;
@@ -15,12 +17,20 @@ pub(super) struct MovingBody<'s, S: SupportMap + ?Sized, M> {
     pub(super) core: Core<S::Vector>,
     /// How well its points are known.
     rounding: Rounding<S::Vector>,
+    /// What was found at the last time, which is mostly found again.
+    hint: Cell<Hint>,
 }
 
 impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'s, S, M> {
     pub(super) fn new(shape: &'s S, motion: M, margin: ScalarOf<S>) -> Self {
         let core = shape.core();
-        Self { shape, motion, core: Core { radius: core.radius + margin, ..core }, rounding: shape.rounding() }
+        Self {
+            shape,
+            motion,
+            core: Core { radius: core.radius + margin, ..core },
+            rounding: shape.rounding(),
+            hint: Cell::new(Hint::new()),
+        }
     }
 
     /// The velocity, at a time, of the body's point that is at `point` then.
@@ -34,8 +44,9 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'
     }
 
     /// The shape as turned by a displacement, with its origin at the given point, which is wrong by `error` at most.
-    fn moved(&self, displacement: &Displacement<S::Vector>, origin: S::Vector, error: ScalarOf<S>) -> Moved<'s, S> {
-        Moved::new(self.shape, Core { origin, ..self.core }, displacement.rotation(), self.rounding, error)
+    fn moved(&self, displacement: &Displacement<S::Vector>, origin: S::Vector, error: ScalarOf<S>) -> Moved<'_, S> {
+        let core = Core { origin, ..self.core };
+        Moved::new(self.shape, core, displacement.rotation(), self.rounding, error).with_hint(&self.hint)
     }
 
     /// What rounding the displacement may add to the error of a point of the core.
@@ -72,7 +83,9 @@ pub(super) struct Instant<V: Vector> {
     pub(super) error: V::Scalar,
     /// How fast the closest points come nearer.
     pub(super) closing: V::Scalar,
-    /// Whether the bodies certainly have a point in common.
+    /// Whether the bodies have a point in common: a polytope within their difference contains zero, or, since that takes long to
+    /// show of curved bodies that are hardly in one another, points of them are as near as rounding can tell while they are deeper
+    /// in one another than that along the normal.
     pub(super) overlap: bool,
     /// The closest point of `b`, or the one deepest in `a`, in the world.
     pub(super) point: V,
@@ -117,14 +130,17 @@ where
         let (point_a, point) = (answer.point_a + place, answer.point_b + place);
         let closing = answer.normal.dot(self.b.velocity(time, point) - self.a.velocity(time, point_a));
         let distance = answer.signed_distance;
+        // What the distance across the plane may be wrong by; points of the bodies are known as well.
+        let error = distance - answer.lower;
+        let deep = error + error;
         Instant {
             time,
             normal: answer.normal,
             gap: answer.lower,
             distance,
-            error: if answer.overlap { answer.upper - distance } else { distance - answer.lower },
+            error,
             closing,
-            overlap: answer.upper < Scalar::ZERO,
+            overlap: answer.upper < Scalar::ZERO || answer.upper <= deep && distance < -deep,
             point,
             iterations: answer.iterations,
         }

@@ -1,5 +1,7 @@
 //! A shape somewhere on its way.
 
+use core::cell::Cell;
+
 use convex_support::{Core, CoreKind, Hint, Matrix, Rounding, Scalar, ScalarOf, SupportMap, Vector};
 
 /// A shape turned by a rotation, whose origin is put where one wants it, and whose radius may be grown.
@@ -8,6 +10,8 @@ pub(super) struct Moved<'s, S: SupportMap + ?Sized> {
     rotation: <S::Vector as Vector>::Matrix,
     core: Core<S::Vector>,
     rounding: Rounding<S::Vector>,
+    /// Where what one query found is kept for the next.
+    hint: Option<&'s Cell<Hint>>,
 }
 
 impl<'s, S: SupportMap + ?Sized> Moved<'s, S> {
@@ -33,7 +37,12 @@ impl<'s, S: SupportMap + ?Sized> Moved<'s, S> {
             let error = rounding.error_length + error + ScalarOf::<S>::from_f64(6.0) * Scalar::EPSILON * core.extent;
             Rounding { extent: Vector::splat(core.extent), error: Vector::splat(error), error_length: error }
         };
-        Self { shape, rotation, core: Core { kind, ..core }, rounding }
+        Self { shape, rotation, core: Core { kind, ..core }, rounding, hint: None }
+    }
+
+    /// The same, which begins its searches where the last ones ended, whoever made them.
+    pub(super) fn with_hint(self, hint: &'s Cell<Hint>) -> Self {
+        Self { hint: Some(hint), ..self }
     }
 }
 
@@ -52,7 +61,13 @@ impl<S: SupportMap + ?Sized> SupportMap for Moved<'_, S> {
 
     #[inline(always)]
     fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
-        self.rotation * self.shape.core_support(self.rotation.transpose_mul(direction), hint)
+        let local = self.rotation.transpose_mul(direction);
+        let Some(kept) = self.hint else { return self.rotation * self.shape.core_support(local, hint) };
+        let mut hint = kept.get();
+        hint.rewind();
+        let point = self.shape.core_support(local, &mut hint);
+        kept.set(hint);
+        self.rotation * point
     }
 
     #[inline(always)]
