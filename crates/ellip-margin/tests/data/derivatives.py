@@ -6,8 +6,8 @@ of the first ellipsoid, from differences of 70-digit values. Needs mpmath; takes
     python3 derivatives.py 100 >more.csv      100 pairs of each dimension and condition instead of 4
 
 None of the formulas of the crate is used: the margin is minimised over E2 by the secular equation of its matrices, the distance
-comes from its two multipliers, the scale from Perram and Wertheim's function of one number, each solved by Newton's method
-with a numeric slope; derivatives are central differences with a step of 1e-14, whose error is of the order of its square.
+comes from its two multipliers, the scale from Perram and Wertheim's function of one number, each solved by Newton's method;
+derivatives are central differences with a step of 1e-14, whose error is of the order of its square.
 
 A line: dimension, log10 of the condition, then the bodies (centre, semi-axes, axes column by column), each number as Rust reads it
 back to the bit; then for margin, distance, scale: the value, the gradient, the upper triangle of the Hessian row by row.
@@ -23,7 +23,7 @@ mp.dps = 70
 H = mpf(10) ** -14
 
 
-def root(f, x, steps=200):
+def root(f, x, steps=60):
     """A zero of f near x by Newton's method with a numeric slope."""
     for _ in range(steps):
         h = abs(x) * mpf(10) ** -35
@@ -48,13 +48,19 @@ def margin(e1, e2, hint):
     p, half = e1.inner(-2), e2.axes * diag(e2.a)
     c, b = half.T * p * half, half.T * p * (e1.center - e2.center)
 
-    def y(nu):
-        return lu_solve(c + nu * eye(n), b)
-
-    # 1/|y| is concave: from below the root Newton's method rises to it.
-    nu = root(lambda nu: 1 / norm(y(nu)) - 1, hint.get("nu", norm(b) * mpf(10) ** -12))
+    # 1/|y| is concave in nu: from below its root Newton's method rises to it, from above it comes back below.
+    nu = hint.get("nu", mpf(0))
+    for _ in range(200):
+        y = lu_solve(c + nu * eye(n), b)
+        length = norm(y)
+        step = (length - 1) * length**2 / (y.T * lu_solve(c + nu * eye(n), y))[0]
+        nu = max(nu + step, mpf(0))
+        if abs(step) < abs(nu) * mpf(10) ** -60:
+            break
+    else:
+        raise ArithmeticError("no margin")
     hint["nu"] = nu
-    w = e2.center + half * y(nu) - e1.center
+    w = e2.center + half * lu_solve(c + nu * eye(n), b) - e1.center
     return (w.T * p * w)[0] - 1
 
 
