@@ -3,7 +3,7 @@
 
 use std::hint::black_box;
 
-use benches::rng::Rng;
+use workloads::rng::Rng;
 use convex_support::glam::{DVec3, Vec3A};
 use convex_support::{Ball, Cuboid, Polytope, Posed, Scalar, SupportMap, Triangle, Vector};
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
