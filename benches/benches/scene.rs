@@ -3,11 +3,11 @@
 
 use std::hint::black_box;
 
-use workloads::rng::Rng;
 use convex_support::glam::{DVec3, Vec3A};
 use convex_support::{Ball, Cuboid, Polytope, Posed, Scalar, SupportMap, Triangle, Vector};
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use gjk_raycast::{DistanceOptions, LinearCastOptions, Motion, Ray, RayCastOptions, Scene};
+use workloads::rng::Rng;
 
 /// Questions that a row goes through.
 const QUESTIONS: usize = 4096;

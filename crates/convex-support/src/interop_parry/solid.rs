@@ -20,7 +20,8 @@ fn parrys(v: V) -> ParryVector {
 /// [`InvalidShape`] if a number of the pose is not finite or its rotation is the zero quaternion.
 pub fn posed<S: SupportMap<Vector = V>>(shape: S, pose: &Pose) -> Result<Posed<S>, InvalidShape> {
     let q = pose.rotation;
-    Posed::new(shape, Rotation::from_xyzw([q.x, q.y, q.z, q.w]), ours(pose.translation))
+    let rotation = Rotation::<V>::from_xyzw([q.x, q.y, q.z, q.w]);
+    Posed::new(shape, rotation, ours(pose.translation))
 }
 
 impl TryFrom<theirs::Cylinder> for Cylinder<V> {

@@ -6,7 +6,7 @@
 //! wrong as they like: what they find counts for what it is measured to be here.
 
 use convex_support::{Scalar, Vector};
-use num_traits::Float as _;
+use num_traits::Float;
 
 use super::line::{Line, LocalRay};
 use super::{Contact, Stop};
@@ -343,7 +343,12 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         let widened = |Bound { at, error }| self.ray.error(at, error + error);
         let lower = (self.ray.lambda(self.low()) - widened(self.low.bound)).max(Scalar::ZERO);
         let upper = self.ray.lambda(self.high.at) + widened(self.high);
-        (lower, upper.max(contact.unwrap_or(Scalar::ZERO)))
+        match contact {
+            Some(lambda) => (lower, upper.max(lambda)),
+            None if lower <= upper => (lower, upper),
+            // Bounds that contradict one another, or are NaN, bound nothing.
+            None => (Scalar::ZERO, Float::infinity()),
+        }
     }
 
     /// The axis of a plane before the whole ray, given one that is before what the last plane has left of it.

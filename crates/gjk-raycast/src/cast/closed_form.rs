@@ -5,6 +5,7 @@
 //! where the planes are, the answer is in doubt.
 
 use convex_support::{Crossing, LineCrossing, Vector};
+use num_traits::Float as _;
 
 use super::bracket::Bracket;
 use super::{Contact, Stop};
@@ -42,7 +43,14 @@ pub(super) fn closed_form<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
             support(bracket, normal)?;
             let point = line.at(entry) - normal * bracket.radius;
             let witness = bracket.body.witness(point);
-            bracket.close(point, witness, entry)
+            match bracket.close(point, witness, entry) {
+                // A plane that the line runs along to rounding is crossed anywhere; but the line touches the point.
+                Err(Stop::InDoubt) if normal.dot(line.direction).abs() <= bracket.noise => {
+                    let aside = line.across(line.foot - point);
+                    bracket.close_beside(aside, bracket.noise, point, witness).ok_or(Stop::InDoubt)
+                }
+                closed => closed,
+            }
         }
     }
 }
