@@ -11,7 +11,7 @@ use super::trajectory::Trajectory;
 use crate::Status;
 
 /// How much deeper than touching an overlap is looked for, in units of what the distance may be wrong by.
-const DEPTH: f64 = 1.5;
+const DEPTH: f64 = 2.0;
 
 impl<A, MA, B, MB, F> Search<'_, A, MA, B, MB, F>
 where
@@ -40,8 +40,8 @@ where
                 return Some(End::Contact);
             }
             let there = self.look(next, Limits { distance: ScalarOf::<A>::infinity(), depth: zero });
-            if there.overlap {
-                self.block(&there);
+            if self.is_contact(&there) {
+                self.upper = there.time;
                 return Some(End::Contact);
             }
             if there.gap > zero {
@@ -65,21 +65,33 @@ where
         Some(End::Undecided(Status::IterationLimit))
     }
 
+    /// Whether the bodies have a point in common just after [`near`](Search::near).
+    ///
+    /// That a polytope within their difference contains zero takes long to show of curved bodies that are hardly in one another. It
+    /// is also taken for shown where points of them are as near as rounding can tell, while the bodies are deeper in one another than
+    /// that along the normal.
+    fn is_contact(&self, there: &Instant<A::Vector>) -> bool {
+        let from_f64 = ScalarOf::<A>::from_f64;
+        let rounding = from_f64(64.0) * ScalarOf::<A>::EPSILON * self.pair.size();
+        let deep = from_f64(DEPTH) * self.near.error.min(rounding);
+        there.overlaps() || there.upper <= deep && there.distance < -deep
+    }
+
     /// What to answer where the bodies are not certainly apart at the start.
     pub(super) fn start_in_contact(&mut self) -> End<A::Vector> {
         let zero = ScalarOf::<A>::ZERO;
-        if self.near.overlap {
+        if self.near.overlaps() {
             self.upper = zero;
         }
         if self.options.start_in_contact == StartInContact::IfDeeper && self.leave_contact() {
             self.upper = ScalarOf::<A>::infinity();
             return self.advance();
         }
-        if !self.near.overlap && !(self.near.distance <= self.near.error) {
+        if !self.near.overlaps() && !(self.near.distance <= self.near.error) {
             // Neither is known, such as of a support map that returns NaN.
             return End::Undecided(Status::Stalled);
         }
-        if !self.near.overlap && self.near.closing > zero {
+        if !self.near.overlaps() && self.near.closing > zero {
             // They touch to rounding: when do they overlap?
             let touching = self.near;
             let _ = self.close_in();

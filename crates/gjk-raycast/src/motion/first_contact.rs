@@ -141,7 +141,7 @@ where
     pub(super) fn block(&mut self, there: &Instant<A::Vector>) {
         self.beyond = Some(*there);
         self.ahead = None;
-        if there.overlap {
+        if there.overlaps() {
             self.upper = there.time;
         }
     }
@@ -185,7 +185,7 @@ where
     }
 
     fn answer(&self, end: End<A::Vector>) -> MotionCast<A::Vector> {
-        let Instant { time: lower, point, normal, gap, distance, closing, overlap, .. } = self.near;
+        let Instant { time: lower, point, normal, gap, distance, closing, .. } = self.near;
         let (outcome, status) = match end {
             End::Miss(axis) => (Outcome::Miss(Miss { axis }), Status::Converged),
             End::Undecided(status) => (Outcome::Undecided, status),
@@ -195,7 +195,7 @@ where
                 let step = if step > Scalar::ZERO && gap > Scalar::ZERO { step } else { Scalar::ZERO };
                 let time = (lower + step).min(self.upper).min(self.options.max_time);
                 let point = point + self.pair.b.velocity(lower, point) * (time - lower);
-                let normal = if overlap { None } else { Some(normal) };
+                let normal = if self.near.overlaps() { None } else { Some(normal) };
                 (Outcome::Hit(MotionHit { time, point, normal }), Status::Converged)
             }
         };

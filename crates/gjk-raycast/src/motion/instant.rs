@@ -78,19 +78,24 @@ pub(super) struct Instant<V: Vector> {
     pub(super) normal: V,
     /// By how much a plane across the normal certainly separates the bodies; not positive where none may.
     pub(super) gap: V::Scalar,
-    /// The signed distance as measured, and what it may be wrong by.
+    /// The signed distance as measured, which is certainly not more than `upper`.
     pub(super) distance: V::Scalar,
+    pub(super) upper: V::Scalar,
+    /// How far the measured distance is from the gap.
     pub(super) error: V::Scalar,
     /// How fast the closest points come nearer.
     pub(super) closing: V::Scalar,
-    /// Whether the bodies have a point in common: a polytope within their difference contains zero, or, since that takes long to
-    /// show of curved bodies that are hardly in one another, points of them are as near as rounding can tell while they are deeper
-    /// in one another than that along the normal.
-    pub(super) overlap: bool,
     /// The closest point of `b`, or the one deepest in `a`, in the world.
     pub(super) point: V,
     /// The support points of each shape that it took.
     pub(super) iterations: usize,
+}
+
+impl<V: Vector> Instant<V> {
+    /// Whether the bodies certainly have a point in common.
+    pub(super) fn overlaps(&self) -> bool {
+        self.upper < V::Scalar::ZERO
+    }
 }
 
 /// What need not be known exactly of an instant.
@@ -130,17 +135,14 @@ where
         let (point_a, point) = (answer.point_a + place, answer.point_b + place);
         let closing = answer.normal.dot(self.b.velocity(time, point) - self.a.velocity(time, point_a));
         let distance = answer.signed_distance;
-        // What the distance across the plane may be wrong by; points of the bodies are known as well.
-        let error = distance - answer.lower;
-        let deep = error + error;
         Instant {
             time,
             normal: answer.normal,
             gap: answer.lower,
             distance,
-            error,
+            upper: answer.upper,
+            error: distance - answer.lower,
             closing,
-            overlap: answer.upper < Scalar::ZERO || answer.upper <= deep && distance < -deep,
             point,
             iterations: answer.iterations,
         }
