@@ -11,6 +11,7 @@ mod linear_cast;
 mod margin;
 mod method;
 mod ray_cast;
+mod signed_distance;
 mod track;
 
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
@@ -26,6 +27,7 @@ use self::intersect::Intersect;
 use self::linear_cast::LinearCast;
 use self::margin::Margin;
 use self::ray_cast::RayCast;
+use self::signed_distance::SignedDistance;
 use self::track::Track;
 use crate::mesh::Meshes;
 use crate::wire::answer::{Answer, Field};
@@ -84,6 +86,7 @@ impl<Q: Question> Ask for Q {
 enum Name {
     RayCast,
     Distance,
+    SignedDistance,
     Intersect,
     LinearCast,
     EnclosingEllipsoid,
@@ -103,6 +106,7 @@ pub fn question(object: &Object, meshes: &Meshes) -> Result<Box<dyn Ask>, Proble
     let ask = match fields.name("query", Kind::UnknownQuery)? {
         Name::RayCast => read::<RayCast>,
         Name::Distance => read::<Distance>,
+        Name::SignedDistance => read::<SignedDistance>,
         Name::Intersect => read::<Intersect>,
         Name::LinearCast => read::<LinearCast>,
         Name::EnclosingEllipsoid => read::<Enclosing>,

@@ -36,7 +36,7 @@ pub fn section(records: &[Record]) -> Section {
 }
 
 /// The queries that have a scalar, in the order of their colours.
-const QUERIES: [&str; 8] = [
+const QUERIES: [&str; 9] = [
     "ray_cast",
     "linear_cast",
     "distance",
@@ -45,6 +45,7 @@ const QUERIES: [&str; 8] = [
     "inscribed_ellipsoid",
     "track",
     "clearance",
+    "signed_distance",
 ];
 
 /// Relative error against time, a colour for each query.

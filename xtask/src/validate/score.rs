@@ -9,6 +9,7 @@ pub fn scalar_of(query: &str) -> Option<&'static str> {
     Some(match query {
         "ray_cast" => "lambda",
         "distance" => "distance",
+        "signed_distance" => "signed_distance",
         "linear_cast" => "time",
         "enclosing_ellipsoid" | "inscribed_ellipsoid" => "log_det",
         "margin" => "margin",

@@ -1,0 +1,78 @@
+//! `signed_distance`.
+
+use convex_support::{Scalar as _, Vector};
+use gjk_raycast::{SignedDistanceOptions, Status, signed_distance};
+
+use super::{Ask, How, Query, Question, status};
+use crate::wire::answer::{Answer, Field};
+use crate::wire::error::{Kind, Problem};
+use crate::wire::fields::Fields;
+use crate::wire::shape::{Shape, Solid, Space};
+
+/// The query as written.
+pub(super) struct SignedDistance {
+    a: Shape,
+    b: Shape,
+}
+
+impl Query for SignedDistance {
+    fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+        Ok(Self { a: Shape::read(&fields.within("a")?)?, b: Shape::read(&fields.within("b")?)? })
+    }
+
+    fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
+        how.method(&[("gjk", ())])?;
+        let options = options(how)?;
+        Ok(Box::new(Pair::<V> { a: self.a.build("a", how.meshes)?, b: self.b.build("b", how.meshes)?, options }))
+    }
+}
+
+/// The options that a query gives.
+pub(super) fn options<V: Vector>(how: &How<'_>) -> Result<SignedDistanceOptions<V>, Problem> {
+    let options = SignedDistanceOptions::new();
+    Ok(how.tolerance::<V>()?.map_or(options, |tolerance| options.with_tolerance(tolerance)))
+}
+
+struct Pair<V: Vector> {
+    a: Solid<V>,
+    b: Solid<V>,
+    options: SignedDistanceOptions<V>,
+}
+
+impl<V: Space> Question for Pair<V> {
+    type Solution = gjk_raycast::SignedDistance<V>;
+
+    fn solve(&self) -> Result<Self::Solution, Problem> {
+        Ok(signed_distance(&self.a, &self.b, self.options))
+    }
+
+    fn answer(&self, d: Self::Solution) -> Result<Answer, Problem> {
+        certain(&d, V::Scalar::ZERO)?;
+        Ok(Answer::default()
+            .with("signed_distance", Field::number(d.signed_distance))
+            .with("overlap", Field::Flag(d.overlap))
+            .with("normal", Field::vector(d.normal))
+            .with("point_a", Field::vector(d.point_a))
+            .with("point_b", Field::vector(d.point_b))
+            .with_finite("lower", d.lower)
+            .with_finite("upper", d.upper)
+            .with("status", status(d.status))
+            .with("iterations", Field::Count(d.iterations)))
+    }
+}
+
+/// Refuses a signed distance that the search gave up on before it was on one side of `level`.
+///
+/// One that is, is answered with its bracket, however wide, and with `status` to say so: ties, as of an ellipsoid of revolution
+/// around a ball, are known to all digits from below long before they are from above.
+pub(super) fn certain<V: Vector>(d: &gjk_raycast::SignedDistance<V>, level: V::Scalar) -> Result<(), Problem> {
+    let decided = d.lower > level || d.upper <= level;
+    if d.status != Status::IterationLimit || decided {
+        return Ok(());
+    }
+    let message = format!(
+        "the signed distance is certain only to lie between {} and {} after {} iterations",
+        d.lower, d.upper, d.iterations
+    );
+    Err(Problem::new(Kind::NotConverged, message))
+}
