@@ -204,9 +204,11 @@ fn dashes(colour: usize) -> &'static str {
 
 /// The mark of a series: disc, square, triangle, diamond; hollow beyond four.
 fn mark(colour: usize, x: f64, y: f64, r: f64) -> String {
+    // Where the colours begin again, the marks are one further.
+    let kind = colour + colour / COLOURS.len();
     let fill =
-        if colour % 8 >= 4 { " style=\"fill:var(--ground,none)\" stroke-width=\"1.6\"" } else { " stroke=\"none\"" };
-    match colour % 4 {
+        if kind % 8 >= 4 { " style=\"fill:var(--ground,none)\" stroke-width=\"1.6\"" } else { " stroke=\"none\"" };
+    match kind % 4 {
         0 => format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{r}\"{fill}/>"),
         1 => {
             let (x, y, side) = (x - 0.9 * r, y - 0.9 * r, 1.8 * r);

@@ -1,4 +1,4 @@
-//! What `ray_cast` and `linear_cast` share.
+//! What `ray_cast`, `linear_cast` and `motion_cast` share.
 
 use convex_support::Scalar;
 use gjk_raycast::{Outcome, RayCastError, Status};

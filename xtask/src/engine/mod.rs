@@ -10,6 +10,7 @@ mod intersect;
 mod linear_cast;
 mod margin;
 mod method;
+mod motion_cast;
 mod ray_cast;
 mod signed_distance;
 mod track;
@@ -26,6 +27,7 @@ use self::inscribed::Inscribed;
 use self::intersect::Intersect;
 use self::linear_cast::LinearCast;
 use self::margin::Margin;
+use self::motion_cast::MotionCast;
 use self::ray_cast::RayCast;
 use self::signed_distance::SignedDistance;
 use self::track::Track;
@@ -89,6 +91,7 @@ enum Name {
     SignedDistance,
     Intersect,
     LinearCast,
+    MotionCast,
     EnclosingEllipsoid,
     InscribedEllipsoid,
     Margin,
@@ -109,6 +112,7 @@ pub fn question(object: &Object, meshes: &Meshes) -> Result<Box<dyn Ask>, Proble
         Name::SignedDistance => read::<SignedDistance>,
         Name::Intersect => read::<Intersect>,
         Name::LinearCast => read::<LinearCast>,
+        Name::MotionCast => read::<MotionCast>,
         Name::EnclosingEllipsoid => read::<Enclosing>,
         Name::InscribedEllipsoid => read::<Inscribed>,
         Name::Margin => read::<Margin>,

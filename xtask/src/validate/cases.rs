@@ -36,7 +36,7 @@ pub fn section(records: &[Record]) -> Section {
 }
 
 /// The queries that have a scalar, in the order of their colours.
-const QUERIES: [&str; 9] = [
+const QUERIES: [&str; 10] = [
     "ray_cast",
     "linear_cast",
     "distance",
@@ -46,6 +46,7 @@ const QUERIES: [&str; 9] = [
     "track",
     "clearance",
     "signed_distance",
+    "motion_cast",
 ];
 
 /// Relative error against time, a colour for each query.

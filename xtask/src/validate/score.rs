@@ -10,7 +10,7 @@ pub fn scalar_of(query: &str) -> Option<&'static str> {
         "ray_cast" => "lambda",
         "distance" => "distance",
         "signed_distance" => "signed_distance",
-        "linear_cast" => "time",
+        "linear_cast" | "motion_cast" => "time",
         "enclosing_ellipsoid" | "inscribed_ellipsoid" => "log_det",
         "margin" => "margin",
         "track" => "margins",

@@ -24,6 +24,15 @@ pub enum Rotation {
     Quaternion(Vec<f64>),
 }
 
+/// An angular velocity as written: a number makes the query 2D, a vector 3D.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AngularVelocity {
+    /// Radians per unit of time, counter-clockwise.
+    Rate(f64),
+    /// Along the axis, as long as the rate.
+    Vector(Coordinates),
+}
+
 /// The dimension of a query, and the first place that says so.
 #[derive(Debug, Default)]
 pub struct Dimension(OnceCell<(usize, String)>);
@@ -151,6 +160,12 @@ impl<'v> Fields<'v> {
         }
     }
 
+    /// The same of one that must be there.
+    pub fn above_zero(&self, key: &str) -> Result<f64, Problem> {
+        let number = self.get(key)?;
+        Ok(self.positive(key)?.unwrap_or(number))
+    }
+
     /// The object that a field is.
     pub fn within(&self, key: &str) -> Result<Self, Problem> {
         self.of(self.value(key)?, self.at(key))
@@ -220,6 +235,28 @@ impl<'v> Fields<'v> {
             }
         }
         Ok(rotation)
+    }
+
+    /// An angular velocity of the space of the query, if it is there.
+    pub fn angular_velocity(&self, key: &str) -> Result<Option<AngularVelocity>, Problem> {
+        let place = self.at(key);
+        match self.object.get(key) {
+            None => Ok(None),
+            Some(Value::Array(_)) => {
+                let numbers: Vec<f64> = self.get(key)?;
+                if numbers.len() != 3 {
+                    let count = numbers.len();
+                    let message = format!("{place} has {count} coordinates, but is a number in 2D and has 3 in 3D");
+                    return Err(Problem::new(Kind::DimensionMismatch, message));
+                }
+                Ok(Some(AngularVelocity::Vector(self.dimension.vector(&numbers, &place)?)))
+            }
+            Some(_) => {
+                let rate = self.get(key)?;
+                self.dimension.note(2, &place, "is a number, which is 2D")?;
+                Ok(Some(AngularVelocity::Rate(rate)))
+            }
+        }
     }
 
     /// Notes that the object is 3D, being what it is.

@@ -4,4 +4,5 @@ pub mod answer;
 pub mod error;
 pub mod fields;
 pub mod json;
+pub mod motion;
 pub mod shape;

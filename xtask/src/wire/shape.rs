@@ -11,7 +11,7 @@ use ellip_margin::Wedge;
 use serde::Deserialize;
 
 use super::error::{Kind, Problem};
-use super::fields::{Coordinates, Fields, Rotation};
+use super::fields::{AngularVelocity, Coordinates, Fields, Rotation};
 use crate::mesh::{Mesh, Meshes};
 
 /// A shape as the query says it.
@@ -202,6 +202,9 @@ pub trait Space: Vector + Wedge {
     /// The rotation, rounded to this precision; that of another dimension is a broken contract and gives none.
     fn rotation(rotation: &Rotation) -> Self::Rotation;
 
+    /// The angular velocity, likewise.
+    fn angular_velocity(velocity: AngularVelocity) -> Self::AngularVelocity;
+
     /// A cylinder or cone.
     ///
     /// # Panics
@@ -228,6 +231,13 @@ impl Space for DVec2 {
             Rotation::Quaternion(_) => 0.0,
         }
     }
+
+    fn angular_velocity(velocity: AngularVelocity) -> f64 {
+        match velocity {
+            AngularVelocity::Rate(rate) => rate,
+            AngularVelocity::Vector(_) => 0.0,
+        }
+    }
 }
 
 impl Space for Vec2 {
@@ -235,6 +245,10 @@ impl Space for Vec2 {
 
     fn rotation(rotation: &Rotation) -> f32 {
         f32::from_f64(DVec2::rotation(rotation))
+    }
+
+    fn angular_velocity(velocity: AngularVelocity) -> f32 {
+        f32::from_f64(DVec2::angular_velocity(velocity))
     }
 }
 
@@ -245,6 +259,13 @@ impl Space for DVec3 {
         match rotation {
             Rotation::Quaternion(q) if q.len() == 4 => glam::DQuat::from_slice(q),
             _ => glam::DQuat::IDENTITY,
+        }
+    }
+
+    fn angular_velocity(velocity: AngularVelocity) -> Self {
+        match velocity {
+            AngularVelocity::Rate(_) => Self::ZERO,
+            AngularVelocity::Vector(coordinates) => vector(&coordinates),
         }
     }
 
@@ -272,6 +293,10 @@ impl Space for Vec3A {
         } else {
             glam::Quat::from_vec4(q.as_vec4())
         }
+    }
+
+    fn angular_velocity(velocity: AngularVelocity) -> Self {
+        DVec3::angular_velocity(velocity).as_vec3a()
     }
 
     fn upright(kind: Upright, half_height: f64, radius: f64) -> Result<Solid<Self>, InvalidShape> {
