@@ -2,6 +2,7 @@
 
 mod cast;
 mod clearance;
+mod contact;
 mod distance;
 mod enclosing;
 mod fit;
@@ -21,6 +22,7 @@ use cpu_time::ThreadTime;
 use serde::Deserialize;
 
 use self::clearance::Clearance;
+use self::contact::Contact;
 use self::distance::Distance;
 use self::enclosing::Enclosing;
 use self::inscribed::Inscribed;
@@ -89,6 +91,7 @@ enum Name {
     RayCast,
     Distance,
     SignedDistance,
+    Contact,
     Intersect,
     LinearCast,
     MotionCast,
@@ -110,6 +113,7 @@ pub fn question(object: &Object, meshes: &Meshes) -> Result<Box<dyn Ask>, Proble
         Name::RayCast => read::<RayCast>,
         Name::Distance => read::<Distance>,
         Name::SignedDistance => read::<SignedDistance>,
+        Name::Contact => read::<Contact>,
         Name::Intersect => read::<Intersect>,
         Name::LinearCast => read::<LinearCast>,
         Name::MotionCast => read::<MotionCast>,

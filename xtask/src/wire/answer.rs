@@ -51,6 +51,9 @@ pub enum Field {
     Numbers(Vec<Number>),
     Rows(Vec<Vec<Number>>),
     Counts(Vec<usize>),
+    Pairs(Vec<[usize; 2]>),
+    Answer(Answer),
+    Answers(Vec<Answer>),
 }
 
 impl Field {
@@ -73,7 +76,9 @@ impl Field {
             Self::Number(number) => number.is_finite(),
             Self::Numbers(numbers) => numbers.iter().all(|n| n.is_finite()),
             Self::Rows(rows) => rows.iter().flatten().all(|n| n.is_finite()),
-            Self::Null | Self::Flag(_) | Self::Count(_) | Self::Text(_) | Self::Counts(_) => true,
+            Self::Answer(answer) => answer.non_finite().is_none(),
+            Self::Answers(answers) => answers.iter().all(|answer| answer.non_finite().is_none()),
+            Self::Null | Self::Flag(_) | Self::Count(_) | Self::Text(_) | Self::Counts(_) | Self::Pairs(_) => true,
         }
     }
 }
@@ -98,6 +103,12 @@ impl Answer {
     /// The first field that JSON cannot hold.
     pub fn non_finite(&self) -> Option<&'static str> {
         self.fields.iter().find(|(_, field)| !field.is_finite()).map(|(name, _)| *name)
+    }
+}
+
+impl Serialize for Answer {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.fields.iter().map(|(name, field)| (name, field)))
     }
 }
 

@@ -166,6 +166,17 @@ impl<'v> Fields<'v> {
         Ok(self.positive(key)?.unwrap_or(number))
     }
 
+    /// A number that must not be less than zero, if it is there.
+    pub fn not_negative(&self, key: &str) -> Result<Option<f64>, Problem> {
+        match self.maybe(key)? {
+            Some(number) if number < 0.0 => {
+                let message = format!("{} is {number}, but must not be negative", self.at(key));
+                Err(Problem::new(Kind::Parse, message))
+            }
+            number => Ok(number),
+        }
+    }
+
     /// The object that a field is.
     pub fn within(&self, key: &str) -> Result<Self, Problem> {
         self.of(self.value(key)?, self.at(key))
