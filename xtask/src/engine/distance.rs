@@ -44,13 +44,7 @@ impl<V: Space> Question for Pair<V> {
     }
 
     fn answer(&self, d: Self::Solution) -> Result<Answer, Problem> {
-        if d.status == Status::IterationLimit {
-            let message = format!(
-                "the distance is certain only to lie between {} and {} after {} iterations",
-                d.lower, d.upper, d.iterations
-            );
-            return Err(Problem::new(Kind::NotConverged, message));
-        }
+        certain(&d)?;
         let mut answer =
             Answer::default().with("distance", Field::number(d.distance)).with("overlap", Field::Flag(d.overlap));
         if !d.overlap {
@@ -65,4 +59,16 @@ impl<V: Space> Question for Pair<V> {
             .with("status", status(d.status))
             .with("iterations", Field::Count(d.iterations)))
     }
+}
+
+/// Refuses a distance that the search gave up on.
+pub(super) fn certain<V: Vector>(d: &gjk_raycast::Distance<V>) -> Result<(), Problem> {
+    if d.status != Status::IterationLimit {
+        return Ok(());
+    }
+    let message = format!(
+        "the distance is certain only to lie between {} and {} after {} iterations",
+        d.lower, d.upper, d.iterations
+    );
+    Err(Problem::new(Kind::NotConverged, message))
 }

@@ -13,6 +13,7 @@ mod margin;
 mod method;
 mod motion_cast;
 mod ray_cast;
+mod scene;
 mod signed_distance;
 mod track;
 
@@ -31,6 +32,7 @@ use self::linear_cast::LinearCast;
 use self::margin::Margin;
 use self::motion_cast::MotionCast;
 use self::ray_cast::RayCast;
+use self::scene::Scene;
 use self::signed_distance::SignedDistance;
 use self::track::Track;
 use crate::mesh::Meshes;
@@ -95,6 +97,7 @@ enum Name {
     Intersect,
     LinearCast,
     MotionCast,
+    Scene,
     EnclosingEllipsoid,
     InscribedEllipsoid,
     Margin,
@@ -117,6 +120,7 @@ pub fn question(object: &Object, meshes: &Meshes) -> Result<Box<dyn Ask>, Proble
         Name::Intersect => read::<Intersect>,
         Name::LinearCast => read::<LinearCast>,
         Name::MotionCast => read::<MotionCast>,
+        Name::Scene => read::<Scene>,
         Name::EnclosingEllipsoid => read::<Enclosing>,
         Name::InscribedEllipsoid => read::<Inscribed>,
         Name::Margin => read::<Margin>,
@@ -265,5 +269,99 @@ mod tests {
         assert_eq!(shape.kind, Kind::UnknownShape, "{shape:?}");
         assert!(shape.message.starts_with("a.type: unknown variant `sphere`, expected one of `point`, "), "{shape:?}");
         assert_eq!(refused(r#"{"query":7}"#).kind, Kind::Parse, "no name at all");
+    }
+
+    /// The answer to a line.
+    fn answered(line: &str) -> serde_json::Value {
+        let object = json::object(line.as_bytes()).expect("JSON");
+        let answer = question(&object, &Meshes::relative_to("")).and_then(|question| question.ask());
+        serde_json::to_value(answer.expect(line)).expect("JSON")
+    }
+
+    #[test]
+    fn motions_say_the_dimension_and_have_an_end() {
+        let cast = |more: &str| {
+            let ball = r#"{"type":"ball","radius":1}"#;
+            format!(r#"{{"query":"motion_cast","a":{ball},"b":{ball}{more}}}"#)
+        };
+        let cases = [
+            ("", Kind::Parse, "the field \"max_time\" is missing"),
+            (r#","max_time":0"#, Kind::Parse, "max_time is 0, but must be greater than zero"),
+            (
+                r#","max_time":1e300,"precision":"f32""#,
+                Kind::NonFinite,
+                "max_time is not finite in the precision asked for",
+            ),
+            (
+                r#","max_time":1,"motion_a":{"angular_velocity":1},"motion_b":{"velocity":[1,0,0]}"#,
+                Kind::DimensionMismatch,
+                "motion_b.velocity has 3 coordinates, but motion_a.angular_velocity makes the query 2D",
+            ),
+            (
+                r#","max_time":1,"motion_a":{"angular_velocity":[0,1]}"#,
+                Kind::DimensionMismatch,
+                "motion_a.angular_velocity has 2 coordinates, but is a number in 2D and has 3 in 3D",
+            ),
+        ];
+        for (more, kind, message) in cases {
+            let problem = refused(&cast(more));
+            assert_eq!((problem.kind, problem.message.as_str()), (kind, message), "{more}");
+        }
+        assert_eq!(answered(&cast(r#","max_time":1"#))["time"], 0.0, "they overlap");
+    }
+
+    #[test]
+    fn a_contact_is_null_beyond_its_distance() {
+        let contact = |within: f64| {
+            let b = r#"{"type":"posed","translation":[0,2.5],"of":{"type":"cuboid","half_extents":[2,1]}}"#;
+            answered(&format!(
+                r#"{{"query":"contact","a":{{"type":"cuboid","half_extents":[1,1]}},"b":{b},"within":{within}}}"#
+            ))
+        };
+        let found = &contact(0.5)["contact"];
+        assert_eq!(found["signed_distance"], 0.5);
+        assert_eq!(found["points"].as_array().map(Vec::len), Some(2), "of faces in 2D two points are enough: {found}");
+        let apart = contact(0.25);
+        assert!(apart["contact"].is_null() && apart["lower"].as_f64() > Some(0.25), "{apart}");
+    }
+
+    #[test]
+    fn a_scene_answers_as_its_bodies_one_by_one() {
+        let bodies = [[4.0, 0.0], [8.0, 0.5], [-6.0, 0.0]].map(|[x, y]| {
+            format!(r#"{{"type":"posed","translation":[{x},{y}],"of":{{"type":"cuboid","half_extents":[1,1]}}}}"#)
+        });
+        let (ball, bodies_in) = (r#"{"type":"ball","radius":0.5}"#, bodies.join(","));
+        let turning = r#"{"velocity":[-2,0],"angular_velocity":1.0}"#;
+        let asks = [
+            r#"{"ray":{"source":[0,0],"direction":[2,0]}}"#.to_owned(),
+            r#"{"ray":{"source":[0,0],"direction":[0,1]}}"#.to_owned(),
+            format!(r#"{{"nearest":{ball}}}"#),
+            format!(r#"{{"nearest":{ball},"within":2}}"#),
+            format!(r#"{{"linear_cast":{{"shape":{ball},"velocity":[1,0],"max_time":2}}}}"#),
+            format!(r#"{{"motion_cast":{{"shape":{ball},"motion":{turning},"max_time":9}}}}"#),
+            r#"{"pairs_within":2}"#.to_owned(),
+        ]
+        .join(",");
+        let scene = answered(&format!(r#"{{"query":"scene","bodies":[{bodies_in}],"asks":[{asks}]}}"#));
+        let answers = &scene["answers"];
+        assert_eq!((&answers[0]["body"], &answers[0]["lambda"]), (&0.into(), &1.5.into()), "{answers}");
+        assert_eq!(answers[1], serde_json::json!({"hit": false}));
+        assert_eq!((&answers[2]["body"], &answers[2]["distance"]), (&0.into(), &2.5.into()), "{answers}");
+        assert_eq!(answers[3], serde_json::json!({"body": null, "distance": null}));
+        assert_eq!(answers[4], serde_json::json!({"hit": false}), "it comes to within 0.5");
+        let single = answered(&format!(
+            r#"{{"query":"motion_cast","a":{ball},"b":{},"motion_a":{turning},"max_time":9}}"#,
+            bodies[2]
+        ));
+        assert_eq!((&answers[5]["body"], &answers[5]["time"]), (&2.into(), &single["time"]), "{answers}");
+        assert_eq!(answers[6]["pairs"], serde_json::json!([[0, 1]]), "the lower index first");
+    }
+
+    #[test]
+    fn a_question_to_a_scene_is_of_one_kind() {
+        let problem =
+            refused(r#"{"query":"scene","bodies":[],"asks":[{"pairs_within":1},{"ray":{},"pairs_within":1}]}"#);
+        let message = "asks[1] must have exactly one of ray, nearest, linear_cast, motion_cast, pairs_within";
+        assert_eq!((problem.kind, problem.message.as_str()), (Kind::Parse, message));
     }
 }

@@ -75,7 +75,10 @@ pub struct Scope {
 
 /// The queries, by the crate that answers them.
 const CRATES: [(&str, &[&str]); 3] = [
-    ("gjk-raycast", &["ray_cast", "linear_cast", "motion_cast", "distance", "signed_distance", "contact", "intersect"]),
+    (
+        "gjk-raycast",
+        &["ray_cast", "linear_cast", "motion_cast", "distance", "signed_distance", "contact", "intersect", "scene"],
+    ),
     ("lj-ellipsoid", &["enclosing_ellipsoid", "inscribed_ellipsoid"]),
     ("ellip-margin", &["margin", "track", "clearance"]),
 ];
