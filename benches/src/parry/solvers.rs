@@ -152,7 +152,7 @@ fn vector(v: Vec3) -> Vector {
     Vector::from_array(v.map(number))
 }
 
-fn pose(pose: crate::Pose) -> Pose {
+fn pose(pose: workloads::Pose) -> Pose {
     Pose::from_parts(vector(pose.translation), Rotation::from_array(pose.rotation.map(number)))
 }
 
