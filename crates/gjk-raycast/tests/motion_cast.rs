@@ -279,3 +279,19 @@ fn single_precision() {
     assert!(f64::from(cast.lower) <= FRAC_PI_6 && FRAC_PI_6 <= f64::from(cast.upper), "{cast:?}");
     assert!(cast.upper - cast.lower < 1e-5, "{cast:?}");
 }
+
+/// The square of the velocity overflows, and with it the time at which balls about the bodies are nearest. That is no proof of a miss.
+#[test]
+fn what_turns_and_moves_very_fast_is_not_proved_to_miss() {
+    let cube = Cuboid::new(DVec3::ONE).expect("positive");
+    let wall = at(Cuboid::new(DVec3::ONE).expect("positive"), DVec3::new(9.0, 0.0, 0.0));
+    for speed in [1e150, 1e155, 1e200] {
+        let motion = RigidMotion {
+            velocity: DVec3::new(speed, 0.0, 0.0),
+            angular_velocity: DVec3::new(1.0, 2.0, 3.0),
+            center: DVec3::ZERO,
+        };
+        let cast = motion_cast(&cube, motion, &wall, RigidMotion::default(), until(1.0)).expect("finite");
+        assert!(!cast.outcome.is_miss(), "{speed:e}: {cast:?}");
+    }
+}

@@ -7,6 +7,7 @@ use num_traits::Float as _;
 
 use super::moved::Moved;
 use super::trajectory::{Displacement, Trajectory, TurningPlane};
+use crate::unit::is_moderate;
 use crate::{SignedDistanceOptions, signed_distance};
 
 /// A body and its motion.
@@ -176,6 +177,10 @@ where
         let duration = interval[1] - interval[0];
         // The time at which start + t·velocity is shortest.
         let (slope, squared) = (start.dot(velocity), velocity.length_squared());
+        // Of velocities whose squares are out of range, that time is not known.
+        if !(is_moderate(squared) || velocity == A::Vector::ZERO) {
+            return None;
+        }
         let nearest = if slope < Scalar::ZERO { (-slope / squared).min(duration) } else { Scalar::ZERO };
         let between = start + velocity * nearest;
         let reach = a.radius + b.radius + self.a.core.radius + self.b.core.radius;
