@@ -89,7 +89,7 @@ const CHAPTERS: [&str; 7] = ["headline", "ladders", "stiff", "growth", "left-out
 /// A chapter of the report, and who writes it.
 #[derive(Clone, Copy, Debug)]
 pub struct Chapter {
-    /// One of [`CHAPTERS`].
+    /// One of the names of the chapters.
     pub name: &'static str,
     pub write: fn(&Material<'_>) -> Section,
 }

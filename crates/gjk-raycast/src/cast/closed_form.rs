@@ -47,7 +47,10 @@ pub(super) fn closed_form<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
                 // A plane that the line runs along to rounding is crossed anywhere; but the line touches the point.
                 Err(Stop::InDoubt) if normal.dot(line.direction).abs() <= bracket.noise => {
                     let aside = line.across(line.foot - point);
-                    bracket.close_beside(aside, bracket.noise, point, witness).ok_or(Stop::InDoubt)
+                    let mut contact =
+                        bracket.close_beside(aside, bracket.noise, point, witness).ok_or(Stop::InDoubt)?;
+                    contact.normal = contact.normal.or(Some(normal));
+                    Ok(contact)
                 }
                 closed => closed,
             }
