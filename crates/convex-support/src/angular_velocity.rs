@@ -39,6 +39,27 @@ pub trait AngularVelocity<V: Vector>:
 
     /// The first coordinate that is not finite, counted from 0.
     fn non_finite(self) -> Option<usize>;
+
+    /// The moment of a force at the end of an arm: `arm × force`, in 2D its only coordinate. So for any `ω`
+    ///
+    /// > moment(arm, force)·ω = force·(ω × arm).
+    ///
+    /// ```
+    /// use convex_support::{AngularVelocity, glam::{DVec2, DVec3}};
+    ///
+    /// assert_eq!(<f64 as AngularVelocity<DVec2>>::moment(DVec2::X * 3.0, DVec2::Y), 3.0);
+    /// assert_eq!(<DVec3 as AngularVelocity<DVec3>>::moment(DVec3::X * 3.0, DVec3::Y), DVec3::Z * 3.0);
+    /// ```
+    fn moment(arm: V, force: V) -> Self;
+
+    /// Coordinate `index`, counted from 0, of the one in 2D or the three in 3D.
+    ///
+    /// # Panics
+    /// If there is none.
+    fn coordinate(self, index: usize) -> V::Scalar;
+
+    /// The one whose coordinate `i` is `f(i)`.
+    fn from_coordinates(f: impl FnMut(usize) -> V::Scalar) -> Self;
 }
 
 mod sealed {
@@ -88,6 +109,21 @@ macro_rules! number {
             fn non_finite(self) -> Option<usize> {
                 if self.is_finite() { None } else { Some(0) }
             }
+
+            #[inline]
+            fn moment(arm: $V, force: $V) -> Self {
+                arm.perp_dot(force)
+            }
+
+            #[inline]
+            fn coordinate(self, index: usize) -> $S {
+                [self][index]
+            }
+
+            #[inline]
+            fn from_coordinates(mut f: impl FnMut(usize) -> $S) -> Self {
+                f(0)
+            }
         }
     };
 }
@@ -125,6 +161,21 @@ macro_rules! vector {
             #[inline]
             fn non_finite(self) -> Option<usize> {
                 self.to_array().iter().position(|c| !c.is_finite())
+            }
+
+            #[inline]
+            fn moment(arm: $V, force: $V) -> Self {
+                arm.cross(force)
+            }
+
+            #[inline]
+            fn coordinate(self, index: usize) -> <$V as Vector>::Scalar {
+                self.get(index)
+            }
+
+            #[inline]
+            fn from_coordinates(f: impl FnMut(usize) -> <$V as Vector>::Scalar) -> Self {
+                <$V as Vector>::from_fn(f)
             }
         }
     };

@@ -17,6 +17,12 @@ pub struct Core<V: Vector> {
     /// An upper bound on the length of every vector that [`core_support`](crate::SupportMap::core_support) computes with, which is
     /// what its rounding errors are proportional to.
     pub extent: V::Scalar,
+    /// An upper bound on how far rounding has moved the core, as a length: with the origin as it was computed, every
+    /// [support point](crate::SupportMap::core_support) is that near to a point of the exact core, and what is lacking of the exact
+    /// support value is no more than that along a unit direction. What the radius is wrong by is counted in.
+    ///
+    /// It is at hand for every query, and [`rounding`](crate::SupportMap::rounding) says the same coordinate by coordinate.
+    pub error: V::Scalar,
     /// What kind of set the core is.
     pub kind: CoreKind<V>,
 }

@@ -73,6 +73,18 @@ macro_rules! forward {
             }
 
             #[inline]
+            fn core_rolling_radius(&self) -> <$V as $crate::Vector>::Scalar {
+                let $this = self;
+                $inner.core_rolling_radius()
+            }
+
+            #[inline]
+            fn core_parallelotope(&self) -> Option<$crate::Parallelotope<$V>> {
+                let $this = self;
+                $inner.core_parallelotope()
+            }
+
+            #[inline]
             fn rounding(&self) -> $crate::Rounding<$V> {
                 let $this = self;
                 $inner.rounding()
@@ -107,6 +119,9 @@ mod tests {
         assert_eq!(pointer.core().kind, CoreKind::Polytope, "a segment is the core");
         assert_eq!(pointer.core_support_hessian(d, [d, d]), capsule.core_support_hessian(d, [d, d]));
         assert_eq!(pointer.rounding(), capsule.rounding());
+        assert_eq!(pointer.core_rolling_radius(), capsule.core_rolling_radius());
+        assert_eq!(pointer.core_parallelotope(), capsule.core_parallelotope());
+        assert!(pointer.core_parallelotope().is_some(), "a segment");
         assert_eq!(pointer.core_closest_point(d), Some(DVec3::NEG_Y));
         assert_eq!(closest_point(&pointer, d), closest_point(&capsule, d));
         assert!(line_crossing(&capsule, aside - d, d).crossing().is_some(), "a hit");

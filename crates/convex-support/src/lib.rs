@@ -65,6 +65,7 @@ mod interop_serde;
 mod line_crossing;
 #[doc(hidden)]
 pub mod numerics;
+mod parallelotope;
 mod rotation;
 mod scalar;
 mod shapes;
@@ -93,6 +94,7 @@ pub use interop_parry::parry3d;
 #[cfg(feature = "parry3d-f64")]
 pub use interop_parry::parry3d_f64;
 pub use line_crossing::{Crossing, LineCrossing, line_crossing};
+pub use parallelotope::Parallelotope;
 pub use rotation::Rotation;
 pub use scalar::Scalar;
 #[cfg(feature = "hull")]

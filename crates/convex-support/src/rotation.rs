@@ -16,6 +16,9 @@ pub trait Rotation<V: Vector>: Copy + Debug + Default + PartialEq + Send + Sync 
     /// A bound on the rounding error of each entry of [`matrix`](Self::matrix), in units of the scalar's epsilon.
     const MATRIX_ERROR: f64;
 
+    /// A bound on how far the matrix moves a unit vector from where the rotation does, in the same units.
+    const OPERATOR_ERROR: f64;
+
     /// The rotation that the quaternion `x·i + y·j + z·k + w` stands for; in 2D by its angle about `z`, `2·atan2(z, w)`.
     fn from_xyzw(quaternion: [V::Scalar; 4]) -> Self;
 
@@ -43,6 +46,7 @@ macro_rules! angle {
     ($S:ident rotates $V:ident by $M:ident) => {
         impl Rotation<$V> for $S {
             const MATRIX_ERROR: f64 = 1.0;
+            const OPERATOR_ERROR: f64 = 1.5;
 
             #[inline]
             fn from_xyzw([_, _, z, w]: [$S; 4]) -> Self {
@@ -67,8 +71,12 @@ angle!(f64 rotates DVec2 by DMat2);
 
 /// With `u = ε/2`: the length is right to `3u`, and `1 − 2(y² + z²)`, with `2(y² + z²) ≤ 2`, loses `4·3u` of that, `4u` by the
 /// rounding of the quotients, and `5u` by its own operations; the other entries lose half as much.
+///
+/// As an operator, the matrix is `1` and what is linear in the squared length, at most `2` long, which loses `4·3u`; the rounding of
+/// the quotients turns by `4u`; and its own operations leave `8u`, the root of the sum of their squares, as `Σ 2(y² + z²) ≤ 4`.
 impl Rotation<DVec3> for DQuat {
     const MATRIX_ERROR: f64 = 11.0;
+    const OPERATOR_ERROR: f64 = 12.0;
 
     #[inline]
     fn from_xyzw(quaternion: [f64; 4]) -> Self {
@@ -92,6 +100,7 @@ macro_rules! quaternion {
     ($V:ident by $M:ident, $rounded:expr) => {
         impl Rotation<$V> for Quat {
             const MATRIX_ERROR: f64 = 0.501;
+            const OPERATOR_ERROR: f64 = 0.87;
 
             #[inline]
             fn from_xyzw(quaternion: [f32; 4]) -> Self {

@@ -2,8 +2,9 @@
 
 use num_traits::Float as _;
 
+use crate::numerics::bound::roundings;
 use crate::numerics::range::is_comfortable;
-use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Rounding, Scalar, Vector};
+use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, Vector};
 
 /// A nonempty, closed, bounded convex set, known by its support mapping.
 ///
@@ -69,12 +70,18 @@ pub trait SupportMap {
 
     /// What the set is split into: an origin, a core and a radius. Algorithms ask once for each query.
     ///
-    /// Provided: the core is all there is, about zero. A shape with an origin or a radius says so here and writes out
-    /// [`core_support`](Self::core_support) too.
+    /// Provided: the core is all there is, about zero, and known to four units in the last place of its extent. A shape with an origin
+    /// or a radius says so here and writes out [`core_support`](Self::core_support) too.
     #[inline(always)]
     fn core(&self) -> Core<Self::Vector> {
         let extent = extent_along_axes(|d| self.support(d)).norm();
-        Core { origin: Self::Vector::ZERO, radius: Scalar::ZERO, extent, kind: CoreKind::Curved }
+        Core {
+            origin: Self::Vector::ZERO,
+            radius: Scalar::ZERO,
+            extent,
+            error: roundings(8.0, extent),
+            kind: CoreKind::Curved,
+        }
     }
 
     /// A point of the core farthest along `direction`, relative to the [origin](Core::origin).
@@ -129,6 +136,25 @@ pub trait SupportMap {
     fn core_support_feature(&self, direction: Self::Vector, slab: ScalarOf<Self>, feature: &mut Feature<Self::Vector>) {
         let _ = slab;
         feature.push(self.core_support(direction, &mut Hint::new()), 0);
+    }
+
+    /// The radius of a ball that rolls around within the core: the core is some smaller convex set swept by it. A smaller radius is right
+    /// as well. Provided: 0.
+    ///
+    /// A ball of radius `r` rolls within a smooth convex body if no radius of curvature is less than `r` (Blaschke's rolling theorem).
+    /// What sweeps two shapes beside their [radii](Core::radius) lets a penetration depth less than that be found as a distance.
+    #[inline]
+    fn core_rolling_radius(&self) -> ScalarOf<Self> {
+        Scalar::ZERO
+    }
+
+    /// The core as a parallelotope, relative to the [origin](Core::origin), where it is one and not a single point. Provided: `None`.
+    ///
+    /// What its points are wrong by is no more than what [`rounding`](Self::rounding) says of support points. Of two such cores that
+    /// overlap the depth is known in closed form.
+    #[inline]
+    fn core_parallelotope(&self) -> Option<Parallelotope<Self::Vector>> {
+        None
     }
 
     /// How well the support points of the core are known. Algorithms ask once, at the end of a query, to prove what they found.

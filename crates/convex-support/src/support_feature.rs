@@ -11,6 +11,20 @@ const MAX_POINTS: usize = 16;
 /// Points of a rim that stand for a disc.
 const RIM: u32 = 8;
 
+/// Directions that are probed for vertices.
+#[cfg(any(test, feature = "parry2d", feature = "parry2d-f64", feature = "parry3d", feature = "parry3d-f64"))]
+const PROBES: u32 = 12;
+
+/// A number made of the coordinates of a point.
+#[cfg(any(test, feature = "parry2d", feature = "parry2d-f64", feature = "parry3d", feature = "parry3d-f64"))]
+fn hash<V: Vector>(point: V) -> u32 {
+    let mixed = (0..V::DIM).fold(0_u64, |hash, i| {
+        // Zero is zero, whatever its sign (Fowler, Noll and Vo's hash, a word at a time).
+        (hash ^ (point.get(i).as_f64() + 0.0).to_bits()).wrapping_mul(0x0000_0100_0000_01B3).rotate_left(23)
+    });
+    (mixed ^ (mixed >> 32)) as u32
+}
+
 /// The points of a shape that lie within a slab behind its supporting plane: a vertex, the ends of an edge, or the corners of a
 /// face, in no order, and perhaps with points in between.
 ///
@@ -79,6 +93,35 @@ impl<V: Vector> Feature<V> {
         }
     }
 
+    /// Of a shape that is known by its support points alone, the vertices around the one along a direction and no farther than `slab`
+    /// behind it: support points along directions turned all around by a small angle, as far as they stay where they are at half of it.
+    /// On what is curved they do not. Their numbers are made of their coordinates.
+    #[cfg(any(test, feature = "parry2d", feature = "parry2d-f64", feature = "parry3d", feature = "parry3d-f64"))]
+    pub(crate) fn probe(&mut self, direction: V, slab: V::Scalar, support: impl Fn(V) -> V) {
+        let point = support(direction);
+        self.push(point, hash(point));
+        let Some(n) = direction.unit() else { return };
+        let a = n.abs();
+        let least = (1..V::DIM).fold(0, |least, i| if a.get(i) < a.get(least) { i } else { least });
+        let Some(e) = (V::axis(least) - n * n.get(least)).unit() else { return };
+        // In the plane there are two ways to turn.
+        let f = V::from_fn(|i| {
+            let at = |v: V, i: usize| v.get(i % V::DIM);
+            if V::DIM == 2 { V::Scalar::ZERO } else { at(n, i + 1) * at(e, i + 2) - at(n, i + 2) * at(e, i + 1) }
+        });
+        let angle = V::Scalar::from_f64(1.0 / 32.0);
+        for i in 0..PROBES {
+            let (sine, cosine) = (core::f64::consts::TAU * f64::from(i) / f64::from(PROBES)).sin_cos();
+            let aside = e * V::Scalar::from_f64(cosine) + f * V::Scalar::from_f64(sine);
+            let half = n + aside * (angle * V::Scalar::from_f64(0.5));
+            let vertex = support(n + aside * angle);
+            let is_near = n.dot(point - vertex) <= slab;
+            if is_near && vertex == support(half) && self.points().iter().all(|&known| known != vertex) {
+                self.push(vertex, hash(vertex));
+            }
+        }
+    }
+
     /// The same of discs across the second axis, by height and radius: of each the support point, and points all around where the
     /// disc is flat against the plane.
     pub(crate) fn collect_discs(&mut self, direction: V, slab: V::Scalar, discs: [(V::Scalar, V::Scalar); 2])
@@ -103,5 +146,41 @@ impl<V: Vector> Feature<V> {
                 self.push(center + swept(radius, across), k * (RIM + 1) + RIM);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Ball, Cuboid, Cylinder, SupportMap};
+    use glam::{DVec2, DVec3};
+
+    fn probed<S: SupportMap>(shape: &S, direction: S::Vector) -> Feature<S::Vector> {
+        let mut feature = Feature::new();
+        feature.probe(direction, S::Vector::axis(0).norm() * Scalar::from_f64(0.01), |d| shape.support(d));
+        feature
+    }
+
+    #[test]
+    fn a_support_map_shows_its_vertices() {
+        let cuboid = Cuboid::new(DVec3::new(1.0, 2.0, 3.0)).expect("positive");
+        let (face, edge) = (probed(&cuboid, DVec3::Y), probed(&cuboid, DVec3::new(0.0, 1.0, 1.0)));
+        assert_eq!(face.points().len(), 4, "{face:?}");
+        assert!(face.points().iter().all(|p| p.y == 2.0), "{face:?}");
+        assert_eq!(edge.points().len(), 2, "{edge:?}");
+        assert_eq!(probed(&cuboid, DVec3::ONE).points(), [DVec3::new(1.0, 2.0, 3.0)]);
+        let again = probed(&cuboid, DVec3::new(0.0005, 1.0, -0.0005));
+        let mut ids = [face.ids().to_vec(), again.ids().to_vec()];
+        ids.iter_mut().for_each(|ids| ids.sort_unstable());
+        assert_eq!(ids[0], ids[1], "the numbers stay");
+        let square = Cuboid::new(DVec2::ONE).expect("positive");
+        assert_eq!(probed(&square, DVec2::Y).points().len(), 2);
+    }
+
+    #[test]
+    fn what_is_curved_shows_a_point() {
+        assert_eq!(probed(&Ball::<DVec3>::new(1.0).expect("positive"), DVec3::new(0.1, 0.2, 0.3)).points().len(), 1);
+        let cylinder = Cylinder::<DVec3>::new(0.5, 1.0).expect("positive");
+        assert!(probed(&cylinder, DVec3::Y).points().len() > 4, "a rim");
     }
 }

@@ -13,7 +13,8 @@ fn fixed<V: Vector>(v: V) -> [Fixed; 3] {
 /// How much of the claimed error is used, along `n` and for the support point along `n` as seen along others.
 fn share_used<V: Space>(tree: &Tree, random: &mut Random) -> f64 {
     let shape = tree.build::<V>();
-    let (Core { origin, radius, .. }, Rounding { extent, error, error_length }) = (shape.core(), shape.rounding());
+    let (Core { origin, radius, error: length, .. }, Rounding { extent, error, error_length }) =
+        (shape.core(), shape.rounding());
     let vector = |v: [f64; 3]| V::from_fn(|i| V::Scalar::from_f64(v[i]));
     let mut most = 0.0f64;
     for _ in 0..4 {
@@ -39,6 +40,13 @@ fn share_used<V: Space>(tree: &Tree, random: &mut Random) -> f64 {
                 "{:e} is more than {:e} along {n:?} of {tree:?}",
                 wrong.as_f64(),
                 claimed.as_f64()
+            );
+            let at_hand = Fixed::from_f64(length.as_f64()) * norm(&n) + Fixed::from_f64(2f64.powi(-480));
+            assert!(
+                wrong <= at_hand.clone(),
+                "{:e} is more than the {:e} at hand along {n:?} of {tree:?}",
+                wrong.as_f64(),
+                at_hand.as_f64()
             );
             most = most.max(wrong.as_f64() / (claimed.as_f64() + f64::MIN_POSITIVE));
         }

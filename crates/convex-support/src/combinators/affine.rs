@@ -2,12 +2,12 @@
 
 use num_traits::Float as _;
 
-use super::placement::{Placement, lost_in_origin};
+use super::placement::{Placement, is_near, length_of_error, lost_in_origin};
 use crate::error::{InvalidShape, finite, finite_matrix};
 use crate::numerics::bound::roundings;
 use crate::numerics::range::power_of_two_below;
 use crate::support::{ScalarOf, sum_of_hessians, swept, swept_hessian};
-use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Matrix, Rounding, Scalar, SupportMap, Vector};
+use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Matrix, Parallelotope, Rounding, Scalar, SupportMap, Vector};
 
 /// The image `M·C + t` of a shape under an affine map: scaled, sheared, mirrored, or flattened where `M` is singular.
 ///
@@ -36,6 +36,8 @@ pub struct Affine<S: SupportMap> {
     swept: ScalarOf<S>,
     /// The inverse of the matrix; `None` where it is singular.
     inverse: Option<<S::Vector as Vector>::Matrix>,
+    /// What the support points of the core are wrong by at most, as a length.
+    error: ScalarOf<S>,
 }
 
 impl<S: SupportMap> Affine<S> {
@@ -51,11 +53,23 @@ impl<S: SupportMap> Affine<S> {
         let unit = power_of_two_below(largest);
         let transpose = matrix.transpose();
         let onto_shape = Matrix::from_cols_fn(|j| transpose.col(j) / unit);
-        let Core { origin, radius, .. } = shape.core();
-        let lost = lost_in_origin(&matrix, origin, translation)?;
+        let core = shape.core();
+        let lost = lost_in_origin(&matrix, core.origin, core.extent + core.radius, translation)?;
         let scale = uniform_scale(matrix);
-        let swept = if scale.is_some() { ScalarOf::<S>::ZERO } else { radius };
-        Ok(Self { shape, matrix, onto_shape, unit, translation, lost, scale, swept, inverse })
+        let zero = ScalarOf::<S>::ZERO;
+        let swept = if scale.is_some() { zero } else { core.radius };
+        // The unit vector times the radius that becomes part of the core is right to 6 roundings. Where the matrix keeps lengths, all
+        // of them in one ratio, it does so to 16 roundings.
+        let swept_core = Core {
+            extent: core.extent + swept,
+            radius: core.radius - swept,
+            error: core.error + roundings(6.0, swept) + if swept > zero { roundings(1.0, core.extent) } else { zero },
+            ..core
+        };
+        let norm = scale.unwrap_or_else(|| frobenius_norm(&matrix));
+        let stretched = scale.map_or(zero, |scale| roundings(32.0, scale * core.radius));
+        let error = length_of_error(&swept_core, norm, zero, lost) + stretched;
+        Ok(Self { shape, matrix, onto_shape, unit, translation, lost, scale, swept, inverse, error })
     }
 
     /// The shape before it is mapped.
@@ -88,7 +102,7 @@ impl<S: SupportMap> SupportMap for Affine<S> {
 
     #[inline(always)]
     fn core(&self) -> Core<S::Vector> {
-        let Core { origin, radius, extent, kind } = self.shape.core();
+        let Core { origin, radius, extent, kind, .. } = self.shape.core();
         let kind = match kind {
             _ if self.swept > ScalarOf::<S>::ZERO => CoreKind::Curved,
             CoreKind::Point(at) => CoreKind::Point(self.matrix * at + self.lost),
@@ -103,6 +117,7 @@ impl<S: SupportMap> SupportMap for Affine<S> {
             origin: self.matrix * origin + self.translation,
             radius,
             extent: extent + self.lost.abs().max_element() * Scalar::from_f64(2.0),
+            error: self.error,
             kind,
         }
     }
@@ -159,6 +174,22 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         feature.map(|point| self.matrix * (point + swept) + self.lost);
     }
 
+    /// Where the map keeps angles.
+    #[inline]
+    fn core_rolling_radius(&self) -> ScalarOf<S> {
+        // The ratio is known to a few roundings.
+        let less = ScalarOf::<S>::ONE - ScalarOf::<S>::EPSILON * Scalar::from_f64(16.0);
+        self.scale.map_or(Scalar::ZERO, |scale| scale * less * self.shape.core_rolling_radius())
+    }
+
+    #[inline]
+    fn core_parallelotope(&self) -> Option<Parallelotope<S::Vector>> {
+        if self.swept > ScalarOf::<S>::ZERO {
+            return None;
+        }
+        Some(self.shape.core_parallelotope()?.mapped(|v| self.matrix * v, self.lost))
+    }
+
     fn rounding(&self) -> Rounding<S::Vector> {
         let Core { origin, radius, extent, .. } = self.shape.core();
         let placement = Placement {
@@ -167,6 +198,7 @@ impl<S: SupportMap> SupportMap for Affine<S> {
             scale: self.scale,
             translation: self.translation,
             lost: self.lost,
+            is_near: is_near(origin, extent + radius),
         };
         let image = placement.image(self.shape.rounding().swept(self.swept), origin, extent);
         // Where the matrix keeps lengths, all of them in one ratio, it does so to 16 roundings.

@@ -105,10 +105,14 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for Hull<A, B>
         let (a, b) = (self.a.core(), self.b.core());
         let is_polytope =
             a.radius == b.radius && !matches!(a.kind, CoreKind::Curved) && !matches!(b.kind, CoreKind::Curved);
+        let extent = self.part_a.extent(a.extent).max(self.part_b.extent(b.extent));
         Core {
             origin: middle(&a, &b),
             radius: a.radius.min(b.radius),
-            extent: self.part_a.extent(a.extent).max(self.part_b.extent(b.extent)),
+            extent,
+            // The offset of a part, its sums and the radius that stays with it lose 10 roundings; 4 of the difference tell which part
+            // is farther.
+            error: a.error.max(b.error) + roundings(18.0, extent) + roundings(1.0, a.radius.max(b.radius)),
             kind: if is_polytope { CoreKind::Polytope } else { CoreKind::Curved },
         }
     }

@@ -2,10 +2,10 @@
 
 use num_traits::Float as _;
 
-use crate::numerics::bound::roundings_of;
+use crate::numerics::bound::{roundings, roundings_of};
 use crate::numerics::twofold::{lost_in_sum, two_sum};
 use crate::support::{ScalarOf, sum_of_hessians, support_of_parts};
-use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
+use crate::{Core, CoreKind, Hint, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector};
 
 /// The set `A + B = { a + b : a ∈ A, b ∈ B }`: one shape swept by the other. Nest it for more than two.
 ///
@@ -61,10 +61,14 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
     #[inline(always)]
     fn core(&self) -> Core<A::Vector> {
         let (a, b) = (self.a.core(), self.b.core());
+        let (radius, extent) =
+            (a.radius + b.radius, a.extent + b.extent + self.lost.abs().max_element() * Scalar::from_f64(2.0));
         Core {
             origin: a.origin + b.origin,
-            radius: a.radius + b.radius,
-            extent: a.extent + b.extent + self.lost.abs().max_element() * Scalar::from_f64(2.0),
+            radius,
+            extent,
+            // Two sums of points, and one of radii.
+            error: a.error + b.error + roundings(2.0, extent) + roundings(1.0, radius),
             kind: a.kind.plus(b.kind, |a, b| a + b + self.lost),
         }
     }
@@ -105,6 +109,21 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
             (CoreKind::Point(a), _) => self.b.core_line_crossing(source - a, direction, radius),
             (_, CoreKind::Point(b)) => self.a.core_line_crossing(source - b, direction, radius),
             _ => LineCrossing::Unknown,
+        }
+    }
+
+    #[inline]
+    fn core_rolling_radius(&self) -> ScalarOf<A> {
+        self.a.core_rolling_radius() + self.b.core_rolling_radius()
+    }
+
+    /// Where one of the cores is a point.
+    #[inline]
+    fn core_parallelotope(&self) -> Option<Parallelotope<A::Vector>> {
+        match (self.a.core().kind, self.b.core().kind) {
+            (CoreKind::Point(a), _) => Some(self.b.core_parallelotope()?.mapped(|v| v, a + self.lost)),
+            (_, CoreKind::Point(b)) => Some(self.a.core_parallelotope()?.mapped(|v| v, b + self.lost)),
+            _ => None,
         }
     }
 

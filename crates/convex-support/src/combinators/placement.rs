@@ -5,16 +5,59 @@ use num_traits::Float as _;
 use crate::error::InvalidShape;
 use crate::numerics::bound::{image, raised, raised_vector, roundings};
 use crate::numerics::twofold::{dot_minus, lost_in_sum};
-use crate::{Matrix, Rounding, Scalar, Vector};
+use crate::{Core, Matrix, Rounding, Scalar, Vector};
 
-/// What the rounding of `matrix·origin + translation` loses.
+/// What the rounding of `matrix·origin + translation` loses, for a shape of the given size; but for the roundings of the product, where
+/// the shape is [near](is_near) zero.
 ///
 /// # Errors
 /// [`InvalidShape::TooLarge`] if that overflows.
 #[inline(always)]
-pub(super) fn lost_in_origin<V: Vector>(matrix: &V::Matrix, origin: V, translation: V) -> Result<V, InvalidShape> {
+pub(super) fn lost_in_origin<V: Vector>(
+    matrix: &V::Matrix,
+    origin: V,
+    size: V::Scalar,
+    translation: V,
+) -> Result<V, InvalidShape> {
     // Most shapes are about zero, and then nothing is lost.
-    if origin == V::ZERO { Ok(V::ZERO) } else { lost_in_far_origin(matrix, origin, translation) }
+    if origin == V::ZERO {
+        return Ok(V::ZERO);
+    }
+    if !is_near(origin, size) {
+        return lost_in_far_origin(matrix, origin, translation);
+    }
+    let turned = *matrix * origin;
+    if (turned + translation).is_finite() {
+        Ok(lost_in_sum(turned, translation))
+    } else {
+        Err(InvalidShape::TooLarge { parameter: "translation" })
+    }
+}
+
+/// Whether a shape of the given size is so near zero that the roundings of its origin are no more than those of its points.
+#[inline(always)]
+pub(super) fn is_near<V: Vector>(origin: V, size: V::Scalar) -> bool {
+    origin.abs().max_element() <= size
+}
+
+/// What rounding moves the image of a set by, as a length.
+///
+/// With `u = ε/2` and `n` dimensions, a product with a matrix of norm `scale` loses `n·√n·u` of that, and so does the direction in the
+/// shape's frame, by which a point found along it is short of the farthest by twice that times its extent.
+pub(super) fn length_of_error<V: Vector>(
+    core: &Core<V>,
+    scale: V::Scalar,
+    operator_error: V::Scalar,
+    lost: V,
+) -> V::Scalar {
+    let count = V::DIM as f64;
+    let product = count * if V::DIM == 2 { 1.42 } else { 1.74 };
+    let (moved, near) = (core.origin.norm(), is_near(core.origin, core.extent + core.radius));
+    // What was lost is known to a rounding of itself, if it is of the product too, and to 16ε² of what it comes of.
+    let origin = if near { roundings(product, moved) } else { roundings(32.0, V::Scalar::EPSILON * moved) };
+    let lost = roundings(2.0, lost.norm());
+    let turned = roundings(2.0, operator_error * (core.extent + moved));
+    raised(scale * (core.error + roundings(3.0 * product + 1.0, core.extent) + origin) + turned + lost)
 }
 
 #[inline(never)]
@@ -42,6 +85,8 @@ pub(super) struct Placement<'a, V: Vector> {
     pub(super) translation: V,
     /// What the rounding of the origin lost.
     pub(super) lost: V,
+    /// Whether that is without the roundings of the product.
+    pub(super) is_near: bool,
 }
 
 impl<V: Vector> Placement<'_, V> {
@@ -70,7 +115,8 @@ impl<V: Vector> Placement<'_, V> {
         let turned = V::from_fn(|j| if is_column_exact(j) { zero } else { shape.extent.get(j) });
         let sum = |v: V| (1..V::DIM).fold(v.get(0), |sum, i| sum + v.get(i));
         let moved = roundings(2.0, sum(shape.extent) + sum(shape.error) + sum(origin.abs())) * self.matrix_error;
-        let (short, placed) = (image(m, turned), image(m, origin.abs()) + self.translation.abs());
+        let (short, turned_origin) = (image(m, turned), image(m, origin.abs()));
+        let placed = turned_origin + self.translation.abs();
         let squared = V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(16.0);
         let error = V::from_fn(|i| {
             let (reached, lost) = (reached.get(i), num_traits::Float::abs(self.lost.get(i)));
@@ -82,6 +128,9 @@ impl<V: Vector> Placement<'_, V> {
                 error += roundings(3.0, reached) + moved;
                 if origin != V::ZERO {
                     error += roundings(1.0, lost) + squared * placed.get(i);
+                }
+                if self.is_near {
+                    error += roundings(3.0, turned_origin.get(i));
                 }
             }
             error

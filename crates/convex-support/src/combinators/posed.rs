@@ -2,10 +2,14 @@
 
 use num_traits::Float as _;
 
-use super::placement::{Placement, lost_in_origin};
+use super::placement::{Placement, is_near, length_of_error, lost_in_origin};
 use crate::error::{InvalidShape, finite, orthonormal};
+use crate::numerics::bound::roundings;
+use crate::numerics::twofold::lost_in_sum;
 use crate::support::ScalarOf;
-use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Matrix, Rotation, Rounding, Scalar, SupportMap, Vector};
+use crate::{
+    Core, CoreKind, Feature, Hint, LineCrossing, Matrix, Parallelotope, Rotation, Rounding, Scalar, SupportMap, Vector,
+};
 
 /// The image `R·C + t` of a shape under a rotation and then a translation.
 ///
@@ -28,6 +32,18 @@ pub struct Posed<S: SupportMap> {
     /// What the origin `R·c + t` loses by its rounding. Far from the world's origin that is much of the shape's size, and it
     /// stays with the core.
     lost: S::Vector,
+    /// What the support points of the core are wrong by at most, as a length.
+    error: ScalarOf<S>,
+}
+
+/// What a rotation matrix is wrong by at most, in units of epsilon: every entry, and where it takes a unit vector.
+struct Errors {
+    entry: f64,
+    operator: f64,
+}
+
+impl Errors {
+    const NONE: Self = Self { entry: 0.0, operator: 0.0 };
 }
 
 impl<S: SupportMap> Posed<S> {
@@ -35,12 +51,14 @@ impl<S: SupportMap> Posed<S> {
     fn at(
         shape: S,
         rotation: <S::Vector as Vector>::Matrix,
-        rotation_error: f64,
+        errors: Errors,
         translation: S::Vector,
     ) -> Result<Self, InvalidShape> {
         let translation = finite("translation", translation)?;
-        let lost = lost_in_origin(&rotation, shape.core().origin, translation)?;
-        Ok(Self { shape, rotation, rotation_error: Scalar::from_f64(rotation_error), translation, lost })
+        let core = shape.core();
+        let lost = lost_in_origin(&rotation, core.origin, core.extent + core.radius, translation)?;
+        let error = length_of_error(&core, Scalar::ONE, Scalar::from_f64(errors.operator), lost);
+        Ok(Self { shape, rotation, rotation_error: Scalar::from_f64(errors.entry), translation, lost, error })
     }
 
     /// The shape turned about the origin by `rotation` (an angle in radians in 2D, a quaternion in 3D, which is
@@ -55,7 +73,9 @@ impl<S: SupportMap> Posed<S> {
         translation: S::Vector,
     ) -> Result<Self, InvalidShape> {
         let rotation = rotation.checked("rotation")?.matrix();
-        Self::at(shape, rotation, <S::Vector as Vector>::Rotation::MATRIX_ERROR, translation)
+        let entry = <S::Vector as Vector>::Rotation::MATRIX_ERROR;
+        let operator = <S::Vector as Vector>::Rotation::OPERATOR_ERROR;
+        Self::at(shape, rotation, Errors { entry, operator }, translation)
     }
 
     /// The shape moved by a rotation matrix, then by `translation`: for poses that come as glam's `DAffine3` or as a
@@ -74,7 +94,7 @@ impl<S: SupportMap> Posed<S> {
             return Err(InvalidShape::Mirrors);
         }
         let polished = polished(rotation);
-        Self::at(shape, polished, if polished == rotation { 0.0 } else { POLISHED_ERROR }, translation)
+        Self::at(shape, polished, if polished == rotation { Errors::NONE } else { POLISHED }, translation)
     }
 
     /// The shape moved by `translation`.
@@ -83,7 +103,18 @@ impl<S: SupportMap> Posed<S> {
     /// [`InvalidShape::NonFinite`] if a coordinate is not finite.
     #[inline]
     pub fn translated(shape: S, translation: S::Vector) -> Result<Self, InvalidShape> {
-        Self::at(shape, Matrix::IDENTITY, 0.0, translation)
+        let core = shape.core();
+        let translation = finite("translation", translation)?;
+        let origin = core.origin + translation;
+        if !origin.is_finite() {
+            return Err(InvalidShape::TooLarge { parameter: "translation" });
+        }
+        let lost = lost_in_sum(core.origin, translation);
+        let zero = ScalarOf::<S>::ZERO;
+        // Products with the identity are exact, and the sum with nothing is.
+        let summed = if lost == S::Vector::ZERO { zero } else { roundings(1.0, core.extent + lost.norm()) };
+        let (rotation, error) = (Matrix::IDENTITY, core.error + summed);
+        Ok(Self { shape, rotation, rotation_error: zero, translation, lost, error })
     }
 
     /// The shape before it is moved.
@@ -107,7 +138,7 @@ impl<S: SupportMap> Posed<S> {
 
 /// What an entry of a [`polished`] matrix is away from the nearest rotation at most, in units of epsilon. With `RᵀR = 1 + E`, the step
 /// leaves `3/8·|E|²`, where the entries of `E` are at most `√ε`: 3.4; and its own operations leave as much again.
-const POLISHED_ERROR: f64 = 8.0;
+const POLISHED: Errors = Errors { entry: 8.0, operator: 14.0 };
 
 /// The nearest rotation to a matrix that is one to half its digits, by one step of Newton's method for the orthogonal
 /// polar factor, `R·(3 − RᵀR)/2`, which squares the error. What is a rotation to rounding stays as it is.
@@ -136,6 +167,7 @@ impl<S: SupportMap> SupportMap for Posed<S> {
         Core {
             origin: self.rotation * core.origin + self.translation,
             extent: core.extent + self.lost.abs().max_element() * Scalar::from_f64(2.0),
+            error: self.error,
             kind: match core.kind {
                 CoreKind::Point(at) => CoreKind::Point(self.rotation * at + self.lost),
                 kind => kind,
@@ -178,6 +210,16 @@ impl<S: SupportMap> SupportMap for Posed<S> {
         feature.map(|point| self.rotation * point + self.lost);
     }
 
+    #[inline]
+    fn core_rolling_radius(&self) -> ScalarOf<S> {
+        self.shape.core_rolling_radius()
+    }
+
+    #[inline]
+    fn core_parallelotope(&self) -> Option<Parallelotope<S::Vector>> {
+        Some(self.shape.core_parallelotope()?.mapped(|v| self.rotation * v, self.lost))
+    }
+
     fn rounding(&self) -> Rounding<S::Vector> {
         let core = self.shape.core();
         let placement = Placement {
@@ -186,6 +228,7 @@ impl<S: SupportMap> SupportMap for Posed<S> {
             scale: Some(Scalar::ONE),
             translation: self.translation,
             lost: self.lost,
+            is_near: is_near(core.origin, core.extent + core.radius),
         };
         placement.image(self.shape.rounding(), core.origin, core.extent)
     }

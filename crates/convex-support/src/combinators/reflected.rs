@@ -1,7 +1,7 @@
 //! A shape mirrored through zero.
 
 use crate::support::ScalarOf;
-use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Rounding, SupportMap};
+use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, SupportMap};
 
 /// The set `−C = { −x : x ∈ C }`: what a difference adds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +55,17 @@ impl<S: SupportMap> SupportMap for Reflected<S> {
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {
         self.0.core_support_feature(-direction, slab, feature);
         feature.map(|point| -point);
+    }
+
+    #[inline]
+    fn core_rolling_radius(&self) -> ScalarOf<S> {
+        self.0.core_rolling_radius()
+    }
+
+    #[inline]
+    fn core_parallelotope(&self) -> Option<Parallelotope<S::Vector>> {
+        let parallelotope = self.0.core_parallelotope()?;
+        Some(Parallelotope { center: -parallelotope.center, ..parallelotope })
     }
 
     #[inline]

@@ -3,9 +3,10 @@
 use crate::error::{InvalidShape, non_negative};
 use num_traits::Float as _;
 
+use crate::numerics::bound::roundings;
 use crate::numerics::twofold::two_sum;
 use crate::support::{ScalarOf, support_of_parts};
-use crate::{Core, Feature, Hint, LineCrossing, Rounding, SupportMap, Vector};
+use crate::{Core, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector};
 
 /// The Minkowski sum of a shape and a ball: the shape grown by a radius, its edges and corners rounded.
 ///
@@ -62,7 +63,10 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
     #[inline(always)]
     fn core(&self) -> Core<S::Vector> {
         let core = self.shape.core();
-        Core { radius: core.radius + self.radius, ..core }
+        let radius = core.radius + self.radius;
+        // The sum with zero is exact.
+        let lost = if core.radius == Scalar::ZERO { Scalar::ZERO } else { roundings(1.0, radius) };
+        Core { radius, error: core.error + lost, ..core }
     }
 
     #[inline(always)]
@@ -92,6 +96,16 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
 
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {
         self.shape.core_support_feature(direction, slab, feature);
+    }
+
+    #[inline]
+    fn core_rolling_radius(&self) -> ScalarOf<S> {
+        self.shape.core_rolling_radius()
+    }
+
+    #[inline]
+    fn core_parallelotope(&self) -> Option<Parallelotope<S::Vector>> {
+        self.shape.core_parallelotope()
     }
 
     /// As of the shape; the sum of the radii is rounded.

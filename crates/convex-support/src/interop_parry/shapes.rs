@@ -4,11 +4,12 @@
 use parry::math::Vector as ParryVector;
 use parry::shape as theirs;
 
-use crate::{Ball, Cuboid, InvalidShape, Rounded, Segment, SupportMap, Triangle};
+use crate::{Ball, Cuboid, Feature, InvalidShape, Rounded, Segment, SupportMap, Triangle};
 
 /// A shape of parry's, in its own frame, as a shape of this crate: anything that has parry's support mapping.
 ///
-/// It is asked through parry's interface, and so has neither a radius nor a hint. Where the kind of shape is known, the
+/// It is asked through parry's interface, and so has neither a radius nor a hint, and of a face it shows those vertices that are support
+/// points of directions nearby. Where the kind of shape is known, the
 /// conversions (`Ball::try_from(parry_ball)` …) make better shapes of it.
 #[derive(Clone, Copy, Debug)]
 pub struct FromParry<S>(
@@ -22,6 +23,11 @@ impl<S: theirs::SupportMap> SupportMap for FromParry<S> {
     #[inline]
     fn support(&self, direction: V) -> V {
         ours(self.0.local_support_point(parrys(direction)))
+    }
+
+    /// The vertices around, which are support points along directions that are turned a little.
+    fn core_support_feature(&self, direction: V, slab: crate::ScalarOf<Self>, feature: &mut Feature<V>) {
+        feature.probe(direction, slab, |direction| self.support(direction));
     }
 }
 

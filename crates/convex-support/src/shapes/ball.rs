@@ -50,7 +50,13 @@ impl<V: Vector> SupportMap for Ball<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        Core { origin: V::ZERO, radius: self.radius, extent: V::Scalar::ZERO, kind: CoreKind::Point(V::ZERO) }
+        Core {
+            origin: V::ZERO,
+            radius: self.radius,
+            extent: V::Scalar::ZERO,
+            error: V::Scalar::ZERO,
+            kind: CoreKind::Point(V::ZERO),
+        }
     }
 
     #[inline]

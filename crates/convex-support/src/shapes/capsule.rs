@@ -5,7 +5,7 @@ use num_traits::Float as _;
 use crate::error::{InvalidShape, non_negative};
 use crate::line_crossing::upright;
 use crate::support::support_of_parts;
-use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Rounding, SupportMap, Vector};
+use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector};
 
 /// The segment from `(0, −half_height)` to `(0, half_height)` along the second axis, swept by a ball. Its core is the
 /// segment.
@@ -61,7 +61,13 @@ impl<V: Vector> SupportMap for Capsule<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        Core { origin: V::ZERO, radius: self.radius, extent: self.half_height, kind: CoreKind::Polytope }
+        Core {
+            origin: V::ZERO,
+            radius: self.radius,
+            extent: self.half_height,
+            error: V::Scalar::ZERO,
+            kind: CoreKind::Polytope,
+        }
     }
 
     #[inline]
@@ -82,6 +88,11 @@ impl<V: Vector> SupportMap for Capsule<V> {
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
         let end = V::axis(1) * self.half_height;
         feature.collect(direction, slab, 2, |i| if i == 0 { end } else { -end });
+    }
+
+    #[inline]
+    fn core_parallelotope(&self) -> Option<Parallelotope<V>> {
+        Some(Parallelotope { center: V::ZERO, half_edges: [V::axis(1) * self.half_height, V::ZERO, V::ZERO] })
     }
 
     fn rounding(&self) -> Rounding<V> {

@@ -89,7 +89,13 @@ impl<V: Vector3> SupportMap for Cone<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        Core { origin: V::ZERO, radius: V::Scalar::ZERO, extent: self.extent, kind: CoreKind::Curved }
+        Core {
+            origin: V::ZERO,
+            radius: V::Scalar::ZERO,
+            extent: self.extent,
+            error: roundings(15.0, self.radius),
+            kind: CoreKind::Curved,
+        }
     }
 
     #[inline(always)]
@@ -115,11 +121,11 @@ impl<V: Vector3> SupportMap for Cone<V> {
         feature.collect_discs(direction, slab, discs);
     }
 
-    /// The heights are exact, and the unit vector times the radius is right to 6 roundings. Cosine, sine and what they are multiplied
-    /// to are right to 9, so that the wrong one of apex and rim is taken only where what they reach, `2h·d_y` and `r·|d_xz|`, agree to
-    /// that; then it falls short by 20 roundings of `r·|d_xz|` at most.
+    /// The heights are exact, and the unit vector times the radius is right to 6 roundings. The slant's length divides both sides of the
+    /// comparison, one of 2 roundings then and the other of 4, so that the wrong one of apex and rim is taken only where what they
+    /// reach, `2h·d_y` and `r·|d_xz|`, agree to that; then it falls short by 6.5 roundings of `r·|d_xz|` at most.
     fn rounding(&self) -> Rounding<V> {
         let extent = V::from_fn(|i| if i == 1 { self.half_height } else { self.radius });
-        Rounding::exact(extent).with_error(across(V::splat(roundings(26.0, self.radius))))
+        Rounding::exact(extent).with_error(across(V::splat(roundings(12.5, self.radius))))
     }
 }

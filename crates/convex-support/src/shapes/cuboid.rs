@@ -2,7 +2,7 @@
 
 use crate::error::{InvalidShape, finite, measurable};
 use crate::line_crossing::{cuboid, rounded_cuboid};
-use crate::{Core, CoreKind, Feature, LineCrossing, Rounding, Scalar, SupportMap, Vector};
+use crate::{Core, CoreKind, Feature, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector};
 
 /// The box `|xᵢ| ≤ half_extentsᵢ`; a rectangle in 2D.
 ///
@@ -58,7 +58,13 @@ impl<V: Vector> SupportMap for Cuboid<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        Core { origin: V::ZERO, radius: V::Scalar::ZERO, extent: self.extent, kind: CoreKind::Polytope }
+        Core {
+            origin: V::ZERO,
+            radius: V::Scalar::ZERO,
+            extent: self.extent,
+            error: V::Scalar::ZERO,
+            kind: CoreKind::Polytope,
+        }
     }
 
     #[inline]
@@ -81,6 +87,12 @@ impl<V: Vector> SupportMap for Cuboid<V> {
             self.half_extents * sign
         };
         feature.collect(direction, slab, 1 << V::DIM, corner);
+    }
+
+    #[inline]
+    fn core_parallelotope(&self) -> Option<Parallelotope<V>> {
+        let half_edge = |i: usize| if i < V::DIM { V::axis(i) * self.half_extents.get(i) } else { V::ZERO };
+        Some(Parallelotope { center: V::ZERO, half_edges: [half_edge(0), half_edge(1), half_edge(2)] })
     }
 
     fn rounding(&self) -> Rounding<V> {

@@ -86,7 +86,13 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        Core { origin: V::ZERO, radius: V::Scalar::ZERO, extent: self.extent, kind: CoreKind::Curved }
+        Core {
+            origin: V::ZERO,
+            radius: V::Scalar::ZERO,
+            extent: self.extent,
+            error: roundings(9.0, self.radius),
+            kind: CoreKind::Curved,
+        }
     }
 
     #[inline(always)]

@@ -35,6 +35,8 @@ pub struct Ellipsoid<V: Vector> {
     inverse_semi_axes: V,
     /// What every entry of the axes is wrong by at most, but for columns along a coordinate axis, in units of epsilon.
     axes_error: V::Scalar,
+    /// What the support points are wrong by at most, as a length.
+    error: V::Scalar,
     /// The semi-axes in units of a power of two near the largest: products with a direction stay in range.
     scaled_semi_axes: V,
     /// That power of two.
@@ -49,7 +51,9 @@ impl<V: Vector> Ellipsoid<V> {
     pub fn new(center: V, semi_axes: V, rotation: V::Rotation) -> Result<Self, InvalidShape> {
         let axes = rotation.checked("rotation")?.matrix();
         let axes_error = V::Scalar::from_f64(V::Rotation::MATRIX_ERROR);
-        Ok(Self { axes_error, ..Self::from_axes(center, semi_axes, axes)? })
+        let turned = roundings(2.0 * V::Rotation::OPERATOR_ERROR, semi_axes.max_element());
+        let about_axes = Self::from_axes(center, semi_axes, axes)?;
+        Ok(Self { axes_error, error: about_axes.error + turned, ..about_axes })
     }
 
     /// The ellipsoid about `center` whose semi-axis `i` lies along column `i` of `axes`, which must be orthonormal.
@@ -72,6 +76,7 @@ impl<V: Vector> Ellipsoid<V> {
                 semi_axes,
                 inverse_semi_axes: V::ONE / semi_axes,
                 axes_error: V::Scalar::ZERO,
+                error: roundings(SUPPORT_POINT_ERROR, semi_axes.max_element()),
                 scaled_semi_axes: semi_axes / unit,
                 unit,
             }),
@@ -158,6 +163,10 @@ impl<V: Vector> Ellipsoid<V> {
     }
 }
 
+/// What a support point `R·(a∘u)` is wrong by, in roundings of the largest semi-axis: 8 for the unit vector and the products with the
+/// semi-axes, `3√3` for those with the axes; and twice the `3√3 + 1` that the direction loses in the ellipsoid's frame.
+const SUPPORT_POINT_ERROR: f64 = 26.0;
+
 impl<V: Vector> SupportMap for Ellipsoid<V> {
     type Vector = V;
 
@@ -174,7 +183,7 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
     #[inline(always)]
     fn core(&self) -> Core<V> {
         let extent = self.semi_axes.max_element();
-        Core { origin: self.center, radius: V::Scalar::ZERO, extent, kind: CoreKind::Curved }
+        Core { origin: self.center, radius: V::Scalar::ZERO, extent, error: self.error, kind: CoreKind::Curved }
     }
 
     #[inline(always)]
@@ -205,6 +214,15 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
         } else {
             LineCrossing::Unknown
         }
+    }
+
+    /// The least radius of curvature is `c²/a`, of the least and the largest semi-axis. Axes that are orthonormal to half of their digits
+    /// may change it by a part, which an eighth is more than unless the ellipsoid is thin; and then there is not much to gain.
+    fn core_rolling_radius(&self) -> V::Scalar {
+        let (least, largest) = (-(-self.semi_axes).max_element(), self.semi_axes.max_element());
+        let ratio = least / largest;
+        let is_thin = ratio < V::Scalar::from_f64(1.0 / 16.0);
+        if is_thin { V::Scalar::ZERO } else { ratio * least * V::Scalar::from_f64(0.875) }
     }
 
     /// The support point is `R·(a∘u)` with a unit vector `u` that is right to 7 roundings, whatever direction it is farthest along:

@@ -3,8 +3,8 @@
 use super::points::{extent, middle, relative, rounding_of_points};
 use crate::error::{InvalidShape, finite, measurable};
 use crate::line_crossing::edge;
-use crate::numerics::bound::roundings_of;
-use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
+use crate::numerics::bound::{roundings, roundings_of};
+use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector};
 
 /// The segment between two points, which may coincide.
 ///
@@ -68,7 +68,7 @@ impl<V: Vector> SupportMap for Segment<V> {
     #[inline(always)]
     fn core(&self) -> Core<V> {
         let (origin, extent) = (middle(self.points), extent(&self.points).norm());
-        Core { origin, radius: V::Scalar::ZERO, extent, kind: CoreKind::Polytope }
+        Core { origin, radius: V::Scalar::ZERO, extent, error: roundings(9.0, extent), kind: CoreKind::Polytope }
     }
 
     #[inline]
@@ -89,6 +89,13 @@ impl<V: Vector> SupportMap for Segment<V> {
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
         let points = relative(self.points);
         feature.collect(direction, slab, 2, |i| points[i]);
+    }
+
+    #[inline]
+    fn core_parallelotope(&self) -> Option<Parallelotope<V>> {
+        let [a, b] = relative(self.points);
+        let half = V::Scalar::from_f64(0.5);
+        Some(Parallelotope { center: (a + b) * half, half_edges: [(b - a) * half, V::ZERO, V::ZERO] })
     }
 
     /// Which end is farther is told by the product of the direction with the difference, 4 roundings.

@@ -6,7 +6,7 @@ use super::points::{extent, middle, relative, rounding_of_points};
 use crate::closest_point::closest_of_triangle;
 use crate::error::{InvalidShape, finite, measurable};
 use crate::line_crossing::triangle;
-use crate::numerics::bound::roundings_of;
+use crate::numerics::bound::{roundings, roundings_of};
 use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
 /// The triangle of three points, which may be collinear or coincide.
@@ -103,7 +103,7 @@ impl<V: Vector> SupportMap for Triangle<V> {
     #[inline(always)]
     fn core(&self) -> Core<V> {
         let (origin, extent) = (middle(self.points), extent(&self.points).norm());
-        Core { origin, radius: V::Scalar::ZERO, extent, kind: CoreKind::Polytope }
+        Core { origin, radius: V::Scalar::ZERO, extent, error: roundings(24.0, extent), kind: CoreKind::Polytope }
     }
 
     #[inline]

@@ -157,7 +157,13 @@ impl<V: Vector> SupportMap for Polytope<V> {
 
     #[inline(always)]
     fn core(&self) -> Core<V> {
-        Core { origin: self.middle, radius: V::Scalar::ZERO, extent: self.extent, kind: CoreKind::Polytope }
+        Core {
+            origin: self.middle,
+            radius: V::Scalar::ZERO,
+            extent: self.extent,
+            error: self.rounding.error_length,
+            kind: CoreKind::Polytope,
+        }
     }
 
     #[inline(always)]
