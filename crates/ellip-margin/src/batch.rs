@@ -104,6 +104,46 @@ pub fn map_margins<'a, V: Vector, T: Send>(
     Ok(answers)
 }
 
+/// [`map_margins`] into a column: `answers[k]` is what `ask` makes of pair k. Nothing is allocated.
+///
+/// This is the function for columns of a data frame, of which a single number is wanted in a buffer that is there already.
+///
+/// ```
+/// use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};
+/// use ellip_margin::{MarginOptions, map_margins_into};
+///
+/// let link = Ellipsoid::new(DVec2::ZERO, DVec2::new(2.0, 0.5), 0.0)?;
+/// let obstacles = [1.0, 2.0, 3.0].map(|y| Ellipsoid::new(DVec2::new(1.0, y), DVec2::new(0.3, 0.2), 0.7));
+/// let obstacles = obstacles.into_iter().collect::<Result<Vec<_>, _>>()?;
+/// let mut margins = [0.0; 3];
+/// map_margins_into(&[link], &obstacles, MarginOptions::default(), &mut margins, |m| m.margin)?;
+/// assert!(margins[0] < margins[1] && margins[1] < margins[2]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`InvalidQuery::LengthsDiffer`] if the lists are of different lengths, neither of them 1, and
+/// [`InvalidQuery::AnswersLength`] if there are not as many answers as pairs; no answer is written then.
+pub fn map_margins_into<'a, V: Vector, T: Send>(
+    e1: &'a [Ellipsoid<V>],
+    e2: &'a [Ellipsoid<V>],
+    options: MarginOptions,
+    answers: &mut [T],
+    ask: impl Fn(Answer<'a, V, Margin<V>>) -> T + Sync,
+) -> Result<(), InvalidQuery> {
+    let (pairs, of) = (count(e1, e2)?, pairs(e1, e2));
+    if answers.len() != pairs {
+        return Err(InvalidQuery::AnswersLength { pairs, answers: answers.len() });
+    }
+    by_parts(answers, |first, answers| {
+        tell_some(first..first + answers.len(), of, options, |k, margin| {
+            let (e1, e2) = of(k);
+            answers[k - first] = ask(EllipsoidPair::new(e1, e2, options).answer(margin));
+        });
+    });
+    Ok(())
+}
+
 /// What `ask` makes of each pair, on all cores with the feature `rayon`: distances, common scales, and their derivatives.
 ///
 /// ```
@@ -181,6 +221,19 @@ fn in_parts<M>(count: usize, list: &mut Vec<M>, fill: impl Fn(Range<usize>, &mut
     fill(0..count, list);
 }
 
+/// Fills the column by parts, on all cores; each part is told where it begins.
+#[cfg(feature = "rayon")]
+fn by_parts<T: Send>(column: &mut [T], fill: impl Fn(usize, &mut [T]) + Sync) {
+    use rayon::prelude::*;
+    column.par_chunks_mut(PART).enumerate().for_each(|(k, part)| fill(k * PART, part));
+}
+
+/// Fills the column.
+#[cfg(not(feature = "rayon"))]
+fn by_parts<T>(column: &mut [T], fill: impl Fn(usize, &mut [T])) {
+    fill(0, column);
+}
+
 /// The margins of the pairs of a range.
 fn some<'a, V: Vector>(
     range: Range<usize>,
@@ -190,7 +243,7 @@ fn some<'a, V: Vector>(
 ) {
     let Range { start, end } = range;
     let mut next = start;
-    if options.method == Method::Automatic && options.max_iterations >= STRAIGHT_STEPS {
+    if has_lanes(options) {
         next = if V::DIM == 2 {
             by_eights::<V, 2>(start..end, &of, options, margins)
         } else {
@@ -203,6 +256,49 @@ fn some<'a, V: Vector>(
     }));
 }
 
+/// The same, told one by one in their order.
+fn tell_some<'a, V: Vector>(
+    range: Range<usize>,
+    of: impl Fn(usize) -> (&'a Ellipsoid<V>, &'a Ellipsoid<V>),
+    options: MarginOptions,
+    mut tell: impl FnMut(usize, Margin<V>),
+) {
+    let Range { start, end } = range;
+    let mut next = start;
+    if has_lanes(options) {
+        next = if V::DIM == 2 {
+            tell_by_eights::<V, 2>(start..end, &of, options, &mut tell)
+        } else {
+            tell_by_eights::<V, 3>(start..end, &of, options, &mut tell)
+        };
+    }
+    for k in next..end {
+        let (e1, e2) = of(k);
+        tell(k, free_margin(e1, e2, options));
+    }
+}
+
+/// Whether the options leave the method and its steps to what the lanes do.
+fn has_lanes(options: MarginOptions) -> bool {
+    options.method == Method::Automatic && options.max_iterations >= STRAIGHT_STEPS
+}
+
+/// Sets the lanes to the eight pairs from the `next` one on, and solves them.
+#[inline(always)]
+fn solve_eight<'a, V: Vector, const N: usize>(
+    next: usize,
+    of: &impl Fn(usize) -> (&'a Ellipsoid<V>, &'a Ellipsoid<V>),
+    options: MarginOptions,
+    pairs: &mut Pairs<N>,
+    answers: &mut Answers<N>,
+) {
+    for lane in 0..LANES {
+        let (e1, e2) = of(next + lane);
+        pairs.set(lane, &Pair::new(e1, e2));
+    }
+    solve_lanes(pairs, options.tolerance(), answers);
+}
+
 /// The margins of as many of a range as make whole lanes; where it ended.
 fn by_eights<'a, V: Vector, const N: usize>(
     Range { start, end }: Range<usize>,
@@ -213,16 +309,37 @@ fn by_eights<'a, V: Vector, const N: usize>(
     let (mut pairs, mut answers) = (Pairs::<N>::ZERO, Answers::<N>::ZERO);
     let mut next = start;
     while next + LANES <= end {
-        for lane in 0..LANES {
-            let (e1, e2) = of(next + lane);
-            pairs.set(lane, &Pair::new(e1, e2));
-        }
-        solve_lanes(&pairs, options.tolerance(), &mut answers);
+        solve_eight(next, &of, options, &mut pairs, &mut answers);
         let first = margins.len();
         margins.extend((0..LANES).map(|lane| answers.get(lane)));
         for lane in (0..LANES).filter(|&lane| answers.is_answer[lane] == 0.0) {
             let (e1, e2) = of(next + lane);
             margins[first + lane] = free_margin(e1, e2, options);
+        }
+        next += LANES;
+    }
+    next
+}
+
+/// The same, told one by one in their order.
+fn tell_by_eights<'a, V: Vector, const N: usize>(
+    Range { start, end }: Range<usize>,
+    of: impl Fn(usize) -> (&'a Ellipsoid<V>, &'a Ellipsoid<V>),
+    options: MarginOptions,
+    mut tell: impl FnMut(usize, Margin<V>),
+) -> usize {
+    let (mut pairs, mut answers) = (Pairs::<N>::ZERO, Answers::<N>::ZERO);
+    let mut next = start;
+    while next + LANES <= end {
+        solve_eight(next, &of, options, &mut pairs, &mut answers);
+        for lane in 0..LANES {
+            let margin = if answers.is_answer[lane] == 0.0 {
+                let (e1, e2) = of(next + lane);
+                free_margin(e1, e2, options)
+            } else {
+                answers.get(lane)
+            };
+            tell(next + lane, margin);
         }
         next += LANES;
     }

@@ -34,6 +34,13 @@ pub enum InvalidQuery {
         /// The length of the second list.
         second: usize,
     },
+    /// A column for answers is not as long as there are pairs.
+    AnswersLength {
+        /// How many pairs there are.
+        pairs: usize,
+        /// The length of the column.
+        answers: usize,
+    },
 }
 
 impl fmt::Display for InvalidQuery {
@@ -50,6 +57,9 @@ impl fmt::Display for InvalidQuery {
                     f,
                     "the lists of first and second ellipsoids must be equally long, but have {first} and {second}"
                 )
+            }
+            Self::AnswersLength { pairs, answers } => {
+                write!(f, "the column of answers must have one for each of {pairs} pairs, but has {answers}")
             }
             Self::CountChanged { list, before, now } => {
                 write!(f, "the number of {list} must stay the same along a motion, but it went from {before} to {now}")

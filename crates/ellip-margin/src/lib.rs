@@ -23,7 +23,7 @@
 //! - [`scaling`]: the common scale at which both touch, symmetric, informative at any depth.
 //! - [`EllipsoidPair`]: the same three with their derivatives. Each answers `gradient` and `hessian`, and these `_of_second`, by the
 //!   motion of either body, as a wrench or per joint.
-//! - [`free_margins`], [`map_margins`], [`map_pairs`]: many pairs; margins side by side in vector registers.
+//! - [`free_margins`], [`map_margins`], [`map_pairs`], and into a column [`map_margins_into`]: many pairs; margins side by side in vector registers.
 //!
 //! # Along a motion
 //! - [`MarginTracker`]: one pair. [`Clearance`]: many links against many obstacles; [`clearance`] is its plain reference.
@@ -71,7 +71,7 @@ mod wedge;
 
 pub use convex_support;
 
-pub use batch::{free_margins, free_margins_into, map_margins, map_pairs};
+pub use batch::{free_margins, free_margins_into, map_margins, map_margins_into, map_pairs};
 pub use clearance::{Clearance, ClearanceResult, LeftOut, NearPair, clearance};
 pub use derivative::{MotionGradient, MotionHessian, ShapeGradient};
 pub use distance::{Distance, DistanceBracket, distance, distance_bracket};

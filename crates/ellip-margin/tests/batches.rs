@@ -5,7 +5,9 @@ mod common;
 use common::{close, ellipsoid2, ellipsoid3};
 use convex_support::glam::{DVec3, Vec3};
 use convex_support::{Ellipsoid, Matrix, Scalar, Vector};
-use ellip_margin::{InvalidQuery, MarginOptions, Method, free_margin, free_margins, free_margins_into};
+use ellip_margin::{
+    InvalidQuery, MarginOptions, Method, free_margin, free_margins, free_margins_into, map_margins, map_margins_into,
+};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 
@@ -70,4 +72,24 @@ fn lists_of_other_lengths() {
     assert_eq!(error, Err(InvalidQuery::LengthsDiffer { first: 2, second: 3 }), "two and three");
     assert!(margins.is_empty(), "nothing is appended");
     assert_eq!(free_margins::<DVec3>(&[], &[e], MarginOptions::default()).expect("none").len(), 0, "of none, none");
+}
+
+#[test]
+fn a_column_of_margins_is_the_list_of_them() {
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let strategy = prop::collection::vec((ellipsoid3(4.0, 2.0), ellipsoid3(4.0, 2.0)), 2500);
+    let (e1, e2): (Vec<_>, Vec<_>) = strategy.new_tree(&mut runner).expect("samples").current().into_iter().unzip();
+    let options = MarginOptions::default();
+    for count in [0, 1, 7, 8, 9, 2500] {
+        let (e1, e2) = (&e1[..count], &e2[..count]);
+        let mut column = vec![(f64::NAN, DVec3::NAN); count];
+        map_margins_into(e1, e2, options, &mut column, |m| (m.margin, m.gradient().translation))
+            .expect("of one length");
+        let list = map_margins(e1, e2, options, |m| (m.margin, m.gradient().translation)).expect("of one length");
+        assert_eq!(column, list, "{count} pairs");
+    }
+    let mut short = [0.0; 2];
+    let error = map_margins_into(&e1[..1], &e2[..3], options, &mut short, |m| m.margin);
+    assert_eq!(error, Err(InvalidQuery::AnswersLength { pairs: 3, answers: 2 }), "two answers for three pairs");
+    assert_eq!(short, [0.0; 2], "no answer is written");
 }
