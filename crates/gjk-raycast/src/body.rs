@@ -33,6 +33,8 @@ pub(crate) trait Body {
     fn radius(&self) -> <Self::Vector as Vector>::Scalar;
     /// A bound on the length of all vectors that support points of the core are computed from, in the world's unit.
     fn extent(&self) -> <Self::Vector as Vector>::Scalar;
+    /// A bound on what rounding has moved the support points of the core by, in the world's unit.
+    fn error(&self) -> <Self::Vector as Vector>::Scalar;
     /// Sets the unit to the given power of two.
     fn set_scale(&mut self, scale: <Self::Vector as Vector>::Scalar);
 }
@@ -102,6 +104,10 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
 
     fn extent(&self) -> <S::Vector as Vector>::Scalar {
         self.core.extent
+    }
+
+    fn error(&self) -> <S::Vector as Vector>::Scalar {
+        self.core.error
     }
 
     fn set_scale(&mut self, scale: <S::Vector as Vector>::Scalar) {
@@ -230,6 +236,11 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
         self.core_a.extent + self.core_b.extent
     }
 
+    #[inline]
+    fn error(&self) -> <A::Vector as Vector>::Scalar {
+        self.core_a.error + self.core_b.error
+    }
+
     fn set_scale(&mut self, scale: <A::Vector as Vector>::Scalar) {
         self.per_unit = reciprocal_of_power(scale);
     }
@@ -273,6 +284,10 @@ impl<B: Body> Body for Untraced<'_, B> {
 
     fn extent(&self) -> <B::Vector as Vector>::Scalar {
         self.0.extent()
+    }
+
+    fn error(&self) -> <B::Vector as Vector>::Scalar {
+        self.0.error()
     }
 
     fn set_scale(&mut self, scale: <B::Vector as Vector>::Scalar) {

@@ -1,12 +1,12 @@
 //! The distance of two shapes (the paper's Algorithm 2).
 
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{Core, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::body::{Pair, PointPair};
-use crate::gjk::{End, Frame, Gjk, GjkOptions, gjk};
+use crate::gjk::{End, Frame, Gjk, GjkOptions, Shape, gjk, is_near_contact, near_contact};
 use crate::unit::moderate;
-use crate::{Distance, DistanceOptions, Iterate};
+use crate::{Distance, DistanceOptions, Iterate, Status};
 
 /// The distance of two shapes, and where they are closest.
 ///
@@ -47,53 +47,50 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let mut pair = Pair::new(a, b);
-    let (core_a, core_b) = (a.core(), b.core());
-    let offset = core_a.origin - core_b.origin;
+    let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
-    let Frame { scale, per_unit, radius, noise, .. } = frame;
     let first = options.axis.and_then(moderate).or_else(|| moderate(frame.offset)).unwrap_or_else(|| Vector::axis(0));
     let mut state = Gjk::new(first);
     let closest = pair.closest_points(offset, size);
     let meet = closest.is_some_and(|points| state.begin_at(points.a - points.b + frame.offset, points, &frame));
-    let options = GjkOptions {
+    let search = GjkOptions {
         first: state.normal,
-        limit: options.limit * per_unit + radius,
+        limit: options.limit * frame.per_unit + frame.radius,
         tolerance: options.tolerance,
         closest_points: true,
         max_iterations: options.max_iterations,
         sub_algorithm: options.sub_algorithm,
     };
-    let end = if meet { End::Overlap } else { gjk(&mut state, &mut pair, frame, options, None, observer) };
+    let end = if meet { End::Overlap } else { gjk(&mut state, &mut pair, frame, search, None, observer) };
+    if is_near_contact(&mut state, &frame)
+        && let Some(answer) = touching(&a, &b, options.max_iterations, state.iterations)
+    {
+        return answer;
+    }
     state.ensure_measured();
-    let Gjk { normal, length, lower, axis, ref simplex, .. } = state;
+    apart([pair.core_a, pair.core_b], &frame, &state, end)
+}
+
+/// The answer of a search that ends apart from contact: the bodies are apart, or deep in one another.
+#[inline(always)]
+fn apart<V: Vector>(cores: [Core<V>; 2], frame: &Frame<V>, state: &Gjk<V, PointPair<V>>, end: End) -> Distance<V> {
+    let zero = V::Scalar::ZERO;
+    let &Frame { scale, radius, error, .. } = frame;
+    let &Gjk { normal, length, lower, axis, .. } = state;
     let overlap = end == End::Overlap;
-    let (mut point_a, mut point_b) = (A::Vector::ZERO, A::Vector::ZERO);
-    for (weight, PointPair { a, b }) in simplex.weighted() {
-        point_a += a * weight;
-        point_b += b * weight;
-    }
-    let (mut point_a, mut point_b) = (core_a.origin + point_a * scale, core_b.origin + point_b * scale);
-    let zero = Scalar::ZERO;
+    let core_points = state.simplex.weighted_witness();
     let n = if length > zero && (overlap || radius > zero || lower <= zero) { normal.unit() } else { None };
-    if let Some(n) = n {
-        if !overlap {
-            point_a -= n * core_a.radius;
-            point_b += n * core_b.radius;
-        } else {
-            // The cores are apart by less than both radii: between them, a point in both.
-            let part = (core_a.radius * per_unit / radius).min(Scalar::ONE);
-            if part.is_finite() {
-                point_a -= n * (length * part * scale);
-                point_b += n * (length * (<A::Vector as Vector>::Scalar::ONE - part) * scale);
-            }
-        }
-    }
-    let gap = |l: <A::Vector as Vector>::Scalar| ((l - radius) * scale).max(zero);
+    let [point_a, point_b] =
+        surface_points(cores, frame, core_points, n.unwrap_or(Vector::ZERO), overlap.then_some(length));
+    let gap = |l: V::Scalar| ((l - radius) * scale).max(zero);
+    // The shortest vector is measured across the affine hull of its points, and they are what proves it.
+    let squared = (core_points.a - core_points.b + frame.offset).length_squared();
+    let found = if squared <= length * length { length } else { squared.sqrt() };
     Distance {
         distance: if overlap { zero } else { gap(length) },
-        lower: if overlap { zero } else { gap((lower - noise).min(length)) },
-        upper: if overlap { gap(length + noise).min(noise * scale) } else { gap(length + noise) },
+        lower: if overlap { zero } else { gap((lower - error).min(length)) },
+        upper: if overlap { gap(found + error).min(error * scale) } else { gap(found + error) },
         overlap,
         point_a,
         point_b,
@@ -107,4 +104,56 @@ where
         status: end.status(),
         iterations: state.iterations,
     }
+}
+
+/// The answer of bodies near contact, after a search that took `iterations` already.
+#[cold]
+#[inline(never)]
+fn touching<V: Vector>(
+    a: Shape<'_, V>,
+    b: Shape<'_, V>,
+    max_iterations: usize,
+    iterations: usize,
+) -> Option<Distance<V>> {
+    let near = near_contact(a, b, max_iterations)?;
+    let (zero, scale) = (V::Scalar::ZERO, near.frame.scale);
+    let overlap = near.overlap();
+    let cores = [a.core(), b.core()];
+    let [point_a, point_b] =
+        surface_points(cores, &near.frame, near.state.simplex.weighted_witness(), near.normal, None);
+    let upper = near.upper.max(zero) * scale;
+    Some(Distance {
+        distance: (near.gap.max(zero) * scale).min(upper),
+        lower: near.lower.max(zero) * scale,
+        upper,
+        overlap: overlap == Some(true),
+        point_a,
+        point_b,
+        // Of a point found deep inside, no plane is one of contact.
+        normal: Some(near.normal).filter(|_| near.gap >= -near.upper),
+        status: if overlap.is_some() { Status::Converged } else { near.end.status() },
+        iterations: iterations + near.state.iterations,
+    })
+}
+
+/// The points of both bodies beside points of their cores, in the world: along the unit vector `n` from `b` to `a`. Where the cores are
+/// apart by a `length` shorter than both radii, a point in both bodies.
+#[inline(always)]
+fn surface_points<V: Vector>(
+    [core_a, core_b]: [Core<V>; 2],
+    &Frame { scale, per_unit, radius, .. }: &Frame<V>,
+    PointPair { a, b }: PointPair<V>,
+    n: V,
+    length: Option<V::Scalar>,
+) -> [V; 2] {
+    let one = V::Scalar::ONE;
+    let (from_a, from_b) = match length {
+        None => (core_a.radius, core_b.radius),
+        Some(length) => {
+            let part = (core_a.radius * per_unit / radius).min(one);
+            // Without radii the cores themselves meet.
+            if part.is_finite() { (length * part * scale, length * (one - part) * scale) } else { Default::default() }
+        }
+    };
+    [core_a.origin + a * scale - n * from_a, core_b.origin + b * scale + n * from_b]
 }

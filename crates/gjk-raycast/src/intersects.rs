@@ -4,7 +4,7 @@ use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use crate::body::{Body, Pair, PointPair, Untraced};
-use crate::gjk::{End, Frame, Gjk, GjkOptions, gjk, rounding};
+use crate::gjk::{End, Frame, Gjk, GjkOptions, gjk, is_near_contact, near_contact, rounding};
 use crate::unit::{is_moderate, moderate};
 use crate::{IntersectOptions, Intersection, Iterate, Status};
 
@@ -67,7 +67,7 @@ where
         let point = pair.support(-first).0;
         let w = point + offset;
         let (reach, length) = (first.dot(w), first.length());
-        if reach.is_finite() && reach > (pair.radius() + rounding(size)) * length {
+        if reach.is_finite() && reach > (pair.radius() + rounding(size) + pair.error()) * length {
             let lower = reach / length;
             let upper = Float::infinity();
             observer(Iterate { iteration: 0, simplex: &[], v: first, w, scale: Scalar::ONE, lower, upper });
@@ -114,20 +114,33 @@ where
         known = None;
     }
     let meet = closest.is_some_and(|PointPair { a, b }| state.begin_at(a - b + frame.offset, (), &frame));
+    let max_iterations = options.max_iterations;
     let options = GjkOptions {
         first: state.normal,
         limit: frame.radius,
         tolerance: Scalar::ZERO,
         closest_points: false,
-        max_iterations: options.max_iterations,
+        max_iterations,
         sub_algorithm: options.sub_algorithm,
     };
     let end = if meet { End::Overlap } else { gjk(&mut state, &mut Untraced(pair), frame, options, known, observer) };
-    let overlap = match end {
-        End::Overlap => true,
-        End::Separated => false,
-        End::IterationLimit | End::Stalled => state.lower <= frame.radius,
+    let mut iterations = state.iterations;
+    let (overlap, axis, status) = match end {
+        End::Separated if state.lower > frame.radius + frame.error => (false, state.axis.unit(), Status::Converged),
+        _ => {
+            let is_near = is_near_contact(&mut state, &frame);
+            let near = if is_near { near_contact(&pair.a, &pair.b, max_iterations) } else { None };
+            match near {
+                Some(near) => {
+                    iterations += near.state.iterations;
+                    match near.overlap() {
+                        Some(overlap) => (overlap, Some(near.normal), Status::Converged),
+                        None => (near.gap <= Scalar::ZERO, Some(near.normal), Status::Stalled),
+                    }
+                }
+                None => (end == End::Overlap || state.lower <= frame.radius, state.axis.unit(), end.status()),
+            }
+        }
     };
-    let axis = state.axis.unit().filter(|_| !overlap);
-    Intersection { overlap, axis, status: end.status(), iterations: state.iterations }
+    Intersection { overlap, axis: axis.filter(|_| !overlap), status, iterations }
 }

@@ -74,13 +74,15 @@ pub fn iterative_ray_cast_with<V: Vector>(
 
     // At μ, the ray is before the plane with the normal n, which it crosses at `crossing`: μ stays behind by what rounding
     // may have moved the plane. Not before `proved`, if rounding turned it as well, does the ray enter the set.
-    let (mut mu, mut crossing, mut proved) = (local.start, local.start, local.start);
+    let begin = if options.min_lambda > zero { local.mu(options.min_lambda) } else { local.start };
+    let least = options.min_lambda.max(zero);
+    let (mut mu, mut crossing, mut proved) = (begin, begin, begin);
     let (mut normal, mut tilt) = (None::<V>, zero);
     let mut c = origin;
     loop {
-        let from_start = mu <= local.start;
-        let x = if from_start { ray.source } else { origin + line.at(mu) * scale };
-        if answer.iterations > 1 || !from_start {
+        let from_start = mu <= begin;
+        let x = if mu <= local.start { ray.source } else { origin + line.at(mu) * scale };
+        if answer.iterations > 1 || mu > local.start {
             c = closest_point(x).ok_or(RayCastError::NoClosestPoint)?;
         }
         let v = (x - c) * down;
@@ -91,20 +93,20 @@ pub fn iterative_ray_cast_with<V: Vector>(
             v,
             w: v,
             scale,
-            lower: local.lambda(proved).max(zero),
+            lower: local.lambda(proved).max(least),
             upper: answer.upper,
         });
         // x is only known to the rounding of its coordinates, and so is its distance.
         let noise = rounding * (x.norm() + c.norm()) * down;
-        answer.lower = (local.lambda(proved) - local.error(proved, zero)).max(zero);
+        answer.lower = (local.lambda(proved) - local.error(proved, zero)).max(least);
         if length <= noise + noise {
             // Where the set is entered, its surface may be flatter to the ray by what the last normal was turned by rounding.
             let slope = normal.map_or(V::Scalar::ONE, |n| -n.dot(direction));
             let slope = (slope - tilt).max(slope / V::Scalar::from_f64(8.0));
-            let lambda = if from_start { zero } else { local.lambda(crossing).max(zero) };
-            let point = if from_start { ray.source } else { origin + line.at(crossing) * scale };
+            let lambda = if from_start { least } else { local.lambda(crossing).max(least) };
+            let point = if lambda > zero { origin + line.at(crossing) * scale } else { ray.source };
             answer.upper = if from_start {
-                zero
+                least
             } else {
                 lambda + local.error(crossing, noise * V::Scalar::from_f64(4.0) / slope)
             };

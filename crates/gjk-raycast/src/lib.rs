@@ -25,12 +25,16 @@
 //! - *In which points do they carry each other?* [`contact`], a manifold of up to four points.
 //! - *Do they meet?* [`intersects`], which stops at the first separating axis and can start from the last one.
 //! - *Where does a ray enter a shape?* [`ray_cast`] (Algorithm 3).
-//! - *Many rays at once?* [`ray_casts`].
+//! - *Many rays at once?* [`ray_casts`]. Many pairs, into a column? [`map_distances_into`].
 //! - *Many bodies?* [`Scene`]: the first hit, the nearest, all within a distance, and pairs.
+//! - *Where does a ray leave a shape?* [`ray_exit`].
 //! - *When do two shapes meet that move without turning?* [`linear_cast`] (Algorithm 3 on their difference).
 //! - *When do two shapes meet that move and turn?* [`motion_cast`], along [rigid motions](RigidMotion), [chains of joints](ChainMotion)
 //!   or a [`Trajectory`] of your own.
+//! - *How does an answer change with a pose, a joint, a velocity?* `gradient()` of [`SignedDistance`], [`LinearHit`], [`MotionHit`], [`RayHit`];
+//!   and whether that is smooth, with second derivatives, [`ClosestFeatures`].
 //! - *The same from closest points alone:* [`iterative_ray_cast`] (Algorithm 1), for shapes with a closed form.
+//! - *What proves an answer?* [`distance_certificate`] and the like: a [`Certificate`] for a checker that trusts nothing.
 //!
 //! Each has a variant `…_with` that shows an [observer](Iterate) every iterate, and every answer says how it ended
 //! ([`Status`]) and carries bounds on the value that come from the geometry: a separating plane below, points of the
@@ -59,9 +63,12 @@ struct Readme;
 
 mod body;
 mod cast;
+mod certificate;
 mod contact;
 mod curvature;
+mod derivative;
 mod distance;
+mod distances;
 mod error;
 mod gjk;
 mod intersects;
@@ -72,33 +79,47 @@ mod options;
 mod ray;
 mod ray_cast;
 mod ray_casts;
+mod ray_exit;
 mod result;
 mod scene;
 mod simplex;
+mod start_in_contact;
 mod symmetric;
 mod unit;
 
 pub use convex_support;
 
+pub use certificate::{
+    Certificate, WeightedSupport, distance_certificate, intersection_certificate, linear_cast_certificate,
+    ray_cast_certificate,
+};
 pub use contact::{
     Contact, ContactPoint, SignedDistance, SignedDistanceOptions, contact, signed_distance, signed_distance_with,
 };
+pub use derivative::{
+    ClosestFeatures, ClosestVelocities, LinearCastGradient, MotionCastGradient, MotionGradient, MotionHessian,
+    PairGradient, PairHessian, RayCastGradient, RigidMotionGradient, Smoothness,
+};
 pub use distance::{distance, distance_with};
+pub use distances::map_distances_into;
 pub use error::RayCastError;
 pub use intersects::{intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{Motion, linear_cast, linear_cast_with};
 pub use motion::{
     ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionHit, MotionIterate, MovingBall, Pose, RigidMotion,
-    StartInContact, Trajectory, TurningPlane, motion_cast, motion_cast_with,
+    Trajectory, TurningPlane, motion_cast, motion_cast_with,
 };
-pub use options::{CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, RayCastOptions};
+pub use options::{CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, RayCastOptions, StartInContact};
 pub use ray::Ray;
 pub use ray_cast::{ray_cast, ray_cast_with};
 #[cfg(feature = "rayon")]
 pub use ray_casts::par_ray_casts;
 pub use ray_casts::ray_casts;
-pub use result::{Distance, Intersection, Iterate, LinearCast, LinearHit, Miss, Outcome, RayCast, RayHit, Status};
+pub use ray_exit::ray_exit;
+pub use result::{
+    Distance, Intersection, Iterate, LinearCast, LinearHit, Miss, Outcome, RayCast, RayExit, RayHit, Status,
+};
 pub use scene::{
     Among, Body, BodyDistance, BodyHit, HalfSpace, PairDistance, Scene, SceneAnyHit, SceneCast, SceneDistance,
     SceneError, SceneHits, SceneLinearCast, SceneRayCast, Work,

@@ -1,14 +1,20 @@
 //! When two shapes meet that move without turning.
 
-use convex_support::{SupportMap, Vector};
+use convex_support::numerics::twofold::lost_in_sum;
+use convex_support::{Scalar, SupportMap, Vector};
+use num_traits::Float as _;
 
 use crate::body::Pair;
-use crate::cast::{CastHit, cast};
+use crate::cast::{CastHit, cast, settle_start};
 use crate::ray::check_finite;
+use crate::start_in_contact::Start;
 use crate::{
-    Distance, DistanceOptions, Iterate, LinearCast, LinearCastOptions, LinearHit, Outcome, Ray, RayCastError,
-    RayCastOptions, distance_with,
+    Iterate, LinearCast, LinearCastOptions, LinearHit, Miss, Outcome, Ray, RayCastError, RayCastOptions,
+    StartInContact, Status,
 };
+
+/// Shapes that meet within so many ε of their sizes may have begun in contact.
+const NEAR: f64 = 16.0;
 
 /// The velocities of two shapes, in units of length per unit of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,8 +50,31 @@ impl<V: Vector> Motion<V> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
+/// # Stepping a world
+/// Shapes that were moved to their contact touch, and the next cast starts there. By default it is a hit at time 0 again, whatever the
+/// motion. With [`StartInContact::IfDeeper`] it is one only if the motion goes deeper; one that leaves the contact, or slides along
+/// it, is a miss, since shapes that move straight do not meet again:
+///
+/// ```
+/// use convex_support::{Ball, Cuboid, Posed, glam::DVec2};
+/// use gjk_raycast::{LinearCastOptions, Motion, StartInContact, linear_cast};
+///
+/// let floor = Cuboid::new(DVec2::new(10.0, 1.0))?;
+/// let ball = Posed::translated(Ball::new(0.5)?, DVec2::new(0.0, 1.5))?;
+/// let options = LinearCastOptions::new().with_start_in_contact(StartInContact::IfDeeper);
+/// let cast = |velocity_a| linear_cast(&ball, &floor, Motion { velocity_a, ..Motion::default() }, options);
+/// assert!(cast(DVec2::new(3.0, 0.0))?.outcome.is_miss());
+/// assert!(cast(DVec2::new(3.0, 1.0))?.outcome.is_miss());
+/// let hit = cast(DVec2::new(3.0, -1.0))?.outcome.hit().ok_or("it goes into the floor")?;
+/// assert_eq!((hit.time, hit.normal), (0.0, Some(DVec2::Y)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// A cast to a [`target_distance`](LinearCastOptions::target_distance) is that of `a` swept by a ball of that radius, and is
+/// certified alike.
+///
 /// # Errors
-/// [`RayCastError::NonFinite`] if a velocity is not finite.
+/// [`RayCastError::NonFinite`] if a velocity is not finite, or the target distance is NaN.
 pub fn linear_cast<A, B>(
     a: &A,
     b: &B,
@@ -62,7 +91,7 @@ where
 /// [`linear_cast`], showing an observer every iterate.
 ///
 /// # Errors
-/// [`RayCastError::NonFinite`] if a velocity is not finite.
+/// As of [`linear_cast`].
 pub fn linear_cast_with<A, B>(
     a: &A,
     b: &B,
@@ -75,8 +104,70 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     motion.check()?;
+    let zero = <A::Vector as Vector>::Scalar::default();
+    let target = options.target_distance;
+    if target.is_nan() {
+        return Err(RayCastError::NonFinite { parameter: "target_distance", index: 0 });
+    }
+    let target = target.max(zero);
     let mut body = Pair::new(a, b);
-    let (core_a, core_b) = (a.core(), b.core());
+    body.core_a.radius += target;
+    let (core_a, core_b) = (body.core_a, body.core_b);
+    let (ray, direction_error, wanted) = ray_of(motion, [core_a.origin, core_b.origin], &options);
+    let mut cast = cast(&mut body, ray, direction_error, |ray| ray, wanted, observer);
+    settle_start(&mut cast, a, target, || Some(b), ray.direction, &wanted);
+    let mut answer = LinearCast {
+        outcome: Outcome::Undecided,
+        lower: cast.lower,
+        upper: cast.upper,
+        status: cast.status,
+        iterations: cast.iterations,
+    };
+    let start = Start { a: &a, b: &b, target };
+    answer.outcome = match cast.outcome {
+        Outcome::Hit(CastHit { lambda: time, normal, spot, witness }) => {
+            let (point, normal) = if normal.is_none() && time == zero {
+                if options.start_in_contact == StartInContact::Report {
+                    // The cast knows where the motion enters, which is behind the start or, sliding, ahead of it.
+                    let at_start = start.distance(&options);
+                    let (normal, iterations) = start.touching_normal(&options);
+                    answer.iterations += at_start.iterations + iterations;
+                    (at_start.point_b, normal)
+                } else {
+                    // Replaced below.
+                    (core_b.origin, None)
+                }
+            } else {
+                // With p a point of a's core and q one of b's, q − p + spot is what lies between them at the time, and is as
+                // long as both radii. The point that divides it as they do is on both shapes, however well the normal is known.
+                let between = (witness.b - witness.a + spot) * cast.scale;
+                let share = if core_b.radius > zero { core_b.radius / (core_a.radius + core_b.radius) } else { zero };
+                let at_start = core_b.origin + witness.b * cast.scale;
+                (at_start + motion.velocity_b * time - between * share, normal.map(|n| -n))
+            };
+            Outcome::Hit(LinearHit { time, point, normal })
+        }
+        Outcome::Miss(mut miss) => {
+            miss.axis = -miss.axis;
+            Outcome::Miss(miss)
+        }
+        Outcome::Undecided => Outcome::Undecided,
+    };
+    if options.start_in_contact == StartInContact::IfDeeper {
+        let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
+        only_if_deeper(&mut answer, &start, motion, &options, size);
+    }
+    Ok(answer)
+}
+
+/// The ray that `b` draws as it is seen from `a`, what its direction is wrong by as a part of its length, and what is asked of it.
+#[inline(always)]
+fn ray_of<V: Vector>(
+    motion: Motion<V>,
+    [origin_a, origin_b]: [V; 2],
+    options: &LinearCastOptions<V>,
+) -> (Ray<V>, V::Scalar, RayCastOptions<V>) {
+    let zero = V::Scalar::ZERO;
     let mut wanted = RayCastOptions::new()
         .with_max_lambda(options.max_time)
         .with_tolerance(options.tolerance)
@@ -86,49 +177,50 @@ where
     // Seen from b, a is at the outside of the obstacle: normals of A − B point out of a.
     wanted.axis = options.axis.map(|axis| -axis);
     // The ray starts at zero, where both shapes are in place: at b's origin, seen from a's.
-    let mut ray = Ray { source: core_b.origin, direction: motion.velocity_b - motion.velocity_a };
-    if ray.direction == A::Vector::ZERO {
+    let mut ray = Ray { source: origin_b, direction: motion.velocity_b - motion.velocity_a };
+    if ray.direction == V::ZERO {
         // Only the start counts, and any ray of length zero is the start.
-        ray.direction = (core_a.origin - core_b.origin).unit().unwrap_or_else(|| A::Vector::axis(0));
-        wanted.max_lambda = <A::Vector as Vector>::Scalar::default();
+        ray.direction = (origin_a - origin_b).unit().unwrap_or_else(|| V::axis(0));
+        wanted.max_lambda = zero;
     }
-    let cast = cast(&mut body, ray, wanted, observer);
-    let mut iterations = cast.iterations;
-    let outcome = match cast.outcome {
-        Outcome::Hit(CastHit { lambda: time, normal, spot, witness }) => {
-            let zero = <A::Vector as Vector>::Scalar::default();
-            let point = if normal.is_none() && time == zero {
-                // The cast knows where the motion enters, which is behind the start or, sliding, ahead of it.
-                let start = start(a, b, options);
-                iterations += start.iterations;
-                start.point_b
-            } else {
-                // With p a point of a's core and q one of b's, q − p + spot is what lies between them at the time, and is as
-                // long as both radii. The point that divides it as they do is on both shapes, however well the normal is known.
-                let between = (witness.b - witness.a + spot) * cast.scale;
-                let share = if core_b.radius > zero { core_b.radius / (core_a.radius + core_b.radius) } else { zero };
-                core_b.origin + witness.b * cast.scale + motion.velocity_b * time - between * share
-            };
-            Outcome::Hit(LinearHit { time, point, normal: normal.map(|n| -n) })
-        }
-        Outcome::Miss(mut miss) => {
-            miss.axis = -miss.axis;
-            Outcome::Miss(miss)
-        }
-        Outcome::Undecided => Outcome::Undecided,
-    };
-    Ok(LinearCast { outcome, lower: cast.lower, upper: cast.upper, status: cast.status, iterations })
+    // What the difference of the velocities loses.
+    let lost = lost_in_sum(motion.velocity_b, -motion.velocity_a);
+    let direction_error = if lost == V::ZERO { zero } else { lost.norm() / ray.direction.norm() };
+    (ray, direction_error, wanted)
 }
 
-/// The distance at the start. Its observer is one of its own, so that the compiler makes it apart from the distances that
-/// users ask for, which are slower where they share their code with it.
+/// What is to be answered where only a motion that goes deeper counts as a hit, of what is otherwise; the shapes are of a `size`.
 #[cold]
 #[inline(never)]
-fn start<A, B>(a: &A, b: &B, options: LinearCastOptions<A::Vector>) -> Distance<A::Vector>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
-    let wanted = DistanceOptions::new().with_max_iterations(options.max_iterations);
-    distance_with(a, b, wanted.with_sub_algorithm(options.sub_algorithm), |_| {})
+fn only_if_deeper<V: Vector>(
+    answer: &mut LinearCast<V>,
+    start: &Start<'_, V>,
+    motion: Motion<V>,
+    options: &LinearCastOptions<V>,
+    size: V::Scalar,
+) {
+    let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+    let may_begin_in_contact = match answer.outcome {
+        Outcome::Hit(LinearHit { normal: Some(n), time, .. }) => {
+            let closing = n.dot(motion.velocity_b - motion.velocity_a);
+            // NaN is looked at.
+            !(closing * time > V::Scalar::from_f64(NEAR) * V::Scalar::EPSILON * size)
+        }
+        Outcome::Hit(_) => true,
+        Outcome::Undecided => answer.lower <= zero,
+        Outcome::Miss(_) => false,
+    };
+    if !may_begin_in_contact {
+        return;
+    }
+    let Some(contact) = start.of_motion(motion, options) else { return };
+    answer.iterations += contact.start.iterations;
+    let is_hit_at_start = matches!(answer.outcome, Outcome::Hit(LinearHit { time, .. }) if time == zero);
+    if let Some(axis) = contact.leaves_along {
+        (answer.outcome, answer.status) = (Outcome::Miss(Miss { axis }), Status::Converged);
+        (answer.lower, answer.upper) = (infinity, infinity);
+    } else if is_hit_at_start {
+        let (point, normal) = (contact.start.point_b, Some(contact.start.normal));
+        answer.outcome = Outcome::Hit(LinearHit { time: zero, point, normal });
+    }
 }

@@ -36,6 +36,38 @@ macro_rules! setters {
             self
         }
     };
+    (@ limit) => {
+        /// With a [`limit`](Self::limit).
+        #[must_use]
+        pub const fn with_limit(mut self, limit: V::Scalar) -> Self {
+            self.limit = limit;
+            self
+        }
+    };
+    (@ max_time) => {
+        /// With an [end of the motion](Self::max_time).
+        #[must_use]
+        pub const fn with_max_time(mut self, max_time: V::Scalar) -> Self {
+            self.max_time = max_time;
+            self
+        }
+    };
+    (@ target_distance) => {
+        /// With a [`target_distance`](Self::target_distance).
+        #[must_use]
+        pub const fn with_target_distance(mut self, target_distance: V::Scalar) -> Self {
+            self.target_distance = target_distance;
+            self
+        }
+    };
+    (@ start_in_contact) => {
+        /// With another answer where the shapes [touch at the start](Self::start_in_contact).
+        #[must_use]
+        pub const fn with_start_in_contact(mut self, start_in_contact: $crate::StartInContact) -> Self {
+            self.start_in_contact = start_in_contact;
+            self
+        }
+    };
     (@ sub_algorithm) => {
         /// With another [`sub_algorithm`](Self::sub_algorithm).
         #[must_use]
@@ -53,6 +85,8 @@ macro_rules! setters {
         }
     };
 }
+
+pub(crate) use setters;
 
 /// Options of [`distance`](crate::distance).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,14 +119,7 @@ impl<V: Vector> DistanceOptions<V> {
         }
     }
 
-    /// With a [`limit`](Self::limit).
-    #[must_use]
-    pub const fn with_limit(mut self, limit: V::Scalar) -> Self {
-        self.limit = limit;
-        self
-    }
-
-    setters!(tolerance, max_iterations, axis, sub_algorithm);
+    setters!(limit, tolerance, max_iterations, axis, sub_algorithm);
 }
 
 impl<V: Vector> Default for DistanceOptions<V> {
@@ -143,10 +170,25 @@ pub enum CastMethod {
     Gjk,
 }
 
+/// What a cast answers where the bodies touch at the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum StartInContact {
+    /// A hit at time 0, whatever the motion.
+    #[default]
+    Report,
+    /// A hit at time 0 only if the motion brings the bodies deeper into one another. If it takes them apart, the first contact
+    /// after they are.
+    IfDeeper,
+}
+
 /// Options of [`ray_cast`](crate::ray_cast).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RayCastOptions<V: Vector> {
+    /// The beginning of the ray, in units of its direction; it belongs to the ray. What is hit before does not count, so that a
+    /// ray may start on a surface and leave it. Below zero it is taken for zero. Default: 0.
+    pub min_lambda: V::Scalar,
     /// The end of the ray, in units of its direction; the end belongs to the ray. Default: infinity.
     pub max_lambda: V::Scalar,
     /// How far along the ray the hit may stay uncertain, relative to the size of the target. A bracket at the level of
@@ -167,6 +209,7 @@ impl<V: Vector> RayCastOptions<V> {
     #[must_use]
     pub fn new() -> Self {
         Self {
+            min_lambda: V::Scalar::ZERO,
             max_lambda: V::Scalar::infinity(),
             tolerance: V::Scalar::ZERO,
             max_iterations: MAX_ITERATIONS,
@@ -174,6 +217,13 @@ impl<V: Vector> RayCastOptions<V> {
             sub_algorithm: SubAlgorithm::Regions,
             method: CastMethod::Portal,
         }
+    }
+
+    /// With a [beginning of the ray](Self::min_lambda) beyond its source.
+    #[must_use]
+    pub const fn with_min_lambda(mut self, min_lambda: V::Scalar) -> Self {
+        self.min_lambda = min_lambda;
+        self
     }
 
     /// With an [end of the ray](Self::max_lambda).
@@ -198,6 +248,12 @@ impl<V: Vector> Default for RayCastOptions<V> {
 pub struct LinearCastOptions<V: Vector> {
     /// The end of the motion; it belongs to the motion. Default: infinity.
     pub max_time: V::Scalar,
+    /// The distance at which the shapes count as touching: the cast stops that far from contact. Below zero it is taken for zero.
+    /// Default: 0.
+    pub target_distance: V::Scalar,
+    /// What to answer where the shapes touch at the start. Shapes that move straight and leave one another do not meet again, and are
+    /// a miss if asked [`StartInContact::IfDeeper`]. Default: [`StartInContact::Report`].
+    pub start_in_contact: StartInContact,
     /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
     /// of rounding always ends the iteration. Default: 0.
     pub tolerance: V::Scalar,
@@ -217,6 +273,8 @@ impl<V: Vector> LinearCastOptions<V> {
     pub fn new() -> Self {
         Self {
             max_time: V::Scalar::infinity(),
+            target_distance: V::Scalar::ZERO,
+            start_in_contact: StartInContact::Report,
             tolerance: V::Scalar::ZERO,
             max_iterations: MAX_ITERATIONS,
             axis: None,
@@ -225,14 +283,7 @@ impl<V: Vector> LinearCastOptions<V> {
         }
     }
 
-    /// With an [end of the motion](Self::max_time).
-    #[must_use]
-    pub const fn with_max_time(mut self, max_time: V::Scalar) -> Self {
-        self.max_time = max_time;
-        self
-    }
-
-    setters!(tolerance, max_iterations, axis, sub_algorithm, method);
+    setters!(max_time, target_distance, start_in_contact, tolerance, max_iterations, axis, sub_algorithm, method);
 }
 
 impl<V: Vector> Default for LinearCastOptions<V> {

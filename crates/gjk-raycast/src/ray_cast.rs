@@ -1,9 +1,10 @@
 //! Where a ray enters a shape (the paper's Algorithm 3).
 
-use convex_support::{Scalar, SupportMap};
+use convex_support::{Point, Scalar, SupportMap, Vector};
+use num_traits::Float as _;
 
 use crate::body::Single;
-use crate::cast::{CastHit, cast};
+use crate::cast::{Cast, CastHit, LocalRay, cast, settle_start};
 use crate::{Iterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit};
 
 /// The first point of a ray in a shape, with the normal there.
@@ -22,10 +23,13 @@ use crate::{Iterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit
 #[doc = include_str!("../doc/ray.svg")]
 ///
 /// # How it begins and ends
-/// - A source in the target, or on its boundary to rounding, is a hit at λ = 0 with no normal, whatever the direction.
-/// - A source outside is a hit or a miss by the ray alone: one that leaves or slides by at a distance misses.
+/// - A source in the target, or no farther from it than its own error, is a hit at λ = 0 with no normal, whatever the direction.
+/// - A source outside is a hit or a miss by the ray alone, by however little it is outside: one that leaves or slides by misses.
 /// - A ray that grazes the target within rounding may be either.
-/// - The end of the ray, [`max_lambda`](RayCastOptions::max_lambda), belongs to it.
+/// - The end of the ray, [`max_lambda`](RayCastOptions::max_lambda), belongs to it. So does its beginning, if that is not the source
+///   but at [`min_lambda`](RayCastOptions::min_lambda): where that is in the target it is hit there, with no normal. A shadow ray, from
+///   a surface, leaves it so.
+/// - Where the ray leaves the target again, [`ray_exit`](crate::ray_exit) tells.
 ///
 /// # Accuracy
 /// λ is within rounding of the truth: a few ulps of the target's size (divided by the cosine at grazing incidence) and
@@ -52,7 +56,17 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
     observer: impl FnMut(Iterate<'_, S::Vector>),
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     ray.check()?;
-    let cast = cast(&mut Single::new(target), ray, options, observer);
+    if options.min_lambda > Scalar::ZERO {
+        return Ok(shortened(target, ray, options, observer));
+    }
+    let mut cast = cast(&mut Single::new(target), ray, Scalar::ZERO, |ray| ray, options, observer);
+    settle_start(&mut cast, target, Scalar::ZERO, || Point::new(ray.source).ok(), ray.direction, &options);
+    Ok(answer(cast, ray))
+}
+
+/// What a cast says of a ray.
+#[inline(always)]
+fn answer<V: Vector>(cast: Cast<V, ()>, ray: Ray<V>) -> RayCast<V> {
     let outcome = match cast.outcome {
         Outcome::Hit(CastHit { lambda, normal, .. }) => {
             let point = if lambda > Scalar::ZERO { ray.at(lambda) } else { ray.source };
@@ -61,5 +75,48 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
         Outcome::Miss(miss) => Outcome::Miss(miss),
         Outcome::Undecided => Outcome::Undecided,
     };
-    Ok(RayCast { outcome, lower: cast.lower, upper: cast.upper, status: cast.status, iterations: cast.iterations })
+    RayCast { outcome, lower: cast.lower, upper: cast.upper, status: cast.status, iterations: cast.iterations }
+}
+
+/// The cast of a ray that begins at [`min_lambda`](RayCastOptions::min_lambda).
+#[cold]
+#[inline(never)]
+fn shortened<S: SupportMap + ?Sized>(
+    target: &S,
+    ray: Ray<S::Vector>,
+    options: RayCastOptions<S::Vector>,
+    observer: impl FnMut(Iterate<'_, S::Vector>),
+) -> RayCast<S::Vector> {
+    let begin = options.min_lambda;
+    let mut wanted = options;
+    wanted.max_lambda = options.max_lambda - begin;
+    let mut slack = Scalar::ZERO;
+    let place = |ray: LocalRay<S::Vector>| {
+        let shortened = ray.beginning_at(begin);
+        slack = ray.error(shortened.start, Scalar::ZERO);
+        shortened
+    };
+    // Where the ray begins is rounded itself, and no start is settled.
+    let cast = cast(&mut Single::new(target), ray, Scalar::ZERO, place, wanted, observer);
+    of_whole_ray(answer(cast, ray), ray, options, slack)
+}
+
+/// The answer of a ray that begins at [`min_lambda`](RayCastOptions::min_lambda), with its parameters counted from the source. Where
+/// it begins is known to within the slack.
+fn of_whole_ray<V: Vector>(
+    mut answer: RayCast<V>,
+    ray: Ray<V>,
+    options: RayCastOptions<V>,
+    slack: V::Scalar,
+) -> RayCast<V> {
+    let (zero, begin) = (V::Scalar::ZERO, options.min_lambda);
+    if let Outcome::Hit(hit) = &mut answer.outcome {
+        hit.lambda = (begin + hit.lambda).min(options.max_lambda);
+        hit.point = ray.at(hit.lambda);
+    }
+    // What begins in the target does so where the ray begins.
+    let from_source = |lambda: V::Scalar, slack| if lambda > zero { begin + lambda + slack } else { begin };
+    answer.lower = from_source(answer.lower, -slack).max(begin);
+    answer.upper = from_source(answer.upper, slack);
+    answer
 }

@@ -18,19 +18,20 @@ pub enum Status {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Distance<V: Vector> {
-    /// The distance of the two sets; 0 where they overlap.
+    /// The distance of the two sets; 0 where they overlap, or what is measured where they touch to less than its own error.
     pub distance: V::Scalar,
     /// The distance is certainly not less: a plane separates the shapes by this much.
     pub lower: V::Scalar,
     /// The distance is certainly not more: two points of the shapes are this far apart.
     pub upper: V::Scalar,
-    /// Whether the shapes have a point in common; shapes apart by no more than rounding may count as touching.
+    /// Whether the shapes have a point in common. Shapes that no plane is known to separate, and whose points are no farther apart than
+    /// they are known to, touch, and count as overlapping.
     pub overlap: bool,
     /// The point of `a` closest to `b`; where they overlap, a point in or near both.
     pub point_a: V,
     /// The point of `b` closest to `a`.
     pub point_b: V,
-    /// The unit vector from `point_b` to `point_a`; `None` where the shapes overlap.
+    /// The unit vector from `point_b` to `point_a`, also where they touch; `None` where the shapes overlap by more than rounding.
     pub normal: Option<V>,
     /// How the iteration ended.
     pub status: Status,
@@ -132,20 +133,37 @@ pub struct RayHit<V: Vector> {
     pub normal: Option<V>,
 }
 
+/// The answer of [`ray_exit`](crate::ray_exit).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub struct RayExit<V: Vector> {
+    /// Where the ray leaves, with the outward normal there; a miss where no point of the ray is in the target; or undecided.
+    pub outcome: Outcome<RayHit<V>, V>,
+    /// The point of the ray at this parameter is in the target; minus infinity where no such point is known.
+    pub lower: V::Scalar,
+    /// No point of the ray after this parameter is in the target; minus infinity of a miss.
+    pub upper: V::Scalar,
+    /// How the iteration ended.
+    pub status: Status,
+    /// The number of support points computed.
+    pub iterations: usize,
+}
+
 /// The answer of [`linear_cast`](crate::linear_cast).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct LinearCast<V: Vector> {
     /// Hit, miss, or undecided. The axis of a miss points from `b` to `a`.
     pub outcome: Outcome<LinearHit<V>, V>,
-    /// The shapes have no point in common before this time.
+    /// The shapes have no point in common before this time. Infinite of a miss, and of one that
+    /// [leaves a contact](crate::StartInContact::IfDeeper) that it started in, which does not count.
     pub lower: V::Scalar,
     /// The shapes have a point in common at this time; infinite where no such time is known.
     pub upper: V::Scalar,
     /// How the iteration ended.
     pub status: Status,
     /// The number of support points computed of each shape; where they overlap at the start, those of
-    /// [`distance`](crate::distance) as well.
+    /// [`distance`](crate::distance) and [`signed_distance`](crate::signed_distance) as well.
     pub iterations: usize,
 }
 
@@ -154,10 +172,12 @@ pub struct LinearCast<V: Vector> {
 pub struct LinearHit<V: Vector> {
     /// The time of first contact; 0 where the shapes overlap at the start.
     pub time: V::Scalar,
-    /// A point of contact, in the world, at that time; where the shapes overlap at the start, a point in or near both, as of
-    /// [`distance`](crate::distance).
+    /// A point of contact, in the world, at that time: a point of `b`, if a [target
+    /// distance](crate::LinearCastOptions::target_distance) was asked for. Where the shapes overlap at the start, a point in or near
+    /// both, as of [`distance`](crate::distance).
     pub point: V,
-    /// The unit normal of contact, out of `b` towards `a`; `None` where the shapes overlap at the start.
+    /// The unit normal of contact, out of `b` towards `a`. Where the shapes overlap at the start by more than rounding, `None`; or the
+    /// shortest way out, if it was asked whether the motion [goes deeper](crate::StartInContact::IfDeeper).
     pub normal: Option<V>,
 }
 

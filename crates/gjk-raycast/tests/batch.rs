@@ -1,8 +1,10 @@
 //! Batches answer what single casts answer.
 
 use convex_support::glam::{DQuat, DVec3};
-use convex_support::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, SupportMap};
-use gjk_raycast::{Outcome, Ray, RayCastError, RayCastOptions, ray_cast, ray_casts};
+use convex_support::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, SupportMap};
+use gjk_raycast::{
+    DistanceOptions, Outcome, Ray, RayCastError, RayCastOptions, distance, map_distances_into, ray_cast, ray_casts,
+};
 
 type Body = Box<dyn SupportMap<Vector = DVec3> + Sync>;
 
@@ -97,4 +99,31 @@ fn threads_change_no_bit() {
         let alone: Vec<_> = ray_casts(&target, &rays, options).collect();
         assert_eq!(par_ray_casts(&target, &rays, options), alone, "kind {kind}");
     }
+}
+
+#[test]
+fn a_column_of_distances_is_that_of_each_pair() {
+    let options = DistanceOptions::default();
+    for kind in 0..7 {
+        let (a, b) = (shape(kind), shape(kind + 1));
+        let posed: Vec<_> = (0..100).map(|i| Posed::translated(&*b, vector(i, 5) * 3.0).unwrap()).collect();
+        let each: Vec<_> = posed.iter().map(|b| distance(&*a, b, options)).collect();
+        assert!(each.iter().any(|d| d.overlap) && each.iter().any(|d| !d.overlap), "some meet, some do not");
+        let column = |part: std::ops::Range<usize>| {
+            let mut column = vec![[0.0; 3]; part.len()];
+            map_distances_into(&[&*a], &posed[part], options, &mut column, |d| [d.lower, d.distance, d.upper]);
+            column
+        };
+        let whole: Vec<_> = each.iter().map(|d| [d.lower, d.distance, d.upper]).collect();
+        assert_eq!(column(0..100), whole, "shape {kind}");
+        assert_eq!([column(0..37), column(37..100)].concat(), whole, "shape {kind} in two parts");
+    }
+    map_distances_into::<Ball<DVec3>, Ball<DVec3>, f64>(&[], &[], options, &mut [], |d| d.distance);
+}
+
+#[test]
+#[should_panic(expected = "2 shapes b for 3 answers")]
+fn a_column_must_have_a_row_for_each_pair() {
+    let ball = Ball::<DVec3>::new(1.0).unwrap();
+    map_distances_into(&[ball], &[ball, ball], DistanceOptions::default(), &mut [0.0; 3], |d| d.distance);
 }

@@ -52,7 +52,8 @@ fn holds<V: Vector>(a: &Placed<V>, b: &Placed<V>, size: V::Scalar, velocity: V) 
     let apart = distance(a, b, DistanceOptions::default());
     let [d, lower, upper] = [apart.distance, apart.lower, apart.upper].map(Scalar::as_f64);
     prop_assert!(lower <= d && d <= upper, "{:?}", apart);
-    prop_assert_eq!(apart.overlap, d == 0.0, "{:?}", apart);
+    // Where they touch, it is the gap as it is measured.
+    prop_assert!(if apart.overlap { lower == 0.0 && d <= rounding } else { d > 0.0 }, "{:?}", apart);
     for (shape, point) in [(a, apart.point_a), (b, apart.point_b)] {
         prop_assert!(beyond(shape, point) <= rounding, "a witness outside by {}: {:?}", beyond(shape, point), apart);
     }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Quaternion, at, cuboid, s, turned, ulps, v};
+use common::{Plain, Quaternion, at, cuboid, s, turned, ulps, v};
 use convex_support::glam::{DVec2, DVec3, Vec3A};
 use convex_support::{
     Ball, Capsule, Cone, Core, Cylinder, Ellipsoid, Hint, Point, Rounded, ScalarOf, Segment, SupportMap, Triangle,
@@ -35,36 +35,13 @@ fn bodies<V: Quaternion>() -> Vec<(&'static str, Box<dyn SupportMap<Vector = V>>
     ]
 }
 
-/// The same shape, of which only the support points are known.
-struct Plain<S>(S);
-
-impl<S: SupportMap> SupportMap for Plain<S> {
-    type Vector = S::Vector;
-
-    fn support(&self, direction: S::Vector) -> S::Vector {
-        self.0.support(direction)
-    }
-
-    fn core(&self) -> Core<S::Vector> {
-        self.0.core()
-    }
-
-    fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
-        self.0.core_support(direction, hint)
-    }
-
-    fn core_support_hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> [ScalarOf<S>; 3] {
-        self.0.core_support_hessian(direction, changes)
-    }
-}
-
 /// Centres of a ball all around, near and far, in the bodies and out of them.
 fn centres() -> impl Iterator<Item = [f64; 3]> {
     let grid = [-1.6, -0.7, -0.1, 0.0, 0.4, 1.1];
     (0..216).map(move |n| [grid[n % 6], grid[n / 6 % 6], grid[n / 36]])
 }
 
-/// One support point certifies what the closed form says, and it is what the support points alone lead to.
+/// One support point certifies what the closed form says, apart from contact, and it is what the support points alone lead to.
 #[test]
 fn a_ball_needs_one_support_point() {
     fn run<V: Quaternion>() {
@@ -79,9 +56,12 @@ fn a_ball_needs_one_support_point() {
                 let back = distance(&body, &ball, DistanceOptions::default());
                 let what = format!("{name} from {centre:?}: {found:?}, {other:?}");
                 assert_eq!((found.overlap, found.status), (other.overlap, Status::Converged), "{what}");
-                assert!(found.iterations <= 1 && back.iterations <= 1, "{what}");
-                // The bracket is 16ε of both sizes and the distance of the origins, which are 6 together at most.
-                let within = s::<V>(ulps::<V>(100.0));
+                // Where they touch, to rounding, a plane between them is looked for.
+                let needed = if found.overlap && found.normal.is_some() { 4 } else { 1 };
+                assert!(found.iterations <= needed && back.iterations <= needed, "{what}");
+                // The bracket is 16ε of both sizes and the distance of the origins, which are 6 together at most, and 50ε of a size
+                // for a turn.
+                let within = s::<V>(ulps::<V>(160.0));
                 assert!((found.distance - other.distance).abs() <= within, "{what}");
                 assert!((found.distance - back.distance).abs() <= within, "{what}");
                 assert!(found.lower <= found.distance && found.distance <= found.upper, "{what}");

@@ -246,7 +246,8 @@ fn s15_a_start_in_contact_is_a_hit_in_every_direction() {
             };
             for d in directions(40).chain([[0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]]) {
                 let hit = sweep(&ball, &floor, d).outcome.hit().unwrap_or_else(|| panic!("in contact: {depth} {d:?}"));
-                assert_eq!((hit.time.as_f64(), hit.normal), (0.0, None), "{depth} {d:?}");
+                let touches = depth < 1e-3;
+                assert_eq!((hit.time.as_f64(), hit.normal.is_some()), (0.0, touches), "{depth} {d:?}");
                 in_both(hit.point);
             }
             let apart = common::apart(&ball, &floor);

@@ -65,7 +65,12 @@ fn inside_and_touching_is_a_hit_at_zero() {
                     let answer = cast(&body, source, d, infinity::<V>());
                     let hit = answer.outcome.hit().unwrap_or_else(|| panic!("{name} {source:?} {d:?}: {answer:?}"));
                     assert_eq!((hit.lambda.as_f64(), hit.normal), (0.0, None), "{name} {source:?} {d:?}");
-                    assert_eq!((answer.lower.as_f64(), answer.upper.as_f64()), (0.0, 0.0), "{name} {source:?} {d:?}");
+                    // On the boundary, or where known points are on two sides of the source alone, that is certain to a few ulps
+                    // across the surface; at the apex of a cone, across any plane that supports it there.
+                    let across = ulps::<V>(if name == "cone" { 1e5 } else { 100.0 });
+                    let upper = across / if d[0] < 0.0 { -d[0] } else { 1.0 };
+                    assert_eq!(answer.lower.as_f64(), 0.0, "{name} {source:?} {d:?}: {answer:?}");
+                    assert!(answer.upper.as_f64() <= upper, "{name} {source:?} {d:?}: {answer:?}");
                 }
             }
         }
@@ -150,7 +155,11 @@ fn motions_begin_as_rays_do() {
                     for end in [0.0, forever] {
                         let answer = cast(x, velocity, end);
                         let hit = answer.outcome.hit().unwrap_or_else(|| panic!("{name} {x} {velocity:?}: {answer:?}"));
-                        assert_eq!((hit.time.as_f64(), hit.normal), (0.0, None), "{name} {x} {velocity:?}");
+                        assert_eq!(hit.time.as_f64(), 0.0, "{name} {x} {velocity:?}");
+                        // Where they only touch there is a normal.
+                        let touches = x > 1.9;
+                        let is_right = hit.normal.is_none_or(|n| touches && n.get(0).as_f64() < 0.0);
+                        assert!(is_right, "{name} {x} {velocity:?}: {answer:?}");
                     }
                 }
             }

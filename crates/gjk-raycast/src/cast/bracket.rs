@@ -12,7 +12,7 @@ use super::line::{Line, LocalRay};
 use super::{Contact, Stop};
 use crate::body::Body;
 use crate::simplex::MAX_POINTS;
-use crate::unit::{power_of_two_near, reciprocal_of_power};
+use crate::unit::{is_moderate, power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Ray, RayCastOptions, Status};
 
 pub(super) type ScalarOf<B> = <<B as Body>::Vector as Vector>::Scalar;
@@ -20,11 +20,20 @@ pub(super) type ScalarOf<B> = <<B as Body>::Vector as Vector>::Scalar;
 /// A support point of the core, and what it is made of.
 pub(super) type SupportPoint<B> = (<B as Body>::Vector, <B as Body>::Witness);
 
-/// A parameter of the line, and how far rounding may have moved it.
+/// A parameter of the line, and how it moves with what it is the crossing of.
 #[derive(Clone, Copy, Debug)]
 struct Bound<S> {
     at: S,
-    error: S,
+    /// By how much it moves for every unit that what it bounds is moved across the surface: the reciprocal of a slope.
+    spread: S,
+    /// By how much more than rounding that is.
+    more: S,
+}
+
+impl<S: Scalar> Bound<S> {
+    fn exact(at: S) -> Self {
+        Self { at, spread: S::ZERO, more: S::ZERO }
+    }
 }
 
 /// Where the ray crosses a plane that the body is behind.
@@ -41,12 +50,19 @@ pub(super) struct Bracket<'a, B: Body, O> {
     pub(super) ray: LocalRay<B::Vector>,
     pub(super) options: RayCastOptions<B::Vector>,
     pub(super) radius: ScalarOf<B>,
-    /// What rounding may have moved a plane or a point by.
+    /// What rounding moves the points by that the searches compare; they look no closer.
     pub(super) noise: ScalarOf<B>,
+    /// What a plane or a point is wrong by at most.
+    ///
+    /// With `u = ε/2`, a point of the line loses `8u` of the size, `n·(x − p) − r` another `8u`, and the quotient by the slope `6u`
+    /// of at most twice the size divided by the slope: with the support points' own error, one and a half times the noise.
+    pub(super) error: ScalarOf<B>,
     /// Whether the core is a single point.
     pub(super) is_point: bool,
     /// The unit of length.
     pub(super) scale: ScalarOf<B>,
+    /// Whether lengths in the world's unit can be squared.
+    pub(super) is_moderate: bool,
     observer: O,
     iterations: usize,
     /// The body lies in a ball about its origin: the squared half of the chord that it cuts out of the line, negative where
@@ -61,19 +77,31 @@ pub(super) struct Bracket<'a, B: Body, O> {
 }
 
 impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
-    /// All of the ray, as far as it is in the ball about the body.
+    /// All of the ray, as far as it is in the ball about the body; `place` sees it from there. The direction may be wrong by
+    /// some part of its length.
     #[inline(always)]
-    pub(super) fn new(body: &'a mut B, ray: Ray<B::Vector>, options: RayCastOptions<B::Vector>, observer: O) -> Self {
+    pub(super) fn new(
+        body: &'a mut B,
+        ray: Ray<B::Vector>,
+        direction_error: ScalarOf<B>,
+        place: impl FnOnce(LocalRay<B::Vector>) -> LocalRay<B::Vector>,
+        options: RayCastOptions<B::Vector>,
+        observer: O,
+    ) -> Self {
         let number = ScalarOf::<B>::from_f64;
         let zero = ScalarOf::<B>::ZERO;
         let (origin, extent) = (body.origin(), body.extent());
         let size = extent + body.radius();
-        let scale = power_of_two_near(if size > zero { size } else { (ray.source - origin).norm() });
+        let measure = if size > zero { size } else { (ray.source - origin).norm() };
+        let scale = power_of_two_near(measure);
         body.set_scale(scale);
         let per_unit = reciprocal_of_power(scale);
-        let (radius, size) = (body.radius() * per_unit, size * per_unit);
-        let ray = LocalRay::new(ray, origin, scale);
-        let reach = size * (ScalarOf::<B>::ONE + number(16.0) * ScalarOf::<B>::EPSILON);
+        let (radius, size, body_error) = (body.radius() * per_unit, size * per_unit, body.error() * per_unit);
+        let ray = place(LocalRay::new(ray, origin, scale));
+        let noise = if size > zero { number(8.0) * ScalarOf::<B>::EPSILON * size } else { body_error };
+        let turned = if direction_error > zero { direction_error * (ray.start.abs() + size + size) } else { zero };
+        let error = number(1.5) * noise + body_error + turned;
+        let reach = size + error + error;
         let squared = reach * reach - ray.line.foot.length_squared();
         // NaN, of a body that is none, stays NaN.
         let half_chord = if squared < zero { zero } else { squared.sqrt() };
@@ -82,15 +110,17 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
             ray,
             options,
             radius,
-            noise: number(8.0) * ScalarOf::<B>::EPSILON * size,
+            noise,
+            error,
             is_point: extent == zero,
             scale,
+            is_moderate: is_moderate(measure),
             observer,
             iterations: 0,
             chord: (squared, half_chord),
-            low: Crossing { bound: Bound { at: ray.start.max(-half_chord), error: zero }, slope: zero },
+            low: Crossing { bound: Bound::exact(ray.start.max(-half_chord)), slope: zero },
             normal: None,
-            high: Bound { at: ScalarOf::<B>::infinity(), error: zero },
+            high: Bound::exact(ScalarOf::<B>::infinity()),
         }
     }
 
@@ -105,7 +135,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
 
     /// The same, if rounding moved it as far back as it may have.
     pub(super) fn earliest(&self) -> ScalarOf<B> {
-        self.low.bound.at - self.low.bound.error
+        self.low.bound.at - self.noise * self.low.bound.spread
     }
 
     /// The point of the line there (the paper's x).
@@ -117,6 +147,11 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     /// bracket begins where the ray does.
     fn slope_or_one(&self) -> ScalarOf<B> {
         if self.low.slope > Scalar::ZERO { self.low.slope } else { Scalar::ONE }
+    }
+
+    /// The reciprocal of that.
+    fn spread_or_one(&self) -> ScalarOf<B> {
+        if self.low.slope > Scalar::ZERO { self.low.bound.spread } else { Scalar::ONE }
     }
 
     /// How far the bounds may stay apart, across the last plane.
@@ -173,9 +208,14 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         if point.is_finite() { Ok((point, witness)) } else { Err(Stop::Exhausted(Status::Stalled)) }
     }
 
+    /// How far rounding has moved a parameter of the line at most.
+    fn certain(&self, Bound { spread, more, .. }: Bound<ScalarOf<B>>) -> ScalarOf<B> {
+        (self.error + more) * spread
+    }
+
     /// Whether the ray ends before a parameter of the line, even if that is wrong by its error.
     fn is_past_end(&self, bound: Bound<ScalarOf<B>>) -> bool {
-        self.ray.lambda(bound.at) - self.ray.error(bound.at, bound.error) > self.options.max_lambda
+        self.ray.lambda(bound.at) - self.ray.error(bound.at, self.certain(bound)) > self.options.max_lambda
     }
 
     /// Moves the lower bound up to the plane across the unit vector `n` that supports the core at `point`, if it leaves
@@ -183,7 +223,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     #[inline(always)]
     pub(super) fn advance(&mut self, n: B::Vector, point: B::Vector) -> Result<(), Stop<B::Vector>> {
         if let Some(crossing) = self.crossing(n, point)?
-            && crossing.bound.at - crossing.bound.error >= self.earliest()
+            && crossing.bound.at - self.noise * crossing.bound.spread >= self.earliest()
         {
             (self.low, self.normal) = (crossing, Some(n));
         }
@@ -214,15 +254,15 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         let slope = n.dot(self.ray.line.direction);
         if ahead > zero && slope < zero {
             let per_slope = -slope.recip();
-            let bound = Bound { at: self.low() + ahead * per_slope, error: self.noise * per_slope };
+            let bound = Bound { at: self.low() + ahead * per_slope, spread: per_slope, more: zero };
             // By products: for a plane along the ray the quotients overflow.
-            let leaves_first = ahead - self.noise > (self.chord.1 - self.low()) * -slope;
+            let leaves_first = ahead - self.error > (self.chord.1 - self.low()) * -slope;
             if leaves_first || self.is_past_end(bound) {
                 return Err(Stop::Miss(n));
             }
             return Ok(Some(Crossing { bound, slope: -slope }));
         }
-        if ahead > self.noise { Err(Stop::Miss(n)) } else { Ok(None) }
+        if ahead > self.error { Err(Stop::Miss(n)) } else { Ok(None) }
     }
 
     /// The contact where the last plane is crossed, if a point of the core, made of `witness`, is no farther than the radius
@@ -241,15 +281,14 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         if !(closed && aside.length_squared() <= within * within) {
             return Err(Stop::InDoubt);
         }
-        let error = if self.low.slope > Scalar::ZERO { self.low.bound.error } else { self.noise };
-        self.high = Bound { at: high.max(self.low()), error };
+        self.high = Bound { at: high.max(self.low()), spread: self.spread_or_one(), more: Scalar::ZERO };
         Ok(Contact { mu: self.low(), normal: self.normal, witness })
     }
 
     /// The contact at the source of the ray, where points of the body are known on both sides of it, by more than rounding.
     pub(super) fn close_inside(&mut self) -> Contact<B> {
         let mu = self.ray.start;
-        self.high = Bound { at: mu, error: Scalar::ZERO };
+        self.high = Bound::exact(mu);
         Contact { mu, normal: None, witness: self.body.witness(self.ray.line.at(mu)) }
     }
 
@@ -259,7 +298,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         if !(v.norm() - self.radius <= self.noise) {
             return None;
         }
-        self.high = self.low.bound;
+        self.high = Bound { at: self.low(), spread: self.spread_or_one(), more: Scalar::ZERO };
         let mut normal = self.normal;
         if self.low() > self.ray.start {
             // Where the search began and no plane was crossed, that of the ball about the body is the one.
@@ -281,7 +320,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
             return None;
         }
         let mu = point.dot(self.ray.line.direction).max(self.low());
-        self.high = Bound { at: mu, error: self.noise / self.slope_or_one() };
+        self.high = Bound { at: mu, spread: self.spread_or_one(), more: within };
         // Where the ray grazes what is round, the shortest vector is the normal, and the last plane is of elsewhere. Without a
         // radius it has no digits.
         let normal = if self.radius > self.noise { v.unit() } else { self.normal };
@@ -294,7 +333,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         // A point of the facet may be outside of the body by rounding, and is in it where the ray is that far behind the
         // plane that is crossed less steeply.
         let least = if self.low.slope > Scalar::ZERO { slope.min(self.low.slope) } else { slope };
-        self.high = Bound { at: mu.max(self.low()), error: error / least };
+        self.high = Bound { at: mu.max(self.low()), spread: least.recip(), more: error };
     }
 
     /// How far the bounds are apart, across the last plane or across the surface that the line meets at the cosine `slope`.
@@ -316,9 +355,10 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     /// The contact where the last plane is crossed, where the line has points of the body on both sides of it, to within
     /// `error` across a surface that it meets at the cosine `slope`.
     pub(super) fn close_between(&mut self, error: ScalarOf<B>, slope: ScalarOf<B>, witness: B::Witness) -> Contact<B> {
-        let Bound { at, error: low_error } = self.low.bound;
-        let more = if error > Scalar::ZERO { error / slope.min(self.low.slope) } else { Scalar::ZERO };
-        self.high = Bound { at, error: low_error + more };
+        let Bound { at, spread, .. } = self.low.bound;
+        let least = if self.low.slope > Scalar::ZERO { slope.min(self.low.slope) } else { slope };
+        let is_crossed_here = error == Scalar::ZERO && spread > Scalar::ZERO;
+        self.high = Bound { at, spread: if is_crossed_here { spread } else { least.recip() }, more: error };
         Contact { mu: at, normal: self.normal, witness }
     }
 
@@ -333,16 +373,17 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         if !(near && (mu - self.low()) * slope <= self.noise + self.noise) {
             return None;
         }
-        self.high = Bound { at: mu.max(self.low()), error: self.noise / slope };
+        self.high = Bound { at: mu.max(self.low()), spread: self.spread_or_one(), more: Scalar::ZERO };
         Some(Contact { mu: self.low(), normal: self.normal, witness })
     }
 
-    /// Bounds on λ, for the λ of a contact if there is one. Wider by what rounding moved a crossing by, and as much again: the
-    /// support points were rounded before they came here.
+    /// Bounds on λ, for the λ of a contact if there is one, wider by what rounding moved them.
     pub(super) fn bounds(&self, contact: Option<ScalarOf<B>>) -> (ScalarOf<B>, ScalarOf<B>) {
-        let widened = |Bound { at, error }| self.ray.error(at, error + error);
+        let widened = |bound: Bound<_>| self.ray.error(bound.at, self.certain(bound));
         let lower = (self.ray.lambda(self.low()) - widened(self.low.bound)).max(Scalar::ZERO);
-        let upper = self.ray.lambda(self.high.at) + widened(self.high);
+        // The surface may be met less steeply than the plane, by what noise leaves open.
+        let upper = self.ray.lambda(self.high.at)
+            + self.ray.error(self.high.at, self.certain(self.high) + self.noise * self.high.spread);
         match contact {
             Some(lambda) => (lower, upper.max(lambda)),
             None if lower <= upper => (lower, upper),

@@ -11,7 +11,6 @@ use super::bracket::Bracket;
 use super::{Contact, Stop};
 use crate::Iterate;
 use crate::body::Body;
-use crate::unit::is_moderate;
 
 /// Closes the bracket between the plane at the entry and the entry, or finds a plane that the whole ray is before.
 #[inline(always)]
@@ -20,7 +19,7 @@ pub(super) fn closed_form<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
 ) -> Result<Contact<B>, Stop<B::Vector>> {
     let line = bracket.line();
     // Closed forms square lengths.
-    if !is_moderate(bracket.scale) {
+    if !bracket.is_moderate {
         return Err(Stop::InDoubt);
     }
     match bracket.body.line_crossing(line.foot, line.direction) {

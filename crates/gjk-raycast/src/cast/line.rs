@@ -42,6 +42,10 @@ impl<V: Vector> Line<V> {
     }
 }
 
+/// A length in the unit of a body that is larger than its size, which is between one and two of them, or four where the unit is
+/// as large as it can be.
+const BEYOND: f64 = 8.0;
+
 /// A ray seen from a body, in the body's unit: a line, based where it is closest to the body's origin, and where on it
 /// the ray begins. However far the source, only numbers of the body's size take part in what follows.
 #[derive(Clone, Copy, Debug)]
@@ -85,6 +89,27 @@ impl<V: Vector> LocalRay<V> {
         Self { line: Line { foot, direction }, start: -(t * length - rest), per_unit: scale * per_length * to_near_one }
     }
 
+    /// The ray without what comes before the parameter λ, from which its own is counted.
+    pub(crate) fn beginning_at(self, lambda: V::Scalar) -> Self {
+        Self { start: self.mu(lambda), ..self }
+    }
+
+    /// The same line from beyond any body in its unit back to where the ray comes from.
+    pub(crate) fn reversed(self) -> Self {
+        let line = Line { foot: self.line.foot, direction: -self.line.direction };
+        Self { line, start: V::Scalar::from_f64(-BEYOND), ..self }
+    }
+
+    /// The parameter λ of the ray where that of the [reversed](Self::reversed) one is `lambda`.
+    pub(crate) fn reverse(&self, lambda: V::Scalar) -> V::Scalar {
+        (V::Scalar::from_f64(BEYOND) - self.start) * self.per_unit - lambda
+    }
+
+    /// What the rounding of [`reverse`](Self::reverse) may have changed.
+    pub(crate) fn error_of_reverse(&self) -> V::Scalar {
+        self.error(V::Scalar::from_f64(BEYOND), V::Scalar::ZERO)
+    }
+
     /// The parameter λ of the ray at `μ` on the line.
     pub(crate) fn lambda(&self, mu: V::Scalar) -> V::Scalar {
         (mu - self.start) * self.per_unit
@@ -97,7 +122,8 @@ impl<V: Vector> LocalRay<V> {
 
     /// The rounding error of [`lambda`](Self::lambda), of which `error` is due to `mu` itself.
     pub(crate) fn error(&self, mu: V::Scalar, error: V::Scalar) -> V::Scalar {
-        let ulps = V::Scalar::from_f64(4.0) * V::Scalar::EPSILON;
-        (error + ulps * (mu.abs() + self.start.abs())) * self.per_unit
+        // At the start the difference is nothing, exactly.
+        let sum = if mu == self.start { V::Scalar::ZERO } else { mu.abs() + self.start.abs() };
+        (error + V::Scalar::from_f64(4.0) * V::Scalar::EPSILON * sum) * self.per_unit
     }
 }

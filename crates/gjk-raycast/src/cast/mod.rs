@@ -7,6 +7,7 @@ mod bracket;
 mod closed_form;
 mod line;
 mod portal;
+mod start;
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -18,15 +19,19 @@ use bracket::{Bracket, ScalarOf};
 use closed_form::closed_form;
 pub(crate) use line::LocalRay;
 use portal::portal;
+pub(crate) use start::settle_start;
 
-/// Casts a ray, given in the world, against a body.
+/// Casts a ray, given in the world, against a body; `place` may shorten or reverse it, as it is seen from there. Parameters are
+/// counted from where it then begins. The direction may be wrong by some part of its length.
 pub(crate) fn cast<B: Body>(
     body: &mut B,
     ray: Ray<B::Vector>,
+    direction_error: ScalarOf<B>,
+    place: impl FnOnce(LocalRay<B::Vector>) -> LocalRay<B::Vector>,
     options: RayCastOptions<B::Vector>,
     observer: impl FnMut(Iterate<'_, B::Vector>),
 ) -> Cast<B::Vector, B::Witness> {
-    let mut bracket = Bracket::new(body, ray, options, observer);
+    let mut bracket = Bracket::new(body, ray, direction_error, place, options, observer);
     let found = bracket.enter_ball().and_then(|()| search(&mut bracket));
     conclude(&bracket, found)
 }
@@ -112,7 +117,7 @@ fn conclude<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
             } else {
                 Outcome::Hit(CastHit { lambda, normal, spot: ray.line.at(mu), witness })
             };
-            (outcome, (lower, if starts_inside { zero } else { upper }), Status::Converged)
+            (outcome, (lower, upper), Status::Converged)
         }
         Err(Stop::Miss(n)) => {
             (Outcome::Miss(Miss { axis: bracket.axis_of_miss(n) }), (infinity, infinity), Status::Converged)

@@ -43,7 +43,7 @@ where
         };
         let Some(u) = u.filter(|_| cores.iterations < options.max_iterations && failures < PATIENCE) else { break };
         let next = WayOut::new(cores.support(u)?);
-        let _ = boundary.insert_anywhere(next.vertex);
+        let _ = boundary.insert_anywhere(&next.vertex);
         let piece = Piece::new(cores, &next.vertex);
         let is_lower = next.h < way.h;
         let is_lowest = (next.h - way.h).abs() <= cores.error_along(u);

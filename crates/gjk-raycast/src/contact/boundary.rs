@@ -12,6 +12,18 @@ use crate::simplex::nearest_face;
 /// Corners of a facet, of which a polygon's has two and a polyhedron's three.
 const MAX_CORNERS: usize = MAX_POINTS - 1;
 
+/// What the rounding of a normal is, in ε, where the edges it is made of are across one another.
+const TILT: f64 = 8.0;
+
+/// Facets that are walked over to one that a point is beyond.
+const MAX_WALK: usize = 32;
+
+/// Room for so many facets more than there are is made at a time.
+const ROOM: usize = 28;
+
+/// The corner after each, and the one after that.
+const NEXT: [usize; 4] = [1, 2, 0, 1];
+
 /// No facet.
 const NONE: u16 = u16::MAX;
 
@@ -25,9 +37,8 @@ pub(super) struct Facet<V: Vector> {
     pub(super) normal: V,
     /// How far, by the rounding of the normal, a point at unit distance may seem above or below the facet.
     tilt: V::Scalar,
-    /// The insertion that last looked at this facet, and whether its point was beyond.
+    /// Twice the number of the insertion that last looked at this facet, and one more if its point was beyond.
     looked: u32,
-    seen: bool,
 }
 
 /// The convex hull of support points, by its vertices and facets.
@@ -43,25 +54,33 @@ pub(super) struct Facet<V: Vector> {
 #[derive(Debug)]
 pub(super) struct Boundary<V: Vector> {
     vertices: SmallVec<[Vertex<V>; 64]>,
+    /// The points of the vertices, which most of what follows asks for.
+    points: SmallVec<[V; 64]>,
+    /// Of each vertex on the horizon of the last point, the facet that is to be along the ridge that begins there.
+    begins: SmallVec<[u16; 64]>,
+    /// The same of the ridge that ends there.
+    ends: SmallVec<[u16; 64]>,
     facets: SmallVec<[Facet<V>; 128]>,
     /// A lower bound on the distance of zero from each facet, negative where zero is beyond it; infinite for what is no facet any more.
     inner: SmallVec<[V::Scalar; 128]>,
     insertions: u32,
-    /// The facets that the last point was beyond, and those that take their place.
-    seen: SmallVec<[u16; 32]>,
-    fresh: SmallVec<[Fresh; 32]>,
+    /// A facet at the last point.
+    last: usize,
+    /// The facets that the last point was beyond, and those that take their place, in the beginning of these.
+    seen: SmallVec<[u16; 256]>,
+    fresh: SmallVec<[Fresh; 256]>,
 }
 
-/// A facet that is to be, between the new vertex and a ridge of the horizon.
+/// A facet that is to be, between the new vertex and a ridge of the horizon. Its corners are the new vertex and the ridge's, in this
+/// order; in 2D the ridge is one vertex.
 #[derive(Clone, Copy, Debug)]
 struct Fresh {
-    corners: [u16; MAX_CORNERS],
-    /// Which of the corners is the new vertex.
-    apex: usize,
+    ridge: [u16; MAX_CORNERS - 1],
     /// The facet beyond the horizon, and the entry of its `across` that is to lead here.
-    outer: (u16, usize),
-    /// Which of the fresh facets are across the ridges at the new vertex.
-    across: [u16; MAX_CORNERS],
+    outer: u16,
+    back: u8,
+    /// In 2D, whether the new vertex is the second corner.
+    is_second: bool,
 }
 
 impl<V: Vector> Boundary<V> {
@@ -69,9 +88,13 @@ impl<V: Vector> Boundary<V> {
     pub(super) fn new() -> Self {
         Self {
             vertices: SmallVec::new(),
+            points: SmallVec::new(),
+            begins: SmallVec::new(),
+            ends: SmallVec::new(),
             facets: SmallVec::new(),
             inner: SmallVec::new(),
             insertions: 0,
+            last: 0,
             seen: SmallVec::new(),
             fresh: SmallVec::new(),
         }
@@ -79,7 +102,9 @@ impl<V: Vector> Boundary<V> {
 
     /// Begins with the simplex of `DIM + 1` points; `false` where it has no volume.
     pub(super) fn begin(&mut self, points: &[Vertex<V>]) -> bool {
-        self.vertices.extend_from_slice(points);
+        for vertex in points {
+            self.push(vertex);
+        }
         // Facet k is the one without vertex k, seen from outside where the last point is behind the last facet.
         let faces: &[[u16; MAX_CORNERS]] = if V::DIM == 2 {
             &[[1, 2, NONE], [2, 0, NONE], [0, 1, NONE]]
@@ -92,26 +117,40 @@ impl<V: Vector> Boundary<V> {
         };
         if is_beyond_base([0, 1, 2]) {
             self.vertices.swap(0, 1);
+            self.points.swap(0, 1);
         } else if !is_beyond_base([1, 0, 2]) {
             return false;
         }
         for &corners in faces {
-            let facet = self.facet(corners, corners);
-            self.set(self.facets.len(), facet);
+            let (facet, inner) = Facet::new(&self.points, corners, corners);
+            self.inner.push(inner);
+            self.facets.push(facet);
         }
         true
+    }
+
+    fn push(&mut self, vertex: &Vertex<V>) {
+        self.vertices.push(*vertex);
+        self.points.push(vertex.point);
+        self.begins.push(NONE);
+        self.ends.push(NONE);
     }
 
     /// The facet that comes nearest to zero by its plane, or that zero is farthest beyond, and that bound.
     #[inline]
     pub(super) fn nearest(&self) -> (usize, V::Scalar) {
-        let mut nearest = (0, V::Scalar::infinity());
-        for (i, &inner) in self.inner.iter().enumerate() {
-            if inner < nearest.1 {
-                nearest = (i, inner);
+        let inner = self.inner.as_slice();
+        let infinity = V::Scalar::infinity();
+        // In four lanes, which the compiler makes one instruction of; which of the facets it is is looked for afterwards.
+        let mut lanes = [infinity; 4];
+        let (fours, rest) = inner.as_chunks::<4>();
+        for four in fours {
+            for (lane, &inner) in lanes.iter_mut().zip(four) {
+                *lane = if inner < *lane { inner } else { *lane };
             }
         }
-        nearest
+        let least = lanes.iter().chain(rest).fold(infinity, |least, &inner| if inner < least { inner } else { least });
+        (inner.iter().position(|&inner| inner == least).unwrap_or(0), least)
     }
 
     pub(super) fn facet_at(&self, index: usize) -> &Facet<V> {
@@ -122,6 +161,11 @@ impl<V: Vector> Boundary<V> {
     pub(super) fn corners(&self, index: usize) -> [Vertex<V>; MAX_CORNERS] {
         let corners = self.facets[index].corners;
         core::array::from_fn(|i| self.vertices[usize::from(corners[i.min(V::DIM - 1)])])
+    }
+
+    /// The points of the vertices of a facet.
+    pub(super) fn corner_points(&self, index: usize) -> [V; MAX_CORNERS] {
+        self.facets[index].points(&self.points)
     }
 
     /// The number of facets.
@@ -135,16 +179,22 @@ impl<V: Vector> Boundary<V> {
     }
 
     /// The least distance of zero from the planes of all facets, where each is less than computed by what `error` says of its
-    /// normal.
-    pub(super) fn certain_inner(&self, error: impl Fn(V) -> V::Scalar) -> V::Scalar {
-        let certain = |(facet, &inner): (&Facet<V>, &V::Scalar)| inner - error(facet.normal);
-        self.facets.iter().zip(&self.inner).map(certain).fold(V::Scalar::infinity(), V::Scalar::min)
+    /// normal, and that is never more than `most`.
+    pub(super) fn certain_inner(&self, error: impl Fn(V) -> V::Scalar, most: V::Scalar) -> V::Scalar {
+        let mut least = V::Scalar::infinity();
+        for (facet, &inner) in self.facets.iter().zip(&self.inner) {
+            // Others are farther whatever their error is. NaN is looked at.
+            if !(inner - most >= least) {
+                least = least.min(inner - error(facet.normal));
+            }
+        }
+        least
     }
 
     /// Takes a facet for what it is and not for its plane, of which rounding leaves too little where it is a sliver: the direction of
     /// its point nearest to zero bounds its distance as well. Whether that is more than what was known.
     pub(super) fn measure(&mut self, index: usize) -> bool {
-        let corners = self.corners(index).map(|v| v.point);
+        let corners = self.corner_points(index);
         let corners = &corners[..V::DIM];
         if is_beyond(corners, V::ZERO) {
             return false;
@@ -160,158 +210,212 @@ impl<V: Vector> Boundary<V> {
     }
 
     /// Adds a point beyond some facet; whether there was one.
-    pub(super) fn insert_anywhere(&mut self, vertex: Vertex<V>) -> bool {
-        let found = (0..self.facets.len()).find(|&i| self.inner[i].is_finite() && self.is_seen(i, vertex.point));
-        found.is_some_and(|facet| self.insert(facet, vertex))
+    pub(super) fn insert_anywhere(&mut self, vertex: &Vertex<V>) -> bool {
+        self.facet_below(vertex.point).is_some_and(|facet| self.insert(facet, vertex))
+    }
+
+    /// A facet that a point is beyond.
+    ///
+    /// With zero inside, the facet by whose plane the point is the largest multiple of points of the polytope is an optimum of a
+    /// linear function on the dual polytope, so that a walk uphill from any facet finds it; it begins where the last point was added.
+    fn facet_below(&self, point: V) -> Option<usize> {
+        let (facets, points, inner) = (self.facets.as_slice(), self.points.as_slice(), self.inner.as_slice());
+        let multiple = |i: usize| facets[i].normal.dot(point) / inner[i];
+        let mut here = (self.last, multiple(self.last));
+        for _ in 0..MAX_WALK {
+            if here.1 > V::Scalar::ONE && inner[here.0].is_finite() && is_seen(&facets[here.0], points, point) {
+                return Some(here.0);
+            }
+            let mut best = here;
+            for &next in &facets[here.0].across[..V::DIM] {
+                let next = usize::from(next);
+                let there = multiple(next);
+                if there > best.1 {
+                    best = (next, there);
+                }
+            }
+            if best.0 == here.0 {
+                break;
+            }
+            here = best;
+        }
+        (0..facets.len()).find(|&i| inner[i].is_finite() && is_seen(&facets[i], points, point))
     }
 
     /// Adds a point beyond the given facet. `false`, and nothing is changed, where it is not beyond it, or there are too many.
-    pub(super) fn insert(&mut self, facet: usize, vertex: Vertex<V>) -> bool {
-        if self.vertices.len() >= usize::from(NONE / 4) || !self.is_seen(facet, vertex.point) {
+    pub(super) fn insert(&mut self, facet: usize, vertex: &Vertex<V>) -> bool {
+        let is_full = self.vertices.len() >= usize::from(NONE / 4);
+        if is_full || !is_seen(&self.facets[facet], &self.points, vertex.point) {
             return false;
         }
-        self.look(facet, vertex.point);
-        if !self.link() {
-            return false;
-        }
-        self.vertices.push(vertex);
-        let first_free = self.facets.len();
-        for k in 0..self.fresh.len() {
-            let new = self.fresh[k];
-            let mut across = new.across.map(|k| if k == NONE { NONE } else { self.place(usize::from(k), first_free) });
-            across[new.apex] = new.outer.0;
-            let facet = self.facet(new.corners, across);
-            self.set(usize::from(self.place(k, first_free)), facet);
-        }
-        for k in 0..self.fresh.len() {
-            let (outer, back) = self.fresh[k].outer;
-            self.facets[usize::from(outer)].across[back] = self.place(k, first_free);
-        }
-        for &old in self.seen.iter().skip(self.fresh.len()) {
-            self.inner[usize::from(old)] = V::Scalar::infinity();
-        }
-        true
+        let (seen, count) = self.look(facet, vertex.point);
+        self.replace(vertex, seen, count)
     }
 
-    /// Where a fresh facet goes: in the place of an old one as long as there are any.
-    fn place(&self, fresh: usize, first_free: usize) -> u16 {
-        self.seen.get(fresh).copied().unwrap_or_else(|| (first_free + fresh - self.seen.len()) as u16)
-    }
-
-    /// Finds the facets that a point is beyond, beginning with one, and those that are to be between it and their horizon.
-    fn look(&mut self, facet: usize, point: V) {
-        let apex = self.vertices.len() as u16;
-        self.insertions += 1;
+    /// Finds the facets that a point is beyond, beginning with one, and those that are to be between it and their horizon; how many
+    /// there are of both.
+    fn look(&mut self, facet: usize, point: V) -> (usize, usize) {
+        // There is room for all, so that none need be made in between: a horizon has at most two ridges more than facets before it.
+        let room = self.facets.len() + 2;
+        if self.seen.len() < room {
+            self.seen.resize(room + ROOM, NONE);
+            self.fresh.resize(room + ROOM, Fresh { ridge: [NONE; 2], outer: NONE, back: 0, is_second: false });
+        }
+        self.insertions += 2;
         let round = self.insertions;
-        self.fresh.clear();
-        self.seen.clear();
-        self.seen.push(facet as u16);
-        (self.facets[facet].looked, self.facets[facet].seen) = (round, true);
-        let mut visited = 0;
-        while let Some(&index) = self.seen.get(visited) {
+        let (facets, points) = (self.facets.as_mut_slice(), self.points.as_slice());
+        let (seen, fresh) = (self.seen.as_mut_slice(), self.fresh.as_mut_slice());
+        facets[facet].looked = round + 1;
+        seen[0] = facet as u16;
+        let (mut visited, mut count, mut ridges) = (0, 1, 0);
+        while visited < count {
+            let index = seen[visited];
             visited += 1;
-            let Facet { corners, across, .. } = self.facets[usize::from(index)];
+            let Facet { corners, across, .. } = facets[usize::from(index)];
             for i in 0..V::DIM {
-                let next = usize::from(across[i]);
-                if self.facets[next].looked != round {
-                    let is_seen = self.is_seen(next, point);
-                    (self.facets[next].looked, self.facets[next].seen) = (round, is_seen);
-                    if is_seen {
-                        self.seen.push(across[i]);
+                let next = &mut facets[usize::from(across[i])];
+                if next.looked < round {
+                    next.looked = round;
+                    if is_seen(next, points, point) {
+                        next.looked = round + 1;
+                        seen[count] = across[i];
+                        count += 1;
                     }
                 }
-                if !self.facets[next].seen {
-                    let back = (0..V::DIM).find(|&j| self.facets[next].across[j] == index).unwrap_or(0);
-                    let mut corners = corners;
-                    corners[i] = apex;
-                    self.fresh.push(Fresh { corners, apex: i, outer: (across[i], back), across: [NONE; MAX_CORNERS] });
+                if next.looked == round {
+                    let back = if next.across[0] == index { 0 } else { 1 + u8::from(next.across[1] != index) };
+                    // Counterclockwise, the ridge opposite to a corner is from the next to the one after.
+                    let ridge =
+                        if V::DIM == 2 { [corners[1 - i]; 2] } else { [corners[NEXT[i]], corners[NEXT[i + 1]]] };
+                    fresh[ridges] = Fresh { ridge, outer: across[i], back, is_second: i == 1 };
+                    ridges += 1;
                 }
             }
         }
+        (count, ridges)
     }
 
-    /// Finds for each fresh facet which of the others are across its ridges at the new vertex; `false` where the horizon is not one
-    /// cycle, to which only numbers that underflow can lead.
-    fn link(&mut self) -> bool {
-        let count = self.fresh.len();
-        for k in 0..count {
-            let new = self.fresh[k];
-            if V::DIM == 2 {
-                if count != 2 {
-                    return false;
-                }
-                self.fresh[k].across[1 - new.apex] = 1 - k as u16;
-                continue;
-            }
-            // Along the horizon from one corner to the other. Opposite to the first is the facet that begins at the other.
-            let [from, to] = [(new.apex + 1) % 3, (new.apex + 2) % 3];
-            let begins = |f: &Fresh| f.corners[(f.apex + 1) % 3] == new.corners[to];
-            let ends = |f: &Fresh| f.corners[(f.apex + 2) % 3] == new.corners[from];
-            let (Some(next), Some(last)) = (self.fresh.iter().position(begins), self.fresh.iter().position(ends))
-            else {
-                return false;
-            };
-            self.fresh[k].across[from] = next as u16;
-            self.fresh[k].across[to] = last as u16;
+    /// Puts the fresh facets in the places of those that were `seen`, and more where there are not enough, around the new vertex.
+    /// `false`, and nothing is changed, where the horizon is not one cycle, to which only numbers that underflow can lead.
+    fn replace(&mut self, vertex: &Vertex<V>, seen: usize, count: usize) -> bool {
+        if !self.is_cycle(count) {
+            return false;
         }
+        let apex = self.vertices.len() as u16;
+        self.push(vertex);
+        for k in seen..count {
+            self.seen[k] = self.facets.len() as u16;
+            self.facets.push(self.facets[0]);
+            self.inner.push(V::Scalar::infinity());
+        }
+        let (fresh, places, points) = (&self.fresh[..count], &self.seen[..seen.max(count)], self.points.as_slice());
+        let (facets, inner) = (self.facets.as_mut_slice(), self.inner.as_mut_slice());
+        let (begins, ends) = (self.begins.as_slice(), self.ends.as_slice());
+        for (k, new) in fresh.iter().enumerate() {
+            let [from, to] = new.ridge;
+            let (corners, across) = if V::DIM == 2 {
+                let (corners, across) = ([apex, from, NONE], [new.outer, places[1 - k], NONE]);
+                if new.is_second { ([from, apex, NONE], [across[1], across[0], NONE]) } else { (corners, across) }
+            } else {
+                let (next, last) = (begins[usize::from(to)], ends[usize::from(from)]);
+                ([apex, from, to], [new.outer, places[usize::from(next)], places[usize::from(last)]])
+            };
+            let index = places[k];
+            (facets[usize::from(index)], inner[usize::from(index)]) = Facet::new(points, corners, across);
+            facets[usize::from(new.outer)].across[usize::from(new.back)] = index;
+        }
+        for &old in &places[count..] {
+            inner[usize::from(old)] = V::Scalar::infinity();
+        }
+        self.last = usize::from(places[0]);
         true
     }
 
-    /// Whether a point is beyond a facet: by its plane where rounding leaves no doubt, else exactly.
-    #[inline]
-    fn is_seen(&self, index: usize, point: V) -> bool {
-        let facet = &self.facets[index];
-        let from = point - self.vertices[usize::from(facet.corners[0])].point;
-        let height = facet.normal.dot(from);
-        let doubt = facet.tilt * (from.abs().dot(V::ONE));
-        if height.abs() > doubt {
-            return height > V::Scalar::ZERO;
+    /// Finds which of the fresh facets begin and end at each vertex of the horizon, along it; whether that is one each.
+    fn is_cycle(&mut self, count: usize) -> bool {
+        let (fresh, begins, ends) = (&self.fresh[..count], self.begins.as_mut_slice(), self.ends.as_mut_slice());
+        if V::DIM == 2 {
+            return count == 2;
         }
-        let corners = self.corners(index).map(|v| v.point);
-        is_beyond(&corners[..V::DIM], point)
-    }
-
-    fn set(&mut self, index: usize, facet: Facet<V>) {
-        let corners = &facet.corners[..V::DIM];
-        let levels = corners.iter().map(|&i| facet.normal.dot(self.vertices[usize::from(i)].point));
-        let inner = levels.fold(V::Scalar::infinity(), V::Scalar::min);
-        if index < self.facets.len() {
-            (self.facets[index], self.inner[index]) = (facet, inner);
-        } else {
-            self.facets.push(facet);
-            self.inner.push(inner);
+        for (k, new) in fresh.iter().enumerate() {
+            begins[usize::from(new.ridge[0])] = k as u16;
+            ends[usize::from(new.ridge[1])] = k as u16;
         }
-    }
-
-    /// A facet with its normal.
-    fn facet(&self, corners: [u16; MAX_CORNERS], across: [u16; MAX_CORNERS]) -> Facet<V> {
-        let at = |i: usize| self.vertices[usize::from(corners[i])].point;
-        let normal = if V::DIM == 2 {
-            let edge = at(1) - at(0);
-            let turned = [edge.get(1), -edge.get(0)];
-            V::from_fn(|i| turned[i]).unit().unwrap_or(V::ZERO)
-        } else {
-            triangle_normal([at(0), at(1), at(2)])
-        };
-        // Of a facet that is nearly without area no more is known than that its corners are near to one another, or to a line:
-        // the direction of one of them bounds its distance well enough, and tells nothing of what is beyond.
-        let unit = normal.unit().or_else(|| at(0).unit()).unwrap_or_else(|| V::axis(0));
-        let tilt = V::Scalar::from_f64(8.0) * V::Scalar::EPSILON / normal.length();
-        Facet { corners, across, normal: unit, tilt, looked: 0, seen: false }
+        // Where two began at one vertex, the first of them is not what is noted there.
+        fresh.iter().enumerate().all(|(k, new)| {
+            let [from, to] = new.ridge.map(usize::from);
+            let next = fresh.get(usize::from(begins[to]));
+            begins[from] == k as u16 && ends[to] == k as u16 && next.is_some_and(|next| next.ridge[0] == new.ridge[1])
+        })
     }
 }
 
-/// The normal of a triangle, counterclockwise as seen from where it points to, divided by the product of the lengths of two edges:
-/// its rounding is relative to one. The two shortest edges leave least of it, and double precision leaves none to `f32`.
-fn triangle_normal<V: Vector>(corners: [V; 3]) -> V {
+/// Whether a point is beyond a facet: by its plane where rounding leaves no doubt, else exactly.
+#[inline]
+fn is_seen<V: Vector>(facet: &Facet<V>, points: &[V], point: V) -> bool {
+    let from = point - points[usize::from(facet.corners[0])];
+    let height = facet.normal.dot(from);
+    let doubt = facet.tilt * (from.abs().dot(V::ONE));
+    if height.abs() > doubt { height > V::Scalar::ZERO } else { is_exactly_beyond(facet, points, point) }
+}
+
+#[cold]
+#[inline(never)]
+fn is_exactly_beyond<V: Vector>(facet: &Facet<V>, points: &[V], point: V) -> bool {
+    is_beyond(&facet.points(points)[..V::DIM], point)
+}
+
+impl<V: Vector> Facet<V> {
+    /// A facet with its normal, and how far its plane is from zero, as far as its corners are behind it.
+    #[inline(always)]
+    fn new(points: &[V], corners: [u16; MAX_CORNERS], across: [u16; MAX_CORNERS]) -> (Self, V::Scalar) {
+        let at: [V; MAX_CORNERS] = core::array::from_fn(|i| points[usize::from(corners[i.min(V::DIM - 1)])]);
+        // Of a facet that is nearly without area no more is known than that its corners are near to one another, or to a line:
+        // the direction of one of them bounds its distance well enough, and tells nothing of what is beyond.
+        let (normal, tilt) = if V::DIM == 2 { edge_normal([at[0], at[1]]) } else { triangle_normal(at) }
+            .unwrap_or_else(|| (at[0].unit().unwrap_or_else(|| V::axis(0)), V::Scalar::infinity()));
+        let least = |a: V::Scalar, b: V::Scalar| if b < a { b } else { a };
+        let inner = least(least(normal.dot(at[0]), normal.dot(at[1])), normal.dot(at[2]));
+        (Self { corners, across, normal, tilt, looked: 0 }, inner)
+    }
+
+    /// The points of its corners; in 2D one of them twice.
+    fn points(&self, points: &[V]) -> [V; MAX_CORNERS] {
+        core::array::from_fn(|i| points[usize::from(self.corners[i.min(V::DIM - 1)])])
+    }
+}
+
+/// The unit normal of an edge, to the right of it, and what its rounding is for a point at unit distance.
+fn edge_normal<V: Vector>([a, b]: [V; 2]) -> Option<(V, V::Scalar)> {
+    let edge = b - a;
+    let turned = [edge.get(1), -edge.get(0)];
+    Some((V::from_fn(|i| turned[i]).unit()?, V::Scalar::from_f64(TILT) * V::Scalar::EPSILON))
+}
+
+/// The unit normal of a triangle, counterclockwise as seen from where it points to, and what its rounding is for a point at unit
+/// distance: that is relative to the product of the lengths of two edges. The two shortest leave least of it, and double precision
+/// leaves none to `f32`.
+#[inline(always)]
+fn triangle_normal<V: Vector>(corners: [V; 3]) -> Option<(V, V::Scalar)> {
     let [a, b, c] = corners.map(|p| [p.get(0), p.get(1), p.get(V::DIM - 1)].map(Scalar::as_f64));
     let edge = |from: [f64; 3], to: [f64; 3]| [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
-    let edges = [edge(a, b), edge(b, c), edge(c, a)];
-    let squared = edges.map(|[x, y, z]| x * x + y * y + z * z);
-    let longest = (1..3).fold(0, |longest, i| if squared[i] > squared[longest] { i } else { longest });
-    let (i, j) = ((longest + 1) % 3, (longest + 2) % 3);
-    let per = (squared[i] * squared[j]).sqrt().recip();
-    let ([ux, uy, uz], [vx, vy, vz]) = (edges[i], edges[j]);
+    let squared = |[x, y, z]: [f64; 3]| x * x + y * y + z * z;
+    let (ab, bc, ca) = (edge(a, b), edge(b, c), edge(c, a));
+    let [sab, sbc, sca] = [ab, bc, ca].map(squared);
+    let ([ux, uy, uz], [vx, vy, vz], product) = if sab >= sbc && sab >= sca {
+        (bc, ca, sbc * sca)
+    } else if sbc >= sca {
+        (ca, ab, sca * sab)
+    } else {
+        (ab, bc, sab * sbc)
+    };
     let normal = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
-    V::from_fn(|i| V::Scalar::from_f64(normal[i] * per))
+    let area = squared(normal);
+    // Below, squares have underflowed.
+    if !(area > f64::MIN_POSITIVE / f64::EPSILON) {
+        return None;
+    }
+    let per = area.sqrt().recip();
+    let tilt = V::Scalar::from_f64(TILT * product.sqrt() * per) * V::Scalar::EPSILON;
+    Some((V::from_fn(|i| V::Scalar::from_f64(normal[i] * per)), tilt))
 }

@@ -8,9 +8,9 @@ use crate::symmetric::{Across, cross, dot};
 
 /// A corner of the overlap, and what it is of the outline that was clipped and of the other.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Clipped<S> {
-    pub(super) at: Across<S>,
-    pub(super) parts: [Part; 2],
+pub(crate) struct Clipped<S> {
+    pub(crate) at: Across<S>,
+    pub(crate) parts: [Part; 2],
     /// The edge that begins here.
     edge: Edge,
 }
@@ -23,11 +23,11 @@ enum Edge {
 }
 
 /// The corners of an overlap.
-pub(super) type Overlap<S> = SmallVec<[Clipped<S>; 32]>;
+pub(crate) type Overlap<S> = SmallVec<[Clipped<S>; 32]>;
 
 /// The overlap of two outlines by Sutherland's and Hodgman's method: the first is cut along the edges of the second, one after the
 /// other. A segment is clipped by a polygon, and two segments by each other where they are parallel. Empty where there is none.
-pub(super) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> Overlap<S> {
+pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> Overlap<S> {
     let mut overlap = corners_of(&own.corners);
     let count = other.corners.len();
     if count == 2 {

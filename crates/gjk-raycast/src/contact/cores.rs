@@ -5,6 +5,8 @@ use convex_support::{Core, Rounding, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::SignedDistanceOptions;
+use super::peeled::{Peeled, without_ball};
+use super::zonotope::{Zonotope, parallelotope};
 use crate::body::{Body as _, Pair, PointPair};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, gjk};
 use crate::symmetric::Symmetric;
@@ -26,6 +28,8 @@ pub(super) struct Cores<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Ve
     /// What both shapes are split into, in the world's unit.
     pub(super) parts: [Core<A::Vector>; 2],
     frame: Frame<A::Vector>,
+    /// The radii of balls that the cores are without, in the unit.
+    peeled: [<A::Vector as Vector>::Scalar; 2],
     /// The sizes of both cores, their radii and their offset, in the unit.
     pub(super) size: <A::Vector as Vector>::Scalar,
     uncertainty: Uncertainty<A::Vector>,
@@ -38,6 +42,10 @@ pub(super) struct Cores<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Ve
 struct Uncertainty<V: Vector> {
     shapes: [Rounding<V>; 2],
     lost: V,
+    /// The length of what is lost in the offset of their origins.
+    lost_in_offset: V::Scalar,
+    /// What is lost by taking balls out of the cores.
+    peeled: V::Scalar,
 }
 
 impl<V: Vector> Uncertainty<V> {
@@ -48,7 +56,9 @@ impl<V: Vector> Uncertainty<V> {
         let epsilon: V::Scalar = Scalar::EPSILON;
         let extents = shapes[0].extent + shapes[1].extent;
         let lost = extents * (epsilon * Scalar::from_f64(2.6)) + offset.abs() * (epsilon * Scalar::from_f64(2.1));
-        Self { shapes, lost: lost + lost_in_offset.abs() }
+        // The product with the power of two loses nothing, and its length a few ulps.
+        let length = lost_in_offset.norm() * Scalar::from_f64(1.01);
+        Self { shapes, lost: lost + lost_in_offset.abs(), lost_in_offset: length, peeled: Scalar::ZERO }
     }
 
     /// Along a unit vector.
@@ -56,13 +66,24 @@ impl<V: Vector> Uncertainty<V> {
     fn along(&self, n: V) -> V::Scalar {
         let n = n.abs();
         let of_shapes = self.shapes.iter().map(|shape| n.dot(shape.error).min(shape.error_length));
-        of_shapes.fold(n.dot(self.lost), |sum, error| sum + error)
+        of_shapes.fold(n.dot(self.lost) + self.peeled, |sum, error| sum + error)
     }
 
     /// In any direction.
     fn length(&self) -> V::Scalar {
-        self.shapes.iter().fold(self.lost.norm(), |sum, shape| sum + shape.error_length)
+        self.shapes.iter().fold(self.lost.norm() + self.peeled, |sum, shape| sum + shape.error_length)
     }
+}
+
+/// How deep cores are in one another, in closed form, in the unit.
+pub(super) struct ClosedForm<V: Vector> {
+    /// The unit vector out of their difference.
+    pub(super) u: V,
+    pub(super) depth: V::Scalar,
+    /// Bounds on the depth.
+    pub(super) inner: V::Scalar,
+    pub(super) outer: V::Scalar,
+    pub(super) points: PointPair<V>,
 }
 
 impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cores<'a, A, B> {
@@ -82,7 +103,29 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         };
         let lost = lost_in_sum(from, -to) * per_unit;
         let uncertainty = Uncertainty::new([in_unit(a.rounding()), in_unit(b.rounding())], frame.offset, lost);
-        Self { pair, parts, frame, size: size * per_unit, uncertainty, iterations: 0 }
+        let peeled = [Scalar::ZERO; 2];
+        Self { pair, parts, frame, peeled, size: size * per_unit, uncertainty, iterations: 0 }
+    }
+
+    /// Makes the cores smaller by the balls that roll within them, which become a part of their radii; whether there are any.
+    ///
+    /// Cores that overlap by less than those radii are apart then, and their depth is a distance.
+    pub(super) fn peel(&mut self) -> bool {
+        let Pair { a, b, .. } = &self.pair;
+        let radii = [a.core_rolling_radius(), b.core_rolling_radius()];
+        let sum = radii[0] + radii[1];
+        if !(sum > Scalar::ZERO && sum.is_finite()) {
+            return false;
+        }
+        for (part, radius) in self.parts.iter_mut().zip(radii) {
+            part.radius += radius;
+        }
+        self.peeled = radii.map(|radius| radius * self.frame.per_unit);
+        // The unit vector is right to 6 roundings and the product to one; a sum of radii loses one more.
+        let [a, b] = &self.parts;
+        let four: <A::Vector as Vector>::Scalar = Scalar::from_f64(4.0);
+        self.uncertainty.peeled = four * Scalar::EPSILON * (a.radius + b.radius) * self.frame.per_unit;
+        true
     }
 
     /// What lengths in the unit are to be multiplied by.
@@ -90,13 +133,23 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         self.frame.scale
     }
 
+    /// The radii of both, in the world's unit.
+    pub(super) fn radius(&self) -> <A::Vector as Vector>::Scalar {
+        self.parts[0].radius + self.parts[1].radius
+    }
+
     /// The support point along a direction; `None` where it is not finite.
     #[inline]
     pub(super) fn support(&mut self, direction: A::Vector) -> Option<Vertex<A::Vector>> {
         self.iterations += 1;
-        let (point, pair) = self.pair.support(direction);
+        let (point, pair) = Peeled { pair: &mut self.pair, radii: self.peeled }.support(direction);
         let point = point + self.frame.offset;
         point.is_finite().then_some(Vertex { point, along: direction, pair })
+    }
+
+    /// Whether the difference reaches beyond zero along a direction.
+    pub(super) fn reaches_beyond(&mut self, direction: A::Vector) -> bool {
+        self.is_curved() && self.support(direction).is_some_and(|vertex| direction.dot(vertex.point) > Scalar::ZERO)
     }
 
     /// The entries `u·Hu`, `u·Hw`, `w·Hw` of the Hessian of the support value at a direction.
@@ -105,7 +158,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         direction: A::Vector,
         changes: [A::Vector; 2],
     ) -> Symmetric<<A::Vector as Vector>::Scalar> {
-        self.pair.hessian(direction, changes)
+        without_ball(self.pair.hessian(direction, changes), self.peeled[0] + self.peeled[1], direction, changes)
     }
 
     /// Whether the support point may move without jumping.
@@ -118,6 +171,11 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     #[inline]
     pub(super) fn error_along(&self, n: A::Vector) -> <A::Vector as Vector>::Scalar {
         self.uncertainty.along(n)
+    }
+
+    /// A bound on [`error_along`](Self::error_along) in any direction.
+    pub(super) fn greatest_error(&self) -> <A::Vector as Vector>::Scalar {
+        self.uncertainty.length()
     }
 
     /// A bound on the length of what a point `p` of the difference stands for. Along `p` it is as wrong as along any unit vector,
@@ -140,6 +198,21 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         self.error_along(n) * Scalar::from_f64(2.0)
     }
 
+    /// The way out of two parallelotopes that certainly overlap.
+    pub(super) fn closed_form(&self) -> Option<ClosedForm<A::Vector>> {
+        let Pair { a, b, core_a, core_b, .. } = &self.pair;
+        let parts = [parallelotope(*a, core_a)?, parallelotope(*b, core_b)?];
+        let Frame { offset, per_unit, .. } = self.frame;
+        let nearest = Zonotope::new(&parts, offset, per_unit).nearest_facet::<A::Vector>()?;
+        // Computed in double precision, of edges and an offset that are wrong by what the shapes say.
+        let error = self.uncertainty.shapes.iter().fold(self.uncertainty.lost_in_offset, |sum, s| sum + s.error_length);
+        let half_ulp = <A::Vector as Vector>::Scalar::EPSILON * Scalar::from_f64(0.5 * nearest.depth);
+        let [depth, inner, outer] = [nearest.depth, nearest.inner, nearest.outer].map(Scalar::from_f64);
+        let error = error + half_ulp;
+        let points = nearest.points(&parts, offset, per_unit);
+        Some(ClosedForm { u: nearest.unit(), depth, inner: inner - error, outer: outer + error, points })
+    }
+
     /// GJK, until the distance of the cores is known, or they meet to rounding.
     pub(super) fn approach(
         &mut self,
@@ -149,20 +222,21 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         let Frame { offset, per_unit, scale, .. } = self.frame;
         let first = options.axis.and_then(moderate).or_else(|| moderate(offset)).unwrap_or_else(|| Vector::axis(0));
         let mut state = Gjk::new(first);
-        let closest = self.pair.closest_points(offset * scale, self.size * scale);
+        let is_whole = self.peeled == [Scalar::ZERO; 2];
+        let closest = if is_whole { self.pair.closest_points(offset * scale, self.size * scale) } else { None };
         let meet = closest.is_some_and(|points| state.begin_at(points.a - points.b + offset, points, &self.frame));
         let options = GjkOptions {
             first: state.normal,
-            limit: (options.limit + self.pair.radius()) * per_unit,
+            limit: (options.limit + self.radius()) * per_unit,
             tolerance: Scalar::ZERO,
             closest_points: true,
-            max_iterations: options.max_iterations,
+            max_iterations: options.max_iterations.saturating_sub(self.iterations),
             sub_algorithm: SubAlgorithm::Regions,
         };
-        let end =
-            if meet { End::Overlap } else { gjk(&mut state, &mut self.pair, self.frame, options, None, observer) };
+        let mut cores = Peeled { pair: &mut self.pair, radii: self.peeled };
+        let end = if meet { End::Overlap } else { gjk(&mut state, &mut cores, self.frame, options, None, observer) };
         state.ensure_measured();
-        self.iterations = state.iterations;
+        self.iterations += state.iterations;
         (state, end)
     }
 }

@@ -70,12 +70,13 @@ where
     };
     let is_curved = cores.is_curved();
     let tolerance = if is_curved { options.tolerance * cores.size } else { Scalar::ZERO };
-    let depth_limit = options.depth_limit / cores.scale();
+    let depth_limit = (options.depth_limit - cores.radius()) / cores.scale();
+    let mut enough = tolerance.max(cores.rounding_along(way.u()));
     let status = loop {
         let (nearest, inner) = boundary.nearest();
-        let facet = *boundary.facet_at(nearest);
+        let normal = boundary.facet_at(nearest).normal;
         // NaN fails this too.
-        if !(way.h - inner.max(-reach) > tolerance.max(cores.rounding_along(way.u()))) {
+        if !(way.h - inner.max(-reach) > enough) {
             break Status::Converged;
         }
         if inner > depth_limit {
@@ -84,33 +85,40 @@ where
         if cores.iterations >= options.max_iterations {
             break Status::IterationLimit;
         }
-        let Some(vertex) = cores.support(facet.normal) else { break Status::Stalled };
+        let Some(vertex) = cores.support(normal) else { break Status::Stalled };
         let seen = WayOut::new(vertex);
         if seen.h < way.h {
             way = seen;
+            enough = tolerance.max(cores.rounding_along(way.u()));
         }
         observer(Iterate {
             iteration: cores.iterations - 1,
-            simplex: &boundary.corners(nearest).map(|v| v.point)[..A::Vector::DIM],
-            v: facet.normal * inner,
+            simplex: &boundary.corner_points(nearest)[..A::Vector::DIM],
+            v: normal * inner,
             w: vertex.point,
             scale: cores.scale(),
             lower: -way.h * cores.scale(),
             upper: -inner.max(-reach) * cores.scale(),
         });
-        let corners = boundary.corners(nearest);
-        if !boundary.insert(nearest, vertex) {
+        // NaN fails this too.
+        if !(way.h - inner.max(-reach) > enough) {
+            break Status::Converged;
+        }
+        let descends = is_curved && seen.h == way.h;
+        let corners = descends.then(|| boundary.corners(nearest));
+        if !boundary.insert(nearest, &vertex) {
             // The facet is of the boundary of K, and by the rounding of its plane farther in than the support value says.
             if boundary.measure(nearest) {
                 continue;
             }
             break Status::Stalled;
         }
-        if is_curved && seen.h == way.h {
+        if let Some(corners) = corners {
             way = basin::descend(cores, &mut boundary, way, &corners[..A::Vector::DIM], options)?;
+            enough = tolerance.max(cores.rounding_along(way.u()));
         }
     };
-    let certain = boundary.certain_inner(|n| cores.error_along(n));
+    let certain = boundary.certain_inner(|n| cores.error_along(n), cores.greatest_error());
     let (nearest, _) = boundary.nearest();
     let status = match status {
         Status::Stalled if way.h - certain.max(-reach) <= cores.rounding_along(way.u()) * Scalar::from_f64(2.0) => {

@@ -12,12 +12,17 @@ mod newton;
 mod options;
 mod orientation;
 mod outline;
+mod peeled;
 mod result;
 mod signed_distance;
 mod start;
 mod witness;
+mod zonotope;
 
+pub(crate) use clip::clip;
 pub use contact::contact;
+pub(crate) use newton::across;
 pub use options::SignedDistanceOptions;
+pub(crate) use outline::{ContactPlane, Outline};
 pub use result::{Contact, ContactPoint, SignedDistance};
 pub use signed_distance::{signed_distance, signed_distance_with};

@@ -178,7 +178,7 @@ fn turned<V: Vector>(n: V, [e, f]: [V; 2], step: Across<V::Scalar>) -> Option<V>
 }
 
 /// Unit vectors that span what is across a unit vector; in 2D one, and zero.
-pub(super) fn across<V: Vector>(u: V) -> [V; 2] {
+pub(crate) fn across<V: Vector>(u: V) -> [V; 2] {
     if V::DIM == 2 {
         let turned = [-u.get(1), u.get(0)];
         return [V::from_fn(|i| turned[i]), V::ZERO];

@@ -3,6 +3,8 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use crate::options::setters;
+
 /// Support points after which a signed distance is given up. Polytopes need some dozens, smooth shapes about a hundred; the
 /// cap bounds the time that ties take, such as an ellipsoid of revolution within another about the same axis.
 const MAX_ITERATIONS: usize = 500;
@@ -38,38 +40,12 @@ impl<V: Vector> SignedDistanceOptions<V> {
         }
     }
 
-    /// With another [`tolerance`](Self::tolerance).
-    #[must_use]
-    pub const fn with_tolerance(mut self, tolerance: V::Scalar) -> Self {
-        self.tolerance = tolerance;
-        self
-    }
-
-    /// With a [`limit`](Self::limit).
-    #[must_use]
-    pub const fn with_limit(mut self, limit: V::Scalar) -> Self {
-        self.limit = limit;
-        self
-    }
+    setters!(tolerance, limit, max_iterations, axis);
 
     /// With a [`depth_limit`](Self::depth_limit).
     #[must_use]
     pub const fn with_depth_limit(mut self, depth_limit: V::Scalar) -> Self {
         self.depth_limit = depth_limit;
-        self
-    }
-
-    /// With another cap on the [iterations](Self::max_iterations).
-    #[must_use]
-    pub const fn with_max_iterations(mut self, max_iterations: usize) -> Self {
-        self.max_iterations = max_iterations;
-        self
-    }
-
-    /// With a first [`axis`](Self::axis).
-    #[must_use]
-    pub const fn with_axis(mut self, axis: V) -> Self {
-        self.axis = Some(axis);
         self
     }
 }

@@ -7,7 +7,7 @@ use crate::symmetric::{Across, cross, dot};
 
 /// What a point of contact is of one shape: a corner of its feature, a point of an edge, or one of the face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Part {
+pub(crate) enum Part {
     Vertex(u32),
     Edge(u32, u32),
     Face,
@@ -15,7 +15,7 @@ pub(super) enum Part {
 
 impl Part {
     /// A number that is the same as long as the part is. The upper two bits tell the kind.
-    pub(super) fn code(self) -> u32 {
+    pub(crate) fn code(self) -> u32 {
         const PAYLOAD: u32 = u32::MAX >> 2;
         match self {
             Self::Vertex(id) => id & PAYLOAD,
@@ -31,36 +31,36 @@ impl Part {
 
 /// A plane of contact: its unit normal, unit vectors across it, and a point of it. In 2D it is a line.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ContactPlane<V: Vector> {
-    pub(super) normal: V,
-    pub(super) across: [V; 2],
-    pub(super) origin: V,
+pub(crate) struct ContactPlane<V: Vector> {
+    pub(crate) normal: V,
+    pub(crate) across: [V; 2],
+    pub(crate) origin: V,
 }
 
 impl<V: Vector> ContactPlane<V> {
     /// The point at a place in the plane and a height above it.
-    pub(super) fn point(&self, (x, y): Across<V::Scalar>, height: V::Scalar) -> V {
+    pub(crate) fn point(&self, (x, y): Across<V::Scalar>, height: V::Scalar) -> V {
         self.origin + self.across[0] * x + self.across[1] * y + self.normal * height
     }
 }
 
 /// A corner of an outline.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Corner<S> {
-    pub(super) at: Across<S>,
-    pub(super) height: S,
-    pub(super) id: u32,
+pub(crate) struct Corner<S> {
+    pub(crate) at: Across<S>,
+    pub(crate) height: S,
+    pub(crate) id: u32,
 }
 
 /// A convex polygon in the plane of contact, counterclockwise, a segment or a point, and the height of the feature above it.
 #[derive(Clone, Debug)]
-pub(super) struct Outline<S: Scalar> {
-    pub(super) corners: SmallVec<[Corner<S>; 16]>,
+pub(crate) struct Outline<S: Scalar> {
+    pub(crate) corners: SmallVec<[Corner<S>; 16]>,
 }
 
 impl<S: Scalar> Outline<S> {
     /// The outline of a feature whose points are relative to `origin`.
-    pub(super) fn new<V: Vector<Scalar = S>>(feature: &Feature<V>, origin: V, plane: &ContactPlane<V>) -> Self {
+    pub(crate) fn new<V: Vector<Scalar = S>>(feature: &Feature<V>, origin: V, plane: &ContactPlane<V>) -> Self {
         let from = origin - plane.origin;
         let seen = |(&point, &id): (&V, &u32)| {
             let p = from + point;
@@ -72,7 +72,7 @@ impl<S: Scalar> Outline<S> {
     }
 
     /// The height of the feature at a place: that of the plane through the three corners that span most; linear along a segment.
-    pub(super) fn height(&self, at: Across<S>) -> S {
+    pub(crate) fn height(&self, at: Across<S>) -> S {
         let first = self.corners[0];
         let edge = |c: &Corner<S>| (c.at.0 - first.at.0, c.at.1 - first.at.1);
         let to = (at.0 - first.at.0, at.1 - first.at.1);

@@ -4,7 +4,7 @@ use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
-use super::cores::{Cores, Vertex};
+use super::cores::{ClosedForm, Cores, Vertex};
 use super::expansion::{Expanded, expand};
 use super::{SignedDistance, SignedDistanceOptions};
 use crate::body::{PointPair, Witness as _};
@@ -54,7 +54,18 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let mut cores = Cores::new(a, b);
-    let (state, end) = cores.approach(&options, &mut observer);
+    if let Some(known) = cores.closed_form() {
+        return Reached::of_closed_form(known).answer(&cores);
+    }
+    // Cores that overlapped in the last frame do so still, if no plane across its normal tells them apart.
+    let is_warm = options.axis.and_then(|axis| axis.unit()).is_some_and(|axis| cores.reaches_beyond(-axis));
+    let is_peeled = is_warm && cores.peel();
+    let (mut state, mut end) = cores.approach(&options, &mut observer);
+    // Half of what may be asked for is left for a second run.
+    let may_repeat = end == End::Overlap && state.length.is_finite() && 2 * state.iterations < options.max_iterations;
+    if may_repeat && !is_peeled && cores.peel() {
+        (state, end) = cores.approach(&options, &mut observer);
+    }
     let apart = Reached::of_gjk(&cores, &state, end);
     let reached = if end == End::Separated || !state.length.is_finite() {
         apart
@@ -118,6 +129,11 @@ impl<V: Vector> Reached<V> {
         }
     }
 
+    /// In closed form.
+    fn of_closed_form(ClosedForm { u, depth, inner, outer, points }: ClosedForm<V>) -> Self {
+        Self { u, depth, inner, outer, points, status: Status::Converged, unexpanded: 0 }
+    }
+
     /// By an expansion, after GJK had come to an end.
     fn of_expansion<A, B>(cores: &Cores<'_, A, B>, expanded: &Expanded<V>, apart: &Self, end: End) -> Self
     where
@@ -142,7 +158,7 @@ impl<V: Vector> Reached<V> {
     {
         let scale = cores.scale();
         let [a, b] = &cores.parts;
-        let radius = a.radius + b.radius;
+        let radius = cores.radius();
         // Unit vectors are so to 2ε, and the sum of the radii and the two sums below round to half of that.
         let rounding = V::Scalar::from_f64(3.0) * V::Scalar::EPSILON;
         let world = |depth: V::Scalar| -(depth * scale) - radius;

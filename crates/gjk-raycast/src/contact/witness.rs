@@ -34,7 +34,7 @@ fn at_foot<V: Vector>(boundary: &Boundary<V>, nearest: usize) -> (V, PointPair<V
     let mut facet = nearest;
     let mut weights = [V::Scalar::ZERO; 4];
     for _ in 0..MAX_WALK {
-        let corners = boundary.corners(facet).map(|v| v.point);
+        let corners = boundary.corner_points(facet);
         weights = project(&corners[..V::DIM], |corner| -corner).coordinates;
         let least = (1..V::DIM).fold(0, |least, i| if weights[i] < weights[least] { i } else { least });
         // NaN ends this too.

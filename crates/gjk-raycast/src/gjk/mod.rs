@@ -1,6 +1,7 @@
 //! GJK: the closest points of two bodies' cores, for [`distance`](crate::distance) and [`intersects`](crate::intersects)
 //! (the paper's Algorithm 2).
 
+mod near_contact;
 mod next_direction;
 mod progress;
 mod state;
@@ -11,6 +12,7 @@ use num_traits::Float as _;
 use crate::body::{Body, Pair};
 use crate::unit::{power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Status, SubAlgorithm};
+pub(crate) use near_contact::{Shape, is_near_contact, near_contact};
 use next_direction::NextDirection;
 pub(crate) use progress::Progress;
 pub(crate) use state::Gjk;
@@ -24,8 +26,10 @@ pub(crate) struct Frame<V: Vector> {
     pub(crate) offset: V,
     /// The radii of both bodies.
     pub(crate) radius: V::Scalar,
-    /// What rounding may have added to any bound.
+    /// What rounding moves the points by that the search compares; it looks no closer.
     pub(crate) noise: V::Scalar,
+    /// What any bound is wrong by at most.
+    pub(crate) error: V::Scalar,
 }
 
 impl<V: Vector> Frame<V> {
@@ -40,7 +44,8 @@ impl<V: Vector> Frame<V> {
         let per_unit = reciprocal_of_power(scale);
         pair.set_scale(scale);
         let (radius, noise) = (pair.radius() * per_unit, rounding(size) * per_unit);
-        Self { scale, per_unit, offset: offset * per_unit, radius, noise }
+        let error = noise + pair.error() * per_unit;
+        Self { scale, per_unit, offset: offset * per_unit, radius, noise, error }
     }
 
     /// Cores no farther apart than this touch.
@@ -50,7 +55,13 @@ impl<V: Vector> Frame<V> {
     }
 }
 
-/// What rounding may add to a bound on the distance of two bodies of the given size.
+/// What the arithmetic of a query adds to a bound on the distance of two bodies of the given size, beside what their support points
+/// are wrong by.
+///
+/// With `u = ε/2`, a lower bound `n·(a − b + offset)/|n|` loses `u` of the size for the offset, `2u` for the sums, `3u` for the
+/// products and `4u` for the quotient; an upper bound `|Σ wᵢ·(aᵢ − bᵢ) + offset|` loses `5u` for the weighted sums, `3u` for their
+/// difference and the offset, `3u` for the length, and what the weights sum up to is off one by, `4u`. It is the larger, with one for
+/// the radii.
 #[inline]
 pub(crate) fn rounding<S: Scalar>(size: S) -> S {
     S::from_f64(8.0) * S::EPSILON * size
@@ -143,7 +154,7 @@ fn descend<B: Body>(
         let w = point + frame.offset;
         let Some(reach) = state.advance(looked, w) else { return End::Stalled };
         observer(state.iterate(w, frame.scale));
-        if state.lower > options.limit + frame.noise {
+        if state.lower > options.limit + frame.error {
             // The first support points are a bound from above, if nothing better is known.
             if options.closest_points && state.simplex.points().is_empty() {
                 state.simplex.push(w, -looked.n, witness);

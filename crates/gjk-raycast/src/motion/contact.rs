@@ -5,10 +5,9 @@ use num_traits::Float as _;
 
 use super::first_contact::{AIM, End, Search};
 use super::instant::{Instant, Limits};
-use super::options::StartInContact;
 use super::result::MotionIterate;
 use super::trajectory::Trajectory;
-use crate::Status;
+use crate::{StartInContact, Status};
 
 /// How much deeper than touching an overlap is looked for, in units of what the distance may be wrong by.
 const DEPTH: f64 = 2.0;

@@ -8,10 +8,10 @@ use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::instant::{Instant, Limits, MovingPair};
-use super::options::{MotionCastOptions, StartInContact};
+use super::options::MotionCastOptions;
 use super::result::{MotionCast, MotionHit, MotionIterate};
 use super::trajectory::Trajectory;
-use crate::{Miss, Outcome, Status};
+use crate::{Miss, Outcome, StartInContact, Status};
 
 /// Where to be when a contact is as near as can be told: its distance in units of what that may be wrong by.
 pub(super) const AIM: f64 = 1.5;

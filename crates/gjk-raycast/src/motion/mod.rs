@@ -15,7 +15,8 @@ mod trajectory;
 
 pub use chain_motion::ChainMotion;
 pub use motion_cast::{motion_cast, motion_cast_with};
-pub use options::{MotionCastOptions, StartInContact};
+pub(crate) use moved::Moved;
+pub use options::MotionCastOptions;
 pub use result::{MotionCast, MotionHit, MotionIterate};
 pub use rigid_motion::{Pose, RigidMotion};
 pub use trajectory::{Displacement, MovingBall, Trajectory, TurningPlane};

@@ -1,11 +1,10 @@
 //! When two bodies meet that move and turn.
 
-use convex_support::{AngularVelocity, Core, Matrix, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{AngularVelocity, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::first_contact::Search;
 use super::instant::{MovingBody, MovingPair};
-use super::moved::Moved;
 use super::options::MotionCastOptions;
 use super::result::{MotionCast, MotionHit, MotionIterate};
 use super::rigid_motion::RigidMotion;
@@ -103,14 +102,12 @@ where
 {
     let mut wanted = LinearCastOptions::new()
         .with_max_time(options.max_time)
+        .with_target_distance(options.target_distance)
+        .with_start_in_contact(options.start_in_contact)
         .with_tolerance(options.tolerance)
         .with_max_iterations(options.max_iterations);
     wanted.axis = options.axis;
-    let cast = if options.target_distance > Scalar::ZERO {
-        linear_cast(&grown(a, options.target_distance), b, motion, wanted)?
-    } else {
-        linear_cast(a, b, motion, wanted)?
-    };
+    let cast = linear_cast(a, b, motion, wanted)?;
     let outcome = match cast.outcome {
         Outcome::Hit(LinearHit { time, point, normal }) => Outcome::Hit(MotionHit { time, point, normal }),
         Outcome::Miss(miss) => Outcome::Miss(miss),
@@ -119,12 +116,6 @@ where
     // What comes after the end of the motion is not said of other motions either.
     let (lower, upper) = (cast.lower.min(options.max_time), cast.upper);
     Ok(MotionCast { outcome, lower, upper, status: cast.status, iterations: cast.iterations })
-}
-
-/// A shape with its radius grown.
-fn grown<S: SupportMap + ?Sized>(shape: &S, margin: ScalarOf<S>) -> Moved<'_, S> {
-    let core = shape.core();
-    Moved::new(shape, Core { radius: core.radius + margin, ..core }, Matrix::IDENTITY, shape.rounding(), Scalar::ZERO)
 }
 
 /// The options, if they are numbers, with what is below zero taken for zero.

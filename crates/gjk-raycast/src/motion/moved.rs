@@ -2,10 +2,12 @@
 
 use core::cell::Cell;
 
-use convex_support::{Core, CoreKind, Hint, Matrix, Rounding, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{
+    Core, CoreKind, Feature, Hint, Matrix, Parallelotope, Rounding, Scalar, ScalarOf, SupportMap, Vector,
+};
 
 /// A shape turned by a rotation, whose origin is put where one wants it, and whose radius may be grown.
-pub(super) struct Moved<'s, S: SupportMap + ?Sized> {
+pub(crate) struct Moved<'s, S: SupportMap + ?Sized> {
     shape: &'s S,
     rotation: <S::Vector as Vector>::Matrix,
     core: Core<S::Vector>,
@@ -17,7 +19,7 @@ pub(super) struct Moved<'s, S: SupportMap + ?Sized> {
 impl<'s, S: SupportMap + ?Sized> Moved<'s, S> {
     /// The shape with the given core, which may have another origin and another radius than its own, turned by `rotation` about the
     /// origin. Before that its points were known as `rounding` says, and moving it took them where they should be but for `error`.
-    pub(super) fn new(
+    pub(crate) fn new(
         shape: &'s S,
         core: Core<S::Vector>,
         rotation: <S::Vector as Vector>::Matrix,
@@ -37,7 +39,7 @@ impl<'s, S: SupportMap + ?Sized> Moved<'s, S> {
             let error = rounding.error_length + error + ScalarOf::<S>::from_f64(6.0) * Scalar::EPSILON * core.extent;
             Rounding { extent: Vector::splat(core.extent), error: Vector::splat(error), error_length: error }
         };
-        Self { shape, rotation, core: Core { kind, ..core }, rounding, hint: None }
+        Self { shape, rotation, core: Core { kind, error: rounding.error_length, ..core }, rounding, hint: None }
     }
 
     /// The same, which begins its searches where the last ones ended, whoever made them.
@@ -79,6 +81,22 @@ impl<S: SupportMap + ?Sized> SupportMap for Moved<'_, S> {
     #[inline]
     fn core_closest_point(&self, x: S::Vector) -> Option<S::Vector> {
         Some(self.rotation * self.shape.core_closest_point(self.rotation.transpose_mul(x))?)
+    }
+
+    fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {
+        self.shape.core_support_feature(self.rotation.transpose_mul(direction), slab, feature);
+        feature.map(|point| self.rotation * point);
+    }
+
+    #[inline]
+    fn core_rolling_radius(&self) -> ScalarOf<S> {
+        self.shape.core_rolling_radius()
+    }
+
+    #[inline]
+    fn core_parallelotope(&self) -> Option<Parallelotope<S::Vector>> {
+        let Parallelotope { center, half_edges } = self.shape.core_parallelotope()?;
+        Some(Parallelotope { center: self.rotation * center, half_edges: half_edges.map(|edge| self.rotation * edge) })
     }
 
     fn rounding(&self) -> Rounding<S::Vector> {

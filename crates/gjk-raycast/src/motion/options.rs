@@ -3,6 +3,9 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use crate::StartInContact;
+use crate::options::setters;
+
 /// Times to look at, after which to give up. A contact takes about ten and each turn near another body about as many; bodies that
 /// spin for long very near one another take the most.
 const MAX_ITERATIONS: usize = 10_000;
@@ -27,18 +30,6 @@ pub struct MotionCastOptions<V: Vector> {
     pub max_iterations: usize,
 }
 
-/// What a cast answers where the bodies touch at the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum StartInContact {
-    /// A hit at time 0, whatever the motion.
-    #[default]
-    Report,
-    /// A hit at time 0 only if the motion brings the bodies deeper into one another. If it takes them apart, the first contact
-    /// after they are.
-    IfDeeper,
-}
-
 impl<V: Vector> MotionCastOptions<V> {
     /// The default options.
     #[must_use]
@@ -53,40 +44,7 @@ impl<V: Vector> MotionCastOptions<V> {
         }
     }
 
-    /// With an [end of the motion](Self::max_time).
-    #[must_use]
-    pub const fn with_max_time(mut self, max_time: V::Scalar) -> Self {
-        self.max_time = max_time;
-        self
-    }
-
-    /// With another [`tolerance`](Self::tolerance).
-    #[must_use]
-    pub const fn with_tolerance(mut self, tolerance: V::Scalar) -> Self {
-        self.tolerance = tolerance;
-        self
-    }
-
-    /// With a [`target_distance`](Self::target_distance).
-    #[must_use]
-    pub const fn with_target_distance(mut self, target_distance: V::Scalar) -> Self {
-        self.target_distance = target_distance;
-        self
-    }
-
-    /// With another answer where the bodies [touch at the start](Self::start_in_contact).
-    #[must_use]
-    pub const fn with_start_in_contact(mut self, start_in_contact: StartInContact) -> Self {
-        self.start_in_contact = start_in_contact;
-        self
-    }
-
-    /// With a first [`axis`](Self::axis).
-    #[must_use]
-    pub const fn with_axis(mut self, axis: V) -> Self {
-        self.axis = Some(axis);
-        self
-    }
+    setters!(max_time, tolerance, target_distance, start_in_contact, axis);
 
     /// With another cap on the [times to look at](Self::max_iterations).
     #[must_use]

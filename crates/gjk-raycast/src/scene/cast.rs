@@ -156,7 +156,8 @@ impl<S: SupportMap> Among<'_, S> {
         options: LinearCastOptions<S::Vector>,
     ) -> Result<SceneLinearCast<S::Vector>, RayCastError> {
         motion.check()?;
-        let swept = swept_box(outer_box_of_question(shape), motion.velocity_a - motion.velocity_b);
+        let around = grown(outer_box_of_question(shape), options.target_distance);
+        let swept = swept_box(around, motion.velocity_a - motion.velocity_b);
         self.first(&swept, options.max_time, |body| Ok(body.linear_cast(shape, motion, options)?.into()))
     }
 
@@ -290,6 +291,12 @@ impl<H: Copy, S: Scalar> First<H, S> {
 fn swept_point<V: Vector>(ray: Ray<V>) -> SweptBox<V> {
     let room = V::Scalar::from_f64(32.0) * V::Scalar::EPSILON * ray.source.abs().dot(V::ONE);
     SweptBox::new(V::splat(room), ray.source, ray.direction)
+}
+
+/// A box with room for a distance from it, if that is positive.
+fn grown<V: Vector>(around: Aabb<V>, distance: V::Scalar) -> Aabb<V> {
+    let room = V::splat(if distance > V::Scalar::ZERO { distance } else { V::Scalar::ZERO });
+    Aabb { min: around.min - room, max: around.max + room }
 }
 
 /// A box that moves.

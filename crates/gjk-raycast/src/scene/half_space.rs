@@ -5,7 +5,7 @@ use num_traits::Float;
 
 use crate::{
     Distance, LinearCast, LinearCastOptions, LinearHit, Miss, Motion, Outcome, Ray, RayCast, RayCastError,
-    RayCastOptions, RayHit, Status,
+    RayCastOptions, RayHit, StartInContact, Status,
 };
 
 /// The points x with n·x ≤ offset: everything on one side of a plane.
@@ -76,8 +76,11 @@ impl<V: Vector> HalfSpace<V> {
     /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
     pub fn ray_cast(&self, ray: Ray<V>, options: RayCastOptions<V>) -> Result<RayCast<V>, RayCastError> {
         ray.check()?;
-        let (lambda, bracket) = self.crossing(ray, V::ZERO, options.max_lambda);
         let normal = self.normal / self.length;
+        if options.min_lambda > V::Scalar::ZERO {
+            return Ok(self.ray_cast_from(ray, options));
+        }
+        let (lambda, bracket) = self.crossing(ray, V::ZERO, options.max_lambda);
         let outcome = match lambda {
             Outcome::Hit(lambda) if lambda > V::Scalar::ZERO => {
                 Outcome::Hit(RayHit { lambda, point: ray.at(lambda), normal: Some(normal) })
@@ -90,10 +93,38 @@ impl<V: Vector> HalfSpace<V> {
         Ok(RayCast { outcome, lower, upper, status, iterations: 0 })
     }
 
+    /// The same of a ray that begins at `min_lambda`: the half-space is entered there, or at once if it is entered before, unless it
+    /// has been left again.
+    fn ray_cast_from(&self, ray: Ray<V>, options: RayCastOptions<V>) -> RayCast<V> {
+        let begin = options.min_lambda;
+        let (lambda, Bracket { lower, upper, status }) = self.crossing(ray, V::ZERO, options.max_lambda);
+        let normal = self.normal / self.length;
+        let [height, rounding] = self.height(ray.at(begin), ray.direction.abs() * (begin * V::Scalar::EPSILON));
+        let infinity = V::Scalar::infinity();
+        let mut answer = RayCast { outcome: Outcome::Undecided, lower, upper, status, iterations: 0 };
+        match lambda {
+            Outcome::Miss(miss) => answer.outcome = Outcome::Miss(miss),
+            Outcome::Undecided => answer.lower = lower.max(begin),
+            Outcome::Hit(lambda) if lambda >= begin => {
+                answer.outcome = Outcome::Hit(RayHit { lambda, point: ray.at(lambda), normal: Some(normal) });
+                answer.lower = lower.max(begin);
+            }
+            Outcome::Hit(_) if height > rounding || begin > options.max_lambda => {
+                answer.outcome = Outcome::Miss(Miss { axis: normal });
+                (answer.lower, answer.upper) = (infinity, infinity);
+            }
+            Outcome::Hit(_) => {
+                answer.outcome = Outcome::Hit(RayHit { lambda: begin, point: ray.at(begin), normal: None });
+                (answer.lower, answer.upper) = (begin, begin);
+            }
+        }
+        answer
+    }
+
     /// When a moving shape, `a`, first touches the half-space, `b`: the ray of its nearest point.
     ///
     /// # Errors
-    /// [`RayCastError::NonFinite`] if a velocity is not finite.
+    /// [`RayCastError::NonFinite`] if a velocity is not finite, or the target distance is NaN.
     pub fn linear_cast<A: SupportMap<Vector = V> + ?Sized>(
         &self,
         shape: &A,
@@ -101,14 +132,37 @@ impl<V: Vector> HalfSpace<V> {
         options: LinearCastOptions<V>,
     ) -> Result<LinearCast<V>, RayCastError> {
         motion.check()?;
-        let (source, error) = self.nearest_of(shape);
+        let target = options.target_distance;
+        if target.is_nan() {
+            return Err(RayCastError::NonFinite { parameter: "target_distance", index: 0 });
+        }
+        let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+        let unit = self.normal / self.length;
+        let (nearest, mut error) = self.nearest_of(shape);
+        let mut source = nearest;
+        if target > zero {
+            source -= unit * target;
+            // The unit normal is rounded, the product, and the sum.
+            error += (nearest.abs() + V::splat(target)) * (V::Scalar::from_f64(4.0) * V::Scalar::EPSILON);
+        }
         let ray = Ray { source, direction: motion.velocity_a - motion.velocity_b };
+        let [height, rounding] = self.height(source, error);
+        if options.start_in_contact == StartInContact::IfDeeper && height <= rounding {
+            let (speed, doubt) = self.speed(ray.direction);
+            if speed <= doubt {
+                let outcome = Outcome::Miss(Miss { axis: unit });
+                let (lower, upper, status) = (infinity, infinity, Status::Converged);
+                return Ok(LinearCast { outcome, lower, upper, status, iterations: 1 });
+            }
+        }
         let (time, Bracket { lower, upper, status }) = self.crossing(ray, error, options.max_time);
+        let has_normal = height >= -rounding || options.start_in_contact == StartInContact::IfDeeper;
         let outcome = match time {
             Outcome::Hit(time) => Outcome::Hit(LinearHit {
                 time,
+                // Of a target distance, the point of the half-space below.
                 point: source + motion.velocity_a * time,
-                normal: (time > V::Scalar::ZERO).then(|| self.normal / self.length),
+                normal: (time > zero || has_normal).then_some(unit),
             }),
             Outcome::Miss(miss) => Outcome::Miss(miss),
             Outcome::Undecided => Outcome::Undecided,
@@ -145,6 +199,12 @@ impl<V: Vector> HalfSpace<V> {
         Distance { point_a: from.point_b, point_b: from.point_a, normal: from.normal.map(|n| -n), ..from }
     }
 
+    /// How fast a direction leads down, and what rounding may have made of that.
+    fn speed(&self, direction: V) -> (V::Scalar, V::Scalar) {
+        let doubt = V::Scalar::from_f64(4.0) * V::Scalar::EPSILON * self.normal.abs().dot(direction.abs());
+        (-self.normal.dot(direction), doubt)
+    }
+
     /// Where the ray crosses the plane inwards, of a source whose coordinates are off by `error`.
     fn crossing(&self, ray: Ray<V>, error: V, end: V::Scalar) -> (Outcome<V::Scalar, V>, Bracket<V::Scalar>) {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
@@ -153,8 +213,7 @@ impl<V: Vector> HalfSpace<V> {
         if height <= zero && end >= zero {
             return (Outcome::Hit(zero), closed(zero, zero));
         }
-        let speed = -self.normal.dot(ray.direction);
-        let doubt = V::Scalar::from_f64(4.0) * V::Scalar::EPSILON * self.normal.abs().dot(ray.direction.abs());
+        let (speed, doubt) = self.speed(ray.direction);
         let miss = (Outcome::Miss(Miss { axis: self.normal / self.length }), closed(infinity, infinity));
         if speed <= zero {
             return miss;

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test file uses a part")]
 
-use convex_support::{Cuboid, Posed, Scalar, SupportMap, Vector, Vector3};
+use convex_support::{Core, Cuboid, Hint, Posed, Rounding, Scalar, ScalarOf, SupportMap, Vector, Vector3};
 use gjk_raycast::{
     Distance, DistanceOptions, IntersectOptions, Intersection, LinearCast, LinearCastOptions, Motion, Ray, RayCast,
     RayCastOptions, distance, intersects, linear_cast, ray_cast,
@@ -111,5 +111,44 @@ impl Quaternion for convex_support::glam::DVec3 {
 impl Quaternion for convex_support::glam::Vec3A {
     fn quaternion(q: [f64; 4]) -> Self::Rotation {
         convex_support::glam::DQuat::from_array(q).as_quat()
+    }
+}
+
+/// Numbers from a seed (Marsaglia's xorshift).
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    pub(crate) fn number(&mut self, from: f64, to: f64) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        from + (to - from) * (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// A shape that says of itself what it must, and of its closest points, its crossings and its other shortcuts nothing.
+pub(crate) struct Plain<S>(pub(crate) S);
+
+impl<S: SupportMap> SupportMap for Plain<S> {
+    type Vector = S::Vector;
+
+    fn support(&self, direction: S::Vector) -> S::Vector {
+        self.0.support(direction)
+    }
+
+    fn core(&self) -> Core<S::Vector> {
+        self.0.core()
+    }
+
+    fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
+        self.0.core_support(direction, hint)
+    }
+
+    fn core_support_hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> [ScalarOf<S>; 3] {
+        self.0.core_support_hessian(direction, changes)
+    }
+
+    fn rounding(&self) -> Rounding<S::Vector> {
+        self.0.rounding()
     }
 }

@@ -105,9 +105,9 @@ fn approach<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         v = line.across(aside);
         simplex.retain(face, weights);
         let length = v.norm();
-        // The body and v are each known to the noise only: where nothing brings the line nearer, both may be what is left.
+        // Where nothing brings the line nearer, what the body and v are wrong by may be all that is left.
         let progress = nearing_across.goes_on(length);
-        let within = if progress { bracket.noise } else { bracket.noise + bracket.noise };
+        let within = if progress { bracket.noise } else { bracket.noise + bracket.error };
         if length - bracket.radius <= within {
             // With the slope of a plane ahead the ray may be past the simplex.
             let contact = if slope < Scalar::ZERO { touch_beside(bracket, simplex, v, within) } else { None };

@@ -34,7 +34,7 @@ pub(super) fn refine<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     simplex.retain(at.face, at.weights);
     loop {
         let slope = -at.n.dot(bracket.line().direction);
-        bracket.enter_hull(at.mu, bracket.noise + pierced.moved, slope);
+        bracket.enter_hull(at.mu, pierced.moved, slope);
         let turned = if steps.may_turn() { newton(bracket, &simplex, &recent, steps.model_error) } else { None };
         let turned = steps.accept(turned);
         let n = turned.unwrap_or(at.n);

@@ -1,0 +1,84 @@
+//! Two cores without the balls that roll within them.
+
+use convex_support::{LineCrossing, Scalar, SupportMap, Vector};
+
+use crate::body::{Body, Pair, PointPair};
+use crate::symmetric::Symmetric;
+
+/// A pair of shapes whose cores are smaller by the radii of two balls that would sweep them to what they are, in units of the scale.
+///
+/// The support point of such a core along a unit vector `u` is that of the whole less `r·u`, and the Hessian of its support value less
+/// that of a ball. Where no radius is positive it is the pair.
+pub(super) struct Peeled<'p, 'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
+    pub(super) pair: &'p mut Pair<'a, A, B>,
+    pub(super) radii: [<A::Vector as Vector>::Scalar; 2],
+}
+
+/// The Hessian without that of a ball of the given radius, at a direction and along two changes of it.
+pub(super) fn without_ball<V: Vector>(
+    hessian: Symmetric<V::Scalar>,
+    radius: V::Scalar,
+    direction: V,
+    changes: [V; 2],
+) -> Symmetric<V::Scalar> {
+    let Some(e) = direction.unit().filter(|_| radius > Scalar::ZERO) else { return hessian };
+    let [u, w] = changes.map(|change| change - e * change.dot(e));
+    let bend = radius / direction.norm();
+    let Symmetric { a, b, d } = hessian;
+    Symmetric { a: a - bend * u.dot(u), b: b - bend * u.dot(w), d: d - bend * w.dot(w) }
+}
+
+impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body for Peeled<'_, '_, A, B> {
+    type Vector = A::Vector;
+    type Witness = PointPair<A::Vector>;
+
+    #[inline(always)]
+    fn support(&mut self, direction: A::Vector) -> (A::Vector, PointPair<A::Vector>) {
+        let (point, pair) = self.pair.support(direction);
+        let [a, b] = self.radii;
+        if !(a + b > Scalar::ZERO) {
+            return (point, pair);
+        }
+        let u = direction.unit().unwrap_or(direction);
+        let pair = PointPair { a: pair.a - u * a, b: pair.b + u * b };
+        (pair.a - pair.b, pair)
+    }
+
+    #[inline(always)]
+    fn hessian(&self, direction: A::Vector, changes: [A::Vector; 2]) -> Symmetric<<A::Vector as Vector>::Scalar> {
+        let whole = self.pair.hessian(direction, changes);
+        without_ball(whole, self.radii[0] + self.radii[1], direction, changes)
+    }
+
+    fn is_curved(&self) -> bool {
+        self.pair.is_curved()
+    }
+
+    fn line_crossing(&self, _source: A::Vector, _direction: A::Vector) -> LineCrossing<A::Vector> {
+        LineCrossing::Unknown
+    }
+
+    fn witness(&self, point: A::Vector) -> PointPair<A::Vector> {
+        self.pair.witness(point)
+    }
+
+    fn origin(&self) -> A::Vector {
+        self.pair.origin()
+    }
+
+    fn radius(&self) -> <A::Vector as Vector>::Scalar {
+        self.pair.radius()
+    }
+
+    fn extent(&self) -> <A::Vector as Vector>::Scalar {
+        self.pair.extent()
+    }
+
+    fn error(&self) -> <A::Vector as Vector>::Scalar {
+        self.pair.error()
+    }
+
+    fn set_scale(&mut self, scale: <A::Vector as Vector>::Scalar) {
+        self.pair.set_scale(scale);
+    }
+}

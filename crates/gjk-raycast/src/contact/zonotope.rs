@@ -1,0 +1,359 @@
+//! The depth of boxes, parallelograms and segments in one another, in closed form.
+
+use convex_support::numerics::twofold::two_product;
+use convex_support::{Core, CoreKind, Parallelotope, Scalar, SupportMap, Vector};
+use num_traits::Float;
+
+use crate::body::PointPair;
+
+/// Edges of two parallelotopes.
+const EDGES: usize = 6;
+
+/// Below this squared sine of the angle between two edges their product is computed in twice the precision.
+const ACUTE: f64 = 0.25;
+
+/// Edges with a sine of the angle below this many ε count as parallel.
+const PARALLEL: f64 = 8.0;
+
+/// Products of squares below this may have underflowed, and one of the edges is so short that it does not count.
+const LEAST: f64 = 1e-250;
+
+/// How much a unit normal may be turned by rounding, in ε: the product of two edges is wrong by one of the product of their lengths, which
+/// is at most twice as long; the rest are its own roundings.
+const TURN: f64 = 4.0;
+
+/// How much longer or shorter than one it may be, in ε.
+const STRETCH: f64 = 3.0;
+
+/// What a sum of five products of three terms each loses, and the centre in the last of them, in ε of the sum of their magnitudes.
+const SUM: f64 = 4.5;
+
+/// Facets that are by this many ε of the size farther than the nearest may be the nearest: more than all of the above.
+const TIE: f64 = 32.0;
+
+/// Edges that leave a plane by fewer ε of the size lie in it.
+const IN_PLANE: f64 = 16.0;
+
+/// What a foot may seem to be outside of its facet by rounding, as a part of the edges.
+const OUTSIDE: f64 = 1e-12;
+
+/// Heights of the edges, relative to their lengths, by which a facet of more than two edges is seen as a roof of parallelograms: any
+/// that are not multiples of one another.
+const HEIGHTS: [f64; EDGES] = [1.0, -0.7, 0.45, 0.83, -0.37, 0.61];
+
+type Vec3 = [f64; 3];
+
+/// The difference of two parallelotopes: `center + Σ tₖ·edgesₖ` with all `|tₖ| ≤ 1`, the edges of the first and then of the second.
+///
+/// It is a zonotope, and each of its facets is spanned by two edges, in 2D by one: the axes of the separating axis test. All other edges
+/// lead to the facet from the centre, so that its distance from there is `Σ |n·eₖ|`. Everything is computed in double precision, and in
+/// the unit of the cores, so that it adds nothing to what `f32` has lost before.
+pub(super) struct Zonotope {
+    center: Vec3,
+    edges: [Vec3; EDGES],
+    /// A bound on its lengths.
+    size: f64,
+}
+
+/// The facet of a zonotope that is nearest to zero.
+pub(super) struct Nearest {
+    /// The outward unit normal.
+    pub(super) normal: Vec3,
+    /// How far it is from zero, and bounds on how far that and all others are.
+    pub(super) depth: f64,
+    pub(super) inner: f64,
+    pub(super) outer: f64,
+    /// How far along each edge zero's foot is.
+    weights: [f64; EDGES],
+}
+
+/// A facet by the two edges that span it, and its distance from zero.
+#[derive(Clone, Copy)]
+struct Facet {
+    edges: [usize; 2],
+    normal: Vec3,
+    depth: f64,
+}
+
+/// What two edges span.
+enum Span {
+    /// A facet, and its unit normal.
+    Facet(Vec3),
+    /// None: by so much one of them would have to be changed for there to be none.
+    Parallel(f64),
+}
+
+/// The core of a shape as a parallelotope, or a point as the least of them.
+pub(super) fn parallelotope<S: SupportMap + ?Sized>(
+    shape: &S,
+    core: &Core<S::Vector>,
+) -> Option<Parallelotope<S::Vector>> {
+    match core.kind {
+        CoreKind::Point(at) => Some(Parallelotope::point(at)),
+        CoreKind::Polytope => shape.core_parallelotope(),
+        CoreKind::Curved => None,
+    }
+}
+
+impl Zonotope {
+    /// The difference `(a − b)·per_unit + offset`.
+    pub(super) fn new<V: Vector>([a, b]: &[Parallelotope<V>; 2], offset: V, per_unit: V::Scalar) -> Self {
+        let center = sum(sum(array(a.center * per_unit), array(-b.center * per_unit)), array(offset));
+        let edges =
+            core::array::from_fn(|k| array(if k < 3 { a.half_edges[k] } else { b.half_edges[k - 3] } * per_unit));
+        let size = edges.iter().fold(length(center), |size, &edge| size + length(edge));
+        Self { center, edges, size }
+    }
+
+    /// The facet nearest to zero; `None` where zero is not certain to be within.
+    pub(super) fn nearest_facet<V: Vector>(&self) -> Option<Nearest> {
+        let none = Facet { edges: [0; 2], normal: [0.0; 3], depth: f64::INFINITY };
+        let mut facets = [none; EDGES * (EDGES - 1) / 2];
+        let tie = TIE * f64::EPSILON * self.size;
+        let (mut count, mut nearest, mut parallel) = (0, none, 0.0);
+        let squared = self.edges.map(|edge| dot(edge, edge));
+        for i in 0..EDGES {
+            for j in if V::DIM == 2 { i..i + 1 } else { i + 1..EDGES } {
+                let [e, f] = [self.edges[i], self.edges[j]];
+                let (span, j) =
+                    if V::DIM == 2 { (span_of_one(e), i) } else { (span([e, f], [squared[i], squared[j]]), j) };
+                match span {
+                    Span::Parallel(change) => parallel += 2.0 * change,
+                    Span::Facet(normal) => {
+                        let facet = self.facet(normal, [i, j]);
+                        // NaN ends here too.
+                        if !(facet.depth > tie) {
+                            return None;
+                        }
+                        if facet.depth < nearest.depth {
+                            nearest = facet;
+                        }
+                        facets[count] = facet;
+                        count += 1;
+                    }
+                }
+            }
+        }
+        let is_near = |facet: &&Facet| facet.depth <= nearest.depth + tie;
+        let near = facets[..count].iter().filter(is_near);
+        let inner = near.map(|facet| facet.depth - self.error(facet)).fold(f64::INFINITY, f64::min) - parallel;
+        let outer = nearest.depth + self.error(&nearest);
+        if !(inner > 0.0 && outer.is_finite()) {
+            return None;
+        }
+        let (mut weights, mut outside) = self.foot::<V>(&nearest);
+        let mut normal = nearest.normal;
+        if outside > OUTSIDE {
+            // Another is as near to rounding, and has the foot.
+            for facet in facets[..count].iter().filter(is_near) {
+                let (found, by) = self.foot::<V>(facet);
+                if by < outside {
+                    (normal, weights, outside) = (facet.normal, found, by);
+                }
+            }
+        }
+        Some(Nearest { normal, depth: nearest.depth, inner, outer, weights: weights.map(|t| t.clamp(-1.0, 1.0)) })
+    }
+
+    /// What the distance of a facet may be wrong by.
+    ///
+    /// Let `n` be its normal and `z` a point in the middle of it. Along the true normal `n + δ` the zonotope reaches at least as far as `z` does, and
+    /// that is `n·z + δ·z`, in which only the part of `z` across `n` counts: both are unit vectors.
+    fn error(&self, facet: &Facet) -> f64 {
+        let n = facet.normal;
+        let magnitude = |v: Vec3| (n[0] * v[0]).abs() + (n[1] * v[1]).abs() + (n[2] * v[2]).abs();
+        let (mut middle, mut total) = (self.center, magnitude(self.center));
+        for (k, &edge) in self.edges.iter().enumerate() {
+            if !facet.edges.contains(&k) {
+                let height = dot(n, edge);
+                let side = if height.abs() > self.flat() { height.signum() } else { 0.0 };
+                middle = core::array::from_fn(|i| middle[i] + edge[i] * side);
+                total += magnitude(edge);
+            }
+        }
+        let along = dot(n, middle);
+        let across = length(core::array::from_fn(|i| middle[i] - n[i] * along));
+        f64::EPSILON * (SUM * total + STRETCH * facet.depth + TURN * across)
+    }
+
+    /// The nearer of the two facets with a normal, that is spanned by the given edges.
+    #[inline(always)]
+    fn facet(&self, normal: Vec3, spanned: [usize; 2]) -> Facet {
+        let to_center = dot(normal, self.center);
+        let mut depth = -to_center.abs();
+        for (k, &edge) in self.edges.iter().enumerate() {
+            if k != spanned[0] && k != spanned[1] {
+                depth += dot(normal, edge).abs();
+            }
+        }
+        let normal = if to_center > 0.0 { normal.map(|x| -x) } else { normal };
+        Facet { edges: spanned, normal, depth }
+    }
+
+    /// Edges that leave a plane by less lie in it.
+    fn flat(&self) -> f64 {
+        IN_PLANE * f64::EPSILON * self.size
+    }
+
+    /// How far along each edge zero's foot on the plane of a facet is; and by how much it seems to be outside of the facet, as a part of
+    /// the edges.
+    ///
+    /// Edges that do not lie in the plane lead to it all the way. If the facet is not a parallelogram, some of the others do not span it.
+    /// Lifted to heights `wₖ`, its lower side becomes a roof of parallelograms: that of the edges `p`, `q` is below `φ·x`, with
+    /// `φ·e_p = w_p` and `φ·e_q = w_q`, and there every other edge leads to where it is lower, the sign of `φ·eₖ − wₖ`. One of them has
+    /// the foot.
+    fn foot<V: Vector>(&self, facet: &Facet) -> ([f64; EDGES], f64) {
+        let n = facet.normal;
+        let flat = self.flat();
+        let mut weights = [0.0; EDGES];
+        let mut rest: Vec3 = core::array::from_fn(|i| n[i] * facet.depth - self.center[i]);
+        let (mut plane, mut count) = ([0; EDGES], 0);
+        for (k, &edge) in self.edges.iter().enumerate() {
+            let height = dot(n, edge);
+            if facet.edges.contains(&k) || height.abs() <= flat {
+                plane[count] = k;
+                count += 1;
+            } else {
+                weights[k] = height.signum();
+                rest = core::array::from_fn(|i| rest[i] - edge[i] * weights[k]);
+            }
+        }
+        let plane = &plane[..count];
+        let first = self.edges[facet.edges[0]];
+        let x = first.map(|c| c / length(first));
+        let y = cross(n, x);
+        let seen = |v: Vec3| (dot(v, x), dot(v, y));
+        if V::DIM == 2 {
+            // All lie along the facet, and share the way.
+            let along = |k: usize| dot(self.edges[k], x);
+            let total = plane.iter().map(|&k| along(k).abs()).sum::<f64>();
+            let part = dot(rest, x) / total;
+            for &k in plane {
+                weights[k] = part * along(k).signum();
+            }
+            return (weights, part.abs() - 1.0);
+        }
+        let (mut best, mut outside) = (weights, f64::INFINITY);
+        for (i, &p) in plane.iter().enumerate() {
+            for &q in &plane[i + 1..] {
+                let (e, f) = (seen(self.edges[p]), seen(self.edges[q]));
+                let area = e.0 * f.1 - e.1 * f.0;
+                let height = |k: usize| HEIGHTS[k] * length(self.edges[k]);
+                let (u, w) = (height(p), height(q));
+                let slope = ((u * f.1 - w * e.1) / area, (w * e.0 - u * f.0) / area);
+                let mut found = weights;
+                let mut rest = seen(rest);
+                for &k in plane.iter().filter(|&&k| k != p && k != q) {
+                    let edge = seen(self.edges[k]);
+                    found[k] = (slope.0 * edge.0 + slope.1 * edge.1 - height(k)).signum();
+                    rest = (rest.0 - edge.0 * found[k], rest.1 - edge.1 * found[k]);
+                }
+                found[p] = (rest.0 * f.1 - rest.1 * f.0) / area;
+                found[q] = (e.0 * rest.1 - e.1 * rest.0) / area;
+                let by = found[p].abs().max(found[q].abs()) - 1.0;
+                // NaN, of edges along one another, is no foot.
+                if by < outside && area != 0.0 {
+                    (best, outside) = (found, by);
+                }
+                if outside <= OUTSIDE {
+                    return (best, outside);
+                }
+            }
+        }
+        (best, outside)
+    }
+}
+
+impl Nearest {
+    /// The points of both parallelotopes at zero's foot, in the unit, and halfway to one another what rounding leaves between them.
+    pub(super) fn points<V: Vector>(
+        &self,
+        [a, b]: &[Parallelotope<V>; 2],
+        offset: V,
+        per_unit: V::Scalar,
+    ) -> PointPair<V> {
+        let along = |parallelotope: &Parallelotope<V>, weights: &[f64]| {
+            let edges = parallelotope.half_edges.iter().zip(weights);
+            edges.fold(V::ZERO, |sum, (&edge, &t)| sum + edge * V::Scalar::from_f64(t)) * per_unit
+        };
+        let from = a.center * per_unit + along(a, &self.weights[..3]);
+        let to = b.center * per_unit - along(b, &self.weights[3..]);
+        let end = vector::<V>(self.normal) * V::Scalar::from_f64(self.depth);
+        let half = (end - (from - to + offset)) * V::Scalar::from_f64(0.5);
+        PointPair { a: from + half, b: to - half }
+    }
+
+    /// The normal as a vector.
+    pub(super) fn unit<V: Vector>(&self) -> V {
+        vector(self.normal)
+    }
+}
+
+/// What two edges of the given squared lengths span in space.
+#[inline(always)]
+fn span([e, f]: [Vec3; 2], [le, lf]: [f64; 2]) -> Span {
+    let product = le * lf;
+    if product < LEAST {
+        return Span::Parallel(Float::sqrt(le.min(lf)));
+    }
+    let mut m = cross(e, f);
+    let mut area = dot(m, m);
+    if area < ACUTE * product {
+        m = exact_cross(e, f);
+        area = dot(m, m);
+        let parallel = PARALLEL * f64::EPSILON;
+        if area <= parallel * parallel * product {
+            return Span::Parallel(Float::sqrt(area / le.max(lf)));
+        }
+    }
+    let per = Float::sqrt(area).recip();
+    Span::Facet(m.map(|x| x * per))
+}
+
+/// What an edge spans in the plane.
+fn span_of_one(e: Vec3) -> Span {
+    let squared = dot(e, e);
+    if squared < LEAST {
+        return Span::Parallel(Float::sqrt(squared));
+    }
+    let per = Float::sqrt(squared).recip();
+    Span::Facet([e[1] * per, -e[0] * per, 0.0])
+}
+
+#[inline(always)]
+fn dot(a: Vec3, b: Vec3) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn sum(a: Vec3, b: Vec3) -> Vec3 {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+fn length(a: Vec3) -> f64 {
+    Float::sqrt(dot(a, a))
+}
+
+#[inline(always)]
+fn cross(a: Vec3, b: Vec3) -> Vec3 {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The same with every coordinate right to its last digit but one, however much of the products cancels.
+#[cold]
+#[inline(never)]
+fn exact_cross(a: Vec3, b: Vec3) -> Vec3 {
+    let minor = |i: usize, j: usize| {
+        let [[p, lost_p], [q, lost_q]] = [two_product(a[i], b[j]), two_product(a[j], b[i])];
+        (p - q) + (lost_p - lost_q)
+    };
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
+}
+
+fn array<V: Vector>(v: V) -> Vec3 {
+    core::array::from_fn(|i| if i < V::DIM { v.get(i).as_f64() } else { 0.0 })
+}
+
+fn vector<V: Vector>(a: Vec3) -> V {
+    V::from_fn(|i| V::Scalar::from_f64(a[i]))
+}

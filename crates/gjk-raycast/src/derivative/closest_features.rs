@@ -1,0 +1,319 @@
+//! The features of two bodies that face each other where they are closest.
+
+use convex_support::{Core, CoreKind, Feature, Hint, Scalar, ScalarOf, SupportMap, Vector};
+use num_traits::Float as _;
+
+use super::span::{Joint, Span};
+use crate::contact::{ContactPlane, Outline, across};
+use crate::symmetric::{Across, Symmetric, dot};
+use crate::unit::{power_of_two_near, reciprocal_of_power};
+
+/// What the normal may be wrong by, in units of the rounding of the points that it is computed from.
+const TILT: f64 = 64.0;
+
+/// The largest angle that a normal is taken to be wrong by: beyond it, looking nearby would see other features.
+const LARGEST_TILT: f64 = 1e-3;
+
+/// How far a direction is turned to see which curve an edge between two of them belongs to, and where a support point goes, in units
+/// of the square root of ε.
+const TURN: f64 = 16.0;
+
+/// The longest step of the unit normal that is one of refinement, and how many are made.
+const LONGEST_STEP: f64 = 1e-2;
+const MAX_STEPS: usize = 5;
+
+/// By how much a support point may differ from where its curvature foretells it, as a part of how far that moves.
+const SURPRISE: f64 = 0.25;
+
+/// Where two bodies are closest, or deepest in one another: a vertex, an edge or a face of each, and how they curve there.
+///
+/// It says whether an answer changes [smoothly](Self::smoothness) with the poses of the bodies, its
+/// [one-sided derivative](Self::rate) where it does not, and where it does how the [normal and the points move](Self::velocities),
+/// and the [second derivatives](Self::hessian). It is found from an answer and the shapes that were asked about, by
+/// [`SignedDistance::closest_features`](crate::SignedDistance::closest_features) and its like, for about the price of four
+/// support points of each shape.
+///
+/// Faces and edges are those that the shapes show by [`SupportMap::core_support_feature`]; a shape that does not say them, as sums and
+/// hulls, is taken to be smooth. Of a disc they are the corners of an octagon within it, and of a face with more than 16 corners every
+/// second, third, ….
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct ClosestFeatures<V: Vector> {
+    /// The unit vector from `b` to `a`, and two across it; in 2D one, and zero.
+    pub(super) normal: V,
+    pub(super) across: [V; 2],
+    /// The closest points.
+    pub(super) points: [V; 2],
+    /// A point between them.
+    pub(super) middle: V,
+    /// Lengths below are in this unit, a power of two near the size of both bodies and their distance.
+    pub(super) unit: V::Scalar,
+    pub(super) signed_distance: V::Scalar,
+    /// The Hessians of both support values, radii included, across the normal. Zero along an edge, and on a face.
+    pub(super) hessians: [Symmetric<V::Scalar>; 2],
+    /// Whether they foretell the support points nearby.
+    pub(super) is_foretold: bool,
+    /// The features, relative to the middle.
+    pub(super) outlines: [Outline<V::Scalar>; 2],
+    pub(super) spans: [Span<V::Scalar>; 2],
+    /// What the normal may be wrong by.
+    pub(super) tilt: V::Scalar,
+    /// Whether another way out of one another is as short.
+    pub(super) is_tied: bool,
+}
+
+/// Where two bodies are closest.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Closest<V: Vector> {
+    pub(super) normal: V,
+    pub(super) points: [V; 2],
+    pub(super) signed_distance: V::Scalar,
+    /// By how much the signed distance may be wrong.
+    pub(super) error: V::Scalar,
+}
+
+impl<V: Vector> ClosestFeatures<V> {
+    /// At the normal and the points of an answer. Of curved shapes both are known to about half their digits, since the distance is
+    /// stationary in them; [`Self::refined`] finds the rest.
+    pub(super) fn new<A, B>(a: &A, b: &B, closest: Closest<V>) -> Self
+    where
+        A: SupportMap<Vector = V> + ?Sized,
+        B: SupportMap<Vector = V> + ?Sized,
+    {
+        let cores = [a.core(), b.core()];
+        let size = cores.iter().fold(V::Scalar::ZERO, |sum, core| sum + core.extent + core.radius);
+        let gap = closest.signed_distance + cores[0].radius + cores[1].radius;
+        let bodies = Bodies { a, b, cores, unit: power_of_two_near(size + closest.signed_distance.abs()) };
+        let at = bodies.at(closest, tilt(size, gap, closest.error));
+        let is_curved = cores.iter().any(|core| matches!(core.kind, CoreKind::Curved));
+        let mut features = if is_curved { bodies.refined(at, closest) } else { at };
+        features.is_foretold = bodies.are_foretold(&features);
+        features
+    }
+
+    /// How the features extend together, where the closest points are the only ones.
+    pub(super) fn joint(&self) -> Option<Joint<V::Scalar>> {
+        let joint = Joint::of(self.spans, self.tilt * V::Scalar::from_f64(4.0));
+        // In the plane an edge is all of the line across the normal.
+        joint.filter(|joint| V::DIM == 3 || !matches!(joint, Joint::Crossed(_)))
+    }
+
+    /// How hard it is to turn the normal: the sum of the Hessians and the signed distance.
+    pub(super) fn stiffness(&self) -> Symmetric<V::Scalar> {
+        let [a, b] = self.hessians;
+        Symmetric { a: a.a + b.a, b: a.b + b.b, d: a.d + b.d }.plus(self.signed_distance)
+    }
+
+    /// The unit normal from `b` to `a`, to rounding.
+    #[must_use]
+    pub fn normal(&self) -> V {
+        self.normal
+    }
+
+    /// The closest point of `a`, to rounding; where there are several, the one of the answer.
+    #[must_use]
+    pub fn point_a(&self) -> V {
+        self.points[0]
+    }
+
+    /// The closest point of `b`.
+    #[must_use]
+    pub fn point_b(&self) -> V {
+        self.points[1]
+    }
+}
+
+/// Two bodies, and the unit of length.
+struct Bodies<'s, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
+    a: &'s A,
+    b: &'s B,
+    cores: [Core<A::Vector>; 2],
+    unit: ScalarOf<A>,
+}
+
+impl<A, B> Bodies<'_, A, B>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    /// The features along the normal, which may be wrong by `tilt`.
+    fn at(&self, closest: Closest<A::Vector>, tilt: ScalarOf<A>) -> ClosestFeatures<A::Vector> {
+        let Closest { normal, points, signed_distance, .. } = closest;
+        let (unit, half) = (self.unit, ScalarOf::<A>::from_f64(0.5));
+        // In the unit; zero is the middle of the closest points, which is on both sides of the plane that outlines are seen in.
+        let plane = ContactPlane { normal, across: across(normal), origin: A::Vector::ZERO };
+        let middle = points[0] * half + points[1] * half;
+        let from = Viewpoint { tilt, middle, unit, plane };
+        let of_a = Seen::new(self.a, &self.cores[0], -normal, &from);
+        let of_b = Seen::new(self.b, &self.cores[1], normal, &from);
+        ClosestFeatures {
+            normal,
+            across: plane.across,
+            points,
+            middle,
+            unit,
+            signed_distance: signed_distance / unit,
+            hessians: [of_a.hessian, of_b.hessian],
+            is_foretold: true,
+            spans: [of_a.span, of_b.span],
+            outlines: [of_a.outline, of_b.outline],
+            tilt,
+            is_tied: false,
+        }
+    }
+
+    /// Newton's method for the normal and the points, as long as the steps become shorter.
+    fn refined(&self, start: ClosestFeatures<A::Vector>, closest: Closest<A::Vector>) -> ClosestFeatures<A::Vector> {
+        let (mut best, mut length) = (start, ScalarOf::<A>::from_f64(LONGEST_STEP));
+        let tilt = ScalarOf::<A>::from_f64(TILT) * Scalar::EPSILON;
+        let radii = self.cores.map(|core| core.radius);
+        for _ in 0..MAX_STEPS {
+            let Some(step) = best.newton_step(radii) else { break };
+            let size = step.turn.length();
+            // NaN ends this too.
+            if !(size < length) {
+                break;
+            }
+            best.points = step.points;
+            // An answer knows the distance to its tolerance; to that of rounding, it stays.
+            let error = (step.signed_distance - best.signed_distance).abs();
+            if error > tilt {
+                best.signed_distance = step.signed_distance;
+            }
+            if size > length * Scalar::from_f64(0.5) {
+                break;
+            }
+            let Some(normal) = (best.normal + step.turn).unit() else { break };
+            let signed_distance = best.signed_distance * self.unit;
+            let next = self.at(Closest { normal, points: step.points, signed_distance, ..closest }, tilt);
+            if next.spans.iter().zip(&best.spans).any(|(next, best)| next.kind() != best.kind()) {
+                break;
+            }
+            (best, length) = (next, size);
+        }
+        best
+    }
+
+    /// Whether the support points nearby are where the Hessians say.
+    fn are_foretold(&self, at: &ClosestFeatures<A::Vector>) -> bool {
+        let turn = turn(at.tilt);
+        let of_a = is_foretold(self.a, &self.cores[0], -at.normal, at, 0, turn);
+        of_a && is_foretold(self.b, &self.cores[1], at.normal, at, 1, turn)
+    }
+}
+
+/// What the normal may be wrong by: the rounding of the points it is computed from, as seen over the gap between the cores, and what
+/// the distance may be wrong by, as seen over the size of the bodies.
+fn tilt<S: Scalar>(size: S, gap: S, error: S) -> S {
+    let rounding = S::EPSILON * S::from_f64(TILT);
+    let magnified = if gap > S::ZERO { rounding * (size / gap) } else { S::ZERO };
+    let open = if error.is_finite() { error / size * S::from_f64(4.0) } else { S::ZERO };
+    (rounding + magnified + open).min(S::from_f64(LARGEST_TILT))
+}
+
+/// How far a direction is turned to look nearby.
+fn turn<S: Scalar>(tilt: S) -> S {
+    (S::EPSILON.sqrt() * S::from_f64(TURN)).max(tilt * S::from_f64(4.0))
+}
+
+/// From where the bodies are seen.
+struct Viewpoint<V: Vector> {
+    tilt: V::Scalar,
+    middle: V,
+    unit: V::Scalar,
+    plane: ContactPlane<V>,
+}
+
+/// A body as seen from the other.
+struct Seen<S: Scalar> {
+    outline: Outline<S>,
+    span: Span<S>,
+    hessian: Symmetric<S>,
+}
+
+impl<S: Scalar> Seen<S> {
+    fn new<B>(body: &B, core: &Core<B::Vector>, direction: B::Vector, from: &Viewpoint<B::Vector>) -> Self
+    where
+        B: SupportMap + ?Sized,
+        B::Vector: Vector<Scalar = S>,
+    {
+        let per_unit = reciprocal_of_power(from.unit);
+        let mut feature = Feature::new();
+        body.core_support_feature(direction, from.tilt * core.extent * S::from_f64(2.0), &mut feature);
+        if feature.points().is_empty() {
+            // Where numbers are not finite.
+            feature.push(body.core_support(direction, &mut Hint::new()), 0);
+        }
+        feature.map(|point| point * per_unit);
+        let outline = Outline::new(&feature, (core.origin - from.middle) * per_unit, &from.plane);
+        let span = Span::of(&outline);
+        let hessian_along = |direction| {
+            let entries = body.core_support_hessian(direction, from.plane.across);
+            let [a, b, d] = entries.map(|entry| entry * per_unit);
+            Symmetric { a, b, d }.plus(core.radius * per_unit)
+        };
+        let hessian = match span {
+            Span::Vertex => hessian_along(direction),
+            Span::Edge(_) if <B::Vector as Vector>::DIM == 2 => Symmetric::ZERO,
+            Span::Edge(e) if matches!(core.kind, CoreKind::Curved) => {
+                let along = from.plane.across[0] * e.0 + from.plane.across[1] * e.1;
+                let turn = turn(from.tilt);
+                // Of the curves on either side, from two directions each.
+                let [first, second] = [-turn, turn].map(|turn| {
+                    let [near, far] = [turn, turn + turn].map(|turn| hessian_along(direction + along * turn));
+                    near.blend(far, -S::ONE)
+                });
+                across_edge(first.blend(second, share(&outline, e)), e)
+            }
+            Span::Edge(e) => across_edge(hessian_along(direction), e),
+            Span::Face => Symmetric::ZERO,
+        };
+        Self { outline, span, hessian }
+    }
+}
+
+/// How far along an edge the point of contact is, which is at zero: as a part of its length.
+fn share<S: Scalar>(outline: &Outline<S>, e: Across<S>) -> S {
+    let [from, to] = [&outline.corners[0], &outline.corners[outline.corners.len() - 1]].map(|corner| dot(corner.at, e));
+    (-from / (to - from)).max(S::ZERO).min(S::ONE)
+}
+
+/// What of a Hessian is across a unit vector. Along the edge itself a support point is free.
+fn across_edge<S: Scalar>(hessian: Symmetric<S>, e: Across<S>) -> Symmetric<S> {
+    let f = (-e.1, e.0);
+    let bend = dot(f, hessian.times(f));
+    Symmetric { a: bend * f.0 * f.0, b: bend * f.0 * f.1, d: bend * f.1 * f.1 }
+}
+
+/// Whether the support points of a body along directions near that of the other are where its Hessian says. They are not where a
+/// shape does not say how it curves, or which face it shows.
+fn is_foretold<B: SupportMap + ?Sized>(
+    body: &B,
+    core: &Core<B::Vector>,
+    direction: B::Vector,
+    at: &ClosestFeatures<B::Vector>,
+    index: usize,
+    turn: ScalarOf<B>,
+) -> bool {
+    if at.spans[index] != Span::Vertex {
+        return true;
+    }
+    let [e, f] = at.across;
+    let per_unit = reciprocal_of_power(at.unit);
+    let hessian = at.hessians[index].plus(-core.radius * per_unit);
+    let support = |direction| body.core_support(direction, &mut Hint::new()) * per_unit;
+    let point = support(direction);
+    let rounding = ScalarOf::<B>::from_f64(64.0) * ScalarOf::<B>::EPSILON;
+    let rows = [(e, (hessian.a, hessian.b)), (f, (hessian.b, hessian.d))];
+    rows.into_iter().take(B::Vector::DIM - 1).all(|(change, row)| {
+        let foretold = (e * row.0 + f * row.1) * turn;
+        [turn, -turn].into_iter().all(|turn| {
+            let moved = support(direction + change * turn) - point;
+            // Along the direction it moves by the square of the turn.
+            let across = moved - direction * moved.dot(direction);
+            let foretold = if turn > Scalar::ZERO { foretold } else { -foretold };
+            let slack = foretold.length() * ScalarOf::<B>::from_f64(SURPRISE) + rounding;
+            (across - foretold).length() <= slack
+        })
+    })
+}

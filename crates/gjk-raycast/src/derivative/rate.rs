@@ -1,0 +1,83 @@
+//! One-sided derivatives, along a motion.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+use smallvec::SmallVec;
+
+use super::ClosestFeatures;
+use crate::contact::clip;
+use crate::{RigidMotion, Trajectory};
+
+impl<V: Vector> ClosestFeatures<V> {
+    /// How fast the signed distance changes as the bodies begin to move: its one-sided derivative, exact at parallel faces and
+    /// edges too. `None` where the normal is [not the only one](Self::is_normal_unique).
+    ///
+    /// The signed distance falls as fast as the fastest of all closest points come nearer. With `M` the overlap of both features in
+    /// the plane across the normal `n` (Danskin, *The theory of max-min, with applications*, 1966),
+    ///
+    /// > ds/dt = min { n·(v_A(p) − v_B(p)) : p ∈ M },
+    ///
+    /// and since velocities are linear in `p`, the least is at a corner of `M`. In overlap, where the distance is the most over all
+    /// normals of the least over all points, the normal turns to meet the condition that both points of a pair are in `M`, which is
+    /// the dual of the same linear program.
+    ///
+    /// ```
+    /// use convex_support::{Cuboid, Posed, glam::DVec2};
+    /// use gjk_raycast::{RigidMotion, SignedDistanceOptions, Smoothness, signed_distance};
+    ///
+    /// // A box of width 2 lies 1 above a longer one, parallel to it. However it begins to turn, one of its corners comes nearer.
+    /// let (a, b) = (Posed::translated(Cuboid::new(DVec2::ONE)?, DVec2::new(0.0, 3.0))?, Cuboid::new(DVec2::new(5.0, 1.0))?);
+    /// let features = signed_distance(&a, &b, SignedDistanceOptions::default()).closest_features(&a, &b);
+    /// assert_eq!(features.smoothness(), Smoothness::Edge);
+    /// for turn in [1.0, -1.0] {
+    ///     let turning = RigidMotion::rotation(turn, DVec2::new(0.0, 3.0));
+    ///     assert_eq!(features.rate(turning, RigidMotion::default()), Some(-1.0));
+    /// }
+    /// # Ok::<(), convex_support::InvalidShape>(())
+    /// ```
+    #[must_use]
+    pub fn rate(&self, motion_a: RigidMotion<V>, motion_b: RigidMotion<V>) -> Option<V::Scalar> {
+        if !self.is_normal_unique() {
+            return None;
+        }
+        Some(self.least(|p| self.normal.dot(velocity(motion_a, p) - velocity(motion_b, p))))
+    }
+
+    /// How much later the bodies touch as their poses begin to change, where they touch while they move: the one-sided derivative
+    /// of the time, `min −n·(δa − δb)/(n·w)` over the overlap of both features. Displacements and motions are those at contact.
+    pub(super) fn delay(&self, change: impl Fn(V) -> V, velocity: impl Fn(V) -> V) -> Option<V::Scalar> {
+        if !self.is_normal_unique() {
+            return None;
+        }
+        let closing = |p| -self.normal.dot(velocity(p));
+        let is_closing = self.corners().iter().all(|&p| closing(p) > V::Scalar::ZERO);
+        is_closing.then(|| self.least(|p| self.normal.dot(change(p)) / closing(p)))
+    }
+
+    /// The least value at a corner of the overlap.
+    fn least(&self, value: impl Fn(V) -> V::Scalar) -> V::Scalar {
+        self.corners().iter().map(|&p| value(p)).fold(V::Scalar::infinity(), V::Scalar::min)
+    }
+
+    /// The corners of the overlap of both features in the plane half-way between them, in the world.
+    fn corners(&self) -> SmallVec<[V; 32]> {
+        let [of_a, of_b] = &self.outlines;
+        if self.are_points_unique() {
+            let half = V::Scalar::from_f64(0.5);
+            return SmallVec::from_slice(&[self.points[0] * half + self.points[1] * half]);
+        }
+        // A segment is clipped by a polygon.
+        let overlap = if of_a.corners.len() > of_b.corners.len() { clip(of_b, of_a) } else { clip(of_a, of_b) };
+        let [e, f] = self.across;
+        let place = |(x, y): (V::Scalar, V::Scalar)| self.middle + (e * x + f * y) * self.unit;
+        let mut corners: SmallVec<[V; 32]> = overlap.iter().map(|corner| place(corner.at)).collect();
+        if corners.is_empty() {
+            corners.push(self.middle);
+        }
+        corners
+    }
+}
+
+fn velocity<V: Vector>(motion: RigidMotion<V>, point: V) -> V {
+    motion.velocity(V::Scalar::ZERO, point)
+}

@@ -1,0 +1,78 @@
+//! Whether an answer changes smoothly.
+
+use convex_support::{Scalar, Vector};
+
+use super::ClosestFeatures;
+use super::span::{Joint, Span};
+use crate::symmetric::{Symmetric, dot};
+
+/// Whether an answer is differentiable by the poses of both bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Smoothness {
+    /// The normal and the closest points are the only ones. They change continuously, and the gradient is the derivative.
+    Smooth,
+    /// There are several, as between parallel faces or edges, where a vertex touches a vertex, or where two ways out are equally
+    /// short. The gradient is one of several one-sided ones.
+    Edge,
+}
+
+impl<V: Vector> ClosestFeatures<V> {
+    /// Whether the answer changes smoothly with the poses of both bodies, as far as rounding can tell: features that are parallel to
+    /// within what the normal may be wrong by are an [`Edge`](Smoothness::Edge).
+    #[must_use]
+    pub fn smoothness(&self) -> Smoothness {
+        if self.is_normal_unique() && self.are_points_unique() { Smoothness::Smooth } else { Smoothness::Edge }
+    }
+
+    /// Whether the closest points are the only ones along the normal: not where a face is parallel to a face or an edge, or an edge
+    /// to an edge.
+    #[must_use]
+    pub fn are_points_unique(&self) -> bool {
+        self.joint().is_some()
+    }
+
+    /// Whether the normal is the only one: then the answer is differentiable by translations at least. So it is wherever the bodies
+    /// are apart; not where a vertex touches a vertex or an edge, or where several ways out are equally short.
+    #[must_use]
+    pub fn is_normal_unique(&self) -> bool {
+        let stiffness = self.stiffness();
+        let least = V::Scalar::EPSILON * V::Scalar::from_f64(64.0);
+        let is_stiff = |e| dot(e, stiffness.times(e)) > least;
+        let is_held = match self.free() {
+            Free::Nothing => true,
+            Free::Along(e) => is_stiff(e),
+            Free::All if V::DIM == 2 => stiffness.a > least,
+            Free::All => least_eigenvalue(stiffness) > least,
+        };
+        is_held && !self.is_tied && self.points.iter().all(|point| point.is_finite())
+    }
+
+    /// In which directions the normal could turn without leaving an edge or a face of either body.
+    fn free(&self) -> Free<V::Scalar> {
+        let across = |(x, y): (V::Scalar, V::Scalar)| if V::DIM == 2 { Free::Nothing } else { Free::Along((-y, x)) };
+        match (self.joint(), self.spans) {
+            (Some(Joint::None), _) => Free::All,
+            (Some(Joint::Edge(_, e)), _) => across(e),
+            (Some(Joint::Face(_) | Joint::Crossed(_)), _) => Free::Nothing,
+            // Parallel edges.
+            (None, [Span::Edge(e), Span::Edge(_)]) => across(e),
+            (None, _) => Free::Nothing,
+        }
+    }
+}
+
+/// Directions across the normal.
+enum Free<S> {
+    Nothing,
+    Along((S, S)),
+    All,
+}
+
+/// The least eigenvalue, without a sum of squares.
+fn least_eigenvalue<S: Scalar>(matrix: Symmetric<S>) -> S {
+    let half = S::from_f64(0.5);
+    let (mean, difference) = ((matrix.a + matrix.d) * half, (matrix.a - matrix.d) * half);
+    let greatest = mean + difference.hypot(matrix.b);
+    // The product of both is the determinant.
+    if greatest > S::ZERO { matrix.determinant() / greatest } else { mean - difference.hypot(matrix.b) }
+}

@@ -1,0 +1,258 @@
+//! How the closest points and the normal move with the bodies.
+//!
+//! At the closest points `a` and `b` the bodies support a plane across the normal `n`, and `a − b = s·n`. As they move, that stays so.
+//! With `v_A` and `v_B` the velocities of the material points there, `H_A` and `H_B` the Hessians of the support values along `∓n`, and
+//! `ω_A`, `ω_B` the turns, a support point moves with its body, and along it as the normal turns against the body:
+//!
+//! > a′ = v_A − H_A·(n′ − ω_A × n),   b′ = v_B + H_B·(n′ − ω_B × n),   a′ − b′ = s′·n + s·n′.
+//!
+//! Across the normal that is a linear system for `n′`,
+//!
+//! > (H_A + H_B + s)·n′ = v_A − v_B + H_A·(ω_A × n) + H_B·(ω_B × n).
+//!
+//! On an edge of a body, along the unit vector `e`, the support point is free, and the normal stays across the edge in its stead:
+//!
+//! > a′ = … + λ·e,   e·(n′ − ω_A × n) = 0.
+//!
+//! An edge so takes one unknown of `n′` and gives `λ`; a face, or two edges that cross, take both.
+
+use convex_support::{AngularVelocity as _, Scalar, Vector};
+
+use super::ClosestFeatures;
+use super::span::{Joint, Side};
+use crate::symmetric::{Across, Symmetric, cross, dot};
+use crate::{RigidMotion, Trajectory};
+
+/// The velocities of the closest points and of the normal between them, as bodies move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub struct ClosestVelocities<V: Vector> {
+    /// The rate at which the signed distance changes.
+    pub signed_distance: V::Scalar,
+    /// That of the unit normal, which it is across.
+    pub normal: V,
+    /// The velocity of the closest point of `a`: of the place, not of the point of the body that is there.
+    pub point_a: V,
+    /// The velocity of the closest point of `b`.
+    pub point_b: V,
+}
+
+impl<V: Vector> ClosestFeatures<V> {
+    /// How the signed distance, the normal and the closest points change as the bodies begin to move: their derivatives.
+    ///
+    /// `None` at an [edge](crate::Smoothness::Edge), and where the shapes do not say how they curve: where support points nearby are not
+    /// where [`SupportMap::core_support_hessian`](convex_support::SupportMap::core_support_hessian) foretells them.
+    ///
+    /// ```
+    /// use convex_support::{Ball, Posed, glam::DVec3};
+    /// use gjk_raycast::{RigidMotion, SignedDistanceOptions, signed_distance};
+    ///
+    /// // A ball passes another at a distance of 4 between their centres.
+    /// let (a, b) = (Posed::translated(Ball::new(1.0)?, DVec3::Y * 4.0)?, Ball::new(2.0)?);
+    /// let features = signed_distance(&a, &b, SignedDistanceOptions::default()).closest_features(&a, &b);
+    /// let passing = RigidMotion::translation(DVec3::X);
+    /// let velocities = features.velocities(passing, RigidMotion::default()).expect("balls are smooth");
+    /// assert_eq!(velocities.signed_distance, 0.0);
+    /// assert!((velocities.normal - DVec3::X / 4.0).length() < 1e-15); // an arc of radius 4
+    /// assert!((velocities.point_b - DVec3::X / 2.0).length() < 1e-15); // half-way to the centre
+    /// # Ok::<(), convex_support::InvalidShape>(())
+    /// ```
+    #[must_use]
+    pub fn velocities(&self, motion_a: RigidMotion<V>, motion_b: RigidMotion<V>) -> Option<ClosestVelocities<V>> {
+        let solver = self.solver()?;
+        let moved = solver.moved(Motions::of(self, motion_a, motion_b));
+        Some(ClosestVelocities {
+            signed_distance: moved.signed_distance,
+            normal: moved.normal,
+            point_a: moved.points[0],
+            point_b: moved.points[1],
+        })
+    }
+
+    /// What answers how everything moves, if anything does.
+    pub(super) fn solver(&self) -> Option<Solver<'_, V>> {
+        if !self.is_foretold || !self.is_normal_unique() {
+            return None;
+        }
+        Some(Solver { at: self, stiffness: self.stiffness(), joint: self.joint()? })
+    }
+
+    /// A step of Newton's method for the normal and the points: that which would be made if the bodies were moved so that the closest
+    /// points, now `r` off across the normal, are opposite to each other.
+    pub(super) fn newton_step(&self, radii: [V::Scalar; 2]) -> Option<NewtonStep<V>> {
+        let solver = self.solver()?;
+        let [a, b] = [0, 1].map(|i| self.outlines[i].corners[0]);
+        let turns = [0, 1].map(|i| self.spans[i].turn(&self.outlines[i]));
+        let (change, [slide_a, slide_b]) = solver.solved((a.at.0 - b.at.0, a.at.1 - b.at.1), turns);
+        let place = |at, height: V::Scalar| self.middle + (self.out_of_plane(at) + self.normal * height) * self.unit;
+        let point_a = place(sum(a.at, slide_a), a.height) - self.normal * radii[0];
+        let point_b = place(sum(b.at, slide_b), b.height) + self.normal * radii[1];
+        let signed_distance = a.height - b.height - (radii[0] + radii[1]) / self.unit;
+        Some(NewtonStep { turn: self.out_of_plane(change), points: [point_a, point_b], signed_distance })
+    }
+
+    /// The coordinates of a vector across the normal.
+    fn in_plane(&self, v: V) -> Across<V::Scalar> {
+        let [e, f] = self.across;
+        (e.dot(v), f.dot(v))
+    }
+
+    fn out_of_plane(&self, (x, y): Across<V::Scalar>) -> V {
+        let [e, f] = self.across;
+        e * x + f * y
+    }
+}
+
+/// Where the normal and the closest points are, to second order.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NewtonStep<V: Vector> {
+    pub(super) turn: V,
+    /// At the normal before the step.
+    pub(super) points: [V; 2],
+    /// Along that normal, in the unit.
+    pub(super) signed_distance: V::Scalar,
+}
+
+/// Closest features, with what is solved for every motion.
+pub(super) struct Solver<'f, V: Vector> {
+    pub(super) at: &'f ClosestFeatures<V>,
+    stiffness: Symmetric<V::Scalar>,
+    joint: Joint<V::Scalar>,
+}
+
+/// What of two motions matters: the velocities of the material points that are closest, and how the bodies turn the normal.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motions<V> {
+    pub(super) velocities: [V; 2],
+    pub(super) turns: [V; 2],
+}
+
+impl<V: Vector> Motions<V> {
+    fn of(at: &ClosestFeatures<V>, motion_a: RigidMotion<V>, motion_b: RigidMotion<V>) -> Self {
+        let zero = V::Scalar::ZERO;
+        let turn = |motion: RigidMotion<V>| motion.angular_velocity.cross_matrix() * at.normal;
+        Self {
+            velocities: [motion_a.velocity(zero, at.points[0]), motion_b.velocity(zero, at.points[1])],
+            turns: [turn(motion_a), turn(motion_b)],
+        }
+    }
+}
+
+/// How everything moves.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moved<V: Vector> {
+    pub(super) signed_distance: V::Scalar,
+    pub(super) normal: V,
+    pub(super) points: [V; 2],
+}
+
+impl<V: Vector> Solver<'_, V> {
+    pub(super) fn moved(&self, motions: Motions<V>) -> Moved<V> {
+        let at = self.at;
+        let [hessian_a, hessian_b] = at.hessians;
+        let [turn_a, turn_b] = motions.turns.map(|turn| at.in_plane(turn));
+        let apart = motions.velocities[0] - motions.velocities[1];
+        let (x, y) = at.in_plane(apart / at.unit);
+        let (p, q) = (hessian_a.times(turn_a), hessian_b.times(turn_b));
+        let (change, [slide_a, slide_b]) = self.solved((x + p.0 + q.0, y + p.1 + q.1), [turn_a, turn_b]);
+        let against = |turn: Across<V::Scalar>| (change.0 - turn.0, change.1 - turn.1);
+        let shift_a = sum(negative(hessian_a.times(against(turn_a))), slide_a);
+        let shift_b = sum(hessian_b.times(against(turn_b)), slide_b);
+        Moved {
+            signed_distance: at.normal.dot(apart),
+            normal: at.out_of_plane(change),
+            points: [
+                motions.velocities[0] + at.out_of_plane(shift_a) * at.unit,
+                motions.velocities[1] + at.out_of_plane(shift_b) * at.unit,
+            ],
+        }
+    }
+
+    /// The change of the normal, and how the points slide along edges or faces of their bodies: with `K` the stiffness and `g = K·n′ − r`,
+    /// the slide of `a` less that of `b` is `g`.
+    fn solved(&self, r: Across<V::Scalar>, turns: [Across<V::Scalar>; 2]) -> Solved<V::Scalar> {
+        let zero = (V::Scalar::ZERO, V::Scalar::ZERO);
+        let rest = |change| {
+            let k = self.stiffness.times(change);
+            (k.0 - r.0, k.1 - r.1)
+        };
+        match self.joint {
+            Joint::None => (self.soft(r), [zero; 2]),
+            Joint::Edge(side, e) => {
+                let held = dot(e, turns[side as usize]);
+                let change = self.held_along(e, held, r);
+                let along = dot(e, rest(change));
+                (change, side.slides(scaled(e, along)))
+            }
+            Joint::Face(side) => {
+                let change = turns[side as usize];
+                (change, side.slides(rest(change)))
+            }
+            Joint::Crossed([e, f]) => {
+                // e·n′ and f·n′ are known, and g = λe − μf.
+                let (along_e, along_f) = (dot(e, turns[0]), dot(f, turns[1]));
+                let area = cross(e, f);
+                let change = ((along_e * f.1 - along_f * e.1) / area, (along_f * e.0 - along_e * f.0) / area);
+                let g = rest(change);
+                (change, [scaled(e, cross(g, f) / area), scaled(f, cross(g, e) / area)])
+            }
+        }
+    }
+
+    /// `K⁻¹·r`, by elimination from the larger diagonal entry; in 2D there is one.
+    fn soft(&self, r: Across<V::Scalar>) -> Across<V::Scalar> {
+        let Symmetric { a, b, d } = self.stiffness;
+        if V::DIM == 2 {
+            return (r.0 / a, V::Scalar::ZERO);
+        }
+        let eliminated = |a: V::Scalar, d: V::Scalar, (x, y): Across<V::Scalar>| {
+            let share = b / a;
+            let second = (y - share * x) / (d - share * b);
+            ((x - b * second) / a, second)
+        };
+        if a > d {
+            eliminated(a, d, r)
+        } else {
+            let (y, x) = eliminated(d, a, (r.1, r.0));
+            (x, y)
+        }
+    }
+
+    /// The change that is `held` along the unit vector `e`, and that meets `K·n′ = r` across it.
+    fn held_along(&self, e: Across<V::Scalar>, held: V::Scalar, r: Across<V::Scalar>) -> Across<V::Scalar> {
+        let along = scaled(e, held);
+        if V::DIM == 2 {
+            return along;
+        }
+        let f = (-e.1, e.0);
+        let pulled = self.stiffness.times(f);
+        let aside = (dot(f, r) - held * dot(e, pulled)) / dot(f, pulled);
+        sum(along, scaled(f, aside))
+    }
+}
+
+/// The change of the normal, and the slides of both points.
+type Solved<S> = (Across<S>, [Across<S>; 2]);
+
+impl Side {
+    /// The slides of both points, of which only this side's slides: by `g`, or for `b` by `−g`.
+    fn slides<S: Scalar>(self, g: Across<S>) -> [Across<S>; 2] {
+        let zero = (S::ZERO, S::ZERO);
+        match self {
+            Self::A => [g, zero],
+            Self::B => [zero, negative(g)],
+        }
+    }
+}
+
+fn scaled<S: Scalar>(x: Across<S>, factor: S) -> Across<S> {
+    (x.0 * factor, x.1 * factor)
+}
+
+fn sum<S: Scalar>(x: Across<S>, y: Across<S>) -> Across<S> {
+    (x.0 + y.0, x.1 + y.1)
+}
+
+fn negative<S: Scalar>(x: Across<S>) -> Across<S> {
+    (-x.0, -x.1)
+}

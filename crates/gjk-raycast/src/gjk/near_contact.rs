@@ -1,0 +1,325 @@
+//! Bodies no farther apart than a few errors: looked at once more, as closely as their numbers allow.
+//!
+//! The errors that a query knows at hand are those of the largest number in it, though the gap of a box over a floor has nothing to do
+//! with how wide the floor is. Here the plane between the bodies is evaluated once more without rounding, and what the shapes say of
+//! theirs counts coordinate by coordinate, along the normal alone.
+//!
+//! The search begins at the offset of the origins, whatever axis the query began at. So all queries about one pair decide alike.
+
+use convex_support::numerics::bound::{raised, raised_vector, roundings};
+use convex_support::numerics::twofold::{dot_minus, lost_in_sum, two_sum};
+use convex_support::{Rounding, Scalar, SupportMap, Vector};
+use num_traits::Float;
+
+use super::{End, Frame, Gjk, GjkOptions, gjk};
+use crate::SubAlgorithm;
+use crate::body::{Body as _, Pair, PointPair};
+use crate::simplex::{MAX_POINTS, cross};
+use crate::unit::moderate;
+
+/// How many errors apart, or in one another, bodies are looked at once more.
+const NEAR: f64 = 16.0;
+
+/// Whether bodies may be nearer to contact than a few errors, as a search has left them.
+#[inline(always)]
+pub(crate) fn is_near_contact<V: Vector, W: Copy + Default>(state: &mut Gjk<V, W>, frame: &Frame<V>) -> bool {
+    let near = frame.error * V::Scalar::from_f64(NEAR);
+    if state.simplex.points().len() > V::DIM {
+        // A simplex of full dimension has zero inside, perhaps by rounding.
+        return !is_around_zero(state.simplex.points(), near);
+    }
+    state.ensure_measured();
+    (state.length - frame.radius).abs() < near
+}
+
+/// A shape behind a pointer.
+pub(crate) type Shape<'s, V> = &'s dyn SupportMap<Vector = V>;
+
+/// What is known of bodies near contact; lengths in units of the frame, from body to body.
+pub(crate) struct NearContact<V: Vector> {
+    pub(crate) frame: Frame<V>,
+    pub(crate) state: Gjk<V, PointPair<V>>,
+    pub(crate) end: End,
+    /// The unit normal of the plane between the bodies, and how far apart they are along it, as it is measured.
+    pub(crate) normal: V,
+    pub(crate) gap: V::Scalar,
+    /// The bodies are apart by this much, certainly; negative where that is not known.
+    pub(crate) lower: V::Scalar,
+    /// Points of the bodies are no farther apart than this.
+    pub(crate) upper: V::Scalar,
+    /// Whether the bodies have points in common for certain: a simplex of points of their difference has zero inside.
+    pub(crate) overlaps_certainly: bool,
+}
+
+impl<V: Vector> NearContact<V> {
+    /// Whether the bodies are certainly apart.
+    pub(crate) fn is_separated(&self) -> bool {
+        self.lower > V::Scalar::ZERO
+    }
+
+    /// Whether they have a point in common, to the error it is known to; `None` where neither can be told.
+    pub(crate) fn overlap(&self) -> Option<bool> {
+        if self.is_separated() {
+            return Some(false);
+        }
+        let is_near = self.state.length - self.frame.radius <= self.frame.error;
+        let is_found = is_near || matches!(self.end, End::Overlap | End::Separated);
+        is_found.then_some(true)
+    }
+}
+
+/// Looks at bodies near contact once more; `None` where no plane can be found.
+///
+/// The bodies are set up anew, so that a query that does not come here keeps what it needs in registers; and they are asked behind
+/// pointers, so that what is rarely needed is compiled once.
+#[cold]
+#[inline(never)]
+pub(crate) fn near_contact<V: Vector>(
+    a: Shape<'_, V>,
+    b: Shape<'_, V>,
+    max_iterations: usize,
+) -> Option<NearContact<V>> {
+    let mut pair = Pair::new(a, b);
+    let offset = pair.core_a.origin - pair.core_b.origin;
+    let size = pair.size(offset);
+    let frame = Frame::new(&mut pair, offset, size);
+    let (state, end) = look_closely(&mut pair, frame, offset, size, max_iterations);
+
+    let seen = Seen::new(&pair, &frame);
+    let mut pairs = [PointPair::default(); MAX_POINTS];
+    for (corner, (_, found)) in pairs.iter_mut().zip(state.simplex.weighted()) {
+        *corner = found;
+    }
+    let faces = across_faces(&pairs[..state.simplex.points().len()], state.axis);
+    let planes = [state.axis, state.normal].into_iter().chain(faces).filter_map(|n| seen.plane(&mut pair, n));
+    let Plane { n, level, error } =
+        planes.reduce(|best, plane| if plane.level - plane.error > best.level - best.error { plane } else { best })?;
+    let gap = level - frame.radius;
+    let upper = seen.length(&state).min(seen.length_at_pierced(&state, n)) - frame.radius;
+    let upper = upper + roundings(2.0, frame.radius);
+    let overlaps_certainly = is_around_zero(state.simplex.points(), seen.error_of_corners());
+    let (lower, upper) = (gap - error, upper.max(gap - error));
+    Some(NearContact { frame, state, end, normal: n, gap, lower, upper, overlaps_certainly })
+}
+
+/// GJK from the offset of the origins, in the world's unit, to a sixteenth of the noise.
+fn look_closely<A, B>(
+    pair: &mut Pair<'_, A, B>,
+    frame: Frame<A::Vector>,
+    offset: A::Vector,
+    size: <A::Vector as Vector>::Scalar,
+    max_iterations: usize,
+) -> (Gjk<A::Vector, PointPair<A::Vector>>, End)
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let frame = Frame { noise: frame.noise * Scalar::from_f64(0.0625), ..frame };
+    let first = moderate(frame.offset).unwrap_or_else(|| Vector::axis(0));
+    let mut state = Gjk::new(first);
+    let closest = pair.closest_points(offset, size);
+    if closest.is_some_and(|points| state.begin_at(points.a - points.b + frame.offset, points, &frame)) {
+        // Where they meet, the vector from one to the other is no direction to look along.
+        state = Gjk::new(first);
+    }
+    let options = GjkOptions {
+        first: state.normal,
+        limit: Float::infinity(),
+        tolerance: Scalar::ZERO,
+        closest_points: true,
+        max_iterations,
+        sub_algorithm: SubAlgorithm::Regions,
+    };
+    let end = gjk(&mut state, pair, frame, options, None, |_| {});
+    state.ensure_measured();
+    (state, end)
+}
+
+/// A plane that the difference of the cores lies beyond, across a unit vector.
+struct Plane<V: Vector> {
+    n: V,
+    /// How far it is from zero, and what that is wrong by at most.
+    level: V::Scalar,
+    error: V::Scalar,
+}
+
+/// What positions are computed from, coordinate by coordinate, in units of the frame.
+struct Seen<V: Vector> {
+    offset: V,
+    /// What the offset lost.
+    lost: V,
+    radius: V::Scalar,
+    /// What the points of the difference are made of, at most.
+    extent: V,
+    /// What the support points of both shapes are wrong by, and how long that is.
+    error: V,
+    error_length: V::Scalar,
+}
+
+impl<V: Vector> Seen<V> {
+    fn new<A, B>(pair: &Pair<'_, A, B>, frame: &Frame<V>) -> Self
+    where
+        A: SupportMap<Vector = V> + ?Sized,
+        B: SupportMap<Vector = V> + ?Sized,
+    {
+        let per_unit = frame.per_unit;
+        let (a, b): (Rounding<V>, Rounding<V>) = (pair.a.rounding(), pair.b.rounding());
+        Self {
+            offset: frame.offset,
+            lost: lost_in_sum(pair.core_a.origin, -pair.core_b.origin) * per_unit,
+            radius: frame.radius,
+            extent: (a.extent + b.extent) * per_unit + frame.offset.abs(),
+            error: raised_vector((a.error + b.error) * per_unit),
+            error_length: raised((a.error_length + b.error_length).min(pair.error()) * per_unit),
+        }
+    }
+
+    /// What points of the difference are wrong by along a unit vector.
+    fn error_along(&self, n: V) -> V::Scalar {
+        raised(n.abs().dot(self.error)).min(self.error_length)
+    }
+
+    /// `n·(a − b + offset)`, rounded once: the sums of every coordinate are exact, and the products are added up in twice the precision.
+    fn level(&self, n: V, PointPair { a, b }: PointPair<V>) -> V::Scalar {
+        let parts = (0..V::DIM).flat_map(|i| {
+            let [apart, lost] = two_sum(a.get(i), -b.get(i));
+            let [sum, lost_again] = two_sum(apart, self.offset.get(i));
+            [sum, lost, lost_again, self.lost.get(i)].map(|part| (n.get(i), part))
+        });
+        dot_minus(parts, V::Scalar::ZERO)
+    }
+
+    /// The plane across `n` that supports the difference.
+    fn plane<A, B>(&self, pair: &mut Pair<'_, A, B>, n: V) -> Option<Plane<V>>
+    where
+        A: SupportMap<Vector = V> + ?Sized,
+        B: SupportMap<Vector = V> + ?Sized,
+    {
+        let n = n.unit()?;
+        let level = self.level(n, pair.support(-n).1);
+        // The unit vector's length is right to 6 roundings; the sum of the products is rounded once, and is right to 1024ε² of what
+        // is added up.
+        let squared = V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(1024.0);
+        let rounded = roundings(8.0, level.abs()) + roundings(4.0, self.radius) + squared * n.abs().dot(self.extent);
+        level.is_finite().then(|| Plane { n, level, error: raised(self.error_along(n) + rounded) })
+    }
+
+    /// A bound on the length of the shortest vector found.
+    ///
+    /// With `x = Σ wᵢ·(aᵢ − bᵢ) + offset` and `u` the unit vector along it, the true vector is `x` but for some `e`. Along `u` that adds
+    /// `|u|·|e|`, taken coordinate by coordinate, and across it hardly anything: the length is at most `√((|x| + |u|·|e|)² + |e|²)`.
+    fn length(&self, state: &Gjk<V, PointPair<V>>) -> V::Scalar {
+        let zero = V::Scalar::ZERO;
+        let (mut sum, mut x) = (zero, V::ZERO);
+        for (weight, PointPair { a, b }) in state.simplex.weighted() {
+            sum += weight;
+            x += (a - b) * weight;
+        }
+        let x = x / sum + self.offset;
+        // Differences, products, sums, what the weights sum up to, and the quotient: 11 roundings.
+        let rounded = V::from_fn(|i| roundings(11.0, self.extent.get(i)));
+        let error = self.error + rounded + self.lost.abs();
+        let across = raised(error.norm().min(self.error_length + (rounded + self.lost.abs()).norm()));
+        let along = x.unit().map_or(across, |u| raised(u.abs().dot(error)));
+        let length = raised((x.norm() + along).hypot(across));
+        if length.is_finite() { length } else { Float::infinity() }
+    }
+
+    /// What the corners of a simplex are wrong by at most, twice, and a few roundings.
+    fn error_of_corners(&self) -> V::Scalar {
+        self.error_length * V::Scalar::from_f64(2.0) + roundings(16.0, self.extent.norm())
+    }
+
+    /// A bound on the distance of the bodies from a face of the difference that the line along the unit vector `n` through zero pierces,
+    /// for certain: where it does, no corner of the face is nearer along `n`.
+    ///
+    /// Along `n` the face is seen in the plane of two coordinates, the ones where `n` is shorter. There zero is within a triangle where
+    /// the areas with its sides are all of one sign, by more than they may be wrong; in the plane, within a segment where its ends are
+    /// on two sides.
+    fn length_at_pierced(&self, state: &Gjk<V, PointPair<V>>, n: V) -> V::Scalar {
+        let number = V::Scalar::from_f64;
+        let points = state.simplex.points();
+        if points.len() != V::DIM {
+            return Float::infinity();
+        }
+        let longest = (0..V::DIM).reduce(|k, i| if n.get(i).abs() > n.get(k).abs() { i } else { k }).unwrap_or(0);
+        let seen = |p: V| {
+            let part = p.get(longest) / n.get(longest);
+            let mut others = (0..V::DIM).filter(|&i| i != longest).map(|i| p.get(i) - n.get(i) * part);
+            [others.next().unwrap_or_default(), others.next().unwrap_or_default()]
+        };
+        let mut corners = [[V::Scalar::ZERO; 2]; 3];
+        for (corner, &point) in corners.iter_mut().zip(points) {
+            *corner = seen(point);
+        }
+        let size = corners.iter().flatten().fold(V::Scalar::ZERO, |size, x| size.max(x.abs()));
+        // A coordinate loses two errors of the points, since `n` is no longer anywhere.
+        let wrong = self.error_of_corners();
+        let is_inside = if V::DIM == 2 {
+            let [p, q] = [corners[0][0], corners[1][0]];
+            p.min(q) < -wrong && p.max(q) > wrong
+        } else {
+            let area = |i: usize, j: usize| corners[i][0] * corners[j][1] - corners[i][1] * corners[j][0];
+            let areas = [area(0, 1), area(1, 2), area(2, 0)];
+            let wrong = (size + wrong) * wrong * number(6.0);
+            areas.iter().all(|&a| a > wrong) || areas.iter().all(|&a| a < -wrong)
+        };
+        if !is_inside {
+            return Float::infinity();
+        }
+        let farthest =
+            state.simplex.weighted().map(|(_, pair)| self.level(n, pair)).fold(V::Scalar::ZERO, V::Scalar::max);
+        raised(farthest + self.error_along(n) + roundings(8.0, farthest))
+    }
+}
+
+/// Whether zero is in the simplex of some points, even if each is wrong by an error.
+///
+/// It is where it has the same orientation with each face as the corner opposite. That is the sign of a determinant, which an error
+/// of the corners changes by no more than its product with the squared size, once for each corner.
+fn is_around_zero<V: Vector>(points: &[V], error: V::Scalar) -> bool {
+    // The squared size.
+    let squared = points.iter().fold(error * error, |squared, p| squared.max(p.length_squared()));
+    let wrong = error * V::Scalar::from_f64(4.5);
+    match *points {
+        [p, q, r] if V::DIM == 2 => {
+            let area = |p: V, q: V| p.get(0) * q.get(1) - p.get(1) * q.get(0);
+            let areas = [area(p, q), area(q, r), area(r, p)];
+            let wrong = wrong * squared.sqrt();
+            areas.iter().all(|&a| a > wrong) || areas.iter().all(|&a| a < -wrong)
+        }
+        [p, q, r, s] => {
+            let (pq, rs) = (cross(p, q), cross(r, s));
+            let volumes = [q.dot(rs), -p.dot(rs), s.dot(pq), -r.dot(pq)];
+            let wrong = wrong * squared;
+            volumes.iter().all(|&v| v > wrong) || volumes.iter().all(|&v| v < -wrong)
+        }
+        _ => false,
+    }
+}
+
+/// Vectors across the faces that the points of a simplex span, both ways, as they follow from the points of both shapes: what is exact
+/// about their edges, as of boxes along the axes, stays so. Where the simplex is an edge in space, the one across it nearest to `axis`.
+fn across_faces<V: Vector>(pairs: &[PointPair<V>], axis: V) -> impl Iterator<Item = V> {
+    let edge = |from: PointPair<V>, to: PointPair<V>| (to.a - from.a) - (to.b - from.b);
+    let mut across = [V::ZERO; MAX_POINTS];
+    match *pairs {
+        [p, q] if V::DIM == 2 => across[0] = turned_right(edge(p, q)),
+        [p, q] => across[0] = cross(cross(edge(p, q), axis), edge(p, q)),
+        [p, q, r] if V::DIM == 2 => {
+            across = [edge(p, q), edge(q, r), edge(r, p), V::ZERO].map(turned_right);
+        }
+        [p, q, r] => across[0] = cross(edge(p, q), edge(p, r)),
+        [p, q, r, s] => {
+            let face = |a, b, c| cross(edge(a, b), edge(a, c));
+            across = [face(p, q, r), face(p, q, s), face(p, r, s), face(q, r, s)];
+        }
+        _ => {}
+    }
+    across.into_iter().flat_map(|n| [n, -n])
+}
+
+/// A vector of the plane turned by a right angle.
+fn turned_right<V: Vector>(v: V) -> V {
+    V::from_fn(|i| if i == 0 { v.get(1) } else { -v.get(0) })
+}

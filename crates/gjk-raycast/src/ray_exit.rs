@@ -1,0 +1,107 @@
+//! Where a ray leaves a shape.
+
+use convex_support::{Scalar, SupportMap, Vector};
+use num_traits::Float as _;
+
+use crate::body::Single;
+use crate::cast::{CastHit, LocalRay, cast};
+use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, ray_cast};
+
+/// The last point of a ray in a shape, with the normal there.
+///
+/// ```
+/// use convex_support::{Ball, Posed, glam::DVec3};
+/// use gjk_raycast::{Ray, RayCastOptions, ray_exit};
+///
+/// let planet = Posed::translated(Ball::new(2.0)?, DVec3::new(10.0, 0.0, 0.0))?;
+/// let ray = Ray { source: DVec3::ZERO, direction: DVec3::X };
+/// let exit = ray_exit(&planet, ray, RayCastOptions::default())?.outcome.hit().ok_or("it is in the way")?;
+/// assert_eq!((exit.lambda, exit.normal), (12.0, Some(DVec3::X)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// The line of the ray is cast from beyond the shape back to the source, and certified as [`ray_cast`] is. What that enters first, the
+/// ray leaves last.
+///
+/// - A ray that meets the shape nowhere between [`min_lambda`](RayCastOptions::min_lambda) and
+///   [`max_lambda`](RayCastOptions::max_lambda) is a miss.
+/// - A ray that ends in the shape is a hit at its end, with no normal.
+/// - The [`axis`](RayCastOptions::axis) of the options is a guess of the normal at the exit.
+///
+/// # Errors
+/// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+pub fn ray_exit<S: SupportMap + ?Sized>(
+    target: &S,
+    ray: Ray<S::Vector>,
+    options: RayCastOptions<S::Vector>,
+) -> Result<RayExit<S::Vector>, RayCastError> {
+    ray.check()?;
+    let mut exit = exit_of_line(target, ray, options);
+    let (begin, end) = (options.min_lambda.max(Scalar::ZERO), options.max_lambda);
+    let Outcome::Hit(hit) = exit.outcome else { return Ok(exit) };
+    if exit.upper < begin || end < begin {
+        return Ok(
+            RayExit { outcome: Outcome::Miss(Miss { axis: hit.normal.unwrap_or(ray.direction) }), ..exit }.missed()
+        );
+    }
+    if hit.lambda > end {
+        // The line leaves the shape after the ray has ended, which is in the shape if it meets it at all.
+        let entry = ray_cast(target, ray, RayCastOptions { axis: None, ..options })?;
+        exit.iterations += entry.iterations;
+        exit.status = entry.status;
+        return Ok(match entry.outcome {
+            Outcome::Hit(_) => {
+                let outcome = Outcome::Hit(RayHit { lambda: end, point: ray.at(end), normal: None });
+                RayExit { outcome, lower: end.min(exit.lower), upper: end, ..exit }
+            }
+            Outcome::Miss(miss) => RayExit { outcome: Outcome::Miss(miss), ..exit }.missed(),
+            Outcome::Undecided => RayExit {
+                outcome: Outcome::Undecided,
+                lower: -<S::Vector as Vector>::Scalar::infinity(),
+                upper: end,
+                ..exit
+            },
+        });
+    }
+    let lambda = hit.lambda.max(begin);
+    exit.outcome = Outcome::Hit(RayHit { lambda, point: ray.at(lambda), normal: hit.normal });
+    exit.lower = exit.lower.max(begin);
+    Ok(exit)
+}
+
+/// Where the whole line of the ray leaves a shape.
+fn exit_of_line<S: SupportMap + ?Sized>(
+    target: &S,
+    ray: Ray<S::Vector>,
+    options: RayCastOptions<S::Vector>,
+) -> RayExit<S::Vector> {
+    let infinity = <S::Vector as Vector>::Scalar::infinity();
+    let wanted = RayCastOptions { min_lambda: Scalar::ZERO, max_lambda: infinity, ..options };
+    let mut forward: Option<LocalRay<S::Vector>> = None;
+    let place = |ray: LocalRay<S::Vector>| {
+        forward = Some(ray);
+        ray.reversed()
+    };
+    let cast = cast(&mut Single::new(target), ray, Scalar::ZERO, place, wanted, |_| {});
+    let reverse = |lambda| forward.map_or(-infinity, |ray| ray.reverse(lambda));
+    let error = forward.map_or(infinity, |ray| ray.error_of_reverse());
+    let (lower, upper) = (reverse(cast.upper) - error, reverse(cast.lower) + error);
+    let answer =
+        RayExit { outcome: Outcome::Undecided, lower, upper, status: cast.status, iterations: cast.iterations };
+    match cast.outcome {
+        Outcome::Hit(CastHit { lambda, normal, .. }) => {
+            let lambda = reverse(lambda);
+            RayExit { outcome: Outcome::Hit(RayHit { lambda, point: ray.at(lambda), normal }), ..answer }
+        }
+        Outcome::Miss(miss) => RayExit { outcome: Outcome::Miss(miss), ..answer }.missed(),
+        Outcome::Undecided => answer,
+    }
+}
+
+impl<V: Vector> RayExit<V> {
+    /// With the bounds of a miss.
+    fn missed(self) -> Self {
+        let infinity = V::Scalar::infinity();
+        Self { lower: -infinity, upper: -infinity, ..self }
+    }
+}

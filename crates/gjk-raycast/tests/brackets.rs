@@ -1,0 +1,330 @@
+//! Brackets that hold the truth, whatever became of a shape on its way: nested poses, far origins, floors a thousand times as wide as
+//! what stands on them, starts within an ulp of contact.
+//!
+//! The same numbers in double precision are the truth of single precision: their rounding is a billion times smaller.
+
+mod common;
+
+use common::{Random, at, cuboid, s, v};
+use convex_support::glam::{DQuat, DVec3, Quat, Vec3A};
+use convex_support::{
+    Affine, Cone, Cylinder, Hull, Matrix, MinkowskiSum, Point, Polytope, Posed, Rotation, Scalar, SupportMap, Vector,
+    Vector3,
+};
+use gjk_raycast::{
+    DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions, Status, distance,
+    intersects, linear_cast, ray_cast,
+};
+
+const VALID: &str = "finite numbers and positive sizes";
+
+type Shape<V> = Box<dyn SupportMap<Vector = V>>;
+
+/// Numbers of single precision, so that both precisions build the same shapes.
+impl Random {
+    /// Uniform in −1 … 1.
+    fn signed(&mut self) -> f64 {
+        f64::from(self.number(-1.0, 1.0) as f32)
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        ((self.signed() + 1.0) * 0.5 * n as f64) as usize % n
+    }
+
+    fn vector(&mut self, size: f64) -> [f64; 3] {
+        [0; 3].map(|_| f64::from((self.signed() * size) as f32))
+    }
+
+    fn quaternion(&mut self) -> [f64; 4] {
+        [0; 4].map(|_| self.signed())
+    }
+}
+
+/// What a shape is built of, in either precision.
+#[derive(Clone, Debug)]
+enum Tree {
+    Cuboid([f64; 3]),
+    Cylinder([f64; 2]),
+    Cone([f64; 2]),
+    Points(Vec<[f64; 3]>),
+    Posed(Box<Self>, [f64; 4], [f64; 3]),
+    Affine(Box<Self>, [[f64; 3]; 3], [f64; 3]),
+    Sum(Box<Self>, Box<Self>),
+    Hull(Box<Self>, Box<Self>),
+}
+
+impl Tree {
+    fn leaf(random: &mut Random) -> Self {
+        let mut size = || f64::from((random.signed() * 0.5 + 0.75) as f32);
+        let sizes = [size(), size(), size()];
+        match random.below(4) {
+            0 => Self::Cuboid(sizes),
+            1 => Self::Cylinder([sizes[0], sizes[1]]),
+            2 => Self::Cone([sizes[0], sizes[1]]),
+            _ => Self::Points((0..8).map(|_| random.vector(1.0)).collect()),
+        }
+    }
+
+    /// Of a few levels, with origins up to `reach` away.
+    fn random(random: &mut Random, levels: usize, reach: f64) -> Self {
+        if levels == 0 {
+            return Self::leaf(random);
+        }
+        let inner = Box::new(Self::random(random, levels - 1, reach));
+        match random.below(6) {
+            0 => Self::Affine(inner, [0; 3].map(|_| random.vector(1.0)), random.vector(reach)),
+            1 => Self::Sum(inner, Box::new(Self::leaf(random))),
+            2 => Self::Hull(inner, Box::new(Self::leaf(random))),
+            _ => Self::Posed(inner, random.quaternion(), random.vector(reach)),
+        }
+    }
+
+    fn build<V: Vector3>(&self) -> Shape<V> {
+        match self {
+            Self::Cuboid(sizes) => Box::new(cuboid::<V>(*sizes)),
+            Self::Cylinder([h, r]) => Box::new(Cylinder::<V>::new(s::<V>(*h), s::<V>(*r)).expect(VALID)),
+            Self::Cone([h, r]) => Box::new(Cone::<V>::new(s::<V>(*h), s::<V>(*r)).expect(VALID)),
+            Self::Points(points) => Box::new(Polytope::new(points.iter().map(|&p| v::<V>(p))).expect(VALID)),
+            Self::Posed(inner, q, t) => {
+                let turn = V::Rotation::from_xyzw(q.map(V::Scalar::from_f64));
+                Box::new(Posed::new(inner.build::<V>(), turn, v(*t)).expect(VALID))
+            }
+            Self::Affine(inner, columns, t) => {
+                let matrix = V::Matrix::from_cols_fn(|j| v(columns[j]));
+                Box::new(Affine::new(inner.build::<V>(), matrix, v(*t)).expect(VALID))
+            }
+            Self::Sum(a, b) => Box::new(MinkowskiSum::new(a.build::<V>(), b.build::<V>())),
+            Self::Hull(a, b) => Box::new(Hull::new(a.build::<V>(), b.build::<V>())),
+        }
+    }
+
+    /// The same, moved back to near zero, but for some offset.
+    fn brought_back(self, offset: [f64; 3]) -> Self {
+        let origin = self.build::<DVec3>().core().origin;
+        let back = [0, 1, 2].map(|i| f64::from((offset[i] - origin.get(i)) as f32));
+        Self::Posed(Box::new(self), [0.0, 0.0, 0.0, 1.0], back)
+    }
+}
+
+fn composed(random: &mut Random, i: usize) -> Tree {
+    let reach = [1.0, 30.0, 1e3, 1e4][i % 4];
+    let levels = [1, 2, 3, 8, 40][i % 5];
+    let tree = Tree::random(random, levels.min(if i.is_multiple_of(3) { 40 } else { 3 }), reach);
+    tree.brought_back(random.vector(2.0))
+}
+
+/// Holds an answer in single precision against the truth, each of lower and upper bound and whether it is a miss: what is proved must be
+/// so. Where bodies graze within what is known of them, either may be said; whether that is so.
+fn holds(answer: ([f64; 2], bool), truth: ([f64; 2], bool), what: impl Fn() -> String) -> bool {
+    let (([lower, upper], misses), ([least, most], must_miss)) = (answer, truth);
+    assert!(must_miss || !misses, "a miss that is a hit: {}", what());
+    let grazes = must_miss && !misses;
+    assert!(grazes || lower <= most && least <= upper, "{lower:e} … {upper:e} is not {least:e} … {most:e}: {}", what());
+    grazes
+}
+
+/// Class A: of bodies that were posed far away, turned and moved back, the bracket in single precision holds what double precision says.
+#[test]
+fn composed_poses_keep_the_truth_in_the_bracket() {
+    let mut random = Random(1);
+    let mut grazes = 0;
+    for i in 0..4000 {
+        let (a, b) = (composed(&mut random, i), Tree::leaf(&mut random).brought_back(random.vector(2.0)));
+        let (direction, source, velocity) = (random.vector(1.0), random.vector(4.0), random.vector(1.0));
+        let what = || format!("{i}: {a:?} {b:?} {source:?} {direction:?} {velocity:?}");
+        let (fine, coarse) = ((a.build::<DVec3>(), b.build::<DVec3>()), (a.build::<Vec3A>(), b.build::<Vec3A>()));
+        holds(apart(&coarse.0, &coarse.1), apart(&fine.0, &fine.1), what);
+        let (ray, truth) = (cast::<Vec3A>(&coarse.0, source, direction), cast::<DVec3>(&fine.0, source, direction));
+        grazes += usize::from(holds(ray, truth, what));
+        let ends = [velocity, source];
+        grazes += usize::from(holds(sweep(&coarse.0, &coarse.1, ends), sweep(&fine.0, &fine.1, ends), what));
+    }
+    assert!(grazes < 400, "{grazes} hits that are misses");
+}
+
+fn apart<V: Vector>(a: &Shape<V>, b: &Shape<V>) -> ([f64; 2], bool) {
+    let answer = distance(a, b, DistanceOptions::default());
+    ([answer.lower, answer.upper].map(Scalar::as_f64), false)
+}
+
+fn cast<V: Vector>(target: &Shape<V>, source: [f64; 3], direction: [f64; 3]) -> ([f64; 2], bool) {
+    let ray = Ray { source: v(source), direction: v(direction) };
+    let answer = ray_cast(target, ray, RayCastOptions::default()).expect("a ray");
+    ([answer.lower, answer.upper].map(Scalar::as_f64), answer.outcome.is_miss())
+}
+
+fn sweep<V: Vector>(a: &Shape<V>, b: &Shape<V>, [va, vb]: [[f64; 3]; 2]) -> ([f64; 2], bool) {
+    let answer = linear_cast(a, b, motion(va, vb), LinearCastOptions::default()).expect("velocities");
+    ([answer.lower, answer.upper].map(Scalar::as_f64), answer.outcome.is_miss())
+}
+
+fn motion<V: Vector>(a: [f64; 3], b: [f64; 3]) -> Motion<V> {
+    Motion { velocity_a: v(a), velocity_b: v(b) }
+}
+
+/// Class B: a source outside is outside, however near.
+#[test]
+fn a_source_outside_is_outside() {
+    let ground = at(cuboid::<Vec3A>([1e6, 1.0, 1e6]), [0.0, -1.0, 0.0]);
+    let up = Ray { source: Vec3A::Y, direction: Vec3A::Y };
+    assert!(
+        ray_cast(&ground, up, RayCastOptions::default()).expect("a ray").outcome.is_miss(),
+        "a metre above the ground"
+    );
+
+    let mut random = Random(2);
+    let (mut misses, mut hits) = (0, 0);
+    for i in 0..800 {
+        let half = random.vector(1.0).map(|x| x.abs() + 0.25);
+        let body = cuboid::<DVec3>(half);
+        // Above the face, by one to eight ulps of the size.
+        let above = half[1] + (1 + i % 8) as f64 * f64::EPSILON;
+        let source = DVec3::new(half[0] * random.signed() * 0.9, above, half[2] * random.signed() * 0.9);
+        let direction = v::<DVec3>(random.vector(1.0));
+        let answer = ray_cast(&body, Ray { source, direction }, RayCastOptions::default()).expect("a ray");
+        let truth = (above - half[1]) / -direction.y;
+        match answer.outcome {
+            Outcome::Miss(_) => {
+                assert!(direction.y >= 0.0, "{answer:?} {source} {direction}");
+                misses += 1;
+            }
+            Outcome::Hit(hit) => {
+                assert!(direction.y < 0.0, "{answer:?} {source} {direction}");
+                assert!(answer.lower <= truth && truth <= answer.upper, "{answer:?} {truth:e} {source} {direction}");
+                assert!(hit.lambda > 0.0 && hit.normal.is_some(), "{answer:?} {source} {direction}");
+                hits += 1;
+            }
+            Outcome::Undecided => panic!("{answer:?} {source} {direction}"),
+        }
+    }
+    assert!(misses > 300 && hits > 300, "{misses} misses, {hits} hits");
+}
+
+/// Class D: whatever the axis and the order, `intersects` decides as `distance` does.
+#[test]
+fn intersects_agrees_with_distance() {
+    let mut random = Random(3);
+    let mut met = [0; 2];
+    for i in 0..4000 {
+        let (a, b) = (Tree::leaf(&mut random), Tree::leaf(&mut random));
+        let (turn_a, turn_b) = (random.quaternion(), random.quaternion());
+        let posed = |tree: &Tree, q, t| Tree::Posed(Box::new(tree.clone()), q, t).build::<DVec3>();
+        let fixed = posed(&a, turn_a, [0.0; 3]);
+        // Moved along the normal until the gap is that many errors.
+        let away = random.vector(1.0).map(|x| 4.0 * x.signum() + x);
+        let first = distance(&fixed, &posed(&b, turn_b, away), DistanceOptions::default());
+        let normal = first.normal.expect("apart");
+        let gap = (i % 13) as f64 * 4.0 * f64::EPSILON - 8.0 * f64::EPSILON;
+        let there = v::<DVec3>(away) + normal * (first.distance - gap);
+        let moved = posed(&b, turn_b, there.to_array());
+
+        let near = distance(&fixed, &moved, DistanceOptions::default());
+        met[usize::from(near.overlap)] += 1;
+        for axis in [None, Some(normal), Some(-normal), Some(v(random.vector(1.0))), Some(DVec3::Y)] {
+            let options = IntersectOptions::default();
+            let options = axis.map_or(options, |axis| options.with_axis(axis));
+            for found in [intersects(&fixed, &moved, options), intersects(&moved, &fixed, options)] {
+                let agrees = found.decided().is_none_or(|overlap| overlap == near.overlap);
+                assert!(
+                    agrees,
+                    "{i}: {found:?} with {axis:?}, but {near:?} of {a:?} {turn_a:?}, {b:?} {turn_b:?} at {there}"
+                );
+            }
+        }
+    }
+    assert!(met[0] > 500 && met[1] > 500, "{met:?}");
+}
+
+/// Class G: in single precision a box near a wide floor is as far from it as it is, with a normal and points.
+#[test]
+fn a_box_stands_near_a_wide_floor() {
+    let mut random = Random(4);
+    for half in [0.5, 50.0, 500.0, 5000.0] {
+        let floor = at(cuboid::<Vec3A>([half, 1.0, half]), [0.0, -1.0, 0.0]);
+        for gap in [1e-5, 1e-4, 1e-3] {
+            for _ in 0..30 {
+                let height = (0.5 + gap) as f32;
+                let place =
+                    Vec3A::new((random.signed() * half * 0.5) as f32, height, (random.signed() * half * 0.5) as f32);
+                let turn = Quat::from_xyzw(0.0, random.signed() as f32, 0.0, 1.0);
+                for parcel in [
+                    Posed::translated(cuboid::<Vec3A>([0.5; 3]), place).expect(VALID),
+                    Posed::new(cuboid::<Vec3A>([0.5; 3]), turn, place).expect(VALID),
+                ] {
+                    let answer = distance(&parcel, &floor, DistanceOptions::default());
+                    let truth = f64::from(height) - 0.5;
+                    let what = format!("{half} {gap} {place}: {answer:?}");
+                    assert!((f64::from(answer.distance) - truth).abs() <= 5e-7, "{what}");
+                    assert!(f64::from(answer.lower) <= truth && truth <= f64::from(answer.upper), "{what}");
+                    assert!(!answer.overlap && answer.lower > 0.0 && answer.normal == Some(Vec3A::Y), "{what}");
+                    assert!(!intersects(&parcel, &floor, IntersectOptions::default()).overlap, "{what}");
+                    assert!(
+                        (answer.point_b.y).abs() <= 1e-6 && (answer.point_a.y - gap as f32).abs() <= 1e-6,
+                        "{what}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Class I: where an edge is parallel to a face, the distance converges, at gaps down to nothing.
+#[test]
+fn an_edge_parallel_to_a_face_is_no_stall() {
+    let mut random = Random(5);
+    for i in 0..3000 {
+        let plate = cuboid::<DVec3>([1.0 + random.signed() * 0.5, 0.25, 1.0 + random.signed() * 0.5]);
+        let gap = [0.0, 1e-16, 1e-15, 1e-13, 1e-10, 1e-7, 1e-4, 1e-2][i % 8];
+        let level = 0.25 + gap;
+        let rise = [level + random.signed().abs() * 0.5 + 0.01, level + random.signed().abs() * 0.5 + 0.01];
+        let side = |x: f64, y: f64| DVec3::new(x, y, 0.5 + 0.2 * x.abs());
+        let points = [
+            DVec3::new(random.signed() * 0.3 - 0.4, level, random.signed() * 0.5),
+            DVec3::new(random.signed() * 0.3 + 0.4, level, random.signed() * 0.5),
+            side(random.signed() * 0.4, rise[0]),
+            side(random.signed() * 0.4, rise[1]),
+        ];
+        let edge = Polytope::new(points[..3 + i % 2].iter().copied()).expect(VALID);
+        let q = random.quaternion();
+        let place = DVec3::from_array(random.vector(3.0));
+        let pose = |shape| Posed::new(shape, DQuat::from_array(q), place).expect("a rotation");
+        let (a, b) = (pose(Box::new(edge) as Shape<DVec3>), pose(Box::new(plate) as Shape<DVec3>));
+        let answer = distance(&a, &b, DistanceOptions::default());
+        let what = format!("{i}: {answer:?}, {gap:e} {points:?} {q:?} {place}");
+        assert_eq!(answer.status, Status::Converged, "{what}");
+        assert!((answer.distance - gap).abs() < 2e-14 && answer.normal.is_some(), "{what}");
+        assert!(
+            answer.lower <= gap + 1e-15 && gap - 1e-15 <= answer.upper && answer.upper - answer.lower < 2e-13,
+            "{what}"
+        );
+        assert!(intersects(&a, &b, IntersectOptions::default()).decided().is_some(), "{what}");
+    }
+}
+
+/// Points posed by a turn about a far origin are known to that lever, and casts against small bodies say so.
+#[test]
+fn a_point_at_the_end_of_a_lever_is_known_to_the_lever() {
+    let mut random = Random(6);
+    for i in 0..500 {
+        let lever = random.vector(1.0);
+        let (q, size) = (random.quaternion(), [1e-3, 1e-2, 1.0][i % 3]);
+        let build = |offset: [f64; 3]| Tree::Posed(Box::new(Tree::Cuboid([size; 3])), random_turn(i), offset);
+        let there = posed_point::<DVec3>(lever, q).support(DVec3::X);
+        let target = build(there.to_array().map(|x| f64::from((x + 3.0 * size) as f32)));
+        let velocity = [-1.0, -1.0, -1.0];
+        let ends = [velocity, [0.0; 3]];
+        let fine: Shape<DVec3> = Box::new(posed_point::<DVec3>(lever, q));
+        let coarse: Shape<Vec3A> = Box::new(posed_point::<Vec3A>(lever, q));
+        let truth = sweep(&target.build::<DVec3>(), &fine, ends);
+        holds(sweep(&target.build::<Vec3A>(), &coarse, ends), truth, || format!("{i}: {target:?} {lever:?} {q:?}"));
+    }
+}
+
+fn random_turn(i: usize) -> [f64; 4] {
+    Random(i as u64 + 77).quaternion()
+}
+
+fn posed_point<V: Vector3>(at: [f64; 3], q: [f64; 4]) -> Posed<Point<V>> {
+    let turn = V::Rotation::from_xyzw(q.map(V::Scalar::from_f64));
+    Posed::new(Point::new(v(at)).expect(VALID), turn, V::ZERO).expect(VALID)
+}

@@ -1,0 +1,232 @@
+//! Where answers are not smooth, and what their one-sided derivatives are there.
+
+mod common;
+mod differences;
+
+use convex_support::glam::{DQuat, DVec2, DVec3};
+use convex_support::{Ball, Capsule, Cuboid, Cylinder, Polytope, Posed, Rounded, SupportMap, Triangle};
+use differences::{Body, Random, Space, apart, one_sided};
+use gjk_raycast::{
+    DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, RigidMotion, Smoothness, distance, linear_cast,
+    motion_cast,
+};
+
+const VALID: &str = "positive sizes and finite numbers";
+
+type Boxed = std::rc::Rc<dyn SupportMap<Vector = DVec3>>;
+
+/// A body in the local frame of a contact, whose normal is y, and where it is put in the world.
+fn placed(shape: Boxed, turn: DQuat, at: DVec3, world: (DQuat, DVec3)) -> Body<DVec3> {
+    let local: differences::Solid<DVec3> = Box::new(shape);
+    let shape = Posed::new(std::rc::Rc::new(local), world.0 * turn, world.0 * at + world.1).expect(VALID);
+    Body { shape }
+}
+
+/// Two bodies of which `a` is above `b` by a gap, negative for a depth, with parallel faces or edges; the kinds count from 0.
+fn parallel(kind: usize, gap: f64, random: &mut Random) -> [Body<DVec3>; 2] {
+    let world = (DVec3::rotation(random), random.vector::<DVec3>());
+    let spin = DQuat::from_rotation_y(random.number(0.0, 6.0));
+    let size = |random: &mut Random| DVec3::from_array([0; 3].map(|_| random.number(0.6, 1.0)));
+    let (sa, sb) = (size(random), size(random));
+    let aside = DVec3::new(random.number(-0.3, 0.3), 0.0, random.number(-0.3, 0.3));
+    let cuboid = |s: DVec3| -> Boxed { std::rc::Rc::new(Cuboid::new(s).expect(VALID)) };
+    let lying = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
+    let (a, turn_a, low): (Boxed, DQuat, f64) = match kind {
+        // A face over a face.
+        0 => (cuboid(sa), spin, sa.y),
+        // A lying capsule, a lying cylinder, an edge, a standing cylinder over a face.
+        1 => (std::rc::Rc::new(Capsule::new(sa.x, 0.25).expect(VALID)), spin * lying, 0.25),
+        2 => (std::rc::Rc::new(Cylinder::new(sa.x, 0.25).expect(VALID)), spin * lying, 0.25),
+        3 => {
+            let lean = DQuat::from_rotation_x(std::f64::consts::FRAC_PI_4);
+            let s = DVec3::new(sa.x, sa.y, sa.y);
+            (cuboid(s), spin * lean, sa.y * 2f64.sqrt())
+        }
+        4 => (std::rc::Rc::new(Cylinder::new(sa.y, 0.4).expect(VALID)), spin, sa.y),
+        // A rounded triangle.
+        _ => {
+            let corners = [[0.5, 0.0, 0.0], [-0.4, 0.0, 0.3], [-0.3, 0.0, -0.5]].map(DVec3::from_array);
+            let flat = Triangle::new(corners).expect(VALID);
+            (std::rc::Rc::new(Rounded::new(flat, 0.2).expect(VALID)), spin, 0.2)
+        }
+    };
+    let above = DVec3::Y * (sb.y + low + gap);
+    [placed(a, turn_a, above + aside, world), placed(cuboid(sb), DQuat::IDENTITY, DVec3::ZERO, world)]
+}
+
+const PARALLEL_KINDS: usize = 6;
+
+#[test]
+fn parallel_faces_and_edges_are_no_smooth_place() {
+    let mut random = Random(3);
+    for round in 0..4000 {
+        let kind = round % PARALLEL_KINDS;
+        let gap = [0.3, 0.01, 1e-6, -0.1][round / PARALLEL_KINDS % 4];
+        let [a, b] = parallel(kind, gap, &mut random);
+        let answer = apart(&a.shape, &b.shape);
+        assert!((answer.signed_distance - gap).abs() < 1e-12, "{kind}: {answer:?}");
+        let features = answer.closest_features(&a.shape, &b.shape);
+        assert_eq!(features.smoothness(), Smoothness::Edge, "{kind} at {gap}: {features:?}");
+        assert!(features.is_normal_unique() && !features.are_points_unique(), "{kind} at {gap}: {features:?}");
+        assert_eq!(features.velocities(random.motion(), random.motion()), None);
+        if gap > 0.0 {
+            let features =
+                distance(&a.shape, &b.shape, DistanceOptions::default()).closest_features(&a.shape, &b.shape);
+            assert_eq!(features.map(|f| f.smoothness()), Some(Smoothness::Edge), "{kind} at {gap}");
+        }
+    }
+}
+
+#[test]
+fn a_lean_of_a_millionth_is_smooth() {
+    let mut random = Random(4);
+    for round in 0..4000 {
+        let kind = round % PARALLEL_KINDS;
+        let gap = [0.3, 0.01, 1e-4, -0.1][round / PARALLEL_KINDS % 4];
+        // Deep within one another, a curved body and a face are told apart by a search that knows the normal to half its digits.
+        let angle = if gap < 0.0 { 1e-3 } else { 1e-6 };
+        let [a, b] = parallel(kind, gap, &mut random);
+        // About an axis that is not along an edge or a capsule.
+        let axis = DVec3::new(random.signed(), random.signed(), random.signed()) + DVec3::splat(1.3);
+        let lean = RigidMotion::rotation(axis * angle, a.shape.translation());
+        let a = Body { shape: a.moved(&lean, 1.0) };
+        let features = apart(&a.shape, &b.shape).closest_features(&a.shape, &b.shape);
+        assert_eq!(features.smoothness(), Smoothness::Smooth, "{kind} at {gap}: {features:?}");
+    }
+}
+
+#[test]
+fn random_pairs_are_smooth() {
+    let mut random = Random(5);
+    let kinds = DVec3::KINDS;
+    for round in 0..4000 {
+        let (i, j) = (round % kinds.len(), round / kinds.len() % kinds.len());
+        let a = Body::<DVec3>::random(kinds[i], &mut random);
+        let b = Body::random(kinds[j], &mut random).placed(&a, round % 3 == 0, &mut random);
+        let features = apart(&a.shape, &b.shape).closest_features(&a.shape, &b.shape);
+        assert_eq!(features.smoothness(), Smoothness::Smooth, "{} and {}: {features:?}", kinds[i], kinds[j]);
+    }
+}
+
+#[test]
+fn one_sided_rates_are_those_of_differences() {
+    let mut random = Random(6);
+    let mut compared = 0;
+    for round in 0..600 {
+        let kind = round % PARALLEL_KINDS;
+        // A disc is taken for an octagon.
+        if kind == 4 {
+            continue;
+        }
+        let gap = [0.3, 0.01, -0.1][round / PARALLEL_KINDS % 3];
+        let [a, b] = parallel(kind, gap, &mut random);
+        let [ma, mb] = [random.motion::<DVec3>(), random.motion()];
+        let features = apart(&a.shape, &b.shape).closest_features(&a.shape, &b.shape);
+        let ours = features.rate(ma, mb).expect("the normal is the only one");
+        let at = |t: f64| apart(&a.moved(&ma, t), &b.moved(&mb, t)).signed_distance;
+        // Another kink may be near, so that only small steps are certain, and larger ones mostly right.
+        let near = (at(1e-7) - at(0.0)) / 1e-7;
+        assert!((ours - near).abs() < 1e-4, "{kind} at {gap}: {ours}, not {near}");
+        let (theirs, _) = one_sided(at, 1e-3);
+        compared += usize::from((ours - theirs).abs() < 1e-8);
+        // And that is not what the other points say.
+        let there = features.gradient().along(ma, mb);
+        assert!(there >= ours - 1e-9, "{kind}: {there} is at another of the points, and no less than {ours}");
+    }
+    assert!(compared > 470, "{compared} of 500");
+}
+
+#[test]
+fn vertices_that_meet_have_no_one_normal() {
+    let cuboid = Cuboid::new(DVec3::ONE).expect(VALID);
+    let a = Posed::translated(cuboid, DVec3::new(4.0, 4.0, 4.0)).expect(VALID);
+    let motion = Motion { velocity_a: -DVec3::ONE, velocity_b: DVec3::ZERO };
+    let cast = linear_cast(&a, &cuboid, motion, LinearCastOptions::default()).expect("finite");
+    let hit = cast.outcome.hit().expect("corner on corner");
+    let features = hit.closest_features(&a, &cuboid, motion).expect("it hits");
+    assert!(!features.is_normal_unique() && features.are_points_unique(), "{features:?}");
+    assert_eq!(features.smoothness(), Smoothness::Edge);
+    assert_eq!(features.rate(RigidMotion::translation(DVec3::X), RigidMotion::default()), None);
+
+    // At a distance they are smooth.
+    let features = apart(&a, &cuboid).closest_features(&a, &cuboid);
+    assert_eq!(features.smoothness(), Smoothness::Smooth);
+    // Rounded, they are smooth where they touch as well.
+    let (a, b) = (Rounded::new(a, 0.1).expect(VALID), Rounded::new(cuboid, 0.1).expect(VALID));
+    let cast = linear_cast(&a, &b, motion, LinearCastOptions::default()).expect("finite");
+    let hit = cast.outcome.hit().expect("corner on corner");
+    let features = hit.closest_features(&a, &b, motion).expect("it hits");
+    assert_eq!(features.smoothness(), Smoothness::Smooth, "{features:?}");
+}
+
+#[test]
+fn equal_ways_out_are_an_edge() {
+    // A small box within a large one: as near to two of its faces, or to one of them by a millionth.
+    let large = Cuboid::new(DVec3::splat(2.0)).expect(VALID);
+    let small =
+        Polytope::new([[0.3, 0.1, 0.0], [-0.3, 0.2, 0.1], [0.0, -0.3, 0.2], [0.1, 0.1, -0.3]].map(DVec3::from_array))
+            .expect(VALID);
+    let mut random = Random(9);
+    for round in 0..200 {
+        let world = (DVec3::rotation(&mut random), random.vector::<DVec3>());
+        let lead = if round % 2 == 0 { 0.0 } else { 1e-7 };
+        // It reaches back by 0.3 along x and along y.
+        let at = DVec3::new(1.0 + lead, 1.0, random.number(-0.5, 0.5));
+        let a = Posed::new(&small, world.0, world.0 * at + world.1).expect(VALID);
+        let b = Posed::new(large, world.0, world.1).expect(VALID);
+        let features = apart(&a, &b).closest_features(&a, &b);
+        let expected = if lead == 0.0 { Smoothness::Edge } else { Smoothness::Smooth };
+        assert_eq!(features.smoothness(), expected, "{lead}: {features:?}");
+    }
+    // Concentric balls of cores that are points are known by their distance alone, and have no normal.
+    let (a, b) = (Ball::<DVec2>::new(1.0).expect(VALID), Ball::new(2.0).expect(VALID));
+    assert_eq!(apart(&a, &b).closest_features(&a, &b).smoothness(), Smoothness::Edge);
+}
+
+#[test]
+fn times_of_faces_that_meet_have_one_sided_rates() {
+    // A box falls flat onto a floor. Turned a little either way, a corner lands sooner.
+    let floor = Cuboid::new(DVec2::new(9.0, 1.0)).expect(VALID);
+    let parcel = |turn: f64| {
+        Posed::new(Cuboid::new(DVec2::new(0.5, 0.5)).expect(VALID), turn, DVec2::new(0.0, 4.0)).expect(VALID)
+    };
+    let fall = Motion { velocity_a: DVec2::new(0.0, -2.0), velocity_b: DVec2::ZERO };
+    let land = |turn: f64| {
+        let cast = linear_cast(&parcel(turn), &floor, fall, LinearCastOptions::default()).expect("finite");
+        cast.outcome.hit().expect("it lands")
+    };
+    let hit = land(0.0);
+    let flat = parcel(0.0);
+    assert_eq!(hit.closest_features(&flat, &floor, fall).map(|f| f.smoothness()), Some(Smoothness::Edge));
+    for sign in [1.0, -1.0] {
+        let turning = RigidMotion::rotation(sign, DVec2::new(0.0, 4.0));
+        let rate = hit.rate((&flat, turning), (&floor, RigidMotion::default()), fall).expect("one normal");
+        assert!((rate + 0.25).abs() < 1e-14, "{rate}: half a metre of lever, at 2 m/s");
+        let (theirs, _) = one_sided(|t| land(sign * t).time, 1e-3);
+        assert!((rate - theirs).abs() < 1e-9, "{rate}, not {theirs}");
+        // The same of a motion that turns, so that it lands on its face.
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let spin =
+            RigidMotion { velocity: DVec2::new(0.0, -2.0), angular_velocity: quarter, center: DVec2::new(0.0, 4.0) };
+        let options = MotionCastOptions::new().with_max_time(3.0);
+        let start = parcel(-quarter * 1.25);
+        let cast = motion_cast(&start, spin, &floor, RigidMotion::default(), options).expect("finite");
+        let hit = cast.outcome.hit().expect("it lands");
+        if hit.closest_features(&start, &spin, &floor, &RigidMotion::default()).map(|f| f.smoothness())
+            == Some(Smoothness::Edge)
+        {
+            let rate = hit.rate((&start, &spin, turning), (&floor, &RigidMotion::default(), RigidMotion::default()));
+            assert!(rate.is_some());
+        }
+    }
+}
+
+#[test]
+fn within_one_another_a_distance_stays_zero() {
+    let (a, b) = (Ball::<DVec3>::new(1.0).expect(VALID), Cuboid::new(DVec3::ONE).expect(VALID));
+    let answer = distance(&a, &b, DistanceOptions::default());
+    assert!(answer.closest_features(&a, &b).is_none());
+    let gradient = answer.gradient();
+    assert_eq!((gradient.a.translation, gradient.b.translation, gradient.radius), (DVec3::ZERO, DVec3::ZERO, 0.0));
+    assert_eq!(gradient.along(RigidMotion::translation(DVec3::X), RigidMotion::default()), 0.0);
+}
