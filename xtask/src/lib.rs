@@ -10,8 +10,10 @@ pub mod docs;
 pub mod engine;
 pub mod footprint;
 pub mod fuzz;
+pub mod judge;
 pub mod mesh;
 pub mod plot;
+pub mod prove;
 pub mod query;
 pub mod validate;
 pub mod wire;
@@ -25,3 +27,8 @@ struct Readme;
 #[cfg(all(doctest, feature = "parry"))]
 #[doc = include_str!("../../docs/porting-from-parry.md")]
 struct PortingFromParry;
+
+/// Compiles and runs the columns of the note on many machines.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/many-machines.md")]
+struct ManyMachines;

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
 use clap::{Args, Parser, Subcommand};
-use xtask::{docs, footprint, fuzz, query, validate};
+use xtask::{docs, footprint, fuzz, prove, query, validate};
 
 /// Answers query files, validates the crates against true answers, and draws what they do.
 #[derive(Debug, Parser)]
@@ -33,6 +33,12 @@ enum Task {
     ///
     /// Exit status: 0 where everything is right, 1 where some answer is wrong, 2 where a file could not be read.
     Validate(validate::Scope),
+    /// Prove answers by their certificates, in interval arithmetic that shares no solver and no shape with the crates.
+    ///
+    /// `cargo xtask query --certify FILE | cargo xtask prove -`; `docs/certificates.md` says what is proved, and how.
+    ///
+    /// Exit status: 0 where every line is proved, 1 where some line is not proved or disproved, 2 where a file could not be read.
+    Prove(prove::Choice),
     /// Try damaged query lines, and hulls of integers against an exact oracle, for a bounded time.
     ///
     /// Exit status: 0 where nothing failed, 1 where something did, 2 where the suite could not be read.
@@ -53,6 +59,9 @@ enum Task {
     /// Hold casts and distances at every scale against references in thirty digits (a study).
     #[command(disable_help_flag = true)]
     Sweep(Passed),
+    /// Hold the answers of parry, and of others out of files, against what is proved (a study).
+    #[command(disable_help_flag = true)]
+    Judge(Passed),
     /// Draw the descent of GJK in the plane, step by step (a study).
     #[command(disable_help_flag = true)]
     Book2d(Passed),
@@ -73,9 +82,11 @@ fn main() -> ExitCode {
         Task::Query(choice) => query::run(&choice),
         Task::Validate(scope) if scope.is_study() => study(scope.features()),
         Task::Validate(scope) => validate::run(&scope, &validate::QUICK),
+        Task::Prove(choice) => prove::run(&choice),
         Task::Fuzz(scope) => fuzz::run(&scope),
         Task::Docs => docs::run(),
         Task::Footprint { output } => footprint::run(&output),
+        Task::Judge(_) => study("peers"),
         Task::Scene(_) | Task::Sweep(_) | Task::Book2d(_) | Task::Render(_) => study(""),
     }
 }

@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use crate::engine;
 use crate::mesh::{Access, Meshes};
-use crate::wire::answer::Line;
+use crate::wire::answer::{Answer, Line};
 use crate::wire::json;
 
 /// Lines are read as long as they are there already, and answered together: at most about this much of them at once.
@@ -27,15 +27,22 @@ pub struct Choice {
     /// this program may.
     #[arg(long, value_name = "FOLDER|none", value_parser = Access::parse, default_value = "", hide_default_value = true)]
     meshes: Access,
+    /// The number of the first line of each file, where it is a part of a larger one: ids and errors count from it.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    first_line: u64,
+    /// Write each query as it is, with its `answer` and the `certificate` that proves it, for `cargo xtask prove`.
+    #[arg(long)]
+    certify: bool,
 }
 
 /// Answers the files to standard output.
 #[must_use]
-pub fn run(Choice { files, meshes }: &Choice) -> ExitCode {
+pub fn run(Choice { files, meshes, first_line, certify }: &Choice) -> ExitCode {
+    let write = if *certify { certified_line } else { answer_line };
     let mut output = BufWriter::new(io::stdout().lock());
     let (mut any_error, mut any_failure) = (false, false);
     for file in files {
-        match answer_file(file, meshes, &mut output) {
+        match answer_file(file, meshes, Lines { read: first_line - 1 }, write, &mut output) {
             Ok(Tally { errors, .. }) => any_error |= errors > 0,
             Err(Failure::Output(why)) if why.kind() == io::ErrorKind::BrokenPipe => break,
             Err(Failure::Output(why)) => {
@@ -75,21 +82,32 @@ enum Failure {
     Output(io::Error),
 }
 
-fn answer_file(file: &Path, access: &Access, output: &mut impl Write) -> Result<Tally, Failure> {
+fn answer_file(
+    file: &Path,
+    access: &Access,
+    lines: Lines,
+    write: Writer,
+    output: &mut impl Write,
+) -> Result<Tally, Failure> {
     let meshes = |folder| Meshes::relative_to(folder).with_access(access.clone());
     if file == Path::new("-") {
-        return answer_lines(io::stdin().lock(), &meshes(Path::new("")), output);
+        return answer_lines(io::stdin().lock(), lines, &meshes(Path::new("")), write, output);
     }
     let folder = file.parent().unwrap_or(Path::new(""));
-    answer_lines(File::open(file).map_err(Failure::Input)?, &meshes(folder), output)
+    answer_lines(File::open(file).map_err(Failure::Input)?, lines, &meshes(folder), write, output)
 }
 
-/// Answers every line of `input`.
+/// Answers every line of `input`; `lines` says which lines came before.
 ///
 /// A batch is what lies in the buffer, so that whoever sends one line and waits gets its answer.
-fn answer_lines(input: impl Read, meshes: &Meshes, output: &mut impl Write) -> Result<Tally, Failure> {
+fn answer_lines(
+    input: impl Read,
+    mut lines: Lines,
+    meshes: &Meshes,
+    write: Writer,
+    output: &mut impl Write,
+) -> Result<Tally, Failure> {
     let mut input = BufReader::with_capacity(BATCH_BYTES, input);
-    let mut lines = Lines::default();
     let mut tally = Tally::default();
     let mut more = true;
     while more {
@@ -100,7 +118,7 @@ fn answer_lines(input: impl Read, meshes: &Meshes, output: &mut impl Write) -> R
                 break;
             }
         }
-        let answers: Vec<(bool, Vec<u8>)> = batch.par_iter().map(|line| answer_line(line, meshes)).collect();
+        let answers: Vec<(bool, Vec<u8>)> = batch.par_iter().map(|line| write(line, meshes)).collect();
         for (answered, text) in answers {
             output.write_all(&text).map_err(Failure::Output)?;
             if answered { tally.answers += 1 } else { tally.errors += 1 }
@@ -117,7 +135,6 @@ struct Numbered {
 }
 
 /// Counts the lines of a file.
-#[derive(Default)]
 struct Lines {
     read: u64,
 }
@@ -129,7 +146,7 @@ impl Lines {
         if input.read_until(b'\n', &mut text)? == 0 {
             return Ok(false);
         }
-        self.read += 1;
+        self.read = self.read.saturating_add(1);
         if self.read == 1 && text.starts_with(b"\xEF\xBB\xBF") {
             text.drain(..3);
         }
@@ -147,6 +164,34 @@ pub fn answer(text: &[u8], meshes: &Meshes) -> Vec<u8> {
     answer_line(&Numbered { line: 1, text: text.to_vec() }, meshes).1
 }
 
+/// How a line of input is answered: the line of output, and whether it is an answer.
+type Writer = fn(&Numbered, &Meshes) -> (bool, Vec<u8>);
+
+/// The query as it is written, with its answer and certificate; or what is wrong with it.
+fn certified_line(numbered: &Numbered, meshes: &Meshes) -> (bool, Vec<u8>) {
+    let asked = json::object(&numbered.text).and_then(|object| engine::question(&object, meshes));
+    let Ok((answer, certificate)) = asked.and_then(|question| question.ask_with_certificate()) else {
+        return answer_line(numbered, meshes);
+    };
+    let json = |answer: &Answer| serde_json::to_string(answer).unwrap_or_default();
+    let mut text = numbered.text.clone();
+    // The last byte of an object is its bracket.
+    text.pop();
+    text.extend_from_slice(format!(",\"answer\":{}", json(&answer)).as_bytes());
+    if let Some(certificate) = certificate {
+        text.extend_from_slice(format!(",\"certificate\":{}", json(&certificate)).as_bytes());
+    }
+    text.extend_from_slice(b"}\n");
+    (true, text)
+}
+
+/// The line with its answer and certificate; `None` where it has no answer.
+#[must_use]
+pub fn certified(text: &[u8], meshes: &Meshes) -> Option<Vec<u8>> {
+    let (is_answer, line) = certified_line(&Numbered { line: 1, text: text.to_vec() }, meshes);
+    is_answer.then_some(line)
+}
+
 /// The line of output for a line of input, and whether it is an answer.
 fn answer_line(Numbered { line, text }: &Numbered, meshes: &Meshes) -> (bool, Vec<u8>) {
     let number = || Value::from(*line);
@@ -162,4 +207,38 @@ fn answer_line(Numbered { line, text }: &Numbered, meshes: &Meshes) -> (bool, Ve
     let mut text = serde_json::to_vec(&Line { id, line: *line, outcome }).unwrap_or_default();
     text.push(b'\n');
     (answered, text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn answers(input: &[u8], first_line: u64) -> Vec<u8> {
+        let mut output = Vec::new();
+        let lines = Lines { read: first_line - 1 };
+        answer_lines(input, lines, &Meshes::relative_to(""), answer_line, &mut output).expect("in memory");
+        output
+    }
+
+    /// A file cut anywhere between lines, its parts numbered on, is answered as in one piece: good lines, bad ones, blank ones.
+    #[test]
+    fn parts_of_a_file_are_answered_as_the_whole() {
+        let lines: [&[u8]; 7] = [
+            b"\xEF\xBB\xBF# a comment",
+            br#"{"query":"distance","a":{"type":"ball","radius":1},"b":{"type":"point","at":[3,0,0]}}"#,
+            b"",
+            b"this is no query",
+            b"\xFF\xFE",
+            b"\r",
+            br#"{"id":"last","query":"intersect","a":{"type":"ball","radius":-1},"b":{"type":"point","at":[3,0,0]}}"#,
+        ];
+        let whole = answers(&lines.join(&b'\n'), 1);
+        assert_eq!(whole.iter().filter(|&&byte| byte == b'\n').count(), 4, "an answer or an error for each query");
+        assert!(String::from_utf8_lossy(&whole).contains(r#""line":7,"error""#), "numbered as in the file");
+        for cut in 0..=lines.len() {
+            let (head, tail) = lines.split_at(cut);
+            let parts = [answers(&head.join(&b'\n'), 1), answers(&tail.join(&b'\n'), 1 + cut as u64)].concat();
+            assert_eq!(String::from_utf8_lossy(&parts), String::from_utf8_lossy(&whole), "cut before line {}", cut + 1);
+        }
+    }
 }

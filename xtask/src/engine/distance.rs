@@ -1,9 +1,10 @@
 //! `distance`.
 
 use convex_support::Vector;
-use gjk_raycast::{DistanceOptions, Status, distance};
+use gjk_raycast::{DistanceOptions, Status, distance, distance_certificate};
 
-use super::{Ask, How, Query, Question, status};
+use super::gradient::{self, Gradient};
+use super::{Ask, How, Query, Question, certificate, status};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
@@ -13,11 +14,16 @@ use crate::wire::shape::{Shape, Solid, Space};
 pub(super) struct Distance {
     a: Shape,
     b: Shape,
+    gradient: bool,
 }
 
 impl Query for Distance {
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
-        Ok(Self { a: Shape::read(&fields.within("a")?)?, b: Shape::read(&fields.within("b")?)? })
+        Ok(Self {
+            a: Shape::read(&fields.within("a")?)?,
+            b: Shape::read(&fields.within("b")?)?,
+            gradient: gradient::is_wanted(fields)?,
+        })
     }
 
     fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
@@ -26,24 +32,38 @@ impl Query for Distance {
         if let Some(tolerance) = how.tolerance::<V>()? {
             options = options.with_tolerance(tolerance);
         }
-        Ok(Box::new(Pair::<V> { a: self.a.build("a", how.meshes)?, b: self.b.build("b", how.meshes)?, options }))
+        let (a, b) = (self.a.build("a", how.meshes)?, self.b.build("b", how.meshes)?);
+        Ok(Box::new(Pair::<V> { a, b, gradient: self.gradient, options }))
     }
 }
 
 struct Pair<V: Vector> {
     a: Solid<V>,
     b: Solid<V>,
+    gradient: bool,
     options: DistanceOptions<V>,
 }
 
 impl<V: Space> Question for Pair<V> {
-    type Solution = gjk_raycast::Distance<V>;
+    type Solution = (gjk_raycast::Distance<V>, Option<Gradient<V>>);
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
-        Ok(distance(&self.a, &self.b, self.options))
+        let answer = distance(&self.a, &self.b, self.options);
+        let gradient = || match answer.closest_features(&self.a, &self.b) {
+            Some(features) => {
+                let gradient = features.gradient();
+                Gradient::new(gradient.a, gradient.b, features.smoothness())
+            }
+            None => Gradient::at_floor(&self.a, &self.b),
+        };
+        Ok((answer, self.gradient.then(gradient)))
     }
 
-    fn answer(&self, d: Self::Solution) -> Result<Answer, Problem> {
+    fn certificate(&self, (d, _): &Self::Solution) -> Option<Answer> {
+        Some(certificate(distance_certificate(&self.a, &self.b, d)))
+    }
+
+    fn answer(&self, (d, gradient): Self::Solution) -> Result<Answer, Problem> {
         certain(&d)?;
         let mut answer =
             Answer::default().with("distance", Field::number(d.distance)).with("overlap", Field::Flag(d.overlap));
@@ -53,6 +73,7 @@ impl<V: Space> Question for Pair<V> {
                 .with("point_b", Field::vector(d.point_b))
                 .with("normal", Field::maybe_vector(d.normal));
         }
+        let answer = gradient::with(answer, gradient);
         Ok(answer
             .with_finite("lower", d.lower)
             .with_finite("upper", d.upper)

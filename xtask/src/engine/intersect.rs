@@ -1,9 +1,9 @@
 //! `intersect`.
 
 use convex_support::Vector;
-use gjk_raycast::{IntersectOptions, Intersection, intersects};
+use gjk_raycast::{IntersectOptions, Intersection, intersection_certificate, intersects};
 
-use super::{Ask, How, Query, Question, status};
+use super::{Ask, How, Query, Question, certificate, status};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
@@ -36,6 +36,10 @@ impl<V: Space> Question for Pair<V> {
 
     fn solve(&self) -> Result<Intersection<V>, Problem> {
         Ok(intersects(&self.a, &self.b, IntersectOptions::new()))
+    }
+
+    fn certificate(&self, i: &Intersection<V>) -> Option<Answer> {
+        Some(certificate(intersection_certificate(&self.a, &self.b, i)))
     }
 
     fn answer(&self, i: Intersection<V>) -> Result<Answer, Problem> {

@@ -6,6 +6,7 @@ mod contact;
 mod distance;
 mod enclosing;
 mod fit;
+mod gradient;
 mod inscribed;
 mod intersect;
 mod linear_cast;
@@ -20,6 +21,7 @@ mod track;
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{Scalar as _, Vector};
 use cpu_time::ThreadTime;
+use gjk_raycast::Certificate;
 use serde::Deserialize;
 
 use self::clearance::Clearance;
@@ -50,6 +52,11 @@ trait Question {
 
     /// What the format says of the solution.
     fn answer(&self, solution: Self::Solution) -> Result<Answer, Problem>;
+
+    /// What proves the solution, where the query is of a kind that has a proof.
+    fn certificate(&self, _: &Self::Solution) -> Option<Answer> {
+        None
+    }
 }
 
 /// Any question.
@@ -57,19 +64,22 @@ pub trait Ask {
     /// Solves the question once.
     fn ask(&self) -> Result<Answer, Problem>;
 
+    /// The same, with what proves the answer, where the query is of a kind that has a proof.
+    fn ask_with_certificate(&self) -> Result<(Answer, Option<Answer>), Problem>;
+
     /// Nanoseconds of thread CPU time that solving it takes: the least mean of three runs of about `microseconds` each.
     fn time(&self, microseconds: u64) -> f64;
 }
 
 impl<Q: Question> Ask for Q {
     fn ask(&self) -> Result<Answer, Problem> {
-        let answer = self.answer(self.solve()?)?;
-        match answer.non_finite() {
-            Some(field) => {
-                Err(Problem::new(Kind::NotConverged, format!("{field} is out of the range of the precision")))
-            }
-            None => Ok(answer),
-        }
+        in_range(self.answer(self.solve()?)?)
+    }
+
+    fn ask_with_certificate(&self) -> Result<(Answer, Option<Answer>), Problem> {
+        let solution = self.solve()?;
+        let certificate = self.certificate(&solution).filter(|proof| proof.non_finite().is_none());
+        Ok((in_range(self.answer(solution)?)?, certificate))
     }
 
     fn time(&self, microseconds: u64) -> f64 {
@@ -84,6 +94,24 @@ impl<Q: Question> Ask for Q {
         let count = ((microseconds * 1000) as f64 / once).ceil().max(1.0) as u64;
         (0..3).map(|_| run(count)).fold(once, f64::min)
     }
+}
+
+/// The answer, if JSON can hold it.
+fn in_range(answer: Answer) -> Result<Answer, Problem> {
+    match answer.non_finite() {
+        Some(field) => Err(Problem::new(Kind::NotConverged, format!("{field} is out of the range of the precision"))),
+        None => Ok(answer),
+    }
+}
+
+/// What proves an answer, as the format says it.
+fn certificate<V: Vector>(certificate: Certificate<V>) -> Answer {
+    let Certificate { plane, points } = certificate;
+    let mut answer = Answer::default();
+    if let Some(plane) = plane {
+        answer = answer.with("plane", Field::vector(plane));
+    }
+    answer.with("points", Field::weighted(points.into_iter().map(|p| (p.direction, p.weight))))
 }
 
 /// The kinds of queries, as written; a file each.

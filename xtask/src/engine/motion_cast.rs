@@ -4,6 +4,7 @@ use convex_support::{Scalar as _, Vector};
 use gjk_raycast::{MotionCastOptions, MotionHit, RigidMotion, motion_cast};
 
 use super::cast::{self, problem};
+use super::gradient::{self, Gradient};
 use super::{Ask, How, Query, Question, scalar};
 use crate::wire::answer::Answer;
 use crate::wire::error::{Kind, Problem};
@@ -18,6 +19,7 @@ pub(super) struct MotionCast {
     motion_a: Motion,
     motion_b: Motion,
     max_time: f64,
+    gradient: bool,
 }
 
 impl Query for MotionCast {
@@ -28,6 +30,7 @@ impl Query for MotionCast {
             motion_a: Motion::read_or_rest(fields, "motion_a")?,
             motion_b: Motion::read_or_rest(fields, "motion_b")?,
             max_time: fields.above_zero("max_time")?,
+            gradient: gradient::is_wanted(fields)?,
         })
     }
 
@@ -38,6 +41,7 @@ impl Query for MotionCast {
             b: self.b.build("b", how.meshes)?,
             motion_a: self.motion_a.build(),
             motion_b: self.motion_b.build(),
+            gradient: self.gradient,
             options: options(how, self.max_time, "max_time")?,
         }))
     }
@@ -58,18 +62,34 @@ struct Cast<V: Vector> {
     b: Solid<V>,
     motion_a: RigidMotion<V>,
     motion_b: RigidMotion<V>,
+    gradient: bool,
     options: MotionCastOptions<V>,
 }
 
 impl<V: Space> Question for Cast<V> {
-    type Solution = gjk_raycast::MotionCast<V>;
+    type Solution = (gjk_raycast::MotionCast<V>, Option<Gradient<V>>);
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
-        motion_cast(&self.a, self.motion_a, &self.b, self.motion_b, self.options).map_err(problem)
+        let cast = motion_cast(&self.a, self.motion_a, &self.b, self.motion_b, self.options).map_err(problem)?;
+        let hit = if self.gradient { cast.outcome.hit() } else { None };
+        Ok((cast, hit.map(|hit| self.gradient_of(hit))))
     }
 
-    fn answer(&self, cast: Self::Solution) -> Result<Answer, Problem> {
+    fn answer(&self, (cast, gradient): Self::Solution) -> Result<Answer, Problem> {
         let show = |hit: MotionHit<V>| (hit.time, hit.point, hit.normal);
-        cast::answer("time", cast.outcome, show, [cast.lower, cast.upper], cast.status, cast.iterations)
+        let answer = cast::answer("time", cast.outcome, show, [cast.lower, cast.upper], cast.status, cast.iterations)?;
+        Ok(gradient::with(answer, gradient))
+    }
+}
+
+impl<V: Space> Cast<V> {
+    /// The derivatives of the time of a hit.
+    fn gradient_of(&self, hit: MotionHit<V>) -> Gradient<V> {
+        let features = hit.closest_features(&self.a, &self.motion_a, &self.b, &self.motion_b);
+        let smooth = features.and_then(|features| {
+            let gradient = hit.refined(&features).gradient(&self.motion_a, &self.motion_b)?;
+            Some(Gradient::new(gradient.pose_a, gradient.pose_b, features.smoothness()))
+        });
+        smooth.unwrap_or_else(|| Gradient::at_floor(&self.a, &self.b))
     }
 }

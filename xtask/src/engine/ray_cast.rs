@@ -1,10 +1,12 @@
 //! `ray_cast`.
 
 use convex_support::{Point, Vector};
-use gjk_raycast::{DistanceOptions, Ray, RayCastOptions, RayHit, distance, iterative_ray_cast, ray_cast};
+use gjk_raycast::{
+    DistanceOptions, Ray, RayCastOptions, RayHit, distance, iterative_ray_cast, ray_cast, ray_cast_certificate,
+};
 
 use super::cast::{self, problem};
-use super::{Ask, How, Query, Question, scalar};
+use super::{Ask, How, Query, Question, certificate, scalar};
 use crate::wire::answer::Answer;
 use crate::wire::error::Problem;
 use crate::wire::fields::{Coordinates, Fields};
@@ -73,6 +75,10 @@ impl<V: Space> Question for Cast<V> {
             }
         }
         .map_err(problem)
+    }
+
+    fn certificate(&self, cast: &Self::Solution) -> Option<Answer> {
+        Some(certificate(ray_cast_certificate(&self.target, self.ray, cast)))
     }
 
     fn answer(&self, cast: Self::Solution) -> Result<Answer, Problem> {

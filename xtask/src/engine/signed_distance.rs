@@ -3,6 +3,7 @@
 use convex_support::{Scalar as _, Vector};
 use gjk_raycast::{SignedDistanceOptions, Status, signed_distance};
 
+use super::gradient::{self, Gradient};
 use super::{Ask, How, Query, Question, status};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
@@ -13,17 +14,23 @@ use crate::wire::shape::{Shape, Solid, Space};
 pub(super) struct SignedDistance {
     a: Shape,
     b: Shape,
+    gradient: bool,
 }
 
 impl Query for SignedDistance {
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
-        Ok(Self { a: Shape::read(&fields.within("a")?)?, b: Shape::read(&fields.within("b")?)? })
+        Ok(Self {
+            a: Shape::read(&fields.within("a")?)?,
+            b: Shape::read(&fields.within("b")?)?,
+            gradient: gradient::is_wanted(fields)?,
+        })
     }
 
     fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
         how.method(&[("gjk", ())])?;
         let options = options(how)?;
-        Ok(Box::new(Pair::<V> { a: self.a.build("a", how.meshes)?, b: self.b.build("b", how.meshes)?, options }))
+        let (a, b) = (self.a.build("a", how.meshes)?, self.b.build("b", how.meshes)?);
+        Ok(Box::new(Pair::<V> { a, b, gradient: self.gradient, options }))
     }
 }
 
@@ -36,24 +43,32 @@ pub(super) fn options<V: Vector>(how: &How<'_>) -> Result<SignedDistanceOptions<
 struct Pair<V: Vector> {
     a: Solid<V>,
     b: Solid<V>,
+    gradient: bool,
     options: SignedDistanceOptions<V>,
 }
 
 impl<V: Space> Question for Pair<V> {
-    type Solution = gjk_raycast::SignedDistance<V>;
+    type Solution = (gjk_raycast::SignedDistance<V>, Option<Gradient<V>>);
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
-        Ok(signed_distance(&self.a, &self.b, self.options))
+        let answer = signed_distance(&self.a, &self.b, self.options);
+        let gradient = || {
+            let features = answer.closest_features(&self.a, &self.b);
+            let gradient = features.gradient();
+            Gradient::new(gradient.a, gradient.b, features.smoothness())
+        };
+        Ok((answer, self.gradient.then(gradient)))
     }
 
-    fn answer(&self, d: Self::Solution) -> Result<Answer, Problem> {
+    fn answer(&self, (d, gradient): Self::Solution) -> Result<Answer, Problem> {
         certain(&d, V::Scalar::ZERO)?;
-        Ok(Answer::default()
+        let answer = Answer::default()
             .with("signed_distance", Field::number(d.signed_distance))
             .with("overlap", Field::Flag(d.overlap))
             .with("normal", Field::vector(d.normal))
             .with("point_a", Field::vector(d.point_a))
-            .with("point_b", Field::vector(d.point_b))
+            .with("point_b", Field::vector(d.point_b));
+        Ok(gradient::with(answer, gradient)
             .with_finite("lower", d.lower)
             .with_finite("upper", d.upper)
             .with("status", status(d.status))

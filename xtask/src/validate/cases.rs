@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::Record;
 use super::page::{Block, Figure, Row, Section, Table};
-use super::summary::{Group, HEADERS, by_file, by_query, by_tag};
+use super::summary::{Group, HEADERS, by_file, by_query, by_tag, called};
 use crate::plot::{Plot, Scale, Series};
 
 /// Errors below this are drawn here: it is less than half an ulp.
@@ -54,7 +54,7 @@ fn scatter(records: &[Record], precision: &str) -> Option<Figure> {
     let series = |(colour, query): (usize, &&str)| {
         let of_query = records.iter().filter(|r| r.precision == precision && r.query == **query);
         let points: Vec<[f64; 2]> = of_query.filter_map(|r| Some([r.time?, r.verdict.relative?.min(1.0)])).collect();
-        (!points.is_empty()).then(|| Series { name: (*query).to_owned(), points, joined: false, colour })
+        (!points.is_empty()).then(|| Series { name: called(query), points, joined: false, colour })
     };
     let series: Vec<Series> = QUERIES.iter().enumerate().filter_map(series).collect();
     (!series.is_empty()).then(|| Figure {

@@ -1,6 +1,7 @@
 //! `cargo xtask validate [FILE…]`: answers against the truth, error against run time.
 
 pub mod cases;
+mod headline;
 pub mod page;
 mod progress;
 mod report;
@@ -18,7 +19,7 @@ use clap::Args;
 use serde_json::Value;
 
 use self::page::Section;
-pub use self::progress::progress;
+pub use self::progress::{begin as begin_progress, end as end_progress, progress};
 use self::score::Verdict;
 use crate::engine;
 use crate::mesh::Meshes;
@@ -152,6 +153,11 @@ impl Scope {
         }
     }
 
+    /// Whether neither files nor a part are named.
+    fn is_whole(&self) -> bool {
+        self.files.is_empty() && self.only.is_none()
+    }
+
     /// Whether a chapter is asked for that is none of [`QUICK`].
     #[must_use]
     pub fn is_study(&self) -> bool {
@@ -197,6 +203,7 @@ fn validate(scope: &Scope, chapters: &[Chapter]) -> Result<bool, String> {
         return Err("there is nothing to validate".to_owned());
     }
     let material = Material { scope, records: &records, cases: &cases };
+    let first = scope.is_whole().then(|| headline::headline(&records));
     let mut sections = Vec::new();
     for chapter in chapters {
         progress::chapter(chapter.name);
@@ -208,7 +215,7 @@ fn validate(scope: &Scope, chapters: &[Chapter]) -> Result<bool, String> {
     progress::end();
     let mut output = io::stdout().lock();
     let written = summary::print(&records, &mut output).and_then(|()| {
-        let page = report::write(&records, &sections, &scope.report)?;
+        let page = report::write(&records, first.as_ref(), &sections, &scope.report)?;
         writeln!(output, "report: {}", page.display())
     });
     match written {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::plot::{Plot, escape};
+use crate::plot::{Marks, Plot, escape};
 
 /// A chapter of the report.
 #[derive(Clone, Debug)]
@@ -30,6 +30,16 @@ pub struct Figure {
     pub name: String,
     pub plot: Plot,
     /// A sentence that says what to see, and how it was measured.
+    pub caption: String,
+}
+
+/// Named marks with their caption.
+#[derive(Clone, Debug)]
+pub struct Drawing {
+    /// The stem of its files.
+    pub name: String,
+    pub marks: Marks,
+    /// What the marks are.
     pub caption: String,
 }
 
@@ -145,6 +155,28 @@ impl Figure {
             "<figure id=\"{0}\">{1}<figcaption>{2} <a href=\"{0}.csv\">{0}.csv</a></figcaption></figure>\n",
             self.name,
             self.plot.svg(),
+            escape(&self.caption)
+        )
+    }
+}
+
+impl Drawing {
+    /// The marks.
+    pub fn csv(&self) -> String {
+        let mut csv = format!("who,what,{},{}\n", quoted(&self.marks.x), quoted(&self.marks.y));
+        for mark in &self.marks.marks {
+            let [x, y] = mark.at;
+            let _ = writeln!(csv, "{},{},{x:e},{y:e}", quoted(&self.marks.groups[mark.group].0), quoted(&mark.label));
+        }
+        csv
+    }
+
+    pub fn html(&self) -> String {
+        format!(
+            "<figure id=\"{0}\" class=\"first\">{1}{2}<figcaption>{3} <a href=\"{0}.csv\">{0}.csv</a></figcaption></figure>\n",
+            self.name,
+            self.marks.svg(),
+            self.marks.narrow_svg(),
             escape(&self.caption)
         )
     }

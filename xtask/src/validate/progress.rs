@@ -1,21 +1,28 @@
 //! What is being done, where somebody watches.
 
+use std::cmp::Ordering;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::Mutex;
+use std::time::{Duration, Instant};
 
 struct State {
     chapters: usize,
     /// The chapters begun.
     begun: usize,
     name: &'static str,
+    /// When something was last said where nobody watches.
+    said: Option<Instant>,
 }
 
-static STATE: Mutex<State> = Mutex::new(State { chapters: 1, begun: 0, name: "" });
+static STATE: Mutex<State> = Mutex::new(State { chapters: 1, begun: 0, name: "", said: None });
+
+/// How long nothing is said where nobody watches, as in a log.
+const SILENCE: Duration = Duration::from_secs(5);
 
 /// Begins the first of so many chapters.
-pub(super) fn begin(chapters: usize, name: &'static str) {
+pub fn begin(chapters: usize, name: &'static str) {
     if let Ok(mut state) = STATE.lock() {
-        *state = State { chapters, begun: 1, name };
+        *state = State { chapters, begun: 1, name, said: Some(Instant::now()) };
     }
 }
 
@@ -28,28 +35,26 @@ pub(super) fn chapter(name: &'static str) {
     progress("");
 }
 
-/// Shows what is being done in a chapter.
+/// Shows what is being done in a chapter: at once on a terminal, now and then in a log.
 pub fn progress(what: &str) {
-    if io::stderr().is_terminal()
-        && let Ok(State { chapters, begun, name }) = STATE.lock().as_deref()
-    {
-        let bar: String = (1..=*chapters)
-            .map(|i| {
-                if i < *begun {
-                    '█'
-                } else if i == *begun {
-                    '▒'
-                } else {
-                    '░'
-                }
-            })
-            .collect();
+    let Ok(mut state) = STATE.lock() else { return };
+    let State { chapters, begun, name, said } = *state;
+    if io::stderr().is_terminal() {
+        let cell = |i: usize| match i.cmp(&begun) {
+            Ordering::Less => '█',
+            Ordering::Equal => '▒',
+            Ordering::Greater => '░',
+        };
+        let bar: String = (1..=chapters).map(cell).collect();
         let _ = write!(io::stderr(), "\r{bar} {name}: {what}\x1b[K");
+    } else if said.is_none_or(|said| said.elapsed() > SILENCE) {
+        state.said = Some(Instant::now());
+        let _ = writeln!(io::stderr(), "{begun} of {chapters}, {name}: {what}");
     }
 }
 
 /// Clears the line.
-pub(super) fn end() {
+pub fn end() {
     if io::stderr().is_terminal() {
         let _ = write!(io::stderr(), "\r\x1b[K");
     }

@@ -6,6 +6,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::Record;
+use super::headline::Headline;
 use super::page::{Section, quoted};
 use super::summary::total;
 use crate::plot::escape;
@@ -14,15 +15,36 @@ use workloads::provenance::provenance;
 const STYLE: &str = include_str!("report.css");
 
 /// Writes the report into `folder` and says where its page is.
-pub(super) fn write(records: &[Record], sections: &[Section], folder: &Path) -> io::Result<PathBuf> {
+pub(super) fn write(
+    records: &[Record],
+    first: Option<&Headline>,
+    sections: &[Section],
+    folder: &Path,
+) -> io::Result<PathBuf> {
     fs::create_dir_all(folder)?;
     fs::write(folder.join("cases.csv"), cases(records))?;
+    if let Some(Headline { drawing, .. }) = first {
+        fs::write(folder.join(format!("{}.csv", drawing.name)), drawing.csv())?;
+    }
     for (name, text) in sections.iter().flat_map(Section::files) {
         fs::write(folder.join(name), text)?;
     }
     let page = folder.join("index.html");
-    fs::write(&page, html(records, sections))?;
+    fs::write(&page, html(records, first, sections))?;
     Ok(page)
+}
+
+/// A word of warning where the machine does more than this; none where that cannot be told.
+fn busy() -> String {
+    let threads = std::thread::available_parallelism().map_or(1.0, |n| n.get() as f64);
+    let load = fs::read_to_string("/proc/loadavg").ok();
+    let load = load.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok()).unwrap_or(0.0);
+    // Of itself this program has a load of one, and where it compiles or answers on all cores as many as they are.
+    if load > threads + 0.5 {
+        format!(", a load of {load:.0}: the machine was busy, and times are longer than they need be")
+    } else {
+        String::new()
+    }
 }
 
 /// Every case in a line.
@@ -52,25 +74,29 @@ fn cases(records: &[Record]) -> String {
     csv
 }
 
-fn html(records: &[Record], sections: &[Section]) -> String {
+fn html(records: &[Record], first: Option<&Headline>, sections: &[Section]) -> String {
     let total = total(records);
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>Error against run time</title>\n\
          <style>{STYLE}</style>\n<header><h1>Error against run time</h1>\n\
-         <p class=\"summary\">{} cases with true answers: {} right, <b class=\"{}\">{} wrong</b>, {} right with a remark.</p>\n\
-         <p class=\"provenance\">{}</p>\n\
-         <p>Errors are those against true answers: computed in exact rationals, in 90 digits and more, in closed form, or \
-         known by construction; never against this workspace itself. A time is thread CPU time in the plain release profile \
-         (no link-time optimisation), once the shapes are built. Those of cases are of shapes behind <code>dyn SupportMap</code> and of \
-         dimensions known at run time, as a query file has them; where code is compiled for the types of its shapes, a chapter \
-         says so. Compare times within a page only.</p>\n<nav><ol>\n",
+         <p class=\"summary\">{} cases with true answers: {} right, <b class=\"{}\">{} wrong</b>, {} right with a remark.</p>\n",
         total.cases,
         total.cases - total.wrong,
         if total.wrong > 0 { "wrong" } else { "right" },
         total.wrong,
         total.soft,
-        escape(&provenance())
+    );
+    if let Some(Headline { drawing, sentences }) = first {
+        let items: String = sentences.iter().map(|sentence| format!("<li>{}\n", escape(sentence))).collect();
+        let _ = write!(page, "<div class=\"screen\">{}<ul class=\"sentences\">\n{items}</ul></div>\n", drawing.html());
+    }
+    let _ = write!(
+        page,
+        "<p class=\"provenance\">{}{}. Times are thread CPU time, shapes built, behind dyn SupportMap unless a chapter says otherwise; \
+         compare them within this page only. Truths come from exact rationals, ninety digits, closed forms or construction.</p>\n<nav><ol>\n",
+        escape(&provenance()),
+        escape(&busy())
     );
     for section in sections {
         let _ = writeln!(page, "<li><a href=\"#{}\">{}</a>", section.id, escape(section.title));

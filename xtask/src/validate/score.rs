@@ -81,7 +81,7 @@ pub fn judge(case: &Object, answer: &Object) -> Verdict {
         return Verdict { errored: true, ..Verdict::wrong(format!("error {kind}")) };
     }
     let mut verdict = Verdict::default();
-    for flag in ["hit", "overlap"] {
+    for flag in ["hit", "overlap", "smooth"] {
         if let Some(due) = expect.get(flag)
             && answer.get(flag) != Some(due)
         {
@@ -200,10 +200,11 @@ fn text(value: Option<&Value>) -> String {
     value.map_or_else(|| "missing".to_owned(), Value::to_string)
 }
 
-/// All numbers of a value, in order; what is no number becomes NaN.
+/// All numbers of a value, in order, and of its fields in that of their names; what is no number becomes NaN.
 fn numbers(value: &Value) -> Vec<f64> {
     match value {
         Value::Array(items) => items.iter().flat_map(numbers).collect(),
+        Value::Object(fields) => fields.values().flat_map(numbers).collect(),
         number => vec![number.as_f64().unwrap_or(f64::NAN)],
     }
 }

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use super::page::{Block, Row, Section, Table, error};
-use super::summary::quantile;
+use super::summary::{called, quantile};
 use super::{Record, score};
 use crate::plot::duration;
 
@@ -43,8 +43,8 @@ fn table(records: &[Record]) -> Table {
         let times: Vec<f64> = of.iter().filter_map(|r| r.time).collect();
         let iterations = of.iter().filter_map(|r| r.iterations).max();
         Row::of([
-            query.to_owned(),
-            kind,
+            called(query),
+            difficulty_as_said(&kind),
             // Powers of two are scales; all else is told as it is.
             match value.log2() {
                 two if two.fract() == 0.0 && two.abs() > 20.0 => format!("2^{two}"),
@@ -80,6 +80,19 @@ fn table(records: &[Record]) -> Table {
         ],
         rows.collect(),
     )
+}
+
+/// A kind of difficulty as a reader says it.
+fn difficulty_as_said(kind: &str) -> String {
+    match kind {
+        "cond" => "condition",
+        "by" => "passes at",
+        "scale" => "scale of the scene",
+        "gap" => "gap to contact",
+        "offset" | "far" => "distance from the origin",
+        other => other,
+    }
+    .to_owned()
 }
 
 /// A number that can be sorted by.

@@ -78,6 +78,12 @@ pub fn quantile(values: &[f64], p: f64) -> Option<f64> {
     sorted.get(rank.saturating_sub(1)).copied()
 }
 
+/// A query as a reader says it.
+#[must_use]
+pub fn called(query: &str) -> String {
+    query.replace('_', " ")
+}
+
 /// Groups of cases by what `names` calls them.
 pub fn groups<'r>(records: &'r [Record], names: impl Fn(&'r Record) -> Vec<String>) -> BTreeMap<String, Group> {
     let mut groups = BTreeMap::<String, Group>::new();
@@ -90,13 +96,13 @@ pub fn groups<'r>(records: &'r [Record], names: impl Fn(&'r Record) -> Vec<Strin
 }
 
 pub fn by_query(records: &[Record]) -> BTreeMap<String, Group> {
-    groups(records, |r| vec![format!("{} {}", r.query, r.precision)])
+    groups(records, |r| vec![format!("{} {}", called(&r.query), r.precision)])
 }
 
 pub fn by_tag(records: &[Record]) -> BTreeMap<String, Group> {
     groups(records, |r| {
         let tags = if r.tags.is_empty() { vec!["untagged"] } else { r.tags.iter().map(String::as_str).collect() };
-        tags.iter().map(|tag| format!("{}: {tag}", r.query)).collect()
+        tags.iter().map(|tag| format!("{}: {tag}", called(&r.query))).collect()
     })
 }
 

@@ -52,6 +52,8 @@ pub enum Field {
     Rows(Vec<Vec<Number>>),
     Counts(Vec<usize>),
     Pairs(Vec<[usize; 2]>),
+    /// Vectors, each with a weight.
+    Weighted(Vec<(Vec<Number>, f64)>),
     Answer(Answer),
     Answers(Vec<Answer>),
 }
@@ -62,7 +64,11 @@ impl Field {
     }
 
     pub fn vector<V: Vector>(vector: V) -> Self {
-        Self::Numbers((0..V::DIM).map(|i| Number::of(vector.get(i))).collect())
+        Self::Numbers(numbers(vector))
+    }
+
+    pub fn weighted<V: Vector>(items: impl IntoIterator<Item = (V, f64)>) -> Self {
+        Self::Weighted(items.into_iter().map(|(v, weight)| (numbers(v), weight)).collect())
     }
 
     /// The vector, or null.
@@ -76,11 +82,18 @@ impl Field {
             Self::Number(number) => number.is_finite(),
             Self::Numbers(numbers) => numbers.iter().all(|n| n.is_finite()),
             Self::Rows(rows) => rows.iter().flatten().all(|n| n.is_finite()),
+            Self::Weighted(items) => {
+                items.iter().all(|(v, weight)| v.iter().all(|n| n.is_finite()) && weight.is_finite())
+            }
             Self::Answer(answer) => answer.non_finite().is_none(),
             Self::Answers(answers) => answers.iter().all(|answer| answer.non_finite().is_none()),
             Self::Null | Self::Flag(_) | Self::Count(_) | Self::Text(_) | Self::Counts(_) | Self::Pairs(_) => true,
         }
     }
+}
+
+fn numbers<V: Vector>(vector: V) -> Vec<Number> {
+    (0..V::DIM).map(|i| Number::of(vector.get(i))).collect()
 }
 
 /// The fields of an answer, in the order they are written.

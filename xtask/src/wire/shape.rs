@@ -285,14 +285,11 @@ impl Space for Vec3A {
     type Wide = DVec3;
 
     fn rotation(rotation: &Rotation) -> glam::Quat {
-        // Made unit in double precision, so that its length, whatever it is, survives the rounding.
+        // In units of a power of two, so that its length, whatever it is, survives the rounding of its coordinates.
         let q = glam::DVec4::from(DVec3::rotation(rotation));
-        let unit = q / q.abs().max_element();
-        if unit.is_finite() {
-            glam::Quat::from_vec4(unit.normalize().as_vec4())
-        } else {
-            glam::Quat::from_vec4(q.as_vec4())
-        }
+        let power = f64::from_bits(q.abs().max_element().to_bits() & f64::INFINITY.to_bits());
+        let unit = q / power.max(f64::MIN_POSITIVE);
+        glam::Quat::from_vec4(if unit.is_finite() { unit.as_vec4() } else { q.as_vec4() })
     }
 
     fn angular_velocity(velocity: AngularVelocity) -> Self {

@@ -3,6 +3,7 @@
 //! `cargo xtask` builds and starts it when one of these is asked for.
 
 mod book2d;
+mod judge;
 mod render;
 mod report;
 mod scene;
@@ -36,6 +37,11 @@ enum Task {
     ///
     /// Exit status: 0 where everything is right, 1 where some answer is wrong, 2 where the table could not be written.
     Sweep(sweep::Scope),
+    /// Hold the answers of other libraries, and ours, against what is proved; one table and one figure.
+    ///
+    /// Exit status: 0, or 1 where a bracket of ours does not hold the truth or a claim of ours is disproved, or 2 where a file
+    /// could not be read or written.
+    Judge(judge::Scope),
     /// Draw the descent of GJK in the plane, step by step.
     Book2d {
         /// Where the drawings go.
@@ -58,6 +64,7 @@ fn main() -> ExitCode {
         Task::Validate(scope) => validate::run(&scope, &report::CHAPTERS),
         Task::Scene(choice) => scene::run(&choice),
         Task::Sweep(scope) => sweep::run(&scope),
+        Task::Judge(scope) => judge::run(&scope),
         Task::Book2d { output } => book2d::run(&output),
         Task::Render { file, width } => render::run(&file, width),
     }

@@ -142,16 +142,24 @@ fn trace(points: &[[f64; 3]], options: EnclosingOptions) -> (Vec<[f64; 2]>, Opti
 
 fn gap_against_time(kind: &Kind) -> Figure {
     let mut series = Vec::new();
+    let mut cut_short = Vec::new();
     for (colour, (name, method, epsilon, iterations)) in METHODS.into_iter().enumerate() {
         progress(&format!("{name} on {}", kind.name));
         let options = EnclosingOptions::new().with_method(method).with_epsilon(epsilon).with_max_iterations(iterations);
         let (points, status) = trace(&kind.points, options);
         let name = match status {
-            Some(Status::IterationLimit) => format!("{name} (cut short)"),
+            Some(Status::IterationLimit) => {
+                cut_short.push(format!("{name} after {iterations} iterations"));
+                format!("{name} (cut short)")
+            }
             _ => name.to_owned(),
         };
         series.push(Series { name, points, joined: true, colour });
     }
+    let limits = match cut_short.is_empty() {
+        true => String::new(),
+        false => format!(" Cut short, before the gap asked for: {}.", cut_short.join(", ")),
+    };
     Figure {
         name: format!("ladder-enclosing-{}", kind.name),
         plot: Plot {
@@ -164,11 +172,9 @@ fn gap_against_time(kind: &Kind) -> Figure {
         },
         caption: format!(
             "{} points in space: {}. Of each method the time at which it had reached a gap, start included; the last mark is the \
-             answer, with the rounding of everything in its gap. \"Cut short\": out of iterations ({} moves, {} cuts).",
+             answer, with the rounding of everything in its gap.{limits}",
             kind.points.len(),
             kind.what,
-            METHODS[1].3,
-            METHODS[2].3
         ),
     }
 }

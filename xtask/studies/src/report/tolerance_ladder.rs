@@ -1,6 +1,7 @@
 //! Error against run time on the workloads of `benches`: hundreds of queries of one kind, whose answers are known in closed
 //! form or by construction, down a ladder of tolerances; other methods and other libraries as single marks beside it.
 
+use std::fs;
 use std::time::Duration;
 
 use benches::measure::Solver;
@@ -37,7 +38,7 @@ pub(super) fn section(scope: &Scope) -> Section {
         lead: "Each line is a method in a precision, each mark on it a tolerance: lower is more accurate, further left is \
                faster. What to see: after a few steps the lines fall steeply to the level of rounding, so a loose tolerance \
                saves little; that is why the default is no tolerance at all. Single marks are methods without a knob: closed \
-               forms, and other libraries with the tolerance they come with. Here everything is compiled for the types of its shapes; where all \
+               forms, and other libraries with the tolerance they come with, hollow where they are recorded and not of this run. Here everything is compiled for the types of its shapes; where all \
                kinds of cases stand together, they are behind `dyn SupportMap`, and of a dimension known at run time."
             .to_owned(),
         blocks,
@@ -64,17 +65,52 @@ const KNOBS: [(&str, Precision, Option<SubAlgorithm>); 4] = [
     ("signed volumes f64", Precision::Double, Some(SubAlgorithm::SignedVolumes)),
 ];
 
-/// What the other methods are called here, and their colours.
+/// What the other methods are called here, and their colours: of those whose marks are filled, as all are that are measured.
 fn single(method: Method) -> Option<(&'static str, usize)> {
     Some(match method {
-        Method::ClosedF64 => ("closed form f64", 4),
-        Method::ClosedF32 => ("closed form f32", 5),
-        Method::WarmF64 => ("ours warm f64", 4),
-        Method::WarmF32 => ("ours warm f32", 5),
-        Method::ParryGjkF64 => ("parry GJK f64", 6),
-        Method::ParryGjkF32 => ("parry GJK f32", 7),
+        Method::ClosedF64 => ("closed form f64", 8),
+        Method::ClosedF32 => ("closed form f32", 9),
+        Method::WarmF64 => ("ours warm f64", 8),
+        Method::WarmF32 => ("ours warm f32", 9),
+        Method::ParryGjkF64 => ("parry GJK f64", 10),
+        Method::ParryGjkF32 => ("parry GJK f32", 15),
         _ => return None,
     })
+}
+
+/// Other libraries as recorded in docs/performance.csv, where none was measured in this run; their marks are hollow.
+///
+/// In the columns of that file: the workload, the case, the method, nanoseconds, the 99th percentile and the worst of the error, and counts
+/// of wrong answers of five kinds, of which being far off is the fourth.
+const RECORDED: [(&str, &str, usize); 4] = [
+    ("parry gjk f64", "parry GJK f64, recorded", 6),
+    ("parry gjk f32", "parry GJK f32, recorded", 7),
+    ("box3d f32", "Box3D, recorded", 4),
+    ("jolt f32", "Jolt, recorded", 5),
+];
+
+/// The recorded marks of a case, of which `count` questions were asked; of boolean questions the share that was wrong.
+fn recorded(workload: &str, case: &str, count: f64) -> Vec<Series> {
+    if cfg!(feature = "peers") {
+        return Vec::new();
+    }
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/performance.csv");
+    let csv = fs::read_to_string(file).unwrap_or_default();
+    let mark = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [of, what, method, ns, p99, _, counts @ ..] = cells.as_slice() else { return None };
+        let &(_, name, colour) = RECORDED.iter().find(|(known, ..)| known == method)?;
+        let counts: Vec<f64> = counts.iter().filter_map(|count| count.parse().ok()).collect();
+        let lost = counts.iter().sum::<f64>() - counts.get(3)?;
+        let error = match workload {
+            "W3b" => lost / count,
+            _ if lost * 100.0 > count => 1.0,
+            _ => p99.parse::<f64>().ok()?.min(1.0),
+        };
+        let points = vec![[ns.parse().ok()?, error]];
+        (*of == workload && *what == case).then(|| Series { name: name.to_owned(), points, joined: false, colour })
+    };
+    csv.lines().skip(1).filter_map(mark).collect()
 }
 
 /// The error that 99 % of the answers stay below; 1 where more than 1 % of the queries got none or the opposite one.
@@ -148,7 +184,8 @@ fn ray_cast(case: &'static str) -> Figure {
     rays.truncate(QUERIES);
     let make = |precision, effort| ours::ray_casts(precision, &shape, &rays, effort);
     let judge = |answers: &[f64], precision| score::ray_casts(&rays, answers, precision);
-    let series = series(&make, rows::ray_casters(&shape, &rays), &judge, &tolerances(), p99);
+    let mut series = series(&make, rows::ray_casters(&shape, &rays), &judge, &tolerances(), p99);
+    series.extend(recorded("W1", case, w1_ray_cast::RAYS as f64));
     figure(format!("ray-cast-{case}"), format!("Ray casts: {case}"), "Truth in closed form.", series)
 }
 
@@ -160,7 +197,8 @@ fn linear_cast(case: &'static str) -> Figure {
     let grazing = w2_linear_cast::grazing(&pair, &casts);
     let make = |precision, effort| ours::linear_casts(precision, &pair, &casts, effort);
     let judge = |answers: &[f64], _| score::linear_casts(&casts, &grazing, answers);
-    let series = series(&make, rows::linear_casters(&pair, &casts), &judge, &tolerances(), p99);
+    let mut series = series(&make, rows::linear_casters(&pair, &casts), &judge, &tolerances(), p99);
+    series.extend(recorded("W2", case, w2_linear_cast::CASTS as f64));
     let truth = "Truth by construction, to about 1e-14.";
     figure(format!("linear-cast-{case}"), format!("Linear casts: {case}"), truth, series)
 }
@@ -172,7 +210,8 @@ fn distance(case: &'static str) -> Figure {
     queries.truncate(QUERIES);
     let make = |precision, effort| ours::distances(precision, &pair, &queries, effort);
     let judge = |answers: &[f64], _| score::distances(&queries, answers);
-    let series = series(&make, rows::distance_solvers(&pair, &queries), &judge, &tolerances(), p99);
+    let mut series = series(&make, rows::distance_solvers(&pair, &queries), &judge, &tolerances(), p99);
+    series.extend(recorded("W3far", case, w3_distance::FAR as f64));
     let truth = "Truth by construction, to about 1e-13 of the distance: the lines cannot fall further.";
     figure(format!("distance-{case}"), format!("Distances: {case}"), truth, series)
 }
@@ -193,6 +232,7 @@ fn intersect(case: &'static str) -> Figure {
         "",
         series(&make, others, &judge, &efforts, share),
     );
+    figure.plot.series.extend(recorded("W3b", case, w3b_intersect::QUERIES as f64));
     figure.plot.y = "share of queries without the right answer".to_owned();
     figure.plot.floor = 0.5 / QUERIES as f64;
     figure.caption = format!(

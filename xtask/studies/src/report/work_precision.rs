@@ -134,14 +134,14 @@ fn figure(ladder: &Ladder, cases: &[Case]) -> Option<Figure> {
         return None;
     }
     let mut series = Vec::new();
-    let mut unanswered = 0;
+    let mut unanswered: Vec<(String, usize)> = Vec::new();
     for method in ladder.methods {
         for precision in ladder.precisions {
             let mut points = Vec::new();
             for &rung in ladder.rungs {
                 progress(&format!("{}: {method} {precision} {rung:e}", ladder.query));
                 let measured = measure(ladder, &chosen, method, precision, rung);
-                unanswered += measured.unanswered;
+                count(&mut unanswered, method, precision, measured.unanswered);
                 let Some(point) = measured.point else { continue };
                 points.push(point);
                 if point[0] > SLOWEST_NS {
@@ -170,14 +170,38 @@ fn figure(ladder: &Ladder, cases: &[Case]) -> Option<Figure> {
             series,
         },
         caption: format!(
-            "{} {} from {:e} to {:e}; medians of {} cases. {unanswered} questions got an error for an answer.",
+            "{} {} from {:e} to {:e}; medians of {} cases.{}",
             ladder.see,
             if ladder.knob == "tol" { "Tolerance" } else { "Certified gap" },
             ladder.rungs[0],
             ladder.rungs[ladder.rungs.len() - 1],
-            chosen.len()
+            chosen.len(),
+            without_answer(&unanswered)
         ),
     })
+}
+
+/// Counts questions without an answer.
+fn count(unanswered: &mut Vec<(String, usize)>, method: &str, precision: &str, more: usize) {
+    let name = format!("{method}, {precision}");
+    match unanswered.iter_mut().find(|(known, _)| *known == name) {
+        Some((_, count)) => *count += more,
+        None => unanswered.push((name, more)),
+    }
+}
+
+/// Whose questions had no answer, over all tolerances, and why that is.
+fn without_answer(unanswered: &[(String, usize)]) -> String {
+    let some: Vec<String> =
+        unanswered.iter().filter(|(_, count)| *count > 0).map(|(name, count)| format!("{count} of {name}")).collect();
+    if some.is_empty() {
+        return String::new();
+    }
+    format!(
+        " Without an answer, and in no mark: {}, over all tolerances; the method came to its limit of iterations before the tolerance, \
+         or has no such question, and says so.",
+        some.join("; ")
+    )
 }
 
 /// Cases in double precision whose inputs determine the answer well, spread over all there are.

@@ -1,6 +1,10 @@
 //! Plots as SVG, by hand: points and lines that can be told apart by colour and by mark, on light and dark pages and on paper.
 
+mod marks;
+
 use std::fmt::Write as _;
+
+pub use self::marks::{Mark, Marks};
 
 /// One set of points of a plot.
 #[derive(Clone, Debug)]
@@ -58,7 +62,7 @@ impl Plot {
         let (x, y) = (Axis::around(self.scales[0], xs), Axis::around(self.scales[1], ys));
         let legend = self.legend();
         let rows = legend.iter().map(|entry| entry.row + 1).max().unwrap_or(0);
-        let frame = Frame { x, y, floor: self.floor };
+        let frame = Frame { x, y, floor: self.floor, size: [WIDTH, HEIGHT] };
         let mut svg = format!(
             "<svg viewBox=\"0 0 {WIDTH} {:.0}\" role=\"img\" aria-label=\"{1}\" xmlns=\"http://www.w3.org/2000/svg\" \
              font-family=\"system-ui, sans-serif\" font-size=\"12.5\" fill=\"currentColor\">\n\
@@ -66,7 +70,8 @@ impl Plot {
             HEIGHT + LEGEND_ROW * rows as f64,
             escape(&self.title)
         );
-        self.axes(&mut svg, &frame);
+        let floored = self.series.iter().flat_map(|s| &s.points).any(|p| p[1] < self.floor);
+        frame.axes(&mut svg, [&self.x, &self.y], floored);
         for series in &self.series {
             draw(&mut svg, series, &frame);
         }
@@ -89,44 +94,6 @@ impl Plot {
         }
         svg.push_str("</svg>\n");
         svg
-    }
-
-    /// Grid, ticks and titles of both axes. The vertical one is titled above its end, where it can be read without turning.
-    fn axes(&self, svg: &mut String, frame: &Frame) {
-        let (right, bottom) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
-        for (value, label) in frame.x.ticks() {
-            let at = frame.px(value);
-            let _ = writeln!(
-                svg,
-                "<path d=\"M{at:.1} {TOP}V{bottom}\" stroke=\"currentColor\" stroke-opacity=\".13\"/>\
-                 <text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{label}</text>",
-                bottom + 17.0
-            );
-        }
-        // Values below the floor, zero above all, lie on the lowest line.
-        let floored = self.series.iter().flat_map(|s| &s.points).any(|p| p[1] < self.floor);
-        for (i, (value, label)) in frame.y.ticks().into_iter().enumerate() {
-            let at = frame.py(value);
-            let label = if i == 0 && floored { "0".to_owned() } else { label };
-            let _ = writeln!(
-                svg,
-                "<path d=\"M{LEFT} {at:.1}H{right}\" stroke=\"currentColor\" stroke-opacity=\".13\"/>\
-                 <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>",
-                LEFT - 7.0,
-                at + 4.0
-            );
-        }
-        let _ = writeln!(
-            svg,
-            "<path d=\"M{LEFT} {TOP}V{bottom}H{right}\" fill=\"none\" stroke=\"currentColor\" stroke-opacity=\".5\"/>\
-             <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>\
-             <text transform=\"translate(15 {:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
-            f64::midpoint(LEFT, right),
-            HEIGHT - 12.0,
-            escape(&self.x),
-            f64::midpoint(TOP, bottom),
-            escape(&self.y)
-        );
     }
 
     /// The names of the series in rows below the plot, where they cover nothing.
@@ -159,15 +126,54 @@ struct Frame {
     x: Axis,
     y: Axis,
     floor: f64,
+    /// How large the picture is without its legend.
+    size: [f64; 2],
 }
 
 impl Frame {
+    /// Grid, ticks and titles of both axes. The vertical one is titled above its end, where it can be read without turning.
+    fn axes(&self, svg: &mut String, titles: [&str; 2], floored: bool) {
+        let [right, bottom] = [self.size[0] - RIGHT, self.size[1] - BOTTOM];
+        for (value, label) in self.x.ticks() {
+            let at = self.px(value);
+            let _ = writeln!(
+                svg,
+                "<path d=\"M{at:.1} {TOP}V{bottom}\" stroke=\"currentColor\" stroke-opacity=\".13\"/>\
+                 <text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{label}</text>",
+                bottom + 17.0
+            );
+        }
+        // Values below the floor, zero above all, lie on the lowest line.
+        for (i, (value, label)) in self.y.ticks().into_iter().enumerate() {
+            let at = self.py(value);
+            let label = if i == 0 && floored { "0".to_owned() } else { label };
+            let _ = writeln!(
+                svg,
+                "<path d=\"M{LEFT} {at:.1}H{right}\" stroke=\"currentColor\" stroke-opacity=\".13\"/>\
+                 <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>",
+                LEFT - 7.0,
+                at + 4.0
+            );
+        }
+        let _ = writeln!(
+            svg,
+            "<path d=\"M{LEFT} {TOP}V{bottom}H{right}\" fill=\"none\" stroke=\"currentColor\" stroke-opacity=\".5\"/>\
+             <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>\
+             <text transform=\"translate(15 {:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
+            f64::midpoint(LEFT, right),
+            self.size[1] - 12.0,
+            escape(titles[0]),
+            f64::midpoint(TOP, bottom),
+            escape(titles[1])
+        );
+    }
+
     fn px(&self, value: f64) -> f64 {
-        LEFT + self.x.part(value) * (WIDTH - LEFT - RIGHT)
+        LEFT + self.x.part(value) * (self.size[0] - LEFT - RIGHT)
     }
 
     fn py(&self, value: f64) -> f64 {
-        HEIGHT - BOTTOM - self.y.part(value.max(self.floor)) * (HEIGHT - TOP - BOTTOM)
+        self.size[1] - BOTTOM - self.y.part(value.max(self.floor)) * (self.size[1] - TOP - BOTTOM)
     }
 }
 

@@ -1,0 +1,78 @@
+"""What the programs of this folder share: shapes of the query format in their poses, and lines of answers."""
+
+import json
+import time
+
+import numpy as np
+
+IDENTITY = (np.eye(3), np.zeros(3))
+
+
+class NotAsked(Exception):
+    """The library has no such shape or question."""
+
+
+def rotation_of(quaternion):
+    """The matrix of a quaternion [x, y, z, w] of any length."""
+    x, y, z, w = np.array(quaternion) / np.linalg.norm(quaternion)
+    return np.array([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ])
+
+
+def placed(shape, at=IDENTITY):
+    """A shape without its poses, and where it is: a rotation matrix and a translation."""
+    if shape["type"] == "ellipsoid" and "semi_axes" in shape:
+        rotation = rotation_of(shape["rotation"]) if "rotation" in shape else np.eye(3)
+        at = compose(at, (rotation, vector(shape["center"])))
+        return {"type": "ellipsoid", "semi_axes": shape["semi_axes"]}, at
+    if shape["type"] != "posed":
+        return shape, at
+    given = shape.get("rotation", [0, 0, 0, 1])
+    if not isinstance(given, list):
+        raise NotAsked
+    pose = (rotation_of(given), vector(shape.get("translation", [0, 0, 0])))
+    return placed(shape["of"], compose(at, pose))
+
+
+def compose(outer, inner):
+    return outer[0] @ inner[0], outer[0] @ inner[1] + outer[1]
+
+
+def vector(numbers):
+    if len(numbers) != 3:
+        raise NotAsked
+    return np.array(numbers, dtype=float)
+
+
+def hull_points(points):
+    """The points of a hull, as rows; the libraries of this folder have none without a volume."""
+    rows = np.array([vector(point) for point in points])
+    extents = np.linalg.svd(rows - rows.mean(axis=0), compute_uv=False)
+    if len(rows) < 4 or extents[2] < 1e-9 * extents[0]:
+        raise NotAsked
+    return rows
+
+
+def write(questions, answers, head, answer):
+    """Answers the query lines of a file by `answer`, which gives the fields of an answer or raises `NotAsked`."""
+    counts = {"answered": 0, "errors": 0, "not asked": 0}
+    start = time.time()
+    with open(questions, encoding="utf-8") as asked, open(answers, "w", encoding="utf-8") as out:
+        print(json.dumps(head), file=out)
+        for line in asked:
+            question = json.loads(line)
+            try:
+                fields = answer(question)
+                counts["answered"] += 1
+            except NotAsked:
+                counts["not asked"] += 1
+                continue
+            except Exception as why:  # what a library throws is its answer
+                fields = {"error": str(why)}
+                counts["errors"] += 1
+            print(json.dumps({"id": question["id"], **fields}), file=out)
+    told = ", ".join(f"{count} {what}" for what, count in counts.items())
+    print(f"{head['peer']}: {told}, in {time.time() - start:.1f} s")

@@ -1,0 +1,56 @@
+//! What the queries share that may carry `"gradient": true`.
+
+use convex_support::{AngularVelocity as _, Scalar as _, SupportMap};
+use gjk_raycast::{MotionGradient, SignedDistanceOptions, Smoothness, signed_distance};
+
+use crate::wire::answer::{Answer, Field, Number};
+use crate::wire::error::Problem;
+use crate::wire::fields::Fields;
+use crate::wire::shape::Space;
+
+/// Whether a query asks for the derivatives of its scalar.
+pub(super) fn is_wanted(fields: &Fields<'_>) -> Result<bool, Problem> {
+    Ok(fields.maybe("gradient")?.unwrap_or(false))
+}
+
+/// The derivatives of a scalar by the poses of both shapes.
+pub(super) struct Gradient<V> {
+    a: MotionGradient<V>,
+    b: MotionGradient<V>,
+    is_smooth: bool,
+}
+
+impl<V: Space> Gradient<V> {
+    pub(super) fn new(a: MotionGradient<V>, b: MotionGradient<V>, smoothness: Smoothness) -> Self {
+        Self { a, b, is_smooth: smoothness == Smoothness::Smooth }
+    }
+
+    /// Of a scalar that is at its floor where the shapes overlap: it stays there unless they merely touch.
+    pub(super) fn at_floor<A, B>(a: &A, b: &B) -> Self
+    where
+        A: SupportMap<Vector = V> + ?Sized,
+        B: SupportMap<Vector = V> + ?Sized,
+    {
+        let none = MotionGradient { translation: V::ZERO, point: V::ZERO };
+        let depth = signed_distance(a, b, SignedDistanceOptions::default());
+        Self { a: none, b: none, is_smooth: depth.upper < V::Scalar::ZERO }
+    }
+}
+
+/// The answer with `gradient_a`, `gradient_b` and `smooth`, where they were asked for.
+pub(super) fn with<V: Space>(answer: Answer, gradient: Option<Gradient<V>>) -> Answer {
+    let Some(Gradient { a, b, is_smooth }) = gradient else { return answer };
+    answer
+        .with("gradient_a", Field::Answer(by_pose(a)))
+        .with("gradient_b", Field::Answer(by_pose(b)))
+        .with("smooth", Field::Flag(is_smooth))
+}
+
+/// By a translation, and by a turn about the world's origin.
+fn by_pose<V: Space>(gradient: MotionGradient<V>) -> Answer {
+    let moment = gradient.rotation_about(V::ZERO);
+    let coordinate = |i| Number::of(moment.coordinate(i));
+    let rotation =
+        if V::DIM == 2 { Field::Number(coordinate(0)) } else { Field::Numbers((0..3).map(coordinate).collect()) };
+    Answer::default().with("translation", Field::vector(gradient.translation)).with("rotation", rotation)
+}

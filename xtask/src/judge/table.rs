@@ -1,0 +1,225 @@
+//! The judgement as a table, a figure, and files.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::{self, Write as _};
+use std::path::Path;
+
+use crate::plot::duration;
+use crate::validate::summary::quantile;
+use workloads::provenance::provenance;
+
+use super::figure::{self, Point};
+use super::questions::SETS;
+use super::verdict::{Outcome, Verdict};
+use super::witnesses::Witness;
+
+/// What became of the answers of one to the questions of a set.
+#[derive(Clone, Debug)]
+pub struct Row {
+    pub peer: String,
+    pub set: &'static str,
+    asked: usize,
+    none: usize,
+    right: usize,
+    off: usize,
+    pub disproved: usize,
+    open: usize,
+    errors: Vec<f64>,
+    times: Vec<f64>,
+}
+
+impl Row {
+    pub fn new(peer: &str, set: &'static str) -> Self {
+        let (errors, times) = (Vec::new(), Vec::new());
+        Self { peer: peer.to_owned(), set, asked: 0, none: 0, right: 0, off: 0, disproved: 0, open: 0, errors, times }
+    }
+
+    /// Counts an answer.
+    pub fn add(&mut self, verdict: &Verdict, ns: f64) {
+        self.asked += 1;
+        match verdict.outcome {
+            Outcome::Right => self.right += 1,
+            Outcome::Off => self.off += 1,
+            Outcome::Disproved => self.disproved += 1,
+            Outcome::Open => self.open += 1,
+        }
+        self.errors.extend(verdict.error);
+        self.times.push(ns);
+    }
+
+    /// Counts a question without an answer, which was asked or not.
+    pub fn add_none(&mut self, asked: bool) {
+        self.asked += usize::from(asked);
+        self.none += usize::from(asked);
+    }
+
+    /// Its mark in the figure; none where no length was asked.
+    #[must_use]
+    pub fn point(&self) -> Option<Point> {
+        Some(Point {
+            set: self.set.to_owned(),
+            who: self.peer.clone(),
+            disproved: self.disproved,
+            error: quantile(&self.errors, 0.99)?,
+            ns: quantile(&self.times, 0.5)?,
+        })
+    }
+
+    /// The names of the cells.
+    const HEADERS: [&str; 12] = [
+        "question",
+        "who",
+        "asked",
+        "right",
+        "off",
+        "disproved",
+        "no answer",
+        "open",
+        "median error",
+        "99th percentile",
+        "worst",
+        "median time",
+    ];
+
+    /// As text; `number` writes errors, `time` writes nanoseconds.
+    fn cells(&self, number: impl Fn(f64) -> String, time: impl Fn(f64) -> String) -> [String; 12] {
+        let error = |p| quantile(&self.errors, p).map_or_else(String::new, &number);
+        let counts =
+            [self.asked, self.right, self.off, self.disproved, self.none, self.open].map(|count| count.to_string());
+        let [asked, right, off, disproved, none, open] = counts;
+        let finite: Vec<f64> = self.times.iter().copied().filter(|ns| ns.is_finite()).collect();
+        let median = quantile(&finite, 0.5).map_or_else(String::new, time);
+        let (set, peer) = (self.set.to_owned(), self.peer.clone());
+        [set, peer, asked, right, off, disproved, none, open, error(0.5), error(0.99), error(1.0), median]
+    }
+}
+
+/// Everything that was found.
+#[derive(Debug)]
+pub struct Report<'a> {
+    pub rows: Vec<Row>,
+    pub witnesses: &'a [Witness],
+    pub cases: usize,
+    /// How many truths are known, and whose brackets do not hold them.
+    pub violated: &'a (usize, Vec<String>),
+}
+
+impl Report<'_> {
+    /// Writes the files, and prints the table.
+    ///
+    /// # Errors
+    /// Where a file cannot be written.
+    pub fn write(&self, folder: &Path, disproved: &str) -> io::Result<()> {
+        fs::create_dir_all(folder)?;
+        let markdown = self.markdown();
+        fs::write(folder.join("judge.md"), &markdown)?;
+        fs::write(folder.join("judge.csv"), self.csv())?;
+        fs::write(folder.join("disproved.jsonl"), disproved)?;
+        fs::write(folder.join("judge.svg"), self.figure())?;
+        let mut output = io::stdout().lock();
+        writeln!(output, "{markdown}\nwritten to {}: judge.md, judge.csv, judge.svg, disproved.jsonl", folder.display())
+    }
+
+    /// Writes the table and the figure into the folder of notes.
+    ///
+    /// # Errors
+    /// Where a file cannot be written.
+    pub fn record(&self, docs: &Path) -> io::Result<()> {
+        fs::write(docs.join("judge.md"), self.markdown() + BY_HAND)?;
+        fs::write(docs.join("judge.csv"), self.csv())?;
+        fs::write(docs.join("figures/judge.svg"), self.figure())
+    }
+
+    /// The figure as a picture of its own, which has a ground.
+    fn figure(&self) -> String {
+        let marks = figure::marks(&figure::read(&self.csv()), |who| !self.is_measured(who));
+        marks.svg().replacen("<svg ", "<svg style=\"background:#fff;color:#1c1c1e\" ", 1)
+    }
+
+    /// Whether somebody was asked in this run.
+    fn is_measured(&self, who: &str) -> bool {
+        self.witnesses.iter().any(|witness| witness.name == who && witness.is_measured)
+    }
+
+    /// The rows in the order of the questions, and of those who answer.
+    fn sorted(&self) -> Vec<&Row> {
+        let mut sets: Vec<&str> = Vec::new();
+        for row in &self.rows {
+            if !sets.contains(&row.set) {
+                sets.push(row.set);
+            }
+        }
+        sets.sort_by_key(|set| SETS.iter().position(|known| known == set).unwrap_or(usize::MAX));
+        sets.iter().flat_map(|set| self.rows.iter().filter(move |row| row.set == *set && row.asked > 0)).collect()
+    }
+
+    fn csv(&self) -> String {
+        let exact = |value: f64| format!("{value:e}");
+        let lines = self.sorted().into_iter().map(|row| row.cells(exact, |ns| format!("{ns:.1}")).join(","));
+        [Row::HEADERS.join(",")].into_iter().chain(lines).map(|line| line + "\n").collect()
+    }
+
+    fn markdown(&self) -> String {
+        let (known, violated) = self.violated;
+        let mut text = format!(
+            "# Other libraries, judged\n\n{}\n\n{}\n\nMeasured on {}.\n\n",
+            INTRODUCTION.trim(),
+            COMMANDS.trim(),
+            provenance()
+        );
+        let _ = writeln!(
+            text,
+            "{} questions. Of {known} of them the truth is known besides; the brackets hold it in all but {}.\n",
+            self.cases,
+            violated.len()
+        );
+        for id in violated {
+            let _ = writeln!(text, "- the bracket of {id} does not hold the truth");
+        }
+        for witness in self.witnesses {
+            let Witness { name, tolerance, rounding, settings, .. } = witness;
+            let _ = writeln!(text, "- **{name}**: {settings}. Allowed: {tolerance:e}, or {rounding:e} of the reach.");
+        }
+        let _ =
+            writeln!(text, "\n| {} |\n|---|---|{}", Row::HEADERS.join(" | "), "---:|".repeat(Row::HEADERS.len() - 2));
+        for row in self.sorted() {
+            let cells = row.cells(|error| if error == 0.0 { "0".to_owned() } else { format!("{error:.0e}") }, duration);
+            let _ = writeln!(text, "| {} |", cells.join(" | "));
+        }
+        text
+    }
+}
+
+/// How to make the table again.
+const COMMANDS: &str = "\
+```sh
+cargo xtask judge --questions target/questions.jsonl
+benches/peers/coal_answers.py target/questions.jsonl target/coal.jsonl        # after: pip install -r benches/peers/requirements.txt
+benches/peers/mujoco_answers.py target/questions.jsonl target/mujoco.jsonl
+cargo xtask judge --answers target/coal.jsonl --answers target/mujoco.jsonl   # --record writes this note
+```
+
+Claims that are disproved are written with their questions and what shows it to `target/judge/disproved.jsonl`.";
+
+/// What was checked without any of this.
+const BY_HAND: &str = "
+## Three claims, checked by hand
+
+Of parry 0.31.1, without a bracket of ours:
+
+- *suite: ray cast*, `closed_form/316`, in `f32`: a miss. Source, direction, centre and radius are whole numbers of some 1e10; in exact arithmetic the quadratic has a \
+positive discriminant, the line passes the ball's centre at 0.2517 of its radius, and the ray enters at λ = 0.80328. Squares of such numbers, squared, are beyond `f32`.
+- *turning cast*, `ball-cuboid/320` (`--each 50` asks it), in `f32`: a miss. At t = 0.4508 the centre of the ball, in coordinates of the turned box, is 0.92716 from the box, less than its radius of 1.
+- *suite: depth*, `signed_distance/1`, in `f64`: apart by 7.1e-8. The centre of the box is within the cylinder, at 0.02 of its half height and 0.13 of its radius; both bodies are some 1e-6 large.
+";
+
+/// What the columns are.
+const INTRODUCTION: &str = "\
+Every answer is held against a bracket that is proved by geometry, not against an answer of ours. *Right*: within what is allowed, a \
+length: the tolerance that the library documents, or the rounding of the precision, whichever is more. *Off*: the hit, miss, overlap or \
+gap is as said, its time or length is not. *Disproved*: a hit, miss, overlap or gap that is shown not to be, by more than is allowed: \
+bodies that are apart at the time of a claimed hit, that are deep in one another on the way of a claimed miss. *No answer*: an error. \
+*Open*: the bracket did not close. Shapes that a library does not have are not asked of it. An error is a length in parts of the reach of \
+the scene, the distance from the origin of the farthest corner of a body's box: of a time, how far the bodies are from touching then, or how far they \
+moved on since they did.";

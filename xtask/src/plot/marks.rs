@@ -1,0 +1,181 @@
+//! Marks that are named beside them: few points, of which each says something of its own.
+
+use std::fmt::Write as _;
+
+use super::{Axis, Frame, LEFT, LEGEND_ROW, RIGHT, Scale, TOP, escape, look, mark};
+
+/// A point with its name.
+#[derive(Clone, Debug)]
+pub struct Mark {
+    pub at: [f64; 2],
+    pub label: String,
+    /// Whom of [`Marks::groups`] it belongs to.
+    pub group: usize,
+}
+
+/// Error against time, as marks.
+#[derive(Clone, Debug)]
+pub struct Marks {
+    pub title: String,
+    pub x: String,
+    pub y: String,
+    /// What is below is drawn there.
+    pub floor: f64,
+    /// Names, and which of the colours and marks each has: those from 4 to 7 are hollow.
+    pub groups: Vec<(String, usize)>,
+    pub marks: Vec<Mark>,
+}
+
+/// The picture as it is on a desk, and on a telephone, without its legend.
+const WIDE: [f64; 2] = [760.0, 560.0];
+const NARROW: [f64; 2] = [420.0, 700.0];
+const FONT: f64 = 11.5;
+/// About the width of a letter of a label.
+const LETTER: f64 = 6.0;
+/// The radius of a mark.
+const RADIUS: f64 = 4.5;
+
+/// A box on the picture: left, top, right, bottom.
+type Area = [f64; 4];
+
+fn overlap(a: Area, b: Area) -> bool {
+    a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
+}
+
+impl Marks {
+    /// The picture as an `<svg>` element.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        self.drawn(WIDE, "wide")
+    }
+
+    /// The same for a narrow page.
+    #[must_use]
+    pub fn narrow_svg(&self) -> String {
+        self.drawn(NARROW, "narrow")
+    }
+
+    fn drawn(&self, size: [f64; 2], class: &str) -> String {
+        let xs = self.marks.iter().map(|mark| mark.at[0]);
+        let ys = self.marks.iter().map(|mark| mark.at[1].max(self.floor));
+        let (x, y) = (Axis::around(Scale::Time, xs), Axis::around(Scale::Log, ys));
+        let frame = Frame { x, y, floor: self.floor, size };
+        let mut svg = format!(
+            "<svg class=\"{class}\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{2}\" xmlns=\"http://www.w3.org/2000/svg\" \
+             font-family=\"system-ui, sans-serif\" font-size=\"12.5\" fill=\"currentColor\">\n\
+             <text x=\"8\" y=\"18\" font-size=\"14.5\" font-weight=\"600\">{2}</text>\n",
+            size[0],
+            size[1] + LEGEND_ROW * self.legend_rows(size[0]) as f64,
+            escape(&self.title)
+        );
+        frame.axes(&mut svg, [&self.x, &self.y], self.marks.iter().any(|mark| mark.at[1] < self.floor));
+        self.draw(&mut svg, &frame);
+        self.legend(&mut svg, size);
+        svg.push_str("</svg>\n");
+        svg
+    }
+
+    /// Marks and their names, each where it covers no other.
+    fn draw(&self, svg: &mut String, frame: &Frame) {
+        let places: Vec<[f64; 2]> =
+            self.marks.iter().map(|mark| [frame.px(mark.at[0]), frame.py(mark.at[1])]).collect();
+        let mut taken: Vec<Area> = places.iter().map(|[x, y]| [x - 5.0, y - 5.0, x + 5.0, y + 5.0]).collect();
+        for (one, &[x, y]) in self.marks.iter().zip(&places) {
+            let (name, colour) = &self.groups[one.group];
+            let width = LETTER * one.label.chars().count() as f64;
+            let area = free([x, y], width, &taken, frame.size);
+            taken.push(area);
+            let (left, base) = (area[0], area[3] - 3.5);
+            // A name that had to go far is tied to its mark.
+            let (to_x, to_y) = (x.clamp(area[0], area[2]), y.clamp(area[1], area[3]));
+            let far = (to_x - x).hypot(to_y - y) > 12.0;
+            let tie = if far {
+                format!("<path d=\"M{x:.1} {y:.1}L{to_x:.1} {to_y:.1}\" stroke-width=\".8\" stroke-opacity=\".6\"/>")
+            } else {
+                String::new()
+            };
+            let _ = writeln!(
+                svg,
+                "<g {}><title>{}: {}</title>{tie}{}<text x=\"{left:.1}\" y=\"{base:.1}\" font-size=\"{FONT}\" stroke=\"none\">{}</text></g>",
+                look(*colour),
+                escape(name),
+                escape(&one.label),
+                mark(*colour, x, y, RADIUS),
+                escape(&one.label)
+            );
+        }
+    }
+
+    /// Where the groups are named below a picture of this width: left ends and rows.
+    fn legend_places(&self, width: f64) -> Vec<(f64, usize)> {
+        let (mut left, mut row) = (LEFT - 30.0, 0);
+        let place = |(name, _): &(String, usize)| {
+            let wide = 10.0 + super::LETTER * name.chars().count() as f64 + 20.0;
+            if left + wide > width && left > LEFT {
+                (left, row) = (LEFT - 30.0, row + 1);
+            }
+            let here = (left, row);
+            left += wide;
+            here
+        };
+        self.groups.iter().map(place).collect()
+    }
+
+    fn legend_rows(&self, width: f64) -> usize {
+        self.legend_places(width).last().map_or(0, |(_, row)| row + 1)
+    }
+
+    /// The groups, below the picture.
+    fn legend(&self, svg: &mut String, [width, height]: [f64; 2]) {
+        for ((name, colour), (left, row)) in self.groups.iter().zip(self.legend_places(width)) {
+            let y = height + 4.0 + LEGEND_ROW * row as f64;
+            let _ = writeln!(
+                svg,
+                "<g {}>{}</g><text x=\"{:.1}\" y=\"{:.1}\">{}</text>",
+                look(*colour),
+                mark(*colour, left, y, RADIUS),
+                left + 10.0,
+                y + 4.0,
+                escape(name)
+            );
+        }
+    }
+}
+
+/// A place for a name of this width beside a point, as near as there is one.
+fn free([x, y]: [f64; 2], width: f64, taken: &[Area], size: [f64; 2]) -> Area {
+    let height = FONT + 2.5;
+    let place = |left: f64, top: f64| [left, top, left + width, top + height];
+    let inside =
+        |a: &Area| a[0] >= LEFT && a[2] <= size[0] - RIGHT + 24.0 && a[1] >= TOP - 8.0 && a[3] <= size[1] - 50.0;
+    let beside = |away: f64| {
+        [
+            place(x + 7.0 + away, y - height / 2.0),
+            place(x - 7.0 - away - width, y - height / 2.0),
+            place(x - width / 2.0, y - 6.0 - away - height),
+            place(x - width / 2.0, y + 6.0 + away),
+            place(x + 5.0 + away, y - 4.0 - away - height),
+            place(x + 5.0 + away, y + 4.0 + away),
+            place(x - 5.0 - away - width, y - 4.0 - away - height),
+            place(x - 5.0 - away - width, y + 4.0 + away),
+        ]
+    };
+    let candidates = [0.0, 8.0, 16.0, 26.0, 38.0, 52.0, 70.0, 90.0].into_iter().flat_map(beside);
+    let mut fitting = candidates.filter(inside).filter(|area| !taken.iter().any(|other| overlap(*area, *other)));
+    fitting.next().unwrap_or_else(|| place(x + 7.0, y - height / 2.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_cover_neither_marks_nor_one_another() {
+        let mut taken = vec![[295.0, 295.0, 305.0, 305.0]];
+        for _ in 0..12 {
+            let area = free([300.0, 300.0], 60.0, &taken, WIDE);
+            assert!(!taken.iter().any(|other| overlap(area, *other)), "{area:?} among {taken:?}");
+            taken.push(area);
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! `cargo xtask prove`: whether certificates prove what answers claim, in interval arithmetic of 256 bits.
+//!
+//! It shares no solver and no shape with the crates: a query is read once more here, from its JSON, and what a certificate proves
+//! follows from the query's own numbers. `docs/certificates.md` says how, and what the numbers of a query mean.
+
+mod body;
+mod certificate;
+mod interval;
+mod random;
+#[cfg(test)]
+mod tests;
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
+
+use clap::Args;
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+use self::body::{Reader, Unread};
+use self::certificate::{Bounds, Verdict, judge};
+use crate::mesh::Meshes;
+use crate::wire::json;
+
+/// What to prove.
+#[derive(Clone, Debug, Args)]
+pub struct Choice {
+    /// Files of queries with answers and certificates, as `query --certify` writes them; `-` is standard input.
+    #[arg(required_unless_present = "random", value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// Draw random queries for so many seconds, answer them, and prove that.
+    #[arg(long, value_name = "SECONDS", conflicts_with = "files")]
+    random: Option<u64>,
+    /// Another seed draws other queries.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// What the paths of meshes are relative to.
+    #[arg(long, value_name = "FOLDER")]
+    folder: Option<PathBuf>,
+    /// Write only lines that are not proved, and the counts.
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// How many lines came out how.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    pub proved: u64,
+    pub not_proved: u64,
+    pub disproved: u64,
+    /// Random queries that the crates could not answer.
+    pub unanswered: u64,
+}
+
+/// Lines that are judged together.
+const BATCH: usize = 1024;
+
+/// Judges the files, a line of output for each line, and the counts last.
+pub fn run(choice: &Choice) -> ExitCode {
+    match prove(choice, &mut BufWriter::new(io::stdout().lock())) {
+        Ok(Counts { not_proved: 0, disproved: 0, .. }) => ExitCode::SUCCESS,
+        Ok(_) => ExitCode::FAILURE,
+        Err(why) => {
+            let _ = writeln!(io::stderr(), "error: {why}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn prove(choice: &Choice, output: &mut impl Write) -> io::Result<Counts> {
+    let meshes = Meshes::relative_to(choice.folder.as_deref().unwrap_or(Path::new("")));
+    let mut counts = Counts::default();
+    if let Some(seconds) = choice.random {
+        let told = Mutex::new(Vec::new());
+        let tell = |line: &str| told.lock().unwrap_or_else(PoisonError::into_inner).push(line.to_owned());
+        counts = random::prove_for(seconds, choice.seed, tell);
+        for line in told.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            writeln!(output, "{line}")?;
+        }
+    }
+    for file in &choice.files {
+        let input: Box<dyn BufRead> = if file == Path::new("-") {
+            Box::new(io::stdin().lock())
+        } else {
+            Box::new(BufReader::new(File::open(file)?))
+        };
+        let mut lines = (1_u64..).zip(input.split(b'\n'));
+        loop {
+            let batch: Vec<(u64, Vec<u8>)> =
+                lines.by_ref().take(BATCH).map(|(i, line)| Ok((i, line?))).collect::<io::Result<_>>()?;
+            if batch.is_empty() {
+                break;
+            }
+            let asks = |(_, line): &&(u64, Vec<u8>)| !line.trim_ascii().is_empty() && !line.starts_with(b"#");
+            let asked: Vec<_> = batch.iter().filter(asks).collect();
+            let judged: Vec<_> = asked.into_par_iter().map(|(i, line)| judge_line(*i, line, &meshes)).collect();
+            for (verdict, text) in judged {
+                counts.add(verdict);
+                if !(choice.quiet && verdict == Verdict::Proved) {
+                    writeln!(output, "{text}")?;
+                }
+            }
+        }
+    }
+    let Counts { proved, not_proved, disproved, unanswered } = counts;
+    let said = json!({"proved": proved, "not_proved": not_proved, "disproved": disproved, "unanswered": unanswered});
+    writeln!(output, "{said}")?;
+    output.flush()?;
+    Ok(counts)
+}
+
+impl Counts {
+    fn plus(self, other: Self) -> Self {
+        Self {
+            proved: self.proved + other.proved,
+            not_proved: self.not_proved + other.not_proved,
+            disproved: self.disproved + other.disproved,
+            unanswered: self.unanswered + other.unanswered,
+        }
+    }
+
+    fn add(&mut self, verdict: Verdict) {
+        *match verdict {
+            Verdict::Proved => &mut self.proved,
+            Verdict::NotProved => &mut self.not_proved,
+            Verdict::Disproved => &mut self.disproved,
+        } += 1;
+    }
+}
+
+/// The verdict on a line, and the line of output.
+fn judge_line(number: u64, line: &[u8], meshes: &Meshes) -> (Verdict, Value) {
+    let read = json::object(line.trim_ascii()).map(Value::Object).map_err(|why| why.message);
+    let id = read.as_ref().ok().and_then(|line| line.get("id")).cloned().unwrap_or_else(|| number.into());
+    let judged: Result<(Verdict, Bounds), Unread> = read.and_then(|line| {
+        let single = line.get("precision").and_then(Value::as_str) == Some("f32");
+        judge(&line, &Reader { single, meshes })
+    });
+    match judged {
+        Err(why) => (Verdict::NotProved, json!({"id": id, "verdict": "not proved", "because": why})),
+        Ok((verdict, Bounds { lower, upper })) => {
+            let said = match verdict {
+                Verdict::Proved => "proved",
+                Verdict::NotProved => "not proved",
+                Verdict::Disproved => "disproved",
+            };
+            // Infinity is null.
+            let answer = json!({"id": id, "verdict": said, "lower": lower.to_f64(), "upper": upper.to_f64()});
+            (verdict, answer)
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! Random queries to prove: all shapes and combinators, nested, of both dimensions and precisions.
+
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+use serde_json::{Value, json};
+use workloads::rng::Rng;
+
+use super::certificate::Verdict;
+use super::{Counts, judge_line};
+use crate::mesh::Meshes;
+use crate::query::certified;
+
+/// Draws, answers and judges queries for so many seconds, on all cores; the lines that are not proved go to `told`.
+pub(super) fn prove_for(seconds: u64, seed: u64, told: impl Fn(&str) + Sync) -> Counts {
+    let end = Instant::now() + Duration::from_secs(seconds);
+    let meshes = Meshes::relative_to("");
+    let lanes = 0..rayon::current_num_threads() as u64;
+    let lane = |lane: u64| {
+        let mut rng = Rng::new(seed.wrapping_mul(0x9E37_79B9).wrapping_add(lane));
+        let mut counts = Counts::default();
+        while Instant::now() < end {
+            let Some(line) = certified(query(&mut rng).to_string().as_bytes(), &meshes) else {
+                counts.unanswered += 1;
+                continue;
+            };
+            let (verdict, said) = judge_line(1, &line, &meshes);
+            counts.add(verdict);
+            if verdict != Verdict::Proved {
+                told(&format!("{said} of {}", String::from_utf8_lossy(line.trim_ascii())));
+            }
+        }
+        counts
+    };
+    lanes.into_par_iter().map(lane).reduce(Counts::default, Counts::plus)
+}
+
+/// A query that has a certificate.
+pub(super) fn query(rng: &mut Rng) -> Value {
+    let space = Space { dimension: 2 + rng.below(2) as usize };
+    let precision = if rng.below(4) == 0 { "f32" } else { "f64" };
+    let apart = 4.0 * rng.unit();
+    match rng.below(4) {
+        0 | 1 => {
+            let (a, b) = space.pair(rng, apart);
+            let query = if rng.below(2) == 0 { "distance" } else { "intersect" };
+            json!({"query": query, "precision": precision, "a": a, "b": b})
+        }
+        2 => {
+            let (a, b) = space.pair(rng, 2.0 + 4.0 * apart);
+            let (u, v) = (space.vector(rng, 1.0), space.vector(rng, 1.0));
+            json!({"query": "linear_cast", "precision": precision, "a": a, "b": b, "velocity_a": u, "velocity_b": v})
+        }
+        _ => {
+            let source = space.vector(rng, 2.0 + 4.0 * apart);
+            // Mostly to somewhere about the target.
+            let aim = space.vector(rng, 1.5);
+            let direction: Vec<f64> = source.iter().zip(&aim).map(|(s, t)| t - s).collect();
+            let target = space.shape(rng, 3);
+            json!({"query": "ray_cast", "precision": precision, "target": target, "source": source, "direction": direction})
+        }
+    }
+}
+
+/// Where the shapes live.
+#[derive(Clone, Copy)]
+struct Space {
+    dimension: usize,
+}
+
+impl Space {
+    /// A vector with coordinates of so much at most.
+    fn vector(self, rng: &mut Rng, most: f64) -> Vec<f64> {
+        (0..self.dimension).map(|_| most * rng.signed()).collect()
+    }
+
+    fn vectors(self, rng: &mut Rng, count: u64) -> Vec<Vec<f64>> {
+        (0..count).map(|_| self.vector(rng, 1.0)).collect()
+    }
+
+    fn rotation(self, rng: &mut Rng) -> Value {
+        if self.dimension == 2 {
+            json!(7.0 * rng.signed())
+        } else {
+            json!((0..4).map(|_| rng.normal()).collect::<Vec<_>>())
+        }
+    }
+
+    /// Two shapes whose middles are so far apart at most; at times moved away together.
+    fn pair(self, rng: &mut Rng, apart: f64) -> (Value, Value) {
+        let far = if rng.below(8) == 0 { 1000.0 } else { 0.0 };
+        let (a, b) = (self.shape(rng, 3), self.shape(rng, 3));
+        let away = self.vector(rng, far);
+        let moved: Vec<f64> = self.vector(rng, apart).iter().zip(&away).map(|(x, y)| x + y).collect();
+        let posed = |of: Value, translation: Vec<f64>| json!({"type": "posed", "translation": translation, "of": of});
+        (posed(a, moved), if far > 0.0 { posed(b, away) } else { b })
+    }
+
+    /// A shape of sizes about one, combined of others so many levels deep at most.
+    fn shape(self, rng: &mut Rng, depth: u64) -> Value {
+        if depth == 0 || rng.below(3) == 0 {
+            return self.leaf(rng);
+        }
+        let of = self.shape(rng, depth - 1);
+        match rng.below(8) {
+            0 | 1 => {
+                json!({"type": "posed", "translation": self.vector(rng, 1.0), "rotation": self.rotation(rng), "of": of})
+            }
+            2 => self.chain(rng, of),
+            3 => {
+                let matrix = self.vectors(rng, self.dimension as u64);
+                json!({"type": "affine", "matrix": matrix, "translation": self.vector(rng, 1.0), "of": of})
+            }
+            4 => json!({"type": "minkowski_sum", "of": [of, self.shape(rng, depth - 1)]}),
+            5 => json!({"type": "difference", "a": of, "b": self.shape(rng, depth - 1)}),
+            6 => json!({"type": "hull", "of": [of, self.shape(rng, depth - 1)]}),
+            _ => json!({"type": "rounded", "radius": rng.unit(), "of": of}),
+        }
+    }
+
+    /// A shape at the end of a chain of poses.
+    fn chain(self, rng: &mut Rng, of: Value) -> Value {
+        let links = 1 << rng.below(6);
+        (0..links).fold(of, |of, _| json!({"type": "posed", "rotation": self.rotation(rng), "translation": self.vector(rng, 0.2), "of": of}))
+    }
+
+    fn leaf(self, rng: &mut Rng) -> Value {
+        // In one of eight a size is a thousandth.
+        let mut size = || if rng.below(8) == 0 { 1e-3 * rng.unit() } else { 0.05 + rng.unit() };
+        let (radius, half_height) = (size(), size());
+        let sizes: Vec<f64> = (0..self.dimension).map(|_| size()).collect();
+        let flat = if self.dimension == 2 { 8 } else { 10 };
+        match rng.below(flat) {
+            0 => json!({"type": "point", "at": self.vector(rng, 1.0)}),
+            1 => json!({"type": "segment", "points": self.vectors(rng, 2)}),
+            2 => json!({"type": "triangle", "points": self.vectors(rng, 3)}),
+            3 => json!({"type": "ball", "radius": radius}),
+            4 => json!({"type": "cuboid", "half_extents": sizes}),
+            5 => json!({"type": "capsule", "half_height": half_height, "radius": radius}),
+            6 => {
+                json!({"type": "ellipsoid", "center": self.vector(rng, 0.5), "semi_axes": sizes, "rotation": self.rotation(rng)})
+            }
+            7 => {
+                let count = 4 + rng.below(12);
+                json!({"type": "polytope", "points": self.vectors(rng, count)})
+            }
+            8 => json!({"type": "cylinder", "half_height": half_height, "radius": radius}),
+            _ => json!({"type": "cone", "half_height": half_height, "radius": radius}),
+        }
+    }
+}

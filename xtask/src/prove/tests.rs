@@ -1,0 +1,301 @@
+//! What is proved is true: numbers are enclosed, shapes are those of the crates, and what is not so is never proved.
+
+use serde_json::{Value, json};
+use workloads::rng::Rng;
+
+use super::body::{Reader, Set};
+use super::certificate::Verdict;
+use super::interval::{Interval, Vector, determinant};
+use super::random::query;
+use super::{Counts, judge_line};
+use crate::mesh::Meshes;
+use crate::query::certified;
+use crate::validate::EMBEDDED;
+
+fn meshes() -> Meshes {
+    Meshes::relative_to(EMBEDDED)
+}
+
+/// The query with its answer and certificate.
+fn answered(query: &Value) -> Value {
+    let line = certified(query.to_string().as_bytes(), &meshes()).unwrap_or_else(|| panic!("no answer to {query}"));
+    serde_json::from_slice(&line).expect("JSON")
+}
+
+fn verdict(line: &Value) -> Verdict {
+    judge_line(1, line.to_string().as_bytes(), &meshes()).0
+}
+
+/// Whether a number is certainly between two doubles.
+fn is_between(number: &Interval, low: f64, high: f64) -> bool {
+    Interval::from(low).is_at_most(number) && number.is_at_most(&Interval::from(high))
+}
+
+#[test]
+fn intervals_enclose_what_they_stand_for() {
+    let [one, three] = [1.0, 3.0].map(Interval::from);
+    let third = one.over(&three);
+    assert!(third.least().is_less_than(&third.greatest()), "a third is no binary number");
+    assert!(is_between(&(&third * &three).least(), 1.0 - 1e-15, 1.0), "from below");
+    assert!(is_between(&(&third * &three).greatest(), 1.0, 1.0 + 1e-15), "from above");
+    let two = Interval::from(2.0).root().squared();
+    assert!(is_between(&two.least(), 2.0 - 1e-15, 2.0) && is_between(&two.greatest(), 2.0, 2.0 + 1e-15), "{two:?}");
+    let apart = &Interval::from(1e308) + &Interval::from(5e-324);
+    assert!(
+        !apart.is_less_than(&Interval::from(1e308)) && !apart.is_at_most(&Interval::from(1e308)),
+        "nothing is lost"
+    );
+    for angle in [-7.0_f64, 0.5, 3.0, 1e6] {
+        let [sine, cosine] = Interval::sine_and_cosine(angle);
+        assert!(is_between(&sine, angle.sin() - 1e-15, angle.sin() + 1e-15), "the sine of {angle}");
+        assert!(is_between(&cosine, angle.cos() - 1e-15, angle.cos() + 1e-15), "the cosine of {angle}");
+    }
+}
+
+#[test]
+fn what_is_not_known_proves_nothing() {
+    let zero = Interval::zero();
+    for unknown in [Interval::from(f64::NAN), zero.over(&zero), Interval::unknown()] {
+        let made =
+            [unknown.squared(), &unknown + &zero, &unknown * &zero, unknown.over(&Interval::from(2.0)), -&unknown];
+        for value in made.iter().chain([&unknown]) {
+            assert!(!value.is_at_most(&Interval::from(1e300)) && !value.is_less_than(&zero), "{value:?}");
+            assert!(!Interval::from(-1.0).is_less_than(value) || value.is_not_negative(), "{value:?}");
+            assert!(!Interval::from(1.0).is_at_most(value) && !value.is_infinite(), "{value:?}");
+        }
+    }
+}
+
+#[test]
+fn determinants_of_whole_numbers_are_exact() {
+    let rows = [[2.0, 0.0, 1.0, 3.0], [1.0, -1.0, 0.0, 4.0], [5.0, 2.0, 2.0, 0.0], [0.0, 7.0, 1.0, 1.0]];
+    let rows: Vec<Vec<Interval>> = rows.iter().map(|row| row.map(Interval::from).to_vec()).collect();
+    assert!((&determinant(&rows) - &Interval::from(68.0)).is_zero(), "{:?}", determinant(&rows));
+    let singular = [rows[0].clone(), rows[1].clone(), rows[0].clone(), rows[3].clone()];
+    assert!(determinant(&singular).is_zero(), "two rows are equal");
+}
+
+/// How far a shape of the query format reaches, as the checker reads it.
+fn reach(shape: &Value, direction: [f64; 3]) -> Interval {
+    let body = Reader { single: false, meshes: &meshes() }.body(shape).unwrap_or_else(|why| panic!("{why}: {shape}"));
+    let direction = Vector(direction.map(Interval::from));
+    let (point, value) = body.core.support(&direction);
+    assert!(
+        !point.dot(&direction).is_less_than(&value) || !matches!(body.core, Set::Ball),
+        "the point is the farthest"
+    );
+    &value + &(&body.radius * &direction.length())
+}
+
+#[test]
+fn shapes_reach_as_far_as_their_formulas_say() {
+    let upright = |kind: &str| json!({"type": kind, "half_height": 2.0, "radius": 3.0});
+    let quarter = json!([0.0, 0.0, 3.0, 3.0]);
+    let cases = [
+        (upright("capsule"), [0.0, 5.0, 0.0], 25.0),
+        (upright("cylinder"), [4.0, 5.0, -3.0], 25.0),
+        (upright("cone"), [4.0, 5.0, -3.0], 10.0),
+        (upright("cone"), [4.0, -5.0, -3.0], 25.0),
+        (json!({"type": "ellipsoid", "center": [1, 0, 0], "semi_axes": [3, 4, 1]}), [1.0, 1.0, 0.0], 6.0),
+        (
+            json!({"type": "ellipsoid", "center": [1, 0, 0], "matrix": [[0.25, 0, 0], [0, 1, 0], [0, 0, 1]]}),
+            [3.0, 0.0, 8.0],
+            13.0,
+        ),
+        (
+            json!({"type": "posed", "rotation": quarter, "of": {"type": "cuboid", "half_extents": [1, 2, 3]}}),
+            [1.0, 0.0, 0.0],
+            2.0,
+        ),
+        (
+            json!({"type": "affine", "matrix": [[2, 0, 0], [0, 2, 0], [0, 0, -2]], "of": {"type": "ball", "radius": 3}}),
+            [0.0, 0.0, 1.0],
+            6.0,
+        ),
+        (
+            json!({"type": "affine", "matrix": [[1, 0, 0], [0, 1, 0], [0, 0, 0]], "of": {"type": "ball", "radius": 3}}),
+            [0.0, 0.0, 1.0],
+            0.0,
+        ),
+        (
+            json!({"type": "hull", "of": [{"type": "ball", "radius": 3}, {"type": "rounded", "radius": 1, "of": {"type": "point", "at": [5, 0, 0]}}]}),
+            [1.0, 0.0, 0.0],
+            6.0,
+        ),
+    ];
+    for (shape, direction, expected) in cases {
+        let reach = reach(&shape, direction);
+        assert!(
+            is_between(&reach, expected - 1e-12, expected + 1e-12),
+            "{shape} along {direction:?}: {}",
+            reach.to_f64()
+        );
+    }
+}
+
+/// All but a ray through the apex of a cone, and two that start on a boundary: neither comes out exactly.
+#[test]
+fn the_embedded_suite_is_proved() {
+    let mut counts = Counts::default();
+    for name in ["distance", "intersect", "ray_cast", "linear_cast"] {
+        let text = std::fs::read_to_string(format!("{EMBEDDED}/{name}.jsonl")).expect("the suite is there");
+        for line in text.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
+            let Some(line) = certified(line.as_bytes(), &meshes()) else { continue };
+            counts.add(judge_line(1, &line, &meshes()).0);
+        }
+    }
+    assert!(counts.not_proved <= 3 && counts.disproved == 0, "{counts:?}");
+    assert!(counts.proved > 250, "{counts:?}");
+}
+
+#[test]
+fn true_claims_are_proved_and_false_ones_disproved() {
+    let ball = |x: f64| json!({"type": "posed", "translation": [x, 0, 0], "of": {"type": "ball", "radius": 1}});
+    let cube = json!({"type": "cuboid", "half_extents": [1, 1, 1]});
+    let cases = [
+        (
+            json!({"query": "distance", "a": ball(5.0), "b": cube}),
+            json!({"distance": 3, "overlap": false}),
+            json!({"distance": 3.001}),
+        ),
+        (json!({"query": "intersect", "a": ball(5.0), "b": cube}), json!({"overlap": false}), json!({"overlap": true})),
+        (json!({"query": "intersect", "a": ball(1.5), "b": cube}), json!({"overlap": true}), json!({"overlap": false})),
+        (
+            json!({"query": "ray_cast", "target": cube, "source": [4, 0.25, 0.5], "direction": [-1, 0, 0]}),
+            json!({"hit": true, "lambda": 3}),
+            json!({"hit": false}),
+        ),
+        (
+            json!({"query": "ray_cast", "target": cube, "source": [4, 0.25, 0.5], "direction": [-1, 0, 0], "max_lambda": 2}),
+            json!({"hit": false}),
+            json!({"hit": true, "lambda": 2}),
+        ),
+        (
+            json!({"query": "linear_cast", "a": cube, "b": ball(4.0), "velocity_a": [2, 0, 0]}),
+            json!({"hit": true, "time": 1}),
+            json!({"hit": true, "time": 0.99}),
+        ),
+    ];
+    for (query, good, bad) in cases {
+        let mut line = answered(&query);
+        assert_eq!(verdict(&line), Verdict::Proved, "{line}");
+        line["answer"] = good;
+        line["allow"] = json!(1e-12);
+        assert_eq!(verdict(&line), Verdict::Proved, "{line}");
+        line["answer"] = bad;
+        assert_eq!(verdict(&line), Verdict::Disproved, "{line}");
+    }
+}
+
+/// An answer of some width that is proved, and claims something of a distance or a time that is not zero.
+fn proved_line(rng: &mut Rng) -> Value {
+    loop {
+        let line = answered(&query(rng));
+        let claims = line["answer"]["lower"].as_f64().is_some_and(|lower| lower > 1e-3);
+        if claims && verdict(&line) == Verdict::Proved {
+            return line;
+        }
+    }
+}
+
+/// The line with one thing changed such that it proves nothing any more, or claims what is false; none where it cannot be changed so.
+fn mutated(mut line: Value, rng: &mut Rng) -> Option<Value> {
+    let answer = line["answer"].clone();
+    let [lower, upper] = ["lower", "upper"].map(|name| answer[name].as_f64().expect("a bracket"));
+    let scalar = ["distance", "lambda", "time"].into_iter().find(|name| answer.get(name).is_some())?;
+    let shift = (10.0_f64).powf(-1.0 - 4.0 * rng.unit()) * upper;
+    let points = line["certificate"]["points"].as_array()?.len();
+    let index = rng.below(points as u64) as usize;
+    match rng.below(8) {
+        // A bracket beside the truth, above or below.
+        0 => {
+            (line["answer"]["lower"], line["answer"]["upper"], line["answer"][scalar]) =
+                (json!(upper + shift), json!(upper + 2.0 * shift), json!(upper + shift));
+        }
+        1 => {
+            (line["answer"]["lower"], line["answer"]["upper"], line["answer"][scalar]) =
+                (json!(0), json!(lower - shift), json!(0));
+        }
+        // No plane, or one that faces the other way.
+        2 => drop(line["certificate"].as_object_mut()?.remove("plane")),
+        3 => {
+            for x in line["certificate"]["plane"].as_array_mut()? {
+                *x = json!(-x.as_f64()?);
+            }
+        }
+        // No points, or one fewer of those that matter.
+        4 => line["certificate"]["points"] = json!([]),
+        5 if line["certificate"]["points"][index][1].as_f64()? > 0.2 => {
+            drop(line["certificate"]["points"].as_array_mut()?.remove(index));
+        }
+        // A weight that is negative, or far too large.
+        6 => line["certificate"]["points"][index][1] = json!(-0.25 - rng.unit()),
+        7 => line["certificate"]["points"][index][1] = json!(1.5 + rng.unit()),
+        _ => return None,
+    }
+    Some(line)
+}
+
+#[test]
+fn of_ten_thousand_damaged_certificates_none_proves() {
+    let mut rng = Rng::new(8);
+    let (mut tried, mut disproved) = (0, 0);
+    while tried < 10_000 {
+        let line = proved_line(&mut rng);
+        for _ in 0..50 {
+            let Some(damaged) = mutated(line.clone(), &mut rng) else { continue };
+            let verdict = verdict(&damaged);
+            assert_ne!(verdict, Verdict::Proved, "{damaged}\n once {line}");
+            tried += 1;
+            disproved += u64::from(verdict == Verdict::Disproved);
+        }
+    }
+    assert!(disproved > 1000, "brackets beside the truth are disproved, but only {disproved} were");
+}
+
+/// Planes that lean prove less of a distance than the one that it is attained across.
+#[test]
+fn a_plane_that_leans_proves_no_bracket() {
+    let mut rng = Rng::new(9);
+    for _ in 0..300 {
+        let mut line = proved_line(&mut rng);
+        if line["query"] != "distance" || line["precision"] == "f32" {
+            continue;
+        }
+        let plane = line["certificate"]["plane"].as_array_mut().expect("a plane");
+        let lean = 1e-4 * (1.0 + rng.unit());
+        let [x, y] = [0, 1].map(|i| plane[i].as_f64().expect("a number"));
+        (plane[0], plane[1]) = (json!(x - lean * y), json!(y + lean * x));
+        if x.hypot(y) > 0.1 {
+            assert_eq!(verdict(&line), Verdict::NotProved, "{line}");
+        }
+    }
+}
+
+#[test]
+fn a_certificate_of_the_plane_proves_nothing_in_space() {
+    let target = json!({"type": "triangle", "points": [[0, -1, 3], [0, 1, 3], [1, 0, 3]]});
+    let mut line = json!({"query": "ray_cast", "target": target, "source": [-2, 0, 0], "direction": [1, 0, 0]});
+    line["answer"] = json!({"hit": true, "lambda": 2});
+    line["certificate"] = json!({"plane": [-1, 0], "points": [[[-1, 1], 0.5], [[-1, -1], 0.5]]});
+    assert_eq!(verdict(&line), Verdict::NotProved, "it passes three below");
+}
+
+#[test]
+fn what_cannot_be_read_is_not_proved() {
+    let ray = r#"{"query":"ray_cast","target":{"type":"ball","radius":1},"source":[3,0,0],"direction":[-1,0,0]"#;
+    let lines = [
+        "not JSON".to_owned(),
+        format!("{ray}}}"),
+        format!(r#"{ray},"answer":{{"hit":true,"lambda":2}}}}"#),
+        format!(r#"{ray},"answer":{{"hit":true}},"certificate":{{}}}}"#),
+        format!(r#"{ray},"answer":{{"hit":true,"lambda":2,"lower":2.5,"upper":3}},"certificate":{{}}}}"#),
+        r#"{"query":"margin","answer":{"margin":1},"certificate":{}}"#.to_owned(),
+        r#"{"query":"intersect","a":{"type":"ball","radius":-1},"b":{"type":"ball","radius":1},"answer":{"overlap":true},"certificate":{}}"#.to_owned(),
+    ];
+    for line in lines {
+        let (verdict, said) = judge_line(1, line.as_bytes(), &meshes());
+        assert_eq!(verdict, Verdict::NotProved, "{line}");
+        assert!(said["because"].is_string(), "{said}");
+    }
+}
