@@ -27,6 +27,19 @@ pub struct Core<V: Vector> {
     pub kind: CoreKind<V>,
 }
 
+impl<V: Vector> Core<V> {
+    /// The core of the set swept by a ball of the radius, as of [`Rounded`](crate::Rounded).
+    #[inline(always)]
+    #[must_use]
+    pub fn rounded(self, radius: V::Scalar) -> Self {
+        let sum = self.radius + radius;
+        // The sum with zero is exact.
+        let is_exact = self.radius == V::Scalar::ZERO || radius == V::Scalar::ZERO;
+        let lost = if is_exact { V::Scalar::ZERO } else { roundings(1.0, sum) };
+        Self { radius: sum, error: self.error + lost, ..self }
+    }
+}
+
 /// What kind of set a [core](Core) is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CoreKind<V> {

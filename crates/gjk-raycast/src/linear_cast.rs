@@ -111,7 +111,7 @@ where
     }
     let target = target.max(zero);
     let mut body = Pair::new(a, b);
-    body.core_a.radius += target;
+    body.core_a = body.core_a.rounded(target);
     let (core_a, core_b) = (body.core_a, body.core_b);
     let (ray, direction_error, wanted) = ray_of(motion, [core_a.origin, core_b.origin], &options);
     let mut cast = cast(&mut body, ray, direction_error, |ray| ray, wanted, observer);

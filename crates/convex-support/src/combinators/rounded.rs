@@ -3,10 +3,9 @@
 use crate::error::{InvalidShape, non_negative};
 use num_traits::Float as _;
 
-use crate::numerics::bound::roundings;
 use crate::numerics::twofold::two_sum;
 use crate::support::{ScalarOf, support_of_parts};
-use crate::{Core, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector};
+use crate::{Core, Feature, Hint, LineCrossing, Parallelotope, Rounding, SupportMap, Vector};
 
 /// The Minkowski sum of a shape and a ball: the shape grown by a radius, its edges and corners rounded.
 ///
@@ -62,11 +61,7 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
 
     #[inline(always)]
     fn core(&self) -> Core<S::Vector> {
-        let core = self.shape.core();
-        let radius = core.radius + self.radius;
-        // The sum with zero is exact.
-        let lost = if core.radius == Scalar::ZERO { Scalar::ZERO } else { roundings(1.0, radius) };
-        Core { radius, error: core.error + lost, ..core }
+        self.shape.core().rounded(self.radius)
     }
 
     #[inline(always)]

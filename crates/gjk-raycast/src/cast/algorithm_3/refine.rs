@@ -54,9 +54,10 @@ pub(super) fn refine<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
                 continue;
             }
             // Nothing is before the facet. One that is seen as a sliver is entered at a spot that is mostly rounding, while
-            // the ray runs through an edge or a corner of it.
+            // the ray runs through an edge or a corner of it; and what points and planes are wrong by may be all that is left.
             let contact = if bracket.radius == Scalar::ZERO { touch(bracket, &simplex) } else { None };
-            return contact.ok_or(Stop::InDoubt);
+            let all_there_is = || bracket.close_to_hull(slope, wanted + bracket.error, || simplex.weighted_witness());
+            return contact.or_else(all_there_is).ok_or(Stop::InDoubt);
         }
         let before = simplex;
         simplex.push(point, n, witness);
