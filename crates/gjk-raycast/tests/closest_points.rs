@@ -4,9 +4,7 @@ mod common;
 
 use common::{Plain, Quaternion, at, cuboid, s, turned, ulps, v};
 use convex_support::glam::{DVec2, DVec3, Vec3A};
-use convex_support::{
-    Ball, Capsule, Cone, Core, Cylinder, Ellipsoid, Hint, Point, Rounded, ScalarOf, Segment, SupportMap, Triangle,
-};
+use convex_support::{Ball, Capsule, Cone, Cylinder, Ellipsoid, Point, Rounded, Segment, SupportMap, Triangle};
 use gjk_raycast::{DistanceOptions, IntersectOptions, Status, distance, intersects};
 use num_traits::Float as _;
 
