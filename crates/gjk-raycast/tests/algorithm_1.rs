@@ -3,6 +3,7 @@
 
 mod common;
 
+use common::behind_pointers::ray_cast;
 use common::{Quaternion, s, turned, v};
 use convex_support::glam::{DVec3, Vec3A};
 use convex_support::{
@@ -10,7 +11,7 @@ use convex_support::{
     closest_point,
 };
 use gjk_raycast::{
-    Outcome, Ray, RayCast, RayCastError, RayCastOptions, Status, iterative_ray_cast, iterative_ray_cast_with, ray_cast,
+    Outcome, Ray, RayCast, RayCastError, RayCastOptions, Status, iterative_ray_cast, iterative_ray_cast_with,
 };
 use proptest::prelude::*;
 

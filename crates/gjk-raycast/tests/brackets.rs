@@ -5,16 +5,14 @@
 
 mod common;
 
+use common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
 use common::{Random, at, cuboid, s, v};
 use convex_support::glam::{DQuat, DVec3, Quat, Vec3A};
 use convex_support::{
     Affine, Cone, Cylinder, Hull, Matrix, MinkowskiSum, Point, Polytope, Posed, Rotation, Scalar, SupportMap, Vector,
     Vector3,
 };
-use gjk_raycast::{
-    DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions, Status, distance,
-    intersects, linear_cast, ray_cast,
-};
+use gjk_raycast::{DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions, Status};
 
 const VALID: &str = "finite numbers and positive sizes";
 

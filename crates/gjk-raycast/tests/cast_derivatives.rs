@@ -3,12 +3,13 @@
 mod common;
 mod differences;
 
+use common::behind_pointers::{linear_cast, motion_cast, ray_cast};
 use convex_support::glam::{DVec2, DVec3};
 use convex_support::{AngularVelocity, Capsule, Cuboid, Posed, Rounded};
 use differences::{Body, Comparison, Random, Space, central};
 use gjk_raycast::{
     LinearCastOptions, LinearHit, Motion, MotionCastOptions, MotionHit, Ray, RayCastOptions, RayHit, RigidMotion,
-    Smoothness, linear_cast, motion_cast, ray_cast,
+    Smoothness,
 };
 
 const VALID: &str = "positive sizes and finite numbers";

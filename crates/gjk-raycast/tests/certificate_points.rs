@@ -1,14 +1,16 @@
 //! Certificates prove what answers claim, as far as the shapes' own support maps tell; `cargo xtask prove` tells it without them.
 
+mod common;
+
+use common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
 use convex_support::glam::{DMat3, DVec2, DVec3, Vec3};
 use convex_support::{
     Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Ellipsoid, Hint, InvalidShape, Point, Posed, Rounded,
     Scalar, Segment, SupportMap, Vector,
 };
 use gjk_raycast::{
-    Certificate, DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Ray, RayCastOptions, distance,
-    distance_certificate, intersection_certificate, intersects, linear_cast, linear_cast_certificate, ray_cast,
-    ray_cast_certificate,
+    Certificate, DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Ray, RayCastOptions,
+    distance_certificate, intersection_certificate, linear_cast_certificate, ray_cast_certificate,
 };
 
 type Solid = Box<dyn SupportMap<Vector = DVec3>>;

@@ -3,14 +3,12 @@
 
 mod common;
 
+use common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
 use common::directions;
 use convex_support::glam::{DVec2, DVec3, Vec3A};
 use convex_support::strategies::{self, AnyShape};
 use convex_support::{Posed, Scalar, SupportMap, Vector, Vector3};
-use gjk_raycast::{
-    DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions, distance, intersects,
-    linear_cast, ray_cast,
-};
+use gjk_raycast::{DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions};
 use proptest::prelude::*;
 
 type Placed<V> = Posed<AnyShape<V>>;

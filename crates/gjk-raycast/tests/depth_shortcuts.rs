@@ -2,13 +2,14 @@
 
 mod common;
 
+use common::behind_pointers::signed_distance;
 use common::{Plain, Random, s};
 use convex_support::glam::{DMat3, DQuat, DVec2, DVec3, Quat, Vec3A};
 use convex_support::{
     Affine, Ball, CoreKind, Cuboid, Ellipsoid, Matrix, Polytope, Posed, Rounded, Scalar, Segment, SupportMap, Vector,
     closest_point,
 };
-use gjk_raycast::{SignedDistance, SignedDistanceOptions, Status, signed_distance};
+use gjk_raycast::{SignedDistance, SignedDistanceOptions, Status};
 
 impl Random {
     fn vector<V: Vector>(&mut self, size: f64) -> V {

@@ -3,13 +3,11 @@
 mod common;
 mod differences;
 
+use common::behind_pointers::{distance, linear_cast, motion_cast};
 use convex_support::glam::{DQuat, DVec2, DVec3};
 use convex_support::{Ball, Capsule, Cuboid, Cylinder, Polytope, Posed, Rounded, SupportMap, Triangle};
 use differences::{Body, Random, Space, apart, one_sided};
-use gjk_raycast::{
-    DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, RigidMotion, Smoothness, distance, linear_cast,
-    motion_cast,
-};
+use gjk_raycast::{DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, RigidMotion, Smoothness};
 
 const VALID: &str = "positive sizes and finite numbers";
 

@@ -1,12 +1,14 @@
 //! Motion casts whose answers are known in closed form, and what is answered at the edges: at the start, at the end, for bad input.
 
+mod common;
+
+use common::behind_pointers::motion_cast;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, TAU};
 
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{Ball, Capsule, Cuboid, Ellipsoid, Posed, Rounded, Segment, SupportMap};
 use gjk_raycast::{
     MotionCast, MotionCastOptions, Outcome, Pose, RayCastError, RigidMotion, StartInContact, Status, Trajectory,
-    motion_cast,
 };
 
 const REST: RigidMotion<DVec2> = RigidMotion { velocity: DVec2::ZERO, angular_velocity: 0.0, center: DVec2::ZERO };

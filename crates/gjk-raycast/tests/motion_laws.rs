@@ -1,14 +1,14 @@
 //! Laws that every motion cast obeys: what is proved agrees with distances at any number of times, and with itself when the question
 //! is put another way.
 
+mod common;
+
+use common::behind_pointers::{distance, linear_cast, motion_cast};
 use convex_support::glam::{DQuat, DVec3};
 use convex_support::{
     Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Polytope, Posed, Rounded, SupportMap,
 };
-use gjk_raycast::{
-    DistanceOptions, LinearCastOptions, Motion, MotionCast, MotionCastOptions, Outcome, RigidMotion, distance,
-    linear_cast, motion_cast,
-};
+use gjk_raycast::{DistanceOptions, LinearCastOptions, Motion, MotionCast, MotionCastOptions, Outcome, RigidMotion};
 use proptest::prelude::*;
 
 type Shape = Box<dyn SupportMap<Vector = DVec3>>;

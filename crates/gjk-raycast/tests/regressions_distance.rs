@@ -3,12 +3,13 @@
 
 mod common;
 
+use common::behind_pointers::{distance, intersects};
 use common::{Quaternion, apart, at, cuboid, directions, meets, s, turned, ulps, v};
 use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3A};
 use convex_support::{
     Cone, Cuboid, Cylinder, InvalidShape, Point, Polytope, Posed, Rounded, Scalar, SupportMap, Triangle, Vector,
 };
-use gjk_raycast::{DistanceOptions, IntersectOptions, Status, distance, intersects};
+use gjk_raycast::{DistanceOptions, IntersectOptions, Status};
 
 fn both(single: impl FnOnce(), double: impl FnOnce()) {
     single();

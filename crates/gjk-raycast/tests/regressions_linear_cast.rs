@@ -3,10 +3,11 @@
 
 mod common;
 
+use common::behind_pointers::linear_cast;
 use common::{Quaternion, at, cuboid, directions, off, s, sweep, time, turned, ulps, v};
 use convex_support::glam::{DVec2, DVec3, Quat, Vec2, Vec3A};
 use convex_support::{Ball, Capsule, Cuboid, Cylinder, Point, Posed, Scalar, SupportMap, Vector};
-use gjk_raycast::{CastMethod, LinearCast, LinearCastOptions, Motion, Outcome, Status, linear_cast};
+use gjk_raycast::{CastMethod, LinearCast, LinearCastOptions, Motion, Outcome, Status};
 
 fn both(single: impl FnOnce(), double: impl FnOnce()) {
     single();

@@ -4,12 +4,13 @@ mod common;
 
 use std::cell::Cell;
 
+use common::behind_pointers::signed_distance;
 use common::{at, cuboid, s, turned, v};
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec3, Vec3A};
 use convex_support::{
     Ball, Capsule, Cylinder, Ellipsoid, Point, Polytope, Posed, Rounded, Scalar, Segment, SupportMap, Triangle, Vector,
 };
-use gjk_raycast::{SignedDistance, SignedDistanceOptions, Status, signed_distance, signed_distance_with};
+use gjk_raycast::{SignedDistance, SignedDistanceOptions, Status, signed_distance_with};
 
 const VALID: &str = "positive sizes";
 

@@ -2,6 +2,7 @@
 
 mod common;
 
+use common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
 use common::{Quaternion, at, cuboid, directions, s, ulps, v};
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{
@@ -9,8 +10,7 @@ use convex_support::{
 };
 use gjk_raycast::{
     CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, Ray, RayCast, RayCastError,
-    RayCastOptions, Scene, SceneError, Status, SubAlgorithm, distance, intersects, iterative_ray_cast, linear_cast,
-    ray_cast, ray_casts,
+    RayCastOptions, Scene, SceneError, Status, SubAlgorithm, iterative_ray_cast, ray_casts,
 };
 
 type Shape<V> = Box<dyn SupportMap<Vector = V>>;

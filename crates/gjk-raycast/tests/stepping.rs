@@ -2,13 +2,13 @@
 
 mod common;
 
+use common::behind_pointers::{distance, intersects, linear_cast, motion_cast, ray_cast, ray_exit, signed_distance};
 use common::{Random, at, cuboid, s, ulps, v};
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec3};
 use convex_support::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Posed, Rounded, SupportMap};
 use gjk_raycast::{
     DistanceOptions, HalfSpace, LinearCast, LinearCastOptions, Motion, MotionCastOptions, Outcome, Ray, RayCastError,
-    RayCastOptions, RigidMotion, SignedDistanceOptions, StartInContact, distance, intersects, iterative_ray_cast,
-    linear_cast, motion_cast, ray_cast, ray_exit, signed_distance,
+    RayCastOptions, RigidMotion, SignedDistanceOptions, StartInContact, iterative_ray_cast,
 };
 
 impl Random {

@@ -2,10 +2,13 @@
 
 #![allow(dead_code, reason = "each test file uses a part")]
 
+pub(crate) mod behind_pointers;
+
+use behind_pointers::{distance, intersects, linear_cast, ray_cast};
 use convex_support::{Core, Cuboid, Hint, Posed, Rounding, Scalar, ScalarOf, SupportMap, Vector, Vector3};
 use gjk_raycast::{
     Distance, DistanceOptions, IntersectOptions, Intersection, LinearCast, LinearCastOptions, Motion, Ray, RayCast,
-    RayCastOptions, distance, intersects, linear_cast, ray_cast,
+    RayCastOptions,
 };
 
 /// The nearest number of the precision of `V`.
