@@ -52,12 +52,17 @@ pub(super) fn length_of_error<V: Vector>(
 ) -> V::Scalar {
     let count = V::DIM as f64;
     let product = count * if V::DIM == 2 { 1.42 } else { 1.74 };
+    // The matrix itself is wrong twice, as a map of points and of directions.
+    let of_extent = roundings(3.0 * product + 1.0, scale * core.extent) + roundings(2.0, operator_error * core.extent);
+    let turned = scale * core.error + of_extent;
+    // Most shapes are about zero, and then nothing else is lost.
+    if core.origin == V::ZERO {
+        return raised(turned);
+    }
     let (moved, near) = (core.origin.norm(), is_near(core.origin, core.extent + core.radius));
     // What was lost is known to a rounding of itself, if it is of the product too, and to 16ε² of what it comes of.
     let origin = if near { roundings(product, moved) } else { roundings(32.0, V::Scalar::EPSILON * moved) };
-    let lost = roundings(2.0, lost.norm());
-    let turned = roundings(2.0, operator_error * (core.extent + moved));
-    raised(scale * (core.error + roundings(3.0 * product + 1.0, core.extent) + origin) + turned + lost)
+    raised(turned + scale * origin + roundings(2.0, operator_error * moved) + roundings(2.0, lost.norm()))
 }
 
 #[inline(never)]
