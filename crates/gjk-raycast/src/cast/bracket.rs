@@ -48,7 +48,7 @@ struct Crossing<S> {
 pub(super) struct Bracket<'a, B: Body, O> {
     pub(super) body: &'a mut B,
     pub(super) ray: LocalRay<B::Vector>,
-    pub(super) options: RayCastOptions<B::Vector>,
+    pub(super) options: &'a RayCastOptions<B::Vector>,
     pub(super) radius: ScalarOf<B>,
     /// What rounding moves the points by that the searches compare; they look no closer.
     pub(super) noise: ScalarOf<B>,
@@ -85,7 +85,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         ray: Ray<B::Vector>,
         direction_error: ScalarOf<B>,
         place: impl FnOnce(LocalRay<B::Vector>) -> LocalRay<B::Vector>,
-        options: RayCastOptions<B::Vector>,
+        options: &'a RayCastOptions<B::Vector>,
         observer: O,
     ) -> Self {
         let number = ScalarOf::<B>::from_f64;

@@ -31,7 +31,7 @@ pub(crate) fn cast<B: Body>(
     options: RayCastOptions<B::Vector>,
     observer: impl FnMut(Iterate<'_, B::Vector>),
 ) -> Cast<B::Vector, B::Witness> {
-    let mut bracket = Bracket::new(body, ray, direction_error, place, options, observer);
+    let mut bracket = Bracket::new(body, ray, direction_error, place, &options, observer);
     let found = bracket.enter_ball().and_then(|()| search(&mut bracket));
     conclude(&bracket, found)
 }
