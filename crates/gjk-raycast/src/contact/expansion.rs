@@ -34,8 +34,8 @@ pub(super) struct Expanded<V: Vector> {
     pub(super) way: WayOut<V>,
     /// The points of both cores where the way ends; `None` where it has no length, and any that coincide will do.
     pub(super) points: Option<PointPair<V>>,
-    /// The ball of this radius about zero is certain to be within the difference. A negative number says how far zero is certain
-    /// to be no farther from it.
+    /// The ball of this radius about zero is certain to be within the difference. Of a negative number, zero is certain to be no
+    /// farther from it than its amount.
     pub(super) inner: V::Scalar,
     pub(super) status: Status,
     pub(super) unexpanded: usize,
@@ -47,14 +47,16 @@ pub(super) struct Expanded<V: Vector> {
 /// it from below, by the facet nearest to zero. So that facet is the only one worth a look: the support point along its normal
 /// either shows that it is of the boundary of `K`, and then it decides, or makes the polytope larger (van den Bergen, *Proximity
 /// queries and penetration depth computation on 3D game objects*, 2001). Zero need not be within the polytope at first. Facets that
-/// it is beyond are the nearest by their sign, and grow until it is within, or one of them separates it from `K`.
+/// it is beyond are the nearest by their sign, and grow until it is within, or one of them separates it from `K`. Until then how far
+/// it is beyond their planes proves nothing, since two planes may meet at an angle as sharp as one likes; zero is no farther from `K`
+/// than GJK has `reached`, or than a point of the polytope.
 ///
 /// Where `K` is smooth its facets never are of the boundary, and the polytope is only to show that there is no shorter way; the
 /// way itself is found by Newton's method, in each basin that a facet leads to.
 pub(super) fn expand<A, B>(
     cores: &mut Cores<'_, A, B>,
     simplex: &[Vertex<A::Vector>],
-    reach: <A::Vector as Vector>::Scalar,
+    reached: <A::Vector as Vector>::Scalar,
     options: &SignedDistanceOptions<A::Vector>,
     mut observer: impl FnMut(Iterate<'_, A::Vector>),
 ) -> Option<Expanded<A::Vector>>
@@ -65,7 +67,7 @@ where
     // In its place from the beginning: it is a large object to move.
     let mut boundary = Boundary::new();
     let mut way = match start::start(cores, simplex, &mut boundary)? {
-        start::Start::Flat(way) => return Some(flat(way, reach)),
+        start::Start::Flat(way) => return Some(flat(way, reached)),
         start::Start::Full(way) => way,
     };
     let is_curved = cores.is_curved();
@@ -74,9 +76,10 @@ where
     let mut enough = tolerance.max(cores.rounding_along(way.u()));
     let status = loop {
         let (nearest, inner) = boundary.nearest();
+        let inner = if inner > Scalar::ZERO { inner } else { -reached };
         let normal = boundary.facet_at(nearest).normal;
         // NaN fails this too.
-        if !(way.h - inner.max(-reach) > enough) {
+        if !(way.h - inner > enough) {
             break Status::Converged;
         }
         if inner > depth_limit {
@@ -98,10 +101,10 @@ where
             w: vertex.point,
             scale: cores.scale(),
             lower: -way.h * cores.scale(),
-            upper: -inner.max(-reach) * cores.scale(),
+            upper: -inner * cores.scale(),
         });
         // NaN fails this too.
-        if !(way.h - inner.max(-reach) > enough) {
+        if !(way.h - inner > enough) {
             break Status::Converged;
         }
         let descends = is_curved && seen.h == way.h;
@@ -118,24 +121,28 @@ where
             enough = tolerance.max(cores.rounding_along(way.u()));
         }
     };
-    let certain = boundary.certain_inner(|n| cores.error_along(n), cores.greatest_error());
     let (nearest, _) = boundary.nearest();
+    let certain = boundary.certain_inner(|n| cores.error_along(n), cores.greatest_error());
+    let inner = if certain > Scalar::ZERO {
+        certain
+    } else {
+        let (foot, _) = witness::at_foot(&boundary, nearest);
+        -cores.greatest_length(foot).min(reached)
+    };
     let status = match status {
-        Status::Stalled if way.h - certain.max(-reach) <= cores.rounding_along(way.u()) * Scalar::from_f64(2.0) => {
-            Status::Converged
-        }
+        Status::Stalled if way.h - inner <= cores.rounding_along(way.u()) * Scalar::from_f64(2.0) => Status::Converged,
         status => status,
     };
     Some(Expanded {
         way,
         points: Some(witness::points(&boundary, nearest, &way)),
-        inner: certain.max(-reach),
+        inner,
         status,
         unexpanded: boundary.len(),
     })
 }
 
 /// A difference without an inside: the way out is across it, and no length.
-fn flat<V: Vector>(way: WayOut<V>, reach: V::Scalar) -> Expanded<V> {
-    Expanded { way, points: None, inner: -reach, status: Status::Converged, unexpanded: 0 }
+fn flat<V: Vector>(way: WayOut<V>, reached: V::Scalar) -> Expanded<V> {
+    Expanded { way, points: None, inner: -reached, status: Status::Converged, unexpanded: 0 }
 }

@@ -30,7 +30,7 @@ pub(super) fn points<V: Vector>(boundary: &Boundary<V>, nearest: usize, way: &Wa
 ///
 /// The nearest facet may be one of several in a plane, of which another has zero's foot: the one that lies across the ridges that the
 /// foot is beyond.
-fn at_foot<V: Vector>(boundary: &Boundary<V>, nearest: usize) -> (V, PointPair<V>) {
+pub(super) fn at_foot<V: Vector>(boundary: &Boundary<V>, nearest: usize) -> (V, PointPair<V>) {
     let mut facet = nearest;
     let mut weights = [V::Scalar::ZERO; 4];
     for _ in 0..MAX_WALK {
