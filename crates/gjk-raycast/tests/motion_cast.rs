@@ -2,13 +2,14 @@
 
 mod common;
 
-use common::behind_pointers::motion_cast;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, TAU};
 
-use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3A};
+use common::behind_pointers::{linear_cast, motion_cast};
+use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3A};
 use convex_support::{Ball, Capsule, Cuboid, Ellipsoid, Posed, Rounded, Segment, SupportMap};
 use gjk_raycast::{
-    MotionCast, MotionCastOptions, Outcome, Pose, RayCastError, RigidMotion, StartInContact, Status, Trajectory,
+    LinearCastOptions, Motion, MotionCast, MotionCastOptions, Outcome, Pose, RayCastError, RigidMotion, StartInContact,
+    Status, Trajectory,
 };
 
 const REST: RigidMotion<DVec2> = RigidMotion { velocity: DVec2::ZERO, angular_velocity: 0.0, center: DVec2::ZERO };
@@ -296,4 +297,25 @@ fn what_turns_and_moves_very_fast_is_not_proved_to_miss() {
         let cast = motion_cast(&cube, motion, &wall, RigidMotion::default(), until(1.0)).expect("finite");
         assert!(!cast.outcome.is_miss(), "{speed:e}: {cast:?}");
     }
+}
+
+/// A ball that spins about its centre meets a box when it would without spinning, and is so small that polytopes within their difference
+/// are slivers: zero may be far from one and hardly beyond any facet's plane.
+#[test]
+fn a_tiny_ball_that_spins_meets_a_box() {
+    let (radius, half_extents) = (4.223_605e-5_f32, Vec3A::new(0.611_282_65, 0.855_645_1, 0.692_111_6));
+    let rotation = Quat::from_xyzw(0.562_041_04, -0.081_490_494, 0.024_962_984, 0.773_256_24);
+    let start = Vec3A::new(0.276_623_34, 0.496_512_4, -1.056_860_9);
+    let velocity = Vec3A::new(-0.585_350_1, -0.690_051_6, 1.483_397_4);
+    let ball = at(Ball::new(radius).expect("positive"), start);
+    let target = Posed::new(Cuboid::new(half_extents).expect("positive"), rotation, Vec3A::ZERO).expect("finite");
+    let spins = RigidMotion { velocity, angular_velocity: Vec3A::new(-2.658_666, 1.262_782, -4.283_83), center: start };
+    let cast = motion_cast(&ball, spins, &target, RigidMotion::default(), until(0.7)).expect("finite");
+
+    let ball = at(Ball::new(f64::from(radius)).expect("positive"), start.as_dvec3());
+    let cuboid = Cuboid::new(half_extents.as_dvec3()).expect("positive");
+    let target = Posed::new(cuboid, rotation.as_dquat(), DVec3::ZERO).expect("finite");
+    let motion = Motion { velocity_a: velocity.as_dvec3(), velocity_b: DVec3::ZERO };
+    let truth = linear_cast(&ball, &target, motion, LinearCastOptions::new()).expect("finite");
+    assert!(f64::from(cast.lower) <= truth.upper && truth.lower <= f64::from(cast.upper), "{cast:?} {truth:?}");
 }
