@@ -45,8 +45,7 @@ impl<S: SupportMap> Among<'_, S> {
         let mut asking = Asking::new(*self, self.scene.all(), true, within, options, reuse(pairs));
         asking.search(self.scene.tree.pairs_within(within));
         asking.half_spaces_of_a();
-        let count = self.scene.len() - self.scene.half_spaces.len();
-        asking.finish(count * count.saturating_sub(1) / 2 + count * self.scene.half_spaces.len())
+        asking.finish()
     }
 
     /// [`Scene::pairs_between`] of these bodies and all of another scene.
@@ -61,7 +60,7 @@ impl<S: SupportMap> Among<'_, S> {
         asking.search(self.scene.tree.pairs_between(&other.tree, within));
         asking.half_spaces_of_a();
         asking.half_spaces_of_b();
-        asking.finish(self.scene.len() * other.len() - self.scene.half_spaces.len() * other.half_spaces.len())
+        asking.finish()
     }
 
     /// [`pairs_within`](Self::pairs_within) on all threads of the current [rayon] pool, with the same pairs to the last
@@ -97,8 +96,7 @@ impl<S: SupportMap> Among<'_, S> {
             asking.work.cancelled |= work.cancelled;
         }
         asking.half_spaces_of_a();
-        let count = self.scene.len() - self.scene.half_spaces.len();
-        asking.finish(count * count.saturating_sub(1) / 2 + count * self.scene.half_spaces.len())
+        asking.finish()
     }
 }
 
@@ -184,10 +182,21 @@ impl<'s, 'p, S: SupportMap, T: SupportMap<Vector = S::Vector>> Asking<'s, 'p, S,
     }
 
     /// Sorts the pairs and says what was left out of all.
-    fn finish(mut self, all: usize) -> Work {
+    fn finish(mut self) -> Work {
         self.pairs.sort_unstable_by_key(|pair| (pair.a, pair.b));
-        self.work.culled = all - self.work.tested;
+        self.work.culled = self.all() - self.work.tested;
         self.work
+    }
+
+    /// The number of pairs that there are, without those of half-spaces alone.
+    fn all(&self) -> usize {
+        let (a, b) = (self.a.scene, self.b.scene);
+        if self.same {
+            let bounded = a.len() - a.half_spaces.len();
+            bounded * bounded.saturating_sub(1) / 2 + bounded * a.half_spaces.len()
+        } else {
+            a.len() * b.len() - a.half_spaces.len() * b.half_spaces.len()
+        }
     }
 }
 
