@@ -1,7 +1,10 @@
 //! How the Euclidean distance changes as a body moves.
 
+use convex_support::Ellipsoid;
+
 use super::contact::{Contact, Mover, Quantity};
 use super::motion::{MotionGradient, MotionHessian, Units};
+use super::value_of_contact::{ValueOfContact, gradient, hessian};
 use crate::numerics::load;
 use crate::pair::Pair;
 use crate::{Answer, Distance, Wedge};
@@ -24,49 +27,29 @@ impl<V: Wedge> Answer<'_, V, Distance<V>> {
     /// # Ok::<(), convex_support::InvalidShape>(())
     /// ```
     pub fn gradient(&self) -> MotionGradient<V> {
-        self.gradient_of(Mover::First)
+        gradient(self, Mover::First)
     }
 
     /// The gradient with respect to the motion of the second ellipsoid.
     pub fn gradient_of_second(&self) -> MotionGradient<V> {
-        self.gradient_of(Mover::Second)
+        gradient(self, Mover::Second)
     }
 
     /// The second derivatives with respect to the motion of the first ellipsoid. The block of translations is positive
     /// semidefinite, with the normal in its kernel. Zero where the bodies overlap; it grows without bound for bodies of no extent.
     pub fn hessian(&self) -> MotionHessian<V> {
-        self.hessian_of(Mover::First)
+        hessian(self, Mover::First)
     }
 
     /// The second derivatives with respect to the motion of the second ellipsoid.
     pub fn hessian_of_second(&self) -> MotionHessian<V> {
-        self.hessian_of(Mover::Second)
+        hessian(self, Mover::Second)
     }
+}
 
-    fn gradient_of(&self, mover: Mover) -> MotionGradient<V> {
-        let body = match mover {
-            Mover::First => self.first(),
-            Mover::Second => self.second(),
-        };
-        let gradient = if V::DIM == 2 {
-            self.contact::<2>().map(|(contact, units)| MotionGradient::of_contact(&contact, mover, body, units))
-        } else {
-            self.contact::<3>().map(|(contact, units)| MotionGradient::of_contact(&contact, mover, body, units))
-        };
-        gradient.unwrap_or_else(|| MotionGradient::zero(body))
-    }
-
-    fn hessian_of(&self, mover: Mover) -> MotionHessian<V> {
-        let hessian = if V::DIM == 2 {
-            self.contact::<2>().map(|(contact, units)| MotionHessian::of_contact(&contact, mover, 1.0, 0.0, units))
-        } else {
-            self.contact::<3>().map(|(contact, units)| MotionHessian::of_contact(&contact, mover, 1.0, 0.0, units))
-        };
-        hessian.unwrap_or_else(MotionHessian::zero)
-    }
-
-    fn contact<const N: usize>(&self) -> Option<(Contact<N>, Units)> {
-        let (pair, length) = Pair::<N>::new(self.first(), self.second()).in_own_unit();
+impl<V: Wedge> ValueOfContact<V> for Distance<V> {
+    fn contact<const N: usize>(&self, first: &Ellipsoid<V>, second: &Ellipsoid<V>) -> Option<(Contact<N>, Units)> {
+        let (pair, length) = Pair::<N>::new(first, second).in_own_unit();
         let normal = load(self.bracket.normal);
         let contact = Contact::new(&pair, Quantity::DISTANCE, normal)?.refined(&pair);
         Some((contact, Units { value: length, length }))

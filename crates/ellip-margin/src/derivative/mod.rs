@@ -24,6 +24,7 @@ mod margin;
 mod motion;
 mod scaling;
 mod shape;
+mod value_of_contact;
 
 pub use self::motion::{MotionGradient, MotionHessian};
 pub use self::shape::ShapeGradient;

@@ -1,7 +1,10 @@
 //! How the common scale changes as a body moves.
 
+use convex_support::Ellipsoid;
+
 use super::contact::{Contact, Mover, Quantity};
 use super::motion::{MotionGradient, MotionHessian, Units};
+use super::value_of_contact::{ValueOfContact, gradient, hessian};
 use crate::numerics::{Vec, combine, load};
 use crate::pair::Pair;
 use crate::{Answer, Scaling, Wedge};
@@ -23,49 +26,29 @@ impl<V: Wedge> Answer<'_, V, Scaling<V>> {
     /// # Ok::<(), convex_support::InvalidShape>(())
     /// ```
     pub fn gradient(&self) -> MotionGradient<V> {
-        self.gradient_of(Mover::First)
+        gradient(self, Mover::First)
     }
 
     /// The gradient with respect to the motion of the second ellipsoid.
     pub fn gradient_of_second(&self) -> MotionGradient<V> {
-        self.gradient_of(Mover::Second)
+        gradient(self, Mover::Second)
     }
 
     /// The second derivatives of the scale α with respect to the motion of the first ellipsoid. α is homogeneous in the line of centres:
     /// its second derivatives grow as its inverse towards concentric bodies, where there are none and zero is the answer.
     pub fn hessian(&self) -> MotionHessian<V> {
-        self.hessian_of(Mover::First)
+        hessian(self, Mover::First)
     }
 
     /// The second derivatives with respect to the motion of the second ellipsoid.
     pub fn hessian_of_second(&self) -> MotionHessian<V> {
-        self.hessian_of(Mover::Second)
+        hessian(self, Mover::Second)
     }
+}
 
-    fn gradient_of(&self, mover: Mover) -> MotionGradient<V> {
-        let body = match mover {
-            Mover::First => self.first(),
-            Mover::Second => self.second(),
-        };
-        let gradient = if V::DIM == 2 {
-            self.contact::<2>().map(|(contact, units)| MotionGradient::of_contact(&contact, mover, body, units))
-        } else {
-            self.contact::<3>().map(|(contact, units)| MotionGradient::of_contact(&contact, mover, body, units))
-        };
-        gradient.unwrap_or_else(|| MotionGradient::zero(body))
-    }
-
-    fn hessian_of(&self, mover: Mover) -> MotionHessian<V> {
-        let hessian = if V::DIM == 2 {
-            self.contact::<2>().map(|(contact, units)| MotionHessian::of_contact(&contact, mover, 1.0, 0.0, units))
-        } else {
-            self.contact::<3>().map(|(contact, units)| MotionHessian::of_contact(&contact, mover, 1.0, 0.0, units))
-        };
-        hessian.unwrap_or_else(MotionHessian::zero)
-    }
-
-    fn contact<const N: usize>(&self) -> Option<(Contact<N>, Units)> {
-        let (pair, length) = Pair::<N>::new(self.first(), self.second()).in_own_unit();
+impl<V: Wedge> ValueOfContact<V> for Scaling<V> {
+    fn contact<const N: usize>(&self, first: &Ellipsoid<V>, second: &Ellipsoid<V>) -> Option<(Contact<N>, Units)> {
+        let (pair, length) = Pair::<N>::new(first, second).in_own_unit();
         let [e1, e2]: [Vec<N>; 2] = self.ball_points.map(load);
         // Qv, against E₂'s own normal there.
         let normal = combine(pair.axes2, core::array::from_fn(|j| e2[j] / pair.a2[j]));
