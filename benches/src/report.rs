@@ -1,10 +1,11 @@
-//! The measurements as text: Markdown tables for people, CSV for programs.
+//! The measurements as text: a page of Markdown for people, CSV for programs.
 
 use std::fmt::Write as _;
 
 use workloads::provenance;
+use workloads::score::Precision;
 
-use crate::goals::{GOALS, NEAR_P99, WARM_NS, parry_ns};
+use crate::ratios::Ratios;
 use crate::rows::{Method, Row, Workload};
 
 /// The rows as CSV.
@@ -24,14 +25,33 @@ pub fn csv(rows: &[Row]) -> String {
     text
 }
 
-/// Everything: the machine, the goals, and a table for each workload.
+/// Everything but the title: where it was measured, the ratios to the peers and among our own methods, `profiles` (a section
+/// of its own, or nothing), and a table for each workload.
 #[must_use]
-pub fn markdown(rows: &[Row]) -> String {
-    let mut text = format!("{}\n\n## Goals\n\n{}\n", machine(), goals(rows));
+pub fn markdown(rows: &[Row], profiles: &str) -> String {
+    let mut text = format!("{}\n\n{}{}{profiles}{CELLS}", provenance(), beside_peers(rows), beside_ourselves(rows));
     for workload in Workload::ALL.into_iter().filter(|workload| rows.iter().any(|row| row.workload == *workload)) {
-        let _ = writeln!(text, "## {}\n\n{}", title(workload), table(rows, workload));
+        let _ = writeln!(text, "### {}\n\n{}", title(workload), table(rows, workload));
     }
+    text.truncate(text.trim_end().len());
+    text.push('\n');
     text
+}
+
+/// Processor, compiler, date and commit; what was not built.
+fn provenance() -> String {
+    let compiler = provenance::compiler().unwrap_or_else(|| "an unknown compiler".to_owned());
+    let flags = if cfg!(target_feature = "avx2") { "with AVX2" } else { "baseline instruction set" };
+    let commit = provenance::commit().map_or(String::new(), |commit| format!(", commit {commit}"));
+    let peers =
+        [("parry", cfg!(feature = "parry")), ("Box3D", cfg!(feature = "box3d")), ("Jolt", cfg!(feature = "jolt"))];
+    let missing: Vec<_> = peers.into_iter().filter_map(|(name, built)| (!built).then_some(name)).collect();
+    let missing = if missing.is_empty() { String::new() } else { format!(" Not built in: {}.", missing.join(", ")) };
+    format!(
+        "Measured on {}, one thread, {flags}, profile `bench` (thin LTO, one codegen unit), {compiler}, on {}{commit}.{missing}",
+        provenance::processor(),
+        provenance::today()
+    )
 }
 
 fn title(workload: Workload) -> &'static str {
@@ -44,13 +64,144 @@ fn title(workload: Workload) -> &'static str {
     }
 }
 
-/// One table: a case a line, a method a column, `ns / p99 error / wrong` in each cell.
+/// How to read the tables of the workloads.
+const CELLS: &str = "\
+## All rows
+
+A cell is `ns / p99 error / wrong answers`: the error that 99 % of the answers stay below, where there are lengths or times to compare, and
+how many answers are wrong, where any is. Bold is the time of the best right peer of either precision.
+
+";
+
+/// How to read the table of ratios to peers.
+const BESIDE_PEERS: &str = "\
+Geometric means of ratios of times: below 1 ours is faster. A row is a shape or pair of a workload. The *best right peer* is the fastest
+other library that answers all of a row rightly in the same precision: parry's GJK, parry as its users call it, and in `f32`
+Box3D or Jolt. Rows that ours or everybody else gets wrong are counted and not compared; parry's GJK is compared whatever it answers.
+Ours are the defaults, but for the two lines of `line_crossing`, the closed form alone, which are not among all rows.
+[benches/README.md](../benches/README.md) says what is asked and what is wrong. Depths, bodies that turn, coal and MuJoCo are in
+[judge.md](judge.md).
+
+";
+
+/// What is compared with the peers: a title, a workload, and a method of either precision.
+const COMPARED: [(&str, Workload, [Method; 2]); 6] = [
+    ("W1 ray cast", Workload::RayCast, [Method::OursF64, Method::OursF32]),
+    ("W1 `line_crossing`", Workload::RayCast, [Method::ClosedF64, Method::ClosedF32]),
+    ("W2 linear cast", Workload::LinearCast, [Method::OursF64, Method::OursF32]),
+    ("W3 distance, 3 to 0.01", Workload::DistanceFar, [Method::OursF64, Method::OursF32]),
+    ("W3 distance, 1e-6", Workload::DistanceNear, [Method::OursF64, Method::OursF32]),
+    ("W3b intersection", Workload::Intersect, [Method::OursF64, Method::OursF32]),
+];
+
+/// Ours beside the best right peer and beside parry's GJK: all rows, then each workload. Empty without peers.
+fn beside_peers(rows: &[Row]) -> String {
+    if !rows.iter().any(|row| row.method.is_peer()) {
+        return String::new();
+    }
+    let mut text = String::from(
+        "## Beside the best right peer\n\n\
+         | | | ours / best right peer | ours / parry's GJK | ahead | behind | no right peer | ours wrong | behind in |\n\
+         |---|---|---:|---:|---:|---:|---:|---:|---|\n",
+    );
+    for method in [Method::OursF64, Method::OursF32] {
+        let ours: Vec<_> = rows.iter().filter(|row| row.method == method).collect();
+        text += &beside_peers_in("**all rows**", rows, &ours, false);
+    }
+    for (title, workload, methods) in COMPARED {
+        for method in methods {
+            let ours: Vec<_> = rows.iter().filter(|row| row.workload == workload && row.method == method).collect();
+            text += &beside_peers_in(title, rows, &ours, true);
+        }
+    }
+    format!("{text}\n{BESIDE_PEERS}")
+}
+
+/// A line for some rows of ours, all of one precision, which ends with the names of those that are behind, if they are wanted.
+/// Empty for no rows.
+fn beside_peers_in(title: &str, rows: &[Row], ours: &[&Row], named: bool) -> String {
+    let Some(precision) = ours.first().map(|row| row.method.precision()) else { return String::new() };
+    let (precision, gjk) = match precision {
+        Precision::Double => ("f64", Method::ParryGjkF64),
+        Precision::Single => ("f32", Method::ParryGjkF32),
+    };
+    let to_gjk: Ratios<'_> =
+        ours.iter().filter_map(|row| Some((row.case, row.ns / find(rows, row, gjk)?.ns))).collect();
+    let right: Vec<_> = ours.iter().filter(|row| row.score.wrong() == 0).collect();
+    let matched: Vec<_> = right.iter().filter_map(|row| Some((row, best_right_peer(rows, row)?))).collect();
+    let to_best: Ratios<'_> = matched.iter().map(|(row, peer)| (row.case, row.ns / peer.ns)).collect();
+    let behind: Vec<_> = matched.iter().filter(|(row, peer)| row.ns > peer.ns).collect();
+    let names: Vec<_> = behind
+        .iter()
+        .filter(|_| named)
+        .map(|(row, peer)| {
+            let name = peer.method.name().trim_end_matches(precision).trim_end();
+            format!("{} {:.2} ({name})", row.case, row.ns / peer.ns)
+        })
+        .collect();
+    let mean = |ratios: Ratios<'_>| if ratios.is_empty() { "-".to_owned() } else { format!("{:.2}", ratios.mean()) };
+    format!(
+        "| {title} | {precision} | **{}** | {} | {} | {} | {} | {} | {} |\n",
+        mean(to_best),
+        mean(to_gjk),
+        matched.len() - behind.len(),
+        behind.len(),
+        right.len() - matched.len(),
+        ours.len() - right.len(),
+        names.join(", "),
+    )
+}
+
+/// What else was measured of the same workload and case.
+fn find<'a>(rows: &'a [Row], of: &Row, method: Method) -> Option<&'a Row> {
+    rows.iter().find(|row| row.workload == of.workload && row.case == of.case && row.method == method)
+}
+
+/// The fastest of the other libraries that answer the workload and case of a row rightly, all of it and in its precision.
+fn best_right_peer<'a>(rows: &'a [Row], of: &Row) -> Option<&'a Row> {
+    rows.iter()
+        .filter(|row| row.workload == of.workload && row.case == of.case)
+        .filter(|row| row.method.is_peer() && row.method.precision() == of.method.precision())
+        .filter(|row| row.score.wrong() == 0)
+        .min_by(|a, b| a.ns.total_cmp(&b.ns))
+}
+
+/// Our methods beside one another.
+fn beside_ourselves(rows: &[Row]) -> String {
+    const PAIRS: [(Method, Method); 4] = [
+        (Method::OursF32, Method::OursF64),
+        (Method::DynF64, Method::OursF64),
+        (Method::OursF64, Method::ClosedF64),
+        (Method::WarmF64, Method::OursF64),
+    ];
+    let mut text = String::from(
+        "## Our methods beside one another\n\n\
+         The geometric mean of the ratios, and the cases with the least and the most. Warm tests are those of bodies that are apart.\n\n| |",
+    );
+    for (method, than) in PAIRS {
+        let _ = write!(text, " {} / {} |", method.name(), than.name());
+    }
+    let _ = writeln!(text, "\n|---|{}", "---|".repeat(PAIRS.len()));
+    for workload in Workload::ALL {
+        let ratios = PAIRS.map(|(method, than)| -> Ratios<'_> {
+            let rows_of_it = rows.iter().filter(|row| row.workload == workload && row.method == method);
+            rows_of_it.filter_map(|row| Some((row.case, row.ns / find(rows, row, than)?.ns))).collect()
+        });
+        if ratios.iter().any(|ratios| !ratios.is_empty()) {
+            let _ = writeln!(text, "| {} | {} |", workload.name(), ratios.map(|ratios| ratios.to_string()).join(" | "));
+        }
+    }
+    text.push('\n');
+    text
+}
+
+/// One table: a case a line, a method a column.
 fn table(rows: &[Row], workload: Workload) -> String {
-    let rows: Vec<_> = rows.iter().filter(|row| row.workload == workload).collect();
+    let rows: Vec<Row> = rows.iter().filter(|row| row.workload == workload).cloned().collect();
     let methods: Vec<_> =
         Method::ALL.into_iter().filter(|method| rows.iter().any(|row| row.method == *method)).collect();
-    let mut cases: Vec<&str> = rows.iter().map(|row| row.case).collect();
-    cases.dedup();
+    let mut cases: Vec<&Row> = rows.iter().collect();
+    cases.dedup_by_key(|row| row.case);
 
     let mut text = String::from("| case |");
     for method in &methods {
@@ -58,118 +209,26 @@ fn table(rows: &[Row], workload: Workload) -> String {
     }
     let _ = writeln!(text, "\n|---|{}", "---|".repeat(methods.len()));
     for case in cases {
-        let _ = write!(text, "| {case} |");
-        for method in &methods {
-            match rows.iter().find(|row| row.case == case && row.method == *method) {
-                Some(row) if row.score.p99.is_nan() => {
-                    let _ = write!(text, " {:.0} / {} |", row.ns, row.score.wrong());
-                }
-                Some(row) => {
-                    let _ = write!(text, " {:.0} / {:.1e} / {} |", row.ns, row.score.p99, row.score.wrong());
-                }
-                None => text.push_str(" - |"),
-            }
+        let _ = write!(text, "| {} |", case.case);
+        for &method in &methods {
+            let cell = find(&rows, case, method).map_or_else(|| "-".to_owned(), |row| cell(&rows, row));
+            let _ = write!(text, " {cell} |");
         }
         text.push('\n');
     }
     text
 }
 
-/// Each goal beside what was measured.
-fn goals(rows: &[Row]) -> String {
-    let find = |workload, case: &str, method| {
-        rows.iter().find(|row| row.workload == workload && row.case == case && row.method == method)
-    };
-    let mut text = String::from(
-        "| workload | case | method | ns | best right peer | ratio | parry gjk f64 | ratio | goal | p99 error | goal | wrong | |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-    );
-    let mut line = |row: &Row, goal_ns: f64, goal_p99: f64| {
-        let parry = find(row.workload, row.case, Method::ParryGjkF64).map_or(f64::NAN, |parry| parry.ns);
-        let best = rows
-            .iter()
-            .filter(|peer| peer.workload == row.workload && peer.case == row.case && peer.method.is_peer())
-            .filter(|peer| peer.score.wrong() == 0)
-            .min_by(|a, b| a.ns.total_cmp(&b.ns))
-            .map_or("- | -".into(), |peer| {
-                format!("{:.0} ({}) | {:.3}", peer.ns, peer.method.name(), row.ns / peer.ns)
-            });
-        let (ratio, goal) = (row.ns / parry, goal_ns / parry_ns(row.workload, row.case).unwrap_or(f64::NAN));
-        let accurate = row.score.p99.is_nan() || row.score.p99 <= goal_p99;
-        let verdict = match (ratio <= goal, accurate, row.score.wrong()) {
-            (true, true, 0) => "met",
-            (false, true, 0) => "slow",
-            (_, false, 0) => "inaccurate",
-            _ => "wrong",
-        };
-        let p99 = if row.score.p99.is_nan() { "-".into() } else { format!("{:.1e}", row.score.p99) };
-        let p99_goal = if goal_p99.is_finite() { format!("{goal_p99:.0e}") } else { "-".into() };
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} | {:.0} | {best} | {parry:.0} | {ratio:.3} | {goal:.3} | {p99} | {p99_goal} | {} | {verdict} |",
-            row.workload.name(),
-            row.case,
-            row.method.name(),
-            row.ns,
-            row.score.wrong(),
-        );
-    };
-    for goal in GOALS {
-        if let Some(row) = find(goal.workload, goal.case, goal.method) {
-            line(row, goal.ns, goal.p99);
-        }
+/// The time, in bold that of the best right peer of its precision; the error where there is one; the wrong answers where there are any.
+fn cell(rows: &[Row], row: &Row) -> String {
+    let best = best_right_peer(rows, row).is_some_and(|best| best.method == row.method);
+    let time = format!("{:.*}", usize::from(row.ns < 9.95), row.ns);
+    let mut parts = vec![if best { format!("**{time}**") } else { time }];
+    if !row.score.p99.is_nan() {
+        parts.push(format!("{:.0e}", row.score.p99));
     }
-    for row in rows.iter().filter(|row| row.method == Method::WarmF64) {
-        line(row, WARM_NS, f64::INFINITY);
+    if row.score.wrong() > 0 {
+        parts.push(format!("{} wrong", row.score.wrong()));
     }
-    for row in rows.iter().filter(|row| row.workload == Workload::DistanceNear && row.method == Method::OursF64) {
-        // Twice the far time of this very run, brought to the machine of the goals and back by `line`.
-        let far = find(Workload::DistanceFar, row.case, Method::OursF64).map_or(f64::NAN, |far| far.ns);
-        let parry = find(row.workload, row.case, Method::ParryGjkF64).map_or(f64::NAN, |parry| parry.ns);
-        let goal = 2.0 * far / parry * parry_ns(row.workload, row.case).unwrap_or(f64::NAN);
-        line(row, goal, NEAR_P99);
-    }
-    let twins = [
-        (Method::OursF32, Method::OursF64),
-        (Method::ClosedF32, Method::ClosedF64),
-        (Method::WarmF32, Method::WarmF64),
-    ];
-    let slower = rows.iter().filter_map(|row| {
-        let (_, twin) = twins.iter().find(|(single, _)| *single == row.method)?;
-        let ratio = row.ns / find(row.workload, row.case, *twin)?.ns;
-        (ratio > 1.0).then(|| format!("{} {} {} ({ratio:.2})", row.workload.name(), row.case, row.method.name()))
-    });
-    let slower: Vec<_> = slower.collect();
-    let _ = match slower.as_slice() {
-        [] => writeln!(text, "\n`f32` is at least as fast as `f64` in every row."),
-        slower => writeln!(
-            text,
-            "\n`f32` should be at least as fast as `f64` everywhere; it is not in: {}.",
-            slower.join(", ")
-        ),
-    };
-    let dearest = |workload| {
-        let boxed = rows.iter().filter(|row| row.workload == workload && row.method == Method::DynF64);
-        let ratios = boxed.filter_map(|row| Some((row.case, row.ns / find(workload, row.case, Method::OursF64)?.ns)));
-        let most = ratios.max_by(|a, b| a.1.total_cmp(&b.1));
-        most.map(|(case, ratio)| format!("{} {ratio:.2} ({case})", workload.name()))
-    };
-    let dearest: Vec<_> = Workload::ALL.into_iter().filter_map(dearest).collect();
-    let _ = writeln!(
-        text,
-        "\nShapes behind `dyn SupportMap` take at most so many times as long as known ones: {}.",
-        dearest.join(", ")
-    );
-    text
-}
-
-/// Processor, compiler and date.
-fn machine() -> String {
-    let compiler = provenance::compiler().unwrap_or_else(|| "an unknown compiler".to_owned());
-    let flags = if cfg!(target_feature = "avx2") { "with AVX2" } else { "baseline instruction set" };
-    format!(
-        "Measured on {}, one thread, {flags}, thin LTO, {compiler}, on {}.",
-        provenance::processor(),
-        provenance::today()
-    )
+    parts.join(" / ")
 }

@@ -1,7 +1,7 @@
-//! Measures every workload in one run and prints the tables; `--write` puts them into `docs/performance.md` and
-//! `docs/performance.csv` of the workspace.
+//! Measures every workload in one run and prints the page; `--write` puts it into `docs/performance.md` and
+//! `docs/performance.csv` of the workspace, `--csv` prints the rows alone. `--profiles` adds what the build profile does to our times.
 //!
-//! `summary [--write] [--milliseconds PER_ROW] [W1] [W2] [W3far] [W3near] [W3b]`
+//! `summary [--write | --csv] [--profiles] [--milliseconds PER_ROW] [W1] [W2] [W3far] [W3near] [W3b]`
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "printing is what it is for")]
 
 use std::path::Path;
@@ -14,22 +14,26 @@ use benches::rows::{Workload, measure};
 const INTRODUCTION: &str = "\
 # Performance
 
-Written by `cargo run --profile bench -p benches --features parry --bin summary -- --write`, to which `--features box3d,jolt` adds the columns
-of those two; `benches/README.md` says what is measured and how to read it. A cell is `ns / p99 error / wrong answers`:
-nanoseconds of thread CPU time for one query (the smallest over passes of the median), the error that 99 % of the answers stay
-below, and how many of the answers are wrong. Only rows without wrong answers compete. A goal is a ratio to parry3d-f64's GJK
-in the same run.
+Ours beside other libraries, on the same inputs, of which the answers are known: nanoseconds of thread CPU time for one query, from one run of
+
+```sh
+cargo run --profile bench -p benches --features parry,box3d,jolt --bin summary -- --profiles --write
+```
 
 ";
 
 fn main() -> ExitCode {
-    let mut write = false;
+    let (mut write, mut as_csv, mut by_profile) = (false, false, false);
     let mut budget = Duration::from_millis(100);
     let mut workloads = Vec::new();
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         if argument == "--write" {
             write = true;
+        } else if argument == "--csv" {
+            as_csv = true;
+        } else if argument == "--profiles" {
+            by_profile = true;
         } else if argument == "--milliseconds"
             && let Some(milliseconds) = arguments.next().and_then(|number| number.parse().ok())
         {
@@ -38,7 +42,8 @@ fn main() -> ExitCode {
             workloads.push(workload);
         } else {
             eprintln!(
-                "unexpected argument {argument:?}; usage: summary [--write] [--milliseconds N] [W1 W2 W3far W3near W3b]"
+                "unexpected argument {argument:?}; usage: summary [--write | --csv] [--profiles] [--milliseconds N] \
+                 [W1 W2 W3far W3near W3b]"
             );
             return ExitCode::FAILURE;
         }
@@ -49,13 +54,25 @@ fn main() -> ExitCode {
     let rows = measure(&workloads, budget, |row| {
         eprintln!("{} {} {}: {:.0} ns, {:?}", row.workload.name(), row.case, row.method.name(), row.ns, row.score);
     });
-    let text = markdown(&rows);
+    if as_csv {
+        print!("{}", csv(&rows));
+        return ExitCode::SUCCESS;
+    }
+    let profiles = if by_profile { benches::profiles::section() } else { Ok(String::new()) };
+    let profiles = match profiles {
+        Ok(section) => section,
+        Err(error) => {
+            eprintln!("cannot measure another profile: {error}");
+            return ExitCode::FAILURE;
+        }
+    };
+    let text = format!("{INTRODUCTION}{}", markdown(&rows, &profiles));
     if !write {
         println!("{text}");
         return ExitCode::SUCCESS;
     }
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
-    let written = std::fs::write(docs.join("performance.md"), format!("{INTRODUCTION}{text}"))
+    let written = std::fs::write(docs.join("performance.md"), text)
         .and_then(|()| std::fs::write(docs.join("performance.csv"), csv(&rows)));
     match written {
         Ok(()) => ExitCode::SUCCESS,

@@ -81,8 +81,7 @@ fn summary(measured: &[Measured]) -> Vec<Row> {
                 .filter(|m| m.workload == workload && m.method == ours)
                 .filter_map(|m| Some((m, find(workload, &m.case, theirs)?)))
                 .collect();
-            // In f32 a distance of 1e-6 is some ten roundings: ours counts it as contact, as its documentation says.
-            if pairs.is_empty() || workload == "W3near" && methods.ends_with("f32") {
+            if pairs.is_empty() {
                 continue;
             }
             let ratios: Vec<f64> = pairs.iter().map(|(a, b)| a.ns / b.ns).collect();
@@ -112,8 +111,7 @@ fn summary(measured: &[Measured]) -> Vec<Row> {
 const INPUTS: &str = "The peers are parry3d and parry3d-f64 0.31 with the tolerances they come with, on bit-identical inputs: \
      10,000 rays against each of 11 bodies; 2,000 motions, 3,000 distances and 2,000 boolean queries of each of 12 pairs. \
      Wrong are false hits, false misses, no answer, an error above 1e-3 (above 1e-6 where the distance is 1e-6), and a \
-     distance of 0 where it is 1e-6; in f32, where that is some ten roundings of the coordinates and counts as contact with \
-     ours, it is not summed up. \
+     distance of 0 where it is 1e-6. \
      parry's user interface has closed forms for balls, boxes and capsules, compared with ours; warm queries are told the \
      separating plane of the time before, which parry's interface has no place for. Where Box3D and Jolt were built in as \
      well, they are among the rows, through safe bindings whose checks are timed with them.";
