@@ -48,33 +48,24 @@ impl Solver {
         }
     }
 
-    /// The time of one query in nanoseconds: the smallest over the passes of the median over blocks of 50 queries, without
+    /// The time of one query in nanoseconds: the smallest over the passes of the median over blocks of 100 queries, without
     /// what reading the clock takes.
     ///
-    /// `range` selects queries; at most `budget` is spent, but never less than three passes.
+    /// Both are the smallest of the same passes: what slows the machine for a while slows the clock by as much as ten of the
+    /// quickest queries. `range` selects queries, at least a block of them; at most `budget` is spent, but never less than three passes.
     #[must_use]
     pub fn nanoseconds(&self, range: Range<usize>, budget: Duration) -> f64 {
         let begin = ThreadTime::now();
-        let clock_ns = clock_ns();
-        let mut best = f64::INFINITY;
+        let (mut least, mut least_clock) = (f64::INFINITY, f64::INFINITY);
         for pass in 0.. {
             if pass >= 3 && begin.elapsed() > budget {
                 break;
             }
-            let mut blocks: Vec<f64> = range
-                .clone()
-                .step_by(BLOCK)
-                .filter(|start| start + BLOCK <= range.end)
-                .map(|start| {
-                    let clock = ThreadTime::now();
-                    self.run(start..start + BLOCK);
-                    (clock.elapsed().as_nanos() as f64 - clock_ns).max(0.0) / BLOCK as f64
-                })
-                .collect();
-            blocks.sort_by(f64::total_cmp);
-            best = best.min(blocks[blocks.len() / 2]);
+            let starts = range.clone().step_by(BLOCK).filter(|start| start + BLOCK <= range.end);
+            least = least.min(median(starts.map(|start| elapsed_ns(|| self.run(start..start + BLOCK)))));
+            least_clock = least_clock.min(median((0..101).map(|_| elapsed_ns(|| ()))));
         }
-        best
+        (least - least_clock).max(0.0) / BLOCK as f64
     }
 
     /// How many queries there are.
@@ -84,17 +75,18 @@ impl Solver {
     }
 }
 
-/// Reading the clock costs a few hundred nanoseconds, so it is read once per this many queries.
-const BLOCK: usize = 50;
+/// Reading the clock costs some 500 ns, as much as a hundred of the quickest queries, so it is read once per this many queries.
+const BLOCK: usize = 100;
 
-/// What the clock says has passed where nothing has: some 500 ns, as much as 50 of the quickest queries.
-fn clock_ns() -> f64 {
-    let mut readings: Vec<u128> = (0..1001)
-        .map(|_| {
-            let clock = ThreadTime::now();
-            black_box(&clock).elapsed().as_nanos()
-        })
-        .collect();
-    readings.sort_unstable();
-    readings[readings.len() / 2] as f64
+/// The thread CPU time of what is run, reading the clock included.
+fn elapsed_ns(run: impl FnOnce()) -> f64 {
+    let clock = ThreadTime::now();
+    run();
+    black_box(&clock).elapsed().as_nanos() as f64
+}
+
+fn median(times: impl Iterator<Item = f64>) -> f64 {
+    let mut times: Vec<f64> = times.collect();
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
 }
