@@ -53,8 +53,8 @@ pub(super) fn length_of_error<V: Vector>(
     let count = V::DIM as f64;
     let product = count * if V::DIM == 2 { 1.42 } else { 1.74 };
     // The matrix itself is wrong twice, as a map of points and of directions.
-    let of_extent = roundings(3.0 * product + 1.0, scale * core.extent) + roundings(2.0, operator_error * core.extent);
-    let turned = scale * core.error + of_extent;
+    let units = scale * V::Scalar::from_f64(3.0 * product + 1.0) + operator_error * V::Scalar::from_f64(2.0);
+    let turned = scale * core.error + roundings(1.0, units * core.extent);
     // Most shapes are about zero, and then nothing else is lost.
     if core.origin == V::ZERO {
         return raised(turned);
