@@ -7,8 +7,9 @@ use convex_support::{
     SupportMap, Vector3, line_crossing,
 };
 use gjk_raycast::{
-    CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, RayCastOptions, Status,
-    SubAlgorithm, distance, intersects, linear_cast, ray_cast,
+    CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, Motion, MotionCastOptions, Outcome,
+    RayCastOptions, RigidMotion, SignedDistanceOptions, Status, SubAlgorithm, distance, intersects, linear_cast,
+    motion_cast, ray_cast, signed_distance,
 };
 
 use workloads::Pose;
@@ -20,6 +21,7 @@ use workloads::w1_ray_cast::Ray;
 use workloads::w2_linear_cast::Cast;
 use workloads::w3_distance::DistanceQuery;
 use workloads::w3b_intersect::IntersectQuery;
+use workloads::w6_motion_cast::TurningCast;
 
 use crate::measure::Solver;
 
@@ -209,6 +211,60 @@ fn linear_casts_in<V: Space>(pair: &Pair, casts: &[Cast], effort: Effort) -> Sol
         }
     }
     with_pair::<V, _>(pair, Task(casts, effort), effort.boxed)
+}
+
+/// Casts of a body that turns. The body is posed within the measurement.
+#[must_use]
+pub fn motion_casts(pair: &Pair, casts: &[TurningCast], effort: Effort) -> Solver {
+    struct Task<'a>(&'a [TurningCast], Effort);
+    impl PairTask<DVec3> for Task<'_> {
+        fn solver<A, B>(self, a: A, b: B) -> Solver
+        where
+            A: SupportMap<Vector = DVec3> + 'static,
+            B: SupportMap<Vector = DVec3> + 'static,
+        {
+            let Self(casts, effort) = self;
+            let query = |cast: &TurningCast| {
+                let pose = placed::<DVec3>(cast.pose);
+                let (velocity, angular_velocity) = (cast.velocity.into(), cast.angular_velocity.into());
+                (pose, RigidMotion { velocity, angular_velocity, center: pose.1 })
+            };
+            let options = MotionCastOptions::default().with_max_time(1.0);
+            Solver::new(casts.iter().map(query).collect(), move |&((rotation, translation), motion)| {
+                let b = Posed::new(&b, rotation, translation).expect(VALID);
+                let Ok(cast) = motion_cast(&a, RigidMotion::default(), &b, motion, options) else { return f64::NAN };
+                let answer = match cast.outcome {
+                    Outcome::Hit(hit) => hit.time,
+                    Outcome::Miss(_) => f64::INFINITY,
+                    Outcome::Undecided => f64::NAN,
+                };
+                effort.tell(answer, cast.iterations)
+            })
+        }
+    }
+    with_pair::<DVec3, _>(pair, Task(casts, effort), effort.boxed)
+}
+
+/// Signed distances.
+#[must_use]
+pub fn signed_distances(pair: &Pair, queries: &[IntersectQuery], effort: Effort) -> Solver {
+    struct Task<'a>(&'a [IntersectQuery], Effort);
+    impl PairTask<DVec3> for Task<'_> {
+        fn solver<A, B>(self, a: A, b: B) -> Solver
+        where
+            A: SupportMap<Vector = DVec3> + 'static,
+            B: SupportMap<Vector = DVec3> + 'static,
+        {
+            let Self(queries, effort) = self;
+            let queries = queries.iter().map(|query| placed::<DVec3>(query.pose)).collect();
+            Solver::new(queries, move |&(rotation, translation)| {
+                let b = Posed::new(&b, rotation, translation).expect(VALID);
+                let answer = signed_distance(&a, &b, SignedDistanceOptions::default());
+                effort.tell(answer.signed_distance, answer.iterations)
+            })
+        }
+    }
+    with_pair::<DVec3, _>(pair, Task(queries, effort), effort.boxed)
 }
 
 /// Distances.

@@ -13,7 +13,7 @@ use gjk_raycast::{Ray, RayCastOptions};
 use workloads::pairs::Pair;
 use workloads::score::Precision;
 use workloads::shapes::{Shape, hull_points};
-use workloads::{w1_ray_cast, w2_linear_cast, w3_distance, w3b_intersect};
+use workloads::{w1_ray_cast, w2_linear_cast, w3_distance, w3b_intersect, w6_motion_cast};
 
 /// Queries of a row that are run.
 const QUERIES: usize = 500;
@@ -23,7 +23,7 @@ type Row = (&'static str, fn() -> Solver);
 
 /// Rows that stand for the rest: polytopes, smooth and rounded bodies, small and large, known and behind `dyn`, in space and
 /// in the plane, each kind of query.
-const ROWS: [Row; 14] = [
+const ROWS: [Row; 19] = [
     ("ray_cast/cuboid", || ray_cast("cuboid", Effort::default())),
     ("ray_cast/hull1024", || ray_cast("hull1024", Effort::default())),
     ("linear_cast/hull64-hull64", || linear_cast("hull64-hull64", Effort::default())),
@@ -47,6 +47,11 @@ const ROWS: [Row; 14] = [
     ("linear_cast/hull64-hull64-dyn", || linear_cast("hull64-hull64", boxed())),
     ("distance/cylinder-cone", || distance("cylinder-cone", Effort::default())),
     ("distance/cuboid-cuboid-dyn", || distance("cuboid-cuboid", boxed())),
+    ("motion_cast/cuboid-cuboid", || motion_cast("cuboid-cuboid")),
+    ("motion_cast/hull64-hull64", || motion_cast("hull64-hull64")),
+    ("motion_cast/ellipsoid-ellipsoid", || motion_cast("ellipsoid-ellipsoid")),
+    ("signed_distance/cuboid-cuboid", || signed_distance("cuboid-cuboid")),
+    ("signed_distance/cylinder-cone", || signed_distance("cylinder-cone")),
 ];
 
 /// Shapes as `Box<dyn SupportMap>`.
@@ -66,6 +71,17 @@ fn linear_cast(name: &str, effort: Effort) -> Solver {
 fn distance(name: &str, effort: Effort) -> Solver {
     let pair = Pair::named(name);
     ours::distances(Precision::Double, &pair, &w3_distance::queries(&pair)[..QUERIES], effort)
+}
+
+fn motion_cast(name: &str) -> Solver {
+    let pair = Pair::named(name);
+    ours::motion_casts(&pair, &w6_motion_cast::casts(&pair)[..QUERIES], Effort::default())
+}
+
+/// Of the bodies of W3b, half of which overlap.
+fn signed_distance(name: &str) -> Solver {
+    let pair = Pair::named(name);
+    ours::signed_distances(&pair, &w3b_intersect::queries(&pair)[..QUERIES], Effort::default())
 }
 
 /// The rays and points of `hull64`, seen along z.

@@ -10,6 +10,7 @@
 //! - [`w3_distance`], [`w3b_intersect`]: two bodies, with their distance by construction.
 //! - [`w4_enclosing`]: points to be enclosed by an ellipsoid.
 //! - [`w5_margin`]: pairs of ellipsoids.
+//! - [`w6_motion_cast`]: the bodies of W2, turning as they move.
 //! - [`line_entry`], [`convex_hull`], [`real`]: truths in closed form, in doubles or in thirty digits.
 //! - [`score`]: answers compared with the truth.
 //! - [`provenance`]: where and when a measurement was made.
@@ -31,5 +32,6 @@ pub mod w3_distance;
 pub mod w3b_intersect;
 pub mod w4_enclosing;
 pub mod w5_margin;
+pub mod w6_motion_cast;
 
 pub use reference::Pose;
