@@ -4,7 +4,7 @@ use core::fmt::Debug;
 
 use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, Mat2, Mat3, Mat3A, Quat, Vec2, Vec3, Vec3A};
 
-use crate::numerics::range::power_of_two_below;
+use crate::numerics::range::comfortable_unit_of_length;
 use crate::numerics::twofold::{dot_minus, two_product};
 use crate::{Scalar, Vector};
 
@@ -196,7 +196,7 @@ fn turn_about(angular_velocity: DVec3, time: f64) -> DMat3 {
         return DMat3::ZERO;
     }
     // A power of two takes squares out of reach of over- and underflow.
-    let unit = power_of_two_below(angular_velocity.abs().max_element());
+    let unit = comfortable_unit_of_length(angular_velocity.abs().max_element());
     let w = angular_velocity / unit;
     let rate = w.length();
     // What the square root loses of |w|: |w| = rate + (|w|² − rate²)/(2·rate), with the squares to twice the digits.

@@ -198,12 +198,17 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         self.error_along(n) * Scalar::from_f64(2.0)
     }
 
-    /// The way out of two parallelotopes that certainly overlap.
-    pub(super) fn closed_form(&self) -> Option<ClosedForm<A::Vector>> {
+    /// The way out of two parallelotopes that certainly overlap; a plane across `axis`, or across their offset, may tell them apart
+    /// at once.
+    pub(super) fn closed_form(&self, axis: Option<A::Vector>) -> Option<ClosedForm<A::Vector>> {
         let Pair { a, b, core_a, core_b, .. } = &self.pair;
         let parts = [parallelotope(*a, core_a)?, parallelotope(*b, core_b)?];
         let Frame { offset, per_unit, .. } = self.frame;
-        let nearest = Zonotope::new(&parts, offset, per_unit).nearest_facet::<A::Vector>()?;
+        let zonotope = Zonotope::new(&parts, offset, per_unit);
+        if zonotope.is_beyond(axis.unwrap_or(offset)) {
+            return None;
+        }
+        let nearest = zonotope.nearest_facet::<A::Vector>()?;
         // Computed in double precision, of edges and an offset that are wrong by what the shapes say.
         let error = self.uncertainty.shapes.iter().fold(self.uncertainty.lost_in_offset, |sum, s| sum + s.error_length);
         let half_ulp = <A::Vector as Vector>::Scalar::EPSILON * Scalar::from_f64(0.5 * nearest.depth);

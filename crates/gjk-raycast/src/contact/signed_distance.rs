@@ -54,7 +54,7 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let mut cores = Cores::new(a, b);
-    if let Some(known) = cores.closed_form() {
+    if let Some(known) = cores.closed_form(options.axis) {
         return Reached::of_closed_form(known).answer(&cores);
     }
     // Cores that overlapped in the last frame do so still, if no plane across its normal tells them apart.

@@ -105,6 +105,13 @@ impl Zonotope {
         Self { center, edges, size }
     }
 
+    /// Whether all of it is seen to lie beyond zero along a vector.
+    pub(super) fn is_beyond<V: Vector>(&self, along: V) -> bool {
+        let along = array(along);
+        let reach = self.edges.iter().map(|&edge| dot(edge, along).abs());
+        dot(self.center, along) > reach.fold(0.0, |sum, reach| sum + reach)
+    }
+
     /// The facet nearest to zero; `None` where zero is not certain to be within.
     pub(super) fn nearest_facet<V: Vector>(&self) -> Option<Nearest> {
         let none = Facet { edges: [0; 2], normal: [0.0; 3], depth: f64::INFINITY };

@@ -56,6 +56,19 @@ impl<V: Vector, W: Copy + Default> Gjk<V, W> {
         self.length <= frame.touching()
     }
 
+    /// Begins with points of the difference, no more than there are dimensions, where they are apart from zero; with none where they
+    /// are not.
+    #[inline]
+    pub(crate) fn begin_with(&mut self, corners: impl Iterator<Item = (V, W)>, frame: &Frame<V>) {
+        for (point, witness) in corners {
+            self.simplex.push(point, -self.axis, witness);
+        }
+        // NaN is not apart.
+        if self.measure().is_none() || !(self.length > frame.touching()) {
+            *self = Self::new(self.axis);
+        }
+    }
+
     /// Raises the lower bound to the plane through the support point `w` along a direction, if it is higher: no point of
     /// `A − B` lies before `w` along it (the paper's bound `‖v‖² − v·w`, divided by `‖v‖`). How high the plane is, if that
     /// is finite.

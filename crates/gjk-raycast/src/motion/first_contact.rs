@@ -7,7 +7,8 @@
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
 
-use super::instant::{Instant, Limits, MovingPair};
+use super::instant::{Instant, Limits, MovingPair, NEAR};
+use super::next_time::PATIENCE;
 use super::options::MotionCastOptions;
 use super::result::{MotionCast, MotionHit, MotionIterate};
 use super::trajectory::Trajectory;
@@ -27,6 +28,8 @@ pub(super) struct Search<'p, A: SupportMap + ?Sized, MA, B: SupportMap + ?Sized,
     pub(super) step: ScalarOf<A>,
     pub(super) turned: A::Vector,
     pub(super) sped_up: ScalarOf<A>,
+    /// Whether that foretells the next step: the same points were the closest ones all the way.
+    pub(super) is_smooth: bool,
     /// A later time at which they are apart, though they may not be in between.
     pub(super) ahead: Option<Instant<A::Vector>>,
     /// The earliest time known at which they are not certainly apart.
@@ -37,7 +40,6 @@ pub(super) struct Search<'p, A: SupportMap + ?Sized, MA, B: SupportMap + ?Sized,
     width: ScalarOf<A>,
     pub(super) slow: u8,
     pub(super) looks: usize,
-    iterations: usize,
 }
 
 /// How a search ended.
@@ -70,7 +72,9 @@ where
         let axis = options.axis.unwrap_or(between).unit().unwrap_or_else(|| Vector::axis(0));
         // Which way out is the shortest matters only to bodies that are to leave one another.
         let leaves = options.start_in_contact == StartInContact::IfDeeper;
-        let near = pair.at(zero, axis, Limits { distance: infinity, depth: if leaves { infinity } else { zero } });
+        let limits = Limits { distance: infinity, depth: if leaves { infinity } else { zero } };
+        let near = pair.at(zero, axis, limits);
+        let near = if near.gap > zero || near.is_close { near } else { pair.closely(zero, axis, limits) };
         let mut search = Self {
             pair,
             options,
@@ -79,13 +83,13 @@ where
             step: Scalar::ONE,
             turned: A::Vector::ZERO,
             sped_up: zero,
+            is_smooth: false,
             ahead: None,
             beyond: None,
             upper: infinity,
             width: infinity,
             slow: 0,
             looks: 1,
-            iterations: near.iterations,
         };
         search.show(&near);
         let end = if near.gap > zero { search.advance() } else { search.start_in_contact() };
@@ -114,7 +118,7 @@ where
                     None => continue,
                 }
             };
-            let there = self.look(time, Limits { distance: self.enough_at(time), depth: zero });
+            let there = self.glance(time);
             if there.gap > zero {
                 self.ahead = Some(there);
             } else {
@@ -132,6 +136,7 @@ where
         self.step = ahead.time - self.near.time;
         self.turned = ahead.normal - self.near.normal;
         self.sped_up = ahead.closing - self.near.closing;
+        self.is_smooth = self.pair.is_smooth(&self.near, &ahead);
         self.near = ahead;
         self.ahead = None;
         true
@@ -162,13 +167,33 @@ where
         }
     }
 
-    /// The bodies at a time, which the observer is shown.
-    pub(super) fn look(&mut self, time: ScalarOf<A>, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
-        let expected = self.near.normal + self.turned * ((time - self.near.time) / self.step);
-        let axis = expected.unit().unwrap_or(self.near.normal);
-        let there = self.pair.at(time, axis, limits);
+    /// The bodies at a time; closely where they can be expected to be nearly in contact, since Newton's method squares their distance,
+    /// and if the search does not come nearer to a contact, which from afar may only seem to be one.
+    fn glance(&mut self, time: ScalarOf<A>) -> Instant<A::Vector> {
+        let limits = Limits { distance: self.enough_at(time), depth: Scalar::ZERO };
+        let Instant { distance, error, .. } = self.near;
+        let is_near = distance * distance < error * self.pair.size() * Scalar::from_f64(NEAR);
+        if is_near || self.slow > PATIENCE {
+            self.beyond = self.beyond.filter(|beyond| beyond.is_close);
+            return self.look(time, limits);
+        }
+        let there = self.pair.at(time, self.expected_normal(time), limits);
         self.looks += 1;
-        self.iterations += there.iterations;
+        self.show(&there);
+        there
+    }
+
+    /// The unit normal at a time, if it turns on as it did in the last step, but no farther.
+    pub(super) fn expected_normal(&self, time: ScalarOf<A>) -> A::Vector {
+        let part = ((time - self.near.time) / self.step).min(Scalar::ONE);
+        (self.near.normal + self.turned * part).unit().unwrap_or(self.near.normal)
+    }
+
+    /// The bodies at a time as well as it can be known, which the observer is shown.
+    pub(super) fn look(&mut self, time: ScalarOf<A>, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
+        let axis = self.expected_normal(time);
+        let there = self.pair.closely(time, axis, limits);
+        self.looks += 1;
         self.show(&there);
         there
     }
@@ -199,6 +224,6 @@ where
                 (Outcome::Hit(MotionHit { time, point, normal }), Status::Converged)
             }
         };
-        MotionCast { outcome, lower, upper: self.upper, status, iterations: self.iterations }
+        MotionCast { outcome, lower, upper: self.upper, status, iterations: self.pair.iterations() }
     }
 }

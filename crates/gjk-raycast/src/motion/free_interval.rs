@@ -19,6 +19,9 @@
 //! unevenly the bodies move. Nothing is lost at the ends, so that an interval that ends within rounding of a contact is proved as
 //! easily as any other, where steps that trust a speed come to a transversal contact by ever smaller steps; and bodies that do not
 //! turn have `M = 0` along a plane that does not, which proves any interval.
+//!
+//! Any two planes will do that separate the bodies at the two times. Where the normals of the closest points turn far, so that `M` is
+//! large, one of them may do at both times.
 
 use convex_support::{Scalar, ScalarOf, SupportMap};
 use num_traits::Float as _;
@@ -38,14 +41,24 @@ where
 {
     /// Whether the bodies are certainly apart throughout the interval between two times at which they are.
     pub(super) fn is_free(&self, from: &Instant<A::Vector>, to: &Instant<A::Vector>) -> bool {
-        let zero = Scalar::ZERO;
-        if !(from.gap > zero && to.gap > zero) {
+        let gap_along = |time, normal| {
+            let (level, error) = self.level(time, normal);
+            level - error
+        };
+        let times = [from.time, to.time];
+        self.keeps_apart([from.normal, to.normal], [from.gap, to.gap], times)
+            || self.keeps_apart([to.normal; 2], [gap_along(from.time, to.normal), to.gap], times)
+            || self.keeps_apart([from.normal; 2], [from.gap, gap_along(to.time, from.normal)], times)
+    }
+
+    /// Whether a plane that turns from one normal to another, and at the ends separates the bodies by these gaps, does so in between.
+    fn keeps_apart(&self, normals: [A::Vector; 2], gaps: [ScalarOf<A>; 2], times: [ScalarOf<A>; 2]) -> bool {
+        if !gaps.iter().all(|&gap| gap > Scalar::ZERO) {
             return false;
         }
-        let duration = to.time - from.time;
-        let plane = TurningPlane { from: from.normal, to: to.normal };
-        let most = self.acceleration_along(plane, [from.time, to.time]);
-        let roots = from.gap.sqrt() + to.gap.sqrt();
+        let duration = times[1] - times[0];
+        let most = self.acceleration_along(TurningPlane { from: normals[0], to: normals[1] }, times);
+        let roots = gaps[0].sqrt() + gaps[1].sqrt();
         let half = ScalarOf::<A>::from_f64(0.5 + 0.5 * ROUNDING * ScalarOf::<A>::EPSILON.as_f64());
         // NaN is no proof.
         duration * duration * most * half < roots * roots

@@ -85,7 +85,7 @@ where
             return without_turning(a, b, motion, options);
         }
     }
-    let pair = MovingPair { a: MovingBody::new(a, motion_a, margin), b: MovingBody::new(b, motion_b, Scalar::ZERO) };
+    let pair = MovingPair::new(MovingBody::new(a, motion_a, margin), MovingBody::new(b, motion_b, Scalar::ZERO));
     Ok(Search::run(&pair, options, observer))
 }
 

@@ -42,6 +42,18 @@ impl<'s, S: SupportMap + ?Sized> Moved<'s, S> {
         Self { shape, rotation, core: Core { kind, error: rounding.error_length, ..core }, rounding, hint: None }
     }
 
+    /// A vector of the shape as it is turned.
+    #[inline]
+    pub(super) fn turned(&self, vector: S::Vector) -> S::Vector {
+        self.rotation * vector
+    }
+
+    /// A vector of the turned shape as it was.
+    #[inline]
+    pub(super) fn before(&self, vector: S::Vector) -> S::Vector {
+        self.rotation.transpose_mul(vector)
+    }
+
     /// The same, which begins its searches where the last ones ended, whoever made them.
     pub(super) fn with_hint(self, hint: &'s Cell<Hint>) -> Self {
         Self { hint: Some(hint), ..self }

@@ -12,8 +12,14 @@ use super::trajectory::{Trajectory, TurningPlane};
 const CAUTION: f64 = 0.9;
 /// The part of the second-order change of a step that is left to go.
 const LEFT: f64 = 0.05;
+/// How far apart bodies are, as a part of their size, for other points to become the closest ones before they touch.
+const FAR: f64 = 0.03;
+/// How much a plane may leave of the distance of bodies, before their normal is looked for again.
+const LEFT_APART: f64 = 0.05;
+/// How many times are tried for that.
+const TRIES: usize = 4;
 /// How often in a row the search for a contact may come nearer by less than half before it halves the interval.
-const PATIENCE: u8 = 2;
+pub(super) const PATIENCE: u8 = 2;
 
 impl<A, MA, B, MB, F> Search<'_, A, MA, B, MB, F>
 where
@@ -33,7 +39,17 @@ where
         let Instant { time, gap, distance, error, closing, .. } = self.near;
         let end = self.options.max_time.min(self.upper);
         let (k, root) = ((self.expected_acceleration() * from_f64(0.5)).sqrt(), gap.sqrt());
-        let step = if closing > k * root {
+        let is_within_reach = closing > k * root;
+        if is_within_reach
+            && !self.is_smooth
+            && distance > self.pair.size() * from_f64(FAR)
+            && self.ahead.is_none()
+            && self.slow <= PATIENCE
+            && let Some(next) = self.nearly_touching()
+        {
+            return Some(next);
+        }
+        let step = if is_within_reach {
             self.newton(distance - error * from_f64(AIM))
         } else {
             (root + root - closing / k) / k * from_f64(CAUTION)
@@ -77,9 +93,15 @@ where
 
     /// The time after which the bodies have come nearer by `way`, by Newton's method of the second order: with the closing speed `w`
     /// and its growth `c` that is where `w·s + c·s²/2` is. A small part of what the growth changes is left to go, so that the next
-    /// step starts on this side of the contact.
+    /// step starts on this side of the contact. Where the last step does not tell the growth, it is the most that it may be.
     fn newton(&self, way: ScalarOf<A>) -> ScalarOf<A> {
-        let (two, w, c) = (ScalarOf::<A>::from_f64(2.0), self.near.closing, self.sped_up / self.step);
+        let (two, Instant { time, normal, closing: w, .. }) = (ScalarOf::<A>::from_f64(2.0), self.near);
+        if !self.is_smooth {
+            let plane = TurningPlane { from: normal, to: normal };
+            let most = self.pair.acceleration_along(plane, [time, time + way / w]).max(Scalar::ZERO);
+            return two * way / (w + (w * w + two * most * way).sqrt());
+        }
+        let c = self.sped_up / self.step;
         let after = |way: ScalarOf<A>| {
             let squared = w * w + two * c * way;
             if squared > Scalar::ZERO { two * way / (w + squared.sqrt()) } else { way / w }
@@ -87,6 +109,38 @@ where
         let straight = way / w;
         let changed = (c * straight * straight).abs() * ScalarOf::<A>::from_f64(LEFT);
         after((way - changed).max(way * ScalarOf::<A>::from_f64(0.5)))
+    }
+
+    /// A time at which the plane between the bodies, if it does not turn, keeps them apart by a small part of their distance; `None`
+    /// where there is none before the end.
+    ///
+    /// Where other points have become the closest ones, Newton's method leads astray. The plane keeps the bodies apart by no more than
+    /// their distance, so that they do not touch there, and its support points are whichever are the nearest by then.
+    fn nearly_touching(&self) -> Option<ScalarOf<A>> {
+        let (zero, from_f64) = (ScalarOf::<A>::ZERO, ScalarOf::<A>::from_f64);
+        let Instant { time, normal, distance, closing, .. } = self.near;
+        let end = self.beyond.map_or(self.options.max_time.min(self.upper), |beyond| beyond.time);
+        let target = distance * from_f64(LEFT_APART * 0.5);
+        // The last two times at which the plane kept them apart, and the last one at which it did not.
+        let (mut last, mut from, mut to) = (None, (time, distance), None);
+        let mut next = time + (distance - target) / closing;
+        for _ in 0..TRIES {
+            if !(next > from.0 && next < end) {
+                break;
+            }
+            let (level, _) = self.pair.level(next, normal);
+            if level > zero {
+                (last, from) = (Some(from), (next, level));
+                if level < distance * from_f64(LEFT_APART) {
+                    break;
+                }
+            } else {
+                to = Some((next, level));
+            }
+            let Some(other) = to.or(last) else { break };
+            next = from.0 + (from.1 - target) * (other.0 - from.0) / (from.1 - other.1);
+        }
+        Some(from.0).filter(|&next| next > time)
     }
 
     /// The distance at a time that would be enough to prove the rest of the motion along the present normal; infinity elsewhere.

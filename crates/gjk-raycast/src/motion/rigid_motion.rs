@@ -99,6 +99,9 @@ impl<V: Vector> RigidMotion<V> {
 
     /// `|ω|`, and the distance from the axis through the centre within which all of a ball stays.
     fn lever(&self, ball: BoundingSphere<V>) -> (V::Scalar, V::Scalar) {
+        if self.angular_velocity == Default::default() {
+            return (V::Scalar::ZERO, ball.radius);
+        }
         let w = self.angular_velocity.cross_matrix();
         let rate = rate(&w);
         let off = if rate > V::Scalar::ZERO { (w * (ball.center - self.center)).norm() / rate } else { rate };
@@ -151,6 +154,10 @@ impl<V: Vector> Trajectory for RigidMotion<V> {
         TurningPlane { from, to }: TurningPlane<V>,
         interval: [V::Scalar; 2],
     ) -> V::Scalar {
+        // At rest, as one of two bodies mostly is.
+        if self.velocity == V::ZERO && self.angular_velocity == Default::default() {
+            return V::Scalar::ZERO;
+        }
         let two = V::Scalar::from_f64(2.0);
         let twice_rate = if from == to { V::ZERO } else { (to - from) * (two / (interval[1] - interval[0])) };
         let straight = twice_rate.dot(self.velocity);
