@@ -122,6 +122,6 @@ pub use result::{
 };
 pub use scene::{
     Among, Body, BodyDistance, BodyHit, HalfSpace, PairDistance, Scene, SceneAnyHit, SceneCast, SceneDistance,
-    SceneError, SceneHits, SceneLinearCast, SceneRayCast, Work,
+    SceneError, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, Work,
 };
 pub use simplex::SubAlgorithm;

@@ -2,8 +2,8 @@
 
 use convex_support::{Scalar, Vector};
 use gjk_raycast::{
-    DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, Outcome, Ray, RayCastOptions, RigidMotion,
-    SceneCast, SceneError, motion_cast,
+    DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastOptions, RigidMotion, SceneCast,
+    SceneError,
 };
 
 use super::cast::problem;
@@ -167,7 +167,9 @@ impl<V: Space> One<V> {
             Self::LinearCast(shape, motion, options) => {
                 first("time", &scene.linear_cast(shape, *motion, *options).map_err(problem)?, |hit| hit.time)
             }
-            Self::MotionCast(shape, motion, options) => first_met(scene, shape, *motion, *options),
+            Self::MotionCast(shape, motion, options) => {
+                first("time", &scene.motion_cast(shape, *motion, *options).map_err(problem)?, |hit| hit.time)
+            }
             Self::Nearest(shape, options) => nearest(scene, shape, *options),
             Self::PairsWithin(within, options) => pairs(scene, *within, *options),
         }
@@ -184,33 +186,6 @@ fn first<H, S: Scalar>(
         return Err(undecided(body));
     }
     Ok(hit(name, cast.first.as_ref().map(|first| (first.body, scalar(&first.hit), [first.lower, first.upper]))))
-}
-
-/// The first body, by index, that a shape meets which moves and turns: each is asked on its own.
-fn first_met<V: Space>(
-    scene: &gjk_raycast::Scene<Solid<V>>,
-    shape: &Solid<V>,
-    motion: RigidMotion<V>,
-    options: MotionCastOptions<V>,
-) -> Result<Answer, Problem> {
-    let mut first: Option<(usize, V::Scalar, [V::Scalar; 2])> = None;
-    let mut doubt: Option<(usize, V::Scalar)> = None;
-    for (index, body) in scene.iter() {
-        let Some(body) = body.convex() else { continue };
-        let cast = motion_cast(shape, motion, body, RigidMotion::default(), options).map_err(problem)?;
-        match cast.outcome {
-            Outcome::Hit(met) if first.is_none_or(|(_, time, _)| met.time < time) => {
-                first = Some((index, met.time, [cast.lower, cast.upper]));
-            }
-            Outcome::Undecided if doubt.is_none_or(|(_, from)| cast.lower < from) => doubt = Some((index, cast.lower)),
-            _ => {}
-        }
-    }
-    // A body that may be met only after the first hit is of no consequence.
-    match doubt {
-        Some((body, from)) if first.is_none_or(|(_, time, _)| from <= time) => Err(undecided(body)),
-        _ => Ok(hit("time", first)),
-    }
 }
 
 /// The body that is hit first, the λ or time of it, and its bracket.

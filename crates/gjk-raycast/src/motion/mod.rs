@@ -14,6 +14,7 @@ mod rigid_motion;
 mod trajectory;
 
 pub use chain_motion::ChainMotion;
+pub(crate) use motion_cast::{check, checked, linear_options, of_linear_cast};
 pub use motion_cast::{motion_cast, motion_cast_with};
 pub(crate) use moved::Moved;
 pub use options::MotionCastOptions;

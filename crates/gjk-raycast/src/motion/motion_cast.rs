@@ -11,7 +11,7 @@ use super::rigid_motion::RigidMotion;
 use super::trajectory::Trajectory;
 use crate::error::RayCastError;
 use crate::ray::check_finite;
-use crate::{LinearCastOptions, LinearHit, Motion, Outcome, linear_cast};
+use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, linear_cast};
 
 /// When two moving bodies first touch, and where.
 ///
@@ -74,9 +74,9 @@ where
 {
     let options = checked(options)?;
     let margin = options.target_distance;
+    check("motion_a", &motion_a)?;
+    check("motion_b", &motion_b)?;
     if let (Some(rigid_a), Some(rigid_b)) = (motion_a.as_rigid_motion(), motion_b.as_rigid_motion()) {
-        check("motion_a", &rigid_a)?;
-        check("motion_b", &rigid_b)?;
         let turns = |motion: &RigidMotion<A::Vector>| motion.angular_velocity != Default::default();
         let alike = rigid_a == rigid_b;
         if alike || !(turns(&rigid_a) || turns(&rigid_b)) {
@@ -100,6 +100,11 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
+    Ok(of_linear_cast(linear_cast(a, b, motion, linear_options(&options))?, options.max_time))
+}
+
+/// The same options for a motion that does not turn.
+pub(crate) fn linear_options<V: Vector>(options: &MotionCastOptions<V>) -> LinearCastOptions<V> {
     let mut wanted = LinearCastOptions::new()
         .with_max_time(options.max_time)
         .with_target_distance(options.target_distance)
@@ -107,19 +112,23 @@ where
         .with_tolerance(options.tolerance)
         .with_max_iterations(options.max_iterations);
     wanted.axis = options.axis;
-    let cast = linear_cast(a, b, motion, wanted)?;
+    wanted
+}
+
+/// The answer for a motion that does not turn.
+pub(crate) fn of_linear_cast<V: Vector>(cast: LinearCast<V>, max_time: V::Scalar) -> MotionCast<V> {
     let outcome = match cast.outcome {
         Outcome::Hit(LinearHit { time, point, normal }) => Outcome::Hit(MotionHit { time, point, normal }),
         Outcome::Miss(miss) => Outcome::Miss(miss),
         Outcome::Undecided => Outcome::Undecided,
     };
     // What comes after the end of the motion is not said of other motions either.
-    let (lower, upper) = (cast.lower.min(options.max_time), cast.upper);
-    Ok(MotionCast { outcome, lower, upper, status: cast.status, iterations: cast.iterations })
+    let (lower, upper) = (cast.lower.min(max_time), cast.upper);
+    MotionCast { outcome, lower, upper, status: cast.status, iterations: cast.iterations }
 }
 
 /// The options, if they are numbers, with what is below zero taken for zero.
-fn checked<V: Vector>(options: MotionCastOptions<V>) -> Result<MotionCastOptions<V>, RayCastError> {
+pub(crate) fn checked<V: Vector>(options: MotionCastOptions<V>) -> Result<MotionCastOptions<V>, RayCastError> {
     let MotionCastOptions { max_time, tolerance, target_distance, .. } = options;
     for (parameter, value) in [("max_time", max_time), ("tolerance", tolerance), ("target_distance", target_distance)] {
         if value.is_nan() {
@@ -131,8 +140,9 @@ fn checked<V: Vector>(options: MotionCastOptions<V>) -> Result<MotionCastOptions
     Ok(MotionCastOptions { max_time, target_distance, ..options })
 }
 
-/// Whether all numbers of a motion are finite.
-fn check<V: Vector>(which: &'static str, motion: &RigidMotion<V>) -> Result<(), RayCastError> {
+/// Whether all numbers of a [`RigidMotion`] are finite.
+pub(crate) fn check(which: &'static str, motion: &impl Trajectory) -> Result<(), RayCastError> {
+    let Some(motion) = motion.as_rigid_motion() else { return Ok(()) };
     check_finite(which, motion.velocity)?;
     check_finite(which, motion.center)?;
     match motion.angular_velocity.non_finite() {

@@ -6,8 +6,10 @@ mod cast;
 mod error;
 mod half_space;
 mod mesh;
+mod motion_cast;
 mod nearest;
 mod pairs;
+mod pieces;
 mod result;
 mod single;
 
@@ -20,7 +22,7 @@ pub use self::error::SceneError;
 pub use self::half_space::HalfSpace;
 pub use self::result::{
     BodyDistance, BodyHit, PairDistance, SceneAnyHit, SceneCast, SceneDistance, SceneHits, SceneLinearCast,
-    SceneRayCast, Work,
+    SceneMotionCast, SceneRayCast, Work,
 };
 
 /// Bodies that are asked together: which is hit first, which is nearest, which pairs are near each other.

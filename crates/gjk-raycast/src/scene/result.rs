@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use convex_support::Vector;
 
-use crate::{Distance, LinearHit, RayHit, Status};
+use crate::{Distance, LinearHit, MotionHit, RayHit, Status};
 
 /// What was done for an answer, and what was left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,6 +43,9 @@ pub type SceneRayCast<V> = SceneCast<RayHit<V>, <V as Vector>::Scalar>;
 
 /// The answer of [`Scene::linear_cast`](crate::Scene::linear_cast).
 pub type SceneLinearCast<V> = SceneCast<LinearHit<V>, <V as Vector>::Scalar>;
+
+/// The answer of [`Scene::motion_cast`](crate::Scene::motion_cast).
+pub type SceneMotionCast<V> = SceneCast<MotionHit<V>, <V as Vector>::Scalar>;
 
 /// Which body is hit, and what the single query for it answers.
 #[derive(Clone, Copy, Debug, PartialEq)]

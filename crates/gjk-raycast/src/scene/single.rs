@@ -5,8 +5,8 @@ use convex_support::{SupportMap, Vector};
 use super::Body;
 use super::result::BodyHit;
 use crate::{
-    LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit,
-    Status, linear_cast, ray_cast,
+    LinearCast, LinearCastOptions, LinearHit, Motion, MotionCast, MotionCastOptions, MotionHit, Outcome, Ray, RayCast,
+    RayCastError, RayCastOptions, RayHit, RigidMotion, Status, Trajectory, linear_cast, motion_cast, ray_cast,
 };
 
 /// The answer of one cast: `H` is a hit, `S` its λ or time.
@@ -41,6 +41,13 @@ impl<V: Vector> From<LinearCast<V>> for Single<LinearHit<V>, V::Scalar> {
     }
 }
 
+impl<V: Vector> From<MotionCast<V>> for Single<MotionHit<V>, V::Scalar> {
+    fn from(MotionCast { outcome, lower, upper, status, .. }: MotionCast<V>) -> Self {
+        let is_undecided = matches!(outcome, Outcome::Undecided);
+        Self { hit: outcome.hit().map(|hit| (hit.time, hit)), is_undecided, lower, upper, status }
+    }
+}
+
 impl<S: SupportMap> Body<S> {
     #[inline]
     pub(super) fn ray_cast(
@@ -65,6 +72,19 @@ impl<S: SupportMap> Body<S> {
         match self {
             Self::Convex(body) => linear_cast(shape, body, motion, options),
             Self::HalfSpace(half_space) => half_space.linear_cast(shape, motion, options),
+        }
+    }
+
+    /// The cast of a shape that moves and turns against this body, which is at rest.
+    pub(super) fn motion_cast<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: &impl Trajectory<Vector = S::Vector>,
+        options: MotionCastOptions<S::Vector>,
+    ) -> Result<MotionCast<S::Vector>, RayCastError> {
+        match self {
+            Self::Convex(body) => motion_cast(shape, motion, body, RigidMotion::default(), options),
+            Self::HalfSpace(half_space) => half_space.motion_cast(shape, motion, options),
         }
     }
 }

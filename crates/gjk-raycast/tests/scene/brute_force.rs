@@ -2,8 +2,9 @@
 
 use convex_support::{SupportMap, Vector};
 use gjk_raycast::{
-    Body, BodyDistance, Distance, DistanceOptions, LinearCast, LinearCastOptions, Motion, PairDistance, Ray, RayCast,
-    RayCastOptions, distance, linear_cast, ray_cast,
+    Body, BodyDistance, Distance, DistanceOptions, LinearCast, LinearCastOptions, Motion, MotionCast,
+    MotionCastOptions, PairDistance, Ray, RayCast, RayCastOptions, RigidMotion, distance, linear_cast, motion_cast,
+    ray_cast,
 };
 
 use crate::worlds::{Shape, Space, World};
@@ -25,6 +26,19 @@ pub(crate) fn casts<V: Space>(
     let cast = |body: &Body<Shape<V>>| match body {
         Body::Convex(body) => linear_cast(shape, body, motion, options),
         Body::HalfSpace(half_space) => half_space.linear_cast(shape, motion, options),
+    };
+    world.scene.iter().map(|(index, body)| (index, cast(body).expect("a good motion"))).collect()
+}
+
+pub(crate) fn motions<V: Space>(
+    world: &World<V>,
+    shape: &Shape<V>,
+    motion: RigidMotion<V>,
+    options: MotionCastOptions<V>,
+) -> Vec<(usize, MotionCast<V>)> {
+    let cast = |body: &Body<Shape<V>>| match body {
+        Body::Convex(body) => motion_cast(shape, motion, body, RigidMotion::default(), options),
+        Body::HalfSpace(half_space) => half_space.motion_cast(shape, &motion, options),
     };
     world.scene.iter().map(|(index, body)| (index, cast(body).expect("a good motion"))).collect()
 }

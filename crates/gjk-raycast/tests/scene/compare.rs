@@ -1,7 +1,10 @@
 //! Questions to a scene, and the same to every body.
 
-use convex_support::{Scalar, bounding_box};
-use gjk_raycast::{BodyHit, DistanceOptions, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions, Status};
+use convex_support::{AngularVelocity as _, Rotation as _, Scalar, bounding_box};
+use gjk_raycast::{
+    BodyHit, DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, Outcome, Ray, RayCastOptions, RigidMotion,
+    Status,
+};
 use num_traits::Float;
 
 use crate::brute_force;
@@ -40,6 +43,7 @@ pub(crate) fn ask<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut
         linear_cast(world, numbers, count);
         distances(world, numbers, count);
     }
+    motion_cast(world, numbers, count);
     pairs(world, numbers, count);
 }
 
@@ -103,6 +107,31 @@ fn linear_cast<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Co
     }
     let casts = brute_force::casts(world, &shape, motion, options);
     let answer = world.scene.linear_cast(&shape, motion, options).expect("a good motion");
+    let singles = casts.iter().map(|&(body, cast)| {
+        let hit = cast
+            .outcome
+            .hit()
+            .map(|hit| (hit.time, BodyHit { body, hit, lower: cast.lower, upper: cast.upper, status: cast.status }));
+        (body, hit, matches!(cast.outcome, Outcome::Undecided), cast.lower)
+    });
+    first(&answer, singles, &format!("kind {}, {motion:?}, {options:?}", world.kind), count);
+    count.questions += 1;
+}
+
+fn motion_cast<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
+    let (size, center) = scale(world, numbers);
+    let (goal, shape) = (scale(world, numbers).1, body::<V>(numbers, world.kind, 1));
+    let from = bounding_box(&shape).center();
+    let velocity = if numbers.below(3) == 0 { numbers.vector(size) } else { goal - from };
+    let center = if numbers.below(2) == 0 { from } else { center };
+    // None, a part of a turn, some turns.
+    let turned = V::Rotation::from_xyzw([0; 4].map(|_| V::Scalar::from_f64(numbers.signed())));
+    let rate = V::AngularVelocity::between(V::Rotation::default(), turned);
+    let angular_velocity = rate.scaled(V::Scalar::from_f64([0.0, 1.0, 9.0][numbers.below(3)]));
+    let motion = RigidMotion { velocity, angular_velocity, center };
+    let options = MotionCastOptions::default().with_max_time(V::Scalar::from_f64([0.8, 1.0, 10.0][numbers.below(3)]));
+    let casts = brute_force::motions(world, &shape, motion, options);
+    let answer = world.scene.motion_cast(&shape, motion, options).expect("a good motion");
     let singles = casts.iter().map(|&(body, cast)| {
         let hit = cast
             .outcome

@@ -4,10 +4,10 @@ use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use convex_support::glam::{DVec2, DVec3};
-use convex_support::{Ball, Cuboid, Point, Posed, SupportMap};
+use convex_support::{Ball, Capsule, Cuboid, Point, Posed, SupportMap};
 use gjk_raycast::{
-    DistanceOptions, HalfSpace, LinearCastOptions, Motion, Ray, RayCastError, RayCastOptions, Scene, SceneError,
-    distance,
+    DistanceOptions, HalfSpace, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastError, RayCastOptions,
+    RigidMotion, Scene, SceneError, distance,
 };
 
 fn ball(x: f64) -> Posed<Ball<DVec3>> {
@@ -120,6 +120,32 @@ fn half_spaces_have_no_end() {
     assert!(HalfSpace::new(DVec3::ZERO, 1.0).is_err() && HalfSpace::new(DVec3::NAN, 1.0).is_err(), "no half-spaces");
     assert!(scene.remove(floor).is_some_and(|body| body.convex().is_none()), "taken out");
     assert!(scene.ray_cast(down, RayCastOptions::default()).unwrap().first.is_none(), "nothing is left to fall on");
+}
+
+/// A capsule of length 2 that turns about z over a floor at y = −1, and falls.
+#[test]
+fn a_floor_is_missed_by_balls_or_not_told() {
+    let mut scene = Scene::<Posed<Ball<DVec3>>>::default();
+    let floor = scene.insert_half_space(HalfSpace::new(DVec3::Y * 2.0, -2.0).unwrap());
+    let rod = |y| Posed::translated(Capsule::new(0.75, 0.25).unwrap(), DVec3::Y * y).unwrap();
+    let turns = |y: f64, fall: f64| RigidMotion {
+        velocity: DVec3::NEG_Y * fall,
+        angular_velocity: DVec3::Z * 3.0,
+        center: DVec3::Y * y,
+    };
+    let cast =
+        |y, fall, end| scene.motion_cast(&rod(y), turns(y, fall), MotionCastOptions::new().with_max_time(end)).unwrap();
+    let stays_up = cast(0.5, 0.0, 100.0);
+    assert_eq!((stays_up.first, stays_up.undecided), (None, None), "its ball is clear");
+    assert_eq!(cast(0.5, 0.0, f64::INFINITY).undecided, None, "for ever");
+    let falls = cast(3.0, 1.0, 9.0);
+    assert_eq!((falls.first, falls.undecided), (None, Some(floor)), "it meets the floor at some time");
+    assert!(falls.lower <= 3.0 && falls.lower > 2.99, "the ball of radius 1 is clear until then: {}", falls.lower);
+    assert_eq!(cast(3.0, 1.0, 2.9).undecided, None, "not yet");
+    assert_eq!(cast(-0.5, 0.0, 1.0).first.map(|first| first.hit.time), Some(0.0), "in the floor");
+    let straight = RigidMotion::translation(DVec3::NEG_Y);
+    let lands = scene.motion_cast(&rod(3.0), straight, MotionCastOptions::new().with_max_time(9.0)).unwrap();
+    assert_eq!(lands.first.map(|first| first.hit.time), Some(3.0), "as a linear cast");
 }
 
 #[test]
