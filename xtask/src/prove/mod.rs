@@ -76,9 +76,13 @@ fn prove(choice: &Choice, output: &mut impl Write) -> io::Result<Counts> {
     if let Some(seconds) = choice.random {
         let told = Mutex::new(Vec::new());
         let tell = |line: &str| told.lock().unwrap_or_else(PoisonError::into_inner).push(line.to_owned());
-        counts = random::prove_for(seconds, choice.seed, tell);
+        let tally = random::prove_for(seconds, choice.seed, tell);
         for line in told.into_inner().unwrap_or_else(PoisonError::into_inner) {
             writeln!(output, "{line}")?;
+        }
+        for (kind, of_kind) in tally {
+            writeln!(output, "{}", of_kind.said(Some(&kind)))?;
+            counts = counts.plus(of_kind);
         }
     }
     for file in &choice.files {
@@ -105,14 +109,23 @@ fn prove(choice: &Choice, output: &mut impl Write) -> io::Result<Counts> {
             }
         }
     }
-    let Counts { proved, not_proved, disproved, unanswered } = counts;
-    let said = json!({"proved": proved, "not_proved": not_proved, "disproved": disproved, "unanswered": unanswered});
-    writeln!(output, "{said}")?;
+    writeln!(output, "{}", counts.said(None))?;
     output.flush()?;
     Ok(counts)
 }
 
 impl Counts {
+    /// The line of output, for one kind of query or for all.
+    fn said(self, kind: Option<&str>) -> Value {
+        let Self { proved, not_proved, disproved, unanswered } = self;
+        let mut said =
+            json!({"proved": proved, "not_proved": not_proved, "disproved": disproved, "unanswered": unanswered});
+        if let Some(kind) = kind {
+            said["kind"] = kind.into();
+        }
+        said
+    }
+
     fn plus(self, other: Self) -> Self {
         Self {
             proved: self.proved + other.proved,

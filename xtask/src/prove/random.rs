@@ -1,5 +1,7 @@
-//! Random queries to prove: all shapes and combinators, nested, of both dimensions and precisions.
+//! Random queries to prove: all shapes and combinators, nested, of both dimensions and precisions; some of them far away, some huge or
+//! tiny, some of needles and plates.
 
+use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
@@ -11,16 +13,22 @@ use super::{Counts, judge_line};
 use crate::mesh::Meshes;
 use crate::query::certified;
 
+/// Counts of each kind of query in each precision.
+pub(super) type Tally = BTreeMap<String, Counts>;
+
 /// Draws, answers and judges queries for so many seconds, on all cores; the lines that are not proved go to `told`.
-pub(super) fn prove_for(seconds: u64, seed: u64, told: impl Fn(&str) + Sync) -> Counts {
+pub(super) fn prove_for(seconds: u64, seed: u64, told: impl Fn(&str) + Sync) -> Tally {
     let end = Instant::now() + Duration::from_secs(seconds);
     let meshes = Meshes::relative_to("");
     let lanes = 0..rayon::current_num_threads() as u64;
     let lane = |lane: u64| {
         let mut rng = Rng::new(seed.wrapping_mul(0x9E37_79B9).wrapping_add(lane));
-        let mut counts = Counts::default();
+        let mut tally = Tally::new();
         while Instant::now() < end {
-            let Some(line) = certified(query(&mut rng).to_string().as_bytes(), &meshes) else {
+            let query = query(&mut rng);
+            let [kind, precision] = ["query", "precision"].map(|name| query[name].as_str().unwrap_or_default());
+            let counts = tally.entry(format!("{kind} {precision}")).or_default();
+            let Some(line) = certified(query.to_string().as_bytes(), &meshes) else {
                 counts.unanswered += 1;
                 continue;
             };
@@ -30,15 +38,25 @@ pub(super) fn prove_for(seconds: u64, seed: u64, told: impl Fn(&str) + Sync) -> 
                 told(&format!("{said} of {}", String::from_utf8_lossy(line.trim_ascii())));
             }
         }
-        counts
+        tally
     };
-    lanes.into_par_iter().map(lane).reduce(Counts::default, Counts::plus)
+    lanes.into_par_iter().map(lane).reduce(Tally::new, |mut sum, tally| {
+        for (kind, counts) in tally {
+            let entry = sum.entry(kind).or_default();
+            *entry = entry.plus(counts);
+        }
+        sum
+    })
 }
 
 /// A query that has a certificate.
 pub(super) fn query(rng: &mut Rng) -> Value {
-    let space = Space { dimension: 2 + rng.below(2) as usize };
+    let dimension = 2 + rng.below(2) as usize;
     let precision = if rng.below(4) == 0 { "f32" } else { "f64" };
+    let scale = if rng.below(4) == 0 { 10.0_f64.powf(6.0 * rng.signed()) } else { 1.0 };
+    let far = if precision == "f32" { 4.0 } else { 6.0 };
+    let reach = if rng.below(4) == 0 { 10.0_f64.powf(far * rng.unit()) } else { 0.0 };
+    let space = Space { dimension, scale, reach };
     let apart = 4.0 * rng.unit();
     match rng.below(4) {
         0 | 1 => {
@@ -52,7 +70,8 @@ pub(super) fn query(rng: &mut Rng) -> Value {
             json!({"query": "linear_cast", "precision": precision, "a": a, "b": b, "velocity_a": u, "velocity_b": v})
         }
         _ => {
-            let source = space.vector(rng, 2.0 + 4.0 * apart);
+            let distance = if rng.below(8) == 0 { 10.0_f64.powf(4.0 * rng.unit()) } else { 1.0 };
+            let source = space.vector(rng, (2.0 + 4.0 * apart) * distance);
             // Mostly to somewhere about the target.
             let aim = space.vector(rng, 1.5);
             let direction: Vec<f64> = source.iter().zip(&aim).map(|(s, t)| t - s).collect();
@@ -66,12 +85,16 @@ pub(super) fn query(rng: &mut Rng) -> Value {
 #[derive(Clone, Copy)]
 struct Space {
     dimension: usize,
+    /// The size of shapes.
+    scale: f64,
+    /// How many sizes away shapes are posed that are moved back afterwards.
+    reach: f64,
 }
 
 impl Space {
-    /// A vector with coordinates of so much at most.
+    /// A vector with coordinates of so many sizes at most.
     fn vector(self, rng: &mut Rng, most: f64) -> Vec<f64> {
-        (0..self.dimension).map(|_| most * rng.signed()).collect()
+        (0..self.dimension).map(|_| self.scale * most * rng.signed()).collect()
     }
 
     fn vectors(self, rng: &mut Rng, count: u64) -> Vec<Vec<f64>> {
@@ -86,14 +109,37 @@ impl Space {
         }
     }
 
+    /// A number of so many decades around one.
+    fn stretch(rng: &mut Rng, decades: f64) -> f64 {
+        10.0_f64.powf(decades * rng.signed())
+    }
+
     /// Two shapes whose middles are so far apart at most; at times moved away together.
     fn pair(self, rng: &mut Rng, apart: f64) -> (Value, Value) {
-        let far = if rng.below(8) == 0 { 1000.0 } else { 0.0 };
+        let far = if rng.below(8) == 0 { self.reach.max(1000.0) } else { 0.0 };
         let (a, b) = (self.shape(rng, 3), self.shape(rng, 3));
         let away = self.vector(rng, far);
         let moved: Vec<f64> = self.vector(rng, apart).iter().zip(&away).map(|(x, y)| x + y).collect();
         let posed = |of: Value, translation: Vec<f64>| json!({"type": "posed", "translation": translation, "of": of});
         (posed(a, moved), if far > 0.0 { posed(b, away) } else { b })
+    }
+
+    /// A shape posed far away, turned about the origin, turned back and moved back, which leaves it where it was but for rounding.
+    fn round_trip(self, rng: &mut Rng, of: &Value) -> Value {
+        let there = self.vector(rng, self.reach.max(1.0));
+        let back: Vec<f64> = there.iter().map(|x| -x).collect();
+        let turn = self.rotation(rng);
+        let turn_back = match turn.as_array() {
+            Some(q) => q
+                .iter()
+                .enumerate()
+                .map(|(i, x)| if i < 3 { json!(-x.as_f64().unwrap_or(0.0)) } else { x.clone() })
+                .collect(),
+            None => json!(-turn.as_f64().unwrap_or(0.0)),
+        };
+        let away = json!({"type": "posed", "translation": there, "of": of});
+        let turned = json!({"type": "posed", "rotation": turn, "of": away});
+        json!({"type": "posed", "rotation": turn_back, "translation": back, "of": turned})
     }
 
     /// A shape of sizes about one, combined of others so many levels deep at most.
@@ -102,19 +148,22 @@ impl Space {
             return self.leaf(rng);
         }
         let of = self.shape(rng, depth - 1);
-        match rng.below(8) {
+        match rng.below(9) {
             0 | 1 => {
                 json!({"type": "posed", "translation": self.vector(rng, 1.0), "rotation": self.rotation(rng), "of": of})
             }
             2 => self.chain(rng, of),
             3 => {
-                let matrix = self.vectors(rng, self.dimension as u64);
+                let stretch = if rng.below(4) == 0 { Self::stretch(rng, 2.0) } else { 1.0 };
+                let mut row = || (0..self.dimension).map(|_| stretch * rng.signed()).collect::<Vec<_>>();
+                let matrix: Vec<_> = (0..self.dimension).map(|_| row()).collect();
                 json!({"type": "affine", "matrix": matrix, "translation": self.vector(rng, 1.0), "of": of})
             }
             4 => json!({"type": "minkowski_sum", "of": [of, self.shape(rng, depth - 1)]}),
             5 => json!({"type": "difference", "a": of, "b": self.shape(rng, depth - 1)}),
             6 => json!({"type": "hull", "of": [of, self.shape(rng, depth - 1)]}),
-            _ => json!({"type": "rounded", "radius": rng.unit(), "of": of}),
+            7 => self.round_trip(rng, &of),
+            _ => json!({"type": "rounded", "radius": self.scale * rng.unit(), "of": of}),
         }
     }
 
@@ -125,8 +174,9 @@ impl Space {
     }
 
     fn leaf(self, rng: &mut Rng) -> Value {
-        // In one of eight a size is a thousandth.
-        let mut size = || if rng.below(8) == 0 { 1e-3 * rng.unit() } else { 0.05 + rng.unit() };
+        // One in eight is smaller, by up to six decades: needles, plates, dust.
+        let small = |rng: &mut Rng| 10.0_f64.powf(-6.0 * rng.unit()) * rng.unit();
+        let mut size = || self.scale * if rng.below(8) == 0 { small(rng) } else { 0.05 + rng.unit() };
         let (radius, half_height) = (size(), size());
         let sizes: Vec<f64> = (0..self.dimension).map(|_| size()).collect();
         let flat = if self.dimension == 2 { 8 } else { 10 };
