@@ -165,6 +165,11 @@ pub(crate) struct PointPair<V> {
     pub(crate) b: V,
 }
 
+/// One shape does not remember points.
+impl<V> From<PointPair<V>> for () {
+    fn from(_points: PointPair<V>) {}
+}
+
 impl<V: Vector> Witness<V::Scalar> for PointPair<V> {
     #[inline]
     fn plus(self, other: Self, weight: V::Scalar) -> Self {

@@ -119,8 +119,7 @@ fn touching<V: Vector>(
     let (zero, scale) = (V::Scalar::ZERO, near.frame.scale);
     let overlap = near.overlap();
     let cores = [a.core(), b.core()];
-    let [point_a, point_b] =
-        surface_points(cores, &near.frame, near.state.simplex.weighted_witness(), near.normal, None);
+    let [point_a, point_b] = surface_points(cores, &near.frame, near.points, near.normal, None);
     let upper = near.upper.max(zero) * scale;
     Some(Distance {
         distance: (near.gap.max(zero) * scale).min(upper),
@@ -132,7 +131,7 @@ fn touching<V: Vector>(
         // Of a point found deep inside, no plane is one of contact.
         normal: Some(near.normal).filter(|_| near.gap >= -near.upper),
         status: if overlap.is_some() { Status::Converged } else { near.end.status() },
-        iterations: iterations + near.state.iterations,
+        iterations: iterations + near.iterations,
     })
 }
 

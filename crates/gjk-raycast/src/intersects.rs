@@ -55,7 +55,8 @@ where
     let size = pair.extent() + pair.radius() + offset.abs().dot(Vector::ONE);
     let closest = if options.axis.is_none() { pair.closest_points(offset, size) } else { None };
     let shortest = closest.map(|PointPair { a, b }| a - b + offset);
-    if shortest.is_some_and(|v| v.length() <= pair.radius()) {
+    // Points no farther apart than the radii, by more than they may be wrong by, meet; others are looked at more closely.
+    if shortest.is_some_and(|v| v.length() + (rounding(size) + pair.error()) <= pair.radius()) {
         return Intersection { overlap: true, axis: None, status: Status::Converged, iterations: 0 };
     }
     let first = match options.axis.or(shortest) {
@@ -132,7 +133,7 @@ where
             let near = if is_near { near_contact(&pair.a, &pair.b, max_iterations) } else { None };
             match near {
                 Some(near) => {
-                    iterations += near.state.iterations;
+                    iterations += near.iterations;
                     match near.overlap() {
                         Some(overlap) => (overlap, Some(near.normal), Status::Converged),
                         None => (near.gap <= Scalar::ZERO, Some(near.normal), Status::Stalled),

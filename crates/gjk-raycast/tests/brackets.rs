@@ -9,8 +9,8 @@ use common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
 use common::{Random, at, cuboid, s, v};
 use convex_support::glam::{DQuat, DVec3, Quat, Vec3A};
 use convex_support::{
-    Affine, Cone, Cylinder, Hull, Matrix, MinkowskiSum, Point, Polytope, Posed, Rotation, Scalar, SupportMap, Vector,
-    Vector3,
+    Affine, Cone, Cylinder, Hull, Matrix, MinkowskiSum, Point, Polytope, Posed, Rotation, Scalar, Segment, SupportMap,
+    Vector, Vector3,
 };
 use gjk_raycast::{DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions, Status};
 
@@ -325,4 +325,131 @@ fn random_turn(i: usize) -> [f64; 4] {
 fn posed_point<V: Vector3>(at: [f64; 3], q: [f64; 4]) -> Posed<Point<V>> {
     let turn = V::Rotation::from_xyzw(q.map(V::Scalar::from_f64));
     Posed::new(Point::new(v(at)).expect(VALID), turn, V::ZERO).expect(VALID)
+}
+
+fn turned_by<V: Vector3>(shape: Shape<V>, q: [f64; 4], t: [f64; 3]) -> Shape<V> {
+    Box::new(Posed::new(shape, V::Rotation::from_xyzw(q.map(V::Scalar::from_f64)), v(t)).expect(VALID))
+}
+
+const NO_TURN: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
+
+/// A plane along the ray is crossed anywhere, within the error of a far origin. The line there, hundreds of sizes behind the body, is known
+/// to less than that error, and no miss was to be told from it.
+#[test]
+fn a_hit_a_hair_inside_a_far_corner_is_no_miss() {
+    fn ask<V: Vector3>() -> ([f64; 2], bool) {
+        let points = [
+            [-0.04013073444366455, 0.8677005767822266, -0.26848340034484863],
+            [-0.8194324970245361, -0.9436192512512207, 0.17580270767211914],
+            [0.6264070272445679, 0.9108214378356934, -0.057860612869262695],
+            [-0.6380823850631714, 0.4811750650405884, 0.613060712814331],
+            [0.9852228164672852, -0.49467921257019043, 0.253093957901001],
+            [-0.23650074005126953, -0.043012142181396484, -0.6551324129104614],
+        ];
+        let parts =
+            (Tree::Cuboid([0.5981817245483398, 0.8565518856048584, 0.284895122051239]), Tree::Points(points.into()));
+        let turn = [0.22249174118041992, -0.1420220136642456, 0.2977330684661865, 0.5971602201461792];
+        let hull = Tree::Hull(Box::new(parts.0), Box::new(parts.1)).build::<V>();
+        let hull = turned_by(hull, turn, [-3561.740478515625, 783.7467651367188, -9444.640625]);
+        let lever = [-0.661270260810852, -0.15586411952972412, 0.9753227233886719, -0.5237548351287842];
+        let point = Box::new(Point::new(v::<V>([8315.89453125, -5277.607421875, -2357.589111328125])).expect(VALID));
+        let point = turned_by(point, lever, [5.910774230957031, 0.20402312278747559, 0.6793880462646484]);
+        sweep(&hull, &point, [[-0.6633007526397705, -0.5558138489723206, -0.5011018514633179], [0.0; 3]])
+    }
+    let truth = ask::<DVec3>();
+    assert!(!truth.1, "{truth:?}");
+    holds(ask::<Vec3A>(), truth, || "a far corner".to_owned());
+}
+
+/// Pairs that `distance` and `intersects` told apart in one order and not in the other, or beginning at points closest to one another.
+#[test]
+fn a_pair_is_one_pair_in_either_order() {
+    fn agree<V: Vector3>(a: &Shape<V>, b: &Shape<V>) {
+        let apart = distance(a, b, DistanceOptions::default()).overlap;
+        assert_eq!(apart, distance(b, a, DistanceOptions::default()).overlap);
+        for axis in [None, Some(V::axis(0)), Some(-V::axis(1))] {
+            let options = IntersectOptions::default();
+            let options = axis.map_or(options, |axis| options.with_axis(axis));
+            for found in [intersects(a, b, options), intersects(b, a, options)] {
+                assert!(found.decided().is_none_or(|overlap| overlap == apart), "{found:?} {axis:?}");
+            }
+        }
+    }
+    let ends = [
+        [0.5085499286651611, -0.6002038717269897, 0.7861831188201904],
+        [0.5026311874389648, 0.8838636875152588, 0.5765872001647949],
+    ];
+    let turn = [0.9936037063598633, 0.9866538047790527, 0.974090576171875, 0.5561541318893433];
+    let segment: Shape<DVec3> = Box::new(Segment::new(ends.map(v::<DVec3>)).expect(VALID));
+    let segment = turned_by(segment, turn, [-69.2721756977046, 709.9579734425554, 433.6336641137157]);
+    let cylinder = Tree::Cylinder([1.0474164485931396, 0.48484623432159424]).build();
+    agree(&segment, &turned_by(cylinder, NO_TURN, [-68.2120361328125, 711.4476928710938, 434.7789306640625]));
+
+    let point = |at: [f64; 3]| Box::new(Point::new(v::<Vec3A>(at)).expect(VALID)) as Shape<Vec3A>;
+    let tip = point([0.3329474925994873, -0.5141216516494751, -0.8392845392227173]);
+    let tip = turned_by(tip, NO_TURN, [-0.3329474925994873, 4343.5859375, 0.8392845392227173]);
+    agree(&tip, &Tree::Cone([4343.07177734375, 4764.1552734375]).build());
+    let corner = point([-0.2569887638092041, -0.6136962175369263, 0.44518542289733887]);
+    let turn = [-0.017670154571533203, 0.5522764921188354, -0.22632551193237305, -0.3231595754623413];
+    let corner = turned_by(corner, turn, [-10036.01171875, 8022.24169921875, -11855.388671875]);
+    agree(&corner, &Tree::Cuboid([10035.9873046875, 8021.44189453125, 11855.4189453125]).build());
+}
+
+/// Rays from sources within a few errors of a curved boundary: what single precision says holds what double precision does, whichever face the
+/// ray goes through in the end; and what leaves is a miss for certain.
+#[test]
+fn rays_from_the_boundary_keep_the_truth_in_the_bracket() {
+    let named = [
+        (
+            Tree::Cuboid([0.44313591718673706, 0.7198100090026855, 0.41866475343704224]),
+            NO_TURN,
+            [-0.1977778673171997, 0.17167532444000244, 0.6084573268890381],
+            [0.24535882472991943, -0.5481354594230652, 1.0271228551864624],
+            [-0.2787884473800659, 0.03195183351635933, -0.3688994348049164],
+        ),
+        (
+            Tree::Cylinder([0.8217793703079224, 0.6916605234146118]),
+            [-0.30359017848968506, 0.17462825775146484, 0.609056830406189, -0.4510892629623413],
+            [-0.34786081314086914, -0.7422415018081665, 0.005733370780944824],
+            [-0.3862897455692291, -0.03922656923532486, -0.8054442405700684],
+            [0.0005869029555469751, 0.00015758008521515876, 0.0014983927831053734],
+        ),
+    ];
+    for (i, (tree, turn, place, source, direction)) in named.into_iter().enumerate() {
+        let tree = Tree::Posed(Box::new(tree), turn, place);
+        let truth = cast::<DVec3>(&tree.build(), source, direction);
+        holds(cast::<Vec3A>(&tree.build(), source, direction), truth, || format!("the one numbered {i}"));
+    }
+
+    let mut random = Random(7);
+    for i in 0..4000 {
+        let leaf = Tree::leaf(&mut random);
+        // Of a polytope the plane at the source counts, but within an error of an edge.
+        if matches!(leaf, Tree::Cuboid(_) | Tree::Points(_)) {
+            continue;
+        }
+        let tree = Tree::Posed(Box::new(leaf), random.quaternion(), random.vector(1.0));
+        let (fine, coarse) = (tree.build::<DVec3>(), tree.build::<Vec3A>());
+        let outside = random.vector(4.0).map(|x| x + 3.0 * x.signum());
+        let nearest = distance(&Point::new(v::<DVec3>(outside)).expect(VALID), &fine, DistanceOptions::default());
+        let n = nearest.normal.expect("apart");
+        let off = f64::from(f32::EPSILON) * 8.0 * random.signed();
+        let source = (nearest.point_b + n * off).to_array().map(|x| f64::from(x as f32));
+        let direction = random.vector(1.0);
+        let cosine = n.dot(v(direction)) / norm(direction);
+        // Where it grazes, what is round may be entered anywhere.
+        if cosine.abs() < 0.01 {
+            continue;
+        }
+        let what = || format!("{i}: {tree:?} {source:?} {direction:?}");
+        holds(cast::<Vec3A>(&coarse, source, direction), cast::<DVec3>(&fine, source, direction), what);
+        let ray = Ray { source: v::<Vec3A>(source), direction: v(direction) };
+        let answer = ray_cast(&coarse, ray, RayCastOptions::default()).expect("a ray");
+        assert!(!answer.outcome.is_miss() || answer.status == Status::Converged, "{answer:?} {}", what());
+        assert!(answer.lower <= answer.upper, "{answer:?} {}", what());
+    }
+}
+
+fn norm(a: [f64; 3]) -> f64 {
+    DVec3::from_array(a).length()
 }

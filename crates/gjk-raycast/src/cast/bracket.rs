@@ -15,6 +15,9 @@ use crate::simplex::MAX_POINTS;
 use crate::unit::{is_moderate, power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Ray, RayCastOptions, Status};
 
+/// From how many times the noise an error is much more. It is two or four times that of a posed body, and as much more for each pose within.
+const LOOSE: f64 = 64.0;
+
 pub(super) type ScalarOf<B> = <<B as Body>::Vector as Vector>::Scalar;
 
 /// A support point of the core, and what it is made of.
@@ -154,6 +157,11 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         if self.low.slope > Scalar::ZERO { self.low.bound.spread } else { Scalar::ONE }
     }
 
+    /// Whether what planes and points are wrong by is much more than the rounding of the size.
+    pub(super) fn is_loose(&self) -> bool {
+        self.error > self.noise * ScalarOf::<B>::from_f64(LOOSE)
+    }
+
     /// How far the bounds may stay apart, across the last plane.
     pub(super) fn tolerance(&self) -> ScalarOf<B> {
         self.noise.max(self.options.tolerance)
@@ -260,7 +268,10 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
             if leaves_first || self.is_past_end(bound) {
                 return Err(Stop::Miss(n));
             }
-            return Ok(Some(Crossing { bound, slope: -slope }));
+            // A plane along the ray, to within its error, may be crossed anywhere. Beyond the ball nothing is to be found, and what is
+            // lost of a point of the line there is no longer relative to the size.
+            let at = if bound.at < self.chord.1 { bound.at } else { self.chord.1 };
+            return Ok(Some(Crossing { bound: Bound { at, ..bound }, slope: -slope }));
         }
         if ahead > self.error { Err(Stop::Miss(n)) } else { Ok(None) }
     }
@@ -332,8 +343,14 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     pub(super) fn enter_hull(&mut self, mu: ScalarOf<B>, error: ScalarOf<B>, slope: ScalarOf<B>) {
         // A point of the facet may be outside of the body by rounding, and is in it where the ray is that far behind the
         // plane that is crossed less steeply.
+        self.high = Bound { at: mu.max(self.low()), spread: self.spread_at(slope), more: error };
+    }
+
+    /// How far a crossing moves where the surface is met at the cosine `slope` and the last plane perhaps less steeply; infinitely far, of
+    /// a surface that the ray does not enter.
+    fn spread_at(&self, slope: ScalarOf<B>) -> ScalarOf<B> {
         let least = if self.low.slope > Scalar::ZERO { slope.min(self.low.slope) } else { slope };
-        self.high = Bound { at: mu.max(self.low()), spread: least.recip(), more: error };
+        if least > Scalar::ZERO { least.recip() } else { Float::infinity() }
     }
 
     /// How far the bounds are apart, across the last plane or across the surface that the line meets at the cosine `slope`.
@@ -356,9 +373,8 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     /// `error` across a surface that it meets at the cosine `slope`.
     pub(super) fn close_between(&mut self, error: ScalarOf<B>, slope: ScalarOf<B>, witness: B::Witness) -> Contact<B> {
         let Bound { at, spread, .. } = self.low.bound;
-        let least = if self.low.slope > Scalar::ZERO { slope.min(self.low.slope) } else { slope };
         let is_crossed_here = error == Scalar::ZERO && spread > Scalar::ZERO;
-        self.high = Bound { at, spread: if is_crossed_here { spread } else { least.recip() }, more: error };
+        self.high = Bound { at, spread: if is_crossed_here { spread } else { self.spread_at(slope) }, more: error };
         Contact { mu: at, normal: self.normal, witness }
     }
 
@@ -385,6 +401,8 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         let upper = self.ray.lambda(self.high.at)
             + self.ray.error(self.high.at, self.certain(self.high) + self.noise * self.high.spread);
         match contact {
+            // NaN bounds nothing.
+            Some(lambda) if upper.is_nan() => (lower.min(lambda), Float::infinity()),
             Some(lambda) => (lower, upper.max(lambda)),
             None if lower <= upper => (lower, upper),
             // Bounds that contradict one another, or are NaN, bound nothing.

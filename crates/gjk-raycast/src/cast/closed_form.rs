@@ -32,8 +32,11 @@ pub(super) fn closed_form<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         }
         LineCrossing::Crosses(Crossing { entry, exit, normal }) => {
             let start = bracket.ray.start;
-            let margin = bracket.noise + bracket.noise;
-            if entry + margin < start && start + margin < exit {
+            // What is wrong by an error moves the entry by that much over the cosine there; half of that is left of the depth in the
+            // middle of a chord of what is round.
+            let facing = normal.dot(line.direction).abs();
+            let margin = (bracket.error + bracket.error) + (bracket.error + bracket.error);
+            if margin < (start - entry) * facing && margin < (exit - start) * facing {
                 return Ok(bracket.close_inside());
             }
             if entry < start {

@@ -86,6 +86,8 @@ pub(crate) struct Cast<V: Vector, W> {
     pub(crate) iterations: usize,
     /// The unit of the hit spot and of the witness.
     pub(crate) scale: V::Scalar,
+    /// Whether the bodies are wrong by much more than their sizes' rounding, as far origins leave it.
+    pub(crate) is_loose: bool,
 }
 
 /// Where the ray enters the body.
@@ -125,5 +127,6 @@ fn conclude<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         Err(Stop::Exhausted(status)) => (Outcome::Undecided, bracket.bounds(None), status),
         Err(Stop::InDoubt | Stop::Touches(_)) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
     };
-    Cast { outcome, lower, upper, status, iterations: bracket.iterations(), scale: bracket.scale }
+    let (iterations, scale, is_loose) = (bracket.iterations(), bracket.scale, bracket.is_loose());
+    Cast { outcome, lower, upper, status, iterations, scale, is_loose }
 }

@@ -6,15 +6,16 @@
 
 use convex_support::numerics::bound::roundings;
 use convex_support::numerics::twofold::dot_minus;
-use convex_support::{Rounded, Scalar, SupportMap, Vector};
+use convex_support::{CoreKind, Posed, Rounded, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
-use super::Cast;
-use crate::gjk::{Shape, near_contact};
-use crate::{Miss, Outcome, RayCastOptions, Status};
+use super::{Cast, CastHit};
+use crate::body::PointPair;
+use crate::gjk::{NearContact, Shape, near_contact};
+use crate::{Miss, Outcome, RayCastOptions, SignedDistanceOptions, Status, signed_distance};
 
-/// Decides about a hit at λ = 0, or about a search that stalled before it left the source, of the ray that `b` draws as it moves along
-/// `direction` towards `a` swept by a ball, its skin.
+/// Decides about a hit that may be at the source, or about a search that stalled before it left it, of the ray that `b` draws as it
+/// moves along `direction` towards `a` swept by a ball, its skin.
 #[inline(always)]
 pub(crate) fn settle_start<A, B, W>(
     cast: &mut Cast<A::Vector, W>,
@@ -26,27 +27,34 @@ pub(crate) fn settle_start<A, B, W>(
 ) where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector>,
+    W: From<PointPair<A::Vector>>,
 {
     let zero = <A::Vector as Vector>::Scalar::ZERO;
     let is_at_start = match &cast.outcome {
-        Outcome::Hit(hit) => hit.lambda == zero,
+        Outcome::Hit(_) => cast.lower == zero,
         Outcome::Undecided => cast.status == Status::Stalled && cast.lower == zero,
         Outcome::Miss(_) => false,
     };
-    if is_at_start
-        && cast.upper > zero
+    let is_to_be_settled = is_at_start && cast.upper > zero;
+    if (is_to_be_settled || cast.is_loose)
         && let Some(b) = b()
         && let Ok(a) = Rounded::new(a, skin)
     {
+        if !is_to_be_settled {
+            cast.tighten(&a, &b, direction, options.max_iterations);
+            return;
+        }
         let start = start(&a, &b, direction, options.max_iterations);
         cast.iterations += start.iterations;
         match start.way {
-            Way::Touches { within } if matches!(cast.outcome, Outcome::Hit(_)) => cast.upper = within,
-            Way::Touches { .. } => {}
+            Way::Touches { within } => cast.touch(within, start.spot),
+            Way::Unknown => {}
             Way::Leaves { axis } => cast.miss(axis),
             // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
             Way::Enters { lambda, axis, .. } if lambda > options.max_lambda => cast.miss(axis),
-            Way::Enters { lambda, lower, axis } => cast.enter(lambda, lower, axis),
+            Way::Enters { lambda, axis, lower, entry } => {
+                cast.enter(lambda, axis, [lower, entry.at], entry.is_certain, start.spot)
+            }
         }
     }
 }
@@ -54,18 +62,29 @@ pub(crate) fn settle_start<A, B, W>(
 /// How the bodies are to one another where the cast begins.
 struct Start<V: Vector> {
     way: Way<V>,
+    spot: Spot<V>,
     iterations: usize,
+}
+
+/// Where the source is, relative to the target's origin, the points of both closest to one another, and the unit of these lengths.
+#[derive(Clone, Copy)]
+struct Spot<V: Vector> {
+    source: V,
+    points: PointPair<V>,
+    scale: V::Scalar,
 }
 
 /// How a ray goes on from a source near the target. The axis is a unit vector from the target to the source, along which they are
 /// apart.
 enum Way<V: Vector> {
-    /// The source is in the target, to the error it is known to, which is that long along the ray, in units of λ.
+    /// The source is in the target, to the error it is known to; if the ray meets the target at all, then at this λ at the latest.
     Touches { within: V::Scalar },
+    /// Neither that nor a plane between them is found.
+    Unknown,
     /// It is apart, and the ray comes no nearer along the axis.
     Leaves { axis: V },
     /// It is apart, and the ray crosses the plane between them at λ, and not before `lower`.
-    Enters { lambda: V::Scalar, lower: V::Scalar, axis: V },
+    Enters { lambda: V::Scalar, axis: V, lower: V::Scalar, entry: Entry<V::Scalar> },
 }
 
 #[cold]
@@ -73,46 +92,202 @@ enum Way<V: Vector> {
 fn start<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iterations: usize) -> Start<V> {
     let zero = V::Scalar::ZERO;
     let Some(near) = near_contact(a, b, max_iterations) else {
-        return Start { way: Way::Touches { within: Float::infinity() }, iterations: 0 };
+        let spot = Spot { source: V::ZERO, points: PointPair::default(), scale: V::Scalar::ONE };
+        return Start { way: Way::Unknown, spot, iterations: 0 };
     };
     // The bodies are apart by `gap − λ·n·d` along the normal: the sign of the product is exact.
     let axis = -near.normal;
     let closing = dot_minus((0..V::DIM).map(|i| (near.normal.get(i), direction.get(i))), zero);
+    let mut iterations = near.iterations;
     let way = if !near.is_separated() {
-        let within = if near.overlaps_certainly { zero } else { near.upper.max(zero) };
-        // A ray that leaves, or one from deep inside, is as near as it ever is.
-        let approaches = closing > zero && near.gap.abs() <= near.upper;
-        let speed = if approaches { closing } else { direction.norm() };
-        Way::Touches { within: within * near.frame.scale / speed }
+        if near.overlap().is_some() {
+            Way::Touches { within: latest_entry([a, b], direction, closing, &near, &mut iterations) }
+        } else {
+            Way::Unknown
+        }
     } else if closing <= zero {
         Way::Leaves { axis }
     } else {
         let at = |gap: V::Scalar| gap * near.frame.scale / closing;
         // What the quotient loses.
         let lower = at(near.lower);
-        Way::Enters { lambda: at(near.gap), lower: lower - roundings(8.0, lower), axis }
+        let lower = lower - roundings(8.0, lower);
+        let entry = entry([a, b], direction, closing, near.upper * near.frame.scale, &mut iterations);
+        Way::Enters { lambda: at(near.gap), axis, lower, entry }
     };
-    Start { way, iterations: near.state.iterations }
+    let spot = Spot { source: -near.frame.offset, points: near.points, scale: near.frame.scale };
+    Start { way, spot, iterations }
+}
+
+/// Closing speeds below this many ε of the speed are of rounding: a normal is known to a few.
+const SLIDES: f64 = 16.0;
+
+/// A bound on the λ at which the ray is in the target first, if it ever is, where the source is not known to be apart from it; infinite
+/// where there is none.
+///
+/// The distance from a convex set is a convex function of the point: a ray that leaves or slides is as near at its source as it ever is.
+fn latest_entry<V: Vector>(
+    shapes: [Shape<'_, V>; 2],
+    direction: V,
+    closing: V::Scalar,
+    near: &NearContact<V>,
+    iterations: &mut usize,
+) -> V::Scalar {
+    let zero = V::Scalar::ZERO;
+    if near.overlaps_certainly || near.upper <= zero {
+        return zero;
+    }
+    let (gap, speed) = (near.upper * near.frame.scale, direction.norm());
+    // Of a point found deep inside, no plane is one of contact.
+    let is_at_plane = near.gap.abs() <= near.upper;
+    let slides = speed * V::Scalar::EPSILON * V::Scalar::from_f64(SLIDES);
+    if is_at_plane && closing <= slides {
+        gap / speed
+    } else {
+        let speed = if is_at_plane { closing } else { speed };
+        let Entry { at, .. } = entry(shapes, direction, speed, gap, iterations);
+        // Of polytopes, which may be flat, the plane between them is that of the face, but within an error of an edge.
+        let is_curved = shapes.iter().any(|shape| matches!(shape.core().kind, CoreKind::Curved));
+        if is_curved { at } else { at.min(gap / speed) }
+    }
+}
+
+/// A bound on the λ at which a ray is in the target first, if it ever is; infinite where there is none.
+#[derive(Clone, Copy)]
+struct Entry<S> {
+    at: S,
+    /// Whether it is in the target there.
+    is_certain: bool,
+}
+
+/// How often a ray is looked at, each time so many times as far from the source as before; the last time it is more than the size of the
+/// bodies away, whatever the precision.
+const LOOKS: usize = 18;
+const FARTHER: f64 = 8.0;
+
+/// How many gaps away it is looked at first, along the normal: one that it may be outside by, one that this may be wrong by, and one that
+/// it is to be inside by. And how many are deep.
+const FIRST: f64 = 3.0;
+const DEEP: f64 = 16.0;
+
+/// Where a ray enters whose source is no more than a `gap` from the target, and which closes in with a `speed`.
+///
+/// The signed distance from a convex set is a convex function of the point. So where it is at most `g` at the source and at most `−ρ`
+/// after λ, it is not positive any more after `λ·g/(g + ρ)`; and where it is more than `g` after λ, it grows from there on.
+fn entry<V: Vector>(
+    [a, b]: [Shape<'_, V>; 2],
+    direction: V,
+    speed: V::Scalar,
+    gap: V::Scalar,
+    iterations: &mut usize,
+) -> Entry<V::Scalar> {
+    let number = V::Scalar::from_f64;
+    let [core_a, core_b] = [a.core(), b.core()];
+    let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
+    let deep = gap * number(DEEP);
+    let wanted = SignedDistanceOptions::new().with_depth_limit(deep).with_limit(deep);
+    // As narrow as rounding lets it be: what is looked at is a few errors wide.
+    let wanted = wanted.with_tolerance(V::Scalar::EPSILON * number(8.0));
+    let mut best = Entry { at: V::Scalar::infinity(), is_certain: false };
+    let mut lambda = gap * number(FIRST) / speed;
+    for _ in 0..LOOKS {
+        let step = direction * lambda;
+        let length = step.norm();
+        // NaN ends this too.
+        let Ok(moved) = Posed::translated(b, step) else { break };
+        let there = signed_distance(&a, &moved, wanted);
+        *iterations += there.iterations;
+        // The step is rounded, coordinate by coordinate.
+        let rounded = roundings(4.0, length);
+        let depth = -there.upper - rounded;
+        if depth > V::Scalar::ZERO {
+            let at = lambda * (gap / (gap + depth));
+            best = Entry { at: best.at.min(at + roundings(16.0, at)), is_certain: true };
+        } else if there.lower - rounded > gap {
+            best.at = best.at.min(lambda);
+            break;
+        }
+        if depth >= gap || !(length <= size) {
+            break;
+        }
+        lambda *= number(FARTHER);
+    }
+    best
 }
 
 impl<V: Vector, W> Cast<V, W> {
     fn miss(&mut self, axis: V) {
         (self.lower, self.upper) = (Float::infinity(), Float::infinity());
-        self.outcome = Outcome::Miss(Miss { axis });
+        (self.outcome, self.status) = (Outcome::Miss(Miss { axis }), Status::Converged);
     }
 
-    /// Turns a hit at the source, as far as it was known, into one at `lambda`, before which a plane across `axis` leaves nothing to
-    /// hit until `lower`.
-    fn enter(&mut self, lambda: V::Scalar, lower: V::Scalar, axis: V) {
+    /// Bounds a hit away from the source from above by what is known of the bodies there, where that is less than the slope at which the
+    /// ray meets one plane may tell: they are known to so large an error that the next edge may be within it.
+    #[cold]
+    #[inline(never)]
+    fn tighten(&mut self, a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iterations: usize) {
+        let Outcome::Hit(CastHit { lambda, .. }) = self.outcome else { return };
+        let step = direction * lambda;
+        let Ok(there) = Posed::translated(b, step) else { return };
+        let Some(near) = near_contact(a, &there, max_iterations) else { return };
+        self.iterations += near.iterations;
+        // The step and the direction are rounded, coordinate by coordinate.
+        let gap = near.upper.max(V::Scalar::ZERO) * near.frame.scale + roundings(8.0, step.norm());
+        let closing = near.normal.dot(direction);
+        let speed = if closing > V::Scalar::ZERO { closing } else { direction.norm() };
+        let after = entry([a, &there], direction, speed, gap, &mut self.iterations);
+        if after.at < V::Scalar::infinity() {
+            self.upper = lambda + after.at + roundings(4.0, lambda + after.at);
+        }
+    }
+
+    /// A hit at the source.
+    fn touch(&mut self, within: V::Scalar, spot: Spot<V>)
+    where
+        W: From<PointPair<V>>,
+    {
+        let zero = V::Scalar::ZERO;
+        if matches!(self.outcome, Outcome::Undecided) {
+            self.hit(zero, None, spot);
+        }
+        let lambda = match &self.outcome {
+            Outcome::Hit(hit) => hit.lambda,
+            _ => zero,
+        };
+        (self.lower, self.upper) = (zero, within.max(lambda));
+    }
+
+    /// Turns a hit at the source, as far as it was known, into one at `lambda`, within bounds, where a plane across `axis` leaves
+    /// nothing to hit before the first of them; whether the second is certain.
+    fn enter(&mut self, lambda: V::Scalar, axis: V, [lower, upper]: [V::Scalar; 2], is_certain: bool, spot: Spot<V>)
+    where
+        W: From<PointPair<V>>,
+    {
         self.lower = self.lower.max(lower);
+        let is_found = self.lower <= self.upper || is_certain;
         match &mut self.outcome {
-            Outcome::Hit(hit) if lambda <= self.upper => {
-                (hit.lambda, hit.normal) = (lambda.max(self.lower), Some(axis));
-                self.upper = self.upper.max(hit.lambda);
+            Outcome::Hit(hit) if is_found => {
+                self.upper = upper.max(self.lower);
+                (hit.lambda, hit.normal) = (lambda.max(self.lower).min(self.upper), Some(axis));
+            }
+            Outcome::Undecided if is_certain => {
+                self.upper = upper.max(self.lower);
+                self.hit(lambda.max(self.lower).min(self.upper), Some(axis), spot);
             }
             // The ray runs along the target within rounding, and where it enters it, if ever, is not known.
             Outcome::Undecided => {}
-            _ => (self.outcome, self.upper, self.status) = (Outcome::Undecided, Float::infinity(), Status::Stalled),
+            _ => {
+                (self.outcome, self.upper, self.status) = (Outcome::Undecided, V::Scalar::infinity(), Status::Stalled);
+            }
         }
+    }
+
+    /// A hit that the search did not find, where the points closest to one another at the source are.
+    fn hit(&mut self, lambda: V::Scalar, normal: Option<V>, Spot { source, points, scale }: Spot<V>)
+    where
+        W: From<PointPair<V>>,
+    {
+        let hit = CastHit { lambda, normal, spot: source, witness: points.into() };
+        (self.outcome, self.status, self.scale) = (Outcome::Hit(hit), Status::Converged, scale);
     }
 }

@@ -4,11 +4,14 @@
 //! with how wide the floor is. Here the plane between the bodies is evaluated once more without rounding, and what the shapes say of
 //! theirs counts coordinate by coordinate, along the normal alone.
 //!
-//! The search begins at the offset of the origins, whatever axis the query began at. So all queries about one pair decide alike.
+//! The search begins at the offset of the origins, whatever axis the query began at, and the larger body comes first, in whatever
+//! order they are given. So all queries about one pair decide alike.
+
+use core::cmp::Ordering;
 
 use convex_support::numerics::bound::{raised, raised_vector, roundings};
 use convex_support::numerics::twofold::{dot_minus, lost_in_sum, two_sum};
-use convex_support::{Rounding, Scalar, SupportMap, Vector};
+use convex_support::{Core, Rounding, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use super::{End, Frame, Gjk, GjkOptions, gjk};
@@ -38,8 +41,11 @@ pub(crate) type Shape<'s, V> = &'s dyn SupportMap<Vector = V>;
 /// What is known of bodies near contact; lengths in units of the frame, from body to body.
 pub(crate) struct NearContact<V: Vector> {
     pub(crate) frame: Frame<V>,
-    pub(crate) state: Gjk<V, PointPair<V>>,
+    /// The points of the cores closest to one another, and how far apart they are as they are measured.
+    pub(crate) points: PointPair<V>,
+    length: V::Scalar,
     pub(crate) end: End,
+    pub(crate) iterations: usize,
     /// The unit normal of the plane between the bodies, and how far apart they are along it, as it is measured.
     pub(crate) normal: V,
     pub(crate) gap: V::Scalar,
@@ -62,10 +68,25 @@ impl<V: Vector> NearContact<V> {
         if self.is_separated() {
             return Some(false);
         }
-        let is_near = self.state.length - self.frame.radius <= self.frame.error;
+        let is_near = self.length - self.frame.radius <= self.frame.error;
         let is_found = is_near || matches!(self.end, End::Overlap | End::Separated);
         is_found.then_some(true)
     }
+
+    /// The same, of the bodies in the other order.
+    fn reversed(self) -> Self {
+        let PointPair { a, b } = self.points;
+        let frame = Frame { offset: -self.frame.offset, ..self.frame };
+        Self { frame, points: PointPair { a: b, b: a }, normal: -self.normal, ..self }
+    }
+}
+
+/// Whether a body is looked at before another: it is larger, or as large and elsewhere.
+fn comes_first<V: Vector>(a: &Core<V>, b: &Core<V>) -> bool {
+    let key = |&Core { extent, radius, origin, .. }: &Core<V>| {
+        [extent, radius].into_iter().chain((0..V::DIM).map(move |i| origin.get(i)))
+    };
+    key(a).partial_cmp(key(b)) == Some(Ordering::Greater)
 }
 
 /// Looks at bodies near contact once more; `None` where no plane can be found.
@@ -79,6 +100,15 @@ pub(crate) fn near_contact<V: Vector>(
     b: Shape<'_, V>,
     max_iterations: usize,
 ) -> Option<NearContact<V>> {
+    if comes_first(&b.core(), &a.core()) {
+        look(b, a, max_iterations).map(NearContact::reversed)
+    } else {
+        look(a, b, max_iterations)
+    }
+}
+
+/// The same for bodies that are in order.
+fn look<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, max_iterations: usize) -> Option<NearContact<V>> {
     let mut pair = Pair::new(a, b);
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
@@ -99,7 +129,8 @@ pub(crate) fn near_contact<V: Vector>(
     let upper = upper + roundings(2.0, frame.radius);
     let overlaps_certainly = is_around_zero(state.simplex.points(), seen.error_of_corners());
     let (lower, upper) = (gap - error, upper.max(gap - error));
-    Some(NearContact { frame, state, end, normal: n, gap, lower, upper, overlaps_certainly })
+    let (points, length, iterations) = (state.simplex.weighted_witness(), state.length, state.iterations);
+    Some(NearContact { frame, points, length, end, iterations, normal: n, gap, lower, upper, overlaps_certainly })
 }
 
 /// GJK from the offset of the origins, in the world's unit, to a sixteenth of the noise.
@@ -217,7 +248,16 @@ impl<V: Vector> Seen<V> {
         }
         let x = x / sum + self.offset;
         // Differences, products, sums, what the weights sum up to, and the quotient: 11 roundings.
-        let rounded = V::from_fn(|i| roundings(11.0, self.extent.get(i)));
+        // Of a single pair of points it is known what the two sums lose.
+        let mut pairs = state.simplex.weighted().map(|(_, pair)| pair);
+        let rounded = match (pairs.next(), pairs.next()) {
+            (Some(PointPair { a, b }), None) => V::from_fn(|i| {
+                let [apart, lost] = two_sum(a.get(i), -b.get(i));
+                let [_, lost_again] = two_sum(apart, self.offset.get(i));
+                lost.abs() + lost_again.abs()
+            }),
+            _ => V::from_fn(|i| roundings(11.0, self.extent.get(i))),
+        };
         let error = self.error + rounded + self.lost.abs();
         let across = raised(error.norm().min(self.error_length + (rounded + self.lost.abs()).norm()));
         let along = x.unit().map_or(across, |u| raised(u.abs().dot(error)));
