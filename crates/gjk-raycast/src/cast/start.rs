@@ -53,7 +53,7 @@ pub(crate) fn settle_start<A, B, W>(
             // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
             Way::Enters { lambda, axis, .. } if lambda > options.max_lambda => cast.miss(axis),
             Way::Enters { lambda, axis, lower, entry } => {
-                cast.enter(lambda, axis, [lower, entry.at], entry.is_certain, start.spot)
+                cast.enter(lambda, axis, [lower, entry.at], entry.is_certain, start.spot);
             }
         }
     }
