@@ -41,7 +41,11 @@ pub(crate) fn settle_start<A, B, W>(
         && let Ok(a) = Rounded::new(a, skin)
     {
         if !is_to_be_settled {
-            cast.tighten(&a, &b, direction, options.max_iterations);
+            if let Outcome::Hit(CastHit { lambda, .. }) = cast.outcome {
+                let after = after_hit(&a, &b, direction, lambda, options.max_iterations);
+                cast.iterations += after.iterations;
+                cast.upper = after.latest.unwrap_or(cast.upper);
+            }
             return;
         }
         let start = start(&a, &b, direction, options.max_iterations);
@@ -215,33 +219,48 @@ fn entry<V: Vector>(
     best
 }
 
+/// What is known of a hit where it is.
+struct AfterHit<S> {
+    /// The λ of the hit, at the latest.
+    latest: Option<S>,
+    iterations: usize,
+}
+
+/// Bounds a hit away from the source from above by what is known of the bodies there, where that is less than the slope at which the ray
+/// meets one plane may tell: they are known to so large an error that the next edge may be within it.
+#[cold]
+#[inline(never)]
+fn after_hit<V: Vector>(
+    a: Shape<'_, V>,
+    b: Shape<'_, V>,
+    direction: V,
+    lambda: V::Scalar,
+    max_iterations: usize,
+) -> AfterHit<V::Scalar> {
+    let unknown = AfterHit { latest: None, iterations: 0 };
+    let step = direction * lambda;
+    let Ok(there) = Posed::translated(b, step) else { return unknown };
+    let Some(near) = near_contact(a, &there, max_iterations) else { return unknown };
+    let mut iterations = near.iterations;
+    // The step and the direction are rounded, coordinate by coordinate.
+    let gap = near.upper.max(V::Scalar::ZERO) * near.frame.scale + roundings(8.0, step.norm());
+    let closing = near.normal.dot(direction);
+    let speed = if closing > V::Scalar::ZERO { closing } else { direction.norm() };
+    let Entry { at, .. } = entry([a, &there], direction, speed, gap, &mut iterations);
+    let latest = lambda + at;
+    AfterHit { latest: latest.is_finite().then(|| latest + roundings(4.0, latest)), iterations }
+}
+
+/// Compiled into the cast, so that what it found need not be in memory for the rare case that it is changed.
 impl<V: Vector, W> Cast<V, W> {
+    #[inline(always)]
     fn miss(&mut self, axis: V) {
         (self.lower, self.upper) = (Float::infinity(), Float::infinity());
         (self.outcome, self.status) = (Outcome::Miss(Miss { axis }), Status::Converged);
     }
 
-    /// Bounds a hit away from the source from above by what is known of the bodies there, where that is less than the slope at which the
-    /// ray meets one plane may tell: they are known to so large an error that the next edge may be within it.
-    #[cold]
-    #[inline(never)]
-    fn tighten(&mut self, a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iterations: usize) {
-        let Outcome::Hit(CastHit { lambda, .. }) = self.outcome else { return };
-        let step = direction * lambda;
-        let Ok(there) = Posed::translated(b, step) else { return };
-        let Some(near) = near_contact(a, &there, max_iterations) else { return };
-        self.iterations += near.iterations;
-        // The step and the direction are rounded, coordinate by coordinate.
-        let gap = near.upper.max(V::Scalar::ZERO) * near.frame.scale + roundings(8.0, step.norm());
-        let closing = near.normal.dot(direction);
-        let speed = if closing > V::Scalar::ZERO { closing } else { direction.norm() };
-        let after = entry([a, &there], direction, speed, gap, &mut self.iterations);
-        if after.at < V::Scalar::infinity() {
-            self.upper = lambda + after.at + roundings(4.0, lambda + after.at);
-        }
-    }
-
     /// A hit at the source.
+    #[inline(always)]
     fn touch(&mut self, within: V::Scalar, spot: Spot<V>)
     where
         W: From<PointPair<V>>,
@@ -259,6 +278,7 @@ impl<V: Vector, W> Cast<V, W> {
 
     /// Turns a hit at the source, as far as it was known, into one at `lambda`, within bounds, where a plane across `axis` leaves
     /// nothing to hit before the first of them; whether the second is certain.
+    #[inline(always)]
     fn enter(&mut self, lambda: V::Scalar, axis: V, [lower, upper]: [V::Scalar; 2], is_certain: bool, spot: Spot<V>)
     where
         W: From<PointPair<V>>,
@@ -283,6 +303,7 @@ impl<V: Vector, W> Cast<V, W> {
     }
 
     /// A hit that the search did not find, where the points closest to one another at the source are.
+    #[inline(always)]
     fn hit(&mut self, lambda: V::Scalar, normal: Option<V>, Spot { source, points, scale }: Spot<V>)
     where
         W: From<PointPair<V>>,
