@@ -10,7 +10,8 @@ use workloads::score::Precision;
 use workloads::shapes::Shape;
 use workloads::w1_ray_cast;
 
-const SHAPES: [&str; 8] = ["cuboid", "capsule", "roundbox", "hull64", "hull1024", "ellipsoid", "cone", "cylinder"];
+/// Of the other shapes the crossing is known in closed form, which the portal does not get to see.
+const SHAPES: [&str; 4] = ["hull16", "hull64", "hull256", "hull1024"];
 
 /// What a cell may spend.
 const BUDGET: Duration = Duration::from_millis(200);
