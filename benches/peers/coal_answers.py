@@ -9,8 +9,6 @@ below which its documentation leaves distances open. Times are those that coal m
 interface adds in Python left out; the fastest of five.
 """
 
-import argparse
-
 import coal
 import numpy as np
 
@@ -64,11 +62,7 @@ class Bodies:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("questions")
-    parser.add_argument("answers")
-    parser.add_argument("--tolerance", type=float, default=1e-6, help="of GJK and EPA; %(default)s if left out, as in coal")
-    given = parser.parse_args()
+    given = query_lines.arguments(__doc__, "of GJK and EPA; %(default)s if left out, as in coal")
     bodies = Bodies()
 
     distances, overlaps = coal.DistanceRequest(), coal.CollisionRequest()

@@ -9,7 +9,6 @@ has neither cones nor rounded boxes, and keeps the vertices of hulls in single p
 that does nothing: some hundred nanoseconds of what remains are the binding's.
 """
 
-import argparse
 import time
 
 import mujoco
@@ -106,11 +105,7 @@ def timed(call):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("questions")
-    parser.add_argument("answers")
-    parser.add_argument("--tolerance", type=float, default=1e-6, help="ccd_tolerance; %(default)s if left out, as in MuJoCo")
-    given = parser.parse_args()
+    given = query_lines.arguments(__doc__, "ccd_tolerance; %(default)s if left out, as in MuJoCo")
     models = Models(given.tolerance)
 
     def distance(question):

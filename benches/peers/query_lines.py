@@ -1,5 +1,6 @@
 """What the programs of this folder share: shapes of the query format in their poses, and lines of answers."""
 
+import argparse
 import json
 import time
 
@@ -10,6 +11,15 @@ IDENTITY = (np.eye(3), np.zeros(3))
 
 class NotAsked(Exception):
     """The library has no such shape or question."""
+
+
+def arguments(description, tolerance):
+    """What every program is called with: the questions, where the answers go, and a tolerance, said to be of what."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("questions")
+    parser.add_argument("answers")
+    parser.add_argument("--tolerance", type=float, default=1e-6, help=tolerance)
+    return parser.parse_args()
 
 
 def rotation_of(quaternion):

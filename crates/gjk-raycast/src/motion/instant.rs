@@ -295,8 +295,9 @@ where
         };
         let point_a = *place + *offset + points.a * scale - normal * self.a.core.radius;
         let point = *place + points.b * scale + normal * self.b.core.radius;
-        if is_apart {
-            self.keep_corners(&state, a, b, if pair.is_curved() { None } else { Some(scale) });
+        // Of curved bodies the corners would be others.
+        if is_apart && !pair.is_curved() {
+            self.keep_corners(&state, a, b, scale);
         }
         let (distance, error) = (distance * scale, error * scale);
         Some(Instant {
@@ -312,19 +313,17 @@ where
         })
     }
 
-    /// Keeps the corners of a simplex for the next look, unless `scale` is none.
+    /// Keeps the corners of a simplex for the next look.
     fn keep_corners(
         &self,
         state: &Gjk<A::Vector, PointPair<A::Vector>>,
         a: &Moved<'_, A>,
         b: &Moved<'_, B>,
-        scale: Option<ScalarOf<A>>,
+        scale: ScalarOf<A>,
     ) {
         let mut closest = Closest { corners: [None; MAX_POINTS] };
-        if let Some(scale) = scale {
-            for (corner, (_, points)) in closest.corners.iter_mut().zip(state.simplex.weighted()) {
-                *corner = Some(PointPair { a: a.before(points.a * scale), b: b.before(points.b * scale) });
-            }
+        for (corner, (_, points)) in closest.corners.iter_mut().zip(state.simplex.weighted()) {
+            *corner = Some(PointPair { a: a.before(points.a * scale), b: b.before(points.b * scale) });
         }
         self.closest.set(closest);
     }

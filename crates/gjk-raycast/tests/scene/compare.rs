@@ -74,13 +74,9 @@ fn ray<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
     }
     let casts = brute_force::rays(world, ray, options);
     let answer = world.scene.ray_cast(ray, options).expect("a good ray");
-    let singles = casts.iter().map(|&(body, cast)| {
-        let hit = cast
-            .outcome
-            .hit()
-            .map(|hit| (hit.lambda, BodyHit { body, hit, lower: cast.lower, upper: cast.upper, status: cast.status }));
-        (body, hit, matches!(cast.outcome, Outcome::Undecided), cast.lower)
-    });
+    let singles = casts
+        .iter()
+        .map(|&(body, cast)| Single::new(body, cast.outcome, [cast.lower, cast.upper], cast.status, |hit| hit.lambda));
     first(&answer, singles, &format!("kind {}, {ray:?}, {options:?}", world.kind), count);
 
     let mut hits = Vec::new();
@@ -107,13 +103,9 @@ fn linear_cast<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Co
     }
     let casts = brute_force::casts(world, &shape, motion, options);
     let answer = world.scene.linear_cast(&shape, motion, options).expect("a good motion");
-    let singles = casts.iter().map(|&(body, cast)| {
-        let hit = cast
-            .outcome
-            .hit()
-            .map(|hit| (hit.time, BodyHit { body, hit, lower: cast.lower, upper: cast.upper, status: cast.status }));
-        (body, hit, matches!(cast.outcome, Outcome::Undecided), cast.lower)
-    });
+    let singles = casts
+        .iter()
+        .map(|&(body, cast)| Single::new(body, cast.outcome, [cast.lower, cast.upper], cast.status, |hit| hit.time));
     first(&answer, singles, &format!("kind {}, {motion:?}, {options:?}", world.kind), count);
     count.questions += 1;
 }
@@ -132,28 +124,41 @@ fn motion_cast<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Co
     let options = MotionCastOptions::default().with_max_time(V::Scalar::from_f64([0.8, 1.0, 10.0][numbers.below(3)]));
     let casts = brute_force::motions(world, &shape, motion, options);
     let answer = world.scene.motion_cast(&shape, motion, options).expect("a good motion");
-    let singles = casts.iter().map(|&(body, cast)| {
-        let hit = cast
-            .outcome
-            .hit()
-            .map(|hit| (hit.time, BodyHit { body, hit, lower: cast.lower, upper: cast.upper, status: cast.status }));
-        (body, hit, matches!(cast.outcome, Outcome::Undecided), cast.lower)
-    });
+    let singles = casts
+        .iter()
+        .map(|&(body, cast)| Single::new(body, cast.outcome, [cast.lower, cast.upper], cast.status, |hit| hit.time));
     first(&answer, singles, &format!("kind {}, {motion:?}, {options:?}", world.kind), count);
     count.questions += 1;
+}
+
+/// The cast of one body.
+struct Single<H, S> {
+    body: usize,
+    /// The hit, with its λ or time.
+    hit: Option<(S, BodyHit<H, S>)>,
+    is_undecided: bool,
+    lower: S,
+}
+
+impl<H: Copy, S: Scalar> Single<H, S> {
+    fn new<V>(body: usize, outcome: Outcome<H, V>, [lower, upper]: [S; 2], status: Status, of: fn(&H) -> S) -> Self {
+        let is_undecided = matches!(outcome, Outcome::Undecided);
+        let hit = outcome.hit().map(|hit| (of(&hit), BodyHit { body, hit, lower, upper, status }));
+        Self { body, hit, is_undecided, lower }
+    }
 }
 
 /// The first hit is that of the single casts; where a bracket stayed open, the box may know better, and then the answer
 /// keeps to what both say.
 fn first<H: Copy + PartialEq + std::fmt::Debug, S: Scalar>(
     answer: &gjk_raycast::SceneCast<H, S>,
-    singles: impl Iterator<Item = (usize, Option<(S, BodyHit<H, S>)>, bool, S)>,
+    singles: impl Iterator<Item = Single<H, S>>,
     question: &str,
     count: &mut Count,
 ) {
     let (mut due, mut lower, mut is_open, mut undecided): (Option<(S, BodyHit<H, S>)>, _, _, _) =
         (None, S::infinity(), false, Vec::new());
-    for (body, hit, is_undecided, from) in singles {
+    for Single { body, hit, is_undecided, lower: from } in singles {
         if is_undecided || hit.is_some() {
             lower = Float::min(lower, from);
         }
