@@ -319,22 +319,24 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     }
 
     /// The contact where the line passes the core's `point` by the vector `v` across it, if that is no longer than the radius
-    /// and `within`; no plane need tell that. The normal is given, where that of the last plane is not the one.
+    /// and `within`; no plane need tell that. The normal is that of a plane along the line, where one is known.
     pub(super) fn close_beside(
         &mut self,
         v: B::Vector,
         within: ScalarOf<B>,
         point: B::Vector,
         witness: B::Witness,
+        normal: Option<B::Vector>,
     ) -> Option<Contact<B>> {
         if !(v.norm() - self.radius <= within) {
             return None;
         }
         let mu = point.dot(self.ray.line.direction).max(self.low());
-        self.high = Bound { at: mu, spread: self.spread_or_one(), more: within };
+        // What the line passes within an error it may as well meet later, as far as it is in the ball about the body.
+        self.high = Bound::exact(self.chord.1.max(mu));
         // Where the ray grazes what is round, the shortest vector is the normal, and the last plane is of elsewhere. Without a
         // radius it has no digits.
-        let normal = if self.radius > self.noise { v.unit() } else { self.normal };
+        let normal = if self.radius > self.noise { v.unit() } else { normal.or(self.normal) };
         Some(Contact { mu, normal, witness })
     }
 

@@ -4,10 +4,10 @@
 //! begins the bracket. Points between entry and exit are taken for points of the body, as the shape promises; if they are not
 //! where the planes are, the answer is in doubt.
 
-use convex_support::{Crossing, LineCrossing, Vector};
+use convex_support::{Crossing, LineCrossing, Scalar, Vector};
 use num_traits::Float as _;
 
-use super::bracket::Bracket;
+use super::bracket::{Bracket, ScalarOf};
 use super::{Contact, Stop};
 use crate::Iterate;
 use crate::body::Body;
@@ -32,11 +32,7 @@ pub(super) fn closed_form<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         }
         LineCrossing::Crosses(Crossing { entry, exit, normal }) => {
             let start = bracket.ray.start;
-            // What is wrong by an error moves the entry by that much over the cosine there; half of that is left of the depth in the
-            // middle of a chord of what is round.
-            let facing = normal.dot(line.direction).abs();
-            let margin = (bracket.error + bracket.error) + (bracket.error + bracket.error);
-            if margin < (start - entry) * facing && margin < (exit - start) * facing {
+            if start > entry && start < exit && is_inside(bracket, (start - entry).min(exit - start)) {
                 return Ok(bracket.close_inside());
             }
             if entry < start {
@@ -49,15 +45,29 @@ pub(super) fn closed_form<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
                 // A plane that the line runs along to rounding is crossed anywhere; but the line touches the point.
                 Err(Stop::InDoubt) if normal.dot(line.direction).abs() <= bracket.noise => {
                     let aside = line.across(line.foot - point);
-                    let mut contact =
-                        bracket.close_beside(aside, bracket.noise, point, witness).ok_or(Stop::InDoubt)?;
-                    contact.normal = contact.normal.or(Some(normal));
-                    Ok(contact)
+                    bracket.close_beside(aside, bracket.noise, point, witness, Some(normal)).ok_or(Stop::InDoubt)
                 }
                 closed => closed,
             }
         }
     }
+}
+
+/// Whether the source, with a `margin` of the line before and behind it in the body, is in the body for certain.
+///
+/// A line may run along the surface, wrong by an error, for any margin. So do chords across it count, too: their ends are on the surface
+/// but for an error `e`, and with the least margin `m` the hull of all of them has a ball of radius `m/√3` about the source, of which the
+/// body has all but `e`. The source is wrong by another.
+#[cold]
+#[inline(never)]
+fn is_inside<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(bracket: &Bracket<'_, B, O>, margin: ScalarOf<B>) -> bool {
+    let (line, start) = (bracket.line(), bracket.ray.start);
+    let across = line.axes().into_iter().take(B::Vector::DIM - 1);
+    let least = across.fold(margin, |least, axis| match bracket.body.line_crossing(line.at(start), axis) {
+        LineCrossing::Crosses(Crossing { entry, exit, .. }) => least.min(exit.min(-entry)),
+        LineCrossing::Misses | LineCrossing::Unknown => Scalar::ZERO,
+    });
+    least > bracket.error * Scalar::from_f64(4.0)
 }
 
 /// Takes the plane across `n` that supports the body.

@@ -6,7 +6,7 @@
 
 use convex_support::numerics::bound::roundings;
 use convex_support::numerics::twofold::dot_minus;
-use convex_support::{CoreKind, Posed, Rounded, Scalar, SupportMap, Vector};
+use convex_support::{Posed, Rounded, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use super::{Cast, CastHit};
@@ -123,13 +123,8 @@ fn start<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iteratio
     Start { way, spot, iterations }
 }
 
-/// Closing speeds below this many ε of the speed are of rounding: a normal is known to a few.
-const SLIDES: f64 = 16.0;
-
 /// A bound on the λ at which the ray is in the target first, if it ever is, where the source is not known to be apart from it; infinite
 /// where there is none.
-///
-/// The distance from a convex set is a convex function of the point: a ray that leaves or slides is as near at its source as it ever is.
 fn latest_entry<V: Vector>(
     shapes: [Shape<'_, V>; 2],
     direction: V,
@@ -141,20 +136,21 @@ fn latest_entry<V: Vector>(
     if near.overlaps_certainly || near.upper <= zero {
         return zero;
     }
-    let (gap, speed) = (near.upper * near.frame.scale, direction.norm());
     // Of a point found deep inside, no plane is one of contact.
     let is_at_plane = near.gap.abs() <= near.upper;
-    let slides = speed * V::Scalar::EPSILON * V::Scalar::from_f64(SLIDES);
-    if is_at_plane && closing <= slides {
-        gap / speed
-    } else {
-        let speed = if is_at_plane { closing } else { speed };
-        let Entry { at, .. } = entry(shapes, direction, speed, gap, iterations);
-        // Of polytopes, which may be flat, the plane between them is that of the face, but within an error of an edge.
-        let is_curved = shapes.iter().any(|shape| matches!(shape.core().kind, CoreKind::Curved));
-        if is_curved { at } else { at.min(gap / speed) }
+    if is_at_plane && closing < zero {
+        // Behind the plane by an error at most, the ray is before it from `gap − error + λ·|n·d| > 0` on.
+        let at = near.lower * near.frame.scale / closing;
+        return at + roundings(8.0, at);
     }
+    let (gap, speed) = (near.upper * near.frame.scale, direction.norm());
+    let slides = speed * V::Scalar::EPSILON * V::Scalar::from_f64(SLIDES);
+    let speed = if is_at_plane && closing > slides { closing } else { speed };
+    entry(shapes, direction, speed, gap, iterations).at
 }
+
+/// Closing speeds below this many ε of the speed are of rounding: a normal is known to a few.
+const SLIDES: f64 = 16.0;
 
 /// A bound on the λ at which a ray is in the target first, if it ever is; infinite where there is none.
 #[derive(Clone, Copy)]
@@ -208,7 +204,11 @@ fn entry<V: Vector>(
             let at = lambda * (gap / (gap + depth));
             best = Entry { at: best.at.min(at + roundings(16.0, at)), is_certain: true };
         } else if there.lower - rounded > gap {
-            best.at = best.at.min(lambda);
+            // The plane that tells so was crossed earlier.
+            let leaving = -there.normal.dot(direction);
+            let since = (there.lower - rounded) / leaving;
+            let at = if leaving > V::Scalar::ZERO { lambda - (since - roundings(16.0, lambda)) } else { lambda };
+            best.at = best.at.min(at.max(V::Scalar::ZERO));
             break;
         }
         if depth >= gap || !(length <= size) {

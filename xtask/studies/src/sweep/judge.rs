@@ -175,12 +175,14 @@ impl Cast {
                 // The point of contact is rounded where it is, far from where the cast began.
                 verdict.false_hit = excess > BAND * obstacle.reach() + 4.0 * epsilon * norm(self.source).f64();
                 let n = wide(normal.unwrap_or([f64::NAN; 3]));
+                let facing = -dot(n, self.direction).f64() / speed;
                 if let Some(lower) = self.crossing(obstacle, n) {
-                    verdict.violation |= DoubleDouble::from(self.upper) < lower;
+                    verdict.violation |= DoubleDouble::from(self.upper) < lower && facing > GRAZE * epsilon;
                     let error = (DoubleDouble::from(lambda) - lower).f64().abs() * speed;
-                    verdict.error = (-dot(n, self.direction).f64() > STEEP * speed).then_some(error);
+                    verdict.error = (facing > STEEP).then_some(error);
                 } else {
-                    verdict.false_hit = true;
+                    // Of a graze, the plane is along the ray, and by rounding may be crossed anywhere.
+                    verdict.false_hit |= !(facing.abs() <= GRAZE * epsilon);
                 }
             }
             CastOutcome::Miss { axis } => {

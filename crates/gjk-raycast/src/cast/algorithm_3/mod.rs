@@ -61,6 +61,8 @@ fn approach<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     let mut v = bracket.x();
     let mut n = bracket.options.axis.and_then(Vector::unit).or_else(|| v.unit()).unwrap_or(-line.direction);
     let mut across = false;
+    // The unit normal of the last plane along the line.
+    let mut beside = None;
     // The distances of the simplex from x and from the line decrease while x stays; near contact by less than
     // rounding for a few steps, while v turns.
     let (mut nearing, mut nearing_across) = (Progress::new(), Progress::new());
@@ -110,7 +112,7 @@ fn approach<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         let within = if progress { bracket.noise } else { bracket.noise + bracket.error };
         if length - bracket.radius <= within {
             // With the slope of a plane ahead the ray may be past the simplex.
-            let contact = if slope < Scalar::ZERO { touch_beside(bracket, simplex, v, within) } else { None };
+            let contact = if slope < Scalar::ZERO { touch_beside(bracket, simplex, v, within, beside) } else { None };
             return contact.map(Approach::Touches).ok_or(Stop::InDoubt);
         }
         if !progress {
@@ -118,6 +120,7 @@ fn approach<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         }
         nearing = Progress::new();
         n = v / length;
+        beside = Some(n);
     }
 }
 
@@ -127,8 +130,10 @@ fn touch_beside<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     simplex: &SimplexOf<B>,
     v: B::Vector,
     within: ScalarOf<B>,
+    normal: Option<B::Vector>,
 ) -> Option<Contact<B>> {
-    let mut contact = bracket.close_beside(v, within, simplex.weighted_point(), simplex.weighted_witness())?;
+    let (point, witness) = (simplex.weighted_point(), simplex.weighted_witness());
+    let mut contact = bracket.close_beside(v, within, point, witness, normal)?;
     // Where no plane was crossed, the ray meets the face of the simplex head-on.
     let against = -bracket.line().direction;
     let head_on = || project(simplex.points(), |_| against).across.unit();
