@@ -115,8 +115,11 @@ pub trait SupportMap {
         None
     }
 
-    /// Where the line through `source` along `direction` is in the core swept by a ball of the given `radius ≥ 0`, in closed form;
+    /// Where the line through `source` along `direction` is in the core swept by a ball of the given `radius`, in closed form;
     /// `source` is relative to the [origin](Core::origin). Provided: it is unknown.
+    ///
+    /// A negative radius erodes the core: asked for is any set that is in it when swept by a ball of the radius `−radius`. A line that is
+    /// in there is in the core, whatever has moved that by less.
     #[inline]
     fn core_line_crossing(
         &self,

@@ -23,7 +23,17 @@ pub(crate) trait Body {
     /// Whether that may be anything but zero.
     fn is_curved(&self) -> bool;
     /// Where the line through `source` along `direction` is in the body, in closed form; lengths in units of `scale`.
-    fn line_crossing(&self, source: Self::Vector, direction: Self::Vector) -> LineCrossing<Self::Vector>;
+    #[inline(always)]
+    fn line_crossing(&self, source: Self::Vector, direction: Self::Vector) -> LineCrossing<Self::Vector> {
+        self.eroded_line_crossing(source, direction, Scalar::ZERO)
+    }
+    /// The same, of a set that is in the body even when it is swept by a ball of radius `by`.
+    fn eroded_line_crossing(
+        &self,
+        source: Self::Vector,
+        direction: Self::Vector,
+        by: <Self::Vector as Vector>::Scalar,
+    ) -> LineCrossing<Self::Vector>;
     /// What a point of the core is made of, where [`line_crossing`](Self::line_crossing) is known.
     fn witness(&self, point: Self::Vector) -> Self::Witness;
     /// What positions are relative to, in the world; for a difference, that of the first shape alone, since subtracting
@@ -86,9 +96,15 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
     }
 
     #[inline(always)]
-    fn line_crossing(&self, source: S::Vector, direction: S::Vector) -> LineCrossing<S::Vector> {
+    fn eroded_line_crossing(
+        &self,
+        source: S::Vector,
+        direction: S::Vector,
+        by: <S::Vector as Vector>::Scalar,
+    ) -> LineCrossing<S::Vector> {
         let to_world = reciprocal_of_power(self.per_unit);
-        in_units(self.shape.core_line_crossing(source * to_world, direction, self.core.radius), self.per_unit)
+        let radius = self.core.radius - by * to_world;
+        in_units(self.shape.core_line_crossing(source * to_world, direction, radius), self.per_unit)
     }
 
     #[inline(always)]
@@ -205,8 +221,14 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
 
     /// Known where one of the cores is a point, and the difference is the other body moved, or turned round and moved.
     #[inline(always)]
-    fn line_crossing(&self, source: A::Vector, direction: A::Vector) -> LineCrossing<A::Vector> {
-        let (source, radius) = (source * reciprocal_of_power(self.per_unit), self.radius());
+    fn eroded_line_crossing(
+        &self,
+        source: A::Vector,
+        direction: A::Vector,
+        by: <A::Vector as Vector>::Scalar,
+    ) -> LineCrossing<A::Vector> {
+        let to_world = reciprocal_of_power(self.per_unit);
+        let (source, radius) = (source * to_world, self.radius() - by * to_world);
         let crossing = match (self.core_a.kind, self.core_b.kind) {
             (_, CoreKind::Point(b)) => self.a.core_line_crossing(source + b, direction, radius),
             (CoreKind::Point(a), _) => match self.b.core_line_crossing(a - source, -direction, radius) {
@@ -273,8 +295,13 @@ impl<B: Body> Body for Untraced<'_, B> {
         self.0.is_curved()
     }
 
-    fn line_crossing(&self, source: B::Vector, direction: B::Vector) -> LineCrossing<B::Vector> {
-        self.0.line_crossing(source, direction)
+    fn eroded_line_crossing(
+        &self,
+        source: B::Vector,
+        direction: B::Vector,
+        by: <B::Vector as Vector>::Scalar,
+    ) -> LineCrossing<B::Vector> {
+        self.0.eroded_line_crossing(source, direction, by)
     }
 
     fn witness(&self, _point: B::Vector) {}

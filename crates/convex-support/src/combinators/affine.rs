@@ -157,7 +157,8 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         let Some(inverse) = self.inverse else { return LineCrossing::Unknown };
         let radius = match self.scale {
             Some(scale) => radius / scale,
-            None if radius == ScalarOf::<S>::ZERO => self.swept,
+            // A ball before the map is in the image of one that is as much larger as the inverse makes it, at most.
+            None if radius <= ScalarOf::<S>::ZERO => self.swept + radius * frobenius_norm(&inverse),
             None => return LineCrossing::Unknown,
         };
         let crossing = self.shape.core_line_crossing(inverse * (source - self.lost), inverse * direction, radius);

@@ -159,6 +159,14 @@ pub fn line_crossing<S: SupportMap + ?Sized>(
     shape.core_line_crossing(source - origin, direction, radius)
 }
 
+/// The part `s` of a set that has a ball of radius `inner` about zero, such that `s` times the set is in it when swept by a ball of radius
+/// `−radius`: with a ball of radius `(1 − s)·inner` it is, since `(1 − s)` times the set has that. `None` where none is left.
+#[inline(always)]
+pub(crate) fn part_within<S: Scalar>(radius: S, inner: S) -> Option<S> {
+    let part = S::ONE + radius / inner;
+    (radius < S::ZERO && part > S::ZERO).then_some(part)
+}
+
 /// The part of a line within a ball about zero, as `middle ± half`; `half` is `NaN` where the line misses the ball.
 struct Chord<V: Vector> {
     middle: V::Scalar,

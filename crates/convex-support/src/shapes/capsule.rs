@@ -82,6 +82,9 @@ impl<V: Vector> SupportMap for Capsule<V> {
 
     #[inline(always)]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        if radius < V::Scalar::ZERO {
+            return LineCrossing::Unknown;
+        }
         upright(self.half_height, radius, source, direction).into()
     }
 

@@ -3,7 +3,7 @@
 use super::cylinder::{across, disc_hessian};
 use crate::closest_point::closest_of_cone;
 use crate::error::{InvalidShape, measurable, non_negative};
-use crate::line_crossing::cone;
+use crate::line_crossing::{cone, part_within};
 use crate::numerics::bound::roundings;
 use crate::support::swept;
 use crate::{Core, CoreKind, Feature, LineCrossing, Rounding, Scalar, SupportMap, Vector3};
@@ -113,7 +113,14 @@ impl<V: Vector3> SupportMap for Cone<V> {
 
     #[inline(always)]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius == V::Scalar::ZERO { cone(self, source, direction).into() } else { LineCrossing::Unknown }
+        if radius == V::Scalar::ZERO {
+            return cone(self, source, direction).into();
+        }
+        // The slant is nearer zero than the base.
+        match part_within(radius, self.slant().1 * self.half_height) {
+            Some(part) => cone(self, source * part.recip(), direction * part.recip()).into(),
+            None => LineCrossing::Unknown,
+        }
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

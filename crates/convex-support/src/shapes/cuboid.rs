@@ -74,11 +74,14 @@ impl<V: Vector> SupportMap for Cuboid<V> {
 
     #[inline(always)]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius == V::Scalar::ZERO {
-            cuboid(self.half_extents, source, direction).into()
-        } else {
-            rounded_cuboid(self.half_extents, radius, source, direction).into()
+        if radius > V::Scalar::ZERO {
+            return rounded_cuboid(self.half_extents, radius, source, direction).into();
         }
+        let eroded = self.half_extents + V::splat(radius);
+        if (-eroded).max_element() > V::Scalar::ZERO {
+            return LineCrossing::Unknown;
+        }
+        cuboid(eroded, source, direction).into()
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

@@ -108,11 +108,11 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
 
     #[inline(always)]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius == V::Scalar::ZERO {
-            cylinder(self.half_height, self.radius, source, direction).into()
-        } else {
-            LineCrossing::Unknown
+        let (half_height, disc_radius) = (self.half_height + radius, self.radius + radius);
+        if radius > V::Scalar::ZERO || half_height.min(disc_radius) < V::Scalar::ZERO {
+            return LineCrossing::Unknown;
         }
+        cylinder(half_height, disc_radius, source, direction).into()
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

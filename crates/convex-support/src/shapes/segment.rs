@@ -83,6 +83,9 @@ impl<V: Vector> SupportMap for Segment<V> {
 
     #[inline]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        if radius < V::Scalar::ZERO {
+            return LineCrossing::Unknown;
+        }
         edge(relative(self.points), radius, source, direction).into()
     }
 

@@ -15,8 +15,13 @@ use crate::simplex::MAX_POINTS;
 use crate::unit::{is_moderate, power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Ray, RayCastOptions, Status};
 
-/// From how many times the noise an error is much more. It is two or four times that of a posed body, and as much more for each pose within.
+/// From how many times the noise an error is much more, so that the surface may bend within it. It is two or four times that of a posed
+/// body, and as much more for each pose within.
 const LOOSE: f64 = 64.0;
+
+/// How many errors deep the chord is at least that a ray cuts off a ball of the body's size, if it enters so steeply that the surface does
+/// not bend away within an error.
+const DEEP: f64 = 64.0;
 
 pub(super) type ScalarOf<B> = <<B as Body>::Vector as Vector>::Scalar;
 
@@ -77,6 +82,18 @@ pub(super) struct Bracket<'a, B: Body, O> {
     normal: Option<B::Vector>,
     /// Where the ray is in the body, at the latest.
     high: Bound<ScalarOf<B>>,
+    entry: Entry,
+}
+
+/// How far the upper bound is to be trusted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Entry {
+    /// The ray is in the body there, whatever the errors.
+    Certain,
+    /// It is if the surface goes on as it was seen to, as far as an error reaches.
+    BySlope,
+    /// An edge, or a graze, may be within an error.
+    InDoubt,
 }
 
 impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
@@ -124,6 +141,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
             low: Crossing { bound: Bound::exact(ray.start.max(-half_chord)), slope: zero },
             normal: None,
             high: Bound::exact(ScalarOf::<B>::infinity()),
+            entry: Entry::BySlope,
         }
     }
 
@@ -157,9 +175,30 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         if self.low.slope > Scalar::ZERO { self.low.bound.spread } else { Scalar::ONE }
     }
 
-    /// Whether what planes and points are wrong by is much more than the rounding of the size.
-    pub(super) fn is_loose(&self) -> bool {
-        self.error > self.noise * ScalarOf::<B>::from_f64(LOOSE)
+    /// Whether the upper bound has to be found by other means.
+    pub(super) fn is_entry_open(&self) -> bool {
+        match self.entry {
+            Entry::Certain => false,
+            Entry::BySlope => self.error > self.noise * ScalarOf::<B>::from_f64(LOOSE),
+            Entry::InDoubt => true,
+        }
+    }
+
+    /// Takes note that an edge, or a graze, may be within an error of where the ray enters.
+    pub(super) fn doubt_entry(&mut self) {
+        self.entry = Entry::InDoubt;
+    }
+
+    /// Moves the upper bound to where the ray is in the body whatever the errors.
+    pub(super) fn enter_for_certain(&mut self, mu: ScalarOf<B>) {
+        (self.high, self.entry) = (Bound::exact(mu.max(self.low())), Entry::Certain);
+    }
+
+    /// Moves the upper bound to where the ray pierces a triangle of points of the body that is seen around it by more than an error; with
+    /// its slope, and so the length of a normal that is 1 against the ray, that is known to an error across it.
+    pub(super) fn pierce(&mut self, mu: ScalarOf<B>, length: ScalarOf<B>) {
+        (self.high, self.entry) =
+            (Bound { at: mu.max(self.low()), spread: length, more: Scalar::ZERO }, Entry::Certain);
     }
 
     /// How far the bounds may stay apart, across the last plane.
@@ -293,6 +332,10 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
             return Err(Stop::InDoubt);
         }
         self.high = Bound { at: high.max(self.low()), spread: self.spread_or_one(), more: Scalar::ZERO };
+        let slope = self.slope_or_one();
+        if slope * slope < self.error * ScalarOf::<B>::from_f64(DEEP) {
+            self.doubt_entry();
+        }
         Ok(Contact { mu: self.low(), normal: self.normal, witness })
     }
 
@@ -400,8 +443,8 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         let widened = |bound: Bound<_>| self.ray.error(bound.at, self.certain(bound));
         let lower = (self.ray.lambda(self.low()) - widened(self.low.bound)).max(Scalar::ZERO);
         // The surface may be met less steeply than the plane, by what noise leaves open.
-        let upper = self.ray.lambda(self.high.at)
-            + self.ray.error(self.high.at, self.certain(self.high) + self.noise * self.high.spread);
+        let high = if self.is_entry_open() { Bound::exact(self.chord.1.max(self.high.at)) } else { self.high };
+        let upper = self.ray.lambda(high.at) + self.ray.error(high.at, self.certain(high) + self.noise * high.spread);
         match contact {
             // NaN bounds nothing.
             Some(lambda) if upper.is_nan() => (lower.min(lambda), Float::infinity()),

@@ -4,10 +4,10 @@
 //! begins the bracket. Points between entry and exit are taken for points of the body, as the shape promises; if they are not
 //! where the planes are, the answer is in doubt.
 
-use convex_support::{Crossing, LineCrossing, Scalar, Vector};
+use convex_support::{Crossing, LineCrossing, Vector};
 use num_traits::Float as _;
 
-use super::bracket::{Bracket, ScalarOf};
+use super::bracket::Bracket;
 use super::{Contact, Stop};
 use crate::Iterate;
 use crate::body::Body;
@@ -25,15 +25,23 @@ pub(super) fn closed_form<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     match bracket.body.line_crossing(line.foot, line.direction) {
         LineCrossing::Unknown => Err(Stop::InDoubt),
         LineCrossing::Misses => {
+            bracket.doubt_entry();
             // The plane across the vector to the line is one along it.
             let axis = bracket.options.axis.or_else(|| line.foot.unit()).ok_or(Stop::InDoubt)?;
             support(bracket, axis)?;
             Err(Stop::InDoubt)
         }
-        LineCrossing::Crosses(Crossing { entry, exit, normal }) => {
+        LineCrossing::Crosses(Crossing { entry, normal, .. }) => {
             let start = bracket.ray.start;
-            if start > entry && start < exit && is_inside(bracket, (start - entry).min(exit - start)) {
-                return Ok(bracket.close_inside());
+            // What is in the body by two errors is so for certain: one moves the body, and one what is computed of the line.
+            let by = bracket.error + bracket.error;
+            let eroded = bracket.body.eroded_line_crossing(line.foot, line.direction, by);
+            match eroded {
+                LineCrossing::Crosses(within) if within.entry < start && start < within.exit => {
+                    return Ok(bracket.close_inside());
+                }
+                LineCrossing::Misses => bracket.doubt_entry(),
+                _ => {}
             }
             if entry < start {
                 return Err(Stop::InDoubt);
@@ -47,27 +55,19 @@ pub(super) fn closed_form<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
                     let aside = line.across(line.foot - point);
                     bracket.close_beside(aside, bracket.noise, point, witness, Some(normal)).ok_or(Stop::InDoubt)
                 }
-                closed => closed,
+                Ok(found) => {
+                    if let LineCrossing::Crosses(within) = eroded {
+                        bracket.enter_for_certain(within.entry);
+                    }
+                    Ok(found)
+                }
+                Err(stop) => {
+                    bracket.doubt_entry();
+                    Err(stop)
+                }
             }
         }
     }
-}
-
-/// Whether the source, with a `margin` of the line before and behind it in the body, is in the body for certain.
-///
-/// A line may run along the surface, wrong by an error, for any margin. So do chords across it count, too: their ends are on the surface
-/// but for an error `e`, and with the least margin `m` the hull of all of them has a ball of radius `m/√3` about the source, of which the
-/// body has all but `e`. The source is wrong by another.
-#[cold]
-#[inline(never)]
-fn is_inside<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(bracket: &Bracket<'_, B, O>, margin: ScalarOf<B>) -> bool {
-    let (line, start) = (bracket.line(), bracket.ray.start);
-    let across = line.axes().into_iter().take(B::Vector::DIM - 1);
-    let least = across.fold(margin, |least, axis| match bracket.body.line_crossing(line.at(start), axis) {
-        LineCrossing::Crosses(Crossing { entry, exit, .. }) => least.min(exit.min(-entry)),
-        LineCrossing::Misses | LineCrossing::Unknown => Scalar::ZERO,
-    });
-    least > bracket.error * Scalar::from_f64(4.0)
 }
 
 /// Takes the plane across `n` that supports the body.

@@ -50,6 +50,10 @@ fn search<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
             Err(Stop::InDoubt | Stop::Touches(_)) => {}
             found => return found,
         }
+        // In the plane, Algorithm 3 is the search. Elsewhere it is what is left where rounding decides.
+        if B::Vector::DIM == 3 {
+            bracket.doubt_entry();
+        }
     }
     algorithm_3(bracket)
 }
@@ -86,8 +90,8 @@ pub(crate) struct Cast<V: Vector, W> {
     pub(crate) iterations: usize,
     /// The unit of the hit spot and of the witness.
     pub(crate) scale: V::Scalar,
-    /// Whether the bodies are wrong by much more than their sizes' rounding, as far origins leave it.
-    pub(crate) is_loose: bool,
+    /// Whether the upper bound has to be found by other means.
+    pub(crate) is_entry_open: bool,
 }
 
 /// Where the ray enters the body.
@@ -127,6 +131,6 @@ fn conclude<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         Err(Stop::Exhausted(status)) => (Outcome::Undecided, bracket.bounds(None), status),
         Err(Stop::InDoubt | Stop::Touches(_)) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
     };
-    let (iterations, scale, is_loose) = (bracket.iterations(), bracket.scale, bracket.is_loose());
-    Cast { outcome, lower, upper, status, iterations, scale, is_loose }
+    let (iterations, scale, is_entry_open) = (bracket.iterations(), bracket.scale, bracket.is_entry_open());
+    Cast { outcome, lower, upper, status, iterations, scale, is_entry_open }
 }

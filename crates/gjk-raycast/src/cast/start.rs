@@ -11,6 +11,7 @@ use num_traits::Float;
 
 use super::{Cast, CastHit};
 use crate::body::PointPair;
+use crate::contact::gap_along;
 use crate::gjk::{NearContact, Shape, near_contact};
 use crate::{Miss, Outcome, RayCastOptions, SignedDistanceOptions, Status, signed_distance};
 
@@ -36,7 +37,7 @@ pub(crate) fn settle_start<A, B, W>(
         Outcome::Miss(_) => false,
     };
     let is_to_be_settled = is_at_start && cast.upper > zero;
-    if (is_to_be_settled || cast.is_loose)
+    if (is_to_be_settled || cast.is_entry_open)
         && let Some(b) = b()
         && let Ok(a) = Rounded::new(a, skin)
     {
@@ -44,7 +45,7 @@ pub(crate) fn settle_start<A, B, W>(
             if let Outcome::Hit(CastHit { lambda, .. }) = cast.outcome {
                 let after = after_hit(&a, &b, direction, lambda, options.max_iterations);
                 cast.iterations += after.iterations;
-                cast.upper = after.latest.unwrap_or(cast.upper);
+                cast.upper = cast.upper.min(after.latest);
             }
             return;
         }
@@ -204,9 +205,10 @@ fn entry<V: Vector>(
             let at = lambda * (gap / (gap + depth));
             best = Entry { at: best.at.min(at + roundings(16.0, at)), is_certain: true };
         } else if there.lower - rounded > gap {
-            // The plane that tells so was crossed earlier.
-            let leaving = -there.normal.dot(direction);
-            let since = (there.lower - rounded) / leaving;
+            // A plane that tells so was crossed earlier.
+            // The product is right to a few roundings.
+            let leaving = -there.normal.dot(direction) + roundings(8.0, direction.norm());
+            let since = (gap_along(&a, &moved, there.normal) - rounded) / leaving;
             let at = if leaving > V::Scalar::ZERO { lambda - (since - roundings(16.0, lambda)) } else { lambda };
             best.at = best.at.min(at.max(V::Scalar::ZERO));
             break;
@@ -221,8 +223,8 @@ fn entry<V: Vector>(
 
 /// What is known of a hit where it is.
 struct AfterHit<S> {
-    /// The λ of the hit, at the latest.
-    latest: Option<S>,
+    /// The λ of the hit, at the latest; infinite where that is not known.
+    latest: S,
     iterations: usize,
 }
 
@@ -237,7 +239,7 @@ fn after_hit<V: Vector>(
     lambda: V::Scalar,
     max_iterations: usize,
 ) -> AfterHit<V::Scalar> {
-    let unknown = AfterHit { latest: None, iterations: 0 };
+    let unknown = AfterHit { latest: Float::infinity(), iterations: 0 };
     let step = direction * lambda;
     let Ok(there) = Posed::translated(b, step) else { return unknown };
     let Some(near) = near_contact(a, &there, max_iterations) else { return unknown };
@@ -248,7 +250,7 @@ fn after_hit<V: Vector>(
     let speed = if closing > V::Scalar::ZERO { closing } else { direction.norm() };
     let Entry { at, .. } = entry([a, &there], direction, speed, gap, &mut iterations);
     let latest = lambda + at;
-    AfterHit { latest: latest.is_finite().then(|| latest + roundings(4.0, latest)), iterations }
+    AfterHit { latest: latest + roundings(4.0, latest), iterations }
 }
 
 /// Compiled into the cast, so that what it found need not be in memory for the rare case that it is changed.

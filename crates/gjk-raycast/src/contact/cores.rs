@@ -75,6 +75,15 @@ impl<V: Vector> Uncertainty<V> {
     }
 }
 
+/// How far apart shapes are along a unit vector from `b` to `a`, at least.
+pub(crate) fn gap_along<V: Vector>(a: &dyn SupportMap<Vector = V>, b: &dyn SupportMap<Vector = V>, n: V) -> V::Scalar {
+    let mut cores = Cores::new(a, b);
+    let Some(vertex) = cores.support(-n) else { return -V::Scalar::infinity() };
+    let gap = (n.dot(vertex.point) - cores.error_along(n)) * cores.scale() - cores.radius();
+    // As in an answer: the unit vector, the radii and the sums.
+    gap - V::Scalar::EPSILON * Scalar::from_f64(3.0) * (gap.abs() + cores.radius())
+}
+
 /// How deep cores are in one another, in closed form, in the unit.
 pub(super) struct ClosedForm<V: Vector> {
     /// The unit vector out of their difference.
@@ -184,6 +193,11 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         let error = self.uncertainty.length();
         let along = p.unit().map_or(error, |n| self.uncertainty.along(n));
         (p.norm() + along).hypot(error)
+    }
+
+    /// Whether a bracket on the distance is as narrow as GJK makes one.
+    pub(super) fn is_closed(&self, width: <A::Vector as Vector>::Scalar) -> bool {
+        width <= self.frame.noise + self.frame.noise
     }
 
     /// Whether the direction of a point of the difference is known to half the digits.

@@ -21,6 +21,7 @@ mod zonotope;
 
 pub(crate) use clip::clip;
 pub use contact::contact;
+pub(crate) use cores::gap_along;
 pub(crate) use newton::across;
 pub use options::SignedDistanceOptions;
 pub(crate) use outline::{ContactPlane, Outline};

@@ -54,7 +54,12 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
         self.pair.is_curved()
     }
 
-    fn line_crossing(&self, _source: A::Vector, _direction: A::Vector) -> LineCrossing<A::Vector> {
+    fn eroded_line_crossing(
+        &self,
+        _source: A::Vector,
+        _direction: A::Vector,
+        _by: <A::Vector as Vector>::Scalar,
+    ) -> LineCrossing<A::Vector> {
         LineCrossing::Unknown
     }
 

@@ -12,8 +12,8 @@ pub struct SignedDistance<V: Vector> {
     /// The distance where the shapes are apart; where they overlap, minus the penetration depth: the length of the shortest
     /// translation of `a` after which they have no interior point in common.
     pub signed_distance: V::Scalar,
-    /// The signed distance is certainly not less: along [`normal`](Self::normal), no points of the shapes are nearer, or deeper
-    /// in one another. Minus infinity where a support map returned numbers that are not finite.
+    /// The signed distance is certainly not less: a plane tells so, across [`normal`](Self::normal) or, where closest points tell that
+    /// better, a vector near it. Minus infinity where a support map returned numbers that are not finite.
     pub lower: V::Scalar,
     /// The signed distance is certainly not more: two points of the shapes are this far apart, or a polytope within the
     /// difference `A − B` reaches this far around zero. Infinity where a support map returned numbers that are not finite.

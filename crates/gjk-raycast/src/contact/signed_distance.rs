@@ -114,8 +114,9 @@ impl<V: Vector> Reached<V> {
         }
         let closest = closest / sum;
         let infinity = V::Scalar::infinity();
-        // The direction of the closest points, or where rounding may have made that up, of the last plane.
-        let direction = if cores.is_well_known(closest) { closest } else { state.axis };
+        // The direction of the closest points, or where rounding may have made that up, or they are not yet found, of the best plane.
+        let is_closed = cores.is_closed(state.length - state.lower);
+        let direction = if is_closed && cores.is_well_known(closest) { closest } else { state.axis };
         let n = direction.unit().or_else(|| state.normal.unit()).unwrap_or_else(|| V::axis(0));
         let is_known = state.length.is_finite() && sum > V::Scalar::ZERO;
         Self {

@@ -165,7 +165,10 @@ impl<V: Vector> SupportMap for Faceted<V> {
 
     #[inline]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius == V::Scalar::ZERO { faceted(self, source, direction).into() } else { LineCrossing::Unknown }
+        if radius > V::Scalar::ZERO {
+            return LineCrossing::Unknown;
+        }
+        faceted(self, radius, source, direction).into()
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

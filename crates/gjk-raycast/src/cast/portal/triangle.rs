@@ -17,7 +17,7 @@ use crate::Iterate;
 use crate::body::Body;
 use crate::cast::bracket::{Bracket, ScalarOf};
 use crate::cast::{Contact, Stop};
-use crate::symmetric::dot;
+use crate::symmetric::{Across, dot};
 
 /// Support points until the portal has to be found; half as many where curvature may tell more.
 const MAX_OUTSIDE: usize = 16;
@@ -37,7 +37,8 @@ pub(super) fn triangle<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     let mut best = BestPlane::none(bracket.end());
     best.begin(bracket, frame, first, &mut p, Scalar::ZERO)?;
     if !(dot(p.across(), p.across()) > bracket.noise * bracket.noise) {
-        // The line runs through the first one.
+        // The line runs through the first one, which may be a corner.
+        bracket.doubt_entry();
         return if best.is_known() {
             best.close(bracket, frame, &[p], &[Scalar::ONE], p.t)
         } else {
@@ -185,7 +186,9 @@ impl<V: Vector> Planes<'_, V> {
             let closed = |best: &BestPlane<V>, alpha: Alpha<V::Scalar>| alpha.is_within(high - best.tau, tolerance);
             let weights = portal.weights.map(|w| w * inverse);
             if closed(&self.best, self.best.alpha) {
-                return self.best.close(bracket, self.frame, &portal.corners, &weights, high);
+                let found = self.best.close(bracket, self.frame, &portal.corners, &weights, high)?;
+                portal.bound_entry(bracket, plane, high);
+                return Ok(found);
             }
             if bracket.body.is_curved() && self.frame.is_curved(bracket.body, self.frame.normal(plane)) {
                 return sqp(bracket, self.frame, portal.anticlockwise(weights, high), self.best);
@@ -193,7 +196,9 @@ impl<V: Vector> Planes<'_, V> {
             let before = self.best.tau;
             let r = self.support(bracket, plane)?;
             if self.best.tau > before && closed(&self.best, self.alpha) {
-                return self.best.close(bracket, self.frame, &portal.corners, &weights, high);
+                let found = self.best.close(bracket, self.frame, &portal.corners, &weights, high)?;
+                portal.bound_entry(bracket, plane, high);
+                return Ok(found);
             }
             portal.exchange(r)?;
         }
@@ -227,6 +232,28 @@ impl<B: Body> Triangle<B> {
             return Err(Stop::InDoubt);
         }
         Ok(())
+    }
+
+    /// Bounds the entry by its plane, where the line runs through it by more than an error.
+    ///
+    /// Twice the area that zero and an edge span is the edge's length times its distance from the line.
+    #[inline(always)]
+    fn bound_entry<O: FnMut(Iterate<'_, B::Vector>)>(
+        &self,
+        bracket: &mut Bracket<'_, B, O>,
+        Plane { a, b, c }: Plane<ScalarOf<B>>,
+        high: ScalarOf<B>,
+    ) {
+        let [p, q, s] = &self.corners;
+        let [wp, wq, ws] = self.weights;
+        let by = bracket.error + bracket.noise;
+        let is_within =
+            |weight: ScalarOf<B>, (edge, _): (Across<ScalarOf<B>>, _)| weight * weight > by * by * dot(edge, edge);
+        if is_within(wp, q.edge_to(s)) & is_within(wq, s.edge_to(p)) & is_within(ws, p.edge_to(q)) {
+            bracket.pierce(high, (a * a + b * b + c * c).sqrt() / c);
+        } else {
+            bracket.doubt_entry();
+        }
     }
 
     fn anticlockwise(&self, [wp, wq, ws]: [ScalarOf<B>; 3], high: ScalarOf<B>) -> Portal<B::Vector, B::Witness> {
