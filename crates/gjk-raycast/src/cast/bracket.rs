@@ -312,7 +312,9 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
             let at = if bound.at < self.chord.1 { bound.at } else { self.chord.1 };
             return Ok(Some(Crossing { bound: Bound { at, ..bound }, slope: -slope }));
         }
-        if ahead > self.error { Err(Stop::Miss(n)) } else { Ok(None) }
+        // What is left of the ray may begin earlier, where it is less far before a plane that it leaves.
+        let at_earliest = ahead - slope.max(zero) * self.certain(self.low.bound);
+        if at_earliest > self.error { Err(Stop::Miss(n)) } else { Ok(None) }
     }
 
     /// The contact where the last plane is crossed, if a point of the core, made of `witness`, is no farther than the radius
