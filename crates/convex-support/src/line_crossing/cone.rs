@@ -19,20 +19,21 @@ pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Optio
     }
     let (direction, dd, unit) = comfortable(direction);
     let recip = dd.recip();
-    let (base, source) = rebased(source, direction, recip);
+    // Seen from the apex: near it, and along the slant that runs through it, only what is left of the squares there tells where the line is.
+    let (base, source) = rebased(source - V::axis(1) * h, direction, recip);
     // From here on near the cone, where a unit direction keeps the products of four lengths and directions in range.
     let per_length = recip.sqrt();
     let direction = direction * per_length;
     let (y, rise) = (source.get(1), direction.get(1));
-    let (top, bottom) = slab(y, rise, h);
+    let (top, bottom) = slab(y + h, rise, h);
 
     let (cosine, sine) = cone.slant();
     let (out, radial) = (across(source) * cosine, across(direction) * cosine);
-    let (drop, fall) = (sine * (h - y), -sine * rise);
+    let (drop, fall) = (-sine * y, -sine * rise);
     let a = radial.length_squared() - fall * fall;
     let b = out.dot(radial) - drop * fall;
     let c = out.length_squared() - drop * drop;
-    let m = (source - V::axis(1) * h).cross(direction);
+    let m = source.cross(direction);
     let (swing, twist) = (sine * across(m).length(), cosine * m.get(1).abs());
     let discriminant = (swing - twist) * (swing + twist);
     let root = cosine * discriminant.sqrt();

@@ -116,8 +116,8 @@ impl<V: Vector3> SupportMap for Cone<V> {
         if radius == V::Scalar::ZERO {
             return cone(self, source, direction).into();
         }
-        // The slant is nearer zero than the base. It is twice as far inward as asked for, since a line that runs along it is known only so well.
-        match part_within(radius + radius, self.slant().1 * self.half_height) {
+        // The slant is nearer zero than the base.
+        match part_within(radius, self.slant().1 * self.half_height) {
             Some(part) => cone(self, source * part.recip(), direction * part.recip()).into(),
             None => LineCrossing::Unknown,
         }
