@@ -21,7 +21,7 @@ const LOOSE: f64 = 64.0;
 
 /// How many errors deep the chord is at least that a ray cuts off a ball of the body's size, if it enters so steeply that the surface does
 /// not bend away within an error.
-const DEEP: f64 = 64.0;
+pub(super) const DEEP: f64 = 64.0;
 
 pub(super) type ScalarOf<B> = <<B as Body>::Vector as Vector>::Scalar;
 

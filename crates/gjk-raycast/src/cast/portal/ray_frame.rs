@@ -11,6 +11,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::pieces::OnLine;
 use crate::Iterate;
 use crate::body::{Body, Witness};
 use crate::cast::bracket::Bracket;
@@ -303,6 +304,21 @@ impl<V: Vector> BestPlane<V> {
             bracket.separate(frame.normal(alpha.plane()), p.point)?;
         }
         Ok(true)
+    }
+
+    /// Closes the bracket between this plane and a point of the body; the entry is in doubt where an error may lead to other pieces.
+    #[inline(always)]
+    pub(super) fn close_at<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+        &self,
+        bracket: &mut Bracket<'_, B, O>,
+        frame: &RayFrame<V>,
+        below: &OnLine<V, B::Witness>,
+    ) -> Result<Contact<B>, Stop<V>> {
+        let found = self.close(bracket, frame, below.corners(), below.weights(), below.high)?;
+        if !below.has_room(bracket.error + bracket.noise) {
+            bracket.doubt_entry();
+        }
+        Ok(found)
     }
 
     /// Closes the bracket between this plane and the weighted sum of the corners, which is on the line at `high`.

@@ -18,7 +18,7 @@ use super::ray_frame::{Alpha, BestPlane, Plane, RayFrame, RayPoint, RayPointOf};
 use super::triangle::MAX_EXCHANGES;
 use crate::Iterate;
 use crate::body::{Body, Witness};
-use crate::cast::bracket::{Bracket, ScalarOf};
+use crate::cast::bracket::{Bracket, DEEP, ScalarOf};
 use crate::cast::{Contact, Stop};
 use crate::symmetric::{Across, cross, dot};
 
@@ -77,14 +77,14 @@ pub(super) fn rounded<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
             best.set(high, alpha, &p);
         }
         if best.alpha.is_within(high - best.tau, tolerance) {
-            return best.close(bracket, frame, kept.points(), &at.weights, high);
+            return kept.close(bracket, frame, &best, &at);
         }
         if frame.is_curved(bracket.body, frame.normal(alpha.plane())) {
             return Err(Stop::InDoubt);
         }
         let next = frame.support_of(bracket, alpha.plane())?;
         if best.improve(bracket, frame, alpha, &next, radius)? && high - best.tau <= tolerance * alpha.length() {
-            return best.close(bracket, frame, kept.points(), &at.weights, high);
+            return kept.close(bracket, frame, &best, &at);
         }
         kept.push(next);
     }
@@ -114,6 +114,24 @@ impl<V: Vector, W: Witness<V::Scalar>> Kept<V, W> {
         let p = &self.points;
         self.points = [p[i], p[j], p[k], p[0]];
         self.len = len;
+    }
+
+    /// Closes the bracket above the points that are kept. Above a triangle the surface is flat as far as that reaches; above an edge or a
+    /// corner it is round, and may bend away from a ray that grazes it.
+    #[inline(always)]
+    fn close<B: Body<Vector = V, Witness = W>, O: FnMut(Iterate<'_, V>)>(
+        &self,
+        bracket: &mut Bracket<'_, B, O>,
+        frame: &RayFrame<V>,
+        best: &BestPlane<V>,
+        at: &Entry<V::Scalar>,
+    ) -> Result<Contact<B>, Stop<V>> {
+        let found = best.close(bracket, frame, self.points(), &at.weights, at.tau)?;
+        let deep = (bracket.error + bracket.noise) * V::Scalar::from_f64(DEEP);
+        if deep * at.alpha.length_squared() > bracket.radius {
+            bracket.doubt_entry();
+        }
+        Ok(found)
     }
 
     /// The line passes all of them: a point is added on its side of the nearest edge or corner.

@@ -68,7 +68,7 @@ pub(super) fn sqp<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         alpha = to;
     }
     match coarse {
-        Some(below) => best.close(bracket, frame, below.corners(), below.weights(), below.high),
+        Some(below) => best.close_at(bracket, frame, &below),
         None => Err(Stop::InDoubt),
     }
 }
@@ -116,7 +116,7 @@ fn close<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
             wide = wide.or(Some(*below));
             continue;
         }
-        match best.close(bracket, frame, below.corners(), below.weights(), below.high) {
+        match best.close_at(bracket, frame, below) {
             Err(Stop::InDoubt) => {}
             found => return found,
         }

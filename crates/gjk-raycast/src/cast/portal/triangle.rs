@@ -11,13 +11,14 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::pieces::is_surrounded;
 use super::ray_frame::{Alpha, BestPlane, Plane, RayFrame, RayPoint, RayPointOf};
 use super::sqp::{Portal, sqp};
 use crate::Iterate;
 use crate::body::Body;
 use crate::cast::bracket::{Bracket, ScalarOf};
 use crate::cast::{Contact, Stop};
-use crate::symmetric::{Across, dot};
+use crate::symmetric::dot;
 
 /// Support points until the portal has to be found; half as many where curvature may tell more.
 const MAX_OUTSIDE: usize = 16;
@@ -235,8 +236,6 @@ impl<B: Body> Triangle<B> {
     }
 
     /// Bounds the entry by its plane, where the line runs through it by more than an error.
-    ///
-    /// Twice the area that zero and an edge span is the edge's length times its distance from the line.
     #[inline(always)]
     fn bound_entry<O: FnMut(Iterate<'_, B::Vector>)>(
         &self,
@@ -244,12 +243,7 @@ impl<B: Body> Triangle<B> {
         Plane { a, b, c }: Plane<ScalarOf<B>>,
         high: ScalarOf<B>,
     ) {
-        let [p, q, s] = &self.corners;
-        let [wp, wq, ws] = self.weights;
-        let by = bracket.error + bracket.noise;
-        let is_within =
-            |weight: ScalarOf<B>, (edge, _): (Across<ScalarOf<B>>, _)| weight * weight > by * by * dot(edge, edge);
-        if is_within(wp, q.edge_to(s)) & is_within(wq, s.edge_to(p)) & is_within(ws, p.edge_to(q)) {
+        if is_surrounded(self.corners.each_ref(), bracket.error + bracket.noise) {
             bracket.pierce(high, (a * a + b * b + c * c).sqrt() / c);
         } else {
             bracket.doubt_entry();
