@@ -331,6 +331,10 @@ impl<V: Vector> BestPlane<V> {
         weights: &[V::Scalar],
         high: V::Scalar,
     ) -> Result<Contact<B>, Stop<V>> {
+        // A combination is a point of the body only if no weight is negative by more than rounding.
+        if weights.iter().any(|&weight| weight < -bracket.noise) {
+            return Err(Stop::InDoubt);
+        }
         let (mut point, mut witness) = (V::ZERO, B::Witness::default());
         for (p, &weight) in corners.iter().zip(weights) {
             point += p.point * weight;

@@ -207,7 +207,8 @@ impl<V: Vector, W: Copy> Portal<V, W> {
             let (p, q) = (&self.corners[j], &self.corners[k]);
             let weights = weights_of_zero([r.across(), p.across(), q.across()]);
             let sum = weights[0] + weights[1] + weights[2];
-            if weights[1] >= zero && weights[2] >= zero && sum > zero {
+            // Where no portal is known yet, the corners that are kept may be on the wrong side.
+            if weights.iter().all(|&weight| weight >= zero) && sum > zero {
                 let inverse = sum.recip();
                 let high = (weights[0] * r.t + weights[1] * p.t + weights[2] * q.t) * inverse;
                 if high < self.high && high >= floor {
