@@ -119,7 +119,9 @@ fn touching<V: Vector>(
     let (zero, scale) = (V::Scalar::ZERO, near.frame.scale);
     let overlap = near.overlap();
     let cores = [a.core(), b.core()];
-    let [point_a, point_b] = surface_points(cores, &near.frame, near.points, near.normal, None);
+    // What is in one another by more than an error has a point in common that is nearer to both cores.
+    let length = Some(near.length).filter(|_| overlap == Some(true));
+    let [point_a, point_b] = surface_points(cores, &near.frame, near.points, near.normal, length);
     let upper = near.upper.max(zero) * scale;
     Some(Distance {
         distance: (near.gap.max(zero) * scale).min(upper),

@@ -43,7 +43,7 @@ pub(crate) struct NearContact<V: Vector> {
     pub(crate) frame: Frame<V>,
     /// The points of the cores closest to one another, and how far apart they are as they are measured.
     pub(crate) points: PointPair<V>,
-    length: V::Scalar,
+    pub(crate) length: V::Scalar,
     pub(crate) end: End,
     pub(crate) iterations: usize,
     /// The unit normal of the plane between the bodies, and how far apart they are along it, as it is measured.
