@@ -1,32 +1,25 @@
 //! Bodies in contact: bracketing the one that the search has come to, and what to answer where it starts in one.
 
-use convex_support::{Scalar, ScalarOf, SupportMap};
+use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::approach::Approach;
 use super::first_contact::{AIM, End, Search};
 use super::instant::{Instant, Limits};
 use super::result::MotionIterate;
-use super::trajectory::Trajectory;
 use crate::{StartInContact, Status};
 
 /// How much deeper than touching an overlap is looked for, in units of what the distance may be wrong by.
 const DEPTH: f64 = 2.0;
 
-impl<A, MA, B, MB, F> Search<'_, A, MA, B, MB, F>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-    MA: Trajectory<Vector = A::Vector>,
-    MB: Trajectory<Vector = A::Vector>,
-    F: FnMut(MotionIterate<A::Vector>),
-{
+impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> {
     /// Where the contact is as near as can be told: looks for a time just after it at which the bodies overlap. `None` where they are
     /// proved apart there, and the search goes on.
-    pub(super) fn close_in(&mut self) -> Option<End<A::Vector>> {
-        let (zero, two) = (ScalarOf::<A>::ZERO, ScalarOf::<A>::from_f64(2.0));
+    pub(super) fn close_in(&mut self) -> Option<End<V>> {
+        let (zero, two) = (V::Scalar::ZERO, V::Scalar::from_f64(2.0));
         let end = self.options.max_time.min(self.upper);
         let Instant { time, distance, error, closing, .. } = self.near;
-        let deep = distance + error.max(self.closest() * Scalar::from_f64(0.25)) * ScalarOf::<A>::from_f64(DEPTH);
+        let deep = distance + error.max(self.closest() * Scalar::from_f64(0.25)) * V::Scalar::from_f64(DEPTH);
         // As fast as it closes, or after the time that it would take to come so deep from rest.
         let (at_speed, from_rest) = (deep / closing, (two * deep / self.expected_acceleration()).sqrt());
         let mut step = if closing > zero && at_speed < from_rest { at_speed } else { from_rest };
@@ -38,7 +31,7 @@ where
             if next >= self.upper {
                 return Some(End::Contact);
             }
-            let there = self.look(next, Limits { distance: ScalarOf::<A>::infinity(), depth: zero });
+            let there = self.look(next, Limits { distance: V::Scalar::infinity(), depth: zero });
             if self.is_contact(&there) {
                 self.upper = there.time;
                 return Some(End::Contact);
@@ -69,21 +62,21 @@ where
     /// That a polytope within their difference contains zero takes long to show of curved bodies that are hardly in one another. It
     /// is also taken for shown where points of them are as near as rounding can tell, while the bodies are deeper in one another than
     /// that along the normal.
-    fn is_contact(&self, there: &Instant<A::Vector>) -> bool {
-        let from_f64 = ScalarOf::<A>::from_f64;
-        let rounding = from_f64(64.0) * ScalarOf::<A>::EPSILON * self.pair.size();
+    fn is_contact(&self, there: &Instant<V>) -> bool {
+        let from_f64 = V::Scalar::from_f64;
+        let rounding = from_f64(64.0) * V::Scalar::EPSILON * self.bodies.size();
         let deep = from_f64(DEPTH) * self.near.error.min(rounding);
         there.overlaps() || there.upper <= deep && there.distance < -deep
     }
 
     /// What to answer where the bodies are not certainly apart at the start.
-    pub(super) fn start_in_contact(&mut self) -> End<A::Vector> {
-        let zero = ScalarOf::<A>::ZERO;
+    pub(super) fn start_in_contact(&mut self) -> End<V> {
+        let zero = V::Scalar::ZERO;
         if self.near.overlaps() {
             self.upper = zero;
         }
         if self.options.start_in_contact == StartInContact::IfDeeper && self.leave_contact() {
-            self.upper = ScalarOf::<A>::infinity();
+            self.upper = V::Scalar::infinity();
             return self.advance();
         }
         if !self.near.overlaps() && !(self.near.distance <= self.near.error) {
@@ -101,13 +94,13 @@ where
 
     /// Goes on to a time at which the bodies, which touch or overlap, are apart; whether there is one, and they come no nearer before.
     fn leave_contact(&mut self) -> bool {
-        let from_f64 = ScalarOf::<A>::from_f64;
-        let rounding = from_f64(16.0) * ScalarOf::<A>::EPSILON;
+        let from_f64 = V::Scalar::from_f64;
+        let rounding = from_f64(16.0) * V::Scalar::EPSILON;
         let start = self.near;
         let mut there = start;
-        let mut step = ScalarOf::<A>::ZERO;
+        let mut step = V::Scalar::ZERO;
         while self.looks < self.options.max_iterations {
-            let speed = self.pair.speed_at(&there);
+            let speed = self.bodies.speed_at(&there);
             if there.closing > speed * rounding || !(there.time < self.options.max_time) {
                 break;
             }
@@ -118,7 +111,7 @@ where
             if !(step > Scalar::ZERO) {
                 break;
             }
-            let everything = Limits { distance: ScalarOf::<A>::infinity(), depth: ScalarOf::<A>::infinity() };
+            let everything = Limits { distance: V::Scalar::infinity(), depth: V::Scalar::infinity() };
             there = self.look((start.time + step).min(self.options.max_time), everything);
             if there.gap > Scalar::ZERO {
                 self.near = there;

@@ -23,44 +23,42 @@
 //! Any two planes will do that separate the bodies at the two times. Where the normals of the closest points turn far, so that `M` is
 //! large, one of them may do at both times.
 
-use convex_support::{Scalar, ScalarOf, SupportMap};
+use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::instant::{Instant, MovingPair};
-use super::trajectory::{Trajectory, TurningPlane};
+use super::approach::Approach;
+use super::instant::Instant;
+use super::trajectory::TurningPlane;
 
 /// What may be lost to rounding where both sides of the condition are computed.
 const ROUNDING: f64 = 64.0;
 
-impl<A, MA, B, MB> MovingPair<'_, A, MA, B, MB>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-    MA: Trajectory<Vector = A::Vector>,
-    MB: Trajectory<Vector = A::Vector>,
-{
-    /// Whether the bodies are certainly apart throughout the interval between two times at which they are.
-    pub(super) fn is_free(&self, from: &Instant<A::Vector>, to: &Instant<A::Vector>) -> bool {
-        let gap_along = |time, normal| {
-            let (level, error) = self.level(time, normal);
-            level - error
-        };
-        let times = [from.time, to.time];
-        self.keeps_apart([from.normal, to.normal], [from.gap, to.gap], times)
-            || self.keeps_apart([to.normal; 2], [gap_along(from.time, to.normal), to.gap], times)
-            || self.keeps_apart([from.normal; 2], [from.gap, gap_along(to.time, from.normal)], times)
-    }
+/// Whether the bodies are certainly apart throughout the interval between two times at which they are.
+pub(super) fn is_free<V: Vector>(bodies: &impl Approach<V>, from: &Instant<V>, to: &Instant<V>) -> bool {
+    let gap_along = |time, normal| {
+        let (level, error) = bodies.level(time, normal);
+        level - error
+    };
+    let times = [from.time, to.time];
+    keeps_apart(bodies, [from.normal, to.normal], [from.gap, to.gap], times)
+        || keeps_apart(bodies, [to.normal; 2], [gap_along(from.time, to.normal), to.gap], times)
+        || keeps_apart(bodies, [from.normal; 2], [from.gap, gap_along(to.time, from.normal)], times)
+}
 
-    /// Whether a plane that turns from one normal to another, and at the ends separates the bodies by these gaps, does so in between.
-    fn keeps_apart(&self, normals: [A::Vector; 2], gaps: [ScalarOf<A>; 2], times: [ScalarOf<A>; 2]) -> bool {
-        if !gaps.iter().all(|&gap| gap > Scalar::ZERO) {
-            return false;
-        }
-        let duration = times[1] - times[0];
-        let most = self.acceleration_along(TurningPlane { from: normals[0], to: normals[1] }, times);
-        let roots = gaps[0].sqrt() + gaps[1].sqrt();
-        let half = ScalarOf::<A>::from_f64(0.5 + 0.5 * ROUNDING * ScalarOf::<A>::EPSILON.as_f64());
-        // NaN is no proof.
-        duration * duration * most * half < roots * roots
+/// Whether a plane that turns from one normal to another, and at the ends separates the bodies by these gaps, does so in between.
+fn keeps_apart<V: Vector>(
+    bodies: &impl Approach<V>,
+    normals: [V; 2],
+    gaps: [V::Scalar; 2],
+    times: [V::Scalar; 2],
+) -> bool {
+    if !gaps.iter().all(|&gap| gap > Scalar::ZERO) {
+        return false;
     }
+    let duration = times[1] - times[0];
+    let most = bodies.acceleration_along(TurningPlane { from: normals[0], to: normals[1] }, times);
+    let roots = gaps[0].sqrt() + gaps[1].sqrt();
+    let half = V::Scalar::from_f64(0.5 + 0.5 * ROUNDING * V::Scalar::EPSILON.as_f64());
+    // NaN is no proof.
+    duration * duration * most * half < roots * roots
 }

@@ -1,5 +1,6 @@
 //! Motion: the first contact of bodies that turn, and motions of any kind.
 
+mod approach;
 mod chain_motion;
 mod contact;
 mod first_contact;
@@ -7,10 +8,14 @@ mod free_interval;
 mod instant;
 mod motion_cast;
 mod moved;
+mod moving_body;
+mod moving_pair;
 mod next_time;
 mod options;
+mod placed;
 mod result;
 mod rigid_motion;
+mod rough_look;
 mod trajectory;
 
 pub use chain_motion::ChainMotion;

@@ -4,7 +4,8 @@ use convex_support::{AngularVelocity, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::first_contact::Search;
-use super::instant::{MovingBody, MovingPair};
+use super::moving_body::MovingBody;
+use super::moving_pair::MovingPair;
 use super::options::MotionCastOptions;
 use super::result::{MotionCast, MotionHit, MotionIterate};
 use super::rigid_motion::RigidMotion;

@@ -1,12 +1,13 @@
 //! Which time the search for a first contact looks at next. That decides how long it takes, and nothing of what is proved.
 
-use convex_support::{Scalar, ScalarOf, SupportMap};
+use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::approach::Approach;
 use super::first_contact::{AIM, Search};
 use super::instant::Instant;
 use super::result::MotionIterate;
-use super::trajectory::{Trajectory, TurningPlane};
+use super::trajectory::TurningPlane;
 
 /// How much of the farthest end that can be expected to be proved is asked for.
 const CAUTION: f64 = 0.9;
@@ -21,28 +22,21 @@ const TRIES: usize = 4;
 /// How often in a row the search for a contact may come nearer by less than half before it halves the interval.
 pub(super) const PATIENCE: u8 = 2;
 
-impl<A, MA, B, MB, F> Search<'_, A, MA, B, MB, F>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-    MA: Trajectory<Vector = A::Vector>,
-    MB: Trajectory<Vector = A::Vector>,
-    F: FnMut(MotionIterate<A::Vector>),
-{
+impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> {
     /// Where to look next; `None` where no time lies between those known.
     ///
     /// With the gap `g` and the speed `w` at which it closes, it is expected to be `g − w·s` after the time `s`. So with `k = √(M/2)`
     /// an interval can be expected to be proved if `√g + √(g − w·s) > k·s`, which ends at `s = (2√g − w/k)/k` if the gap is still
     /// open then, that is if `w < k·√g`. Otherwise the contact itself is within reach.
-    pub(super) fn next_time(&self) -> Option<ScalarOf<A>> {
-        let from_f64 = ScalarOf::<A>::from_f64;
+    pub(super) fn next_time(&self) -> Option<V::Scalar> {
+        let from_f64 = V::Scalar::from_f64;
         let Instant { time, gap, distance, error, closing, .. } = self.near;
         let end = self.options.max_time.min(self.upper);
         let (k, root) = ((self.expected_acceleration() * from_f64(0.5)).sqrt(), gap.sqrt());
         let is_within_reach = closing > k * root;
         if is_within_reach
             && !self.is_smooth
-            && distance > self.pair.size() * from_f64(FAR)
+            && distance > self.bodies.size() * from_f64(FAR)
             && self.ahead.is_none()
             && self.slow <= PATIENCE
             && let Some(next) = self.nearly_touching()
@@ -72,11 +66,11 @@ where
     /// Where to look between [`near`](Self::near) and a time at which the bodies are not certainly apart, if from here it seemed to
     /// be `next`: Newton's method from the end that is nearer to contact; where that leaves the interval, the secant; and where
     /// neither comes nearer, or a distance is not known, the middle.
-    fn between(&self, next: ScalarOf<A>, beyond: &Instant<A::Vector>) -> ScalarOf<A> {
+    fn between(&self, next: V::Scalar, beyond: &Instant<V>) -> V::Scalar {
         let Instant { time, distance, error, .. } = self.near;
         let aim = error * Scalar::from_f64(AIM);
         let (width, way) = (beyond.time - time, distance - aim);
-        let is_inside = |next: &ScalarOf<A>| *next > time && *next < beyond.time;
+        let is_inside = |next: &V::Scalar| *next > time && *next < beyond.time;
         let from_beyond = beyond.time + (beyond.distance - aim) / beyond.closing;
         let secant = time + width * (way / (distance - beyond.distance));
         let methods = if beyond.distance.abs() < way { [from_beyond, secant] } else { [next, secant] };
@@ -85,30 +79,30 @@ where
     }
 
     /// The bound `M` of a step like the last one.
-    pub(super) fn expected_acceleration(&self) -> ScalarOf<A> {
+    pub(super) fn expected_acceleration(&self) -> V::Scalar {
         let Instant { time, normal, .. } = self.near;
         let plane = TurningPlane { from: normal, to: normal + self.turned };
-        self.pair.acceleration_along(plane, [time, time + self.step]).max(Scalar::ZERO)
+        self.bodies.acceleration_along(plane, [time, time + self.step]).max(Scalar::ZERO)
     }
 
     /// The time after which the bodies have come nearer by `way`, by Newton's method of the second order: with the closing speed `w`
     /// and its growth `c` that is where `w·s + c·s²/2` is. A small part of what the growth changes is left to go, so that the next
     /// step starts on this side of the contact. Where the last step does not tell the growth, it is the most that it may be.
-    fn newton(&self, way: ScalarOf<A>) -> ScalarOf<A> {
-        let (two, Instant { time, normal, closing: w, .. }) = (ScalarOf::<A>::from_f64(2.0), self.near);
+    fn newton(&self, way: V::Scalar) -> V::Scalar {
+        let (two, Instant { time, normal, closing: w, .. }) = (V::Scalar::from_f64(2.0), self.near);
         if !self.is_smooth {
             let plane = TurningPlane { from: normal, to: normal };
-            let most = self.pair.acceleration_along(plane, [time, time + way / w]).max(Scalar::ZERO);
+            let most = self.bodies.acceleration_along(plane, [time, time + way / w]).max(Scalar::ZERO);
             return two * way / (w + (w * w + two * most * way).sqrt());
         }
         let c = self.sped_up / self.step;
-        let after = |way: ScalarOf<A>| {
+        let after = |way: V::Scalar| {
             let squared = w * w + two * c * way;
             if squared > Scalar::ZERO { two * way / (w + squared.sqrt()) } else { way / w }
         };
         let straight = way / w;
-        let changed = (c * straight * straight).abs() * ScalarOf::<A>::from_f64(LEFT);
-        after((way - changed).max(way * ScalarOf::<A>::from_f64(0.5)))
+        let changed = (c * straight * straight).abs() * V::Scalar::from_f64(LEFT);
+        after((way - changed).max(way * V::Scalar::from_f64(0.5)))
     }
 
     /// A time at which the plane between the bodies, if it does not turn, keeps them apart by a small part of their distance; `None`
@@ -116,8 +110,8 @@ where
     ///
     /// Where other points have become the closest ones, Newton's method leads astray. The plane keeps the bodies apart by no more than
     /// their distance, so that they do not touch there, and its support points are whichever are the nearest by then.
-    fn nearly_touching(&self) -> Option<ScalarOf<A>> {
-        let (zero, from_f64) = (ScalarOf::<A>::ZERO, ScalarOf::<A>::from_f64);
+    fn nearly_touching(&self) -> Option<V::Scalar> {
+        let (zero, from_f64) = (V::Scalar::ZERO, V::Scalar::from_f64);
         let Instant { time, normal, distance, closing, .. } = self.near;
         let end = self.beyond.map_or(self.options.max_time.min(self.upper), |beyond| beyond.time);
         let target = distance * from_f64(LEFT_APART * 0.5);
@@ -128,7 +122,7 @@ where
             if !(next > from.0 && next < end) {
                 break;
             }
-            let (level, _) = self.pair.level(next, normal);
+            let (level, _) = self.bodies.level(next, normal);
             if level > zero {
                 (last, from) = (Some(from), (next, level));
                 if level < distance * from_f64(LEFT_APART) {
@@ -144,12 +138,12 @@ where
     }
 
     /// The distance at a time that would be enough to prove the rest of the motion along the present normal; infinity elsewhere.
-    pub(super) fn enough_at(&self, time: ScalarOf<A>) -> ScalarOf<A> {
+    pub(super) fn enough_at(&self, time: V::Scalar) -> V::Scalar {
         if time < self.options.max_time {
-            return ScalarOf::<A>::infinity();
+            return V::Scalar::infinity();
         }
         let plane = TurningPlane { from: self.near.normal, to: self.near.normal };
-        let m = self.pair.acceleration_along(plane, [self.near.time, time]);
+        let m = self.bodies.acceleration_along(plane, [self.near.time, time]);
         let root = (time - self.near.time) * (m * Scalar::from_f64(0.5)).sqrt() - self.near.gap.sqrt();
         let root = root.max(Scalar::ZERO);
         root * root * Scalar::from_f64(1.01)

@@ -1,0 +1,160 @@
+//! Two bodies and their motions.
+
+use core::cell::Cell;
+
+use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
+use num_traits::Float;
+
+use super::approach::Approach;
+use super::instant::{Instant, Limits};
+use super::moving_body::{MovingBody, length_bound};
+use super::placed::Placed;
+use super::rough_look::Corners;
+use super::trajectory::{Trajectory, TurningPlane};
+use crate::body::{Body as _, Pair};
+use crate::gjk::rounding;
+use crate::unit::is_moderate;
+use crate::{SignedDistanceOptions, signed_distance};
+
+/// Two bodies and their motions.
+pub(super) struct MovingPair<'s, A: SupportMap + ?Sized, MA, B: SupportMap + ?Sized, MB> {
+    pub(super) a: MovingBody<'s, A, MA>,
+    pub(super) b: MovingBody<'s, B, MB>,
+    /// The corners of the faces that were closest at the last look.
+    pub(super) closest: Cell<Corners<A::Vector>>,
+    /// The support points computed of each shape.
+    iterations: Cell<usize>,
+}
+
+impl<'s, A, MA, B, MB> MovingPair<'s, A, MA, B, MB>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+    MA: Trajectory<Vector = A::Vector>,
+    MB: Trajectory<Vector = A::Vector>,
+{
+    pub(super) fn new(a: MovingBody<'s, A, MA>, b: MovingBody<'s, B, MB>) -> Self {
+        Self { a, b, closest: Cell::new(Corners::NONE), iterations: Cell::new(0) }
+    }
+
+    /// Counts support points.
+    pub(super) fn count(&self, iterations: usize) {
+        self.iterations.set(self.iterations.get() + iterations);
+    }
+
+    /// The bodies where they are at a time, by their signed distance.
+    fn closely_placed(
+        &self,
+        time: ScalarOf<A>,
+        Placed { a, b, place, .. }: &Placed<'_, A, B>,
+        axis: A::Vector,
+        limits: Limits<ScalarOf<A>>,
+    ) -> Instant<A::Vector> {
+        let wanted =
+            SignedDistanceOptions::new().with_axis(axis).with_limit(limits.distance).with_depth_limit(limits.depth);
+        let answer = signed_distance(a, b, wanted);
+        self.count(answer.iterations);
+        let (point_a, point) = (answer.point_a + *place, answer.point_b + *place);
+        let distance = answer.signed_distance;
+        Instant {
+            time,
+            normal: answer.normal,
+            gap: answer.lower,
+            distance,
+            upper: answer.upper,
+            error: distance - answer.lower,
+            closing: self.closing(time, answer.normal, [point_a, point]),
+            point,
+            is_close: true,
+        }
+    }
+
+    /// How fast points of both bodies come nearer to one another along a normal.
+    pub(super) fn closing(
+        &self,
+        time: ScalarOf<A>,
+        normal: A::Vector,
+        [point_a, point_b]: [A::Vector; 2],
+    ) -> ScalarOf<A> {
+        normal.dot(self.b.velocity(time, point_b) - self.a.velocity(time, point_a))
+    }
+}
+
+impl<A, MA, B, MB> Approach<A::Vector> for MovingPair<'_, A, MA, B, MB>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+    MA: Trajectory<Vector = A::Vector>,
+    MB: Trajectory<Vector = A::Vector>,
+{
+    fn size(&self) -> ScalarOf<A> {
+        self.a.core.extent + self.a.core.radius + self.b.core.extent + self.b.core.radius
+    }
+
+    fn iterations(&self) -> usize {
+        self.iterations.get()
+    }
+
+    fn between(&self) -> A::Vector {
+        self.a.core.origin - self.b.core.origin
+    }
+
+    fn at(&self, time: ScalarOf<A>, axis: A::Vector, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
+        let placed = self.placed(time);
+        let there = self.roughly(time, &placed, axis, limits.distance);
+        there.unwrap_or_else(|| self.closely_placed(time, &placed, axis, limits))
+    }
+
+    fn closely(&self, time: ScalarOf<A>, axis: A::Vector, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
+        self.closely_placed(time, &self.placed(time), axis, limits)
+    }
+
+    fn level(&self, time: ScalarOf<A>, normal: A::Vector) -> (ScalarOf<A>, ScalarOf<A>) {
+        let Placed { a, b, offset, .. } = &self.placed(time);
+        let mut pair = Pair::new(a, b);
+        let size = pair.size(*offset);
+        // Of numbers out of range nothing is known.
+        if !is_moderate(size) {
+            return (ScalarOf::<A>::nan(), Float::infinity());
+        }
+        let (point, _) = pair.support(-normal);
+        self.count(1);
+        (normal.dot(point + *offset) - pair.radius(), rounding(size) + pair.error())
+    }
+
+    fn acceleration_along(&self, plane: TurningPlane<A::Vector>, interval: [ScalarOf<A>; 2]) -> ScalarOf<A> {
+        let opposite = TurningPlane { from: -plane.from, to: -plane.to };
+        self.a.motion.acceleration_along(self.a.ball(), plane, interval)
+            + self.b.motion.acceleration_along(self.b.ball(), opposite, interval)
+    }
+
+    fn stays_far_apart(&self, interval: [ScalarOf<A>; 2]) -> Option<A::Vector> {
+        let a = self.a.motion.moving_ball(self.a.ball(), interval);
+        let b = self.b.motion.moving_ball(self.b.ball(), interval);
+        let (start, velocity) = (a.start - b.start, a.velocity - b.velocity);
+        let duration = interval[1] - interval[0];
+        // The time at which start + t·velocity is shortest.
+        let (slope, squared) = (start.dot(velocity), velocity.length_squared());
+        // Of velocities whose squares are out of range, that time is not known.
+        if !(is_moderate(squared) || velocity == A::Vector::ZERO) {
+            return None;
+        }
+        let nearest = if slope < Scalar::ZERO { (-slope / squared).min(duration) } else { Scalar::ZERO };
+        let between = start + velocity * nearest;
+        let reach = a.radius + b.radius + self.a.core.radius + self.b.core.radius;
+        let moved = (length_bound(a.velocity) + length_bound(b.velocity)) * nearest;
+        let margin =
+            (reach + length_bound(a.start) + length_bound(b.start) + moved) * Scalar::from_f64(32.0) * Scalar::EPSILON;
+        // NaN is not apart.
+        if between.norm() > reach + margin { between.unit() } else { None }
+    }
+
+    fn speed_at(&self, there: &Instant<A::Vector>) -> ScalarOf<A> {
+        let Instant { time, point, .. } = *there;
+        length_bound(self.a.velocity(time, point)) + length_bound(self.b.velocity(time, point))
+    }
+
+    fn velocity_of_b(&self, time: ScalarOf<A>, point: A::Vector) -> A::Vector {
+        self.b.velocity(time, point)
+    }
+}

@@ -1,0 +1,47 @@
+//! Two moving bodies where they are at a time.
+
+use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
+
+use super::moved::Moved;
+use super::moving_body::length_bound;
+use super::moving_pair::MovingPair;
+use super::trajectory::Trajectory;
+
+/// Two bodies at one time; `b` has its origin at zero, which is `place` in the world.
+pub(super) struct Placed<'s, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
+    pub(super) a: Moved<'s, A>,
+    pub(super) b: Moved<'s, B>,
+    /// The origin of `a` as seen from that of `b`.
+    pub(super) offset: A::Vector,
+    pub(super) place: A::Vector,
+}
+
+impl<A, MA, B, MB> MovingPair<'_, A, MA, B, MB>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+    MA: Trajectory<Vector = A::Vector>,
+    MB: Trajectory<Vector = A::Vector>,
+{
+    /// The bodies where they are at a time.
+    #[inline]
+    pub(super) fn placed(&self, time: ScalarOf<A>) -> Placed<'_, A, B> {
+        let (da, db) = (self.a.motion.displacement(time), self.b.motion.displacement(time));
+        // What lies between is of the order of the bodies, however far from the world's origin they are.
+        let between = self.a.core.origin - self.b.core.origin;
+        let (shifts, turned_b) = (da.shift - db.shift, db.turned(self.b.core.origin));
+        let turns = da.turned(self.a.core.origin) - turned_b;
+        let offset = between + shifts + turns;
+
+        // A rounding for each difference and sum.
+        let magnitude = length_bound(between) + length_bound(shifts) + length_bound(turns);
+        let placing = ScalarOf::<A>::from_f64(1.5) * ScalarOf::<A>::EPSILON * magnitude
+            + (self.a.displacement_error(&da) + self.b.displacement_error(&db));
+        Placed {
+            a: self.a.moved(&da, offset, placing),
+            b: self.b.moved(&db, A::Vector::ZERO, Scalar::ZERO),
+            offset,
+            place: self.b.core.origin + db.shift + turned_b,
+        }
+    }
+}
