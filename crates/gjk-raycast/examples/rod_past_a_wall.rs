@@ -4,19 +4,19 @@
 
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
+use convex_support::Segment;
 use convex_support::glam::DVec2;
-use convex_support::{Cuboid, Posed, Segment};
-use gjk_raycast::{MotionCastOptions, Outcome, RigidMotion, motion_cast};
+use gjk_raycast::{HalfSpace, MotionCastOptions, Outcome, RigidMotion};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // The wall's face is at y = 2, and the rod lies along x at first: it turns by two radians a second, for half a turn.
-    let wall = Posed::translated(Cuboid::new(DVec2::new(5.0, 0.25))?, DVec2::new(0.0, 2.25))?;
+    // The wall is all that is beyond y = 2, and the rod lies along x at first: it turns by two radians a second, for half a turn.
+    let wall = HalfSpace::new(DVec2::NEG_Y, -2.0)?;
     let swing = RigidMotion::rotation(2.0, DVec2::ZERO);
     let options = MotionCastOptions::new().with_max_time(std::f64::consts::FRAC_PI_2);
 
     for length in [1.999, 2.5] {
         let rod = Segment::new([DVec2::ZERO, DVec2::new(length, 0.0)])?;
-        let cast = motion_cast(&rod, swing, &wall, RigidMotion::default(), options)?;
+        let cast = wall.motion_cast(&rod, swing, options)?;
         match cast.outcome {
             Outcome::Hit(hit) => {
                 // Its tip is at the height of the face where length·sin 2t = 2.

@@ -31,6 +31,7 @@
 //! - *When do two shapes meet that move without turning?* [`linear_cast`] (Algorithm 3 on their difference).
 //! - *When do two shapes meet that move and turn?* [`motion_cast`], along [rigid motions](RigidMotion), [chains of joints](ChainMotion)
 //!   or a [`Trajectory`] of your own.
+//! - *And a shape and a floor without an end?* The methods of [`HalfSpace`].
 //! - *How does an answer change with a pose, a joint, a velocity?* `gradient()` of [`SignedDistance`], [`LinearHit`], [`MotionHit`], [`RayHit`];
 //!   and whether that is smooth, with second derivatives, [`ClosestFeatures`].
 //! - *The same from closest points alone:* [`iterative_ray_cast`] (Algorithm 1), for shapes with a closed form.

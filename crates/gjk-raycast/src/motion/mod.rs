@@ -12,6 +12,7 @@ mod moving_body;
 mod moving_pair;
 mod next_time;
 mod options;
+mod over_half_space;
 mod placed;
 mod result;
 mod rigid_motion;
@@ -19,7 +20,7 @@ mod rough_look;
 mod trajectory;
 
 pub use chain_motion::ChainMotion;
-pub(crate) use motion_cast::{check, checked, linear_options, of_linear_cast};
+pub(crate) use motion_cast::{check, checked};
 pub use motion_cast::{motion_cast, motion_cast_with};
 pub(crate) use moved::Moved;
 pub use options::MotionCastOptions;

@@ -3,11 +3,9 @@
 use convex_support::{Bound, Boxes, Core, InvalidShape, Lanes, Rounding, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
-use super::pieces::{Piece, Pieces};
-use crate::motion::{check, checked, linear_options, of_linear_cast};
 use crate::{
-    Distance, LinearCast, LinearCastOptions, LinearHit, Miss, Motion, MotionCast, MotionCastOptions, Outcome, Ray,
-    RayCast, RayCastError, RayCastOptions, RayHit, StartInContact, Status, Trajectory,
+    Distance, LinearCast, LinearCastOptions, LinearHit, Miss, Motion, Outcome, Ray, RayCast, RayCastError,
+    RayCastOptions, RayHit, StartInContact, Status,
 };
 
 /// The points x with n·x ≤ offset: everything on one side of a plane.
@@ -170,71 +168,6 @@ impl<V: Vector> HalfSpace<V> {
             Outcome::Undecided => Outcome::Undecided,
         };
         Ok(LinearCast { outcome, lower, upper, status, iterations: 1 })
-    }
-
-    /// When a shape that moves and turns, `a`, first touches the half-space, `b`, as far as balls around it tell.
-    ///
-    /// What does not turn is answered by [`linear_cast`](Self::linear_cast). Of what turns a start in contact is a hit, and a motion whose
-    /// balls stay clear of the plane a miss; any other is [`Outcome::Undecided`], with the time until which they do for `lower`. To know
-    /// more, ask a cuboid below the plane.
-    ///
-    /// # Errors
-    /// As of [`motion_cast`](crate::motion_cast()).
-    pub fn motion_cast<A: SupportMap<Vector = V> + ?Sized>(
-        &self,
-        shape: &A,
-        motion: impl Trajectory<Vector = V>,
-        options: MotionCastOptions<V>,
-    ) -> Result<MotionCast<V>, RayCastError> {
-        check("motion_a", &motion)?;
-        let options = checked(options)?;
-        let rigid = motion.as_rigid_motion();
-        let straight = rigid.filter(|rigid| rigid.angular_velocity == Default::default());
-        let at_rest = Motion { velocity_a: V::ZERO, velocity_b: V::ZERO };
-        let is_turning = straight.is_none();
-        let linear = straight.map_or(at_rest, |rigid| Motion { velocity_a: rigid.velocity, ..at_rest });
-        // Of what turns, the start.
-        let start = self.linear_cast(shape, linear, linear_options(&options))?;
-        if !is_turning || start.outcome.hit().is_some() {
-            return Ok(of_linear_cast(start, options.max_time));
-        }
-        let lower = self.clear_until(shape, &motion, options);
-        let (outcome, status) = if lower < options.max_time {
-            (Outcome::Undecided, Status::Stalled)
-        } else {
-            (Outcome::Miss(Miss { axis: self.normal / self.length }), Status::Converged)
-        };
-        Ok(MotionCast { outcome, lower, upper: V::Scalar::infinity(), status, iterations: 1 })
-    }
-
-    /// Until when balls around a moving shape are certainly clear of the plane by the target distance.
-    fn clear_until<A: SupportMap<Vector = V> + ?Sized>(
-        &self,
-        shape: &A,
-        motion: &impl Trajectory<Vector = V>,
-        options: MotionCastOptions<V>,
-    ) -> V::Scalar {
-        let zero = V::Scalar::ZERO;
-        let mut clear = zero;
-        for piece in Pieces::new(shape, motion, &options) {
-            let reach = piece.reach();
-            let Piece { start, duration, ball } = piece;
-            let radius = ball.radius * self.length;
-            let room = self.normal.abs().dot(reach) * (V::Scalar::from_f64(64.0) * V::Scalar::EPSILON);
-            let [height, rounding] = self.height(ball.start, V::ZERO);
-            let least = height - radius - rounding - room;
-            let closing = -self.normal.dot(ball.velocity);
-            // NaN, of a motion without an end, is not clear.
-            if !(least > zero) {
-                return clear;
-            }
-            let time = if closing > zero { least / closing } else { V::Scalar::infinity() };
-            if time < duration {
-                return start + time * (V::Scalar::ONE - V::Scalar::from_f64(8.0) * V::Scalar::EPSILON);
-            }
-            clear = start + duration;
-        }
-        options.max_time
     }
 
     /// The distance from a shape, `a`, to the half-space, `b`.

@@ -124,7 +124,7 @@ fn half_spaces_have_no_end() {
 
 /// A capsule of length 2 that turns about z over a floor at y = −1, and falls.
 #[test]
-fn a_floor_is_missed_by_balls_or_not_told() {
+fn what_turns_lands_on_a_floor() {
     let mut scene = Scene::<Posed<Ball<DVec3>>>::default();
     let floor = scene.insert_half_space(HalfSpace::new(DVec3::Y * 2.0, -2.0).unwrap());
     let rod = |y| Posed::translated(Capsule::new(0.75, 0.25).unwrap(), DVec3::Y * y).unwrap();
@@ -138,9 +138,16 @@ fn a_floor_is_missed_by_balls_or_not_told() {
     let stays_up = cast(0.5, 0.0, 100.0);
     assert_eq!((stays_up.first, stays_up.undecided), (None, None), "its ball is clear");
     assert_eq!(cast(0.5, 0.0, f64::INFINITY).undecided, None, "for ever");
+
+    // Its lower end is at the height 3 − t − 1/4 − 3/4·|cos 3t|.
+    let height = |t: f64| 3.0 - t - 0.25 - 0.75 * (3.0 * t).cos().abs();
     let falls = cast(3.0, 1.0, 9.0);
-    assert_eq!((falls.first, falls.undecided), (None, Some(floor)), "it meets the floor at some time");
-    assert!(falls.lower <= 3.0 && falls.lower > 2.99, "the ball of radius 1 is clear until then: {}", falls.lower);
+    let first = falls.first.expect("it meets the floor at some time");
+    assert_eq!((first.body, first.hit.normal), (floor, Some(DVec3::Y)), "{first:?}");
+    assert!(first.lower <= first.hit.time && first.hit.time <= first.upper, "{first:?}");
+    assert!(first.upper - first.lower < 1e-13 && (height(first.hit.time) + 1.0).abs() < 1e-14, "{first:?}");
+    assert!((0..1000).all(|i| height(first.lower * f64::from(i) / 1000.0) > -1.0), "not before");
+
     assert_eq!(cast(3.0, 1.0, 2.9).undecided, None, "not yet");
     assert_eq!(cast(-0.5, 0.0, 1.0).first.map(|first| first.hit.time), Some(0.0), "in the floor");
     let straight = RigidMotion::translation(DVec3::NEG_Y);

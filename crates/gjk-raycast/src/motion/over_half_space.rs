@@ -1,0 +1,222 @@
+//! When a body that moves and turns meets a half-space.
+
+use core::cell::Cell;
+
+use convex_support::numerics::bound::{least, raised, roundings};
+use convex_support::numerics::twofold::dot_minus;
+use convex_support::{Hint, Scalar, ScalarOf, SupportMap, Vector};
+use num_traits::Float;
+
+use super::approach::Approach;
+use super::first_contact::Search;
+use super::instant::{Instant, Limits};
+use super::motion_cast::{check, checked, linear_options, of_linear_cast};
+use super::moving_body::{MovingBody, length_bound};
+use super::options::MotionCastOptions;
+use super::result::{MotionCast, MotionIterate};
+use super::trajectory::{Trajectory, TurningPlane};
+use crate::unit::{power_of_two_near, reciprocal_of_power};
+use crate::{HalfSpace, Motion, RayCastError};
+
+impl<V: Vector> HalfSpace<V> {
+    /// When a shape that moves and turns, `a`, first touches the half-space, `b`, which is at rest.
+    ///
+    /// ```
+    /// use convex_support::{Cuboid, Posed, glam::DVec3};
+    /// use gjk_raycast::{HalfSpace, MotionCastOptions, RigidMotion};
+    ///
+    /// // A cube of edge 2 turns about z, with its middle at a height of 1.2 over the floor.
+    /// let floor = HalfSpace::new(DVec3::Y, 0.0)?;
+    /// let cube = Posed::translated(Cuboid::new(DVec3::ONE)?, DVec3::Y * 1.2)?;
+    /// let turning = RigidMotion::rotation(DVec3::Z, DVec3::Y * 1.2);
+    /// let cast = floor.motion_cast(&cube, turning, MotionCastOptions::new())?;
+    ///
+    /// // Its corners reach √2 from the middle, and point down after an eighth of a turn.
+    /// let hit = cast.outcome.hit().ok_or("they meet")?;
+    /// let truth = std::f64::consts::FRAC_PI_4 - (1.2 / std::f64::consts::SQRT_2).acos();
+    /// assert!(cast.lower <= truth && truth <= cast.upper && cast.upper - cast.lower < 1e-13);
+    /// assert_eq!(hit.normal, Some(DVec3::Y));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// This is [`motion_cast`](crate::motion_cast()) against a body without an end: hits, misses and brackets mean the same. At every
+    /// time the body's lowest point is one support point, and the plane between the bodies is known. What does not turn is answered by
+    /// [`linear_cast`](Self::linear_cast).
+    ///
+    /// # Errors
+    /// As of [`motion_cast`](crate::motion_cast()).
+    pub fn motion_cast<A: SupportMap<Vector = V> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: impl Trajectory<Vector = V>,
+        options: MotionCastOptions<V>,
+    ) -> Result<MotionCast<V>, RayCastError> {
+        self.motion_cast_with(shape, motion, options, |_| {})
+    }
+
+    /// [`motion_cast`](Self::motion_cast), showing an observer every time that is looked at. Where nothing turns none is.
+    ///
+    /// # Errors
+    /// As of [`motion_cast`](crate::motion_cast()).
+    pub fn motion_cast_with<A: SupportMap<Vector = V> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: impl Trajectory<Vector = V>,
+        options: MotionCastOptions<V>,
+        observer: impl FnMut(MotionIterate<V>),
+    ) -> Result<MotionCast<V>, RayCastError> {
+        check("motion_a", &motion)?;
+        let options = checked(options)?;
+        let rigid = motion.as_rigid_motion();
+        if let Some(straight) = rigid.filter(|rigid| rigid.angular_velocity == Default::default()) {
+            let motion = Motion { velocity_a: straight.velocity, velocity_b: V::ZERO };
+            let cast = self.linear_cast(shape, motion, linear_options(&options))?;
+            return Ok(of_linear_cast(cast, options.max_time));
+        }
+        Ok(Search::run(&OverHalfSpace::new(shape, motion, self, options.target_distance), options, observer))
+    }
+}
+
+/// A moving body, `a`, over a half-space at rest, `b`.
+struct OverHalfSpace<'s, S: SupportMap + ?Sized, M> {
+    body: MovingBody<'s, S, M>,
+    /// The target distance, by which the body's radius is grown.
+    margin: ScalarOf<S>,
+    /// The normal and the offset in units of a power of two near the normal's length, so that both are as they were given.
+    normal: S::Vector,
+    offset: ScalarOf<S>,
+    length: ScalarOf<S>,
+    /// The unit normal.
+    unit: S::Vector,
+    /// The support points computed.
+    iterations: Cell<usize>,
+}
+
+/// The body's lowest point at one time.
+struct Lowest<V: Vector> {
+    /// Its height over the half-space, less the target distance, and what that is wrong by at most.
+    height: V::Scalar,
+    error: V::Scalar,
+    /// The point of its core, in the world.
+    core_point: V,
+}
+
+impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> OverHalfSpace<'s, S, M> {
+    fn new(shape: &'s S, motion: M, half_space: &HalfSpace<S::Vector>, margin: ScalarOf<S>) -> Self {
+        let per_unit = reciprocal_of_power(power_of_two_near(half_space.normal().norm()));
+        let normal = half_space.normal() * per_unit;
+        let length = normal.norm();
+        Self {
+            body: MovingBody::new(shape, motion, margin),
+            margin,
+            normal,
+            offset: half_space.offset() * per_unit,
+            length,
+            unit: normal / length,
+            iterations: Cell::new(0),
+        }
+    }
+
+    /// The lowest point at a time.
+    ///
+    /// Its height is one sum of products: of the normal with the origin, with what the motion adds to that, and with the support point.
+    /// In twice the precision it is rounded once, so that a body far along the plane is known as well as any other.
+    fn lowest(&self, time: ScalarOf<S>) -> Lowest<S::Vector> {
+        let (n, origin, radius) = (self.normal, self.body.core.origin, self.body.core.radius);
+        let displacement = self.body.motion.displacement(time);
+        let (shift, turned) = (displacement.shift, displacement.turned(origin));
+        let place = origin + shift + turned;
+        let moved = self.body.moved(&displacement, place, self.body.displacement_error(&displacement));
+        let point = moved.core_support(-n, &mut Hint::new());
+        self.iterations.set(self.iterations.get() + 1);
+
+        let terms = [origin, shift, turned, point];
+        let parts = (0..S::Vector::DIM).flat_map(|i| terms.map(|term| (n.get(i), term.get(i))));
+        let level = dot_minus(parts, self.offset) / self.length;
+        let magnitude = terms.into_iter().fold(self.offset.abs(), |sum, term| sum + n.abs().dot(term.abs()));
+        // The products are right to 43ε² of what is added up. The sum, the length and the quotient lose ten halves of ε, and the radius,
+        // its own sum and the difference four.
+        let rounding = moved.rounding();
+        let of_point = Float::min(n.abs().dot(rounding.error) / self.length, rounding.error_length);
+        let squared = ScalarOf::<S>::EPSILON * ScalarOf::<S>::EPSILON * ScalarOf::<S>::from_f64(64.0);
+        let rounded = squared * magnitude + roundings(10.0, level.abs()) + roundings(4.0, radius);
+        // What of the products is subnormal.
+        let tiny = least::<ScalarOf<S>>() * ScalarOf::<S>::from_f64(64.0);
+        Lowest { height: level - radius, error: raised(of_point + rounded) + tiny, core_point: place + point }
+    }
+}
+
+impl<S, M> Approach<S::Vector> for OverHalfSpace<'_, S, M>
+where
+    S: SupportMap + ?Sized,
+    M: Trajectory<Vector = S::Vector>,
+{
+    fn size(&self) -> ScalarOf<S> {
+        self.body.core.extent + self.body.core.radius
+    }
+
+    fn iterations(&self) -> usize {
+        self.iterations.get()
+    }
+
+    fn between(&self) -> S::Vector {
+        self.unit
+    }
+
+    fn at(&self, time: ScalarOf<S>, axis: S::Vector, limits: Limits<ScalarOf<S>>) -> Instant<S::Vector> {
+        self.closely(time, axis, limits)
+    }
+
+    fn closely(&self, time: ScalarOf<S>, _axis: S::Vector, _limits: Limits<ScalarOf<S>>) -> Instant<S::Vector> {
+        let Lowest { height, error, core_point } = self.lowest(time);
+        let point_a = core_point - self.unit * self.body.core.radius;
+        // The point below, or of a body that is in the half-space its own lowest point.
+        let point = point_a - self.unit * height.max(-self.margin);
+        Instant {
+            time,
+            normal: self.unit,
+            gap: height - error,
+            distance: height,
+            upper: height + error,
+            error,
+            closing: -self.unit.dot(self.body.velocity(time, point_a)),
+            point,
+            is_close: true,
+        }
+    }
+
+    /// The normal is that of the plane, whichever is asked for.
+    fn level(&self, time: ScalarOf<S>, _normal: S::Vector) -> (ScalarOf<S>, ScalarOf<S>) {
+        let Lowest { height, error, .. } = self.lowest(time);
+        (height, error)
+    }
+
+    /// The plane does not turn, whatever rounding has made of a normal.
+    fn acceleration_along(&self, _plane: TurningPlane<S::Vector>, interval: [ScalarOf<S>; 2]) -> ScalarOf<S> {
+        let plane = TurningPlane { from: self.normal, to: self.normal };
+        self.body.motion.acceleration_along(self.body.ball(), plane, interval) / self.length
+    }
+
+    /// The ball is lowest at one of the ends.
+    fn stays_far_apart(&self, interval: [ScalarOf<S>; 2]) -> Option<S::Vector> {
+        let (zero, n) = (ScalarOf::<S>::ZERO, self.normal);
+        let ball = self.body.motion.moving_ball(self.body.ball(), interval);
+        let doubt = n.abs().dot(ball.velocity.abs()) * ScalarOf::<S>::from_f64(4.0) * Scalar::EPSILON;
+        let sinking = doubt - n.dot(ball.velocity);
+        // For ever, if it does not sink at all.
+        let way = if sinking > zero { sinking * (interval[1] - interval[0]) } else { zero };
+        let reach = (ball.radius + self.body.core.radius) * self.length;
+        let magnitude = reach + n.abs().dot(ball.start.abs()) + self.offset.abs() + way;
+        let margin = magnitude * ScalarOf::<S>::from_f64(32.0) * Scalar::EPSILON;
+        // NaN is not apart.
+        (n.dot(ball.start) - self.offset - way > reach + margin).then_some(self.unit)
+    }
+
+    fn speed_at(&self, there: &Instant<S::Vector>) -> ScalarOf<S> {
+        length_bound(self.body.velocity(there.time, there.point))
+    }
+
+    fn velocity_of_b(&self, _time: ScalarOf<S>, _point: S::Vector) -> S::Vector {
+        S::Vector::ZERO
+    }
+}
