@@ -4,8 +4,7 @@ use convex_support::{Core, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::body::{Pair, PointPair};
-use crate::gjk::{End, Frame, Gjk, GjkOptions, Shape, gjk, is_near_contact, near_contact};
-use crate::unit::moderate;
+use crate::gjk::{End, Frame, Gjk, GjkOptions, Shape, first_direction, gjk, is_near_contact, near_contact};
 use crate::{Distance, DistanceOptions, Iterate, Status};
 
 /// The distance of two shapes, and where they are closest.
@@ -50,17 +49,13 @@ where
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
-    let first = options.axis.and_then(moderate).or_else(|| moderate(frame.offset)).unwrap_or_else(|| Vector::axis(0));
-    let mut state = Gjk::new(first);
-    let closest = pair.closest_points(offset, size);
-    let meet = closest.is_some_and(|points| state.begin_at(points.a - points.b + frame.offset, points, &frame));
+    let mut state = Gjk::new(first_direction(options.axis, frame.offset));
+    let meet = state.begin_at_closest(&pair, &frame, size) == Some(true);
     let search = GjkOptions {
-        first: state.normal,
         limit: options.limit * frame.per_unit + frame.radius,
         tolerance: options.tolerance,
-        closest_points: true,
-        max_iterations: options.max_iterations,
         sub_algorithm: options.sub_algorithm,
+        ..GjkOptions::new(state.normal, options.max_iterations)
     };
     let end = if meet { End::Overlap } else { gjk(&mut state, &mut pair, frame, search, None, observer) };
     if is_near_contact(&mut state, &frame)

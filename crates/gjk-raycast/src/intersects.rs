@@ -4,8 +4,8 @@ use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use crate::body::{Body, Pair, PointPair, Untraced};
-use crate::gjk::{End, Frame, Gjk, GjkOptions, gjk, is_near_contact, near_contact, rounding};
-use crate::unit::{is_moderate, moderate};
+use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk, is_near_contact, near_contact, rounding};
+use crate::unit::is_moderate;
 use crate::{IntersectOptions, Intersection, Iterate, Status};
 
 /// Whether two shapes have a point in common, decided as soon as it can be.
@@ -61,7 +61,7 @@ where
     }
     let first = match options.axis.or(shortest) {
         Some(axis) if is_moderate(axis.length_squared()) => axis,
-        axis => axis.and_then(moderate).or_else(|| moderate(offset)).unwrap_or_else(|| Vector::axis(0)),
+        axis => first_direction(axis, offset),
     };
     let mut known = None;
     if is_moderate(size) && options.max_iterations > 0 {
@@ -108,23 +108,22 @@ where
 {
     let size = pair.size(first.offset);
     let frame = Frame::new(pair, first.offset, size);
-    let mut known = first.point.map(|point| (point * frame.per_unit, ()));
     let mut state = Gjk::new(first.direction);
-    let closest = pair.closest_points(first.offset, size);
-    if closest.is_some() {
-        known = None;
-    }
-    let meet = closest.is_some_and(|PointPair { a, b }| state.begin_at(a - b + frame.offset, (), &frame));
+    let meet = state.begin_at_closest(pair, &frame, size);
+    // What begins elsewhere looks along another direction.
+    let known = if meet.is_none() { first.point.map(|point| (point * frame.per_unit, ())) } else { None };
     let max_iterations = options.max_iterations;
     let options = GjkOptions {
-        first: state.normal,
         limit: frame.radius,
-        tolerance: Scalar::ZERO,
         closest_points: false,
-        max_iterations,
         sub_algorithm: options.sub_algorithm,
+        ..GjkOptions::new(state.normal, max_iterations)
     };
-    let end = if meet { End::Overlap } else { gjk(&mut state, &mut Untraced(pair), frame, options, known, observer) };
+    let end = if meet == Some(true) {
+        End::Overlap
+    } else {
+        gjk(&mut state, &mut Untraced(pair), frame, options, known, observer)
+    };
     let mut iterations = state.iterations;
     let (overlap, axis, status) = match end {
         End::Separated if state.lower > frame.radius + frame.error => (false, state.axis.unit(), Status::Converged),

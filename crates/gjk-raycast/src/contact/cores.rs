@@ -7,11 +7,10 @@ use num_traits::Float as _;
 use super::SignedDistanceOptions;
 use super::peeled::{Peeled, without_ball};
 use super::zonotope::{Zonotope, parallelotope};
+use crate::Iterate;
 use crate::body::{Body as _, Pair, PointPair};
-use crate::gjk::{End, Frame, Gjk, GjkOptions, gjk};
+use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::symmetric::Symmetric;
-use crate::unit::moderate;
-use crate::{Iterate, SubAlgorithm};
 
 /// A support point of the difference, and the points of both cores that it is made of.
 #[derive(Clone, Copy, Debug)]
@@ -239,19 +238,12 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         observer: impl FnMut(Iterate<'_, A::Vector>),
     ) -> (Gjk<A::Vector, PointPair<A::Vector>>, End) {
         let Frame { offset, per_unit, scale, .. } = self.frame;
-        let first = options.axis.and_then(moderate).or_else(|| moderate(offset)).unwrap_or_else(|| Vector::axis(0));
-        let mut state = Gjk::new(first);
+        let mut state = Gjk::new(first_direction(options.axis, offset));
         let is_whole = self.peeled == [Scalar::ZERO; 2];
-        let closest = if is_whole { self.pair.closest_points(offset * scale, self.size * scale) } else { None };
-        let meet = closest.is_some_and(|points| state.begin_at(points.a - points.b + offset, points, &self.frame));
-        let options = GjkOptions {
-            first: state.normal,
-            limit: (options.limit + self.radius()) * per_unit,
-            tolerance: Scalar::ZERO,
-            closest_points: true,
-            max_iterations: options.max_iterations.saturating_sub(self.iterations),
-            sub_algorithm: SubAlgorithm::Regions,
-        };
+        let meet = is_whole && state.begin_at_closest(&self.pair, &self.frame, self.size * scale) == Some(true);
+        let limit = (options.limit + self.radius()) * per_unit;
+        let max_iterations = options.max_iterations.saturating_sub(self.iterations);
+        let options = GjkOptions { limit, ..GjkOptions::new(state.normal, max_iterations) };
         let mut cores = Peeled { pair: &mut self.pair, radii: self.peeled };
         let end = if meet { End::Overlap } else { gjk(&mut state, &mut cores, self.frame, options, None, observer) };
         state.ensure_measured();

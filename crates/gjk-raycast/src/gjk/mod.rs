@@ -4,6 +4,7 @@
 mod near_contact;
 mod next_direction;
 mod progress;
+mod start;
 mod state;
 
 use convex_support::{Scalar, SupportMap, Vector};
@@ -15,6 +16,7 @@ use crate::{Iterate, Status, SubAlgorithm};
 pub(crate) use near_contact::{NearContact, Shape, is_near_contact, near_contact};
 use next_direction::NextDirection;
 pub(crate) use progress::Progress;
+pub(crate) use start::first_direction;
 pub(crate) use state::Gjk;
 
 /// Where the difference of two bodies is, and the unit it is measured in.
@@ -115,8 +117,8 @@ struct Direction<V: Vector> {
 /// how it came there: the lower one is that of a plane through a support point, and the upper one is measured again before
 /// it counts.
 ///
-/// `known` is the support point along the first direction, if there is one; the state is a new one, or one that
-/// [began](Gjk::begin_at) with a point, and the vector to it for first direction.
+/// `known` is the support point along the first direction, if there is one; the state is one that
+/// [began](Gjk::begin_at_closest), or with corners of its own.
 #[inline]
 pub(crate) fn gjk<B: Body>(
     state: &mut Gjk<B::Vector, B::Witness>,

@@ -14,11 +14,9 @@ use convex_support::numerics::twofold::{dot_minus, lost_in_sum, two_sum};
 use convex_support::{Core, Rounding, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
-use super::{End, Frame, Gjk, GjkOptions, gjk};
-use crate::SubAlgorithm;
+use super::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::body::{Body as _, Pair, PointPair};
 use crate::simplex::{MAX_POINTS, cross};
-use crate::unit::moderate;
 
 /// How many errors apart, or in one another, bodies are looked at once more.
 const NEAR: f64 = 16.0;
@@ -113,7 +111,7 @@ fn look<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, max_iterations: usize) -> O
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
-    let (state, end) = look_closely(&mut pair, frame, offset, size, max_iterations);
+    let (state, end) = look_closely(&mut pair, frame, size, max_iterations);
 
     let seen = Seen::new(&pair, &frame);
     let mut pairs = [PointPair::default(); MAX_POINTS];
@@ -137,7 +135,6 @@ fn look<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, max_iterations: usize) -> O
 fn look_closely<A, B>(
     pair: &mut Pair<'_, A, B>,
     frame: Frame<A::Vector>,
-    offset: A::Vector,
     size: <A::Vector as Vector>::Scalar,
     max_iterations: usize,
 ) -> (Gjk<A::Vector, PointPair<A::Vector>>, End)
@@ -146,21 +143,13 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let frame = Frame { noise: frame.noise * Scalar::from_f64(0.0625), ..frame };
-    let first = moderate(frame.offset).unwrap_or_else(|| Vector::axis(0));
+    let first = first_direction(None, frame.offset);
     let mut state = Gjk::new(first);
-    let closest = pair.closest_points(offset, size);
-    if closest.is_some_and(|points| state.begin_at(points.a - points.b + frame.offset, points, &frame)) {
+    if state.begin_at_closest(pair, &frame, size) == Some(true) {
         // Where they meet, the vector from one to the other is no direction to look along.
         state = Gjk::new(first);
     }
-    let options = GjkOptions {
-        first: state.normal,
-        limit: Float::infinity(),
-        tolerance: Scalar::ZERO,
-        closest_points: true,
-        max_iterations,
-        sub_algorithm: SubAlgorithm::Regions,
-    };
+    let options = GjkOptions::new(state.normal, max_iterations);
     let end = gjk(&mut state, pair, frame, options, None, |_| {});
     state.ensure_measured();
     (state, end)

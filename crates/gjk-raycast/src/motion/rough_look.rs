@@ -8,10 +8,10 @@ use super::moved::Moved;
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use super::trajectory::Trajectory;
+use crate::SignedDistanceOptions;
 use crate::body::{Body as _, Pair, PointPair};
 use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk};
 use crate::simplex::MAX_POINTS;
-use crate::{SignedDistanceOptions, SubAlgorithm};
 
 /// How wide a bracket on the distance of bodies that are well apart may stay, relative to it: where they are looked at next hardly
 /// depends on it, and their gap is proved however wide it is.
@@ -49,30 +49,27 @@ where
         let frame = Frame::new(&mut pair, *offset, size);
         let Frame { scale, per_unit, radius, error, .. } = frame;
         let mut state = Gjk::new(axis);
-        if let Some(points) = pair.closest_points(*offset, size) {
-            if state.begin_at(points.a - points.b + frame.offset, points, &frame) {
-                return None;
-            }
-        } else {
-            let moved = |points: PointPair<A::Vector>| PointPair {
-                a: a.turned(points.a) * per_unit,
-                b: b.turned(points.b) * per_unit,
-            };
-            let corners = self.closest.get().0.into_iter().flatten().map(moved);
-            state.begin_with(corners.map(|points| (points.a - points.b + frame.offset, points)), &frame);
-            if state.normal.dot(axis) < Scalar::ZERO {
-                // They have passed through one another, and their plane is the other way round.
-                state = Gjk::new(-state.normal);
+        match state.begin_at_closest(&pair, &frame, size) {
+            Some(true) => return None,
+            Some(false) => {}
+            None => {
+                let moved = |points: PointPair<A::Vector>| PointPair {
+                    a: a.turned(points.a) * per_unit,
+                    b: b.turned(points.b) * per_unit,
+                };
+                let corners = self.closest.get().0.into_iter().flatten().map(moved);
+                state.begin_with(corners.map(|points| (points.a - points.b + frame.offset, points)), &frame);
+                if state.normal.dot(axis) < Scalar::ZERO {
+                    // They have passed through one another, and their plane is the other way round.
+                    state = Gjk::new(-state.normal);
+                }
             }
         }
         let options = GjkOptions {
-            first: state.normal,
             limit: limit * per_unit + radius,
             // It is relative to the distance of the cores, which says nothing of that of round bodies.
             tolerance: if radius > Scalar::ZERO { Scalar::ZERO } else { Scalar::from_f64(ROUGH) },
-            closest_points: true,
-            max_iterations: SignedDistanceOptions::<A::Vector>::new().max_iterations,
-            sub_algorithm: SubAlgorithm::Regions,
+            ..GjkOptions::new(state.normal, SignedDistanceOptions::<A::Vector>::new().max_iterations)
         };
         let end = gjk(&mut state, &mut pair, frame, options, None, |_| {});
         self.count(state.iterations);
