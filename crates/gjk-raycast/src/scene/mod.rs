@@ -5,6 +5,7 @@ mod among;
 mod cast;
 mod error;
 mod half_space;
+mod height_bound;
 mod mesh;
 mod motion_cast;
 mod nearest;

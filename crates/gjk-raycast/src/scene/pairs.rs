@@ -5,7 +5,7 @@ use core::ops::ControlFlow;
 
 use convex_support::{PairSearch, ScalarOf, SupportMap};
 
-use super::half_space::HeightBound;
+use super::height_bound::HeightBound;
 use super::result::{PairDistance, Work, reuse};
 use super::{Among, Body, Scene};
 use crate::{Distance, DistanceOptions, distance};
