@@ -2,7 +2,7 @@
 
 mod common;
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2, TAU};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2, TAU};
 
 use common::behind_pointers::motion_cast;
 use common::{Random, s, v};
@@ -42,7 +42,13 @@ fn the_tip_of_a_rod_meets_the_floor() {
             let truth = (1.0_f64 / length).asin() / rate;
             let rod = Segment::new([DVec2::ZERO, DVec2::new(length, 0.0)]).expect("finite");
             let swing = RigidMotion::rotation(-rate, DVec2::ZERO);
-            holds(floor(-1.0).motion_cast(&rod, swing, until(10.0 / rate)).expect("finite"), truth);
+            let cast = floor(-1.0).motion_cast(&rod, swing, until(10.0 / rate)).expect("finite");
+            holds(cast, truth);
+            // Turned back at the start, it is there later.
+            let hit = cast.outcome.hit().expect("a hit");
+            let gradient = hit.gradient(&swing, &RigidMotion::default()).expect("it falls");
+            let later = gradient.pose_a.rotation_about(DVec2::ZERO) * rate;
+            assert!((later - 1.0).abs() < 1e-12, "{later}");
             let rod = Segment::new([DVec3::ZERO, DVec3::new(length, 0.0, 0.0)]).expect("finite");
             let swing = RigidMotion::rotation(DVec3::Z * -rate, DVec3::ZERO);
             holds(floor(-1.0).motion_cast(&rod, swing, until(10.0 / rate)).expect("finite"), truth);
@@ -52,6 +58,29 @@ fn the_tip_of_a_rod_meets_the_floor() {
     let rod = Segment::new([Vec2::ZERO, Vec2::new(4.0, 0.0)]).expect("finite");
     let cast = floor(-1.0).motion_cast(&rod, RigidMotion::rotation(-0.5, Vec2::ZERO), until(9.0)).expect("finite");
     holds(cast, 0.25_f64.asin() / 0.5);
+}
+
+/// The bound of what turns is a product of two angular velocities, whose square underflows of such as these. Taken for zero, it proves
+/// that what is above the floor at both ends is so all the way.
+#[test]
+fn turning_ever_so_slowly_is_turning() {
+    for exponent in [-6, -12, -15, -18] {
+        let rate = 10.0_f32.powi(exponent);
+        let rod = Segment::new([Vec2::ZERO, Vec2::new(2.0, 0.0)]).expect("finite");
+        let swing = RigidMotion::rotation(-rate, Vec2::ZERO);
+        let cast = floor(-1.0).motion_cast(&rod, swing, MotionCastOptions::new().with_max_time(3.125 / rate));
+        let cast = cast.expect("finite");
+        let hit = cast.outcome.hit().unwrap_or_else(|| panic!("{rate}: {cast:?}"));
+        assert!((hit.time * rate - PI as f32 / 6.0).abs() < 1e-5, "{rate}: {cast:?}");
+    }
+    for exponent in [-70, -90, -140] {
+        let rate = 10.0_f64.powi(exponent);
+        let rod = Segment::new([DVec2::ZERO, DVec2::new(2.0, 0.0)]).expect("finite");
+        let cast = floor(-1.0).motion_cast(&rod, RigidMotion::rotation(-rate, DVec2::ZERO), until(3.125 / rate));
+        let cast = cast.expect("finite");
+        let hit = cast.outcome.hit().unwrap_or_else(|| panic!("{rate}: {cast:?}"));
+        assert!((hit.time * rate - PI / 6.0).abs() < 1e-14, "{rate}: {cast:?}");
+    }
 }
 
 #[test]

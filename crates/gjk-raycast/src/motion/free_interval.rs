@@ -40,9 +40,13 @@ pub(super) fn is_free<V: Vector>(bodies: &impl Approach<V>, from: &Instant<V>, t
         level - error
     };
     let times = [from.time, to.time];
-    keeps_apart(bodies, [from.normal, to.normal], [from.gap, to.gap], times)
-        || keeps_apart(bodies, [to.normal; 2], [gap_along(from.time, to.normal), to.gap], times)
-        || keeps_apart(bodies, [from.normal; 2], [from.gap, gap_along(to.time, from.normal)], times)
+    if keeps_apart(bodies, [from.normal, to.normal], [from.gap, to.gap], times) {
+        return true;
+    }
+    // Of one plane nothing else can be said.
+    from.normal != to.normal
+        && (keeps_apart(bodies, [to.normal; 2], [gap_along(from.time, to.normal), to.gap], times)
+            || keeps_apart(bodies, [from.normal; 2], [from.gap, gap_along(to.time, from.normal)], times))
 }
 
 /// Whether a plane that turns from one normal to another, and at the ends separates the bodies by these gaps, does so in between.

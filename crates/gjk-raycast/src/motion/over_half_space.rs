@@ -43,6 +43,8 @@ impl<V: Vector> HalfSpace<V> {
     /// time the body's lowest point is one support point, and the plane between the bodies is known. What does not turn is answered by
     /// [`linear_cast`](Self::linear_cast).
     ///
+    /// The [`gradient`](crate::MotionHit::gradient) of a hit is that against a body at rest.
+    ///
     /// # Errors
     /// As of [`motion_cast`](crate::motion_cast()).
     pub fn motion_cast<A: SupportMap<Vector = V> + ?Sized>(
@@ -204,7 +206,7 @@ where
         let doubt = n.abs().dot(ball.velocity.abs()) * ScalarOf::<S>::from_f64(4.0) * Scalar::EPSILON;
         let sinking = doubt - n.dot(ball.velocity);
         // For ever, if it does not sink at all.
-        let way = if sinking > zero { sinking * (interval[1] - interval[0]) } else { zero };
+        let way = if sinking <= zero { zero } else { sinking * (interval[1] - interval[0]) };
         let reach = (ball.radius + self.body.core.radius) * self.length;
         let magnitude = reach + n.abs().dot(ball.start.abs()) + self.offset.abs() + way;
         let margin = magnitude * ScalarOf::<S>::from_f64(32.0) * Scalar::EPSILON;

@@ -165,9 +165,10 @@ impl<V: Vector> Trajectory for RigidMotion<V> {
             return straight;
         }
         let w = self.angular_velocity.cross_matrix();
-        let [bent_from, bent_to] = [from, to].map(|n| (w * (w * n - twice_rate)).length_squared());
+        let [bent_from, bent_to] = [from, to].map(|n| (w * (w * n - twice_rate)).norm());
         let bent = if bent_from > bent_to { bent_from } else { bent_to };
-        straight + bent.sqrt() * self.lever(ball).1
+        // Of what turns ever so slowly the products may underflow.
+        straight + bent * self.lever(ball).1 + V::Scalar::min_positive_value()
     }
 
     /// About the centre, which moves at constant velocity, or about the middle of the ball, which leaves its chord by
