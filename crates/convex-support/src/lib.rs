@@ -36,7 +36,8 @@
 //! - `hull`: `Polytope::hull_of`, the exact convex hull of raw points, for polytopes of thousands of vertices; and `Faceted`, a
 //!   hull with its half-spaces.
 //! - `serde`: shapes as serde data, checked on the way in.
-//! - `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`: parry's shapes as shapes of this crate, and back.
+//! - `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`: parry's shapes as shapes of this crate, and back; its
+//!   compounds and meshes as their pieces.
 //! - `mint`: glam's conversions from and to mint's vectors.
 //! - `proptest`: the module `strategies`, which generates shapes and poses of wild aspect and scale, for property tests.
 

@@ -1,7 +1,8 @@
 //! Bridges to parry, for code that moves from it or uses both.
 //!
 //! parry is one crate for each dimension and precision, with the same names in each. So is this bridge: `shapes.rs` is
-//! compiled for all of them, with `solid.rs` for 3D space or `planar.rs` for the plane.
+//! compiled for all of them, with `solid.rs` for 3D space or `planar.rs` for the plane, and `pieces.rs` for what is made of
+//! convex pieces.
 
 /// parry2d's shapes as shapes of this crate, and back; single precision.
 #[cfg(feature = "parry2d")]
@@ -11,6 +12,7 @@ pub mod parry2d {
 
     include!("shapes.rs");
     include!("planar.rs");
+    include!("pieces.rs");
 }
 
 /// parry2d-f64's shapes as shapes of this crate, and back; double precision.
@@ -21,6 +23,7 @@ pub mod parry2d_f64 {
 
     include!("shapes.rs");
     include!("planar.rs");
+    include!("pieces.rs");
 }
 
 /// parry3d's shapes as shapes of this crate, and back; single precision.
@@ -31,6 +34,7 @@ pub mod parry3d {
 
     include!("shapes.rs");
     include!("solid.rs");
+    include!("pieces.rs");
 }
 
 /// parry3d-f64's shapes as shapes of this crate, and back; double precision.
@@ -41,6 +45,7 @@ pub mod parry3d_f64 {
 
     include!("shapes.rs");
     include!("solid.rs");
+    include!("pieces.rs");
 }
 
 /// Asserts that two shapes reach equally far along some directions, to rounding in single precision.

@@ -32,11 +32,31 @@ impl TryFrom<&theirs::ConvexPolygon> for Polytope<V> {
     }
 }
 
+/// The convex shape that this is, if it is one that only the plane has.
+fn convex_of_dimension(shape: TypedShape<'_>) -> Option<Result<SharedConvex, InvalidShape>> {
+    Some(match shape {
+        TypedShape::ConvexPolygon(polygon) => shared(Polytope::try_from(polygon)),
+        TypedShape::RoundConvexPolygon(round) => rounded(Polytope::try_from(&round.inner_shape), round.border_radius),
+        _ => return None,
+    })
+}
+
 /// parry's polygon of the same points; `None` where parry cannot make one of them, as where they are collinear.
 #[must_use]
 pub fn convex_polygon(polytope: &Polytope<V>) -> Option<theirs::ConvexPolygon> {
     let points: Vec<ParryVector> = polytope.points().iter().map(|&p| parrys(p)).collect();
     theirs::ConvexPolygon::from_convex_hull(&points)
+}
+
+/// For the tests of pieces: one of each convex kind that only the plane has.
+#[cfg(test)]
+fn convex_shapes() -> Vec<theirs::SharedShape> {
+    let corners: Vec<_> = [V::X, V::Y, V::ZERO].map(parrys).to_vec();
+    let polygon = theirs::ConvexPolygon::from_convex_hull(&corners).expect("a triangle");
+    Vec::from([
+        theirs::SharedShape::new(polygon.clone()),
+        theirs::SharedShape::new(theirs::RoundShape { inner_shape: polygon, border_radius: 0.25 }),
+    ])
 }
 
 #[cfg(test)]

@@ -60,11 +60,41 @@ impl From<&Cone<V>> for theirs::Cone {
     }
 }
 
+/// The convex shape that this is, if it is one that only 3D space has.
+fn convex_of_dimension(shape: TypedShape<'_>) -> Option<Result<SharedConvex, InvalidShape>> {
+    Some(match shape {
+        TypedShape::Cylinder(cylinder) => shared(Cylinder::try_from(*cylinder)),
+        TypedShape::Cone(cone) => shared(Cone::try_from(*cone)),
+        TypedShape::ConvexPolyhedron(polyhedron) => shared(Polytope::try_from(polyhedron)),
+        TypedShape::RoundCylinder(round) => rounded(Cylinder::try_from(round.inner_shape), round.border_radius),
+        TypedShape::RoundCone(round) => rounded(Cone::try_from(round.inner_shape), round.border_radius),
+        TypedShape::RoundConvexPolyhedron(round) => {
+            rounded(Polytope::try_from(&round.inner_shape), round.border_radius)
+        }
+        _ => return None,
+    })
+}
+
 /// parry's polyhedron of the same points; `None` where parry cannot make one of them, as where they are flat.
 #[must_use]
 pub fn convex_polyhedron(polytope: &Polytope<V>) -> Option<theirs::ConvexPolyhedron> {
     let points: Vec<ParryVector> = polytope.points().iter().map(|&p| parrys(p)).collect();
     theirs::ConvexPolyhedron::from_convex_hull(&points)
+}
+
+/// For the tests of pieces: one of each convex kind that only 3D space has.
+#[cfg(test)]
+fn convex_shapes() -> Vec<theirs::SharedShape> {
+    let corners: Vec<_> = [V::X, V::Y, V::Z, V::ZERO].map(parrys).to_vec();
+    let polyhedron = theirs::ConvexPolyhedron::from_convex_hull(&corners).expect("a tetrahedron");
+    Vec::from([
+        theirs::SharedShape::cylinder(1.0, 0.5),
+        theirs::SharedShape::cone(1.0, 0.5),
+        theirs::SharedShape::new(polyhedron.clone()),
+        theirs::SharedShape::round_cylinder(1.0, 0.5, 0.25),
+        theirs::SharedShape::round_cone(1.0, 0.5, 0.25),
+        theirs::SharedShape::new(theirs::RoundShape { inner_shape: polyhedron, border_radius: 0.25 }),
+    ])
 }
 
 #[cfg(test)]
