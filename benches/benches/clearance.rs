@@ -1,11 +1,12 @@
-//! How long does a step of a robot of 30 links among many obstacles take, and how does it grow with their number?
+//! How long does a step of a robot of 30 links among many obstacles take, and how does it grow with their number? And how long
+//! a whole trajectory at once, with gradients?
 
 use std::hint::black_box;
 
 use convex_support::Ellipsoid;
 use convex_support::glam::{DQuat, DVec3};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use ellip_margin::{Clearance, MarginOptions, clearance};
+use ellip_margin::{Answer, Clearance, EllipsoidPair, Margin, MarginOptions, NearPair, clearance, map_margins_into};
 use workloads::rng::Rng;
 
 const LINKS: u32 = 30;
@@ -79,5 +80,57 @@ fn bench(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, bench);
+/// A whole trajectory at once, as an optimiser asks for it: 64 waypoints of 30 links among 1,000 obstacles, with gradients.
+fn trajectory(c: &mut Criterion) {
+    let waypoints: Vec<Vec<_>> = motion().into_iter().step_by(7).take(64).collect();
+    let links: Vec<_> = waypoints.concat();
+    let obstacles = obstacles(1_000);
+    let options = MarginOptions::default();
+    let scene = Clearance::new(&obstacles, options).expect("not empty");
+    let mut group = c.benchmark_group("trajectory");
+    // To where the cost of a pair ends: links grown to twice and to three times their size.
+    for threshold in [3.0, 8.0] {
+        let count = scene.within(&links, threshold).expect("a number").len();
+        group.bench_function(BenchmarkId::new(format!("pairs within {threshold}"), count), |b| {
+            b.iter(|| {
+                let mut sum = DVec3::ZERO;
+                let cost = |pair: NearPair<DVec3>, margin: Answer<'_, DVec3, Margin<DVec3>>| {
+                    let gradient = margin.gradient();
+                    sum += (threshold - pair.margin.margin) * (gradient.translation + gradient.rotation);
+                };
+                scene.each_within(&links, threshold, cost).expect("a number");
+                sum
+            });
+        });
+    }
+    let mut scene = scene;
+    group.bench_function("nearest of each waypoint", |b| {
+        b.iter(|| {
+            let mut sum = DVec3::ZERO;
+            for links in &waypoints {
+                let least = scene.step(links).expect("links");
+                let pair = EllipsoidPair::new(&links[least.link], &obstacles[least.obstacle], options);
+                sum += pair.margin().gradient().translation;
+            }
+            sum
+        });
+    });
+    group.sample_size(10);
+    group.bench_function("all pairs", |b| {
+        let mut gradients = vec![DVec3::ZERO; obstacles.len()];
+        b.iter(|| {
+            for link in &links {
+                map_margins_into(std::slice::from_ref(link), &obstacles, options, &mut gradients, |margin| {
+                    let gradient = margin.gradient();
+                    gradient.translation + gradient.rotation
+                })
+                .expect("as many as there are");
+            }
+            black_box(&mut gradients);
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, bench, trajectory);
 criterion_main!(benches);

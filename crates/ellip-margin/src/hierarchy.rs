@@ -95,6 +95,28 @@ impl Hierarchy {
         if second == 0 { Node::Leaf(&self.items[start..end]) } else { Node::Split(index + 1, second) }
     }
 
+    /// Looks at all items of the leaves whose boxes, and those above, may concern.
+    #[inline]
+    pub(crate) fn search(&self, concerns: impl Fn(&Aabb) -> bool, mut look: impl FnMut(usize)) {
+        // Halves are equal: the depth is below 64 for any list that fits a memory, and each level leaves one node.
+        let mut stack = [0; 64];
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let node = stack[depth];
+            if !concerns(self.bounds(node)) {
+                continue;
+            }
+            match self.node(node) {
+                Node::Split(a, b) => {
+                    (stack[depth], stack[depth + 1]) = (b, a);
+                    depth += 2;
+                }
+                Node::Leaf(items) => items.iter().for_each(|&item| look(item)),
+            }
+        }
+    }
+
     #[inline]
     pub(crate) fn bounds(&self, index: usize) -> &Aabb {
         &self.boxes[index]

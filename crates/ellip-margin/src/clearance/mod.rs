@@ -17,8 +17,8 @@ use self::least::{Least, Limit};
 pub use self::result::{ClearanceResult, LeftOut, NearPair};
 use self::search::{Count, Normals, Search};
 use self::seen::Seen;
-use crate::hierarchy::{Aabb, Hierarchy, Node};
-use crate::{InvalidQuery, MarginOptions, free_margin};
+use crate::hierarchy::{Aabb, Hierarchy};
+use crate::{Answer, EllipsoidPair, InvalidQuery, Margin, MarginOptions, free_margin};
 
 /// The least margin of a robot's links about obstacles along a motion, without looking at most pairs.
 ///
@@ -146,34 +146,63 @@ impl<V: Vector> Clearance<V> {
     /// # Errors
     /// [`InvalidQuery::ThresholdNotANumber`] if `threshold` is not a number.
     pub fn within(&self, links: &[Ellipsoid<V>], threshold: V::Scalar) -> Result<Vec<NearPair<V>>, InvalidQuery> {
+        let mut pairs = Vec::new();
+        self.each_within(links, threshold, |pair, _| pairs.push(pair))?;
+        Ok(pairs)
+    }
+
+    /// [`within`](Self::within), each pair told as it is found, with an answer that knows its derivatives. Nothing is allocated.
+    ///
+    /// This is what a planner asks of all links at all points of a trajectory at once: a cost of each pair that is near, and which way
+    /// to move for it.
+    ///
+    /// ```
+    /// use convex_support::{Ellipsoid, glam::DVec2};
+    /// use ellip_margin::{Clearance, MarginOptions};
+    ///
+    /// let obstacles = [1.0, 2.0, 9.0].map(|x| Ellipsoid::new(DVec2::new(x, 3.0), DVec2::new(0.5, 1.0), 0.3));
+    /// let obstacles = obstacles.into_iter().collect::<Result<Vec<_>, _>>()?;
+    /// let scene = Clearance::new(&obstacles, MarginOptions::default())?;
+    /// let links = [Ellipsoid::new(DVec2::ZERO, DVec2::new(2.0, 1.0), 0.0)?];
+    /// // A penalty (t − m)² for each margin m below t, and its gradient by the link's motion.
+    /// let (threshold, mut cost, mut force) = (8.0, 0.0, DVec2::ZERO);
+    /// scene.each_within(&links, threshold, |_, margin| {
+    ///     let missing = threshold - margin.margin;
+    ///     cost += missing * missing;
+    ///     force -= 2.0 * missing * margin.gradient().translation;
+    /// })?;
+    /// assert!(cost > 0.0 && force.y > 0.0); // to move up would cost more
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`InvalidQuery::ThresholdNotANumber`] if `threshold` is not a number.
+    pub fn each_within<'a>(
+        &'a self,
+        links: &'a [Ellipsoid<V>],
+        threshold: V::Scalar,
+        mut tell: impl FnMut(NearPair<V>, Answer<'a, V, Margin<V>>),
+    ) -> Result<(), InvalidQuery> {
         if threshold.as_f64().is_nan() {
             return Err(InvalidQuery::ThresholdNotANumber);
         }
-        let mut pairs = Vec::new();
         let limit = Limit(threshold.as_f64(), V::Scalar::EPSILON.as_f64());
         for (index, link) in links.iter().enumerate() {
             let frame = Frame::new(link);
-            let mut stack = alloc::vec![0];
-            while let Some(node) = stack.pop() {
-                if limit.excludes(frame.box_distance(self.tree.bounds(node))) {
-                    continue;
-                }
-                match self.tree.node(node) {
-                    Node::Split(a, b) => stack.extend([b, a]),
-                    Node::Leaf(items) => {
-                        for &obstacle in items {
-                            if limit.excludes(frame.plane_distance(&self.obstacles[obstacle])) {
-                                continue;
-                            }
-                            let margin = free_margin(link, &self.obstacles[obstacle], self.options);
-                            if margin.margin <= threshold {
-                                pairs.push(NearPair { margin, link: index, obstacle });
-                            }
-                        }
+            self.tree.search(
+                |bounds| !limit.excludes(frame.box_distance(bounds)),
+                |obstacle| {
+                    let other = &self.obstacles[obstacle];
+                    if limit.excludes(frame.plane_distance(other)) {
+                        return;
                     }
-                }
-            }
+                    let answer = EllipsoidPair::new(link, other, self.options).margin();
+                    if answer.margin <= threshold {
+                        tell(NearPair { margin: *answer, link: index, obstacle }, answer);
+                    }
+                },
+            );
         }
-        Ok(pairs)
+        Ok(())
     }
 }
