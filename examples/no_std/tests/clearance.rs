@@ -1,0 +1,24 @@
+//! On a machine with a standard library: the rates are those of differences.
+
+use no_std_example::clearance;
+
+#[test]
+fn the_rates_are_those_of_differences() {
+    const STEP: f32 = 1e-2;
+    for (shoulder, elbow) in [(0.1, 0.2), (0.1, 0.9), (-0.4, 1.3), (1.4, -0.5)] {
+        let here = clearance(shoulder, elbow).expect("finite");
+        assert!(here.distance > 0.0 && here.at_least <= here.distance, "{here:?}");
+        assert!(here.distance - here.at_least < 1e-5, "{here:?}");
+        let at = |by: [f32; 2]| clearance(shoulder + by[0], elbow + by[1]).expect("finite").distance;
+        for (joint, rate) in here.rates.into_iter().enumerate() {
+            let by = |step| core::array::from_fn(|i| if i == joint { step } else { 0.0 });
+            let difference = (at(by(STEP)) - at(by(-STEP))) / (2.0 * STEP);
+            assert!((rate - difference).abs() < 1e-3, "joint {joint}: {rate} or {difference}");
+        }
+    }
+}
+
+#[test]
+fn an_angle_that_is_none_is_an_error() {
+    assert!(clearance(f32::NAN, 0.0).is_err(), "NaN");
+}
