@@ -16,3 +16,4 @@ pub mod profiles;
 pub mod ratios;
 pub mod report;
 pub mod rows;
+pub mod scene;

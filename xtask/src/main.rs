@@ -62,6 +62,9 @@ enum Task {
     /// Hold the answers of parry, and of others out of files, against what is proved (a study).
     #[command(disable_help_flag = true)]
     Judge(Passed),
+    /// Draw how the time of a question to a scene grows with its bodies, and parry's beside it (a study).
+    #[command(disable_help_flag = true)]
+    Growth(Passed),
     /// Draw the descent of GJK in the plane, step by step (a study).
     #[command(disable_help_flag = true)]
     Book2d(Passed),
@@ -86,7 +89,7 @@ fn main() -> ExitCode {
         Task::Fuzz(scope) => fuzz::run(&scope),
         Task::Docs => docs::run(),
         Task::Footprint { output } => footprint::run(&output),
-        Task::Judge(_) => study("peers"),
+        Task::Judge(_) | Task::Growth(_) => study("peers"),
         Task::Scene(_) | Task::Sweep(_) | Task::Book2d(_) | Task::Render(_) => study(""),
     }
 }

@@ -7,6 +7,7 @@ mod judge;
 mod render;
 mod report;
 mod scene;
+mod scene_growth;
 mod sweep;
 
 use std::path::PathBuf;
@@ -42,6 +43,10 @@ enum Task {
     /// Exit status: 0, or 1 where a bracket of ours does not hold the truth or a claim of ours is disproved, or 2 where a file
     /// could not be read or written.
     Judge(judge::Scope),
+    /// Measure how the time of each question to a scene grows with the number of its bodies, and draw it.
+    ///
+    /// Exit status: 0, or 2 where a file could not be written.
+    Growth(scene_growth::Choice),
     /// Draw the descent of GJK in the plane, step by step.
     Book2d {
         /// Where the drawings go.
@@ -65,6 +70,7 @@ fn main() -> ExitCode {
         Task::Scene(choice) => scene::run(&choice),
         Task::Sweep(scope) => sweep::run(&scope),
         Task::Judge(scope) => judge::run(&scope),
+        Task::Growth(choice) => scene_growth::run(&choice),
         Task::Book2d { output } => book2d::run(&output),
         Task::Render { file, width } => render::run(&file, width),
     }

@@ -9,6 +9,7 @@ use ellip_margin::{Clearance, MarginOptions, clearance};
 use gjk_raycast::{Ray, RayCastOptions, ray_cast};
 use lj_ellipsoid::{EnclosingMethod, EnclosingOptions, enclosing, enclosing_dyn};
 
+use crate::scene_growth;
 use workloads::rng::Rng;
 use xtask::plot::{Plot, Scale, Series};
 use xtask::validate::page::{Block, Figure, Section};
@@ -38,6 +39,9 @@ fn figures(scope: &Scope) -> Vec<Figure> {
     }
     if scope.holds("clearance") {
         figures.push(obstacles());
+    }
+    if scope.holds("ray_cast") || scope.holds("linear_cast") || scope.holds("distance") {
+        figures.extend(scene_growth::figures(&scene_growth::measured(scene_growth::MOST)));
     }
     figures
 }
