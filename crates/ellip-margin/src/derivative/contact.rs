@@ -27,7 +27,7 @@
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use crate::numerics::{Vec, add, combine, dot, sub, unit};
+use crate::numerics::{Vec, add, combine, dot, unit};
 use crate::pair::Pair;
 
 /// Weights f and g of ‖N‖, h₁ and h₂: what is maximised, and what is 1.
@@ -79,11 +79,14 @@ struct Side<const N: usize> {
     h: f64,
     /// v = ∇h: from the centre to the point that touches.
     v: Vec<N>,
+    /// The tangents of the plane across N, in the body's axes.
+    tangents: [Vec<N>; 2],
 }
 
 impl<const N: usize> Side<N> {
-    fn new(axes: [Vec<N>; N], a: Vec<N>, e: Vec<N>, h: f64) -> Self {
-        Self { axes, a, e, h, v: combine(axes, core::array::from_fn(|i| a[i] * e[i])) }
+    fn new(axes: [Vec<N>; N], a: Vec<N>, e: Vec<N>, h: f64, tangents: &[Vec<N>; 2]) -> Self {
+        let v = combine(axes, core::array::from_fn(|i| a[i] * e[i]));
+        Self { axes, a, e, h, v, tangents: tangents.map(|tangent| axes.map(|axis| dot(axis, tangent))) }
     }
 }
 
@@ -107,14 +110,21 @@ pub(super) struct Contact<const N: usize> {
 
 /// What a motion changes: s, γ, and R⁻ᵀq.
 #[derive(Clone, Copy, Debug)]
-struct Rate<const N: usize> {
+struct Rate {
     value: f64,
     constraint: f64,
     whitened: [f64; 2],
-    /// t, m and b of the body that L_ωω is written with.
-    turn: Turn<N>,
-    /// ω × N and ω × r where N is as seen by the body that moves, and ±2δ in place of ω × r.
-    spun: [Vec<N>; 2],
+}
+
+impl Rate {
+    const ZERO: Self = Self { value: 0.0, constraint: 0.0, whitened: [0.0; 2] };
+
+    /// The part of s″ that is of first rates: q_θ·A⁻¹q_φ − s_θγ_φ − s_φγ_θ.
+    #[inline]
+    fn with(&self, other: &Self) -> f64 {
+        let followed = self.whitened[0] * other.whitened[0] + self.whitened[1] * other.whitened[1];
+        followed - (self.value * other.constraint + other.value * self.constraint)
+    }
 }
 
 /// t, m and b of a rotation.
@@ -144,20 +154,23 @@ impl<const N: usize> Contact<N> {
         let [h1, h2] = heights(pair, unit).map(|u| dot(u, u).sqrt());
         let gauge = weighted(quantity.constraint, [1.0, h1, h2]);
         let normal = unit.map(|x| x / gauge);
-        let sides = [Side::new(pair.axes1, pair.a1, e1, h1 / gauge), Side::new(pair.axes2, pair.a2, e2, h2 / gauge)];
+        let tangents = tangents(unit);
+        let sides = [
+            Side::new(pair.axes1, pair.a1, e1, h1 / gauge, &tangents),
+            Side::new(pair.axes2, pair.a2, e2, h2 / gauge, &tangents),
+        ];
         let r = pair.r().map(|x| -x);
         let norm = 1.0 / gauge;
         let value = dot(normal, r) - weighted(quantity.objective, [norm, sides[0].h, sides[1].h]);
         let k = core::array::from_fn(|i| quantity.objective[i] + value * quantity.constraint[i]);
-        let tangents = tangents(unit);
-        let root = root(&tangents, k[0] / norm, [(&sides[0], k[1]), (&sides[1], k[2])]);
+        let root = root(k[0] / norm, [(&sides[0], k[1]), (&sides[1], k[2])]);
         value.is_finite().then_some(Self { quantity, r, normal, sides, value, k, tangents, root })
     }
 
     /// One step of Newton's method for N. An answer's value is stationary in N and may have been found with half its digits.
     /// Kept if it brings L nearer to being stationary: else what was left was rounding.
     pub(super) fn refined(self, pair: &Pair<N>) -> Self {
-        let [x, y] = self.solved(self.whitened(self.residual()));
+        let [x, y] = self.solved(self.whitened(self.across(self.residual())));
         let step: Vec<N> = core::array::from_fn(|i| x * self.tangents[0][i] + y * self.tangents[1][i]);
         match Self::new(pair, self.quantity, add(self.normal, step)) {
             Some(next) if next.slope() < 0.25 * self.slope() => next,
@@ -172,16 +185,21 @@ impl<const N: usize> Contact<N> {
     }
 
     fn slope(&self) -> f64 {
-        let residual = self.residual();
-        let [x, y] = self.tangents.map(|tangent| dot(tangent, residual));
+        let [x, y] = self.across(self.residual());
         x.hypot(y)
     }
 
-    /// R⁻ᵀ of the part of `x` in the tangent plane.
-    fn whitened(&self, x: Vec<N>) -> [f64; 2] {
+    /// The part of `x` in the tangent plane.
+    fn across(&self, x: Vec<N>) -> [f64; 2] {
+        self.tangents.map(|tangent| dot(tangent, x))
+    }
+
+    /// R⁻ᵀx of a vector of the tangent plane.
+    #[inline]
+    fn whitened(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [r11, r12, r22] = self.root;
-        let first = dot(self.tangents[0], x) / r11;
-        if N == 2 { [first, 0.0] } else { [first, (dot(self.tangents[1], x) - r12 * first) / r22] }
+        let first = x / r11;
+        if N == 2 { [first, 0.0] } else { [first, (y - r12 * first) / r22] }
     }
 
     /// R⁻¹x.
@@ -197,30 +215,67 @@ impl<const N: usize> Contact<N> {
         (self.normal.map(|x| -sign * x), side.e, -k * side.h)
     }
 
-    /// The second derivatives s″ and the first s′: entry by entry, the translations first.
+    /// The second derivatives s″ and the first s′: entry by entry, the translations first. Of s″ the lower triangle.
+    #[inline]
     pub(super) fn hessian(&self, mover: Mover) -> ([[f64; 6]; 6], [f64; 6]) {
-        let count = N + N * (N - 1) / 2;
-        let is_seen = self.is_stiffer(mover);
-        let (side, k, _) = self.of(if is_seen { mover.other() } else { mover });
+        let (rotations, is_seen) = (N * (N - 1) / 2, self.is_stiffer(mover));
+        let (side, k, sign) = self.of(mover);
+        // The body with which L_ωω is written, and the sense in which it turns: the other one, backwards, where N is as seen by the
+        // body that moves.
+        let written = if is_seen { mover.other() } else { mover };
+        let (other, other_k, _) = self.of(written);
+        let weight = self.quantity.constraint[written.index()];
+        let turns = Turn::about_world(other, if is_seen { -1.0 } else { 1.0 });
+        let values = if is_seen { twists(side) } else { turns.map(|turn| turn.t) };
+        // What N sees of the constraint and of v.
+        let [_, g1, g2] = self.quantity.constraint;
+        let [first, second] = &self.sides;
+        let gauge = self.across(core::array::from_fn(|i| g1 * first.v[i] + g2 * second.v[i]));
+        let reach = self.across(other.v);
+
         let mut rates = [Rate::ZERO; 6];
-        let (mut second, mut first) = ([[0.0; 6]; 6], [0.0; 6]);
-        for i in 0..count {
-            rates[i] = if i < N { self.translation(mover, i) } else { self.rotation(mover, i - N, is_seen) };
-            first[i] = rates[i].value;
+        for i in 0..N {
+            let value = -sign * self.normal[i];
+            let [x, y] = core::array::from_fn(|c| -sign * self.tangents[c][i] - value * gauge[c]);
+            rates[i] = Rate { value, constraint: 0.0, whitened: self.whitened([x, y]) };
+        }
+        for about in 0..rotations {
+            let (turn, value) = (&turns[about], k * side.h * values[about]);
+            let [x, y] = core::array::from_fn(|c| {
+                let cross = -other_k * (dot(other.tangents[c], turn.b) + reach[c] * turn.t);
+                let moment = if is_seen { wedge(self.r, self.tangents[c], about) } else { 0.0 };
+                cross - moment - value * gauge[c]
+            });
+            let constraint = -weight * other.h * turn.t;
+            rates[N + about] = Rate { value, constraint, whitened: self.whitened([x, y]) };
+        }
+
+        let mut second = [[0.0; 6]; 6];
+        for i in 0..N {
             for j in 0..=i {
-                let (x, y) = (&rates[i], &rates[j]);
-                let followed = x.whitened[0] * y.whitened[0] + x.whitened[1] * y.whitened[1];
-                let mut entry = followed - (x.value * y.constraint + y.value * x.constraint);
-                // L_θφ; two translations have none.
-                if i >= N {
-                    entry += k * (0.5 * (dot(x.turn.m, y.turn.b) + dot(y.turn.m, x.turn.b)))
-                        + k * side.h * (x.turn.t * y.turn.t)
-                        - 0.5 * (dot(x.spun[0], y.spun[1]) + dot(y.spun[0], x.spun[1]));
-                }
-                (second[i][j], second[j][i]) = (entry, entry);
+                second[i][j] = rates[i].with(&rates[j]);
             }
         }
-        (second, first)
+        for p in 0..rotations {
+            let spin = if is_seen { spun(self.normal, p) } else { [0.0; N] };
+            for j in 0..N {
+                second[N + p][j] = rates[N + p].with(&rates[j]) - sign * spin[j];
+            }
+            for q in 0..=p {
+                let (x, y) = (&turns[p], &turns[q]);
+                let turned = 0.5 * (dot(x.m, y.b) + dot(y.m, x.b)) + other.h * (x.t * y.t);
+                second[N + p][N + q] = rates[N + p].with(&rates[N + q]) + other_k * turned;
+            }
+        }
+        if is_seen {
+            let [spins, moments] = [self.normal, self.r].map(|x| [0, 1, 2].map(|about| spun(x, about)));
+            for p in 0..rotations {
+                for q in 0..=p {
+                    second[N + p][N + q] -= 0.5 * (dot(spins[p], moments[q]) + dot(spins[q], moments[p]));
+                }
+            }
+        }
+        (second, rates.map(|rate| rate.value))
     }
 
     /// Whether L_ωω of the body that moves is the greater: about k·(a_max² − a_min²)‖N‖²/h.
@@ -233,47 +288,6 @@ impl<const N: usize> Contact<N> {
         stiffness(mover) > stiffness(mover.other())
     }
 
-    fn translation(&self, mover: Mover, along: usize) -> Rate<N> {
-        let (.., sign) = self.of(mover);
-        let delta: Vec<N> = core::array::from_fn(|i| if i == along { sign } else { 0.0 });
-        let value = -sign * self.normal[along];
-        Rate {
-            value,
-            constraint: 0.0,
-            whitened: self.followed(delta.map(|x| -x), value),
-            turn: Turn::ZERO,
-            spun: [[0.0; N], delta.map(|x| 2.0 * x)],
-        }
-    }
-
-    /// The rotation about a world axis, with N as the body sees it or N held.
-    fn rotation(&self, mover: Mover, about: usize, is_seen: bool) -> Rate<N> {
-        let (side, k, _) = self.of(mover);
-        let turn = Turn::new(side, about, 1.0);
-        let value = k * side.h * turn.t;
-        let nothing = [[0.0; N]; 2];
-        let (turned, turn, spun) = if is_seen {
-            let other = mover.other();
-            let turn = Turn::new(self.of(other).0, about, -1.0);
-            (other, turn, [self.normal, self.r].map(|x| spun(x, about)))
-        } else {
-            (mover, turn, nothing)
-        };
-        let (side, k, _) = self.of(turned);
-        let weight = self.quantity.constraint[turned.index()];
-        let b = combine(side.axes, turn.b);
-        let cross = core::array::from_fn(|i| -k * (b[i] + side.v[i] * turn.t) - spun[1][i]);
-        Rate { value, constraint: -weight * side.h * turn.t, whitened: self.followed(cross, value), turn, spun }
-    }
-
-    /// R⁻ᵀq for L_Nθ and s_θ; of ∇γ, the part along ‖N‖ has none in the tangent plane.
-    fn followed(&self, cross: Vec<N>, value: f64) -> [f64; 2] {
-        let [_, g1, g2] = self.quantity.constraint;
-        let [first, second] = &self.sides;
-        let gradient: Vec<N> = core::array::from_fn(|i| value * (g1 * first.v[i] + g2 * second.v[i]));
-        self.whitened(sub(cross, gradient))
-    }
-
     /// The body, its k, and the sign with which its translation shortens r.
     fn of(&self, mover: Mover) -> (&Side<N>, f64, f64) {
         match mover {
@@ -283,31 +297,57 @@ impl<const N: usize> Contact<N> {
     }
 }
 
-impl<const N: usize> Rate<N> {
-    const ZERO: Self = Self { value: 0.0, constraint: 0.0, whitened: [0.0; 2], turn: Turn::ZERO, spun: [[0.0; N]; 2] };
-}
-
 impl<const N: usize> Turn<N> {
     const ZERO: Self = Self { t: 0.0, m: [0.0; N], b: [0.0; N] };
 
-    /// Of `sign` times the unit rotation about world axis number `about`, in 2D the only one.
-    fn new(side: &Side<N>, about: usize, sign: f64) -> Self {
-        let Side { axes, a, e, h, .. } = *side;
-        let spun = axes.map(|axis| spun(axis, about));
-        let (mut t, mut m, mut b) = (0.0, [0.0; N], [0.0; N]);
+    /// Of `sign` times the unit rotations about the world axes, in 2D the only one.
+    #[inline]
+    fn about_world(side: &Side<N>, sign: f64) -> [Self; 3] {
+        let Side { axes, a, e, h, .. } = side;
+        // n/h = e/a
+        let n: Vec<N> = core::array::from_fn(|i| sign * (e[i] / a[i]));
+        let mut turns = [Self::ZERO; 3];
         for i in 0..N {
-            for j in (0..N).filter(|&j| j != i) {
-                // Wᵢⱼnⱼ/h with W = Rᵀ[ω]R, n/h = e/a
-                let n = sign * dot(axes[i], spun[j]) * (e[j] / a[j]);
+            for j in i + 1..N {
                 let difference = (a[j] - a[i]) * (a[j] + a[i]);
-                m[i] += n * h;
-                b[i] += n * difference;
-                // Each plane once.
-                t -= if i < j { n * (e[i] / a[i]) * difference } else { 0.0 };
+                let twist = n[i] * (sign * n[j]) * difference;
+                let (m, b) = ([n[j] * h, n[i] * h], [n[j] * difference, n[i] * difference]);
+                for (about, turn) in turns.iter_mut().enumerate().take(N * (N - 1) / 2) {
+                    // Wᵢⱼ = −Wⱼᵢ with W = Rᵀ[ω]R; the difference too has the other sign for j, i.
+                    let w = wedge(axes[j], axes[i], about);
+                    turn.m[i] += w * m[0];
+                    turn.m[j] -= w * m[1];
+                    turn.b[i] += w * b[0];
+                    turn.b[j] += w * b[1];
+                    turn.t -= w * twist;
+                }
             }
         }
-        Self { t, m, b }
+        turns
     }
+}
+
+/// t of the unit rotations about the world axes, in 2D the only one.
+#[inline]
+fn twists<const N: usize>(side: &Side<N>) -> [f64; 3] {
+    let Side { axes, a, e, .. } = side;
+    let mut twists = [0.0; 3];
+    for i in 0..N {
+        for j in i + 1..N {
+            let twist = (e[i] / a[i]) * (e[j] / a[j]) * ((a[j] - a[i]) * (a[j] + a[i]));
+            for (about, t) in twists.iter_mut().enumerate().take(N * (N - 1) / 2) {
+                *t -= wedge(axes[j], axes[i], about) * twist;
+            }
+        }
+    }
+    twists
+}
+
+/// y·(ω × x) = ω·(x × y) for the unit rotation about world axis number `about`, in 2D the only one.
+#[inline]
+fn wedge<const N: usize>(x: Vec<N>, y: Vec<N>, about: usize) -> f64 {
+    let (p, q) = if N == 2 { (0, 1) } else { ((about + 1) % 3, (about + 2) % 3) };
+    x[p] * y[q] - x[q] * y[p]
 }
 
 /// ω × x for the unit rotation about world axis number `about`, in 2D the only one.
@@ -342,31 +382,34 @@ fn tangents<const N: usize>(n: Vec<N>) -> [Vec<N>; 2] {
     u[along] += 1f64.copysign(n[along]);
     [1, 2].map(|next| {
         let column = (along + next) % N;
-        core::array::from_fn(|i| f64::from(u8::from(i == column)) - u[i] * u[column] / u[along].abs())
+        let factor = u[column] / u[along].abs();
+        core::array::from_fn(|i| f64::from(u8::from(i == column)) - u[i] * factor)
     })
 }
 
 /// R of M = QR, MᵀM = A on the tangent plane.
-fn root<const N: usize>(tangents: &[Vec<N>; 2], isotropic: f64, sides: [(&Side<N>, f64); 2]) -> [f64; 3] {
+fn root<const N: usize>(isotropic: f64, sides: [(&Side<N>, f64); 2]) -> [f64; 3] {
     // Up to two rows of the isotropic part, and a row per body and plane of its axes.
     let mut columns = [[0.0; 8]; 2];
-    for (c, (column, tangent)) in columns.iter_mut().zip(tangents).take(N - 1).enumerate() {
-        column[c] = isotropic.max(0.0).sqrt();
-        let mut row = 2;
-        for (side, k) in sides {
-            let weight = (k.max(0.0) / side.h).sqrt();
-            let y: Vec<N> = core::array::from_fn(|i| side.a[i] * dot(side.axes[i], *tangent));
-            for i in 0..N {
-                for j in i + 1..N {
-                    column[row] = weight * (side.e[i] * y[j] - side.e[j] * y[i]);
-                    row += 1;
+    let isotropic = isotropic.max(0.0).sqrt();
+    (columns[0][0], columns[1][1]) = (isotropic, isotropic);
+    let mut row = 2;
+    for (side, k) in sides {
+        let weight = (k.max(0.0) / side.h).sqrt();
+        let y = side.tangents.map(|tangent| -> Vec<N> { core::array::from_fn(|i| side.a[i] * tangent[i]) });
+        for i in 0..N {
+            for j in i + 1..N {
+                for c in 0..2 {
+                    columns[c][row] = weight * (side.e[i] * y[c][j] - side.e[j] * y[c][i]);
                 }
+                row += 1;
             }
         }
     }
     let [first, second] = columns;
     let r11 = dot(first, first).sqrt();
     let r12 = dot(first, second) / r11;
-    let rest: Vec<8> = core::array::from_fn(|i| second[i] - r12 * (first[i] / r11));
+    let along = r12 / r11;
+    let rest: Vec<8> = core::array::from_fn(|i| second[i] - along * first[i]);
     [r11, r12, dot(rest, rest).sqrt()]
 }

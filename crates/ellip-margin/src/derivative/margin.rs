@@ -150,7 +150,7 @@ fn hessian<V: Wedge, const N: usize>(
     let points = [unit(beta), load::<V, N>(m.ball_point).map(|y| -y)];
     let (pair, length) = Pair::<N>::new(e1, e2).in_own_unit();
     let contact = Contact::at_points(&pair, Quantity::GROWTH, z.map(|z| -z), points);
-    contact.map_or_else(MotionHessian::zero, |contact| {
-        MotionHessian::of_contact(&contact, mover, 2.0 * contact.value, 2.0, Units { value: 1.0, length })
+    contact.as_ref().map_or_else(MotionHessian::zero, |contact| {
+        MotionHessian::of_contact(contact, mover, 2.0 * contact.value, 2.0, Units { value: 1.0, length })
     })
 }

@@ -123,9 +123,12 @@ impl<V: Wedge> MotionHessian<V> {
         units: Units,
     ) -> Self {
         let (second, first) = contact.hessian(mover);
-        let per = |i: usize| if i < N { units.length } else { 1.0 };
+        // The unit of length is a power of two.
+        let inverse = 1.0 / units.length;
+        let per = |i: usize| if i < N { inverse } else { 1.0 };
         let entry = |i: usize, j: usize| {
-            (slope * second[i][j] + curvature * (first[i] * first[j])) * units.value / per(i) / per(j)
+            let (i, j) = (i.max(j), i.min(j));
+            (slope * second[i][j] + curvature * (first[i] * first[j])) * units.value * per(i) * per(j)
         };
         Self { matrix: V::motion_matrix(|i, j| V::Scalar::from_f64(entry(i, j))) }
     }
