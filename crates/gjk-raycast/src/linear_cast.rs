@@ -5,7 +5,7 @@ use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::body::Pair;
-use crate::cast::{CastHit, cast, settle_start};
+use crate::cast::{CastHit, cast, direct, settle_start};
 use crate::ray::check_finite;
 use crate::start_in_contact::Start;
 use crate::{
@@ -97,7 +97,7 @@ pub fn linear_cast_with<A, B>(
     b: &B,
     motion: Motion<A::Vector>,
     options: LinearCastOptions<A::Vector>,
-    observer: impl FnMut(Iterate<'_, A::Vector>),
+    mut observer: impl FnMut(Iterate<'_, A::Vector>),
 ) -> Result<LinearCast<A::Vector>, RayCastError>
 where
     A: SupportMap + ?Sized,
@@ -114,8 +114,11 @@ where
     body.core_a = body.core_a.rounded(target);
     let (core_a, core_b) = (body.core_a, body.core_b);
     let (ray, direction_error, wanted) = ray_of(motion, [core_a.origin, core_b.origin], &options);
-    let mut cast = cast(&mut body, ray, direction_error, |ray| ray, wanted, observer);
-    settle_start(&mut cast, a, target, || Some(b), ray.direction, &wanted);
+    let cast = direct(&mut body, ray, direction_error, &wanted, &mut observer).unwrap_or_else(|| {
+        let mut cast = cast(&mut body, ray, direction_error, |ray| ray, wanted, observer);
+        settle_start(&mut cast, a, target, || Some(b), ray.direction, &wanted);
+        cast
+    });
     let mut answer = LinearCast {
         outcome: Outcome::Undecided,
         lower: cast.lower,

@@ -4,7 +4,7 @@ use convex_support::{Point, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::body::Single;
-use crate::cast::{Cast, CastHit, LocalRay, cast, settle_start};
+use crate::cast::{Cast, CastHit, LocalRay, cast, direct, settle_start};
 use crate::{Iterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit};
 
 /// The first point of a ray in a shape, with the normal there.
@@ -50,6 +50,22 @@ pub fn ray_cast<S: SupportMap + ?Sized>(
 /// # Errors
 /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
 pub fn ray_cast_with<S: SupportMap + ?Sized>(
+    target: &S,
+    ray: Ray<S::Vector>,
+    options: RayCastOptions<S::Vector>,
+    mut observer: impl FnMut(Iterate<'_, S::Vector>),
+) -> Result<RayCast<S::Vector>, RayCastError> {
+    if options.min_lambda <= Scalar::ZERO
+        && let Some(cast) = direct(&mut Single::new(target), ray, Scalar::ZERO, &options, &mut observer)
+    {
+        return Ok(answer(cast, ray));
+    }
+    searched(target, ray, options, observer)
+}
+
+/// The cast by a search.
+#[inline(never)]
+fn searched<S: SupportMap + ?Sized>(
     target: &S,
     ray: Ray<S::Vector>,
     options: RayCastOptions<S::Vector>,

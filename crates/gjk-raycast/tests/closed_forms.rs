@@ -114,7 +114,10 @@ impl SupportMap for Liar {
     }
 
     fn core_line_crossing(&self, source: DVec3, direction: DVec3, radius: f64) -> LineCrossing<DVec3> {
-        self.0.core_line_crossing(source, direction, radius + 1.0).crossing().map_or(LineCrossing::Misses, self.1)
+        self.0
+            .core_line_crossing(source, direction, radius + 1.0)
+            .crossing()
+            .map_or(LineCrossing::Misses(DVec3::ZERO), self.1)
     }
 }
 
@@ -125,7 +128,7 @@ fn what_is_not_certified_is_searched_for() -> Result<(), Box<dyn std::error::Err
         |at| LineCrossing::Crosses(Crossing { normal: (at.normal + DVec3::new(0.1, 0.2, -0.1)).normalize(), ..at }),
         |at| LineCrossing::Crosses(Crossing { entry: f64::NAN, ..at }),
         |at| LineCrossing::Crosses(Crossing { normal: DVec3::ZERO, ..at }),
-        |_| LineCrossing::Misses,
+        |_| LineCrossing::Misses(DVec3::ZERO),
     ];
     let ray = Ray { source: DVec3::new(-3.0, 0.3, 0.2), direction: DVec3::X };
     let lambda = 3.0 - (1.0_f64 - 0.13).sqrt();

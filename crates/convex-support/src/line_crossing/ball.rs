@@ -2,12 +2,12 @@
 
 use num_traits::Float as _;
 
-use super::{Chord, Crossing, comfortable};
+use super::{Chord, Crossed, Crossing, comfortable};
 use crate::Vector;
 
 /// The crossing of a ball about zero.
 #[inline(always)]
-pub(crate) fn ball<V: Vector>(radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+pub(crate) fn ball<V: Vector>(radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, dd, unit) = comfortable(direction);
     let recip = dd.recip();
     let first = -source.dot(direction) * recip;
@@ -20,6 +20,9 @@ pub(crate) fn ball<V: Vector>(radius: V::Scalar, source: V, direction: V) -> Opt
         half: ((radius * radius - (near.length_squared() + along * second)) * recip).sqrt(),
         nearest: near + direction * second,
     };
-    Crossing { entry: -chord.half, exit: chord.half, normal: chord.normal(radius, direction, recip) }
-        .shifted(chord.middle, unit)
+    Crossing { entry: -chord.half, exit: chord.half, normal: chord.normal(radius, direction, recip) }.shifted(
+        chord.middle,
+        unit,
+        || chord.nearest,
+    )
 }

@@ -2,28 +2,23 @@
 
 use num_traits::Float as _;
 
-use super::{Chord, Crossing, comfortable, rebased};
+use super::{Chord, Crossed, Crossing, comfortable, rebased};
 use crate::{Scalar, Vector};
 
 /// The crossing of the segment between `±half_height` on the second axis, swept by a ball.
 #[inline(always)]
-pub(crate) fn upright<V: Vector>(
-    half_height: V::Scalar,
-    radius: V::Scalar,
-    source: V,
-    direction: V,
-) -> Option<Crossing<V>> {
+pub(crate) fn upright<V: Vector>(half_height: V::Scalar, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, dd, unit) = comfortable(direction);
     let recip = dd.recip();
     let (base, source) = rebased(source, direction, recip);
     let split = |v: V| (v.get(1), V::from_fn(|i| if i == 1 { V::Scalar::ZERO } else { v.get(i) }));
     let (source, direction) = ((source, split(source)), (direction, split(direction)));
-    capsule(V::axis(1), half_height, radius, source, direction, recip)?.shifted(base, unit)
+    capsule(V::axis(1), half_height, radius, source, direction, recip)?.shifted(base, unit, || V::ZERO)
 }
 
 /// The crossing of the segment between two points, swept by a ball.
 #[inline]
-pub(crate) fn edge<V: Vector>([a, b]: [V; 2], radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+pub(crate) fn edge<V: Vector>([a, b]: [V; 2], radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, dd, unit) = comfortable(direction);
     let half = V::Scalar::from_f64(0.5);
     let to_b = (b - a) * half;
@@ -32,7 +27,7 @@ pub(crate) fn edge<V: Vector>([a, b]: [V; 2], radius: V::Scalar, source: V, dire
     let (base, source) = rebased(source - (a + to_b), direction, recip);
     let split = |v: V| (v.dot(axis), v - axis * v.dot(axis));
     let (source, direction) = ((source, split(source)), (direction, split(direction)));
-    capsule(axis, to_b.norm(), radius, source, direction, recip)?.shifted(base, unit)
+    capsule(axis, to_b.norm(), radius, source, direction, recip)?.shifted(base, unit, || V::ZERO)
 }
 
 /// A vector and its parts along and across an axis.
@@ -51,7 +46,7 @@ fn capsule<V: Vector>(
     (source, (along, out)): Split<V>,
     (direction, (rise, across)): Split<V>,
     recip: V::Scalar,
-) -> Option<Crossing<V>> {
+) -> Crossed<V> {
     let slope = across.length_squared();
     let per_slope = slope.recip();
     let middle = -out.dot(across) * per_slope;
@@ -63,11 +58,11 @@ fn capsule<V: Vector>(
     // A direction that is along the axis to rounding meets the side nowhere near.
     if slope * recip <= V::Scalar::EPSILON * V::Scalar::EPSILON {
         if out.length_squared() > radius * radius {
-            return None;
+            return Err(out);
         }
         (enters, leaves) = (-rise * V::Scalar::infinity(), rise * V::Scalar::infinity());
     } else if !side.is_some() {
-        return None;
+        return Err(side.nearest);
     }
     let cap = |y: V::Scalar| {
         // From the end on the side of y; (source − end)·direction, with source ⟂ direction, is −height·rise.
@@ -79,7 +74,7 @@ fn capsule<V: Vector>(
     if !(enters.abs() <= half_height) {
         let cap = cap(enters);
         if !cap.is_some() {
-            return None;
+            return Err(cap.nearest);
         }
         entry = cap.middle - cap.half;
         normal = cap.normal(radius, direction, recip);
@@ -88,5 +83,5 @@ fn capsule<V: Vector>(
         exit = cap(leaves).ends().1;
     }
     // The balls at both ends are met within rounding, or not, together.
-    Some(Crossing { entry, exit: if exit > entry { exit } else { entry }, normal })
+    Ok(Crossing { entry, exit: if exit > entry { exit } else { entry }, normal })
 }

@@ -2,7 +2,7 @@
 
 use num_traits::Float as _;
 
-use super::{Crossing, comfortable, cylinder, rebased, slab};
+use super::{Crossed, Crossing, comfortable, cylinder, past_rim, rebased, slab};
 use crate::shapes::across;
 use crate::{Cone, Scalar, Vector3};
 
@@ -11,7 +11,7 @@ use crate::{Cone, Scalar, Vector3};
 /// discriminant is, with the moment `m = p × d`, `B² − AC = cos²α·(sin²α·(m_x² + m_z²) − cos²α·m_y²)`: no difference
 /// of the products of `B` and `AC` is formed.
 #[inline(always)]
-pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Option<Crossing<V>> {
+pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Crossed<V> {
     let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
     let (h, r) = (cone.half_height(), cone.disc_radius());
     if h == zero || r == zero {
@@ -70,16 +70,41 @@ pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Optio
     } else {
         V::axis(1) * V::Scalar::ONE.copysign(-rise)
     };
-    ((discriminant >= zero) & below & within & in_order).then_some(Crossing {
+    if !((discriminant >= zero) & below & within & in_order) {
+        return Err(beside(cone, source, direction, if rise > zero { top } else { bottom }));
+    }
+    Ok(Crossing {
         entry: (base + entry * per_length) * unit,
         exit: (base + if exit > entry { exit } else { entry } * per_length) * unit,
         normal,
     })
 }
 
+/// A vector across the line along which it is apart from the cone; it crosses the plane of the base at `at`.
+///
+/// Seen along the line, the cone is the hull of an ellipse, its base, and of the apex. Either the line is beyond the rim, or beyond one
+/// of the two planes along it that touch the slant all along: their normals `cosα·u + sinα·y`, with a unit vector `u` across the axis,
+/// are across the direction `d` if `u·d = −tanα·d_y`.
+#[inline(always)]
+fn beside<V: Vector3>(cone: &Cone<V>, source: V, direction: V, at: V::Scalar) -> V {
+    let beyond_rim = past_rim(source, direction, at);
+    let (cosine, sine) = cone.slant();
+    // The apex is farther along that than the base is.
+    if !(cosine * beyond_rim.get(1) > sine * across(beyond_rim).length()) {
+        return beyond_rim;
+    }
+    let radial = across(direction);
+    let length = radial.length();
+    let forward = radial * length.recip();
+    let aside = V::axis(1).cross(forward);
+    let along = -sine * direction.get(1) / (cosine * length);
+    let rest = (V::Scalar::ONE - along * along).sqrt().copysign(source.dot(aside));
+    (forward * along + aside * rest) * cosine + V::axis(1) * sine
+}
+
 /// A disc or a segment.
 #[cold]
 #[inline(never)]
-fn flat<V: Vector3>(half_height: V::Scalar, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+fn flat<V: Vector3>(half_height: V::Scalar, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     cylinder(half_height, radius, source, direction)
 }

@@ -2,7 +2,7 @@
 
 use num_traits::Float as _;
 
-use super::{Crossing, comfortable};
+use super::{Crossed, Crossing, across_two_axes, axis_of, comfortable};
 use crate::{Scalar, Vector};
 
 /// The line is in the box while it is in all of its slabs.
@@ -10,33 +10,38 @@ use crate::{Scalar, Vector};
 /// A line that is parallel to a slab divides by zero: it is then in the slab from `−∞` to `∞`, or from `±∞` to `±∞`, which
 /// the other slabs tell apart; and `0/0`, in the plane of a face, compares false and leaves things as they are.
 #[inline(always)]
-pub(crate) fn cuboid<V: Vector>(half_extents: V, source: V, direction: V) -> Option<Crossing<V>> {
+pub(crate) fn cuboid<V: Vector>(half_extents: V, source: V, direction: V) -> Crossed<V> {
     let per_unit = V::ONE / direction;
     let near = half_extents.copysign(-direction);
     let (enters, leaves) = ((near - source) * per_unit, (-near - source) * per_unit);
-    let (mut entry, mut exit, mut face) = (-V::Scalar::infinity(), V::Scalar::infinity(), 0);
+    let (mut entry, mut exit) = (-V::Scalar::infinity(), V::Scalar::infinity());
     for i in 0..V::DIM {
-        (entry, face) = if enters.get(i) > entry { (enters.get(i), i) } else { (entry, face) };
+        entry = if enters.get(i) > entry { enters.get(i) } else { entry };
         exit = if leaves.get(i) < exit { leaves.get(i) } else { exit };
     }
     // Some direction is across a slab, or all of them are so short that their reciprocals are infinite.
     if !(entry > -V::Scalar::infinity() && exit < V::Scalar::infinity()) {
         return along_no_axis(half_extents, source, direction);
     }
-    let known = !(source.is_nan() || direction.is_nan());
-    let normal = V::axis(face) * V::Scalar::ONE.copysign(-direction.get(face));
-    ((entry <= exit) & known).then_some(Crossing { entry, exit, normal })
+    let known = !(source + direction).is_nan();
+    let face = axis_of(enters, entry);
+    if (entry <= exit) & known {
+        Ok(Crossing { entry, exit, normal: face * V::ONE.copysign(-direction) })
+    } else {
+        // One slab is left before the other is entered: seen along both of them, the line passes a rectangle.
+        Err(across_two_axes([face, axis_of(leaves, exit)], source, direction))
+    }
 }
 
 /// A direction whose coordinates are zero, or have infinite reciprocals, or are `NaN`.
 #[cold]
 #[inline(never)]
-fn along_no_axis<V: Vector>(half_extents: V, source: V, direction: V) -> Option<Crossing<V>> {
+fn along_no_axis<V: Vector>(half_extents: V, source: V, direction: V) -> Crossed<V> {
     // Nothing to be made longer; or so long already that a `NaN`, there or in the source, is what is wrong.
     let largest = direction.abs().max_element();
     if largest == V::Scalar::ZERO || !(largest.recip() == V::Scalar::infinity()) {
-        return None;
+        return Err(V::ZERO);
     }
     let (direction, _, unit) = comfortable(direction);
-    cuboid(half_extents, source, direction)?.shifted(V::Scalar::ZERO, unit)
+    cuboid(half_extents, source, direction)?.shifted(V::Scalar::ZERO, unit, || V::ZERO)
 }

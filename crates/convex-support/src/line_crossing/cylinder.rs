@@ -2,18 +2,13 @@
 
 use num_traits::Float as _;
 
-use super::{Chord, Crossing, comfortable, rebased, slab};
+use super::{Chord, Crossed, Crossing, comfortable, past_rim, rebased, slab};
 use crate::shapes::across;
 use crate::{Scalar, Vector3};
 
 /// The crossing of the cylinder of radius `r` about the second axis.
 #[inline(always)]
-pub(crate) fn cylinder<V: Vector3>(
-    half_height: V::Scalar,
-    r: V::Scalar,
-    source: V,
-    direction: V,
-) -> Option<Crossing<V>> {
+pub(crate) fn cylinder<V: Vector3>(half_height: V::Scalar, r: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, dd, unit) = comfortable(direction);
     let (base, source) = rebased(source, direction, dd.recip());
     let rise = direction.get(1);
@@ -26,18 +21,20 @@ pub(crate) fn cylinder<V: Vector3>(
         // Along the axis to rounding.
         let within = out.length_squared() <= r * r;
         let crossing = Crossing { entry: top, exit: bottom, normal: lid };
-        return if within { crossing.shifted(base, unit) } else { None };
+        return if within { crossing.shifted(base, unit, || out) } else { Err(out) };
     }
     let recip = slope.recip();
     let middle = -out.dot(radial) * recip;
     let side = Chord::about(middle, out + radial * middle, recip, r);
     let (enters, leaves) = side.ends();
     let through_side = enters > top;
+    // The line leaves the side before it is at the height of the lids, or enters it after that.
+    let rim = || past_rim(source, direction, if leaves < top { top } else { bottom });
     Crossing {
         // A `NaN`, where the line misses the side, must come through to where entry and exit are compared.
         entry: if top >= enters { top } else { enters },
         exit: if bottom < leaves { bottom } else { leaves },
         normal: if through_side { side.normal(r, radial, recip) } else { lid },
     }
-    .shifted(base, unit)
+    .shifted(base, unit, || if side.is_some() { rim() } else { side.nearest })
 }

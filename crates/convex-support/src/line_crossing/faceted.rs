@@ -2,23 +2,23 @@
 
 use num_traits::Float as _;
 
-use super::{Crossing, comfortable, rebased};
+use super::{Crossed, Crossing, comfortable, rebased};
 use crate::shapes::{PLANES, Planes};
 use crate::{Faceted, Scalar, Vector};
 
 /// The line is in the hull while it is behind all facets. The exit and the entry are the least and the largest of the `λ` where
 /// it leaves, or enters, the half-space of a facet. A negative radius moves all facets inward.
 #[inline]
-pub(crate) fn faceted<V: Vector>(hull: &Faceted<V>, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+pub(crate) fn faceted<V: Vector>(hull: &Faceted<V>, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, dd, unit) = comfortable(direction);
     let (base, near) = rebased(source, direction, dd.recip());
     let coordinates = |v: V| [v.get(0), v.get(1), if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO }];
     let Clipped { entry, exit, place } = clip(hull.planes(), radius, coordinates(near), coordinates(direction));
     // A line enters and leaves a bounded set, so that otherwise something is not a number.
     if !(entry > -V::Scalar::infinity() && exit < V::Scalar::infinity()) {
-        return None;
+        return Err(V::ZERO);
     }
-    Crossing { entry, exit, normal: hull.facet(place).0 }.shifted(base, unit)
+    Crossing { entry, exit, normal: hull.facet(place).0 }.shifted(base, unit, || V::ZERO)
 }
 
 /// The stretch of a line behind all planes, and the index of the plane it enters by.

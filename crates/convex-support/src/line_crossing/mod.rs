@@ -31,7 +31,8 @@ pub(crate) use rounded_cuboid::rounded_cuboid;
 pub(crate) use triangle::triangle;
 
 use crate::numerics::range::is_comfortable;
-use crate::{Core, Scalar, SupportMap, Vector};
+use crate::shapes::across;
+use crate::{Core, Scalar, SupportMap, Vector, Vector3};
 
 /// The stretch of a line that lies in a convex set: `{ λ : source + λ·direction ∈ C }` is the interval from `entry` to
 /// `exit`, in units of the direction.
@@ -71,14 +72,14 @@ impl<V: Vector> Crossing<V> {
     }
 
     /// With `λ` counted from where the line was before it was re-based, in units of the direction before it was made
-    /// comfortable; `None` where the stretch is empty or `NaN`.
+    /// comfortable; a miss, along the given axis, where the stretch is empty or `NaN`.
     #[inline(always)]
-    fn shifted(self, base: V::Scalar, unit: V::Scalar) -> Option<Self> {
-        (self.entry <= self.exit).then_some(Self {
-            entry: (base + self.entry) * unit,
-            exit: (base + self.exit) * unit,
-            ..self
-        })
+    fn shifted(self, base: V::Scalar, unit: V::Scalar, axis: impl FnOnce() -> V) -> Crossed<V> {
+        if self.entry <= self.exit {
+            Ok(Self { entry: (base + self.entry) * unit, exit: (base + self.exit) * unit, ..self })
+        } else {
+            Err(axis())
+        }
     }
 }
 
@@ -88,8 +89,9 @@ impl<V: Vector> Crossing<V> {
 pub enum LineCrossing<V: Vector> {
     /// There is no closed form here.
     Unknown,
-    /// The line misses the set.
-    Misses,
+    /// The line misses the set. A vector across the line, of any length: where it is not zero, a plane across it has the set behind
+    /// it and the line before it. Algorithms check that.
+    Misses(V),
     /// The stretch of the line that is in the set.
     Crosses(Crossing<V>),
 }
@@ -101,25 +103,28 @@ impl<V: Vector> LineCrossing<V> {
     pub fn crossing(self) -> Option<Crossing<V>> {
         match self {
             Self::Crosses(crossing) => Some(crossing),
-            Self::Unknown | Self::Misses => None,
+            Self::Unknown | Self::Misses(_) => None,
         }
     }
 
-    /// The same crossing with another normal.
+    /// The same with its normal, or the vector along which the line is apart, mapped.
     #[inline(always)]
     pub(crate) fn with_normal(self, normal: impl FnOnce(V) -> V) -> Self {
         match self {
             Self::Crosses(crossing) => Self::Crosses(Crossing { normal: normal(crossing.normal), ..crossing }),
-            other => other,
+            Self::Misses(axis) => Self::Misses(normal(axis)),
+            Self::Unknown => Self::Unknown,
         }
     }
 }
 
-/// Of a closed form: where the line misses, there is no crossing.
-impl<V: Vector> From<Option<Crossing<V>>> for LineCrossing<V> {
+/// What a closed form tells: the crossing, or the vector of [`LineCrossing::Misses`].
+type Crossed<V> = Result<Crossing<V>, V>;
+
+impl<V: Vector> From<Crossed<V>> for LineCrossing<V> {
     #[inline(always)]
-    fn from(crossing: Option<Crossing<V>>) -> Self {
-        crossing.map_or(Self::Misses, Self::Crosses)
+    fn from(crossed: Crossed<V>) -> Self {
+        crossed.map_or_else(Self::Misses, Self::Crosses)
     }
 }
 
@@ -135,7 +140,7 @@ impl<V: Vector> From<Option<Crossing<V>>> for LineCrossing<V> {
 /// let die = Posed::translated(Rounded::new(Cuboid::new(DVec3::ONE)?, 0.25)?, DVec3::new(5.0, 0.0, 0.0))?;
 /// let crossing = line_crossing(&die, DVec3::ZERO, DVec3::X).crossing().ok_or("a miss")?;
 /// assert_eq!((crossing.entry, crossing.exit), (3.75, 6.25));
-/// assert_eq!(line_crossing(&die, DVec3::ZERO, DVec3::Y), LineCrossing::Misses);
+/// assert_eq!(line_crossing(&die, DVec3::ZERO, DVec3::Y), LineCrossing::Misses(DVec3::NEG_X));
 ///
 /// let rounded_cone = Rounded::new(Cone::<DVec3>::new(1.0, 1.0)?, 0.1)?;
 /// assert_eq!(line_crossing(&rounded_cone, DVec3::ZERO, DVec3::Y), LineCrossing::Unknown);
@@ -215,6 +220,37 @@ impl<V: Vector> Chord<V> {
             -direction * recip.sqrt()
         }
     }
+}
+
+/// The axis of the first coordinate that has the given value; the last axis if none has.
+#[inline(always)]
+fn axis_of<V: Vector>(v: V, value: V::Scalar) -> V {
+    let mut found = false;
+    V::from_fn(|i| {
+        let here = !found & ((v.get(i) == value) | (i + 1 == V::DIM));
+        found |= here;
+        if here { V::Scalar::ONE } else { V::Scalar::ZERO }
+    })
+}
+
+/// The vector across a line and across all axes but two, from the middle of a box towards the line.
+#[inline(always)]
+fn across_two_axes<V: Vector>([a, b]: [V; 2], source: V, direction: V) -> V {
+    let across = a * b.dot(direction) - b * a.dot(direction);
+    across * V::Scalar::ONE.copysign(across.dot(source))
+}
+
+/// The normal of the plane along a line that is parallel to the rim of a disc about the second axis, where the line crosses the plane
+/// of the disc at `at` and outside of it: with `ρ` the vector from the disc's middle to there, it is across `d` and across the
+/// tangent `y × ρ`, which makes it a multiple of `ρ·d_y − y·(ρ·d)`. A level line passes above or below.
+#[inline(always)]
+fn past_rim<V: Vector3>(source: V, direction: V, at: V::Scalar) -> V {
+    let rise = direction.get(1);
+    if rise == V::Scalar::ZERO {
+        return V::axis(1) * V::Scalar::ONE.copysign(source.get(1));
+    }
+    let out = across(source + direction * at);
+    (out * rise - V::axis(1) * out.dot(direction)) * V::Scalar::ONE.copysign(rise)
 }
 
 /// The part of a line where `|y| ≤ half_height`: entry, exit. A level line is in the slab everywhere or nowhere: an

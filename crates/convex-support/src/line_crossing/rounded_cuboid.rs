@@ -2,7 +2,7 @@
 
 use num_traits::Float as _;
 
-use super::{Chord, Crossing, comfortable, rebased};
+use super::{Chord, Crossed, Crossing, across_two_axes, axis_of, comfortable, rebased};
 use crate::{Scalar, Vector};
 
 /// The squared distance from a box is `φ(λ) = Σ max(|xᵢ| − hᵢ, 0)²` along the line: convex, and one quadratic between
@@ -10,7 +10,7 @@ use crate::{Scalar, Vector};
 /// and not before it enters the box of half extents `hᵢ + radius`: from there, piece after piece is searched. Most lines
 /// enter through one of the flat sides, in the first piece. They leave where the reversed line enters.
 #[inline]
-pub(crate) fn rounded_cuboid<V: Vector>(h: V, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+pub(crate) fn rounded_cuboid<V: Vector>(h: V, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, dd, unit) = comfortable(direction);
     let (base, source) = rebased(source, direction, dd.recip());
     let per_unit = V::ONE / direction;
@@ -20,7 +20,8 @@ pub(crate) fn rounded_cuboid<V: Vector>(h: V, radius: V::Scalar, source: V, dire
     let begin = largest(enters - margin);
     let end = -largest(-(leaves + margin));
     if !(begin <= end) {
-        return None;
+        let slabs = [axis_of(enters - margin, begin), axis_of(leaves + margin, end)];
+        return Err(across_two_axes(slabs, source, direction));
     }
     let line = Line { source, direction, near, enters, leaves };
     let entry = line.entry(radius, begin, end)?;
@@ -30,7 +31,7 @@ pub(crate) fn rounded_cuboid<V: Vector>(h: V, radius: V::Scalar, source: V, dire
     let at = source + direction * entry;
     let excess = at - at.max(-h).min(h);
     let normal = excess.unit().unwrap_or_else(|| -direction * dd.sqrt().recip());
-    Crossing { entry, exit: if exit > entry { exit } else { entry }, normal }.shifted(base, unit)
+    Crossing { entry, exit: if exit > entry { exit } else { entry }, normal }.shifted(base, unit, || V::ZERO)
 }
 
 /// The largest coordinate; `NaN` (of a line in a plane) is passed over.
@@ -50,11 +51,11 @@ struct Line<V: Vector> {
 }
 
 impl<V: Vector> Line<V> {
-    /// Where the line enters the rounded box, which is between `begin` and `end`; `None` where it misses.
+    /// Where the line enters the rounded box, which is between `begin` and `end`; the shortest vector to it where it misses.
     #[inline(always)]
-    fn entry(&self, radius: V::Scalar, begin: V::Scalar, end: V::Scalar) -> Option<V::Scalar> {
+    fn entry(&self, radius: V::Scalar, begin: V::Scalar, end: V::Scalar) -> Result<V::Scalar, V> {
         let zero = V::Scalar::ZERO;
-        let mut lambda = begin;
+        let (mut lambda, mut nearest) = (begin, V::ZERO);
         // Each coordinate changes its piece at most twice.
         for _ in 0..=2 * V::DIM {
             // The piece from λ on: by how much the line is outside of the box, and how fast that changes.
@@ -73,33 +74,35 @@ impl<V: Vector> Line<V> {
             }
             let dd = speed.length_squared();
             if beyond == 0 {
-                return Some(lambda);
+                return Ok(lambda);
             }
             if beyond == 1 && lambda == begin {
                 // Opposite a flat side, where the boxes of half extents hᵢ + radius and the rounded one agree.
-                return Some(lambda);
+                return Ok(lambda);
             }
             let recip = dd.recip();
             let middle = -outside.dot(speed) * recip;
             let chord = Chord::about(middle, outside + speed * middle, recip, radius);
+            // The distance is least where a piece is nearest the box before it ends.
+            nearest = if (lambda <= middle) & (middle <= next) { chord.nearest } else { nearest };
             let (enters, leaves) = chord.ends();
             if dd == zero {
                 if outside.length_squared() <= radius * radius {
-                    return Some(lambda);
+                    return Ok(lambda);
                 }
             } else if chord.is_some() {
                 if leaves < lambda {
-                    return None;
+                    return Err(chord.nearest);
                 }
                 if enters <= next {
-                    return Some(if enters > lambda { enters } else { lambda });
+                    return Ok(if enters > lambda { enters } else { lambda });
                 }
             }
             if !(next < end) {
-                return None;
+                return Err(nearest);
             }
             lambda = next;
         }
-        None
+        Err(nearest)
     }
 }

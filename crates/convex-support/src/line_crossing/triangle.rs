@@ -3,7 +3,7 @@
 use num_traits::Float as _;
 
 use super::capsule::edge;
-use super::{Crossing, comfortable, rebased};
+use super::{Crossed, Crossing, comfortable, rebased};
 use crate::shapes::Frame;
 use crate::{Scalar, Triangle, Vector};
 
@@ -12,12 +12,7 @@ use crate::{Scalar, Triangle, Vector};
 ///
 /// Without a ball, in 3D a line crosses the triangle at a point, where `entry` and `exit` agree. A triangle without area, a segment,
 /// has no side to cross it by: a miss.
-pub(crate) fn triangle<V: Vector>(
-    triangle: &Triangle<V>,
-    radius: V::Scalar,
-    source: V,
-    direction: V,
-) -> Option<Crossing<V>> {
+pub(crate) fn triangle<V: Vector>(triangle: &Triangle<V>, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, _, unit) = comfortable(direction);
     let mut union = if V::DIM == 2 {
         triangle.crossing_in_the_plane(source, direction)
@@ -27,7 +22,7 @@ pub(crate) fn triangle<V: Vector>(
     if radius > V::Scalar::ZERO {
         let [a, b, c] = triangle.points();
         for side in [[a, b], [b, c], [c, a]] {
-            union = match (union, edge(side, radius, source, direction)) {
+            union = match (union, edge(side, radius, source, direction).ok()) {
                 (Some(p), Some(q)) => {
                     let first = if q.entry < p.entry { q } else { p };
                     Some(Crossing { exit: p.exit.max(q.exit), ..first })
@@ -36,7 +31,7 @@ pub(crate) fn triangle<V: Vector>(
             };
         }
     }
-    union?.shifted(V::Scalar::ZERO, unit)
+    union.ok_or(V::ZERO)?.shifted(V::Scalar::ZERO, unit, || V::ZERO)
 }
 
 impl<V: Vector> Triangle<V> {
@@ -71,7 +66,7 @@ impl<V: Vector> Triangle<V> {
             crossing.exit = crossing.exit.max(at);
         }
         crossing.normal = if crossing.normal.dot(direction) < zero { crossing.normal } else { -direction }.unit()?;
-        crossing.shifted(base, V::Scalar::ONE)
+        crossing.shifted(base, V::Scalar::ONE, || V::ZERO).ok()
     }
 
     /// The crossing of the points within `thickness` of the triangle in 3D, across its plane.
@@ -95,7 +90,7 @@ impl<V: Vector> Triangle<V> {
         // normal to a supporting line at both of its ends.
         clip.cut(-u, from_a, zero, direction);
         clip.cut(u, from_a, length, direction);
-        clip.crossing?.shifted(base, V::Scalar::ONE)
+        clip.crossing?.shifted(base, V::Scalar::ONE, || V::ZERO).ok()
     }
 }
 

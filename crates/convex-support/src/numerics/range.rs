@@ -44,6 +44,10 @@ pub fn scaled<V: Vector>(v: V) -> Option<(V, [V::Scalar; 2])> {
 fn scaled_coordinates<V: Vector>(x: V::Scalar, y: V::Scalar, z: V::Scalar) -> Option<(V, [V::Scalar; 2])> {
     let v = V::from_fn(|i| [x, y, z][i]);
     let largest = v.abs().max_element();
+    // As across the axis of a cylinder, along its axis.
+    if largest <= V::Scalar::ZERO {
+        return None;
+    }
     // Two factors, since those of subnormal numbers are below the smallest number, and their reciprocals not finite.
     let (_, exponent, _) = num_traits::Float::integer_decode(largest);
     let half = num_traits::Float::powi(V::Scalar::from_f64(2.0), i32::from(exponent) / 2);

@@ -17,7 +17,10 @@ use crate::{Iterate, Ray, RayCastOptions, Status};
 
 /// From how many times the noise an error is much more, so that the surface may bend within it. It is two or four times that of a posed
 /// body, and as much more for each pose within.
-const LOOSE: f64 = 64.0;
+pub(super) const LOOSE: f64 = 64.0;
+
+/// What rounding moves points by that a search compares, in units of ε times the size.
+pub(super) const NOISE: f64 = 8.0;
 
 /// How many errors deep the chord is at least that a ray cuts off a ball of the body's size, if it enters so steeply that the surface does
 /// not bend away within an error.
@@ -118,7 +121,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         let per_unit = reciprocal_of_power(scale);
         let (radius, size, body_error) = (body.radius() * per_unit, size * per_unit, body.error() * per_unit);
         let ray = place(LocalRay::new(ray, origin, scale));
-        let noise = if size > zero { number(8.0) * ScalarOf::<B>::EPSILON * size } else { body_error };
+        let noise = if size > zero { number(NOISE) * ScalarOf::<B>::EPSILON * size } else { body_error };
         let turned = if direction_error > zero { direction_error * (ray.start.abs() + size + size) } else { zero };
         let error = number(1.5) * noise + body_error + turned;
         let reach = size + error + error;

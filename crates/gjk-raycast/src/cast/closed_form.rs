@@ -24,10 +24,10 @@ pub(super) fn closed_form<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     }
     match bracket.body.line_crossing(line.foot, line.direction) {
         LineCrossing::Unknown => Err(Stop::InDoubt),
-        LineCrossing::Misses => {
+        LineCrossing::Misses(axis) => {
             bracket.doubt_entry();
-            // The plane across the vector to the line is one along it.
-            let axis = bracket.options.axis.or_else(|| line.foot.unit()).ok_or(Stop::InDoubt)?;
+            // Where no other is known, the plane across the vector to the line is one along it.
+            let axis = axis.unit().or(bracket.options.axis).or_else(|| line.foot.unit()).ok_or(Stop::InDoubt)?;
             support(bracket, axis)?;
             Err(Stop::InDoubt)
         }
@@ -40,7 +40,7 @@ pub(super) fn closed_form<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
                 LineCrossing::Crosses(within) if within.entry < start && start < within.exit => {
                     return Ok(bracket.close_inside());
                 }
-                LineCrossing::Misses => bracket.doubt_entry(),
+                LineCrossing::Misses(_) => bracket.doubt_entry(),
                 _ => {}
             }
             if entry < start {

@@ -5,6 +5,7 @@
 mod algorithm_3;
 mod bracket;
 mod closed_form;
+mod direct;
 mod line;
 mod portal;
 mod start;
@@ -17,6 +18,7 @@ use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCastOptions, Status};
 use algorithm_3::algorithm_3;
 use bracket::{Bracket, ScalarOf};
 use closed_form::closed_form;
+pub(crate) use direct::direct;
 pub(crate) use line::LocalRay;
 use portal::portal;
 pub(crate) use start::settle_start;

@@ -1,0 +1,224 @@
+//! The plain case of a closed form: the ray comes from outside and crosses a plane at a definite angle, or passes the body by a
+//! definite distance.
+//!
+//! What is certain rests on the same as in a [`Bracket`](super::bracket::Bracket): a miss and a lower bound on the plane of one support
+//! point, an upper bound on where the line enters what is left of the body without two errors. But nothing is prepared for a search:
+//! lengths stay in the world's unit, the direction keeps its length, and a source near the body is the base of the line. Whatever is
+//! in doubt is left to the bracket. `docs/ray-cast.md` derives the bounds.
+
+use convex_support::numerics::twofold::lost_in_sum;
+use convex_support::{Crossing, LineCrossing, Scalar, Vector};
+use num_traits::Float;
+
+use super::bracket::{LOOSE, NOISE, ScalarOf};
+use super::{Cast, CastHit};
+use crate::body::Body;
+use crate::unit::is_moderate;
+use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCastOptions, Status};
+
+/// From how many sizes away a line is looked at, at most.
+const NEAR: f64 = 8.0;
+
+/// What a plane that supports the body is wrong by at most where the line meets the body, in units of ε times the size, beside the error
+/// of the support points.
+///
+/// With `u = ε/2`, and a base at most 8 sizes away: the offset from the origin loses `8u` of the size, the step along the line `9u` and
+/// its sum `u`; the difference from a support point `2u`, its product with the normal `6u`; the length of that, times the radius, and
+/// the last difference `4u`. In all `30u`.
+const PLANE_ERROR: f64 = 16.0;
+
+/// The same of a plane beside the line, where it is looked at from the base: the offset loses `8u`, the difference from a support point
+/// and its product with the axis `36u`, the product of the axis and the direction, times how far the line is seen, `47u`, and sums,
+/// radius and squares `21u`. In all `112u`.
+const AXIS_ERROR: f64 = 64.0;
+
+/// The least cosine at which a plane is crossed: what its product of two vectors loses is nothing beside it.
+const LEAST_SLOPE: f64 = 1.0 / 128.0;
+
+/// The cast of a ray against a body, where it is the plain case. The direction may be wrong by some part of its length.
+#[inline(always)]
+pub(crate) fn direct<B: Body>(
+    body: &mut B,
+    ray: Ray<B::Vector>,
+    direction_error: ScalarOf<B>,
+    options: &RayCastOptions<B::Vector>,
+    observer: impl FnMut(Iterate<'_, B::Vector>),
+) -> Option<Cast<B::Vector, B::Witness>> {
+    let size = body.extent() + body.radius();
+    let longest = ray.direction.abs().max_element();
+    // NaN and zero are not moderate.
+    let is_moderate = is_moderate(size) & is_moderate(longest);
+    if !is_moderate || options.method != CastMethod::Portal || options.max_iterations == 0 {
+        return None;
+    }
+    let origin = body.origin();
+    let (base, source) = match near(ray, origin, size) {
+        Some(source) => (ScalarOf::<B>::ZERO, source),
+        // Far along a direction that is wrong, a line is anywhere.
+        None if direction_error > ScalarOf::<B>::ZERO => return None,
+        None => moved_near(ray, origin, size)?,
+    };
+    let turned = if direction_error > ScalarOf::<B>::ZERO {
+        direction_error * size * ScalarOf::<B>::from_f64(NEAR + 2.0)
+    } else {
+        ScalarOf::<B>::ZERO
+    };
+    let line = Line { base, source, direction: ray.direction, longest, size, error: body.error() + turned };
+    match body.line_crossing(source, ray.direction) {
+        LineCrossing::Unknown => None,
+        LineCrossing::Crosses(crossing) => line.hit(crossing, body, options, observer),
+        LineCrossing::Misses(axis) => line.miss(axis, body, observer),
+    }
+}
+
+/// The source of the ray, seen from the origin of the body, if it is near.
+#[inline(always)]
+fn near<V: Vector>(ray: Ray<V>, origin: V, size: V::Scalar) -> Option<V> {
+    let source = ray.source - origin;
+    let near = size * V::Scalar::from_f64(NEAR);
+    (source.length_squared() <= near * near).then_some(source)
+}
+
+/// The point of the line closest to the origin, after its parameter, if that is near. However far the source, it is right to two
+/// roundings of its own length: what the difference from the origin loses is added to what a fused multiply-add rounds once.
+#[inline(always)]
+fn moved_near<V: Vector>(ray: Ray<V>, origin: V, size: V::Scalar) -> Option<(V::Scalar, V)> {
+    let source = ray.source - origin;
+    let base = -source.dot(ray.direction) / ray.direction.length_squared();
+    let moved = V::from_fn(|i| base.mul_add(ray.direction.get(i), source.get(i)));
+    let point = moved + lost_in_sum(ray.source, -origin);
+    let near = size * V::Scalar::from_f64(0.5 * NEAR);
+    (point.length_squared() <= near * near).then_some((base, point))
+}
+
+/// The line of a ray, in the frame of a body of a `size`, that passes near it at its parameter `base`.
+struct Line<V: Vector> {
+    base: V::Scalar,
+    /// The point there.
+    source: V,
+    direction: V,
+    /// The largest coordinate of the direction: its length, but for a factor of `√3`.
+    longest: V::Scalar,
+    size: V::Scalar,
+    /// What the support points are wrong by, and the line.
+    error: V::Scalar,
+}
+
+impl<V: Vector> Line<V> {
+    /// The hit at the entry of a crossing, or the miss of a ray that ends before it.
+    ///
+    /// The body is behind the plane `n·y = n·p + r|n|`, and a point `x` of the line that is before it by `a` crosses it after `a/(−n·d)`.
+    #[inline(always)]
+    fn hit<B: Body<Vector = V>>(
+        &self,
+        Crossing { entry, normal, .. }: Crossing<V>,
+        body: &mut B,
+        options: &RayCastOptions<V>,
+        observer: impl FnMut(Iterate<'_, V>),
+    ) -> Option<Cast<V, B::Witness>> {
+        let number = V::Scalar::from_f64;
+        let (half, epsilon) = (number(0.5), V::Scalar::EPSILON);
+        let (point, _) = body.support(normal);
+        let x = self.source + self.direction * entry;
+        let w = x - point;
+        // The normal is nearly a unit vector, and |n| is 1 + excess/2 to the square of that.
+        let excess = normal.length_squared() - V::Scalar::ONE;
+        let ahead = normal.dot(w) - (body.radius() + body.radius() * (excess * half));
+        let slope = -normal.dot(self.direction);
+        let (noise, error) = (self.size * (epsilon * number(NOISE)), self.plane_error());
+        let lambda = self.base + entry;
+        let rounding = lambda * (epsilon + epsilon);
+        let is_plain = (excess.abs() <= epsilon.sqrt() * half)
+            & (slope >= self.longest * number(LEAST_SLOPE))
+            & (ahead.abs() <= noise)
+            & (x.length_squared() <= self.size * self.size * number(1.125))
+            & (error <= noise * number(LOOSE))
+            // The plane is crossed after the ray's start.
+            & ((lambda - rounding) * slope > error - ahead);
+        if !is_plain {
+            return None;
+        }
+        // What is in the body by two errors is so for certain: one moves the body, and one what is computed of the line.
+        let LineCrossing::Crosses(within) = body.eroded_line_crossing(self.source, self.direction, error + error)
+        else {
+            return None;
+        };
+        // A step of Newton's method for the reciprocal of the root.
+        let n = normal - normal * (excess * half);
+        let per_slope = slope.recip();
+        let lower = lambda - ((error - ahead) * per_slope + rounding);
+        if lambda > options.max_lambda {
+            return (lower > options.max_lambda).then(|| missed(n));
+        }
+        show(observer, n, w);
+        let latest = self.base + within.entry;
+        let upper = if latest > lambda { latest } else { lambda } + rounding;
+        let witness = body.witness(x - n * body.radius());
+        Some(Cast {
+            outcome: Outcome::Hit(CastHit { lambda, normal: Some(n), spot: x, witness }),
+            lower,
+            upper,
+            ..certain()
+        })
+    }
+
+    /// The miss by a plane across an axis, which is across the line to rounding.
+    ///
+    /// Of the line only what is in the ball about the body counts, and that is at most `NEAR + 1` sizes from the base: there it comes
+    /// no nearer to the plane than by that times `|n·d|/|d|`. Compared by squares, the axis need not be of unit length.
+    #[inline(always)]
+    fn miss<B: Body<Vector = V>>(
+        &self,
+        axis: V,
+        body: &mut B,
+        observer: impl FnMut(Iterate<'_, V>),
+    ) -> Option<Cast<V, B::Witness>> {
+        let number = V::Scalar::from_f64;
+        let (point, _) = body.support(axis);
+        let w = self.source - point;
+        let reach = self.size * number(NEAR + 1.0);
+        let ahead = axis.dot(w) * self.longest - axis.dot(self.direction).abs() * reach;
+        let error = self.size * (V::Scalar::EPSILON * number(AXIS_ERROR)) + self.error;
+        let within = (body.radius() + error) * self.longest;
+        let (squared, least) = (ahead * ahead, within * within * axis.length_squared());
+        if !((ahead > V::Scalar::ZERO) & (squared > least) & (least >= Float::min_positive_value())) {
+            return None;
+        }
+        let n = axis.unit()?;
+        show(observer, n, w);
+        Some(missed(n))
+    }
+
+    /// What a plane is wrong by where the line meets the body.
+    #[inline(always)]
+    fn plane_error(&self) -> V::Scalar {
+        self.size * (V::Scalar::EPSILON * V::Scalar::from_f64(PLANE_ERROR)) + self.error
+    }
+}
+
+#[inline(always)]
+fn show<V: Vector>(mut observer: impl FnMut(Iterate<'_, V>), n: V, w: V) {
+    let (lower, upper) = (V::Scalar::ZERO, V::Scalar::infinity());
+    observer(Iterate { iteration: 0, simplex: &[], v: n, w, scale: V::Scalar::ONE, lower, upper });
+}
+
+/// A miss by a plane across a unit vector.
+#[inline(always)]
+fn missed<V: Vector, W>(axis: V) -> Cast<V, W> {
+    Cast { outcome: Outcome::Miss(Miss { axis }), ..certain() }
+}
+
+/// What all such casts have in common: they take one support point, and leave nothing open.
+#[inline(always)]
+fn certain<V: Vector, W>() -> Cast<V, W> {
+    let infinity = V::Scalar::infinity();
+    Cast {
+        outcome: Outcome::Undecided,
+        lower: infinity,
+        upper: infinity,
+        status: Status::Converged,
+        iterations: 1,
+        scale: V::Scalar::ONE,
+        is_entry_open: false,
+    }
+}
