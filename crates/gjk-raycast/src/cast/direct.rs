@@ -6,6 +6,7 @@
 //! lengths stay in the world's unit, the direction keeps its length, and a source near the body is the base of the line. Whatever is
 //! in doubt is left to the bracket. `docs/ray-cast.md` derives the bounds.
 
+use convex_support::numerics::range::is_comfortable;
 use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Crossing, LineCrossing, Scalar, Vector};
 use num_traits::Float;
@@ -27,9 +28,9 @@ const NEAR: f64 = 8.0;
 /// the last difference `4u`. In all `30u`.
 const PLANE_ERROR: f64 = 16.0;
 
-/// The same of a plane beside the line, where it is looked at from the base: the offset loses `8u`, the difference from a support point
-/// and its product with the axis `36u`, the product of the axis and the direction, times how far the line is seen, `47u`, and sums,
-/// radius and squares `21u`. In all `112u`.
+/// The same of a plane beside the line, where it is looked at from the base: the offset loses `8u`, the products of base and support
+/// point with the axis `27u`, their difference `9u`, the product of the axis and the direction, times how far the line is seen, `47u`,
+/// and sums, radius and squares `21u`. In all `112u`.
 const AXIS_ERROR: f64 = 64.0;
 
 /// The least cosine at which a plane is crossed: what its product of two vectors loses is nothing beside it.
@@ -175,17 +176,18 @@ impl<V: Vector> Line<V> {
     ) -> Option<Cast<V, B::Witness>> {
         let number = V::Scalar::from_f64;
         let (point, _) = body.support(axis);
-        let w = self.source - point;
         let reach = self.size * number(NEAR + 1.0);
-        let ahead = axis.dot(w) * self.longest - axis.dot(self.direction).abs() * reach;
+        let ahead = (axis.dot(self.source) - axis.dot(point)) * self.longest - axis.dot(self.direction).abs() * reach;
         let error = self.size * (V::Scalar::EPSILON * number(AXIS_ERROR)) + self.error;
         let within = (body.radius() + error) * self.longest;
-        let (squared, least) = (ahead * ahead, within * within * axis.length_squared());
-        if !((ahead > V::Scalar::ZERO) & (squared > least) & (least >= Float::min_positive_value())) {
+        let length_squared = axis.length_squared();
+        let (squared, least) = (ahead * ahead, within * within * length_squared);
+        let is_apart = (ahead > V::Scalar::ZERO) & (squared > least) & (least >= Float::min_positive_value());
+        if !(is_apart & is_comfortable(length_squared)) {
             return None;
         }
-        let n = axis.unit()?;
-        show(observer, n, w);
+        let n = axis * length_squared.sqrt().recip();
+        show(observer, n, self.source - point);
         Some(missed(n))
     }
 
