@@ -28,6 +28,11 @@ pub fn two_product<S: Scalar>(a: S, b: S) -> [S; 2] {
 /// `Σ aᵢ·bᵢ − subtracted`, as if computed in twice the precision and rounded once (Ogita, Rump and Oishi, *Accurate sum and dot
 /// product*, 2005): the error is at most `ε/2` of the result and, of `n` pairs, `(n + 1)²·ε²/4` of `Σ |aᵢ·bᵢ| + |subtracted|`.
 pub fn dot_minus<S: Scalar>(pairs: impl IntoIterator<Item = (S, S)>, subtracted: S) -> S {
+    // Products of two `f32` are exact in `f64`, and the sums there lose less than that.
+    if S::EPSILON.as_f64() * S::EPSILON.as_f64() > f64::EPSILON {
+        let add = |sum: f64, (a, b): (S, S)| sum + a.as_f64() * b.as_f64();
+        return S::from_f64(pairs.into_iter().fold(-subtracted.as_f64(), add));
+    }
     let (mut sum, mut lost) = (-subtracted, S::ZERO);
     for (a, b) in pairs {
         let [product, lost_in_product] = two_product(a, b);

@@ -119,9 +119,18 @@ fn look<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, max_iterations: usize) -> O
         *corner = found;
     }
     let faces = across_faces(&pairs[..state.simplex.points().len()], state.axis);
-    let planes = [state.axis, state.normal].into_iter().chain(faces).filter_map(|n| seen.plane(&mut pair, n));
-    let Plane { n, level, error } =
-        planes.reduce(|best, plane| if plane.level - plane.error > best.level - best.error { plane } else { best })?;
+    let mut best: Option<Plane<V>> = None;
+    let normal = Some(state.normal).filter(|&n| n != state.axis);
+    for n in [state.axis].into_iter().chain(normal).chain(faces) {
+        let certain = best.as_ref().map_or(-V::Scalar::infinity(), |best| best.level - best.error);
+        if seen.may_be_beyond(n, state.simplex.points(), certain)
+            && let Some(plane) = seen.plane(&mut pair, n)
+            && (best.is_none() || plane.level - plane.error > certain)
+        {
+            best = Some(plane);
+        }
+    }
+    let Plane { n, level, error } = best?;
     let gap = level - frame.radius;
     let upper = seen.length(&state).min(seen.length_at_pierced(&state, n)) - frame.radius;
     let upper = upper + roundings(2.0, frame.radius);
@@ -207,6 +216,14 @@ impl<V: Vector> Seen<V> {
             [sum, lost, lost_again, self.lost.get(i)].map(|part| (n.get(i), part))
         });
         dot_minus(parts, V::Scalar::ZERO)
+    }
+
+    /// Whether a plane across `n` that supports the difference may be certain to be farther than `level` from zero: it is no farther
+    /// than any of the points.
+    fn may_be_beyond(&self, n: V, points: &[V], level: V::Scalar) -> bool {
+        let nearest = points.iter().map(|p| n.dot(*p)).fold(V::Scalar::infinity(), V::Scalar::min);
+        // NaN may be.
+        n != V::ZERO && !(nearest < (level - self.error_of_corners()) * n.length())
     }
 
     /// The plane across `n` that supports the difference.
