@@ -32,6 +32,12 @@ impl Balls {
         Self { shape, tree: tree(&boxes), loose: tree(&loose), poses, compound }
     }
 
+    /// How many they are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.poses.len()
+    }
+
     /// Builds the tree of these balls anew.
     #[must_use]
     pub fn rebuilt(&self) -> Bvh {

@@ -10,7 +10,9 @@ use std::process::ExitCode;
 use benches::scene::{self, Question};
 use clap::Args;
 use convex_support::glam::DVec3;
+use convex_support::{Ball, Posed};
 use cpu_time::ThreadTime;
+use gjk_raycast::Scene;
 use workloads::provenance::provenance;
 use xtask::plot::{Plot, Scale, Series, duration};
 use xtask::validate::page::Figure;
@@ -116,36 +118,37 @@ pub(crate) fn measured(most: u32) -> Vec<Line> {
                 None => lines.push(Line { kind, who, points: vec![point] }),
             }
         };
+        let balls = scene::balls::<DVec3>(&places);
         for kind in Kind::ALL {
-            add("ours", kind, ours(kind, &places, &questions));
+            add("ours", kind, ours(kind, &balls, &questions));
         }
         #[cfg(feature = "peers")]
-        for kind in Kind::ALL {
-            add("parry", kind, parrys(kind, &places, &questions));
+        {
+            let balls = scene::parry::Balls::new(&places);
+            for kind in Kind::ALL {
+                add("parry", kind, parrys(kind, &balls, &questions));
+            }
         }
     }
     lines
 }
 
 /// Nanoseconds of a question to our scene.
-fn ours(kind: Kind, places: &[[f64; 3]], questions: &[Question]) -> f64 {
-    let scene = scene::balls::<DVec3>(places);
-    let mut found = Vec::new();
-    let mut pairs = Vec::new();
+fn ours(kind: Kind, scene: &Scene<Posed<Ball<DVec3>>>, questions: &[Question]) -> f64 {
+    let (mut found, mut pairs) = (Vec::new(), Vec::new());
     match kind {
-        Kind::Ray => each(questions, |question| scene::ray_cast(&scene, question)),
-        Kind::Nearest => each(questions, |question| scene::nearest(&scene, question)),
-        Kind::Within => each(questions, |question| scene::all_within(&scene, question, &mut found)),
-        Kind::LinearCast => each(questions, |question| scene::linear_cast(&scene, question)),
-        Kind::MotionCast => each(questions, |question| scene::motion_cast(&scene, question)),
-        Kind::Pairs => least(|| scene::pairs(&scene, &mut pairs)) / places.len() as f64,
+        Kind::Ray => each(questions, |question| scene::ray_cast(scene, question)),
+        Kind::Nearest => each(questions, |question| scene::nearest(scene, question)),
+        Kind::Within => each(questions, |question| scene::all_within(scene, question, &mut found)),
+        Kind::LinearCast => each(questions, |question| scene::linear_cast(scene, question)),
+        Kind::MotionCast => each(questions, |question| scene::motion_cast(scene, question)),
+        Kind::Pairs => least(|| scene::pairs(scene, &mut pairs)) / scene.len() as f64,
     }
 }
 
 /// Nanoseconds of a question to parry's tree, with its own narrow phase; its compound is asked to cast.
 #[cfg(feature = "peers")]
-fn parrys(kind: Kind, places: &[[f64; 3]], questions: &[Question]) -> f64 {
-    let scene = scene::parry::Balls::new(places);
+fn parrys(kind: Kind, scene: &scene::parry::Balls, questions: &[Question]) -> f64 {
     let mut workspace = parry3d_f64::partitioning::BvhWorkspace::default();
     match kind {
         Kind::Ray => each(questions, |question| scene.ray_cast(question)),
@@ -153,7 +156,7 @@ fn parrys(kind: Kind, places: &[[f64; 3]], questions: &[Question]) -> f64 {
         Kind::Within => each(questions, |question| scene.all_within(question)),
         Kind::LinearCast => each(questions, |question| scene.linear_cast(question)),
         Kind::MotionCast => each(questions, |question| scene.motion_cast(question)),
-        Kind::Pairs => least(|| scene.pairs(&mut workspace)) / places.len() as f64,
+        Kind::Pairs => least(|| scene.pairs(&mut workspace)) / scene.count() as f64,
     }
 }
 
