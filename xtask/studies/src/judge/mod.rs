@@ -1,5 +1,7 @@
 //! `cargo xtask judge`: everybody's answers held against what is proved.
 
+#[cfg(any(feature = "box3d", feature = "jolt"))]
+mod compiled;
 #[cfg(feature = "peers")]
 mod parry;
 
@@ -91,6 +93,10 @@ fn witnesses(scope: &Scope, questions: &[Question]) -> Result<Vec<Witness>, Stri
         witnesses.push(parry::double::witness(questions, |k| progress("parry f64", k)));
         witnesses.push(parry::single::witness(questions, |k| progress("parry f32", k)));
     }
+    #[cfg(feature = "box3d")]
+    witnesses.push(compiled::box3d(questions, |k| progress("Box3D", k)));
+    #[cfg(feature = "jolt")]
+    witnesses.push(compiled::jolt(questions, |k| progress("Jolt", k)));
     for file in &scope.answers {
         witnesses.push(witnesses::from_file(file, questions)?);
     }
