@@ -73,7 +73,7 @@ fn pose(random: &mut Random) -> (Quat, Vec3A) {
     (if is_turned { Quat::from_euler(EulerRot::XYZ, x, y, z) } else { Quat::IDENTITY }, translation)
 }
 
-fn posed<'s>(twin: &'s Twin, (q, t): (Quat, Vec3A)) -> (Posed<&'s Shape<Vec3A>>, Posed<&'s Shape<DVec3>>) {
+fn posed(twin: &Twin, (q, t): (Quat, Vec3A)) -> (Posed<&Shape<Vec3A>>, Posed<&Shape<DVec3>>) {
     let wide = Posed::new(&twin.double, q.as_dquat().normalize(), t.as_dvec3()).expect("a rotation");
     (Posed::new(&twin.single, q, t).expect("a rotation"), wide)
 }
