@@ -1,7 +1,7 @@
 //! When two shapes meet that move without turning.
 
 use convex_support::numerics::twofold::lost_in_sum;
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{CoreKind, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::body::Pair;
@@ -114,7 +114,10 @@ where
     body.core_a = body.core_a.rounded(target);
     let (core_a, core_b) = (body.core_a, body.core_b);
     let (ray, direction_error, wanted) = ray_of(motion, [core_a.origin, core_b.origin], &options);
-    let cast = direct(&mut body, ray, direction_error, &wanted, &mut observer).unwrap_or_else(|| {
+    // Of no other pair is a crossing known.
+    let is_known = [core_a.kind, core_b.kind].iter().any(|kind| matches!(kind, CoreKind::Point(_)));
+    let known = if is_known { direct(&mut body, ray, direction_error, &wanted, &mut observer) } else { None };
+    let cast = known.unwrap_or_else(|| {
         let mut cast = cast(&mut body, ray, direction_error, |ray| ray, wanted, observer);
         settle_start(&mut cast, a, target, || Some(b), ray.direction, &wanted);
         cast

@@ -10,6 +10,7 @@ use convex_support::{
 };
 use gjk_raycast::{
     CastMethod, LinearCastOptions, Motion, Outcome, Ray, RayCast, RayCastOptions, Status, linear_cast, ray_cast,
+    ray_cast_with,
 };
 
 type Body = Box<dyn SupportMap<Vector = DVec3>>;
@@ -36,7 +37,7 @@ fn cast(body: &Body, ray: Ray<DVec3>, method: CastMethod) -> RayCast<DVec3> {
 }
 
 #[test]
-fn a_hit_takes_one_support_point_and_is_that_of_the_search() -> Result<(), convex_support::InvalidShape> {
+fn a_ray_takes_one_support_point_and_is_answered_as_by_the_search() -> Result<(), convex_support::InvalidShape> {
     let (mut hits, mut misses) = (0, 0);
     for body in bodies()? {
         for from in directions(40) {
@@ -54,7 +55,13 @@ fn a_hit_takes_one_support_point_and_is_that_of_the_search() -> Result<(), conve
                         assert!((p.lambda - q.lambda).abs() < 1e-12, "{known:?} {found:?}");
                         assert!(known.iterations == 1, "{known:?}");
                     }
-                    (Outcome::Miss(_), Outcome::Miss(_)) => misses += 1,
+                    (Outcome::Miss(miss), Outcome::Miss(_)) => {
+                        misses += 1;
+                        assert!(known.iterations <= 1, "{known:?}");
+                        let n = miss.axis;
+                        assert!(n.dot(source) > body.support_value(n), "{known:?}");
+                        assert!(n.dot(ray.direction) > -1e-15 * ray.direction.length(), "{known:?}");
+                    }
                     (Outcome::Hit(_) | Outcome::Miss(_), Outcome::Undecided) => {}
                     _ => panic!("{known:?} {found:?}"),
                 }
@@ -91,6 +98,49 @@ fn a_ball_that_moves_against_them_takes_one_support_point() -> Result<(), convex
                 assert!(!has_one || known.iterations == 1, "{known:?}");
             }
         }
+    }
+    Ok(())
+}
+
+/// Seen from eight sizes away a ray is based at its source, from farther at its point near the body; the answers agree.
+#[test]
+fn a_ray_from_farther_is_the_same_ray() -> Result<(), Box<dyn std::error::Error>> {
+    for body in bodies()? {
+        for from in directions(40) {
+            for to in directions(7) {
+                let (away, target) = (v::<DVec3>(from), v::<DVec3>(to) * 0.6);
+                let casts = [4.0, 64.0, 1e4].map(|far| {
+                    let source = target + away * far;
+                    (far, cast(&body, Ray { source, direction: -away }, CastMethod::Portal))
+                });
+                for (far, cast) in casts {
+                    assert_eq!(cast.outcome.is_miss(), casts[0].1.outcome.is_miss(), "{far}: {cast:?}");
+                    let (Some(near), Some(hit)) = (casts[0].1.outcome.hit(), cast.outcome.hit()) else { continue };
+                    let facing = near.normal.map_or(1.0, |n| n.dot(away));
+                    let error = 1e-14 * (1.0 + far / 16.0) / facing;
+                    assert!(((hit.lambda - far) - (near.lambda - 4.0)).abs() < error, "{far}: {cast:?} {near:?}");
+                    assert!(cast.upper - cast.lower < 1e-13 / facing + 2e-15 * far, "{cast:?}");
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A ray that ends before the body misses by the plane where it would enter; an observer sees that plane alone.
+#[test]
+fn the_end_of_a_ray_and_what_an_observer_sees() -> Result<(), Box<dyn std::error::Error>> {
+    let ray = Ray { source: DVec3::new(-3.0, 0.3, 0.2), direction: DVec3::X };
+    for body in bodies()? {
+        let mut seen = Vec::new();
+        let whole = ray_cast_with(&*body, ray, RayCastOptions::default(), |iterate| seen.push(iterate.v))?;
+        let Some(hit) = whole.outcome.hit() else { continue };
+        assert_eq!(whole, ray_cast(&*body, ray, RayCastOptions::default())?);
+        assert_eq!((seen.len(), seen.first().copied()), (1, hit.normal), "{whole:?}");
+        let cast = |end: f64| ray_cast(&*body, ray, RayCastOptions::default().with_max_lambda(end));
+        assert_eq!(cast(hit.lambda)?.outcome.hit(), Some(hit));
+        let Outcome::Miss(miss) = cast(hit.lambda - 1e-6)?.outcome else { panic!("it ends before") };
+        assert_eq!(Some(miss.axis), hit.normal);
     }
     Ok(())
 }

@@ -177,16 +177,23 @@ impl<V: Vector> Line<V> {
         let number = V::Scalar::from_f64;
         let (point, _) = body.support(axis);
         let reach = self.size * number(NEAR + 1.0);
-        let ahead = (axis.dot(self.source) - axis.dot(point)) * self.longest - axis.dot(self.direction).abs() * reach;
+        let along = axis.dot(self.direction);
+        let ahead = (axis.dot(self.source) - axis.dot(point)) * self.longest - along.abs() * reach;
         let error = self.size * (V::Scalar::EPSILON * number(AXIS_ERROR)) + self.error;
         let within = (body.radius() + error) * self.longest;
-        let length_squared = axis.length_squared();
-        let (squared, least) = (ahead * ahead, within * within * length_squared);
+        let (squared, least) = (ahead * ahead, within * within * axis.length_squared());
         let is_apart = (ahead > V::Scalar::ZERO) & (squared > least) & (least >= Float::min_positive_value());
-        if !(is_apart & is_comfortable(length_squared)) {
+        if !is_apart {
             return None;
         }
-        let n = axis * length_squared.sqrt().recip();
+        // Without its part along the line the axis is no nearer: that was taken off. A short vector to a line that comes from far is
+        // across it only to the rounding of where it comes from.
+        let across = axis - self.direction * (along / self.direction.length_squared());
+        let squared = across.length_squared();
+        if !is_comfortable(squared) {
+            return None;
+        }
+        let n = across * squared.sqrt().recip();
         show(observer, n, self.source - point);
         Some(missed(n))
     }
