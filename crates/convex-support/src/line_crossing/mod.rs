@@ -140,7 +140,7 @@ impl<V: Vector> From<Crossed<V>> for LineCrossing<V> {
 /// let die = Posed::translated(Rounded::new(Cuboid::new(DVec3::ONE)?, 0.25)?, DVec3::new(5.0, 0.0, 0.0))?;
 /// let crossing = line_crossing(&die, DVec3::ZERO, DVec3::X).crossing().ok_or("a miss")?;
 /// assert_eq!((crossing.entry, crossing.exit), (3.75, 6.25));
-/// assert_eq!(line_crossing(&die, DVec3::ZERO, DVec3::Y), LineCrossing::Misses(DVec3::NEG_X));
+/// assert!(matches!(line_crossing(&die, DVec3::ZERO, DVec3::Y), LineCrossing::Misses(_)));
 ///
 /// let rounded_cone = Rounded::new(Cone::<DVec3>::new(1.0, 1.0)?, 0.1)?;
 /// assert_eq!(line_crossing(&rounded_cone, DVec3::ZERO, DVec3::Y), LineCrossing::Unknown);
