@@ -1,5 +1,6 @@
 //! Motion at constant linear and angular velocity.
 
+use convex_support::numerics::bound::least;
 use convex_support::{AngularVelocity, BoundingSphere, Matrix, Scalar, Vector};
 use num_traits::Float as _;
 
@@ -117,6 +118,13 @@ pub(super) fn rate<M: Matrix>(w: &M) -> <M::Vector as Vector>::Scalar {
     M::Vector::from_fn(|i| w.col((i + 1) % 3).get((i + 2) % 3)).norm()
 }
 
+/// The length of the longer of two vectors whose squares underflow, with what products of such numbers may have lost.
+#[cold]
+#[inline(never)]
+fn hardly_bent<V: Vector>([from, to]: [V; 2]) -> V::Scalar {
+    from.norm().max(to.norm()) + V::Scalar::min_positive_value()
+}
+
 impl<V: Vector> Trajectory for RigidMotion<V> {
     type Vector = V;
 
@@ -165,10 +173,12 @@ impl<V: Vector> Trajectory for RigidMotion<V> {
             return straight;
         }
         let w = self.angular_velocity.cross_matrix();
-        let [bent_from, bent_to] = [from, to].map(|n| (w * (w * n - twice_rate)).norm());
-        let bent = if bent_from > bent_to { bent_from } else { bent_to };
-        // Of what turns ever so slowly the products may underflow.
-        straight + bent * self.lever(ball).1 + V::Scalar::min_positive_value()
+        let bent = [from, to].map(|n| w * (w * n - twice_rate));
+        let [squared_from, squared_to] = bent.map(Vector::length_squared);
+        let squared = if squared_from > squared_to { squared_from } else { squared_to };
+        let in_range = V::Scalar::min_positive_value() / (V::Scalar::EPSILON * V::Scalar::EPSILON);
+        let bent = if squared > in_range { squared.sqrt() } else { hardly_bent(bent) };
+        straight + bent * self.lever(ball).1 + least::<V::Scalar>()
     }
 
     /// About the centre, which moves at constant velocity, or about the middle of the ball, which leaves its chord by
