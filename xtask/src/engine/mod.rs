@@ -386,6 +386,37 @@ mod tests {
     }
 
     #[test]
+    fn a_scene_may_have_a_floor() {
+        let floor = r#"{"type":"half_space","normal":[0,2],"offset":-2}"#;
+        let rod = |y: f64| {
+            format!(
+                r#"{{"type":"posed","translation":[0,{y}],"of":{{"type":"capsule","half_height":0.75,"radius":0.25}}}}"#
+            )
+        };
+        let ask = |y, end| {
+            let motion = format!(r#"{{"velocity":[0,-1],"angular_velocity":3,"center":[0,{y}]}}"#);
+            let ask = format!(r#"{{"motion_cast":{{"shape":{},"motion":{motion},"max_time":{end}}}}}"#, rod(y));
+            let high = r#"{"type":"posed","translation":[0,9],"of":{"type":"ball","radius":1}}"#;
+            answered(&format!(r#"{{"query":"scene","bodies":[{high},{floor},{high}],"asks":[{ask}]}}"#))["answers"][0]
+                .clone()
+        };
+        // Its lower end is at 3 − t − 1/4 − 3/4·|cos 3t|.
+        let landed = ask(3.0, 9.0);
+        let time = landed["time"].as_f64().expect("it turns, and lands");
+        assert!((3.0 - time - 0.25 - 0.75 * (3.0 * time).cos().abs() + 1.0).abs() < 1e-13, "{landed}");
+        assert_eq!(landed["body"], 1, "by its index");
+        assert!(
+            landed["upper"].as_f64().zip(landed["lower"].as_f64()).is_some_and(|(upper, lower)| upper - lower < 1e-13)
+        );
+        assert_eq!(ask(3.0, 2.5), serde_json::json!({"hit": false}), "not yet");
+
+        let flat = refused(r#"{"query":"scene","bodies":[{"type":"half_space","normal":[0,0],"offset":1}],"asks":[]}"#);
+        assert_eq!(flat.kind, Kind::InvalidShape, "{}", flat.message);
+        let alone = refused(&format!(r#"{{"query":"ray_cast","target":{floor},"source":[5,0],"direction":[1,0]}}"#));
+        assert_eq!(alone.kind, Kind::UnknownShape, "a half-space is a body of a scene alone: {}", alone.message);
+    }
+
+    #[test]
     fn a_question_to_a_scene_is_of_one_kind() {
         let problem =
             refused(r#"{"query":"scene","bodies":[],"asks":[{"pairs_within":1},{"ray":{},"pairs_within":1}]}"#);

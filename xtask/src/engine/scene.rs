@@ -10,6 +10,7 @@ use super::cast::problem;
 use super::distance::certain;
 use super::{Ask, How, Query, Question, motion_cast as motion, scalar};
 use crate::wire::answer::{Answer, Field};
+use crate::wire::body::Body;
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::{Coordinates, Fields};
 use crate::wire::motion::Motion as RigidSpec;
@@ -17,7 +18,7 @@ use crate::wire::shape::{Shape, Solid, Space, vector};
 
 /// The query as written.
 pub(super) struct Scene {
-    bodies: Vec<Shape>,
+    bodies: Vec<Body>,
     asks: Vec<Spec>,
 }
 
@@ -36,18 +37,18 @@ const KINDS: [&str; 5] = ["ray", "nearest", "linear_cast", "motion_cast", "pairs
 impl Query for Scene {
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
         Ok(Self {
-            bodies: fields.each("bodies")?.iter().map(Shape::read).collect::<Result<_, _>>()?,
+            bodies: fields.each("bodies")?.iter().map(Body::read).collect::<Result<_, _>>()?,
             asks: fields.each("asks")?.iter().map(Spec::read).collect::<Result<_, _>>()?,
         })
     }
 
     fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
         how.method(&[("gjk", ())])?;
-        let build = |(i, shape): (usize, &Shape)| shape.build(&format!("bodies[{i}]"), how.meshes);
+        let build = |(i, body): (usize, &Body)| body.build(&format!("bodies[{i}]"), how.meshes);
         let bodies = self.bodies.iter().enumerate().map(build).collect::<Result<Vec<_>, _>>()?;
         let ask = |(i, spec): (usize, &Spec)| spec.build(&format!("asks[{i}]"), how);
         let asks = self.asks.iter().enumerate().map(ask).collect::<Result<_, _>>()?;
-        Ok(Box::new(Asked::<V> { scene: gjk_raycast::Scene::new(bodies).map_err(refused)?, asks }))
+        Ok(Box::new(Asked::<V> { scene: scene_of(bodies).map_err(refused)?, asks }))
     }
 }
 
@@ -117,6 +118,24 @@ impl Spec {
             }
         })
     }
+}
+
+/// The scene of these bodies, with indices in their order: built at once up to the first half-space.
+fn scene_of<V: Vector>(
+    mut bodies: Vec<gjk_raycast::Body<Solid<V>>>,
+) -> Result<gjk_raycast::Scene<Solid<V>>, SceneError> {
+    use gjk_raycast::Body::{Convex, HalfSpace};
+    let first = bodies.iter().position(|body| body.convex().is_none()).unwrap_or(bodies.len());
+    let rest = bodies.split_off(first);
+    let convex = |body| if let Convex(body) = body { Some(body) } else { None };
+    let mut scene = gjk_raycast::Scene::new(bodies.into_iter().filter_map(convex))?;
+    for body in rest {
+        match body {
+            Convex(body) => scene.insert(body)?,
+            HalfSpace(half_space) => scene.insert_half_space(half_space),
+        };
+    }
+    Ok(scene)
 }
 
 /// A body that has no place in a scene.
