@@ -197,6 +197,14 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         (self.high, self.entry) = (Bound::exact(mu.max(self.low())), Entry::Certain);
     }
 
+    /// The same, where that is known; otherwise an edge, or a graze, may be within an error.
+    pub(super) fn enter_by(&mut self, latest: Option<ScalarOf<B>>) {
+        match latest {
+            Some(mu) => self.enter_for_certain(mu),
+            None => self.doubt_entry(),
+        }
+    }
+
     /// Moves the upper bound to where the ray pierces a triangle of points of the body that is seen around it by more than an error; with
     /// its slope, and so the length of a normal that is 1 against the ray, that is known to an error across it.
     pub(super) fn pierce(&mut self, mu: ScalarOf<B>, length: ScalarOf<B>) {

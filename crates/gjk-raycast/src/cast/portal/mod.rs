@@ -11,6 +11,7 @@ mod rounded;
 mod smooth;
 mod sqp;
 mod triangle;
+mod window;
 
 use convex_support::{Scalar, Vector};
 

@@ -15,6 +15,7 @@ use num_traits::Float as _;
 use super::best_plane::best_plane;
 use super::pieces::{OnLine, Piece, Pieces};
 use super::ray_frame::{Alpha, BestPlane, Plane, RayFrame, RayPoint, RayPointOf, weights_of_zero};
+use super::window::Window;
 use crate::Iterate;
 use crate::body::Body;
 use crate::cast::bracket::{Bracket, ScalarOf};
@@ -34,6 +35,7 @@ pub(super) fn sqp<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     frame: &RayFrame<B::Vector>,
     mut portal: Portal<B::Vector, B::Witness>,
     mut best: BestPlane<B::Vector>,
+    window: Option<Window<ScalarOf<B>>>,
 ) -> Result<Contact<B>, Stop<B::Vector>> {
     let mut alpha = if portal.high.is_finite() { portal.alpha() } else { best.alpha };
     let mut pieces = Pieces::new();
@@ -60,7 +62,7 @@ pub(super) fn sqp<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         } else if portal.high < start {
             break;
         }
-        match close(bracket, frame, &best, &pieces, &portal, start, &mut coarse) {
+        match close(bracket, frame, &best, &pieces, &portal, (start, window.as_ref()), &mut coarse) {
             Err(Stop::InDoubt) => {}
             found => return found,
         }
@@ -68,7 +70,7 @@ pub(super) fn sqp<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         alpha = to;
     }
     match coarse {
-        Some(below) => best.close_at(bracket, frame, &below),
+        Some(below) => best.close_at(bracket, frame, &below, window.as_ref()),
         None => Err(Stop::InDoubt),
     }
 }
@@ -98,7 +100,7 @@ fn close<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     best: &BestPlane<B::Vector>,
     pieces: &Pieces<B::Vector, B::Witness>,
     portal: &Portal<B::Vector, B::Witness>,
-    start: ScalarOf<B>,
+    (start, window): (ScalarOf<B>, Option<&Window<ScalarOf<B>>>),
     coarse: &mut Option<OnLine<B::Vector, B::Witness>>,
 ) -> Result<Contact<B>, Stop<B::Vector>> {
     let within = bracket.tolerance() * best.alpha.length();
@@ -116,7 +118,7 @@ fn close<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
             wide = wide.or(Some(*below));
             continue;
         }
-        match best.close_at(bracket, frame, below) {
+        match best.close_at(bracket, frame, below, window) {
             Err(Stop::InDoubt) => {}
             found => return found,
         }
