@@ -166,7 +166,7 @@ impl<V: Vector> Line<V> {
     /// The miss by a plane across an axis, which is across the line to rounding.
     ///
     /// Of the line only what is in the ball about the body counts, and that is at most `NEAR + 1` sizes from the base: there it comes
-    /// no nearer to the plane than by that times `|n·d|/|d|`. Compared by squares, the axis need not be of unit length.
+    /// no nearer to the plane than by that times `|n·d|/|d|`.
     #[inline(always)]
     fn miss<B: Body<Vector = V>>(
         &self,
@@ -175,25 +175,22 @@ impl<V: Vector> Line<V> {
         observer: impl FnMut(Iterate<'_, V>),
     ) -> Option<Cast<V, B::Witness>> {
         let number = V::Scalar::from_f64;
-        let (point, _) = body.support(axis);
-        let reach = self.size * number(NEAR + 1.0);
-        let along = axis.dot(self.direction);
-        let ahead = (axis.dot(self.source) - axis.dot(point)) * self.longest - along.abs() * reach;
-        let error = self.size * (V::Scalar::EPSILON * number(AXIS_ERROR)) + self.error;
-        let within = (body.radius() + error) * self.longest;
-        let (squared, least) = (ahead * ahead, within * within * axis.length_squared());
-        let is_apart = (ahead > V::Scalar::ZERO) & (squared > least) & (least >= Float::min_positive_value());
-        if !is_apart {
-            return None;
-        }
-        // Without its part along the line the axis is no nearer: that was taken off. A short vector to a line that comes from far is
-        // across it only to the rounding of where it comes from.
-        let across = axis - self.direction * (along / self.direction.length_squared());
+        // A short vector to a line that comes from far is across it only to the rounding of where it comes from.
+        let along = axis.dot(self.direction) / self.direction.length_squared();
+        let across = axis - self.direction * along;
         let squared = across.length_squared();
         if !is_comfortable(squared) {
             return None;
         }
         let n = across * squared.sqrt().recip();
+        let (point, _) = body.support(n);
+        let reach = self.size * number(NEAR + 1.0);
+        let nearer = n.dot(self.direction).abs() * (reach / self.longest);
+        let error = self.size * (V::Scalar::EPSILON * number(AXIS_ERROR)) + self.error;
+        // NaN is no miss.
+        if !(n.dot(self.source) - n.dot(point) - nearer > body.radius() + error) {
+            return None;
+        }
         show(observer, n, self.source - point);
         Some(missed(n))
     }
