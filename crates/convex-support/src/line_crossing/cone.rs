@@ -40,9 +40,10 @@ pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Cross
     // The larger of the two in magnitude first, so that B and the root do not cancel; the other from the product.
     let q = -(b + root.copysign(b));
     let far = if a == zero { infinity.copysign(-q) } else { q / a };
-    // Where the root is larger than B, B does not cancel, and C may be nothing but rounding.
-    let is_centred = root > b.abs() + b.abs();
-    let near = if is_centred { (root.copysign(b) - b) / a } else { c / q };
+    // With p from the apex and rounding u, the quotient C/q is wrong by u·p²/q, and what the root leaves of B, divided by A, by u·p/A².
+    let squared = a * a;
+    let is_touched = q * q < source.length_squared() * (squared * squared);
+    let near = if is_touched { (root.copysign(b) - b) / a } else { c / q };
     let near = if q == zero { far } else { near };
     let (low, high) = if near < far { (near, far) } else { (far, near) };
     // Across the cone; or, where the line is steeper than the slant, into it for good, or out of it.
