@@ -182,7 +182,7 @@ impl Cast {
                     verdict.error = (facing > STEEP).then_some(error);
                 } else {
                     // Of a graze, the plane is along the ray, and by rounding may be crossed anywhere.
-                    verdict.false_hit |= !(facing.abs() <= GRAZE * epsilon);
+                    verdict.false_hit |= facing.is_nan() || facing.abs() > GRAZE * epsilon;
                 }
             }
             CastOutcome::Miss { axis } => {
