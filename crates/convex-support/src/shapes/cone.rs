@@ -3,7 +3,7 @@
 use super::cylinder::{across, disc_hessian};
 use crate::closest_point::closest_of_cone;
 use crate::error::{InvalidShape, measurable, non_negative};
-use crate::line_crossing::{cone, part_within};
+use crate::line_crossing::{cone, times_within};
 use crate::numerics::bound::roundings;
 use crate::support::swept;
 use crate::{Core, CoreKind, Feature, LineCrossing, Rounding, Scalar, SupportMap, Vector3};
@@ -117,8 +117,8 @@ impl<V: Vector3> SupportMap for Cone<V> {
             return cone(self, source, direction).into();
         }
         // The slant is nearer zero than the base.
-        match part_within(radius, self.slant().1 * self.half_height) {
-            Some(part) => cone(self, source * part.recip(), direction * part.recip()).into(),
+        match times_within(radius, self.slant().1 * self.half_height) {
+            Some(times) => cone(self, source * times, direction * times).into(),
             None => LineCrossing::Unknown,
         }
     }

@@ -4,7 +4,7 @@ use num_traits::Float as _;
 
 use crate::closest_point::closest_of_ellipsoid;
 use crate::error::{InvalidShape, finite, finite_matrix, orthonormal};
-use crate::line_crossing::{ellipsoid, part_within};
+use crate::line_crossing::{ellipsoid, times_within};
 use crate::numerics::bound::{image, raised, roundings, roundings_of};
 use crate::numerics::jacobi;
 use crate::numerics::range::power_of_two_below;
@@ -212,10 +212,8 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
         if radius == V::Scalar::ZERO {
             return ellipsoid(&self.axes, self.inverse_semi_axes, source, direction).into();
         }
-        match part_within(radius, -(-self.semi_axes).max_element()) {
-            Some(part) => {
-                ellipsoid(&self.axes, self.inverse_semi_axes, source * part.recip(), direction * part.recip()).into()
-            }
+        match times_within(radius, -(-self.semi_axes).max_element()) {
+            Some(times) => ellipsoid(&self.axes, self.inverse_semi_axes, source * times, direction * times).into(),
             None => LineCrossing::Unknown,
         }
     }
