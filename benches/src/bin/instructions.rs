@@ -23,10 +23,11 @@ type Row = (&'static str, fn() -> Solver);
 
 /// Rows that stand for the rest: polytopes, smooth and rounded bodies, small and large, known and behind `dyn`, in space and
 /// in the plane, each kind of query.
-const ROWS: [Row; 19] = [
+const ROWS: [Row; 20] = [
     ("ray_cast/cuboid", || ray_cast("cuboid", Effort::default())),
     ("ray_cast/hull1024", || ray_cast("hull1024", Effort::default())),
     ("linear_cast/hull64-hull64", || linear_cast("hull64-hull64", Effort::default())),
+    ("linear_cast/cuboid-cuboid", || linear_cast("cuboid-cuboid", Effort::default())),
     ("linear_cast/capsule-capsule", || linear_cast("capsule-capsule", Effort::default())),
     ("distance/ellipsoid-ellipsoid", || distance("ellipsoid-ellipsoid", Effort::default())),
     ("intersect/cuboid-cuboid", || {

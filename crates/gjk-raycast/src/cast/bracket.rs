@@ -26,6 +26,9 @@ pub(super) const NOISE: f64 = 8.0;
 /// not bend away within an error.
 pub(super) const DEEP: f64 = 64.0;
 
+/// How many errors a ray slides along the body that is worth a second look.
+const LONG: f64 = 1024.0;
+
 pub(super) type ScalarOf<B> = <<B as Body>::Vector as Vector>::Scalar;
 
 /// A support point of the core, and what it is made of.
@@ -86,6 +89,8 @@ pub(super) struct Bracket<'a, B: Body, O> {
     /// Where the ray is in the body, at the latest.
     high: Bound<ScalarOf<B>>,
     entry: Entry,
+    /// Three points of the body that are seen around the line, where a search found them.
+    around: Option<[B::Vector; 3]>,
 }
 
 /// How far the upper bound is to be trusted.
@@ -93,6 +98,8 @@ pub(super) struct Bracket<'a, B: Body, O> {
 enum Entry {
     /// The ray is in the body there, whatever the errors.
     Certain,
+    /// It has left the body there, if it ever entered it.
+    BeforeExit,
     /// It is if the surface goes on as it was seen to, as far as an error reaches.
     BySlope,
     /// An edge, or a graze, may be within an error.
@@ -145,6 +152,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
             normal: None,
             high: Bound::exact(ScalarOf::<B>::infinity()),
             entry: Entry::BySlope,
+            around: None,
         }
     }
 
@@ -181,7 +189,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     /// Whether the upper bound has to be found by other means.
     pub(super) fn is_entry_open(&self) -> bool {
         match self.entry {
-            Entry::Certain => false,
+            Entry::Certain | Entry::BeforeExit => false,
             Entry::BySlope => self.error > self.noise * ScalarOf::<B>::from_f64(LOOSE),
             Entry::InDoubt => true,
         }
@@ -197,19 +205,54 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         (self.high, self.entry) = (Bound::exact(mu.max(self.low())), Entry::Certain);
     }
 
-    /// The same, where that is known; otherwise an edge, or a graze, may be within an error.
-    pub(super) fn enter_by(&mut self, latest: Option<ScalarOf<B>>) {
-        match latest {
-            Some(mu) => self.enter_for_certain(mu),
-            None => self.doubt_entry(),
-        }
-    }
-
     /// Moves the upper bound to where the ray pierces a triangle of points of the body that is seen around it by more than an error; with
     /// its slope, and so the length of a normal that is 1 against the ray, that is known to an error across it.
     pub(super) fn pierce(&mut self, mu: ScalarOf<B>, length: ScalarOf<B>) {
         (self.high, self.entry) =
             (Bound { at: mu.max(self.low()), spread: length, more: Scalar::ZERO }, Entry::Certain);
+    }
+
+    /// Moves the upper bound to where the ray leaves the plane across the unit vector `n` that supports the core at `point`, if that is
+    /// nearer: whether it is.
+    pub(super) fn leave(&mut self, n: B::Vector, point: B::Vector) -> bool {
+        let per_slope = n.dot(self.ray.line.direction).recip();
+        let at = self.low() + (n.dot(point - self.x()) + self.radius) * per_slope;
+        let bound = Bound { at: at.max(self.low()), spread: per_slope, more: Scalar::ZERO };
+        // NaN is no nearer.
+        let latest = |bound: Bound<_>| bound.at + self.delay(bound);
+        let is_nearer = per_slope > Scalar::ZERO && latest(bound) < latest(self.highest());
+        if is_nearer {
+            (self.high, self.entry) = (bound, Entry::BeforeExit);
+        }
+        is_nearer
+    }
+
+    /// Whether the ray may touch the body for long before it enters or leaves it, to the error that this is known to here.
+    pub(super) fn may_slide(&self) -> bool {
+        let high = self.highest();
+        let late = self.error * ScalarOf::<B>::from_f64(LONG);
+        self.entry == Entry::InDoubt
+            || (self.entry == Entry::BeforeExit && high.at + self.delay(high) - self.low() > late)
+    }
+
+    /// Takes note of three points of the body that are seen around the line.
+    pub(super) fn surround(&mut self, points: [B::Vector; 3]) {
+        self.around = Some(points);
+    }
+
+    /// Three points of the body that are seen around the line, if they are known.
+    pub(super) fn around(&self) -> Option<[B::Vector; 3]> {
+        self.around
+    }
+
+    /// Where on the line the body has a point, of a contact, and how far that may be from there.
+    pub(super) fn point_near_line(&self) -> (ScalarOf<B>, ScalarOf<B>) {
+        (self.high.at, self.error + self.noise + self.high.more)
+    }
+
+    /// Whether the ray is before the last plane where it begins, whatever the errors.
+    pub(super) fn is_past_start(&self) -> bool {
+        self.low() - self.certain(self.low.bound) > self.ray.start
     }
 
     /// How far the bounds may stay apart, across the last plane.
@@ -451,13 +494,22 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         Some(Contact { mu: self.low(), normal: self.normal, witness })
     }
 
+    /// The upper bound: the end of the ball about the body where nothing better is certain.
+    fn highest(&self) -> Bound<ScalarOf<B>> {
+        if self.is_entry_open() { Bound::exact(self.chord.1.max(self.high.at)) } else { self.high }
+    }
+
+    /// How much later that may be. The surface may be met less steeply than the plane, by what noise leaves open.
+    fn delay(&self, high: Bound<ScalarOf<B>>) -> ScalarOf<B> {
+        self.certain(high) + self.noise * high.spread
+    }
+
     /// Bounds on λ, for the λ of a contact if there is one, wider by what rounding moved them.
     pub(super) fn bounds(&self, contact: Option<ScalarOf<B>>) -> (ScalarOf<B>, ScalarOf<B>) {
         let widened = |bound: Bound<_>| self.ray.error(bound.at, self.certain(bound));
         let lower = (self.ray.lambda(self.low()) - widened(self.low.bound)).max(Scalar::ZERO);
-        // The surface may be met less steeply than the plane, by what noise leaves open.
-        let high = if self.is_entry_open() { Bound::exact(self.chord.1.max(self.high.at)) } else { self.high };
-        let upper = self.ray.lambda(high.at) + self.ray.error(high.at, self.certain(high) + self.noise * high.spread);
+        let high = self.highest();
+        let upper = self.ray.lambda(high.at) + self.ray.error(high.at, self.delay(high));
         match contact {
             // NaN bounds nothing.
             Some(lambda) if upper.is_nan() => (lower.min(lambda), Float::infinity()),

@@ -225,6 +225,6 @@ fn certain<V: Vector, W>() -> Cast<V, W> {
         status: Status::Converged,
         iterations: 1,
         scale: V::Scalar::ONE,
-        is_entry_open: false,
+        may_slide: false,
     }
 }

@@ -7,6 +7,7 @@ mod bracket;
 mod closed_form;
 mod direct;
 mod line;
+mod outline;
 mod portal;
 mod start;
 
@@ -20,6 +21,7 @@ use bracket::{Bracket, ScalarOf};
 use closed_form::closed_form;
 pub(crate) use direct::direct;
 pub(crate) use line::LocalRay;
+use outline::bound_entry;
 use portal::portal;
 pub(crate) use start::settle_start;
 
@@ -35,6 +37,9 @@ pub(crate) fn cast<B: Body>(
 ) -> Cast<B::Vector, B::Witness> {
     let mut bracket = Bracket::new(body, ray, direction_error, place, &options, observer);
     let found = bracket.enter_ball().and_then(|()| search(&mut bracket));
+    if found.is_ok() && bracket.is_entry_open() && bracket.is_past_start() {
+        bound_entry(&mut bracket);
+    }
     conclude(&bracket, found)
 }
 
@@ -90,10 +95,10 @@ pub(crate) struct Cast<V: Vector, W> {
     pub(crate) upper: V::Scalar,
     pub(crate) status: Status,
     pub(crate) iterations: usize,
+    /// Whether a second look may tell earlier that the ray enters.
+    pub(crate) may_slide: bool,
     /// The unit of the hit spot and of the witness.
     pub(crate) scale: V::Scalar,
-    /// Whether the upper bound has to be found by other means.
-    pub(crate) is_entry_open: bool,
 }
 
 /// Where the ray enters the body.
@@ -133,6 +138,6 @@ fn conclude<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         Err(Stop::Exhausted(status)) => (Outcome::Undecided, bracket.bounds(None), status),
         Err(Stop::InDoubt | Stop::Touches(_)) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
     };
-    let (iterations, scale, is_entry_open) = (bracket.iterations(), bracket.scale, bracket.is_entry_open());
-    Cast { outcome, lower, upper, status, iterations, scale, is_entry_open }
+    let (iterations, scale, may_slide) = (bracket.iterations(), bracket.scale, bracket.may_slide());
+    Cast { outcome, lower, upper, status, iterations, scale, may_slide }
 }

@@ -37,7 +37,7 @@ pub(crate) fn settle_start<A, B, W>(
         Outcome::Miss(_) => false,
     };
     let is_to_be_settled = is_at_start && cast.upper > zero;
-    if (is_to_be_settled || cast.is_entry_open)
+    if (is_to_be_settled || cast.may_slide)
         && let Some(b) = b()
         && let Ok(a) = Rounded::new(a, skin)
     {

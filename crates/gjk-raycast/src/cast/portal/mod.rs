@@ -11,7 +11,6 @@ mod rounded;
 mod smooth;
 mod sqp;
 mod triangle;
-mod window;
 
 use convex_support::{Scalar, Vector};
 

@@ -12,7 +12,6 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::pieces::OnLine;
-use super::window::Window;
 use crate::Iterate;
 use crate::body::{Body, Witness};
 use crate::cast::bracket::Bracket;
@@ -307,20 +306,19 @@ impl<V: Vector> BestPlane<V> {
         Ok(true)
     }
 
-    /// Closes the bracket between this plane and a point of the body; where an error may lead to other pieces, the entry is bounded by a
-    /// window, or in doubt.
+    /// Closes the bracket between this plane and a point of the body; where an error may lead to other pieces, the entry is in
+    /// doubt.
     #[inline(always)]
     pub(super) fn close_at<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
         &self,
         bracket: &mut Bracket<'_, B, O>,
         frame: &RayFrame<V>,
         below: &OnLine<V, B::Witness>,
-        window: Option<&Window<V::Scalar>>,
     ) -> Result<Contact<B>, Stop<V>> {
         let found = self.close(bracket, frame, below.corners(), below.weights(), below.high)?;
         let by = bracket.error + bracket.noise;
         if !below.has_room(by) {
-            bracket.enter_by(window.and_then(|window| window.latest_entry(below.high, by)));
+            bracket.doubt_entry();
         }
         Ok(found)
     }

@@ -50,7 +50,7 @@ pub(super) fn smooth<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
                     return Err(Stop::InDoubt);
                 }
                 if below.high - best.tau <= tolerance * best.alpha.length() {
-                    return best.close_at(bracket, frame, &below, None);
+                    return best.close_at(bracket, frame, &below);
                 }
             }
             // Near the end, Newton's step H·δ = −(u, v) is the same, and does not cancel.

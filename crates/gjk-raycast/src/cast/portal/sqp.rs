@@ -15,7 +15,6 @@ use num_traits::Float as _;
 use super::best_plane::best_plane;
 use super::pieces::{OnLine, Piece, Pieces};
 use super::ray_frame::{Alpha, BestPlane, Plane, RayFrame, RayPoint, RayPointOf, weights_of_zero};
-use super::window::Window;
 use crate::Iterate;
 use crate::body::Body;
 use crate::cast::bracket::{Bracket, ScalarOf};
@@ -35,7 +34,6 @@ pub(super) fn sqp<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     frame: &RayFrame<B::Vector>,
     mut portal: Portal<B::Vector, B::Witness>,
     mut best: BestPlane<B::Vector>,
-    window: Option<Window<ScalarOf<B>>>,
 ) -> Result<Contact<B>, Stop<B::Vector>> {
     let mut alpha = if portal.high.is_finite() { portal.alpha() } else { best.alpha };
     let mut pieces = Pieces::new();
@@ -62,7 +60,7 @@ pub(super) fn sqp<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         } else if portal.high < start {
             break;
         }
-        match close(bracket, frame, &best, &pieces, &portal, (start, window.as_ref()), &mut coarse) {
+        match close(bracket, frame, &best, &pieces, &portal, start, &mut coarse) {
             Err(Stop::InDoubt) => {}
             found => return found,
         }
@@ -70,7 +68,7 @@ pub(super) fn sqp<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         alpha = to;
     }
     match coarse {
-        Some(below) => best.close_at(bracket, frame, &below, window.as_ref()),
+        Some(below) => best.close_at(bracket, frame, &below),
         None => Err(Stop::InDoubt),
     }
 }
@@ -100,7 +98,7 @@ fn close<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     best: &BestPlane<B::Vector>,
     pieces: &Pieces<B::Vector, B::Witness>,
     portal: &Portal<B::Vector, B::Witness>,
-    (start, window): (ScalarOf<B>, Option<&Window<ScalarOf<B>>>),
+    start: ScalarOf<B>,
     coarse: &mut Option<OnLine<B::Vector, B::Witness>>,
 ) -> Result<Contact<B>, Stop<B::Vector>> {
     let within = bracket.tolerance() * best.alpha.length();
@@ -118,7 +116,7 @@ fn close<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
             wide = wide.or(Some(*below));
             continue;
         }
-        match best.close_at(bracket, frame, below, window) {
+        match best.close_at(bracket, frame, below) {
             Err(Stop::InDoubt) => {}
             found => return found,
         }

@@ -14,7 +14,6 @@ use num_traits::Float as _;
 use super::pieces::is_surrounded;
 use super::ray_frame::{Alpha, BestPlane, Plane, RayFrame, RayPoint, RayPointOf};
 use super::sqp::{Portal, sqp};
-use super::window::Window;
 use crate::Iterate;
 use crate::body::Body;
 use crate::cast::bracket::{Bracket, ScalarOf};
@@ -54,7 +53,7 @@ pub(super) fn triangle<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         // The line passes near where the body is seen to end, too near to be enclosed by points; but an edge or a smooth
         // piece may be found that it runs through.
         None if planes.best.is_known() && frame.is_curved(bracket.body, frame.normal(planes.best.alpha.plane())) => {
-            sqp(bracket, frame, Portal::unknown([p, q, q]), planes.best, None)
+            sqp(bracket, frame, Portal::unknown([p, q, q]), planes.best)
         }
         None => Err(Stop::InDoubt),
     }
@@ -162,7 +161,7 @@ impl<V: Vector> Planes<'_, V> {
         mut portal: Triangle<B>,
     ) -> Result<Contact<B>, Stop<V>> {
         let tolerance = bracket.tolerance();
-        let window = Window::new(portal.corners.each_ref());
+        bracket.surround(portal.corners.map(|p| p.point));
         let mut last = V::Scalar::infinity();
         let mut exchanges = MAX_EXCHANGES;
         loop {
@@ -190,18 +189,18 @@ impl<V: Vector> Planes<'_, V> {
             let weights = portal.weights.map(|w| w * inverse);
             if closed(&self.best, self.best.alpha) {
                 let found = self.best.close(bracket, self.frame, &portal.corners, &weights, high)?;
-                portal.bound_entry(bracket, plane, high, &window);
+                portal.bound_entry(bracket, plane, high);
                 return Ok(found);
             }
             if bracket.body.is_curved() && self.frame.is_curved(bracket.body, self.frame.normal(plane)) {
                 let known = portal.anticlockwise(weights, high);
-                return sqp(bracket, self.frame, known, self.best, Some(window));
+                return sqp(bracket, self.frame, known, self.best);
             }
             let before = self.best.tau;
             let r = self.support(bracket, plane)?;
             if self.best.tau > before && closed(&self.best, self.alpha) {
                 let found = self.best.close(bracket, self.frame, &portal.corners, &weights, high)?;
-                portal.bound_entry(bracket, plane, high, &window);
+                portal.bound_entry(bracket, plane, high);
                 return Ok(found);
             }
             portal.exchange(r)?;
@@ -238,20 +237,19 @@ impl<B: Body> Triangle<B> {
         Ok(())
     }
 
-    /// Bounds the entry by its plane, where the line runs through it by more than an error; or else by the triangle that it began with.
+    /// Bounds the entry by its plane, where the line runs through it by more than an error.
     #[inline(always)]
     fn bound_entry<O: FnMut(Iterate<'_, B::Vector>)>(
         &self,
         bracket: &mut Bracket<'_, B, O>,
         Plane { a, b, c }: Plane<ScalarOf<B>>,
         high: ScalarOf<B>,
-        window: &Window<ScalarOf<B>>,
     ) {
         let by = bracket.error + bracket.noise;
         if is_surrounded(self.corners.each_ref(), by) {
             bracket.pierce(high, (a * a + b * b + c * c).sqrt() / c);
         } else {
-            bracket.enter_by(window.latest_entry(high, by));
+            bracket.doubt_entry();
         }
     }
 
