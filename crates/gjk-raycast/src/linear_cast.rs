@@ -13,8 +13,9 @@ use crate::{
     StartInContact, Status,
 };
 
-/// Shapes that meet within so many ε of their sizes may have begun in contact.
+/// Shapes that are apart by so many ε of their sizes, and of how far away they are, may be in contact: they and their places are rounded.
 const NEAR: f64 = 16.0;
+const NEAR_OF_FAR: f64 = 4.0;
 
 /// The velocities of two shapes, in units of length per unit of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -160,8 +161,10 @@ where
         Outcome::Undecided => Outcome::Undecided,
     };
     if options.start_in_contact == StartInContact::IfDeeper {
-        let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
-        only_if_deeper(&mut answer, &start, motion, &options, size);
+        let sizes = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
+        let far = core_a.origin.norm() + core_b.origin.norm();
+        let slack = (sizes * Scalar::from_f64(NEAR) + far * Scalar::from_f64(NEAR_OF_FAR)) * Scalar::EPSILON;
+        only_if_deeper(&mut answer, &start, motion, &options, slack);
     }
     Ok(answer)
 }
@@ -195,7 +198,8 @@ fn ray_of<V: Vector>(
     (ray, direction_error, wanted)
 }
 
-/// What is to be answered where only a motion that goes deeper counts as a hit, of what is otherwise; the shapes are of a `size`.
+/// What is to be answered where only a motion that goes deeper counts as a hit, of what is otherwise. Shapes that are apart by no more
+/// than a slack may be in contact.
 #[cold]
 #[inline(never)]
 fn only_if_deeper<V: Vector>(
@@ -203,23 +207,23 @@ fn only_if_deeper<V: Vector>(
     start: &Start<'_, V>,
     motion: Motion<V>,
     options: &LinearCastOptions<V>,
-    size: V::Scalar,
+    slack: V::Scalar,
 ) {
     let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
     let may_begin_in_contact = match answer.outcome {
         Outcome::Hit(LinearHit { normal: Some(n), time, .. }) => {
             let closing = n.dot(motion.velocity_b - motion.velocity_a);
             // NaN is looked at.
-            !(closing * time > V::Scalar::from_f64(NEAR) * V::Scalar::EPSILON * size)
+            !(closing * time > slack)
         }
         Outcome::Hit(_) => true,
-        Outcome::Undecided => answer.lower <= zero,
+        Outcome::Undecided => answer.lower * (motion.velocity_b - motion.velocity_a).norm() <= slack,
         Outcome::Miss(_) => false,
     };
     if !may_begin_in_contact {
         return;
     }
-    let Some(contact) = start.of_motion(motion, options) else { return };
+    let Some(contact) = start.of_motion(motion, options, slack) else { return };
     answer.iterations += contact.start.iterations;
     let is_hit_at_start = matches!(answer.outcome, Outcome::Hit(LinearHit { time, .. }) if time == zero);
     if let Some(axis) = contact.leaves_along {

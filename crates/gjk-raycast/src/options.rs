@@ -178,7 +178,8 @@ pub enum StartInContact {
     #[default]
     Report,
     /// A hit at time 0 only if the motion brings the bodies deeper into one another. If it takes them apart, the first contact
-    /// after they are.
+    /// after they are. Bodies that are apart, or in one another, by less than the rounding of their sizes and places, 16ε of those and 4ε of
+    /// these, count as touching here: while they leave they may touch again within that.
     IfDeeper,
 }
 

@@ -44,7 +44,8 @@ impl<V: Vector> Start<'_, V> {
         signed_distance(&self.a, &self.b, wanted)
     }
 
-    /// What is known of shapes that touch or overlap at the start; `None` where they are certainly apart.
+    /// What is known of shapes that touch or overlap at the start, to a slack that is the rounding of their places; `None` where they are
+    /// certainly apart by more.
     ///
     /// The depth of a point in a convex set is a concave function of it, the least of its distances from the supporting planes. So it
     /// falls along the whole of a line along which it falls at first; and where it is `−s`, along the normal `n`, it changes with the
@@ -53,9 +54,14 @@ impl<V: Vector> Start<'_, V> {
     /// counts whether they certainly overlap a little later.
     #[cold]
     #[inline(never)]
-    pub(crate) fn of_motion(&self, motion: Motion<V>, options: &LinearCastOptions<V>) -> Option<InContact<V>> {
+    pub(crate) fn of_motion(
+        &self,
+        motion: Motion<V>,
+        options: &LinearCastOptions<V>,
+        slack: V::Scalar,
+    ) -> Option<InContact<V>> {
         let start = self.signed_distance(options, V::Scalar::infinity());
-        if !(start.lower <= self.target) {
+        if !(start.lower <= self.target + slack) {
             return None;
         }
         let velocity = motion.velocity_a - motion.velocity_b;
@@ -65,7 +71,7 @@ impl<V: Vector> Start<'_, V> {
             return Some(touching);
         }
         let deeper = InContact { start, leaves_along: None };
-        if start.upper < self.target {
+        if start.upper < self.target - slack {
             return Some(deeper);
         }
         let later = self.a_little_later(velocity)?;

@@ -117,21 +117,41 @@ fn the_way_out_of_an_overlap_is_no_hit() {
     }
 }
 
+/// Velocities of a box that touches another in a corner, and whether they take it away.
+const FROM_A_CORNER: [([f64; 3], bool); 6] = [
+    ([1.0, -1.0, -1.0], true),
+    ([-1.0, 1.0, -1.0], true),
+    ([-1.0, -1.0, 1.0], true),
+    ([-1.0, -1.0, 0.0], true),
+    ([-1.0, -1.0, -1.0], false),
+    ([-3.0, -1.0, -0.01], false),
+];
+
 /// Corners that touch: one of the normals closes in, but the boxes part.
 #[test]
 fn boxes_that_touch_in_a_corner_part_along_another_normal() {
     let unit = cuboid::<DVec3>([1.0; 3]);
     let corner = at(unit, [2.0, 2.0, 2.0]);
-    for (velocity, leaves) in [
-        ([1.0, -1.0, -1.0], true),
-        ([-1.0, 1.0, -1.0], true),
-        ([-1.0, -1.0, 1.0], true),
-        ([-1.0, -1.0, 0.0], true),
-        ([-1.0, -1.0, -1.0], false),
-        ([-3.0, -1.0, -0.01], false),
-    ] {
+    for (velocity, leaves) in FROM_A_CORNER {
         let answer = linear_cast(&corner, &unit, moving(v(velocity)), if_deeper()).expect("finite");
         assert_eq!(answer.outcome.is_miss(), leaves, "{velocity:?}: {answer:?}");
+    }
+}
+
+/// Far from the origin a place is rounded, so that the boxes are in one another by two units in the last place, or as far apart.
+#[test]
+fn so_do_boxes_far_away_whose_corners_touch_to_the_last_digits() {
+    let unit = cuboid::<DVec3>([1.0; 3]);
+    let still = at(unit, [100.0; 3]);
+    let rounded = [-2.0, 0.0, 2.0].map(|ulps| 102.0 + ulps * 102.0 * f64::EPSILON);
+    for (x, y, z) in (0..27).map(|i| (rounded[i % 3], rounded[i / 3 % 3], rounded[i / 9])) {
+        let corner = at(unit, [x, y, z]);
+        // What slides along the box may be within it by that much, and go on so.
+        for (velocity, leaves) in FROM_A_CORNER.into_iter().filter(|(velocity, _)| !velocity.contains(&0.0)) {
+            let answer = linear_cast(&corner, &still, moving(v(velocity)), if_deeper()).expect("finite");
+            let is_told = answer.outcome.is_miss() == leaves && (leaves || answer.outcome.hit().is_some());
+            assert!(is_told, "{velocity:?} from {:?}: {answer:?}", (x, y, z));
+        }
     }
 }
 
