@@ -12,6 +12,16 @@ use crate::body::{Body as _, Pair, PointPair};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::symmetric::Symmetric;
 
+/// How many errors apart cores are, or in one another less their radii, to be looked at as closely as their numbers allow.
+const NEAR: f64 = 16.0;
+
+/// What is lost of a point of the difference, in units of ε times the coordinates of the cores and of the offset of their origins.
+///
+/// A dot product with a unit vector counts in: its three products and two sums lose 1.5 of their magnitudes. The sums `a − b` and
+/// `a − b + o` lose 0.5 each.
+const SUM: f64 = 2.6;
+const OFFSET: f64 = 2.1;
+
 /// A support point of the difference, and the points of both cores that it is made of.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Vertex<V> {
@@ -31,7 +41,12 @@ pub(super) struct Cores<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Ve
     peeled: [<A::Vector as Vector>::Scalar; 2],
     /// The sizes of both cores, their radii and their offset, in the unit.
     pub(super) size: <A::Vector as Vector>::Scalar,
-    uncertainty: Uncertainty<A::Vector>,
+    /// What taking the balls out of the cores loses.
+    peeled_error: <A::Vector as Vector>::Scalar,
+    /// How far points of the difference may be from those they stand for, as a length, in the unit.
+    error: <A::Vector as Vector>::Scalar,
+    /// The same coordinate by coordinate; `None` as long as the length will do.
+    uncertainty: Option<Uncertainty<A::Vector>>,
     /// The support points computed.
     pub(super) iterations: usize,
 }
@@ -43,21 +58,17 @@ struct Uncertainty<V: Vector> {
     lost: V,
     /// The length of what is lost in the offset of their origins.
     lost_in_offset: V::Scalar,
-    /// What is lost by taking balls out of the cores.
-    peeled: V::Scalar,
 }
 
 impl<V: Vector> Uncertainty<V> {
-    /// Of the sum of two points, each rounded to the shapes' extents, and the offset of their origins. A dot product with a unit
-    /// vector counts in: of `ε`, its three products and two sums lose 1.5 of their magnitudes. The sums `a − b` and `a − b + o` lose
-    /// 0.5 each.
+    /// Of the sum of two points, each rounded to the shapes' extents, and the offset of their origins.
     fn new(shapes: [Rounding<V>; 2], offset: V, lost_in_offset: V) -> Self {
         let epsilon: V::Scalar = Scalar::EPSILON;
         let extents = shapes[0].extent + shapes[1].extent;
-        let lost = extents * (epsilon * Scalar::from_f64(2.6)) + offset.abs() * (epsilon * Scalar::from_f64(2.1));
+        let lost = extents * (epsilon * Scalar::from_f64(SUM)) + offset.abs() * (epsilon * Scalar::from_f64(OFFSET));
         // The product with the power of two loses nothing, and its length a few ulps.
         let length = lost_in_offset.norm() * Scalar::from_f64(1.01);
-        Self { shapes, lost: lost + lost_in_offset.abs(), lost_in_offset: length, peeled: Scalar::ZERO }
+        Self { shapes, lost: lost + lost_in_offset.abs(), lost_in_offset: length }
     }
 
     /// Along a unit vector.
@@ -65,18 +76,19 @@ impl<V: Vector> Uncertainty<V> {
     fn along(&self, n: V) -> V::Scalar {
         let n = n.abs();
         let of_shapes = self.shapes.iter().map(|shape| n.dot(shape.error).min(shape.error_length));
-        of_shapes.fold(n.dot(self.lost) + self.peeled, |sum, error| sum + error)
+        of_shapes.fold(n.dot(self.lost), |sum, error| sum + error)
     }
 
     /// In any direction.
     fn length(&self) -> V::Scalar {
-        self.shapes.iter().fold(self.lost.norm() + self.peeled, |sum, shape| sum + shape.error_length)
+        self.shapes.iter().fold(self.lost.norm(), |sum, shape| sum + shape.error_length)
     }
 }
 
 /// How far apart shapes are along a unit vector from `b` to `a`, at least.
 pub(crate) fn gap_along<V: Vector>(a: &dyn SupportMap<Vector = V>, b: &dyn SupportMap<Vector = V>, n: V) -> V::Scalar {
     let mut cores = Cores::new(a, b);
+    cores.sharpen();
     let Some(vertex) = cores.support(-n) else { return -V::Scalar::infinity() };
     let gap = (n.dot(vertex.point) - cores.error_along(n)) * cores.scale() - cores.radius();
     // As in an answer: the unit vector, the radii and the sums.
@@ -97,22 +109,44 @@ pub(super) struct ClosedForm<V: Vector> {
 impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cores<'a, A, B> {
     pub(super) fn new(a: &'a A, b: &'a B) -> Self {
         let mut pair = Pair::new(a, b);
-        let parts = [a.core(), b.core()];
+        let parts = [pair.core_a, pair.core_b];
         let [from, to] = [parts[0].origin, parts[1].origin];
         let offset = from - to;
         let size = pair.size(offset);
         // The distance of the cores is wanted even where their radii overlap.
         let frame = Frame { radius: Scalar::ZERO, ..Frame::new(&mut pair, offset, size) };
-        let per_unit = frame.per_unit;
+        let (zero, epsilon) = (Scalar::ZERO, <A::Vector as Vector>::Scalar::EPSILON);
+        // As of Uncertainty, since no sum of products of coordinates is more than the product of the lengths.
+        let lost =
+            pair.extent() * (epsilon * Scalar::from_f64(SUM)) + offset.norm() * (epsilon * Scalar::from_f64(OFFSET));
+        let error = (pair.error() + lost + lost_in_sum(from, -to).norm()) * frame.per_unit;
+        let (size, peeled) = (size * frame.per_unit, [zero; 2]);
+        Self { pair, parts, frame, peeled, size, peeled_error: zero, error, uncertainty: None, iterations: 0 }
+    }
+
+    /// Asks the shapes how well they know their points, coordinate by coordinate, which takes longer than many a distance. Of a floor that
+    /// lies flat it has nothing to do with its width.
+    #[inline(never)]
+    pub(super) fn sharpen(&mut self) {
+        if self.uncertainty.is_some() {
+            return;
+        }
+        let Frame { offset, per_unit, .. } = self.frame;
         let in_unit = |r: Rounding<A::Vector>| Rounding {
             extent: r.extent * per_unit,
             error: r.error * per_unit,
             error_length: r.error_length * per_unit,
         };
-        let lost = lost_in_sum(from, -to) * per_unit;
-        let uncertainty = Uncertainty::new([in_unit(a.rounding()), in_unit(b.rounding())], frame.offset, lost);
-        let peeled = [Scalar::ZERO; 2];
-        Self { pair, parts, frame, peeled, size: size * per_unit, uncertainty, iterations: 0 }
+        let shapes = [self.pair.a.rounding(), self.pair.b.rounding()].map(in_unit);
+        let [from, to] = [self.parts[0].origin, self.parts[1].origin];
+        self.uncertainty = Some(Uncertainty::new(shapes, offset, lost_in_sum(from, -to) * per_unit));
+    }
+
+    /// Whether the error at hand will do for cores that are so far apart: it is little beside that, and beside what is left of it
+    /// without the radii.
+    pub(super) fn is_well_apart(&self, length: <A::Vector as Vector>::Scalar) -> bool {
+        let gap = (length - self.radius() * self.frame.per_unit).abs();
+        length.min(gap) > self.greatest_error() * Scalar::from_f64(NEAR)
     }
 
     /// Makes the cores smaller by the balls that roll within them, which become a part of their radii; whether there are any.
@@ -132,7 +166,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         // The unit vector is right to 6 roundings and the product to one; a sum of radii loses one more.
         let [a, b] = &self.parts;
         let four: <A::Vector as Vector>::Scalar = Scalar::from_f64(4.0);
-        self.uncertainty.peeled = four * Scalar::EPSILON * (a.radius + b.radius) * self.frame.per_unit;
+        self.peeled_error = four * Scalar::EPSILON * (a.radius + b.radius) * self.frame.per_unit;
         true
     }
 
@@ -178,20 +212,22 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     /// support point along `n` may fall short of the support value.
     #[inline]
     pub(super) fn error_along(&self, n: A::Vector) -> <A::Vector as Vector>::Scalar {
-        self.uncertainty.along(n)
+        self.uncertainty.as_ref().map_or(self.error, |known| known.along(n)) + self.peeled_error
     }
 
     /// A bound on [`error_along`](Self::error_along) in any direction.
     pub(super) fn greatest_error(&self) -> <A::Vector as Vector>::Scalar {
-        self.uncertainty.length()
+        self.uncertainty.as_ref().map_or(self.error, Uncertainty::length) + self.peeled_error
     }
 
     /// A bound on the length of what a point `p` of the difference stands for. Along `p` it is as wrong as along any unit vector,
     /// and what it is wrong by across hardly adds to the length.
     pub(super) fn greatest_length(&self, p: A::Vector) -> <A::Vector as Vector>::Scalar {
-        let error = self.uncertainty.length();
-        let along = p.unit().map_or(error, |n| self.uncertainty.along(n));
-        (p.norm() + along).hypot(error)
+        let error = self.greatest_error();
+        let along = p.unit().map_or(error, |n| self.error_along(n));
+        let length = p.norm() + along;
+        // Of √(l² + e²), which l + e²/2l is no less than, nothing overflows.
+        if error < length { length + error * (error / length) } else { length + error }
     }
 
     /// Whether a bracket on the distance is as narrow as GJK makes one.
@@ -202,7 +238,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     /// Whether the direction of a point of the difference is known to half the digits.
     pub(super) fn is_well_known(&self, p: A::Vector) -> bool {
         let root: <A::Vector as Vector>::Scalar = Scalar::EPSILON;
-        self.uncertainty.length() < root.sqrt() * p.norm()
+        self.greatest_error() < root.sqrt() * p.norm()
     }
 
     /// How wide a bracket on the depth along `n` rounding leaves.
@@ -213,8 +249,13 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
 
     /// The way out of two parallelotopes that certainly overlap; a plane across `axis`, or across their offset, may tell them apart
     /// at once.
-    pub(super) fn closed_form(&self, axis: Option<A::Vector>) -> Option<ClosedForm<A::Vector>> {
+    pub(super) fn closed_form(&mut self, axis: Option<A::Vector>) -> Option<ClosedForm<A::Vector>> {
         let Pair { a, b, core_a, core_b, .. } = &self.pair;
+        let reach = self.pair.extent() * self.frame.per_unit;
+        if self.frame.offset.length_squared() > reach * reach {
+            // Balls about the cores are apart.
+            return None;
+        }
         let parts = [parallelotope(*a, core_a)?, parallelotope(*b, core_b)?];
         let Frame { offset, per_unit, .. } = self.frame;
         let zonotope = Zonotope::new(&parts, offset, per_unit);
@@ -223,7 +264,9 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         }
         let nearest = zonotope.nearest_facet::<A::Vector>()?;
         // Computed in double precision, of edges and an offset that are wrong by what the shapes say.
-        let error = self.uncertainty.shapes.iter().fold(self.uncertainty.lost_in_offset, |sum, s| sum + s.error_length);
+        self.sharpen();
+        let Uncertainty { shapes, lost_in_offset, .. } = self.uncertainty.as_ref()?;
+        let error = shapes.iter().fold(*lost_in_offset, |sum, s| sum + s.error_length);
         let half_ulp = <A::Vector as Vector>::Scalar::EPSILON * Scalar::from_f64(0.5 * nearest.depth);
         let [depth, inner, outer] = [nearest.depth, nearest.inner, nearest.outer].map(Scalar::from_f64);
         let error = error + half_ulp;

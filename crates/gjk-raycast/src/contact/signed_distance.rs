@@ -66,6 +66,9 @@ where
     if may_repeat && !is_peeled && cores.peel() {
         (state, end) = cores.approach(&options, &mut observer);
     }
+    if !cores.is_well_apart(state.length) {
+        cores.sharpen();
+    }
     let apart = Reached::of_gjk(&cores, &state, end);
     let reached = if end == End::Separated || !state.length.is_finite() {
         apart
