@@ -50,7 +50,10 @@ impl<V: Vector> Aabb<V> {
 /// use convex_support::{Aabb, Cone, Posed, bounding_box, glam::DVec3};
 ///
 /// let cone = Posed::translated(Cone::new(1.0, 0.5)?, DVec3::new(10.0, 0.0, 0.0))?;
-/// assert_eq!(bounding_box(&cone), Aabb { min: DVec3::new(9.5, -1.0, -0.5), max: DVec3::new(10.5, 1.0, 0.5) });
+/// assert_eq!(
+///     bounding_box(&cone),
+///     Aabb { min: DVec3::new(9.5, -1.0, -0.5), max: DVec3::new(10.5, 1.0, 0.5) }
+/// );
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 #[must_use]

@@ -1,5 +1,5 @@
 //! Convex shapes as support maps, for collision detection, ray casting and motion planning: 2D and 3D, `f32` and `f64`,
-//! on [glam]'s vectors.
+//! on [glam](https://docs.rs/glam)'s vectors.
 //!
 //! A convex shape is known here by one function, its [support mapping](SupportMap): which of its points lies farthest
 //! along a direction. That one function is enough for ray casts, distances and continuous collision detection, and it
@@ -10,10 +10,12 @@
 //! use convex_support::{Ball, Cuboid, Difference, Posed, SupportMap, glam::DVec3};
 //!
 //! // A ball of radius 0.5 can touch a box from any centre on the surface of their difference.
-//! let wall = Posed::translated(Cuboid::new(DVec3::new(1.0, 4.0, 4.0))?, DVec3::new(10.0, 0.0, 0.0))?;
+//! let wall = Cuboid::new(DVec3::new(1.0, 4.0, 4.0))?;
+//! let wall = Posed::translated(wall, DVec3::new(10.0, 0.0, 0.0))?;
 //! let ball = Ball::new(0.5)?;
 //! let obstacle = Difference::new(wall, ball);
-//! assert_eq!(obstacle.support_value(DVec3::NEG_X), -8.5); // from the left, the centre stops at x = 8.5
+//! // From the left, the centre stops at x = 8.5.
+//! assert_eq!(obstacle.support_value(DVec3::NEG_X), -8.5);
 //! # Ok::<(), convex_support::InvalidShape>(())
 //! ```
 //!

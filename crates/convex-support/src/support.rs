@@ -32,7 +32,11 @@ use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding
 ///     type Vector = DVec2;
 ///
 ///     fn support(&self, d: DVec2) -> DVec2 {
-///         if d.x.abs() > d.y.abs() { DVec2::new(d.x.signum(), 0.0) } else { DVec2::new(0.0, d.y.signum()) }
+///         if d.x.abs() > d.y.abs() {
+///             DVec2::new(d.x.signum(), 0.0)
+///         } else {
+///             DVec2::new(0.0, d.y.signum())
+///         }
 ///     }
 /// }
 ///

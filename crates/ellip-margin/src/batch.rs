@@ -32,7 +32,8 @@ const LANES: usize = 8;
 /// use ellip_margin::{MarginOptions, free_margin, free_margins};
 ///
 /// let link = Ellipsoid::new(DVec2::ZERO, DVec2::new(2.0, 0.5), 0.0)?;
-/// let obstacles = [1.0, 2.0, 3.0].map(|y| Ellipsoid::new(DVec2::new(1.0, y), DVec2::new(0.3, 0.2), 0.7));
+/// let obstacles =
+///     [1.0, 2.0, 3.0].map(|y| Ellipsoid::new(DVec2::new(1.0, y), DVec2::new(0.3, 0.2), 0.7));
 /// let obstacles = obstacles.into_iter().collect::<Result<Vec<_>, _>>()?;
 /// let margins = free_margins(&[link], &obstacles, MarginOptions::default())?;
 /// let third = free_margin(&link, &obstacles[2], MarginOptions::default());
@@ -75,7 +76,8 @@ pub fn free_margins_into<V: Vector>(
 /// use ellip_margin::{MarginOptions, map_margins};
 ///
 /// let link = Ellipsoid::new(DVec2::ZERO, DVec2::new(2.0, 0.5), 0.0)?;
-/// let obstacles = [1.0, 2.0, 3.0].map(|y| Ellipsoid::new(DVec2::new(1.0, y), DVec2::new(0.3, 0.2), 0.7));
+/// let obstacles =
+///     [1.0, 2.0, 3.0].map(|y| Ellipsoid::new(DVec2::new(1.0, y), DVec2::new(0.3, 0.2), 0.7));
 /// let obstacles = obstacles.into_iter().collect::<Result<Vec<_>, _>>()?;
 /// let gradients = map_margins(&[link], &obstacles, MarginOptions::default(), |m| m.gradient())?;
 /// assert!(gradients.iter().all(|gradient| gradient.translation.y < 0.0));
@@ -113,7 +115,8 @@ pub fn map_margins<'a, V: Vector, T: Send>(
 /// use ellip_margin::{MarginOptions, map_margins_into};
 ///
 /// let link = Ellipsoid::new(DVec2::ZERO, DVec2::new(2.0, 0.5), 0.0)?;
-/// let obstacles = [1.0, 2.0, 3.0].map(|y| Ellipsoid::new(DVec2::new(1.0, y), DVec2::new(0.3, 0.2), 0.7));
+/// let obstacles =
+///     [1.0, 2.0, 3.0].map(|y| Ellipsoid::new(DVec2::new(1.0, y), DVec2::new(0.3, 0.2), 0.7));
 /// let obstacles = obstacles.into_iter().collect::<Result<Vec<_>, _>>()?;
 /// let mut margins = [0.0; 3];
 /// map_margins_into(&[link], &obstacles, MarginOptions::default(), &mut margins, |m| m.margin)?;
@@ -151,9 +154,12 @@ pub fn map_margins_into<'a, V: Vector, T: Send>(
 /// use ellip_margin::{MarginOptions, map_pairs};
 ///
 /// let link = Ellipsoid::new(DVec2::ZERO, DVec2::new(2.0, 0.5), 0.0)?;
-/// let obstacles = [0.1, 2.0, 3.0].map(|y| Ellipsoid::new(DVec2::new(1.0, y), DVec2::new(0.3, 0.2), 0.7));
+/// let obstacles =
+///     [0.1, 2.0, 3.0].map(|y| Ellipsoid::new(DVec2::new(1.0, y), DVec2::new(0.3, 0.2), 0.7));
 /// let obstacles = obstacles.into_iter().collect::<Result<Vec<_>, _>>()?;
-/// let ways = map_pairs(&[link], &obstacles, MarginOptions::default(), |pair| pair.scaling().gradient())?;
+/// let ways = map_pairs(&[link], &obstacles, MarginOptions::default(), |pair| {
+///     pair.scaling().gradient()
+/// })?;
 /// assert!(ways[0].translation.y < 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -18,7 +18,8 @@ use crate::{
 /// use ellip_margin::{EllipsoidPair, MarginOptions};
 ///
 /// let link = Ellipsoid::new(DVec3::ZERO, DVec3::new(2.0, 1.0, 0.5), Default::default())?;
-/// let obstacle = Ellipsoid::new(DVec3::new(3.0, 2.0, 1.0), DVec3::new(0.5, 0.5, 1.0), Default::default())?;
+/// let obstacle =
+///     Ellipsoid::new(DVec3::new(3.0, 2.0, 1.0), DVec3::new(0.5, 0.5, 1.0), Default::default())?;
 /// let pair = EllipsoidPair::new(&link, &obstacle, MarginOptions::default());
 ///
 /// let margin = pair.margin();

@@ -1,5 +1,5 @@
 //! The free margin of ellipsoids: how far a robot's link is from an obstacle, and which way that grows; 2D and 3D, `f32` and
-//! `f64`, on [glam](convex_support::glam)'s vectors.
+//! `f64`, on [glam](https://docs.rs/glam)'s vectors.
 //!
 //! The margin of E₁ about E₂ is how much E₁, grown about its centre, needs to touch E₂ (Rimon and Boyd, *Obstacle collision
 //! detection using best ellipsoid fit*, 1997): positive where they are disjoint, 0 where they touch, negative where they

@@ -8,7 +8,10 @@ use crate::InvalidQuery;
 /// use ellip_margin::MarginOptions;
 ///
 /// let quick = MarginOptions::default().with_tolerance(1e-3)?;
-/// assert_eq!((quick.tolerance(), quick.max_iterations), (1e-3, MarginOptions::default().max_iterations));
+/// assert_eq!(
+///     (quick.tolerance(), quick.max_iterations),
+///     (1e-3, MarginOptions::default().max_iterations)
+/// );
 /// assert!(MarginOptions::default().with_tolerance(f64::NAN).is_err());
 /// # Ok::<(), ellip_margin::InvalidQuery>(())
 /// ```

@@ -22,7 +22,13 @@ use crate::{Distance, DistanceOptions, distance};
 /// let ball = Ball::new(0.25)?;
 /// let balls = [0, 1, 2].map(|k| Posed::translated(ball, DVec3::new(x[k], y[k], z[k])));
 /// let [first, second, third] = balls;
-/// map_distances_into(&[table], &[first?, second?, third?], DistanceOptions::default(), &mut distances, |d| d.distance);
+/// map_distances_into(
+///     &[table],
+///     &[first?, second?, third?],
+///     DistanceOptions::default(),
+///     &mut distances,
+///     |d| d.distance,
+/// );
 ///
 /// assert_eq!(distances, [0.25, f64::sqrt(13.0) - 0.25, 0.75]);
 /// # Ok::<(), convex_support::InvalidShape>(())

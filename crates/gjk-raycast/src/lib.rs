@@ -5,18 +5,19 @@
 //!
 //! ```
 //! use convex_support::{Cuboid, Posed, glam::DVec3};
-//! use gjk_raycast::{LinearCastOptions, Motion, Outcome, linear_cast};
+//! use gjk_raycast::{LinearCastOptions, Motion, linear_cast};
 //!
 //! // A box moves at 10 m/s towards a wall whose face is at x = 9.9. When does it arrive?
 //! let parcel = Cuboid::new(DVec3::splat(0.5))?;
-//! let wall = Posed::translated(Cuboid::new(DVec3::new(0.1, 5.0, 5.0))?, DVec3::new(10.0, 0.0, 0.0))?;
+//! let wall =
+//!     Posed::translated(Cuboid::new(DVec3::new(0.1, 5.0, 5.0))?, DVec3::new(10.0, 0.0, 0.0))?;
 //! let motion = Motion { velocity_a: DVec3::new(10.0, 0.0, 0.0), velocity_b: DVec3::ZERO };
 //!
-//! let Ok(cast) = linear_cast(&parcel, &wall, motion, LinearCastOptions::default()) else { panic!("finite input") };
-//! let Outcome::Hit(hit) = cast.outcome else { panic!("it arrives") };
+//! let cast = linear_cast(&parcel, &wall, motion, LinearCastOptions::default())?;
+//! let hit = cast.outcome.hit().ok_or("it arrives")?;
 //! assert!((hit.time - 0.94).abs() < 1e-15);
 //! assert_eq!(hit.normal, Some(DVec3::NEG_X)); // out of the wall, towards the parcel
-//! # Ok::<(), convex_support::InvalidShape>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # Questions it answers

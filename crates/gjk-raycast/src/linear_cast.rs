@@ -46,7 +46,8 @@ impl<V: Vector> Motion<V> {
 /// let fast = Ball::new(0.5)?;
 /// let slow = Posed::translated(Ball::new(0.5)?, DVec2::new(4.0, 0.0))?;
 /// let motion = Motion { velocity_a: DVec2::new(3.0, 0.0), velocity_b: DVec2::new(1.0, 0.0) };
-/// let hit = linear_cast(&fast, &slow, motion, LinearCastOptions::default())?.outcome.hit().ok_or("they meet")?;
+/// let cast = linear_cast(&fast, &slow, motion, LinearCastOptions::default())?;
+/// let hit = cast.outcome.hit().ok_or("they meet")?;
 /// assert_eq!((hit.time, hit.point, hit.normal), (1.5, DVec2::new(5.0, 0.0), Some(DVec2::NEG_X)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -63,7 +64,9 @@ impl<V: Vector> Motion<V> {
 /// let floor = Cuboid::new(DVec2::new(10.0, 1.0))?;
 /// let ball = Posed::translated(Ball::new(0.5)?, DVec2::new(0.0, 1.5))?;
 /// let options = LinearCastOptions::new().with_start_in_contact(StartInContact::IfDeeper);
-/// let cast = |velocity_a| linear_cast(&ball, &floor, Motion { velocity_a, ..Motion::default() }, options);
+/// let cast = |velocity_a| {
+///     linear_cast(&ball, &floor, Motion { velocity_a, ..Motion::default() }, options)
+/// };
 /// assert!(cast(DVec2::new(3.0, 0.0))?.outcome.is_miss());
 /// assert!(cast(DVec2::new(3.0, 1.0))?.outcome.is_miss());
 /// let hit = cast(DVec2::new(3.0, -1.0))?.outcome.hit().ok_or("it goes into the floor")?;

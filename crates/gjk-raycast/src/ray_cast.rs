@@ -15,7 +15,8 @@ use crate::{Iterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit
 ///
 /// let planet = Posed::translated(Ball::new(2.0)?, DVec3::new(10.0, 0.0, 0.0))?;
 /// let ray = Ray { source: DVec3::ZERO, direction: DVec3::X };
-/// let hit = ray_cast(&planet, ray, RayCastOptions::default())?.outcome.hit().ok_or("it is in the way")?;
+/// let cast = ray_cast(&planet, ray, RayCastOptions::default())?;
+/// let hit = cast.outcome.hit().ok_or("it is in the way")?;
 /// assert_eq!((hit.lambda, hit.normal), (8.0, Some(DVec3::NEG_X)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -22,7 +22,10 @@ const RAYS_PER_PIECE: usize = 256;
 ///
 /// let stone = Ellipsoid::new(DVec3::ZERO, DVec3::new(3.0, 2.0, 1.0), Default::default())?;
 /// let rays: Vec<_> = (0..100)
-///     .map(|i| Ray { source: DVec3::new(0.1 * f64::from(i) - 5.0, 0.0, 10.0), direction: DVec3::NEG_Z })
+///     .map(|i| Ray {
+///         source: DVec3::new(0.1 * f64::from(i) - 5.0, 0.0, 10.0),
+///         direction: DVec3::NEG_Z,
+///     })
 ///     .collect();
 /// let hits = ray_casts(&stone, &rays, RayCastOptions::default())
 ///     .filter(|cast| cast.is_ok_and(|cast| cast.outcome.hit().is_some()))
@@ -49,7 +52,7 @@ pub fn ray_casts<S: SupportMap + ?Sized>(
     })
 }
 
-/// [`ray_casts`] on all threads of the current [rayon] pool, with the same answers to the last bit.
+/// [`ray_casts`] on all threads of the current [rayon](https://docs.rs/rayon) pool, with the same answers to the last bit.
 #[cfg(feature = "rayon")]
 pub fn par_ray_casts<S: SupportMap + Sync + ?Sized>(
     target: &S,

@@ -15,7 +15,8 @@ use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, r
 ///
 /// let planet = Posed::translated(Ball::new(2.0)?, DVec3::new(10.0, 0.0, 0.0))?;
 /// let ray = Ray { source: DVec3::ZERO, direction: DVec3::X };
-/// let exit = ray_exit(&planet, ray, RayCastOptions::default())?.outcome.hit().ok_or("it is in the way")?;
+/// let cast = ray_exit(&planet, ray, RayCastOptions::default())?;
+/// let exit = cast.outcome.hit().ok_or("it is in the way")?;
 /// assert_eq!((exit.lambda, exit.normal), (12.0, Some(DVec3::X)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -150,7 +150,8 @@ fn copied<P: AsRef<[f64]>>(points: &[P]) -> Copied<Dynamic> {
 /// use lj_ellipsoid::{EnclosingOptions, enclosing_dyn};
 ///
 /// // The eight points ±eₖ in four dimensions: the unit ball.
-/// let point = |i: usize| (0..4).map(|k| if i % 4 != k { 0.0 } else if i < 4 { 1.0 } else { -1.0 }).collect();
+/// let coordinate = |i: usize, k: usize| if i % 4 != k { 0.0 } else if i < 4 { 1.0 } else { -1.0 };
+/// let point = |i: usize| (0..4).map(|k| coordinate(i, k)).collect();
 /// let cross: Vec<Vec<f64>> = (0..8).map(point).collect();
 /// let answer = enclosing_dyn(&cross, EnclosingOptions::default())?;
 /// assert!(answer.ellipsoid.log_det().abs() < 1e-13);

@@ -125,7 +125,8 @@ impl Ellipsoid<3> {
     ///     .collect();
     /// let ellipsoid = enclosing(&plate, EnclosingOptions::default())?.ellipsoid;
     /// assert_eq!(ellipsoid.axes()[0].map(f64::abs), [0.0, 1.0, 0.0]);
-    /// assert!(ellipsoid.rotation().iter().all(|q| (q.abs() - 0.5).abs() < 1e-15)); // a third of a turn about a diagonal
+    /// // A third of a turn about a diagonal.
+    /// assert!(ellipsoid.rotation().iter().all(|q| (q.abs() - 0.5).abs() < 1e-15));
     /// # Ok::<(), lj_ellipsoid::EnclosingError>(())
     /// ```
     #[must_use]

@@ -13,12 +13,14 @@
 //!     .collect();
 //!
 //! let outer = enclosing(&bar, EnclosingOptions::default())?;
-//! assert!(bar.iter().all(|&corner| outer.ellipsoid.contains(corner))); // every point, as evaluated in f64
+//! // Every point is inside, as evaluated in f64.
+//! assert!(bar.iter().all(|&corner| outer.ellipsoid.contains(corner)));
 //! assert!(outer.log_det_gap <= 1e-9); // certified: no smaller ellipsoid does, beyond this
 //! assert!((outer.ellipsoid.semi_axes()[0] - 3.0 * 3f64.sqrt()).abs() < 1e-9);
 //!
 //! let inner = inscribed_in_hull(&bar, InscribedOptions::default())?;
-//! let tightness = inner.ellipsoid.tightness(&outer.ellipsoid); // (volume ratio)^(1/3), between 1/3 and 1
+//! // The ratio of the volumes to the power of 1/3, which is between 1/3 and 1.
+//! let tightness = inner.ellipsoid.tightness(&outer.ellipsoid);
 //! assert!((tightness - 1.0 / 3f64.sqrt()).abs() < 1e-8);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

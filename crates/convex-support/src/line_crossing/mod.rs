@@ -57,7 +57,9 @@ impl<V: Vector> Crossing<V> {
     /// use convex_support::{Ball, glam::DVec2, line_crossing};
     ///
     /// let disc = Ball::<DVec2>::new(1.0)?;
-    /// let crossing = line_crossing(&disc, DVec2::new(-3.0, 0.0), DVec2::new(0.5, 0.0)).crossing().ok_or("a miss")?;
+    /// let crossing = line_crossing(&disc, DVec2::new(-3.0, 0.0), DVec2::new(0.5, 0.0))
+    ///     .crossing()
+    ///     .ok_or("a miss")?;
     /// assert_eq!((crossing.entry, crossing.exit, crossing.normal), (4.0, 8.0, DVec2::NEG_X));
     /// assert_eq!(crossing.first_hit(f64::INFINITY), Some(4.0));
     /// assert_eq!(crossing.first_hit(3.0), None);
@@ -137,7 +139,10 @@ impl<V: Vector> From<Crossed<V>> for LineCrossing<V> {
 /// ```
 /// use convex_support::{Cone, Cuboid, LineCrossing, Posed, Rounded, glam::DVec3, line_crossing};
 ///
-/// let die = Posed::translated(Rounded::new(Cuboid::new(DVec3::ONE)?, 0.25)?, DVec3::new(5.0, 0.0, 0.0))?;
+/// let die = Posed::translated(
+///     Rounded::new(Cuboid::new(DVec3::ONE)?, 0.25)?,
+///     DVec3::new(5.0, 0.0, 0.0),
+/// )?;
 /// let crossing = line_crossing(&die, DVec3::ZERO, DVec3::X).crossing().ok_or("a miss")?;
 /// assert_eq!((crossing.entry, crossing.exit), (3.75, 6.25));
 /// assert!(matches!(line_crossing(&die, DVec3::ZERO, DVec3::Y), LineCrossing::Misses(_)));

@@ -35,12 +35,14 @@ use crate::{Answer, EllipsoidPair, InvalidQuery, Margin, MarginOptions, free_mar
 ///
 /// let obstacles: Vec<_> = (0..1000)
 ///     .map(|i| {
-///         let center = DVec3::new(f64::from(i % 10), f64::from(i / 10 % 10), f64::from(i / 100)) * 2.0;
+///         let center =
+///             DVec3::new(f64::from(i % 10), f64::from(i / 10 % 10), f64::from(i / 100)) * 2.0;
 ///         Ellipsoid::new(center, DVec3::new(0.3, 0.2, 0.1), Default::default())
 ///     })
 ///     .collect::<Result<_, _>>()?;
 /// let mut scene = Clearance::new(&obstacles, MarginOptions::default())?;
-/// let link = Ellipsoid::new(DVec3::new(5.1, 3.0, 3.0), DVec3::new(0.5, 0.1, 0.1), Default::default())?;
+/// let link =
+///     Ellipsoid::new(DVec3::new(5.1, 3.0, 3.0), DVec3::new(0.5, 0.1, 0.1), Default::default())?;
 /// let nearest = scene.step(&[link])?;
 /// assert!(nearest.margin.margin > 0.0 && nearest.pairs_evaluated < 20);
 /// assert_eq!(nearest.pairs_evaluated + nearest.left_out.total(), 1000);
@@ -160,7 +162,8 @@ impl<V: Vector> Clearance<V> {
     /// use convex_support::{Ellipsoid, glam::DVec2};
     /// use ellip_margin::{Clearance, MarginOptions};
     ///
-    /// let obstacles = [1.0, 2.0, 9.0].map(|x| Ellipsoid::new(DVec2::new(x, 3.0), DVec2::new(0.5, 1.0), 0.3));
+    /// let obstacles =
+    ///     [1.0, 2.0, 9.0].map(|x| Ellipsoid::new(DVec2::new(x, 3.0), DVec2::new(0.5, 1.0), 0.3));
     /// let obstacles = obstacles.into_iter().collect::<Result<Vec<_>, _>>()?;
     /// let scene = Clearance::new(&obstacles, MarginOptions::default())?;
     /// let links = [Ellipsoid::new(DVec2::ZERO, DVec2::new(2.0, 1.0), 0.0)?];

@@ -28,10 +28,11 @@ impl<V: Wedge> Answer<'_, V, Margin<V>> {
     ///
     /// let link = Ellipsoid::new(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.0), Default::default())?;
     /// let obstacle = Ellipsoid::new(DVec3::new(6.0, 0.0, 0.0), DVec3::ONE, Default::default())?;
-    /// let gradient = EllipsoidPair::new(&link, &obstacle, MarginOptions::default()).margin().gradient();
+    /// let pair = EllipsoidPair::new(&link, &obstacle, MarginOptions::default());
+    /// let gradient = pair.margin().gradient();
     /// // m = ((6 − x)/2 − ½)² − 1 for the link at (x, 0, 0).
     /// assert_eq!(gradient.translation, DVec3::new(-2.5, 0.0, 0.0));
-    /// // A joint at (0, −3, 0) about z swings the link towards −x for positive angles … by 3 per radian.
+    /// // A joint at (0, −3, 0) about z swings the link towards −x for positive angles, by 3 per radian.
     /// assert_eq!(gradient.revolute(DVec3::new(0.0, -3.0, 0.0), DVec3::Z), 7.5);
     /// # Ok::<(), convex_support::InvalidShape>(())
     /// ```
@@ -63,11 +64,14 @@ impl<V: Wedge> Answer<'_, V, Margin<V>> {
     /// use convex_support::{Ellipsoid, glam::{DMat3, DVec3}};
     /// use ellip_margin::{EllipsoidPair, MarginOptions};
     ///
-    /// // m = (d/2 − ½)² − 1 for balls of radius 2 and 1 at a distance of d: m″ = ½ along, m′/d = (d − 1)/2d across.
+    /// // m = (d/2 − ½)² − 1 for balls of radius 2 and 1 at a distance of d: m″ = ½ along,
+    /// // m′/d = (d − 1)/2d across.
     /// let link = Ellipsoid::new(DVec3::ZERO, DVec3::splat(2.0), Default::default())?;
     /// let obstacle = Ellipsoid::new(DVec3::new(5.0, 0.0, 0.0), DVec3::ONE, Default::default())?;
-    /// let hessian = EllipsoidPair::new(&link, &obstacle, MarginOptions::default()).margin().hessian();
-    /// assert!(hessian.translation().abs_diff_eq(DMat3::from_diagonal(DVec3::new(0.5, 0.4, 0.4)), 1e-15));
+    /// let pair = EllipsoidPair::new(&link, &obstacle, MarginOptions::default());
+    /// let hessian = pair.margin().hessian();
+    /// let due = DMat3::from_diagonal(DVec3::new(0.5, 0.4, 0.4));
+    /// assert!(hessian.translation().abs_diff_eq(due, 1e-15));
     /// // A ball may turn as it likes.
     /// assert_eq!(hessian.along(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)), 0.0);
     /// # Ok::<(), convex_support::InvalidShape>(())

@@ -22,7 +22,9 @@ impl<V: Wedge> Answer<'_, V, Scaling<V>> {
     /// let e2 = Ellipsoid::new(DVec3::new(0.6, 0.0, 0.0), DVec3::ONE, Default::default())?;
     /// let pair = EllipsoidPair::new(&e1, &e2, MarginOptions::default());
     /// assert_eq!(pair.margin().gradient().translation, DVec3::ZERO);
-    /// assert!(pair.scaling().gradient().translation.abs_diff_eq(DVec3::new(-1.0 / 3.0, 0.0, 0.0), 1e-15));
+    /// assert!(
+    ///     pair.scaling().gradient().translation.abs_diff_eq(DVec3::new(-1.0 / 3.0, 0.0, 0.0), 1e-15)
+    /// );
     /// # Ok::<(), convex_support::InvalidShape>(())
     /// ```
     pub fn gradient(&self) -> MotionGradient<V> {

@@ -68,7 +68,8 @@ pub struct Distance<V: Vector> {
 /// use ellip_margin::{MarginOptions, distance, distance_bracket};
 ///
 /// let link = Ellipsoid::new(DVec3::ZERO, DVec3::new(2.0, 1.0, 0.5), Default::default())?;
-/// let obstacle = Ellipsoid::new(DVec3::new(3.0, 2.0, 1.0), DVec3::new(0.5, 0.5, 1.0), Default::default())?;
+/// let obstacle =
+///     Ellipsoid::new(DVec3::new(3.0, 2.0, 1.0), DVec3::new(0.5, 0.5, 1.0), Default::default())?;
 /// let bracket = distance_bracket(&link, &obstacle, MarginOptions::default());
 /// let exact = distance(&link, &obstacle, MarginOptions::default()).distance;
 /// assert!(bracket.lower <= exact && exact <= bracket.upper);

@@ -26,7 +26,8 @@ use crate::{Answer, EllipsoidPair, Margin, MarginOptions, Status};
 ///
 /// let e1 = Ellipsoid::new(DVec2::ZERO, DVec2::new(2.0, 1.0), 0.3)?;
 /// let e2 = Ellipsoid::new(DVec2::new(4.0, 1.0), DVec2::new(1.0, 0.5), -0.8)?;
-/// let difference = free_margin_eigen(&e1, &e2).margin - free_margin(&e1, &e2, MarginOptions::default()).margin;
+/// let difference = free_margin_eigen(&e1, &e2).margin
+///     - free_margin(&e1, &e2, MarginOptions::default()).margin;
 /// assert!(difference.abs() < 1e-12);
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```

@@ -16,10 +16,13 @@ use num_traits::Float as _;
 /// // A box of half extent 0.5 stands on the floor, over its edge by half.
 /// let floor = Cuboid::new(DVec3::new(5.0, 1.0, 5.0))?;
 /// let parcel = Posed::translated(Cuboid::new(DVec3::splat(0.5))?, DVec3::new(5.0, 1.5, 0.0))?;
-/// let contact = contact(&parcel, &floor, 0.01, SignedDistanceOptions::default()).expect("they touch");
+/// let contact =
+///     contact(&parcel, &floor, 0.01, SignedDistanceOptions::default()).expect("they touch");
 /// assert_eq!(contact.normal, DVec3::Y);
 /// assert_eq!(contact.points().len(), 4);
-/// assert!(contact.points().iter().all(|p| p.point_a.x <= 5.0 && p.signed_distance.abs() < 1e-15));
+/// assert!(
+///     contact.points().iter().all(|p| p.point_a.x <= 5.0 && p.signed_distance.abs() < 1e-15)
+/// );
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 ///

@@ -98,7 +98,8 @@ impl<V: Vector> ClosestFeatures<V> {
     /// use gjk_raycast::{SignedDistanceOptions, signed_distance};
     ///
     /// let (a, b) = (Posed::translated(Ball::new(1.0)?, DVec2::Y * 4.0)?, Ball::new(2.0)?);
-    /// let features = signed_distance(&a, &b, SignedDistanceOptions::default()).closest_features(&a, &b);
+    /// let features =
+    ///     signed_distance(&a, &b, SignedDistanceOptions::default()).closest_features(&a, &b);
     /// let hessian = features.hessian(DVec2::Y * 4.0, DVec2::ZERO).expect("balls are smooth");
     /// // The distance of the centres is √(x² + y²); turning a ball about its centre does nothing.
     /// assert_eq!(hessian.a.matrix(), [[0.25, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]);

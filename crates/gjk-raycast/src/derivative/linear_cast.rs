@@ -43,11 +43,14 @@ impl<V: Vector> LinearHit<V> {
     ///
     /// // A ball flies at a wall 9 m away, at 3 m/s and obliquely.
     /// let ball = Ball::new(1.0)?;
-    /// let wall = Posed::translated(Cuboid::new(DVec3::new(1.0, 50.0, 50.0))?, DVec3::new(11.0, 0.0, 0.0))?;
+    /// let wall =
+    ///     Posed::translated(Cuboid::new(DVec3::new(1.0, 50.0, 50.0))?, DVec3::new(11.0, 0.0, 0.0))?;
     /// let motion = Motion { velocity_a: DVec3::new(3.0, 4.0, 0.0), velocity_b: DVec3::ZERO };
-    /// let hit = linear_cast(&ball, &wall, motion, LinearCastOptions::default())?.outcome.hit().ok_or("it arrives")?;
+    /// let cast = linear_cast(&ball, &wall, motion, LinearCastOptions::default())?;
+    /// let hit = cast.outcome.hit().ok_or("it arrives")?;
     /// let gradient = hit.gradient(motion).ok_or("it approaches")?;
-    /// assert_eq!(gradient.pose_a.translation, DVec3::new(-1.0 / 3.0, 0.0, 0.0)); // a metre ahead is a third of a second sooner
+    /// // A metre ahead is a third of a second sooner.
+    /// assert_eq!(gradient.pose_a.translation, DVec3::new(-1.0 / 3.0, 0.0, 0.0));
     /// assert_eq!(gradient.velocity_a, DVec3::new(-1.0, 0.0, 0.0)); // t = 9/v
     /// assert_eq!(gradient.radius, -1.0 / 3.0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())

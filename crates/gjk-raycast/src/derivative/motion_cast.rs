@@ -50,15 +50,18 @@ impl<V: Vector> MotionHit<V> {
     /// use convex_support::{Ball, Capsule, Posed, glam::DVec3};
     /// use gjk_raycast::{MotionCastOptions, RigidMotion, motion_cast};
     ///
-    /// // A thin blade turns about z. It touches a ball of radius 1/2 at x = 1 where it comes within 30° of x.
+    /// // A thin blade turns about z. It touches a ball of radius 1/2 at x = 1 where it comes within
+    /// // 30° of x.
     /// let blade = Capsule::new(1.0, 0.0)?; // along y
     /// let ball = Posed::translated(Ball::new(0.5)?, DVec3::X)?;
     /// let turning = RigidMotion::rotation(DVec3::Z * 2.0, DVec3::ZERO);
     /// let options = MotionCastOptions::new().with_max_time(1.0);
-    /// let hit = motion_cast(&blade, turning, &ball, RigidMotion::default(), options)?.outcome.hit().ok_or("they meet")?;
+    /// let cast = motion_cast(&blade, turning, &ball, RigidMotion::default(), options)?;
+    /// let hit = cast.outcome.hit().ok_or("they meet")?;
     /// let gradient = hit.gradient(&turning, &RigidMotion::default()).ok_or("they approach")?;
     ///
-    /// // Turned ahead by an angle at the start, it is there sooner by half as much time; and t = (angle)/ω.
+    /// // Turned ahead by an angle at the start, it is there sooner by half as much time; and
+    /// // t = (angle)/ω.
     /// assert!((gradient.pose_a.revolute(DVec3::ZERO, DVec3::Z) + 0.5).abs() < 1e-14);
     /// let by_motion = turning.gradient(hit.time, gradient.contact_a);
     /// assert!((by_motion.angular_velocity.z + hit.time / 2.0).abs() < 1e-14);

@@ -25,10 +25,13 @@ impl<V: Vector> ClosestFeatures<V> {
     /// use convex_support::{Cuboid, Posed, glam::DVec2};
     /// use gjk_raycast::{RigidMotion, SignedDistanceOptions, Smoothness, signed_distance};
     ///
-    /// // A box of width 2 lies 1 above a longer one, parallel to it. However it begins to turn, one of its corners comes nearer.
-    /// let (a, b) = (Posed::translated(Cuboid::new(DVec2::ONE)?, DVec2::new(0.0, 3.0))?, Cuboid::new(DVec2::new(5.0, 1.0))?);
-    /// let features = signed_distance(&a, &b, SignedDistanceOptions::default()).closest_features(&a, &b);
+    /// // A box of width 2 lies 1 above a longer one, parallel to it.
+    /// let a = Posed::translated(Cuboid::new(DVec2::ONE)?, DVec2::new(0.0, 3.0))?;
+    /// let b = Cuboid::new(DVec2::new(5.0, 1.0))?;
+    /// let answer = signed_distance(&a, &b, SignedDistanceOptions::default());
+    /// let features = answer.closest_features(&a, &b);
     /// assert_eq!(features.smoothness(), Smoothness::Edge);
+    /// // However it begins to turn, one of its corners comes nearer.
     /// for turn in [1.0, -1.0] {
     ///     let turning = RigidMotion::rotation(turn, DVec2::new(0.0, 3.0));
     ///     assert_eq!(features.rate(turning, RigidMotion::default()), Some(-1.0));

@@ -33,7 +33,8 @@ impl<V: Vector> RayHit<V> {
     ///
     /// let target = Posed::translated(Ball::new(2.0)?, DVec2::new(10.0, 0.0))?;
     /// let ray = Ray { source: DVec2::ZERO, direction: DVec2::X };
-    /// let hit = ray_cast(&target, ray, RayCastOptions::default())?.outcome.hit().ok_or("it is in the way")?;
+    /// let cast = ray_cast(&target, ray, RayCastOptions::default())?;
+    /// let hit = cast.outcome.hit().ok_or("it is in the way")?;
     /// let gradient = hit.gradient(ray).ok_or("it comes from outside")?;
     /// assert_eq!((gradient.source, gradient.direction), (-DVec2::X, -DVec2::X * 8.0));
     /// assert_eq!((gradient.target.translation, gradient.radius), (DVec2::X, -1.0));

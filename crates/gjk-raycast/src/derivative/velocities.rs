@@ -49,9 +49,11 @@ impl<V: Vector> ClosestFeatures<V> {
     ///
     /// // A ball passes another at a distance of 4 between their centres.
     /// let (a, b) = (Posed::translated(Ball::new(1.0)?, DVec3::Y * 4.0)?, Ball::new(2.0)?);
-    /// let features = signed_distance(&a, &b, SignedDistanceOptions::default()).closest_features(&a, &b);
+    /// let features =
+    ///     signed_distance(&a, &b, SignedDistanceOptions::default()).closest_features(&a, &b);
     /// let passing = RigidMotion::translation(DVec3::X);
-    /// let velocities = features.velocities(passing, RigidMotion::default()).expect("balls are smooth");
+    /// let velocities =
+    ///     features.velocities(passing, RigidMotion::default()).expect("balls are smooth");
     /// assert_eq!(velocities.signed_distance, 0.0);
     /// assert!((velocities.normal - DVec3::X / 4.0).length() < 1e-15); // an arc of radius 4
     /// assert!((velocities.point_b - DVec3::X / 2.0).length() < 1e-15); // half-way to the centre

@@ -20,7 +20,8 @@ use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, linear_ca
 /// use convex_support::{Ball, Capsule, Posed, glam::DVec3};
 /// use gjk_raycast::{MotionCastOptions, RigidMotion, motion_cast};
 ///
-/// // A blade of length 2 turns about z, once a second, with its middle at zero. A ball of radius 1/2 lies at x = 1.
+/// // A blade of length 2 turns about z, once a second, with its middle at zero. A ball of radius
+/// // 1/2 lies at x = 1.
 /// let blade = Capsule::new(1.0, 0.0)?; // along y
 /// let ball = Posed::translated(Ball::new(0.5)?, DVec3::X)?;
 /// let turning = RigidMotion::rotation(DVec3::Z * std::f64::consts::TAU, DVec3::ZERO);

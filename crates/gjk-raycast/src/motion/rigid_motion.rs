@@ -17,7 +17,11 @@ use super::trajectory::{Displacement, MovingBall, Trajectory, TurningPlane};
 /// use gjk_raycast::{RigidMotion, Trajectory};
 ///
 /// // A wheel of radius 1/2 that rolls along x: its lowest point is at rest.
-/// let rolling = RigidMotion { velocity: DVec3::X, angular_velocity: DVec3::new(0.0, 0.0, -2.0), center: DVec3::ZERO };
+/// let rolling = RigidMotion {
+///     velocity: DVec3::X,
+///     angular_velocity: DVec3::new(0.0, 0.0, -2.0),
+///     center: DVec3::ZERO,
+/// };
 /// assert_eq!(rolling.velocity(0.0, DVec3::new(0.0, -0.5, 0.0)), DVec3::ZERO);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -66,7 +66,7 @@ impl<S: SupportMap> Scene<S> {
         self.all().linear_cast(shape, motion, options)
     }
 
-    /// [`ray_cast`](Self::ray_cast) for each of many rays, on all threads of the current [rayon] pool.
+    /// [`ray_cast`](Self::ray_cast) for each of many rays, on all threads of the current [rayon](https://docs.rs/rayon) pool.
     #[cfg(feature = "rayon")]
     pub fn par_ray_casts(
         &self,

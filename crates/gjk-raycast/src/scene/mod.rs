@@ -57,7 +57,8 @@ pub use self::result::{
 /// let answer = scene.ray_cast(ray, RayCastOptions::default())?;
 /// let first = answer.first.ok_or("two are in the way")?;
 /// assert_eq!((first.body, first.hit.lambda), (1, 9.0));
-/// assert_eq!((answer.work.tested, answer.work.culled), (1, 2)); // one is beside the ray, and one behind the hit
+/// // One is beside the ray, and one behind the hit.
+/// assert_eq!((answer.work.tested, answer.work.culled), (1, 2));
 ///
 /// let nearest = scene.nearest(&Ball::new(0.5)?, DistanceOptions::default());
 /// assert_eq!(nearest.nearest.map(|n| (n.body, n.distance.distance)), Some((1, 8.5)));

@@ -26,7 +26,8 @@ impl<S: SupportMap> Scene<S> {
     /// let answer = scene.motion_cast(&blade, turning, MotionCastOptions::new().with_max_time(1.0))?;
     /// let first = answer.first.ok_or("two are in the way")?;
     /// assert_eq!(first.body, 0);
-    /// assert!((first.hit.time - 1.0 / 6.0).abs() < 1e-14); // after 60°, as the first ball reaches 30° to both sides
+    /// // After 60°, as the first ball reaches 30° to both sides.
+    /// assert!((first.hit.time - 1.0 / 6.0).abs() < 1e-14);
     /// assert_eq!(answer.work.culled, 1);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

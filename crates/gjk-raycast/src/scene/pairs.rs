@@ -63,7 +63,7 @@ impl<S: SupportMap> Among<'_, S> {
         asking.finish()
     }
 
-    /// [`pairs_within`](Self::pairs_within) on all threads of the current [rayon] pool, with the same pairs to the last
+    /// [`pairs_within`](Self::pairs_within) on all threads of the current [rayon](https://docs.rs/rayon) pool, with the same pairs to the last
     /// bit. The nodes of the [`Work`] are those of the pieces that the search is cut into.
     #[cfg(feature = "rayon")]
     pub fn par_pairs_within(

@@ -20,7 +20,10 @@ use crate::points::PointSlice;
 /// ```
 /// use lj_ellipsoid::{EnclosingOptions, MovingPoints};
 ///
-/// let mut points = MovingPoints::new(&[[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]], EnclosingOptions::new())?;
+/// let mut points = MovingPoints::new(
+///     &[[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]],
+///     EnclosingOptions::new(),
+/// )?;
 /// let area = points.enclosing()?.ellipsoid.log_volume().exp();
 ///
 /// points.insert([2.0, 1.0])?; // inside: nothing to compute

@@ -24,7 +24,14 @@ pub(crate) type Planes<S> = [[S; WIDTH]; 4];
 /// ```
 /// use convex_support::{Faceted, glam::DVec3, line_crossing};
 ///
-/// let octahedron = Faceted::hull_of([DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z])?;
+/// let octahedron = Faceted::hull_of([
+///     DVec3::X,
+///     DVec3::Y,
+///     DVec3::Z,
+///     DVec3::NEG_X,
+///     DVec3::NEG_Y,
+///     DVec3::NEG_Z,
+/// ])?;
 /// let source = DVec3::new(0.25, 0.25, 3.0);
 /// let crossing = line_crossing(&octahedron, source, DVec3::NEG_Z).crossing().ok_or("a miss")?;
 /// assert!((crossing.entry - 2.5).abs() < 1e-15 && (crossing.exit - 3.5).abs() < 1e-15);
