@@ -47,16 +47,17 @@ pub fn marks(points: &[Point], is_recorded: impl Fn(&str) -> bool) -> Marks {
             groups.push((point.who.clone(), if hollow { 4 + alike } else { alike }));
             groups.len() - 1
         });
+        let name = if point.set == "distance of 1e-6" { "near contact" } else { &point.set };
         let label = match point.disproved {
-            0 => point.set.clone(),
-            count => format!("{} ({count} ✗)", point.set),
+            0 => name.to_owned(),
+            count => format!("{name} ({count} ✗)"),
         };
         marks.push(Mark { at: [point.ns, point.error], label, group });
     }
     Marks {
         title: "Each kind of question, and who answers it".to_owned(),
         x: "median time per query".to_owned(),
-        y: "error of the worst hundredth, in parts of the scene".to_owned(),
+        y: "error that 99 of 100 answers stay below, in sizes of the scene".to_owned(),
         floor: FLOOR,
         groups,
         marks,

@@ -79,21 +79,14 @@ impl Marks {
     fn draw(&self, svg: &mut String, frame: &Frame) {
         let places: Vec<[f64; 2]> =
             self.marks.iter().map(|mark| [frame.px(mark.at[0]), frame.py(mark.at[1])]).collect();
-        let mut taken: Vec<Area> = places.iter().map(|[x, y]| [x - 5.0, y - 5.0, x + 5.0, y + 5.0]).collect();
-        for (one, &[x, y]) in self.marks.iter().zip(&places) {
+        let widths: Vec<f64> = self.marks.iter().map(|mark| LETTER * mark.label.chars().count() as f64).collect();
+        let names = named(&places, &widths, frame.size);
+        for ((one, &[x, y]), area) in self.marks.iter().zip(&places).zip(names) {
             let (name, colour) = &self.groups[one.group];
-            let width = LETTER * one.label.chars().count() as f64;
-            let area = free([x, y], width, &taken, frame.size);
-            taken.push(area);
             let (left, base) = (area[0], area[3] - 3.5);
-            // A name that had to go far is tied to its mark.
-            let (to_x, to_y) = (x.clamp(area[0], area[2]), y.clamp(area[1], area[3]));
-            let far = (to_x - x).hypot(to_y - y) > 12.0;
-            let tie = if far {
+            let tie = tie([x, y], area).map_or_else(String::new, |[to_x, to_y]| {
                 format!("<path d=\"M{x:.1} {y:.1}L{to_x:.1} {to_y:.1}\" stroke-width=\".8\" stroke-opacity=\".6\"/>")
-            } else {
-                String::new()
-            };
+            });
             let _ = writeln!(
                 svg,
                 "<g {}><title>{}: {}</title>{tie}{}<text x=\"{left:.1}\" y=\"{base:.1}\" font-size=\"{FONT}\" stroke=\"none\">{}</text></g>",
@@ -142,27 +135,68 @@ impl Marks {
     }
 }
 
-/// A place for a name of this width beside a point, as near as there is one.
-fn free([x, y]: [f64; 2], width: f64, taken: &[Area], size: [f64; 2]) -> Area {
+/// Where the names of these widths stand beside their marks. A name is moved while another place costs it less, a few times over,
+/// as where it is best depends on where the others are.
+fn named(places: &[[f64; 2]], widths: &[f64], size: [f64; 2]) -> Vec<Area> {
+    const ROUNDS: usize = 4;
+    let marks: Vec<Area> = places.iter().map(|[x, y]| [x - 5.0, y - 5.0, x + 5.0, y + 5.0]).collect();
+    let mut names: Vec<Area> = Vec::new();
+    for k in (0..places.len()).cycle().take(ROUNDS * places.len()) {
+        let others = |areas: &[Area]| areas.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, a)| *a).collect();
+        let taken: Vec<Area> = marks.iter().copied().chain::<Vec<Area>>(others(&names)).collect();
+        let beside: Vec<Area> = others(&marks);
+        let cost = |area: &Area| {
+            let covered = taken.iter().filter(|other| overlap(*area, **other)).count();
+            let [x, y] = places[k];
+            let away = (x.clamp(area[0], area[2]) - x).hypot(y.clamp(area[1], area[3]) - y);
+            let crossed = tie(places[k], *area).map_or(0, |to| {
+                let passed = beside.iter().chain(taken.iter().skip(marks.len()));
+                passed.filter(|other| crosses(places[k], to, **other)).count()
+            });
+            away + 1000.0 * covered as f64 + 60.0 * crossed as f64
+        };
+        let best = candidates(places[k], widths[k], size).into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
+        let best = best.unwrap_or([places[k][0] + 7.0, places[k][1], places[k][0] + 7.0 + widths[k], places[k][1]]);
+        match names.get_mut(k) {
+            Some(name) => *name = best,
+            None => names.push(best),
+        }
+    }
+    names
+}
+
+/// Where a name that had to go far is tied to its mark.
+fn tie([x, y]: [f64; 2], name: Area) -> Option<[f64; 2]> {
+    let to = [x.clamp(name[0], name[2]), y.clamp(name[1], name[3])];
+    ((to[0] - x).hypot(to[1] - y) > 12.0).then_some(to)
+}
+
+/// Whether the way from one point to another leads through an area, as far as points along it tell.
+fn crosses(from: [f64; 2], to: [f64; 2], area: Area) -> bool {
+    (0..=16).map(|k| f64::from(k) / 16.0).any(|t| {
+        let [x, y] = [0, 1].map(|i| from[i] + t * (to[i] - from[i]));
+        area[0] < x && x < area[2] && area[1] < y && y < area[3]
+    })
+}
+
+/// Places within the picture for a name of this width beside a point.
+fn candidates([x, y]: [f64; 2], width: f64, size: [f64; 2]) -> Vec<Area> {
     let height = FONT + 2.5;
     let place = |left: f64, top: f64| [left, top, left + width, top + height];
     let inside =
         |a: &Area| a[0] >= LEFT && a[2] <= size[0] - RIGHT + 24.0 && a[1] >= TOP - 8.0 && a[3] <= size[1] - 50.0;
+    // Sixteen directions, those to the sides, above and below first.
+    let directions = (0..16).map(|k| f64::from(k) * std::f64::consts::FRAC_PI_8);
+    let mut directions: Vec<[f64; 2]> = directions.map(|angle| [angle.cos(), angle.sin()]).collect();
+    directions.sort_by(|a, b| (a[0] * a[1]).abs().total_cmp(&(b[0] * b[1]).abs()));
     let beside = |away: f64| {
-        [
-            place(x + 7.0 + away, y - height / 2.0),
-            place(x - 7.0 - away - width, y - height / 2.0),
-            place(x - width / 2.0, y - 6.0 - away - height),
-            place(x - width / 2.0, y + 6.0 + away),
-            place(x + 5.0 + away, y - 4.0 - away - height),
-            place(x + 5.0 + away, y + 4.0 + away),
-            place(x - 5.0 - away - width, y - 4.0 - away - height),
-            place(x - 5.0 - away - width, y + 4.0 + away),
-        ]
+        let at = move |[along, up]: [f64; 2]| {
+            let (center, middle) = (x + along * (7.0 + away + width / 2.0), y + up * (6.0 + away + height / 2.0));
+            place(center - width / 2.0, middle - height / 2.0)
+        };
+        directions.clone().into_iter().map(at)
     };
-    let candidates = [0.0, 8.0, 16.0, 26.0, 38.0, 52.0, 70.0, 90.0].into_iter().flat_map(beside);
-    let mut fitting = candidates.filter(inside).filter(|area| !taken.iter().any(|other| overlap(*area, *other)));
-    fitting.next().unwrap_or_else(|| place(x + 7.0, y - height / 2.0))
+    [0.0, 8.0, 16.0, 26.0, 38.0, 52.0, 70.0, 90.0].into_iter().flat_map(beside).filter(inside).collect()
 }
 
 #[cfg(test)]
@@ -171,11 +205,12 @@ mod tests {
 
     #[test]
     fn names_cover_neither_marks_nor_one_another() {
-        let mut taken = vec![[295.0, 295.0, 305.0, 305.0]];
-        for _ in 0..12 {
-            let area = free([300.0, 300.0], 60.0, &taken, WIDE);
-            assert!(!taken.iter().any(|other| overlap(area, *other)), "{area:?} among {taken:?}");
-            taken.push(area);
+        let places: Vec<[f64; 2]> = (0..12).map(|k| [300.0 + f64::from(k), 300.0 + 3.0 * f64::from(k % 5)]).collect();
+        let names = named(&places, &[60.0; 12], WIDE);
+        for (k, name) in names.iter().enumerate() {
+            assert!(!names[..k].iter().any(|other| overlap(*name, *other)), "{name:?} among {names:?}");
+            let covered = places.iter().find(|[x, y]| overlap(*name, [x - 4.0, y - 4.0, x + 4.0, y + 4.0]));
+            assert_eq!(covered, None, "a mark under {name:?}");
         }
     }
 }

@@ -39,9 +39,10 @@ pub struct Plot {
     pub series: Vec<Series>,
 }
 
-const WIDTH: f64 = 600.0;
+/// Narrow enough to be read on a telephone.
+const WIDTH: f64 = 520.0;
 /// Of the plot with its axes; the legend comes below.
-const HEIGHT: f64 = 390.0;
+const HEIGHT: f64 = 370.0;
 const LEFT: f64 = 72.0;
 const RIGHT: f64 = 30.0;
 const TOP: f64 = 40.0;

@@ -1,10 +1,10 @@
-//! Every case: error against time as dots, and counts by query, file and tag.
+//! Every case: error against time as dots, and counts by query and file.
 
 use std::collections::BTreeMap;
 
 use super::Record;
 use super::page::{Block, Figure, Row, Section, Table};
-use super::summary::{Group, HEADERS, by_file, by_query, by_tag, called};
+use super::summary::{Group, HEADERS, by_file, by_query, called};
 use crate::plot::{Plot, Scale, Series};
 
 /// Errors below this are drawn here: it is less than half an ulp.
@@ -15,21 +15,26 @@ pub fn section(records: &[Record]) -> Section {
     let mut blocks: Vec<Block> =
         ["f64", "f32"].into_iter().filter_map(|p| scatter(records, p)).map(Block::Figure).collect();
     let groups = [
-        ("cases-by-query", "By query and precision.", "query", by_query(records)),
-        ("cases-by-file", "By file.", "file", by_file(records)),
-        ("cases-by-tag", "By query and tag.", "query: tag", by_tag(records)),
+        (
+            "cases-by-query",
+            "By question and precision. Errors are relative, steps iterations.",
+            "question",
+            by_query(records),
+        ),
+        ("cases-by-file", "By file of xtask/data/suite.", "file", by_file(records)),
     ];
-    blocks.extend(groups.into_iter().map(|(name, caption, title, groups)| {
-        let table = table(name, caption, title, &groups);
-        Block::Table(if groups.len() > 30 { table.folded() } else { table })
-    }));
+    blocks.extend(
+        groups.into_iter().map(|(name, caption, title, groups)| Block::Table(table(name, caption, title, &groups))),
+    );
     Section {
         id: "cases",
         title: "Every case",
-        lead: "Each case has a true answer and says what error its inputs allow: 1e-7 (in f32 1e-4) of the answer, and twice \
-               what a change of the inputs by 1000 (in f32 16) ulps does to the truth. The column err/allow is the worst \
-               error in that unit, rel the relative error (of ellipsoids, that of the volume); an answer is wrong where it exceeds 1, where a flag is, or where an error came in place of \
-               an answer. A case is soft, right with a remark, where a normal, a witness or a certificate is off."
+        lead: "Each case has a known answer and says what error its inputs allow: 1e-7 (in f32 1e-4) of the answer, and twice \
+               what a change of the inputs by 1000 (in f32 16) rounding errors does to the truth. The column \"of allowed\" is the worst \
+               error in that unit: below 1 is right. An answer is wrong where it exceeds 1, where hit or miss, overlap or gap is the wrong way round, or where \
+               an error came in place of an answer. Where a case is right with a remark, \
+               something beside the answer (a normal, a point, a gradient, a bound) is off. Errors are relative to the answer, of \
+               ellipsoids to the volume."
             .to_owned(),
         blocks,
     }
@@ -62,15 +67,15 @@ fn scatter(records: &[Record], precision: &str) -> Option<Figure> {
         plot: Plot {
             title: format!("Each case in {precision}"),
             x: "time per query".to_owned(),
-            y: "relative error; of ellipsoids, that of the volume".to_owned(),
+            y: "relative error (of fitted ellipsoids, of the volume)".to_owned(),
             scales: [Scale::Time, Scale::Log],
             floor: FLOOR,
             series,
         },
         caption: format!(
             "One dot per case, in {precision}; exact answers lie on the lowest line. What to see: nearly everything is at the level of \
-             rounding. A large relative error of an answer near zero (bodies that almost touch, rays that start on a \
-             surface) can be as good as the inputs allow: the tables compare each error with what its inputs allow."
+             rounding. Where the answer itself is nearly zero (bodies that almost touch, rays that start on a \
+             surface), a large relative error can be the best that the inputs allow: the tables compare each error with that."
         ),
     })
 }

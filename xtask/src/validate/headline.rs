@@ -8,6 +8,7 @@ use super::progress::progress;
 use super::summary::quantile;
 use crate::judge::figure::{Point, marks, read};
 use crate::judge::{judged, proved, questions, witnesses};
+use crate::plot::duration;
 
 /// How many questions of each kind are asked of each shape or pair of shapes.
 const EACH: usize = 6;
@@ -41,9 +42,10 @@ pub(super) fn headline(records: &[Record]) -> Headline {
     let drawing = Drawing {
         name: "headline".to_owned(),
         marks: marks(&points, |who| !is_ours(who)),
-        caption: "Further down is more accurate, further left is faster; both axes are logarithmic. Filled: measured in this run. Hollow: other \
-                  libraries as recorded (docs/judge.md); ✗ counts hits, misses and overlaps that are disproved. An error is a length, in \
-                  parts of the scene's size; of ellipsoids, stiff ones among them, it is that of 1 + the margin or of the volume, relative."
+        caption: "Filled marks are measured in this run: ours, in double (f64) and single (f32) precision. Hollow marks are other libraries as \
+                  recorded in docs/judge.md; ✗ counts hits, misses and overlaps that are disproved. An error is a length over the size of the scene; \
+                  of ellipsoids, stiff ones among them, it is relative, that of 1 + margin or of the volume. Near contact: distances of a \
+                  millionth of the scene."
             .to_owned(),
     };
     Headline { drawing, sentences }
@@ -88,35 +90,21 @@ fn error(record: &Record) -> Option<f64> {
 
 /// What to see.
 fn sentences(records: &[Record], points: &[Point], others: &[Point]) -> Vec<String> {
-    let wrong = records.iter().filter(|r| !r.verdict.wrong.is_empty()).count();
     let violated = records.iter().filter(|r| r.verdict.violates_certificate()).count();
-    let of = |who: &str| {
-        points
-            .iter()
-            .filter(|point| point.who == who && !OF_ELLIPSOIDS.iter().any(|(_, name)| *name == point.set))
-            .collect::<Vec<_>>()
+    let bounds = match violated {
+        0 => "each held the truth here".to_owned(),
+        count => format!("{count} of them failed to hold the truth here"),
     };
-    let worst = |points: &[&Point]| points.iter().map(|point| point.error).fold(0.0, f64::max);
-    let span = |points: &[&Point]| {
-        let (least, most) =
-            points.iter().fold((f64::INFINITY, 0.0f64), |(low, high), p| (low.min(p.ns), high.max(p.ns)));
-        format!("{} to {}", crate::plot::duration(least), crate::plot::duration(most))
-    };
-    let (double, single) = (of("ours f64"), of("ours f32"));
     let mut sentences = vec![
-        format!(
-            "Of {} questions with known answers {wrong} were answered wrongly, and {violated} bounds failed to hold the truth.",
-            records.len()
-        ),
-        format!(
-            "In double precision 99 of 100 answers are certain to {:.0e} of the scene or better, in {} at the median of each kind.",
-            worst(&double),
-            span(&double)
-        ),
-        format!("In single precision it is {:.0e}, in {}.", worst(&single), span(&single)),
-        "Every answer carries two bounds that geometry proves, so its error is known without knowing the truth."
+        "Each mark is one kind of question and who answers it: lower is more accurate, further left is faster, and both axes are \
+         logarithmic."
             .to_owned(),
     ];
+    sentences.extend(of_precision(points, "ours f64", "In double precision"));
+    sentences.extend(of_precision(points, "ours f32", "In single precision"));
+    sentences.push(format!(
+        "Our answers carry two bounds that follow from the geometry, so that the error is known without the truth; {bounds}."
+    ));
     let mut names: Vec<&str> = Vec::new();
     for point in others {
         if !names.contains(&point.who.as_str()) {
@@ -125,11 +113,35 @@ fn sentences(records: &[Record], points: &[Point], others: &[Point]) -> Vec<Stri
     }
     let disproved: usize =
         others.iter().filter(|point| !point.set.starts_with("suite")).map(|point| point.disproved).sum();
-    if !names.is_empty() {
+    if let Some((last, names)) = names.split_last() {
         sentences.push(format!(
-            "Of the answers recorded of {}, these bounds disprove {disproved} (cargo xtask judge asks them again).",
+            "Of the answers of {} and {last}, as recorded, such bounds disprove {disproved} (`cargo xtask judge` asks again).",
             names.join(", ")
         ));
     }
     sentences
+}
+
+/// How accurate and how fast, over the questions that others are asked too.
+fn of_precision(points: &[Point], who: &str, precision: &str) -> Option<String> {
+    let is_shared = |point: &&Point| point.who == who && !OF_ELLIPSOIDS.iter().any(|(_, name)| *name == point.set);
+    let of: Vec<&Point> = points.iter().filter(is_shared).collect();
+    let worst = of.iter().copied().max_by(|a, b| a.error.total_cmp(&b.error))?;
+    let fastest = of.iter().copied().min_by(|a, b| a.ns.total_cmp(&b.ns))?;
+    let slowest = of.iter().copied().max_by(|a, b| a.ns.total_cmp(&b.ns))?;
+    let rest = of.iter().filter(|point| point.set != worst.set).map(|point| point.error).fold(0.0, f64::max);
+    // Where one kind is far worse than the others, it says little of them.
+    let but = if 10.0 * rest < worst.error {
+        format!(" ({}; all others below {rest:.0e})", worst.set)
+    } else {
+        String::new()
+    };
+    Some(format!(
+        "{precision} the errors of 99 in 100 answers are below {:.0e} of the scene's size{but}, and the median question takes from {} ({}) to {} ({}).",
+        worst.error,
+        duration(fastest.ns),
+        fastest.set,
+        duration(slowest.ns),
+        slowest.set
+    ))
 }

@@ -55,6 +55,8 @@ pub struct Table {
     pub folded: bool,
     /// Whether its cells are sentences, which run from the left and wrap, and not numbers.
     pub prose: bool,
+    /// How many of its columns, from the first, are names; the others are numbers.
+    pub names: usize,
 }
 
 /// One row of a table.
@@ -92,6 +94,7 @@ impl Table {
             rows,
             folded: false,
             prose: false,
+            names: 1,
         }
     }
 
@@ -105,6 +108,11 @@ impl Table {
         self
     }
 
+    pub fn with_names(mut self, columns: usize) -> Self {
+        self.names = columns;
+        self
+    }
+
     fn csv(&self) -> String {
         let line = |cells: &[String]| cells.iter().map(|c| quoted(c)).collect::<Vec<_>>().join(",") + "\n";
         line(&self.headers) + &self.rows.iter().map(|row| line(&row.cells)).collect::<String>()
@@ -112,15 +120,16 @@ impl Table {
 
     fn html(&self) -> String {
         let class = if self.prose { " class=\"prose\"" } else { "" };
+        let name = |column: usize| if column < self.names { " class=\"name\"" } else { "" };
         let mut html = format!("<div class=\"scroll\"><table id=\"{}\"{class}>\n<thead><tr>", self.name);
-        for header in &self.headers {
-            let _ = write!(html, "<th>{}", escape(header));
+        for (k, header) in self.headers.iter().enumerate() {
+            let _ = write!(html, "<th{}>{}", name(k), escape(header));
         }
         html.push_str("</thead>\n<tbody>\n");
         for row in &self.rows {
             html.push_str(if row.tone == Tone::Bad { "<tr class=\"wrong\">" } else { "<tr>" });
-            for cell in &row.cells {
-                let _ = write!(html, "<td>{}", escape(cell));
+            for (k, cell) in row.cells.iter().enumerate() {
+                let _ = write!(html, "<td{}>{}", name(k), escape(cell));
             }
             html.push('\n');
         }
@@ -129,11 +138,11 @@ impl Table {
         if self.folded {
             format!(
                 "<details><summary>{} ({} rows)</summary>{html}<p>{link}</p></details>\n",
-                escape(&self.caption),
+                prose(&self.caption),
                 self.rows.len()
             )
         } else {
-            format!("<p class=\"caption\">{} {link}</p>{html}", escape(&self.caption))
+            format!("<p class=\"caption\">{} {link}</p>{html}", prose(&self.caption))
         }
     }
 }
@@ -155,7 +164,7 @@ impl Figure {
             "<figure id=\"{0}\">{1}<figcaption>{2} <a href=\"{0}.csv\">{0}.csv</a></figcaption></figure>\n",
             self.name,
             self.plot.svg(),
-            escape(&self.caption)
+            prose(&self.caption)
         )
     }
 }
@@ -177,7 +186,7 @@ impl Drawing {
             self.name,
             self.marks.svg(),
             self.marks.narrow_svg(),
-            escape(&self.caption)
+            prose(&self.caption)
         )
     }
 }
@@ -185,7 +194,7 @@ impl Drawing {
 impl Section {
     pub fn html(&self) -> String {
         let mut html =
-            format!("<section id=\"{}\">\n<h2>{}</h2>\n<p>{}</p>\n", self.id, escape(self.title), escape(&self.lead));
+            format!("<section id=\"{}\">\n<h2>{}</h2>\n<p>{}</p>\n", self.id, escape(self.title), prose(&self.lead));
         // Figures in a row share a grid.
         let mut in_grid = false;
         for block in &self.blocks {
@@ -219,6 +228,12 @@ impl Section {
     }
 }
 
+/// A sentence for HTML; what stands between backticks is code.
+pub fn prose(text: &str) -> String {
+    let part = |(k, part): (usize, &str)| if k % 2 == 1 { format!("<code>{part}</code>") } else { part.to_owned() };
+    escape(text).split('`').enumerate().map(part).collect()
+}
+
 /// A field of CSV.
 pub fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('"', "\"\""))
@@ -226,5 +241,9 @@ pub fn quoted(text: &str) -> String {
 
 /// An error as people read it.
 pub fn error(value: f64) -> String {
-    if value.is_nan() { "–".to_owned() } else { format!("{value:.1e}") }
+    match value {
+        _ if value.is_nan() => "–".to_owned(),
+        0.0 => "0".to_owned(),
+        _ => format!("{value:.1e}"),
+    }
 }

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use super::Record;
 use super::headline::Headline;
-use super::page::{Section, quoted};
-use super::summary::total;
+use super::page::{Section, prose, quoted};
+use super::summary::{called, total};
 use crate::plot::escape;
 use workloads::provenance::provenance;
 
@@ -80,21 +80,22 @@ fn html(records: &[Record], first: Option<&Headline>, sections: &[Section]) -> S
         "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>Error against run time</title>\n\
          <style>{STYLE}</style>\n<header><h1>Error against run time</h1>\n\
-         <p class=\"summary\">{} cases with true answers: {} right, <b class=\"{}\">{} wrong</b>, {} right with a remark.</p>\n",
+         <p class=\"summary\">{} questions with known answers: {} answered rightly, <b class=\"{}\">{} wrongly</b>{}.</p>\n",
         total.cases,
         total.cases - total.wrong,
         if total.wrong > 0 { "wrong" } else { "right" },
         total.wrong,
-        total.soft,
+        if total.soft > 0 { format!(", <a href=\"#remarks\">{} with a remark</a>", total.soft) } else { String::new() },
     );
     if let Some(Headline { drawing, sentences }) = first {
-        let items: String = sentences.iter().map(|sentence| format!("<li>{}\n", escape(sentence))).collect();
+        let items: String = sentences.iter().map(|sentence| format!("<li>{}\n", prose(sentence))).collect();
         let _ = write!(page, "<div class=\"screen\">{}<ul class=\"sentences\">\n{items}</ul></div>\n", drawing.html());
     }
     let _ = write!(
         page,
-        "<p class=\"provenance\">{}{}. Times are thread CPU time, shapes built, behind dyn SupportMap unless a chapter says otherwise; \
-         compare them within this page only. Truths come from exact rationals, ninety digits, closed forms or construction.</p>\n<nav><ol>\n",
+        "<p class=\"provenance\">{}{}. A time is the processor time of one thread for one question of shapes that are built already, called \
+         through <code>dyn SupportMap</code> unless a chapter says otherwise; compare times within this page only. Known answers come from exact rational \
+         arithmetic, from arithmetic of ninety digits, from closed forms, or are known by construction.</p>\n<nav><ol>\n",
         escape(&provenance()),
         escape(&busy())
     );
@@ -103,8 +104,9 @@ fn html(records: &[Record], first: Option<&Headline>, sections: &[Section]) -> S
     }
     page.push_str("</ol></nav></header>\n<main>\n");
     page.extend(sections.iter().map(Section::html));
-    page.push_str(&list("Wrong", records, |r| &r.verdict.wrong));
-    page.push_str(&list("Right with a remark", records, |r| &r.verdict.soft));
+    page.push_str(&list("wrong", "Wrong", "What is answered, and what is true.", records, |r| &r.verdict.wrong));
+    let remarks = "The answer itself is right; what stands beside it (a normal, a point, a gradient, a bound) is farther off than its case allows.";
+    page.push_str(&list("remarks", "Right with a remark", remarks, records, |r| &r.verdict.soft));
     page.push_str(
         "</main>\n<footer><p>The numbers of every case: <a href=\"cases.csv\">cases.csv</a>. Beside every figure and table \
          stands the file with its numbers.</p></footer>\n</html>\n",
@@ -112,11 +114,21 @@ fn html(records: &[Record], first: Option<&Headline>, sections: &[Section]) -> S
     page
 }
 
-fn list<'r>(title: &str, records: &'r [Record], why: impl Fn(&'r Record) -> &'r Vec<String>) -> String {
-    let items: String = records
-        .iter()
-        .filter(|r| !why(r).is_empty())
-        .map(|r| format!("<li>{} {}: {}\n", escape(&r.file), escape(&r.id), escape(&why(r).join("; "))))
-        .collect();
-    if items.is_empty() { String::new() } else { format!("<h2>{title}</h2>\n<ul>\n{items}</ul>\n") }
+fn list<'r>(
+    id: &str,
+    title: &str,
+    lead: &str,
+    records: &'r [Record],
+    why: impl Fn(&'r Record) -> &'r Vec<String>,
+) -> String {
+    let item = |r: &'r Record| {
+        let why = why(r).join("; ");
+        format!("<li>{}, case {} of {}.jsonl: {}\n", called(&r.query), escape(&r.id), escape(&r.file), escape(&why))
+    };
+    let items: String = records.iter().filter(|r| !why(r).is_empty()).map(item).collect();
+    if items.is_empty() {
+        String::new()
+    } else {
+        format!("<section id=\"{id}\">\n<h2>{title}</h2>\n<p>{lead}</p>\n<ul>\n{items}</ul>\n</section>\n")
+    }
 }

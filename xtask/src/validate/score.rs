@@ -132,7 +132,7 @@ fn judge_scalar(case: &Object, answer: &Object, name: &str, due: &Value, verdict
     };
     if ratio(worst) > 1.0 {
         verdict.wrong.push(format!(
-            "{name} {}, true {}, error {error:.3e} > {:.3e}{}",
+            "{name} {}, true {}: off by {error:.3e}, where {:.3e} is allowed{}",
             got[worst],
             due[worst],
             allow[worst],
@@ -171,7 +171,7 @@ fn judge_fields(case: &Object, expect: &Object, answer: &Object, ellipsoid: bool
             None => difference(got, due),
         };
         if off.is_nan() || off > tolerance {
-            verdict.soft.push(format!("{field} off by {off:.3e} > {tolerance:.3e}"));
+            verdict.soft.push(format!("{field} is off by {off:.3e}, where {tolerance:.3e} is allowed"));
         }
     }
     let normal = answer.get("normal");

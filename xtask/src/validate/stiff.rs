@@ -2,94 +2,137 @@
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
+use std::io::{self, Write};
 
 use super::page::{Block, Row, Section, Table, error};
-use super::summary::{called, quantile};
+use super::summary::{aligned, called, quantile};
 use super::{Record, score};
 use crate::plot::duration;
 
-/// The chapter: a table of every kind and value of difficulty.
+/// The chapter: a row for every kind of difficulty, and folded one for each of its values.
 #[must_use]
 pub fn section(records: &[Record]) -> Section {
-    let table = table(records);
-    let blocks = if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
+    let groups = groups(records);
+    let blocks =
+        if groups.is_empty() { Vec::new() } else { vec![Block::Table(kinds(&groups)), Block::Table(values(&groups))] };
     Section {
         id: "stiff",
         title: "Stiff and extreme cases",
-        lead: "Aspect, scale, offset, condition, gap to contact, grazing: what happens to the answers where the numbers get hard. What to \
-               see: worst errors stay below what the inputs allow (err/allow below 1) and do not grow with the difficulty, \
-               nothing is wrong, no certificate is violated, and iterations stay few. Where a relative error is large, the \
+        lead: "What happens to the answers where the numbers get hard: long and thin bodies, scenes that are tiny, huge or far from the \
+               origin, bodies that nearly touch, rays that graze. What to see: no answer is wrong, no bound fails to hold the truth, \
+               every error is a small part of what the inputs allow, and iterations stay few. Where a relative error is large, the \
                answer itself is nearly zero, or a change of the last digits of the inputs changes it as much."
             .to_owned(),
         blocks,
     }
 }
 
-/// For each query, precision, and kind and value of difficulty: how many, how right, how many iterations, how long.
-fn table(records: &[Record]) -> Table {
-    let mut groups = BTreeMap::<(&str, String, Ordered, &str), Vec<&Record>>::new();
+/// Prints a row for every kind of difficulty.
+pub(super) fn print(records: &[Record], output: &mut impl Write) -> io::Result<()> {
+    let table = kinds(&groups(records));
+    let headers: Vec<&str> = table.headers.iter().map(String::as_str).collect();
+    let rows: Vec<Vec<String>> = table.rows.into_iter().map(|row| row.cells).collect();
+    if rows.is_empty() { Ok(()) } else { aligned(output, &headers, &rows, table.names) }
+}
+
+/// Cases by query, precision, and kind and value of difficulty.
+type Groups<'r> = BTreeMap<(&'r str, &'r str, &'r str, Ordered), Vec<&'r Record>>;
+
+fn groups(records: &[Record]) -> Groups<'_> {
+    let mut groups = Groups::new();
     for record in records {
         for (kind, value) in record.tags.iter().filter_map(|tag| difficulty(tag)) {
-            let key = (record.query.as_str(), kind.to_owned(), Ordered(value), record.precision);
+            let key = (record.query.as_str(), kind, record.precision, Ordered(value));
             groups.entry(key).or_default().push(record);
         }
     }
-    let rows = groups.into_iter().map(|((query, kind, Ordered(value), precision), of)| {
-        let worst = |of_verdict: fn(&score::Verdict) -> Option<f64>| {
-            of.iter().filter_map(|r| of_verdict(&r.verdict)).fold(f64::NAN, f64::max)
-        };
-        let wrong = of.iter().filter(|r| !r.verdict.wrong.is_empty()).count();
-        let violations = of.iter().filter(|r| r.verdict.violates_certificate()).count();
-        let times: Vec<f64> = of.iter().filter_map(|r| r.time).collect();
-        let iterations = of.iter().filter_map(|r| r.iterations).max();
-        Row::of([
-            called(query),
-            difficulty_as_said(&kind),
-            // Powers of two are scales; all else is told as it is.
-            match value.log2() {
-                two if two.fract() == 0.0 && two.abs() > 20.0 => format!("2^{two}"),
-                _ if value == 1.0 => "1".to_owned(),
-                _ => format!("{value:e}"),
-            },
-            precision.to_owned(),
-            of.len().to_string(),
-            error(worst(|v| v.relative)),
-            error(worst(|v| v.ratio)),
-            wrong.to_string(),
-            violations.to_string(),
-            iterations.map_or_else(|| "–".to_owned(), |i| i.to_string()),
-            quantile(&times, 0.5).map_or_else(|| "–".to_owned(), duration),
-        ])
-        .bad_if(wrong + violations > 0)
+    groups
+}
+
+/// The columns of both tables that are not names.
+const HEADERS: [&str; 7] =
+    ["cases", "worst error", "of allowed", "wrong", "bounds that fail", "most iterations", "median time"];
+
+/// A row for each kind of difficulty, those first whose errors come nearest to what is allowed.
+fn kinds(groups: &Groups<'_>) -> Table {
+    let mut kinds = BTreeMap::<(&str, &str, &str), (Vec<f64>, Vec<&Record>)>::new();
+    for ((query, kind, precision, Ordered(value)), of) in groups {
+        let (values, records) = kinds.entry((query, kind, precision)).or_default();
+        values.push(*value);
+        records.extend(of);
+    }
+    let mut kinds: Vec<_> = kinds.into_iter().collect();
+    let worst = |of: &[&Record]| Ordered(of.iter().filter_map(|r| r.verdict.ratio).fold(0.0, f64::max));
+    kinds.sort_by_key(|(_, (_, of))| std::cmp::Reverse(worst(of)));
+    let rows = kinds.into_iter().map(|((query, kind, precision), (values, of))| {
+        let [first, last] = [values.first(), values.last()].map(|value| value.map_or_else(String::new, |v| number(*v)));
+        let span = if first == last { first } else { format!("{first} to {last}") };
+        row([format!("{} {precision}", called(query)), difficulty_as_said(kind), span], &of)
     });
+    let headers: Vec<&str> = ["question", "difficulty", "from, to"].into_iter().chain(HEADERS).collect();
     Table::new(
         "stiff",
-        "Worst error: relative; of ellipsoids, that of the volume. Violations: certificates (brackets, gaps) that do not hold the truth.",
-        &[
-            "query",
-            "difficulty",
-            "value",
-            "precision",
-            "cases",
-            "worst error",
-            "err/allow",
-            "wrong",
-            "violations",
-            "iterations, most",
-            "median time",
-        ],
+        "By kind of difficulty, sorted by the worst error in units of what the inputs allow (\"of allowed\": below 1 is right). Errors are relative, of \
+         fitted ellipsoids to the volume.",
+        &headers,
         rows.collect(),
     )
+    .with_names(3)
+}
+
+/// A row for each value of each kind of difficulty.
+fn values(groups: &Groups<'_>) -> Table {
+    let rows = groups.iter().map(|((query, kind, precision, Ordered(value)), of)| {
+        row([format!("{} {precision}", called(query)), difficulty_as_said(kind), number(*value)], of)
+    });
+    let headers: Vec<&str> = ["question", "difficulty", "value"].into_iter().chain(HEADERS).collect();
+    Table::new("stiff-values", "The same for each value", &headers, rows.collect()).with_names(3).folded()
+}
+
+/// The names of a row, and what is true of its cases.
+fn row(names: [String; 3], of: &[&Record]) -> Row {
+    let worst = |of_verdict: fn(&score::Verdict) -> Option<f64>| {
+        of.iter().filter_map(|r| of_verdict(&r.verdict)).fold(f64::NAN, f64::max)
+    };
+    let wrong = of.iter().filter(|r| !r.verdict.wrong.is_empty()).count();
+    let violations = of.iter().filter(|r| r.verdict.violates_certificate()).count();
+    let times: Vec<f64> = of.iter().filter_map(|r| r.time).collect();
+    let iterations = of.iter().filter_map(|r| r.iterations).max();
+    let numbers = [
+        of.len().to_string(),
+        error(worst(|v| v.relative)),
+        error(worst(|v| v.ratio)),
+        wrong.to_string(),
+        violations.to_string(),
+        iterations.map_or_else(|| "–".to_owned(), |i| i.to_string()),
+        quantile(&times, 0.5).map_or_else(|| "–".to_owned(), duration),
+    ];
+    Row::of(names.into_iter().chain(numbers)).bad_if(wrong + violations > 0)
+}
+
+/// Powers of two are scales; all else is told as it is.
+fn number(value: f64) -> String {
+    match value.log2() {
+        two if two.fract() == 0.0 && two.abs() >= 10.0 => format!("2^{two}"),
+        _ if (0.1..1000.0).contains(&value) => value.to_string(),
+        _ => format!("{value:e}"),
+    }
 }
 
 /// A kind of difficulty as a reader says it.
-fn difficulty_as_said(kind: &str) -> String {
+#[must_use]
+pub fn difficulty_as_said(kind: &str) -> String {
     match kind {
-        "cond" => "condition",
-        "by" => "passes at",
+        "aspect" => "length over width",
+        "cond" => "condition number",
+        "by" => "misses by",
         "scale" => "scale of the scene",
         "gap" => "gap to contact",
-        "offset" | "far" => "distance from the origin",
+        "grazing" => "depth of the graze",
+        "far" => "distance of source or body",
+        "offset" => "distance from the origin",
+        "ratio" => "ratio of the sizes",
+        "thick" | "thickness" => "thickness over width",
         other => other,
     }
     .to_owned()

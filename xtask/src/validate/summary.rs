@@ -4,13 +4,16 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use super::Record;
+use super::page::error;
+use super::score::scalar_of;
+use super::stiff;
+use crate::plot::duration;
 
 /// Counts and quantiles of a group of cases.
 #[derive(Clone, Debug, Default)]
 pub struct Group {
     pub cases: usize,
     pub wrong: usize,
-    pub errored: usize,
     pub soft: usize,
     relative: Vec<f64>,
     ratio: Vec<f64>,
@@ -22,7 +25,6 @@ impl Group {
     fn add(&mut self, record: &Record) {
         self.cases += 1;
         self.wrong += usize::from(!record.verdict.wrong.is_empty());
-        self.errored += usize::from(record.verdict.errored);
         self.soft += usize::from(!record.verdict.soft.is_empty());
         self.relative.extend(record.verdict.relative);
         self.ratio.extend(record.verdict.ratio);
@@ -31,44 +33,39 @@ impl Group {
     }
 
     /// The columns of [`HEADERS`], after the name.
-    pub fn columns(&self) -> [String; 12] {
-        let whole = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.0}"));
+    pub fn columns(&self) -> [String; 11] {
+        let told = |value: Option<f64>, as_text: fn(f64) -> String| value.map_or_else(|| "–".to_owned(), as_text);
+        let whole = |value: f64| format!("{value:.0}");
         [
             self.cases.to_string(),
             (self.cases - self.wrong).to_string(),
             self.wrong.to_string(),
-            self.errored.to_string(),
             self.soft.to_string(),
-            error(quantile(&self.relative, 0.5)),
-            error(quantile(&self.relative, 0.99)),
-            error(quantile(&self.relative, 1.0)),
-            error(quantile(&self.ratio, 1.0)),
-            whole(quantile(&self.iterations, 0.5)),
-            whole(quantile(&self.iterations, 1.0)),
-            whole(quantile(&self.time, 0.5)),
+            told(quantile(&self.relative, 0.5), error),
+            told(quantile(&self.relative, 0.99), error),
+            told(quantile(&self.relative, 1.0), error),
+            told(quantile(&self.ratio, 1.0), error),
+            told(quantile(&self.iterations, 0.5), whole),
+            told(quantile(&self.iterations, 1.0), whole),
+            told(quantile(&self.time, 0.5), duration),
         ]
     }
 }
 
 /// What the columns of a group are.
-pub const HEADERS: [&str; 12] = [
+pub const HEADERS: [&str; 11] = [
     "cases",
     "right",
     "wrong",
-    "errored",
-    "soft",
-    "rel 50%",
-    "rel 99%",
-    "rel max",
-    "err/allow",
-    "it 50%",
-    "it max",
-    "ns 50%",
+    "remarks",
+    "median error",
+    "99 % below",
+    "worst error",
+    "of allowed",
+    "steps",
+    "most steps",
+    "median time",
 ];
-
-fn error(value: Option<f64>) -> String {
-    value.map_or_else(|| "-".to_owned(), |e| format!("{e:.1e}"))
-}
 
 /// The smallest value that at least the fraction `p` of the values does not exceed.
 pub fn quantile(values: &[f64], p: f64) -> Option<f64> {
@@ -81,8 +78,21 @@ pub fn quantile(values: &[f64], p: f64) -> Option<f64> {
 /// A query as a reader says it.
 #[must_use]
 pub fn called(query: &str) -> String {
-    query.replace('_', " ")
+    match query {
+        "intersect" => "overlap",
+        "motion_cast" => "turning cast",
+        "margin" => "margin of ellipsoids",
+        "track" => "margin along a motion",
+        "clearance" => "clearance of a robot",
+        "none" => "(unreadable line)",
+        known if scalar_of(known).is_some() || OTHERS.contains(&known) => return known.replace('_', " "),
+        _ => "(unknown query)",
+    }
+    .to_owned()
 }
+
+/// Queries whose answer is not one number.
+const OTHERS: [&str; 2] = ["contact", "scene"];
 
 /// Groups of cases by what `names` calls them.
 pub fn groups<'r>(records: &'r [Record], names: impl Fn(&'r Record) -> Vec<String>) -> BTreeMap<String, Group> {
@@ -97,13 +107,6 @@ pub fn groups<'r>(records: &'r [Record], names: impl Fn(&'r Record) -> Vec<Strin
 
 pub fn by_query(records: &[Record]) -> BTreeMap<String, Group> {
     groups(records, |r| vec![format!("{} {}", called(&r.query), r.precision)])
-}
-
-pub fn by_tag(records: &[Record]) -> BTreeMap<String, Group> {
-    groups(records, |r| {
-        let tags = if r.tags.is_empty() { vec!["untagged"] } else { r.tags.iter().map(String::as_str).collect() };
-        tags.iter().map(|tag| format!("{}: {tag}", called(&r.query))).collect()
-    })
 }
 
 pub fn by_file(records: &[Record]) -> BTreeMap<String, Group> {
@@ -122,8 +125,8 @@ const TOLD: usize = 20;
 /// Prints the summary.
 pub fn print(records: &[Record], output: &mut impl Write) -> io::Result<()> {
     table(output, "file", &by_file(records))?;
-    table(output, "query: tag", &by_tag(records))?;
-    table(output, "query", &by_query(records))?;
+    stiff::print(records, output)?;
+    table(output, "question", &by_query(records))?;
     let bad: Vec<&Record> = records.iter().filter(|r| !r.verdict.wrong.is_empty()).collect();
     for record in bad.iter().take(TOLD) {
         let Record { file, id, tags, verdict, .. } = record;
@@ -133,7 +136,7 @@ pub fn print(records: &[Record], output: &mut impl Write) -> io::Result<()> {
         writeln!(output, "… and {} more wrong; the report lists all", bad.len() - TOLD)?;
     }
     for record in records.iter().filter(|r| !r.verdict.soft.is_empty()).take(TOLD) {
-        writeln!(output, "soft {} {}: {}", record.file, record.id, record.verdict.soft.join("; "))?;
+        writeln!(output, "right, with a remark: {} {}: {}", record.file, record.id, record.verdict.soft.join("; "))?;
     }
     let total = total(records);
     writeln!(
@@ -148,18 +151,20 @@ pub fn print(records: &[Record], output: &mut impl Write) -> io::Result<()> {
 }
 
 fn table(output: &mut impl Write, title: &str, groups: &BTreeMap<String, Group>) -> io::Result<()> {
-    let width = groups.keys().map(|name| name.chars().count()).chain([title.len()]).max().unwrap_or(0);
-    write!(output, "{title:width$}")?;
-    for header in HEADERS {
-        write!(output, " {header:>9}")?;
-    }
-    writeln!(output)?;
-    for (name, group) in groups {
-        write!(output, "{name:width$}")?;
-        for column in group.columns() {
-            write!(output, " {column:>9}")?;
-        }
-        writeln!(output)?;
+    let headers: Vec<&str> = [title].into_iter().chain(HEADERS).collect();
+    let rows = groups.iter().map(|(name, group)| [name.clone()].into_iter().chain(group.columns()).collect());
+    aligned(output, &headers, &rows.collect::<Vec<Vec<String>>>(), 1)
+}
+
+/// Writes rows under their headers; the first columns are names and the others numbers.
+pub(super) fn aligned(output: &mut impl Write, headers: &[&str], rows: &[Vec<String>], names: usize) -> io::Result<()> {
+    let width = |k: usize| rows.iter().map(|row| row[k].chars().count()).chain([headers[k].len()]).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..headers.len()).map(width).collect();
+    let headers = headers.iter().map(|header| (*header).to_owned()).collect();
+    for row in [&headers].into_iter().chain(rows) {
+        let cells = row.iter().zip(&widths).enumerate();
+        let line = cells.map(|(k, (cell, &w))| if k < names { format!("{cell:w$}") } else { format!("{cell:>w$}") });
+        writeln!(output, "{}", line.collect::<Vec<String>>().join("  "))?;
     }
     writeln!(output)
 }

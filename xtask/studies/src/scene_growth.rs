@@ -178,9 +178,14 @@ fn least<T>(mut pass: impl FnMut() -> T) -> f64 {
 
 /// Questions about what is there, and questions about what moves.
 pub(crate) fn figures(lines: &[Line]) -> [Figure; 2] {
-    let inputs = "Balls of radius 0.3, one to eight units of volume whatever their number, f64; each point is the mean of 1,024 \
-                  questions at random, one thread. parry, where it was built in, answers by its Bvh and its own tests of balls, and \
-                  casts by its compound.";
+    let balls = "Balls of radius 0.3, one to eight units of volume whatever their number, f64; each point is the mean of 1,024 \
+                 questions at random, one thread.";
+    let parry = if lines.iter().any(|line| line.who != "ours") {
+        " parry answers by its Bvh and its own tests of balls, and casts by its compound."
+    } else {
+        " docs/scenes.md has parry beside it."
+    };
+    let inputs = format!("{balls}{parry}");
     let resting = "What to see: ten thousand times the bodies cost a few times as long, and the last steps more than those \
                    before, since the bodies outgrow the caches.";
     let moving = "The ball that is cast moves until it hits, the box that turns for ten units of time. What to see: the same; pairs cost \

@@ -6,7 +6,8 @@ use serde_json::Value;
 use xtask::engine;
 use xtask::plot::{Plot, Scale, Series};
 use xtask::validate::page::Figure;
-use xtask::validate::stiff::difficulty;
+use xtask::validate::stiff::{difficulty, difficulty_as_said};
+use xtask::validate::summary::called;
 use xtask::validate::{Case, as_read, progress, score};
 use xtask::wire::answer::Line;
 
@@ -70,27 +71,24 @@ fn figure(query: &str, kind: &str, methods: BTreeMap<String, Worst>) -> Option<F
         };
         let mut points: Vec<[f64; 2]> = worst.into_iter().map(|(bits, error)| [f64::from_bits(bits), error]).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        Series { name, points, joined: true, colour }
+        // What is allowed differs from case to case, and no line joins that.
+        Series { joined: name != ALLOWED, name, points, colour }
     });
     Some(Figure {
         name: format!("stiff-{query}-{kind}"),
         plot: Plot {
-            title: format!("{query}: worst error against {kind}"),
+            title: format!("{}: worst error against {}", called(query), difficulty_as_said(kind)),
             x: match kind {
-                "cond" => "condition of the matrices",
-                "gap" => "gap to contact / size",
-                "thickness" => "thickness / size",
-                "scale" => "scale",
-                other => other,
-            }
-            .to_owned(),
+                "gap" | "depth" => format!("{}, over size", difficulty_as_said(kind)),
+                _ => difficulty_as_said(kind),
+            },
             y: "worst error".to_owned(),
             scales: [Scale::Log, Scale::Log],
             floor: 1e-17,
             series: series.collect(),
         },
-        caption: "What to see: ours stays under the line of what the inputs allow. The worst error among the cases of each value, in f64: relative; of ellipsoids, that of the volume. What is allowed \
-                  is 1e-7 and twice what a change of the inputs by 1000 ulps does to the truth."
+        caption: "What to see: our errors stay below what the inputs allow, which is 1e-7 and twice what a change of the inputs by 1000 rounding \
+                  errors does to the truth. The worst among the cases of each value, in f64, relative; of fitted ellipsoids, of the volume."
             .to_owned(),
     })
 }

@@ -16,12 +16,12 @@ use xtask::plot::{Plot, Scale, Series};
 use xtask::validate::page::Figure;
 use xtask::validate::{Scope, progress};
 
-/// The methods, the gap each is asked for, and how many iterations it may take.
-const METHODS: [(&str, EnclosingMethod, f64, usize); 4] = [
-    ("Newton", EnclosingMethod::Newton, 1e-13, 0),
-    ("Khachiyan", EnclosingMethod::Khachiyan, 1e-9, 40_000),
-    ("ellipsoid algorithm", EnclosingMethod::EllipsoidAlgorithm, 1e-10, 10_000),
-    ("dual Newton", EnclosingMethod::DualReducedNewton, 1e-13, 0),
+/// The methods, the gap each is asked for, and how many iterations it may take where not as many as suit it.
+const METHODS: [(&str, EnclosingMethod, f64, Option<usize>); 4] = [
+    ("Newton", EnclosingMethod::Newton, 1e-13, None),
+    ("Khachiyan", EnclosingMethod::Khachiyan, 1e-9, Some(40_000)),
+    ("ellipsoid algorithm", EnclosingMethod::EllipsoidAlgorithm, 1e-10, Some(10_000)),
+    ("dual Newton", EnclosingMethod::DualReducedNewton, 1e-13, None),
 ];
 
 /// How long a method may repeat itself for a steadier time.
@@ -111,6 +111,12 @@ fn kinds(count: usize) -> Vec<Kind> {
     kinds
 }
 
+fn asked(method: EnclosingMethod, epsilon: f64, iterations: Option<usize>) -> EnclosingOptions {
+    let mut options = EnclosingOptions::new().with_method(method).with_epsilon(epsilon);
+    options.max_iterations = iterations;
+    options
+}
+
 /// Nanoseconds and the least gap certified by then, whenever it has halved; and how the method ended.
 fn trace(points: &[[f64; 3]], options: EnclosingOptions) -> (Vec<[f64; 2]>, Option<Status>) {
     let begin = Instant::now();
@@ -145,11 +151,11 @@ fn gap_against_time(kind: &Kind) -> Figure {
     let mut cut_short = Vec::new();
     for (colour, (name, method, epsilon, iterations)) in METHODS.into_iter().enumerate() {
         progress(&format!("{name} on {}", kind.name));
-        let options = EnclosingOptions::new().with_method(method).with_epsilon(epsilon).with_max_iterations(iterations);
+        let options = asked(method, epsilon, iterations);
         let (points, status) = trace(&kind.points, options);
         let name = match status {
             Some(Status::IterationLimit) => {
-                cut_short.push(format!("{name} after {iterations} iterations"));
+                cut_short.push(name);
                 format!("{name} (cut short)")
             }
             _ => name.to_owned(),
@@ -158,7 +164,7 @@ fn gap_against_time(kind: &Kind) -> Figure {
     }
     let limits = match cut_short.is_empty() {
         true => String::new(),
-        false => format!(" Cut short, before the gap asked for: {}.", cut_short.join(", ")),
+        false => format!(" Cut short by the limit of iterations, before the gap asked for: {}.", cut_short.join(", ")),
     };
     Figure {
         name: format!("ladder-enclosing-{}", kind.name),
@@ -171,8 +177,8 @@ fn gap_against_time(kind: &Kind) -> Figure {
             series,
         },
         caption: format!(
-            "{} points in space: {}. Of each method the time at which it had reached a gap, start included; the last mark is the \
-             answer, with the rounding of everything in its gap.{limits}",
+            "{} points in space: {}. When each method had certified which gap, its start included; the last mark is the answer, \
+             whose gap counts the rounding of everything. What to see: Newton's method has the last digit before the others have the first.{limits}",
             kind.points.len(),
             kind.what,
         ),
@@ -257,7 +263,7 @@ fn dimension<const N: usize>(points: &[[f64; N]], series: &mut [Series]) {
             continue;
         }
         progress(&format!("{name} in {N} dimensions"));
-        let options = EnclosingOptions::new().with_method(method).with_epsilon(1e-4).with_max_iterations(iterations);
+        let options = asked(method, 1e-4, iterations);
         let (begin, mut least, mut converged) = (Instant::now(), f64::INFINITY, true);
         while converged && begin.elapsed() < PATIENCE {
             let start = Instant::now();

@@ -116,10 +116,10 @@ fn vertices() -> Figure {
 fn points() -> Figure {
     let mut random = Rng::new(2);
     let methods = [
-        ("newton", EnclosingMethod::Newton),
-        ("khachiyan", EnclosingMethod::Khachiyan),
-        ("ellipsoid", EnclosingMethod::EllipsoidAlgorithm),
-        ("dual_newton", EnclosingMethod::DualReducedNewton),
+        ("Newton", EnclosingMethod::Newton),
+        ("Khachiyan", EnclosingMethod::Khachiyan),
+        ("ellipsoid algorithm", EnclosingMethod::EllipsoidAlgorithm),
+        ("dual Newton", EnclosingMethod::DualReducedNewton),
     ];
     let mut series: Vec<(String, Vec<[f64; 2]>)> =
         methods.iter().map(|(name, _)| ((*name).to_owned(), vec![])).collect();
@@ -161,7 +161,7 @@ fn dimension() -> Figure {
         "growth-dimension",
         "Enclosing ellipsoid: time against dimension",
         "dimension",
-        vec![("newton".to_owned(), measured)],
+        vec![("Newton".to_owned(), measured)],
         "200 points in a cube, certified gap 1e-9, the dimension known at run time only. What to see: a power, not an exponential.",
     )
 }

@@ -21,17 +21,17 @@ struct Measured {
 const WORKLOADS: [(&str, &str, &str); 5] = [
     ("W1", "ray_cast", "ray cast"),
     ("W2", "linear_cast", "linear cast"),
-    ("W3far", "distance", "distance, 3 to 0.01"),
-    ("W3near", "distance", "distance, 1e-6 (absolute error)"),
-    ("W3b", "intersect", "boolean"),
+    ("W3far", "distance", "distance of 3 to 0.01"),
+    ("W3near", "distance", "distance of 1e-6 (absolute error)"),
+    ("W3b", "intersect", "overlap"),
 ];
 
 /// A method of ours beside one of theirs.
 const RIVALS: [(&str, &str, &str); 6] = [
-    ("ours f64", "parry gjk f64", "GJK, f64"),
-    ("ours f32", "parry gjk f32", "GJK, f32"),
-    ("ours closed f64", "parry f64", "closed forms, f64"),
-    ("ours warm f64", "parry f64", "warm start, f64"),
+    ("ours f64", "parry gjk f64", "parry's GJK, f64"),
+    ("ours f32", "parry gjk f32", "parry's GJK, f32"),
+    ("ours closed f64", "parry f64", "parry, f64 (our closed forms)"),
+    ("ours warm f64", "parry f64", "parry, f64 (ours with a warm start)"),
     ("ours f32", "box3d f32", "Box3D, f32"),
     ("ours f32", "jolt f32", "Jolt, f32"),
 ];
@@ -42,26 +42,27 @@ pub(super) fn section(scope: &Scope) -> Section {
     let mut blocks = Vec::new();
     if !measured.is_empty() {
         blocks.push(Block::Table(Table::new(
-            "headline",
-            "Time: ours over theirs, the geometric mean over the cases both answer (below 1 is faster), and the range. Worst \
-             error and wrong answers: over all cases.",
-            &["query", "methods", "cases", "time ratio", "from", "to", "worst error", "theirs", "wrong", "theirs"],
+            "peers",
+            "Time: ours over theirs, the geometric mean over the cases that both answer (below 1, ours is faster), and the range; quickest first. \
+             Worst error and number of wrong answers: over all cases.",
+            &["question", "beside", "cases", "time ratio", "from", "to", "our worst error", "theirs", "our wrong", "theirs"],
             summary(&measured),
-        )));
+        ).with_names(2)));
         for (workload, _, title) in WORKLOADS {
             let rows: Vec<Row> = measured
                 .iter()
                 .filter(|m| m.workload == workload)
                 .map(|m| {
-                    Row::of([m.case.clone(), m.method.clone(), duration(m.ns), error(m.worst), m.wrong.to_string()])
+                    Row::of([named(&m.case), m.method.clone(), duration(m.ns), error(m.worst), m.wrong.to_string()])
                         .bad_if(m.wrong > 0)
                 })
                 .collect();
             if !rows.is_empty() {
                 let name = format!("peers-{}", workload.to_lowercase());
                 let headers = ["case", "method", "median time", "worst error", "wrong"];
-                blocks
-                    .push(Block::Table(Table::new(&name, &format!("Every row of {title}."), &headers, rows).folded()));
+                blocks.push(Block::Table(
+                    Table::new(&name, &format!("Every row: {title}"), &headers, rows).with_names(2).folded(),
+                ));
             }
         }
     }
@@ -75,6 +76,7 @@ fn summary(measured: &[Measured]) -> Vec<Row> {
     };
     let mut rows = Vec::new();
     for (workload, _, title) in WORKLOADS {
+        let mut of_workload: Vec<(f64, Row)> = Vec::new();
         for (ours, theirs, methods) in RIVALS {
             let pairs: Vec<(&Measured, &Measured)> = measured
                 .iter()
@@ -88,7 +90,8 @@ fn summary(measured: &[Measured]) -> Vec<Row> {
             let mean = (ratios.iter().map(|r| r.ln()).sum::<f64>() / ratios.len() as f64).exp();
             let worst = |side: fn(&(&Measured, &Measured)) -> f64| pairs.iter().map(side).fold(f64::NAN, f64::max);
             let wrong = |side: fn(&(&Measured, &Measured)) -> usize| pairs.iter().map(side).sum::<usize>();
-            rows.push(
+            of_workload.push((
+                mean,
                 Row::of([
                     title.to_owned(),
                     methods.to_owned(),
@@ -102,19 +105,19 @@ fn summary(measured: &[Measured]) -> Vec<Row> {
                     wrong(|p| p.1.wrong).to_string(),
                 ])
                 .bad_if(wrong(|p| p.0.wrong) > 0),
-            );
+            ));
         }
+        of_workload.sort_by(|a, b| a.0.total_cmp(&b.0));
+        rows.extend(of_workload.into_iter().map(|(_, row)| row));
     }
     rows
 }
 
-const INPUTS: &str = "The peers are parry3d and parry3d-f64 0.31 with the tolerances they come with, on bit-identical inputs: \
-     10,000 rays against each of 11 bodies; 2,000 motions, 3,000 distances and 2,000 boolean queries of each of 12 pairs. \
-     Wrong are false hits, false misses, no answer, an error above 1e-3 (above 1e-6 where the distance is 1e-6), and a \
-     distance of 0 where it is 1e-6. \
-     parry's user interface has closed forms for balls, boxes and capsules, compared with ours; warm queries are told the \
-     separating plane of the time before, which parry's interface has no place for. Where Box3D and Jolt were built in as \
-     well, they are among the rows, through safe bindings whose checks are timed with them.";
+const INPUTS: &str = "All answer the same inputs, bit by bit: 10,000 rays against each of 11 bodies; 2,000 motions, 3,000 distances and 2,000 \
+     questions for an overlap of each of 12 pairs. Wrong are false hits, false misses, no answer, an error above 1e-3 (above 1e-6 where the \
+     distance is 1e-6), and a distance of 0 where it is 1e-6. The others are parry3d and parry3d-f64 0.31, Box3D and Jolt, with the \
+     tolerances that they come with; Box3D's casts end 5 mm before contact by design, which counts as wrong here. parry has closed \
+     forms for balls, boxes and capsules, as we have; a warm start is the separating plane of the time before.";
 
 /// In this run, with other libraries built in.
 #[cfg(feature = "peers")]
@@ -162,8 +165,21 @@ fn measured(scope: &Scope) -> (String, Vec<Measured>) {
         })
     };
     let lead = format!(
-        "Recorded, not of this run: build with the feature peers (cargo run --release -p studies --features peers -- validate, or \
-         --features peers,benches/box3d,benches/jolt for all of them) to measure it here. {when} {INPUTS}"
+        "Recorded, not of this run. {when} {INPUTS} To measure it here: `cargo run --release -p studies --features peers,box3d,jolt -- \
+         validate`, or with `peers` alone, which is parry and needs no compiler but Rust's."
     );
     (lead, csv.lines().skip(1).filter_map(parse).collect())
+}
+
+/// A body of the workloads, or a pair of them, as a reader knows it.
+pub(super) fn named(case: &str) -> String {
+    let body = |name: &str| match name.strip_prefix("hull") {
+        Some(count) if !count.is_empty() => format!("hull of {count}"),
+        _ => name.replace("roundbox", "rounded box").replace("cuboid", "box"),
+    };
+    match case.split_once('-') {
+        Some((a, b)) if a == b => format!("{0} and {0}", body(a)),
+        Some((a, b)) => format!("{} and {}", body(a), body(b)),
+        None => body(case),
+    }
 }

@@ -8,6 +8,7 @@ use gjk_raycast::{IntersectOptions, Outcome, Ray, RayCastOptions, intersects, ra
 use workloads::pairs::{PAIR_NAMES, Pair};
 use workloads::{w3_distance, w3b_intersect};
 
+use super::headline::named;
 use super::{growth, paper};
 use crate::scene;
 use workloads::rng::Rng;
@@ -38,8 +39,8 @@ pub(super) fn section(scope: &Scope) -> Section {
     Section {
         id: "left-out",
         title: "What was left out",
-        lead: "The cheapest work is the work not done. Iterations are counted in support points, which do not depend on the \
-               machine."
+        lead: "The cheapest work is the work not done: rays that end, planes that are remembered, pairs that cannot matter. Work is counted \
+               in support points (how often a body is asked for its farthest point), which do not depend on the machine."
             .to_owned(),
         blocks,
     }
@@ -118,8 +119,7 @@ pub(super) fn finite_rays() -> FiniteRays {
 }
 
 fn short_rays(measured: &FiniteRays) -> Figure {
-    let names =
-        ["paper's Algorithm 3, endless", "paper's Algorithm 3, cut at λmax", "ours, endless", "ours, cut at λmax"];
+    let names = ["paper's, endless", "paper's, cut at its end", "ours, endless", "ours, cut at its end"];
     let series = names.iter().enumerate().map(|(k, name)| Series {
         name: (*name).to_owned(),
         points: measured.rows.iter().map(|(part, means)| [*part, means[k]]).collect(),
@@ -129,7 +129,7 @@ fn short_rays(measured: &FiniteRays) -> Figure {
     Figure {
         name: "left-out-short-rays".to_owned(),
         plot: Plot {
-            title: "Iterations saved by λmax".to_owned(),
+            title: "Support points saved by a ray's end".to_owned(),
             x: "length of the ray / size of the environment".to_owned(),
             y: "support points per cast, mean".to_owned(),
             scales: [Scale::Log, Scale::Linear],
@@ -232,7 +232,7 @@ fn warm_start(measured: &Coherence) -> Figure {
     Figure {
         name: "left-out-warm-start".to_owned(),
         plot: Plot {
-            title: "Iterations saved by a warm start".to_owned(),
+            title: "Support points saved by a warm start".to_owned(),
             x: "step from frame to frame / size of the body".to_owned(),
             y: "support points per frame, mean".to_owned(),
             scales: [Scale::Log, Scale::Linear],
@@ -268,7 +268,7 @@ fn early_out() -> Table {
             .map(|q| w3_distance::DistanceQuery { pose: q.pose, normal: q.normal, distance: q.moved })
             .collect();
         Row::of([
-            case.to_owned(),
+            named(case),
             mean(&ours::distances(Precision::Double, &pair, &same, counting)),
             mean(&ours::intersections(Precision::Double, &pair, &apart, false, counting)),
             mean(&ours::intersections(Precision::Double, &pair, &apart, true, counting)),
@@ -278,7 +278,7 @@ fn early_out() -> Table {
         "left-out-early-out",
         "Support points of each body, mean over 400 pairs 1/2 to 1/1024 apart: the distance to the last digit, the boolean answer, \
          which stops at the first separating plane, and the boolean answer that starts from the plane of the time before.",
-        &["pair", "distance", "boolean", "boolean, warm"],
+        &["pair", "distance", "overlap", "overlap, warm"],
         rows.collect(),
     )
 }

@@ -80,8 +80,8 @@ fn swept_table(question: Question, what: &str, cells: Vec<sweep::Row>) -> Table 
         "Random bodies of many kinds, aspects, sizes and distances. A query that is stopped early may be undecided, but a bound \
          that it gives must hold: violations are bounds that do not."
     } else {
-        "Random bodies of many kinds, aspects and sizes; distances and errors in sizes of the body, and in rounding errors of the \
-         distance. False: hits that are sure misses, and misses that are sure hits."
+        "Random bodies of many kinds, aspects and sizes. Distances and errors are in sizes of the body, and the latter also in rounding errors \
+         (ulps) of the distance. A cell is one shape at one size. False: hits that are sure misses, and misses that are sure hits."
     };
     let titles: Vec<&str> = SWEPT.iter().filter(|title| is_shown(title)).map(|(title, _)| *title).collect();
     Table::new(&format!("sweep-{}", what.replace(' ', "-")), caption, &titles, rows.collect())
