@@ -97,7 +97,7 @@ fn main() -> ExitCode {
 /// Builds the studies with these features, and gives them the arguments of this program.
 fn study(features: &str) -> ExitCode {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.args(["run", "--quiet", "--release", "--package", "studies", "--features", features]);
+    command.args(["run", "--release", "--package", "studies", "--features", features]);
     command.args(["--manifest-path", concat!(env!("CARGO_MANIFEST_DIR"), "/../Cargo.toml"), "--"]);
     match command.args(std::env::args_os().skip(1)).status() {
         Ok(status) => status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from),

@@ -196,14 +196,14 @@ pub(crate) fn figures(lines: &[Line]) -> [Figure; 2] {
             "scene-growth",
             "A question to a scene, against its bodies",
             &Kind::ALL[..3],
-            &[inputs, resting].join(" "),
+            &[inputs.as_str(), resting].join(" "),
         ),
         figure(
             lines,
             "scene-growth-casts",
             "Casts and pairs, against the bodies",
             &Kind::ALL[3..],
-            &[inputs, moving].join(" "),
+            &[inputs.as_str(), moving].join(" "),
         ),
     ]
 }

@@ -105,10 +105,10 @@ fn vertices() -> Figure {
         "growth-vertices",
         "Ray cast: time against vertices",
         "vertices",
-        vec![("scan of all points".to_owned(), scan), ("climb on the hull".to_owned(), climb)],
+        vec![("scan of all points".to_owned(), scan), ("look-up on the hull".to_owned(), climb)],
         "Rays from three radii away, most of which hit, against the hull of points on a sphere, f64. Scanning looks at every \
-         point in every support query; the hull, found once, is climbed along its edges. What to see: a hundred times the \
-         vertices cost a climb little.",
+         point in every support query; of the hull, found once, the few vertices that can be farthest are looked up. What to see: a hundred times the \
+         vertices cost a look-up little.",
     )
 }
 
