@@ -103,7 +103,7 @@ impl Marks {
     fn legend_places(&self, width: f64) -> Vec<(f64, usize)> {
         let (mut left, mut row) = (LEFT - 30.0, 0);
         let place = |(name, _): &(String, usize)| {
-            let wide = 10.0 + super::LETTER * name.chars().count() as f64 + 20.0;
+            let wide = 10.0 + 6.7 * name.chars().count() as f64 + 20.0;
             if left + wide > width && left > LEFT {
                 (left, row) = (LEFT - 30.0, row + 1);
             }

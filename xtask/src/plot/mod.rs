@@ -49,7 +49,7 @@ const TOP: f64 = 40.0;
 const BOTTOM: f64 = 48.0;
 const LEGEND_ROW: f64 = 20.0;
 /// About the width of a letter, to lay out the legend.
-const LETTER: f64 = 6.7;
+const LETTER: f64 = 7.2;
 
 /// Colours that can be told apart, also by the colour-blind (after Okabe and Ito). A page may replace them by its custom
 /// properties `--c0` to `--c7`, such as brighter ones on a dark ground.
@@ -66,8 +66,8 @@ impl Plot {
         let frame = Frame { x, y, floor: self.floor, size: [WIDTH, HEIGHT] };
         let mut svg = format!(
             "<svg viewBox=\"0 0 {WIDTH} {:.0}\" role=\"img\" aria-label=\"{1}\" xmlns=\"http://www.w3.org/2000/svg\" \
-             font-family=\"system-ui, sans-serif\" font-size=\"12.5\" fill=\"currentColor\">\n\
-             <text x=\"8\" y=\"18\" font-size=\"14.5\" font-weight=\"600\">{1}</text>\n",
+             font-family=\"system-ui, sans-serif\" font-size=\"13.5\" fill=\"currentColor\">\n\
+             <text x=\"8\" y=\"18\" font-size=\"15\" font-weight=\"600\">{1}</text>\n",
             HEIGHT + LEGEND_ROW * rows as f64,
             escape(&self.title)
         );

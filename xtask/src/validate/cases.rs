@@ -67,7 +67,7 @@ fn scatter(records: &[Record], precision: &str) -> Option<Figure> {
         plot: Plot {
             title: format!("Each case in {precision}"),
             x: "time per query".to_owned(),
-            y: "relative error (of fitted ellipsoids, of the volume)".to_owned(),
+            y: "relative error".to_owned(),
             scales: [Scale::Time, Scale::Log],
             floor: FLOOR,
             series,

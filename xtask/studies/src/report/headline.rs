@@ -178,7 +178,10 @@ pub(super) fn named(case: &str) -> String {
         _ => name.replace("roundbox", "rounded box").replace("cuboid", "box"),
     };
     match case.split_once('-') {
-        Some((a, b)) if a == b => format!("{0} and {0}", body(a)),
+        Some((a, b)) if a == b => match body(a).replace("hull", "hulls").replace("box", "boxes") {
+            several if several == body(a) => format!("two {several}s"),
+            several => format!("two {several}"),
+        },
         Some((a, b)) => format!("{} and {}", body(a), body(b)),
         None => body(case),
     }

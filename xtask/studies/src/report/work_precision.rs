@@ -164,19 +164,19 @@ fn figure(ladder: &Ladder, cases: &[Case]) -> Option<Figure> {
             }
         }
     }
-    let error = if ladder.query.ends_with("_ellipsoid") { "error of the volume" } else { "relative error" };
+    let error = if ladder.query.ends_with("_ellipsoid") { "of the volume" } else { "relative" };
     Some(Figure {
         name: ladder.name.to_owned(),
         plot: Plot {
             title: ladder.title.to_owned(),
             x: "median time per query".to_owned(),
-            y: format!("{error} that 9 of 10 answers stay below"),
+            y: "error that 9 of 10 stay below".to_owned(),
             scales: [Scale::Time, Scale::Log],
             floor: 1e-17,
             series,
         },
         caption: format!(
-            "{} {} from {:e} to {:e}; medians of {} cases.{}",
+            "{} {} from {:e} to {:e}; {} cases, errors {error}.{}",
             ladder.see,
             if ladder.knob == "tol" { "Tolerance" } else { "Certified gap" },
             ladder.rungs[0],
@@ -249,7 +249,8 @@ fn measure(ladder: &Ladder, cases: &[&Case], method: &str, precision: &str, rung
         let verdict = score::judge(&object, &answer);
         // A wrong flag is as wrong as can be.
         errors.push(verdict.relative.unwrap_or(1.0));
-        times.push(question.time(MICROSECONDS));
+        // What disturbs one of three seldom disturbs them all.
+        times.push((0..3).map(|_| question.time(MICROSECONDS)).fold(f64::INFINITY, f64::min));
     }
     let unanswered = cases.len() - errors.len();
     let point = || Some([quantile(&times, 0.5)?, quantile(&errors, 0.9)?]);
