@@ -77,7 +77,7 @@ fn figure(query: &str, kind: &str, methods: BTreeMap<String, Worst>) -> Option<F
     Some(Figure {
         name: format!("stiff-{query}-{kind}"),
         plot: Plot {
-            title: format!("{}: worst error against {}", called(query), difficulty_as_said(kind)),
+            title: format!("{}: error against {}", called(query), difficulty_as_said(kind)),
             x: match kind {
                 "gap" | "depth" => format!("{}, over size", difficulty_as_said(kind)),
                 _ => difficulty_as_said(kind),
