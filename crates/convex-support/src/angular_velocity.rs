@@ -48,7 +48,8 @@ pub trait AngularVelocity<V: Vector>:
     /// use convex_support::{AngularVelocity, glam::{DVec2, DVec3}};
     ///
     /// assert_eq!(<f64 as AngularVelocity<DVec2>>::moment(DVec2::X * 3.0, DVec2::Y), 3.0);
-    /// assert_eq!(<DVec3 as AngularVelocity<DVec3>>::moment(DVec3::X * 3.0, DVec3::Y), DVec3::Z * 3.0);
+    /// let moment = <DVec3 as AngularVelocity<DVec3>>::moment(DVec3::X * 3.0, DVec3::Y);
+    /// assert_eq!(moment, DVec3::Z * 3.0);
     /// ```
     fn moment(arm: V, force: V) -> Self;
 

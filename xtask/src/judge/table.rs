@@ -168,18 +168,22 @@ impl Report<'_> {
             COMMANDS.trim(),
             provenance()
         );
+        let held = match violated.len() {
+            0 => "in all of them".to_owned(),
+            count => format!("in all but {count}"),
+        };
         let _ = writeln!(
             text,
-            "{} questions. Of {known} of them the truth is known besides; the brackets hold it in all but {}.\n",
-            self.cases,
-            violated.len()
+            "{} questions. Of {known} of them the truth is known besides; the brackets hold it {held}.\n",
+            self.cases
         );
         for id in violated {
             let _ = writeln!(text, "- the bracket of {id} does not hold the truth");
         }
         for witness in self.witnesses {
             let Witness { name, tolerance, rounding, settings, .. } = witness;
-            let _ = writeln!(text, "- **{name}**: {settings}. Allowed: {tolerance:e}, or {rounding:e} of the reach.");
+            let tolerance = if *tolerance > 0.0 { format!("{tolerance:e}, or ") } else { String::new() };
+            let _ = writeln!(text, "- **{name}**: {settings}. Allowed: {tolerance}{rounding:e} of the reach.");
         }
         let _ =
             writeln!(text, "\n| {} |\n|---|---|{}", Row::HEADERS.join(" | "), "---:|".repeat(Row::HEADERS.len() - 2));

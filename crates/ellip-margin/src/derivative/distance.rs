@@ -21,7 +21,7 @@ impl<V: Wedge> Answer<'_, V, Distance<V>> {
     /// let obstacle = Ellipsoid::new(DVec3::new(6.0, 0.0, 0.0), DVec3::ONE, Default::default())?;
     /// let distance = EllipsoidPair::new(&link, &obstacle, MarginOptions::default()).distance();
     /// assert_eq!(distance.gradient().translation, DVec3::new(-1.0, 0.0, 0.0));
-    /// // The tip at (2, 0, 0) swings away from the obstacle to second order only, by (r + r²/ρ)/2·ω², …
+    /// // The tip at (2, 0, 0) swings away from the obstacle to second order only, by (r + r²/ρ)/2·ω².
     /// assert_eq!(distance.gradient().rotation, DVec3::ZERO);
     /// assert!(distance.hessian().along(DVec3::ZERO, DVec3::Z) > 0.0);
     /// # Ok::<(), convex_support::InvalidShape>(())

@@ -32,7 +32,7 @@ impl<V: Wedge> Answer<'_, V, Margin<V>> {
     /// let gradient = pair.margin().gradient();
     /// // m = ((6 − x)/2 − ½)² − 1 for the link at (x, 0, 0).
     /// assert_eq!(gradient.translation, DVec3::new(-2.5, 0.0, 0.0));
-    /// // A joint at (0, −3, 0) about z swings the link towards −x for positive angles, by 3 per radian.
+    /// // A joint at (0, −3, 0) about z swings the link towards −x, by 3 a radian.
     /// assert_eq!(gradient.revolute(DVec3::new(0.0, -3.0, 0.0), DVec3::Z), 7.5);
     /// # Ok::<(), convex_support::InvalidShape>(())
     /// ```
