@@ -124,3 +124,19 @@ fn numbers_of_features_stay_while_shapes_move_a_little() {
         assert_eq!(numbers(x, angle), first, "{x} {angle}");
     }
 }
+
+/// Seen nearly from its end a segment is steep, and where it is in the plane of contact is rounding: its height there was one far beyond
+/// the capsule's end.
+#[test]
+fn a_capsule_seen_from_its_end_is_no_deeper_than_it_is() {
+    let angle = 1.570_132_023_039_958_5;
+    let plate = turned(
+        cuboid::<DVec2>([0.42611855294446854, 0.007587484491656651, 0.0]),
+        angle,
+        [-0.615_092_651_148_549_4, 0.000_408_608_417_899_072_26, 0.0],
+    );
+    let capsule = Capsule::<DVec2>::new(6.074445579211605e-5, 0.6074445579211605).expect(VALID);
+    let contact =
+        contact(&plate, &turned(capsule, angle, [0.0; 3]), 1e-3, SignedDistanceOptions::default()).expect("they touch");
+    assert!(contact.points().iter().all(|p| p.signed_distance >= contact.distance.lower - 1e-15), "{contact:?}");
+}

@@ -5,7 +5,7 @@ mod common;
 
 use common::behind_pointers::{distance, intersects};
 use common::{Quaternion, apart, at, cuboid, directions, meets, s, turned, ulps, v};
-use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3A};
+use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3, Vec3A};
 use convex_support::{
     Cone, Cuboid, Cylinder, InvalidShape, Point, Polytope, Posed, Rounded, Scalar, SupportMap, Triangle, Vector,
 };
@@ -436,5 +436,45 @@ fn a_length_below_the_lower_bound_is_no_progress() -> Result<(), InvalidShape> {
     assert_eq!(answer.status, Status::Converged, "{answer:?}");
     assert!((answer.distance - 1e-6).abs() <= 1e-14, "{answer:?}");
     assert!(answer.iterations < 50, "{answer:?}");
+    Ok(())
+}
+
+/// What a pose loses of the origin far away was taken for exact where a row of the rotation has only one entry; and the error that
+/// queries have at hand counted the origin before the translation, though it is the sum of both that is rounded.
+#[test]
+fn what_a_far_pose_loses_of_a_point_is_in_the_bracket() -> Result<(), InvalidShape> {
+    let point = |at: Vec3| Point::new(at);
+    let half_turn = Quat::from_xyzw(0.0, 1.0, 0.0, 0.0);
+    let far = Vec3::new(-583.533_26, -240.349_65, 775.706_8);
+    let a = Posed::translated(point(Vec3::ZERO)?, far)?;
+    let b = Posed::new(point(Vec3::new(-8.233_933_5e-12, 1.323_405_7e-8, 2.979_567_5e-8))?, half_turn, far)?;
+    let answer = apart(&a, &b);
+    let truth = b.shape().core().origin.as_dvec3().length();
+    assert!(f64::from(answer.lower) <= truth && truth <= f64::from(answer.upper), "{truth}: {answer:?}");
+
+    let far = Vec2::new(165_809_808.0, 986_157_760.0);
+    let at = Vec2::new(0.006_074_533, 3.284_89e-5);
+    let a = Posed::translated(Point::new(Vec2::ZERO)?, far)?;
+    let b = Posed::new(Point::new(at)?, 3.950_578_2, far)?;
+    let (answer, truth) = (apart(&a, &b), at.as_dvec2().length());
+    assert!(f64::from(answer.lower) <= truth && truth <= f64::from(answer.upper), "{truth}: {answer:?}");
+    Ok(())
+}
+
+/// The line across the best plane pierced an edge that lies behind zero, 1.25e-18 from it, and the bound told how far the edge is before
+/// zero: nothing.
+#[test]
+fn an_edge_behind_zero_is_as_far_as_it_is() -> Result<(), InvalidShape> {
+    let corners = [
+        DVec2::new(4.582751479747291e-5, 0.038289067214102704),
+        DVec2::new(-1.7572628109592485e-5, 0.2089944133921629),
+        DVec2::new(3.754315033788168e-5, 0.1432985894580348),
+    ];
+    let triangle = Triangle::new(corners)?;
+    let a = Posed::translated(triangle, DVec2::new(-4.5827514797474045e-5, -0.03828906721410414))?;
+    // By exact arithmetic.
+    let truth = 1.251_728_243_589_071e-18;
+    let answer = apart(&a, &Point::new(DVec2::ZERO)?);
+    assert!(answer.lower <= truth && truth <= answer.upper, "{answer:?}");
     Ok(())
 }

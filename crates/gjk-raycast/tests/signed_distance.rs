@@ -6,9 +6,10 @@ use std::cell::Cell;
 
 use common::behind_pointers::signed_distance;
 use common::{at, cuboid, s, turned, v};
-use convex_support::glam::{DQuat, DVec2, DVec3, Vec3, Vec3A};
+use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::{
-    Ball, Capsule, Cylinder, Ellipsoid, Point, Polytope, Posed, Rounded, Scalar, Segment, SupportMap, Triangle, Vector,
+    Ball, Capsule, Cone, Cylinder, Ellipsoid, Point, Polytope, Posed, Rounded, Scalar, Segment, SupportMap, Triangle,
+    Vector,
 };
 use gjk_raycast::{SignedDistance, SignedDistanceOptions, Status, signed_distance_with};
 
@@ -240,4 +241,49 @@ fn shapes_that_are_none_end_the_search() {
         check(&|d, n| if n == k { DVec3::NAN } else { DVec3::ONE.copysign(d) * s::<DVec3>(1.0) });
         check(&|d, n| if n == k { DVec3::ZERO } else { DVec3::new(3.0, 2.0, 1.0).copysign(d) });
     }
+}
+
+/// Both points are in their shapes, but for a part of the size that is left of the difference of where they should be.
+fn points_are_of_the_shapes<V, A, B>(a: &A, b: &B, error: f64)
+where
+    V: Vector,
+    A: SupportMap<Vector = V>,
+    B: SupportMap<Vector = V>,
+{
+    let SignedDistance { signed_distance, normal, point_a, point_b, .. } = ask(a, b);
+    assert!((point_a - point_b - normal * signed_distance).norm().as_f64() <= error, "{point_a:?} {point_b:?}");
+    let off = |shape: &dyn SupportMap<Vector = V>, point: V| {
+        let point = Point::new(point).expect("a finite point");
+        gjk_raycast::distance(shape, &point, gjk_raycast::DistanceOptions::default()).distance.as_f64()
+    };
+    let off = [off(a, point_a), off(b, point_b)];
+    assert!(off[0] <= error && off[1] <= error, "{point_a:?} and {point_b:?} are off by {off:?}");
+}
+
+/// Of several ways out that are as short, the best one and the nearest facet may be two. The points were half of the size away then, on
+/// neither shape.
+#[test]
+fn about_one_center_the_points_are_of_the_way_out() {
+    let cylinder = Cylinder::<DVec3>::new(2.0, 2.5).expect(VALID);
+    let cone = Cone::<DVec3>::new(0.003, 0.01).expect(VALID);
+    points_are_of_the_shapes(&cylinder, &cone, 1e-9);
+    points_are_of_the_shapes(&cone, &cuboid::<DVec3>([9.0; 3]), 1e-9);
+    let ellipse = Ellipsoid::<DVec2>::new(DVec2::ZERO, DVec2::new(0.5, 0.005), 0.12).expect(VALID);
+    points_are_of_the_shapes(&ellipse, &cuboid::<DVec2>([0.6, 1.0, 0.0]), 1e-9);
+    let ellipse = Ellipsoid::<Vec2>::new(Vec2::ZERO, Vec2::new(0.12, 0.81), 0.0).expect(VALID);
+    points_are_of_the_shapes(&ellipse, &cuboid::<Vec2>([7.8e-5, 0.46, 0.0]), 1e-5);
+}
+
+/// A point beside a face, at a distance that rounding leaves open. The nearest facet of the polytope is a sliver through zero, and no
+/// corner of it is near; GJK's closest points are.
+#[test]
+fn points_of_shapes_that_barely_touch_are_of_the_shapes() {
+    let point = turned(
+        Point::<DVec3>::new(DVec3::new(1.4974094611658168e-5, -6.098712983999615e-6, 0.5528252384774103)).expect(VALID),
+        DQuat::from_xyzw(0.7071067811865476, 0.0, 0.0, 0.7071067811865476),
+        [-0.24957898934573977, 0.5468838870421859, -0.00593524677109232],
+    );
+    let lean = DQuat::from_xyzw(-5.439185209584097e-9, 4.738993607964602e-9, 6.925113994694403e-9, 1.0);
+    let bar = turned(cuboid([0.5941347914072728, 0.005941347914072728, 0.005941347914072728]), lean, [0.0; 3]);
+    points_are_of_the_shapes(&point, &bar, 1e-14);
 }

@@ -68,7 +68,7 @@ impl<S: SupportMap> Affine<S> {
         };
         let norm = scale.unwrap_or_else(|| frobenius_norm(&matrix));
         let stretched = scale.map_or(zero, |scale| roundings(32.0, scale * core.radius));
-        let error = length_of_error(&swept_core, norm, zero, lost) + stretched;
+        let error = length_of_error(&swept_core, norm, zero, translation, lost) + stretched;
         Ok(Self { shape, matrix, onto_shape, unit, translation, lost, scale, swept, inverse, error })
     }
 

@@ -48,6 +48,7 @@ pub(super) fn length_of_error<V: Vector>(
     core: &Core<V>,
     scale: V::Scalar,
     operator_error: V::Scalar,
+    translation: V,
     lost: V,
 ) -> V::Scalar {
     let count = V::DIM as f64;
@@ -59,10 +60,15 @@ pub(super) fn length_of_error<V: Vector>(
     if core.origin == V::ZERO {
         return raised(turned);
     }
-    let (moved, near) = (core.origin.norm(), is_near(core.origin, core.extent + core.radius));
+    let (origin, near) = (core.origin.norm(), is_near(core.origin, core.extent + core.radius));
+    let moved = scale * origin;
     // What was lost is known to a rounding of itself, if it is of the product too, and to 16ε² of what it comes of.
-    let origin = if near { roundings(product, moved) } else { roundings(32.0, V::Scalar::EPSILON * moved) };
-    raised(turned + scale * origin + roundings(2.0, operator_error * moved) + roundings(2.0, lost.norm()))
+    let placed = if near {
+        roundings(product, moved)
+    } else {
+        roundings(32.0, V::Scalar::EPSILON * (moved + translation.norm()))
+    };
+    raised(turned + placed + roundings(2.0, operator_error * origin) + roundings(2.0, lost.norm()))
 }
 
 #[inline(never)]
@@ -71,13 +77,20 @@ fn lost_in_far_origin<V: Vector>(matrix: &V::Matrix, origin: V, translation: V) 
     if !moved.is_finite() {
         return Err(InvalidShape::TooLarge { parameter: "translation" });
     }
-    if *matrix == V::Matrix::IDENTITY {
-        return Ok(lost_in_sum(origin, translation));
-    }
+    let of_exact_rows = lost_in_sum(*matrix * origin, translation);
     Ok(V::from_fn(|i| {
         let row = (0..V::DIM).map(|j| (matrix.col(j).get(i), origin.get(j)));
+        if is_signed_unit(row.clone().map(|(entry, _)| entry)) {
+            return of_exact_rows.get(i);
+        }
         dot_minus(row.chain([(V::Scalar::ONE, translation.get(i))]), moved.get(i))
     }))
+}
+
+/// Whether the entries of a row or column are those of `±eⱼ`, so that products with it are exact.
+fn is_signed_unit<S: Scalar>(entries: impl Iterator<Item = S>) -> bool {
+    let mut others = entries.filter(|&entry| entry != S::ZERO);
+    others.next().is_some_and(|entry| num_traits::Float::abs(entry) == S::ONE) && others.next().is_none()
 }
 
 /// A linear map and a translation, and what is known of their rounding.
@@ -104,15 +117,10 @@ impl<V: Vector> Placement<'_, V> {
     /// - the matrix itself is wrong, which moves the core and its origin;
     /// - what was lost is known to `u` of itself and `16ε²` of the numbers it comes of.
     pub(super) fn image(&self, shape: Rounding<V>, origin: V, length: V::Scalar) -> Rounding<V> {
-        let (zero, one, m) = (V::Scalar::ZERO, V::Scalar::ONE, self.matrix);
-        let unit = |entry: V::Scalar| num_traits::Float::abs(entry) == one;
+        let (zero, m) = (V::Scalar::ZERO, self.matrix);
         let entry = |i: usize, j: usize| m.col(j).get(i);
-        let lone = |entries: &dyn Fn(usize) -> V::Scalar| {
-            let others = (0..V::DIM).filter(|&k| entries(k) != zero).count();
-            others == 1 && (0..V::DIM).any(|k| unit(entries(k)))
-        };
-        let is_row_exact = |i: usize| lone(&|j| entry(i, j));
-        let is_column_exact = |j: usize| lone(&|i| entry(i, j));
+        let is_row_exact = |i: usize| is_signed_unit((0..V::DIM).map(|j| entry(i, j)));
+        let is_column_exact = |j: usize| is_signed_unit((0..V::DIM).map(|i| entry(i, j)));
 
         let reached = image(m, shape.extent);
         let within = self.scale.map_or(V::Scalar::infinity(), |scale| raised(scale * length));

@@ -57,7 +57,7 @@ impl<S: SupportMap> Posed<S> {
         let translation = finite("translation", translation)?;
         let core = shape.core();
         let lost = lost_in_origin(&rotation, core.origin, core.extent + core.radius, translation)?;
-        let error = length_of_error(&core, Scalar::ONE, Scalar::from_f64(errors.operator), lost);
+        let error = length_of_error(&core, Scalar::ONE, Scalar::from_f64(errors.operator), translation, lost);
         Ok(Self { shape, rotation, rotation_error: Scalar::from_f64(errors.entry), translation, lost, error })
     }
 

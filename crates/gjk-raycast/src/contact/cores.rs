@@ -189,6 +189,11 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         point.is_finite().then_some(Vertex { point, along: direction, pair })
     }
 
+    /// The point of the difference that points of both cores make.
+    pub(super) fn difference(&self, PointPair { a, b }: PointPair<A::Vector>) -> A::Vector {
+        a - b + self.frame.offset
+    }
+
     /// Whether the difference reaches beyond zero along a direction.
     pub(super) fn reaches_beyond(&mut self, direction: A::Vector) -> bool {
         self.is_curved() && self.support(direction).is_some_and(|vertex| direction.dot(vertex.point) > Scalar::ZERO)

@@ -53,9 +53,12 @@ pub(super) struct Expanded<V: Vector> {
 ///
 /// Where `K` is smooth its facets never are of the boundary, and the polytope is only to show that there is no shorter way; the
 /// way itself is found by Newton's method, in each basin that a facet leads to.
+///
+/// GJK has `met` a point of `K`, and the points of both cores that it is made of; it knows that zero is no farther from `K` than `reached`.
 pub(super) fn expand<A, B>(
     cores: &mut Cores<'_, A, B>,
     simplex: &[Vertex<A::Vector>],
+    met: (A::Vector, PointPair<A::Vector>),
     reached: <A::Vector as Vector>::Scalar,
     options: &SignedDistanceOptions<A::Vector>,
     mut observer: impl FnMut(Iterate<'_, A::Vector>),
@@ -135,7 +138,7 @@ where
     };
     Some(Expanded {
         way,
-        points: Some(witness::points(&boundary, nearest, &way)),
+        points: Some(witness::points(&boundary, nearest, &way, met)),
         inner,
         status,
         unexpanded: boundary.len(),

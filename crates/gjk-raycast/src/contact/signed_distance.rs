@@ -74,7 +74,8 @@ where
         apart
     } else {
         let simplex: SmallVec<[_; MAX_POINTS]> = vertices(&state).collect();
-        match expand(&mut cores, &simplex, -apart.inner, &options, &mut observer) {
+        let met = (cores.difference(apart.points), apart.points);
+        match expand(&mut cores, &simplex, met, -apart.inner, &options, &mut observer) {
             Some(expanded) => Reached::of_expansion(&cores, &expanded, &apart, end),
             None => Reached { status: Status::Stalled, ..apart },
         }

@@ -6,22 +6,34 @@ use num_traits::Float as _;
 use super::boundary::Boundary;
 use super::expansion::WayOut;
 use crate::body::{PointPair, Witness as _};
-use crate::simplex::project;
+use crate::simplex::{MAX_POINTS, cross, project};
 
-/// Facets that are walked over in the plane of one of the boundary.
+/// Facets that are walked over at most.
 const MAX_WALK: usize = 64;
 
 /// The points of both cores whose difference is the end `h·u` of the way out.
 ///
 /// Where the difference is smooth there, they are those that the support point is made of. Where it has a face or an edge, they are
-/// the weighted sums of the corners of the facet that zero's foot is in. Which of the two it is shows by which comes nearer to
-/// `h·u`; what is left of the difference is split between both.
-pub(super) fn points<V: Vector>(boundary: &Boundary<V>, nearest: usize, way: &WayOut<V>) -> PointPair<V> {
-    let end = way.u() * way.h;
-    let of_facet = at_foot(boundary, nearest);
+/// the weighted sums of the corners of the facet that zero's foot is in. That facet is beside another end where several ways are as
+/// short, as of shapes about one centre; then it is the one that the way out leads through. Which of these it is shows by which comes
+/// nearest to `h·u`, as points of cores that barely meet do which GJK has `met`; what is left of the difference is split between both.
+pub(super) fn points<V: Vector>(
+    boundary: &Boundary<V>,
+    nearest: usize,
+    way: &WayOut<V>,
+    met: (V, PointPair<V>),
+) -> PointPair<V> {
+    let u = way.u();
+    let end = u * way.h;
     let rest = |(point, _): &(V, PointPair<V>)| (end - *point).length_squared();
-    let of_vertex = (way.vertex.point, way.vertex.pair);
-    let (point, pair) = if rest(&of_facet) < rest(&of_vertex) { of_facet } else { of_vertex };
+    let mut best = (way.vertex.point, way.vertex.pair);
+    let on_way = (boundary.facet_at(nearest).normal != u).then(|| on_way(boundary, nearest, u));
+    for found in [Some(at_foot(boundary, nearest)), on_way, Some(met)].into_iter().flatten() {
+        if rest(&found) < rest(&best) {
+            best = found;
+        }
+    }
+    let (point, pair) = best;
     let half = (end - point) * V::Scalar::from_f64(0.5);
     PointPair { a: pair.a + half, b: pair.b - half }
 }
@@ -31,11 +43,40 @@ pub(super) fn points<V: Vector>(boundary: &Boundary<V>, nearest: usize, way: &Wa
 /// The nearest facet may be one of several in a plane, of which another has zero's foot: the one that lies across the ridges that the
 /// foot is beyond.
 pub(super) fn at_foot<V: Vector>(boundary: &Boundary<V>, nearest: usize) -> (V, PointPair<V>) {
-    let mut facet = nearest;
-    let mut weights = [V::Scalar::ZERO; 4];
+    walk(boundary, nearest, |corners| project(corners, |corner| -corner).coordinates)
+}
+
+/// The point of the boundary in a direction from zero, which is within, and the points of both cores that it is made of.
+///
+/// The coordinate of a corner is, but for a factor that all have, the volume that the direction spans with the other corners.
+fn on_way<V: Vector>(boundary: &Boundary<V>, nearest: usize, u: V) -> (V, PointPair<V>) {
+    let area = |p: V, q: V| p.get(0) * q.get(1) - p.get(1) * q.get(0);
+    walk(boundary, nearest, |corners| {
+        let mut weights = [V::Scalar::ZERO; MAX_POINTS];
+        match *corners {
+            [p, q] => (weights[0], weights[1]) = (area(u, q), area(p, u)),
+            [p, q, r] => {
+                for (weight, [p, q]) in weights.iter_mut().zip([[q, r], [r, p], [p, q]]) {
+                    *weight = u.dot(cross(p, q));
+                }
+            }
+            _ => {}
+        }
+        let sum = weights.iter().fold(V::Scalar::ZERO, |sum, &w| sum + w.abs());
+        weights.map(|weight| weight / sum)
+    })
+}
+
+/// From facet to facet across the ridge that a point is beyond, as its coordinates by the corners say, to the facet that it is in.
+fn walk<V: Vector>(
+    boundary: &Boundary<V>,
+    from: usize,
+    coordinates: impl Fn(&[V]) -> [V::Scalar; MAX_POINTS],
+) -> (V, PointPair<V>) {
+    let mut facet = from;
+    let mut weights = [V::Scalar::ZERO; MAX_POINTS];
     for _ in 0..MAX_WALK {
-        let corners = boundary.corner_points(facet);
-        weights = project(&corners[..V::DIM], |corner| -corner).coordinates;
+        weights = coordinates(&boundary.corner_points(facet)[..V::DIM]);
         let least = (1..V::DIM).fold(0, |least, i| if weights[i] < weights[least] { i } else { least });
         // NaN ends this too.
         if !(weights[least] < -V::Scalar::EPSILON * V::Scalar::from_f64(16.0)) {

@@ -313,8 +313,9 @@ impl<V: Vector> Seen<V> {
         if !is_inside {
             return Float::infinity();
         }
-        let farthest =
-            state.simplex.weighted().map(|(_, pair)| self.level(n, pair)).fold(V::Scalar::ZERO, V::Scalar::max);
+        // The face may be behind zero, which is outside all the same where what is beyond the face is not of the difference.
+        let levels = state.simplex.weighted().map(|(_, pair)| self.level(n, pair).abs());
+        let farthest = levels.fold(V::Scalar::ZERO, V::Scalar::max);
         raised(farthest + self.error_along(n) + roundings(8.0, farthest))
     }
 }
