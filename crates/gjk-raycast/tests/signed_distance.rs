@@ -280,7 +280,7 @@ fn about_one_center_the_points_are_of_the_way_out() {
 fn points_of_shapes_that_barely_touch_are_of_the_shapes() {
     let point = turned(
         Point::<DVec3>::new(DVec3::new(1.4974094611658168e-5, -6.098712983999615e-6, 0.5528252384774103)).expect(VALID),
-        DQuat::from_xyzw(0.7071067811865476, 0.0, 0.0, 0.7071067811865476),
+        DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2),
         [-0.24957898934573977, 0.5468838870421859, -0.00593524677109232],
     );
     let lean = DQuat::from_xyzw(-5.439185209584097e-9, 4.738993607964602e-9, 6.925113994694403e-9, 1.0);
