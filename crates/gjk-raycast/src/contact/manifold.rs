@@ -86,7 +86,7 @@ impl<V: Vector> Facing<V> {
         for corner in &overlap {
             let [own, other] = corner.parts;
             let parts = if is_swapped { [other, own] } else { [own, other] };
-            let heights = [of_a.height(corner.at), of_b.height(corner.at)];
+            let heights = [of_a.height_inside(corner.at), of_b.height_inside(corner.at)];
             let candidate = Candidate { at: corner.at, heights, parts: self.settled(corner.at, parts, near) };
             if candidate.gap() <= within && candidates.iter().all(|known| known.parts != candidate.parts) {
                 candidates.push(candidate);
