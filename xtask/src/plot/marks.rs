@@ -147,13 +147,14 @@ fn named(places: &[[f64; 2]], widths: &[f64], size: [f64; 2]) -> Vec<Area> {
         let beside: Vec<Area> = others(&marks);
         let cost = |area: &Area| {
             let covered = taken.iter().filter(|other| overlap(*area, **other)).count();
-            let [x, y] = places[k];
-            let away = (x.clamp(area[0], area[2]) - x).hypot(y.clamp(area[1], area[3]) - y);
+            let away = distance(places[k], *area);
+            // A name beside another mark is taken for that one's.
+            let nearer = places.iter().filter(|place| distance(**place, *area) < away).count();
             let crossed = tie(places[k], *area).map_or(0, |to| {
                 let passed = beside.iter().chain(taken.iter().skip(marks.len()));
                 passed.filter(|other| crosses(places[k], to, **other)).count()
             });
-            away + 1000.0 * covered as f64 + 60.0 * crossed as f64
+            away + 1000.0 * covered as f64 + 60.0 * crossed as f64 + 30.0 * nearer as f64
         };
         let best = candidates(places[k], widths[k], size).into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
         let best = best.unwrap_or([places[k][0] + 7.0, places[k][1], places[k][0] + 7.0 + widths[k], places[k][1]]);
@@ -165,10 +166,19 @@ fn named(places: &[[f64; 2]], widths: &[f64], size: [f64; 2]) -> Vec<Area> {
     names
 }
 
+/// The point of an area that is nearest to another point.
+fn nearest([x, y]: [f64; 2], area: Area) -> [f64; 2] {
+    [x.clamp(area[0], area[2]), y.clamp(area[1], area[3])]
+}
+
+fn distance([x, y]: [f64; 2], area: Area) -> f64 {
+    let [to_x, to_y] = nearest([x, y], area);
+    (to_x - x).hypot(to_y - y)
+}
+
 /// Where a name that had to go far is tied to its mark.
-fn tie([x, y]: [f64; 2], name: Area) -> Option<[f64; 2]> {
-    let to = [x.clamp(name[0], name[2]), y.clamp(name[1], name[3])];
-    ((to[0] - x).hypot(to[1] - y) > 12.0).then_some(to)
+fn tie(mark: [f64; 2], name: Area) -> Option<[f64; 2]> {
+    (distance(mark, name) > 12.0).then(|| nearest(mark, name))
 }
 
 /// Whether the way from one point to another leads through an area, as far as points along it tell.

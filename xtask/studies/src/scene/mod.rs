@@ -5,6 +5,7 @@
 //! finds the distance of the hulls.
 
 mod body;
+mod film;
 mod levels;
 mod picture;
 mod planar;
@@ -32,6 +33,9 @@ use xtask::mesh::Meshes;
 
 /// The scene that is run where none is named.
 pub(crate) const EMBEDDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/scenes/ur5_reach.json");
+
+/// Pictures of the film strip, spread over the trajectory.
+const PICTURES: usize = 4;
 
 /// One row in so many is drawn.
 const STRIDE: usize = 12;
@@ -172,6 +176,10 @@ fn scene(file: &Path, truth: Option<&Path>, folder: &Path) -> Result<bool, Strin
     let mut pairs = vec![Pair::default(); scene.bodies.len() * scene.obstacles.len()];
     let mut levels = Levels::default();
     let mut rows = Vec::new();
+    let (mut moments, mut way) = (Vec::new(), Vec::new());
+    // The first row, the last, and some between.
+    let pictured: Vec<usize> =
+        (0..PICTURES).map(|k| k * scene.trajectory.len().saturating_sub(1) / (PICTURES - 1)).collect();
     let mut frames = picture::Frames::new(scene.obstacles.iter().map(|o| picture::outline(&o.outer)));
     // The truth of a scene, if it is known, lies beside it.
     let beside = Some(file.with_extension("truth.jsonl")).filter(|path| path.is_file());
@@ -212,6 +220,10 @@ fn scene(file: &Path, truth: Option<&Path>, folder: &Path) -> Result<bool, Strin
                 }
             }
         }
+        way.extend(links.last().map(|link| link.outer.center()));
+        if pictured.contains(&step) {
+            moments.push(film::Moment { links: links.iter().cloned().zip(states.iter().copied()).collect() });
+        }
         if step.is_multiple_of(STRIDE) {
             let distance = row.least_distance.map_or(String::new(), |d| format!(", least distance {:.1} mm", d * 1e3));
             frames.add(picture::Frame {
@@ -235,6 +247,7 @@ fn scene(file: &Path, truth: Option<&Path>, folder: &Path) -> Result<bool, Strin
     let right = checked.as_ref().is_none_or(truth::Truth::holds);
     let outcome = Outcome { fitted, levels, every_pair, rows, truth: checked };
     let written = report::write(&outcome.rows, &frames, folder)
+        .and_then(|()| film::write(&moments, &scene.obstacles, &way, &folder.join("film.png")))
         .and_then(|()| report::print(&scene, &outcome, folder, &mut io::stdout().lock()));
     match written {
         Err(why) if why.kind() != io::ErrorKind::BrokenPipe => {

@@ -16,7 +16,7 @@ const LEGEND: f64 = 84.0;
 /// Room for the legend and the caption beside it.
 const LEAST_WIDTH: f64 = 560.0;
 
-const OBSTACLE: &str = "#e69f00";
+pub(super) const OBSTACLE: &str = "#e69f00";
 
 /// An ellipse of the picture.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +42,7 @@ impl State {
     const ALL: [Self; 3] = [Self::Clear, Self::Near, Self::Overlapping];
 
     /// Told apart by the colour-blind too (Okabe and Ito).
-    fn colour(self) -> &'static str {
+    pub(super) fn colour(self) -> &'static str {
         match self {
             Self::Clear => "#0072b2",
             Self::Near => "#cc79a7",
@@ -77,7 +77,7 @@ pub(super) struct Frames {
 }
 
 /// The picture's axes in the world: looking along (−1, −1, −½) with z up, as rows.
-fn view() -> DMat3 {
+pub(super) fn view() -> DMat3 {
     let forward = DVec3::new(-1.0, -1.0, -0.5).normalize();
     let right = forward.cross(DVec3::Z).normalize();
     DMat3::from_cols(right, right.cross(forward), forward).transpose()
