@@ -148,13 +148,13 @@ fn named(places: &[[f64; 2]], widths: &[f64], size: [f64; 2]) -> Vec<Area> {
         let cost = |area: &Area| {
             let covered = taken.iter().filter(|other| overlap(*area, **other)).count();
             let away = distance(places[k], *area);
-            // A name beside another mark is taken for that one's.
-            let nearer = places.iter().filter(|place| distance(**place, *area) < away).count();
+            // A name about as near to another mark is taken for that one's.
+            let near = beside.iter().filter(|other| distance(middle(**other), *area) < away + 7.0).count();
             let crossed = tie(places[k], *area).map_or(0, |to| {
                 let passed = beside.iter().chain(taken.iter().skip(marks.len()));
                 passed.filter(|other| crosses(places[k], to, **other)).count()
             });
-            away + 1000.0 * covered as f64 + 60.0 * crossed as f64 + 30.0 * nearer as f64
+            away + 1000.0 * covered as f64 + 60.0 * crossed as f64 + 30.0 * near as f64
         };
         let best = candidates(places[k], widths[k], size).into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
         let best = best.unwrap_or([places[k][0] + 7.0, places[k][1], places[k][0] + 7.0 + widths[k], places[k][1]]);
@@ -164,6 +164,10 @@ fn named(places: &[[f64; 2]], widths: &[f64], size: [f64; 2]) -> Vec<Area> {
         }
     }
     names
+}
+
+fn middle(area: Area) -> [f64; 2] {
+    [f64::midpoint(area[0], area[2]), f64::midpoint(area[1], area[3])]
 }
 
 /// The point of an area that is nearest to another point.
