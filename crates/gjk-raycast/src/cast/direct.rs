@@ -68,7 +68,7 @@ pub(crate) fn direct<B: Body>(
     match body.line_crossing(source, ray.direction) {
         LineCrossing::Unknown => None,
         LineCrossing::Crosses(crossing) => line.hit(crossing, body, options, observer),
-        LineCrossing::Misses(axis) => line.miss(axis, body, observer),
+        LineCrossing::Misses(axis) => line.miss(axis, body, options, observer),
     }
 }
 
@@ -172,9 +172,16 @@ impl<V: Vector> Line<V> {
         &self,
         axis: V,
         body: &mut B,
+        options: &RayCastOptions<V>,
         observer: impl FnMut(Iterate<'_, V>),
     ) -> Option<Cast<V, B::Witness>> {
         let number = V::Scalar::from_f64;
+        let reach = self.size * number(NEAR + 1.0) / self.longest;
+        // A ray that ends before the ball, or begins behind it, is apart by another plane: far from here this one is not known.
+        let is_there = (self.base + reach >= V::Scalar::ZERO) & (self.base - reach <= options.max_lambda);
+        if !is_there {
+            return None;
+        }
         // A short vector to a line that comes from far is across it only to the rounding of where it comes from.
         let along = axis.dot(self.direction) / self.direction.length_squared();
         let across = axis - self.direction * along;
@@ -184,8 +191,7 @@ impl<V: Vector> Line<V> {
         }
         let n = across * squared.sqrt().recip();
         let (point, _) = body.support(n);
-        let reach = self.size * number(NEAR + 1.0);
-        let nearer = n.dot(self.direction).abs() * (reach / self.longest);
+        let nearer = n.dot(self.direction).abs() * reach;
         let error = self.size * (V::Scalar::EPSILON * number(AXIS_ERROR)) + self.error;
         // NaN is no miss.
         if !(n.dot(self.source) - n.dot(point) - nearer > body.radius() + error) {
