@@ -5,7 +5,7 @@ mod common;
 
 use common::Random;
 use common::behind_pointers::{linear_cast, ray_cast, signed_distance};
-use convex_support::glam::{DQuat, DVec3, Quat, Vec3A};
+use convex_support::glam::{DQuat, DVec3, Quat, Vec2, Vec3A};
 use convex_support::{
     Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rounded, SupportMap, glam::EulerRot,
 };
@@ -135,6 +135,36 @@ fn rays_hold_what_double_precision_finds() {
             (&truth.outcome, [truth.lower, truth.upper], truth.status),
         );
         assert_eq!(found, None, "{i}: {} {ray:?}\n{seen:?}\n{truth:?}", shape.name);
+    }
+}
+
+/// In the plane: polygons, thin ones too, and rays at their corners and along their sides.
+#[test]
+fn planar_rays_hold_what_double_precision_finds() {
+    let mut random = Random(20_041_122);
+    for i in 0..6000 {
+        let thin = [1.0, 1e-3, 1e-6][random.number(0.0, 3.0) as usize] as f32;
+        let points = [0; 5].map(|_| Vec2::new(single(&mut random, -1.0, 1.0), thin * single(&mut random, -1.0, 1.0)));
+        let (Ok(narrow), Ok(wide)) = (Polytope::new(points), Polytope::new(points.map(|p| p.as_dvec2()))) else {
+            continue;
+        };
+        let turn = [0.0, single(&mut random, -3.0, 3.0)][random.number(0.0, 2.0) as usize];
+        let place = Vec2::new(single(&mut random, -1.0, 1.0), single(&mut random, -10.0, 10.0));
+        let narrow = Posed::new(narrow, turn, place).expect("a rotation");
+        let wide = Posed::new(wide, f64::from(turn), place.as_dvec2()).expect("a rotation");
+        let towards = Vec2::new(single(&mut random, -1.0, 1.0), single(&mut random, -1.0, 1.0));
+        let (from, to) = (wide.support(towards.as_dvec2()), wide.support(towards.perp().as_dvec2()));
+        let along = (to - from) * [0.0, 1.0][random.number(0.0, 2.0) as usize];
+        let d = (along + towards.as_dvec2() * random.number(0.0, 1.0).powi(9)).as_vec2();
+        let ray = Ray { source: (from - d.as_dvec2() * 3.0).as_vec2(), direction: d };
+        let Ok(seen) = ray_cast(&narrow, ray, RayCastOptions::default()) else { continue };
+        let ray = Ray { source: ray.source.as_dvec2(), direction: d.as_dvec2() };
+        let truth = ray_cast(&wide, ray, RayCastOptions::default()).expect("a direction");
+        let found = wrong(
+            (&seen.outcome, [seen.lower, seen.upper]),
+            (&truth.outcome, [truth.lower, truth.upper], truth.status),
+        );
+        assert_eq!(found, None, "{i}: {points:?} {turn} {place} {ray:?}\n{seen:?}\n{truth:?}");
     }
 }
 

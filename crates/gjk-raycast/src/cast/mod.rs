@@ -57,11 +57,9 @@ fn search<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
             Err(Stop::InDoubt | Stop::Touches(_)) => {}
             found => return found,
         }
-        // In the plane, Algorithm 3 is the search. Elsewhere it is what is left where rounding decides.
-        if B::Vector::DIM == 3 {
-            bracket.doubt_entry();
-        }
     }
+    // In the plane this is the search. Elsewhere it is what is left where rounding decides.
+    bracket.doubt_entry();
     algorithm_3(bracket)
 }
 

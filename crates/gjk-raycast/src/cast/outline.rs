@@ -45,7 +45,7 @@ pub(super) fn bound_entry<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(bracket: &m
     let (mu, error) = bracket.point_near_line();
     let view = View { line: bracket.line(), axes: bracket.line().axes() };
     let late = mu + error * ScalarOf::<B>::from_f64(LATE);
-    let known = bracket.around().map(|points| view.triangle(points));
+    let known = bracket.around().map(|points| view.polygon(points));
     let is_near = |known: &Polygon<_>| known.latest_entry(mu, error).is_some_and(|latest| latest <= late);
     let Some(polygon) = known.filter(is_near).or_else(|| view.look_around(bracket, error)) else { return };
     if let Some(latest) = polygon.latest_entry(mu, error) {
@@ -72,8 +72,12 @@ impl<V: Vector> View<V> {
         Corner { across: (p.dot(self.axes[0]), p.dot(self.axes[1])), along: p.dot(self.line.direction) }
     }
 
-    fn triangle(&self, points: [V; 3]) -> Polygon<V::Scalar> {
+    /// The polygon of points that are seen around the line, of which there are two in the plane.
+    fn polygon(&self, points: [V; 3]) -> Polygon<V::Scalar> {
         let [p, q, s] = points.map(|p| self.see(p));
+        if V::DIM == 2 {
+            return if p.across.0 > q.across.0 { Polygon::in_plane([p, q]) } else { Polygon::in_plane([q, p]) };
+        }
         let turns_left = cross(p.edge_to(&q), p.edge_to(&s)) > Scalar::ZERO;
         let mut polygon = Polygon::new();
         for corner in if turns_left { [p, q, s] } else { [q, p, s] } {
@@ -96,15 +100,10 @@ impl<V: Vector> View<V> {
         };
         let one = V::Scalar::ONE;
         let [right, left] = [support((one, Scalar::ZERO))?, support((-one, Scalar::ZERO))?];
-        let mut polygon = Polygon::new();
         if V::DIM == 2 {
-            // In the plane, a point stands for a side across it.
-            for (Corner { across, along }, v) in [(right, -one), (right, one), (left, one), (left, -one)] {
-                polygon.insert(polygon.len, Corner { across: (across.0, v), along });
-            }
-            polygon.sides.iter_mut().for_each(|side| side.is_outermost = true);
-            return Some(polygon);
+            return Some(Polygon::in_plane([right, left]));
         }
+        let mut polygon = Polygon::new();
         polygon.insert(0, right);
         polygon.insert(1, left);
         let two = error + error;
@@ -197,6 +196,17 @@ struct Polygon<S> {
 impl<S: Scalar> Polygon<S> {
     fn new() -> Self {
         Self { sides: [Side::default(); MAX_CORNERS], len: 0 }
+    }
+
+    /// In the plane, a point stands for a side across it, beyond which there is nothing.
+    fn in_plane([right, left]: [Corner<S>; 2]) -> Self {
+        let mut polygon = Self::new();
+        let one = S::ONE;
+        for (Corner { across, along }, v) in [(right, -one), (right, one), (left, one), (left, -one)] {
+            polygon.insert(polygon.len, Corner { across: (across.0, v), along });
+        }
+        polygon.sides.iter_mut().for_each(|side| side.is_outermost = true);
+        polygon
     }
 
     fn sides(&self) -> &[Side<S>] {
