@@ -44,7 +44,7 @@ where
     let of_b =
         outline(&|feature| b.core_support_feature(normal, slab, feature), core_b.origin + normal * core_b.radius);
     let facing = Facing { plane, of_a, of_b };
-    let points = facing.points(within + slab, near);
+    let points = facing.points(within + slab, near, answer.lower);
     if points.is_empty() { SmallVec::from_slice(&[facing.closest(answer)]) } else { points }
 }
 
@@ -73,8 +73,8 @@ impl<S: Scalar> Candidate<S> {
 
 impl<V: Vector> Facing<V> {
     /// The corners of the overlap where the features are no farther apart than `within`, reduced to four. Those `near` the same
-    /// corner of a feature are one.
-    fn points(&self, within: V::Scalar, near: V::Scalar) -> Points<V> {
+    /// corner of a feature are one. None is deeper than the `deepest`.
+    fn points(&self, within: V::Scalar, near: V::Scalar, deepest: V::Scalar) -> Points<V> {
         let (of_a, of_b) = (&self.of_a, &self.of_b);
         if of_a.corners.len() < 2 || of_b.corners.len() < 2 {
             return SmallVec::new();
@@ -86,7 +86,11 @@ impl<V: Vector> Facing<V> {
         for corner in &overlap {
             let [own, other] = corner.parts;
             let parts = if is_swapped { [other, own] } else { [own, other] };
-            let heights = [of_a.height_inside(corner.at), of_b.height_inside(corner.at)];
+            // Seen nearly from its end a feature is as steep as one likes, and where the corner is on it is rounding; but no points of
+            // the shapes are deeper in one another than the shapes are.
+            let heights = [of_a.height(corner.at), of_b.height(corner.at)];
+            let lack = (deepest - (heights[0] - heights[1])).max(V::Scalar::ZERO) * Scalar::from_f64(0.5);
+            let heights = [heights[0] + lack, heights[1] - lack];
             let candidate = Candidate { at: corner.at, heights, parts: self.settled(corner.at, parts, near) };
             if candidate.gap() <= within && candidates.iter().all(|known| known.parts != candidate.parts) {
                 candidates.push(candidate);

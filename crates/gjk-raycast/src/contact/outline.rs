@@ -71,14 +71,6 @@ impl<S: Scalar> Outline<S> {
         Self { corners: wrapped(&points) }
     }
 
-    /// The height of the feature at a place on it. Seen nearly from the end a feature is as steep as one likes, and where the place is on
-    /// it is rounding; but it is nowhere above or below all of its corners.
-    pub(crate) fn height_inside(&self, at: Across<S>) -> S {
-        let heights = || self.corners.iter().map(|corner| corner.height);
-        let (lowest, highest) = (heights().fold(S::infinity(), S::min), heights().fold(-S::infinity(), S::max));
-        self.height(at).max(lowest).min(highest)
-    }
-
     /// The height at a place of the plane through the three corners that span most; linear along a segment.
     pub(crate) fn height(&self, at: Across<S>) -> S {
         let first = self.corners[0];
