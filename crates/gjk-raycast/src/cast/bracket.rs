@@ -89,8 +89,8 @@ pub(super) struct Bracket<'a, B: Body, O> {
     /// Where the ray is in the body, at the latest.
     high: Bound<ScalarOf<B>>,
     entry: Entry,
-    /// Three points of the body that are seen around the line, where a search found them.
-    around: Option<[B::Vector; 3]>,
+    /// Three points of the body that are seen around the line, two in the plane, where a search found them.
+    pub(super) around: Option<[B::Vector; 3]>,
 }
 
 /// How far the upper bound is to be trusted.
@@ -233,16 +233,6 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         let late = self.error * ScalarOf::<B>::from_f64(LONG);
         self.entry == Entry::InDoubt
             || (self.entry == Entry::BeforeExit && high.at + self.delay(high) - self.low() > late)
-    }
-
-    /// Takes note of three points of the body that are seen around the line.
-    pub(super) fn surround(&mut self, points: [B::Vector; 3]) {
-        self.around = Some(points);
-    }
-
-    /// Three points of the body that are seen around the line, if they are known.
-    pub(super) fn around(&self) -> Option<[B::Vector; 3]> {
-        self.around
     }
 
     /// Where on the line the body has a point, of a contact, and how far that may be from there.

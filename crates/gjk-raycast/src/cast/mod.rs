@@ -93,7 +93,7 @@ pub(crate) struct Cast<V: Vector, W> {
     pub(crate) upper: V::Scalar,
     pub(crate) status: Status,
     pub(crate) iterations: usize,
-    /// Whether a second look may tell earlier that the ray enters.
+    /// Whether a second look at the hit may tell earlier that the ray enters.
     pub(crate) may_slide: bool,
     /// The unit of the hit spot and of the witness.
     pub(crate) scale: V::Scalar,
@@ -136,6 +136,7 @@ fn conclude<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         Err(Stop::Exhausted(status)) => (Outcome::Undecided, bracket.bounds(None), status),
         Err(Stop::InDoubt | Stop::Touches(_)) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
     };
-    let (iterations, scale, may_slide) = (bracket.iterations(), bracket.scale, bracket.may_slide());
+    let may_slide = matches!(outcome, Outcome::Hit(_)) && bracket.may_slide();
+    let (iterations, scale) = (bracket.iterations(), bracket.scale);
     Cast { outcome, lower, upper, status, iterations, scale, may_slide }
 }

@@ -45,7 +45,7 @@ pub(super) fn bound_entry<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(bracket: &m
     let (mu, error) = bracket.point_near_line();
     let view = View { line: bracket.line(), axes: bracket.line().axes() };
     let late = mu + error * ScalarOf::<B>::from_f64(LATE);
-    let known = bracket.around().map(|points| view.polygon(points));
+    let known = bracket.around.map(|points| view.polygon(points));
     let is_near = |known: &Polygon<_>| known.latest_entry(mu, error).is_some_and(|latest| latest <= late);
     let Some(polygon) = known.filter(is_near).or_else(|| view.look_around(bracket, error)) else { return };
     if let Some(latest) = polygon.latest_entry(mu, error) {

@@ -9,11 +9,8 @@ use super::peeled::{Peeled, without_ball};
 use super::zonotope::{Zonotope, parallelotope};
 use crate::Iterate;
 use crate::body::{Body as _, Pair, PointPair};
-use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
+use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, first_direction, gjk};
 use crate::symmetric::Symmetric;
-
-/// How many errors apart cores are, or in one another less their radii, to be looked at as closely as their numbers allow.
-const NEAR: f64 = 16.0;
 
 /// What is lost of a point of the difference, in units of ε times the coordinates of the cores and of the offset of their origins.
 ///

@@ -13,7 +13,7 @@ use num_traits::Float as _;
 use crate::body::{Body, Pair};
 use crate::unit::{power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Status, SubAlgorithm};
-pub(crate) use near_contact::{NearContact, Shape, is_near_contact, near_contact};
+pub(crate) use near_contact::{NEAR, NearContact, Shape, is_near_contact, near_contact};
 use next_direction::NextDirection;
 pub(crate) use progress::Progress;
 pub(crate) use start::first_direction;

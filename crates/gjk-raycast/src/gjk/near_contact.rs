@@ -19,7 +19,7 @@ use crate::body::{Body as _, Pair, PointPair};
 use crate::simplex::{MAX_POINTS, cross};
 
 /// How many errors apart, or in one another, bodies are looked at once more.
-const NEAR: f64 = 16.0;
+pub(crate) const NEAR: f64 = 16.0;
 
 /// Whether bodies may be nearer to contact than a few errors, as a search has left them.
 #[inline(always)]

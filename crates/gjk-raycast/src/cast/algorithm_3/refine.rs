@@ -35,8 +35,10 @@ pub(super) fn refine<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     loop {
         let slope = -at.n.dot(bracket.line().direction);
         bracket.enter_hull(at.mu, pierced.moved, slope);
-        if let &[p, q] = simplex.points() {
-            bracket.surround([p, q, q]);
+        if let &[p, q] = simplex.points()
+            && B::Vector::DIM == 2
+        {
+            bracket.around = Some([p, q, q]);
         }
         let turned = if steps.may_turn() { newton(bracket, &simplex, &recent, steps.model_error) } else { None };
         let turned = steps.accept(turned);

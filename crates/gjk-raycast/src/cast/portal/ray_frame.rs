@@ -306,8 +306,7 @@ impl<V: Vector> BestPlane<V> {
         Ok(true)
     }
 
-    /// Closes the bracket between this plane and a point of the body; where an error may lead to other pieces, the entry is in
-    /// doubt.
+    /// Closes the bracket between this plane and a point of the body; the entry is in doubt where an error may lead to other pieces.
     #[inline(always)]
     pub(super) fn close_at<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
         &self,
@@ -316,8 +315,7 @@ impl<V: Vector> BestPlane<V> {
         below: &OnLine<V, B::Witness>,
     ) -> Result<Contact<B>, Stop<V>> {
         let found = self.close(bracket, frame, below.corners(), below.weights(), below.high)?;
-        let by = bracket.error + bracket.noise;
-        if !below.has_room(by) {
+        if !below.has_room(bracket.error + bracket.noise) {
             bracket.doubt_entry();
         }
         Ok(found)

@@ -161,7 +161,7 @@ impl<V: Vector> Planes<'_, V> {
         mut portal: Triangle<B>,
     ) -> Result<Contact<B>, Stop<V>> {
         let tolerance = bracket.tolerance();
-        bracket.surround(portal.corners.map(|p| p.point));
+        bracket.around = Some(portal.corners.map(|p| p.point));
         let mut last = V::Scalar::infinity();
         let mut exchanges = MAX_EXCHANGES;
         loop {
@@ -193,8 +193,7 @@ impl<V: Vector> Planes<'_, V> {
                 return Ok(found);
             }
             if bracket.body.is_curved() && self.frame.is_curved(bracket.body, self.frame.normal(plane)) {
-                let known = portal.anticlockwise(weights, high);
-                return sqp(bracket, self.frame, known, self.best);
+                return sqp(bracket, self.frame, portal.anticlockwise(weights, high), self.best);
             }
             let before = self.best.tau;
             let r = self.support(bracket, plane)?;
@@ -245,8 +244,7 @@ impl<B: Body> Triangle<B> {
         Plane { a, b, c }: Plane<ScalarOf<B>>,
         high: ScalarOf<B>,
     ) {
-        let by = bracket.error + bracket.noise;
-        if is_surrounded(self.corners.each_ref(), by) {
+        if is_surrounded(self.corners.each_ref(), bracket.error + bracket.noise) {
             bracket.pierce(high, (a * a + b * b + c * c).sqrt() / c);
         } else {
             bracket.doubt_entry();
