@@ -23,7 +23,7 @@ type Row = (&'static str, fn() -> Solver);
 
 /// Rows that stand for the rest: polytopes, smooth and rounded bodies, small and large, known and behind `dyn`, in space and
 /// in the plane, each kind of query.
-const ROWS: [Row; 20] = [
+const ROWS: [Row; 23] = [
     ("ray_cast/cuboid", || ray_cast("cuboid", Effort::default())),
     ("ray_cast/hull1024", || ray_cast("hull1024", Effort::default())),
     ("linear_cast/hull64-hull64", || linear_cast("hull64-hull64", Effort::default())),
@@ -53,6 +53,9 @@ const ROWS: [Row; 20] = [
     ("motion_cast/ellipsoid-ellipsoid", || motion_cast("ellipsoid-ellipsoid")),
     ("signed_distance/cuboid-cuboid", || signed_distance("cuboid-cuboid")),
     ("signed_distance/cylinder-cone", || signed_distance("cylinder-cone")),
+    ("near_contact/ball-cuboid-f32", || near_contact("ball-cuboid")),
+    ("near_contact/cuboid-cuboid-f32", || near_contact("cuboid-cuboid")),
+    ("near_contact/hull64-hull64-f32", || near_contact("hull64-hull64")),
 ];
 
 /// Shapes as `Box<dyn SupportMap>`.
@@ -72,6 +75,13 @@ fn linear_cast(name: &str, effort: Effort) -> Solver {
 fn distance(name: &str, effort: Effort) -> Solver {
     let pair = Pair::named(name);
     ours::distances(Precision::Double, &pair, &w3_distance::queries(&pair)[..QUERIES], effort)
+}
+
+/// Distances within a few rounding errors of contact.
+fn near_contact(name: &str) -> Solver {
+    let pair = Pair::named(name);
+    let near = &w3_distance::queries(&pair)[w3_distance::FAR..][..QUERIES];
+    ours::distances(Precision::Single, &pair, near, Effort::default())
 }
 
 fn motion_cast(name: &str) -> Solver {

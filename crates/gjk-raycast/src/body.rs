@@ -147,6 +147,12 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pai
         let (core_a, core_b) = (a.core(), b.core());
         Self { a, b, core_a, core_b, hint_a: Hint::new(), hint_b: Hint::new(), per_unit: Scalar::ONE }
     }
+
+    /// The same in the other order.
+    pub(crate) fn swapped(self) -> Pair<'a, B, A> {
+        let Self { a, b, core_a, core_b, hint_a, hint_b, per_unit } = self;
+        Pair { a: b, b: a, core_a: core_b, core_b: core_a, hint_a: hint_b, hint_b: hint_a, per_unit }
+    }
 }
 
 impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_, A, B> {

@@ -113,10 +113,9 @@ fn touching<V: Vector>(
     let near = near_contact(a, b, max_iterations)?;
     let (zero, scale) = (V::Scalar::ZERO, near.frame.scale);
     let overlap = near.overlap();
-    let cores = [a.core(), b.core()];
     // What is in one another by more than an error has a point in common that is nearer to both cores.
     let length = Some(near.length).filter(|_| overlap == Some(true));
-    let [point_a, point_b] = surface_points(cores, &near.frame, near.points, near.normal, length);
+    let [point_a, point_b] = surface_points(near.cores, &near.frame, near.points, near.normal, length);
     let upper = near.upper.max(zero) * scale;
     Some(Distance {
         distance: (near.gap.max(zero) * scale).min(upper),

@@ -128,7 +128,8 @@ impl<V: Vector> Placement<'_, V> {
         let turned = V::from_fn(|j| if is_column_exact(j) { zero } else { shape.extent.get(j) });
         let sum = |v: V| (1..V::DIM).fold(v.get(0), |sum, i| sum + v.get(i));
         let moved = roundings(2.0, sum(shape.extent) + sum(shape.error) + sum(origin.abs())) * self.matrix_error;
-        let (short, turned_origin) = (image(m, turned), image(m, origin.abs()));
+        let short = if turned == shape.extent { reached } else { image(m, turned) };
+        let turned_origin = image(m, origin.abs());
         let placed = turned_origin + self.translation.abs();
         let squared = V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(16.0);
         let error = V::from_fn(|i| {

@@ -33,6 +33,9 @@ pub fn roundings_of<V: Vector>(count: f64, magnitudes: V) -> V {
 /// A bound on the coordinates of `matrix·x` for all `x` whose coordinates are at most as large as those of `magnitudes`.
 #[inline]
 pub fn image<M: Matrix>(matrix: &M, magnitudes: M::Vector) -> M::Vector {
+    if magnitudes == M::Vector::ZERO {
+        return magnitudes;
+    }
     M::Vector::from_fn(|i| {
         let term = |j: usize| product(num_traits::Float::abs(matrix.col(j).get(i)), magnitudes.get(j));
         (1..M::Vector::DIM).fold(term(0), |sum, j| sum + term(j))

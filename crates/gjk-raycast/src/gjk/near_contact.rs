@@ -35,9 +35,11 @@ pub(crate) fn is_near_contact<V: Vector, W: Copy + Default>(state: &mut Gjk<V, W
 
 /// A shape behind a pointer.
 pub(crate) type Shape<'s, V> = &'s dyn SupportMap<Vector = V>;
+type PairOfAny<'s, V> = Pair<'s, dyn SupportMap<Vector = V> + 's, dyn SupportMap<Vector = V> + 's>;
 
 /// What is known of bodies near contact; lengths in units of the frame, from body to body.
 pub(crate) struct NearContact<V: Vector> {
+    pub(crate) cores: [Core<V>; 2],
     pub(crate) frame: Frame<V>,
     /// The points of the cores closest to one another, and how far apart they are as they are measured.
     pub(crate) points: PointPair<V>,
@@ -73,9 +75,9 @@ impl<V: Vector> NearContact<V> {
 
     /// The same, of the bodies in the other order.
     fn reversed(self) -> Self {
-        let PointPair { a, b } = self.points;
+        let ([core_a, core_b], PointPair { a, b }) = (self.cores, self.points);
         let frame = Frame { offset: -self.frame.offset, ..self.frame };
-        Self { frame, points: PointPair { a: b, b: a }, normal: -self.normal, ..self }
+        Self { cores: [core_b, core_a], frame, points: PointPair { a: b, b: a }, normal: -self.normal, ..self }
     }
 }
 
@@ -98,46 +100,43 @@ pub(crate) fn near_contact<V: Vector>(
     b: Shape<'_, V>,
     max_iterations: usize,
 ) -> Option<NearContact<V>> {
-    if comes_first(&b.core(), &a.core()) {
-        look(b, a, max_iterations).map(NearContact::reversed)
+    let pair = Pair::new(a, b);
+    if comes_first(&pair.core_b, &pair.core_a) {
+        look(pair.swapped(), max_iterations).map(NearContact::reversed)
     } else {
-        look(a, b, max_iterations)
+        look(pair, max_iterations)
     }
 }
 
 /// The same for bodies that are in order.
-fn look<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, max_iterations: usize) -> Option<NearContact<V>> {
-    let mut pair = Pair::new(a, b);
+fn look<V: Vector>(mut pair: PairOfAny<'_, V>, max_iterations: usize) -> Option<NearContact<V>> {
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
     let (state, end) = look_closely(&mut pair, frame, size, max_iterations);
 
     let seen = Seen::new(&pair, &frame);
-    let mut pairs = [PointPair::default(); MAX_POINTS];
-    for (corner, (_, found)) in pairs.iter_mut().zip(state.simplex.weighted()) {
-        *corner = found;
-    }
-    let faces = across_faces(&pairs[..state.simplex.points().len()], state.axis);
-    let mut best: Option<Plane<V>> = None;
-    let normal = Some(state.normal).filter(|&n| n != state.axis);
-    for n in [state.axis].into_iter().chain(normal).chain(faces) {
-        let certain = best.as_ref().map_or(-V::Scalar::infinity(), |best| best.level - best.error);
-        if seen.may_be_beyond(n, state.simplex.points(), certain)
-            && let Some(plane) = seen.plane(&mut pair, n)
-            && (best.is_none() || plane.level - plane.error > certain)
-        {
-            best = Some(plane);
-        }
-    }
-    let Plane { n, level, error } = best?;
+    let (Plane { n, level, error }, pierced) = seen.best_plane(&mut pair, &state)?;
     let gap = level - frame.radius;
-    let upper = seen.length(&state).min(seen.length_at_pierced(&state, n)) - frame.radius;
+    let upper = seen.length(&state).min(pierced) - frame.radius;
     let upper = upper + roundings(2.0, frame.radius);
     let overlaps_certainly = is_around_zero(state.simplex.points(), seen.error_of_corners());
     let (lower, upper) = (gap - error, upper.max(gap - error));
     let (points, length, iterations) = (state.simplex.weighted_witness(), state.length, state.iterations);
-    Some(NearContact { frame, points, length, end, iterations, normal: n, gap, lower, upper, overlaps_certainly })
+    let cores = [pair.core_a, pair.core_b];
+    Some(NearContact {
+        cores,
+        frame,
+        points,
+        length,
+        end,
+        iterations,
+        normal: n,
+        gap,
+        lower,
+        upper,
+        overlaps_certainly,
+    })
 }
 
 /// GJK from the offset of the origins, in the world's unit, to a sixteenth of the noise.
@@ -208,14 +207,44 @@ impl<V: Vector> Seen<V> {
         raised(n.abs().dot(self.error)).min(self.error_length)
     }
 
-    /// `n·(a − b + offset)`, rounded once: the sums of every coordinate are exact, and the products are added up in twice the precision.
+    /// `n·(a − b + offset)`, rounded once: the products are added up in twice the precision.
     fn level(&self, n: V, PointPair { a, b }: PointPair<V>) -> V::Scalar {
-        let parts = (0..V::DIM).flat_map(|i| {
-            let [apart, lost] = two_sum(a.get(i), -b.get(i));
-            let [sum, lost_again] = two_sum(apart, self.offset.get(i));
-            [sum, lost, lost_again, self.lost.get(i)].map(|part| (n.get(i), part))
-        });
+        let parts = (0..V::DIM).flat_map(|i| [a, -b, self.offset, self.lost].map(|part| (n.get(i), part.get(i))));
         dot_minus(parts, V::Scalar::ZERO)
+    }
+
+    /// The plane that is farthest from zero for certain, of those across the faces that a search has ended at, and across its last two
+    /// directions; and a bound on the distance of the bodies from the face that the line across the plane pierces. Where the two meet,
+    /// no other plane is looked at.
+    fn best_plane<A, B>(&self, pair: &mut Pair<'_, A, B>, state: &Gjk<V, PointPair<V>>) -> Option<(Plane<V>, V::Scalar)>
+    where
+        A: SupportMap<Vector = V> + ?Sized,
+        B: SupportMap<Vector = V> + ?Sized,
+    {
+        let points = state.simplex.points();
+        let mut pairs = [PointPair::default(); MAX_POINTS];
+        for (corner, (_, found)) in pairs.iter_mut().zip(state.simplex.weighted()) {
+            *corner = found;
+        }
+        let faces = across_faces(&pairs[..points.len()], state.axis);
+        let normal = Some(state.normal).filter(|&n| n != state.axis);
+        let mut best: Option<(Plane<V>, V::Scalar)> = None;
+        for n in faces.chain(normal).chain([state.axis]) {
+            let certain = best.as_ref().map_or(-V::Scalar::infinity(), |(best, _)| best.level - best.error);
+            if self.may_be_beyond(n, points, certain)
+                && let Some(plane) = self.plane(pair, n)
+                && (best.is_none() || plane.level - plane.error > certain)
+            {
+                let pierced = self.length_at_pierced(state, plane.n);
+                // The face's corners are as far along `n` as the support point: what is left between the bounds is their error.
+                let is_closed = pierced <= plane.level + plane.error * V::Scalar::from_f64(1.0625);
+                best = Some((plane, pierced));
+                if is_closed {
+                    break;
+                }
+            }
+        }
+        best
     }
 
     /// Whether a plane across `n` that supports the difference may be certain to be farther than `level` from zero: it is no farther
@@ -345,25 +374,39 @@ fn is_around_zero<V: Vector>(points: &[V], error: V::Scalar) -> bool {
     }
 }
 
-/// Vectors across the faces that the points of a simplex span, both ways, as they follow from the points of both shapes: what is exact
-/// about their edges, as of boxes along the axes, stays so. Where the simplex is an edge in space, the one across it nearest to `axis`.
+/// Vectors across the faces that the points of a simplex span, as they follow from the points of both shapes: what is exact about their
+/// edges, as of boxes along the axes, stays so. A face has two sides; the one along `axis` comes first, and of a simplex of full
+/// dimension, with zero inside perhaps, both count. Where the simplex is an edge in space, the vector across it nearest to `axis`.
 fn across_faces<V: Vector>(pairs: &[PointPair<V>], axis: V) -> impl Iterator<Item = V> {
     let edge = |from: PointPair<V>, to: PointPair<V>| (to.a - from.a) - (to.b - from.b);
     let mut across = [V::ZERO; MAX_POINTS];
-    match *pairs {
-        [p, q] if V::DIM == 2 => across[0] = turned_right(edge(p, q)),
-        [p, q] => across[0] = cross(cross(edge(p, q), axis), edge(p, q)),
+    let count = match *pairs {
+        [p, q] if V::DIM == 2 => {
+            across[0] = turned_right(edge(p, q));
+            1
+        }
+        [p, q] => {
+            across[0] = cross(cross(edge(p, q), axis), edge(p, q));
+            1
+        }
         [p, q, r] if V::DIM == 2 => {
             across = [edge(p, q), edge(q, r), edge(r, p), V::ZERO].map(turned_right);
+            3
         }
-        [p, q, r] => across[0] = cross(edge(p, q), edge(p, r)),
+        [p, q, r] => {
+            across[0] = cross(edge(p, q), edge(p, r));
+            1
+        }
         [p, q, r, s] => {
             let face = |a, b, c| cross(edge(a, b), edge(a, c));
             across = [face(p, q, r), face(p, q, s), face(p, r, s), face(q, r, s)];
+            4
         }
-        _ => {}
-    }
-    across.into_iter().flat_map(|n| [n, -n])
+        _ => 0,
+    };
+    let sides = if count > 1 { 2 } else { 1 };
+    let along = move |n: V| if n.dot(axis) < V::Scalar::ZERO { -n } else { n };
+    across.into_iter().take(count).map(along).flat_map(move |n| [n, -n].into_iter().take(sides))
 }
 
 /// A vector of the plane turned by a right angle.
