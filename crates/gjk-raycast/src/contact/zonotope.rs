@@ -41,6 +41,35 @@ const OUTSIDE: f64 = 1e-12;
 /// that are not multiples of one another.
 const HEIGHTS: [f64; EDGES] = [1.0, -0.7, 0.45, 0.83, -0.37, 0.61];
 
+/// The edges that span a facet: any two in space, and one alone, named twice, in the plane.
+const SPANS: [[usize; 2]; EDGES * (EDGES - 1) / 2] = {
+    let mut spans = [[0; 2]; EDGES * (EDGES - 1) / 2];
+    let (mut i, mut j, mut at) = (0, 1, 0);
+    while at < EDGES * (EDGES - 1) / 2 {
+        spans[at] = [i, j];
+        at += 1;
+        j += 1;
+        if j == EDGES {
+            i += 1;
+            j = i + 1;
+        }
+    }
+    spans
+};
+const SPANS_OF_PLANE: [[usize; 2]; EDGES] = [[0; 2], [1; 2], [2; 2], [3; 2], [4; 2], [5; 2]];
+
+/// One for each edge that is neither of two, which would otherwise add their rounding.
+const OTHERS: [[[f64; EDGES]; EDGES]; EDGES] = {
+    let mut others = [[[1.0; EDGES]; EDGES]; EDGES];
+    let mut at = 0;
+    while at < EDGES * EDGES {
+        let (i, j) = (at / EDGES, at % EDGES);
+        (others[i][j][i], others[i][j][j]) = (0.0, 0.0);
+        at += 1;
+    }
+    others
+};
+
 type Vec3 = [f64; 3];
 
 /// The difference of two parallelotopes: `center + Σ tₖ·edgesₖ` with all `|tₖ| ≤ 1`, the edges of the first and then of the second.
@@ -51,6 +80,9 @@ type Vec3 = [f64; 3];
 pub(super) struct Zonotope {
     center: Vec3,
     edges: [Vec3; EDGES],
+    /// The squared lengths of the edges, and their coordinates: all first ones, all second ones, all third ones.
+    squared: [f64; EDGES],
+    coordinates: [[f64; EDGES]; 3],
     /// A bound on its lengths.
     size: f64,
 }
@@ -99,10 +131,12 @@ impl Zonotope {
     /// The difference `(a − b)·per_unit + offset`.
     pub(super) fn new<V: Vector>([a, b]: &[Parallelotope<V>; 2], offset: V, per_unit: V::Scalar) -> Self {
         let center = sum(sum(array(a.center * per_unit), array(-b.center * per_unit)), array(offset));
-        let edges =
+        let edges: [Vec3; EDGES] =
             core::array::from_fn(|k| array(if k < 3 { a.half_edges[k] } else { b.half_edges[k - 3] } * per_unit));
-        let size = edges.iter().fold(length(center), |size, &edge| size + length(edge));
-        Self { center, edges, size }
+        let squared = edges.map(|edge| dot(edge, edge));
+        let coordinates = core::array::from_fn(|i| edges.map(|edge| edge[i]));
+        let size = squared.iter().fold(length(center), |size, &squared| size + Float::sqrt(squared));
+        Self { center, edges, squared, coordinates, size }
     }
 
     /// Whether all of it is seen to lie beyond zero along a vector.
@@ -114,36 +148,29 @@ impl Zonotope {
 
     /// The facet nearest to zero; `None` where zero is not certain to be within.
     pub(super) fn nearest_facet<V: Vector>(&self) -> Option<Nearest> {
-        let none = Facet { edges: [0; 2], normal: [0.0; 3], depth: f64::INFINITY };
-        let mut facets = [none; EDGES * (EDGES - 1) / 2];
+        let spans: &[[usize; 2]] = if V::DIM == 2 { &SPANS_OF_PLANE } else { &SPANS };
+        let mut depths = [f64::INFINITY; SPANS.len()];
         let tie = TIE * f64::EPSILON * self.size;
-        let (mut count, mut nearest, mut parallel) = (0, none, 0.0);
-        let squared = self.edges.map(|edge| dot(edge, edge));
-        for i in 0..EDGES {
-            for j in if V::DIM == 2 { i..i + 1 } else { i + 1..EDGES } {
-                let [e, f] = [self.edges[i], self.edges[j]];
-                let (span, j) =
-                    if V::DIM == 2 { (span_of_one(e), i) } else { (span([e, f], [squared[i], squared[j]]), j) };
-                match span {
-                    Span::Parallel(change) => parallel += 2.0 * change,
-                    Span::Facet(normal) => {
-                        let facet = self.facet(normal, [i, j]);
-                        // NaN ends here too.
-                        if !(facet.depth > tie) {
-                            return None;
-                        }
-                        if facet.depth < nearest.depth {
-                            nearest = facet;
-                        }
-                        facets[count] = facet;
-                        count += 1;
+        let (mut least, mut parallel) = (f64::INFINITY, 0.0);
+        for (depth, &spanned) in depths.iter_mut().zip(spans) {
+            match self.span::<V>(spanned) {
+                Span::Parallel(change) => parallel += 2.0 * change,
+                Span::Facet(normal) => {
+                    *depth = self.depth(normal, spanned);
+                    // NaN ends here too.
+                    if !(*depth > tie) {
+                        return None;
                     }
+                    least = least.min(*depth);
                 }
             }
         }
-        let is_near = |facet: &&Facet| facet.depth <= nearest.depth + tie;
-        let near = facets[..count].iter().filter(is_near);
-        let inner = near.map(|facet| facet.depth - self.error(facet)).fold(f64::INFINITY, f64::min) - parallel;
+        let near = || {
+            let near = depths.iter().zip(spans).filter(|(depth, _)| **depth <= least + tie);
+            near.filter_map(|(&depth, &spanned)| self.facet::<V>(depth, spanned))
+        };
+        let nearest = near().find(|facet| facet.depth <= least)?;
+        let inner = near().map(|facet| facet.depth - self.error(&facet)).fold(f64::INFINITY, f64::min) - parallel;
         let outer = nearest.depth + self.error(&nearest);
         if !(inner > 0.0 && outer.is_finite()) {
             return None;
@@ -152,14 +179,37 @@ impl Zonotope {
         let mut normal = nearest.normal;
         if outside > OUTSIDE {
             // Another is as near to rounding, and has the foot.
-            for facet in facets[..count].iter().filter(is_near) {
-                let (found, by) = self.foot::<V>(facet);
+            for facet in near() {
+                let (found, by) = self.foot::<V>(&facet);
                 if by < outside {
                     (normal, weights, outside) = (facet.normal, found, by);
                 }
             }
         }
         Some(Nearest { normal, depth: nearest.depth, inner, outer, weights: weights.map(|t| t.clamp(-1.0, 1.0)) })
+    }
+
+    /// What two edges of the zonotope span, or one in the plane.
+    #[inline(always)]
+    fn span<V: Vector>(&self, [i, j]: [usize; 2]) -> Span {
+        let (edges, squared) = (&self.edges, &self.squared);
+        if V::DIM == 2 { span_of_one(edges[i]) } else { span(&edges[i], &edges[j], squared[i], squared[j]) }
+    }
+
+    /// How far the facets with a normal, spanned by the given edges, are from zero: the nearer of the two.
+    #[inline(always)]
+    fn depth(&self, n: Vec3, [i, j]: [usize; 2]) -> f64 {
+        let ([x, y, z], counts) = (&self.coordinates, &OTHERS[i][j]);
+        let along = |k: usize| (n[0] * x[k] + n[1] * y[k] + n[2] * z[k]).abs() * counts[k];
+        let [a, b, c, d, e, f]: [f64; EDGES] = core::array::from_fn(along);
+        (a + c + e) + (b + d + f) - dot(n, self.center).abs()
+    }
+
+    /// The nearer of the two facets that are spanned by the given edges.
+    fn facet<V: Vector>(&self, depth: f64, spanned: [usize; 2]) -> Option<Facet> {
+        let Span::Facet(normal) = self.span::<V>(spanned) else { return None };
+        let normal = if dot(normal, self.center) > 0.0 { normal.map(|x| -x) } else { normal };
+        Some(Facet { edges: spanned, normal, depth })
     }
 
     /// What the distance of a facet may be wrong by.
@@ -181,20 +231,6 @@ impl Zonotope {
         let along = dot(n, middle);
         let across = length(core::array::from_fn(|i| middle[i] - n[i] * along));
         f64::EPSILON * (SUM * total + STRETCH * facet.depth + TURN * across)
-    }
-
-    /// The nearer of the two facets with a normal, that is spanned by the given edges.
-    #[inline(always)]
-    fn facet(&self, normal: Vec3, spanned: [usize; 2]) -> Facet {
-        let to_center = dot(normal, self.center);
-        let mut depth = -to_center.abs();
-        for (k, &edge) in self.edges.iter().enumerate() {
-            if k != spanned[0] && k != spanned[1] {
-                depth += dot(normal, edge).abs();
-            }
-        }
-        let normal = if to_center > 0.0 { normal.map(|x| -x) } else { normal };
-        Facet { edges: spanned, normal, depth }
     }
 
     /// Edges that leave a plane by less lie in it.
@@ -228,7 +264,7 @@ impl Zonotope {
         let plane = &plane[..count];
         let first = self.edges[facet.edges[0]];
         let x = first.map(|c| c / length(first));
-        let y = cross(n, x);
+        let y = cross(&n, &x);
         let seen = |v: Vec3| (dot(v, x), dot(v, y));
         if V::DIM == 2 {
             // All lie along the facet, and share the way.
@@ -298,7 +334,7 @@ impl Nearest {
 
 /// What two edges of the given squared lengths span in space.
 #[inline(always)]
-fn span([e, f]: [Vec3; 2], [le, lf]: [f64; 2]) -> Span {
+fn span(e: &Vec3, f: &Vec3, le: f64, lf: f64) -> Span {
     let product = le * lf;
     if product < LEAST {
         return Span::Parallel(Float::sqrt(le.min(lf)));
@@ -342,14 +378,14 @@ fn length(a: Vec3) -> f64 {
 }
 
 #[inline(always)]
-fn cross(a: Vec3, b: Vec3) -> Vec3 {
+fn cross(a: &Vec3, b: &Vec3) -> Vec3 {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The same with every coordinate right to its last digit but one, however much of the products cancels.
 #[cold]
 #[inline(never)]
-fn exact_cross(a: Vec3, b: Vec3) -> Vec3 {
+fn exact_cross(a: &Vec3, b: &Vec3) -> Vec3 {
     let minor = |i: usize, j: usize| {
         let [[p, lost_p], [q, lost_q]] = [two_product(a[i], b[j]), two_product(a[j], b[i])];
         (p - q) + (lost_p - lost_q)
