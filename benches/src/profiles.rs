@@ -14,57 +14,95 @@ const METHODS: [Method; 3] = [Method::OursF64, Method::OursF32, Method::DynF64];
 /// How often either program is run, in turn; the least time counts.
 const ROUNDS: usize = 3;
 
+/// A way to build `summary`.
+struct Build {
+    profile: &'static str,
+    /// Flags for the compiler.
+    flags: &'static str,
+    /// The target folder of what they build.
+    folder: &'static str,
+}
+
+const TUNED: Build = Build { profile: "bench", flags: "", folder: "" };
+
+/// What is compared with [`TUNED`], and what a reader is told of it.
+const OTHERS: [(Build, &str); 2] = [
+    (
+        Build { profile: "release", flags: "", folder: "" },
+        "## As users build it\n\n\
+         Times in cargo's own `release` profile (no LTO between crates, 16 codegen units) over those in the profile `bench` of all other\n\
+         tables (thin LTO, one codegen unit), from runs in turn: the geometric mean, and the cases with the least and the most.\n",
+    ),
+    (
+        Build { profile: "bench", flags: "-C no-vectorize-slp", folder: "../target/no-slp" },
+        "## Without pairs of numbers in one register\n\n\
+         The compiler packs neighbouring coordinates into vector registers where it can (LLVM's SLP vectorizer). Vectors of three numbers\n\
+         are then written in one way and read in another, which the processor waits for. `RUSTFLAGS=\"-C no-vectorize-slp\"` leaves that out:\n\
+         times with the flag over those without, in the profile `bench`, as above.\n",
+    ),
+];
+
 /// Nanoseconds by workload, case and method.
 type Times = BTreeMap<[String; 3], f64>;
 
-/// The section on profiles.
+/// The sections on how our times depend on the build.
 ///
 /// # Errors
 /// Where `cargo` cannot be run, or `summary` not be built.
 pub fn section() -> io::Result<String> {
-    let (mut plain, mut tuned) = (Times::new(), Times::new());
+    let mut tuned = Times::new();
+    let mut others = OTHERS.each_ref().map(|_| Times::new());
     for _ in 0..ROUNDS {
-        measure("release", &mut plain)?;
-        measure("bench", &mut tuned)?;
+        TUNED.measure(&mut tuned)?;
+        for ((build, _), times) in OTHERS.iter().zip(&mut others) {
+            build.measure(times)?;
+        }
     }
-    let mut text = String::from(
-        "## As users build it\n\n\
-         Times in cargo's own `release` profile (no LTO between crates, 16 codegen units) over those in the profile `bench` of all other\n\
-         tables (thin LTO, one codegen unit), from runs in turn: the geometric mean, and the cases with the least and the most.\n\n|",
-    );
-    for method in METHODS {
-        text += &format!(" | {}", method.name());
+    let mut text = String::new();
+    for ((_, told), times) in OTHERS.iter().zip(&others) {
+        text += &format!("{told}\n{}\n", table(times, &tuned));
     }
-    text += &format!(" |\n|---|{}\n", "---|".repeat(METHODS.len()));
+    Ok(text)
+}
+
+/// Ratios of times, a row for each workload.
+fn table(times: &Times, tuned: &Times) -> String {
+    let mut text =
+        format!("| | {} |\n|---|{}\n", METHODS.map(|method| method.name()).join(" | "), "---|".repeat(METHODS.len()));
     for workload in Workload::ALL {
         let ratios = METHODS.map(|method| -> Ratios<'_> {
-            let of_both = plain.iter().filter(|([of, _, by], _)| of == workload.name() && by == method.name());
+            let of_both = times.iter().filter(|([of, _, by], _)| of == workload.name() && by == method.name());
             of_both.filter_map(|(key, time)| Some((key[1].as_str(), time / tuned.get(key)?))).collect()
         });
         text += &format!("| {} | {} |\n", workload.name(), ratios.map(|ratios| ratios.to_string()).join(" | "));
     }
-    Ok(text + "\n")
+    text
 }
 
-/// Builds and runs `summary` without peers in a profile, and keeps the least time of each row.
-fn measure(profile: &str, times: &mut Times) -> io::Result<()> {
-    let output = Command::new("cargo")
-        .args(["run", "--quiet", "--profile", profile, "--package", "benches", "--bin", "summary"])
-        .args(["--", "--csv", "--milliseconds", "20"])
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")))
-        .stderr(Stdio::inherit())
-        .output()?;
-    if !output.status.success() {
-        return Err(io::Error::other(format!("summary failed in the profile {profile}")));
-    }
-    for line in String::from_utf8_lossy(&output.stdout).lines().skip(1) {
-        let cells: Vec<&str> = line.splitn(5, ',').collect();
-        if let [workload, case, method, ns, _] = cells[..]
-            && let Ok(ns) = ns.parse::<f64>()
-        {
-            let least = times.entry([workload, case, method].map(str::to_owned)).or_insert(f64::INFINITY);
-            *least = least.min(ns);
+impl Build {
+    /// Builds and runs `summary` without peers, and keeps the least time of each row.
+    fn measure(&self, times: &mut Times) -> io::Result<()> {
+        let mut cargo = Command::new("cargo");
+        cargo
+            .args(["run", "--quiet", "--profile", self.profile, "--package", "benches", "--bin", "summary"])
+            .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")))
+            .stderr(Stdio::inherit());
+        if !self.flags.is_empty() {
+            cargo.args(["--target-dir", self.folder]).env("RUSTFLAGS", self.flags);
         }
+        let output = cargo.args(["--", "--csv", "--milliseconds", "20"]).output()?;
+        if !output.status.success() {
+            return Err(io::Error::other(format!("summary failed in the profile {} {}", self.profile, self.flags)));
+        }
+        for line in String::from_utf8_lossy(&output.stdout).lines().skip(1) {
+            let cells: Vec<&str> = line.splitn(5, ',').collect();
+            if let [workload, case, method, ns, _] = cells[..]
+                && let Ok(ns) = ns.parse::<f64>()
+            {
+                let least = times.entry([workload, case, method].map(str::to_owned)).or_insert(f64::INFINITY);
+                *least = least.min(ns);
+            }
+        }
+        Ok(())
     }
-    Ok(())
 }
