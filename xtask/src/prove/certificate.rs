@@ -6,8 +6,9 @@
 
 use serde_json::Value;
 
-use super::body::{Body, Reader, Unread, difference, field};
+use super::body::{Body, difference};
 use super::interval::{Interval, Vector, determinant};
+use super::reader::{Reader, Unread, field};
 
 /// What became of a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

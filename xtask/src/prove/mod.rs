@@ -7,6 +7,7 @@ mod body;
 mod certificate;
 mod interval;
 mod random;
+mod reader;
 #[cfg(test)]
 mod tests;
 
@@ -20,8 +21,8 @@ use clap::Args;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use self::body::{Reader, Unread};
 use self::certificate::{Bounds, Verdict, judge};
+use self::reader::{Reader, Unread};
 use crate::mesh::Meshes;
 use crate::wire::json;
 

@@ -3,10 +3,11 @@
 use serde_json::{Value, json};
 use workloads::rng::Rng;
 
-use super::body::{Reader, Set};
+use super::body::Set;
 use super::certificate::Verdict;
 use super::interval::{Interval, Vector, determinant};
 use super::random::query;
+use super::reader::Reader;
 use super::{Counts, judge_line};
 use crate::mesh::Meshes;
 use crate::query::certified;

@@ -1,0 +1,215 @@
+//! The shapes of a query, read from the query itself: a cylinder is the sum of a segment and a flat ball, a cone the hull of a flat ball
+//! and its apex.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::body::{Body, Set, corners, diagonal, diagonal_of, difference, scale_of, sum};
+use super::interval::{Interval, Vector};
+use crate::mesh::Meshes;
+
+/// What a query's numbers mean: each is the nearest double to what is written, and in single precision the nearest `f32` to that.
+pub(super) struct Reader<'m> {
+    pub(super) single: bool,
+    pub(super) meshes: &'m Meshes,
+}
+
+/// A field that is missing, or is not what it must be.
+pub(super) type Unread = String;
+
+impl Reader<'_> {
+    pub(super) fn number(&self, value: &Value) -> Result<f64, Unread> {
+        let number = value.as_f64().ok_or_else(|| format!("{value:.40} is no number"))?;
+        Ok(if self.single { f64::from(number as f32) } else { number })
+    }
+
+    fn numbers(&self, value: &Value) -> Result<Vec<f64>, Unread> {
+        let items = value.as_array().ok_or_else(|| format!("{value:.40} is no list of numbers"))?;
+        items.iter().map(|item| self.number(item)).collect()
+    }
+
+    pub(super) fn vector(&self, value: &Value) -> Result<Vector, Unread> {
+        let numbers = self.numbers(value)?;
+        if !matches!(numbers.len(), 2 | 3) {
+            return Err(format!("{value:.40} is no vector"));
+        }
+        Ok(Vector(std::array::from_fn(|i| Interval::from(numbers.get(i).copied().unwrap_or(0.0)))))
+    }
+
+    /// The vector in a field, zero where it is left out.
+    pub(super) fn vector_or_zero(&self, object: &Value, name: &str) -> Result<Vector, Unread> {
+        object.get(name).map_or(Ok(Vector::zero()), |value| self.vector(value))
+    }
+
+    fn vectors(&self, value: &Value) -> Result<Vec<Vector>, Unread> {
+        let items = value.as_array().ok_or_else(|| format!("{value:.40} is no list of vectors"))?;
+        items.iter().map(|item| self.vector(item)).collect()
+    }
+
+    /// A length, which is not negative.
+    fn length(&self, object: &Value, name: &str) -> Result<Interval, Unread> {
+        match self.number(field(object, name)?)? {
+            length if length >= 0.0 => Ok(Interval::from(length)),
+            length => Err(format!("{name} is {length}")),
+        }
+    }
+
+    /// The rows of a matrix, and zero for those beyond the dimension.
+    fn rows(&self, value: &Value) -> Result<[Vector; 3], Unread> {
+        let mut rows = self.vectors(value)?;
+        rows.resize_with(3, Vector::zero);
+        rows.try_into().map_err(|_| "a matrix has too many rows".to_owned())
+    }
+
+    /// A rotation: an angle, or a quaternion that is divided by its length.
+    ///
+    /// In single precision the coordinates of a quaternion are rounded to 24 bits, whatever their exponents.
+    fn rotation(&self, value: Option<&Value>) -> Result<[Vector; 3], Unread> {
+        let one = Interval::from(1.0);
+        let Some(value) = value else { return Ok(diagonal(std::array::from_fn(|_| one.clone()))) };
+        if value.is_number() {
+            let [sine, cosine] = Interval::sine_and_cosine(self.number(value)?);
+            let zero = Interval::zero();
+            return Ok([
+                Vector([cosine.clone(), -&sine, zero.clone()]),
+                Vector([sine, cosine, zero.clone()]),
+                Vector([zero.clone(), zero, one]),
+            ]);
+        }
+        let mut q = Reader { single: false, ..*self }.numbers(value)?;
+        if self.single {
+            let largest = q.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+            let unit = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits()).max(f64::MIN_POSITIVE);
+            q = q.into_iter().map(|c| f64::from((c / unit) as f32)).collect();
+        }
+        let &[x, y, z, w] = q.as_slice() else { return Err("a quaternion has four numbers".to_owned()) };
+        let [x, y, z, w] = [x, y, z, w].map(Interval::from);
+        let squared = &Vector([x.clone(), y.clone(), z.clone()]).squared() + &w.squared();
+        if !Interval::zero().is_less_than(&squared) {
+            return Err("a quaternion is zero".to_owned());
+        }
+        let twice = |sum: Interval| (&sum + &sum).over(&squared);
+        let less = |a: &Interval, b: &Interval| &one - &twice(&a.squared() + &b.squared());
+        let (plus, minus) = (|a, b| twice(&a + &b), |a, b| twice(&a - &b));
+        Ok([
+            Vector([less(&y, &z), minus(&x * &y, &z * &w), plus(&x * &z, &y * &w)]),
+            Vector([plus(&x * &y, &z * &w), less(&x, &z), minus(&y * &z, &x * &w)]),
+            Vector([minus(&x * &z, &y * &w), plus(&y * &z, &x * &w), less(&x, &y)]),
+        ])
+    }
+
+    /// The shape that an object is.
+    pub(super) fn body(&self, shape: &Value) -> Result<Body, Unread> {
+        let get = |name| field(shape, name);
+        let of = || self.body(get("of")?);
+        let several = || match get("of")?.as_array() {
+            Some(of) if !of.is_empty() => of.iter().map(|one| self.body(one)).collect::<Result<Vec<_>, _>>(),
+            _ => Err("a sum or hull of no shapes".to_owned()),
+        };
+        // A segment along y, to so far on either side.
+        let upright = || -> Result<Set, Unread> {
+            let end = self.length(shape, "half_height")?;
+            let at = |y: Interval| Vector([Interval::zero(), y, Interval::zero()]);
+            Ok(Set::Points(vec![at(end.clone()), at(-&end)]))
+        };
+        // A flat ball across y.
+        let disc = || -> Result<Set, Unread> {
+            let radius = self.length(shape, "radius")?;
+            let flat = diagonal([radius.clone(), Interval::zero(), radius]);
+            Ok(Set::Image(Box::new(Set::Ball), flat, Vector::zero()))
+        };
+        Ok(match field(shape, "type")?.as_str().unwrap_or_default() {
+            "point" => Body::of(Set::Points(vec![self.vector(get("at")?)?])),
+            "segment" | "triangle" | "polytope" => Body::of(Set::Points(self.vectors(get("points")?)?)),
+            "mesh" => Body::of(self.mesh(get("path")?)?),
+            "cuboid" => Body::of(corners(&self.vector(get("half_extents")?)?)),
+            "ball" => Body { core: Set::Points(vec![Vector::zero()]), radius: self.length(shape, "radius")? },
+            "capsule" => Body { core: upright()?, radius: self.length(shape, "radius")? },
+            "cylinder" => Body::of(Set::Sum(vec![upright()?, disc()?])),
+            "cone" => {
+                let Set::Points(mut ends) = upright()? else { return Err("a cone has no axis".to_owned()) };
+                let bottom = Set::Points(ends.split_off(1));
+                Body::of(Set::Hull(vec![Set::Points(ends), Set::Sum(vec![bottom, disc()?])]))
+            }
+            "ellipsoid" => Body::of(self.ellipsoid(shape)?),
+            "posed" => {
+                let Body { core, radius } = of()?;
+                let (rows, at) = (self.rotation(shape.get("rotation"))?, self.vector_or_zero(shape, "translation")?);
+                Body { core: Set::Image(Box::new(core), rows, at), radius }
+            }
+            "affine" => {
+                let (rows, at) = (self.rows(get("matrix")?)?, self.vector_or_zero(shape, "translation")?);
+                let dimension = get("matrix")?.as_array().map_or(3, Vec::len);
+                let Body { core, radius } = of()?;
+                match scale_of(&rows[..dimension]) {
+                    Some(scale) => Body { core: Set::Image(Box::new(core), rows, at), radius: &radius * &scale },
+                    None => {
+                        let whole = Body { core, radius }.but_for(&Interval::zero());
+                        Body::of(Set::Image(Box::new(whole), rows, at))
+                    }
+                }
+            }
+            "minkowski_sum" => sum(several()?),
+            "difference" => difference(self.body(get("a")?)?, self.body(get("b")?)?),
+            "hull" => {
+                let parts = several()?;
+                let least = parts.iter().map(|part| part.radius.clone()).reduce(|a, b| a.min(&b));
+                let radius = least.unwrap_or_else(Interval::zero).least();
+                let core = Set::Hull(parts.into_iter().map(|part| part.but_for(&radius)).collect());
+                Body { core, radius }
+            }
+            "rounded" => {
+                let Body { core, radius } = of()?;
+                Body { core, radius: &radius + &self.length(shape, "radius")? }
+            }
+            other => return Err(format!("there is no shape \"{other}\"")),
+        })
+    }
+
+    fn mesh(&self, path: &Value) -> Result<Set, Unread> {
+        let mesh = self.meshes.load(Path::new(path.as_str().unwrap_or_default())).map_err(|why| why.message)?;
+        let coordinate = |x: f64| Interval::from(if self.single { f64::from(x as f32) } else { x });
+        Ok(Set::Points(mesh.points().iter().map(|p| Vector(p.to_array().map(coordinate))).collect()))
+    }
+
+    /// An ellipsoid: the unit ball, stretched by semi-axes and turned, or by the inverse of the matrix's factor.
+    ///
+    /// With `X = L·Lᵀ`, `(x−c)ᵀX(x−c) ≤ 1` says `|Lᵀ(x−c)| ≤ 1`: the image of the ball under `L⁻ᵀ`. The matrix is not rounded to
+    /// single precision; the mean of it and its transpose counts.
+    fn ellipsoid(&self, shape: &Value) -> Result<Set, Unread> {
+        let center = self.vector_or_zero(shape, "center")?;
+        if let Some(semi_axes) = shape.get("semi_axes") {
+            let stretched = Set::Image(Box::new(Set::Ball), diagonal(self.vector(semi_axes)?.0), Vector::zero());
+            return Ok(Set::Image(Box::new(stretched), self.rotation(shape.get("rotation"))?, center));
+        }
+        let written = field(shape, "matrix")?;
+        let given = Reader { single: false, ..*self }.rows(written)?;
+        let n = written.as_array().map_or(0, Vec::len);
+        let half = Interval::from(0.5);
+        // Row by row, the inverse m of the factor l beside it: l·m = 1, and the image is that under mᵀ.
+        let (mut l, mut m): ([Vector; 3], [Vector; 3]) =
+            (diagonal_of(&Interval::zero()), diagonal_of(&Interval::zero()));
+        for i in 0..n {
+            for j in 0..=i {
+                let entry = &(&given[i].0[j] + &given[j].0[i]) * &half;
+                let rest = (0..j).fold(entry, |rest, k| &rest - &(&l[i].0[k] * &l[j].0[k]));
+                l[i].0[j] = if i == j { rest.root() } else { rest.over(&l[j].0[j]) };
+                if i == j && !Interval::zero().is_less_than(&rest) {
+                    return Err("a matrix is not positive definite".to_owned());
+                }
+            }
+            for j in 0..=i {
+                let one = Interval::from(f64::from(u8::from(i == j)));
+                let rest = (j..i).fold(one, |rest, k| &rest - &(&l[i].0[k] * &m[k].0[j]));
+                m[i].0[j] = rest.over(&l[i].0[i]);
+            }
+        }
+        let rows = std::array::from_fn(|i| Vector(std::array::from_fn(|j| m[j].0[i].clone())));
+        Ok(Set::Image(Box::new(Set::Ball), rows, center))
+    }
+}
+
+pub(super) fn field<'v>(object: &'v Value, name: &str) -> Result<&'v Value, Unread> {
+    object.get(name).ok_or_else(|| format!("the field \"{name}\" is missing"))
+}
