@@ -6,6 +6,7 @@ use core::fmt::{self, Display, Formatter};
 /// Why a ray or a motion was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum RayCastError {
     /// The direction of the ray is the zero vector, so that it has no hit parameter. To ask whether a point is in a
     /// shape, use [`intersects`](crate::intersects).

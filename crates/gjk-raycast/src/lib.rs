@@ -51,6 +51,38 @@
 //! - `libm`: the same from the libm crate, for `no_std` targets.
 //! - `f64` (default): as of `convex-support`, to be left out with glam 0.32.
 //! - `rayon`: batches on all threads, `par_ray_casts`, `Scene::par_ray_casts` and `Among::par_pairs_within`.
+//! - `serde`: options, answers and certificates as data, beside the shapes of `convex-support`.
+//!
+//! # Answers as data
+//! With the feature `serde`, what is asked and what is answered can be written and read back, to the last bit, by any format of
+//! [serde](https://docs.rs/serde): options, rays, motions and poses, half-spaces and [`Body`]; every answer, [`Certificate`] and derivative.
+//! For JSON, `serde_json` needs its feature `float_roundtrip`.
+//!
+//! ```
+//! # #[cfg(feature = "serde")] {
+//! use convex_support::{Ball, Posed, glam::DVec3};
+//! use gjk_raycast::{Ray, RayCast, RayCastOptions, ray_cast};
+//!
+//! let target = Posed::translated(Ball::new(2.0)?, DVec3::new(10.0, 0.0, 0.0))?;
+//! let options = serde_json::from_str(r#"{"max_lambda": 100.0}"#)?; // the others are the defaults
+//! let ray = Ray { source: DVec3::ZERO, direction: DVec3::X };
+//! let answer = ray_cast(&target, ray, options)?;
+//!
+//! let saved = serde_json::to_string(&answer)?;
+//! assert!(saved.starts_with(r#"{"outcome":{"Hit":{"lambda":8.0,"#));
+//! let read: RayCast<DVec3> = serde_json::from_str(&saved)?;
+//! assert_eq!(read, answer);
+//! # }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! - An option that is left out has its default, and one that does not exist is an error. As in code, any number may be given, and the
+//!   query takes what is below zero for zero where the option says so.
+//! - JSON has no infinity. A bound or a limit that is infinite is `null` there: a ray without an end, an upper bound that is not known.
+//!   Where a shape's support map returned numbers that are not finite, the answer has points that JSON cannot tell, and is not read back.
+//! - Errors can be written and not read, as they name parameters of this crate. Left out are what observers are shown, what a
+//!   [`Trajectory`] answers, [`ChainMotion`], whose joints are [`RigidMotion`]s, [`ClosestFeatures`], which an answer and its shapes give
+//!   again, and [`Scene`], which is made of its bodies.
 
 #![no_std]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "comparisons are written so that NaN ends the loop they are in")]
@@ -68,6 +100,8 @@ mod cast;
 mod certificate;
 mod contact;
 mod curvature;
+#[cfg(feature = "serde")]
+mod data;
 mod derivative;
 mod distance;
 mod distances;

@@ -19,6 +19,7 @@ const NEAR_OF_FAR: f64 = 4.0;
 
 /// The velocities of two shapes, in units of length per unit of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Motion<V> {
     /// The velocity of `a`.
     pub velocity_a: V,

@@ -91,12 +91,15 @@ pub(crate) use setters;
 /// Options of [`distance`](crate::distance).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct DistanceOptions<V: Vector> {
     /// The width of the bracket at which to stop, relative to the distance of the cores. A bracket at the level of
     /// rounding, relative to the size of what is compared, always ends the iteration. Default: 0.
     pub tolerance: V::Scalar,
     /// Stop as soon as the distance is certain to exceed this limit; the bracket is then as wide as it is known. Default:
     /// infinity.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub limit: V::Scalar,
     /// The iterations after which to give up. Default: 200.
     pub max_iterations: usize,
@@ -131,6 +134,8 @@ impl<V: Vector> Default for DistanceOptions<V> {
 /// Options of [`intersects`](crate::intersects).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct IntersectOptions<V: Vector> {
     /// The iterations after which to give up. Default: 200.
     pub max_iterations: usize,
@@ -160,6 +165,7 @@ impl<V: Vector> Default for IntersectOptions<V> {
 /// How a cast finds the planes that it moves the ray up to, and when it ends. The bounds are computed alike.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum CastMethod {
     /// What the shape knows in [closed form](convex_support::SupportMap::core_line_crossing) is tried first. In 3D, triangles of
     /// support points that the ray pierces are then brought nearer, by the simplex method of linear programming; where that is
@@ -173,6 +179,7 @@ pub enum CastMethod {
 /// What a cast answers where the bodies touch at the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum StartInContact {
     /// A hit at time 0, whatever the motion.
     #[default]
@@ -186,11 +193,14 @@ pub enum StartInContact {
 /// Options of [`ray_cast`](crate::ray_cast).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct RayCastOptions<V: Vector> {
     /// The beginning of the ray, in units of its direction; it belongs to the ray. What is hit before does not count, so that a
     /// ray may start on a surface and leave it. Below zero it is taken for zero. Default: 0.
     pub min_lambda: V::Scalar,
     /// The end of the ray, in units of its direction; the end belongs to the ray. Default: infinity.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub max_lambda: V::Scalar,
     /// How far along the ray the hit may stay uncertain, relative to the size of the target. A bracket at the level of
     /// rounding always ends the iteration. Default: 0.
@@ -246,8 +256,11 @@ impl<V: Vector> Default for RayCastOptions<V> {
 /// Options of [`linear_cast`](crate::linear_cast).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct LinearCastOptions<V: Vector> {
     /// The end of the motion; it belongs to the motion. Default: infinity.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub max_time: V::Scalar,
     /// The distance at which the shapes count as touching: the cast stops that far from contact. Below zero it is taken for zero.
     /// Default: 0.

@@ -7,6 +7,7 @@ use crate::RayCastError;
 
 /// The ray of the points `source + λ·direction`, λ ≥ 0. The direction need not be of unit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ray<V> {
     /// Where it starts.
     pub source: V,

@@ -4,6 +4,7 @@ use convex_support::{Scalar, Vector};
 
 /// How an iterative method ended. The bounds of the answer hold in every case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Status {
     /// The bracket is as narrow as was asked for, or as rounding lets it be.
     Converged,
@@ -17,6 +18,7 @@ pub enum Status {
 /// The answer of [`distance`](crate::distance).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Distance<V: Vector> {
     /// The distance of the two sets; 0 where they overlap, or what is measured where they touch to less than its own error.
     pub distance: V::Scalar,
@@ -42,6 +44,7 @@ pub struct Distance<V: Vector> {
 /// The answer of [`intersects`](crate::intersects).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Intersection<V: Vector> {
     /// Whether the shapes have a point in common, if `status` is [`Status::Converged`]; else only the better guess.
     /// It agrees with [`Distance::overlap`].
@@ -68,6 +71,7 @@ impl<V: Vector> Intersection<V> {
 /// How a cast came out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Outcome<H, V> {
     /// It hits.
     Hit(H),
@@ -96,6 +100,7 @@ impl<H, V> Outcome<H, V> {
 
 /// Why a cast misses.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Miss<V> {
     /// A unit vector along which a plane separates the shape from the whole ray (up to its end, if it has one),
     /// pointing from the shape to the ray; a good [first axis](crate::RayCastOptions::axis) for a similar query.
@@ -108,12 +113,20 @@ pub struct Miss<V> {
 /// The answer of [`ray_cast`](crate::ray_cast).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
 pub struct RayCast<V: Vector> {
     /// Hit, miss, or undecided.
     pub outcome: Outcome<RayHit<V>, V>,
     /// No point of the ray before this parameter is in the target.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
     /// The point of the ray at this parameter is in the target; infinite where no such point is known.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
     /// How the iteration ended.
     pub status: Status,
@@ -123,6 +136,7 @@ pub struct RayCast<V: Vector> {
 
 /// Where a ray enters a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RayHit<V: Vector> {
     /// The hit parameter, in units of the ray's direction; 0 where the source is in the target.
     pub lambda: V::Scalar,
@@ -136,12 +150,20 @@ pub struct RayHit<V: Vector> {
 /// The answer of [`ray_exit`](crate::ray_exit).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
 pub struct RayExit<V: Vector> {
     /// Where the ray leaves, with the outward normal there; a miss where no point of the ray is in the target; or undecided.
     pub outcome: Outcome<RayHit<V>, V>,
     /// The point of the ray at this parameter is in the target; minus infinity where no such point is known.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
     pub lower: V::Scalar,
     /// No point of the ray after this parameter is in the target; minus infinity of a miss.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
     pub upper: V::Scalar,
     /// How the iteration ended.
     pub status: Status,
@@ -152,13 +174,21 @@ pub struct RayExit<V: Vector> {
 /// The answer of [`linear_cast`](crate::linear_cast).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
 pub struct LinearCast<V: Vector> {
     /// Hit, miss, or undecided. The axis of a miss points from `b` to `a`.
     pub outcome: Outcome<LinearHit<V>, V>,
     /// The shapes have no point in common before this time. Infinite of a miss, and of one that
     /// [leaves a contact](crate::StartInContact::IfDeeper) that it started in, which does not count.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
     /// The shapes have a point in common at this time; infinite where no such time is known.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
     /// How the iteration ended.
     pub status: Status,
@@ -169,6 +199,7 @@ pub struct LinearCast<V: Vector> {
 
 /// The first contact of two moving shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LinearHit<V: Vector> {
     /// The time of first contact; 0 where the shapes overlap at the start.
     pub time: V::Scalar,

@@ -18,6 +18,7 @@ use crate::{Distance, Intersection, LinearCast, Motion, Outcome, Ray, RayCast};
 ///
 /// Let `C` be the target of a ray, or `A − B` for two shapes, and let `K ⊕ B(r)` be its [core](convex_support::Core) and radius.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Certificate<V: Vector> {
     /// A vector `n` across a plane that has the target behind it, and the ray's start or all of the ray before it; for two shapes
     /// it points from `b` to `a`, and the plane has `b` behind it and `a` before it. `None` where nothing below is claimed.
@@ -35,6 +36,7 @@ impl<V: Vector> Certificate<V> {
 
 /// A point of a core, told by the direction in which it is farthest, and its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WeightedSupport<V> {
     /// No other point of the core is farther along this direction, of any length: with few decimals, and not along the normal of
     /// a face, so that it tells one corner however it is rounded.

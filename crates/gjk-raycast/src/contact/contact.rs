@@ -2,8 +2,8 @@
 
 use convex_support::{SupportMap, Vector};
 
-use super::manifold::{MAX_POINTS, manifold};
-use super::{Contact, ContactPoint, SignedDistanceOptions, signed_distance};
+use super::manifold::manifold;
+use super::{Contact, SignedDistanceOptions, signed_distance};
 use num_traits::Float as _;
 
 /// The contact of two shapes that are no farther apart than `within`; `None` where they are. The options are those of the signed
@@ -44,10 +44,5 @@ where
     if !(answer.signed_distance <= within) {
         return None;
     }
-    let found = manifold(a, b, &answer, within);
-    let mut points = [ContactPoint::default(); MAX_POINTS];
-    for (point, &found) in points.iter_mut().zip(&found) {
-        *point = found;
-    }
-    Some(Contact { normal: answer.normal, distance: answer, points, len: found.len() })
+    Some(Contact::new(answer.normal, answer, &manifold(a, b, &answer, within)))
 }

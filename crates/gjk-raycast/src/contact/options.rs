@@ -12,13 +12,17 @@ const MAX_ITERATIONS: usize = 500;
 /// Options of [`signed_distance`](crate::signed_distance).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct SignedDistanceOptions<V: Vector> {
     /// The width of the bracket at which to stop in overlap, relative to the size of what is compared. It concerns curved shapes;
     /// of polytopes the facet that decides is found exactly. Default: 1e-9 in `f64`, 8ε in `f32`.
     pub tolerance: V::Scalar,
     /// Stop as soon as the shapes are certain to be farther apart than this. Default: infinity.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub limit: V::Scalar,
     /// Stop as soon as the shapes are certain to be deeper in one another than this. Default: infinity.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub depth_limit: V::Scalar,
     /// The support points of each shape after which to give up. Default: 500.
     pub max_iterations: usize,

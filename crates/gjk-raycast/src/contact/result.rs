@@ -8,15 +8,18 @@ use crate::Status;
 /// The answer of [`signed_distance`](crate::signed_distance).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SignedDistance<V: Vector> {
     /// The distance where the shapes are apart; where they overlap, minus the penetration depth: the length of the shortest
     /// translation of `a` after which they have no interior point in common.
     pub signed_distance: V::Scalar,
     /// The signed distance is certainly not less: a plane tells so, across [`normal`](Self::normal) or, where closest points tell that
     /// better, a vector near it. Minus infinity where a support map returned numbers that are not finite.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
     pub lower: V::Scalar,
     /// The signed distance is certainly not more: two points of the shapes are this far apart, or a polytope within the
     /// difference `A − B` reaches this far around zero. Infinity where a support map returned numbers that are not finite.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
     /// The unit vector from `b` to `a`: `a` moved by the depth along it no longer overlaps. Where several directions are equally
     /// short, one of them.
@@ -50,6 +53,18 @@ pub struct Contact<V: Vector> {
 }
 
 impl<V: Vector> Contact<V> {
+    /// As many points as a manifold has.
+    #[cfg(feature = "serde")]
+    pub(crate) const MAX_POINTS: usize = MAX_POINTS;
+
+    /// With the first of the points, as many as a manifold has.
+    pub(crate) fn new(normal: V, distance: SignedDistance<V>, found: &[ContactPoint<V>]) -> Self {
+        let mut points = [ContactPoint::default(); MAX_POINTS];
+        let len = found.len().min(MAX_POINTS);
+        points[..len].copy_from_slice(&found[..len]);
+        Self { normal, distance, points, len }
+    }
+
     /// The points of the manifold: one to four, in 2D one or two.
     #[must_use]
     pub fn points(&self) -> &[ContactPoint<V>] {
@@ -59,6 +74,7 @@ impl<V: Vector> Contact<V> {
 
 /// A point of a contact manifold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactPoint<V: Vector> {
     /// The point of `a`.
     pub point_a: V,

@@ -18,6 +18,9 @@ const MAX: usize = 6;
 /// `g + Hθ + ½(0, ω × ∂s/∂ω) + O(‖θ‖²)`, since rotations do not commute.)
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V::Scalar: serde::Serialize")))]
+#[cfg_attr(feature = "serde", serde(bound(deserialize = "V::Scalar: serde::Deserialize<'de>")))]
 pub struct MotionHessian<V: Vector> {
     rows: [[V::Scalar; MAX]; MAX],
 }
@@ -25,6 +28,12 @@ pub struct MotionHessian<V: Vector> {
 /// The second derivatives of the signed distance by the poses of both bodies: 12 by 12 numbers in space, 6 by 6 in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
 pub struct PairHessian<V: Vector> {
     /// By the pose of `a`; symmetric.
     pub a: MotionHessian<V>,

@@ -9,6 +9,7 @@ use crate::{LinearHit, Motion};
 /// The derivatives of the time of a hit of two shapes that move without turning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LinearCastGradient<V: Vector> {
     /// By the pose of `a` at the start.
     pub pose_a: MotionGradient<V>,

@@ -9,6 +9,7 @@ use crate::{MotionHit, RigidMotion, Trajectory};
 /// The derivatives of the time of first contact of two bodies that move and turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MotionCastGradient<V: Vector> {
     /// By the pose of `a` at the start. Its motion stays what it is, the centre included.
     pub pose_a: MotionGradient<V>,
@@ -26,6 +27,7 @@ pub struct MotionCastGradient<V: Vector> {
 /// The derivatives of a number by the parameters of a rigid motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigidMotionGradient<V: Vector> {
     /// By the velocity.
     pub velocity: V,

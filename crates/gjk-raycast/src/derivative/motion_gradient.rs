@@ -24,6 +24,7 @@ use crate::RigidMotion;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MotionGradient<V> {
     /// The change per translation of the body, in world axes: the force.
     pub translation: V,

@@ -8,6 +8,7 @@ use crate::{Distance, RigidMotion, SignedDistance};
 /// How a distance changes with the motion of either body and with their radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PairGradient<V: Vector> {
     /// By the motion of `a`: the normal, at the closest point of `a`.
     pub a: MotionGradient<V>,

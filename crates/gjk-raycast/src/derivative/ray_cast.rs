@@ -9,6 +9,7 @@ use crate::{Ray, RayHit};
 /// The derivatives of the parameter λ at which a ray enters a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RayCastGradient<V: Vector> {
     /// By the pose of the target.
     pub target: MotionGradient<V>,

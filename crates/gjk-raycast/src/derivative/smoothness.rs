@@ -8,6 +8,7 @@ use crate::symmetric::{Symmetric, dot};
 
 /// Whether an answer is differentiable by the poses of both bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Smoothness {
     /// The normal and the closest points are the only ones. They change continuously, and the gradient is the derivative.
     Smooth,

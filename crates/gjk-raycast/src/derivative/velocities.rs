@@ -26,6 +26,7 @@ use crate::{RigidMotion, Trajectory};
 /// The velocities of the closest points and of the normal between them, as bodies move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClosestVelocities<V: Vector> {
     /// The rate at which the signed distance changes.
     pub signed_distance: V::Scalar,

@@ -13,8 +13,11 @@ const MAX_ITERATIONS: usize = 10_000;
 /// Options of [`motion_cast`](crate::motion_cast).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct MotionCastOptions<V: Vector> {
     /// The end of the motion; it belongs to the motion. Below zero it is taken for zero. Default: infinity.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub max_time: V::Scalar,
     /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
     /// of rounding always ends the search. Default: 0.

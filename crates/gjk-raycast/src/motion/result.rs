@@ -7,13 +7,21 @@ use crate::{Outcome, Status};
 /// The answer of [`motion_cast`](crate::motion_cast).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
 pub struct MotionCast<V: Vector> {
     /// Hit, miss, or undecided. A miss is proved over the whole motion; its axis, from `b` to `a`, is that of the last separating
     /// plane.
     pub outcome: Outcome<MotionHit<V>, V>,
     /// The bodies have no point in common before this time; of a miss, the end of the motion.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
     /// The bodies have a point in common at this time, though it need not be their first; infinite where no such time is known.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
     /// How the search ended.
     pub status: Status,
@@ -23,6 +31,7 @@ pub struct MotionCast<V: Vector> {
 
 /// The first contact of two moving bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MotionHit<V: Vector> {
     /// The time of first contact; 0 where the bodies overlap at the start.
     pub time: V::Scalar,

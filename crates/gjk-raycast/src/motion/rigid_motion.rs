@@ -25,6 +25,7 @@ use super::trajectory::{Displacement, MovingBall, Trajectory, TurningPlane};
 /// assert_eq!(rolling.velocity(0.0, DVec3::new(0.0, -0.5, 0.0)), DVec3::ZERO);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigidMotion<V: Vector> {
     /// The velocity `v` of the centre, in units of length per unit of time.
     pub velocity: V,
@@ -37,6 +38,7 @@ pub struct RigidMotion<V: Vector> {
 
 /// Where a body is: it is turned about zero, then moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose<V: Vector> {
     /// The rotation: an angle in 2D, a quaternion of any length in 3D.
     pub rotation: V::Rotation,

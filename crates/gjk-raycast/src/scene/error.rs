@@ -6,6 +6,7 @@ use core::fmt::{self, Display, Formatter};
 /// Why a scene refused a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum SceneError {
     /// The box of the body is not finite: one of its support points is NaN or infinite.
     NotFinite {

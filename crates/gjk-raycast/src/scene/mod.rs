@@ -88,6 +88,12 @@ pub struct Scene<S: SupportMap> {
 
 /// What is in a [`Scene`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "S: serde::Serialize, HalfSpace<S::Vector>: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "S: serde::Deserialize<'de>, HalfSpace<S::Vector>: serde::Deserialize<'de>"))
+)]
 pub enum Body<S: SupportMap> {
     /// A bounded convex body.
     Convex(S),

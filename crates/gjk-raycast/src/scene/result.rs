@@ -8,6 +8,7 @@ use crate::{Distance, LinearHit, MotionHit, RayHit, Status};
 
 /// What was done for an answer, and what was left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Work {
     /// Nodes of the tree that were looked into; for pairs, pairs of nodes.
     pub nodes: usize,
@@ -25,11 +26,18 @@ pub struct Work {
 /// `H` is what the single query says of a hit, and `S` the scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "H: serde::Serialize, S: num_traits::Float + serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "H: serde::Deserialize<'de>, S: num_traits::Float + serde::Deserialize<'de>"))
+)]
 pub struct SceneCast<H, S> {
     /// The first hit; `None` where every body is missed. Of bodies hit at the same λ or time, the one with the lowest
     /// index.
     pub first: Option<BodyHit<H, S>>,
     /// No body is hit before this λ or time; infinite where all are missed.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: S,
     /// Of the bodies whose cast was [undecided](crate::Outcome::Undecided) and that may be hit before the first hit, the
     /// one that may be hit earliest.
@@ -49,6 +57,7 @@ pub type SceneMotionCast<V> = SceneCast<MotionHit<V>, <V as Vector>::Scalar>;
 
 /// Which body is hit, and what the single query for it answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyHit<H, S> {
     /// The index of the body.
     pub body: usize,
@@ -65,6 +74,7 @@ pub struct BodyHit<H, S> {
 /// The answer of [`Scene::ray_cast_all`](crate::Scene::ray_cast_all).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SceneHits {
     /// The lowest index of a body whose cast was undecided.
     pub undecided: Option<usize>,
@@ -75,6 +85,7 @@ pub struct SceneHits {
 /// The answer of [`Scene::any_hit`](crate::Scene::any_hit).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SceneAnyHit {
     /// Whether a body is hit.
     pub hit: bool,
@@ -87,10 +98,17 @@ pub struct SceneAnyHit {
 /// The answer of [`Scene::nearest`](crate::Scene::nearest).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
 pub struct SceneDistance<V: Vector> {
     /// The nearest body; `None` where none is within the limit. Of bodies equally near, the one with the lowest index.
     pub nearest: Option<BodyDistance<V>>,
     /// No body is nearer than this: the least of the limit and of the lower ends of all brackets.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
     /// What was done and what was left out.
     pub work: Work,
@@ -98,6 +116,12 @@ pub struct SceneDistance<V: Vector> {
 
 /// A body, and its distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
 pub struct BodyDistance<V: Vector> {
     /// The index of the body.
     pub body: usize,
@@ -107,6 +131,12 @@ pub struct BodyDistance<V: Vector> {
 
 /// Two bodies, and their distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
 pub struct PairDistance<V: Vector> {
     /// The index of the first: the lower one, or that in the first scene.
     pub a: usize,

@@ -12,6 +12,7 @@ use crate::simplex::signed_volumes::signed_volumes;
 /// are inconsistent; they differ in how they find the face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SubAlgorithm {
     /// The regions of the faces that the newest point is a corner of; every face where that leaves a doubt: the fastest.
     /// Casts look at every face at once.

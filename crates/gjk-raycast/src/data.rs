@@ -1,0 +1,108 @@
+//! Options and answers as [serde] data: named fields as in the code, vectors and matrices as glam writes them.
+//!
+//! JSON has no infinity. A number that may be infinite, as the end of a ray or a bound that is not known, is an [`Option`] in data: it is
+//! none where it is infinite. Each such number can be infinite in one direction only, which the name of the module says.
+
+use alloc::vec::Vec;
+
+use convex_support::Vector;
+use num_traits::Float;
+use serde::de::{Deserialize, Deserializer, Error as _};
+use serde::ser::{Error as _, Serialize, Serializer};
+
+use crate::{Contact, ContactPoint, HalfSpace, SignedDistance};
+
+/// Writes `value` as none if it is `infinite`. Other numbers that are not finite are refused where the format may not have them: they
+/// would be read as infinite.
+fn write<T: Float + Serialize, Z: Serializer>(value: T, infinite: T, serializer: Z) -> Result<Z::Ok, Z::Error> {
+    if value != infinite && !value.is_finite() && serializer.is_human_readable() {
+        return Err(Z::Error::custom(
+            "a bound that is not a number, or is infinite on the wrong side, cannot be written",
+        ));
+    }
+    (value != infinite).then_some(value).serialize(serializer)
+}
+
+/// Numbers that may be infinite.
+pub(crate) mod or_infinity {
+    use super::{Deserialize, Deserializer, Float, Serialize, Serializer};
+
+    pub(crate) fn serialize<T: Float + Serialize, Z: Serializer>(value: &T, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        super::write(*value, T::infinity(), serializer)
+    }
+
+    pub(crate) fn deserialize<'de, T: Float + Deserialize<'de>, D: Deserializer<'de>>(data: D) -> Result<T, D::Error> {
+        Ok(Option::deserialize(data)?.unwrap_or_else(T::infinity))
+    }
+}
+
+/// Numbers that may be minus infinity.
+pub(crate) mod or_minus_infinity {
+    use super::{Deserialize, Deserializer, Float, Serialize, Serializer};
+
+    pub(crate) fn serialize<T: Float + Serialize, Z: Serializer>(value: &T, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        super::write(*value, -T::infinity(), serializer)
+    }
+
+    pub(crate) fn deserialize<'de, T: Float + Deserialize<'de>, D: Deserializer<'de>>(data: D) -> Result<T, D::Error> {
+        Ok(Option::deserialize(data)?.unwrap_or_else(|| -T::infinity()))
+    }
+}
+
+/// A half-space, whose length of the normal is computed again.
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename = "HalfSpace", deny_unknown_fields)]
+struct Plane<V, S> {
+    normal: V,
+    offset: S,
+}
+
+impl<V: Vector + Serialize> Serialize for HalfSpace<V>
+where
+    V::Scalar: Serialize,
+{
+    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        Plane { normal: self.normal(), offset: self.offset() }.serialize(serializer)
+    }
+}
+
+impl<'de, V: Vector + Deserialize<'de>> Deserialize<'de> for HalfSpace<V>
+where
+    V::Scalar: Deserialize<'de>,
+{
+    fn deserialize<D: Deserializer<'de>>(data: D) -> Result<Self, D::Error> {
+        let Plane { normal, offset } = Plane::deserialize(data)?;
+        Self::new(normal, offset).map_err(D::Error::custom)
+    }
+}
+
+/// A contact, with those of its points that there are.
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename = "Contact")]
+struct Manifold<V, D, P> {
+    normal: V,
+    distance: D,
+    points: P,
+}
+
+impl<V: Vector + Serialize> Serialize for Contact<V>
+where
+    V::Scalar: Serialize,
+{
+    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
+        Manifold { normal: self.normal, distance: self.distance, points: self.points() }.serialize(serializer)
+    }
+}
+
+impl<'de, V: Vector + Deserialize<'de>> Deserialize<'de> for Contact<V>
+where
+    V::Scalar: Deserialize<'de>,
+{
+    fn deserialize<D: Deserializer<'de>>(data: D) -> Result<Self, D::Error> {
+        let read: Manifold<V, SignedDistance<V>, Vec<ContactPoint<V>>> = Manifold::deserialize(data)?;
+        if !(1..=Self::MAX_POINTS).contains(&read.points.len()) {
+            return Err(D::Error::invalid_length(read.points.len(), &"one to four points"));
+        }
+        Ok(Self::new(read.normal, read.distance, &read.points))
+    }
+}
