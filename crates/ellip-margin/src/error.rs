@@ -8,6 +8,7 @@ use core::fmt;
 /// lists.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum InvalidQuery {
     /// The tolerance given to [`MarginOptions`](crate::MarginOptions) is not positive and finite.
     Tolerance(f64),

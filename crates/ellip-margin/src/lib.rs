@@ -36,7 +36,9 @@
 //!   targets. `alloc` is needed in any case.
 //! - `paper`: the paper's own routes, with eigenvalues by faer.
 //! - `rayon`: [`free_margins`] and [`clearance`] use all cores. The answers are the same to the last bit.
-//! - `serde`: options, margins and trackers as data, beside convex-support's shapes.
+//! - `serde`: options, answers, derivatives and trackers as data, beside convex-support's shapes. An option that is left out has its
+//!   default. Errors can be written and not read. Left out are [`EllipsoidPair`] and [`Answer`], which are made of their ellipsoids, and
+//!   [`Clearance`], whose bounds only its own steps can vouch for.
 //! - `simd`: batches take the widest vector instructions of the processor, found at run time by pulp. The answers are the same.
 
 #![no_std]

@@ -18,6 +18,7 @@ use crate::InvalidQuery;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct MarginOptions {
     /// Positive and finite.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "checked"))]

@@ -22,6 +22,7 @@ use crate::{MarginOptions, Status};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Scaling<V: Vector> {
     /// α ≥ 0: scaled by it about their centres, the bodies just touch. Above 1 they are disjoint, below 1 they overlap, 0
     /// is concentric.

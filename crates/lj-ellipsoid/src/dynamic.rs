@@ -107,10 +107,12 @@ impl EllipsoidDyn {
 /// [`Enclosing`](crate::Enclosing) in a dimension known at run time; the fields mean the same.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EnclosingDyn {
     /// The ellipsoid. It contains every input point as evaluated in `f64`.
     pub ellipsoid: EllipsoidDyn,
     /// A certified bound on ln det X* − ln det X, rounding included; never negative.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::gap"))]
     pub log_det_gap: f64,
     /// The weights that prove the gap.
     pub weights: Vec<Weight>,
@@ -180,12 +182,14 @@ pub fn enclosing_dyn_with<P: AsRef<[f64]>>(
 }
 
 /// [`Inscribed`](crate::Inscribed) in a dimension known at run time; the fields mean the same.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct InscribedDyn {
     /// The ellipsoid; it lies in every half-space, the rounding of the evaluation taken into account.
     pub ellipsoid: EllipsoidDyn,
     /// A certified bound on ln det X − ln det X*; never negative.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::gap"))]
     pub log_det_gap: f64,
     /// The multipliers that prove the gap, with their half-spaces, scaled to sum to one.
     pub weights: Vec<Weight>,

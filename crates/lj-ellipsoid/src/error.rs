@@ -5,6 +5,7 @@ use thiserror::Error;
 /// Why there is no minimum-volume ellipsoid around the given points.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum EnclosingError {
     /// There are no points, or they have no coordinates.
     #[error("no points to enclose")]
@@ -48,6 +49,7 @@ pub enum EnclosingError {
 /// Why there is no maximum-volume ellipsoid inside the given body.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum InscribedError {
     /// There are no half-spaces or points, or they have no coordinates.
     #[error("no half-spaces or points to inscribe into")]

@@ -46,12 +46,34 @@
 //!
 //! - `rayon`: passes over many points use all cores. The answer is the same to the last bit.
 //! - `convex-support`: conversions to that crate's `Ellipsoid`.
+//! - `serde`: options, half-spaces and answers as data, by any format of [serde](https://docs.rs/serde), read back to the last bit
+//!   (`serde_json` needs its feature `float_roundtrip` for that). An option that is left out has its default, and a gap
+//!   of which nothing is known is `null`. What is read
+//!   is checked: the ranges of options, and of an ellipsoid its dimension, its numbers, the order of its semi-axes and that its axes
+//!   are orthonormal. Errors can be written and not read. What observers are shown is left out, and [`MovingPoints`], which is made of
+//!   its points.
+//!
+//! ```
+//! # #[cfg(feature = "serde")] {
+//! use lj_ellipsoid::{Enclosing, enclosing};
+//!
+//! let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0]];
+//! let options = serde_json::from_str(r#"{"epsilon": 1e-7, "method": "Khachiyan"}"#)?;
+//! let answer = enclosing(&points, options)?;
+//! let saved = serde_json::to_string(&answer)?;
+//! let read: Enclosing<2> = serde_json::from_str(&saved)?;
+//! assert_eq!(read, answer);
+//! # }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![allow(
     clippy::needless_range_loop,
     reason = "formulas index several arrays at once; the loops read as the sums they compute"
 )]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0)` is how NaN takes the same exit as zero")]
 
+#[cfg(feature = "serde")]
+mod data;
 mod dynamic;
 mod ellipsoid;
 mod enclosing;

@@ -4,6 +4,7 @@ use crate::error::{EnclosingError, InscribedError};
 
 /// How a computation ended. The certified gap beside it says how good the answer is in every case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Status {
     /// The certified gap is at most the `epsilon` asked for.
     Converged,
@@ -16,6 +17,7 @@ pub enum Status {
 /// Which algorithm computes the enclosing ellipsoid. All of them end with the same certificate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum EnclosingMethod {
     /// Newton's method on a small working set of points, grown by the worst violators of full scans. A handful of scans
     /// reaches rounding whatever the data.
@@ -35,6 +37,7 @@ pub enum EnclosingMethod {
 /// What to do with points that span no volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FlatPolicy {
     /// Answer [`EnclosingError::Flat`](crate::EnclosingError::Flat).
     #[default]
@@ -46,9 +49,12 @@ pub enum FlatPolicy {
 /// Options of [`enclosing`](crate::enclosing()).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct EnclosingOptions {
     /// The certified gap on ln det X to reach (twice the gap on the log-volume), a positive number. Default 1e-9; rounding
     /// usually allows 1e-13.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::data::epsilon"))]
     pub epsilon: f64,
     /// The algorithm. Default [`EnclosingMethod::Newton`].
     pub method: EnclosingMethod,
@@ -60,6 +66,7 @@ pub struct EnclosingOptions {
     /// Points whose spread across some direction is at most this fraction of their extent count as flat. Whatever is
     /// set, a spread within 32 units in the last place of the coordinates is flat: that much is rounding of the points.
     /// Not negative. Default 0.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::data::flat_tolerance"))]
     pub flat_tolerance: f64,
 }
 
@@ -127,8 +134,11 @@ impl Default for EnclosingOptions {
 /// Options of [`inscribed`](crate::inscribed()).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct InscribedOptions {
     /// The certified gap on ln det X to reach (twice the gap on the log-volume), a positive number. Default 1e-9.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::data::epsilon"))]
     pub epsilon: f64,
     /// The most Newton steps. Default 200.
     pub max_iterations: usize,

@@ -2,6 +2,7 @@
 
 /// The weight of a point, or the multiplier of a half-space, in the certificate of a gap.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Weight {
     /// Which point or half-space.
     pub index: usize,

@@ -8,6 +8,12 @@ use crate::Margin;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
 pub struct ClearanceResult<V: Vector> {
     /// The margin of the pair with the least one, E₁ being the link; among equal ones the first by link, then obstacle.
     pub margin: Margin<V>,
@@ -49,6 +55,12 @@ impl LeftOut {
 /// A pair within a threshold; see [`Clearance::within`](super::Clearance::within).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
 pub struct NearPair<V: Vector> {
     /// The margin, E₁ being the link.
     pub margin: Margin<V>,

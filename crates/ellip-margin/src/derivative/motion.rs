@@ -13,6 +13,7 @@ use crate::numerics::{Vec, load, load_columns, store};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MotionGradient<V: Wedge> {
     /// The change per translation of the body, in world axes.
     pub translation: V,
@@ -82,6 +83,7 @@ pub(super) struct Units {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MotionHessian<V: Wedge> {
     /// H: an array of 6 rows by 6 in 3D, of 3 by 3 in 2D; translations first.
     pub matrix: V::MotionMatrix,

@@ -13,6 +13,7 @@ use crate::{Answer, Margin};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ShapeGradient<V: Vector> {
     /// ∂m/∂a₁: per length of each semi-axis of E₁; never positive.
     pub semi_axes1: V,

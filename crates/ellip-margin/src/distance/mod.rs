@@ -30,6 +30,7 @@ use crate::{MarginOptions, Status};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DistanceBracket<V: Vector> {
     /// The distance is at least this: the width of the slab between the bodies across `normal`. 0 where they overlap.
     pub lower: V::Scalar,
@@ -47,6 +48,7 @@ pub struct DistanceBracket<V: Vector> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Distance<V: Vector> {
     /// The distance; 0 where they overlap.
     pub distance: V::Scalar,

@@ -30,11 +30,13 @@ use crate::weight::Weight;
 /// The minimum-volume ellipsoid around points, and the proof of how near to minimal it is.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Enclosing<const N: usize> {
     /// The ellipsoid. It contains every input point as evaluated in `f64`.
     pub ellipsoid: Ellipsoid<N>,
     /// A certified bound: ln det X of the true optimum exceeds that of `ellipsoid` by at most this, rounding included.
     /// It is twice the bound on the excess of the log-volume, [`log_volume_gap`](Self::log_volume_gap). Never negative.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::gap"))]
     pub log_det_gap: f64,
     /// The weights that prove the gap: positive ones only, by ascending index for a method on a working set. Empty for
     /// [`EnclosingMethod::EllipsoidAlgorithm`], whose proof is its last cut.

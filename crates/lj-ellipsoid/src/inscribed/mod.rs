@@ -26,8 +26,10 @@ use crate::weight::Weight;
 
 /// The half-space { x : normal·x ≤ offset }. The normal points outward and need not be of unit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Halfspace<const N: usize> {
     /// The outward normal.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::point"))]
     pub normal: [f64; N],
     /// The value of normal·x on the boundary.
     pub offset: f64,
@@ -36,12 +38,14 @@ pub struct Halfspace<const N: usize> {
 /// The maximum-volume ellipsoid inside a body, and the proof of how near to maximal it is.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Inscribed<const N: usize> {
     /// The ellipsoid. Its [`support_value`](Ellipsoid::support_value) along the normal of every given half-space, as evaluated
     /// in `f64`, is at most the offset.
     pub ellipsoid: Ellipsoid<N>,
     /// A certified bound: ln det X of `ellipsoid` exceeds that of the true optimum by at most this. It is twice the bound on
     /// the lack of log-volume. Never negative.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::gap"))]
     pub log_det_gap: f64,
     /// The multipliers y that prove the gap, positive ones only, with their half-spaces (facets of the hull, for points),
     /// scaled to sum to one.
