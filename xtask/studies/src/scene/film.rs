@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::Path;
 
-use convex_support::glam::{DMat3, DQuat, DVec3};
-use convex_support::{Ball, Capsule, Ellipsoid, InvalidShape, Posed, SupportMap, line_crossing};
+use convex_support::glam::{DMat3, DQuat, DVec2, DVec3};
+use convex_support::{Capsule, Ellipsoid, InvalidShape, Posed, Rounded, Segment, SupportMap, line_crossing};
 use gjk_raycast::{Ray, RayCastOptions, Scene};
 use rayon::prelude::*;
 
@@ -24,11 +24,16 @@ const SAMPLES: usize = 2;
 const GAP: usize = 6;
 
 /// Towards the light.
-const SUN: DVec3 = DVec3::new(1.0, 0.1, 1.3);
+const SUN: DVec3 = DVec3::new(0.8, -0.5, 1.4);
 
-/// The squares of the floor, and the length of the arrows of the axes, in metres.
+/// The squares of the floor, and the length of the arrows along the axes, in metres; and where on the floor the arrows are, beside the robot
+/// rather than within it.
 const SQUARE: f64 = 0.1;
 const AXIS: f64 = 0.2;
+const ASIDE: DVec2 = DVec2::new(0.03, -0.53);
+
+/// The way of the hand is drawn in pieces of so many rows.
+const PIECE: usize = 4;
 
 const WHITE: DVec3 = DVec3::ONE;
 
@@ -38,7 +43,7 @@ type Shape = Box<dyn SupportMap<Vector = DVec3> + Send + Sync>;
 pub(super) fn write(moments: &[Moment], obstacles: &[Placed], way: &[DVec3], file: &Path) -> io::Result<()> {
     let stages = moments.iter().map(|moment| Stage::new(moment, obstacles, way)).collect::<Result<Vec<_>, _>>();
     let stages = stages.map_err(io::Error::other)?;
-    let camera = Camera::around(moments, obstacles);
+    let camera = Camera::around(moments, obstacles, way);
     let width = moments.len() * (SIZE[0] + GAP) - GAP;
     let row = |y: usize| -> Vec<u8> {
         let pixel = |x: usize| match stages.get(x / (SIZE[0] + GAP)) {
@@ -64,6 +69,7 @@ struct Stage {
 
 impl Stage {
     fn new(moment: &Moment, obstacles: &[Placed], way: &[DVec3]) -> Result<Self, String> {
+        let floor = -obstacles.iter().map(|o| o.hull.support_value(DVec3::NEG_Z)).fold(0.0, f64::max);
         let (mut shapes, mut colours): (Vec<Shape>, Vec<DVec3>) = (Vec::new(), Vec::new());
         let mut add = |shape: Shape, colour: DVec3| {
             shapes.push(shape);
@@ -76,18 +82,16 @@ impl Stage {
             add(Box::new(obstacle.hull.clone()), colour(OBSTACLE).lerp(WHITE, 0.25));
         }
         let failed = |why: InvalidShape| why.to_string();
-        for at in way.iter().step_by(6) {
-            add(
-                Box::new(Posed::translated(Ball::new(0.006).map_err(failed)?, *at).map_err(failed)?),
-                DVec3::splat(0.2),
-            );
+        for ends in way.iter().step_by(PIECE).collect::<Vec<_>>().windows(2) {
+            let piece = Segment::new([*ends[0], *ends[1]]).and_then(|piece| Rounded::new(piece, 0.004));
+            add(Box::new(piece.map_err(failed)?), DVec3::splat(0.2));
         }
         for (axis, colour) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().zip(DMat3::IDENTITY.to_cols_array_2d()) {
             let arrow = Capsule::new(AXIS / 2.0, 0.007).map_err(failed)?;
-            let arrow = Posed::new(arrow, DQuat::from_rotation_arc(DVec3::Y, axis), axis * (AXIS / 2.0));
+            let arrow =
+                Posed::new(arrow, DQuat::from_rotation_arc(DVec3::Y, axis), ASIDE.extend(floor) + axis * (AXIS / 2.0));
             add(Box::new(arrow.map_err(failed)?), DVec3::from(colour) * 0.8);
         }
-        let floor = -obstacles.iter().map(|o| o.hull.support_value(DVec3::NEG_Z)).fold(0.0, f64::max);
         let glass = moment.links.iter().map(|(link, state)| (link.outer, colour(state.colour()))).collect();
         Ok(Self { scene: Scene::new(shapes).map_err(|why| why.to_string())?, colours, glass, floor })
     }
@@ -138,12 +142,13 @@ struct Camera {
 
 impl Camera {
     /// Sees all that moves and all that is in its way.
-    fn around(moments: &[Moment], obstacles: &[Placed]) -> Self {
+    fn around(moments: &[Moment], obstacles: &[Placed], way: &[DVec3]) -> Self {
         let axes = view().transpose();
         let links = moments.iter().flat_map(|moment| moment.links.iter().map(|(link, _)| link));
-        let bodies: Vec<&Placed> = obstacles.iter().chain(links).collect();
-        let reach =
-            |axis: DVec3| bodies.iter().map(|body| body.hull.support_value(axis)).fold(f64::NEG_INFINITY, f64::max);
+        let reach = |axis: DVec3| {
+            let bodies = obstacles.iter().chain(links.clone()).map(|body| body.outer.support_value(axis));
+            bodies.chain(way.iter().map(|at| axis.dot(*at))).fold(f64::NEG_INFINITY, f64::max)
+        };
         let (high, low) = ([0, 1].map(|k| reach(axes.col(k))), [0, 1].map(|k| -reach(-axes.col(k))));
         let pixel = (0..2).map(|k| 1.04 * (high[k] - low[k]) / SIZE[k] as f64).fold(0.0, f64::max);
         let middle = [0, 1].map(|k| f64::midpoint(high[k], low[k]));

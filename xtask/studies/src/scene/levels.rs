@@ -8,7 +8,7 @@ use ellip_margin::{Margin, MarginTracker};
 use gjk_raycast::{Distance, DistanceOptions, distance};
 
 use super::body::Placed;
-use super::{EMBEDDED, Scene};
+use super::{CROWDED, Scene};
 
 /// Which level knew the answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +87,7 @@ impl Pair {
     }
 }
 
-/// How often a level was asked and knew, over the whole embedded scene.
+/// How often a level was asked and knew, over the whole of the crowded scene.
 pub(crate) struct Level {
     pub(crate) name: &'static str,
     pub(crate) asked: usize,
@@ -96,12 +96,12 @@ pub(crate) struct Level {
     pub(crate) nanoseconds: f64,
 }
 
-/// The levels of the embedded scene.
+/// The levels of the crowded scene.
 ///
 /// # Errors
 /// If the scene cannot be read.
 pub(crate) fn embedded_levels() -> Result<Vec<Level>, String> {
-    let scene = Scene::read(Path::new(EMBEDDED))?;
+    let scene = Scene::read(Path::new(CROWDED))?;
     let mut pairs = vec![Pair::default(); scene.bodies.len() * scene.obstacles.len()];
     let mut levels = Levels::default();
     for values in &scene.trajectory {

@@ -4,6 +4,7 @@
 //! outer ellipsoids do not touch, so neither do the bodies; the inner ellipsoids overlap, so the bodies do; else GJK
 //! finds the distance of the hulls.
 
+mod between;
 mod body;
 mod film;
 mod levels;
@@ -12,6 +13,7 @@ mod planar;
 mod report;
 mod robot;
 mod truth;
+mod waypoints;
 
 use std::collections::HashMap;
 use std::fs;
@@ -25,16 +27,20 @@ use convex_support::glam::{DQuat, DVec3};
 use gjk_raycast::{DistanceOptions, distance};
 use serde::Deserialize;
 
+use self::between::Between;
 use self::body::{Body, Placed};
 pub(crate) use self::levels::embedded_levels;
 use self::levels::{Decided, Levels, Pair};
 use self::robot::{Pose, Robot};
 use xtask::mesh::Meshes;
 
-/// The scene that is run where none is named.
-pub(crate) const EMBEDDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/scenes/ur5_reach.json");
+/// The scene that is run where none is named: the robot works among objects and touches none.
+const FREE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/scenes/ur5_free.json");
 
-/// Pictures of the film strip, spread over the trajectory.
+/// The same robot and objects on a way that leads through them, whose truth is known: all three levels are needed there.
+const CROWDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/scenes/ur5_reach.json");
+
+/// Pictures of the film strip, spread over the trajectory where the scene does not say which rows are drawn.
 const PICTURES: usize = 4;
 
 /// One row in so many is drawn.
@@ -47,7 +53,19 @@ struct SceneFile {
     dt: f64,
     joints: Vec<String>,
     obstacles: Vec<ObstacleFile>,
+    /// A row of joint values for each step of time …
+    #[serde(default)]
     trajectory: Vec<Vec<f64>>,
+    /// … or some, to be joined by so many steps each.
+    #[serde(default)]
+    waypoints: Vec<Vec<f64>>,
+    #[serde(default)]
+    steps: usize,
+    /// The rows that are drawn.
+    pictures: Option<Vec<usize>>,
+    /// Whether it is claimed that no link meets an obstacle, at any time.
+    #[serde(default)]
+    free: bool,
 }
 
 #[derive(Debug, Deserialize)]
@@ -65,13 +83,19 @@ struct Scene {
     obstacles: Vec<Placed>,
     trajectory: Vec<Vec<f64>>,
     dt: f64,
+    pictures: Vec<usize>,
+    /// Whether the scene claims that it is free.
+    claims_free: bool,
 }
 
 impl Scene {
     fn read(path: &Path) -> Result<Self, String> {
         let text = fs::read_to_string(path).map_err(|why| format!("cannot read {}: {why}", path.display()))?;
-        let SceneFile { robot, dt, joints, obstacles, trajectory } =
+        let SceneFile { robot, dt, joints, obstacles, mut trajectory, waypoints, steps, pictures, free } =
             serde_json::from_str(&text).map_err(|why| format!("{} is not a scene: {why}", path.display()))?;
+        if trajectory.is_empty() {
+            trajectory = waypoints::through(&waypoints, steps);
+        }
         if let Some(row) = trajectory.iter().position(|row| row.len() != joints.len()) {
             let found = trajectory[row].len();
             return Err(format!(
@@ -80,6 +104,9 @@ impl Scene {
                 joints.len()
             ));
         }
+        let pictures = pictures.unwrap_or_else(|| {
+            (0..PICTURES).map(|k| k * trajectory.len().saturating_sub(1) / (PICTURES - 1)).collect()
+        });
         let folder = path.parent().unwrap_or(Path::new(""));
         let robot = Robot::read(&folder.join(robot), &joints)?;
         let meshes = Meshes::relative_to("");
@@ -103,7 +130,7 @@ impl Scene {
                 body(folder.join(&o.mesh))?.at(pose).map_err(|why| format!("obstacles[{i}]: {why}"))
             })
             .collect::<Result<_, _>>()?;
-        Ok(Self { robot, bodies, obstacles, trajectory, dt })
+        Ok(Self { robot, bodies, obstacles, trajectory, dt, pictures, claims_free: free })
     }
 
     /// The links where the joint values put them.
@@ -131,14 +158,16 @@ struct Outcome {
     /// The time per row for the distance of every pair.
     every_pair: Duration,
     rows: Vec<Row>,
+    /// What is between the rows, where none has an overlap.
+    between: Option<Between>,
     truth: Option<truth::Truth>,
 }
 
 /// Which scene to run.
 #[derive(Debug, Args)]
 pub(crate) struct Choice {
-    /// A scene: robot, joints, obstacles, trajectory; without one, a UR5 reaching among objects.
-    #[arg(value_name = "FILE", default_value = EMBEDDED, hide_default_value = true)]
+    /// A scene: robot, joints, obstacles, trajectory; without one, a UR5 at work among objects.
+    #[arg(value_name = "FILE", default_value = FREE, hide_default_value = true)]
     file: PathBuf,
     /// True overlaps and distances, one JSON line per pair [default: beside FILE, if there]
     #[arg(long, value_name = "FILE")]
@@ -177,9 +206,6 @@ fn scene(file: &Path, truth: Option<&Path>, folder: &Path) -> Result<bool, Strin
     let mut levels = Levels::default();
     let mut rows = Vec::new();
     let (mut moments, mut way) = (Vec::new(), Vec::new());
-    // The first row, the last, and some between.
-    let pictured: Vec<usize> =
-        (0..PICTURES).map(|k| k * scene.trajectory.len().saturating_sub(1) / (PICTURES - 1)).collect();
     let mut frames = picture::Frames::new(scene.obstacles.iter().map(|o| picture::outline(&o.outer)));
     // The truth of a scene, if it is known, lies beside it.
     let beside = Some(file.with_extension("truth.jsonl")).filter(|path| path.is_file());
@@ -221,7 +247,7 @@ fn scene(file: &Path, truth: Option<&Path>, folder: &Path) -> Result<bool, Strin
             }
         }
         way.extend(links.last().map(|link| link.outer.center()));
-        if pictured.contains(&step) {
+        if scene.pictures.contains(&step) {
             moments.push(film::Moment { links: links.iter().cloned().zip(states.iter().copied()).collect() });
         }
         if step.is_multiple_of(STRIDE) {
@@ -244,8 +270,11 @@ fn scene(file: &Path, truth: Option<&Path>, folder: &Path) -> Result<bool, Strin
         rows.push(row);
     }
     let every_pair = every_pair(&scene)?;
-    let right = checked.as_ref().is_none_or(truth::Truth::holds);
-    let outcome = Outcome { fitted, levels, every_pair, rows, truth: checked };
+    let is_free = rows.iter().all(|row| row.overlaps == 0);
+    let between = is_free.then(|| Between::of(&scene)).transpose()?;
+    let is_proved_free = between.is_some_and(|between| between.free == between.asked);
+    let right = checked.as_ref().is_none_or(truth::Truth::holds) && (is_proved_free || !scene.claims_free);
+    let outcome = Outcome { fitted, levels, every_pair, rows, between, truth: checked };
     let written = report::write(&outcome.rows, &frames, folder)
         .and_then(|()| film::write(&moments, &scene.obstacles, &way, &folder.join("film.png")))
         .and_then(|()| report::print(&scene, &outcome, folder, &mut io::stdout().lock()));

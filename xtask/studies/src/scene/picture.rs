@@ -76,9 +76,9 @@ pub(super) struct Frames {
     frames: Vec<Frame>,
 }
 
-/// The picture's axes in the world: looking along (−1, −1, −½) with z up, as rows.
+/// The picture's axes in the world: looking along (−0.5, 1, −0.65) with z up, as rows.
 pub(super) fn view() -> DMat3 {
-    let forward = DVec3::new(-1.0, -1.0, -0.5).normalize();
+    let forward = DVec3::new(-0.5, 1.0, -0.65).normalize();
     let right = forward.cross(DVec3::Z).normalize();
     DMat3::from_cols(right, right.cross(forward), forward).transpose()
 }

@@ -4,6 +4,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
+use super::between::Between;
 use super::picture::Frames;
 use super::{Outcome, Row, Scene};
 use xtask::plot::{Plot, Scale, Series};
@@ -39,7 +40,7 @@ pub(super) fn write(rows: &[Row], frames: &Frames, folder: &Path) -> io::Result<
 }
 
 pub(super) fn print(scene: &Scene, outcome: &Outcome, folder: &Path, output: &mut impl Write) -> io::Result<()> {
-    let Outcome { fitted, levels, every_pair, rows, truth } = outcome;
+    let Outcome { fitted, levels, every_pair, rows, between, truth } = outcome;
     let (links, obstacles) = (scene.bodies.len(), scene.obstacles.len());
     writeln!(output, "{links} links, {obstacles} obstacles, {} rows: {} pairs", rows.len(), levels.asked(0))?;
     writeln!(output, "ellipsoids around and inside every mesh: {:.1} ms, once", fitted.as_secs_f64() * 1e3)?;
@@ -68,6 +69,14 @@ pub(super) fn print(scene: &Scene, outcome: &Outcome, folder: &Path, output: &mu
     let overlapping = rows.iter().filter(|row| row.overlaps > 0).count();
     let least = rows.iter().filter_map(|row| row.least_distance).filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
     writeln!(output, "{overlapping} rows with an overlap; least exact distance otherwise {least:.6} m")?;
+    if let Some(Between { asked, free }) = between {
+        writeln!(output, "between the rows: {free} of {asked} motions of a link past an obstacle are proved free")?;
+        if scene.claims_free && free < asked {
+            writeln!(output, "the scene claims that all are")?;
+        }
+    } else if scene.claims_free {
+        writeln!(output, "the scene claims that there are none")?;
+    }
     if let Some(truth) = truth {
         truth.print(output)?;
     }

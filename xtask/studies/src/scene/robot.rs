@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use convex_support::glam::{DMat3, DQuat, DVec3};
+use gjk_raycast::RigidMotion;
 use roxmltree::{Document, Node};
 
 /// A rigid motion: rotate, then translate.
@@ -111,6 +112,34 @@ impl Robot {
 
     /// Where the meshes of the links are in the frame of the root, for these joint values.
     pub(super) fn poses(&self, values: &[f64]) -> Vec<Pose> {
+        let poses = self.frames_at(values);
+        self.links.iter().map(|link| poses[link.frame].after(link.origin)).collect()
+    }
+
+    /// The joints that carry each link, the one nearest to the base first: how each would move alone at its rate, from where it is at these
+    /// joint values.
+    pub(super) fn joints(&self, values: &[f64], rates: &[f64]) -> Vec<Vec<RigidMotion<DVec3>>> {
+        let poses = self.frames_at(values);
+        // A joint leaves its own axis where it is, so that the frame after it tells that too.
+        let motion = |frame: &Frame, pose: Pose| {
+            let rate = rates[frame.column?];
+            match frame.motion {
+                Motion::Fixed => None,
+                Motion::Revolute(axis) => Some(RigidMotion::rotation(pose.rotation * axis * rate, pose.translation)),
+                Motion::Prismatic(axis) => Some(RigidMotion::translation(pose.rotation * axis * rate)),
+            }
+        };
+        let mut chains: Vec<Vec<RigidMotion<DVec3>>> = Vec::with_capacity(self.frames.len());
+        for (frame, pose) in self.frames.iter().zip(poses) {
+            let mut chain = frame.parent.map_or_else(Vec::new, |parent| chains[parent].clone());
+            chain.extend(motion(frame, pose));
+            chains.push(chain);
+        }
+        self.links.iter().map(|link| chains[link.frame].clone()).collect()
+    }
+
+    /// The frames in that of the root.
+    fn frames_at(&self, values: &[f64]) -> Vec<Pose> {
         let mut poses: Vec<Pose> = Vec::with_capacity(self.frames.len());
         for frame in &self.frames {
             let value = frame.column.map_or(0.0, |column| values[column]);
@@ -124,7 +153,7 @@ impl Robot {
             let parent = frame.parent.map_or(Pose::IDENTITY, |parent| poses[parent]);
             poses.push(parent.after(frame.origin).after(moved));
         }
-        self.links.iter().map(|link| poses[link.frame].after(link.origin)).collect()
+        poses
     }
 }
 
