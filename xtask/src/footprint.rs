@@ -60,6 +60,7 @@ const PROGRAMS: &[Program] = &[
     Program { name: "convex-support, mint", import: Some(("convex-support", "\"std\", \"mint\"")), body: SUPPORT },
     Program { name: "gjk-raycast", import: Some(("gjk-raycast", "\"std\"")), body: RAY },
     Program { name: "gjk-raycast, libm", import: Some(("gjk-raycast", "\"libm\"")), body: RAY },
+    Program { name: "gjk-raycast, serde", import: Some(("gjk-raycast", "\"std\", \"serde\"")), body: RAY },
     Program { name: "lj-ellipsoid", import: Some(("lj-ellipsoid", "")), body: ENCLOSING },
     Program { name: "lj-ellipsoid, rayon", import: Some(("lj-ellipsoid", "\"rayon\"")), body: ENCLOSING },
     Program {
@@ -67,6 +68,7 @@ const PROGRAMS: &[Program] = &[
         import: Some(("lj-ellipsoid", "\"convex-support\"")),
         body: ENCLOSING,
     },
+    Program { name: "lj-ellipsoid, serde", import: Some(("lj-ellipsoid", "\"serde\"")), body: ENCLOSING },
     Program { name: "ellip-margin", import: Some(("ellip-margin", "\"std\"")), body: MARGIN },
     Program { name: "ellip-margin, libm", import: Some(("ellip-margin", "\"libm\"")), body: MARGIN },
     Program { name: "ellip-margin, paper", import: Some(("ellip-margin", "\"std\", \"paper\"")), body: EIGEN },
