@@ -53,14 +53,26 @@ const EIGEN: &str = "
 
 const PROGRAMS: &[Program] = &[
     Program { name: "nothing", import: None, body: "println!(\"{}\", input());" },
-    Program { name: "convex-support", import: Some(("convex-support", "\"std\"")), body: SUPPORT },
-    Program { name: "convex-support, libm", import: Some(("convex-support", "\"libm\"")), body: SUPPORT },
-    Program { name: "convex-support, hull", import: Some(("convex-support", "\"std\", \"hull\"")), body: HULL },
-    Program { name: "convex-support, serde", import: Some(("convex-support", "\"std\", \"serde\"")), body: SUPPORT },
-    Program { name: "convex-support, mint", import: Some(("convex-support", "\"std\", \"mint\"")), body: SUPPORT },
-    Program { name: "gjk-raycast", import: Some(("gjk-raycast", "\"std\"")), body: RAY },
-    Program { name: "gjk-raycast, libm", import: Some(("gjk-raycast", "\"libm\"")), body: RAY },
-    Program { name: "gjk-raycast, serde", import: Some(("gjk-raycast", "\"std\", \"serde\"")), body: RAY },
+    Program { name: "convex-support", import: Some(("convex-support", "\"std\", \"f64\"")), body: SUPPORT },
+    Program { name: "convex-support, libm", import: Some(("convex-support", "\"libm\", \"f64\"")), body: SUPPORT },
+    Program {
+        name: "convex-support, hull",
+        import: Some(("convex-support", "\"std\", \"f64\", \"hull\"")),
+        body: HULL,
+    },
+    Program {
+        name: "convex-support, serde",
+        import: Some(("convex-support", "\"std\", \"f64\", \"serde\"")),
+        body: SUPPORT,
+    },
+    Program {
+        name: "convex-support, mint",
+        import: Some(("convex-support", "\"std\", \"f64\", \"mint\"")),
+        body: SUPPORT,
+    },
+    Program { name: "gjk-raycast", import: Some(("gjk-raycast", "\"std\", \"f64\"")), body: RAY },
+    Program { name: "gjk-raycast, libm", import: Some(("gjk-raycast", "\"libm\", \"f64\"")), body: RAY },
+    Program { name: "gjk-raycast, serde", import: Some(("gjk-raycast", "\"std\", \"f64\", \"serde\"")), body: RAY },
     Program { name: "lj-ellipsoid", import: Some(("lj-ellipsoid", "")), body: ENCLOSING },
     Program { name: "lj-ellipsoid, rayon", import: Some(("lj-ellipsoid", "\"rayon\"")), body: ENCLOSING },
     Program {
@@ -69,10 +81,10 @@ const PROGRAMS: &[Program] = &[
         body: ENCLOSING,
     },
     Program { name: "lj-ellipsoid, serde", import: Some(("lj-ellipsoid", "\"serde\"")), body: ENCLOSING },
-    Program { name: "ellip-margin", import: Some(("ellip-margin", "\"std\"")), body: MARGIN },
-    Program { name: "ellip-margin, libm", import: Some(("ellip-margin", "\"libm\"")), body: MARGIN },
-    Program { name: "ellip-margin, paper", import: Some(("ellip-margin", "\"std\", \"paper\"")), body: EIGEN },
-    Program { name: "ellip-margin, simd", import: Some(("ellip-margin", "\"std\", \"simd\"")), body: MARGIN },
+    Program { name: "ellip-margin", import: Some(("ellip-margin", "\"std\", \"f64\"")), body: MARGIN },
+    Program { name: "ellip-margin, libm", import: Some(("ellip-margin", "\"libm\", \"f64\"")), body: MARGIN },
+    Program { name: "ellip-margin, paper", import: Some(("ellip-margin", "\"std\", \"f64\", \"paper\"")), body: EIGEN },
+    Program { name: "ellip-margin, simd", import: Some(("ellip-margin", "\"std\", \"f64\", \"simd\"")), body: MARGIN },
 ];
 
 /// What a program costs.
