@@ -4,6 +4,7 @@ use crate::{Core, Hint, Scalar, SupportMap, Vector};
 
 /// A box along the coordinate axes: the points with `min ≤ x ≤ max`, coordinate by coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Aabb<V: Vector> {
     /// The smallest coordinates.
     pub min: V,
@@ -66,6 +67,7 @@ pub fn bounding_box<S: SupportMap + ?Sized>(shape: &S) -> Aabb<S::Vector> {
 
 /// A ball about any centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BoundingSphere<V: Vector> {
     /// Its centre.
     pub center: V,

@@ -7,6 +7,7 @@ use core::fmt;
 /// Every constructor checks its numbers once, so that support mappings never have to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum InvalidShape {
     /// A number is NaN or infinite.
     NonFinite {

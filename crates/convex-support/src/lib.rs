@@ -37,7 +37,7 @@
 //! - `f64` (default): glam's double precision, to be left out with glam 0.32, which has no such feature.
 //! - `hull`: `Polytope::hull_of`, the exact convex hull of raw points, for polytopes of thousands of vertices; and `Faceted`, a
 //!   hull with its half-spaces.
-//! - `serde`: shapes as serde data, checked on the way in.
+//! - `serde`: shapes as serde data, checked on the way in; boxes, spheres and crossings, too. Errors can be written and not read.
 //! - `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`: parry's shapes as shapes of this crate, and back; its
 //!   compounds and meshes as their pieces.
 //! - `mint`: glam's conversions from and to mint's vectors.

@@ -2,8 +2,8 @@
 
 use convex_support::glam::{DMat3, DQuat, DVec3, Vec2};
 use convex_support::{
-    Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Ellipsoid, Hull, MinkowskiSum, Point, Polytope, Posed,
-    Rounded, Segment, Triangle,
+    Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Ellipsoid, Hull, InvalidShape, MinkowskiSum, Point,
+    Polytope, Posed, Rounded, Segment, Triangle, bounding_box, bounding_sphere, line_crossing,
 };
 use serde_json::{from_str, to_string};
 
@@ -47,4 +47,21 @@ fn invalid_shapes_are_not_read() {
     assert!(error.to_string().contains("mirrors"), "{error}");
     assert!(from_str::<Polytope<DVec3>>(r#"{"points":[]}"#).is_err(), "no points");
     assert!(from_str::<Ball<DVec3>>(r#"{"radius":1.0,"radios":2.0}"#).is_err(), "a field that means nothing");
+}
+
+#[test]
+fn bounds_and_crossings_survive_a_round_trip() {
+    let shape = Posed::translated(Cone::<DVec3>::new(0.3, 0.7).unwrap(), DVec3::new(0.1, 0.2, 0.3)).unwrap();
+    round_trip(bounding_box(&shape));
+    round_trip(bounding_sphere(&shape));
+    let ball = Ball::<DVec3>::new(0.3).unwrap();
+    for y in [0.1, 0.5] {
+        round_trip(line_crossing(&ball, DVec3::new(-1.0, y, 0.2), DVec3::new(0.7, 0.01, -0.03)));
+    }
+}
+
+#[test]
+fn errors_are_written() {
+    let error = InvalidShape::NonFinite { parameter: "radius", index: 0 };
+    assert_eq!(to_string(&error).unwrap(), r#"{"NonFinite":{"parameter":"radius","index":0}}"#);
 }

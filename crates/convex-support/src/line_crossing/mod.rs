@@ -41,6 +41,7 @@ use crate::{Core, Scalar, SupportMap, Vector, Vector3};
 /// the set is behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Crossing<V: Vector> {
     /// Where the line enters the set.
     pub entry: V::Scalar,
@@ -88,6 +89,12 @@ impl<V: Vector> Crossing<V> {
 /// What is known of the crossing of a convex set by a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
 pub enum LineCrossing<V: Vector> {
     /// There is no closed form here.
     Unknown,
