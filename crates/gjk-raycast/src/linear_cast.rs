@@ -5,7 +5,7 @@ use convex_support::{CoreKind, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::body::Pair;
-use crate::cast::{CastHit, cast, direct, settle_start};
+use crate::cast::{CastHit, Part, cast, direct, settle_start};
 use crate::ray::check_finite;
 use crate::start_in_contact::Start;
 use crate::{
@@ -123,7 +123,7 @@ where
     let is_known = [core_a.kind, core_b.kind].iter().any(|kind| matches!(kind, CoreKind::Point(_)));
     let known = if is_known { direct(&mut body, ray, direction_error, &wanted, &mut observer) } else { None };
     let cast = known.unwrap_or_else(|| {
-        let mut cast = cast(&mut body, ray, direction_error, |ray| ray, wanted, observer);
+        let mut cast = cast(&mut body, ray, direction_error, Part::Whole, wanted, observer);
         settle_start(&mut cast, a, target, || Some(b), ray.direction, &wanted);
         cast
     });

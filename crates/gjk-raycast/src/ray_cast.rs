@@ -3,8 +3,8 @@
 use convex_support::{Point, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::Single;
-use crate::cast::{Cast, CastHit, LocalRay, cast, direct, settle_start};
+use crate::body::{Body as _, Single};
+use crate::cast::{Cast, CastHit, LocalRay, Part, cast, direct, settle_start};
 use crate::{Iterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit};
 
 /// The first point of a ray in a shape, with the normal there.
@@ -76,7 +76,7 @@ fn searched<S: SupportMap + ?Sized>(
     if options.min_lambda > Scalar::ZERO {
         return Ok(shortened(target, ray, options, observer));
     }
-    let mut cast = cast(&mut Single::new(target), ray, Scalar::ZERO, |ray| ray, options, observer);
+    let mut cast = cast(&mut Single::new(target), ray, Scalar::ZERO, Part::Whole, options, observer);
     settle_start(&mut cast, target, Scalar::ZERO, || Point::new(ray.source).ok(), ray.direction, &options);
     Ok(answer(cast, ray))
 }
@@ -107,14 +107,11 @@ fn shortened<S: SupportMap + ?Sized>(
     let begin = options.min_lambda;
     let mut wanted = options;
     wanted.max_lambda = options.max_lambda - begin;
-    let mut slack = Scalar::ZERO;
-    let place = |ray: LocalRay<S::Vector>| {
-        let shortened = ray.beginning_at(begin);
-        slack = ray.error(shortened.start, Scalar::ZERO);
-        shortened
-    };
     // Where the ray begins is rounded itself, and no start is settled.
-    let cast = cast(&mut Single::new(target), ray, Scalar::ZERO, place, wanted, observer);
+    let mut body = Single::new(target);
+    let cast = cast(&mut body, ray, Scalar::ZERO, Part::From(begin), wanted, observer);
+    let whole = LocalRay::new(ray, body.origin(), cast.scale);
+    let slack = whole.error(whole.mu(begin), Scalar::ZERO);
     of_whole_ray(answer(cast, ray), ray, options, slack)
 }
 

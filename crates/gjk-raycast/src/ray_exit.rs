@@ -3,8 +3,8 @@
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::Single;
-use crate::cast::{CastHit, LocalRay, cast};
+use crate::body::{Body as _, Single};
+use crate::cast::{CastHit, LocalRay, Part, cast};
 use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, ray_cast};
 
 /// The last point of a ray in a shape, with the normal there.
@@ -78,14 +78,10 @@ fn exit_of_line<S: SupportMap + ?Sized>(
 ) -> RayExit<S::Vector> {
     let infinity = <S::Vector as Vector>::Scalar::infinity();
     let wanted = RayCastOptions { min_lambda: Scalar::ZERO, max_lambda: infinity, ..options };
-    let mut forward: Option<LocalRay<S::Vector>> = None;
-    let place = |ray: LocalRay<S::Vector>| {
-        forward = Some(ray);
-        ray.reversed()
-    };
-    let cast = cast(&mut Single::new(target), ray, Scalar::ZERO, place, wanted, |_| {});
-    let reverse = |lambda| forward.map_or(-infinity, |ray| ray.reverse(lambda));
-    let error = forward.map_or(infinity, |ray| ray.error_of_reverse());
+    let mut body = Single::new(target);
+    let cast = cast(&mut body, ray, Scalar::ZERO, Part::Reversed, wanted, |_| {});
+    let forward = LocalRay::new(ray, body.origin(), cast.scale);
+    let (reverse, error) = (|lambda| forward.reverse(lambda), forward.error_of_reverse());
     let (lower, upper) = (reverse(cast.upper) - error, reverse(cast.lower) + error);
     let answer =
         RayExit { outcome: Outcome::Undecided, lower, upper, status: cast.status, iterations: cast.iterations };

@@ -8,7 +8,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float;
 
-use super::line::{Line, LocalRay};
+use super::line::{Line, LocalRay, Part};
 use super::{Contact, Stop};
 use crate::body::Body;
 use crate::simplex::MAX_POINTS;
@@ -107,14 +107,13 @@ enum Entry {
 }
 
 impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
-    /// All of the ray, as far as it is in the ball about the body; `place` sees it from there. The direction may be wrong by
-    /// some part of its length.
+    /// A part of the ray, as far as it is in the ball about the body. The direction may be wrong by some part of its length.
     #[inline(always)]
     pub(super) fn new(
         body: &'a mut B,
         ray: Ray<B::Vector>,
         direction_error: ScalarOf<B>,
-        place: impl FnOnce(LocalRay<B::Vector>) -> LocalRay<B::Vector>,
+        part: Part<ScalarOf<B>>,
         options: &'a RayCastOptions<B::Vector>,
         observer: O,
     ) -> Self {
@@ -127,7 +126,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         body.set_scale(scale);
         let per_unit = reciprocal_of_power(scale);
         let (radius, size, body_error) = (body.radius() * per_unit, size * per_unit, body.error() * per_unit);
-        let ray = place(LocalRay::new(ray, origin, scale));
+        let ray = LocalRay::new(ray, origin, scale).part(part);
         let noise = if size > zero { number(NOISE) * ScalarOf::<B>::EPSILON * size } else { body_error };
         let turned = if direction_error > zero { direction_error * (ray.start.abs() + size + size) } else { zero };
         let error = number(1.5) * noise + body_error + turned;

@@ -46,6 +46,16 @@ impl<V: Vector> Line<V> {
 /// as large as it can be.
 const BEYOND: f64 = 8.0;
 
+/// Which part of a ray is cast.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Part<S> {
+    Whole,
+    /// What comes from the parameter λ on, from which its own is counted.
+    From(S),
+    /// The whole line, from beyond any body back to where the ray comes from.
+    Reversed,
+}
+
 /// A ray seen from a body, in the body's unit: a line, based where it is closest to the body's origin, and where on it
 /// the ray begins. However far the source, only numbers of the body's size take part in what follows.
 #[derive(Clone, Copy, Debug)]
@@ -89,18 +99,21 @@ impl<V: Vector> LocalRay<V> {
         Self { line: Line { foot, direction }, start: -(t * length - rest), per_unit: scale * per_length * to_near_one }
     }
 
-    /// The ray without what comes before the parameter λ, from which its own is counted.
-    pub(crate) fn beginning_at(self, lambda: V::Scalar) -> Self {
-        Self { start: self.mu(lambda), ..self }
+    /// A part of the ray.
+    #[inline(always)]
+    pub(crate) fn part(self, part: Part<V::Scalar>) -> Self {
+        let Line { foot, direction } = self.line;
+        match part {
+            Part::Whole => self,
+            Part::From(lambda) => Self { start: self.mu(lambda), ..self },
+            Part::Reversed => {
+                let line = Line { foot, direction: -direction };
+                Self { line, start: V::Scalar::from_f64(-BEYOND), ..self }
+            }
+        }
     }
 
-    /// The same line from beyond any body in its unit back to where the ray comes from.
-    pub(crate) fn reversed(self) -> Self {
-        let line = Line { foot: self.line.foot, direction: -self.line.direction };
-        Self { line, start: V::Scalar::from_f64(-BEYOND), ..self }
-    }
-
-    /// The parameter λ of the ray where that of the [reversed](Self::reversed) one is `lambda`.
+    /// The parameter λ of the ray where that of the [reversed](Part::Reversed) one is `lambda`.
     pub(crate) fn reverse(&self, lambda: V::Scalar) -> V::Scalar {
         (V::Scalar::from_f64(BEYOND) - self.start) * self.per_unit - lambda
     }

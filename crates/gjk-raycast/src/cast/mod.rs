@@ -20,22 +20,22 @@ use algorithm_3::algorithm_3;
 use bracket::{Bracket, ScalarOf};
 use closed_form::closed_form;
 pub(crate) use direct::direct;
-pub(crate) use line::LocalRay;
+pub(crate) use line::{LocalRay, Part};
 use outline::bound_entry;
 use portal::portal;
 pub(crate) use start::settle_start;
 
-/// Casts a ray, given in the world, against a body; `place` may shorten or reverse it, as it is seen from there. Parameters are
-/// counted from where it then begins. The direction may be wrong by some part of its length.
+/// Casts a part of a ray, given in the world, against a body. Parameters are counted from where that begins. The direction may be
+/// wrong by some part of its length.
 pub(crate) fn cast<B: Body>(
     body: &mut B,
     ray: Ray<B::Vector>,
     direction_error: ScalarOf<B>,
-    place: impl FnOnce(LocalRay<B::Vector>) -> LocalRay<B::Vector>,
+    part: Part<ScalarOf<B>>,
     options: RayCastOptions<B::Vector>,
     observer: impl FnMut(Iterate<'_, B::Vector>),
 ) -> Cast<B::Vector, B::Witness> {
-    let mut bracket = Bracket::new(body, ray, direction_error, place, &options, observer);
+    let mut bracket = Bracket::new(body, ray, direction_error, part, &options, observer);
     let found = bracket.enter_ball().and_then(|()| search(&mut bracket));
     if found.is_ok() && bracket.is_entry_open() && bracket.is_past_start() {
         bound_entry(&mut bracket);
