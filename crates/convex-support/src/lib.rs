@@ -104,7 +104,7 @@ pub use scalar::Scalar;
 pub use shapes::Faceted;
 pub use shapes::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Polytope, Segment, Triangle};
 pub use support::{ScalarOf, SupportMap};
-pub use support_feature::Feature;
+pub use support_feature::{Feature, Rim};
 pub use vector::{Matrix, Vector, Vector3};
 
 /// Compiles and runs the example of the README.

@@ -26,7 +26,8 @@ fn hash<V: Vector>(point: V) -> u32 {
 }
 
 /// The points of a shape that lie within a slab behind its supporting plane: a vertex, the ends of an edge, or the corners of a
-/// face, in no order, and perhaps with points in between.
+/// face, in no order, and perhaps with points in between. Of a disc they are some points of the rim, and the [rim](Self::rim) says which
+/// disc that is; of a face with more corners than there is room for they are [some of them](Self::is_complete).
 ///
 /// Two shapes in contact touch where their features face each other. Each point has a number that stays the same as long as it is
 /// the same point of the shape, so that what is known of a contact can be found again in the next frame.
@@ -35,6 +36,17 @@ pub struct Feature<V> {
     points: [V; MAX_POINTS],
     ids: [u32; MAX_POINTS],
     len: usize,
+    rim: Option<Rim<V>>,
+    is_complete: bool,
+}
+
+/// The rim of a flat disc or of its image by a linear map, an ellipse: the points `c + (p − c)·cos φ + (q − c)·sin φ`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rim<V> {
+    /// The centre `c`.
+    pub center: V,
+    /// Two points of the rim, `p` and `q`, at the ends of conjugate radii; of a circle they are at a right angle.
+    pub ends: [V; 2],
 }
 
 impl<V: Vector> Default for Feature<V> {
@@ -47,7 +59,7 @@ impl<V: Vector> Feature<V> {
     /// A feature without points.
     #[must_use]
     pub fn new() -> Self {
-        Self { points: [V::ZERO; MAX_POINTS], ids: [0; MAX_POINTS], len: 0 }
+        Self { points: [V::ZERO; MAX_POINTS], ids: [0; MAX_POINTS], len: 0, rim: None, is_complete: true }
     }
 
     /// The points.
@@ -67,19 +79,40 @@ impl<V: Vector> Feature<V> {
         if let (Some(p), Some(i)) = (self.points.get_mut(self.len), self.ids.get_mut(self.len)) {
             (*p, *i) = (point, id);
             self.len += 1;
+        } else {
+            self.is_complete = false;
         }
+    }
+
+    /// The rim, where the feature is a flat disc; its points are some of those on the rim.
+    #[must_use]
+    pub fn rim(&self) -> Option<Rim<V>> {
+        self.rim
+    }
+
+    /// Says that the feature is a flat disc with this rim.
+    pub fn set_rim(&mut self, rim: Rim<V>) {
+        self.rim = Some(rim);
+    }
+
+    /// Whether the points and the rim are all of the feature. Not where a face has more than 16 corners, nor where a shape of another
+    /// library is known by its support points alone: then the points span a part of it.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.is_complete
     }
 
     /// Takes all points away.
     pub fn clear(&mut self) {
-        self.len = 0;
+        *self = Self { len: 0, rim: None, is_complete: true, ..*self };
     }
 
-    /// Moves every point.
+    /// Moves every point, by an affine map.
     pub fn map(&mut self, f: impl Fn(V) -> V) {
         for point in &mut self.points[..self.len] {
             *point = f(*point);
         }
+        self.rim = self.rim.map(|rim| Rim { center: f(rim.center), ends: rim.ends.map(f) });
     }
 
     /// Of so many points, numbered from 0, those no farther than `slab` behind the farthest along a direction.
@@ -88,6 +121,7 @@ impl<V: Vector> Feature<V> {
         let highest = (0..count).map(level).fold(-V::Scalar::infinity(), V::Scalar::max);
         let is_near = |&i: &usize| level(i) >= highest - slab;
         let stride = (0..count).filter(is_near).count().div_ceil(MAX_POINTS).max(1);
+        self.is_complete &= stride == 1;
         for i in (0..count).filter(is_near).step_by(stride) {
             self.push(point(i), i as u32);
         }
@@ -120,6 +154,8 @@ impl<V: Vector> Feature<V> {
                 self.push(vertex, hash(vertex));
             }
         }
+        // Of a face there may be more.
+        self.is_complete &= self.len < 3;
     }
 
     /// The same of discs across the second axis, by height and radius: of each the support point, and points all around where the
@@ -136,6 +172,7 @@ impl<V: Vector> Feature<V> {
             let center = V::axis(1) * height;
             let lowest = level((height, -radius));
             if lowest >= highest - slab && radius > V::Scalar::ZERO {
+                self.set_rim(Rim { center, ends: [V::axis(0) * radius + center, V::axis(2) * radius + center] });
                 for i in 0..RIM {
                     let (sine, cosine) = (core::f64::consts::TAU * f64::from(i) / f64::from(RIM)).sin_cos();
                     let at =

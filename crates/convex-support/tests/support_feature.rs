@@ -1,7 +1,7 @@
 //! Features of shapes: vertices, edges and faces within a slab.
 
 use convex_support::strategies::{AnyShape, direction, primitive_3d};
-use convex_support::{Cuboid, Cylinder, Feature, Hint, Posed, Rounded, SupportMap, Vector, glam};
+use convex_support::{Cuboid, Cylinder, Feature, Hint, Polytope, Posed, Rounded, SupportMap, Vector, glam};
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 
@@ -37,6 +37,27 @@ fn a_cylinder_shows_a_disc_a_side_or_a_rim() {
     assert_eq!(feature(&cylinder, DVec3::NEG_Y, 0.01).points().len(), 8);
     assert_eq!(feature(&cylinder, DVec3::X, 0.01).points(), [DVec3::new(0.5, 1.0, 0.0), DVec3::new(0.5, -1.0, 0.0)]);
     assert_eq!(feature(&cylinder, DVec3::new(0.6, 0.8, 0.0), 0.01).points(), [DVec3::new(0.5, 1.0, 0.0)]);
+}
+
+#[test]
+fn a_disc_says_its_rim_and_a_large_face_that_points_are_left_out() {
+    let cylinder = Cylinder::<DVec3>::new(1.0, 0.5).expect("positive sizes");
+    let turn = DQuat::from_rotation_x(0.3);
+    let posed = Posed::new(cylinder, turn, DVec3::ONE).expect("a pose");
+    let disc = feature(&posed, turn * DVec3::NEG_Y, 0.01);
+    let rim = disc.rim().expect("a disc");
+    assert!((rim.center - turn * DVec3::NEG_Y).length() < 1e-15, "{rim:?}");
+    let [p, q] = rim.ends.map(|end| end - rim.center);
+    assert!(p.dot(q).abs() < 1e-15 && (p.length() - 0.5).abs() < 1e-15 && (q.length() - 0.5).abs() < 1e-15, "{rim:?}");
+    assert!(disc.is_complete() && feature(&cylinder, DVec3::X, 0.01).rim().is_none());
+    // A prism of many sides.
+    let prism = |sides: u32| {
+        let corner = |i: u32| DVec3::Y.cross(DQuat::from_rotation_y(f64::from(i)) * DVec3::X);
+        let corners = (0..sides).flat_map(|i| [corner(i), corner(i) + DVec3::Y]);
+        Polytope::new(corners.collect::<Vec<_>>()).expect("finite points")
+    };
+    assert!(feature(&prism(16), DVec3::Y, 0.01).is_complete());
+    assert!(!feature(&prism(17), DVec3::Y, 0.01).is_complete());
 }
 
 fn any_solid() -> BoxedStrategy<AnyShape<DVec3>> {

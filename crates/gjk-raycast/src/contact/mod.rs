@@ -19,11 +19,10 @@ mod start;
 mod witness;
 mod zonotope;
 
-pub(crate) use clip::clip;
 pub use contact::contact;
 pub(crate) use cores::gap_along;
 pub(crate) use newton::across;
 pub use options::SignedDistanceOptions;
-pub(crate) use outline::{ContactPlane, Outline};
+pub(crate) use outline::{ContactPlane, Corner, Ellipse, Outline};
 pub use result::{Contact, ContactPoint, SignedDistance};
 pub use signed_distance::{signed_distance, signed_distance_with};

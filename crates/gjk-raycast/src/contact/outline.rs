@@ -1,6 +1,6 @@
 //! The outlines of features in the plane of contact.
 
-use convex_support::{Feature, Scalar, Vector};
+use convex_support::{Feature, Rim, Scalar, Vector};
 use smallvec::SmallVec;
 
 use crate::symmetric::{Across, cross, dot};
@@ -56,19 +56,35 @@ pub(crate) struct Corner<S> {
 #[derive(Clone, Debug)]
 pub(crate) struct Outline<S: Scalar> {
     pub(crate) corners: SmallVec<[Corner<S>; 16]>,
+    /// The ellipse that the corners are on, where the feature is a disc.
+    pub(crate) rim: Option<Ellipse<S>>,
+    /// Whether the corners or the rim are all of the feature.
+    pub(crate) is_complete: bool,
+}
+
+/// An ellipse in the plane: its centre and two conjugate radii.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ellipse<S> {
+    pub(crate) center: Across<S>,
+    pub(crate) radii: [Across<S>; 2],
 }
 
 impl<S: Scalar> Outline<S> {
     /// The outline of a feature whose points are relative to `origin`.
     pub(crate) fn new<V: Vector<Scalar = S>>(feature: &Feature<V>, origin: V, plane: &ContactPlane<V>) -> Self {
         let from = origin - plane.origin;
+        let [e, f] = plane.across;
         let seen = |(&point, &id): (&V, &u32)| {
             let p = from + point;
-            let [e, f] = plane.across;
             Corner { at: (e.dot(p), f.dot(p)), height: plane.normal.dot(p), id }
         };
         let points: SmallVec<[_; 16]> = feature.points().iter().zip(feature.ids()).map(seen).collect();
-        Self { corners: wrapped(&points) }
+        let across = |v: V| (e.dot(v), f.dot(v));
+        let ellipse = |rim: Rim<V>| Ellipse {
+            center: across(from + rim.center),
+            radii: rim.ends.map(|end| across(end - rim.center)),
+        };
+        Self { corners: wrapped(&points), rim: feature.rim().map(ellipse), is_complete: feature.is_complete() }
     }
 
     /// The height at a place of the plane through the three corners that span most; linear along a segment.

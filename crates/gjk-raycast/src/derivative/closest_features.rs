@@ -34,8 +34,7 @@ const SURPRISE: f64 = 0.25;
 /// support points of each shape.
 ///
 /// Faces and edges are those that the shapes show by [`SupportMap::core_support_feature`]; a shape that does not say them, as sums and
-/// hulls, is taken to be smooth. Of a disc they are the corners of an octagon within it, and of a face with more than 16 corners every
-/// second, third, ….
+/// hulls, is taken to be smooth. Of a face with more than 16 corners every second, third, … is [seen](Self::are_complete).
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct ClosestFeatures<V: Vector> {
@@ -49,6 +48,8 @@ pub struct ClosestFeatures<V: Vector> {
     /// Lengths below are in this unit, a power of two near the size of both bodies and their distance.
     pub(super) unit: V::Scalar,
     pub(super) signed_distance: V::Scalar,
+    /// The radii of both bodies.
+    pub(super) radii: [V::Scalar; 2],
     /// The Hessians of both support values, radii included, across the normal. Zero along an edge, and on a face.
     pub(super) hessians: [Symmetric<V::Scalar>; 2],
     /// Whether they foretell the support points nearby.
@@ -104,6 +105,22 @@ impl<V: Vector> ClosestFeatures<V> {
         Symmetric { a: a.a + b.a, b: a.b + b.b, d: a.d + b.d }.plus(self.signed_distance)
     }
 
+    /// By how much the places of the corners of features may be wrong, in the unit: the rounding of coordinates in the world and of
+    /// the sizes of both bodies, and how far the features of curved bodies move as the normal turns by what it may be wrong by.
+    pub(super) fn slack(&self) -> V::Scalar {
+        let world = self.middle.abs().max_element() / self.unit;
+        let rounding = V::Scalar::from_f64(TILT) * Scalar::EPSILON * (world + V::Scalar::from_f64(2.0));
+        let [a, b] = self.hessians.map(|hessian| hessian.a + hessian.d);
+        rounding + self.tilt * (a + b)
+    }
+
+    /// Whether the features are known as a whole. Not where a shape shows a part of a face, as of one with more than 16 corners; then
+    /// one-sided [rates](Self::rate) are of points of that part.
+    #[must_use]
+    pub fn are_complete(&self) -> bool {
+        self.outlines.iter().all(|outline| outline.is_complete)
+    }
+
     /// The unit normal from `b` to `a`, to rounding.
     #[must_use]
     pub fn normal(&self) -> V {
@@ -153,6 +170,7 @@ where
             middle,
             unit,
             signed_distance: signed_distance / unit,
+            radii: self.cores.map(|core| core.radius / unit),
             hessians: [of_a.hessian, of_b.hessian],
             is_foretold: true,
             spans: [of_a.span, of_b.span],

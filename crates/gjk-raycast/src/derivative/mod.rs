@@ -15,6 +15,7 @@ mod hessian;
 mod linear_cast;
 mod motion_cast;
 mod motion_gradient;
+mod overlap;
 mod pair_gradient;
 mod rate;
 mod ray_cast;

@@ -1,11 +1,10 @@
 //! One-sided derivatives, along a motion.
 
 use convex_support::{Scalar, Vector};
-use num_traits::Float as _;
-use smallvec::SmallVec;
 
 use super::ClosestFeatures;
-use crate::contact::clip;
+use super::overlap::Overlap;
+use crate::symmetric::Across;
 use crate::{RigidMotion, Trajectory};
 
 impl<V: Vector> ClosestFeatures<V> {
@@ -19,7 +18,8 @@ impl<V: Vector> ClosestFeatures<V> {
     ///
     /// and since velocities are linear in `p`, the least is at a corner of `M`. In overlap, where the distance is the most over all
     /// normals of the least over all points, the normal turns to meet the condition that both points of a pair are in `M`, which is
-    /// the dual of the same linear program.
+    /// the dual of the same linear program. A disc is a disc here. Of a face that is known [in part](Self::are_complete) the corners
+    /// left out may be faster: the answer is the rate of the part, an upper bound of that of the whole.
     ///
     /// ```
     /// use convex_support::{Cuboid, Posed, glam::DVec2};
@@ -53,31 +53,20 @@ impl<V: Vector> ClosestFeatures<V> {
             return None;
         }
         let closing = |p| -self.normal.dot(velocity(p));
-        let is_closing = self.corners().iter().all(|&p| closing(p) > V::Scalar::ZERO);
+        let is_closing = self.least(closing) > V::Scalar::ZERO;
         is_closing.then(|| self.least(|p| self.normal.dot(change(p)) / closing(p)))
     }
 
-    /// The least value at a corner of the overlap.
+    /// The least value over the overlap of both features, in the plane half-way between them, in the world. The value is linear in
+    /// the point, or a quotient of such.
     fn least(&self, value: impl Fn(V) -> V::Scalar) -> V::Scalar {
-        self.corners().iter().map(|&p| value(p)).fold(V::Scalar::infinity(), V::Scalar::min)
-    }
-
-    /// The corners of the overlap of both features in the plane half-way between them, in the world.
-    fn corners(&self) -> SmallVec<[V; 32]> {
-        let [of_a, of_b] = &self.outlines;
         if self.are_points_unique() {
-            let half = V::Scalar::from_f64(0.5);
-            return SmallVec::from_slice(&[self.points[0] * half + self.points[1] * half]);
+            return value(self.middle);
         }
-        // A segment is clipped by a polygon.
-        let overlap = if of_a.corners.len() > of_b.corners.len() { clip(of_b, of_a) } else { clip(of_a, of_b) };
         let [e, f] = self.across;
-        let place = |(x, y): (V::Scalar, V::Scalar)| self.middle + (e * x + f * y) * self.unit;
-        let mut corners: SmallVec<[V; 32]> = overlap.iter().map(|corner| place(corner.at)).collect();
-        if corners.is_empty() {
-            corners.push(self.middle);
-        }
-        corners
+        let place = |(x, y): Across<V::Scalar>| self.middle + (e * x + f * y) * self.unit;
+        let overlap = Overlap::of(&self.outlines, self.slack());
+        overlap.least(|at| value(place(at))).unwrap_or_else(|| value(self.middle))
     }
 }
 

@@ -1,10 +1,12 @@
 //! Whether an answer changes smoothly.
 
 use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
 
 use super::ClosestFeatures;
+use super::overlap::separating;
 use super::span::{Joint, Span};
-use crate::symmetric::{Symmetric, dot};
+use crate::symmetric::{Across, Symmetric, dot};
 
 /// Whether an answer is differentiable by the poses of both bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -45,7 +47,16 @@ impl<V: Vector> ClosestFeatures<V> {
             Free::All if V::DIM == 2 => stiffness.a > least,
             Free::All => least_eigenvalue(stiffness) > least,
         };
-        is_held && !self.is_tied && self.points.iter().all(|point| point.is_finite())
+        is_held && !self.is_at_a_corner(least) && !self.is_tied && self.points.iter().all(|point| point.is_finite())
+    }
+
+    /// Whether cores that touch do so at the boundary of their features, as a box that stands beside another: so that the normal may
+    /// turn away from them. Bodies apart have the normal of their closest points, and those that overlap that of the way out.
+    fn is_at_a_corner(&self, least: V::Scalar) -> bool {
+        let gap = self.signed_distance + self.radii[0] + self.radii[1];
+        let stiffness = self.stiffness();
+        let is_soft = |&e: &Across<V::Scalar>| !(dot(e, stiffness.times(e)) > least);
+        gap.abs() <= least && separating(&self.outlines, self.slack()).iter().any(is_soft)
     }
 
     /// In which directions the normal could turn without leaving an edge or a face of either body.

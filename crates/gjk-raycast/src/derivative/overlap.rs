@@ -1,0 +1,169 @@
+//! Where the features of two bodies overlap, seen along the normal.
+//!
+//! It is never empty, for the closest points are in it; but often it has no area: boxes side by side have the edges of their faces
+//! in common, and of boxes across a corner the corners alone. So a corner within rounding of a line is on both sides of it.
+
+use convex_support::Scalar;
+use smallvec::SmallVec;
+
+use crate::contact::{Ellipse, Outline};
+use crate::symmetric::{Across, cross, dot};
+
+/// How many tangents of discs are cut along at most. Each halves the angle in which the least value is, and its error so falls to a
+/// quarter.
+const MAX_CUTS: usize = 48;
+
+/// The overlap of two features: a convex polygon, a segment or a point, and of it what is in discs.
+#[derive(Clone, Debug)]
+pub(super) struct Overlap<S: Scalar> {
+    corners: SmallVec<[Across<S>; 32]>,
+    rims: [Option<Ellipse<S>>; 2],
+    /// What is no farther from a line is on it.
+    slack: S,
+}
+
+impl<S: Scalar> Overlap<S> {
+    /// Of two features that are no vertices, nor edges that cross.
+    pub(super) fn of([a, b]: &[Outline<S>; 2], slack: S) -> Self {
+        // A segment is cut by a polygon.
+        let (own, other) = if a.corners.len() > b.corners.len() { (b, a) } else { (a, b) };
+        let mut overlap = Self { corners: around(own), rims: [own.rim, other.rim], slack };
+        let sides = around(other);
+        if let [from, to] = sides[..] {
+            let e = direction(from, to);
+            overlap.cut(|at| dot(difference(at, from), e));
+            overlap.cut(|at| dot(difference(to, at), e));
+        } else {
+            for (i, &from) in sides.iter().enumerate() {
+                let e = direction(from, sides[(i + 1) % sides.len()]);
+                overlap.cut(|at| cross(e, difference(at, from)));
+            }
+        }
+        overlap
+    }
+
+    /// The least value of a function that has it at a corner of any polygon, as a linear one and a quotient of two; `None` if
+    /// there is no corner.
+    pub(super) fn least(mut self, value: impl Fn(Across<S>) -> S) -> Option<S> {
+        for _ in 0..MAX_CUTS {
+            let (at, least) = self.least_corner(&value)?;
+            let outside = self.rims.iter().flatten().find_map(|rim| self.tangent(rim, at).map(|q| (*rim, q)));
+            let Some((rim, q)) = outside else { return Some(least) };
+            let radius = mean_radius(&rim);
+            self.cut(|at| (S::ONE - dot(of_circle(&rim, at), q)) * radius);
+        }
+        self.least_corner(&value).map(|(_, least)| least)
+    }
+
+    fn least_corner(&self, value: impl Fn(Across<S>) -> S) -> Option<(Across<S>, S)> {
+        let values = self.corners.iter().map(|&at| (at, value(at)));
+        values.reduce(|least, other| if other.1 < least.1 { other } else { least })
+    }
+
+    /// Where a point is outside an ellipse, the unit vector to it, in coordinates in which that is the unit circle.
+    fn tangent(&self, rim: &Ellipse<S>, at: Across<S>) -> Option<Across<S>> {
+        let p = of_circle(rim, at);
+        let length = dot(p, p).sqrt();
+        let is_outside = (length - S::ONE) * mean_radius(rim) > self.slack;
+        is_outside.then(|| (p.0 / length, p.1 / length))
+    }
+
+    /// Keeps what is on one side of a line, by the signed distance from it.
+    fn cut(&mut self, inside: impl Fn(Across<S>) -> S) {
+        let corners = core::mem::take(&mut self.corners);
+        for (i, &from) in corners.iter().enumerate() {
+            let to = corners[(i + 1) % corners.len()];
+            let (d, e) = (inside(from), inside(to));
+            if d >= -self.slack {
+                self.corners.push(from);
+            }
+            if d.min(e) < -self.slack && d.max(e) > self.slack {
+                let (share, way) = (d / (d - e), difference(to, from));
+                self.corners.push((from.0 + way.0 * share, from.1 + way.1 * share));
+            }
+        }
+    }
+}
+
+/// The directions, as unit vectors, along which two features do not overlap but touch at most: those in which the normal could turn if
+/// nothing else held it. Of parallel edges it is asked along them only.
+pub(super) fn separating<S: Scalar>(outlines: &[Outline<S>; 2], slack: S) -> SmallVec<[Across<S>; 8]> {
+    let [a, b] = outlines;
+    let mut found = SmallVec::new();
+    let mut look = |u: Across<S>| {
+        let [of_a, of_b] = [a, b].map(|outline| range(outline, u));
+        if of_a[1] <= of_b[0] + slack || of_b[1] <= of_a[0] + slack {
+            found.push(u);
+        }
+    };
+    let edges = [a, b].map(|outline| match outline.corners[..] {
+        [from, to] => Some(direction(from.at, to.at)),
+        _ => None,
+    });
+    if let [Some(e), Some(f)] = edges
+        && cross(e, f).abs() <= S::EPSILON.sqrt()
+    {
+        look(e);
+        return found;
+    }
+    for (own, other) in [(a, b), (b, a)] {
+        match own.corners[..] {
+            [_] => {}
+            // A point at the end of an edge, or an edge that ends at another.
+            [from, to] if other.corners.len() == 1 => look(direction(from.at, to.at)),
+            _ if own.rim.is_some() => {
+                let center = own.rim.map_or((S::ZERO, S::ZERO), |rim| rim.center);
+                let ends = other.corners.iter().map(|corner| corner.at).chain(other.rim.map(|rim| rim.center));
+                ends.for_each(|end| look(direction(center, end)));
+            }
+            _ => {
+                for (i, from) in own.corners.iter().enumerate() {
+                    let e = direction(from.at, own.corners[(i + 1) % own.corners.len()].at);
+                    look((e.1, -e.0));
+                }
+            }
+        }
+    }
+    found
+}
+
+/// The least and the greatest coordinate along a unit vector.
+fn range<S: Scalar>(outline: &Outline<S>, u: Across<S>) -> [S; 2] {
+    if let Some(Ellipse { center, radii: [p, q] }) = outline.rim {
+        let (middle, reach) = (dot(center, u), dot(p, u).hypot(dot(q, u)));
+        return [middle - reach, middle + reach];
+    }
+    let along = |corner: &crate::contact::Corner<S>| dot(corner.at, u);
+    outline.corners.iter().map(along).fold([S::infinity(), -S::infinity()], |[low, high], x| [low.min(x), high.max(x)])
+}
+
+/// The corners of a feature, or of a parallelogram around a disc; counterclockwise.
+fn around<S: Scalar>(outline: &Outline<S>) -> SmallVec<[Across<S>; 32]> {
+    let Some(Ellipse { center, radii: [p, q] }) = outline.rim else {
+        return outline.corners.iter().map(|corner| corner.at).collect();
+    };
+    let (p, q) = if cross(p, q) < S::ZERO { (q, p) } else { (p, q) };
+    let signs = [(S::ONE, S::ONE), (-S::ONE, S::ONE), (-S::ONE, -S::ONE), (S::ONE, -S::ONE)];
+    signs.into_iter().map(|(i, j)| (center.0 + p.0 * i + q.0 * j, center.1 + p.1 * i + q.1 * j)).collect()
+}
+
+/// The coordinates of a point in which an ellipse is the unit circle.
+fn of_circle<S: Scalar>(&Ellipse { center, radii: [p, q] }: &Ellipse<S>, at: Across<S>) -> Across<S> {
+    let (from, area) = (difference(at, center), cross(p, q));
+    (cross(from, q) / area, cross(p, from) / area)
+}
+
+fn mean_radius<S: Scalar>(rim: &Ellipse<S>) -> S {
+    cross(rim.radii[0], rim.radii[1]).abs().sqrt()
+}
+
+fn difference<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
+    (a.0 - b.0, a.1 - b.1)
+}
+
+/// The unit vector from a point to another.
+fn direction<S: Scalar>(from: Across<S>, to: Across<S>) -> Across<S> {
+    let e = difference(to, from);
+    let per = dot(e, e).sqrt().recip();
+    (e.0 * per, e.1 * per)
+}
