@@ -3,11 +3,13 @@
 mod common;
 mod differences;
 
-use common::behind_pointers::{distance, linear_cast, motion_cast};
+use common::behind_pointers::{distance, linear_cast, motion_cast, signed_distance};
 use convex_support::glam::{DQuat, DVec2, DVec3};
-use convex_support::{Ball, Capsule, Cuboid, Cylinder, Polytope, Posed, Rounded, SupportMap, Triangle};
+use convex_support::{Ball, Capsule, Cone, Cuboid, Cylinder, Polytope, Posed, Rounded, SupportMap, Triangle};
 use differences::{Body, Random, Space, apart, one_sided};
-use gjk_raycast::{DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, RigidMotion, Smoothness};
+use gjk_raycast::{
+    DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, RigidMotion, SignedDistanceOptions, Smoothness,
+};
 
 const VALID: &str = "positive sizes and finite numbers";
 
@@ -71,6 +73,50 @@ fn parallel_faces_and_edges_are_no_smooth_place() {
             let features =
                 distance(&a.shape, &b.shape, DistanceOptions::default()).closest_features(&a.shape, &b.shape);
             assert_eq!(features.map(|f| f.smoothness()), Some(Smoothness::Edge), "{kind} at {gap}");
+        }
+    }
+}
+
+#[test]
+fn faces_of_curved_bodies_are_no_smooth_place() {
+    // Discs and the sides of cylinders over discs: an answer knows the distance to a rounding, and the normal of a curved body to the
+    // root of that.
+    let mut random = Random(12);
+    let upright = |kind: usize, [h, r]: [f64; 2]| -> (Boxed, f64) {
+        let shape: Boxed = match kind {
+            0 => std::rc::Rc::new(Cylinder::new(h, r).expect(VALID)),
+            _ => std::rc::Rc::new(Cone::new(h, r).expect(VALID)),
+        };
+        (shape, h)
+    };
+    for round in 0..3000 {
+        let world = (DVec3::rotation(&mut random), random.vector::<DVec3>());
+        let mut size = || [0; 2].map(|_| random.number(0.3, 1.0));
+        let (mut a, mut low) = upright(round % 2, size());
+        let (mut b, mut top) = upright(round / 2 % 2, size());
+        let lies = round % 5 == 0;
+        let mut turn = DQuat::IDENTITY;
+        if lies {
+            // The side of a cylinder.
+            let [h, r] = size();
+            (a, low) = (std::rc::Rc::new(Cylinder::new(h, r).expect(VALID)), r);
+            turn = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
+        }
+        if round % 3 == 0 {
+            (a, low) = (std::rc::Rc::new(Rounded::new(a, 0.1).expect(VALID)), low + 0.1);
+            (b, top) = (std::rc::Rc::new(Rounded::new(b, 0.1).expect(VALID)), top + 0.1);
+        }
+        let gap = if round % 4 == 0 { -random.number(0.001, 0.1) } else { 10f64.powf(random.number(-6.0, 0.0)) };
+        let aside = DVec3::new(random.number(-0.25, 0.25), low + top + gap, random.number(-0.25, 0.25));
+        let spin = DQuat::from_rotation_y(random.number(0.0, 6.0));
+        let a = placed(a, spin * turn, aside, world);
+        let b = placed(b, DQuat::from_rotation_x(std::f64::consts::PI), DVec3::ZERO, world);
+        for tolerance in [1e-9, 1e-14] {
+            let options = SignedDistanceOptions::default().with_tolerance(tolerance);
+            let answer = signed_distance(&a.shape, &b.shape, options);
+            assert!((answer.signed_distance - gap).abs() < 1e-8, "{round}: {answer:?}");
+            let features = answer.closest_features(&a.shape, &b.shape);
+            assert_eq!(features.smoothness(), Smoothness::Edge, "{round} at {gap}: {features:?}");
         }
     }
 }

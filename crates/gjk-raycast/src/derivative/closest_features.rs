@@ -3,6 +3,7 @@
 use convex_support::{Core, CoreKind, Feature, Hint, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
 
+use super::overlap::are_apart;
 use super::span::{Joint, Span};
 use crate::contact::{ContactPlane, Outline, across};
 use crate::symmetric::{Across, Symmetric, dot};
@@ -85,9 +86,13 @@ impl<V: Vector> ClosestFeatures<V> {
         let size = cores.iter().fold(V::Scalar::ZERO, |sum, core| sum + core.extent + core.radius);
         let gap = closest.signed_distance + cores[0].radius + cores[1].radius;
         let bodies = Bodies { a, b, cores, unit: power_of_two_near(size + closest.signed_distance.abs()) };
-        let at = bodies.at(closest, tilt(size, gap, closest.error));
+        let tilt = tilt(size, gap, closest.error);
         let is_curved = cores.iter().any(|core| matches!(core.kind, CoreKind::Curved));
-        let mut features = if is_curved { bodies.refined(at, closest) } else { at };
+        let mut features = if is_curved {
+            bodies.refined(bodies.settled(closest, tilt, reach(size, gap, closest.error)), closest)
+        } else {
+            bodies.at(closest, tilt)
+        };
         features.is_foretold = bodies.are_foretold(&features);
         features
     }
@@ -180,6 +185,39 @@ where
         }
     }
 
+    /// The features at the normal of an answer, which may be wrong by `reach`, or at one within that which an edge or a face holds.
+    ///
+    /// A normal is the one if the features along it overlap, which is the condition of the closest points; so what is seen within reach
+    /// is tried: the normal across it, along which the features are to be the same to within `tilt`.
+    fn settled(
+        &self,
+        closest: Closest<A::Vector>,
+        tilt: ScalarOf<A>,
+        reach: ScalarOf<A>,
+    ) -> ClosestFeatures<A::Vector> {
+        let seen = self.at(closest, reach);
+        if seen.spans == [Span::Vertex; 2] {
+            // As they are within less.
+            return ClosestFeatures { tilt, ..seen };
+        }
+        let slack = reach * reach;
+        let held = |turn: A::Vector, sides: &[usize]| {
+            let is_near = turn.length() <= reach + reach;
+            let normal = (seen.normal + turn).unit().filter(|_| is_near)?;
+            let at = self.at(Closest { normal, ..closest }, tilt);
+            let is_kept = sides.iter().all(|&i| at.spans[i].kind() == seen.spans[i].kind());
+            (is_kept && !are_apart(&at.outlines, at.slack() + slack)).then_some(at)
+        };
+        let settled = match seen.newton_step(self.cores.map(|core| core.radius)) {
+            Some(step) => held(step.turn, &[0, 1]),
+            None => [0, 1].into_iter().filter(|&i| seen.spans[i] != Span::Vertex).find_map(|i| {
+                let turn = seen.out_of_plane(seen.spans[i].turn(&seen.outlines[i]));
+                held(turn, &[i])
+            }),
+        };
+        settled.unwrap_or_else(|| self.at(closest, tilt))
+    }
+
     /// Newton's method for the normal and the points, as long as the steps become shorter.
     fn refined(&self, start: ClosestFeatures<A::Vector>, closest: Closest<A::Vector>) -> ClosestFeatures<A::Vector> {
         let (mut best, mut length) = (start, ScalarOf::<A>::from_f64(LONGEST_STEP));
@@ -227,6 +265,15 @@ fn tilt<S: Scalar>(size: S, gap: S, error: S) -> S {
     let magnified = if gap > S::ZERO { rounding * (size / gap) } else { S::ZERO };
     let open = if error.is_finite() { error / size * S::from_f64(4.0) } else { S::ZERO };
     (rounding + magnified + open).min(S::from_f64(LARGEST_TILT))
+}
+
+/// What the normal between curved bodies may be wrong by. Of two cores `g` apart the closest vector `v` is nearer to any other `w` that a
+/// bracket `u ≥ g ≥ l` allows than `√(u² − l²)`, for `w·v ≥ g²`; so the angle between them is up to `√(2(u − l)/g)`. Within one another the signed
+/// distance along a normal falls with the square of its angle as well, times a stiffness that is taken for a part of the size.
+fn reach<S: Scalar>(size: S, gap: S, error: S) -> S {
+    let error = error.max(S::EPSILON * size * S::from_f64(4.0));
+    let over = if gap > S::ZERO { gap } else { size * S::from_f64(1.0 / 16.0) };
+    (error / over * S::from_f64(2.0)).sqrt().min(S::from_f64(LARGEST_TILT))
 }
 
 /// How far a direction is turned to look nearby.

@@ -6,7 +6,7 @@
 use convex_support::Scalar;
 use smallvec::SmallVec;
 
-use crate::contact::{Ellipse, Outline};
+use crate::contact::{Corner, Ellipse, Outline};
 use crate::symmetric::{Across, cross, dot};
 
 /// How many tangents of discs are cut along at most. Each halves the angle in which the least value is, and its error so falls to a
@@ -86,45 +86,46 @@ impl<S: Scalar> Overlap<S> {
 }
 
 /// The directions, as unit vectors, along which two features do not overlap but touch at most: those in which the normal could turn if
-/// nothing else held it. Of parallel edges it is asked along them only.
-pub(super) fn separating<S: Scalar>(outlines: &[Outline<S>; 2], slack: S) -> SmallVec<[Across<S>; 8]> {
-    let [a, b] = outlines;
-    let mut found = SmallVec::new();
-    let mut look = |u: Across<S>| {
-        let [of_a, of_b] = [a, b].map(|outline| range(outline, u));
-        if of_a[1] <= of_b[0] + slack || of_b[1] <= of_a[0] + slack {
-            found.push(u);
-        }
-    };
-    let edges = [a, b].map(|outline| match outline.corners[..] {
+/// nothing else held it.
+pub(super) fn separating<S: Scalar>(outlines: &[Outline<S>; 2], slack: S) -> SmallVec<[Across<S>; 16]> {
+    axes(outlines).into_iter().filter(|&u| gap(outlines, u) >= -slack).collect()
+}
+
+/// Whether two features do not overlap and are more than rounding from it. Of edges that are parallel, and of an edge and a vertex, it is
+/// asked along the edges only.
+pub(super) fn are_apart<S: Scalar>(outlines: &[Outline<S>; 2], slack: S) -> bool {
+    axes(outlines).into_iter().any(|u| gap(outlines, u) > slack)
+}
+
+/// How far two features are apart along a unit vector, either way; negative where they overlap.
+fn gap<S: Scalar>([a, b]: &[Outline<S>; 2], u: Across<S>) -> S {
+    let [of_a, of_b] = [a, b].map(|outline| range(outline, u));
+    (of_a[0] - of_b[1]).max(of_b[0] - of_a[1])
+}
+
+/// The directions along one of which two features are apart that do not overlap: those across the edges of both, and those from the centre of
+/// a disc to the corners of the other.
+fn axes<S: Scalar>([a, b]: &[Outline<S>; 2]) -> SmallVec<[Across<S>; 16]> {
+    let edge = |outline: &Outline<S>| match outline.corners[..] {
         [from, to] => Some(direction(from.at, to.at)),
         _ => None,
-    });
-    if let [Some(e), Some(f)] = edges
-        && cross(e, f).abs() <= S::EPSILON.sqrt()
-    {
-        look(e);
-        return found;
-    }
+    };
+    let mut axes = SmallVec::new();
     for (own, other) in [(a, b), (b, a)] {
-        match own.corners[..] {
-            [_] => {}
-            // A point at the end of an edge, or an edge that ends at another.
-            [from, to] if other.corners.len() == 1 => look(direction(from.at, to.at)),
-            _ if own.rim.is_some() => {
-                let center = own.rim.map_or((S::ZERO, S::ZERO), |rim| rim.center);
-                let ends = other.corners.iter().map(|corner| corner.at).chain(other.rim.map(|rim| rim.center));
-                ends.for_each(|end| look(direction(center, end)));
-            }
-            _ => {
-                for (i, from) in own.corners.iter().enumerate() {
-                    let e = direction(from.at, own.corners[(i + 1) % own.corners.len()].at);
-                    look((e.1, -e.0));
-                }
-            }
+        let sides = own.corners.len();
+        if let Some(rim) = own.rim {
+            let ends = other.corners.iter().map(|corner| corner.at).chain(other.rim.map(|rim| rim.center));
+            axes.extend(ends.map(|end| direction(rim.center, end)));
+        } else if let Some(e) = edge(own) {
+            let is_alone =
+                other.corners.len() < 2 || edge(other).is_some_and(|f| cross(e, f).abs() <= S::EPSILON.sqrt());
+            axes.push(if is_alone { e } else { (e.1, -e.0) });
+        } else if sides > 2 {
+            let along = |i: usize| direction(own.corners[i].at, own.corners[(i + 1) % sides].at);
+            axes.extend((0..sides).map(along).map(|e| (e.1, -e.0)));
         }
     }
-    found
+    axes
 }
 
 /// The least and the greatest coordinate along a unit vector.
@@ -133,7 +134,7 @@ fn range<S: Scalar>(outline: &Outline<S>, u: Across<S>) -> [S; 2] {
         let (middle, reach) = (dot(center, u), dot(p, u).hypot(dot(q, u)));
         return [middle - reach, middle + reach];
     }
-    let along = |corner: &crate::contact::Corner<S>| dot(corner.at, u);
+    let along = |corner: &Corner<S>| dot(corner.at, u);
     outline.corners.iter().map(along).fold([S::infinity(), -S::infinity()], |[low, high], x| [low.min(x), high.max(x)])
 }
 

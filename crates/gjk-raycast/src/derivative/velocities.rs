@@ -100,7 +100,7 @@ impl<V: Vector> ClosestFeatures<V> {
         (e.dot(v), f.dot(v))
     }
 
-    fn out_of_plane(&self, (x, y): Across<V::Scalar>) -> V {
+    pub(super) fn out_of_plane(&self, (x, y): Across<V::Scalar>) -> V {
         let [e, f] = self.across;
         e * x + f * y
     }
