@@ -200,19 +200,22 @@ where
             // As they are within less.
             return ClosestFeatures { tilt, ..seen };
         }
-        let slack = reach * reach;
-        let held = |turn: A::Vector, sides: &[usize]| {
+        let rounding = ScalarOf::<A>::from_f64(TILT) * Scalar::EPSILON;
+        // A step of Newton's method leaves the square of what it takes away.
+        let left = rounding + reach * reach;
+        let held = |turn: A::Vector, tilt, sides: &[usize]| {
             let is_near = turn.length() <= reach + reach;
             let normal = (seen.normal + turn).unit().filter(|_| is_near)?;
             let at = self.at(Closest { normal, ..closest }, tilt);
             let is_kept = sides.iter().all(|&i| at.spans[i].kind() == seen.spans[i].kind());
-            (is_kept && !are_apart(&at.outlines, at.slack() + slack)).then_some(at)
+            (is_kept && !are_apart(&at.outlines, at.slack() + left)).then_some(at)
         };
         let settled = match seen.newton_step(self.cores.map(|core| core.radius)) {
-            Some(step) => held(step.turn, &[0, 1]),
-            None => [0, 1].into_iter().filter(|&i| seen.spans[i] != Span::Vertex).find_map(|i| {
+            Some(step) => held(step.turn, left, &[0, 1]),
+            // A face holds all of the normal, an edge a part.
+            None => [2, 1].into_iter().flat_map(|kind| [(kind, 0), (kind, 1)]).find_map(|(kind, i)| {
                 let turn = seen.out_of_plane(seen.spans[i].turn(&seen.outlines[i]));
-                held(turn, &[i])
+                if seen.spans[i].kind() == kind { held(turn, rounding, &[i]) } else { None }
             }),
         };
         settled.unwrap_or_else(|| self.at(closest, tilt))
