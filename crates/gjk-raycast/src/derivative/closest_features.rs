@@ -87,8 +87,11 @@ impl<V: Vector> ClosestFeatures<V> {
         let gap = closest.signed_distance + cores[0].radius + cores[1].radius;
         let bodies = Bodies { a, b, cores, unit: power_of_two_near(size + closest.signed_distance.abs()) };
         let tilt = tilt(size, gap, closest.error);
+        // The normal of polytopes that are apart is that of their closest points, and of those that overlap that of a face. Where they touch, it is
+        // as good as a search knows it.
         let is_curved = cores.iter().any(|core| matches!(core.kind, CoreKind::Curved));
-        let mut features = if is_curved {
+        let is_touching = gap.abs() <= size * V::Scalar::EPSILON * V::Scalar::from_f64(TILT);
+        let mut features = if is_curved || is_touching {
             bodies.refined(bodies.settled(closest, tilt, reach(size, gap, closest.error)), closest)
         } else {
             bodies.at(closest, tilt)

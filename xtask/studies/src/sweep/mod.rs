@@ -1,12 +1,14 @@
-//! `cargo xtask sweep`: ray casts, linear casts and distances at every scale, against references in thirty digits.
+//! `cargo xtask sweep`: ray casts, linear casts and distances at every scale, and derivatives, against references in thirty digits.
 //!
 //! Bodies × sizes × distances × precisions. Bodies and questions are rounded to the precision that is asked first, and the
 //! truth is that of the rounded numbers (`judge`). A ray is a *sure hit* if it hits the body shrunk by 5 %, and a *sure
 //! miss* if it misses the body grown by 5 %.
 
 mod certificates;
+mod derivatives;
 mod hull;
 mod judge;
+mod local;
 mod obstacle;
 mod questions;
 mod row;
@@ -28,7 +30,7 @@ pub(crate) struct Scope {
     /// Only this question; all of them by default.
     #[arg(value_enum)]
     question: Option<Question>,
-    /// Queries in each cell; of the certificates, in all.
+    /// Queries in each cell; of the certificates and the derivatives, in all.
     #[arg(long, value_name = "N")]
     rays: Option<u64>,
     /// Only subjects whose name contains this.
@@ -55,13 +57,17 @@ pub(crate) enum Question {
     Distance,
     /// Random queries of every kind, stopped early half of the time: only their certificates count.
     Certificates,
+    /// First and second derivatives of answers about random regular pairs, with differences in thirty digits.
+    Derivatives,
 }
 
-const QUESTIONS: [Question; 4] = [Question::Ray, Question::Linear, Question::Distance, Question::Certificates];
+const QUESTIONS: [Question; 5] =
+    [Question::Ray, Question::Linear, Question::Distance, Question::Certificates, Question::Derivatives];
 
-/// Queries in a cell, and of certificates in all, unless said otherwise.
+/// Queries in a cell, and of certificates and derivatives in all, unless said otherwise.
 const RAYS: u64 = 20_000;
 const CERTIFICATES: u64 = 10_000_000;
+const DERIVATIVES: u64 = 200_000;
 const QUICK: u64 = 100;
 
 impl Scope {
@@ -78,7 +84,11 @@ impl Scope {
     }
 
     fn count(&self, question: Question) -> u64 {
-        let all = if question == Question::Certificates { CERTIFICATES } else { RAYS };
+        let all = match question {
+            Question::Certificates => CERTIFICATES,
+            Question::Derivatives => DERIVATIVES,
+            _ => RAYS,
+        };
         self.rays.unwrap_or(if self.quick { all / QUICK } else { all })
     }
 }
@@ -90,12 +100,14 @@ pub(crate) fn rows(scope: &Scope, done: impl Fn(&Row) + Sync) -> Vec<Row> {
     for question in asked {
         let cells: Vec<Row> = match question {
             Question::Certificates => certificates::cells(&scope.only),
+            Question::Derivatives => derivatives::cells(&scope.only),
             _ => questions::cells(question, &scope.only),
         };
         let count = cells.len() as u64;
         rows.par_extend(cells.into_par_iter().map(|cell| {
             let row = match question {
                 Question::Certificates => certificates::fill(cell, scope.count(question), count, scope.seed),
+                Question::Derivatives => derivatives::fill(cell, scope.count(question), count, scope.seed),
                 _ => questions::fill(cell, scope.count(question), scope.seed),
             };
             done(&row);

@@ -196,7 +196,7 @@ pub(super) struct Solid {
     pub(super) rotation: [f64; 4],
     pub(super) translation: Vec3,
     /// The rows of the rotation's matrix.
-    rows: [Vec3<DoubleDouble>; 3],
+    pub(super) rows: [Vec3<DoubleDouble>; 3],
 }
 
 impl Solid {
