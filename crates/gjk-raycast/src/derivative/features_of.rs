@@ -226,9 +226,10 @@ where
     let (core_a, core_b) = (a.core(), b.core());
     let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
     let gap = normal.dot(a.support(-normal) - b.support(normal));
-    let apart = if gap > little(size) { gap } else { zero };
+    // What is not on purpose is what the time or the normal are wrong by.
+    let [apart, error] = if gap > little(size) { [gap, zero] } else { [zero, gap.abs()] };
     let points = [point + normal * apart, point];
-    Some(ClosestFeatures::new(&a, &b, Closest { normal, points, signed_distance: apart, error: zero }))
+    Some(ClosestFeatures::new(&a, &b, Closest { normal, points, signed_distance: apart, error }))
 }
 
 /// A body where it is at a time.
