@@ -119,11 +119,19 @@ impl<V: Vector> Feature<V> {
     pub(crate) fn collect(&mut self, direction: V, slab: V::Scalar, count: usize, point: impl Fn(usize) -> V) {
         let level = |i: usize| direction.dot(point(i));
         let highest = (0..count).map(level).fold(-V::Scalar::infinity(), V::Scalar::max);
-        let is_near = |&i: &usize| level(i) >= highest - slab;
-        let stride = (0..count).filter(is_near).count().div_ceil(MAX_POINTS).max(1);
-        self.is_complete &= stride == 1;
-        for i in (0..count).filter(is_near).step_by(stride) {
+        let mut near = (0..count).filter(|&i| level(i) >= highest - slab);
+        let first = self.len;
+        for i in near.by_ref().take(MAX_POINTS - first) {
             self.push(point(i), i as u32);
+        }
+        let left = near.count();
+        if left > 0 {
+            // Every second, third, ….
+            let stride = (self.len - first + left).div_ceil(MAX_POINTS);
+            (self.len, self.is_complete) = (first, false);
+            for i in (0..count).filter(|&i| level(i) >= highest - slab).step_by(stride) {
+                self.push(point(i), i as u32);
+            }
         }
     }
 

@@ -242,7 +242,8 @@ where
             if error > tilt {
                 best.signed_distance = step.signed_distance;
             }
-            if size > length * Scalar::from_f64(0.5) {
+            // No shorter, or as short as rounding leaves them: then the points are those of this normal.
+            if size > length * Scalar::from_f64(0.5) || size <= ScalarOf::<A>::EPSILON * Scalar::from_f64(4.0) {
                 break;
             }
             let Some(normal) = (best.normal + step.turn).unit() else { break };
