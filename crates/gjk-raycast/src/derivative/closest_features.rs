@@ -228,6 +228,7 @@ where
     fn refined(&self, start: ClosestFeatures<A::Vector>, closest: Closest<A::Vector>) -> ClosestFeatures<A::Vector> {
         let (mut best, mut length) = (start, ScalarOf::<A>::from_f64(LONGEST_STEP));
         let tilt = ScalarOf::<A>::from_f64(TILT) * Scalar::EPSILON;
+        let least = ScalarOf::<A>::from_f64(0.25) * Scalar::EPSILON;
         let radii = self.cores.map(|core| core.radius);
         for _ in 0..MAX_STEPS {
             let Some(step) = best.newton_step(radii) else { break };
@@ -236,14 +237,16 @@ where
             if !(size < length) {
                 break;
             }
+            let shifts = [0, 1].map(|i| (step.points[i] - best.points[i]).length());
             best.points = step.points;
             // An answer knows the distance to its tolerance; to that of rounding, it stays.
             let error = (step.signed_distance - best.signed_distance).abs();
             if error > tilt {
                 best.signed_distance = step.signed_distance;
             }
-            // No shorter, or as short as rounding leaves them: then the points are those of this normal.
-            if size > length * Scalar::from_f64(0.5) || size <= ScalarOf::<A>::EPSILON * Scalar::from_f64(4.0) {
+            // No shorter, or less than rounding: then the features are those along this normal, and where the points are.
+            let is_least = size <= least && shifts[0].max(shifts[1]) <= self.unit * ScalarOf::<A>::EPSILON;
+            if size > length * Scalar::from_f64(0.5) || is_least {
                 break;
             }
             let Some(normal) = (best.normal + step.turn).unit() else { break };

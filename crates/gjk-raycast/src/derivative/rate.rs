@@ -61,7 +61,8 @@ impl<V: Vector> ClosestFeatures<V> {
     /// the point, or a quotient of such.
     fn least(&self, value: impl Fn(V) -> V::Scalar) -> V::Scalar {
         if self.are_points_unique() {
-            return value(self.middle);
+            let half = V::Scalar::from_f64(0.5);
+            return value(self.points[0] * half + self.points[1] * half);
         }
         let [e, f] = self.across;
         let place = |(x, y): Across<V::Scalar>| self.middle + (e * x + f * y) * self.unit;
