@@ -78,6 +78,12 @@ impl<S: Scalar> Outline<S> {
             let p = from + point;
             Corner { at: (e.dot(p), f.dot(p)), height: plane.normal.dot(p), id }
         };
+        // Of what is curved, and of a vertex, there is nothing to wrap and nothing to copy.
+        if let ([point], [id]) = (feature.points(), feature.ids()) {
+            let mut corners = SmallVec::new();
+            corners.push(seen((point, id)));
+            return Self { corners, rim: None, is_complete: feature.is_complete() };
+        }
         let points: SmallVec<[_; 16]> = feature.points().iter().zip(feature.ids()).map(seen).collect();
         let across = |v: V| (e.dot(v), f.dot(v));
         let ellipse = |rim: Rim<V>| Ellipse {
