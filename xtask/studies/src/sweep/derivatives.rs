@@ -40,9 +40,9 @@ pub(super) fn fill(mut cell: Row, queries: u64, cells: u64, seed: u64) -> Row {
     let queries = queries.div_ceil(cells);
     while cell.queries < queries {
         if cell.is_single {
-            ask::<Vec3A>(&mut cell, &mut rng)
+            ask::<Vec3A>(&mut cell, &mut rng);
         } else {
-            ask::<DVec3>(&mut cell, &mut rng)
+            ask::<DVec3>(&mut cell, &mut rng);
         };
     }
     cell
