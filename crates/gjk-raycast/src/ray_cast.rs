@@ -73,12 +73,21 @@ fn searched<S: SupportMap + ?Sized>(
     observer: impl FnMut(Iterate<'_, S::Vector>),
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     ray.check()?;
-    if options.min_lambda > Scalar::ZERO {
-        return Ok(shortened(target, ray, options, observer));
+    let begin = options.min_lambda;
+    let is_whole = !(begin > Scalar::ZERO);
+    let part = if is_whole { Part::Whole } else { Part::From(begin) };
+    let wanted = if is_whole { options } else { options.with_max_lambda(options.max_lambda - begin) };
+    let mut body = Single::new(target);
+    let mut cast = cast(&mut body, ray, Scalar::ZERO, part, wanted, observer);
+    if is_whole {
+        settle_start(&mut cast, target, Scalar::ZERO, || Point::new(ray.source).ok(), ray.direction, &options);
+        Ok(answer(cast, ray))
+    } else {
+        // Where the ray begins is rounded itself, and no start is settled.
+        let whole = LocalRay::new(ray, body.origin(), cast.scale);
+        let slack = whole.error(whole.mu(begin), Scalar::ZERO);
+        Ok(of_whole_ray(answer(cast, ray), ray, options, slack))
     }
-    let mut cast = cast(&mut Single::new(target), ray, Scalar::ZERO, Part::Whole, options, observer);
-    settle_start(&mut cast, target, Scalar::ZERO, || Point::new(ray.source).ok(), ray.direction, &options);
-    Ok(answer(cast, ray))
 }
 
 /// What a cast says of a ray.
@@ -93,26 +102,6 @@ fn answer<V: Vector>(cast: Cast<V, ()>, ray: Ray<V>) -> RayCast<V> {
         Outcome::Undecided => Outcome::Undecided,
     };
     RayCast { outcome, lower: cast.lower, upper: cast.upper, status: cast.status, iterations: cast.iterations }
-}
-
-/// The cast of a ray that begins at [`min_lambda`](RayCastOptions::min_lambda).
-#[cold]
-#[inline(never)]
-fn shortened<S: SupportMap + ?Sized>(
-    target: &S,
-    ray: Ray<S::Vector>,
-    options: RayCastOptions<S::Vector>,
-    observer: impl FnMut(Iterate<'_, S::Vector>),
-) -> RayCast<S::Vector> {
-    let begin = options.min_lambda;
-    let mut wanted = options;
-    wanted.max_lambda = options.max_lambda - begin;
-    // Where the ray begins is rounded itself, and no start is settled.
-    let mut body = Single::new(target);
-    let cast = cast(&mut body, ray, Scalar::ZERO, Part::From(begin), wanted, observer);
-    let whole = LocalRay::new(ray, body.origin(), cast.scale);
-    let slack = whole.error(whole.mu(begin), Scalar::ZERO);
-    of_whole_ray(answer(cast, ray), ray, options, slack)
 }
 
 /// The answer of a ray that begins at [`min_lambda`](RayCastOptions::min_lambda), with its parameters counted from the source. Where

@@ -27,6 +27,7 @@ pub(crate) use start::settle_start;
 
 /// Casts a part of a ray, given in the world, against a body. Parameters are counted from where that begins. The direction may be
 /// wrong by some part of its length.
+#[inline(always)]
 pub(crate) fn cast<B: Body>(
     body: &mut B,
     ray: Ray<B::Vector>,
@@ -36,7 +37,10 @@ pub(crate) fn cast<B: Body>(
     observer: impl FnMut(Iterate<'_, B::Vector>),
 ) -> Cast<B::Vector, B::Witness> {
     let mut bracket = Bracket::new(body, ray, direction_error, part, &options, observer);
-    let found = bracket.enter_ball().and_then(|()| search(&mut bracket));
+    let found = match bracket.enter_ball() {
+        Ok(()) => search(&mut bracket),
+        Err(stop) => Err(stop),
+    };
     if found.is_ok() && bracket.is_entry_open() && bracket.is_past_start() {
         bound_entry(&mut bracket);
     }
