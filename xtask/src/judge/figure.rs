@@ -1,6 +1,6 @@
 //! Error against time, a mark for each question and everybody who answers it.
 
-use crate::plot::{Mark, Marks};
+use crate::plot::{Group, Mark, Marks};
 
 /// What one answers to one kind of questions: the row of a table.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,13 +38,12 @@ pub fn read(csv: &str) -> Vec<Point> {
 /// The figure. Of whom `is_recorded` is said, the marks are hollow; others are filled.
 #[must_use]
 pub fn marks(points: &[Point], is_recorded: impl Fn(&str) -> bool) -> Marks {
-    let mut groups: Vec<(String, usize)> = Vec::new();
+    let mut groups: Vec<Group> = Vec::new();
     let mut marks = Vec::new();
     for point in points.iter().filter(|point| !point.set.starts_with("suite")) {
-        let group = groups.iter().position(|(name, _)| *name == point.who).unwrap_or_else(|| {
-            let hollow = is_recorded(&point.who);
-            let alike = groups.iter().filter(|(name, _)| is_recorded(name) == hollow).count() % 4;
-            groups.push((point.who.clone(), if hollow { 4 + alike } else { alike }));
+        let group = groups.iter().position(|group| group.name == point.who).unwrap_or_else(|| {
+            let (name, colour) = (point.who.clone(), groups.len());
+            groups.push(Group { name, colour, is_hollow: is_recorded(&point.who) });
             groups.len() - 1
         });
         let name = if point.set == "distance of 1e-6" { "near contact" } else { &point.set };
@@ -77,7 +76,8 @@ mod tests {
         let points = read(csv);
         assert_eq!(points.len(), 2, "a row without an error is left out: {points:?}");
         let marks = marks(&points, |who| who == "theirs");
-        assert_eq!(marks.groups, [("ours f64".to_owned(), 0), ("theirs".to_owned(), 4)], "filled and hollow");
+        let group = |name: &str, colour, is_hollow| Group { name: name.to_owned(), colour, is_hollow };
+        assert_eq!(marks.groups, [group("ours f64", 0, false), group("theirs", 1, true)], "filled and hollow");
         assert_eq!(marks.marks[1].label, "distance (2 ✗)");
         assert!(marks.svg().contains("distance (2 ✗)</text>"), "named beside its mark");
     }

@@ -198,11 +198,14 @@ impl Report<'_> {
 /// How to make the table again.
 const COMMANDS: &str = "\
 ```sh
-cargo xtask judge --questions target/questions.jsonl
+cargo xtask judge --each 100 --questions target/questions.jsonl
 benches/peers/coal_answers.py target/questions.jsonl target/coal.jsonl        # after: pip install -r benches/peers/requirements.txt
 benches/peers/mujoco_answers.py target/questions.jsonl target/mujoco.jsonl
-cargo xtask judge --answers target/coal.jsonl --answers target/mujoco.jsonl   # --record writes this note
+cargo run --release -p studies --features peers,box3d,jolt -- judge --each 100 \\
+    --answers target/coal.jsonl --answers target/mujoco.jsonl                 # --record writes this note
 ```
+
+`cargo xtask judge` is the last without Box3D and Jolt, which take a C++ compiler and cmake.
 
 Claims that are disproved are written with their questions and what shows it to `target/judge/disproved.jsonl`.";
 

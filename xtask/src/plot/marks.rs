@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Axis, Frame, LEFT, LEGEND_ROW, RIGHT, Scale, TOP, escape, look, mark};
+use super::{Axis, Frame, LEFT, LEGEND_ROW, RIGHT, Scale, TOP, escape, look, shape};
 
 /// A point with its name.
 #[derive(Clone, Debug)]
@@ -13,6 +13,15 @@ pub struct Mark {
     pub group: usize,
 }
 
+/// Whose points are alike.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Group {
+    pub name: String,
+    /// Which of eight colours.
+    pub colour: usize,
+    pub is_hollow: bool,
+}
+
 /// Error against time, as marks.
 #[derive(Clone, Debug)]
 pub struct Marks {
@@ -21,8 +30,7 @@ pub struct Marks {
     pub y: String,
     /// What is below is drawn there.
     pub floor: f64,
-    /// Names, and which of the colours and marks each has: those from 4 to 7 are hollow.
-    pub groups: Vec<(String, usize)>,
+    pub groups: Vec<Group>,
     pub marks: Vec<Mark>,
 }
 
@@ -82,7 +90,7 @@ impl Marks {
         let widths: Vec<f64> = self.marks.iter().map(|mark| LETTER * mark.label.chars().count() as f64).collect();
         let names = named(&places, &widths, frame.size);
         for ((one, &[x, y]), area) in self.marks.iter().zip(&places).zip(names) {
-            let (name, colour) = &self.groups[one.group];
+            let group = &self.groups[one.group];
             let (left, base) = (area[0], area[3] - 3.5);
             let tie = tie([x, y], area).map_or_else(String::new, |[to_x, to_y]| {
                 format!("<path d=\"M{x:.1} {y:.1}L{to_x:.1} {to_y:.1}\" stroke-width=\".8\" stroke-opacity=\".6\"/>")
@@ -90,10 +98,10 @@ impl Marks {
             let _ = writeln!(
                 svg,
                 "<g {}><title>{}: {}</title>{tie}{}<text x=\"{left:.1}\" y=\"{base:.1}\" font-size=\"{FONT}\" stroke=\"none\">{}</text></g>",
-                look(*colour),
-                escape(name),
+                look(group.colour),
+                escape(&group.name),
                 escape(&one.label),
-                mark(*colour, x, y, RADIUS),
+                group.mark(x, y),
                 escape(&one.label)
             );
         }
@@ -102,8 +110,8 @@ impl Marks {
     /// Where the groups are named below a picture of this width: left ends and rows.
     fn legend_places(&self, width: f64) -> Vec<(f64, usize)> {
         let (mut left, mut row) = (LEFT - 30.0, 0);
-        let place = |(name, _): &(String, usize)| {
-            let wide = 10.0 + 6.7 * name.chars().count() as f64 + 20.0;
+        let place = |group: &Group| {
+            let wide = 10.0 + 6.7 * group.name.chars().count() as f64 + 20.0;
             if left + wide > width && left > LEFT {
                 (left, row) = (LEFT - 30.0, row + 1);
             }
@@ -120,18 +128,24 @@ impl Marks {
 
     /// The groups, below the picture.
     fn legend(&self, svg: &mut String, [width, height]: [f64; 2]) {
-        for ((name, colour), (left, row)) in self.groups.iter().zip(self.legend_places(width)) {
+        for (group, (left, row)) in self.groups.iter().zip(self.legend_places(width)) {
             let y = height + 4.0 + LEGEND_ROW * row as f64;
             let _ = writeln!(
                 svg,
                 "<g {}>{}</g><text x=\"{:.1}\" y=\"{:.1}\">{}</text>",
-                look(*colour),
-                mark(*colour, left, y, RADIUS),
+                look(group.colour),
+                group.mark(left, y),
                 left + 10.0,
                 y + 4.0,
-                escape(name)
+                escape(&group.name)
             );
         }
+    }
+}
+
+impl Group {
+    fn mark(&self, x: f64, y: f64) -> String {
+        shape(self.colour, self.is_hollow, [x, y], RADIUS)
     }
 }
 

@@ -4,7 +4,7 @@ mod marks;
 
 use std::fmt::Write as _;
 
-pub use self::marks::{Mark, Marks};
+pub use self::marks::{Group, Mark, Marks};
 
 /// One set of points of a plot.
 #[derive(Clone, Debug)]
@@ -213,8 +213,12 @@ fn dashes(colour: usize) -> &'static str {
 fn mark(colour: usize, x: f64, y: f64, r: f64) -> String {
     // Where the colours begin again, the marks are one further.
     let kind = colour + colour / COLOURS.len();
-    let fill =
-        if kind % 8 >= 4 { " style=\"fill:var(--ground,none)\" stroke-width=\"1.6\"" } else { " stroke=\"none\"" };
+    shape(kind, kind % 8 >= 4, [x, y], r)
+}
+
+/// A disc, square, triangle or diamond.
+fn shape(kind: usize, is_hollow: bool, [x, y]: [f64; 2], r: f64) -> String {
+    let fill = if is_hollow { " style=\"fill:var(--ground,none)\" stroke-width=\"1.6\"" } else { " stroke=\"none\"" };
     match kind % 4 {
         0 => format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{r}\"{fill}/>"),
         1 => {
