@@ -175,7 +175,8 @@ impl Drawing {
         let mut csv = format!("who,what,{},{}\n", quoted(&self.marks.x), quoted(&self.marks.y));
         for mark in &self.marks.marks {
             let [x, y] = mark.at;
-            let _ = writeln!(csv, "{},{},{x:e},{y:e}", quoted(&self.marks.groups[mark.group].name), quoted(&mark.label));
+            let _ =
+                writeln!(csv, "{},{},{x:e},{y:e}", quoted(&self.marks.groups[mark.group].name), quoted(&mark.label));
         }
         csv
     }
