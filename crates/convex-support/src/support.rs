@@ -210,13 +210,15 @@ pub(crate) fn swept_hessian<V: Vector>(radius: V::Scalar, direction: V, changes:
     if radius == V::Scalar::ZERO {
         return [V::Scalar::ZERO; 3];
     }
-    let squared = direction.length_squared();
-    if !is_comfortable(squared) {
+    let (mut direction, mut radius) = (direction, radius);
+    if !is_comfortable(direction.length_squared()) {
         // Of a unit direction, and once for its length.
         let Some(e) = direction.unit() else { return [V::Scalar::ZERO; 3] };
-        return swept_hessian(radius / direction.norm(), e, changes);
+        (radius, direction) = (radius / direction.norm(), e);
     }
-    let [u, w] = changes.map(|change| change - direction * (change.dot(direction) / squared));
+    let squared = direction.length_squared();
+    let across = |change: V| change - direction * (change.dot(direction) / squared);
+    let (u, w) = (across(changes[0]), across(changes[1]));
     let bend = radius / squared.sqrt();
     [u.dot(u) * bend, u.dot(w) * bend, w.dot(w) * bend]
 }

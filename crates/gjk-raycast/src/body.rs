@@ -69,6 +69,7 @@ pub(crate) struct Single<'a, S: SupportMap + ?Sized> {
 }
 
 impl<'a, S: SupportMap + ?Sized> Single<'a, S> {
+    #[inline]
     pub(crate) fn new(shape: &'a S) -> Self {
         Self { shape, core: shape.core(), hint: Hint::new(), per_unit: Scalar::ONE }
     }
@@ -143,6 +144,7 @@ pub(crate) struct Pair<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vec
 }
 
 impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'a, A, B> {
+    #[inline]
     pub(crate) fn new(a: &'a A, b: &'a B) -> Self {
         let (core_a, core_b) = (a.core(), b.core());
         Self { a, b, core_a, core_b, hint_a: Hint::new(), hint_b: Hint::new(), per_unit: Scalar::ONE }

@@ -26,6 +26,7 @@ use crate::{Distance, DistanceOptions, Iterate, Status};
 /// where the two meet.
 ///
 #[doc = include_str!("../doc/bracket.svg")]
+#[inline]
 pub fn distance<A, B>(a: &A, b: &B, options: DistanceOptions<A::Vector>) -> Distance<A::Vector>
 where
     A: SupportMap + ?Sized,
@@ -35,6 +36,7 @@ where
 }
 
 /// [`distance`], showing an observer every iterate.
+#[inline]
 pub fn distance_with<A, B>(
     a: &A,
     b: &B,

@@ -80,6 +80,7 @@ impl<V: Vector> Motion<V> {
 ///
 /// # Errors
 /// [`RayCastError::NonFinite`] if a velocity is not finite, or the target distance is NaN.
+#[inline]
 pub fn linear_cast<A, B>(
     a: &A,
     b: &B,
@@ -97,6 +98,7 @@ where
 ///
 /// # Errors
 /// As of [`linear_cast`].
+#[inline]
 pub fn linear_cast_with<A, B>(
     a: &A,
     b: &B,

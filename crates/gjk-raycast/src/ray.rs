@@ -22,6 +22,16 @@ impl<V: Vector> Ray<V> {
         self.source + self.direction * lambda
     }
 
+    /// The same ray, put together of its coordinates: what a rare case passes on.
+    ///
+    /// A ray that is passed on as a whole is kept in memory for the sake of that call. There it is written and, by the case that is not
+    /// rare, read at once in other pieces, which a processor waits for longer than a closed form takes.
+    #[inline(always)]
+    pub(crate) fn by_coordinates(self) -> Self {
+        let copied = |v: V| V::from_fn(|i| v.get(i));
+        Self { source: copied(self.source), direction: copied(self.direction) }
+    }
+
     /// The error of a ray that cannot be cast.
     pub(crate) fn check(&self) -> Result<(), RayCastError> {
         // Zero times what is not finite is NaN; a sum that overflows is looked at coordinate by coordinate.

@@ -38,6 +38,7 @@ use crate::{Iterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit
 ///
 /// # Errors
 /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+#[inline]
 pub fn ray_cast<S: SupportMap + ?Sized>(
     target: &S,
     ray: Ray<S::Vector>,
@@ -50,6 +51,7 @@ pub fn ray_cast<S: SupportMap + ?Sized>(
 ///
 /// # Errors
 /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+#[inline]
 pub fn ray_cast_with<S: SupportMap + ?Sized>(
     target: &S,
     ray: Ray<S::Vector>,
@@ -61,7 +63,7 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
     {
         return Ok(answer(cast, ray));
     }
-    searched(target, ray, options, observer)
+    searched(target, ray.by_coordinates(), options, observer)
 }
 
 /// The cast by a search.

@@ -132,9 +132,10 @@ impl<S: SupportMap> SupportMap for Affine<S> {
     #[inline]
     fn core_support_hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> [ScalarOf<S>; 3] {
         let direction = self.onto_shape * direction;
-        let changes = changes.map(|change| self.onto_shape * change);
+        let changes = [self.onto_shape * changes[0], self.onto_shape * changes[1]];
         let core = self.shape.core_support_hessian(direction, changes);
-        sum_of_hessians(core, swept_hessian(self.swept, direction, changes)).map(|entry| entry * self.unit)
+        let [a, b, d] = sum_of_hessians(core, swept_hessian(self.swept, direction, changes));
+        [a * self.unit, b * self.unit, d * self.unit]
     }
 
     /// A map that keeps angles keeps which point is closest.

@@ -184,7 +184,7 @@ impl<S: SupportMap> SupportMap for Posed<S> {
     #[inline(always)]
     fn core_support_hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> [ScalarOf<S>; 3] {
         let turned = |v| self.rotation.transpose_mul(v);
-        self.shape.core_support_hessian(turned(direction), changes.map(turned))
+        self.shape.core_support_hessian(turned(direction), [turned(changes[0]), turned(changes[1])])
     }
 
     #[inline(always)]

@@ -197,8 +197,8 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
     #[inline(always)]
     fn core_support_hessian(&self, direction: V, changes: [V; 2]) -> [V::Scalar; 3] {
         // h(d) = |a∘e| with e = Rᵀd, and a change u moves a∘e by a∘Rᵀu: the Hessian of a length.
-        let [e, u, w] = [direction, changes[0], changes[1]].map(|v| self.scaled_semi_axes * self.axes.transpose_mul(v));
-        swept_hessian(self.unit, e, [u, w])
+        let onto_ball = |v| self.scaled_semi_axes * self.axes.transpose_mul(v);
+        swept_hessian(self.unit, onto_ball(direction), [onto_ball(changes[0]), onto_ball(changes[1])])
     }
 
     #[inline]

@@ -164,6 +164,7 @@ impl<V: Vector> Boundary<V> {
     }
 
     /// The points of the vertices of a facet.
+    #[inline]
     pub(super) fn corner_points(&self, index: usize) -> [V; MAX_CORNERS] {
         self.facets[index].points(&self.points)
     }
@@ -343,7 +344,7 @@ impl<V: Vector> Boundary<V> {
         }
         // Where two began at one vertex, the first of them is not what is noted there.
         fresh.iter().enumerate().all(|(k, new)| {
-            let [from, to] = new.ridge.map(usize::from);
+            let (from, to) = (usize::from(new.ridge[0]), usize::from(new.ridge[1]));
             let next = fresh.get(usize::from(begins[to]));
             begins[from] == k as u16 && ends[to] == k as u16 && next.is_some_and(|next| next.ridge[0] == new.ridge[1])
         })
@@ -396,12 +397,13 @@ fn edge_normal<V: Vector>([a, b]: [V; 2]) -> Option<(V, V::Scalar)> {
 /// distance: that is relative to the product of the lengths of two edges. The two shortest leave least of it, and double precision
 /// leaves none to `f32`.
 #[inline(always)]
-fn triangle_normal<V: Vector>(corners: [V; 3]) -> Option<(V, V::Scalar)> {
-    let [a, b, c] = corners.map(|p| [p.get(0), p.get(1), p.get(V::DIM - 1)].map(Scalar::as_f64));
-    let edge = |from: [f64; 3], to: [f64; 3]| [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
+fn triangle_normal<V: Vector>([a, b, c]: [V; 3]) -> Option<(V, V::Scalar)> {
+    let coordinate = |p: V, i: usize| p.get(i.min(V::DIM - 1)).as_f64();
+    let along = |from: V, to: V, i: usize| coordinate(to, i) - coordinate(from, i);
+    let edge = |from: V, to: V| [along(from, to, 0), along(from, to, 1), along(from, to, 2)];
     let squared = |[x, y, z]: [f64; 3]| x * x + y * y + z * z;
     let (ab, bc, ca) = (edge(a, b), edge(b, c), edge(c, a));
-    let [sab, sbc, sca] = [ab, bc, ca].map(squared);
+    let (sab, sbc, sca) = (squared(ab), squared(bc), squared(ca));
     let ([ux, uy, uz], [vx, vy, vz], product) = if sab >= sbc && sab >= sca {
         (bc, ca, sbc * sca)
     } else if sbc >= sca {

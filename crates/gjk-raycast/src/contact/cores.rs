@@ -59,6 +59,7 @@ struct Uncertainty<V: Vector> {
 
 impl<V: Vector> Uncertainty<V> {
     /// Of the sum of two points, each rounded to the shapes' extents, and the offset of their origins.
+    #[inline]
     fn new(shapes: [Rounding<V>; 2], offset: V, lost_in_offset: V) -> Self {
         let epsilon: V::Scalar = Scalar::EPSILON;
         let extents = shapes[0].extent + shapes[1].extent;
@@ -104,6 +105,7 @@ pub(super) struct ClosedForm<V: Vector> {
 }
 
 impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cores<'a, A, B> {
+    #[inline]
     pub(super) fn new(a: &'a A, b: &'a B) -> Self {
         let mut pair = Pair::new(a, b);
         let parts = [pair.core_a, pair.core_b];
@@ -134,7 +136,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
             error: r.error * per_unit,
             error_length: r.error_length * per_unit,
         };
-        let shapes = [self.pair.a.rounding(), self.pair.b.rounding()].map(in_unit);
+        let shapes = [in_unit(self.pair.a.rounding()), in_unit(self.pair.b.rounding())];
         let [from, to] = [self.parts[0].origin, self.parts[1].origin];
         self.uncertainty = Some(Uncertainty::new(shapes, offset, lost_in_sum(from, -to) * per_unit));
     }
@@ -238,6 +240,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     }
 
     /// Whether the direction of a point of the difference is known to half the digits.
+    #[inline]
     pub(super) fn is_well_known(&self, p: A::Vector) -> bool {
         let root: <A::Vector as Vector>::Scalar = Scalar::EPSILON;
         self.greatest_error() < root.sqrt() * p.norm()
@@ -251,6 +254,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
 
     /// The way out of two parallelotopes that certainly overlap; a plane across `axis`, or across their offset, may tell them apart
     /// at once.
+    #[inline]
     pub(super) fn closed_form(&mut self, axis: Option<A::Vector>) -> Option<ClosedForm<A::Vector>> {
         let Pair { a, b, core_a, core_b, .. } = &self.pair;
         let reach = self.pair.extent() * self.frame.per_unit;
@@ -277,6 +281,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     }
 
     /// GJK, until the distance of the cores is known, or they meet to rounding.
+    #[inline]
     pub(super) fn approach(
         &mut self,
         options: &SignedDistanceOptions<A::Vector>,

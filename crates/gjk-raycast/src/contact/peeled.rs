@@ -22,7 +22,8 @@ pub(super) fn without_ball<V: Vector>(
     changes: [V; 2],
 ) -> Symmetric<V::Scalar> {
     let Some(e) = direction.unit().filter(|_| radius > Scalar::ZERO) else { return hessian };
-    let [u, w] = changes.map(|change| change - e * change.dot(e));
+    let across = |change: V| change - e * change.dot(e);
+    let (u, w) = (across(changes[0]), across(changes[1]));
     let bend = radius / direction.norm();
     let Symmetric { a, b, d } = hessian;
     Symmetric { a: a - bend * u.dot(u), b: b - bend * u.dot(w), d: d - bend * w.dot(w) }

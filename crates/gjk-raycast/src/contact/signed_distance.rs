@@ -32,6 +32,7 @@ use crate::{Iterate, Status};
 /// where zero is outside `C`, the plane farthest from it that separates; where it is inside, the nearest plane that supports. Cores
 /// that are apart answer both by their distance, less the radii. Of cores that overlap, an [expanding
 /// polytope](SignedDistance::unexpanded) proves that no way out is shorter than the one found.
+#[inline]
 pub fn signed_distance<A, B>(a: &A, b: &B, options: SignedDistanceOptions<A::Vector>) -> SignedDistance<A::Vector>
 where
     A: SupportMap + ?Sized,
@@ -43,6 +44,7 @@ where
 /// [`signed_distance`], showing an observer every iterate: those of [`distance`](crate::distance) as long as the cores may be
 /// apart. After that the simplex is the facet nearest to zero, `v` its foot, `w` the support point along its normal, and the bounds
 /// are those of the signed distance of the cores.
+#[inline]
 pub fn signed_distance_with<A, B>(
     a: &A,
     b: &B,
@@ -105,6 +107,7 @@ struct Reached<V: Vector> {
 
 impl<V: Vector> Reached<V> {
     /// By GJK alone.
+    #[inline]
     fn of_gjk<A, B>(cores: &Cores<'_, A, B>, state: &Gjk<V, PointPair<V>>, end: End) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,
@@ -156,6 +159,7 @@ impl<V: Vector> Reached<V> {
     }
 
     /// The answer in the world's unit, with the radii.
+    #[inline]
     fn answer<A, B>(&self, cores: &Cores<'_, A, B>) -> SignedDistance<V>
     where
         A: SupportMap<Vector = V> + ?Sized,

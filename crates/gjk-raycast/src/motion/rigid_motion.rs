@@ -179,8 +179,8 @@ impl<V: Vector> Trajectory for RigidMotion<V> {
             return straight;
         }
         let w = self.angular_velocity.cross_matrix();
-        let bent = [from, to].map(|n| w * (w * n - twice_rate));
-        let [squared_from, squared_to] = bent.map(Vector::length_squared);
+        let bent = [w * (w * from - twice_rate), w * (w * to - twice_rate)];
+        let (squared_from, squared_to) = (bent[0].length_squared(), bent[1].length_squared());
         let squared = if squared_from > squared_to { squared_from } else { squared_to };
         let in_range = V::Scalar::min_positive_value() / (V::Scalar::EPSILON * V::Scalar::EPSILON);
         let bent = if squared > in_range { squared.sqrt() } else { hardly_bent(bent) };

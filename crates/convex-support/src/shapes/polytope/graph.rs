@@ -227,9 +227,9 @@ impl<V: Vector> Graph<V> {
             }
         });
         let Cell { vertices, rest } = &self.cells[self.cell(direction)];
-        let [a, b, c, d] = vertices.map(|vertex| (vertex, direction.dot(self.vertex(vertex))));
+        let held = |i: usize| (vertices[i], direction.dot(self.vertex(vertices[i])));
         let farther = |a: (u32, V::Scalar), b: (u32, V::Scalar)| if b.1 > a.1 { b } else { a };
-        let best = farther(farther(a, b), farther(c, d));
+        let best = farther(farther(held(0), held(1)), farther(held(2), held(3)));
         match rest {
             Rest::None => best.0,
             &Rest::Further { begin, end } => {

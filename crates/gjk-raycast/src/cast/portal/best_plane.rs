@@ -137,7 +137,7 @@ impl<S: Scalar> Models<S> {
 
     #[inline(always)]
     fn offer_three(&mut self, i: usize, j: usize, k: usize) {
-        let [t, s, r] = [i, j, k].map(|i| self.turned[i].p);
+        let (t, s, r) = (self.turned[i].p, self.turned[j].p, self.turned[k].p);
         let (e, f) = ((s.0 - t.0, s.1 - t.1), (r.0 - t.0, r.1 - t.1));
         let plane = Plane::rising((e, self.tau[j] - self.tau[i]), (f, self.tau[k] - self.tau[i]));
         let turn = S::ONE.copysign(plane.c);

@@ -226,7 +226,8 @@ impl<V: Vector, W: Copy + Default> Pieces<V, W> {
         }
         for i in 0..newest {
             for j in 0..i {
-                let weights = weights_of_zero([newest, i, j].map(|i| self.kept[i].p.across()));
+                let across = |i: usize| self.kept[i].p.across();
+                let weights = weights_of_zero([across(newest), across(i), across(j)]);
                 let sum = weights[0] + weights[1] + weights[2];
                 // NaN fails this too.
                 if weights.iter().all(|&w| w * sum >= zero) && sum.recip().is_finite() {

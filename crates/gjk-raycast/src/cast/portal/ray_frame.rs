@@ -223,8 +223,8 @@ impl<V: Vector> RayFrame<V> {
     #[inline(always)]
     pub(super) fn hessian_against<B: Body<Vector = V>>(&self, body: &B, n: V) -> (Across<V::Scalar>, V::Scalar) {
         let against = -self.d;
-        let beside = [self.e1, self.e2].map(|e| body.hessian(n, [e, against]));
-        let (mut across, mut along) = ((beside[0].b, beside[1].b), beside[0].d);
+        let (first, second) = (body.hessian(n, [self.e1, against]), body.hessian(n, [self.e2, against]));
+        let (mut across, mut along) = ((first.b, second.b), first.d);
         if self.radius > Scalar::ZERO {
             let (per_length, squared) = (self.radius / n.norm(), n.length_squared());
             let (n_across, n_along) = self.split(n);

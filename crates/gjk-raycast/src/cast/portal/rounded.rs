@@ -288,7 +288,7 @@ fn above_triangle<V: Vector, W>(
         return None;
     }
     let tau = alpha.tau(p) - radius * length;
-    Some(Entry { tau, alpha, corners, weights: [wp, wq, ws].map(|w| w.max(zero)), len: 3 })
+    Some(Entry { tau, alpha, corners, weights: [wp.max(zero), wq.max(zero), ws.max(zero)], len: 3 })
 }
 
 /// The corner or edge nearest to the line.
