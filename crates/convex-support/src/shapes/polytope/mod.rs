@@ -103,13 +103,15 @@ impl<V: Vector> Polytope<V> {
     /// A direction whose products with coordinates could vanish or overflow is taken at another length.
     #[inline(always)]
     fn farthest(&self, direction: V, hint: u32) -> u32 {
-        let direction = if is_comfortable(direction.length_squared()) {
-            direction
-        } else {
-            scaled(direction).map_or(direction, |(multiple, _)| multiple)
-        };
-        let (dx, dy) = (direction.get(0), direction.get(1));
-        let dz = if V::DIM == 3 { direction.get(2) } else { V::Scalar::ZERO };
+        let coordinates = |v: V| (v.get(0), v.get(1), if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO });
+        let (mut dx, mut dy, mut dz) = coordinates(direction);
+        // Added from the last to the first, so that the compiler reads x and y as one piece, which is how a caller behind `dyn` writes
+        // them; y and z would be a piece of two writes, which the processor waits for.
+        if !is_comfortable(dz * dz + dy * dy + dx * dx)
+            && let Some((multiple, _)) = scaled(direction)
+        {
+            (dx, dy, dz) = coordinates(multiple);
+        }
         match &self.search {
             Search::Scan(lanes) => lanes.farthest(dx, dy, dz) as u32,
             Search::Look { graph, .. } => graph.farthest(dx, dy, dz, hint),
