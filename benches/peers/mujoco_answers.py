@@ -9,13 +9,11 @@ has neither cones nor rounded boxes, and keeps the vertices of hulls in single p
 that does nothing: some hundred nanoseconds of what remains are the binding's.
 """
 
-import time
-
 import mujoco
 import numpy as np
 
 import query_lines
-from query_lines import NotAsked, compose, hull_points, placed, vector
+from query_lines import NotAsked, compose, hull_points, placed, timed, vector
 
 # MuJoCo's axis of symmetry is z, that of the query format y.
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
@@ -90,22 +88,10 @@ class Models:
         return model
 
 
-def timed(call):
-    """The answer of a call, and the nanoseconds it takes."""
-    def best(call):
-        least = float("inf")
-        for _ in range(3):
-            start = time.perf_counter()
-            for _ in range(20):
-                call()
-            least = min(least, time.perf_counter() - start)
-        return least / 20 * 1e9
-
-    return call(), max(best(call) - best(lambda: None), 0.0)
-
-
 def main():
-    given = query_lines.arguments(__doc__, "ccd_tolerance; %(default)s if left out, as in MuJoCo")
+    parser = query_lines.arguments(__doc__)
+    parser.add_argument("--tolerance", type=float, default=1e-6, help="ccd_tolerance; %(default)s if left out, as in MuJoCo")
+    given = parser.parse_args()
     models = Models(given.tolerance)
 
     def distance(question):

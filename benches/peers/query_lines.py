@@ -5,6 +5,7 @@ import json
 import time
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 IDENTITY = (np.eye(3), np.zeros(3))
 
@@ -13,17 +14,18 @@ class NotAsked(Exception):
     """The library has no such shape or question."""
 
 
-def arguments(description, tolerance):
-    """What every program is called with: the questions, where the answers go, and a tolerance, said to be of what."""
+def arguments(description):
+    """What every program is called with: the questions, and where the answers go. Some add options of their own."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("questions")
     parser.add_argument("answers")
-    parser.add_argument("--tolerance", type=float, default=1e-6, help=tolerance)
-    return parser.parse_args()
+    return parser
 
 
 def rotation_of(quaternion):
-    """The matrix of a quaternion [x, y, z, w] of any length."""
+    """The matrix of a quaternion [x, y, z, w] of any length; an angle is of the plane."""
+    if not isinstance(quaternion, list):
+        raise NotAsked
     x, y, z, w = np.array(quaternion) / np.linalg.norm(quaternion)
     return np.array([
         [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
@@ -40,10 +42,7 @@ def placed(shape, at=IDENTITY):
         return {"type": "ellipsoid", "semi_axes": shape["semi_axes"]}, at
     if shape["type"] != "posed":
         return shape, at
-    given = shape.get("rotation", [0, 0, 0, 1])
-    if not isinstance(given, list):
-        raise NotAsked
-    pose = (rotation_of(given), vector(shape.get("translation", [0, 0, 0])))
+    pose = (rotation_of(shape.get("rotation", [0, 0, 0, 1])), vector(shape.get("translation", [0, 0, 0])))
     return placed(shape["of"], compose(at, pose))
 
 
@@ -52,7 +51,8 @@ def compose(outer, inner):
 
 
 def vector(numbers):
-    if len(numbers) != 3:
+    """A vector of space; questions of the plane are none of these libraries'."""
+    if not isinstance(numbers, list) or len(numbers) != 3:
         raise NotAsked
     return np.array(numbers, dtype=float)
 
@@ -64,6 +64,39 @@ def hull_points(points):
     if len(rows) < 4 or extents[2] < 1e-9 * extents[0]:
         raise NotAsked
     return rows
+
+
+def hull(points):
+    """The hull of points: its corners as rows, and its faces as triangles of their numbers, counterclockwise from outside."""
+    rows = hull_points(points)
+    found = ConvexHull(rows)
+    corners, triangles = np.unique(found.simplices, return_inverse=True)
+    rows, triangles = rows[corners], triangles.reshape(-1, 3)
+    a, b, c = (rows[triangles[:, k]] for k in range(3))
+    inwards = np.einsum("ij,ij->i", np.cross(b - a, c - a), found.equations[:, :3]) < 0.0
+    triangles[inwards] = triangles[inwards][:, ::-1]
+    return rows, triangles
+
+
+def timed(call, idle=lambda: None):
+    """The answer of a call, and how many nanoseconds longer it takes than an idle one."""
+    start = time.perf_counter()
+    answer = call()
+    once = time.perf_counter() - start
+    if once > 0.02:
+        return answer, once * 1e9
+    repeats = 20 if once < 1e-3 else 1
+
+    def best(call):
+        least = float("inf")
+        for _ in range(3):
+            start = time.perf_counter()
+            for _ in range(repeats):
+                call()
+            least = min(least, time.perf_counter() - start)
+        return least / repeats * 1e9
+
+    return answer, max(best(call) - best(idle), 0.0)
 
 
 def write(questions, answers, head, answer):
@@ -80,6 +113,8 @@ def write(questions, answers, head, answer):
             except NotAsked:
                 counts["not asked"] += 1
                 continue
+            except (AttributeError, LookupError, NameError, TypeError):  # a mistake of the program is no answer of the library
+                raise
             except Exception as why:  # what a library throws is its answer
                 fields = {"error": str(why)}
                 counts["errors"] += 1

@@ -48,7 +48,7 @@ pub fn judged(witness: &Witness, cases: &[Option<Case>], disproved: &mut String)
             row.add_none(matches!(reply, Reply::NoAnswer));
             continue;
         };
-        let allowed = witness.tolerance.max(witness.rounding * case.bodies.reach);
+        let allowed = witness.allowed(&case.bodies);
         let verdict = verdict::judge(claim, case.fact, &case.bodies, allowed);
         if verdict.outcome == Outcome::Disproved {
             *disproved += &reproduction(witness, case, claim, &verdict);

@@ -181,9 +181,10 @@ impl Report<'_> {
             let _ = writeln!(text, "- the bracket of {id} does not hold the truth");
         }
         for witness in self.witnesses {
-            let Witness { name, tolerance, rounding, settings, .. } = witness;
+            let Witness { name, tolerance, of_motion, rounding, settings, .. } = witness;
             let tolerance = if *tolerance > 0.0 { format!("{tolerance:e}, or ") } else { String::new() };
-            let _ = writeln!(text, "- **{name}**: {settings}. Allowed: {tolerance}{rounding:e} of the reach.");
+            let motion = if *of_motion > 0.0 { format!("{of_motion:e} of the motion, or ") } else { String::new() };
+            let _ = writeln!(text, "- **{name}**: {settings}. Allowed: {tolerance}{motion}{rounding:e} of the reach.");
         }
         let _ =
             writeln!(text, "\n| {} |\n|---|---|{}", Row::HEADERS.join(" | "), "---:|".repeat(Row::HEADERS.len() - 2));

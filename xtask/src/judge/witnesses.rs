@@ -12,6 +12,7 @@ use crate::wire::answer::Line;
 use crate::wire::fields::Object;
 use serde_json::Value;
 
+use super::fact::Bodies;
 use super::questions::Question;
 use super::verdict::Claim;
 
@@ -36,6 +37,8 @@ pub struct Witness {
     pub name: String,
     /// Lengths that its documentation leaves open.
     pub tolerance: f64,
+    /// The part of a motion that its documentation leaves open.
+    pub of_motion: f64,
     /// What is nobody's mistake in its precision, in parts of the reach of the scene: that of the query format.
     pub rounding: f64,
     /// Whether it was asked in this run; answers out of files were given some other time.
@@ -43,6 +46,17 @@ pub struct Witness {
     /// How it was asked.
     pub settings: String,
     pub replies: Vec<Reply>,
+}
+
+impl Witness {
+    /// The length that is nobody's mistake in a scene.
+    #[must_use]
+    pub fn allowed(&self, bodies: &Bodies) -> f64 {
+        let way = bodies.speed * bodies.max_time;
+        // The way without end of a motion without end leaves no time open.
+        let along = if way.is_finite() { self.of_motion * way } else { 0.0 };
+        self.tolerance.max(self.rounding * bodies.reach).max(along)
+    }
 }
 
 /// Relative errors that are nobody's mistake.
@@ -70,6 +84,7 @@ pub fn ours(questions: &[Question], precision: &'static str, mut progress: impl 
     Witness {
         name: format!("ours {precision}"),
         tolerance: 0.0,
+        of_motion: 0.0,
         rounding: rounding(precision),
         is_measured: true,
         settings: "the defaults; shapes behind dyn SupportMap".to_owned(),
@@ -86,8 +101,8 @@ fn claim(question: &Object, answer: &Object) -> Claim {
 
 /// Answers out of a file: in its first line who answered, then one line for each question that was.
 ///
-/// `{"peer", "precision", "tolerance", "settings"}`, and then `{"id", "ns", …}` with the fields of the query format, or with
-/// `"error"` in their place. A question without a line was not asked.
+/// `{"peer", "precision", "tolerance", "of_motion", "settings"}`, where either tolerance may be left out, and then `{"id", "ns", …}`
+/// with the fields of the query format, or with `"error"` in their place. A question without a line was not asked.
 ///
 /// # Errors
 /// What is wrong with the file, as a sentence.
@@ -112,13 +127,15 @@ pub fn from_file(path: &Path, questions: &[Question]) -> Result<Witness, String>
         }
         Reply::Answer { claim, ns: answer.get("ns").and_then(Value::as_f64).unwrap_or(f64::NAN) }
     };
+    let number = |field: &str| head.get(field).and_then(Value::as_f64).unwrap_or(0.0);
     let word = |field: &str| head.get(field).and_then(Value::as_str).unwrap_or_default().to_owned();
     if word("peer").is_empty() {
         return Err(format!("{}: the first line does not say who the peer is", path.display()));
     }
     Ok(Witness {
         name: word("peer"),
-        tolerance: head.get("tolerance").and_then(Value::as_f64).unwrap_or(0.0),
+        tolerance: number("tolerance"),
+        of_motion: number("of_motion"),
         rounding: rounding(&word("precision")),
         is_measured: false,
         settings: word("settings"),
@@ -145,7 +162,7 @@ mod tests {
             question("d", "ray_cast"),
         ];
         let file = std::env::temp_dir().join(format!("answers-{}.jsonl", std::process::id()));
-        let lines = r#"{"peer":"someone 1.0","precision":"f32","tolerance":0.005,"settings":"as they come"}
+        let lines = r#"{"peer":"someone 1.0","precision":"f32","tolerance":0.005,"of_motion":1e-4,"settings":"as they come"}
 {"id":"c","error":"it gave up"}
 {"id":"b","overlap":true,"ns":12.5}
 
@@ -154,8 +171,9 @@ mod tests {
         fs::write(&file, lines).expect("a file");
         let read = from_file(&file, &questions);
         fs::remove_file(&file).expect("it was there");
-        let Witness { name, tolerance, rounding, is_measured, replies, .. } = read.expect("answers");
-        assert_eq!((name.as_str(), tolerance, rounding, is_measured), ("someone 1.0", 0.005, 1e-4, false));
+        let Witness { name, tolerance, of_motion, rounding, is_measured, replies, .. } = read.expect("answers");
+        assert_eq!((name.as_str(), tolerance, of_motion, rounding), ("someone 1.0", 0.005, 1e-4, 1e-4));
+        assert!(!is_measured, "it was asked some other time");
         let told = |k: usize| match replies[k] {
             Reply::Answer { claim, ns } => Some((claim.flag, claim.scalar, ns.is_finite())),
             _ => None,

@@ -72,6 +72,7 @@ impl Library {
         Witness {
             name: self.name.to_owned(),
             tolerance: self.tolerance,
+            of_motion: 0.0,
             rounding: rounding("f32"),
             is_measured: true,
             settings: self.settings.to_owned(),
