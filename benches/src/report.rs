@@ -79,7 +79,7 @@ Geometric means of ratios of times: below 1 ours is faster. A row is a shape or 
 other library that answers all of a row rightly in the same precision: parry's GJK, parry as its users call it, and in `f32`
 Box3D or Jolt. Rows that ours or everybody else gets wrong are counted and not compared; parry's GJK is compared whatever it answers.
 Ours are the defaults, but for the two lines of `line_crossing`, the closed form alone, which are not among all rows.
-[benches/README.md](../benches/README.md) says what is asked and what is wrong. Depths, bodies that turn, coal and MuJoCo are in
+[benches/README.md](../benches/README.md) says what is asked and what is wrong. Depths, bodies that turn, coal, MuJoCo, FCL and the IPC toolkit are in
 [judge.md](judge.md).
 
 ";

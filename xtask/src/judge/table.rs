@@ -199,20 +199,24 @@ impl Report<'_> {
 /// How to make the table again.
 const COMMANDS: &str = "\
 ```sh
-cargo xtask judge --each 100 --questions target/questions.jsonl
-benches/peers/coal_answers.py target/questions.jsonl target/coal.jsonl        # after: pip install -r benches/peers/requirements.txt
-benches/peers/mujoco_answers.py target/questions.jsonl target/mujoco.jsonl
+cargo xtask judge --each 100 --questions target/judge/questions.jsonl
+python3 -m venv target/venv && target/venv/bin/pip install -r benches/peers/requirements.txt
+for peer in coal fcl ipctk mujoco; do
+    target/venv/bin/python benches/peers/${peer}_answers.py target/judge/questions.jsonl target/judge/$peer.jsonl
+done
+target/venv/bin/python benches/peers/ipctk_answers.py --ccd tight-inclusion target/judge/questions.jsonl target/judge/ipctk-ti.jsonl
 cargo run --release -p studies --features peers,box3d,jolt -- judge --each 100 \\
-    --answers target/coal.jsonl --answers target/mujoco.jsonl                 # --record writes this note
+    --answers target/judge/{coal,mujoco,fcl,ipctk,ipctk-ti}.jsonl   # --record writes this note
 ```
 
-`cargo xtask judge` is the last without Box3D and Jolt, which take a C++ compiler and cmake.
+The IPC toolkit takes a few minutes, the others seconds. `cargo xtask judge` is the last command without Box3D and Jolt, which take a \
+C++ compiler and cmake.
 
 Claims that are disproved are written with their questions and what shows it to `target/judge/disproved.jsonl`.";
 
 /// What was checked without any of this.
 const BY_HAND: &str = "
-## Three claims, checked by hand
+## Six claims, checked by hand
 
 Of parry 0.31.1, without a bracket of ours:
 
@@ -220,14 +224,22 @@ Of parry 0.31.1, without a bracket of ours:
 positive discriminant, the line passes the ball's centre at 0.2517 of its radius, and the ray enters at λ = 0.80328. Squares of such numbers, squared, are beyond `f32`.
 - *turning cast*, `ball-cuboid/320` (`--each 50` asks it), in `f32`: a miss. At t = 0.4508 the centre of the ball, in coordinates of the turned box, is 0.92716 from the box, less than its radius of 1.
 - *suite: depth*, `signed_distance/1`, in `f64`: apart by 7.1e-8. The centre of the box is within the cylinder, at 0.02 of its half height and 0.13 of its radius; both bodies are some 1e-6 large.
+
+Of FCL 0.7.0, of bodies that its own `collide` finds overlapping when they are put there:
+
+- *linear cast*, `capsule-capsule/880`: a miss. At t = 0.48096 the axes of the capsules are 0.35998 apart at most, as points of theirs \
+show; the sum of the radii is 0.75.
+- *linear cast*, `hull16-hull16/1840`: a miss. At t = 0.52559 both hulls have the point (0.30389, -0.34808, 0.30753) inside: it is a mean of the \
+corners of either, each with a weight of 0.004 at least.
+- *suite: linear cast*, `linear_cast/39`: a miss. At t = 7.53517 the centre of the ball, of radius 1.1608, is that of the box.
 ";
 
 /// What the columns are.
 const INTRODUCTION: &str = "\
 Every answer is held against a bracket that is proved by geometry, not against an answer of ours. *Right*: within what is allowed, a \
-length: the tolerance that the library documents, or the rounding of the precision, whichever is more. *Off*: the hit, miss, overlap or \
+length: the tolerance that the library documents, for some a part of the motion, or the rounding of the precision, whichever is most. *Off*: the hit, miss, overlap or \
 gap is as said, its time or length is not. *Disproved*: a hit, miss, overlap or gap that is shown not to be, by more than is allowed: \
 bodies that are apart at the time of a claimed hit, that are deep in one another on the way of a claimed miss. *No answer*: an error. \
-*Open*: the bracket did not close. Shapes that a library does not have are not asked of it. An error is a length in parts of the reach of \
+*Open*: the bracket did not close. Shapes that a library does not have are not asked of it, nor what its documentation leaves undefined. An error is a length in parts of the reach of \
 the scene, the distance from the origin of the farthest corner of a body's box: of a time, how far the bodies are from touching then, or how far they \
 moved on since they did.";

@@ -17,7 +17,7 @@ pub struct Mark {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Group {
     pub name: String,
-    /// Which of eight colours.
+    /// Which of the colours.
     pub colour: usize,
     pub is_hollow: bool,
 }

@@ -52,8 +52,11 @@ const LEGEND_ROW: f64 = 20.0;
 const LETTER: f64 = 7.2;
 
 /// Colours that can be told apart, also by the colour-blind (after Okabe and Ito). A page may replace them by its custom
-/// properties `--c0` to `--c7`, such as brighter ones on a dark ground.
-const COLOURS: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b8860b", "#3a9bd9", "#7a5195", "#6f6f6f"];
+/// properties `--c0` to `--c11`, such as brighter ones on a dark ground.
+const COLOURS: [&str; 12] = [
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b8860b", "#3a9bd9", "#7a5195", "#6f6f6f", "#8b4513", "#b0123b",
+    "#3d49b5", "#66760f",
+];
 
 impl Plot {
     /// The plot as an `<svg>` element.

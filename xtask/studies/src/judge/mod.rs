@@ -21,7 +21,7 @@ use xtask::validate::{begin_progress, end_progress};
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Scope {
     /// Answers of somebody else to the questions that `--questions` writes; `benches/peers/` has programs that give them.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", num_args = 1..)]
     answers: Vec<PathBuf>,
     /// Write the questions as a query file, and end.
     #[arg(long, value_name = "FILE")]
@@ -79,7 +79,8 @@ fn judge(scope: &Scope) -> Result<bool, String> {
 fn write_questions(file: &Path, questions: &[Question]) -> Result<(), String> {
     let line = |question: &Question| serde_json::to_string(&question.object).unwrap_or_default() + "\n";
     let text: String = questions.iter().map(line).collect();
-    fs::write(file, text).map_err(|why| format!("cannot write {}: {why}", file.display()))
+    let folder = file.parent().unwrap_or(Path::new(""));
+    fs::create_dir_all(folder).and_then(|()| fs::write(file, text)).map_err(|why| format!("cannot write {}: {why}", file.display()))
 }
 
 /// Who answers, in the order of the table.
