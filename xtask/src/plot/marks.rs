@@ -159,6 +159,8 @@ fn named(places: &[[f64; 2]], widths: &[f64], size: [f64; 2]) -> Vec<Area> {
         let others = |areas: &[Area]| areas.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, a)| *a).collect();
         let taken: Vec<Area> = marks.iter().copied().chain::<Vec<Area>>(others(&names)).collect();
         let beside: Vec<Area> = others(&marks);
+        let tied = |(i, name): (usize, &Area)| if i == k { None } else { Some((places[i], tie(places[i], *name)?)) };
+        let ties: Vec<_> = names.iter().enumerate().filter_map(tied).collect();
         let cost = |area: &Area| {
             let covered = taken.iter().filter(|other| overlap(*area, **other)).count();
             let away = distance(places[k], *area);
@@ -168,7 +170,8 @@ fn named(places: &[[f64; 2]], widths: &[f64], size: [f64; 2]) -> Vec<Area> {
                 let passed = beside.iter().chain(taken.iter().skip(marks.len()));
                 passed.filter(|other| crosses(places[k], to, **other)).count()
             });
-            away + 1000.0 * covered as f64 + 60.0 * crossed as f64 + 30.0 * near as f64
+            let struck = ties.iter().filter(|(from, to)| crosses(*from, *to, *area)).count();
+            away + 1000.0 * covered as f64 + 60.0 * (crossed + struck) as f64 + 30.0 * near as f64
         };
         let best = candidates(places[k], widths[k], size).into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
         let best = best.unwrap_or([places[k][0] + 7.0, places[k][1], places[k][0] + 7.0 + widths[k], places[k][1]]);

@@ -138,8 +138,11 @@ impl Frame {
     /// Grid, ticks and titles of both axes. The vertical one is titled above its end, where it can be read without turning.
     fn axes(&self, svg: &mut String, titles: [&str; 2], floored: bool) {
         let [right, bottom] = [self.size[0] - RIGHT, self.size[1] - BOTTOM];
-        for (value, label) in self.x.ticks() {
+        let ticks = self.x.ticks();
+        let every = labelled(&ticks, (right - LEFT) / (ticks.len() - 1).max(1) as f64);
+        for (i, (value, label)) in ticks.into_iter().enumerate() {
             let at = self.px(value);
+            let label = if i % every == 0 { label } else { String::new() };
             let _ = writeln!(
                 svg,
                 "<path d=\"M{at:.1} {TOP}V{bottom}\" stroke=\"currentColor\" stroke-opacity=\".13\"/>\
@@ -179,6 +182,12 @@ impl Frame {
     fn py(&self, value: f64) -> f64 {
         self.size[1] - BOTTOM - self.y.part(value.max(self.floor)) * (self.size[1] - TOP - BOTTOM)
     }
+}
+
+/// Which of ticks at this distance are labelled, so that no label touches the next: all, every second, and so on.
+fn labelled(ticks: &[(f64, String)], spacing: f64) -> usize {
+    let longest = ticks.iter().map(|(_, label)| label.chars().count()).max().unwrap_or(0);
+    ((LETTER * longest as f64 + 4.0) / spacing).ceil().max(1.0) as usize
 }
 
 fn draw(svg: &mut String, series: &Series, frame: &Frame) {
@@ -397,6 +406,13 @@ mod tests {
         assert_eq!((axis.from, axis.to, axis.tick), (0.0, 5.0, 0.5), "whole ticks around the values");
         let labels: Vec<String> = axis.ticks().into_iter().map(|(_, label)| label).collect();
         assert_eq!((labels[0].as_str(), labels[10].as_str()), ("0.0", "5.0"), "{labels:?}");
+    }
+
+    #[test]
+    fn labels_do_not_touch() {
+        let ticks = Axis::around(Scale::Time, [50.0, 5e7].into_iter()).ticks();
+        assert_eq!(ticks.len(), 8, "the decades from 10 ns to 100 ms: {ticks:?}");
+        assert_eq!([100.0, 45.0, 20.0].map(|spacing| labelled(&ticks, spacing)), [1, 2, 3], "all, or some");
     }
 
     #[test]

@@ -80,7 +80,9 @@ fn write_questions(file: &Path, questions: &[Question]) -> Result<(), String> {
     let line = |question: &Question| serde_json::to_string(&question.object).unwrap_or_default() + "\n";
     let text: String = questions.iter().map(line).collect();
     let folder = file.parent().unwrap_or(Path::new(""));
-    fs::create_dir_all(folder).and_then(|()| fs::write(file, text)).map_err(|why| format!("cannot write {}: {why}", file.display()))
+    fs::create_dir_all(folder)
+        .and_then(|()| fs::write(file, text))
+        .map_err(|why| format!("cannot write {}: {why}", file.display()))
 }
 
 /// Who answers, in the order of the table.
