@@ -12,15 +12,19 @@ use crate::unit::{power_of_two_near, reciprocal_of_power};
 /// What the normal may be wrong by, in units of the rounding of the points that it is computed from.
 const TILT: f64 = 64.0;
 
-/// The largest angle that a normal is taken to be wrong by: beyond it, looking nearby would see other features.
+/// The largest angle that a normal is taken to be wrong by: beyond it, features that lean by it would be called parallel. And the largest
+/// within which features are tried that may hold the normal, in how many rounds, each of which looks within a part of the last.
 const LARGEST_TILT: f64 = 1e-3;
+const LARGEST_REACH: f64 = 0.03;
+const ROUNDS: usize = 4;
+const NEARER: f64 = 1.0 / 16.0;
 
 /// How far a direction is turned to see which curve an edge between two of them belongs to, and where a support point goes, in units
 /// of the square root of ε.
 const TURN: f64 = 16.0;
 
 /// The longest step of the unit normal that is one of refinement, and how many are made.
-const LONGEST_STEP: f64 = 1e-2;
+const LONGEST_STEP: f64 = 0.1;
 const MAX_STEPS: usize = 5;
 
 /// By how much a support point may differ from where its curvature foretells it, as a part of how far that moves.
@@ -72,6 +76,8 @@ pub(super) struct Closest<V: Vector> {
     pub(super) signed_distance: V::Scalar,
     /// By how much the signed distance may be wrong.
     pub(super) error: V::Scalar,
+    /// Whether the normal is that of bodies somewhere near, as that of a hit is of a time near it.
+    pub(super) is_near: bool,
 }
 
 impl<V: Vector> ClosestFeatures<V> {
@@ -88,11 +94,11 @@ impl<V: Vector> ClosestFeatures<V> {
         let bodies = Bodies { a, b, cores, unit: power_of_two_near(size + closest.signed_distance.abs()) };
         let tilt = tilt(size, gap, closest.error);
         // The normal of polytopes that are apart is that of their closest points, and of those that overlap that of a face. Where they touch, it is
-        // as good as a search knows it.
+        // as good as a search knows it, and so it is where the search ended early.
         let is_curved = cores.iter().any(|core| matches!(core.kind, CoreKind::Curved));
-        let is_touching = gap.abs() <= size * V::Scalar::EPSILON * V::Scalar::from_f64(TILT);
-        let mut features = if is_curved || is_touching {
-            bodies.refined(bodies.settled(closest, tilt, reach(size, gap, closest.error)), closest)
+        let is_exact = !closest.is_near && gap.abs() > size * rounding() && closest.error <= size * rounding();
+        let mut features = if is_curved || !is_exact {
+            bodies.settled(closest, tilt, reach(size, gap, closest.error))
         } else {
             bodies.at(closest, tilt)
         };
@@ -117,7 +123,7 @@ impl<V: Vector> ClosestFeatures<V> {
     /// the sizes of both bodies, and how far the features of curved bodies move as the normal turns by what it may be wrong by.
     pub(super) fn slack(&self) -> V::Scalar {
         let world = self.middle.abs().max_element() / self.unit;
-        let rounding = V::Scalar::from_f64(TILT) * Scalar::EPSILON * (world + V::Scalar::from_f64(2.0));
+        let rounding = rounding::<V::Scalar>() * (world + V::Scalar::from_f64(2.0));
         let [a, b] = self.hessians.map(|hessian| hessian.a + hessian.d);
         rounding + self.tilt * (a + b)
     }
@@ -188,46 +194,83 @@ where
         }
     }
 
-    /// The features at the normal of an answer, which may be wrong by `reach`, or at one within that which an edge or a face holds.
+    /// The features at the normal of an answer, which may be wrong by `reach`, or at the one within that along which the features overlap, which is
+    /// the condition of the closest points.
     ///
-    /// A normal is the one if the features along it overlap, which is the condition of the closest points; so what is seen within reach
-    /// is tried: the normal across it, along which the features are to be the same to within `tilt`.
+    /// What is seen within reach is tried: the normal across it. Where that is none, as where the answer is at an edge of a face that is seen,
+    /// what is seen within less is tried.
     fn settled(
         &self,
         closest: Closest<A::Vector>,
         tilt: ScalarOf<A>,
         reach: ScalarOf<A>,
     ) -> ClosestFeatures<A::Vector> {
-        let seen = self.at(closest, reach);
-        if seen.spans == [Span::Vertex; 2] {
-            // As they are within less.
-            return ClosestFeatures { tilt, ..seen };
+        let mut within = reach;
+        for _ in 0..ROUNDS {
+            // NaN ends this too.
+            if !(within > tilt) {
+                break;
+            }
+            let seen = self.at(closest, within);
+            let are_vertices = seen.spans == [Span::Vertex; 2];
+            // Vertices are so within less.
+            let held =
+                if are_vertices { Some(ClosestFeatures { tilt, ..seen }) } else { self.held(closest, seen, reach) };
+            if let Some(found) = held.and_then(|held| self.refined(held, closest)) {
+                return found;
+            }
+            if are_vertices {
+                break;
+            }
+            within *= Scalar::from_f64(NEARER);
         }
-        let rounding = ScalarOf::<A>::from_f64(TILT) * Scalar::EPSILON;
-        // A step of Newton's method leaves the square of what it takes away.
-        let left = rounding + reach * reach;
-        let held = |turn: A::Vector, tilt, sides: &[usize]| {
-            let is_near = turn.length() <= reach + reach;
-            let normal = (seen.normal + turn).unit().filter(|_| is_near)?;
-            let at = self.at(Closest { normal, ..closest }, tilt);
-            let is_kept = sides.iter().all(|&i| at.spans[i].kind() == seen.spans[i].kind());
-            (is_kept && !are_apart(&at.outlines, at.slack() + left)).then_some(at)
-        };
-        let settled = match seen.newton_step(self.cores.map(|core| core.radius)) {
-            Some(step) => held(step.turn, left, &[0, 1]),
-            // A face holds all of the normal, an edge a part.
-            None => [2, 1].into_iter().flat_map(|kind| [(kind, 0), (kind, 1)]).find_map(|(kind, i)| {
-                let turn = seen.out_of_plane(seen.spans[i].turn(&seen.outlines[i]));
-                if seen.spans[i].kind() == kind { held(turn, rounding, &[i]) } else { None }
-            }),
-        };
-        settled.unwrap_or_else(|| self.at(closest, tilt))
+        let seen = self.at(closest, tilt);
+        self.refined(seen.clone(), closest).unwrap_or(seen)
     }
 
-    /// Newton's method for the normal and the points, as long as the steps become shorter.
-    fn refined(&self, start: ClosestFeatures<A::Vector>, closest: Closest<A::Vector>) -> ClosestFeatures<A::Vector> {
-        let (mut best, mut length) = (start, ScalarOf::<A>::from_f64(LONGEST_STEP));
-        let tilt = ScalarOf::<A>::from_f64(TILT) * Scalar::EPSILON;
+    /// The features at a normal across which what is seen holds it, to rounding, if they overlap.
+    fn held(
+        &self,
+        closest: Closest<A::Vector>,
+        mut seen: ClosestFeatures<A::Vector>,
+        reach: ScalarOf<A>,
+    ) -> Option<ClosestFeatures<A::Vector>> {
+        let radii = self.cores.map(|core| core.radius);
+        let turned = |seen: &ClosestFeatures<A::Vector>, turn: A::Vector, tilt, sides: &[usize]| {
+            let normal = (seen.normal + turn).unit()?;
+            if !((normal - closest.normal).length() <= reach + reach) {
+                return None;
+            }
+            let at = self.at(Closest { normal, ..closest }, tilt);
+            let is_kept = sides.iter().all(|&i| at.spans[i].kind() == seen.spans[i].kind());
+            (is_kept && !are_apart(&at.outlines, at.slack() + tilt)).then_some(at)
+        };
+        for _ in 0..MAX_STEPS {
+            let Some(step) = seen.newton_step(radii) else {
+                // A face holds all of the normal, and of two edges that are parallel each a part.
+                let [a, b] = seen.spans.map(Span::kind);
+                return [0, 1].into_iter().filter(|&i| seen.spans[i].kind() == a.max(b)).find_map(|i| {
+                    turned(&seen, seen.out_of_plane(seen.spans[i].turn(&seen.outlines[i])), rounding(), &[i])
+                });
+            };
+            // A step of Newton's method leaves the square of what it takes away.
+            let left = step.turn.length() * step.turn.length();
+            seen = turned(&seen, step.turn, rounding::<ScalarOf<A>>() + left, &[0, 1])?;
+            if left <= rounding() {
+                return Some(seen);
+            }
+        }
+        None
+    }
+
+    /// Newton's method for the normal and the points, as long as the steps become shorter; `None` where it does not lead to points that are
+    /// opposite to each other, along the same features.
+    fn refined(
+        &self,
+        mut best: ClosestFeatures<A::Vector>,
+        closest: Closest<A::Vector>,
+    ) -> Option<ClosestFeatures<A::Vector>> {
+        let mut length = ScalarOf::<A>::from_f64(LONGEST_STEP);
         let least = ScalarOf::<A>::from_f64(0.25) * Scalar::EPSILON;
         let radii = self.cores.map(|core| core.radius);
         for _ in 0..MAX_STEPS {
@@ -241,7 +284,7 @@ where
             best.points = step.points;
             // An answer knows the distance to its tolerance; to that of rounding, it stays.
             let error = (step.signed_distance - best.signed_distance).abs();
-            if error > tilt {
+            if error > rounding() {
                 best.signed_distance = step.signed_distance;
             }
             // No shorter, or less than rounding: then the features are those along this normal, and where the points are.
@@ -249,15 +292,16 @@ where
             if size > length * Scalar::from_f64(0.5) || is_least {
                 break;
             }
-            let Some(normal) = (best.normal + step.turn).unit() else { break };
+            let normal = (best.normal + step.turn).unit()?;
             let signed_distance = best.signed_distance * self.unit;
-            let next = self.at(Closest { normal, points: step.points, signed_distance, ..closest }, tilt);
+            let next = self.at(Closest { normal, points: step.points, signed_distance, ..closest }, rounding());
             if next.spans.iter().zip(&best.spans).any(|(next, best)| next.kind() != best.kind()) {
-                break;
+                return None;
             }
             (best, length) = (next, size);
         }
-        best
+        let slack = best.slack();
+        (best.off() <= slack && !are_apart(&best.outlines, slack)).then_some(best)
     }
 
     /// Whether the support points nearby are where the Hessians say.
@@ -268,13 +312,17 @@ where
     }
 }
 
+/// What a normal is wrong by that is known to rounding.
+fn rounding<S: Scalar>() -> S {
+    S::EPSILON * S::from_f64(TILT)
+}
+
 /// What the normal may be wrong by: the rounding of the points it is computed from, as seen over the gap between the cores, and what
 /// the distance may be wrong by, as seen over the size of the bodies.
 fn tilt<S: Scalar>(size: S, gap: S, error: S) -> S {
-    let rounding = S::EPSILON * S::from_f64(TILT);
-    let magnified = if gap > S::ZERO { rounding * (size / gap) } else { S::ZERO };
+    let magnified = if gap > S::ZERO { rounding::<S>() * (size / gap) } else { S::ZERO };
     let open = if error.is_finite() { error / size * S::from_f64(4.0) } else { S::ZERO };
-    (rounding + magnified + open).min(S::from_f64(LARGEST_TILT))
+    (rounding::<S>() + magnified + open).min(S::from_f64(LARGEST_TILT))
 }
 
 /// What the normal between curved bodies may be wrong by. Of two cores `g` apart the closest vector `v` is nearer to any other `w` that a
@@ -283,7 +331,7 @@ fn tilt<S: Scalar>(size: S, gap: S, error: S) -> S {
 fn reach<S: Scalar>(size: S, gap: S, error: S) -> S {
     let error = error.max(S::EPSILON * size * S::from_f64(4.0));
     let over = if gap > S::ZERO { gap } else { size * S::from_f64(1.0 / 16.0) };
-    (error / over * S::from_f64(2.0)).sqrt().min(S::from_f64(LARGEST_TILT))
+    (error / over * S::from_f64(2.0)).sqrt().min(S::from_f64(LARGEST_REACH))
 }
 
 /// How far a direction is turned to look nearby.

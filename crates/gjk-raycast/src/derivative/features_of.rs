@@ -37,7 +37,11 @@ impl<V: Vector> Distance<V> {
     {
         let error = self.upper - self.lower;
         let (points, signed_distance) = ([self.point_a, self.point_b], self.distance);
-        Some(ClosestFeatures::new(a, b, Closest { normal: self.normal?, points, signed_distance, error }))
+        Some(ClosestFeatures::new(
+            a,
+            b,
+            Closest { normal: self.normal?, points, signed_distance, error, is_near: false },
+        ))
     }
 }
 
@@ -60,7 +64,8 @@ impl<V: Vector> SignedDistance<V> {
         B: SupportMap<Vector = V> + ?Sized,
     {
         let &Self { normal, signed_distance, point_a, point_b, lower, upper, .. } = self;
-        let closest = Closest { normal, points: [point_a, point_b], signed_distance, error: upper - lower };
+        let closest =
+            Closest { normal, points: [point_a, point_b], signed_distance, error: upper - lower, is_near: false };
         let mut features = ClosestFeatures::new(a, b, closest);
         let (core_a, core_b) = (a.core(), b.core());
         // By the lower bound, since cores that touch may seem a rounding apart.
@@ -229,7 +234,7 @@ where
     // What is not on purpose is what the time or the normal are wrong by.
     let [apart, error] = if gap > little(size) { [gap, zero] } else { [zero, gap.abs()] };
     let points = [point + normal * apart, point];
-    Some(ClosestFeatures::new(&a, &b, Closest { normal, points, signed_distance: apart, error }))
+    Some(ClosestFeatures::new(&a, &b, Closest { normal, points, signed_distance: apart, error, is_near: true }))
 }
 
 /// A body where it is at a time.

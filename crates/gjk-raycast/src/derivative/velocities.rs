@@ -17,6 +17,7 @@
 //! An edge so takes one unknown of `n′` and gives `λ`; a face, or two edges that cross, take both.
 
 use convex_support::{AngularVelocity as _, Scalar, Vector};
+use num_traits::Float as _;
 
 use super::ClosestFeatures;
 use super::span::{Joint, Side};
@@ -92,6 +93,17 @@ impl<V: Vector> ClosestFeatures<V> {
         let point_b = place(sum(b.at, slide_b), b.height) + self.normal * radii[1];
         let signed_distance = a.height - b.height - (radii[0] + radii[1]) / self.unit;
         Some(NewtonStep { turn: self.out_of_plane(change), points: [point_a, point_b], signed_distance })
+    }
+
+    /// How far the closest points are from being opposite to each other, where the features leave them no choice.
+    pub(super) fn off(&self) -> V::Scalar {
+        let [a, b] = [0, 1].map(|i| self.outlines[i].corners[0].at);
+        let r = (a.0 - b.0, a.1 - b.1);
+        match self.joint() {
+            Some(Joint::None) => dot(r, r).sqrt(),
+            Some(Joint::Edge(_, e)) => cross(e, r).abs(),
+            _ => V::Scalar::ZERO,
+        }
     }
 
     /// The coordinates of a vector across the normal.

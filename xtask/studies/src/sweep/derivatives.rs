@@ -5,12 +5,15 @@
 //! distance `s(t, θ)` vanishes, so that `dt = −(∂s/∂θ)/(∂s/∂t)`, of which both are differences. There `‖x − y‖` has no derivative, and so `a` is
 //! held off by a shift along the normal, with which both derivatives stay what they are.
 //!
+//! A distance is known to a few ε, and so the time of a hit to that over the closing speed `|∂s/∂t|`, whatever computes it. What the derivative is at the
+//! times that this leaves open is all right: near grazing it changes with the square of one over the closing speed.
+//!
 //! Left out, and counted, is what has no difference: near an edge or a face, or within a needle's tip of it.
 
 use convex_support::glam::{DVec3, Vec3A};
 use convex_support::{AngularVelocity, Scalar, Vector3};
 use gjk_raycast::{
-    DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastOptions, RigidMotion,
+    ClosestFeatures, DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastOptions, RigidMotion,
     SignedDistanceOptions, Smoothness, distance, linear_cast, motion_cast, ray_cast, signed_distance,
 };
 use workloads::real::{DoubleDouble, Real};
@@ -78,6 +81,24 @@ enum Judged {
         error: f64,
         second: Option<f64>,
     },
+}
+
+/// What rounding makes of a distance of bodies of a size about one and as far from zero, in units of ε.
+const ROUNDING: f64 = 16.0;
+
+impl Judged {
+    /// By the derivatives of the distance at a time, by the change and by the time: how far off a derivative of the time of a hit is from what it is at the
+    /// times that rounding leaves open.
+    fn of_hit<V: Vector3>(ours: f64, time: f64, slopes: impl Fn(f64) -> Option<[f64; 2]>) -> Self {
+        let Some([by_change, by_time]) = slopes(time) else { return Self::Irregular };
+        let truth = -by_change / by_time;
+        let open = ROUNDING * V::Scalar::EPSILON.as_f64() / by_time.abs();
+        let others = [time - open, time + open].map(|t| slopes(t).map_or(truth, |[s, t]| -s / t));
+        let [least, most] = others.into_iter().fold([truth; 2], |[l, m], x| [l.min(x), m.max(x)]);
+        // NaN is no number between them.
+        let nearest = if ours > most { most } else { least.max(ours.min(most)) };
+        Self::Compared { error: (ours - nearest).abs() / (1.0 + truth.abs()), second: None }
+    }
 }
 
 /// A velocity, an angular velocity and a centre, whose numbers are numbers of the precision asked.
@@ -246,13 +267,15 @@ impl Case {
         let still = Rigid { angular_velocity: [0.0; 3], ..self.motions[0] };
         let rates = Rigid { angular_velocity: [0.0; 3], center: [0.0; 3], ..self.rates[0] };
         let shift = Rigid { angular_velocity: [0.0; 3], velocity: self.changes[0].velocity, ..still };
-        let [first, by_time] = differences(
-            normal,
-            hit.lambda,
-            |h, time| still.changed(&rates, h).of(&shift.of(&tip, DoubleDouble::from(h)), time),
-            |h, _| self.changes[1].of(&local, DoubleDouble::from(h)),
-        );
-        let (Some(first), Some(by_time)) = (first, by_time) else { return Judged::Irregular };
+        let (time, changes) = (hit.lambda, self.changes);
+        let slopes = |time: f64| {
+            differences(
+                normal,
+                time,
+                |h, time| still.changed(&rates, h).of(&shift.of(&tip, DoubleDouble::from(h)), time),
+                |h, _| changes[1].of(&local, DoubleDouble::from(h)),
+            )
+        };
 
         let target = self.b.build::<V>();
         let ray = Ray { source: vector(source), direction: vector(direction) };
@@ -264,7 +287,7 @@ impl Case {
         let ours = gradient.target.along(self.changes[1].motion()).as_f64()
             + along(gradient.source, shift.velocity)
             + along(gradient.direction, rates.velocity);
-        Judged::Compared { error: off(ours, -first / by_time), second: None }
+        Judged::of_hit::<V>(ours, time, slopes)
     }
 
     fn of_linear_cast<V: Vector3>(&self) -> Judged {
@@ -280,11 +303,8 @@ impl Case {
         }
         let motions = self.motions.map(|motion| Rigid { angular_velocity: [0.0; 3], ..motion });
         let rates = self.rates.map(|rate| Rigid { angular_velocity: [0.0; 3], center: [0.0; 3], ..rate });
-        let points = [features.point_a(), features.point_b()].map(|p| p.to_array());
-        let Some([first, by_time]) = self.at_hit(&motions, &rates, points, features.normal().to_array(), hit.time)
-        else {
-            return Judged::Irregular;
-        };
+        let Some(slopes) = self.slopes(motions, rates, &features, hit.time) else { return Judged::Irregular };
+        let time = hit.time;
 
         let (a, b) = (self.a.build::<V>(), self.b.build::<V>());
         let motion = Motion { velocity_a: vector(velocities[0]), velocity_b: vector(velocities[1]) };
@@ -297,7 +317,7 @@ impl Case {
             + gradient.pose_b.along(self.changes[1].motion()).as_f64()
             + dot(coordinates(gradient.velocity_a), rates[0].velocity)
             + dot(coordinates(gradient.velocity_b), rates[1].velocity);
-        Judged::Compared { error: off(ours, -first / by_time), second: None }
+        Judged::of_hit::<V>(ours, time, slopes)
     }
 
     fn of_motion_cast<V: Vector3>(&self) -> Judged {
@@ -310,11 +330,8 @@ impl Case {
         if features.smoothness() == Smoothness::Edge || hit.time == 0.0 {
             return Judged::Irregular;
         }
-        let points = [features.point_a(), features.point_b()].map(|p| p.to_array());
-        let normal = features.normal().to_array();
-        let Some([first, by_time]) = self.at_hit(&self.motions, &self.rates, points, normal, hit.time) else {
-            return Judged::Irregular;
-        };
+        let Some(slopes) = self.slopes(self.motions, self.rates, &features, hit.time) else { return Judged::Irregular };
+        let time = hit.time;
 
         let (a, b) = (self.a.build::<V>(), self.b.build::<V>());
         let [ma, mb] = self.motions.map(|motion| motion.motion::<V>());
@@ -335,27 +352,29 @@ impl Case {
                 + dot(coordinates(by.center), rate.center)
                 + dot(turn, rate.angular_velocity);
         }
-        Judged::Compared { error: off(ours, -first / by_time), second: None }
+        Judged::of_hit::<V>(ours, time, slopes)
     }
 
-    /// The derivatives of the distance at a hit: by the changes of poses and motions together, and by the time.
-    fn at_hit(
+    /// The derivatives of the distance at times near a hit: by the changes of poses and motions together, and by the time.
+    fn slopes(
         &self,
-        motions: &[Rigid; 2],
-        rates: &[Rigid; 2],
-        points: [Vec3; 2],
-        normal: Vec3,
+        motions: [Rigid; 2],
+        rates: [Rigid; 2],
+        features: &ClosestFeatures<DVec3>,
         time: f64,
-    ) -> Option<[f64; 2]> {
-        let [p, n] = motions[0].back(points[0], normal.map(|c| -c), time);
-        let a = Local::new(&self.a, p, n)?;
-        let [p, n] = motions[1].back(points[1], normal, time);
-        let b = Local::new(&self.b, p, n)?;
-        let at = |i: usize, body: &Local, h: f64, time| {
-            motions[i].changed(&rates[i], h).of(&self.changes[i].of(body, DoubleDouble::from(h)), time)
+    ) -> Option<impl Fn(f64) -> Option<[f64; 2]>> {
+        let normal = features.normal().to_array();
+        let local = |i: usize, solid: &Solid, point: DVec3, outward: Vec3| {
+            let [p, n] = motions[i].back(point.to_array(), outward, time);
+            Local::new(solid, p, n)
         };
-        let [first, by_time] = differences(normal, time, |h, time| at(0, &a, h, time), |h, time| at(1, &b, h, time));
-        Some([first?, by_time?])
+        let a = local(0, &self.a, features.point_a(), normal.map(|c| -c))?;
+        let b = local(1, &self.b, features.point_b(), normal)?;
+        let changes = self.changes;
+        let at = move |i: usize, body: &Local, h: f64, time| {
+            motions[i].changed(&rates[i], h).of(&changes[i].of(body, DoubleDouble::from(h)), time)
+        };
+        Some(move |time| differences(normal, time, |h, time| at(0, &a, h, time), |h, time| at(1, &b, h, time)))
     }
 }
 
@@ -365,15 +384,15 @@ fn differences(
     time: f64,
     a: impl Fn(f64, DoubleDouble) -> Local,
     b: impl Fn(f64, DoubleDouble) -> Local,
-) -> [Option<f64>; 2] {
+) -> Option<[f64; 2]> {
     let shift = scale(wide(normal), DoubleDouble::from(SHIFT));
     let zero = wide([0.0; 3]);
     let held = |h, time| [a(h, time).moved(zero, zero, shift), b(h, time)];
     let now = DoubleDouble::from(time);
     let [at_a, at_b] = held(0.0, now);
-    let Some(stationary) = Stationary::new(&at_a, &at_b, 1.0) else { return [None; 2] };
+    let stationary = Stationary::new(&at_a, &at_b, 1.0)?;
     let distance = |[a, b]: [Local; 2]| stationary.distance(&a, &b);
-    [slope(|h| distance(held(h, now))), slope(|h| distance(held(0.0, now + DoubleDouble::from(h))))]
+    Some([slope(|h| distance(held(h, now)))?, slope(|h| distance(held(0.0, now + DoubleDouble::from(h))))?])
 }
 
 fn tight() -> SignedDistanceOptions<DVec3> {
