@@ -96,8 +96,10 @@ impl<V: Vector> ClosestFeatures<V> {
         // The normal of polytopes that are apart is that of their closest points, and of those that overlap that of a face. Where they touch, it is
         // as good as a search knows it, and so it is where the search ended early.
         let is_curved = cores.iter().any(|core| matches!(core.kind, CoreKind::Curved));
-        let is_exact = !closest.is_near && gap.abs() > size * rounding() && closest.error <= size * rounding();
-        let mut features = if is_curved || !is_exact {
+        // NaN is nowhere near.
+        let least = size * rounding();
+        let is_searched = closest.is_near || gap.abs() <= least || closest.error > least;
+        let mut features = if is_curved || is_searched {
             bodies.settled(closest, tilt, reach(size, gap, closest.error))
         } else {
             bodies.at(closest, tilt)
@@ -271,7 +273,7 @@ where
         closest: Closest<A::Vector>,
     ) -> Option<ClosestFeatures<A::Vector>> {
         let mut length = ScalarOf::<A>::from_f64(LONGEST_STEP);
-        let least = ScalarOf::<A>::from_f64(0.25) * Scalar::EPSILON;
+        let least = ScalarOf::<A>::from_f64(4.0) * Scalar::EPSILON;
         let radii = self.cores.map(|core| core.radius);
         for _ in 0..MAX_STEPS {
             let Some(step) = best.newton_step(radii) else { break };
@@ -288,7 +290,7 @@ where
                 best.signed_distance = step.signed_distance;
             }
             // No shorter, or less than rounding: then the features are those along this normal, and where the points are.
-            let is_least = size <= least && shifts[0].max(shifts[1]) <= self.unit * ScalarOf::<A>::EPSILON;
+            let is_least = size <= least && shifts[0].max(shifts[1]) <= self.unit * least;
             if size > length * Scalar::from_f64(0.5) || is_least {
                 break;
             }

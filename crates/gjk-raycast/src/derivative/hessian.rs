@@ -3,7 +3,8 @@
 use convex_support::{AngularVelocity, Scalar, Vector};
 
 use super::ClosestFeatures;
-use super::velocities::{Motions, Moved};
+use super::velocities::{Shifted, Solver};
+use crate::symmetric::{Across, dot};
 
 /// The coordinates of a pose: three of a translation and three of a rotation in space, two and one in the plane.
 const MAX: usize = 6;
@@ -83,10 +84,6 @@ impl<V: Vector> MotionHessian<V> {
     }
 }
 
-/// What a change of one coordinate of the pose of a body does to the first derivatives by both poses: a row of second derivatives
-/// each.
-type Row<S> = [S; MAX];
-
 impl<V: Vector> ClosestFeatures<V> {
     /// The second derivatives of the signed distance by the poses of both bodies, each turned about a centre of the caller's; `None`
     /// where there are no [`velocities`](Self::velocities).
@@ -97,7 +94,8 @@ impl<V: Vector> ClosestFeatures<V> {
     /// > Q(θ) = (n′, (a − c) × n′ + (a′ − δ) × n),
     ///
     /// with `δ` the translation if `θ` is one of `a` itself, which takes the centre `c` along; and those of `b` likewise by the force `−n`
-    /// at the point `b`. By the poses of both bodies that is the Hessian, by the pose of one it is `(Q + Qᵀ)/2`.
+    /// at the point `b`. By the poses of both bodies that is the Hessian, by the pose of one it is `(Q + Qᵀ)/2`. Along a coordinate `φ`, which moves the
+    /// material point by `v` and turns the normal by `t = ω × n`, it is `Q(θ)·φ = n′·v − (a′ − δ)·t`, of which both are across the normal.
     ///
     /// It is as accurate as the normal and the points, times the condition of the bodies: what turning a needle would do with the
     /// normal held is mostly taken back by the normal.
@@ -117,21 +115,13 @@ impl<V: Vector> ClosestFeatures<V> {
     /// ```
     #[must_use]
     pub fn hessian(&self, center_a: V, center_b: V) -> Option<PairHessian<V>> {
-        let centers = [center_a, center_b];
         let solver = self.solver()?;
-        // By two coordinates of `a`, by two of `b`, and by one of `a` and one of `b`.
-        let mut rows = [[[V::Scalar::ZERO; MAX]; 3]; MAX];
-        for (i, [by_a, by_b, mixed]) in rows.iter_mut().enumerate().take(MotionHessian::<V>::SIZE) {
-            let (of_a, of_b) = (self.coordinate(0, i, center_a), self.coordinate(1, i, center_b));
-            let (moved_by_a, moved_by_b) = (solver.moved(of_a.motions), solver.moved(of_b.motions));
-            *by_a = self.row(0, centers, &moved_by_a, of_a.translation);
-            *by_b = self.row(1, centers, &moved_by_b, of_b.translation);
-            *mixed = self.row(1, centers, &moved_by_a, V::ZERO);
-        }
+        let coordinates = [self.coordinates(0, center_a), self.coordinates(1, center_b)];
+        let [by_a, by_b] = [0, 1].map(|body| coordinates[body].map(|c| c.shifted(&solver, body)));
         Some(PairHessian {
-            a: symmetric(rows.map(|[a, _, _]| a)),
-            b: symmetric(rows.map(|[_, b, _]| b)),
-            mixed: MotionHessian { rows: rows.map(|[_, _, mixed]| mixed) },
+            a: symmetric(self.rows(0, &by_a, &coordinates[0], true)),
+            b: symmetric(self.rows(1, &by_b, &coordinates[1], true)),
+            mixed: MotionHessian { rows: self.rows(1, &by_a, &coordinates[1], false) },
         })
     }
 
@@ -149,49 +139,70 @@ impl<V: Vector> ClosestFeatures<V> {
 
     fn hessian_of(&self, body: usize, center: V) -> Option<MotionHessian<V>> {
         let solver = self.solver()?;
-        let mut rows = [[V::Scalar::ZERO; MAX]; MAX];
-        for (i, row) in rows.iter_mut().enumerate().take(MotionHessian::<V>::SIZE) {
-            let of_body = self.coordinate(body, i, center);
-            *row = self.row(body, [center; 2], &solver.moved(of_body.motions), of_body.translation);
-        }
-        Some(symmetric(rows))
+        let coordinates = self.coordinates(body, center);
+        let moved = coordinates.map(|c| c.shifted(&solver, body));
+        Some(symmetric(self.rows(body, &moved, &coordinates, true)))
     }
 
-    /// The motion that a coordinate of the pose of a body is.
-    fn coordinate(&self, body: usize, index: usize, center: V) -> Coordinate<V> {
-        let one = |i: usize| if i == index { V::Scalar::ONE } else { V::Scalar::ZERO };
-        let translation = V::from_fn(one);
-        let cross = V::AngularVelocity::from_coordinates(|k| one(V::DIM + k)).cross_matrix();
-        let mut motions = Motions { velocities: [V::ZERO; 2], turns: [V::ZERO; 2] };
-        motions.velocities[body] = translation + cross * (self.points[body] - center);
-        motions.turns[body] = cross * self.normal;
-        Coordinate { translation, motions }
-    }
-
-    /// How the first derivatives by the pose of a body change.
-    fn row(&self, body: usize, centers: [V; 2], moved: &Moved<V>, carried: V) -> Row<V::Scalar> {
-        let moment = V::AngularVelocity::moment;
-        let turned = moment(self.points[body] - centers[body], moved.normal);
-        let shifted = moment(moved.points[body] - carried, self.normal);
-        let sign = if body == 0 { V::Scalar::ONE } else { -V::Scalar::ONE };
-        core::array::from_fn(|i| match i {
-            i if i < V::DIM => moved.normal.get(i) * sign,
-            i if i < MotionHessian::<V>::SIZE => {
-                (turned.coordinate(i - V::DIM) + shifted.coordinate(i - V::DIM)) * sign
+    /// The coordinates of the pose of a body, translations first, and in 2D zeros.
+    fn coordinates(&self, body: usize, center: V) -> [Coordinate<V::Scalar>; MAX] {
+        let arm = self.points[body] - center;
+        let zero = (V::Scalar::ZERO, V::Scalar::ZERO);
+        core::array::from_fn(|index| {
+            let one = |i: usize| if i == index { V::Scalar::ONE } else { V::Scalar::ZERO };
+            if index < V::DIM {
+                return Coordinate { velocity: self.in_plane(V::from_fn(one)), swing: zero, turn: zero };
             }
-            _ => V::Scalar::ZERO,
+            let cross = V::AngularVelocity::from_coordinates(|k| one(V::DIM + k)).cross_matrix();
+            let swing = self.in_plane(cross * arm);
+            Coordinate { velocity: swing, swing, turn: self.in_plane(cross * self.normal) }
         })
+    }
+
+    /// `Q(θ)·φ` for the force on a body, by what the coordinates `θ` of a pose do, its own or the other's, and the coordinates `φ` of its own. A
+    /// translation takes its centre along, so that of `a′ − δ` there is the shift.
+    fn rows(
+        &self,
+        body: usize,
+        moved: &[Shifted<V::Scalar>; MAX],
+        coordinates: &[Coordinate<V::Scalar>; MAX],
+        is_own: bool,
+    ) -> [[V::Scalar; MAX]; MAX] {
+        let sign = if body == 0 { V::Scalar::ONE } else { -V::Scalar::ONE };
+        let size = MotionHessian::<V>::SIZE;
+        let mut rows = [[V::Scalar::ZERO; MAX]; MAX];
+        for i in 0..size {
+            let Shifted { normal, shifts } = moved[i];
+            let ((x, y), swing) = (shifts[body], coordinates[i].swing);
+            let shifted = if is_own { (x + swing.0, y + swing.1) } else { (x, y) };
+            for j in 0..size {
+                let Coordinate { velocity, turn, .. } = coordinates[j];
+                rows[i][j] = (dot(normal, velocity) - dot(shifted, turn)) * sign;
+            }
+        }
+        rows
     }
 }
 
-/// A coordinate of a pose: its translation, zero for a rotation, and what it does to both bodies.
-struct Coordinate<V> {
-    translation: V,
-    motions: Motions<V>,
+/// A coordinate of a pose, across the normal: the velocity of the material point that is closest, the part of it that is of a turn about the centre,
+/// and how it turns the normal.
+#[derive(Clone, Copy, Debug)]
+struct Coordinate<S> {
+    velocity: Across<S>,
+    swing: Across<S>,
+    turn: Across<S>,
+}
+
+impl<S: Scalar> Coordinate<S> {
+    /// What it does as a coordinate of the pose of a body.
+    fn shifted<V: Vector<Scalar = S>>(self, solver: &Solver<'_, V>, body: usize) -> Shifted<S> {
+        let ((x, y), zero) = (self.velocity, (S::ZERO, S::ZERO));
+        if body == 0 { solver.shifted((x, y), [self.turn, zero]) } else { solver.shifted((-x, -y), [zero, self.turn]) }
+    }
 }
 
 /// The symmetric part.
-fn symmetric<V: Vector>(rows: [Row<V::Scalar>; MAX]) -> MotionHessian<V> {
+fn symmetric<V: Vector>(rows: [[V::Scalar; MAX]; MAX]) -> MotionHessian<V> {
     let half = V::Scalar::from_f64(0.5);
     MotionHessian { rows: core::array::from_fn(|i| core::array::from_fn(|j| (rows[i][j] + rows[j][i]) * half)) }
 }

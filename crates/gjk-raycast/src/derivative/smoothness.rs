@@ -47,7 +47,9 @@ impl<V: Vector> ClosestFeatures<V> {
             Free::All if V::DIM == 2 => stiffness.a > least,
             Free::All => least_eigenvalue(stiffness) > least,
         };
-        is_held && !self.is_at_a_corner(least) && !self.is_tied && self.points.iter().all(|point| point.is_finite())
+        let corners = self.outlines.iter().flat_map(|outline| &outline.corners);
+        let is_finite = self.points.iter().all(|p| p.is_finite()) && corners.into_iter().all(|c| c.height.is_finite());
+        is_held && is_finite && !self.is_at_a_corner(least) && !self.is_tied
     }
 
     /// Whether cores that touch do so at the boundary of their features, as a box that stands beside another: so that the normal may

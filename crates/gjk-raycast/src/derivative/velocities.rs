@@ -22,6 +22,7 @@ use num_traits::Float as _;
 use super::ClosestFeatures;
 use super::span::{Joint, Side};
 use crate::symmetric::{Across, Symmetric, cross, dot};
+use crate::unit::reciprocal_of_power;
 use crate::{RigidMotion, Trajectory};
 
 /// The velocities of the closest points and of the normal between them, as bodies move.
@@ -97,8 +98,9 @@ impl<V: Vector> ClosestFeatures<V> {
 
     /// How far the closest points are from being opposite to each other, where the features leave them no choice.
     pub(super) fn off(&self) -> V::Scalar {
-        let [a, b] = [0, 1].map(|i| self.outlines[i].corners[0].at);
-        let r = (a.0 - b.0, a.1 - b.1);
+        // Where numbers are not finite there are no corners.
+        let [Some(a), Some(b)] = [0, 1].map(|i| self.outlines[i].corners.first()) else { return V::Scalar::ZERO };
+        let r = (a.at.0 - b.at.0, a.at.1 - b.at.1);
         match self.joint() {
             Some(Joint::None) => dot(r, r).sqrt(),
             Some(Joint::Edge(_, e)) => cross(e, r).abs(),
@@ -107,7 +109,7 @@ impl<V: Vector> ClosestFeatures<V> {
     }
 
     /// The coordinates of a vector across the normal.
-    fn in_plane(&self, v: V) -> Across<V::Scalar> {
+    pub(super) fn in_plane(&self, v: V) -> Across<V::Scalar> {
         let [e, f] = self.across;
         (e.dot(v), f.dot(v))
     }
@@ -137,9 +139,9 @@ pub(super) struct Solver<'f, V: Vector> {
 
 /// What of two motions matters: the velocities of the material points that are closest, and how the bodies turn the normal.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Motions<V> {
-    pub(super) velocities: [V; 2],
-    pub(super) turns: [V; 2],
+struct Motions<V> {
+    velocities: [V; 2],
+    turns: [V; 2],
 }
 
 impl<V: Vector> Motions<V> {
@@ -155,32 +157,43 @@ impl<V: Vector> Motions<V> {
 
 /// How everything moves.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Moved<V: Vector> {
-    pub(super) signed_distance: V::Scalar,
-    pub(super) normal: V,
-    pub(super) points: [V; 2],
+struct Moved<V: Vector> {
+    signed_distance: V::Scalar,
+    normal: V,
+    points: [V; 2],
+}
+
+/// How the normal changes, and how the closest points move along their bodies, in coordinates across the normal.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shifted<S> {
+    pub(super) normal: Across<S>,
+    pub(super) shifts: [Across<S>; 2],
 }
 
 impl<V: Vector> Solver<'_, V> {
-    pub(super) fn moved(&self, motions: Motions<V>) -> Moved<V> {
+    fn moved(&self, motions: Motions<V>) -> Moved<V> {
         let at = self.at;
-        let [hessian_a, hessian_b] = at.hessians;
-        let [turn_a, turn_b] = motions.turns.map(|turn| at.in_plane(turn));
         let apart = motions.velocities[0] - motions.velocities[1];
-        let (x, y) = at.in_plane(apart / at.unit);
-        let (p, q) = (hessian_a.times(turn_a), hessian_b.times(turn_b));
-        let (change, [slide_a, slide_b]) = self.solved((x + p.0 + q.0, y + p.1 + q.1), [turn_a, turn_b]);
-        let against = |turn: Across<V::Scalar>| (change.0 - turn.0, change.1 - turn.1);
-        let shift_a = sum(negative(hessian_a.times(against(turn_a))), slide_a);
-        let shift_b = sum(hessian_b.times(against(turn_b)), slide_b);
+        let turns = motions.turns.map(|turn| at.in_plane(turn));
+        let Shifted { normal, shifts } = self.shifted(at.in_plane(apart), turns);
         Moved {
             signed_distance: at.normal.dot(apart),
-            normal: at.out_of_plane(change),
-            points: [
-                motions.velocities[0] + at.out_of_plane(shift_a) * at.unit,
-                motions.velocities[1] + at.out_of_plane(shift_b) * at.unit,
-            ],
+            normal: at.out_of_plane(normal),
+            points: [0, 1].map(|i| motions.velocities[i] + at.out_of_plane(shifts[i])),
         }
+    }
+
+    /// By the velocity of the material point of `a` as seen from that of `b`, and how both bodies turn the normal.
+    pub(super) fn shifted(&self, apart: Across<V::Scalar>, turns: [Across<V::Scalar>; 2]) -> Shifted<V::Scalar> {
+        let (at, [turn_a, turn_b]) = (self.at, turns);
+        let [hessian_a, hessian_b] = at.hessians;
+        let apart = scaled(apart, reciprocal_of_power(at.unit));
+        let pulled = sum(hessian_a.times(turn_a), hessian_b.times(turn_b));
+        let (normal, [slide_a, slide_b]) = self.solved(sum(apart, pulled), turns);
+        let against = |turn: Across<V::Scalar>| sum(normal, negative(turn));
+        let shift_a = sum(negative(hessian_a.times(against(turn_a))), slide_a);
+        let shift_b = sum(hessian_b.times(against(turn_b)), slide_b);
+        Shifted { normal, shifts: [shift_a, shift_b].map(|shift| scaled(shift, at.unit)) }
     }
 
     /// The change of the normal, and how the points slide along edges or faces of their bodies: with `K` the stiffness and `g = K·n′ − r`,
