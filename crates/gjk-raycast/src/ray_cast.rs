@@ -58,12 +58,13 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
     options: RayCastOptions<S::Vector>,
     mut observer: impl FnMut(Iterate<'_, S::Vector>),
 ) -> Result<RayCast<S::Vector>, RayCastError> {
+    let ray = ray.by_coordinates();
     if options.min_lambda <= Scalar::ZERO
         && let Some(cast) = direct(&mut Single::new(target), ray, Scalar::ZERO, &options, &mut observer)
     {
         return Ok(answer(cast, ray));
     }
-    searched(target, ray.by_coordinates(), options, observer)
+    searched(target, ray, options, observer)
 }
 
 /// The cast by a search.
