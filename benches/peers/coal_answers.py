@@ -13,7 +13,7 @@ import coal
 import numpy as np
 
 import query_lines
-from query_lines import NotAsked, hull_points, placed, vector
+from query_lines import Built, NotAsked, hull_points, placed, vector
 
 # coal's axis of symmetry is z, that of the query format y.
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
@@ -45,19 +45,14 @@ def build(shape):
 
 
 class Bodies:
-    """The last shapes built: questions of a case follow one another."""
+    """Shapes where questions have them."""
 
     def __init__(self):
-        self.built = {}
+        self.shapes = Built(build)
 
     def get(self, shape):
         bare, (rotation, translation) = placed(shape)
-        key = str(bare)
-        if key not in self.built:
-            if len(self.built) > 8:
-                self.built.clear()
-            self.built[key] = build(bare)
-        solid, turn = self.built[key]
+        solid, turn = self.shapes.get(bare)
         return solid, coal.Transform3s(rotation @ turn, translation)
 
 

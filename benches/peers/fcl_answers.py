@@ -18,7 +18,7 @@ import fcl
 import numpy as np
 
 import query_lines
-from query_lines import NotAsked, hull, placed, timed, vector
+from query_lines import Built, NotAsked, hull, placed, timed, vector
 
 # FCL's axis of symmetry is z, that of the query format y.
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
@@ -60,19 +60,14 @@ class Body:
 
 
 class Bodies:
-    """The last shapes built: questions of a case follow one another."""
+    """Shapes where questions have them."""
 
     def __init__(self):
-        self.built = {}
+        self.shapes = Built(build)
 
     def get(self, shape):
         bare, at = placed(shape)
-        key = str(bare)
-        if key not in self.built:
-            if len(self.built) > 8:
-                self.built.clear()
-            self.built[key] = build(bare)
-        return Body(*self.built[key], at)
+        return Body(*self.shapes.get(bare), at)
 
 
 def ball(x):

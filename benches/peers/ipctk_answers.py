@@ -21,7 +21,7 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 import query_lines
-from query_lines import NotAsked, hull, placed, timed, vector
+from query_lines import Built, NotAsked, hull, placed, timed, vector
 
 # Vertices of a pair that is cast: two hulls of 1024 take seconds.
 LARGEST = 600
@@ -72,20 +72,15 @@ def is_within(point, triangles):
 
 
 class Pairs:
-    """The last pairs: questions of a case follow one another."""
+    """Pairs of shapes."""
 
     def __init__(self):
-        self.built = {}
+        self.pairs = Built(Pair)
 
     def get(self, *shapes):
         """A pair, and its vertices where a question has them."""
         bare = [placed(shape) for shape in shapes]
-        key = str([shape for shape, _ in bare])
-        if key not in self.built:
-            if len(self.built) > 8:
-                self.built.clear()
-            self.built[key] = Pair([shape for shape, _ in bare])
-        pair = self.built[key]
+        pair = self.pairs.get([shape for shape, _ in bare])
         return pair, pair.put([at for _, at in bare])
 
 

@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 
 import query_lines
-from query_lines import NotAsked, compose, hull_points, placed, timed, vector
+from query_lines import Built, NotAsked, compose, hull_points, placed, timed, vector
 
 # MuJoCo's axis of symmetry is z, that of the query format y.
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
@@ -70,19 +70,14 @@ class Model:
 
 
 class Models:
-    """The last models: questions of a case follow one another."""
+    """Models of shapes where questions have them."""
 
     def __init__(self, tolerance):
-        self.tolerance, self.built = tolerance, {}
+        self.models = Built(lambda shapes: Model(shapes, tolerance))
 
     def get(self, *shapes):
         bare = [placed(shape) for shape in shapes]
-        key = str([shape for shape, _ in bare])
-        if key not in self.built:
-            if len(self.built) > 8:
-                self.built.clear()
-            self.built[key] = Model([shape for shape, _ in bare], self.tolerance)
-        model = self.built[key]
+        model = self.models.get([shape for shape, _ in bare])
         for geom, (_, at) in enumerate(bare):
             model.put(geom, at)
         return model

@@ -99,6 +99,21 @@ def timed(call, idle=lambda: None):
     return answer, max(best(call) - best(idle), 0.0)
 
 
+class Built:
+    """What was built last, by what it was built of: questions of a case follow one another."""
+
+    def __init__(self, build):
+        self.build, self.built = build, {}
+
+    def get(self, given):
+        key = str(given)
+        if key not in self.built:
+            if len(self.built) > 8:
+                self.built.clear()
+            self.built[key] = self.build(given)
+        return self.built[key]
+
+
 def write(questions, answers, head, answer):
     """Answers the query lines of a file by `answer`, which gives the fields of an answer or raises `NotAsked`."""
     counts = {"answered": 0, "errors": 0, "not asked": 0}
