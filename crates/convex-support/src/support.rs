@@ -210,13 +210,12 @@ pub(crate) fn swept_hessian<V: Vector>(radius: V::Scalar, direction: V, changes:
     if radius == V::Scalar::ZERO {
         return [V::Scalar::ZERO; 3];
     }
-    let (mut direction, mut radius) = (direction, radius);
-    if !is_comfortable(direction.length_squared()) {
+    let (mut direction, mut radius, mut squared) = (direction, radius, direction.length_squared());
+    if !is_comfortable(squared) {
         // Of a unit direction, and once for its length.
         let Some(e) = direction.unit() else { return [V::Scalar::ZERO; 3] };
-        (radius, direction) = (radius / direction.norm(), e);
+        (radius, direction, squared) = (radius / direction.norm(), e, e.length_squared());
     }
-    let squared = direction.length_squared();
     let across = |change: V| change - direction * (change.dot(direction) / squared);
     let (u, w) = (across(changes[0]), across(changes[1]));
     let bend = radius / squared.sqrt();

@@ -25,33 +25,25 @@ trait Hit<V: Space>: Copy {
     fn mended(self, features: &ClosestFeatures<V>) -> Self;
 }
 
-impl<V: Space> Hit<V> for LinearHit<V> {
-    fn place(&self) -> (V, V) {
-        (self.normal.expect("they touch later"), self.point)
-    }
+macro_rules! hit_of_bodies {
+    ($($Hit:ident),+) => {$(
+        impl<V: Space> Hit<V> for $Hit<V> {
+            fn place(&self) -> (V, V) {
+                (self.normal.expect("they touch later"), self.point)
+            }
 
-    fn with(self, normal: V, point: V) -> Self {
-        Self { normal: Some(normal), point, ..self }
-    }
+            fn with(self, normal: V, point: V) -> Self {
+                Self { normal: Some(normal), point, ..self }
+            }
 
-    fn mended(self, features: &ClosestFeatures<V>) -> Self {
-        self.refined(features)
-    }
+            fn mended(self, features: &ClosestFeatures<V>) -> Self {
+                self.refined(features)
+            }
+        }
+    )+};
 }
 
-impl<V: Space> Hit<V> for MotionHit<V> {
-    fn place(&self) -> (V, V) {
-        (self.normal.expect("they touch later"), self.point)
-    }
-
-    fn with(self, normal: V, point: V) -> Self {
-        Self { normal: Some(normal), point, ..self }
-    }
-
-    fn mended(self, features: &ClosestFeatures<V>) -> Self {
-        self.refined(features)
-    }
-}
+hit_of_bodies!(LinearHit, MotionHit);
 
 /// The point of a ray is where its λ is.
 impl<V: Space> Hit<V> for RayHit<V> {
