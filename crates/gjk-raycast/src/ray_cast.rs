@@ -26,7 +26,7 @@ use crate::{Iterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit
 /// # How it begins and ends
 /// - A source in the target, or no farther from it than its own error, is a hit at λ = 0 with no normal, whatever the direction.
 /// - A source outside is a hit or a miss by the ray alone, by however little it is outside: one that leaves or slides by misses.
-/// - A ray that grazes the target within rounding may be either.
+/// - A ray that grazes the target within rounding may be either. A hit is certain where [`upper`](RayCast::upper) is finite.
 /// - The end of the ray, [`max_lambda`](RayCastOptions::max_lambda), belongs to it. So does its beginning, if that is not the source
 ///   but at [`min_lambda`](RayCastOptions::min_lambda): where that is in the target it is hit there, with no normal. A shadow ray, from
 ///   a surface, leaves it so.

@@ -125,7 +125,8 @@ pub struct RayCast<V: Vector> {
     /// No point of the ray before this parameter is in the target.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
-    /// The point of the ray at this parameter is in the target; infinite where no such point is known.
+    /// The point of the ray at this parameter is in the target; infinite where no such point is known, as of a hit that is a graze or a
+    /// contact at the source within rounding, and may be a miss.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
     /// How the iteration ended.
@@ -187,7 +188,8 @@ pub struct LinearCast<V: Vector> {
     /// [leaves a contact](crate::StartInContact::IfDeeper) that it started in, which does not count.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
-    /// The shapes have a point in common at this time; infinite where no such time is known.
+    /// The shapes have a point in common at this time; infinite where no such time is known, as of a hit that is a graze or a contact at
+    /// the start within rounding, and may be a miss.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
     /// How the iteration ended.

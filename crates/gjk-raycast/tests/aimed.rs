@@ -106,6 +106,7 @@ fn wrong<H, V, I, W>(
         (Outcome::Hit(_), Outcome::Hit(_)) if f64::from(upper) < least => Some("ends too early"),
         (Outcome::Hit(_), Outcome::Hit(_)) if f64::from(lower) > most => Some("begins too late"),
         (Outcome::Miss(_), Outcome::Hit(_)) if is_certain => Some("misses"),
+        (Outcome::Hit(_), Outcome::Miss(_)) if upper.is_finite() => Some("is certain of a hit that is none"),
         _ => None,
     }
 }

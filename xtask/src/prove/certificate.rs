@@ -80,7 +80,9 @@ pub(super) fn judge(line: &Value, reader: &Reader<'_>) -> Result<(Verdict, Bound
             let name = if query == "ray_cast" { "lambda" } else { "time" };
             let claim = if flag("hit")? {
                 let Bounds { lower, upper } = claim(answer, name, line, reader)?;
-                Claim::Within(Bounds { lower, upper: upper.min(&question.end) })
+                // A hit without an upper bound may be a miss, by its own words.
+                let upper = if upper.is_infinite() { upper } else { upper.min(&question.end) };
+                Claim::Within(Bounds { lower, upper })
             } else {
                 Claim::Beyond(question.end.clone())
             };
@@ -115,7 +117,7 @@ impl Bounds {
         let (is_so, is_not) = match claim {
             Claim::Within(Self { lower, upper }) => (
                 is_finite && lower.is_at_most(&self.lower) && self.upper.is_at_most(upper),
-                self.upper.is_less_than(lower) || upper.is_less_than(&self.lower) || self.lower.is_infinite(),
+                self.upper.is_less_than(lower) || upper.is_less_than(&self.lower),
             ),
             Claim::Beyond(bound) => {
                 (bound.is_less_than(&self.lower) || self.lower.is_infinite(), is_finite && self.upper.is_at_most(bound))

@@ -26,9 +26,6 @@ pub(super) const NOISE: f64 = 8.0;
 /// not bend away within an error.
 pub(super) const DEEP: f64 = 64.0;
 
-/// How many errors a ray slides along the body that is worth a second look.
-const LONG: f64 = 1024.0;
-
 pub(super) type ScalarOf<B> = <<B as Body>::Vector as Vector>::Scalar;
 
 /// A support point of the core, and what it is made of.
@@ -98,8 +95,6 @@ pub(super) struct Bracket<'a, B: Body, O> {
 enum Entry {
     /// The ray is in the body there, whatever the errors.
     Certain,
-    /// It has left the body there, if it ever entered it.
-    BeforeExit,
     /// It is if the surface goes on as it was seen to, as far as an error reaches.
     BySlope,
     /// An edge, or a graze, may be within an error.
@@ -185,10 +180,10 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         if self.low.slope > Scalar::ZERO { self.low.bound.spread } else { Scalar::ONE }
     }
 
-    /// Whether the upper bound has to be found by other means.
+    /// Whether the upper bound has to be found by other means, for the ray to be known to be in the body anywhere.
     pub(super) fn is_entry_open(&self) -> bool {
         match self.entry {
-            Entry::Certain | Entry::BeforeExit => false,
+            Entry::Certain => false,
             Entry::BySlope => self.error > self.noise * ScalarOf::<B>::from_f64(LOOSE),
             Entry::InDoubt => true,
         }
@@ -209,29 +204,6 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     pub(super) fn pierce(&mut self, mu: ScalarOf<B>, length: ScalarOf<B>) {
         (self.high, self.entry) =
             (Bound { at: mu.max(self.low()), spread: length, more: Scalar::ZERO }, Entry::Certain);
-    }
-
-    /// Moves the upper bound to where the ray leaves the plane across the unit vector `n` that supports the core at `point`, if that is
-    /// nearer: whether it is.
-    pub(super) fn leave(&mut self, n: B::Vector, point: B::Vector) -> bool {
-        let per_slope = n.dot(self.ray.line.direction).recip();
-        let at = self.low() + (n.dot(point - self.x()) + self.radius) * per_slope;
-        let bound = Bound { at: at.max(self.low()), spread: per_slope, more: Scalar::ZERO };
-        // NaN is no nearer.
-        let latest = |bound: Bound<_>| bound.at + self.delay(bound);
-        let is_nearer = per_slope > Scalar::ZERO && latest(bound) < latest(self.highest());
-        if is_nearer {
-            (self.high, self.entry) = (bound, Entry::BeforeExit);
-        }
-        is_nearer
-    }
-
-    /// Whether the ray may touch the body for long before it enters or leaves it, to the error that this is known to here.
-    pub(super) fn may_slide(&self) -> bool {
-        let high = self.highest();
-        let late = self.error * ScalarOf::<B>::from_f64(LONG);
-        self.entry == Entry::InDoubt
-            || (self.entry == Entry::BeforeExit && high.at + self.delay(high) - self.low() > late)
     }
 
     /// Where on the line the body has a point, of a contact, and how far that may be from there.
@@ -420,8 +392,9 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
             return None;
         }
         let mu = point.dot(self.ray.line.direction).max(self.low());
-        // What the line passes within an error it may as well meet later, as far as it is in the ball about the body.
-        self.high = Bound::exact(self.chord.1.max(mu));
+        // What the line passes within an error it may as well miss.
+        self.high = Bound { more: within, ..Bound::exact(mu) };
+        self.doubt_entry();
         // Where the ray grazes what is round, the shortest vector is the normal, and the last plane is of elsewhere. Without a
         // radius it has no digits.
         let normal = if self.radius > self.noise { v.unit() } else { normal.or(self.normal) };
@@ -483,25 +456,20 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         Some(Contact { mu: self.low(), normal: self.normal, witness })
     }
 
-    /// The upper bound: the end of the ball about the body where nothing better is certain.
-    fn highest(&self) -> Bound<ScalarOf<B>> {
-        if self.is_entry_open() { Bound::exact(self.chord.1.max(self.high.at)) } else { self.high }
+    /// How much later the upper bound may be. The surface may be met less steeply than the plane, by what noise leaves open.
+    fn delay(&self) -> ScalarOf<B> {
+        self.certain(self.high) + self.noise * self.high.spread
     }
 
-    /// How much later that may be. The surface may be met less steeply than the plane, by what noise leaves open.
-    fn delay(&self, high: Bound<ScalarOf<B>>) -> ScalarOf<B> {
-        self.certain(high) + self.noise * high.spread
-    }
-
-    /// Bounds on λ, for the λ of a contact if there is one, wider by what rounding moved them.
+    /// Bounds on λ, for the λ of a contact if there is one, wider by what rounding moved them. The upper one is infinite where the ray
+    /// is not known to be in the body anywhere, as where it grazes it.
     pub(super) fn bounds(&self, contact: Option<ScalarOf<B>>) -> (ScalarOf<B>, ScalarOf<B>) {
         let widened = |bound: Bound<_>| self.ray.error(bound.at, self.certain(bound));
         let lower = (self.ray.lambda(self.low()) - widened(self.low.bound)).max(Scalar::ZERO);
-        let high = self.highest();
-        let upper = self.ray.lambda(high.at) + self.ray.error(high.at, self.delay(high));
+        let upper = self.ray.lambda(self.high.at) + self.ray.error(self.high.at, self.delay());
         match contact {
             // NaN bounds nothing.
-            Some(lambda) if upper.is_nan() => (lower.min(lambda), Float::infinity()),
+            Some(lambda) if self.is_entry_open() || upper.is_nan() => (lower.min(lambda), Float::infinity()),
             Some(lambda) => (lower, upper.max(lambda)),
             None if lower <= upper => (lower, upper),
             // Bounds that contradict one another, or are NaN, bound nothing.

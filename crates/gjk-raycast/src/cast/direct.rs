@@ -231,6 +231,6 @@ fn certain<V: Vector, W>() -> Cast<V, W> {
         status: Status::Converged,
         iterations: 1,
         scale: V::Scalar::ONE,
-        may_slide: false,
+        is_open: false,
     }
 }

@@ -97,8 +97,8 @@ pub(crate) struct Cast<V: Vector, W> {
     pub(crate) upper: V::Scalar,
     pub(crate) status: Status,
     pub(crate) iterations: usize,
-    /// Whether a second look at the hit may tell earlier that the ray enters.
-    pub(crate) may_slide: bool,
+    /// Whether the ray may miss what it is said to hit: then only a second look can tell where it enters.
+    pub(crate) is_open: bool,
     /// The unit of the hit spot and of the witness.
     pub(crate) scale: V::Scalar,
 }
@@ -140,7 +140,7 @@ fn conclude<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         Err(Stop::Exhausted(status)) => (Outcome::Undecided, bracket.bounds(None), status),
         Err(Stop::InDoubt | Stop::Touches(_)) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
     };
-    let may_slide = matches!(outcome, Outcome::Hit(_)) && bracket.may_slide();
+    let is_open = matches!(outcome, Outcome::Hit(_)) && bracket.is_entry_open();
     let (iterations, scale) = (bracket.iterations(), bracket.scale);
-    Cast { outcome, lower, upper, status, iterations, scale, may_slide }
+    Cast { outcome, lower, upper, status, iterations, scale, is_open }
 }

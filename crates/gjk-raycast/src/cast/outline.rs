@@ -12,9 +12,7 @@
 //! All points may be wrong by `e`, too: that raises the right side by `e`, and is taken from the distance of the sides. Of the polygon
 //! little matters but that it is wide, so that its corners may be support points across the line.
 //!
-//! Where the outline itself is within an error of the line, the ray may miss. If it does not, it enters before it leaves, and so before it
-//! crosses any plane that it leaves and that the body is behind: with `n` across the line, out of the body, that across `d + k·n` is the
-//! farther from being along the line the smaller `k` is, and the nearer to the outline the larger.
+//! Where the outline itself is within an error of the line, the ray may miss.
 
 use convex_support::{Scalar, Vector};
 
@@ -33,12 +31,8 @@ const WIDE: f64 = 0.0625;
 /// How many errors later than the known point the bound may be that a triangle gives, not to look for a wide polygon.
 const LATE: f64 = 32.0;
 
-/// How often a plane is looked at that the ray leaves, each time so many times nearer to being along it.
-const MAX_TURNS: usize = 10;
-const TURN: f64 = 8.0;
-
 /// Moves the upper bound of a contact ahead of the source, that may be at an edge or a graze, to where the ray is in the body whatever
-/// the errors, if the body is seen around the line by more than those; and otherwise to where it has left the body.
+/// the errors, if the body is seen around the line by more than those.
 #[cold]
 #[inline(never)]
 pub(super) fn bound_entry<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(bracket: &mut Bracket<'_, B, O>) {
@@ -50,8 +44,6 @@ pub(super) fn bound_entry<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(bracket: &m
     let Some(polygon) = known.filter(is_near).or_else(|| view.look_around(bracket, error)) else { return };
     if let Some(latest) = polygon.latest_entry(mu, error) {
         bracket.enter_for_certain(latest);
-    } else if let Some(side) = polygon.outermost_side(error + error) {
-        view.look_behind(bracket, side);
     }
 }
 
@@ -86,7 +78,8 @@ impl<V: Vector> View<V> {
         polygon
     }
 
-    /// A wide polygon of support points across the line; `None` where no more can be had.
+    /// A wide polygon of support points across the line; `None` where the outline is within an error of the line, or no more points can be
+    /// had.
     fn look_around<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
         &self,
         bracket: &mut Bracket<'_, B, O>,
@@ -108,10 +101,11 @@ impl<V: Vector> View<V> {
         polygon.insert(1, left);
         let two = error + error;
         while polygon.len < MAX_CORNERS {
-            // Where the outline is near, only what else of it is near matters.
-            let is_near = polygon.sides().iter().any(|side| side.is_outermost && side.distance <= two);
-            let wanted = if is_near { two } else { V::Scalar::from_f64(WIDE) };
-            let Some(i) = polygon.nearest_of(|side| !side.is_outermost && side.distance < wanted) else { break };
+            if polygon.sides().iter().any(|side| side.is_outermost && side.distance <= two) {
+                return None;
+            }
+            let wide = V::Scalar::from_f64(WIDE);
+            let Some(i) = polygon.nearest_of(|side| !side.is_outermost && side.distance < wide) else { break };
             let Side { distance, outward, .. } = polygon.sides[i];
             let corner = support(outward)?;
             // NaN is no farther.
@@ -122,26 +116,6 @@ impl<V: Vector> View<V> {
             }
         }
         Some(polygon)
-    }
-
-    /// Moves the upper bound to planes that the ray leaves, until they are near and come no nearer: at first across the line but for the
-    /// way that the side rises, and in the end along it.
-    fn look_behind<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
-        &self,
-        bracket: &mut Bracket<'_, B, O>,
-        Side { outward, rise, .. }: Side<V::Scalar>,
-    ) {
-        let Some(across) = self.across(outward) else { return };
-        let level = self.line.direction - self.across((-outward.1, outward.0)).map_or(V::ZERO, |side| side * rise);
-        let mut k = V::Scalar::ONE;
-        for _ in 0..MAX_TURNS {
-            let Some(n) = (level + across * k).unit() else { return };
-            let Ok((point, _)) = bracket.support(n, n, &[]) else { return };
-            if !bracket.leave(n, point) && !bracket.may_slide() {
-                return;
-            }
-            k *= V::Scalar::from_f64(TURN);
-        }
     }
 }
 
@@ -166,8 +140,6 @@ struct Side<S> {
     distance: S,
     /// The unit vector across it, away from the polygon.
     outward: Across<S>,
-    /// How much it rises along the line for every unit of its length.
-    rise: S,
     /// Whether nothing of the body is beyond it, to an error.
     is_outermost: bool,
 }
@@ -181,7 +153,6 @@ impl<S: Scalar> Side<S> {
             // Twice the area that zero spans with the side is its length times its distance.
             distance: cross(corner.across, to.across) * per_length,
             outward: (dv * per_length, -du * per_length),
-            rise: (to.along - corner.along) * per_length,
             is_outermost: false,
         }
     }
@@ -227,18 +198,6 @@ impl<S: Scalar> Polygon<S> {
     fn nearest_of(&self, is_meant: impl Fn(&Side<S>) -> bool) -> Option<usize> {
         let meant = (0..self.len).filter(|&i| is_meant(&self.sides[i]));
         meant.reduce(|i, j| if self.sides[j].distance < self.sides[i].distance { j } else { i })
-    }
-
-    /// The side of the outline within a distance of zero; or where two meet there, one between them. Where the outline is not found, the
-    /// nearest side.
-    fn outermost_side(&self, within: S) -> Option<Side<S>> {
-        let near = self.sides().iter().copied().filter(|side| side.is_outermost && side.distance <= within);
-        let outermost = near.reduce(|a, b| {
-            let between = (a.outward.0 + b.outward.0, a.outward.1 + b.outward.1);
-            // Opposite sides, of a body that is seen edge on, have none between them.
-            if dot(between, between) > S::EPSILON { Side { outward: between, rise: S::ZERO, ..a } } else { a }
-        });
-        outermost.or_else(|| self.nearest_of(|_| true).map(|i| self.sides[i]))
     }
 
     /// Where the line is in the body, at the latest, that has a point at `mu` to within an error; `None` where the polygon is not around

@@ -37,7 +37,7 @@ pub(crate) fn settle_start<A, B, W>(
         Outcome::Miss(_) => false,
     };
     let is_to_be_settled = is_at_start && cast.upper > zero;
-    if (is_to_be_settled || cast.may_slide)
+    if (is_to_be_settled || cast.is_open)
         && let Some(b) = b()
         && let Ok(a) = Rounded::new(a, skin)
     {
@@ -57,9 +57,7 @@ pub(crate) fn settle_start<A, B, W>(
             Way::Leaves { axis } => cast.miss(axis),
             // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
             Way::Enters { lambda, axis, .. } if lambda > options.max_lambda => cast.miss(axis),
-            Way::Enters { lambda, axis, lower, entry } => {
-                cast.enter(lambda, axis, [lower, entry.at], entry.is_certain, start.spot);
-            }
+            Way::Enters { lambda, axis, lower, entry } => cast.enter(lambda, axis, lower, entry, start.spot),
         }
     }
 }
@@ -82,7 +80,7 @@ struct Spot<V: Vector> {
 /// How a ray goes on from a source near the target. The axis is a unit vector from the target to the source, along which they are
 /// apart.
 enum Way<V: Vector> {
-    /// The source is in the target, to the error it is known to; if the ray meets the target at all, then at this λ at the latest.
+    /// The source is in the target, to the error it is known to; and the ray is in it for certain at this λ at the latest.
     Touches { within: V::Scalar },
     /// Neither that nor a plane between them is found.
     Unknown,
@@ -124,8 +122,8 @@ fn start<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iteratio
     Start { way, spot, iterations }
 }
 
-/// A bound on the λ at which the ray is in the target first, if it ever is, where the source is not known to be apart from it; infinite
-/// where there is none.
+/// A bound on the λ at which the ray is in the target first, where the source is not known to be apart from it; infinite where it may
+/// miss.
 fn latest_entry<V: Vector>(
     shapes: [Shape<'_, V>; 2],
     direction: V,
@@ -139,26 +137,28 @@ fn latest_entry<V: Vector>(
     }
     // Of a point found deep inside, no plane is one of contact.
     let is_at_plane = near.gap.abs() <= near.upper;
-    if is_at_plane && closing < zero {
-        // Behind the plane by an error at most, the ray is before it from `gap − error + λ·|n·d| > 0` on.
-        let at = near.lower * near.frame.scale / closing;
-        return at + roundings(8.0, at);
-    }
     let (gap, speed) = (near.upper * near.frame.scale, direction.norm());
     let slides = speed * V::Scalar::EPSILON * V::Scalar::from_f64(SLIDES);
     let speed = if is_at_plane && closing > slides { closing } else { speed };
-    entry(shapes, direction, speed, gap, iterations).at
+    entry(shapes, direction, speed, gap, iterations).certain()
 }
 
 /// Closing speeds below this many ε of the speed are of rounding: a normal is known to a few.
 const SLIDES: f64 = 16.0;
 
-/// A bound on the λ at which a ray is in the target first, if it ever is; infinite where there is none.
+/// A bound on the λ at which a ray is in the target first, if it ever is.
 #[derive(Clone, Copy)]
 struct Entry<S> {
     at: S,
-    /// Whether it is in the target there.
+    /// Whether it is in the target there, and not outside from there on.
     is_certain: bool,
+}
+
+impl<S: Scalar> Entry<S> {
+    /// The same bound of a ray that is in the target for certain; infinite of others.
+    fn certain(self) -> S {
+        if self.is_certain { self.at } else { Float::infinity() }
+    }
 }
 
 /// How often a ray is looked at, each time so many times as far from the source as before; the last time it is more than the size of the
@@ -189,7 +189,9 @@ fn entry<V: Vector>(
     let wanted = SignedDistanceOptions::new().with_depth_limit(deep).with_limit(deep);
     // As narrow as rounding lets it be: what is looked at is a few errors wide.
     let wanted = wanted.with_tolerance(V::Scalar::EPSILON * number(8.0));
-    let mut best = Entry { at: V::Scalar::infinity(), is_certain: false };
+    // Bodies that touch have their origins no farther apart than their sizes.
+    let past = (size + size + gap) / direction.norm();
+    let mut best = Entry { at: past + roundings(16.0, past), is_certain: false };
     let mut lambda = gap * number(FIRST) / speed;
     for _ in 0..LOOKS {
         let step = direction * lambda;
@@ -248,8 +250,7 @@ fn after_hit<V: Vector>(
     let gap = near.upper.max(V::Scalar::ZERO) * near.frame.scale + roundings(8.0, step.norm());
     let closing = near.normal.dot(direction);
     let speed = if closing > V::Scalar::ZERO { closing } else { direction.norm() };
-    let Entry { at, .. } = entry([a, &there], direction, speed, gap, &mut iterations);
-    let latest = lambda + at;
+    let latest = lambda + entry([a, &there], direction, speed, gap, &mut iterations).certain();
     AfterHit { latest: latest + roundings(4.0, latest), iterations }
 }
 
@@ -278,23 +279,24 @@ impl<V: Vector, W> Cast<V, W> {
         (self.lower, self.upper) = (zero, within.max(lambda));
     }
 
-    /// Turns a hit at the source, as far as it was known, into one at `lambda`, within bounds, where a plane across `axis` leaves
-    /// nothing to hit before the first of them; whether the second is certain.
+    /// Turns a hit at the source, as far as it was known, into one at `lambda`, where a plane across `axis` leaves nothing to hit before
+    /// `lower`.
     #[inline(always)]
-    fn enter(&mut self, lambda: V::Scalar, axis: V, [lower, upper]: [V::Scalar; 2], is_certain: bool, spot: Spot<V>)
+    fn enter(&mut self, lambda: V::Scalar, axis: V, lower: V::Scalar, entry: Entry<V::Scalar>, spot: Spot<V>)
     where
         W: From<PointPair<V>>,
     {
         self.lower = self.lower.max(lower);
-        let is_found = self.lower <= self.upper || is_certain;
+        let upper = entry.certain().max(self.lower);
+        let is_found = entry.is_certain || self.lower <= entry.at;
         match &mut self.outcome {
             Outcome::Hit(hit) if is_found => {
-                self.upper = upper.max(self.lower);
-                (hit.lambda, hit.normal) = (lambda.max(self.lower).min(self.upper), Some(axis));
+                self.upper = upper;
+                (hit.lambda, hit.normal) = (lambda.max(self.lower).min(upper), Some(axis));
             }
-            Outcome::Undecided if is_certain => {
-                self.upper = upper.max(self.lower);
-                self.hit(lambda.max(self.lower).min(self.upper), Some(axis), spot);
+            Outcome::Undecided if entry.is_certain => {
+                self.upper = upper;
+                self.hit(lambda.max(self.lower).min(upper), Some(axis), spot);
             }
             // The ray runs along the target within rounding, and where it enters it, if ever, is not known.
             Outcome::Undecided => {}
