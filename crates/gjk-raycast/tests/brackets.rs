@@ -112,20 +112,17 @@ fn composed(random: &mut Random, i: usize) -> Tree {
 }
 
 /// Holds an answer in single precision against the truth, each of lower and upper bound and whether it is a miss: what is proved must be
-/// so. Where bodies graze within what is known of them, either may be said; whether that is so.
-fn holds(answer: ([f64; 2], bool), truth: ([f64; 2], bool), what: impl Fn() -> String) -> bool {
+/// so. A miss is at infinity: where bodies graze within what is known of them, a hit may be said that has no upper bound.
+fn holds(answer: ([f64; 2], bool), truth: ([f64; 2], bool), what: impl Fn() -> String) {
     let (([lower, upper], misses), ([least, most], must_miss)) = (answer, truth);
     assert!(must_miss || !misses, "a miss that is a hit: {}", what());
-    let grazes = must_miss && !misses;
-    assert!(grazes || lower <= most && least <= upper, "{lower:e} … {upper:e} is not {least:e} … {most:e}: {}", what());
-    grazes
+    assert!(lower <= most && least <= upper, "{lower:e} … {upper:e} is not {least:e} … {most:e}: {}", what());
 }
 
 /// Class A: of bodies that were posed far away, turned and moved back, the bracket in single precision holds what double precision says.
 #[test]
 fn composed_poses_keep_the_truth_in_the_bracket() {
     let mut random = Random(1);
-    let mut grazes = 0;
     for i in 0..4000 {
         let (a, b) = (composed(&mut random, i), Tree::leaf(&mut random).brought_back(random.vector(2.0)));
         let (direction, source, velocity) = (random.vector(1.0), random.vector(4.0), random.vector(1.0));
@@ -133,11 +130,10 @@ fn composed_poses_keep_the_truth_in_the_bracket() {
         let (fine, coarse) = ((a.build::<DVec3>(), b.build::<DVec3>()), (a.build::<Vec3A>(), b.build::<Vec3A>()));
         holds(apart(&coarse.0, &coarse.1), apart(&fine.0, &fine.1), what);
         let (ray, truth) = (cast::<Vec3A>(&coarse.0, source, direction), cast::<DVec3>(&fine.0, source, direction));
-        grazes += usize::from(holds(ray, truth, what));
+        holds(ray, truth, what);
         let ends = [velocity, source];
-        grazes += usize::from(holds(sweep(&coarse.0, &coarse.1, ends), sweep(&fine.0, &fine.1, ends), what));
+        holds(sweep(&coarse.0, &coarse.1, ends), sweep(&fine.0, &fine.1, ends), what);
     }
-    assert!(grazes < 400, "{grazes} hits that are misses");
 }
 
 fn apart<V: Vector>(a: &Shape<V>, b: &Shape<V>) -> ([f64; 2], bool) {
