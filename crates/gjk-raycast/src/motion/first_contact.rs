@@ -35,10 +35,14 @@ pub(super) struct Search<'p, V: Vector, P, F> {
     pub(super) ahead: Option<Instant<V>>,
     /// The earliest time known at which they are not certainly apart.
     pub(super) beyond: Option<Instant<V>>,
+    /// The one that was the earliest before.
+    pub(super) farther: Option<Instant<V>>,
     /// The earliest time known at which they overlap.
     pub(super) upper: V::Scalar,
-    /// How far apart the two ends of the search for a contact were, and how often in a row that was not halved.
+    /// How far apart the two ends of the search for a contact were, and how far the bodies were from touching at the nearer of them; and
+    /// how often in a row neither was halved.
     width: V::Scalar,
+    way: V::Scalar,
     pub(super) slow: u8,
     pub(super) looks: usize,
 }
@@ -75,8 +79,10 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
             is_smooth: false,
             ahead: None,
             beyond: None,
+            farther: None,
             upper: infinity,
             width: infinity,
+            way: infinity,
             slow: 0,
             looks: 1,
         };
@@ -114,7 +120,7 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
                 self.block(&there);
             }
             self.take_ahead();
-            self.watch_width();
+            self.watch_progress();
         }
         End::Undecided(Status::IterationLimit)
     }
@@ -133,7 +139,7 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
 
     /// Remembers a time at which the bodies are not certainly apart.
     pub(super) fn block(&mut self, there: &Instant<V>) {
-        self.beyond = Some(*there);
+        self.farther = self.beyond.replace(*there);
         self.ahead = None;
         if there.overlaps() {
             self.upper = there.time;
@@ -148,11 +154,13 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
     }
 
     /// Counts how often in a row the search for a contact has not come nearer by half.
-    fn watch_width(&mut self) {
+    fn watch_progress(&mut self) {
         if let Some(beyond) = self.beyond {
-            let width = beyond.time - self.near.time;
-            self.slow = if width <= self.width * Scalar::from_f64(0.5) { 0 } else { self.slow.saturating_add(1) };
-            self.width = width;
+            let half = V::Scalar::from_f64(0.5);
+            let (width, way) = (beyond.time - self.near.time, self.near.distance.min(beyond.distance.abs()));
+            let is_slow = width > self.width * half && way > self.way * half;
+            self.slow = if is_slow { self.slow.saturating_add(1) } else { 0 };
+            (self.width, self.way) = (width, way);
         }
     }
 

@@ -71,7 +71,9 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
         let aim = error * Scalar::from_f64(AIM);
         let (width, way) = (beyond.time - time, distance - aim);
         let is_inside = |next: &V::Scalar| *next > time && *next < beyond.time;
-        let from_beyond = beyond.time + (beyond.distance - aim) / beyond.closing;
+        // Where they overlap, the speed is that of support points, which need not be the closest ones: two distances tell it better.
+        let closing = |farther: Instant<V>| (beyond.distance - farther.distance) / (farther.time - beyond.time);
+        let from_beyond = beyond.time + (beyond.distance - aim) / self.farther.map_or(beyond.closing, closing);
         let secant = time + width * (way / (distance - beyond.distance));
         let methods = if beyond.distance.abs() < way { [from_beyond, secant] } else { [next, secant] };
         let quick = methods.into_iter().find(is_inside).filter(|_| self.slow <= PATIENCE);
