@@ -3,8 +3,10 @@
 use convex_support::{Core, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Pair, PointPair};
-use crate::gjk::{End, Frame, Gjk, GjkOptions, Shape, first_direction, gjk, is_near_contact, near_contact};
+use crate::body::{Body as _, Pair, PointPair};
+use crate::gjk::{
+    End, Frame, Gjk, GjkOptions, NEAR, Shape, first_direction, gjk, is_near_contact, near_contact, rounding,
+};
 use crate::{Distance, DistanceOptions, Iterate, Status};
 
 /// The distance of two shapes, and where they are closest.
@@ -41,7 +43,7 @@ pub fn distance_with<A, B>(
     a: &A,
     b: &B,
     options: DistanceOptions<A::Vector>,
-    observer: impl FnMut(Iterate<'_, A::Vector>),
+    mut observer: impl FnMut(Iterate<'_, A::Vector>),
 ) -> Distance<A::Vector>
 where
     A: SupportMap + ?Sized,
@@ -50,6 +52,69 @@ where
     let mut pair = Pair::new(a, b);
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
+    direct(&mut pair, offset, size, options.max_iterations, &mut observer)
+        .unwrap_or_else(|| searched(pair, offset, size, options, observer))
+}
+
+/// The plain case: bodies that are apart by more than a few errors, of which the closest points are known in closed form. There is
+/// nothing to search, and all is done in the world's unit.
+///
+/// The plane of the support point across the vector between those points is as far as they are, to rounding, or it is left to the search.
+#[inline(always)]
+fn direct<A, B>(
+    pair: &mut Pair<'_, A, B>,
+    offset: A::Vector,
+    size: <A::Vector as Vector>::Scalar,
+    max_iterations: usize,
+    observer: impl FnOnce(Iterate<'_, A::Vector>),
+) -> Option<Distance<A::Vector>>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let number = <A::Vector as Vector>::Scalar::from_f64;
+    let PointPair { a, b } = pair.closest_points(offset, size)?;
+    let v = a - b + offset;
+    let (length, radius, noise) = (v.length(), pair.radius(), rounding(size));
+    let error = noise + pair.error();
+    // NaN is near contact.
+    if !(length - radius > error * number(NEAR)) || max_iterations == 0 {
+        return None;
+    }
+    let w = pair.support(-v).0 + offset;
+    let lower = (v.dot(w) / length).min(length);
+    if !(length - lower <= noise) {
+        return None;
+    }
+    let (scale, upper) = (number(1.0), length);
+    observer(Iterate { iteration: 0, simplex: &[v], v, w, scale, lower, upper });
+    let n = v / length;
+    Some(Distance {
+        distance: length - radius,
+        lower: lower - error - radius,
+        upper: length + error - radius,
+        overlap: false,
+        point_a: pair.core_a.origin + a - n * pair.core_a.radius,
+        point_b: pair.core_b.origin + b + n * pair.core_b.radius,
+        normal: Some(n),
+        status: Status::Converged,
+        iterations: 1,
+    })
+}
+
+/// The distance by a search.
+#[inline(always)]
+fn searched<A, B>(
+    mut pair: Pair<'_, A, B>,
+    offset: A::Vector,
+    size: <A::Vector as Vector>::Scalar,
+    options: DistanceOptions<A::Vector>,
+    observer: impl FnMut(Iterate<'_, A::Vector>),
+) -> Distance<A::Vector>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
     let frame = Frame::new(&mut pair, offset, size);
     let mut state = Gjk::new(first_direction(options.axis, frame.offset));
     let meet = state.begin_at_closest(&pair, &frame, size) == Some(true);
@@ -61,7 +126,7 @@ where
     };
     let end = if meet { End::Overlap } else { gjk(&mut state, &mut pair, frame, search, None, observer) };
     if is_near_contact(&mut state, &frame)
-        && let Some(answer) = touching(&a, &b, options.max_iterations, state.iterations)
+        && let Some(answer) = touching(&pair.a, &pair.b, options.max_iterations, state.iterations)
     {
         return answer;
     }
