@@ -1,7 +1,7 @@
 //! A ray cast from closest points alone (the paper's Algorithm 1).
 
 use convex_support::{Scalar, Vector};
-use num_traits::Float as _;
+use num_traits::Float;
 
 use crate::cast::LocalRay;
 use crate::unit::power_of_two_near;
@@ -54,93 +54,173 @@ pub fn iterative_ray_cast_with<V: Vector>(
     mut observer: impl FnMut(Iterate<'_, V>),
 ) -> Result<RayCast<V>, RayCastError> {
     ray.check()?;
-    let zero = V::Scalar::ZERO;
-    let rounding = V::Scalar::from_f64(8.0) * V::Scalar::EPSILON;
-    let origin = closest_point(ray.source).ok_or(RayCastError::NoClosestPoint)?;
-    let mut answer = RayCast {
-        outcome: Outcome::Undecided,
-        lower: zero,
-        upper: V::Scalar::infinity(),
-        status: Status::Stalled,
-        iterations: 1,
-    };
+    let mut closest_point = |x| closest_point(x).ok_or(RayCastError::NoClosestPoint);
+    let origin = closest_point(ray.source)?;
     if !origin.is_finite() {
-        return Ok(answer);
+        return Ok(undecided(V::Scalar::ZERO, Status::Stalled, 1));
     }
-    let scale = power_of_two_near((ray.source - origin).norm());
-    let local = LocalRay::new(ray, origin, scale);
-    let (line, down) = (local.line, scale.recip());
-    let direction = line.direction;
-
-    // At μ, the ray is before the plane with the normal n, which it crosses at `crossing`: μ stays behind by what rounding
-    // may have moved the plane. Not before `proved`, if rounding turned it as well, does the ray enter the set.
-    let begin = if options.min_lambda > zero { local.mu(options.min_lambda) } else { local.start };
-    let least = options.min_lambda.max(zero);
-    let (mut mu, mut crossing, mut proved) = (begin, begin, begin);
-    let (mut normal, mut tilt) = (None::<V>, zero);
-    let mut c = origin;
+    let mut way = Way::new(ray, origin, &options);
+    let mut iterations = 1;
     loop {
-        let from_start = mu <= begin;
-        let x = if mu <= local.start { ray.source } else { origin + line.at(mu) * scale };
-        if answer.iterations > 1 || mu > local.start {
-            c = closest_point(x).ok_or(RayCastError::NoClosestPoint)?;
-        }
-        let v = (x - c) * down;
-        let length = v.norm();
+        let x = way.x();
+        let c = if iterations == 1 && way.is_at_source() { origin } else { closest_point(x)? };
+        let v = (x - c) * way.scale.recip();
         observer(Iterate {
-            iteration: answer.iterations - 1,
+            iteration: iterations - 1,
             simplex: &[v],
             v,
             w: v,
-            scale,
-            lower: local.lambda(proved).max(least),
-            upper: answer.upper,
+            scale: way.scale,
+            lower: way.local.lambda(way.proved).max(way.least),
+            upper: Float::infinity(),
         });
+        match way.step(x, c, v) {
+            Step::Advances if iterations < options.max_iterations => iterations += 1,
+            Step::Advances => return Ok(undecided(way.lower(), Status::IterationLimit, iterations)),
+            Step::Stalls => return Ok(undecided(way.lower(), Status::Stalled, iterations)),
+            Step::Ends(Answer { outcome, lower, upper }) => {
+                return Ok(RayCast { outcome, lower, upper, status: Status::Converged, iterations });
+            }
+        }
+    }
+}
+
+/// The answer of a search that ended before it came to one.
+fn undecided<V: Vector>(lower: V::Scalar, status: Status, iterations: usize) -> RayCast<V> {
+    RayCast { outcome: Outcome::Undecided, lower, upper: Float::infinity(), status, iterations }
+}
+
+/// How far a ray has come, and the last plane that it crosses on the way.
+struct Way<'o, V: Vector> {
+    ray: Ray<V>,
+    options: &'o RayCastOptions<V>,
+    /// The point that the line is relative to, and the unit of its lengths.
+    origin: V,
+    scale: V::Scalar,
+    local: LocalRay<V>,
+    /// Where the ray begins on the line, and the λ of that.
+    begin: V::Scalar,
+    least: V::Scalar,
+    /// Where the ray is, before the plane by what rounding may have moved that.
+    mu: V::Scalar,
+    /// Where it crosses the plane.
+    crossing: V::Scalar,
+    /// The ray does not enter the set before this, even if rounding turned the planes as well.
+    proved: V::Scalar,
+    /// The unit normal of the plane, and what that may be turned by.
+    normal: Option<V>,
+    tilt: V::Scalar,
+}
+
+enum Step<V: Vector> {
+    Advances,
+    /// The next plane is no farther along the ray than the last one.
+    Stalls,
+    Ends(Answer<V>),
+}
+
+struct Answer<V: Vector> {
+    outcome: Outcome<RayHit<V>, V>,
+    lower: V::Scalar,
+    upper: V::Scalar,
+}
+
+impl<'o, V: Vector> Way<'o, V> {
+    fn new(ray: Ray<V>, origin: V, options: &'o RayCastOptions<V>) -> Self {
+        let zero = V::Scalar::ZERO;
+        let scale = power_of_two_near((ray.source - origin).norm());
+        let local = LocalRay::new(ray, origin, scale);
+        let least = options.min_lambda.max(zero);
+        let begin = if least > zero { local.mu(least) } else { local.start };
+        Self {
+            ray,
+            options,
+            origin,
+            scale,
+            local,
+            begin,
+            least,
+            mu: begin,
+            crossing: begin,
+            proved: begin,
+            normal: None,
+            tilt: zero,
+        }
+    }
+
+    fn is_at_source(&self) -> bool {
+        self.mu <= self.local.start
+    }
+
+    /// The point of the ray, in the world.
+    fn x(&self) -> V {
+        if self.is_at_source() { self.ray.source } else { self.at(self.mu) }
+    }
+
+    fn at(&self, mu: V::Scalar) -> V {
+        self.origin + self.local.line.at(mu) * self.scale
+    }
+
+    fn lower(&self) -> V::Scalar {
+        (self.local.lambda(self.proved) - self.local.error(self.proved, V::Scalar::ZERO)).max(self.least)
+    }
+
+    /// Goes on to the plane through the closest point `c`, with `v` the vector from there in the unit.
+    fn step(&mut self, x: V, c: V, v: V) -> Step<V> {
+        let length = v.norm();
         // x is only known to the rounding of its coordinates, and so is its distance.
-        let noise = rounding * (x.norm() + c.norm()) * down;
-        answer.lower = (local.lambda(proved) - local.error(proved, zero)).max(least);
+        let noise = V::Scalar::from_f64(8.0) * V::Scalar::EPSILON * (x.norm() + c.norm()) / self.scale;
         if length <= noise + noise {
-            // Where the set is entered, its surface may be flatter to the ray by what the last normal was turned by rounding.
-            let slope = normal.map_or(V::Scalar::ONE, |n| -n.dot(direction));
-            let slope = (slope - tilt).max(slope / V::Scalar::from_f64(8.0));
-            let lambda = if from_start { least } else { local.lambda(crossing).max(least) };
-            let point = if lambda > zero { origin + line.at(crossing) * scale } else { ray.source };
-            answer.upper = if from_start {
-                least
-            } else {
-                lambda + local.error(crossing, noise * V::Scalar::from_f64(4.0) / slope)
-            };
-            (answer.outcome, answer.status) = if lambda > options.max_lambda {
-                (Outcome::Miss(Miss { axis: normal.unwrap_or(-direction) }), Status::Converged)
-            } else {
-                (Outcome::Hit(RayHit { lambda, point, normal }), Status::Converged)
-            };
-            break;
+            return Step::Ends(self.hit(noise));
         }
         let n = v / length;
-        let slope = n.dot(direction);
-        let next = mu - (length - noise) / slope;
+        let slope = n.dot(self.local.line.direction);
         // What v is wrong by turns n by `noise/length`, so that the plane may be as much steeper to the ray than it seems.
         // The set is behind the plane, and so it is of all of the ray before x.
-        tilt = noise / length;
-        proved = proved.max(mu - (length - noise) / (slope - tilt));
-        if slope >= zero || local.lambda(proved) - local.error(proved, zero) > options.max_lambda {
-            // Together with the plane before x, the axis has the whole ray before it: across the ray, both count.
-            let axis = normal.filter(|_| slope > zero).and_then(|m| (m * slope - n * m.dot(direction)).unit());
-            answer.outcome = Outcome::Miss(Miss { axis: axis.unwrap_or(n) });
-            answer.status = Status::Converged;
-            (answer.lower, answer.upper) = (V::Scalar::infinity(), V::Scalar::infinity());
-            break;
+        let tilt = noise / length;
+        self.proved = self.proved.max(self.mu - (length - noise) / (slope - tilt));
+        if slope >= V::Scalar::ZERO || self.lower() > self.options.max_lambda {
+            return Step::Ends(self.miss(n));
         }
-        if !(next > mu) {
-            break;
+        let next = self.mu - (length - noise) / slope;
+        if !(next > self.mu) {
+            return Step::Stalls;
         }
-        if answer.iterations >= options.max_iterations {
-            answer.status = Status::IterationLimit;
-            break;
-        }
-        answer.iterations += 1;
-        (mu, crossing, normal) = (next, mu - length / slope, Some(n));
+        (self.crossing, self.mu) = (self.mu - length / slope, next);
+        (self.normal, self.tilt) = (Some(n), tilt);
+        Step::Advances
     }
-    Ok(answer)
+
+    /// The answer where x is in the set, to noise.
+    fn hit(&self, noise: V::Scalar) -> Answer<V> {
+        let (zero, from_f64) = (V::Scalar::ZERO, V::Scalar::from_f64);
+        let (lower, least) = (self.lower(), self.least);
+        let (lambda, upper) = if self.mu <= self.begin {
+            (least, least)
+        } else {
+            // Where the set is entered, its surface may be flatter to the ray by what the last normal was turned by rounding.
+            let slope = self.normal.map_or(V::Scalar::ONE, |n| -n.dot(self.local.line.direction));
+            let slope = (slope - self.tilt).max(slope / from_f64(8.0));
+            let lambda = self.local.lambda(self.crossing).max(least);
+            (lambda, lambda + self.local.error(self.crossing, noise * from_f64(4.0) / slope))
+        };
+        let outcome = if lambda > self.options.max_lambda {
+            Outcome::Miss(Miss { axis: self.normal.unwrap_or(-self.local.line.direction) })
+        } else {
+            let point = if lambda > zero { self.at(self.crossing) } else { self.ray.source };
+            Outcome::Hit(RayHit { lambda, point, normal: self.normal })
+        };
+        Answer { outcome, lower, upper }
+    }
+
+    /// The answer where the plane across `n` through x's closest point has all of the ray before it that the last plane has left.
+    fn miss(&self, n: V) -> Answer<V> {
+        // Together with the plane before x, the axis has the whole ray before it: across the ray, both count.
+        let direction = self.local.line.direction;
+        let slope = n.dot(direction);
+        let last = self.normal.filter(|_| slope > V::Scalar::ZERO);
+        let axis = last.and_then(|m| (m * slope - n * m.dot(direction)).unit()).unwrap_or(n);
+        let infinity = V::Scalar::infinity();
+        Answer { outcome: Outcome::Miss(Miss { axis }), lower: infinity, upper: infinity }
+    }
 }
