@@ -148,12 +148,12 @@ impl Cast {
         let speed = norm(self.direction).f64();
         let truth = entry(1.0);
         let is_surely_hit = truth.is_some() && entry(1.0 - BAND).is_some();
-        if let Some(truth) = truth
-            && !matches!(self.outcome, CastOutcome::Miss { .. })
-        {
-            let holds = DoubleDouble::from(self.lower) <= truth && truth <= DoubleDouble::from(self.upper);
-            // Within rounding of a graze, a hit may be of what the ray passes by.
-            verdict.violation = !holds && (is_surely_hit || entry(1.0 - GRAZE * epsilon).is_some());
+        if obstacle.is_known() && !matches!(self.outcome, CastOutcome::Miss { .. }) {
+            // Beyond the end, too: whether a hit there counts is decided by λ as it is rounded.
+            let met = obstacle.entry(self.source, self.direction, 1.0).filter(|&l| l >= DoubleDouble::from(0.0));
+            let holds = |at| DoubleDouble::from(self.lower) <= at && at <= DoubleDouble::from(self.upper);
+            // A miss is at infinity.
+            verdict.violation = !met.map_or(self.upper == f64::INFINITY, holds);
         }
         if let CastOutcome::Hit { normal, excess, .. } = self.outcome {
             // Where the ray meets the surface is known to rounding divided by the cosine.
