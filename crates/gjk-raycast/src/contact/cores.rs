@@ -93,7 +93,7 @@ pub(crate) fn gap_along<V: Vector>(a: &dyn SupportMap<Vector = V>, b: &dyn Suppo
     gap - V::Scalar::EPSILON * Scalar::from_f64(3.0) * (gap.abs() + cores.radius())
 }
 
-/// How deep cores are in one another, in closed form, in the unit.
+/// How deep cores are in one another, or minus how far they are apart, in closed form, in the unit.
 pub(super) struct ClosedForm<V: Vector> {
     /// The unit vector out of their difference.
     pub(super) u: V,
@@ -250,6 +250,32 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     #[inline]
     pub(super) fn rounding_along(&self, n: A::Vector) -> <A::Vector as Vector>::Scalar {
         self.error_along(n) * Scalar::from_f64(2.0)
+    }
+
+    /// The plain case: cores that are well apart, of which the closest points are known in closed form. The plane of the support point
+    /// across the vector between those points is as far as they are, to rounding, or it is left to the search.
+    #[inline]
+    pub(super) fn known_apart(
+        &mut self,
+        max_iterations: usize,
+        observer: impl FnOnce(Iterate<'_, A::Vector>),
+    ) -> Option<ClosedForm<A::Vector>> {
+        let Frame { offset, scale, .. } = self.frame;
+        let points = self.pair.closest_points(offset * scale, self.size * scale)?;
+        let v = self.difference(points);
+        let length = v.length();
+        if !self.is_well_apart(length) || max_iterations == 0 {
+            return None;
+        }
+        let w = self.support(-v)?.point;
+        let lower = (v.dot(w) / length).min(length);
+        if !self.is_closed(length - lower) {
+            return None;
+        }
+        observer(Iterate { iteration: 0, simplex: &[v], v, w, scale, lower: lower * scale, upper: length * scale });
+        let n = v / length;
+        let (inner, outer) = (-self.greatest_length(v), self.error_along(n) - lower);
+        Some(ClosedForm { u: -n, depth: -length, inner, outer, points })
     }
 
     /// The way out of two parallelotopes that certainly overlap; a plane across `axis`, or across their offset, may tell them apart

@@ -56,6 +56,9 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let mut cores = Cores::new(a, b);
+    if let Some(known) = cores.known_apart(options.max_iterations, &mut observer) {
+        return Reached::of_closed_form(known).answer(&cores);
+    }
     if let Some(known) = cores.closed_form(options.axis) {
         return Reached::of_closed_form(known).answer(&cores);
     }
