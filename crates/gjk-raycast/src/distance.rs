@@ -53,7 +53,7 @@ where
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     direct(&mut pair, offset, size, options.max_iterations, &mut observer)
-        .unwrap_or_else(|| searched(pair, offset, size, options, observer))
+        .unwrap_or_else(|| searched(&mut pair, offset, size, options, observer))
 }
 
 /// The plain case: bodies that are apart by more than a few errors, of which the closest points are known in closed form. There is
@@ -105,7 +105,7 @@ where
 /// The distance by a search.
 #[inline(always)]
 fn searched<A, B>(
-    mut pair: Pair<'_, A, B>,
+    pair: &mut Pair<'_, A, B>,
     offset: A::Vector,
     size: <A::Vector as Vector>::Scalar,
     options: DistanceOptions<A::Vector>,
@@ -115,16 +115,16 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let frame = Frame::new(&mut pair, offset, size);
+    let frame = Frame::new(pair, offset, size);
     let mut state = Gjk::new(first_direction(options.axis, frame.offset));
-    let meet = state.begin_at_closest(&pair, &frame, size) == Some(true);
+    let meet = state.begin_at_closest(pair, &frame, size) == Some(true);
     let search = GjkOptions {
         limit: options.limit * frame.per_unit + frame.radius,
         tolerance: options.tolerance,
         sub_algorithm: options.sub_algorithm,
         ..GjkOptions::new(state.normal, options.max_iterations)
     };
-    let end = if meet { End::Overlap } else { gjk(&mut state, &mut pair, frame, search, None, observer) };
+    let end = if meet { End::Overlap } else { gjk(&mut state, pair, frame, search, None, observer) };
     if is_near_contact(&mut state, &frame)
         && let Some(answer) = touching(&pair.a, &pair.b, options.max_iterations, state.iterations)
     {

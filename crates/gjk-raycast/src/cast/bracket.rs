@@ -99,6 +99,8 @@ enum Entry {
     BySlope,
     /// An edge, or a graze, may be within an error.
     InDoubt,
+    /// The outline of the body, as it is seen along the ray, is within an error: the ray may miss.
+    AtOutline,
 }
 
 impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
@@ -185,13 +187,23 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         match self.entry {
             Entry::Certain => false,
             Entry::BySlope => self.error > self.noise * ScalarOf::<B>::from_f64(LOOSE),
-            Entry::InDoubt => true,
+            Entry::InDoubt | Entry::AtOutline => true,
         }
     }
 
     /// Takes note that an edge, or a graze, may be within an error of where the ray enters.
     pub(super) fn doubt_entry(&mut self) {
         self.entry = Entry::InDoubt;
+    }
+
+    /// Takes note that the outline of the body is within an error of the ray.
+    pub(super) fn touch_outline(&mut self) {
+        self.entry = Entry::AtOutline;
+    }
+
+    /// Whether another look, at what is near the hit alone, may tell that the ray is in the body.
+    pub(super) fn is_worth_another_look(&self) -> bool {
+        self.is_entry_open() && self.entry != Entry::AtOutline
     }
 
     /// Moves the upper bound to where the ray is in the body whatever the errors.

@@ -140,7 +140,7 @@ fn conclude<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         Err(Stop::Exhausted(status)) => (Outcome::Undecided, bracket.bounds(None), status),
         Err(Stop::InDoubt | Stop::Touches(_)) => (Outcome::Undecided, bracket.bounds(None), Status::Stalled),
     };
-    let is_open = matches!(outcome, Outcome::Hit(_)) && bracket.is_entry_open();
+    let is_open = matches!(outcome, Outcome::Hit(_)) && bracket.is_worth_another_look();
     let (iterations, scale) = (bracket.iterations(), bracket.scale);
     Cast { outcome, lower, upper, status, iterations, scale, is_open }
 }

@@ -44,6 +44,8 @@ pub(super) fn bound_entry<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(bracket: &m
     let Some(polygon) = known.filter(is_near).or_else(|| view.look_around(bracket, error)) else { return };
     if let Some(latest) = polygon.latest_entry(mu, error) {
         bracket.enter_for_certain(latest);
+    } else if polygon.touches_outline(error) {
+        bracket.touch_outline();
     }
 }
 
@@ -78,8 +80,8 @@ impl<V: Vector> View<V> {
         polygon
     }
 
-    /// A wide polygon of support points across the line; `None` where the outline is within an error of the line, or no more points can be
-    /// had.
+    /// A wide polygon of support points across the line, or one with a side that the outline is known to be near at; `None` where no more
+    /// points can be had.
     fn look_around<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
         &self,
         bracket: &mut Bracket<'_, B, O>,
@@ -99,10 +101,9 @@ impl<V: Vector> View<V> {
         let mut polygon = Polygon::new();
         polygon.insert(0, right);
         polygon.insert(1, left);
-        let two = error + error;
         while polygon.len < MAX_CORNERS {
-            if polygon.sides().iter().any(|side| side.is_outermost && side.distance <= two) {
-                return None;
+            if polygon.touches_outline(error) {
+                break;
             }
             let wide = V::Scalar::from_f64(WIDE);
             let Some(i) = polygon.nearest_of(|side| !side.is_outermost && side.distance < wide) else { break };
@@ -198,6 +199,11 @@ impl<S: Scalar> Polygon<S> {
     fn nearest_of(&self, is_meant: impl Fn(&Side<S>) -> bool) -> Option<usize> {
         let meant = (0..self.len).filter(|&i| is_meant(&self.sides[i]));
         meant.reduce(|i, j| if self.sides[j].distance < self.sides[i].distance { j } else { i })
+    }
+
+    /// Whether the outline is known to be within two errors of the line.
+    fn touches_outline(&self, error: S) -> bool {
+        self.sides().iter().any(|side| side.is_outermost && side.distance <= error + error)
     }
 
     /// Where the line is in the body, at the latest, that has a point at `mu` to within an error; `None` where the polygon is not around
