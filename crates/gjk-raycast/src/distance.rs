@@ -49,11 +49,7 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let mut pair = Pair::new(a, b);
-    let offset = pair.core_a.origin - pair.core_b.origin;
-    let size = pair.size(offset);
-    direct(&mut pair, offset, size, options.max_iterations, &mut observer)
-        .unwrap_or_else(|| searched(&mut pair, offset, size, options, observer))
+    direct(a, b, options.max_iterations, &mut observer).unwrap_or_else(|| searched(a, b, options, observer))
 }
 
 /// The plain case: bodies that are apart by more than a few errors, of which the closest points are known in closed form. There is
@@ -62,9 +58,8 @@ where
 /// The plane of the support point across the vector between those points is as far as they are, to rounding, or it is left to the search.
 #[inline(always)]
 fn direct<A, B>(
-    pair: &mut Pair<'_, A, B>,
-    offset: A::Vector,
-    size: <A::Vector as Vector>::Scalar,
+    a: &A,
+    b: &B,
     max_iterations: usize,
     observer: impl FnOnce(Iterate<'_, A::Vector>),
 ) -> Option<Distance<A::Vector>>
@@ -73,6 +68,9 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let number = <A::Vector as Vector>::Scalar::from_f64;
+    let mut pair = Pair::new(a, b);
+    let offset = pair.core_a.origin - pair.core_b.origin;
+    let size = pair.size(offset);
     let PointPair { a, b } = pair.closest_points(offset, size)?;
     let v = a - b + offset;
     let (length, radius, noise) = (v.length(), pair.radius(), rounding(size));
@@ -105,9 +103,8 @@ where
 /// The distance by a search.
 #[inline(always)]
 fn searched<A, B>(
-    pair: &mut Pair<'_, A, B>,
-    offset: A::Vector,
-    size: <A::Vector as Vector>::Scalar,
+    a: &A,
+    b: &B,
     options: DistanceOptions<A::Vector>,
     observer: impl FnMut(Iterate<'_, A::Vector>),
 ) -> Distance<A::Vector>
@@ -115,18 +112,21 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let frame = Frame::new(pair, offset, size);
+    let mut pair = Pair::new(a, b);
+    let offset = pair.core_a.origin - pair.core_b.origin;
+    let size = pair.size(offset);
+    let frame = Frame::new(&mut pair, offset, size);
     let mut state = Gjk::new(first_direction(options.axis, frame.offset));
-    let meet = state.begin_at_closest(pair, &frame, size) == Some(true);
+    let meet = state.begin_at_closest(&pair, &frame, size) == Some(true);
     let search = GjkOptions {
         limit: options.limit * frame.per_unit + frame.radius,
         tolerance: options.tolerance,
         sub_algorithm: options.sub_algorithm,
         ..GjkOptions::new(state.normal, options.max_iterations)
     };
-    let end = if meet { End::Overlap } else { gjk(&mut state, pair, frame, search, None, observer) };
+    let end = if meet { End::Overlap } else { gjk(&mut state, &mut pair, frame, search, None, observer) };
     if is_near_contact(&mut state, &frame)
-        && let Some(answer) = touching(&pair.a, &pair.b, options.max_iterations, state.iterations)
+        && let Some(answer) = touching(&a, &b, options.max_iterations, state.iterations)
     {
         return answer;
     }
