@@ -146,7 +146,12 @@ pub(crate) struct Pair<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vec
 impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'a, A, B> {
     #[inline]
     pub(crate) fn new(a: &'a A, b: &'a B) -> Self {
-        let (core_a, core_b) = (a.core(), b.core());
+        Self::of_cores(a, b, [a.core(), b.core()])
+    }
+
+    /// The same of shapes that have been asked for their cores.
+    #[inline(always)]
+    pub(crate) fn of_cores(a: &'a A, b: &'a B, [core_a, core_b]: [Core<A::Vector>; 2]) -> Self {
         Self { a, b, core_a, core_b, hint_a: Hint::new(), hint_b: Hint::new(), per_unit: Scalar::ONE }
     }
 

@@ -49,7 +49,9 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    direct(a, b, options.max_iterations, &mut observer).unwrap_or_else(|| searched(a, b, options, observer))
+    let cores = [a.core(), b.core()];
+    direct(a, b, cores, options.max_iterations, &mut observer)
+        .unwrap_or_else(|| searched(a, b, cores, options, observer))
 }
 
 /// The plain case: bodies that are apart by more than a few errors, of which the closest points are known in closed form. There is
@@ -60,6 +62,7 @@ where
 fn direct<A, B>(
     a: &A,
     b: &B,
+    cores: [Core<A::Vector>; 2],
     max_iterations: usize,
     observer: impl FnOnce(Iterate<'_, A::Vector>),
 ) -> Option<Distance<A::Vector>>
@@ -68,7 +71,7 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let number = <A::Vector as Vector>::Scalar::from_f64;
-    let mut pair = Pair::new(a, b);
+    let mut pair = Pair::of_cores(a, b, cores);
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let PointPair { a, b } = pair.closest_points(offset, size)?;
@@ -105,6 +108,7 @@ where
 fn searched<A, B>(
     a: &A,
     b: &B,
+    cores: [Core<A::Vector>; 2],
     options: DistanceOptions<A::Vector>,
     observer: impl FnMut(Iterate<'_, A::Vector>),
 ) -> Distance<A::Vector>
@@ -112,7 +116,7 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let mut pair = Pair::new(a, b);
+    let mut pair = Pair::of_cores(a, b, cores);
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
