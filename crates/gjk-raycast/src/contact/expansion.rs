@@ -9,6 +9,17 @@ use super::{SignedDistanceOptions, basin, start, witness};
 use crate::body::PointPair;
 use crate::{Iterate, Status};
 
+/// Where the boundary is smooth, a way ends at the support point but for the square root of this part of its length.
+const SMOOTH: f64 = 1e-10;
+
+/// The cosine of the angle between a facet's normal and the way out, below which the normal leans towards the way.
+const NEAR_BY: f64 = 0.9;
+
+/// The part of the way from a facet's normal to the way out that is leaned, of facets with a corner where the way ends, and of others.
+/// With more of it, ellipsoids that are nearly tied take up to all support points.
+const LEAN_AT_END: f64 = 0.65;
+const LEAN_NEAR_BY: f64 = 0.2;
+
 /// A plane that supports the difference, by the support point, which knows the outward unit normal that it was found along.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WayOut<V: Vector> {
@@ -25,6 +36,24 @@ impl<V: Vector> WayOut<V> {
     /// The unit vector out of the difference.
     pub(super) fn u(&self) -> V {
         self.vertex.along
+    }
+
+    /// The unit normal of a facet with these corners, leaned towards the way where that ends at a smooth place near by.
+    ///
+    /// At a distance `x` from such a place, the ball of radius `h` about zero is `x²·(1/h − 1/R)/2` below the boundary of `K`, whose radius of
+    /// curvature is `R`, and a facet of size `s` at most `s²/8R`. So the facets that the proof needs may grow in proportion to `x`. The
+    /// support point along a facet's normal is above its middle, and halves it; one nearer to the way leaves a larger facet outside, so
+    /// that fewer lie between the way and the first facets. To second order a support point is beyond the facet if it is within the circle
+    /// through its corners, whose centre the normal leads to. Where the way ends at a corner, all of the way towards it is.
+    fn leaned(&self, normal: V, corners: &[V]) -> V {
+        let (u, point) = (self.u(), self.vertex.point);
+        let aside = (point - u * self.h).length_squared();
+        let is_smooth = aside < self.h * self.h * V::Scalar::from_f64(SMOOTH);
+        if !(is_smooth && normal.dot(u) > V::Scalar::from_f64(NEAR_BY)) {
+            return normal;
+        }
+        let part = if corners.contains(&point) { LEAN_AT_END } else { LEAN_NEAR_BY };
+        (normal + (u - normal) * V::Scalar::from_f64(part)).unit().unwrap_or(normal)
     }
 }
 
@@ -77,6 +106,8 @@ where
     let tolerance = if is_curved { options.tolerance * cores.size } else { Scalar::ZERO };
     let depth_limit = (options.depth_limit - cores.radius()) / cores.scale();
     let mut enough = tolerance.max(cores.rounding_along(way.u()));
+    // Whether directions may lean; not next after one whose support point was not beyond the facet.
+    let mut may_lean = is_curved;
     let status = loop {
         let (nearest, inner) = boundary.nearest();
         let inner = if inner > Scalar::ZERO { inner } else { -reached };
@@ -91,7 +122,9 @@ where
         if cores.iterations >= options.max_iterations {
             break Status::IterationLimit;
         }
-        let Some(vertex) = cores.support(normal) else { break Status::Stalled };
+        let direction =
+            if may_lean { way.leaned(normal, &boundary.corner_points(nearest)[..A::Vector::DIM]) } else { normal };
+        let Some(vertex) = cores.support(direction) else { break Status::Stalled };
         let seen = WayOut::new(vertex);
         if seen.h < way.h {
             way = seen;
@@ -113,12 +146,18 @@ where
         let descends = is_curved && seen.h == way.h;
         let corners = descends.then(|| boundary.corners(nearest));
         if !boundary.insert(nearest, &vertex) {
+            // The support point along its own normal is beyond any facet that is not of the boundary.
+            if may_lean && direction != normal {
+                may_lean = false;
+                continue;
+            }
             // The facet is of the boundary of K, and by the rounding of its plane farther in than the support value says.
             if boundary.measure(nearest) {
                 continue;
             }
             break Status::Stalled;
         }
+        may_lean = is_curved;
         if let Some(corners) = corners {
             way = basin::descend(cores, &mut boundary, way, &corners[..A::Vector::DIM], options)?;
             enough = tolerance.max(cores.rounding_along(way.u()));

@@ -42,8 +42,8 @@ where
 }
 
 /// [`signed_distance`], showing an observer every iterate: those of [`distance`](crate::distance) as long as the cores may be
-/// apart. After that the simplex is the facet nearest to zero, `v` its foot, `w` the support point along its normal, and the bounds
-/// are those of the signed distance of the cores.
+/// apart. After that the simplex is the facet nearest to zero, `v` its foot, `w` the support point along its normal or
+/// between that and the best way out, and the bounds are those of the signed distance of the cores.
 #[inline]
 pub fn signed_distance_with<A, B>(
     a: &A,
