@@ -19,15 +19,24 @@ pub trait AngularVelocity<V: Vector>:
     /// and in units of the scalar's epsilon.
     const TURN_ERROR: f64;
 
+    /// What of a rotation at this velocity does not depend on time.
+    type Spin: Spin<V>;
+
     /// The matrix `W` with `W·x = ω × x`.
     fn cross_matrix(self) -> V::Matrix;
+
+    /// The rotation at this velocity, to be asked at many times.
+    fn spin(self) -> Self::Spin;
 
     /// What the rotation by `|ω|·time` about `ω` adds to a vector: the matrix `R − 1`, which is small where the angle is, and
     /// accurate relative to that.
     ///
     /// The angle may be many turns: it is computed to twice the digits. Beyond 2⁵⁰ it is not known well enough even so, and the
     /// matrix is of NaNs.
-    fn turn(self, time: V::Scalar) -> V::Matrix;
+    #[inline]
+    fn turn(self, time: V::Scalar) -> V::Matrix {
+        self.spin().turn(time)
+    }
 
     /// The constant angular velocity that turns `from` into `to` within one unit of time, the short way round. Quaternions need
     /// not be unit; of NaNs where one of them is no rotation.
@@ -63,6 +72,22 @@ pub trait AngularVelocity<V: Vector>:
     fn from_coordinates(f: impl FnMut(usize) -> V::Scalar) -> Self;
 }
 
+/// A rotation at a constant [angular velocity](AngularVelocity), of which what does not depend on time is computed once.
+///
+/// ```
+/// use convex_support::{AngularVelocity, Spin, glam::DVec3};
+///
+/// // A quarter of a turn about z within a second.
+/// let spin = (DVec3::Z * std::f64::consts::FRAC_PI_2).spin();
+/// for (time, to) in [(0.0, DVec3::X), (1.0, DVec3::Y), (2.0, -DVec3::X)] {
+///     assert!((DVec3::X + spin.turn(time) * DVec3::X - to).length() < 1e-15);
+/// }
+/// ```
+pub trait Spin<V: Vector>: Copy + Debug + Send + Sync + 'static + sealed::Sealed {
+    /// What the rotation adds to a vector after `time`, as of [`AngularVelocity::turn`].
+    fn turn(&self, time: V::Scalar) -> V::Matrix;
+}
+
 mod sealed {
     // Sealed because `TURN_ERROR` is a promise that certified bounds rest on, and because methods will be added.
     pub trait Sealed {}
@@ -71,6 +96,7 @@ mod sealed {
     impl Sealed for glam::Vec3 {}
     impl Sealed for glam::Vec3A {}
     impl Sealed for glam::DVec3 {}
+    impl Sealed for super::SpinInSpace {}
 }
 
 /// Angular velocities of the plane, where with `h` half the angle `R − 1 = 2·sin h·(−sin h, −cos h; cos h, −sin h)`.
@@ -82,16 +108,16 @@ macro_rules! number {
         impl AngularVelocity<$V> for $S {
             const TURN_ERROR: f64 = $error;
 
+            type Spin = Self;
+
             #[inline]
             fn cross_matrix(self) -> $M {
                 $M::from_cols($V::new(0.0, self), $V::new(-self, 0.0))
             }
 
             #[inline]
-            fn turn(self, time: $S) -> $M {
-                let [sin, cos] = sin_cos(two_product(0.5 * self.as_f64(), time.as_f64()));
-                let (x, y) = (-2.0 * sin * sin, 2.0 * sin * cos);
-                $rounded(DMat2::from_cols(DVec2::new(x, y), DVec2::new(-y, x)))
+            fn spin(self) -> Self {
+                self
             }
 
             fn between(from: $S, to: $S) -> Self {
@@ -126,6 +152,15 @@ macro_rules! number {
                 f(0)
             }
         }
+
+        impl Spin<$V> for $S {
+            #[inline]
+            fn turn(&self, time: $S) -> $M {
+                let [sin, cos] = sin_cos(two_product(0.5 * self.as_f64(), time.as_f64()));
+                let (x, y) = (-2.0 * sin * sin, 2.0 * sin * cos);
+                $rounded(DMat2::from_cols(DVec2::new(x, y), DVec2::new(-y, x)))
+            }
+        }
     };
 }
 
@@ -138,6 +173,8 @@ macro_rules! vector {
         impl AngularVelocity<$V> for $V {
             const TURN_ERROR: f64 = $error;
 
+            type Spin = SpinInSpace;
+
             #[inline]
             fn cross_matrix(self) -> $M {
                 let [x, y, z] = self.to_array();
@@ -145,8 +182,8 @@ macro_rules! vector {
             }
 
             #[inline]
-            fn turn(self, time: <$V as Vector>::Scalar) -> $M {
-                $matrix_rounded(turn_about($double(self), time.as_f64()))
+            fn spin(self) -> SpinInSpace {
+                SpinInSpace::new($double(self))
             }
 
             fn between(from: $Q, to: $Q) -> Self {
@@ -179,6 +216,13 @@ macro_rules! vector {
                 <$V as Vector>::from_fn(f)
             }
         }
+
+        impl Spin<$V> for SpinInSpace {
+            #[inline]
+            fn turn(&self, time: <$V as Vector>::Scalar) -> $M {
+                $matrix_rounded(self.after(time.as_f64()))
+            }
+        }
     };
 }
 
@@ -186,37 +230,55 @@ vector!(Vec3 by Mat3, Quat, 0.6, |v: Vec3| v.as_dvec3(), |v: DVec3| v.as_vec3(),
 vector!(Vec3A by Mat3A, Quat, 0.6, |v: Vec3A| v.as_dvec3(), |v: DVec3| v.as_vec3a(), |m: DMat3| Mat3A::from(m.as_mat3()));
 vector!(DVec3 by DMat3, DQuat, 10.0, |v| v, |v| v, |m| m);
 
-/// `R − 1` for the rotation by `|ω|·time` about `ω` (Rodrigues): with the unit axis `a` and half the angle `h`,
-///
-/// > R − 1 = sin 2h·[a]× + (1 − cos 2h)·[a]×² = 2·sin h·(cos h·[a]× + sin h·(a·aᵀ − 1)).
-///
-/// With `u = ε/2`, the axis is right to `3u`, sine and cosine to `3u`. So the first matrix in the parentheses is wrong by `7u`, the
-/// second by `11u`, and they are rounded by `3u` more, where their norm is 1; that of the entries of the whole is `√2` times larger.
-fn turn_about(angular_velocity: DVec3, time: f64) -> DMat3 {
-    if angular_velocity == DVec3::ZERO {
-        return DMat3::ZERO;
+/// A rotation about an axis in space.
+#[derive(Clone, Copy, Debug)]
+pub struct SpinInSpace {
+    /// The unit vector along it, or zero where nothing turns.
+    axis: DVec3,
+    /// The rate in two parts, in a unit that is a power of two.
+    rate: f64,
+    lost: f64,
+    unit: f64,
+}
+
+impl SpinInSpace {
+    fn new(angular_velocity: DVec3) -> Self {
+        if angular_velocity == DVec3::ZERO {
+            return Self { axis: DVec3::ZERO, rate: 0.0, lost: 0.0, unit: 1.0 };
+        }
+        // A power of two takes squares out of reach of over- and underflow.
+        let unit = comfortable_unit_of_length(angular_velocity.abs().max_element());
+        let w = angular_velocity / unit;
+        let rate = w.length();
+        // What the square root loses of |w|: |w| = rate + (|w|² − rate²)/(2·rate), with the squares to twice the digits.
+        let [square, rest] = two_product(rate, rate);
+        let lost = (dot_minus(w.to_array().map(|c| (c, c)), square) - rest) / (2.0 * rate);
+        Self { axis: w / rate, rate, lost, unit }
     }
-    // A power of two takes squares out of reach of over- and underflow.
-    let unit = comfortable_unit_of_length(angular_velocity.abs().max_element());
-    let w = angular_velocity / unit;
-    let rate = w.length();
-    // What the square root loses of |w|: |w| = rate + (|w|² − rate²)/(2·rate), with the squares to twice the digits.
-    let [square, rest] = two_product(rate, rate);
-    let lost = (dot_minus(w.to_array().map(|c| (c, c)), square) - rest) / (2.0 * rate);
-    let half = 0.5 * unit * time;
-    let [angle, rest] = two_product(rate, half);
-    let [sin, cos] = sin_cos([angle, rest + lost * half]);
-    let a = w / rate;
-    let (c, s) = (a * (2.0 * sin * cos), 2.0 * sin * sin);
-    let v = a * s;
-    // [a]×² = a·aᵀ − 1, whose diagonal is minus the sum of two squares.
-    let (xx, yy, zz) = (v.x * a.x, v.y * a.y, v.z * a.z);
-    let (xy, yz, zx) = (v.x * a.y, v.y * a.z, v.z * a.x);
-    DMat3::from_cols(
-        DVec3::new(-(yy + zz), xy + c.z, zx - c.y),
-        DVec3::new(xy - c.z, -(zz + xx), yz + c.x),
-        DVec3::new(zx + c.y, yz - c.x, -(xx + yy)),
-    )
+
+    /// `R − 1` for the rotation by `|ω|·time` about `ω` (Rodrigues): with the unit axis `a` and half the angle `h`,
+    ///
+    /// > R − 1 = sin 2h·[a]× + (1 − cos 2h)·[a]×² = 2·sin h·(cos h·[a]× + sin h·(a·aᵀ − 1)).
+    ///
+    /// With `u = ε/2`, the axis is right to `3u`, sine and cosine to `3u`. So the first matrix in the parentheses is wrong by `7u`, the
+    /// second by `11u`, and they are rounded by `3u` more, where their norm is 1; that of the entries of the whole is `√2` times
+    /// larger.
+    fn after(&self, time: f64) -> DMat3 {
+        let Self { axis: a, rate, lost, unit } = *self;
+        let half = 0.5 * unit * time;
+        let [angle, rest] = two_product(rate, half);
+        let [sin, cos] = sin_cos([angle, rest + lost * half]);
+        let (c, s) = (a * (2.0 * sin * cos), 2.0 * sin * sin);
+        let v = a * s;
+        // [a]×² = a·aᵀ − 1, whose diagonal is minus the sum of two squares.
+        let (xx, yy, zz) = (v.x * a.x, v.y * a.y, v.z * a.z);
+        let (xy, yz, zx) = (v.x * a.y, v.y * a.z, v.z * a.x);
+        DMat3::from_cols(
+            DVec3::new(-(yy + zz), xy + c.z, zx - c.y),
+            DVec3::new(xy - c.z, -(zz + xx), yz + c.x),
+            DVec3::new(zx + c.y, yz - c.x, -(xx + yy)),
+        )
+    }
 }
 
 /// The shorter of the two turns from one rotation to another.

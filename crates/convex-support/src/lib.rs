@@ -80,7 +80,7 @@ mod vector;
 
 pub use glam;
 
-pub use angular_velocity::AngularVelocity;
+pub use angular_velocity::{AngularVelocity, Spin};
 pub use bounds::{Aabb, BoundingSphere, bounding_box, bounding_sphere};
 pub use bvh::{Bound, BoxDistance, Boxes, Bvh, Lanes, PairSearch, SweptBox, WIDTH, outer_box};
 pub use closest_point::closest_point;

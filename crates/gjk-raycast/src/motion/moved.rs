@@ -19,6 +19,7 @@ pub(crate) struct Moved<'s, S: SupportMap + ?Sized> {
 impl<'s, S: SupportMap + ?Sized> Moved<'s, S> {
     /// The shape with the given core, which may have another origin and another radius than its own, turned by `rotation` about the
     /// origin. Before that its points were known as `rounding` says, and moving it took them where they should be but for `error`.
+    #[inline]
     pub(crate) fn new(
         shape: &'s S,
         core: Core<S::Vector>,

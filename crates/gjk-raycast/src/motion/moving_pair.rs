@@ -124,8 +124,7 @@ where
 
     fn acceleration_along(&self, plane: TurningPlane<A::Vector>, interval: [ScalarOf<A>; 2]) -> ScalarOf<A> {
         let opposite = TurningPlane { from: -plane.from, to: -plane.to };
-        self.a.motion.acceleration_along(self.a.ball(), plane, interval)
-            + self.b.motion.acceleration_along(self.b.ball(), opposite, interval)
+        self.a.acceleration_along(plane, interval) + self.b.acceleration_along(opposite, interval)
     }
 
     fn stays_far_apart(&self, interval: [ScalarOf<A>; 2]) -> Option<A::Vector> {

@@ -125,7 +125,7 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> OverHalfSpac
     /// In twice the precision it is rounded once, so that a body far along the plane is known as well as any other.
     fn lowest(&self, time: ScalarOf<S>) -> Lowest<S::Vector> {
         let (n, origin, radius) = (self.normal, self.body.core.origin, self.body.core.radius);
-        let displacement = self.body.motion.displacement(time);
+        let displacement = self.body.displacement(time);
         let (shift, turned) = (displacement.shift, displacement.turned(origin));
         let place = origin + shift + turned;
         let moved = self.body.moved(&displacement, place, self.body.displacement_error(&displacement));
@@ -196,7 +196,7 @@ where
     /// The plane does not turn, whatever rounding has made of a normal.
     fn acceleration_along(&self, _plane: TurningPlane<S::Vector>, interval: [ScalarOf<S>; 2]) -> ScalarOf<S> {
         let plane = TurningPlane { from: self.normal, to: self.normal };
-        self.body.motion.acceleration_along(self.body.ball(), plane, interval) / self.length
+        self.body.acceleration_along(plane, interval) / self.length
     }
 
     /// The ball is lowest at one of the ends.

@@ -26,7 +26,7 @@ where
     /// The bodies where they are at a time.
     #[inline]
     pub(super) fn placed(&self, time: ScalarOf<A>) -> Placed<'_, A, B> {
-        let (da, db) = (self.a.motion.displacement(time), self.b.motion.displacement(time));
+        let (da, db) = (self.a.displacement(time), self.b.displacement(time));
         // What lies between is of the order of the bodies, however far from the world's origin they are.
         let between = self.a.core.origin - self.b.core.origin;
         let (shifts, turned_b) = (da.shift - db.shift, db.turned(self.b.core.origin));

@@ -1,7 +1,7 @@
 //! Motion at constant linear and angular velocity.
 
 use convex_support::numerics::bound::least;
-use convex_support::{AngularVelocity, BoundingSphere, Matrix, Scalar, Vector};
+use convex_support::{AngularVelocity, BoundingSphere, Matrix, Scalar, Spin, Vector};
 use num_traits::Float as _;
 
 use super::trajectory::{Displacement, MovingBall, Trajectory, TurningPlane};
@@ -35,6 +35,9 @@ pub struct RigidMotion<V: Vector> {
     /// centre of mass.
     pub center: V,
 }
+
+/// The spin of the angular velocities of a space.
+pub(super) type SpinOf<V> = <<V as Vector>::AngularVelocity as AngularVelocity<V>>::Spin;
 
 /// Where a body is: it is turned about zero, then moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -104,7 +107,62 @@ impl<V: Vector> RigidMotion<V> {
         Self { velocity: (moved - across) / duration, center, ..straight }
     }
 
-    /// `|ω|`, and the distance from the axis through the centre within which all of a ball stays.
+    /// [`displacement`](Trajectory::displacement), by the spin of its angular velocity.
+    #[inline(always)]
+    pub(super) fn displacement_by(&self, spin: &SpinOf<V>, time: V::Scalar) -> Displacement<V> {
+        let mut displacement = Displacement::shifted(self.velocity * time);
+        if self.angular_velocity != Default::default() {
+            let turn = spin.turn(time);
+            let squared = (0..V::DIM).fold(V::Scalar::ZERO, |sum, j| sum + turn.col(j).length_squared());
+            // Four more for the product with a vector.
+            let units = <V::AngularVelocity as AngularVelocity<V>>::TURN_ERROR + 4.0;
+            displacement.turn_error = squared.sqrt() * V::Scalar::EPSILON * V::Scalar::from_f64(units);
+            displacement.pivot = self.center;
+            displacement.turn = turn;
+        }
+        displacement
+    }
+
+    /// [`acceleration_along`](Trajectory::acceleration_along), by the [reach](Self::reach) of the ball.
+    ///
+    /// With `y` the vector to the point from the centre, `ẋ = v + Wy` and `ẍ = W²y` for `W = ω×`, whose transpose is `−W`. So
+    ///
+    /// > 2·r·ẋ + n·ẍ = 2·r·v + y·W(Wn − 2r),
+    ///
+    /// and the last vector is across ω, along which `y` reaches no farther than from the axis to the far side of the ball. Of a normal
+    /// that turns with the body, `r = Wn`, no more is left than of one that does not turn.
+    #[inline]
+    pub(super) fn acceleration_within(
+        &self,
+        reach: V::Scalar,
+        TurningPlane { from, to }: TurningPlane<V>,
+        interval: [V::Scalar; 2],
+    ) -> V::Scalar {
+        // At rest, as one of two bodies mostly is.
+        if self.velocity == V::ZERO && self.angular_velocity == Default::default() {
+            return V::Scalar::ZERO;
+        }
+        let two = V::Scalar::from_f64(2.0);
+        let twice_rate = if from == to { V::ZERO } else { (to - from) * (two / (interval[1] - interval[0])) };
+        let straight = twice_rate.dot(self.velocity);
+        if self.angular_velocity == Default::default() {
+            return straight;
+        }
+        let w = self.angular_velocity.cross_matrix();
+        let bent = [w * (w * from - twice_rate), w * (w * to - twice_rate)];
+        let (squared_from, squared_to) = (bent[0].length_squared(), bent[1].length_squared());
+        let squared = if squared_from > squared_to { squared_from } else { squared_to };
+        let in_range = V::Scalar::min_positive_value() / (V::Scalar::EPSILON * V::Scalar::EPSILON);
+        let bent = if squared > in_range { squared.sqrt() } else { hardly_bent(bent) };
+        straight + bent * reach + least::<V::Scalar>()
+    }
+
+    /// The distance from the axis through the centre within which all of a ball stays.
+    pub(super) fn reach(&self, ball: BoundingSphere<V>) -> V::Scalar {
+        self.lever(ball).1
+    }
+
+    /// `|ω|`, and the [reach](Self::reach) of a ball.
     fn lever(&self, ball: BoundingSphere<V>) -> (V::Scalar, V::Scalar) {
         if self.angular_velocity == Default::default() {
             return (V::Scalar::ZERO, ball.radius);
@@ -136,17 +194,7 @@ impl<V: Vector> Trajectory for RigidMotion<V> {
 
     #[inline]
     fn displacement(&self, time: V::Scalar) -> Displacement<V> {
-        let mut displacement = Displacement::shifted(self.velocity * time);
-        if self.angular_velocity != Default::default() {
-            let turn = self.angular_velocity.turn(time);
-            let squared = (0..V::DIM).fold(V::Scalar::ZERO, |sum, j| sum + turn.col(j).length_squared());
-            // Four more for the product with a vector.
-            let units = <V::AngularVelocity as AngularVelocity<V>>::TURN_ERROR + 4.0;
-            displacement.turn_error = squared.sqrt() * V::Scalar::EPSILON * V::Scalar::from_f64(units);
-            displacement.pivot = self.center;
-            displacement.turn = turn;
-        }
-        displacement
+        self.displacement_by(&self.angular_velocity.spin(), time)
     }
 
     #[inline]
@@ -155,36 +203,14 @@ impl<V: Vector> Trajectory for RigidMotion<V> {
         self.velocity + w * (point - self.center - self.velocity * time)
     }
 
-    /// With `y` the vector to the point from the centre, `ẋ = v + Wy` and `ẍ = W²y` for `W = ω×`, whose transpose is `−W`. So
-    ///
-    /// > 2·r·ẋ + n·ẍ = 2·r·v + y·W(Wn − 2r),
-    ///
-    /// and the last vector is across ω, along which `y` reaches no farther than from the axis to the far side of the ball. Of a normal
-    /// that turns with the body, `r = Wn`, no more is left than of one that does not turn.
     #[inline]
     fn acceleration_along(
         &self,
         ball: BoundingSphere<V>,
-        TurningPlane { from, to }: TurningPlane<V>,
+        plane: TurningPlane<V>,
         interval: [V::Scalar; 2],
     ) -> V::Scalar {
-        // At rest, as one of two bodies mostly is.
-        if self.velocity == V::ZERO && self.angular_velocity == Default::default() {
-            return V::Scalar::ZERO;
-        }
-        let two = V::Scalar::from_f64(2.0);
-        let twice_rate = if from == to { V::ZERO } else { (to - from) * (two / (interval[1] - interval[0])) };
-        let straight = twice_rate.dot(self.velocity);
-        if self.angular_velocity == Default::default() {
-            return straight;
-        }
-        let w = self.angular_velocity.cross_matrix();
-        let bent = [w * (w * from - twice_rate), w * (w * to - twice_rate)];
-        let (squared_from, squared_to) = (bent[0].length_squared(), bent[1].length_squared());
-        let squared = if squared_from > squared_to { squared_from } else { squared_to };
-        let in_range = V::Scalar::min_positive_value() / (V::Scalar::EPSILON * V::Scalar::EPSILON);
-        let bent = if squared > in_range { squared.sqrt() } else { hardly_bent(bent) };
-        straight + bent * self.lever(ball).1 + least::<V::Scalar>()
+        self.acceleration_within(self.reach(ball), plane, interval)
     }
 
     /// About the centre, which moves at constant velocity, or about the middle of the ball, which leaves its chord by

@@ -14,8 +14,8 @@ use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk};
 use crate::simplex::MAX_POINTS;
 
 /// How wide a bracket on the distance of bodies that are well apart may stay, relative to it: where they are looked at next hardly
-/// depends on it, and their gap is proved however wide it is.
-const ROUGH: f64 = 1e-3;
+/// depends on it, and their gap is proved however wide it is. A narrower one takes more support points, a wider one more looks.
+const ROUGH: f64 = 0.2;
 
 /// Corners of a simplex, of which some are none, each relative to its body's origin and turned back to time 0.
 #[derive(Clone, Copy)]
