@@ -94,7 +94,7 @@ pub(crate) use setters;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct DistanceOptions<V: Vector> {
-    /// The width of the bracket at which to stop, relative to the distance of the cores. A bracket at the level of
+    /// The width of the bracket at which to stop, relative to the distance. A bracket at the level of
     /// rounding, relative to the size of what is compared, always ends the iteration. Default: 0.
     pub tolerance: V::Scalar,
     /// Stop as soon as the distance is certain to exceed this limit; the bracket is then as wide as it is known. Default:

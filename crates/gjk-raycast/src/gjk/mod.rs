@@ -76,7 +76,7 @@ pub(crate) struct GjkOptions<V: Vector> {
     pub(crate) first: V,
     /// Stop where the cores are certainly farther apart than this.
     pub(crate) limit: V::Scalar,
-    /// Stop where the bracket is as narrow as this, relative to its lower end.
+    /// Stop where the bracket is as narrow as this, relative to the least distance of the bodies.
     pub(crate) tolerance: V::Scalar,
     /// Whether the closest points are asked for, and not only which of two bounds comes first.
     pub(crate) closest_points: bool,
@@ -163,10 +163,10 @@ fn descend<B: Body>(
             }
             return End::Separated;
         }
-        let seems_closed = state.is_closed(frame.noise, options.tolerance);
+        let seems_closed = state.is_closed(frame, options.tolerance);
         if seems_closed {
             state.ensure_measured();
-            if state.is_closed(frame.noise, options.tolerance) {
+            if state.is_closed(frame, options.tolerance) {
                 return if state.length - frame.radius <= frame.noise { End::Overlap } else { End::Separated };
             }
         }

@@ -87,9 +87,9 @@ impl<V: Vector, W: Copy + Default> Gjk<V, W> {
 
     /// Whether the bounds are as near to one another as rounding or the tolerance.
     #[inline(always)]
-    pub(super) fn is_closed(&self, noise: V::Scalar, tolerance: V::Scalar) -> bool {
+    pub(super) fn is_closed(&self, frame: &Frame<V>, tolerance: V::Scalar) -> bool {
         let gap = self.length - self.lower;
-        gap <= noise || gap <= tolerance * self.lower
+        gap <= frame.noise || gap <= tolerance * (self.lower - frame.radius)
     }
 
     /// What an observer is shown after support point `w` was found.

@@ -67,8 +67,7 @@ where
         }
         let options = GjkOptions {
             limit: limit * per_unit + radius,
-            // It is relative to the distance of the cores, which says nothing of that of round bodies.
-            tolerance: if radius > Scalar::ZERO { Scalar::ZERO } else { Scalar::from_f64(ROUGH) },
+            tolerance: Scalar::from_f64(ROUGH),
             ..GjkOptions::new(state.normal, SignedDistanceOptions::<A::Vector>::new().max_iterations)
         };
         let end = gjk(&mut state, &mut pair, frame, options, None, |_| {});
