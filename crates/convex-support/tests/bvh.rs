@@ -90,6 +90,20 @@ fn check<V: Vector, B: Bound<V>>(tree: &Bvh<V>, boxes: &[Option<Aabb<V>>], quest
     let due: Vec<_> = (0..boxes.len()).filter(|&i| bounds[i].is_some_and(|b| b <= limit)).collect();
     assert_eq!(found, due, "all within the limit, each once");
 
+    let mut shown = Vec::new();
+    tree.within(question, limit, |item| {
+        shown.push(item);
+        ControlFlow::Continue(())
+    });
+    shown.sort_unstable();
+    let a_little_more = limit * V::Scalar::from_f64(1.0 + 32.0 * V::Scalar::EPSILON.as_f64());
+    let may = |i: usize| bounds[i].is_some_and(|b| b <= a_little_more);
+    assert!(due.iter().all(|i| shown.contains(i)), "all within the limit, in any order");
+    assert!(
+        shown.iter().all(|&i| may(i)) && shown.windows(2).all(|w| w[0] < w[1]),
+        "and none but for rounding, each once"
+    );
+
     let mut nearest: Option<(V::Scalar, usize)> = None;
     tree.search(question, V::Scalar::max_value(), |item, bound| {
         if nearest.is_none_or(|(b, i)| bound < b || (bound == b && item < i)) {
@@ -105,12 +119,12 @@ fn check<V: Vector, B: Bound<V>>(tree: &Bvh<V>, boxes: &[Option<Aabb<V>>], quest
 fn pairs<V: Vector>(tree: &Bvh<V>, boxes: &[Option<Aabb<V>>], distance: V::Scalar) -> usize {
     let mut found = Vec::new();
     let mut again = Vec::new();
-    tree.pairs_within(distance).visit(|i, j, _| {
+    tree.pairs_within(distance).visit(|i, j| {
         found.push((i.min(j), i.max(j)));
         ControlFlow::Continue(())
     });
     for piece in tree.pairs_within(distance).split(50) {
-        piece.visit(|i, j, _| {
+        piece.visit(|i, j| {
             again.push((i.min(j), i.max(j)));
             ControlFlow::Continue(())
         });
@@ -130,7 +144,7 @@ fn pairs<V: Vector>(tree: &Bvh<V>, boxes: &[Option<Aabb<V>>], distance: V::Scala
     assert_eq!(again, due, "pairs, in pieces");
 
     let mut between = Vec::new();
-    tree.pairs_between(tree, distance).visit(|i, j, _| {
+    tree.pairs_between(tree, distance).visit(|i, j| {
         between.push((i, j));
         ControlFlow::Continue(())
     });
@@ -278,6 +292,6 @@ fn numbers_that_are_not_finite_do_no_harm() {
     tree.rebuild();
     let _ = tree
         .search(&SweptBox::new(DVec3::NAN, DVec3::NAN, DVec3::NAN), f64::NAN, |_, _| ControlFlow::Continue(f64::NAN));
-    let _ = tree.pairs_within(f64::NAN).visit(|_, _, _| ControlFlow::Continue(()));
+    let _ = tree.pairs_within(f64::NAN).visit(|_, _| ControlFlow::Continue(()));
     assert_eq!(tree.len(), 40, "all are counted");
 }

@@ -17,6 +17,14 @@ pub trait Bound<V: Vector> {
     /// The bounds of four boxes; infinity where nothing in a box concerns the question. Those of places without a child do
     /// not matter.
     fn bounds(&self, boxes: &Boxes<V>) -> LanesOf<V>;
+
+    /// A bit for each of four boxes, the lowest for the first: for those with a bound of at most `limit`, and perhaps for others whose
+    /// bound rounding cannot tell from it. It obeys the same law: with a bit for a box there is one for every box around it. Provided: by
+    /// the bounds.
+    #[inline]
+    fn near(&self, boxes: &Boxes<V>, limit: V::Scalar) -> u32 {
+        self.bounds(boxes).at_most(limit)
+    }
 }
 
 /// The rounding of the few operations that a bound is made of, relative to the bound.
@@ -100,6 +108,7 @@ pub struct BoxDistance<V: Vector> {
 
 impl<V: Vector> BoxDistance<V> {
     /// The distance from this box.
+    #[inline]
     #[must_use]
     pub fn new(of: Aabb<V>) -> Self {
         let mut sides = [[Lanes::splat(V::Scalar::ZERO); 2]; 3];
@@ -110,11 +119,11 @@ impl<V: Vector> BoxDistance<V> {
     }
 }
 
-impl<V: Vector> Bound<V> for BoxDistance<V> {
-    #[inline]
-    fn bounds(&self, boxes: &Boxes<V>) -> LanesOf<V> {
-        let (zero, huge): (LanesOf<V>, LanesOf<V>) =
-            (Lanes::splat(V::Scalar::ZERO), Lanes::splat(V::Scalar::max_value()));
+impl<V: Vector> BoxDistance<V> {
+    /// The squared length of the gaps, and the largest of them.
+    #[inline(always)]
+    fn gaps(&self, boxes: &Boxes<V>) -> (LanesOf<V>, LanesOf<V>) {
+        let zero: LanesOf<V> = Lanes::splat(V::Scalar::ZERO);
         let (mut squared, mut largest) = (zero, zero);
         for i in 0..V::DIM {
             let before = boxes.min(i) - self.of[i][1];
@@ -122,8 +131,29 @@ impl<V: Vector> Bound<V> for BoxDistance<V> {
             let gap = before.max(behind).max(zero);
             (squared, largest) = (squared + gap * gap, gap.max(largest));
         }
+        (squared, largest)
+    }
+}
+
+impl<V: Vector> Bound<V> for BoxDistance<V> {
+    #[inline(always)]
+    fn bounds(&self, boxes: &Boxes<V>) -> LanesOf<V> {
+        let huge: LanesOf<V> = Lanes::splat(V::Scalar::max_value());
+        let (squared, largest) = self.gaps(boxes);
         // A length is at least its largest coordinate, which is what remains where squares under- or overflow.
         let length = squared.min(huge).sqrt().max(largest);
         (length * Lanes::splat(V::Scalar::ONE - rounding::<V::Scalar>())).min(huge)
+    }
+
+    /// By the squares, which takes no root, where that of the limit is an ordinary number: what underflows of a gap is nothing to it, and
+    /// what overflows is beyond it.
+    #[inline(always)]
+    fn near(&self, boxes: &Boxes<V>, limit: V::Scalar) -> u32 {
+        let end = limit * limit;
+        if !(end > V::Scalar::min_positive_value() / V::Scalar::EPSILON && end.is_finite()) {
+            return self.bounds(boxes).at_most(limit);
+        }
+        let deflate = V::Scalar::ONE - rounding::<V::Scalar>() - rounding::<V::Scalar>();
+        (self.gaps(boxes).0 * Lanes::splat(deflate)).at_most(end)
     }
 }

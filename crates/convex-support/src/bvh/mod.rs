@@ -28,8 +28,8 @@ pub use self::pairs::PairSearch;
 /// [`remove`](Self::remove)). Its depth stays below 36 whatever the boxes and their order: where a part has become
 /// lopsided, that part is built anew. So a question needs a stack of fixed size, and no memory.
 ///
-/// [`search`](Self::search) asks a question that concerns items by a [`Bound`], nearest first;
-/// [`pairs_within`](Self::pairs_within) and [`pairs_between`](Self::pairs_between) ask about pairs of boxes.
+/// [`search`](Self::search) asks a question that concerns items by a [`Bound`], nearest first, and [`within`](Self::within) in any
+/// order; [`pairs_within`](Self::pairs_within) and [`pairs_between`](Self::pairs_between) ask about pairs of boxes.
 ///
 /// Boxes must be finite, with `min ≤ max`. A box that is not loses its own item and may slow others down; nothing panics.
 ///

@@ -2,22 +2,39 @@
 
 use num_traits::Float as _;
 
-use crate::{Aabb, Core, Rounding, Scalar, ScalarOf, SupportMap, Vector, bounding_box};
+use crate::{Aabb, Core, CoreKind, Hint, Scalar, ScalarOf, SupportMap, Vector};
 
-/// A box that contains the set that the shape stands for, and every point that a query computes of it: the [`bounding_box`]
-/// grown by 32 ε of the numbers that the shape is computed from, and by what its support points are [known](Rounding) to.
-/// `None` if a number is not finite.
+/// A box that contains the set that the shape stands for, and every point that a query computes of it: the
+/// [`bounding_box`](crate::bounding_box) grown by 32 ε of the numbers that the shape is computed from, and by what its core is
+/// [known](Core::error) to. `None` if a number is not finite.
 ///
 /// A query's answer is that of a shape which is off by its rounding, a few ε of the origin, the core's extent and the
 /// radius. Since the box has room for that, a body whose box shows it to be farther than an answer is also farther by its
 /// own query, not only in truth.
 #[must_use]
 pub fn outer_box<S: SupportMap + ?Sized>(shape: &S) -> Option<Aabb<S::Vector>> {
-    let Aabb { min, max } = bounding_box(shape);
-    let (Core { origin, radius, extent, .. }, Rounding { error, .. }) = (shape.core(), shape.rounding());
+    let Core { origin, radius, extent, error, kind } = shape.core();
+    let core = match kind {
+        CoreKind::Point(at) => Aabb { min: at, max: at },
+        _ => core_box(shape),
+    };
     let size = origin.abs().dot(S::Vector::ONE) + extent + radius;
-    let room = ScalarOf::<S>::from_f64(32.0) * ScalarOf::<S>::EPSILON * size + ScalarOf::<S>::min_positive_value();
-    let room = S::Vector::splat(room) + error;
-    let outer = Aabb { min: min - room, max: max + room };
+    let room =
+        ScalarOf::<S>::from_f64(32.0) * ScalarOf::<S>::EPSILON * size + ScalarOf::<S>::min_positive_value() + error;
+    let reach = S::Vector::splat(radius + room);
+    let outer = Aabb { min: origin + core.min - reach, max: origin + core.max + reach };
     (outer.min.is_finite() && outer.max.is_finite()).then_some(outer)
+}
+
+/// The smallest box around the core, relative to the shape's origin.
+fn core_box<S: SupportMap + ?Sized>(shape: &S) -> Aabb<S::Vector> {
+    let mut hint = Hint::new();
+    let mut farthest = |direction: S::Vector| {
+        hint.rewind();
+        shape.core_support(direction, &mut hint)
+    };
+    Aabb {
+        min: S::Vector::from_fn(|i| farthest(-S::Vector::axis(i)).get(i)),
+        max: S::Vector::from_fn(|i| farthest(S::Vector::axis(i)).get(i)),
+    }
 }

@@ -6,7 +6,6 @@ use core::ops::ControlFlow;
 
 use super::Bvh;
 use super::bound::{Bound, BoxDistance};
-use super::lanes::Lanes;
 use super::node::{Child, Link, Slot, WIDTH};
 use super::search::MAX_DEPTH;
 use crate::{Aabb, Vector};
@@ -50,24 +49,23 @@ impl<V: Vector> Bvh<V> {
 }
 
 impl<'t, V: Vector> PairSearch<'t, V> {
-    /// Shows every pair, in no particular order, with the distance of the two boxes from below, until `visit` breaks off.
-    /// Returns the number of pairs of nodes, or of a node and an item, that were looked into.
-    pub fn visit(self, mut visit: impl FnMut(usize, usize, V::Scalar) -> ControlFlow<()>) -> usize {
-        let mut stack = [(Pair(Slot::NONE, Slot::NONE), V::Scalar::default()); STACK];
-        stack[0].0 = self.start;
+    /// Shows every pair, in no particular order, until `visit` breaks off; perhaps others that [rounding cannot tell](Bound::near) from
+    /// those. Returns the number of pairs of nodes, or of a node and an item, that were looked into.
+    pub fn visit(self, mut visit: impl FnMut(usize, usize) -> ControlFlow<()>) -> usize {
+        let mut stack = [self.start; STACK];
         let (mut top, mut looked) = (1, 0);
         while top > 0 {
             top -= 1;
-            let (pair, bound) = stack[top];
+            let pair = stack[top];
             if let (Child::Item(i), Child::Item(j)) = self.children(pair) {
-                if visit(i, j, bound).is_break() {
+                if visit(i, j).is_break() {
                     return looked;
                 }
                 continue;
             }
             looked += 1;
-            self.expand(pair, |next, bound| {
-                stack[top] = (next, bound);
+            self.expand(pair, |next| {
+                stack[top] = next;
                 top += 1;
             });
         }
@@ -87,7 +85,7 @@ impl<'t, V: Vector> PairSearch<'t, V> {
                 whole += 1;
             } else {
                 whole = 0;
-                self.expand(pair, |next, _| pieces.push_back(next));
+                self.expand(pair, |next| pieces.push_back(next));
             }
         }
         pieces.into_iter().map(|start| Self { start, ..self }).collect()
@@ -100,7 +98,7 @@ impl<'t, V: Vector> PairSearch<'t, V> {
 
     /// The pairs that a pair consists of and whose boxes are near. Not for two items.
     #[inline]
-    fn expand(&self, pair: Pair, mut push: impl FnMut(Pair, V::Scalar)) {
+    fn expand(&self, pair: Pair, mut push: impl FnMut(Pair)) {
         match self.children(pair) {
             (Child::Node(a), Child::Node(b)) => {
                 for lane in 0..WIDTH {
@@ -113,21 +111,21 @@ impl<'t, V: Vector> PairSearch<'t, V> {
                         // A pair counts once, and an item makes none with itself.
                         first = lane + 1;
                         if let Child::Node(_) = self.a.nodes[a].children[lane].child() {
-                            push(Pair(slot, slot), V::Scalar::default());
+                            push(Pair(slot, slot));
                         }
                     }
-                    self.near(self.a.nodes[a].boxes.get(lane), self.b, b, first, |other, bound| {
-                        push(Pair(slot, other), bound);
+                    self.near(self.a.nodes[a].boxes.get(lane), self.b, b, first, |other| {
+                        push(Pair(slot, other));
                     });
                 }
             }
             (Child::Node(a), Child::Item(_)) => {
                 let around = self.b.nodes[pair.1.node()].boxes.get(pair.1.lane());
-                self.near(around, self.a, a, 0, |slot, bound| push(Pair(slot, pair.1), bound));
+                self.near(around, self.a, a, 0, |slot| push(Pair(slot, pair.1)));
             }
             (Child::Item(_), Child::Node(b)) => {
                 let around = self.a.nodes[pair.0.node()].boxes.get(pair.0.lane());
-                self.near(around, self.b, b, 0, |slot, bound| push(Pair(pair.0, slot), bound));
+                self.near(around, self.b, b, 0, |slot| push(Pair(pair.0, slot)));
             }
             _ => {}
         }
@@ -135,15 +133,14 @@ impl<'t, V: Vector> PairSearch<'t, V> {
 
     /// The children of a node, from `first` on, that are near a box.
     #[inline]
-    fn near(&self, around: Aabb<V>, tree: &Bvh<V>, node: usize, first: usize, mut push: impl FnMut(Slot, V::Scalar)) {
+    fn near(&self, around: Aabb<V>, tree: &Bvh<V>, node: usize, first: usize, mut push: impl FnMut(Slot)) {
         let holder = &tree.nodes[node];
-        let bounds = BoxDistance::new(around).bounds(&holder.boxes);
-        let mut near = bounds.at_most(self.distance) & !((1 << first) - 1);
+        let mut near = BoxDistance::new(around).near(&holder.boxes, self.distance) & !((1 << first) - 1);
         while near != 0 {
             let lane = near.trailing_zeros() as usize;
             near &= near - 1;
             if holder.children[lane] != Link::NONE {
-                push(Slot::new(node, lane), bounds.get(lane));
+                push(Slot::new(node, lane));
             }
         }
     }

@@ -48,11 +48,10 @@ impl<S: SupportMap> Among<'_, S> {
         };
         let ended = self.half_spaces().try_for_each(|(index, body)| look(index, body, &mut work));
         if ended.is_continue() {
-            work.nodes = self.scene.tree.search(&BoxDistance::new(outer_box_of_question(shape)), within, |index, _| {
-                if let Some(body) = self.body(index) {
-                    look(index, body, &mut work)?;
-                }
-                ControlFlow::Continue(within)
+            let around = BoxDistance::new(outer_box_of_question(shape));
+            work.nodes = self.scene.tree.within(&around, within, |index| match self.body(index) {
+                Some(body) => look(index, body, &mut work),
+                None => ControlFlow::Continue(()),
             });
         }
         found.sort_unstable_by_key(|found| found.body);

@@ -126,7 +126,7 @@ impl<'s, 'p, S: SupportMap, T: SupportMap<Vector = S::Vector>> Asking<'s, 'p, S,
 
     /// Asks about the pairs of bounded bodies whose boxes are near.
     fn search(&mut self, search: PairSearch<'_, S::Vector>) {
-        let nodes = search.visit(|i, j, _| {
+        let nodes = search.visit(|i, j| {
             let (i, j) = if self.same && j < i { (j, i) } else { (i, j) };
             self.ask(i, j)
         });
@@ -138,10 +138,9 @@ impl<'s, 'p, S: SupportMap, T: SupportMap<Vector = S::Vector>> Asking<'s, 'p, S,
         let (a, b, within) = (self.a, self.b.scene, self.within);
         for (index, body) in a.half_spaces() {
             let Body::HalfSpace(half_space) = body else { continue };
-            let nodes = b.tree.search(&HeightBound::new(half_space), within, |other, _| {
+            let nodes = b.tree.within(&HeightBound::new(half_space), within, |other| {
                 let (i, j) = if self.same && other < index { (other, index) } else { (index, other) };
-                self.ask(i, j)?;
-                ControlFlow::Continue(within)
+                self.ask(i, j)
             });
             self.work.nodes += nodes;
         }
@@ -152,10 +151,7 @@ impl<'s, 'p, S: SupportMap, T: SupportMap<Vector = S::Vector>> Asking<'s, 'p, S,
         let (a, b, within) = (self.a.scene, self.b, self.within);
         for (index, body) in b.half_spaces() {
             let Body::HalfSpace(half_space) = body else { continue };
-            let nodes = a.tree.search(&HeightBound::new(half_space), within, |other, _| {
-                self.ask(other, index)?;
-                ControlFlow::Continue(within)
-            });
+            let nodes = a.tree.within(&HeightBound::new(half_space), within, |other| self.ask(other, index));
             self.work.nodes += nodes;
         }
     }
