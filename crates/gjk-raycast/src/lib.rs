@@ -1,5 +1,5 @@
-//! Ray casts, distances and linear continuous collision detection against general convex shapes, by the
-//! Gilbert–Johnson–Keerthi algorithm (GJK): 2D and 3D, `f32` and `f64`, with certified answers.
+//! Ray casts, distances, contacts and continuous collision detection, of bodies that turn too, for general convex shapes, by
+//! the Gilbert–Johnson–Keerthi algorithm (GJK): 2D and 3D, `f32` and `f64`, with certified answers.
 //!
 //! Shapes are support maps of [`convex_support`]: its primitives, its combinators, or your own.
 //!

@@ -209,8 +209,8 @@ cargo run --release -p studies --features peers,box3d,jolt -- judge --each 100 \
     --answers target/judge/{coal,mujoco,fcl,ipctk,ipctk-ti}.jsonl   # --record writes this note
 ```
 
-The IPC toolkit takes a few minutes, the others seconds. `cargo xtask judge` is the last command without Box3D and Jolt, which take a \
-C++ compiler and cmake.
+The IPC toolkit takes a few minutes, the others seconds. Box3D and Jolt are built from source by a C++ compiler and \
+cmake; without them the last command is `cargo xtask judge`, with the same options.
 
 Claims that are disproved are written with their questions and what shows it to `target/judge/disproved.jsonl`.";
 

@@ -35,11 +35,11 @@ pub struct Marks {
 }
 
 /// The picture as it is on a desk, and on a telephone, without its legend.
-const WIDE: [f64; 2] = [760.0, 560.0];
-const NARROW: [f64; 2] = [420.0, 700.0];
+const WIDE: [f64; 2] = [780.0, 660.0];
+const NARROW: [f64; 2] = [420.0, 860.0];
 const FONT: f64 = 11.5;
 /// About the width of a letter of a label.
-const LETTER: f64 = 6.0;
+const LETTER: f64 = 6.2;
 /// The radius of a mark.
 const RADIUS: f64 = 4.5;
 
@@ -152,7 +152,7 @@ impl Group {
 /// Where the names of these widths stand beside their marks. A name is moved while another place costs it less, a few times over,
 /// as where it is best depends on where the others are.
 fn named(places: &[[f64; 2]], widths: &[f64], size: [f64; 2]) -> Vec<Area> {
-    const ROUNDS: usize = 4;
+    const ROUNDS: usize = 12;
     let marks: Vec<Area> = places.iter().map(|[x, y]| [x - 5.0, y - 5.0, x + 5.0, y + 5.0]).collect();
     let mut names: Vec<Area> = Vec::new();
     for k in (0..places.len()).cycle().take(ROUNDS * places.len()) {
@@ -169,9 +169,10 @@ fn named(places: &[[f64; 2]], widths: &[f64], size: [f64; 2]) -> Vec<Area> {
             let crossed = tie(places[k], *area).map_or(0, |to| {
                 let passed = beside.iter().chain(taken.iter().skip(marks.len()));
                 passed.filter(|other| crosses(places[k], to, **other)).count()
+                    + ties.iter().filter(|tie| meet((places[k], to), **tie)).count()
             });
             let struck = ties.iter().filter(|(from, to)| crosses(*from, *to, *area)).count();
-            away + 1000.0 * covered as f64 + 60.0 * (crossed + struck) as f64 + 30.0 * near as f64
+            away + 2000.0 * covered as f64 + 200.0 * (crossed + struck) as f64 + 30.0 * near as f64
         };
         let best = candidates(places[k], widths[k], size).into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
         let best = best.unwrap_or([places[k][0] + 7.0, places[k][1], places[k][0] + 7.0 + widths[k], places[k][1]]);
@@ -202,12 +203,27 @@ fn tie(mark: [f64; 2], name: Area) -> Option<[f64; 2]> {
     (distance(mark, name) > 12.0).then(|| nearest(mark, name))
 }
 
-/// Whether the way from one point to another leads through an area, as far as points along it tell.
+/// Whether the way from one point to another leads through an area: whether it is within both slabs of it at one time.
 fn crosses(from: [f64; 2], to: [f64; 2], area: Area) -> bool {
-    (0..=16).map(|k| f64::from(k) / 16.0).any(|t| {
-        let [x, y] = [0, 1].map(|i| from[i] + t * (to[i] - from[i]));
-        area[0] < x && x < area[2] && area[1] < y && y < area[3]
-    })
+    let (mut enter, mut leave) = (0.0f64, 1.0f64);
+    for i in [0, 1] {
+        let along = to[i] - from[i];
+        if along == 0.0 {
+            if from[i] <= area[i] || from[i] >= area[i + 2] {
+                return false;
+            }
+            continue;
+        }
+        let [one, other] = [area[i], area[i + 2]].map(|edge| (edge - from[i]) / along);
+        (enter, leave) = (enter.max(one.min(other)), leave.min(one.max(other)));
+    }
+    enter < leave
+}
+
+/// Whether two ways cross.
+fn meet((a, b): ([f64; 2], [f64; 2]), (c, d): ([f64; 2], [f64; 2])) -> bool {
+    let side = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
 /// Places within the picture for a name of this width beside a point.
@@ -216,8 +232,8 @@ fn candidates([x, y]: [f64; 2], width: f64, size: [f64; 2]) -> Vec<Area> {
     let place = |left: f64, top: f64| [left, top, left + width, top + height];
     let inside =
         |a: &Area| a[0] >= LEFT && a[2] <= size[0] - RIGHT + 24.0 && a[1] >= TOP - 8.0 && a[3] <= size[1] - 50.0;
-    // Sixteen directions, those to the sides, above and below first.
-    let directions = (0..16).map(|k| f64::from(k) * std::f64::consts::FRAC_PI_8);
+    // Thirty-two directions, those to the sides, above and below first.
+    let directions = (0..32).map(|k| f64::from(k) * std::f64::consts::PI / 16.0);
     let mut directions: Vec<[f64; 2]> = directions.map(|angle| [angle.cos(), angle.sin()]).collect();
     directions.sort_by(|a, b| (a[0] * a[1]).abs().total_cmp(&(b[0] * b[1]).abs()));
     let beside = |away: f64| {
@@ -227,7 +243,11 @@ fn candidates([x, y]: [f64; 2], width: f64, size: [f64; 2]) -> Vec<Area> {
         };
         directions.clone().into_iter().map(at)
     };
-    [0.0, 8.0, 16.0, 26.0, 38.0, 52.0, 70.0, 90.0].into_iter().flat_map(beside).filter(inside).collect()
+    [0.0, 6.0, 12.0, 18.0, 26.0, 36.0, 48.0, 62.0, 78.0, 96.0, 116.0]
+        .into_iter()
+        .flat_map(beside)
+        .filter(inside)
+        .collect()
 }
 
 #[cfg(test)]
@@ -243,5 +263,18 @@ mod tests {
             let covered = places.iter().find(|[x, y]| overlap(*name, [x - 4.0, y - 4.0, x + 4.0, y + 4.0]));
             assert_eq!(covered, None, "a mark under {name:?}");
         }
+    }
+
+    #[test]
+    fn ways_through_names_and_one_another_are_seen() {
+        let name = [10.0, 10.0, 50.0, 20.0];
+        assert!(crosses([0.0, 15.0], [60.0, 15.0], name), "along it");
+        assert!(crosses([9.0, 19.5], [11.0, 20.5], [10.0, 10.0, 50.0, 20.2]), "through its corner");
+        assert!(
+            !crosses([0.0, 15.0], [10.0, 15.0], name) && !crosses([0.0, 20.0], [60.0, 20.0], name),
+            "up to its edge"
+        );
+        assert!(meet(([0.0, 0.0], [4.0, 4.0]), ([0.0, 4.0], [4.0, 0.0])), "a cross");
+        assert!(!meet(([0.0, 0.0], [1.0, 1.0]), ([0.0, 4.0], [4.0, 0.0])), "ends before it");
     }
 }

@@ -51,10 +51,11 @@ const LEGEND_ROW: f64 = 20.0;
 /// About the width of a letter, to lay out the legend.
 const LETTER: f64 = 7.2;
 
-/// Colours that can be told apart, also by the colour-blind (after Okabe and Ito). A page may replace them by its custom
-/// properties `--c0` to `--c11`, such as brighter ones on a dark ground.
+/// Colours after Okabe and Ito, made as dark as text has to be on white, with a contrast of 4.5 to 1; where two look alike to the
+/// colour-blind, the marks differ. A page may replace them by its custom properties `--c0` to `--c11`, such as brighter ones on a
+/// dark ground.
 const COLOURS: [&str; 12] = [
-    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b8860b", "#3a9bd9", "#7a5195", "#6f6f6f", "#8b4513", "#b0123b",
+    "#0072b2", "#c25400", "#17803d", "#b8508f", "#8a6a00", "#00798c", "#7a5195", "#6f6f6f", "#8b4513", "#b0123b",
     "#3d49b5", "#66760f",
 ];
 
@@ -225,13 +226,16 @@ fn dashes(colour: usize) -> &'static str {
 fn mark(colour: usize, x: f64, y: f64, r: f64) -> String {
     // Where the colours begin again, the marks are one further.
     let kind = colour + colour / COLOURS.len();
-    shape(kind, kind % 8 >= 4, [x, y], r)
+    shape(kind % 4, kind % 8 >= 4, [x, y], r)
 }
 
-/// A disc, square, triangle or diamond.
+/// How many shapes there are.
+const SHAPES: usize = 6;
+
+/// A disc, square, triangle, diamond, triangle on its tip, or bar across.
 fn shape(kind: usize, is_hollow: bool, [x, y]: [f64; 2], r: f64) -> String {
     let fill = if is_hollow { " style=\"fill:var(--ground,none)\" stroke-width=\"1.6\"" } else { " stroke=\"none\"" };
-    match kind % 4 {
+    match kind % SHAPES {
         0 => format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{r}\"{fill}/>"),
         1 => {
             let (x, y, side) = (x - 0.9 * r, y - 0.9 * r, 1.8 * r);
@@ -241,9 +245,17 @@ fn shape(kind: usize, is_hollow: bool, [x, y]: [f64; 2], r: f64) -> String {
             let (top, half) = (y - 1.2 * r, 1.15 * r);
             format!("<path d=\"M{x:.1} {top:.1}l{half:.1} {:.1}h-{:.1}z\"{fill}/>", 2.0 * r, 2.0 * half)
         }
-        _ => {
+        3 => {
             let d = 1.25 * r;
             format!("<path d=\"M{x:.1} {:.1}l{d:.1} {d:.1}l-{d:.1} {d:.1}l-{d:.1} -{d:.1}z\"{fill}/>", y - d)
+        }
+        4 => {
+            let (tip, half) = (y + 1.2 * r, 1.15 * r);
+            format!("<path d=\"M{x:.1} {tip:.1}l{half:.1} -{:.1}h-{:.1}z\"{fill}/>", 2.0 * r, 2.0 * half)
+        }
+        _ => {
+            let (left, top, width) = (x - 1.3 * r, y - 0.55 * r, 2.6 * r);
+            format!("<rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{:.1}\"{fill}/>", 1.1 * r)
         }
     }
 }
@@ -356,18 +368,20 @@ fn power(value: f64) -> String {
     }
     let exponent = (value.log10() + 1e-9).floor() as i32;
     let leading = (value / 10f64.powi(exponent)).round();
-    let digits: String = exponent
-        .to_string()
-        .chars()
-        .map(|c| match c {
-            '-' => '⁻',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            digit => char::from_u32(digit as u32 - '0' as u32 + '⁰' as u32).unwrap_or(digit),
-        })
-        .collect();
+    let digits = raised(exponent);
     if leading == 1.0 { format!("10{digits}") } else { format!("{leading}·10{digits}") }
+}
+
+/// A whole number as an exponent.
+pub fn raised(exponent: i32) -> String {
+    let digit = |c| match c {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        digit => char::from_u32(digit as u32 - '0' as u32 + '⁰' as u32).unwrap_or(digit),
+    };
+    exponent.to_string().chars().map(digit).collect()
 }
 
 /// Text for HTML and SVG.
@@ -413,6 +427,20 @@ mod tests {
         let ticks = Axis::around(Scale::Time, [50.0, 5e7].into_iter()).ticks();
         assert_eq!(ticks.len(), 8, "the decades from 10 ns to 100 ms: {ticks:?}");
         assert_eq!([100.0, 45.0, 20.0].map(|spacing| labelled(&ticks, spacing)), [1, 2, 3], "all, or some");
+    }
+
+    /// The contrast of text by the Web Content Accessibility Guidelines: (L + 0.05) / (l + 0.05), of relative luminances.
+    #[test]
+    fn names_in_colour_can_be_read_on_white() {
+        let channel = |colour: &str, at: usize| {
+            let part = f64::from(u8::from_str_radix(&colour[at..at + 2], 16).expect("a hexadecimal number")) / 255.0;
+            if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+        };
+        for colour in COLOURS {
+            let [red, green, blue] = [1, 3, 5].map(|at| channel(colour, at));
+            let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+            assert!(1.05 / (luminance + 0.05) >= 4.5, "{colour}: {}", 1.05 / (luminance + 0.05));
+        }
     }
 
     #[test]

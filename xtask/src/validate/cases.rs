@@ -17,11 +17,11 @@ pub fn section(records: &[Record]) -> Section {
     let groups = [
         (
             "cases-by-query",
-            "By question and precision. Errors are relative, steps iterations.",
+            "By question and precision, sorted by \"of allowed\". Errors are relative, steps iterations.",
             "question",
             by_query(records),
         ),
-        ("cases-by-file", "By file of xtask/data/suite.", "file", by_file(records)),
+        ("cases-by-file", "By file of xtask/data/suite, sorted in the same way.", "file", by_file(records)),
     ];
     blocks.extend(
         groups.into_iter().map(|(name, caption, title, groups)| Block::Table(table(name, caption, title, &groups))),
@@ -82,8 +82,10 @@ fn scatter(records: &[Record], precision: &str) -> Option<Figure> {
 
 fn table(name: &str, caption: &str, title: &str, groups: &BTreeMap<String, Group>) -> Table {
     let headers: Vec<&str> = [title].into_iter().chain(HEADERS).collect();
+    let mut groups: Vec<_> = groups.iter().collect();
+    groups.sort_by(|(_, a), (_, b)| b.worst_of_allowed().total_cmp(&a.worst_of_allowed()));
     let rows = groups
-        .iter()
+        .into_iter()
         .map(|(name, group)| Row::of([name.clone()].into_iter().chain(group.columns())).bad_if(group.wrong > 0))
         .collect();
     Table::new(name, caption, &headers, rows)

@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use super::page::{Block, Row, Section, Table, error};
 use super::summary::{aligned, called, quantile};
 use super::{Record, score};
-use crate::plot::duration;
+use crate::plot::{duration, raised};
 
 /// The chapter: a row for every kind of difficulty, and folded one for each of its values.
 #[must_use]
@@ -113,7 +113,7 @@ fn row(names: [String; 3], of: &[&Record]) -> Row {
 /// Powers of two are scales; all else is told as it is.
 fn number(value: f64) -> String {
     match value.log2() {
-        two if two.fract() == 0.0 && two.abs() >= 10.0 => format!("2^{two}"),
+        two if two.fract() == 0.0 && two.abs() >= 10.0 => format!("2{}", raised(two as i32)),
         _ if (0.1..1000.0).contains(&value) => value.to_string(),
         _ => format!("{value:e}"),
     }

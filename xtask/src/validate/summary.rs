@@ -32,6 +32,11 @@ impl Group {
         self.iterations.extend(record.iterations.map(|i| i as f64));
     }
 
+    /// The worst error in units of what the inputs allow; below zero where there is none.
+    pub fn worst_of_allowed(&self) -> f64 {
+        quantile(&self.ratio, 1.0).unwrap_or(-1.0)
+    }
+
     /// The columns of [`HEADERS`], after the name.
     pub fn columns(&self) -> [String; 11] {
         let told = |value: Option<f64>, as_text: fn(f64) -> String| value.map_or_else(|| "–".to_owned(), as_text);
@@ -84,9 +89,9 @@ pub fn called(query: &str) -> String {
         "margin" => "margin of ellipsoids",
         "track" => "margin along a motion",
         "clearance" => "clearance of a robot",
-        "none" => "(unreadable line)",
+        "none" => "unreadable line",
         known if scalar_of(known).is_some() || OTHERS.contains(&known) => return known.replace('_', " "),
-        _ => "(unknown query)",
+        _ => "unknown query",
     }
     .to_owned()
 }
