@@ -89,7 +89,7 @@ impl<V: Vector, W: Copy + Default> Gjk<V, W> {
     #[inline(always)]
     pub(super) fn is_closed(&self, frame: &Frame<V>, tolerance: V::Scalar) -> bool {
         let gap = self.length - self.lower;
-        gap <= frame.noise || gap <= tolerance * (self.lower - frame.radius)
+        gap <= frame.noise || tolerance > V::Scalar::ZERO && gap <= tolerance * (self.lower - frame.radius)
     }
 
     /// What an observer is shown after support point `w` was found.
