@@ -1,6 +1,7 @@
 //! How fast a body turns: a number in 2D, a vector in 3D.
 
 use core::fmt::Debug;
+use core::marker::PhantomData;
 
 use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, Mat2, Mat3, Mat3A, Quat, Vec2, Vec3, Vec3A};
 
@@ -96,7 +97,7 @@ mod sealed {
     impl Sealed for glam::Vec3 {}
     impl Sealed for glam::Vec3A {}
     impl Sealed for glam::DVec3 {}
-    impl Sealed for super::SpinInSpace {}
+    impl<V> Sealed for super::SpinInSpace<V> {}
 }
 
 /// Angular velocities of the plane, where with `h` half the angle `R − 1 = 2·sin h·(−sin h, −cos h; cos h, −sin h)`.
@@ -173,7 +174,7 @@ macro_rules! vector {
         impl AngularVelocity<$V> for $V {
             const TURN_ERROR: f64 = $error;
 
-            type Spin = SpinInSpace;
+            type Spin = SpinInSpace<Self>;
 
             #[inline]
             fn cross_matrix(self) -> $M {
@@ -182,7 +183,7 @@ macro_rules! vector {
             }
 
             #[inline]
-            fn spin(self) -> SpinInSpace {
+            fn spin(self) -> SpinInSpace<Self> {
                 SpinInSpace::new($double(self))
             }
 
@@ -217,7 +218,7 @@ macro_rules! vector {
             }
         }
 
-        impl Spin<$V> for SpinInSpace {
+        impl Spin<$V> for SpinInSpace<$V> {
             #[inline]
             fn turn(&self, time: <$V as Vector>::Scalar) -> $M {
                 $matrix_rounded(self.after(time.as_f64()))
@@ -232,19 +233,21 @@ vector!(DVec3 by DMat3, DQuat, 10.0, |v| v, |v| v, |m| m);
 
 /// A rotation about an axis in space.
 #[derive(Clone, Copy, Debug)]
-pub struct SpinInSpace {
+pub struct SpinInSpace<V> {
     /// The unit vector along it, or zero where nothing turns.
     axis: DVec3,
     /// The rate in two parts, in a unit that is a power of two.
     rate: f64,
     lost: f64,
     unit: f64,
+    /// The vectors that it turns.
+    space: PhantomData<V>,
 }
 
-impl SpinInSpace {
+impl<V> SpinInSpace<V> {
     fn new(angular_velocity: DVec3) -> Self {
         if angular_velocity == DVec3::ZERO {
-            return Self { axis: DVec3::ZERO, rate: 0.0, lost: 0.0, unit: 1.0 };
+            return Self { axis: DVec3::ZERO, rate: 0.0, lost: 0.0, unit: 1.0, space: PhantomData };
         }
         // A power of two takes squares out of reach of over- and underflow.
         let unit = comfortable_unit_of_length(angular_velocity.abs().max_element());
@@ -253,7 +256,7 @@ impl SpinInSpace {
         // What the square root loses of |w|: |w| = rate + (|w|² − rate²)/(2·rate), with the squares to twice the digits.
         let [square, rest] = two_product(rate, rate);
         let lost = (dot_minus(w.to_array().map(|c| (c, c)), square) - rest) / (2.0 * rate);
-        Self { axis: w / rate, rate, lost, unit }
+        Self { axis: w / rate, rate, lost, unit, space: PhantomData }
     }
 
     /// `R − 1` for the rotation by `|ω|·time` about `ω` (Rodrigues): with the unit axis `a` and half the angle `h`,
@@ -264,7 +267,7 @@ impl SpinInSpace {
     /// second by `11u`, and they are rounded by `3u` more, where their norm is 1; that of the entries of the whole is `√2` times
     /// larger.
     fn after(&self, time: f64) -> DMat3 {
-        let Self { axis: a, rate, lost, unit } = *self;
+        let Self { axis: a, rate, lost, unit, .. } = *self;
         let half = 0.5 * unit * time;
         let [angle, rest] = two_product(rate, half);
         let [sin, cos] = sin_cos([angle, rest + lost * half]);
