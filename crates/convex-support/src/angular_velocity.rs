@@ -268,6 +268,10 @@ impl<V> SpinInSpace<V> {
     /// larger.
     fn after(&self, time: f64) -> DMat3 {
         let Self { axis: a, rate, lost, unit, .. } = *self;
+        // Not even after an infinite time, whose product with zero is NaN.
+        if rate == 0.0 {
+            return DMat3::ZERO;
+        }
         let half = 0.5 * unit * time;
         let [angle, rest] = two_product(rate, half);
         let [sin, cos] = sin_cos([angle, rest + lost * half]);
@@ -325,6 +329,13 @@ mod tests {
         let turned = v + w.turn(7_777_777.0) * v;
         assert!((turned - expected).length() < 8.0 * f64::EPSILON * 5.0, "{turned} is not {expected}");
         assert!((w.cross_matrix() * DVec3::X - w.cross(DVec3::X)).length() == 0.0, "the matrix of the cross product");
+    }
+
+    #[test]
+    fn what_is_at_rest_never_turns() {
+        for time in [0.0, 1.0, f64::INFINITY] {
+            assert_eq!(DVec3::ZERO.turn(time), DMat3::ZERO, "after {time}");
+        }
     }
 
     #[test]

@@ -280,6 +280,22 @@ fn coincident_boxes_cost_what_they_are() {
 }
 
 #[test]
+fn nothing_is_within_a_negative_distance() {
+    let square = |x: f64| Aabb { min: DVec2::new(x, 0.0), max: DVec2::new(x + 1.0, 1.0) };
+    let tree = Bvh::new(&[square(0.0), square(0.5), square(9.0)]);
+    let (mut pairs, mut shown) = (0, 0);
+    tree.pairs_within(-1.0).visit(|_, _| {
+        pairs += 1;
+        ControlFlow::Continue(())
+    });
+    tree.within(&BoxDistance::new(square(0.0)), -1.0, |_| {
+        shown += 1;
+        ControlFlow::Continue(())
+    });
+    assert_eq!((pairs, shown), (0, 0), "boxes that overlap are 0 apart");
+}
+
+#[test]
 fn numbers_that_are_not_finite_do_no_harm() {
     let nan = Aabb { min: DVec3::NAN, max: DVec3::NAN };
     let all = Aabb { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };

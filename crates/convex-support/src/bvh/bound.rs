@@ -117,9 +117,7 @@ impl<V: Vector> BoxDistance<V> {
         }
         Self { of: sides }
     }
-}
 
-impl<V: Vector> BoxDistance<V> {
     /// The squared length of the gaps, and the largest of them.
     #[inline(always)]
     fn gaps(&self, boxes: &Boxes<V>) -> (LanesOf<V>, LanesOf<V>) {
@@ -145,12 +143,13 @@ impl<V: Vector> Bound<V> for BoxDistance<V> {
         (length * Lanes::splat(V::Scalar::ONE - rounding::<V::Scalar>())).min(huge)
     }
 
-    /// By the squares, which takes no root, where that of the limit is an ordinary number: what underflows of a gap is nothing to it, and
-    /// what overflows is beyond it.
+    /// By the squares, which takes no root, where that of a positive limit is an ordinary number: what underflows of a gap is nothing to
+    /// it, and what overflows is beyond it.
     #[inline(always)]
     fn near(&self, boxes: &Boxes<V>, limit: V::Scalar) -> u32 {
         let end = limit * limit;
-        if !(end > V::Scalar::min_positive_value() / V::Scalar::EPSILON && end.is_finite()) {
+        let is_ordinary = end > V::Scalar::min_positive_value() / V::Scalar::EPSILON && end.is_finite();
+        if !(is_ordinary && limit > V::Scalar::ZERO) {
             return self.bounds(boxes).at_most(limit);
         }
         let deflate = V::Scalar::ONE - rounding::<V::Scalar>() - rounding::<V::Scalar>();
