@@ -65,6 +65,15 @@ pub fn bounding_box<S: SupportMap + ?Sized>(shape: &S) -> Aabb<S::Vector> {
     }
 }
 
+/// The smallest box around the core, relative to the shape's origin.
+pub(crate) fn core_box<S: SupportMap + ?Sized>(shape: &S) -> Aabb<S::Vector> {
+    let farthest = |direction: S::Vector| shape.core_support(direction, &mut Hint::new());
+    Aabb {
+        min: S::Vector::from_fn(|i| farthest(-S::Vector::axis(i)).get(i)),
+        max: S::Vector::from_fn(|i| farthest(S::Vector::axis(i)).get(i)),
+    }
+}
+
 /// A ball about any centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -98,11 +107,7 @@ impl<V: Vector> BoundingSphere<V> {
 #[must_use]
 pub fn bounding_sphere<S: SupportMap + ?Sized>(shape: &S) -> BoundingSphere<S::Vector> {
     // Around the origin as far as the core says it reaches, or around the middle of the core's box to its corner.
-    let reach = |d: S::Vector| d.dot(shape.core_support(d, &mut Hint::new()));
-    let core = Aabb {
-        min: S::Vector::from_fn(|i| -reach(-S::Vector::axis(i))),
-        max: S::Vector::from_fn(|i| reach(S::Vector::axis(i))),
-    };
+    let core = core_box(shape);
     let Core { origin, radius, extent, .. } = shape.core();
     let corner = core.half_extents().norm();
     let (offset, core_radius) = if extent <= corner { (S::Vector::ZERO, extent) } else { (core.center(), corner) };

@@ -2,7 +2,8 @@
 
 use num_traits::Float as _;
 
-use crate::{Aabb, Core, CoreKind, Hint, Scalar, ScalarOf, SupportMap, Vector};
+use crate::bounds::core_box;
+use crate::{Aabb, Core, CoreKind, Scalar, ScalarOf, SupportMap, Vector};
 
 /// A box that contains the set that the shape stands for, and every point that a query computes of it: the
 /// [`bounding_box`](crate::bounding_box) grown by 32 ε of the numbers that the shape is computed from, and by what its core is
@@ -24,17 +25,4 @@ pub fn outer_box<S: SupportMap + ?Sized>(shape: &S) -> Option<Aabb<S::Vector>> {
     let reach = S::Vector::splat(radius + room);
     let outer = Aabb { min: origin + core.min - reach, max: origin + core.max + reach };
     (outer.min.is_finite() && outer.max.is_finite()).then_some(outer)
-}
-
-/// The smallest box around the core, relative to the shape's origin.
-fn core_box<S: SupportMap + ?Sized>(shape: &S) -> Aabb<S::Vector> {
-    let mut hint = Hint::new();
-    let mut farthest = |direction: S::Vector| {
-        hint.rewind();
-        shape.core_support(direction, &mut hint)
-    };
-    Aabb {
-        min: S::Vector::from_fn(|i| farthest(-S::Vector::axis(i)).get(i)),
-        max: S::Vector::from_fn(|i| farthest(S::Vector::axis(i)).get(i)),
-    }
 }

@@ -31,7 +31,7 @@ impl<V: Vector> Bvh<V> {
         let huge = V::Scalar::max_value();
         // NaN stays NaN, which nothing is within.
         let mut limit = lesser(huge, limit);
-        let (mut pending, mut nodes) = (Pending::new(Link::node(0)), 0);
+        let (mut pending, mut nodes) = (Pending::root(), 0);
         while let Some((link, bound)) = pending.pop() {
             let is_near = bound <= limit;
             if !is_near {
@@ -68,26 +68,26 @@ impl<V: Vector> Bvh<V> {
         if !is_any {
             return 0;
         }
-        let mut below = [Link::node(0); STACK];
+        // The root, and places that are not read before they are written.
+        let mut below = [0; STACK];
         let (mut top, mut nodes) = (1, 0);
         while top > 0 {
             top -= 1;
-            let Child::Node(index) = below[top].child() else { continue };
             nodes += 1;
-            let node = &self.nodes[index];
+            let node = &self.nodes[below[top]];
             let mut near = question.near(&node.boxes, limit);
             while near != 0 {
-                let link = node.children[near.trailing_zeros() as usize];
+                let child = node.children[near.trailing_zeros() as usize].child();
                 near &= near - 1;
-                match link.child() {
+                match child {
                     Child::None => {}
                     Child::Item(item) => {
                         if visit(item).is_break() {
                             return nodes;
                         }
                     }
-                    Child::Node(_) => {
-                        below[top] = link;
+                    Child::Node(index) => {
+                        below[top] = index;
                         top += 1;
                     }
                 }
@@ -105,12 +105,10 @@ struct Pending<S> {
 }
 
 impl<S: Scalar> Pending<S> {
-    /// The root, and places that are not read before they are written: all bits zero, which is soon done.
+    /// The root alone. Places that are not read before they are written are all bits zero, which is soon done.
     #[inline(always)]
-    fn new(root: Link) -> Self {
-        let mut pending = Self { links: [Link::node(0); STACK], bounds: [S::ZERO; STACK], top: 0 };
-        pending.push(root, S::ZERO);
-        pending
+    fn root() -> Self {
+        Self { links: [Link::node(0); STACK], bounds: [S::ZERO; STACK], top: 1 }
     }
 
     #[inline(always)]
@@ -134,7 +132,7 @@ impl<S: Scalar> Pending<S> {
             }
             self.top += near.count_ones() as usize;
         } else if near != 0 {
-            // Mostly there are one or two, and one is both the first and the last.
+            // Mostly there are one or two, and one is both the first and the last: it is then written over, which takes no branch.
             let (first, last) = (near.trailing_zeros() as usize, near.ilog2() as usize);
             let (far, close) = if bounds[first] < bounds[last] { (last, first) } else { (first, last) };
             self.push(children[far], bounds[far]);

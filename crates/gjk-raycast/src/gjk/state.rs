@@ -89,6 +89,7 @@ impl<V: Vector, W: Copy + Default> Gjk<V, W> {
     #[inline(always)]
     pub(super) fn is_closed(&self, frame: &Frame<V>, tolerance: V::Scalar) -> bool {
         let gap = self.length - self.lower;
+        // By default there is no tolerance, and nothing to compute.
         gap <= frame.noise || tolerance > V::Scalar::ZERO && gap <= tolerance * (self.lower - frame.radius)
     }
 
