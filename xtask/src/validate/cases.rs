@@ -83,7 +83,9 @@ fn scatter(records: &[Record], precision: &str) -> Option<Figure> {
 fn table(name: &str, caption: &str, title: &str, groups: &BTreeMap<String, Group>) -> Table {
     let headers: Vec<&str> = [title].into_iter().chain(HEADERS).collect();
     let mut groups: Vec<_> = groups.iter().collect();
-    groups.sort_by(|(_, a), (_, b)| b.worst_of_allowed().total_cmp(&a.worst_of_allowed()));
+    // Those without an error come last.
+    let worst = |group: &Group| group.worst_of_allowed().unwrap_or(-1.0);
+    groups.sort_by(|(_, a), (_, b)| worst(b).total_cmp(&worst(a)));
     let rows = groups
         .into_iter()
         .map(|(name, group)| Row::of([name.clone()].into_iter().chain(group.columns())).bad_if(group.wrong > 0))

@@ -32,9 +32,9 @@ impl Group {
         self.iterations.extend(record.iterations.map(|i| i as f64));
     }
 
-    /// The worst error in units of what the inputs allow; below zero where there is none.
-    pub fn worst_of_allowed(&self) -> f64 {
-        quantile(&self.ratio, 1.0).unwrap_or(-1.0)
+    /// The worst error in units of what the inputs allow, if there is one.
+    pub fn worst_of_allowed(&self) -> Option<f64> {
+        quantile(&self.ratio, 1.0)
     }
 
     /// The columns of [`HEADERS`], after the name.
@@ -49,7 +49,7 @@ impl Group {
             told(quantile(&self.relative, 0.5), error),
             told(quantile(&self.relative, 0.99), error),
             told(quantile(&self.relative, 1.0), error),
-            told(quantile(&self.ratio, 1.0), error),
+            told(self.worst_of_allowed(), error),
             told(quantile(&self.iterations, 0.5), whole),
             told(quantile(&self.iterations, 1.0), whole),
             told(quantile(&self.time, 0.5), duration),
