@@ -1,13 +1,8 @@
 //! `cargo xtask prove`: whether certificates prove what answers claim, in interval arithmetic of 256 bits.
 //!
-//! It shares no solver and no shape with the crates: a query is read once more here, from its JSON, and what a certificate proves
-//! follows from the query's own numbers. `docs/certificates.md` says how, and what the numbers of a query mean.
+//! What proves is the package `checker`; here lines are read, judged in parallel, and counted.
 
-mod body;
-mod certificate;
-mod interval;
 mod random;
-mod reader;
 #[cfg(test)]
 mod tests;
 
@@ -17,12 +12,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
+use checker::{Bounds, Reader, Unread, Verdict, judge};
 use clap::Args;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use self::certificate::{Bounds, Verdict, judge};
-use self::reader::{Reader, Unread};
 use crate::mesh::Meshes;
 use crate::wire::json;
 
@@ -151,7 +145,11 @@ fn judge_line(number: u64, line: &[u8], meshes: &Meshes) -> (Verdict, Value) {
     let id = read.as_ref().ok().and_then(|line| line.get("id")).cloned().unwrap_or_else(|| number.into());
     let judged: Result<(Verdict, Bounds), Unread> = read.and_then(|line| {
         let single = line.get("precision").and_then(Value::as_str) == Some("f32");
-        judge(&line, &Reader { single, meshes })
+        let mesh = |path: &str| {
+            let mesh = meshes.load(Path::new(path)).map_err(|why| why.message)?;
+            Ok(mesh.points().iter().map(|point| point.to_array()).collect())
+        };
+        judge(&line, &Reader { single, mesh: &mesh })
     });
     match judged {
         Err(why) => (Verdict::NotProved, json!({"id": id, "verdict": "not proved", "because": why})),

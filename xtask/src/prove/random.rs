@@ -4,11 +4,11 @@
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
+use checker::Verdict;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use workloads::rng::Rng;
 
-use super::certificate::Verdict;
 use super::{Counts, judge_line};
 use crate::mesh::Meshes;
 use crate::query::certified;

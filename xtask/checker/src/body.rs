@@ -3,16 +3,16 @@
 //! Everything is points or the unit ball, mapped, summed, or joined to a hull. What a ball of a radius sweeps is told apart, as in the
 //! certificates.
 
-use super::interval::{Interval, Vector};
+use crate::interval::{Interval, Vector};
 
 /// A set of points swept by a ball: `core ⊕ B(radius)`.
-pub(super) struct Body {
-    pub(super) core: Set,
-    pub(super) radius: Interval,
+pub(crate) struct Body {
+    pub(crate) core: Set,
+    pub(crate) radius: Interval,
 }
 
 #[allow(clippy::large_enum_variant, reason = "a body is of a few of them")]
-pub(super) enum Set {
+pub(crate) enum Set {
     Points(Vec<Vector>),
     /// The unit ball.
     Ball,
@@ -25,7 +25,7 @@ pub(super) enum Set {
 impl Set {
     /// A point of the set, and how far the set reaches along `direction`. The point reaches as far where that is not a matter of
     /// rounding, and is in the set in any case.
-    pub(super) fn support(&self, direction: &Vector) -> (Vector, Interval) {
+    pub(crate) fn support(&self, direction: &Vector) -> (Vector, Interval) {
         match self {
             Self::Points(points) => farthest(points.iter().map(|p| (p.clone(), p.dot(direction)))),
             Self::Ball => {
@@ -70,7 +70,7 @@ fn combined(rows: &[Vector; 3], by: &Vector) -> Vector {
     rows.iter().zip(&by.0).fold(Vector::zero(), |sum, (row, factor)| sum.plus(&row.times(factor)))
 }
 
-pub(super) fn diagonal(entries: [Interval; 3]) -> [Vector; 3] {
+pub(crate) fn diagonal(entries: [Interval; 3]) -> [Vector; 3] {
     let mut rows = std::array::from_fn(|_| Vector::zero());
     for (i, entry) in entries.into_iter().enumerate() {
         rows[i].0[i] = entry;
@@ -79,46 +79,46 @@ pub(super) fn diagonal(entries: [Interval; 3]) -> [Vector; 3] {
 }
 
 /// A ball of a radius about zero.
-pub(super) fn ball(radius: &Interval) -> Set {
+pub(crate) fn ball(radius: &Interval) -> Set {
     Set::Image(Box::new(Set::Ball), diagonal(std::array::from_fn(|_| radius.clone())), Vector::zero())
 }
 
 impl Body {
-    pub(super) fn of(core: Set) -> Self {
+    pub(crate) fn of(core: Set) -> Self {
         Self { core, radius: Interval::zero() }
     }
 
     /// The body as one set, but for a ball of the given radius.
-    pub(super) fn but_for(self, radius: &Interval) -> Set {
+    pub(crate) fn but_for(self, radius: &Interval) -> Set {
         let excess = &self.radius - radius;
         if excess.is_zero() { self.core } else { Set::Sum(vec![self.core, ball(&excess)]) }
     }
 }
 
-pub(super) fn diagonal_of(entry: &Interval) -> [Vector; 3] {
+pub(crate) fn diagonal_of(entry: &Interval) -> [Vector; 3] {
     diagonal(std::array::from_fn(|_| entry.clone()))
 }
 
-pub(super) fn sum(parts: Vec<Body>) -> Body {
+pub(crate) fn sum(parts: Vec<Body>) -> Body {
     let radius = parts.iter().fold(Interval::zero(), |sum, part| &sum + &part.radius);
     Body { core: Set::Sum(parts.into_iter().map(|part| part.core).collect()), radius }
 }
 
 /// The set of all differences.
-pub(super) fn difference(a: Body, b: Body) -> Body {
+pub(crate) fn difference(a: Body, b: Body) -> Body {
     let reflected = Set::Image(Box::new(b.core), diagonal_of(&Interval::from(-1.0)), Vector::zero());
     sum(vec![a, Body { core: reflected, radius: b.radius }])
 }
 
 /// The corners of a box.
-pub(super) fn corners(half_extents: &Vector) -> Set {
+pub(crate) fn corners(half_extents: &Vector) -> Set {
     let sign = |corner: usize, i: usize| Interval::from(if corner >> i & 1 == 1 { -1.0 } else { 1.0 });
     let corner = |k| Vector(std::array::from_fn(|i| &half_extents.0[i] * &sign(k, i)));
     Set::Points((0..8).map(corner).collect())
 }
 
 /// By how much a map stretches, if it stretches everything alike, exactly: its rows are of one length, and across one another.
-pub(super) fn scale_of(rows: &[Vector]) -> Option<Interval> {
+pub(crate) fn scale_of(rows: &[Vector]) -> Option<Interval> {
     let squared = rows.first()?.squared();
     for (i, row) in rows.iter().enumerate() {
         let products = rows[..i].iter().map(|other| row.dot(other));

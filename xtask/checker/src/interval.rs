@@ -10,7 +10,7 @@ const UP: Context<Up> = Context::new(256);
 
 /// All numbers from `low` to `high`; infinite ends bound nothing.
 #[derive(Clone, Debug)]
-pub(super) struct Interval {
+pub struct Interval {
     low: Repr<2>,
     high: Repr<2>,
 }
@@ -35,20 +35,20 @@ impl From<f64> for Interval {
 }
 
 impl Interval {
-    pub(super) fn unknown() -> Self {
+    pub(crate) fn unknown() -> Self {
         Self { low: Repr::neg_infinity(), high: Repr::infinity() }
     }
 
-    pub(super) fn infinity() -> Self {
+    pub(crate) fn infinity() -> Self {
         Self { low: Repr::infinity(), high: Repr::infinity() }
     }
 
     /// Whether it is infinity for certain.
-    pub(super) fn is_infinite(&self) -> bool {
+    pub(crate) fn is_infinite(&self) -> bool {
         self.low == Repr::infinity()
     }
 
-    pub(super) fn zero() -> Self {
+    pub(crate) fn zero() -> Self {
         Self::from(0.0)
     }
 
@@ -62,22 +62,22 @@ impl Interval {
     }
 
     /// Whether it is zero and nothing else.
-    pub(super) fn is_zero(&self) -> bool {
+    pub(crate) fn is_zero(&self) -> bool {
         self.is_not_negative() && self.is_at_most(&Self::zero())
     }
 
     /// Whether all of it is at most all of the other.
-    pub(super) fn is_at_most(&self, other: &Self) -> bool {
+    pub(crate) fn is_at_most(&self, other: &Self) -> bool {
         self.high <= other.low
     }
 
     /// Whether all of it is less than all of the other.
-    pub(super) fn is_less_than(&self, other: &Self) -> bool {
+    pub(crate) fn is_less_than(&self, other: &Self) -> bool {
         self.high < other.low
     }
 
     /// Whether all of it is zero or greater.
-    pub(super) fn is_not_negative(&self) -> bool {
+    pub(crate) fn is_not_negative(&self) -> bool {
         Self::zero().is_at_most(self)
     }
 
@@ -87,28 +87,28 @@ impl Interval {
     }
 
     /// Its lower end: a bound from below on everything in it.
-    pub(super) fn least(&self) -> Self {
+    pub(crate) fn least(&self) -> Self {
         Self { low: self.low.clone(), high: self.low.clone() }
     }
 
     /// Its upper end.
-    pub(super) fn greatest(&self) -> Self {
+    pub(crate) fn greatest(&self) -> Self {
         Self { low: self.high.clone(), high: self.high.clone() }
     }
 
     /// The larger of two numbers.
-    pub(super) fn max(&self, other: &Self) -> Self {
+    pub(crate) fn max(&self, other: &Self) -> Self {
         let larger = |a: &Repr<2>, b: &Repr<2>| if a >= b { a.clone() } else { b.clone() };
         Self { low: larger(&self.low, &other.low), high: larger(&self.high, &other.high) }
     }
 
     /// The smaller of two numbers.
-    pub(super) fn min(&self, other: &Self) -> Self {
+    pub(crate) fn min(&self, other: &Self) -> Self {
         -&(-self).max(&-other)
     }
 
     /// The quotient; any number where the divisor may be zero.
-    pub(super) fn over(&self, divisor: &Self) -> Self {
+    pub(crate) fn over(&self, divisor: &Self) -> Self {
         if !(self.is_bounded() && divisor.is_bounded() && divisor.is_apart_from_zero()) {
             return Self::unknown();
         }
@@ -116,19 +116,19 @@ impl Interval {
     }
 
     /// The square, which is not negative.
-    pub(super) fn squared(&self) -> Self {
+    pub(crate) fn squared(&self) -> Self {
         let product = self * self;
         if self.is_apart_from_zero() { product } else { Self { low: Repr::zero(), ..product } }
     }
 
     /// The root of what is known not to be negative.
-    pub(super) fn root(&self) -> Self {
+    pub(crate) fn root(&self) -> Self {
         let low = if self.is_not_negative() { low(DOWN.sqrt(&self.low)) } else { Repr::zero() };
         Self { low, high: high(UP.sqrt(&self.high)) }
     }
 
     /// The sine and the cosine of an angle, computed to 256 bits, of which the last 16 are not relied on.
-    pub(super) fn sine_and_cosine(angle: f64) -> [Self; 2] {
+    pub(crate) fn sine_and_cosine(angle: f64) -> [Self; 2] {
         let margin = Self { low: Repr::new((-1).into(), -240), high: Repr::new(1.into(), -240) };
         let angle = Self::from(angle);
         if angle.is_zero() {
@@ -159,7 +159,7 @@ impl Interval {
     }
 
     /// The double nearest to its lower end, for people to read.
-    pub(super) fn to_f64(&self) -> f64 {
+    pub fn to_f64(&self) -> f64 {
         self.low.to_f64().value()
     }
 }
@@ -197,42 +197,42 @@ impl Mul for &Interval {
 
 /// Three coordinates; the third is zero in the plane.
 #[derive(Clone, Debug)]
-pub(super) struct Vector(pub(super) [Interval; 3]);
+pub(crate) struct Vector(pub(crate) [Interval; 3]);
 
 impl Vector {
-    pub(super) fn zero() -> Self {
+    pub(crate) fn zero() -> Self {
         Self(std::array::from_fn(|_| Interval::zero()))
     }
 
-    pub(super) fn dot(&self, other: &Self) -> Interval {
+    pub(crate) fn dot(&self, other: &Self) -> Interval {
         let [x, y, z] = std::array::from_fn(|i| &self.0[i] * &other.0[i]);
         &(&x + &y) + &z
     }
 
-    pub(super) fn squared(&self) -> Interval {
+    pub(crate) fn squared(&self) -> Interval {
         let [x, y, z] = self.0.each_ref().map(Interval::squared);
         &(&x + &y) + &z
     }
 
-    pub(super) fn length(&self) -> Interval {
+    pub(crate) fn length(&self) -> Interval {
         self.squared().root()
     }
 
-    pub(super) fn plus(&self, other: &Self) -> Self {
+    pub(crate) fn plus(&self, other: &Self) -> Self {
         Self(std::array::from_fn(|i| &self.0[i] + &other.0[i]))
     }
 
-    pub(super) fn minus(&self, other: &Self) -> Self {
+    pub(crate) fn minus(&self, other: &Self) -> Self {
         self.plus(&other.times(&Interval::from(-1.0)))
     }
 
-    pub(super) fn times(&self, factor: &Interval) -> Self {
+    pub(crate) fn times(&self, factor: &Interval) -> Self {
         Self(self.0.each_ref().map(|x| x * factor))
     }
 }
 
 /// The determinant of a square matrix, by minors; exact where the entries are and few bits are needed.
-pub(super) fn determinant(rows: &[Vec<Interval>]) -> Interval {
+pub(crate) fn determinant(rows: &[Vec<Interval>]) -> Interval {
     let Some(first) = rows.first() else { return Interval::from(1.0) };
     let mut sum = Interval::zero();
     for (column, entry) in first.iter().enumerate() {

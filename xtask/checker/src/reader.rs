@@ -1,25 +1,35 @@
 //! The shapes of a query, read from the query itself: a cylinder is the sum of a segment and a flat ball, a cone the hull of a flat ball
 //! and its apex.
 
-use std::path::Path;
+use std::fmt;
 
 use serde_json::Value;
 
-use super::body::{Body, Set, corners, diagonal, diagonal_of, difference, scale_of, sum};
-use super::interval::{Interval, Vector};
-use crate::mesh::Meshes;
+use crate::body::{Body, Set, corners, diagonal, diagonal_of, difference, scale_of, sum};
+use crate::interval::{Interval, Vector};
 
 /// What a query's numbers mean: each is the nearest double to what is written, and in single precision the nearest `f32` to that.
-pub(super) struct Reader<'m> {
-    pub(super) single: bool,
-    pub(super) meshes: &'m Meshes,
+pub struct Reader<'m> {
+    /// Whether the query is one in single precision.
+    pub single: bool,
+    /// The vertices of the mesh at a path, or why there are none.
+    pub mesh: &'m dyn Fn(&str) -> Result<Points, Unread>,
 }
 
+impl fmt::Debug for Reader<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Reader").field("single", &self.single).finish_non_exhaustive()
+    }
+}
+
+/// The vertices of a mesh.
+pub type Points = Vec<[f64; 3]>;
+
 /// A field that is missing, or is not what it must be.
-pub(super) type Unread = String;
+pub type Unread = String;
 
 impl Reader<'_> {
-    pub(super) fn number(&self, value: &Value) -> Result<f64, Unread> {
+    pub(crate) fn number(&self, value: &Value) -> Result<f64, Unread> {
         let number = value.as_f64().ok_or_else(|| format!("{value:.40} is no number"))?;
         Ok(if self.single { f64::from(number as f32) } else { number })
     }
@@ -29,7 +39,7 @@ impl Reader<'_> {
         items.iter().map(|item| self.number(item)).collect()
     }
 
-    pub(super) fn vector(&self, value: &Value) -> Result<Vector, Unread> {
+    pub(crate) fn vector(&self, value: &Value) -> Result<Vector, Unread> {
         let numbers = self.numbers(value)?;
         if !matches!(numbers.len(), 2 | 3) {
             return Err(format!("{value:.40} is no vector"));
@@ -38,7 +48,7 @@ impl Reader<'_> {
     }
 
     /// The vector in a field, zero where it is left out.
-    pub(super) fn vector_or_zero(&self, object: &Value, name: &str) -> Result<Vector, Unread> {
+    pub(crate) fn vector_or_zero(&self, object: &Value, name: &str) -> Result<Vector, Unread> {
         object.get(name).map_or(Ok(Vector::zero()), |value| self.vector(value))
     }
 
@@ -100,7 +110,7 @@ impl Reader<'_> {
     }
 
     /// The shape that an object is.
-    pub(super) fn body(&self, shape: &Value) -> Result<Body, Unread> {
+    pub(crate) fn body(&self, shape: &Value) -> Result<Body, Unread> {
         let get = |name| field(shape, name);
         let of = || self.body(get("of")?);
         let several = || match get("of")?.as_array() {
@@ -168,9 +178,9 @@ impl Reader<'_> {
     }
 
     fn mesh(&self, path: &Value) -> Result<Set, Unread> {
-        let mesh = self.meshes.load(Path::new(path.as_str().unwrap_or_default())).map_err(|why| why.message)?;
+        let points = (self.mesh)(path.as_str().unwrap_or_default())?;
         let coordinate = |x: f64| Interval::from(if self.single { f64::from(x as f32) } else { x });
-        Ok(Set::Points(mesh.points().iter().map(|p| Vector(p.to_array().map(coordinate))).collect()))
+        Ok(Set::Points(points.into_iter().map(|point| Vector(point.map(coordinate))).collect()))
     }
 
     /// An ellipsoid: the unit ball, stretched by semi-axes and turned, or by the inverse of the matrix's factor.
@@ -210,6 +220,6 @@ impl Reader<'_> {
     }
 }
 
-pub(super) fn field<'v>(object: &'v Value, name: &str) -> Result<&'v Value, Unread> {
+pub(crate) fn field<'v>(object: &'v Value, name: &str) -> Result<&'v Value, Unread> {
     object.get(name).ok_or_else(|| format!("the field \"{name}\" is missing"))
 }

@@ -6,13 +6,13 @@
 
 use serde_json::Value;
 
-use super::body::{Body, difference};
-use super::interval::{Interval, Vector, determinant};
-use super::reader::{Reader, Unread, field};
+use crate::body::{Body, difference};
+use crate::interval::{Interval, Vector, determinant};
+use crate::reader::{Reader, Unread, field};
 
 /// What became of a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub enum Verdict {
     /// It is true.
     Proved,
     /// The certificate does not show it.
@@ -23,9 +23,11 @@ pub(super) enum Verdict {
 
 /// What is proved of a number that is not negative, a distance or a λ: it is neither less than `lower` nor more than `upper`.
 #[derive(Clone, Debug)]
-pub(super) struct Bounds {
-    pub(super) lower: Interval,
-    pub(super) upper: Interval,
+pub struct Bounds {
+    /// What it is not less than.
+    pub lower: Interval,
+    /// What it is not more than.
+    pub upper: Interval,
 }
 
 /// What is claimed of it.
@@ -59,7 +61,7 @@ struct Certificate {
 const MEANT: f64 = 0.125;
 
 /// What the certificate of a line proves, and what that says of the answer.
-pub(super) fn judge(line: &Value, reader: &Reader<'_>) -> Result<(Verdict, Bounds), Unread> {
+pub fn judge(line: &Value, reader: &Reader<'_>) -> Result<(Verdict, Bounds), Unread> {
     let query = field(line, "query")?.as_str().unwrap_or_default();
     if !matches!(query, "distance" | "intersect" | "ray_cast" | "linear_cast") {
         return Err(format!("there are no certificates for \"{query}\""));
