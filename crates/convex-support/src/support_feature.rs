@@ -118,21 +118,35 @@ impl<V: Vector> Feature<V> {
     /// Of so many points, numbered from 0, those no farther than `slab` behind the farthest along a direction.
     pub(crate) fn collect(&mut self, direction: V, slab: V::Scalar, count: usize, point: impl Fn(usize) -> V) {
         let level = |i: usize| direction.dot(point(i));
-        let highest = (0..count).map(level).fold(-V::Scalar::infinity(), V::Scalar::max);
-        let mut near = (0..count).filter(|&i| level(i) >= highest - slab);
-        let first = self.len;
-        for i in near.by_ref().take(MAX_POINTS - first) {
-            self.push(point(i), i as u32);
-        }
-        let left = near.count();
-        if left > 0 {
-            // Every second, third, ….
-            let stride = (self.len - first + left).div_ceil(MAX_POINTS);
-            (self.len, self.is_complete) = (first, false);
-            for i in (0..count).filter(|&i| level(i) >= highest - slab).step_by(stride) {
-                self.push(point(i), i as u32);
+        // Once over all points: those near the farthest so far, of which few are left in the end.
+        let mut highest = -V::Scalar::infinity();
+        let mut near = [(0, highest); MAX_POINTS];
+        let (mut len, mut is_full) = (0, false);
+        for i in 0..count {
+            let at = level(i);
+            if at >= highest - slab {
+                highest = highest.max(at);
+                if len == MAX_POINTS {
+                    len = keep(&mut near, |level| level >= highest - slab);
+                }
+                if let Some(next) = near.get_mut(len) {
+                    *next = (i, at);
+                    len += 1;
+                } else {
+                    is_full = true;
+                }
             }
         }
+        if !is_full {
+            len = keep(&mut near[..len], |level| level >= highest - slab);
+            near[..len].iter().for_each(|&(i, _)| self.push(point(i), i as u32));
+            return;
+        }
+        // There may be too many: then every second, third, ….
+        let is_near = |&i: &usize| level(i) >= highest - slab;
+        let stride = (0..count).filter(is_near).count().div_ceil(MAX_POINTS);
+        self.is_complete &= stride <= 1;
+        (0..count).filter(is_near).step_by(stride).for_each(|i| self.push(point(i), i as u32));
     }
 
     /// Of a shape that is known by its support points alone, the vertices around the one along a direction and no farther than `slab`
@@ -192,6 +206,18 @@ impl<V: Vector> Feature<V> {
             }
         }
     }
+}
+
+/// Moves the entries that are kept to the front, in their order, and says how many they are.
+fn keep<S: Scalar>(near: &mut [(usize, S)], is_kept: impl Fn(S) -> bool) -> usize {
+    let mut len = 0;
+    for i in 0..near.len() {
+        if is_kept(near[i].1) {
+            near[len] = near[i];
+            len += 1;
+        }
+    }
+    len
 }
 
 #[cfg(test)]

@@ -67,8 +67,15 @@ macro_rules! plane {
             fn bivector(mut f: impl FnMut(usize) -> $S) -> $S {
                 f(0)
             }
+            #[inline]
             fn motion_matrix(f: impl Fn(usize, usize) -> $S) -> Self::MotionMatrix {
-                core::array::from_fn(|i| core::array::from_fn(|j| f(i, j)))
+                let mut matrix = Self::MotionMatrix::default();
+                for (i, row) in matrix.iter_mut().enumerate() {
+                    for (j, entry) in row.iter_mut().enumerate() {
+                        *entry = f(i, j);
+                    }
+                }
+                matrix
             }
             fn motion_entry(matrix: &Self::MotionMatrix, i: usize, j: usize) -> $S {
                 matrix[i][j]
@@ -101,8 +108,15 @@ macro_rules! space {
             fn bivector(f: impl FnMut(usize) -> $S) -> Self {
                 Self::from_fn(f)
             }
+            #[inline]
             fn motion_matrix(f: impl Fn(usize, usize) -> $S) -> Self::MotionMatrix {
-                core::array::from_fn(|i| core::array::from_fn(|j| f(i, j)))
+                let mut matrix = Self::MotionMatrix::default();
+                for (i, row) in matrix.iter_mut().enumerate() {
+                    for (j, entry) in row.iter_mut().enumerate() {
+                        *entry = f(i, j);
+                    }
+                }
+                matrix
             }
             fn motion_entry(matrix: &Self::MotionMatrix, i: usize, j: usize) -> $S {
                 matrix[i][j]

@@ -124,15 +124,18 @@ impl<V: Wedge> MotionHessian<V> {
         curvature: f64,
         units: Units,
     ) -> Self {
-        let (second, first) = contact.hessian(mover);
+        let (mut second, first) = contact.hessian(mover);
         // The unit of length is a power of two.
         let inverse = 1.0 / units.length;
         let per = |i: usize| if i < N { inverse } else { 1.0 };
-        let entry = |i: usize, j: usize| {
-            let (i, j) = (i.max(j), i.min(j));
-            (slope * second[i][j] + curvature * (first[i] * first[j])) * units.value * per(i) * per(j)
-        };
-        Self { matrix: V::motion_matrix(|i, j| V::Scalar::from_f64(entry(i, j))) }
+        for i in 0..N * (N + 1) / 2 {
+            for j in 0..=i {
+                let entry = slope * second[i][j] + curvature * (first[i] * first[j]);
+                second[i][j] = entry * units.value * per(i) * per(j);
+                second[j][i] = second[i][j];
+            }
+        }
+        Self { matrix: V::motion_matrix(|i, j| V::Scalar::from_f64(second[i][j])) }
     }
 }
 

@@ -99,10 +99,18 @@ impl<V: Vector> ClosestFeatures<V> {
         // NaN is nowhere near.
         let least = size * rounding();
         let is_searched = closest.is_near || gap.abs() <= least || closest.error > least;
-        let mut features = if is_curved || is_searched {
+        let mut features = if is_curved {
             bodies.settled(closest, tilt, reach(size, gap, closest.error))
         } else {
-            bodies.at(closest, tilt)
+            let seen = bodies.at(closest, tilt);
+            // The features along a normal that is right to rounding meet the condition of the closest points; those of another do not.
+            if is_searched {
+                bodies
+                    .refined(seen, closest)
+                    .unwrap_or_else(|| bodies.settled(closest, tilt, reach(size, gap, closest.error)))
+            } else {
+                seen
+            }
         };
         features.is_foretold = bodies.are_foretold(&features);
         features
@@ -426,7 +434,8 @@ fn is_foretold<B: SupportMap + ?Sized>(
     let [e, f] = at.across;
     let per_unit = reciprocal_of_power(at.unit);
     let hessian = at.hessians[index].plus(-core.radius * per_unit);
-    let support = |direction| body.core_support(direction, &mut Hint::new()) * per_unit;
+    let mut hint = Hint::new();
+    let mut support = |direction| body.core_support(direction, &mut hint) * per_unit;
     let point = support(direction);
     let rounding = ScalarOf::<B>::from_f64(64.0) * ScalarOf::<B>::EPSILON;
     let rows = [(e, (hessian.a, hessian.b)), (f, (hessian.b, hessian.d))];

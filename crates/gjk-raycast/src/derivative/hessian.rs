@@ -117,7 +117,7 @@ impl<V: Vector> ClosestFeatures<V> {
     pub fn hessian(&self, center_a: V, center_b: V) -> Option<PairHessian<V>> {
         let solver = self.solver()?;
         let coordinates = [self.coordinates(0, center_a), self.coordinates(1, center_b)];
-        let [by_a, by_b] = [0, 1].map(|body| coordinates[body].map(|c| c.shifted(&solver, body)));
+        let [by_a, by_b] = [0, 1].map(|body| moved(&solver, body, &coordinates[body]));
         Some(PairHessian {
             a: symmetric(self.rows(0, &by_a, &coordinates[0], true)),
             b: symmetric(self.rows(1, &by_b, &coordinates[1], true)),
@@ -140,7 +140,7 @@ impl<V: Vector> ClosestFeatures<V> {
     fn hessian_of(&self, body: usize, center: V) -> Option<MotionHessian<V>> {
         let solver = self.solver()?;
         let coordinates = self.coordinates(body, center);
-        let moved = coordinates.map(|c| c.shifted(&solver, body));
+        let moved = moved(&solver, body, &coordinates);
         Some(symmetric(self.rows(body, &moved, &coordinates, true)))
     }
 
@@ -148,15 +148,18 @@ impl<V: Vector> ClosestFeatures<V> {
     fn coordinates(&self, body: usize, center: V) -> [Coordinate<V::Scalar>; MAX] {
         let arm = self.points[body] - center;
         let zero = (V::Scalar::ZERO, V::Scalar::ZERO);
-        core::array::from_fn(|index| {
-            let one = |i: usize| if i == index { V::Scalar::ONE } else { V::Scalar::ZERO };
-            if index < V::DIM {
-                return Coordinate { velocity: self.in_plane(V::from_fn(one)), swing: zero, turn: zero };
-            }
-            let cross = V::AngularVelocity::from_coordinates(|k| one(V::DIM + k)).cross_matrix();
+        let mut coordinates = [Coordinate { velocity: zero, swing: zero, turn: zero }; MAX];
+        let (translations, rotations) = coordinates.split_at_mut(V::DIM);
+        for (i, translation) in translations.iter_mut().enumerate() {
+            translation.velocity = self.in_plane(V::axis(i));
+        }
+        for (k, rotation) in rotations.iter_mut().enumerate().take(MotionHessian::<V>::SIZE - V::DIM) {
+            let one = |i: usize| if i == k { V::Scalar::ONE } else { V::Scalar::ZERO };
+            let cross = V::AngularVelocity::from_coordinates(one).cross_matrix();
             let swing = self.in_plane(cross * arm);
-            Coordinate { velocity: swing, swing, turn: self.in_plane(cross * self.normal) }
-        })
+            *rotation = Coordinate { velocity: swing, swing, turn: self.in_plane(cross * self.normal) };
+        }
+        coordinates
     }
 
     /// `Q(θ)·φ` for the force on a body, by what the coordinates `θ` of a pose do, its own or the other's, and the coordinates `φ` of its own. A
@@ -199,6 +202,20 @@ impl<S: Scalar> Coordinate<S> {
         let ((x, y), zero) = (self.velocity, (S::ZERO, S::ZERO));
         if body == 0 { solver.shifted((x, y), [self.turn, zero]) } else { solver.shifted((-x, -y), [zero, self.turn]) }
     }
+}
+
+/// What each coordinate of the pose of a body does; in 2D the last do nothing.
+fn moved<V: Vector>(
+    solver: &Solver<'_, V>,
+    body: usize,
+    coordinates: &[Coordinate<V::Scalar>; MAX],
+) -> [Shifted<V::Scalar>; MAX] {
+    let zero = (V::Scalar::ZERO, V::Scalar::ZERO);
+    let mut moved = [Shifted { normal: zero, shifts: [zero; 2] }; MAX];
+    for (moved, coordinate) in moved.iter_mut().zip(coordinates).take(MotionHessian::<V>::SIZE) {
+        *moved = coordinate.shifted(solver, body);
+    }
+    moved
 }
 
 /// The symmetric part.
