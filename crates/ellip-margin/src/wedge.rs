@@ -44,6 +44,18 @@ pub trait Wedge: Vector {
     fn motion_entry(matrix: &Self::MotionMatrix, i: usize, j: usize) -> Self::Scalar;
 }
 
+/// The matrix whose entry in row `i`, column `j` is `f(i, j)`, by loops, as `array::from_fn` of arrays is not inlined.
+#[inline]
+fn matrix<S: Copy + Default, const N: usize>(f: impl Fn(usize, usize) -> S) -> [[S; N]; N] {
+    let mut matrix = [[S::default(); N]; N];
+    for (i, row) in matrix.iter_mut().enumerate() {
+        for (j, entry) in row.iter_mut().enumerate() {
+            *entry = f(i, j);
+        }
+    }
+    matrix
+}
+
 /// Forwards to the plane's perpendicular product.
 macro_rules! plane {
     ($V:ident, $S:ident) => {
@@ -69,13 +81,7 @@ macro_rules! plane {
             }
             #[inline]
             fn motion_matrix(f: impl Fn(usize, usize) -> $S) -> Self::MotionMatrix {
-                let mut matrix = Self::MotionMatrix::default();
-                for (i, row) in matrix.iter_mut().enumerate() {
-                    for (j, entry) in row.iter_mut().enumerate() {
-                        *entry = f(i, j);
-                    }
-                }
-                matrix
+                matrix(f)
             }
             fn motion_entry(matrix: &Self::MotionMatrix, i: usize, j: usize) -> $S {
                 matrix[i][j]
@@ -110,13 +116,7 @@ macro_rules! space {
             }
             #[inline]
             fn motion_matrix(f: impl Fn(usize, usize) -> $S) -> Self::MotionMatrix {
-                let mut matrix = Self::MotionMatrix::default();
-                for (i, row) in matrix.iter_mut().enumerate() {
-                    for (j, entry) in row.iter_mut().enumerate() {
-                        *entry = f(i, j);
-                    }
-                }
-                matrix
+                matrix(f)
             }
             fn motion_entry(matrix: &Self::MotionMatrix, i: usize, j: usize) -> $S {
                 matrix[i][j]

@@ -1,4 +1,4 @@
-//! What is proved is true: numbers are enclosed, shapes are those of the crates, and what is not so is never proved.
+//! What is true is proved, and what is not so never is.
 
 use checker::Verdict;
 use rayon::prelude::*;

@@ -99,19 +99,18 @@ impl<V: Vector> ClosestFeatures<V> {
         // NaN is nowhere near.
         let least = size * rounding();
         let is_searched = closest.is_near || gap.abs() <= least || closest.error > least;
-        let mut features = if is_curved {
-            bodies.settled(closest, tilt, reach(size, gap, closest.error))
-        } else {
-            let seen = bodies.at(closest, tilt);
+        let seen = || bodies.at(closest, tilt);
+        let refined = || bodies.refined(seen(), closest);
+        let settled = || bodies.settled(closest, tilt, reach(size, gap, closest.error));
+        let found = if is_curved {
+            settled().or_else(refined)
+        } else if is_searched {
             // The features along a normal that is right to rounding meet the condition of the closest points; those of another do not.
-            if is_searched {
-                bodies
-                    .refined(seen, closest)
-                    .unwrap_or_else(|| bodies.settled(closest, tilt, reach(size, gap, closest.error)))
-            } else {
-                seen
-            }
+            refined().or_else(settled)
+        } else {
+            None
         };
+        let mut features = found.unwrap_or_else(seen);
         features.is_foretold = bodies.are_foretold(&features);
         features
     }
@@ -204,8 +203,8 @@ where
         }
     }
 
-    /// The features at the normal of an answer, which may be wrong by `reach`, or at the one within that along which the features overlap, which is
-    /// the condition of the closest points.
+    /// The features at the normal within `reach` of that of an answer along which they overlap, which is the condition of the closest points; `None`
+    /// where there is none, but for what is seen within `tilt`.
     ///
     /// What is seen within reach is tried: the normal across it. Where that is none, as where the answer is at an edge of a face that is seen,
     /// what is seen within less is tried.
@@ -214,7 +213,7 @@ where
         closest: Closest<A::Vector>,
         tilt: ScalarOf<A>,
         reach: ScalarOf<A>,
-    ) -> ClosestFeatures<A::Vector> {
+    ) -> Option<ClosestFeatures<A::Vector>> {
         let mut within = reach;
         for _ in 0..ROUNDS {
             // NaN ends this too.
@@ -226,16 +225,13 @@ where
             // Vertices are so within less.
             let held =
                 if are_vertices { Some(ClosestFeatures { tilt, ..seen }) } else { self.held(closest, seen, reach) };
-            if let Some(found) = held.and_then(|held| self.refined(held, closest)) {
+            let found = held.and_then(|held| self.refined(held, closest));
+            if found.is_some() || are_vertices {
                 return found;
-            }
-            if are_vertices {
-                break;
             }
             within *= Scalar::from_f64(NEARER);
         }
-        let seen = self.at(closest, tilt);
-        self.refined(seen.clone(), closest).unwrap_or(seen)
+        None
     }
 
     /// The features at a normal across which what is seen holds it, to rounding, if they overlap.
