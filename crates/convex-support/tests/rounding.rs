@@ -1,10 +1,8 @@
 //! What shapes say of their rounding, against a hundred digits: the claimed error covers the true one, and not by much more than it must.
 
-mod exact;
-
+use crate::exact::{Fixed, Random, Space, Tree, dot, norm};
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::{Core, Cuboid, Hint, MinkowskiSum, Posed, Rounding, Scalar, SupportMap, Vector};
-use exact::{Fixed, Random, Space, Tree, dot, norm};
 
 fn fixed<V: Vector>(v: V) -> [Fixed; 3] {
     [0, 1, 2].map(|i| Fixed::from_f64(if i < V::DIM { v.get(i).as_f64() } else { 0.0 }))

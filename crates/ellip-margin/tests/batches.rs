@@ -1,8 +1,6 @@
 //! Batches: what one pair at a time gives, for less.
 
-mod common;
-
-use common::{close, ellipsoid2, ellipsoid3};
+use crate::common::{close, ellipsoid2, ellipsoid3};
 use convex_support::glam::{DVec3, Vec3};
 use convex_support::{Ellipsoid, Matrix, Scalar, Vector};
 use ellip_margin::{

@@ -1,8 +1,6 @@
 //! `Clearance` is brute force, to the last bit, for less.
 
-mod common;
-
-use common::{ellipsoid2, ellipsoid3};
+use crate::common::{ellipsoid2, ellipsoid3};
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec3};
 use convex_support::{Ellipsoid, Scalar, Vector};
 use ellip_margin::{Clearance, InvalidQuery, MarginOptions, clearance};
@@ -39,7 +37,7 @@ proptest! {
     fn in_space(
         links in prop::collection::vec(ellipsoid3(1.0, 2.0), 1..6),
         obstacles in prop::collection::vec(ellipsoid3(1.5, 4.0), 1..60),
-        by in common::within(0.2),
+        by in crate::common::within(0.2),
     ) {
         let mut scene = Clearance::new(&obstacles, MarginOptions::default()).expect("not empty");
         for step in 0..12 {

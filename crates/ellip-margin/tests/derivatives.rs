@@ -1,9 +1,7 @@
 //! Gradients and Hessians against differences of 70-digit values, made by `data/derivatives.py`, and how they behave where the
 //! quantities reach their floors.
 
-mod common;
-
-use common::close;
+use crate::common::close;
 use convex_support::glam::{DMat3, DQuat, DVec2, DVec3};
 use convex_support::{Ellipsoid, Matrix, Vector};
 use ellip_margin::{EllipsoidPair, MarginOptions, MotionGradient, MotionHessian, Wedge, map_margins, map_pairs};

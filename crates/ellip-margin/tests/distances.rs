@@ -1,8 +1,6 @@
 //! The Euclidean distance and its certificate.
 
-mod common;
-
-use common::{ellipsoid2, ellipsoid3};
+use crate::common::{ellipsoid2, ellipsoid3};
 use convex_support::glam::{DQuat, DVec2, DVec3};
 use convex_support::{Ellipsoid, SupportMap, Vector};
 use ellip_margin::{MarginOptions, Status, distance, distance_bracket, free_margin, scaling};

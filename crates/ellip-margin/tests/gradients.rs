@@ -1,8 +1,6 @@
 //! Every gradient against differences of high order, on random pairs.
 
-mod common;
-
-use common::{close, derivative, ellipsoid2, ellipsoid3};
+use crate::common::{close, derivative, ellipsoid2, ellipsoid3};
 use convex_support::glam::{DMat2, DMat3, DQuat, DVec2, DVec3};
 use convex_support::{Ellipsoid, Matrix};
 use ellip_margin::{EllipsoidPair, Margin, MarginOptions, Status, free_margin};
@@ -35,7 +33,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn motion_in_space(e1 in ellipsoid3(0.6, 2.0), e2 in ellipsoid3(0.6, 2.0), pivot in common::within(2.0)) {
+    fn motion_in_space(e1 in ellipsoid3(0.6, 2.0), e2 in ellipsoid3(0.6, 2.0), pivot in crate::common::within(2.0)) {
         let m = EllipsoidPair::new(&e1, &e2, MarginOptions::default()).margin();
         prop_assume!(smooth(&m));
         let (first, second) = (m.gradient(), m.gradient_of_second());

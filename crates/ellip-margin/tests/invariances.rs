@@ -1,8 +1,6 @@
 //! What must not change the answer, to the last bit where that can be asked.
 
-mod common;
-
-use common::{close, ellipsoid2, ellipsoid3, rotation, within};
+use crate::common::{close, ellipsoid2, ellipsoid3, rotation, within};
 use convex_support::glam::{DMat3, DVec3, Vec3, Vec3A};
 use convex_support::{Ellipsoid, Matrix, Scalar, Vector};
 use ellip_margin::{EllipsoidPair, MarginOptions, distance, free_margin, scaling};

@@ -1,9 +1,7 @@
 //! The paper's own routes.
 #![cfg(feature = "paper")]
 
-mod common;
-
-use common::{close, ellipsoid3};
+use crate::common::{close, ellipsoid3};
 use convex_support::Ellipsoid;
 use convex_support::glam::{DQuat, DVec2, DVec3};
 use ellip_margin::paper::InverseIterationTracker;

@@ -1,8 +1,6 @@
 //! Situations in which users of other libraries got wrong answers, and those the theory names as hard.
 
-mod common;
-
-use common::{close, ellipsoid2, ellipsoid3};
+use crate::common::{close, ellipsoid2, ellipsoid3};
 use convex_support::glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
 use convex_support::{Ellipsoid, Vector};
 use ellip_margin::{EllipsoidPair, MarginOptions, Method, Status, distance, free_margin, scaling};
@@ -34,7 +32,7 @@ proptest! {
 
     /// Exact spheroids have double eigenvalues. The margin and the common scale are independent derivations.
     #[test]
-    fn spheroids(p in -3.0..3.0f64, q in -3.0..3.0f64, a in 0.1..2.0f64, b in 0.1..2.0f64, c in 0.1..2.0f64, r in common::rotation()) {
+    fn spheroids(p in -3.0..3.0f64, q in -3.0..3.0f64, a in 0.1..2.0f64, b in 0.1..2.0f64, c in 0.1..2.0f64, r in crate::common::rotation()) {
         let first = Ellipsoid::new(DVec3::new(p, 0.3, 0.0), DVec3::new(a, b, b), r).expect("valid");
         let second = Ellipsoid::new(DVec3::new(0.0, q, 1.0), DVec3::new(c, c, a), DQuat::IDENTITY).expect("valid");
         let m = free_margin(&first, &second, MarginOptions::default());

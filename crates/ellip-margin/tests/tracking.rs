@@ -1,8 +1,6 @@
 //! Trackers: any step gives what a cold start gives.
 
-mod common;
-
-use common::{close, ellipsoid3};
+use crate::common::{close, ellipsoid3};
 use convex_support::glam::DQuat;
 use ellip_margin::{MarginOptions, MarginTracker, free_margin};
 use proptest::prelude::*;
@@ -24,7 +22,7 @@ proptest! {
 
     /// A smooth path with quarter turns and jumps in it, through contact and through the centre of E₂.
     #[test]
-    fn paths(link in ellipsoid3(1.0, 0.01), obstacle in ellipsoid3(1.0, 0.5), from in common::within(3.0), to in common::within(3.0)) {
+    fn paths(link in ellipsoid3(1.0, 0.01), obstacle in ellipsoid3(1.0, 0.5), from in crate::common::within(3.0), to in crate::common::within(3.0)) {
         let mut track = MarginTracker::default();
         for step in 0..100 {
             let t = f64::from(step) / 99.0;

@@ -1,10 +1,8 @@
 //! Casts that are aimed at edges, rims, apexes and along faces, or begin there: where single precision sees one face, the next may be
 //! within its error. What it says is held against double precision, asked of the same numbers.
 
-mod common;
-
-use common::Random;
-use common::behind_pointers::{linear_cast, ray_cast, signed_distance};
+use crate::common::Random;
+use crate::common::behind_pointers::{linear_cast, ray_cast, signed_distance};
 use convex_support::glam::{DQuat, DVec3, Quat, Vec2, Vec3A};
 use convex_support::{
     Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rounded, SupportMap, glam::EulerRot,

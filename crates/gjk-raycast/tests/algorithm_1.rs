@@ -1,10 +1,8 @@
 //! Algorithm 1 on closest points in closed form, the independent reference of Algorithm 3: another method, which shares
 //! neither the support points nor the simplex with it.
 
-mod common;
-
-use common::behind_pointers::ray_cast;
-use common::{Quaternion, s, turned, v};
+use crate::common::behind_pointers::ray_cast;
+use crate::common::{Quaternion, s, turned, v};
 use convex_support::glam::{DVec3, Vec3A};
 use convex_support::{
     Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rounded, Scalar, SupportMap, Triangle,
@@ -138,7 +136,7 @@ proptest! {
 #[test]
 fn a_quarter_or_more_of_the_rays_hit_and_as_many_miss() {
     let (mut hits, mut misses) = (0, 0);
-    for (i, d) in common::directions(600).enumerate() {
+    for (i, d) in crate::common::directions(600).enumerate() {
         let t = i as f64;
         let aim = [(1.3 * t).sin(), (2.1 * t).sin(), (3.7 * t).sin()].map(|c| 0.5 * c);
         let found =
@@ -155,7 +153,7 @@ fn a_quarter_or_more_of_the_rays_hit_and_as_many_miss() {
 fn a_far_source_loses_only_its_own_digits() {
     fn run<V: Quaternion>() {
         let ball = shape::<V>(1, [0.0, 0.0, 0.0, 1.0], [0.0; 3]);
-        for d in common::directions(100) {
+        for d in crate::common::directions(100) {
             let from = d.map(|c| -1e6 * c);
             let cast = algorithm_1(&ball, Ray { source: v::<V>(from), direction: v(d) });
             let hit = cast.outcome.hit().unwrap_or_else(|| panic!("through the centre: {d:?} {cast:?}"));
@@ -212,7 +210,7 @@ fn beginnings_and_ends() {
 fn it_converges_as_newtons_method_does() {
     for kind in 0..7 {
         let target = shape::<DVec3>(kind, [0.3, -0.5, 0.7, 0.4], [0.0; 3]);
-        for d in common::directions(40) {
+        for d in crate::common::directions(40) {
             let mut lambdas = Vec::new();
             let ray = Ray { source: DVec3::from_array(d) * -5.0, direction: DVec3::from_array(d) };
             let cast = iterative_ray_cast_with(

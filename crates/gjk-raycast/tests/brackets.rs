@@ -3,10 +3,8 @@
 //!
 //! The same numbers in double precision are the truth of single precision: their rounding is a billion times smaller.
 
-mod common;
-
-use common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
-use common::{Random, at, cuboid, s, v};
+use crate::common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
+use crate::common::{Random, at, cuboid, s, v};
 use convex_support::glam::{DQuat, DVec3, Quat, Vec3A};
 use convex_support::{
     Affine, Cone, Cylinder, Hull, Matrix, MinkowskiSum, Point, Polytope, Posed, Rotation, Scalar, Segment, SupportMap,
@@ -20,21 +18,21 @@ type Shape<V> = Box<dyn SupportMap<Vector = V>>;
 
 /// Numbers of single precision, so that both precisions build the same shapes.
 impl Random {
-    /// Uniform in −1 … 1.
-    fn signed(&mut self) -> f64 {
+    /// Between −1 and 1, in single precision.
+    fn single(&mut self) -> f64 {
         f64::from(self.number(-1.0, 1.0) as f32)
     }
 
     fn below(&mut self, n: usize) -> usize {
-        ((self.signed() + 1.0) * 0.5 * n as f64) as usize % n
+        ((self.single() + 1.0) * 0.5 * n as f64) as usize % n
     }
 
-    fn vector(&mut self, size: f64) -> [f64; 3] {
-        [0; 3].map(|_| f64::from((self.signed() * size) as f32))
+    fn coordinates(&mut self, size: f64) -> [f64; 3] {
+        [0; 3].map(|_| f64::from((self.single() * size) as f32))
     }
 
     fn quaternion(&mut self) -> [f64; 4] {
-        [0; 4].map(|_| self.signed())
+        [0; 4].map(|_| self.single())
     }
 }
 
@@ -53,13 +51,13 @@ enum Tree {
 
 impl Tree {
     fn leaf(random: &mut Random) -> Self {
-        let mut size = || f64::from((random.signed() * 0.5 + 0.75) as f32);
+        let mut size = || f64::from((random.single() * 0.5 + 0.75) as f32);
         let sizes = [size(), size(), size()];
         match random.below(4) {
             0 => Self::Cuboid(sizes),
             1 => Self::Cylinder([sizes[0], sizes[1]]),
             2 => Self::Cone([sizes[0], sizes[1]]),
-            _ => Self::Points((0..8).map(|_| random.vector(1.0)).collect()),
+            _ => Self::Points((0..8).map(|_| random.coordinates(1.0)).collect()),
         }
     }
 
@@ -70,10 +68,10 @@ impl Tree {
         }
         let inner = Box::new(Self::random(random, levels - 1, reach));
         match random.below(6) {
-            0 => Self::Affine(inner, [0; 3].map(|_| random.vector(1.0)), random.vector(reach)),
+            0 => Self::Affine(inner, [0; 3].map(|_| random.coordinates(1.0)), random.coordinates(reach)),
             1 => Self::Sum(inner, Box::new(Self::leaf(random))),
             2 => Self::Hull(inner, Box::new(Self::leaf(random))),
-            _ => Self::Posed(inner, random.quaternion(), random.vector(reach)),
+            _ => Self::Posed(inner, random.quaternion(), random.coordinates(reach)),
         }
     }
 
@@ -108,7 +106,7 @@ fn composed(random: &mut Random, i: usize) -> Tree {
     let reach = [1.0, 30.0, 1e3, 1e4][i % 4];
     let levels = [1, 2, 3, 8, 40][i % 5];
     let tree = Tree::random(random, levels.min(if i.is_multiple_of(3) { 40 } else { 3 }), reach);
-    tree.brought_back(random.vector(2.0))
+    tree.brought_back(random.coordinates(2.0))
 }
 
 /// Holds an answer in single precision against the truth, each of lower and upper bound and whether it is a miss: what is proved must be
@@ -124,8 +122,8 @@ fn holds(answer: ([f64; 2], bool), truth: ([f64; 2], bool), what: impl Fn() -> S
 fn composed_poses_keep_the_truth_in_the_bracket() {
     let mut random = Random(1);
     for i in 0..4000 {
-        let (a, b) = (composed(&mut random, i), Tree::leaf(&mut random).brought_back(random.vector(2.0)));
-        let (direction, source, velocity) = (random.vector(1.0), random.vector(4.0), random.vector(1.0));
+        let (a, b) = (composed(&mut random, i), Tree::leaf(&mut random).brought_back(random.coordinates(2.0)));
+        let (direction, source, velocity) = (random.coordinates(1.0), random.coordinates(4.0), random.coordinates(1.0));
         let what = || format!("{i}: {a:?} {b:?} {source:?} {direction:?} {velocity:?}");
         let (fine, coarse) = ((a.build::<DVec3>(), b.build::<DVec3>()), (a.build::<Vec3A>(), b.build::<Vec3A>()));
         holds(apart(&coarse.0, &coarse.1), apart(&fine.0, &fine.1), what);
@@ -169,12 +167,12 @@ fn a_source_outside_is_outside() {
     let mut random = Random(2);
     let (mut misses, mut hits) = (0, 0);
     for i in 0..800 {
-        let half = random.vector(1.0).map(|x| x.abs() + 0.25);
+        let half = random.coordinates(1.0).map(|x| x.abs() + 0.25);
         let body = cuboid::<DVec3>(half);
         // Above the face, by one to eight ulps of the size.
         let above = half[1] + (1 + i % 8) as f64 * f64::EPSILON;
-        let source = DVec3::new(half[0] * random.signed() * 0.9, above, half[2] * random.signed() * 0.9);
-        let direction = v::<DVec3>(random.vector(1.0));
+        let source = DVec3::new(half[0] * random.single() * 0.9, above, half[2] * random.single() * 0.9);
+        let direction = v::<DVec3>(random.coordinates(1.0));
         let answer = ray_cast(&body, Ray { source, direction }, RayCastOptions::default()).expect("a ray");
         let truth = (above - half[1]) / -direction.y;
         match answer.outcome {
@@ -205,7 +203,7 @@ fn intersects_agrees_with_distance() {
         let posed = |tree: &Tree, q, t| Tree::Posed(Box::new(tree.clone()), q, t).build::<DVec3>();
         let fixed = posed(&a, turn_a, [0.0; 3]);
         // Moved along the normal until the gap is that many errors.
-        let away = random.vector(1.0).map(|x| 4.0 * x.signum() + x);
+        let away = random.coordinates(1.0).map(|x| 4.0 * x.signum() + x);
         let first = distance(&fixed, &posed(&b, turn_b, away), DistanceOptions::default());
         let normal = first.normal.expect("apart");
         let gap = (i % 13) as f64 * 4.0 * f64::EPSILON - 8.0 * f64::EPSILON;
@@ -214,7 +212,7 @@ fn intersects_agrees_with_distance() {
 
         let near = distance(&fixed, &moved, DistanceOptions::default());
         met[usize::from(near.overlap)] += 1;
-        for axis in [None, Some(normal), Some(-normal), Some(v(random.vector(1.0))), Some(DVec3::Y)] {
+        for axis in [None, Some(normal), Some(-normal), Some(v(random.coordinates(1.0))), Some(DVec3::Y)] {
             let options = IntersectOptions::default();
             let options = axis.map_or(options, |axis| options.with_axis(axis));
             for found in [intersects(&fixed, &moved, options), intersects(&moved, &fixed, options)] {
@@ -239,8 +237,8 @@ fn a_box_stands_near_a_wide_floor() {
             for _ in 0..30 {
                 let height = (0.5 + gap) as f32;
                 let place =
-                    Vec3A::new((random.signed() * half * 0.5) as f32, height, (random.signed() * half * 0.5) as f32);
-                let turn = Quat::from_xyzw(0.0, random.signed() as f32, 0.0, 1.0);
+                    Vec3A::new((random.single() * half * 0.5) as f32, height, (random.single() * half * 0.5) as f32);
+                let turn = Quat::from_xyzw(0.0, random.single() as f32, 0.0, 1.0);
                 for parcel in [
                     Posed::translated(cuboid::<Vec3A>([0.5; 3]), place).expect(VALID),
                     Posed::new(cuboid::<Vec3A>([0.5; 3]), turn, place).expect(VALID),
@@ -267,20 +265,20 @@ fn a_box_stands_near_a_wide_floor() {
 fn an_edge_parallel_to_a_face_is_no_stall() {
     let mut random = Random(5);
     for i in 0..3000 {
-        let plate = cuboid::<DVec3>([1.0 + random.signed() * 0.5, 0.25, 1.0 + random.signed() * 0.5]);
+        let plate = cuboid::<DVec3>([1.0 + random.single() * 0.5, 0.25, 1.0 + random.single() * 0.5]);
         let gap = [0.0, 1e-16, 1e-15, 1e-13, 1e-10, 1e-7, 1e-4, 1e-2][i % 8];
         let level = 0.25 + gap;
-        let rise = [level + random.signed().abs() * 0.5 + 0.01, level + random.signed().abs() * 0.5 + 0.01];
+        let rise = [level + random.single().abs() * 0.5 + 0.01, level + random.single().abs() * 0.5 + 0.01];
         let side = |x: f64, y: f64| DVec3::new(x, y, 0.5 + 0.2 * x.abs());
         let points = [
-            DVec3::new(random.signed() * 0.3 - 0.4, level, random.signed() * 0.5),
-            DVec3::new(random.signed() * 0.3 + 0.4, level, random.signed() * 0.5),
-            side(random.signed() * 0.4, rise[0]),
-            side(random.signed() * 0.4, rise[1]),
+            DVec3::new(random.single() * 0.3 - 0.4, level, random.single() * 0.5),
+            DVec3::new(random.single() * 0.3 + 0.4, level, random.single() * 0.5),
+            side(random.single() * 0.4, rise[0]),
+            side(random.single() * 0.4, rise[1]),
         ];
         let edge = Polytope::new(points[..3 + i % 2].iter().copied()).expect(VALID);
         let q = random.quaternion();
-        let place = DVec3::from_array(random.vector(3.0));
+        let place = DVec3::from_array(random.coordinates(3.0));
         let pose = |shape| Posed::new(shape, DQuat::from_array(q), place).expect("a rotation");
         let (a, b) = (pose(Box::new(edge) as Shape<DVec3>), pose(Box::new(plate) as Shape<DVec3>));
         let answer = distance(&a, &b, DistanceOptions::default());
@@ -300,7 +298,7 @@ fn an_edge_parallel_to_a_face_is_no_stall() {
 fn a_point_at_the_end_of_a_lever_is_known_to_the_lever() {
     let mut random = Random(6);
     for i in 0..500 {
-        let lever = random.vector(1.0);
+        let lever = random.coordinates(1.0);
         let (q, size) = (random.quaternion(), [1e-3, 1e-2, 1.0][i % 3]);
         let build = |offset: [f64; 3]| Tree::Posed(Box::new(Tree::Cuboid([size; 3])), random_turn(i), offset);
         let there = posed_point::<DVec3>(lever, q).support(DVec3::X);
@@ -424,14 +422,14 @@ fn rays_from_the_boundary_keep_the_truth_in_the_bracket() {
         if matches!(leaf, Tree::Cuboid(_) | Tree::Points(_)) {
             continue;
         }
-        let tree = Tree::Posed(Box::new(leaf), random.quaternion(), random.vector(1.0));
+        let tree = Tree::Posed(Box::new(leaf), random.quaternion(), random.coordinates(1.0));
         let (fine, coarse) = (tree.build::<DVec3>(), tree.build::<Vec3A>());
-        let outside = random.vector(4.0).map(|x| x + 3.0 * x.signum());
+        let outside = random.coordinates(4.0).map(|x| x + 3.0 * x.signum());
         let nearest = distance(&Point::new(v::<DVec3>(outside)).expect(VALID), &fine, DistanceOptions::default());
         let n = nearest.normal.expect("apart");
-        let off = f64::from(f32::EPSILON) * 8.0 * random.signed();
+        let off = f64::from(f32::EPSILON) * 8.0 * random.single();
         let source = (nearest.point_b + n * off).to_array().map(|x| f64::from(x as f32));
-        let direction = random.vector(1.0);
+        let direction = random.coordinates(1.0);
         let cosine = n.dot(v(direction)) / norm(direction);
         // Where it grazes, what is round may be entered anywhere.
         if cosine.abs() < 0.01 {

@@ -1,12 +1,9 @@
 //! Derivatives of the times of hits, and of the parameters of rays, against differences of them.
 
-mod common;
-mod differences;
-
-use common::behind_pointers::{linear_cast, motion_cast, ray_cast};
+use crate::common::behind_pointers::{linear_cast, motion_cast, ray_cast};
+use crate::differences::{Body, Comparison, Random, Space, central};
 use convex_support::glam::{DVec2, DVec3};
 use convex_support::{AngularVelocity, Capsule, Cuboid, Posed, Rounded};
-use differences::{Body, Comparison, Random, Space, central};
 use gjk_raycast::{
     LinearCastOptions, LinearHit, Motion, MotionCastOptions, MotionHit, Ray, RayCastOptions, RayHit, RigidMotion,
     Smoothness,

@@ -1,8 +1,6 @@
 //! Certificates prove what answers claim, as far as the shapes' own support maps tell; `cargo xtask prove` tells it without them.
 
-mod common;
-
-use common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
+use crate::common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
 use convex_support::glam::{DMat3, DVec2, DVec3, Vec3};
 use convex_support::{
     Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Ellipsoid, Hint, InvalidShape, Point, Posed, Rounded,

@@ -1,10 +1,8 @@
 //! What answers claim, held against the support maps themselves, on shapes and poses that are adversarial on purpose: ulps
 //! apart, from 1e-9 to 1e9, aspects of a million, flat and repeated vertices, parallel faces, grazing rays.
 
-mod common;
-
-use common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
-use common::directions;
+use crate::common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
+use crate::common::directions;
 use convex_support::glam::{DVec2, DVec3, Vec3A};
 use convex_support::strategies::{self, AnyShape};
 use convex_support::{Posed, Scalar, SupportMap, Vector, Vector3};
@@ -31,7 +29,7 @@ fn scene<V: Vector + 'static>(
 }
 
 fn unit_directions<V: Vector>() -> impl Iterator<Item = V> {
-    directions(60).filter_map(|d| common::v::<V>(d).unit())
+    directions(60).filter_map(|d| crate::common::v::<V>(d).unit())
 }
 
 /// How far a point is beyond the shape's planes of support: a lower bound of its distance.

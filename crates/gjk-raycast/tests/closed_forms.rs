@@ -1,8 +1,6 @@
 //! Casts against shapes that know where a line crosses them: the closed form is asked first, and certified like a search.
 
-mod common;
-
-use common::{directions, v};
+use crate::common::{directions, v};
 use convex_support::glam::DVec3;
 use convex_support::{
     Affine, Ball, Capsule, Cone, Core, CoreKind, Crossing, Cuboid, Cylinder, Ellipsoid, Hint, LineCrossing, Posed,

@@ -1,8 +1,6 @@
 //! Where one core is a point and the other says its closest one, that is where a descent begins, and mostly ends.
 
-mod common;
-
-use common::{Plain, Quaternion, at, cuboid, s, turned, ulps, v};
+use crate::common::{Plain, Quaternion, at, cuboid, s, turned, ulps, v};
 use convex_support::glam::{DVec2, DVec3, Vec3A};
 use convex_support::{Ball, Capsule, Cone, Cylinder, Ellipsoid, Point, Rounded, Segment, SupportMap, Triangle};
 use gjk_raycast::{DistanceOptions, IntersectOptions, Status, distance, intersects};

@@ -1,10 +1,8 @@
 //! Contact manifolds.
 
-mod common;
-
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use common::{at, cuboid, turned};
+use crate::common::{at, cuboid, turned};
 use convex_support::glam::{DQuat, DVec2, DVec3};
 use convex_support::{Affine, Ball, Capsule, Cone, Cylinder, Matrix, Polytope, Rounded, SupportMap, Vector, glam};
 use gjk_raycast::{Contact, SignedDistanceOptions, contact};

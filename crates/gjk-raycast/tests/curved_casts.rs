@@ -1,8 +1,6 @@
 //! Casts at curved bodies that once stalled, or ended with a point that was not on the surface.
 
-mod common;
-
-use common::behind_pointers::{linear_cast, ray_cast};
+use crate::common::behind_pointers::{linear_cast, ray_cast};
 use convex_support::glam::{DQuat, DVec3, Vec3A};
 use convex_support::{Cone, Cuboid, Cylinder, Ellipsoid, Posed, SupportMap};
 use gjk_raycast::{Iterate, LinearCastOptions, Motion, Ray, RayCastOptions, Status, linear_cast_with};

@@ -1,13 +1,12 @@
 //! Derivatives of distances: against differences of the distances, against 70 digits, and at edges.
 
-mod common;
-mod differences;
+use std::cell::RefCell;
 
+use crate::differences::{Body, Comparison, Random, Space, apart, central};
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec3A};
 use convex_support::{
     AngularVelocity, Ball, Capsule, Cuboid, Ellipsoid, Matrix, Posed, Rotation, Scalar, Segment, SupportMap, Vector,
 };
-use differences::{Body, Comparison, Random, Space, apart, central};
 use gjk_raycast::{
     ClosestFeatures, ClosestVelocities, RigidMotion, SignedDistanceOptions, Smoothness, Trajectory, signed_distance,
 };
@@ -21,6 +20,8 @@ type Place<V> = fn(&ClosestFeatures<V>) -> V;
 struct Moving<'b, V: Vector> {
     bodies: [&'b Body<V>; 2],
     motions: [RigidMotion<V>; 2],
+    /// The features at the times that were asked for: all differences are taken at the same ones.
+    known: RefCell<Vec<(f64, ClosestFeatures<V>)>>,
 }
 
 impl<V: Space> Moving<'_, V> {
@@ -30,8 +31,13 @@ impl<V: Space> Moving<'_, V> {
     }
 
     fn features(&self, time: f64) -> ClosestFeatures<V> {
+        if let Some((_, features)) = self.known.borrow().iter().find(|(at, _)| *at == time) {
+            return features.clone();
+        }
         let [a, b] = [0, 1].map(|i| self.bodies[i].moved(&self.motions[i], time));
-        apart(&a, &b).closest_features(&a, &b)
+        let features = apart(&a, &b).closest_features(&a, &b);
+        self.known.borrow_mut().push((time, features.clone()));
+        features
     }
 
     /// The first derivative of the signed distance at a time.
@@ -84,7 +90,8 @@ fn all_pairs<V: Space>(seed: u64, rounds: usize) {
             for round in 0..rounds {
                 let a = Body::<V>::random(kind_a, &mut random);
                 let b = Body::random(kind_b, &mut random).placed(&a, round % 2 == 0, &mut random);
-                let pair = Moving { bodies: [&a, &b], motions: [random.motion(), random.motion()] };
+                let motions = [random.motion(), random.motion()];
+                let pair = Moving { bodies: [&a, &b], motions, known: RefCell::default() };
                 pair.compare(&mut comparisons, &format!("{kind_a} and {kind_b}, round {round}"));
             }
         }

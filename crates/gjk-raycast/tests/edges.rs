@@ -1,12 +1,9 @@
 //! Where answers are not smooth, and what their one-sided derivatives are there.
 
-mod common;
-mod differences;
-
-use common::behind_pointers::{distance, linear_cast, motion_cast, signed_distance};
+use crate::common::behind_pointers::{distance, linear_cast, motion_cast, signed_distance};
+use crate::differences::{Body, Random, Space, apart, one_sided};
 use convex_support::glam::{DQuat, DVec2, DVec3};
 use convex_support::{Ball, Capsule, Cone, Cuboid, Cylinder, Polytope, Posed, Rounded, SupportMap, Triangle};
-use differences::{Body, Random, Space, apart, one_sided};
 use gjk_raycast::{
     DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, RigidMotion, SignedDistanceOptions, Smoothness,
 };
@@ -17,7 +14,7 @@ type Boxed = std::rc::Rc<dyn SupportMap<Vector = DVec3>>;
 
 /// A body in the local frame of a contact, whose normal is y, and where it is put in the world.
 fn placed(shape: Boxed, turn: DQuat, at: DVec3, world: (DQuat, DVec3)) -> Body<DVec3> {
-    let local: differences::Solid<DVec3> = Box::new(shape);
+    let local: crate::differences::Solid<DVec3> = Box::new(shape);
     let shape = Posed::new(std::rc::Rc::new(local), world.0 * turn, world.0 * at + world.1).expect(VALID);
     Body { shape }
 }

@@ -3,11 +3,9 @@
 //! Small integers make degeneracies common instead of rare: parallel and coplanar faces, collinear and repeated
 //! vertices, rays in the plane of a face or through a vertex, bodies that just touch.
 
-mod exact;
-
+use crate::exact::Point;
+use crate::exact::agree::{distance_agrees, linear_cast_agrees, ray_agrees};
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
-use exact::Point;
-use exact::agree::{distance_agrees, linear_cast_agrees, ray_agrees};
 use proptest::prelude::*;
 
 /// Between 1 and 6 points with coordinates of magnitude up to `size`; planar where `planar`.

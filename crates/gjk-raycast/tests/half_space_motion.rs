@@ -1,11 +1,9 @@
 //! Motion casts against half-spaces: closed forms, what is proved against dense sampling, and what is answered at the edges.
 
-mod common;
-
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2, TAU};
 
-use common::behind_pointers::motion_cast;
-use common::{Random, s, v};
+use crate::common::behind_pointers::motion_cast;
+use crate::common::{Random, s, v};
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{
     Ball, Capsule, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rotation, Scalar, Segment, SupportMap, Vector, Vector3,

@@ -1,12 +1,9 @@
 //! What is mended of hits, and their one-sided rates, in space and in the plane.
 
-mod common;
-mod differences;
-
-use common::behind_pointers::{linear_cast, motion_cast, ray_cast};
+use crate::common::behind_pointers::{linear_cast, motion_cast, ray_cast};
+use crate::differences::{Body, Random, Solid, Space, apart, one_sided};
 use convex_support::glam::{DVec2, DVec3};
 use convex_support::{AngularVelocity, Cuboid, Posed, Rotation};
-use differences::{Body, Random, Solid, Space, apart, one_sided};
 use gjk_raycast::{
     ClosestFeatures, LinearCastOptions, LinearHit, Motion, MotionCastOptions, MotionHit, Ray, RayCastOptions, RayHit,
     RigidMotion, Smoothness,

@@ -1,8 +1,6 @@
 //! What an answer does not depend on: the unit of length, the order of the bodies, the direction the search begins with.
 
-mod common;
-
-use common::ulps;
+use crate::common::ulps;
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{
     Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Polytope, Posed, Rounded, Scalar, SupportMap,

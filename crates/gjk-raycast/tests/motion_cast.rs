@@ -1,10 +1,8 @@
 //! Motion casts whose answers are known in closed form, and what is answered at the edges: at the start, at the end, for bad input.
 
-mod common;
-
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, TAU};
 
-use common::behind_pointers::{linear_cast, motion_cast};
+use crate::common::behind_pointers::{linear_cast, motion_cast};
 use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3A};
 use convex_support::{Ball, Capsule, Cuboid, Ellipsoid, Posed, Rounded, Segment, SupportMap};
 use gjk_raycast::{

@@ -1,9 +1,7 @@
 //! Laws that every motion cast obeys: what is proved agrees with distances at any number of times, and with itself when the question
 //! is put another way.
 
-mod common;
-
-use common::behind_pointers::{distance, linear_cast, motion_cast};
+use crate::common::behind_pointers::{distance, linear_cast, motion_cast};
 use convex_support::glam::{DQuat, DVec3};
 use convex_support::{
     Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Polytope, Posed, Rounded, SupportMap,

@@ -1,11 +1,9 @@
 //! What the paper proves and claims, seen through the observer: van den Bergen, *Ray Casting against General Convex Objects
 //! with Application to Continuous Collision Detection*, 2004.
 
-mod common;
-
 use std::cell::Cell;
 
-use common::directions;
+use crate::common::directions;
 use convex_support::glam::{DQuat, DVec3};
 use convex_support::{
     Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rounded, SupportMap, closest_point,

@@ -1,10 +1,8 @@
 //! Distances and overlaps that went wrong elsewhere. Each test is named after its report, tells what goes wrong there, and
 //! runs in both precisions where the coordinates allow it.
 
-mod common;
-
-use common::behind_pointers::{distance, intersects};
-use common::{Quaternion, apart, at, cuboid, directions, meets, s, turned, ulps, v};
+use crate::common::behind_pointers::{distance, intersects};
+use crate::common::{Quaternion, apart, at, cuboid, directions, meets, s, turned, ulps, v};
 use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3, Vec3A};
 use convex_support::{
     Cone, Cuboid, Cylinder, InvalidShape, Point, Polytope, Posed, Rounded, Scalar, SupportMap, Triangle, Vector,
@@ -260,7 +258,7 @@ fn d9_d21_d22_nearly_parallel_boxes_keep_their_axis() {
             let answer = apart(&a, &b);
             let d = answer.distance.as_f64();
             assert!((5e-5..1.2e-3).contains(&d), "{i}: {answer:?}");
-            assert!(common::off(answer.normal, [0.0, 1.0, 0.0]) < 0.01, "{i}: {answer:?}");
+            assert!(crate::common::off(answer.normal, [0.0, 1.0, 0.0]) < 0.01, "{i}: {answer:?}");
         }
     }
     both(run::<Vec3A>, run::<DVec3>);

@@ -1,10 +1,8 @@
 //! Linear casts that went wrong elsewhere. Each test is named after its report, tells what goes wrong there, and runs in
 //! both precisions where the coordinates allow it.
 
-mod common;
-
-use common::behind_pointers::linear_cast;
-use common::{Quaternion, at, cuboid, directions, off, s, sweep, time, turned, ulps, v};
+use crate::common::behind_pointers::linear_cast;
+use crate::common::{Quaternion, at, cuboid, directions, off, s, sweep, time, turned, ulps, v};
 use convex_support::glam::{DVec2, DVec3, Quat, Vec2, Vec3A};
 use convex_support::{Ball, Capsule, Cuboid, Cylinder, Point, Posed, Scalar, SupportMap, Vector};
 use gjk_raycast::{CastMethod, LinearCast, LinearCastOptions, Motion, Outcome, Status};
@@ -162,7 +160,7 @@ fn s14_nearly_touching_capsule_and_cylinder_stay_near_contact() {
         let capsule = Capsule::<V>::new(s::<V>(2.031_143_43), s::<V>(7.197_321_89)).expect("positive");
         let cylinder = Cylinder::<V>::new(s::<V>(0.3), s::<V>(0.4975)).expect("positive");
         let cylinder = at(cylinder, [-0.951_660_156, -2.091_552_73, -7.635_742_18]);
-        let apart = common::apart(&cylinder, &capsule);
+        let apart = crate::common::apart(&cylinder, &capsule);
         assert!(apart.distance.as_f64() < 1e-3, "{apart:?}");
         let answer = sweep(&cylinder, &capsule, [0.002_441_406_25, -0.006_835_937_5, 0.002_929_687_5]);
         assert_eq!(answer.status, Status::Converged, "{answer:?}");
@@ -251,7 +249,7 @@ fn s15_a_start_in_contact_is_a_hit_in_every_direction() {
                 assert_eq!((hit.time.as_f64(), hit.normal.is_some()), (0.0, touches), "{depth} {d:?}");
                 in_both(hit.point);
             }
-            let apart = common::apart(&ball, &floor);
+            let apart = crate::common::apart(&ball, &floor);
             assert!(apart.overlap && apart.distance.as_f64() == 0.0, "{depth}: {apart:?}");
             in_both(apart.point_a);
             in_both(apart.point_b);
@@ -296,7 +294,7 @@ fn s20_the_point_of_contact_is_on_the_shapes() {
             let center = v::<V>(start) - v::<V>(d) * hit.time;
             assert!(on_box(hit.point) < ulps::<V>(256.0), "{d:?}: {hit:?}");
             assert!(((hit.point - center).norm().as_f64() - 0.5).abs() < ulps::<V>(256.0), "{d:?}: {hit:?}");
-            let apart = common::apart(&a, &b);
+            let apart = crate::common::apart(&a, &b);
             assert!(on_box(apart.point_b) < ulps::<V>(256.0), "{d:?}: {apart:?}");
             let radius = (apart.point_a - v::<V>(start)).norm().as_f64();
             assert!((radius - 0.5).abs() < ulps::<V>(256.0), "{d:?}: {apart:?}");
@@ -324,7 +322,7 @@ fn s12_large_angles_are_angles() {
             }
             assert_eq!(x.outcome.is_miss(), y.outcome.is_miss(), "{angle}: {x:?} {y:?}");
             // The gap of the step's start is there in the distance as well.
-            let [d, e] = [&whole, &less].map(|square| common::apart(square, &long).distance.as_f64());
+            let [d, e] = [&whole, &less].map(|square| crate::common::apart(square, &long).distance.as_f64());
             assert!((d - e).abs() < ulps::<V>(513.0 * 64.0) * 60.0, "{angle}: {d} {e}");
             if let Some(hit) = y.outcome.hit() {
                 assert!(d == 0.0 || hit.time.as_f64() > 0.0, "apart by {d}, but touching at once: {hit:?}");

@@ -1,9 +1,7 @@
 //! Ray casts that went wrong elsewhere. Each test is named after its report, tells what goes wrong there, and runs in
 //! both precisions.
 
-mod common;
-
-use common::{Quaternion, at, cast, cuboid, directions, lambda, off, s, turned, ulps, v};
+use crate::common::{Quaternion, at, cast, cuboid, directions, lambda, off, s, turned, ulps, v};
 use convex_support::glam::{DQuat, DVec3, Vec3A};
 use convex_support::{
     Ball, Capsule, Cone, Cuboid, Cylinder, Hull, MinkowskiSum, Point, Polytope, Posed, Scalar, Segment, SupportMap,

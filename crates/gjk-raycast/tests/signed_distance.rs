@@ -1,11 +1,9 @@
 //! Signed distances that are known in closed form or by looking at every facet, and shapes that are none.
 
-mod common;
-
 use std::cell::Cell;
 
-use common::behind_pointers::signed_distance;
-use common::{at, cuboid, s, turned, v};
+use crate::common::behind_pointers::signed_distance;
+use crate::common::{at, cuboid, s, turned, v};
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::{
     Ball, Capsule, Cone, Cylinder, Ellipsoid, Point, Polytope, Posed, Rounded, Scalar, Segment, SupportMap, Triangle,

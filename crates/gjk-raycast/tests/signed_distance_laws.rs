@@ -1,8 +1,6 @@
 //! What holds for the signed distance of any two shapes.
 
-mod common;
-
-use common::behind_pointers::{distance, signed_distance};
+use crate::common::behind_pointers::{distance, signed_distance};
 use convex_support::strategies::{AnyShape, combined, direction, pose, primitive, primitive_3d};
 use convex_support::{Posed, Scalar, SupportMap, Vector, Vector3, glam};
 use gjk_raycast::{DistanceOptions, SignedDistance, SignedDistanceOptions, Status};

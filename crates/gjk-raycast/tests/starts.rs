@@ -1,9 +1,7 @@
 //! How casts begin and end: touching, receding, sliding, inside, at rest, at the very end, and what is no cast at all.
 
-mod common;
-
-use common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
-use common::{Quaternion, at, cuboid, directions, s, ulps, v};
+use crate::common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
+use crate::common::{Quaternion, at, cuboid, directions, s, ulps, v};
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{
     Ball, Capsule, Cone, Cylinder, Ellipsoid, Point, Polytope, Posed, Rounded, Scalar, ScalarOf, SupportMap, Vector,

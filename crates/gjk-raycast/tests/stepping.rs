@@ -1,9 +1,9 @@
 //! Casts as those ask them who step a world: from contact on, to a distance from it, from a surface, and through a shape.
 
-mod common;
-
-use common::behind_pointers::{distance, intersects, linear_cast, motion_cast, ray_cast, ray_exit, signed_distance};
-use common::{Random, at, cuboid, s, ulps, v};
+use crate::common::behind_pointers::{
+    distance, intersects, linear_cast, motion_cast, ray_cast, ray_exit, signed_distance,
+};
+use crate::common::{Random, at, cuboid, s, ulps, v};
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec3};
 use convex_support::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Posed, Rounded, SupportMap};
 use gjk_raycast::{

@@ -1,8 +1,6 @@
 //! The ways to find the closest point of a simplex agree, on easy simplices and on flat ones.
 
-mod common;
-
-use common::{Quaternion, directions, s, turned, ulps, v};
+use crate::common::{Quaternion, directions, s, turned, ulps, v};
 use convex_support::glam::{DQuat, DVec3, Vec3A};
 use convex_support::{Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Polytope, Posed, Scalar, SupportMap, Vector};
 use gjk_raycast::{DistanceOptions, Ray, RayCastOptions, Status, SubAlgorithm, distance, ray_cast};

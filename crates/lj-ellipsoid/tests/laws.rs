@@ -1,9 +1,7 @@
 //! Laws of the two ellipsoids, on points of wild aspect and scale.
 #![allow(clippy::needless_range_loop, reason = "formulas index several arrays at once")]
 
-mod common;
-
-use common::{Rng, apply, assert_contains};
+use crate::common::{Rng, apply, assert_contains};
 use lj_ellipsoid::{
     EnclosingMethod, EnclosingOptions, Halfspace, InscribedOptions, Status, enclosing, inscribed, inscribed_in_hull,
 };

@@ -1,8 +1,6 @@
 //! Points that come, go and move: always the answer of a cold solve, mostly cheaper.
 
-mod common;
-
-use common::{Rng, assert_contains, assert_near};
+use crate::common::{Rng, assert_contains, assert_near};
 use lj_ellipsoid::{EnclosingError, EnclosingOptions, MovingPoints, enclosing};
 
 const TIGHT: EnclosingOptions = EnclosingOptions::new().with_epsilon(1e-11);

@@ -1,8 +1,6 @@
 //! Options out of their range, and at its ends.
 
-mod common;
-
-use common::Rng;
+use crate::common::Rng;
 use lj_ellipsoid::{
     EnclosingError, EnclosingOptions, Halfspace, InscribedError, InscribedOptions, MovingPoints, Status, enclosing,
     inscribed, inscribed_in_hull,

@@ -4,11 +4,9 @@
 //! other ellipsoids (around all but 5 % of the points, with two equal axes, axis-aligned), which this crate does not offer.
 #![allow(clippy::needless_range_loop, reason = "several arrays share an index")]
 
-mod common;
-
 use std::f64::consts::PI;
 
-use common::{Rng, apply, assert_contains, assert_near, corners};
+use crate::common::{Rng, apply, assert_contains, assert_near, corners};
 use lj_ellipsoid::{
     EnclosingError, EnclosingMethod, EnclosingOptions, FlatPolicy, Halfspace, InscribedError, InscribedOptions, Status,
     enclosing, inscribed, inscribed_in_hull,

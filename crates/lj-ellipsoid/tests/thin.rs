@@ -1,9 +1,7 @@
 //! Bodies and clouds so thin, and so turned, that their thickness is among the rounding of their coordinates.
 #![allow(clippy::needless_range_loop, reason = "several arrays share an index")]
 
-mod common;
-
-use common::{Rng, apply, assert_near, corners};
+use crate::common::{Rng, apply, assert_near, corners};
 use lj_ellipsoid::{
     Ellipsoid, EnclosingOptions, Halfspace, Inscribed, InscribedError, InscribedOptions, Status, enclosing, inscribed,
     inscribed_in_hull,

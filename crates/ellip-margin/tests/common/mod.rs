@@ -1,5 +1,4 @@
 //! Random ellipsoids of wild aspects, and differences of high order.
-#![allow(dead_code, reason = "each test file uses a part")]
 
 use convex_support::Ellipsoid;
 use convex_support::glam::{DQuat, DVec2, DVec3};

@@ -1,7 +1,5 @@
 //! What the regression tests share: numbers and vectors of either precision.
 
-#![allow(dead_code, reason = "each test file uses a part")]
-
 pub(crate) mod behind_pointers;
 
 use behind_pointers::{distance, intersects, linear_cast, ray_cast};

@@ -1,7 +1,5 @@
 //! Differences of high order, and random bodies to take them of.
 
-#![allow(dead_code, reason = "each test file uses a part")]
-
 use std::rc::Rc;
 
 use convex_support::glam::{DMat2, DMat3, DQuat, DVec2, DVec3};

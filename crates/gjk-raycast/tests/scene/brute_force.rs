@@ -7,7 +7,7 @@ use gjk_raycast::{
     ray_cast,
 };
 
-use crate::worlds::{Shape, Space, World};
+use super::worlds::{Shape, Space, World};
 
 pub(crate) fn rays<V: Space>(world: &World<V>, ray: Ray<V>, options: RayCastOptions<V>) -> Vec<(usize, RayCast<V>)> {
     let cast = |body: &Body<Shape<V>>| match body {

@@ -7,9 +7,9 @@ use gjk_raycast::{
 };
 use num_traits::Float;
 
-use crate::brute_force;
-use crate::numbers::Numbers;
-use crate::worlds::{Space, World, body};
+use super::brute_force;
+use super::numbers::Numbers;
+use super::worlds::{Space, World, body};
 
 /// How many questions were asked, and how they came out.
 #[derive(Debug, Default)]

@@ -7,7 +7,7 @@ use convex_support::{
 };
 use gjk_raycast::{HalfSpace, Scene};
 
-use crate::numbers::Numbers;
+use super::numbers::Numbers;
 
 pub(crate) type Shape<V> = Box<dyn SupportMap<Vector = V> + Sync>;
 

@@ -1,5 +1,4 @@
 //! Fixed-seed point sets shared by the tests.
-#![allow(dead_code, reason = "every test file uses its own part")]
 
 use lj_ellipsoid::{Ellipsoid, Enclosing};
 

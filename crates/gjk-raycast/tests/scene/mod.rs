@@ -10,9 +10,9 @@ mod worlds;
 
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
 
-use crate::compare::{Count, ask};
-use crate::numbers::Numbers;
-use crate::worlds::{KINDS, Space, world};
+use compare::{Count, ask};
+use numbers::Numbers;
+use worlds::{KINDS, Space, world};
 
 /// How many questions are asked in all, unless `SCENE_QUESTIONS` says another number.
 const QUESTIONS: usize = 12_000;
