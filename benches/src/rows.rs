@@ -163,6 +163,7 @@ pub struct Row {
 /// Measures every method on every case of the workloads, telling `progress` of each row as it comes.
 ///
 /// Each row may spend `budget`.
+#[inline]
 #[must_use]
 pub fn measure(workloads: &[Workload], budget: Duration, mut progress: impl FnMut(&Row)) -> Vec<Row> {
     let mut rows = Vec::new();
@@ -221,6 +222,7 @@ pub fn measure(workloads: &[Workload], budget: Duration, mut progress: impl FnMu
 }
 
 /// Every method's solver of ray casts against one shape.
+#[inline]
 #[must_use]
 pub fn ray_casters(shape: &Shape, rays: &[w1_ray_cast::Ray]) -> Vec<(Method, Solver)> {
     #[allow(unused_mut, reason = "without peers there is nothing to add")]
@@ -246,6 +248,7 @@ pub fn ray_casters(shape: &Shape, rays: &[w1_ray_cast::Ray]) -> Vec<(Method, Sol
 }
 
 /// Every method's solver of linear casts of one pair.
+#[inline]
 #[must_use]
 pub fn linear_casters(pair: &Pair, casts: &[w2_linear_cast::Cast]) -> Vec<(Method, Solver)> {
     #[allow(unused_mut, reason = "without peers there is nothing to add")]
@@ -272,6 +275,7 @@ pub fn linear_casters(pair: &Pair, casts: &[w2_linear_cast::Cast]) -> Vec<(Metho
 }
 
 /// Every method's solver of distances of one pair.
+#[inline]
 #[must_use]
 pub fn distance_solvers(pair: &Pair, queries: &[w3_distance::DistanceQuery]) -> Vec<(Method, Solver)> {
     #[allow(unused_mut, reason = "without peers there is nothing to add")]
@@ -296,6 +300,7 @@ pub fn distance_solvers(pair: &Pair, queries: &[w3_distance::DistanceQuery]) -> 
 }
 
 /// Every method's solver of intersection tests of one pair.
+#[inline]
 #[must_use]
 pub fn intersection_testers(pair: &Pair, queries: &[w3b_intersect::IntersectQuery]) -> Vec<(Method, Solver)> {
     #[allow(unused_mut, reason = "without peers there is nothing to add")]
@@ -322,6 +327,7 @@ pub fn intersection_testers(pair: &Pair, queries: &[w3b_intersect::IntersectQuer
 }
 
 /// Solvers of intersection tests that start from the axis which separated the same bodies before.
+#[inline]
 #[must_use]
 pub fn warm_intersection_testers(pair: &Pair, apart: &[w3b_intersect::IntersectQuery]) -> Vec<(Method, Solver)> {
     vec![

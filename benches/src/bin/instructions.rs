@@ -6,12 +6,13 @@
 use std::process::ExitCode;
 
 use benches::measure::Solver;
-use benches::ours::{self, Effort};
-use convex_support::Polytope;
-use convex_support::glam::DVec2;
+use benches::ours::Effort;
+use benches::ours::shapes::{Boxed, OfWorkload, with, with_both};
+use benches::ours::tasks::{Distances, Intersections, LinearCasts, MotionCasts, RayCasts, SignedDistances};
+use convex_support::glam::{DVec2, DVec3, Vec3A};
+use convex_support::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope};
 use gjk_raycast::{Ray, RayCastOptions};
 use workloads::pairs::Pair;
-use workloads::score::Precision;
 use workloads::shapes::{Shape, hull_points};
 use workloads::{w1_ray_cast, w2_linear_cast, w3_distance, w3b_intersect, w6_motion_cast};
 
@@ -21,78 +22,88 @@ const QUERIES: usize = 500;
 /// A name, and how to make it.
 type Row = (&'static str, fn() -> Solver);
 
+/// The cuboid and the hull in double precision, of which most rows are.
+type Block = Cuboid<DVec3>;
+type Hull = Polytope<DVec3>;
+
 /// Rows that stand for the rest: polytopes, smooth and rounded bodies, small and large, known and behind `dyn`, in space and
-/// in the plane, each kind of query.
+/// in the plane, each kind of query. Only their shapes are compiled.
 const ROWS: [Row; 23] = [
-    ("ray_cast/cuboid", || ray_cast("cuboid", Effort::default())),
-    ("ray_cast/hull1024", || ray_cast("hull1024", Effort::default())),
-    ("linear_cast/hull64-hull64", || linear_cast("hull64-hull64", Effort::default())),
-    ("linear_cast/cuboid-cuboid", || linear_cast("cuboid-cuboid", Effort::default())),
-    ("linear_cast/capsule-capsule", || linear_cast("capsule-capsule", Effort::default())),
-    ("distance/ellipsoid-ellipsoid", || distance("ellipsoid-ellipsoid", Effort::default())),
-    ("intersect/cuboid-cuboid", || {
-        let pair = Pair::named("cuboid-cuboid");
-        ours::intersections(
-            Precision::Double,
-            &pair,
-            &w3b_intersect::queries(&pair)[..QUERIES],
-            false,
-            Effort::default(),
-        )
-    }),
-    ("ray_cast/ball", || ray_cast("ball", Effort::default())),
-    ("ray_cast/cylinder", || ray_cast("cylinder", Effort::default())),
+    ("ray_cast/cuboid", || ray_cast::<Block>("cuboid")),
+    ("ray_cast/hull1024", || ray_cast::<Hull>("hull1024")),
+    ("linear_cast/hull64-hull64", || linear_cast::<Hull, Hull>("hull64-hull64")),
+    ("linear_cast/cuboid-cuboid", || linear_cast::<Block, Block>("cuboid-cuboid")),
+    ("linear_cast/capsule-capsule", || linear_cast::<Capsule<DVec3>, Capsule<DVec3>>("capsule-capsule")),
+    ("distance/ellipsoid-ellipsoid", || distance::<Ellipsoid<DVec3>, Ellipsoid<DVec3>>("ellipsoid-ellipsoid")),
+    ("intersect/cuboid-cuboid", || intersect::<Block, Block>("cuboid-cuboid")),
+    ("ray_cast/ball", || ray_cast::<Ball<DVec3>>("ball")),
+    ("ray_cast/cylinder", || ray_cast::<Cylinder<DVec3>>("cylinder")),
     ("ray_cast/plane-hull64", planar_ray_cast),
-    ("ray_cast/cuboid-dyn", || ray_cast("cuboid", boxed())),
-    ("linear_cast/cylinder-cone", || linear_cast("cylinder-cone", Effort::default())),
-    ("linear_cast/hull64-hull64-dyn", || linear_cast("hull64-hull64", boxed())),
-    ("distance/cylinder-cone", || distance("cylinder-cone", Effort::default())),
-    ("distance/cuboid-cuboid-dyn", || distance("cuboid-cuboid", boxed())),
-    ("motion_cast/cuboid-cuboid", || motion_cast("cuboid-cuboid")),
-    ("motion_cast/hull64-hull64", || motion_cast("hull64-hull64")),
-    ("motion_cast/ellipsoid-ellipsoid", || motion_cast("ellipsoid-ellipsoid")),
-    ("signed_distance/cuboid-cuboid", || signed_distance("cuboid-cuboid")),
-    ("signed_distance/cylinder-cone", || signed_distance("cylinder-cone")),
-    ("near_contact/ball-cuboid-f32", || near_contact("ball-cuboid")),
-    ("near_contact/cuboid-cuboid-f32", || near_contact("cuboid-cuboid")),
-    ("near_contact/hull64-hull64-f32", || near_contact("hull64-hull64")),
+    ("ray_cast/cuboid-dyn", || rays("cuboid", |rays, shape| with::<Block>(shape, Boxed(rays)))),
+    ("linear_cast/cylinder-cone", || linear_cast::<Cylinder<DVec3>, Cone<DVec3>>("cylinder-cone")),
+    ("linear_cast/hull64-hull64-dyn", || {
+        casts("hull64-hull64", |casts, pair| with_both::<Hull, Hull>(pair, Boxed(casts)))
+    }),
+    ("distance/cylinder-cone", || distance::<Cylinder<DVec3>, Cone<DVec3>>("cylinder-cone")),
+    ("distance/cuboid-cuboid-dyn", || {
+        distances("cuboid-cuboid", 0, |distances, pair| with_both::<Block, Block>(pair, Boxed(distances)))
+    }),
+    ("motion_cast/cuboid-cuboid", || motion_cast::<Block, Block>("cuboid-cuboid")),
+    ("motion_cast/hull64-hull64", || motion_cast::<Hull, Hull>("hull64-hull64")),
+    ("motion_cast/ellipsoid-ellipsoid", || motion_cast::<Ellipsoid<DVec3>, Ellipsoid<DVec3>>("ellipsoid-ellipsoid")),
+    ("signed_distance/cuboid-cuboid", || signed_distance::<Block, Block>("cuboid-cuboid")),
+    ("signed_distance/cylinder-cone", || signed_distance::<Cylinder<DVec3>, Cone<DVec3>>("cylinder-cone")),
+    ("near_contact/ball-cuboid-f32", || near_contact::<Ball<Vec3A>, Cuboid<Vec3A>>("ball-cuboid")),
+    ("near_contact/cuboid-cuboid-f32", || near_contact::<Cuboid<Vec3A>, Cuboid<Vec3A>>("cuboid-cuboid")),
+    ("near_contact/hull64-hull64-f32", || near_contact::<Polytope<Vec3A>, Polytope<Vec3A>>("hull64-hull64")),
 ];
 
-/// Shapes as `Box<dyn SupportMap>`.
-fn boxed() -> Effort {
-    Effort { boxed: true, ..Effort::default() }
+fn rays(name: &str, solver: impl Fn(RayCasts<'_>, &Shape) -> Solver) -> Solver {
+    solver(RayCasts(&w1_ray_cast::rays(name)[..QUERIES], Effort::default()), &Shape::named(name))
 }
 
-fn ray_cast(name: &str, effort: Effort) -> Solver {
-    ours::ray_casts(Precision::Double, &Shape::named(name), &w1_ray_cast::rays(name)[..QUERIES], effort)
+fn ray_cast<S: OfWorkload>(name: &str) -> Solver {
+    rays(name, |rays, shape| with::<S>(shape, rays))
 }
 
-fn linear_cast(name: &str, effort: Effort) -> Solver {
+fn casts(name: &str, solver: impl Fn(LinearCasts<'_>, &Pair) -> Solver) -> Solver {
     let pair = Pair::named(name);
-    ours::linear_casts(Precision::Double, &pair, &w2_linear_cast::casts(&pair)[..QUERIES], effort)
+    solver(LinearCasts(&w2_linear_cast::casts(&pair)[..QUERIES], Effort::default()), &pair)
 }
 
-fn distance(name: &str, effort: Effort) -> Solver {
+fn linear_cast<A: OfWorkload, B: OfWorkload<Vector = A::Vector>>(name: &str) -> Solver {
+    casts(name, |casts, pair| with_both::<A, B>(pair, casts))
+}
+
+fn distances(name: &str, from: usize, solver: impl Fn(Distances<'_>, &Pair) -> Solver) -> Solver {
     let pair = Pair::named(name);
-    ours::distances(Precision::Double, &pair, &w3_distance::queries(&pair)[..QUERIES], effort)
+    solver(Distances(&w3_distance::queries(&pair)[from..][..QUERIES], Effort::default()), &pair)
+}
+
+fn distance<A: OfWorkload, B: OfWorkload<Vector = A::Vector>>(name: &str) -> Solver {
+    distances(name, 0, |distances, pair| with_both::<A, B>(pair, distances))
 }
 
 /// Distances within a few rounding errors of contact.
-fn near_contact(name: &str) -> Solver {
-    let pair = Pair::named(name);
-    let near = &w3_distance::queries(&pair)[w3_distance::FAR..][..QUERIES];
-    ours::distances(Precision::Single, &pair, near, Effort::default())
+fn near_contact<A: OfWorkload, B: OfWorkload<Vector = A::Vector>>(name: &str) -> Solver {
+    distances(name, w3_distance::FAR, |distances, pair| with_both::<A, B>(pair, distances))
 }
 
-fn motion_cast(name: &str) -> Solver {
+fn intersect<A: OfWorkload, B: OfWorkload<Vector = A::Vector>>(name: &str) -> Solver {
     let pair = Pair::named(name);
-    ours::motion_casts(&pair, &w6_motion_cast::casts(&pair)[..QUERIES], Effort::default())
+    let queries = &w3b_intersect::queries(&pair)[..QUERIES];
+    with_both::<A, B>(&pair, Intersections { queries, is_warm: false, effort: Effort::default() })
+}
+
+fn motion_cast<A: OfWorkload<Vector = DVec3>, B: OfWorkload<Vector = DVec3>>(name: &str) -> Solver {
+    let pair = Pair::named(name);
+    with_both::<A, B>(&pair, MotionCasts(&w6_motion_cast::casts(&pair)[..QUERIES], Effort::default()))
 }
 
 /// Of the bodies of W3b, half of which overlap.
-fn signed_distance(name: &str) -> Solver {
+fn signed_distance<A: OfWorkload<Vector = DVec3>, B: OfWorkload<Vector = DVec3>>(name: &str) -> Solver {
     let pair = Pair::named(name);
-    ours::signed_distances(&pair, &w3b_intersect::queries(&pair)[..QUERIES], Effort::default())
+    with_both::<A, B>(&pair, SignedDistances(&w3b_intersect::queries(&pair)[..QUERIES], Effort::default()))
 }
 
 /// The rays and points of `hull64`, seen along z.

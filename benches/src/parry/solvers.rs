@@ -133,6 +133,17 @@ pub fn front_door_intersections(pair: &Pair, queries: &[IntersectQuery]) -> Opti
     }))
 }
 
+/// Depths by parry's `contact`; `None` for shapes that it does not have.
+#[must_use]
+pub fn front_door_depths(pair: &Pair, queries: &[IntersectQuery]) -> Option<Solver> {
+    let (a, b) = (boxed(&pair.a)?, boxed(&pair.b)?);
+    let queries = queries.iter().map(|query| pose(query.pose)).collect();
+    Some(Solver::new(queries, move |pose| {
+        let contact = query::contact(&Pose::IDENTITY, &*a, pose, &*b, 0.0);
+        contact.ok().flatten().map_or(f64::NAN, |contact| f64::from(contact.dist))
+    }))
+}
+
 /// Where parry's own callers start: from one centre to the other.
 fn first_direction(pose: &Pose) -> Vector {
     pose.translation.try_normalize().unwrap_or(Vector::X)

@@ -55,7 +55,7 @@ where
 }
 
 /// The plain case: bodies that are apart by more than a few errors, of which the closest points are known in closed form. There is
-/// nothing to search, and all is done in the world's unit.
+/// nothing to search, and all is done in the world's unit. Nearer to contact they are looked at closely without a search before it.
 ///
 /// The plane of the support point across the vector between those points is as far as they are, to rounding, or it is left to the search.
 #[inline(always)]
@@ -74,12 +74,16 @@ where
     let mut pair = Pair::of_cores(a, b, cores);
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
-    let PointPair { a, b } = pair.closest_points(offset, size)?;
-    let v = a - b + offset;
+    let points = pair.closest_points(offset, size)?;
+    let v = points.a - points.b + offset;
     let (length, radius, noise) = (v.length(), pair.radius(), rounding(size));
     let error = noise + pair.error();
-    // NaN is near contact.
-    if !(length - radius > error * number(NEAR)) || max_iterations == 0 {
+    let near = error * number(NEAR);
+    if (length - radius).abs() < near {
+        return touching(&a, &b, max_iterations, 0);
+    }
+    // NaN is left to the search, and so is what is deep.
+    if !(length - radius >= near) || max_iterations == 0 {
         return None;
     }
     let w = pair.support(-v).0 + offset;
@@ -95,8 +99,8 @@ where
         lower: lower - error - radius,
         upper: length + error - radius,
         overlap: false,
-        point_a: pair.core_a.origin + a - n * pair.core_a.radius,
-        point_b: pair.core_b.origin + b + n * pair.core_b.radius,
+        point_a: pair.core_a.origin + points.a - n * pair.core_a.radius,
+        point_b: pair.core_b.origin + points.b + n * pair.core_b.radius,
         normal: Some(n),
         status: Status::Converged,
         iterations: 1,

@@ -1,0 +1,101 @@
+//! Depths and manifolds of the bodies of W3b that overlap, in `f64`: nanoseconds per query, as the table in `docs/contact.md` has them.
+#![allow(clippy::print_stdout, reason = "printing is what it is for")]
+
+use std::time::Duration;
+
+use benches::measure::Solver;
+use benches::ours::Effort;
+use benches::ours::shapes::{PairTask, with_pair};
+use benches::ours::tasks::{Distances, SignedDistances, placed};
+use convex_support::glam::{DQuat, DVec3};
+use convex_support::{Posed, SupportMap};
+use gjk_raycast::{SignedDistanceOptions, contact, signed_distance};
+use workloads::pairs::{PAIR_NAMES, Pair};
+use workloads::w3_distance::{self, DistanceQuery};
+use workloads::w3b_intersect::{self, IntersectQuery};
+
+/// What a cell may spend.
+const BUDGET: Duration = Duration::from_millis(200);
+
+/// How far a body turns and moves from one frame to the next: a degree, and a hundredth of a unit.
+const TURN: f64 = 1.0 / 57.3;
+const STEP: f64 = 0.01;
+
+const VALID: &str = "the shapes and poses of the workloads are valid";
+
+/// Signed distances that are told the normal of the frame before.
+struct Warm<'a>(&'a [IntersectQuery]);
+
+impl PairTask<DVec3> for Warm<'_> {
+    fn solver<A, B>(self, a: A, b: B) -> Solver
+    where
+        A: SupportMap<Vector = DVec3> + 'static,
+        B: SupportMap<Vector = DVec3> + 'static,
+    {
+        let ask = move |(rotation, translation), options| {
+            let b = Posed::new(&b, rotation, translation).expect(VALID);
+            signed_distance(&a, &b, options)
+        };
+        let prepared = self.0.iter().enumerate().map(|(i, query)| {
+            let pose = placed::<DVec3>(query.pose);
+            let before = DQuat::from_axis_angle(DVec3::AXES[i % 3], TURN) * pose.0;
+            let before = (before.normalize(), pose.1 + DVec3::AXES[(i + 1) % 3] * STEP);
+            let cold = SignedDistanceOptions::default();
+            (pose, cold.with_axis(ask(before, cold).normal))
+        });
+        Solver::new(prepared.collect(), move |&(pose, options)| ask(pose, options).signed_distance)
+    }
+}
+
+/// The points that they carry each other in, with the depth.
+struct Manifolds<'a>(&'a [IntersectQuery]);
+
+impl PairTask<DVec3> for Manifolds<'_> {
+    fn solver<A, B>(self, a: A, b: B) -> Solver
+    where
+        A: SupportMap<Vector = DVec3> + 'static,
+        B: SupportMap<Vector = DVec3> + 'static,
+    {
+        let queries = self.0.iter().map(|query| placed::<DVec3>(query.pose)).collect();
+        Solver::new(queries, move |&(rotation, translation)| {
+            let b = Posed::new(&b, rotation, translation).expect(VALID);
+            let found = contact(&a, &b, 0.0, SignedDistanceOptions::default());
+            found.map_or(f64::NAN, |contact| contact.points().len() as f64)
+        })
+    }
+}
+
+/// The columns for one pair.
+fn cells(pair: &Pair) -> [Option<f64>; 6] {
+    let overlapping: Vec<IntersectQuery> =
+        w3b_intersect::queries(pair).into_iter().filter(|query| query.meet).collect();
+    let apart: &[DistanceQuery] = &w3_distance::queries(pair)[..w3_distance::FAR];
+    let time = |solver: &Solver| solver.nanoseconds(0..solver.count(), BUDGET);
+    let depth = time(&with_pair::<DVec3>(pair, SignedDistances(&overlapping, Effort::default())));
+    #[cfg(feature = "parry")]
+    let parry = benches::parry::double::front_door_depths(pair, &overlapping).map(|solver| time(&solver));
+    #[cfg(not(feature = "parry"))]
+    let parry: Option<f64> = None;
+    [
+        Some(time(&with_pair::<DVec3>(pair, Distances(apart, Effort::default())))),
+        Some(depth),
+        Some(time(&with_pair::<DVec3>(pair, Warm(&overlapping)))),
+        Some(time(&with_pair::<DVec3>(pair, Manifolds(&overlapping))) - depth),
+        parry,
+        parry.map(|parry| parry / depth),
+    ]
+}
+
+fn main() {
+    println!("| | distance, apart | depth | warm | manifold, over the depth | parry | parry / ours |");
+    println!("|---|---:|---:|---:|---:|---:|---:|");
+    for name in PAIR_NAMES {
+        let cells = cells(&Pair::named(name));
+        let cells: Vec<String> = cells
+            .iter()
+            .enumerate()
+            .map(|(i, cell)| cell.map_or_else(|| "-".to_owned(), |x| format!("{x:.*}", usize::from(i == 5))))
+            .collect();
+        println!("| {name} | {} |", cells.join(" | "));
+    }
+}
