@@ -115,14 +115,20 @@ impl<V: Vector> Feature<V> {
         self.rim = self.rim.map(|rim| Rim { center: f(rim.center), ends: rim.ends.map(f) });
     }
 
-    /// Of so many points, numbered from 0, those no farther than `slab` behind the farthest along a direction.
-    pub(crate) fn collect(&mut self, direction: V, slab: V::Scalar, count: usize, point: impl Fn(usize) -> V) {
+    /// Of points with these numbers, those no farther than `slab` behind the farthest along a direction.
+    pub(crate) fn collect(
+        &mut self,
+        direction: V,
+        slab: V::Scalar,
+        numbers: impl Iterator<Item = usize> + Clone,
+        point: impl Fn(usize) -> V,
+    ) {
         let level = |i: usize| direction.dot(point(i));
         // Once over all points: those near the farthest so far, of which few are left in the end.
         let mut highest = -V::Scalar::infinity();
         let mut near = [(0, highest); MAX_POINTS];
         let (mut len, mut is_full) = (0, false);
-        for i in 0..count {
+        for i in numbers.clone() {
             let at = level(i);
             if at >= highest - slab {
                 highest = highest.max(at);
@@ -144,9 +150,9 @@ impl<V: Vector> Feature<V> {
         }
         // There may be too many: then every second, third, ….
         let is_near = |&i: &usize| level(i) >= highest - slab;
-        let stride = (0..count).filter(is_near).count().div_ceil(MAX_POINTS);
+        let stride = numbers.clone().filter(is_near).count().div_ceil(MAX_POINTS);
         self.is_complete &= stride <= 1;
-        (0..count).filter(is_near).step_by(stride).for_each(|i| self.push(point(i), i as u32));
+        numbers.filter(is_near).step_by(stride).for_each(|i| self.push(point(i), i as u32));
     }
 
     /// Of a shape that is known by its support points alone, the vertices around the one along a direction and no farther than `slab`

@@ -77,3 +77,43 @@ proptest! {
         }
     }
 }
+
+/// Of a hull they are found along its edges, of mere points by a look at all of them.
+#[test]
+fn a_hull_shows_what_its_points_do() {
+    let mut state = 1_u64;
+    let mut number = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    let mut shown = [0; 18];
+    for round in 0..60 {
+        let ball: Vec<DVec3> =
+            (0..200).map(|_| DVec3::from_array([(); 3].map(|()| number())).normalize_or_zero()).collect();
+        let points: Vec<DVec3> = match round % 4 {
+            0 => ball,
+            // Needles and plates.
+            1 => ball.into_iter().map(|p| p * DVec3::new(1.0, 1e-3, 1e-6)).collect(),
+            // Faces of many corners, and corners in a row along edges.
+            2 => (0..120)
+                .map(|i| DVec3::new(f64::from(i % 2), (f64::from(i / 2) * 0.1).cos(), (f64::from(i / 2) * 0.1).sin()))
+                .collect(),
+            _ => (0..125).map(|i| DVec3::new(f64::from(i % 5), f64::from(i / 5 % 5), f64::from(i / 25))).collect(),
+        };
+        let hull = Polytope::hull_of(points).expect("a body");
+        let all = Polytope::new(hull.points().to_vec()).expect("finite points");
+        for k in 0..60 {
+            let direction = match k % 3 {
+                0 => DVec3::AXES[k / 3 % 3] * (1.0 - 2.0 * f64::from(u32::from(k > 30))),
+                1 => DVec3::from_array([(); 3].map(|()| number())),
+                _ => DVec3::from_array([number(), 1e-9 * number(), 0.0]),
+            };
+            for slab in [0.0, 1e-15, 1e-9, 0.02, 0.3] {
+                let (along_edges, looked_at) = (feature(&hull, direction, slab), feature(&all, direction, slab));
+                assert_eq!(along_edges, looked_at, "round {round}, along {direction}, {slab}");
+                shown[along_edges.points().len().min(17)] += 1;
+            }
+        }
+    }
+    assert!(shown[1] > 100 && shown[3..].iter().sum::<usize>() > 1000, "no fair sample: {shown:?}");
+}

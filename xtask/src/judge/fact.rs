@@ -19,6 +19,8 @@ use serde_json::{Value, json};
 pub enum Fact {
     /// The bodies first meet at a time between these.
     Hit([f64; 2]),
+    /// They first meet at this time at the earliest, or never: rounding decides whether a corner is met.
+    Graze(f64),
     /// They never meet.
     Miss,
     /// Their distance, negative where they overlap, is between these.
@@ -72,7 +74,11 @@ impl Fact {
         let Some(answer) = ask(object) else { return Self::Open };
         match answer.get("hit").and_then(Value::as_bool) {
             Some(false) => Self::Miss,
-            Some(true) => bracket(&answer).map_or(Self::Open, Self::Hit),
+            Some(true) => match (number(&answer, "lower"), number(&answer, "upper")) {
+                (Some(lower), Some(upper)) => Self::Hit([lower, upper]),
+                (Some(lower), None) => Self::Graze(lower),
+                (None, _) => Self::Open,
+            },
             None => bracket(&answer).map_or(Self::Open, Self::Distance),
         }
     }

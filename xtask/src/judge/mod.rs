@@ -82,6 +82,7 @@ pub fn violated(cases: &[Option<Case>]) -> (usize, Vec<String>) {
             let slack = 1e-11 * (case.bodies.reach + truth.abs());
             lower - slack <= truth && truth <= upper + slack
         }
+        Fact::Graze(lower) => lower - 1e-11 * (case.bodies.reach + lower.abs()) <= truth,
         Fact::Miss => false,
         Fact::Open => true,
     };

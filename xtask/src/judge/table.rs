@@ -240,6 +240,6 @@ Every answer is held against a bracket that is proved by geometry, not against a
 length: the tolerance that the library documents, for some a part of the motion, or the rounding of the precision, whichever is most. *Off*: the hit, miss, overlap or \
 gap is as said, its time or length is not. *Disproved*: a hit, miss, overlap or gap that is shown not to be, by more than is allowed: \
 bodies that are apart at the time of a claimed hit, that are deep in one another on the way of a claimed miss. *No answer*: an error. \
-*Open*: the bracket did not close, as where rounding decides whether a corner is met. Shapes that a library does not have are not asked of it, nor what its documentation leaves undefined. An error is a length in parts of the reach of \
+*Open*: the bracket did not close; or a miss, where rounding decides whether a corner is met. Shapes that a library does not have are not asked of it, nor what its documentation leaves undefined. An error is a length in parts of the reach of \
 the scene, the distance from the origin of the farthest corner of a body's box: of a time, how far the bodies are from touching then, or how far they \
 moved on since they did.";

@@ -41,6 +41,10 @@ impl Verdict {
         Self { outcome, error: Some(most / reach), evidence: format!("off by {least:.3e} at least") }
     }
 
+    fn open() -> Self {
+        Self { outcome: Outcome::Open, error: None, evidence: String::new() }
+    }
+
     fn right() -> Self {
         Self { outcome: Outcome::Right, error: None, evidence: String::new() }
     }
@@ -53,8 +57,8 @@ impl Verdict {
 /// Judges a claim; a length of `allowed` is nobody's mistake.
 pub fn judge(claim: Claim, fact: Fact, bodies: &Bodies, allowed: f64) -> Verdict {
     match fact {
-        Fact::Open => Verdict { outcome: Outcome::Open, error: None, evidence: String::new() },
-        Fact::Hit(_) | Fact::Miss => judge_cast(claim, fact, bodies, allowed),
+        Fact::Open => Verdict::open(),
+        Fact::Hit(_) | Fact::Graze(_) | Fact::Miss => judge_cast(claim, fact, bodies, allowed),
         Fact::Distance(bounds) => judge_distance(claim, bounds, bodies, allowed),
     }
 }
@@ -74,6 +78,13 @@ fn judge_cast(Claim { flag, scalar }: Claim, fact: Fact, bodies: &Bodies, allowe
                 reach,
                 format!("they never meet, and at {time:e} they are {apart:.3e} apart at least"),
             )
+        }
+        // Whether they meet is open; a hit is one where they touch, and did not overlap before.
+        (Fact::Graze(_), Some(false), _) => Verdict::open(),
+        (Fact::Graze(lower), _, Some(time)) => {
+            let [apart, at_most] = bodies.gap(time).unwrap_or([0.0, f64::INFINITY]);
+            let moved_on = ((time - lower) * bodies.speed).max(0.0);
+            Verdict::by_length([apart.max(-at_most).max(0.0), at_most.abs().max(moved_on)], allowed, reach)
         }
         (Fact::Hit([_, upper]), Some(false), _) => {
             let (time, depth) = bodies.deepest(upper);
@@ -171,6 +182,17 @@ mod tests {
         assert_eq!(outcome(&hit, Some(false), None).0, Outcome::Disproved, "it goes through");
         assert_eq!(outcome(&miss, Some(false), None).0, Outcome::Right, "it goes past");
         assert_eq!(outcome(&miss, Some(true), Some(0.5)).0, Outcome::Disproved, "they are apart then");
+    }
+
+    /// A corner that is met by a corner to rounding: whoever says a miss may be right, and a hit is at that time or none.
+    #[test]
+    fn grazes_are_open_to_who_says_a_miss() {
+        let query = r#"{"query":"linear_cast","a":{"type":"cuboid","half_extents":[1,0.5,0.25]},"b":{"type":"posed","of":{"type":"cuboid","half_extents":[1,0.5,0.25]},"rotation":[-0.2384743679799667,-0.8581547372714705,0.0696937552505257,0.4492696330647873],"translation":[-1.8676382472312878,5.955709892924724,1.220076103192911]},"velocity_b":[1.4539202451705933,-7.865894794464111,0.1175268366932869],"max_time":1}"#;
+        assert_eq!(outcome(query, Some(false), None).0, Outcome::Open, "it may");
+        let (right, error) = outcome(query, Some(true), Some(0.692_321_729_619_66));
+        assert!(right == Outcome::Right && error.expect("a length") < 1e-12, "they touch: {error:?}");
+        assert_eq!(outcome(query, Some(true), Some(0.68)).0, Outcome::Off, "too early");
+        assert_eq!(outcome(query, Some(true), Some(0.72)).0, Outcome::Off, "too late");
     }
 
     /// A rod of length two turns about its middle into a ball beside it; in the plane, and about z in space.

@@ -90,7 +90,7 @@ impl<V: Vector> SupportMap for Capsule<V> {
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
         let end = V::axis(1) * self.half_height;
-        feature.collect(direction, slab, 2, |i| if i == 0 { end } else { -end });
+        feature.collect(direction, slab, 0..2, |i| if i == 0 { end } else { -end });
     }
 
     #[inline]

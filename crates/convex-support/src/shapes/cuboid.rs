@@ -89,7 +89,7 @@ impl<V: Vector> SupportMap for Cuboid<V> {
             let sign = V::from_fn(|axis| if i >> axis & 1 == 1 { -V::Scalar::ONE } else { V::Scalar::ONE });
             self.half_extents * sign
         };
-        feature.collect(direction, slab, 1 << V::DIM, corner);
+        feature.collect(direction, slab, 0..1 << V::DIM, corner);
     }
 
     #[inline]

@@ -91,7 +91,7 @@ impl<V: Vector> SupportMap for Segment<V> {
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
         let points = relative(self.points);
-        feature.collect(direction, slab, 2, |i| points[i]);
+        feature.collect(direction, slab, 0..2, |i| points[i]);
     }
 
     #[inline]

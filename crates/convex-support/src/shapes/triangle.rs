@@ -126,7 +126,7 @@ impl<V: Vector> SupportMap for Triangle<V> {
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
         let points = relative(self.points);
-        feature.collect(direction, slab, 3, |i| points[i]);
+        feature.collect(direction, slab, 0..3, |i| points[i]);
     }
 
     /// Which corner is farthest is told by the products of the direction with two edges, 4 roundings each.

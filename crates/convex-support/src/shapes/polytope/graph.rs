@@ -240,6 +240,35 @@ impl<V: Vector> Graph<V> {
         }
     }
 
+    /// The vertices no farther than `depth` behind the farthest one along a direction, as numbers in the list that the graph was made of
+    /// and in their order; `None` where they are more than there is room for.
+    ///
+    /// From any vertex an edge leads up, unless it is a farthest one: those above a plane are connected.
+    pub(super) fn near<'r>(
+        &self,
+        farthest: u32,
+        direction: V,
+        depth: V::Scalar,
+        room: &'r mut [u32],
+    ) -> Option<&'r [u32]> {
+        let least = direction.dot(self.vertex(farthest)) - depth;
+        *room.first_mut()? = farthest;
+        let (mut looked_at, mut len) = (0, 1);
+        while looked_at < len {
+            for &next in self.around(room[looked_at]) {
+                if direction.dot(self.vertex(next)) >= least && !room[..len].contains(&next) {
+                    *room.get_mut(len)? = next;
+                    len += 1;
+                }
+            }
+            looked_at += 1;
+        }
+        let found = &mut room[..len];
+        found.iter_mut().for_each(|vertex| *vertex = self.names[*vertex as usize]);
+        found.sort_unstable();
+        Some(found)
+    }
+
     #[cold]
     #[inline(never)]
     fn climb_from_nearer(&self, direction: V, start: u32, hint: u32) -> u32 {

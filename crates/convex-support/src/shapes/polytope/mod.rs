@@ -61,6 +61,12 @@ pub struct Polytope<V: Vector> {
     rounding: Rounding<V>,
 }
 
+/// Vertices of a feature that are found along edges; of more, all points are looked at.
+const FOLLOWED: usize = 32;
+
+/// So many points are looked at as quickly as edges are followed.
+const LOOKED_AT: usize = 128;
+
 /// How the farthest of the points, relative to the middle, is found.
 #[derive(Clone, Debug, PartialEq)]
 enum Search<V: Vector> {
@@ -182,7 +188,19 @@ impl<V: Vector> SupportMap for Polytope<V> {
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
-        feature.collect(direction, slab, self.points.len(), |i| self.points[i] - self.middle);
+        let point = |i: usize| self.points[i] - self.middle;
+        if let Search::Look { graph, unit } = &self.search
+            && self.points.len() > LOOKED_AT
+        {
+            // A level is a dot product, of three roundings.
+            let rounding = direction.norm() * self.extent * V::Scalar::EPSILON * V::Scalar::from_f64(16.0);
+            let mut room = [0; FOLLOWED];
+            let farthest = self.farthest(direction, u32::MAX);
+            if let Some(near) = graph.near(farthest, direction, (slab + rounding) / *unit, &mut room) {
+                return feature.collect(direction, slab, near.iter().map(|&i| i as usize), point);
+            }
+        }
+        feature.collect(direction, slab, 0..self.points.len(), point);
     }
 
     #[inline]
