@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use benches::measure::Solver;
 use benches::ours::Effort;
-use benches::ours::shapes::{PairTask, with_pair};
+use benches::ours::shapes::{PairTask, VALID, with_pair};
 use benches::ours::tasks::{Distances, SignedDistances, placed};
 use convex_support::glam::{DQuat, DVec3};
 use convex_support::{Posed, SupportMap};
@@ -20,8 +20,6 @@ const BUDGET: Duration = Duration::from_secs(1);
 /// How far a body turns and moves from one frame to the next: a degree, and a hundredth of a unit.
 const TURN: f64 = 1.0 / 57.3;
 const STEP: f64 = 0.01;
-
-const VALID: &str = "the shapes and poses of the workloads are valid";
 
 /// Signed distances that are told the normal of the frame before.
 struct Warm<'a>(&'a [IntersectQuery]);

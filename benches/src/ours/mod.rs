@@ -6,8 +6,8 @@
 pub mod shapes;
 pub mod tasks;
 
+use convex_support::Faceted;
 use convex_support::glam::{DVec3, Vec3A};
-use convex_support::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, Rounded, Scalar, line_crossing};
 use gjk_raycast::{CastMethod, DistanceOptions, RayCastOptions, SubAlgorithm};
 use workloads::pairs::Pair;
 use workloads::score::Precision;
@@ -18,8 +18,8 @@ use workloads::w3_distance::DistanceQuery;
 use workloads::w3b_intersect::IntersectQuery;
 
 use crate::measure::Solver;
-use shapes::{Boxed, OfWorkload, PairTask, Space, Task, VALID, vector, with_pair, with_shape};
-use tasks::{Distances, Intersections, LinearCasts, RayCasts};
+use shapes::{Boxed, PairTask, Space, Task, with, with_pair, with_shape};
+use tasks::{ClosedFormRayCasts, Distances, Intersections, LinearCasts, RayCasts};
 
 /// How hard `gjk-raycast` is to try, and what its solvers are to tell. By default its own options, and the answer.
 #[derive(Clone, Copy, Debug)]
@@ -71,31 +71,14 @@ pub fn ray_casts(precision: Precision, shape: &Shape, rays: &[Ray], effort: Effo
 #[must_use]
 pub fn closed_form_ray_casts(precision: Precision, shape: &Shape, rays: &[Ray]) -> Solver {
     match precision {
-        Precision::Double => closed_form_ray_casts_in::<DVec3>(shape, rays),
-        Precision::Single => closed_form_ray_casts_in::<Vec3A>(shape, rays),
+        Precision::Double => in_closed_form::<DVec3>(shape, ClosedFormRayCasts(rays)),
+        Precision::Single => in_closed_form::<Vec3A>(shape, ClosedFormRayCasts(rays)),
     }
 }
 
-fn closed_form_ray_casts_in<V: Space>(shape: &Shape, rays: &[Ray]) -> Solver {
-    fn solver<S: OfWorkload>(shape: &Shape, rays: &[Ray]) -> Solver {
-        let target = S::of(shape).expect(VALID);
-        let rays = rays.iter().map(|ray| (vector(ray.origin), vector(ray.direction))).collect();
-        Solver::new(rays, move |&(source, direction): &(S::Vector, S::Vector)| {
-            let crossing = line_crossing(&target, source, direction).crossing();
-            let hit = crossing.and_then(|crossing| crossing.first_hit(Scalar::ONE));
-            hit.map_or(f64::INFINITY, Scalar::as_f64)
-        })
-    }
-    match shape {
-        Shape::Ball { .. } => solver::<Ball<V>>(shape, rays),
-        Shape::Cuboid { .. } => solver::<Cuboid<V>>(shape, rays),
-        Shape::Cylinder { .. } => solver::<Cylinder<V>>(shape, rays),
-        Shape::Cone { .. } => solver::<Cone<V>>(shape, rays),
-        Shape::Capsule { .. } => solver::<Capsule<V>>(shape, rays),
-        Shape::Ellipsoid { .. } => solver::<Ellipsoid<V>>(shape, rays),
-        Shape::RoundBox { .. } => solver::<Rounded<Cuboid<V>>>(shape, rays),
-        Shape::Hull { .. } => solver::<Faceted<V>>(shape, rays),
-    }
+/// Of a hull only its facets know a closed form.
+fn in_closed_form<V: Space>(shape: &Shape, task: impl Task<V>) -> Solver {
+    if let Shape::Hull { .. } = shape { with::<Faceted<V>>(shape, task) } else { with_shape(shape, task) }
 }
 
 /// Linear casts.

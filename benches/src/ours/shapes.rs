@@ -39,7 +39,7 @@ pub(super) fn vector<V: Space>(v: Vec3) -> V {
 }
 
 /// Why a shape of the workloads should always be one.
-pub(super) const VALID: &str = "the shapes and poses of the workloads are valid";
+pub const VALID: &str = "the shapes and poses of the workloads are valid";
 
 /// Makes a solver from a shape of any type.
 pub trait Task<V: Space> {

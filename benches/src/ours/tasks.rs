@@ -1,7 +1,7 @@
 //! Queries of the workloads, as they are put to two shapes of any types.
 
 use convex_support::glam::DVec3;
-use convex_support::{Posed, Scalar, SupportMap};
+use convex_support::{Posed, Scalar, SupportMap, line_crossing};
 use gjk_raycast::{
     DistanceOptions, IntersectOptions, LinearCastOptions, Motion, MotionCastOptions, Outcome, RayCastOptions,
     RigidMotion, SignedDistanceOptions, Status, distance, intersects, linear_cast, motion_cast, ray_cast,
@@ -41,6 +41,21 @@ impl<V: Space> Task<V> for RayCasts<'_> {
                 Outcome::Undecided => f64::NAN,
             };
             effort.tell(answer, cast.iterations)
+        })
+    }
+}
+
+/// Ray casts in closed form.
+#[derive(Clone, Copy, Debug)]
+pub struct ClosedFormRayCasts<'a>(pub &'a [Ray]);
+
+impl<V: Space> Task<V> for ClosedFormRayCasts<'_> {
+    fn solver<S: SupportMap<Vector = V> + 'static>(self, target: S) -> Solver {
+        let rays = self.0.iter().map(|ray| (vector(ray.origin), vector(ray.direction))).collect();
+        Solver::new(rays, move |&(source, direction): &(V, V)| {
+            let crossing = line_crossing(&target, source, direction).crossing();
+            let hit = crossing.and_then(|crossing| crossing.first_hit(Scalar::ONE));
+            hit.map_or(f64::INFINITY, Scalar::as_f64)
         })
     }
 }

@@ -77,14 +77,15 @@ fn reproduction(witness: &Witness, case: &Case, claim: Claim, verdict: &Verdict)
 pub fn violated(cases: &[Option<Case>]) -> (usize, Vec<String>) {
     let known: Vec<(&Case, f64)> =
         cases.iter().flatten().filter_map(|case| Some((case, case.question.truth?))).collect();
-    let holds = |case: &Case, truth: f64| match case.fact {
-        Fact::Hit([lower, upper]) | Fact::Distance([lower, upper]) => {
-            let slack = 1e-11 * (case.bodies.reach + truth.abs());
-            lower - slack <= truth && truth <= upper + slack
-        }
-        Fact::Graze(lower) => lower - 1e-11 * (case.bodies.reach + lower.abs()) <= truth,
-        Fact::Miss => false,
-        Fact::Open => true,
+    let holds = |case: &Case, truth: f64| {
+        let [lower, upper] = match case.fact {
+            Fact::Hit(bounds) | Fact::Distance(bounds) => bounds,
+            Fact::Graze(lower) => [lower, f64::INFINITY],
+            Fact::Miss => return false,
+            Fact::Open => return true,
+        };
+        let slack = 1e-11 * (case.bodies.reach + truth.abs());
+        lower - slack <= truth && truth <= upper + slack
     };
     let wrong = known.iter().filter(|(case, truth)| !holds(case, *truth)).map(|(case, _)| case.question.id.clone());
     (known.len(), wrong.collect())
