@@ -5,13 +5,13 @@ use convex_support::{Core, CoreKind, Crossing, Hint, LineCrossing, Scalar, Suppo
 use crate::symmetric::Symmetric;
 use crate::unit::{is_moderate, reciprocal_of_power};
 
-/// A core and its radius, as algorithms see it.
-pub(crate) trait Body {
+/// The support map of a core, whose points remember what they are made of: all that GJK asks of a body.
+pub(crate) trait TracedSupport {
     type Vector: Vector;
     /// What a support point is made of: the points of both shapes for a difference.
     type Witness: Witness<<Self::Vector as Vector>::Scalar>;
 
-    /// The support point of the core, relative to the origin and in units of `scale`.
+    /// The support point, relative to the body's origin and in its unit.
     fn support(&mut self, direction: Self::Vector) -> (Self::Vector, Self::Witness);
     /// The Hessian `H` of the support value, how fast the support point moves as the direction turns, as seen along two changes
     /// `u` and `w`: the entries `u·Hu`, `u·Hw` and `w·Hw`.
@@ -22,6 +22,10 @@ pub(crate) trait Body {
     ) -> Symmetric<<Self::Vector as Vector>::Scalar>;
     /// Whether that may be anything but zero.
     fn is_curved(&self) -> bool;
+}
+
+/// A core and its radius, as casts see them.
+pub(crate) trait Body: TracedSupport {
     /// Where the line through `source` along `direction` is in the body, in closed form; lengths in units of `scale`.
     #[inline(always)]
     fn line_crossing(&self, source: Self::Vector, direction: Self::Vector) -> LineCrossing<Self::Vector> {
@@ -75,7 +79,7 @@ impl<'a, S: SupportMap + ?Sized> Single<'a, S> {
     }
 }
 
-impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
+impl<S: SupportMap + ?Sized> TracedSupport for Single<'_, S> {
     type Vector = S::Vector;
     type Witness = ();
 
@@ -95,7 +99,9 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
     fn is_curved(&self) -> bool {
         matches!(self.core.kind, CoreKind::Curved)
     }
+}
 
+impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
     #[inline(always)]
     fn eroded_line_crossing(
         &self,
@@ -194,6 +200,13 @@ pub(crate) struct PointPair<V> {
     pub(crate) b: V,
 }
 
+impl<V> PointPair<V> {
+    /// The same of the two in the other order.
+    pub(crate) fn reversed(self) -> Self {
+        Self { a: self.b, b: self.a }
+    }
+}
+
 /// One shape does not remember points.
 impl<V> From<PointPair<V>> for () {
     fn from(_points: PointPair<V>) {}
@@ -206,7 +219,7 @@ impl<V: Vector> Witness<V::Scalar> for PointPair<V> {
     }
 }
 
-impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body for Pair<'_, A, B> {
+impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> TracedSupport for Pair<'_, A, B> {
     type Vector = A::Vector;
     type Witness = PointPair<A::Vector>;
 
@@ -231,7 +244,9 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
     fn is_curved(&self) -> bool {
         matches!(self.core_a.kind, CoreKind::Curved) || matches!(self.core_b.kind, CoreKind::Curved)
     }
+}
 
+impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body for Pair<'_, A, B> {
     /// Known where one of the cores is a point, and the difference is the other body moved, or turned round and moved.
     #[inline(always)]
     fn eroded_line_crossing(
@@ -289,7 +304,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
 /// A body whose support points are not asked where they come from.
 pub(crate) struct Untraced<'b, B>(pub(crate) &'b mut B);
 
-impl<B: Body> Body for Untraced<'_, B> {
+impl<B: TracedSupport> TracedSupport for Untraced<'_, B> {
     type Vector = B::Vector;
     type Witness = ();
 
@@ -306,37 +321,6 @@ impl<B: Body> Body for Untraced<'_, B> {
     #[inline]
     fn is_curved(&self) -> bool {
         self.0.is_curved()
-    }
-
-    fn eroded_line_crossing(
-        &self,
-        source: B::Vector,
-        direction: B::Vector,
-        by: <B::Vector as Vector>::Scalar,
-    ) -> LineCrossing<B::Vector> {
-        self.0.eroded_line_crossing(source, direction, by)
-    }
-
-    fn witness(&self, _point: B::Vector) {}
-
-    fn origin(&self) -> B::Vector {
-        self.0.origin()
-    }
-
-    fn radius(&self) -> <B::Vector as Vector>::Scalar {
-        self.0.radius()
-    }
-
-    fn extent(&self) -> <B::Vector as Vector>::Scalar {
-        self.0.extent()
-    }
-
-    fn error(&self) -> <B::Vector as Vector>::Scalar {
-        self.0.error()
-    }
-
-    fn set_scale(&mut self, scale: <B::Vector as Vector>::Scalar) {
-        self.0.set_scale(scale);
     }
 }
 

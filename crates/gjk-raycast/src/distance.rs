@@ -3,11 +3,11 @@
 use convex_support::{Core, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Body as _, Pair, PointPair};
+use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
 use crate::gjk::{
-    End, Frame, Gjk, GjkOptions, NEAR, Shape, first_direction, gjk, is_near_contact, near_contact, rounding,
+    End, Frame, Gjk, GjkOptions, InOrder, NEAR, Shape, first_direction, gjk, is_near_contact, near_contact, rounding,
 };
-use crate::{Distance, DistanceOptions, Iterate, Status};
+use crate::{Distance, DistanceOptions, Iterate, Status, SubAlgorithm};
 
 /// The distance of two shapes, and where they are closest.
 ///
@@ -80,7 +80,7 @@ where
     let error = noise + pair.error();
     let near = error * number(NEAR);
     if (length - radius).abs() < near {
-        return touching(&a, &b, max_iterations, 0);
+        return touching(&a, &b, None, max_iterations);
     }
     // NaN is left to the search, and so is what is deep.
     if !(length - radius >= near) || max_iterations == 0 {
@@ -114,7 +114,7 @@ fn searched<A, B>(
     b: &B,
     cores: [Core<A::Vector>; 2],
     options: DistanceOptions<A::Vector>,
-    observer: impl FnMut(Iterate<'_, A::Vector>),
+    mut observer: impl FnMut(Iterate<'_, A::Vector>),
 ) -> Distance<A::Vector>
 where
     A: SupportMap + ?Sized,
@@ -124,32 +124,66 @@ where
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
-    let mut state = Gjk::new(first_direction(options.axis, frame.offset));
-    let meet = state.begin_at_closest(&pair, &frame, size) == Some(true);
+    // In order, so that the search can be gone on with if the bodies nearly touch.
+    let mut bodies = InOrder::new(&mut pair);
+    let offset = bodies.difference(cores[0].origin, cores[1].origin) * frame.per_unit;
+    let first = first_direction(options.axis.map(|axis| bodies.in_order(axis)), offset);
+    let mut state = Gjk::new(first);
+    let start = state.begin_at_closest(bodies.as_given(), &frame, size);
+    if start.is_some() {
+        // From there the search is short.
+        bodies.set_as_given();
+    }
+    let (is_reversed, in_order) =
+        (bodies.is_reversed(), if start.is_none() { Frame { offset, ..frame } } else { frame });
     let search = GjkOptions {
         limit: options.limit * frame.per_unit + frame.radius,
         tolerance: options.tolerance,
         sub_algorithm: options.sub_algorithm,
         ..GjkOptions::new(state.normal, options.max_iterations)
     };
-    let end = if meet { End::Overlap } else { gjk(&mut state, &mut pair, frame, search, None, observer) };
-    if is_near_contact(&mut state, &frame)
-        && let Some(answer) = touching(&a, &b, options.max_iterations, state.iterations)
-    {
-        return answer;
+    let end = if start == Some(true) {
+        End::Overlap
+    } else {
+        let as_given = |iterate: Iterate<'_, A::Vector>| {
+            if is_reversed { iterate.reversed(&mut observer) } else { observer(iterate) }
+        };
+        gjk(&mut state, &mut bodies, in_order, search, None, as_given)
+    };
+    if is_near_contact(&mut state, &frame) {
+        // Whether it is the search that any query would have made.
+        let is_plain = start.is_none()
+            && options.axis.is_none()
+            && options.sub_algorithm == SubAlgorithm::Regions
+            && !(options.tolerance > Scalar::ZERO)
+            && !(state.lower > search.limit + frame.error);
+        let (begun, before) = if is_plain { (Some(&state), 0) } else { (None, state.iterations) };
+        if let Some(answer) = touching(&a, &b, begun, options.max_iterations) {
+            return Distance { iterations: before + answer.iterations, ..answer };
+        }
     }
     state.ensure_measured();
-    apart([pair.core_a, pair.core_b], &frame, &state, end)
+    let points = state.simplex.weighted_witness();
+    if is_reversed {
+        apart([pair.core_b, pair.core_a], &in_order, &state, points.reversed(), end).reversed()
+    } else {
+        apart([pair.core_a, pair.core_b], &in_order, &state, points, end)
+    }
 }
 
 /// The answer of a search that ends apart from contact: the bodies are apart, or deep in one another.
 #[inline(always)]
-fn apart<V: Vector>(cores: [Core<V>; 2], frame: &Frame<V>, state: &Gjk<V, PointPair<V>>, end: End) -> Distance<V> {
+fn apart<V: Vector>(
+    cores: [Core<V>; 2],
+    frame: &Frame<V>,
+    state: &Gjk<V, PointPair<V>>,
+    core_points: PointPair<V>,
+    end: End,
+) -> Distance<V> {
     let zero = V::Scalar::ZERO;
     let &Frame { scale, radius, error, .. } = frame;
     let &Gjk { normal, length, lower, axis, .. } = state;
     let overlap = end == End::Overlap;
-    let core_points = state.simplex.weighted_witness();
     let n = if length > zero && (overlap || radius > zero || lower <= zero) { normal.unit() } else { None };
     let [point_a, point_b] =
         surface_points(cores, frame, core_points, n.unwrap_or(Vector::ZERO), overlap.then_some(length));
@@ -176,16 +210,16 @@ fn apart<V: Vector>(cores: [Core<V>; 2], frame: &Frame<V>, state: &Gjk<V, PointP
     }
 }
 
-/// The answer of bodies near contact, after a search that took `iterations` already.
+/// The answer of bodies near contact, perhaps after a search that can be gone on with.
 #[cold]
 #[inline(never)]
 fn touching<V: Vector>(
     a: Shape<'_, V>,
     b: Shape<'_, V>,
+    begun: Option<&Gjk<V, PointPair<V>>>,
     max_iterations: usize,
-    iterations: usize,
 ) -> Option<Distance<V>> {
-    let near = near_contact(a, b, max_iterations)?;
+    let near = near_contact(a, b, begun, max_iterations)?;
     let (zero, scale) = (V::Scalar::ZERO, near.frame.scale);
     let overlap = near.overlap();
     // What is in one another by more than an error has a point in common that is nearer to both cores.
@@ -202,7 +236,7 @@ fn touching<V: Vector>(
         // Of a point found deep inside, no plane is one of contact.
         normal: Some(near.normal).filter(|_| near.gap >= -near.upper),
         status: if overlap.is_some() { Status::Converged } else { near.end.status() },
-        iterations: iterations + near.iterations,
+        iterations: near.iterations,
     })
 }
 
@@ -220,9 +254,9 @@ fn surface_points<V: Vector>(
     let (from_a, from_b) = match length {
         None => (core_a.radius, core_b.radius),
         Some(length) => {
-            let part = (core_a.radius * per_unit / radius).min(one);
+            let share = |core: Core<V>| length * (core.radius * per_unit / radius).min(one) * scale;
             // Without radii the cores themselves meet.
-            if part.is_finite() { (length * part * scale, length * (one - part) * scale) } else { Default::default() }
+            if radius > V::Scalar::ZERO { (share(core_a), share(core_b)) } else { Default::default() }
         }
     };
     [core_a.origin + a * scale - n * from_a, core_b.origin + b * scale + n * from_b]

@@ -3,7 +3,7 @@
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float;
 
-use crate::body::{Body, Pair, PointPair, Untraced};
+use crate::body::{Body as _, Pair, PointPair, TracedSupport as _, Untraced};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk, is_near_contact, near_contact, rounding};
 use crate::unit::is_moderate;
 use crate::{IntersectOptions, Intersection, Iterate, Status};
@@ -129,7 +129,7 @@ where
         End::Separated if state.lower > frame.radius + frame.error => (false, state.axis.unit(), Status::Converged),
         _ => {
             let is_near = is_near_contact(&mut state, &frame);
-            let near = if is_near { near_contact(&pair.a, &pair.b, max_iterations) } else { None };
+            let near = if is_near { near_contact(&pair.a, &pair.b, None, max_iterations) } else { None };
             match near {
                 Some(near) => {
                     iterations += near.iterations;

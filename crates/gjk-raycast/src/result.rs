@@ -2,6 +2,8 @@
 
 use convex_support::{Scalar, Vector};
 
+use crate::simplex::MAX_POINTS;
+
 /// How an iterative method ended. The bounds of the answer hold in every case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -39,6 +41,14 @@ pub struct Distance<V: Vector> {
     pub status: Status,
     /// The number of support points computed of each shape.
     pub iterations: usize,
+}
+
+impl<V: Vector> Distance<V> {
+    /// The same of the shapes in the other order.
+    #[inline(always)]
+    pub(crate) fn reversed(self) -> Self {
+        Self { point_a: self.point_b, point_b: self.point_a, normal: self.normal.map(|n| -n), ..self }
+    }
 }
 
 /// The answer of [`intersects`](crate::intersects).
@@ -241,6 +251,16 @@ pub struct Iterate<'a, V: Vector> {
 }
 
 impl<V: Vector> Iterate<'_, V> {
+    /// Shows the same of the bodies in the other order.
+    #[inline(always)]
+    pub(crate) fn reversed(&self, observer: impl FnOnce(Iterate<'_, V>)) {
+        let mut simplex = [V::ZERO; MAX_POINTS];
+        for (reversed, &point) in simplex.iter_mut().zip(self.simplex) {
+            *reversed = -point;
+        }
+        observer(Iterate { simplex: &simplex[..self.simplex.len()], v: -self.v, w: -self.w, ..*self });
+    }
+
     /// The width of the bracket.
     #[must_use]
     pub fn gap(&self) -> V::Scalar {

@@ -5,7 +5,8 @@ use crate::common::behind_pointers::{distance, intersects};
 use crate::common::{Quaternion, apart, at, cuboid, directions, meets, s, turned, ulps, v};
 use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3, Vec3A};
 use convex_support::{
-    Cone, Cuboid, Cylinder, InvalidShape, Point, Polytope, Posed, Rounded, Scalar, SupportMap, Triangle, Vector,
+    Capsule, Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Point, Polytope, Posed, Rounded, Scalar, SupportMap,
+    Triangle, Vector,
 };
 use gjk_raycast::{DistanceOptions, IntersectOptions, Status};
 
@@ -474,5 +475,36 @@ fn an_edge_behind_zero_is_as_far_as_it_is() -> Result<(), InvalidShape> {
     let truth = 1.251_728_243_589_071e-18;
     let answer = apart(&a, &Point::new(DVec2::ZERO)?);
     assert!(answer.lower <= truth && truth <= answer.upper, "{answer:?}");
+    Ok(())
+}
+
+/// Directions between the shortest vector and the best plane were sums of both times both lengths, and each became the plane of the next:
+/// after a few their squares underflowed, and a plane across one was said to separate what overlaps by 2e-6.
+#[test]
+fn a_direction_that_grows_ever_shorter_separates_nothing() -> Result<(), InvalidShape> {
+    let turn_a = Quat::from_xyzw(-0.651_411_4, 0.652_148_7, -0.347_488_7, -0.172_095_7);
+    let turn_b = Quat::from_xyzw(0.117_534_33, -0.655_705_3, -0.569_412_6, 0.481_669_52);
+    let place = Vec3::new(0.577_003_24, 0.464_860_44, 1.238_635_3);
+    let capsule = Posed::new(Capsule::<Vec3>::new(0.01, 0.0001)?, turn_a, Vec3::ZERO)?;
+    let needle = Ellipsoid::new(Vec3::ZERO, Vec3::new(0.01, 1.455_713_5, 0.01), Quat::IDENTITY)?;
+    let needle = Posed::new(needle, turn_b, place)?;
+    assert_eq!(meets(&capsule, &needle).decided(), Some(true));
+    assert!(apart(&capsule, &needle).overlap);
+    Ok(())
+}
+
+/// The fast step to an edge had a length of zero by rounding, and was taken for one to a simplex with zero inside, though the edge is
+/// 7e-12 away: bodies that are apart were said to overlap, where the search began along an axis of its own.
+#[test]
+fn an_edge_of_length_zero_by_rounding_is_measured() -> Result<(), InvalidShape> {
+    let needle = Cuboid::new(DVec3::new(1.023_901_012_537_984_2, 1e-6, 1e-6))?;
+    let plate = Cone::<DVec3>::new(1e-6, 0.001)?;
+    let beside = |x: f64| Posed::translated(plate, DVec3::new(x, 0.0, 0.0));
+    let far = apart(&needle, &beside(3.0)?);
+    let plate = beside(3.0 - (far.distance - 4.0 * f64::EPSILON))?;
+    let axis = DVec3::new(-0.655_454_582_257_799_5, -0.919_025_723_088_370_8, 0.0);
+    let warm = distance(&needle, &plate, DistanceOptions::new().with_axis(axis));
+    assert_eq!((warm.overlap, warm.status), (false, Status::Converged), "{warm:?}");
+    assert_eq!(warm.overlap, apart(&needle, &plate).overlap);
     Ok(())
 }

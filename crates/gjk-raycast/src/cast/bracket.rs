@@ -10,7 +10,7 @@ use num_traits::Float;
 
 use super::line::{Line, LocalRay, Part};
 use super::{Contact, Stop};
-use crate::body::Body;
+use crate::body::{Body, TracedSupport};
 use crate::simplex::MAX_POINTS;
 use crate::unit::{is_moderate, power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Ray, RayCastOptions, Status};
@@ -26,10 +26,10 @@ pub(super) const NOISE: f64 = 8.0;
 /// not bend away within an error.
 pub(super) const DEEP: f64 = 64.0;
 
-pub(super) type ScalarOf<B> = <<B as Body>::Vector as Vector>::Scalar;
+pub(super) type ScalarOf<B> = <<B as TracedSupport>::Vector as Vector>::Scalar;
 
 /// A support point of the core, and what it is made of.
-pub(super) type SupportPoint<B> = (<B as Body>::Vector, <B as Body>::Witness);
+pub(super) type SupportPoint<B> = (<B as TracedSupport>::Vector, <B as TracedSupport>::Witness);
 
 /// A parameter of the line, and how it moves with what it is the crossing of.
 #[derive(Clone, Copy, Debug)]

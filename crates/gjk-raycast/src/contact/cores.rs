@@ -8,7 +8,7 @@ use super::SignedDistanceOptions;
 use super::peeled::{Peeled, without_ball};
 use super::zonotope::{Zonotope, parallelotope};
 use crate::Iterate;
-use crate::body::{Body as _, Pair, PointPair};
+use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, first_direction, gjk};
 use crate::symmetric::Symmetric;
 

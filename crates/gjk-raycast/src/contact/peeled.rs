@@ -1,8 +1,8 @@
 //! Two cores without the balls that roll within them.
 
-use convex_support::{LineCrossing, Scalar, SupportMap, Vector};
+use convex_support::{Scalar, SupportMap, Vector};
 
-use crate::body::{Body, Pair, PointPair};
+use crate::body::{Pair, PointPair, TracedSupport};
 use crate::symmetric::Symmetric;
 
 /// A pair of shapes whose cores are smaller by the radii of two balls that would sweep them to what they are, in units of the scale.
@@ -29,7 +29,7 @@ pub(super) fn without_ball<V: Vector>(
     Symmetric { a: a - bend * u.dot(u), b: b - bend * u.dot(w), d: d - bend * w.dot(w) }
 }
 
-impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body for Peeled<'_, '_, A, B> {
+impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> TracedSupport for Peeled<'_, '_, A, B> {
     type Vector = A::Vector;
     type Witness = PointPair<A::Vector>;
 
@@ -53,38 +53,5 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
 
     fn is_curved(&self) -> bool {
         self.pair.is_curved()
-    }
-
-    fn eroded_line_crossing(
-        &self,
-        _source: A::Vector,
-        _direction: A::Vector,
-        _by: <A::Vector as Vector>::Scalar,
-    ) -> LineCrossing<A::Vector> {
-        LineCrossing::Unknown
-    }
-
-    fn witness(&self, point: A::Vector) -> PointPair<A::Vector> {
-        self.pair.witness(point)
-    }
-
-    fn origin(&self) -> A::Vector {
-        self.pair.origin()
-    }
-
-    fn radius(&self) -> <A::Vector as Vector>::Scalar {
-        self.pair.radius()
-    }
-
-    fn extent(&self) -> <A::Vector as Vector>::Scalar {
-        self.pair.extent()
-    }
-
-    fn error(&self) -> <A::Vector as Vector>::Scalar {
-        self.pair.error()
-    }
-
-    fn set_scale(&mut self, scale: <A::Vector as Vector>::Scalar) {
-        self.pair.set_scale(scale);
     }
 }

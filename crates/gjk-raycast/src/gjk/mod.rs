@@ -3,6 +3,7 @@
 
 mod near_contact;
 mod next_direction;
+mod order;
 mod progress;
 mod start;
 mod state;
@@ -10,11 +11,12 @@ mod state;
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Body, Pair};
+use crate::body::{Body as _, Pair, TracedSupport};
 use crate::unit::{power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Status, SubAlgorithm};
 pub(crate) use near_contact::{NEAR, NearContact, Shape, is_near_contact, near_contact};
 use next_direction::NextDirection;
+pub(crate) use order::InOrder;
 pub(crate) use progress::Progress;
 pub(crate) use start::first_direction;
 pub(crate) use state::Gjk;
@@ -120,7 +122,7 @@ struct Direction<V: Vector> {
 /// `known` is the support point along the first direction, if there is one; the state is one that
 /// [began](Gjk::begin_at_closest), or with corners of its own.
 #[inline]
-pub(crate) fn gjk<B: Body>(
+pub(crate) fn gjk<B: TracedSupport>(
     state: &mut Gjk<B::Vector, B::Witness>,
     body: &mut B,
     frame: Frame<B::Vector>,
@@ -140,7 +142,7 @@ pub(crate) fn gjk<B: Body>(
 }
 
 #[inline(always)]
-fn descend<B: Body>(
+fn descend<B: TracedSupport>(
     state: &mut Gjk<B::Vector, B::Witness>,
     body: &mut B,
     frame: &Frame<B::Vector>,

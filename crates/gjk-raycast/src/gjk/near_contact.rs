@@ -4,18 +4,17 @@
 //! with how wide the floor is. Here the plane between the bodies is evaluated once more without rounding, and what the shapes say of
 //! theirs counts coordinate by coordinate, along the normal alone.
 //!
-//! The search begins at the offset of the origins, whatever axis the query began at, and the larger body comes first, in whatever
-//! order they are given. So all queries about one pair decide alike.
-
-use core::cmp::Ordering;
+//! The search begins at the offset of the origins, whatever axis the query began at, and the [larger body comes first](super::order).
+//! So all queries about one pair decide alike.
 
 use convex_support::numerics::bound::{raised, raised_vector, roundings};
 use convex_support::numerics::twofold::{dot_minus, lost_in_sum, two_sum};
 use convex_support::{Core, Rounding, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
+use super::order::comes_first;
 use super::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
-use crate::body::{Body as _, Pair, PointPair};
+use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
 use crate::simplex::{MAX_POINTS, cross};
 
 /// How many errors apart, or in one another, bodies are looked at once more.
@@ -75,21 +74,16 @@ impl<V: Vector> NearContact<V> {
 
     /// The same, of the bodies in the other order.
     fn reversed(self) -> Self {
-        let ([core_a, core_b], PointPair { a, b }) = (self.cores, self.points);
+        let [core_a, core_b] = self.cores;
         let frame = Frame { offset: -self.frame.offset, ..self.frame };
-        Self { cores: [core_b, core_a], frame, points: PointPair { a: b, b: a }, normal: -self.normal, ..self }
+        Self { cores: [core_b, core_a], frame, points: self.points.reversed(), normal: -self.normal, ..self }
     }
 }
 
-/// Whether a body is looked at before another: it is larger, or as large and elsewhere.
-fn comes_first<V: Vector>(a: &Core<V>, b: &Core<V>) -> bool {
-    let key = |&Core { extent, radius, origin, .. }: &Core<V>| {
-        [extent, radius].into_iter().chain((0..V::DIM).map(move |i| origin.get(i)))
-    };
-    key(a).partial_cmp(key(b)) == Some(Ordering::Greater)
-}
-
 /// Looks at bodies near contact once more; `None` where no plane can be found.
+///
+/// A search that is over may have begun where all do: with the bodies [in order](super::InOrder), without an axis of its own, and to
+/// no tolerance but the noise. Then what it came to is gone on with, and else it is made once more.
 ///
 /// The bodies are set up anew, so that a query that does not come here keeps what it needs in registers; and they are asked behind
 /// pointers, so that what is rarely needed is compiled once.
@@ -98,22 +92,29 @@ fn comes_first<V: Vector>(a: &Core<V>, b: &Core<V>) -> bool {
 pub(crate) fn near_contact<V: Vector>(
     a: Shape<'_, V>,
     b: Shape<'_, V>,
+    begun: Option<&Gjk<V, PointPair<V>>>,
     max_iterations: usize,
 ) -> Option<NearContact<V>> {
     let pair = Pair::new(a, b);
     if comes_first(&pair.core_b, &pair.core_a) {
-        look(pair.swapped(), max_iterations).map(NearContact::reversed)
+        let begun = begun.map(|&begun| Gjk { simplex: begun.simplex.made_of(PointPair::reversed), ..begun });
+        look(pair.swapped(), begun, max_iterations).map(NearContact::reversed)
     } else {
-        look(pair, max_iterations)
+        look(pair, begun.copied(), max_iterations)
     }
 }
 
 /// The same for bodies that are in order.
-fn look<V: Vector>(mut pair: PairOfAny<'_, V>, max_iterations: usize) -> Option<NearContact<V>> {
+fn look<V: Vector>(
+    mut pair: PairOfAny<'_, V>,
+    begun: Option<Gjk<V, PointPair<V>>>,
+    max_iterations: usize,
+) -> Option<NearContact<V>> {
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
-    let (state, end) = look_closely(&mut pair, frame, size, max_iterations);
+    let mut state = begun.unwrap_or_else(|| begin(&pair, &frame, size, max_iterations));
+    let end = go_on(&mut state, &mut pair, &frame, max_iterations);
 
     let seen = Seen::new(&pair, &frame);
     let (Plane { n, level, error }, pierced) = seen.best_plane(&mut pair, &state)?;
@@ -139,28 +140,44 @@ fn look<V: Vector>(mut pair: PairOfAny<'_, V>, max_iterations: usize) -> Option<
     })
 }
 
-/// GJK from the offset of the origins, in the world's unit, to a sixteenth of the noise.
-fn look_closely<A, B>(
-    pair: &mut Pair<'_, A, B>,
-    frame: Frame<A::Vector>,
-    size: <A::Vector as Vector>::Scalar,
+/// GJK from the closest points, where they are known in closed form, or from the offset of the origins to the noise.
+fn begin<V: Vector>(
+    pair: &PairOfAny<'_, V>,
+    frame: &Frame<V>,
+    size: V::Scalar,
     max_iterations: usize,
-) -> (Gjk<A::Vector, PointPair<A::Vector>>, End)
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
-    let frame = Frame { noise: frame.noise * Scalar::from_f64(0.0625), ..frame };
+) -> Gjk<V, PointPair<V>> {
     let first = first_direction(None, frame.offset);
     let mut state = Gjk::new(first);
-    if state.begin_at_closest(pair, &frame, size) == Some(true) {
+    match state.begin_at_closest(pair, frame, size) {
+        Some(false) => {}
         // Where they meet, the vector from one to the other is no direction to look along.
-        state = Gjk::new(first);
+        Some(true) => state = Gjk::new(first),
+        None => {
+            // Searches of its own, as of a query that begins here.
+            let mut pair = Pair::of_cores(pair.a, pair.b, [pair.core_a, pair.core_b]);
+            pair.set_scale(frame.scale);
+            gjk(&mut state, &mut pair, *frame, GjkOptions::new(first, max_iterations), None, |_| {});
+        }
     }
-    let options = GjkOptions::new(state.normal, max_iterations);
-    let end = gjk(&mut state, pair, frame, options, None, |_| {});
+    state
+}
+
+/// Goes on with GJK to a sixteenth of the noise.
+fn go_on<V: Vector>(
+    state: &mut Gjk<V, PointPair<V>>,
+    pair: &mut PairOfAny<'_, V>,
+    frame: &Frame<V>,
+    max_iterations: usize,
+) -> End {
     state.ensure_measured();
-    (state, end)
+    // A simplex with zero inside is never left, nor is zero itself.
+    let is_over = state.simplex.points().len() > V::DIM || state.length <= Scalar::ZERO;
+    let frame = Frame { noise: frame.noise * Scalar::from_f64(0.0625), ..*frame };
+    let options = GjkOptions::new(state.normal, max_iterations);
+    let end = if is_over { End::Overlap } else { gjk(state, pair, frame, options, None, |_| {}) };
+    state.ensure_measured();
+    end
 }
 
 /// A plane that the difference of the cores lies beyond, across a unit vector.

@@ -4,8 +4,9 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::state::in_range;
 use super::{Direction, Gjk};
-use crate::body::Body;
+use crate::body::TracedSupport;
 use crate::curvature::{Turned, between, share_of_second, turned};
 use crate::simplex::cross;
 use crate::symmetric::{Symmetric, dot};
@@ -32,7 +33,7 @@ impl<V: Vector> NextDirection<V> {
     /// The direction after one that was turned, and whose support point `w`, with `reach` along it, brings the simplex no
     /// nearer.
     #[inline(always)]
-    pub(super) fn turn_again<B: Body<Vector = V>>(
+    pub(super) fn turn_again<B: TracedSupport<Vector = V>>(
         &mut self,
         body: &B,
         state: &Gjk<V, B::Witness>,
@@ -48,7 +49,7 @@ impl<V: Vector> NextDirection<V> {
 
     /// The direction after a step to the shortest vector `v`, which support point `w`, with `reach` along the last one, led to.
     #[inline(always)]
-    pub(super) fn after<B: Body<Vector = V>>(
+    pub(super) fn after<B: TracedSupport<Vector = V>>(
         &mut self,
         body: &B,
         state: &Gjk<V, B::Witness>,
@@ -61,11 +62,11 @@ impl<V: Vector> NextDirection<V> {
             let turned = self.newton.next(body, state, w, looked.n / looked.length, reach);
             return turned.map_or(v, |n| Direction { n, length: Scalar::ONE });
         }
-        let n = if leaves_open(state) { level(state, v) } else { V::ZERO };
-        let length = n.length();
+        let levelled = if leaves_open(state) { in_range(level(state, v)) } else { None };
         // Both directions may cancel.
-        self.levelled = length > Scalar::ZERO;
-        if self.levelled { Direction { n, length } } else { v }
+        let levelled = levelled.filter(|direction| direction.length > Scalar::ZERO);
+        self.levelled = levelled.is_some();
+        levelled.unwrap_or(v)
     }
 }
 
@@ -98,7 +99,7 @@ fn level<V: Vector, W: Copy + Default>(state: &Gjk<V, W>, v: Direction<V>) -> V 
         let e = q - p;
         axis -= e * (axis.dot(e) / e.length_squared());
     }
-    // The sum of the unit vectors, times both lengths.
+    // The sum of the unit vectors, times both lengths: from one such direction to the next it may become shorter and shorter.
     v.n * state.axis_length + axis * (V::Scalar::from_f64(AXIS_WEIGHT) * v.length)
 }
 
@@ -153,7 +154,7 @@ impl<V: Vector> Newton<V> {
     /// The next unit direction, after `p` was found as the lowest point along the unit vector `n`, with `reach = n·p`.
     /// `None` where the next should be that of the shortest vector.
     #[inline(never)]
-    fn next<B: Body<Vector = V>>(
+    fn next<B: TracedSupport<Vector = V>>(
         &mut self,
         body: &B,
         state: &Gjk<V, B::Witness>,
@@ -186,7 +187,7 @@ impl<V: Vector> Newton<V> {
 
     /// The direction of the last piece, turned.
     #[inline(always)]
-    fn turn<B: Body<Vector = V>>(
+    fn turn<B: TracedSupport<Vector = V>>(
         &self,
         body: &B,
         state: &Gjk<V, B::Witness>,
@@ -226,7 +227,7 @@ impl<V: Vector> Newton<V> {
 
     /// The direction at which the last piece and that of another point, found along `from`, support one plane.
     #[inline(always)]
-    fn turn_between<B: Body<Vector = V>>(
+    fn turn_between<B: TracedSupport<Vector = V>>(
         &self,
         body: &B,
         piece: &Piece<V>,
@@ -279,7 +280,7 @@ struct Piece<V: Vector> {
 impl<V: Vector> Piece<V> {
     /// `None` where the surface is not curved there.
     #[inline(always)]
-    fn new<B: Body<Vector = V>>(body: &B, point: V, along: V, reach: V::Scalar) -> Option<Self> {
+    fn new<B: TracedSupport<Vector = V>>(body: &B, point: V, along: V, reach: V::Scalar) -> Option<Self> {
         let across = point + along * reach;
         let aside = across.length();
         let u = across / aside;

@@ -22,7 +22,7 @@ pub(crate) struct Gjk<V: Vector, W> {
     pub(crate) axis: V,
     pub(super) axis_length: V::Scalar,
     /// Whether the corners have weights, and the length is that of an orthogonal projection.
-    measured: bool,
+    pub(super) measured: bool,
     pub(crate) iterations: usize,
 }
 
@@ -133,8 +133,9 @@ impl<V: Vector, W: Copy + Default> Gjk<V, W> {
         if self.length < self.lower && !self.measured {
             *v = self.measure().unwrap_or(*v);
         }
-        // A simplex of full dimension contains zero for certain; of any other it remains to be measured.
-        if self.length <= touching && self.length > V::Scalar::ZERO && !self.measured {
+        // A simplex of full dimension contains zero, or is looked at more closely; of any other it remains to be measured, even where the
+        // fast step's length is zero, as it may be by rounding.
+        if self.length <= touching && self.simplex.points().len() <= V::DIM && !self.measured {
             *v = self.measure().unwrap_or(*v);
         }
         self.length <= touching
@@ -226,7 +227,7 @@ impl<V: Vector, W: Copy + Default> Gjk<V, W> {
 /// The direction of a vector, at a length whose square is in range; the zero vector as it is. `None` where it is not
 /// finite.
 #[inline]
-fn in_range<V: Vector>(v: V) -> Option<Direction<V>> {
+pub(super) fn in_range<V: Vector>(v: V) -> Option<Direction<V>> {
     let squared = v.length_squared();
     if squared >= V::Scalar::min_positive_value() / V::Scalar::EPSILON {
         squared.is_finite().then(|| Direction { n: v, length: squared.sqrt() })

@@ -11,7 +11,7 @@ use super::moving_body::{MovingBody, length_bound};
 use super::placed::Placed;
 use super::rough_look::Corners;
 use super::trajectory::{Trajectory, TurningPlane};
-use crate::body::{Body as _, Pair};
+use crate::body::{Body as _, Pair, TracedSupport as _};
 use crate::gjk::rounding;
 use crate::unit::is_moderate;
 use crate::{SignedDistanceOptions, signed_distance};

@@ -9,7 +9,7 @@ use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use super::trajectory::Trajectory;
 use crate::SignedDistanceOptions;
-use crate::body::{Body as _, Pair, PointPair};
+use crate::body::{Pair, PointPair, TracedSupport as _};
 use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk};
 use crate::simplex::MAX_POINTS;
 

@@ -108,6 +108,11 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
         (&self.points, (self.len + MAX_POINTS - 1) % MAX_POINTS)
     }
 
+    /// The same, made of something else.
+    pub(crate) fn made_of(self, changed: impl Fn(W) -> W) -> Self {
+        Self { witnesses: self.witnesses.map(changed), ..self }
+    }
+
     /// The weighted sum of the points.
     pub(crate) fn weighted_point(&self) -> V {
         let mut sum = V::ZERO;

@@ -19,13 +19,13 @@ use convex_support::{Scalar, Vector};
 use super::bracket::{Bracket, ScalarOf};
 use super::{Contact, Stop};
 use crate::Iterate;
-use crate::body::Body;
+use crate::body::{Body, TracedSupport};
 use crate::gjk::Progress;
 use crate::simplex::{Closest, MAX_POINTS, Simplex, project};
 use refine::refine;
 use swept_simplex::{Entry, entry};
 
-type SimplexOf<B> = Simplex<<B as Body>::Vector, <B as Body>::Witness>;
+type SimplexOf<B> = Simplex<<B as TracedSupport>::Vector, <B as TracedSupport>::Witness>;
 
 /// Slopes of planes, as cosines of the angle between normal and ray, below which steps along the ray gain little.
 const GRAZING: f64 = 0.1;

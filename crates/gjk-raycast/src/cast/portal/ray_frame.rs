@@ -13,7 +13,7 @@ use num_traits::Float as _;
 
 use super::pieces::OnLine;
 use crate::Iterate;
-use crate::body::{Body, Witness};
+use crate::body::{Body, TracedSupport, Witness};
 use crate::cast::bracket::Bracket;
 use crate::cast::line::Line;
 use crate::cast::{Contact, Stop};
@@ -33,7 +33,7 @@ pub(super) struct RayPoint<V: Vector, W> {
     pub(super) alpha: Option<Alpha<V::Scalar>>,
 }
 
-pub(super) type RayPointOf<B> = RayPoint<<B as Body>::Vector, <B as Body>::Witness>;
+pub(super) type RayPointOf<B> = RayPoint<<B as TracedSupport>::Vector, <B as TracedSupport>::Witness>;
 
 impl<V: Vector, W> RayPoint<V, W> {
     pub(super) fn across(&self) -> Across<V::Scalar> {
