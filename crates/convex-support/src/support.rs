@@ -123,7 +123,8 @@ pub trait SupportMap {
     /// `source` is relative to the [origin](Core::origin). Provided: it is unknown.
     ///
     /// A negative radius erodes the core: asked for is any set that is in it when swept by a ball of the radius `−radius`. A line that is
-    /// in there is in the core, whatever has moved that by less.
+    /// in there is in the core, whatever has moved that by less. A flat core has no such set: asked for is where a line has crossed it,
+    /// at the latest, whatever has moved its points by less, for both ends of the stretch.
     #[inline]
     fn core_line_crossing(
         &self,

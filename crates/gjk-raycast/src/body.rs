@@ -47,6 +47,8 @@ pub(crate) trait Body: TracedSupport {
     fn radius(&self) -> <Self::Vector as Vector>::Scalar;
     /// A bound on the length of all vectors that support points of the core are computed from, in the world's unit.
     fn extent(&self) -> <Self::Vector as Vector>::Scalar;
+    /// The radius of a ball that rolls within all of the body, in the world's unit.
+    fn rolling_radius(&self) -> <Self::Vector as Vector>::Scalar;
     /// A bound on what rounding has moved the support points of the core by, in the world's unit.
     fn error(&self) -> <Self::Vector as Vector>::Scalar;
     /// Sets the unit to the given power of two.
@@ -127,6 +129,10 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
 
     fn extent(&self) -> <S::Vector as Vector>::Scalar {
         self.core.extent
+    }
+
+    fn rolling_radius(&self) -> <S::Vector as Vector>::Scalar {
+        self.core.radius + self.shape.core_rolling_radius()
     }
 
     fn error(&self) -> <S::Vector as Vector>::Scalar {
@@ -289,6 +295,10 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
     #[inline]
     fn extent(&self) -> <A::Vector as Vector>::Scalar {
         self.core_a.extent + self.core_b.extent
+    }
+
+    fn rolling_radius(&self) -> <A::Vector as Vector>::Scalar {
+        self.radius() + (self.a.core_rolling_radius() + self.b.core_rolling_radius())
     }
 
     #[inline]

@@ -32,12 +32,6 @@ impl<S: Scalar> Symmetric<S> {
         self.determinant() > S::EPSILON.sqrt() * self.a * self.d
     }
 
-    /// The determinant over the trace: of a matrix without negative eigenvalues the least of them, or half of it if they are alike.
-    pub(crate) fn least_eigenvalue(self) -> S {
-        let trace = self.a + self.d;
-        if trace > S::ZERO { self.determinant() / trace } else { S::ZERO }
-    }
-
     /// The sum with a multiple of the unit matrix.
     pub(crate) fn plus(self, diagonal: S) -> Self {
         Self { a: self.a + diagonal, b: self.b, d: self.d + diagonal }

@@ -35,6 +35,7 @@ mod regressions_ray_cast;
 mod scene;
 mod signed_distance;
 mod signed_distance_laws;
+mod single_precision;
 mod starts;
 mod stepping;
 mod sub_algorithms;

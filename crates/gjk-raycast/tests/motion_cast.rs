@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, TAU};
 
 use crate::common::behind_pointers::{linear_cast, motion_cast};
 use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3A};
-use convex_support::{Ball, Capsule, Cuboid, Ellipsoid, Posed, Rounded, Segment, SupportMap};
+use convex_support::{Ball, Capsule, Cone, Cuboid, Ellipsoid, Posed, Rounded, Segment, SupportMap};
 use gjk_raycast::{
     LinearCastOptions, Motion, MotionCast, MotionCastOptions, Outcome, Pose, RayCastError, RigidMotion, StartInContact,
     Status, Trajectory,
@@ -317,4 +317,30 @@ fn a_tiny_ball_that_spins_meets_a_box() {
     let motion = Motion { velocity_a: velocity.as_dvec3(), velocity_b: DVec3::ZERO };
     let truth = linear_cast(&ball, &target, motion, LinearCastOptions::new()).expect("finite");
     assert!(f64::from(cast.lower) <= truth.upper && truth.lower <= f64::from(cast.upper), "{cast:?} {truth:?}");
+}
+
+/// A needle swings through a plate. A search for their depth that came to no end found a plane between them on the far side, and the gap
+/// of that was told of the plane on the near side, where they were in one another: so they were proved to be apart all the way.
+#[test]
+fn a_needle_does_not_pass_through_a_plate() {
+    let needle = Posed::new(
+        Cone::<Vec3A>::new(0.01, 0.0001).expect("positive"),
+        Quat::from_xyzw(-0.171_572_67, -0.006_724_925, 0.505_764_6, -0.096_517_436),
+        Vec3A::new(1.207_028_5, 1.634_110_5, 2.273_767),
+    )
+    .expect("finite");
+    let plate = Posed::new(
+        Cone::<Vec3A>::new(0.0001, 0.792_824_1).expect("positive"),
+        Quat::from_xyzw(-0.095_159_43, 0.042_797_938, -0.620_893_96, 0.875_209_4),
+        Vec3A::new(1.498_158_1, 0.915_896_8, 2.482_680_8),
+    )
+    .expect("finite");
+    let swing = RigidMotion {
+        velocity: Vec3A::new(0.900_889_64, -0.635_046_3, -0.319_058_57),
+        angular_velocity: Vec3A::new(-1.647_986_7, 2.552_248_2, 0.783_116_3),
+        center: Vec3A::new(1.374_358_2, 0.911_760_2, 3.262_739_4),
+    };
+    let cast = motion_cast(&needle, swing, &plate, RigidMotion::default(), until(1.0_f32)).expect("finite");
+    // In double precision.
+    assert!(!cast.outcome.is_miss() && cast.lower <= 9.702_485e-6 && 9.702_484e-6 <= cast.upper, "{cast:?}");
 }

@@ -11,7 +11,7 @@ use crate::{Scalar, Triangle, Vector};
 /// the line is inside from the first entry to the last exit. In 2D the triangle itself stands for the prism.
 ///
 /// Without a ball, in 3D a line crosses the triangle at a point, where `entry` and `exit` agree. A triangle without area, a segment,
-/// has no side to cross it by: a miss.
+/// has no side to cross it by: a miss. With a negative radius they are where the line has crossed it for certain.
 pub(crate) fn triangle<V: Vector>(triangle: &Triangle<V>, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, _, unit) = comfortable(direction);
     let mut union = if V::DIM == 2 {
@@ -69,8 +69,13 @@ impl<V: Vector> Triangle<V> {
         crossing.shifted(base, V::Scalar::ONE, || V::ZERO).ok()
     }
 
-    /// The crossing of the points within `thickness` of the triangle in 3D, across its plane.
-    fn prism_crossing(&self, thickness: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+    /// The crossing of the points within a distance `radius` of the triangle in 3D, across its plane.
+    ///
+    /// Of a negative one, let the corners be moved by up to `e = −radius`. Seen along the line, no point of a side is moved by more, so
+    /// that the line crosses the triangle still if it is seen more than `e` inside of all sides. With the cosine `s` at which it
+    /// crosses the plane it is so where it crosses more than `e/s` inside of them; and a point of the moved triangle is no farther than
+    /// `e` from the plane, which the line leaves behind by as much after `e/s`.
+    fn prism_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
         let Frame { corners: [a, b, _], axes: [u, v], length, along, height } = self.frame()?;
         let (base, from_a) = rebased(source - a, direction, direction.length_squared().recip());
         let zero = V::Scalar::ZERO;
@@ -80,17 +85,21 @@ impl<V: Vector> Triangle<V> {
         let lengths = V::from_fn(|i| off_plane(V::axis(i)).length_squared());
         let steepest = (1..V::DIM).fold(0, |best, i| if lengths.get(i) > lengths.get(best) { i } else { best });
         let normal = off_plane(off_plane(V::axis(steepest))).unit()?;
+        let thickness = if radius > zero { radius } else { zero };
         clip.cut(normal, from_a, thickness, direction);
         clip.cut(-normal, from_a, thickness, direction);
+        // How much later the line has crossed the triangle for certain, and how far that is inside of the edges.
+        let late = if radius < zero { -radius / normal.dot(direction).abs() } else { zero };
+        let inside = -late * direction.length();
         // Outward of each edge, within the plane.
-        clip.cut(-v, from_a, zero, direction);
-        clip.cut((u * height + v * (length - along)).unit()?, from_a - (b - a), zero, direction);
-        clip.cut((v * along - u * height).unit()?, from_a, zero, direction);
+        clip.cut(-v, from_a, inside, direction);
+        clip.cut((u * height + v * (length - along)).unit()?, from_a - (b - a), inside, direction);
+        clip.cut((v * along - u * height).unit()?, from_a, inside, direction);
         // The sides of a sliver are parallel to rounding and do not say where it ends; its longest edge does, and is
         // normal to a supporting line at both of its ends.
-        clip.cut(-u, from_a, zero, direction);
-        clip.cut(u, from_a, length, direction);
-        clip.crossing?.shifted(base, V::Scalar::ONE, || V::ZERO).ok()
+        clip.cut(-u, from_a, inside, direction);
+        clip.cut(u, from_a, length + inside, direction);
+        clip.crossing?.shifted(base + late, V::Scalar::ONE, || V::ZERO).ok()
     }
 }
 

@@ -118,7 +118,7 @@ impl<V: Vector> SupportMap for Triangle<V> {
 
     #[inline]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius < V::Scalar::ZERO {
+        if radius < V::Scalar::ZERO && V::DIM == 2 {
             return LineCrossing::Unknown;
         }
         triangle(&Self { points: relative(self.points) }, radius, source, direction).into()

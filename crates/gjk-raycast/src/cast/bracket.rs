@@ -15,16 +15,12 @@ use crate::simplex::MAX_POINTS;
 use crate::unit::{is_moderate, power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Ray, RayCastOptions, Status};
 
-/// From how many times the noise an error is much more, so that the surface may bend within it. It is two or four times that of a posed
-/// body, and as much more for each pose within.
-pub(super) const LOOSE: f64 = 64.0;
-
 /// What rounding moves points by that a search compares, in units of ε times the size.
 pub(super) const NOISE: f64 = 8.0;
 
-/// How many errors deep the chord is at least that a ray cuts off a ball of the body's size, if it enters so steeply that the surface does
-/// not bend away within an error.
-pub(super) const DEEP: f64 = 64.0;
+/// How many errors deep a ray goes at least into a ball that rolls within the body, for its slope to tell where it is in the body for
+/// certain.
+const DEEP: f64 = 64.0;
 
 pub(super) type ScalarOf<B> = <<B as TracedSupport>::Vector as Vector>::Scalar;
 
@@ -186,9 +182,20 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     pub(super) fn is_entry_open(&self) -> bool {
         match self.entry {
             Entry::Certain => false,
-            Entry::BySlope => self.error > self.noise * ScalarOf::<B>::from_f64(LOOSE),
+            Entry::BySlope => !self.enters_ball(),
             Entry::InDoubt | Entry::AtOutline => true,
         }
+    }
+
+    /// Whether the ray enters so steeply that it is soon in a ball that rolls within the body, whatever the errors.
+    ///
+    /// A point of the body no more than `3e` below a plane that supports it is in such a ball, of radius `ρ`, no more than `√(6ρe)` beside
+    /// its top, where the ball falls off at `√(6e/ρ)`: less than a third of a slope `s` with `s²ρ > 64e`. A ray that comes within `e` of
+    /// the point at that slope, and may be as far outside of the ball, is in it after `3e/2s`.
+    fn enters_ball(&self) -> bool {
+        let Bound { spread, more, .. } = self.high;
+        let radius = self.body.rolling_radius() / self.scale;
+        spread == Scalar::ZERO || radius > (self.error + more) * spread * spread * ScalarOf::<B>::from_f64(DEEP)
     }
 
     /// Takes note that an edge, or a graze, may be within an error of where the ray enters.
@@ -361,10 +368,6 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
             return Err(Stop::InDoubt);
         }
         self.high = Bound { at: high.max(self.low()), spread: self.spread_or_one(), more: Scalar::ZERO };
-        let slope = self.slope_or_one();
-        if slope * slope < self.error * ScalarOf::<B>::from_f64(DEEP) {
-            self.doubt_entry();
-        }
         Ok(Contact { mu: self.low(), normal: self.normal, witness })
     }
 
@@ -470,7 +473,8 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
 
     /// How much later the upper bound may be. The surface may be met less steeply than the plane, by what noise leaves open.
     fn delay(&self) -> ScalarOf<B> {
-        self.certain(self.high) + self.noise * self.high.spread
+        let certain = self.certain(self.high) + self.noise * self.high.spread;
+        if self.entry == Entry::BySlope { certain * Scalar::from_f64(1.5) } else { certain }
     }
 
     /// Bounds on λ, for the λ of a contact if there is one, wider by what rounding moved them. The upper one is infinite where the ray
@@ -483,7 +487,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
             // NaN bounds nothing.
             Some(lambda) if self.is_entry_open() || upper.is_nan() => (lower.min(lambda), Float::infinity()),
             Some(lambda) => (lower, upper.max(lambda)),
-            None if lower <= upper => (lower, upper),
+            None if lower <= upper => (lower, if self.is_entry_open() { Float::infinity() } else { upper }),
             // Bounds that contradict one another, or are NaN, bound nothing.
             None => (Scalar::ZERO, Float::infinity()),
         }

@@ -40,8 +40,8 @@ pub(super) fn closed_form<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
                 LineCrossing::Crosses(within) if within.entry < start && start < within.exit => {
                     return Ok(bracket.close_inside());
                 }
-                LineCrossing::Misses(_) => bracket.doubt_entry(),
-                _ => {}
+                LineCrossing::Misses(_) | LineCrossing::Unknown => bracket.doubt_entry(),
+                LineCrossing::Crosses(_) => {}
             }
             if entry < start {
                 return Err(Stop::InDoubt);

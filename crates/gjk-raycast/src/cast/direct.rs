@@ -11,7 +11,7 @@ use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Crossing, LineCrossing, Scalar, Vector};
 use num_traits::Float;
 
-use super::bracket::{LOOSE, NOISE, ScalarOf};
+use super::bracket::{NOISE, ScalarOf};
 use super::{Cast, CastHit};
 use crate::body::Body;
 use crate::unit::is_moderate;
@@ -133,7 +133,6 @@ impl<V: Vector> Line<V> {
             & (slope >= self.longest * number(LEAST_SLOPE))
             & (ahead.abs() <= noise)
             & (x.length_squared() <= self.size * self.size * number(1.125))
-            & (error <= noise * number(LOOSE))
             // The plane is crossed after the ray's start.
             & ((lambda - rounding) * slope > error - ahead);
         if !is_plain {

@@ -126,13 +126,18 @@ fn conclude<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
             let starts_inside = mu <= ray.start;
             let lambda = if starts_inside { zero } else { ray.lambda(mu).max(zero) };
             let (lower, upper) = bracket.bounds(Some(lambda));
+            let max_lambda = bracket.options.max_lambda;
             // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
-            let outcome = if lambda > bracket.options.max_lambda {
-                Outcome::Miss(Miss { axis: normal.unwrap_or(-ray.line.direction) })
+            if !(lambda > max_lambda) {
+                let hit = CastHit { lambda, normal, spot: ray.line.at(mu), witness };
+                (Outcome::Hit(hit), (lower, upper), Status::Converged)
+            } else if lower > max_lambda || upper < infinity {
+                let axis = normal.unwrap_or(-ray.line.direction);
+                (Outcome::Miss(Miss { axis }), (infinity, infinity), Status::Converged)
             } else {
-                Outcome::Hit(CastHit { lambda, normal, spot: ray.line.at(mu), witness })
-            };
-            (outcome, (lower, upper), Status::Converged)
+                // What may be hit anywhere, or not at all, may be hit before the end.
+                (Outcome::Undecided, (lower, infinity), Status::Stalled)
+            }
         }
         Err(Stop::Miss(n)) => {
             (Outcome::Miss(Miss { axis: bracket.axis_of_miss(n) }), (infinity, infinity), Status::Converged)

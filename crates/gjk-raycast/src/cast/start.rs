@@ -115,7 +115,7 @@ fn start<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iteratio
         // What the quotient loses.
         let lower = at(near.lower);
         let lower = lower - roundings(8.0, lower);
-        let entry = entry([a, b], direction, closing, near.upper * near.frame.scale, &mut iterations);
+        let entry = entry([a, b], direction, closing, [near.upper * near.frame.scale, zero], &mut iterations);
         Way::Enters { lambda: at(near.gap), axis, lower, entry }
     };
     let spot = Spot { source: -near.frame.offset, points: near.points, scale: near.frame.scale };
@@ -140,7 +140,7 @@ fn latest_entry<V: Vector>(
     let (gap, speed) = (near.upper * near.frame.scale, direction.norm());
     let slides = speed * V::Scalar::EPSILON * V::Scalar::from_f64(SLIDES);
     let speed = if is_at_plane && closing > slides { closing } else { speed };
-    entry(shapes, direction, speed, gap, iterations).certain()
+    entry(shapes, direction, speed, [gap, zero], iterations).certain()
 }
 
 /// Closing speeds below this many ε of the speed are of rounding: a normal is known to a few.
@@ -171,7 +171,8 @@ const FARTHER: f64 = 8.0;
 const FIRST: f64 = 3.0;
 const DEEP: f64 = 16.0;
 
-/// Where a ray enters whose source is no more than a `gap` from the target, and which closes in with a `speed`.
+/// Where a ray enters whose source is no more than a `gap` from the target, and which closes in with a `speed`. The source is looked at no
+/// farther than `astray` from where it is.
 ///
 /// The signed distance from a convex set is a convex function of the point. So where it is at most `g` at the source and at most `−ρ`
 /// after λ, it is not positive any more after `λ·g/(g + ρ)`; and where it is more than `g` after λ, it grows from there on.
@@ -179,7 +180,7 @@ fn entry<V: Vector>(
     [a, b]: [Shape<'_, V>; 2],
     direction: V,
     speed: V::Scalar,
-    gap: V::Scalar,
+    [gap, astray]: [V::Scalar; 2],
     iterations: &mut usize,
 ) -> Entry<V::Scalar> {
     let number = V::Scalar::from_f64;
@@ -201,7 +202,7 @@ fn entry<V: Vector>(
         let there = signed_distance(&a, &moved, wanted);
         *iterations += there.iterations;
         // The step is rounded, coordinate by coordinate.
-        let rounded = roundings(4.0, length);
+        let rounded = roundings(4.0, length) + astray;
         let depth = -there.upper - rounded;
         if depth > V::Scalar::ZERO {
             let at = lambda * (gap / (gap + depth));
@@ -247,10 +248,11 @@ fn after_hit<V: Vector>(
     let Some(near) = near_contact(a, &there, None, max_iterations) else { return unknown };
     let mut iterations = near.iterations;
     // The step and the direction are rounded, coordinate by coordinate.
-    let gap = near.upper.max(V::Scalar::ZERO) * near.frame.scale + roundings(8.0, step.norm());
+    let astray = roundings(8.0, step.norm());
+    let gap = near.upper.max(V::Scalar::ZERO) * near.frame.scale + astray;
     let closing = near.normal.dot(direction);
     let speed = if closing > V::Scalar::ZERO { closing } else { direction.norm() };
-    let latest = lambda + entry([a, &there], direction, speed, gap, &mut iterations).certain();
+    let latest = lambda + entry([a, &there], direction, speed, [gap, astray], &mut iterations).certain();
     AfterHit { latest: latest + roundings(4.0, latest), iterations }
 }
 

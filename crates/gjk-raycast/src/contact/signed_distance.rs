@@ -49,18 +49,48 @@ pub fn signed_distance_with<A, B>(
     a: &A,
     b: &B,
     options: SignedDistanceOptions<A::Vector>,
-    mut observer: impl FnMut(Iterate<'_, A::Vector>),
+    observer: impl FnMut(Iterate<'_, A::Vector>),
 ) -> SignedDistance<A::Vector>
 where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let mut cores = Cores::new(a, b);
+    reach(&mut cores, options, observer).answer(&cores)
+}
+
+/// [`signed_distance`], and the unit vector from `b` to `a` of the plane that proves its lower bound.
+#[inline]
+pub(crate) fn signed_distance_and_axis<A, B>(
+    a: &A,
+    b: &B,
+    options: SignedDistanceOptions<A::Vector>,
+) -> (SignedDistance<A::Vector>, A::Vector)
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let mut cores = Cores::new(a, b);
+    let reached = reach(&mut cores, options, |_| {});
+    (reached.answer(&cores), reached.axis)
+}
+
+/// What can be known of the cores.
+#[inline(always)]
+fn reach<A, B>(
+    cores: &mut Cores<'_, A, B>,
+    options: SignedDistanceOptions<A::Vector>,
+    mut observer: impl FnMut(Iterate<'_, A::Vector>),
+) -> Reached<A::Vector>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
     if let Some(known) = cores.known_apart(options.max_iterations, &mut observer) {
-        return Reached::of_closed_form(known).answer(&cores);
+        return Reached::of_closed_form(known);
     }
     if let Some(known) = cores.closed_form(options.axis) {
-        return Reached::of_closed_form(known).answer(&cores);
+        return Reached::of_closed_form(known);
     }
     // Cores that overlapped in the last frame do so still, if no plane across its normal tells them apart.
     let is_warm = options.axis.and_then(|axis| axis.unit()).is_some_and(|axis| cores.reaches_beyond(-axis));
@@ -74,18 +104,16 @@ where
     if !cores.is_well_apart(state.length) {
         cores.sharpen();
     }
-    let apart = Reached::of_gjk(&cores, &state, end);
-    let reached = if end == End::Separated || !state.length.is_finite() {
-        apart
-    } else {
-        let simplex: SmallVec<[_; MAX_POINTS]> = vertices(&state).collect();
-        let met = (cores.difference(apart.points), apart.points);
-        match expand(&mut cores, &simplex, met, -apart.inner, &options, &mut observer) {
-            Some(expanded) => Reached::of_expansion(&cores, &expanded, &apart, end),
-            None => Reached { status: Status::Stalled, ..apart },
-        }
-    };
-    reached.answer(&cores)
+    let apart = Reached::of_gjk(cores, &state, end);
+    if end == End::Separated || !state.length.is_finite() {
+        return apart;
+    }
+    let simplex: SmallVec<[_; MAX_POINTS]> = vertices(&state).collect();
+    let met = (cores.difference(apart.points), apart.points);
+    match expand(cores, &simplex, met, -apart.inner, &options, &mut observer) {
+        Some(expanded) => Reached::of_expansion(cores, &expanded, &apart, end),
+        None => Reached { status: Status::Stalled, ..apart },
+    }
 }
 
 /// The points that GJK ended with.
@@ -103,6 +131,8 @@ struct Reached<V: Vector> {
     /// Bounds on the depth.
     inner: V::Scalar,
     outer: V::Scalar,
+    /// The unit vector into the difference across which a plane proves the outer one.
+    axis: V,
     points: PointPair<V>,
     status: Status,
     unexpanded: usize,
@@ -128,12 +158,14 @@ impl<V: Vector> Reached<V> {
         let is_closed = cores.is_closed(state.length - state.lower);
         let direction = if is_closed && cores.is_well_known(closest) { closest } else { state.axis };
         let n = direction.unit().or_else(|| state.normal.unit()).unwrap_or_else(|| V::axis(0));
+        let axis = state.axis.unit();
         let is_known = state.length.is_finite() && sum > V::Scalar::ZERO;
         Self {
             u: -n,
             depth: -state.length,
             inner: if is_known { -cores.greatest_length(closest) } else { -infinity },
-            outer: state.axis.unit().map_or(infinity, |n| cores.error_along(n) - state.lower),
+            outer: axis.map_or(infinity, |n| cores.error_along(n) - state.lower),
+            axis: axis.unwrap_or(n),
             points,
             status: end.status(),
             unexpanded: 0,
@@ -142,7 +174,7 @@ impl<V: Vector> Reached<V> {
 
     /// In closed form.
     fn of_closed_form(ClosedForm { u, depth, inner, outer, points }: ClosedForm<V>) -> Self {
-        Self { u, depth, inner, outer, points, status: Status::Converged, unexpanded: 0 }
+        Self { u, depth, inner, outer, axis: -u, points, status: Status::Converged, unexpanded: 0 }
     }
 
     /// By an expansion, after GJK had come to an end.
@@ -152,13 +184,25 @@ impl<V: Vector> Reached<V> {
         B: SupportMap<Vector = V> + ?Sized,
     {
         let &Expanded { way, points, inner, status, unexpanded } = expanded;
-        let outer = (way.h + cores.error_along(way.u())).min(apart.outer);
+        let by_way = way.h + cores.error_along(way.u());
+        // NaN is no bound.
+        let (outer, axis) = if apart.outer <= by_way { (apart.outer, apart.axis) } else { (by_way, -way.u()) };
         // Where the cores turn out to be apart, GJK's points are nearer than those of a facet.
         let is_apart = way.h < Scalar::ZERO && end != End::Overlap;
         if is_apart {
-            return Self { outer, ..Self { points: apart.points, ..*apart } };
+            let u = if by_way < apart.outer { way.u() } else { apart.u };
+            return Self { u, outer, axis, ..*apart };
         }
-        Self { u: way.u(), depth: way.h, inner, outer, points: points.unwrap_or(apart.points), status, unexpanded }
+        Self {
+            u: way.u(),
+            depth: way.h,
+            inner,
+            outer,
+            axis,
+            points: points.unwrap_or(apart.points),
+            status,
+            unexpanded,
+        }
     }
 
     /// The answer in the world's unit, with the radii.

@@ -18,8 +18,11 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
     pub(super) fn close_in(&mut self) -> Option<End<V>> {
         let (zero, two) = (V::Scalar::ZERO, V::Scalar::from_f64(2.0));
         let end = self.options.max_time.min(self.upper);
-        let Instant { time, distance, error, closing, .. } = self.near;
-        let deep = distance + error.max(self.closest() * Scalar::from_f64(0.25)) * V::Scalar::from_f64(DEPTH);
+        let Instant { time, distance, upper, error, closing, .. } = self.near;
+        // Of what seems to overlap the distance is its own lower bound, and the other one tells how well it is known.
+        let error = if distance > zero { error } else { (upper - distance).max(self.bodies.size() * Scalar::EPSILON) };
+        let error = error.max(self.closest() * Scalar::from_f64(0.25));
+        let deep = distance.max(zero) + error * Scalar::from_f64(DEPTH);
         // As fast as it closes, or after the time that it would take to come so deep from rest.
         let (at_speed, from_rest) = (deep / closing, (two * deep / self.expected_acceleration()).sqrt());
         let mut step = if closing > zero && at_speed < from_rest { at_speed } else { from_rest };
@@ -32,7 +35,7 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
                 return Some(End::Contact);
             }
             let there = self.look(next, Limits { distance: V::Scalar::infinity(), depth: zero });
-            if self.is_contact(&there) {
+            if there.overlaps() {
                 self.upper = there.time;
                 return Some(End::Contact);
             }
@@ -55,18 +58,6 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
             step *= two;
         }
         Some(End::Undecided(Status::IterationLimit))
-    }
-
-    /// Whether the bodies have a point in common just after [`near`](Search::near).
-    ///
-    /// That a polytope within their difference contains zero takes long to show of curved bodies that are hardly in one another. It
-    /// is also taken for shown where points of them are as near as rounding can tell, while the bodies are deeper in one another than
-    /// that along the normal.
-    fn is_contact(&self, there: &Instant<V>) -> bool {
-        let from_f64 = V::Scalar::from_f64;
-        let rounding = from_f64(64.0) * V::Scalar::EPSILON * self.bodies.size();
-        let deep = from_f64(DEPTH) * self.near.error.min(rounding);
-        there.overlaps() || there.upper <= deep && there.distance < -deep
     }
 
     /// What to answer where the bodies are not certainly apart at the start.

@@ -11,10 +11,11 @@ use super::moving_body::{MovingBody, length_bound};
 use super::placed::Placed;
 use super::rough_look::Corners;
 use super::trajectory::{Trajectory, TurningPlane};
+use crate::SignedDistanceOptions;
 use crate::body::{Body as _, Pair, TracedSupport as _};
+use crate::contact::signed_distance_and_axis;
 use crate::gjk::rounding;
 use crate::unit::is_moderate;
-use crate::{SignedDistanceOptions, signed_distance};
 
 /// Two bodies and their motions.
 pub(super) struct MovingPair<'s, A: SupportMap + ?Sized, MA, B: SupportMap + ?Sized, MB> {
@@ -52,18 +53,20 @@ where
     ) -> Instant<A::Vector> {
         let wanted =
             SignedDistanceOptions::new().with_axis(axis).with_limit(limits.distance).with_depth_limit(limits.depth);
-        let answer = signed_distance(a, b, wanted);
+        let (answer, axis) = signed_distance_and_axis(a, b, wanted);
         self.count(answer.iterations);
         let (point_a, point) = (answer.point_a + *place, answer.point_b + *place);
         let distance = answer.signed_distance;
+        // Of bodies that are apart the gap is to be that of a plane, and not of one that is hardly another.
+        let normal = if answer.lower > Scalar::ZERO { axis } else { answer.normal };
         Instant {
             time,
-            normal: answer.normal,
+            normal,
             gap: answer.lower,
             distance,
             upper: answer.upper,
             error: distance - answer.lower,
-            closing: self.closing(time, answer.normal, [point_a, point]),
+            closing: self.closing(time, normal, [point_a, point]),
             point,
             is_close: true,
         }

@@ -55,7 +55,7 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
             return Some(if next < nearer { next } else { nearer }).filter(|&next| next > time && next < ahead.time);
         }
         if let Some(beyond) = self.beyond {
-            return Some(self.between(next, &beyond)).filter(|&next| next > time && next < beyond.time);
+            return self.between(next, &beyond).filter(|&next| next > time && next < beyond.time);
         }
         // NaN goes to the end, which may be infinitely far.
         let next = if next < end { next } else { end };
@@ -65,8 +65,9 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
 
     /// Where to look between [`near`](Self::near) and a time at which the bodies are not certainly apart, if from here it seemed to
     /// be `next`: Newton's method from the end that is nearer to contact; where that leaves the interval, the secant; and where
-    /// neither comes nearer, or a distance is not known, the middle.
-    fn between(&self, next: V::Scalar, beyond: &Instant<V>) -> V::Scalar {
+    /// neither comes nearer, or a distance is not known, the middle. `None` where nothing moves in between by more than rounding: as at the
+    /// start, which is known better than all that comes after it.
+    fn between(&self, next: V::Scalar, beyond: &Instant<V>) -> Option<V::Scalar> {
         let Instant { time, distance, error, .. } = self.near;
         let aim = error * Scalar::from_f64(AIM);
         let (width, way) = (beyond.time - time, distance - aim);
@@ -77,7 +78,11 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
         let secant = time + width * (way / (distance - beyond.distance));
         let methods = if beyond.distance.abs() < way { [from_beyond, secant] } else { [next, secant] };
         let quick = methods.into_iter().find(is_inside).filter(|_| self.slow <= PATIENCE);
-        quick.unwrap_or(time + width * Scalar::from_f64(0.5))
+        quick.or_else(|| {
+            let moved = width * self.bodies.speed_at(&self.near);
+            let is_still = moved > Scalar::ZERO && moved < self.bodies.size() * Scalar::EPSILON;
+            (!is_still).then(|| time + width * Scalar::from_f64(0.5))
+        })
     }
 
     /// The bound `M` of a step like the last one.

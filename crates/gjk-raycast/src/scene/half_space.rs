@@ -195,8 +195,7 @@ impl<V: Vector> HalfSpace<V> {
 
     /// The distance from the half-space, `a`, to a shape, `b`.
     pub(super) fn distance_to<B: SupportMap<Vector = V> + ?Sized>(&self, shape: &B) -> Distance<V> {
-        let from = self.distance_from(shape);
-        Distance { point_a: from.point_b, point_b: from.point_a, normal: from.normal.map(|n| -n), ..from }
+        self.distance_from(shape).reversed()
     }
 
     /// How fast a direction leads down, and what rounding may have made of that.

@@ -95,13 +95,7 @@ pub(super) struct OnLine<V: Vector, W> {
     len: usize,
     /// Where on the ray it is.
     pub(super) high: V::Scalar,
-    /// The Hessian of the newest piece, and what it is between two.
-    hessian: Symmetric<V::Scalar>,
-    between: Symmetric<V::Scalar>,
 }
-
-/// How many times as far as it is moved a smooth surface has its centre of curvature at least, not to bend away.
-const BEND: f64 = 8.0;
 
 impl<V: Vector, W> OnLine<V, W> {
     pub(super) fn corners(&self) -> &[RayPoint<V, W>] {
@@ -110,23 +104,6 @@ impl<V: Vector, W> OnLine<V, W> {
 
     pub(super) fn weights(&self) -> &[V::Scalar] {
         &self.weights[..self.len]
-    }
-
-    /// Whether the line still meets the same triangle, edge or smooth piece if it is moved across itself by `by`, every way.
-    pub(super) fn has_room(&self, by: V::Scalar) -> bool {
-        let curvature = by * V::Scalar::from_f64(BEND);
-        let [p, q, s] = &self.corners;
-        let is_within = match self.len {
-            3 => is_surrounded([p, q, s], by),
-            2 => {
-                let (e, _) = p.edge_to(q);
-                let squared = dot(e, e);
-                let (beside, least) = ((-e.1, e.0), self.weights[0].min(self.weights[1]));
-                squared * least * least > by * by && dot(beside, self.between.times(beside)) > squared * curvature
-            }
-            _ => false,
-        };
-        is_within || self.hessian.least_eigenvalue() > curvature
     }
 }
 
@@ -142,15 +119,7 @@ pub(super) fn is_surrounded<V: Vector, W>([p, q, s]: [&RayPoint<V, W>; 3], by: V
 
 impl<V: Vector, W> From<Portal<V, W>> for OnLine<V, W> {
     fn from(portal: Portal<V, W>) -> Self {
-        let none = Symmetric::ZERO;
-        Self {
-            corners: portal.corners,
-            weights: portal.weights,
-            len: 3,
-            high: portal.high,
-            hessian: none,
-            between: none,
-        }
+        Self { corners: portal.corners, weights: portal.weights, len: 3, high: portal.high }
     }
 }
 
@@ -239,12 +208,11 @@ impl<V: Vector, W: Copy + Default> Pieces<V, W> {
     }
 
     fn on_line(&self, corners: [usize; 3], weights: [V::Scalar; 3], len: usize) -> OnLine<V, W> {
-        let [newest, other, _] = corners.map(|i| self.kept[i].hessian);
         let corners = corners.map(|i| self.kept[i].p);
         let mut high = V::Scalar::ZERO;
         for (p, &weight) in corners[..len].iter().zip(&weights) {
             high += p.t * weight;
         }
-        OnLine { corners, weights, len, high, hessian: newest, between: newest.blend(other, weights[1]) }
+        OnLine { corners, weights, len, high }
     }
 }

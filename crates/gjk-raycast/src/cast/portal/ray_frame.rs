@@ -306,7 +306,7 @@ impl<V: Vector> BestPlane<V> {
         Ok(true)
     }
 
-    /// Closes the bracket between this plane and a point of the body; the entry is in doubt where an error may lead to other pieces.
+    /// Closes the bracket between this plane and a point of the body.
     #[inline(always)]
     pub(super) fn close_at<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
         &self,
@@ -314,11 +314,7 @@ impl<V: Vector> BestPlane<V> {
         frame: &RayFrame<V>,
         below: &OnLine<V, B::Witness>,
     ) -> Result<Contact<B>, Stop<V>> {
-        let found = self.close(bracket, frame, below.corners(), below.weights(), below.high)?;
-        if !below.has_room(bracket.error + bracket.noise) {
-            bracket.doubt_entry();
-        }
-        Ok(found)
+        self.close(bracket, frame, below.corners(), below.weights(), below.high)
     }
 
     /// Closes the bracket between this plane and the weighted sum of the corners, which is on the line at `high`.

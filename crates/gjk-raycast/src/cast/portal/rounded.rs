@@ -18,7 +18,7 @@ use super::ray_frame::{Alpha, BestPlane, Plane, RayFrame, RayPoint, RayPointOf};
 use super::triangle::MAX_EXCHANGES;
 use crate::Iterate;
 use crate::body::{Body, Witness};
-use crate::cast::bracket::{Bracket, DEEP, ScalarOf};
+use crate::cast::bracket::{Bracket, ScalarOf};
 use crate::cast::{Contact, Stop};
 use crate::symmetric::{Across, cross, dot};
 
@@ -116,8 +116,7 @@ impl<V: Vector, W: Witness<V::Scalar>> Kept<V, W> {
         self.len = len;
     }
 
-    /// Closes the bracket above the points that are kept. Above a triangle the surface is flat as far as that reaches; above an edge or a
-    /// corner it is round, and may bend away from a ray that grazes it.
+    /// Closes the bracket above the points that are kept.
     #[inline(always)]
     fn close<B: Body<Vector = V, Witness = W>, O: FnMut(Iterate<'_, V>)>(
         &self,
@@ -126,12 +125,7 @@ impl<V: Vector, W: Witness<V::Scalar>> Kept<V, W> {
         best: &BestPlane<V>,
         at: &Entry<V::Scalar>,
     ) -> Result<Contact<B>, Stop<V>> {
-        let found = best.close(bracket, frame, self.points(), &at.weights, at.tau)?;
-        let deep = (bracket.error + bracket.noise) * V::Scalar::from_f64(DEEP);
-        if deep * at.alpha.length_squared() > bracket.radius {
-            bracket.doubt_entry();
-        }
-        Ok(found)
+        best.close(bracket, frame, self.points(), &at.weights, at.tau)
     }
 
     /// The line passes all of them: a point is added on its side of the nearest edge or corner.
