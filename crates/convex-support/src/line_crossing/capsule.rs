@@ -25,7 +25,12 @@ pub(crate) fn edge<V: Vector>([a, b]: [V; 2], radius: V::Scalar, source: V, dire
     let axis = to_b.unit().unwrap_or_else(|| V::axis(0));
     let recip = dd.recip();
     let (base, source) = rebased(source - (a + to_b), direction, recip);
-    let split = |v: V| (v.dot(axis), v - axis * v.dot(axis));
+    let split = |v: V| {
+        let out = v - axis * v.dot(axis);
+        // Once more, since what is across may be small beside what was subtracted: of a line nearly along the axis, where it leaves the side
+        // is the difference of two large numbers.
+        (v.dot(axis), out - axis * out.dot(axis))
+    };
     let (source, direction) = ((source, split(source)), (direction, split(direction)));
     capsule(axis, to_b.norm(), radius, source, direction, recip)?.shifted(base, unit, || V::ZERO)
 }
