@@ -186,11 +186,12 @@ impl<V: Vector> Reached<V> {
         let &Expanded { way, points, inner, status, unexpanded } = expanded;
         let by_way = way.h + cores.error_along(way.u());
         // NaN is no bound.
-        let (outer, axis) = if apart.outer <= by_way { (apart.outer, apart.axis) } else { (by_way, -way.u()) };
+        let is_better = by_way < apart.outer || apart.outer.is_nan();
+        let (outer, axis) = if is_better { (by_way, -way.u()) } else { (apart.outer, apart.axis) };
         // Where the cores turn out to be apart, GJK's points are nearer than those of a facet.
         let is_apart = way.h < Scalar::ZERO && end != End::Overlap;
         if is_apart {
-            let u = if by_way < apart.outer { way.u() } else { apart.u };
+            let u = if is_better { way.u() } else { apart.u };
             return Self { u, outer, axis, ..*apart };
         }
         Self {

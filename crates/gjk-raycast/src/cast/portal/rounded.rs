@@ -77,14 +77,14 @@ pub(super) fn rounded<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
             best.set(high, alpha, &p);
         }
         if best.alpha.is_within(high - best.tau, tolerance) {
-            return kept.close(bracket, frame, &best, &at);
+            return best.close(bracket, frame, kept.points(), &at.weights, at.tau);
         }
         if frame.is_curved(bracket.body, frame.normal(alpha.plane())) {
             return Err(Stop::InDoubt);
         }
         let next = frame.support_of(bracket, alpha.plane())?;
         if best.improve(bracket, frame, alpha, &next, radius)? && high - best.tau <= tolerance * alpha.length() {
-            return kept.close(bracket, frame, &best, &at);
+            return best.close(bracket, frame, kept.points(), &at.weights, at.tau);
         }
         kept.push(next);
     }
@@ -114,18 +114,6 @@ impl<V: Vector, W: Witness<V::Scalar>> Kept<V, W> {
         let p = &self.points;
         self.points = [p[i], p[j], p[k], p[0]];
         self.len = len;
-    }
-
-    /// Closes the bracket above the points that are kept.
-    #[inline(always)]
-    fn close<B: Body<Vector = V, Witness = W>, O: FnMut(Iterate<'_, V>)>(
-        &self,
-        bracket: &mut Bracket<'_, B, O>,
-        frame: &RayFrame<V>,
-        best: &BestPlane<V>,
-        at: &Entry<V::Scalar>,
-    ) -> Result<Contact<B>, Stop<V>> {
-        best.close(bracket, frame, self.points(), &at.weights, at.tau)
     }
 
     /// The line passes all of them: a point is added on its side of the nearest edge or corner.
