@@ -20,7 +20,7 @@ pub(super) const NOISE: f64 = 8.0;
 
 /// How many errors deep a ray goes at least into a ball that rolls within the body, for its slope to tell where it is in the body for
 /// certain.
-const DEEP: f64 = 64.0;
+pub(super) const DEEP: f64 = 64.0;
 
 pub(super) type ScalarOf<B> = <<B as TracedSupport>::Vector as Vector>::Scalar;
 

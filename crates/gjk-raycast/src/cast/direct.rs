@@ -2,7 +2,7 @@
 //! definite distance.
 //!
 //! What is certain rests on the same as in a [`Bracket`](super::bracket::Bracket): a miss and a lower bound on the plane of one support
-//! point, an upper bound on where the line enters what is left of the body without two errors. But nothing is prepared for a search:
+//! point, an upper bound on a ball that rolls within the body, or on where the line enters what is left of it without two errors. But nothing is prepared for a search:
 //! lengths stay in the world's unit, the direction keeps its length, and a source near the body is the base of the line. Whatever is
 //! in doubt is left to the bracket. `docs/ray-cast.md` derives the bounds.
 
@@ -11,7 +11,7 @@ use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Crossing, LineCrossing, Scalar, Vector};
 use num_traits::Float;
 
-use super::bracket::{NOISE, ScalarOf};
+use super::bracket::{DEEP, NOISE, ScalarOf};
 use super::{Cast, CastHit};
 use crate::body::Body;
 use crate::unit::is_moderate;
@@ -138,11 +138,7 @@ impl<V: Vector> Line<V> {
         if !is_plain {
             return None;
         }
-        // What is in the body by two errors is so for certain: one moves the body, and one what is computed of the line.
-        let LineCrossing::Crosses(within) = body.eroded_line_crossing(self.source, self.direction, error + error)
-        else {
-            return None;
-        };
+        let within = self.certain_entry(body, entry, [slope, error])?;
         // A step of Newton's method for the reciprocal of the root.
         let n = normal - normal * (excess * half);
         let per_slope = slope.recip();
@@ -151,7 +147,7 @@ impl<V: Vector> Line<V> {
             return (lower > options.max_lambda).then(|| missed(n));
         }
         show(observer, n, w);
-        let latest = self.base + within.entry;
+        let latest = self.base + within;
         let upper = if latest > lambda { latest } else { lambda } + rounding;
         let witness = body.witness(x - n * body.radius());
         Some(Cast {
@@ -160,6 +156,30 @@ impl<V: Vector> Line<V> {
             upper,
             ..certain()
         })
+    }
+
+    /// Where the line is in the body, at the latest, that enters it at `entry` through a plane that is wrong by an `error`, as it comes
+    /// nearer to it by `slope` with each unit of its parameter.
+    ///
+    /// A ball that rolls within the body tells, where the line comes in so steeply that it [soon is in it](super::bracket::DEEP);
+    /// or else what is left of the body without two errors: one moves the body, and one what is computed of the line.
+    #[inline(always)]
+    fn certain_entry<B: Body<Vector = V>>(
+        &self,
+        body: &B,
+        entry: V::Scalar,
+        [slope, error]: [V::Scalar; 2],
+    ) -> Option<V::Scalar> {
+        let number = V::Scalar::from_f64;
+        // The length of the direction squared is no more than the dimension times this.
+        let squared = self.longest * self.longest;
+        if slope * slope * body.rolling_radius() > error * (squared * number(3.0 * DEEP)) {
+            return Some(entry + error * number(1.5) / slope);
+        }
+        match body.eroded_line_crossing(self.source, self.direction, error + error) {
+            LineCrossing::Crosses(within) => Some(within.entry),
+            LineCrossing::Misses(_) | LineCrossing::Unknown => None,
+        }
     }
 
     /// The miss by a plane across an axis, which is across the line to rounding.
