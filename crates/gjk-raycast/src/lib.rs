@@ -107,6 +107,7 @@ mod distance;
 mod distances;
 mod error;
 mod gjk;
+mod half_space;
 mod intersects;
 mod iterative_ray_cast;
 mod linear_cast;
@@ -139,6 +140,7 @@ pub use derivative::{
 pub use distance::{distance, distance_with};
 pub use distances::map_distances_into;
 pub use error::RayCastError;
+pub use half_space::HalfSpace;
 pub use intersects::{intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{Motion, linear_cast, linear_cast_with};
@@ -157,7 +159,7 @@ pub use result::{
     Distance, Intersection, Iterate, LinearCast, LinearHit, Miss, Outcome, RayCast, RayExit, RayHit, Status,
 };
 pub use scene::{
-    Among, Body, BodyDistance, BodyHit, HalfSpace, PairDistance, Scene, SceneAnyHit, SceneCast, SceneDistance,
-    SceneError, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, Work,
+    Among, Body, BodyDistance, BodyHit, PairDistance, Scene, SceneAnyHit, SceneCast, SceneDistance, SceneError,
+    SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, Work,
 };
 pub use simplex::SubAlgorithm;

@@ -136,6 +136,10 @@ where
         status: cast.status,
         iterations: cast.iterations,
     };
+    if motion.velocity_a == motion.velocity_b && answer.upper > zero {
+        // What rests does not come to where a ray from its start would be.
+        answer.upper = <A::Vector as Vector>::Scalar::infinity();
+    }
     let start = Start { a: &a, b: &b, target };
     answer.outcome = match cast.outcome {
         Outcome::Hit(CastHit { lambda: time, normal, spot, witness }) => {

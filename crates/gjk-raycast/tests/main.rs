@@ -23,6 +23,7 @@ mod differences;
 mod edges;
 mod exact;
 mod exact_oracle;
+mod half_space;
 mod half_space_motion;
 mod hit_derivatives;
 mod invariances;

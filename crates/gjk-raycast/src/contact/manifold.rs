@@ -48,6 +48,38 @@ where
     if points.is_empty() { SmallVec::from_slice(&[facing.closest(answer)]) } else { points }
 }
 
+/// The same of a shape over a plane, `b`, without an end: the corners of the feature that faces it.
+pub(crate) fn manifold_over_plane<A>(
+    a: &A,
+    answer: &SignedDistance<A::Vector>,
+    within: ScalarOf<A>,
+) -> Points<A::Vector>
+where
+    A: SupportMap + ?Sized,
+{
+    let normal = answer.normal;
+    let plane = ContactPlane { normal, across: across(normal), origin: answer.point_b };
+    let core = a.core();
+    let slab = (core.extent + core.radius) * Scalar::from_f64(SLAB) + within.max(Scalar::ZERO);
+    let mut feature = Feature::new();
+    a.core_support_feature(-normal, slab, &mut feature);
+    let of_a = Outline::new(&feature, core.origin - normal * core.radius, &plane);
+    let of_b = Outline { corners: SmallVec::new(), rim: None, is_complete: true };
+    let facing = Facing { plane, of_a, of_b };
+    let corners = facing.of_a.corners.iter().filter(|corner| corner.height <= within + slab);
+    let candidates: SmallVec<[_; 16]> = corners
+        .map(|corner| Candidate {
+            at: corner.at,
+            heights: [corner.height.max(answer.lower), Scalar::ZERO],
+            parts: [Part::Vertex(corner.id), Part::Face],
+        })
+        .collect();
+    if candidates.len() < 2 {
+        return SmallVec::from_slice(&[facing.closest(answer)]);
+    }
+    reduced(&candidates).iter().map(|candidate| facing.point(candidate)).collect()
+}
+
 type ScalarOf<A> = <<A as SupportMap>::Vector as Vector>::Scalar;
 
 /// The outlines of both features in the plane of contact.

@@ -21,6 +21,7 @@ mod zonotope;
 
 pub use contact::contact;
 pub(crate) use cores::gap_along;
+pub(crate) use manifold::manifold_over_plane;
 pub(crate) use newton::across;
 pub use options::SignedDistanceOptions;
 pub(crate) use outline::{ContactPlane, Corner, Ellipse, Outline};

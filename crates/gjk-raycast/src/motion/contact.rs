@@ -95,8 +95,10 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
             if there.closing > speed * rounding || !(there.time < self.options.max_time) {
                 break;
             }
-            let apart = (there.error * from_f64(AIM) - there.distance) / -there.closing;
-            let least = there.error / speed;
+            // Where they touch may be known without any error.
+            let error = there.error.max(self.bodies.size() * V::Scalar::EPSILON);
+            let apart = (error * from_f64(AIM) - there.distance) / -there.closing;
+            let least = error / speed;
             step = (step + step).max(if apart > least { apart } else { least });
             // NaN ends here.
             if !(step > Scalar::ZERO) {

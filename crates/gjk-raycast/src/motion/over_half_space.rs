@@ -2,8 +2,6 @@
 
 use core::cell::Cell;
 
-use convex_support::numerics::bound::{least, raised, roundings};
-use convex_support::numerics::twofold::dot_minus;
 use convex_support::{Hint, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
@@ -15,7 +13,7 @@ use super::moving_body::{MovingBody, length_bound};
 use super::options::MotionCastOptions;
 use super::result::{MotionCast, MotionIterate};
 use super::trajectory::{Trajectory, TurningPlane};
-use crate::unit::{power_of_two_near, reciprocal_of_power};
+use crate::half_space::{Level, Plane};
 use crate::{HalfSpace, Motion, RayCastError};
 
 impl<V: Vector> HalfSpace<V> {
@@ -84,67 +82,44 @@ struct OverHalfSpace<'s, S: SupportMap + ?Sized, M> {
     body: MovingBody<'s, S, M>,
     /// The target distance, by which the body's radius is grown.
     margin: ScalarOf<S>,
-    /// The normal and the offset in units of a power of two near the normal's length, so that both are as they were given.
-    normal: S::Vector,
-    offset: ScalarOf<S>,
-    length: ScalarOf<S>,
-    /// The unit normal.
-    unit: S::Vector,
+    plane: Plane<S::Vector>,
     /// The support points computed.
     iterations: Cell<usize>,
 }
 
 /// The body's lowest point at one time.
 struct Lowest<V: Vector> {
-    /// Its height over the half-space, less the target distance, and what that is wrong by at most.
-    height: V::Scalar,
-    error: V::Scalar,
+    /// Its height over the half-space, less the target distance.
+    height: Level<V::Scalar>,
     /// The point of its core, in the world.
     core_point: V,
 }
 
 impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> OverHalfSpace<'s, S, M> {
     fn new(shape: &'s S, motion: M, half_space: &HalfSpace<S::Vector>, margin: ScalarOf<S>) -> Self {
-        let per_unit = reciprocal_of_power(power_of_two_near(half_space.normal().norm()));
-        let normal = half_space.normal() * per_unit;
-        let length = normal.norm();
         Self {
             body: MovingBody::new(shape, motion, margin),
             margin,
-            normal,
-            offset: half_space.offset() * per_unit,
-            length,
-            unit: normal / length,
+            plane: half_space.plane(),
             iterations: Cell::new(0),
         }
     }
 
     /// The lowest point at a time.
     ///
-    /// Its height is one sum of products: of the normal with the origin, with what the motion adds to that, and with the support point.
-    /// In twice the precision it is rounded once, so that a body far along the plane is known as well as any other.
+    /// Its height is that of the sum of the origin, what the motion adds to that, and the support point, so that a body far along the
+    /// plane is known as well as any other.
     fn lowest(&self, time: ScalarOf<S>) -> Lowest<S::Vector> {
-        let (n, origin, radius) = (self.normal, self.body.core.origin, self.body.core.radius);
+        let (origin, radius) = (self.body.core.origin, self.body.core.radius);
         let displacement = self.body.displacement(time);
         let (shift, turned) = (displacement.shift, displacement.turned(origin));
         let place = origin + shift + turned;
         let moved = self.body.moved(&displacement, place, self.body.displacement_error(&displacement));
-        let point = moved.core_support(-n, &mut Hint::new());
+        let point = moved.core_support(-self.plane.normal(), &mut Hint::new());
         self.iterations.set(self.iterations.get() + 1);
-
-        let terms = [origin, shift, turned, point];
-        let parts = (0..S::Vector::DIM).flat_map(|i| terms.map(|term| (n.get(i), term.get(i))));
-        let level = dot_minus(parts, self.offset) / self.length;
-        let magnitude = terms.into_iter().fold(self.offset.abs(), |sum, term| sum + n.abs().dot(term.abs()));
-        // The products are right to 43ε² of what is added up. The sum, the length and the quotient lose ten halves of ε, and the radius,
-        // its own sum and the difference four.
-        let rounding = moved.rounding();
-        let of_point = Float::min(n.abs().dot(rounding.error) / self.length, rounding.error_length);
-        let squared = ScalarOf::<S>::EPSILON * ScalarOf::<S>::EPSILON * ScalarOf::<S>::from_f64(64.0);
-        let rounded = squared * magnitude + roundings(10.0, level.abs()) + roundings(4.0, radius);
-        // What of the products is subnormal.
-        let tiny = least::<ScalarOf<S>>() * ScalarOf::<S>::from_f64(64.0);
-        Lowest { height: level - radius, error: raised(of_point + rounded) + tiny, core_point: place + point }
+        let error = self.plane.error_along(&moved.rounding());
+        let height = self.plane.height([origin, shift, turned, point], error, radius);
+        Lowest { height, core_point: place + point }
     }
 }
 
@@ -162,7 +137,7 @@ where
     }
 
     fn between(&self) -> S::Vector {
-        self.unit
+        self.plane.unit
     }
 
     fn at(&self, time: ScalarOf<S>, axis: S::Vector, limits: Limits<ScalarOf<S>>) -> Instant<S::Vector> {
@@ -170,18 +145,19 @@ where
     }
 
     fn closely(&self, time: ScalarOf<S>, _axis: S::Vector, _limits: Limits<ScalarOf<S>>) -> Instant<S::Vector> {
-        let Lowest { height, error, core_point } = self.lowest(time);
-        let point_a = core_point - self.unit * self.body.core.radius;
+        let Lowest { height, core_point } = self.lowest(time);
+        let unit = self.plane.unit;
+        let point_a = core_point - unit * self.body.core.radius;
         // The point below, or of a body that is in the half-space its own lowest point.
-        let point = point_a - self.unit * height.max(-self.margin);
+        let point = point_a - unit * height.value.max(-self.margin);
         Instant {
             time,
-            normal: self.unit,
-            gap: height - error,
-            distance: height,
-            upper: height + error,
-            error,
-            closing: -self.unit.dot(self.body.velocity(time, point_a)),
+            normal: unit,
+            gap: height.least(),
+            distance: height.value,
+            upper: height.most(),
+            error: height.error,
+            closing: -unit.dot(self.body.velocity(time, point_a)),
             point,
             is_close: true,
         }
@@ -189,29 +165,29 @@ where
 
     /// The normal is that of the plane, whichever is asked for.
     fn level(&self, time: ScalarOf<S>, _normal: S::Vector) -> (ScalarOf<S>, ScalarOf<S>) {
-        let Lowest { height, error, .. } = self.lowest(time);
-        (height, error)
+        let Level { value, error } = self.lowest(time).height;
+        (value, error)
     }
 
     /// The plane does not turn, whatever rounding has made of a normal.
     fn acceleration_along(&self, _plane: TurningPlane<S::Vector>, interval: [ScalarOf<S>; 2]) -> ScalarOf<S> {
-        let plane = TurningPlane { from: self.normal, to: self.normal };
-        self.body.acceleration_along(plane, interval) / self.length
+        let normal = self.plane.normal();
+        self.plane.per_length(self.body.acceleration_along(TurningPlane { from: normal, to: normal }, interval))
     }
 
     /// The ball is lowest at one of the ends.
     fn stays_far_apart(&self, interval: [ScalarOf<S>; 2]) -> Option<S::Vector> {
-        let (zero, n) = (ScalarOf::<S>::ZERO, self.normal);
+        let zero = ScalarOf::<S>::ZERO;
         let ball = self.body.motion.moving_ball(self.body.ball(), interval);
-        let doubt = n.abs().dot(ball.velocity.abs()) * ScalarOf::<S>::from_f64(4.0) * Scalar::EPSILON;
-        let sinking = doubt - n.dot(ball.velocity);
+        let reach = ball.radius + self.body.core.radius;
+        let height = self.plane.height([ball.start], zero, reach).least();
+        let sinking = self.plane.sinking([ball.velocity]).most();
         // For ever, if it does not sink at all.
         let way = if sinking <= zero { zero } else { sinking * (interval[1] - interval[0]) };
-        let reach = (ball.radius + self.body.core.radius) * self.length;
-        let magnitude = reach + n.abs().dot(ball.start.abs()) + self.offset.abs() + way;
-        let margin = magnitude * ScalarOf::<S>::from_f64(32.0) * Scalar::EPSILON;
+        // What the ball itself is rounded by.
+        let margin = (reach + length_bound(ball.start) + way) * ScalarOf::<S>::from_f64(32.0) * ScalarOf::<S>::EPSILON;
         // NaN is not apart.
-        (n.dot(ball.start) - self.offset - way > reach + margin).then_some(self.unit)
+        (height - way > margin).then_some(self.plane.unit)
     }
 
     fn speed_at(&self, there: &Instant<S::Vector>) -> ScalarOf<S> {

@@ -3,7 +3,7 @@
 use convex_support::{Bound, Boxes, Lanes, Scalar, Vector};
 use num_traits::Float as _;
 
-use super::HalfSpace;
+use crate::HalfSpace;
 
 /// The distance of a box from a half-space, from below: that of its lowest corner.
 pub(super) struct HeightBound<V: Vector> {

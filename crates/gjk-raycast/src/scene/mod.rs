@@ -4,7 +4,6 @@ mod all_within;
 mod among;
 mod cast;
 mod error;
-mod half_space;
 mod height_bound;
 mod mesh;
 mod motion_cast;
@@ -18,9 +17,10 @@ use alloc::vec::Vec;
 
 use convex_support::{Aabb, Bvh, SupportMap, outer_box};
 
+use crate::HalfSpace;
+
 pub use self::among::Among;
 pub use self::error::SceneError;
-pub use self::half_space::HalfSpace;
 pub use self::result::{
     BodyDistance, BodyHit, PairDistance, SceneAnyHit, SceneCast, SceneDistance, SceneHits, SceneLinearCast,
     SceneMotionCast, SceneRayCast, Work,

@@ -1,0 +1,36 @@
+//! The contact of a shape and a half-space.
+
+use convex_support::{SupportMap, Vector};
+
+use super::HalfSpace;
+use crate::Contact;
+use crate::contact::manifold_over_plane;
+
+impl<V: Vector> HalfSpace<V> {
+    /// The contact of a shape, `a`, that is no farther than `within` from the half-space, `b`; `None` where it is.
+    ///
+    /// ```
+    /// use convex_support::{Cuboid, Posed, glam::DVec3};
+    /// use gjk_raycast::HalfSpace;
+    ///
+    /// // A box of half extent 0.5 stands on the floor.
+    /// let floor = HalfSpace::new(DVec3::Y, 0.0)?;
+    /// let parcel = Posed::translated(Cuboid::new(DVec3::splat(0.5))?, DVec3::new(5.0, 0.5, 0.0))?;
+    /// let contact = floor.contact(&parcel, 0.01).expect("they touch");
+    /// assert_eq!(contact.normal, DVec3::Y);
+    /// assert_eq!(contact.points().len(), 4);
+    /// assert!(contact.points().iter().all(|p| p.point_b.y == 0.0 && p.signed_distance == 0.0));
+    /// # Ok::<(), convex_support::InvalidShape>(())
+    /// ```
+    ///
+    /// The points are the corners of the shape's feature that faces the half-space, at most four, in 2D two, that carry as all of them
+    /// do. What they are of the half-space is always the face.
+    pub fn contact<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A, within: V::Scalar) -> Option<Contact<V>> {
+        let answer = self.signed_distance(shape);
+        // NaN is farther than anything.
+        if !(answer.signed_distance <= within) {
+            return None;
+        }
+        Some(Contact::new(answer.normal, answer, &manifold_over_plane(shape, &answer, within)))
+    }
+}

@@ -1,0 +1,123 @@
+//! How high points are over a plane, to one rounding of that.
+
+use convex_support::numerics::bound::{least, raised, roundings};
+use convex_support::numerics::twofold::{two_product, two_sum};
+use convex_support::{Core, Hint, Rounding, Scalar, SupportMap, Vector};
+use num_traits::Float;
+
+use super::HalfSpace;
+use crate::unit::{power_of_two_near, reciprocal_of_power};
+
+/// The plane of a half-space. Its normal and offset are in units of a power of two near the normal's length, and so as they were given.
+pub(crate) struct Plane<V: Vector> {
+    normal: V,
+    offset: V::Scalar,
+    length: V::Scalar,
+    /// The unit normal.
+    pub(crate) unit: V,
+}
+
+/// A length along the normal, or a speed, as it is measured, and what that is wrong by at most.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Level<S> {
+    pub(crate) value: S,
+    pub(crate) error: S,
+}
+
+impl<S: Scalar> Level<S> {
+    pub(crate) fn least(&self) -> S {
+        self.value - self.error
+    }
+
+    pub(crate) fn most(&self) -> S {
+        self.value + self.error
+    }
+}
+
+/// A shape's point nearest to a half-space, or deepest in it.
+pub(super) struct Lowest<V: Vector> {
+    pub(super) height: Level<V::Scalar>,
+    pub(super) point: V,
+}
+
+impl<V: Vector> HalfSpace<V> {
+    /// The plane that ends it.
+    pub(crate) fn plane(&self) -> Plane<V> {
+        let per_unit = reciprocal_of_power(power_of_two_near(self.length));
+        let (normal, length) = (self.normal * per_unit, self.length * per_unit);
+        Plane { normal, offset: self.offset * per_unit, length, unit: normal / length }
+    }
+}
+
+impl<V: Vector> Plane<V> {
+    /// How high the lowest point of a shape is that is swept by a further ball.
+    pub(super) fn lowest<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A, swept: V::Scalar) -> Lowest<V> {
+        let Core { origin, radius, .. } = shape.core();
+        let radius = radius + swept;
+        let point = shape.core_support(-self.normal, &mut Hint::new());
+        let height = self.height([origin, point], self.error_along(&shape.rounding()), radius);
+        Lowest { height, point: origin + point - self.unit * radius }
+    }
+
+    /// How high the sum of some vectors is, less a radius, where that sum is wrong by `error` along the normal.
+    pub(crate) fn height<const N: usize>(
+        &self,
+        terms: [V; N],
+        error: V::Scalar,
+        radius: V::Scalar,
+    ) -> Level<V::Scalar> {
+        let Level { value, error: rounded } = self.level(terms, self.offset);
+        // The radius, its own sum and the difference.
+        Level { value: value - radius, error: raised(rounded + error + roundings(4.0, radius)) }
+    }
+
+    /// How fast something sinks whose velocity is the sum of some vectors.
+    pub(crate) fn sinking<const N: usize>(&self, velocities: [V; N]) -> Level<V::Scalar> {
+        let Level { value, error } = self.level(velocities, V::Scalar::ZERO);
+        Level { value: -value, error }
+    }
+
+    /// How far support points are off along the normal.
+    pub(crate) fn error_along(&self, rounding: &Rounding<V>) -> V::Scalar {
+        Float::min(self.normal.abs().dot(rounding.error) / self.length, rounding.error_length)
+    }
+
+    /// An upper bound of a length along the normal, given along a normal of [the same length](Self::normal).
+    pub(crate) fn per_length(&self, along: V::Scalar) -> V::Scalar {
+        along / self.length
+    }
+
+    /// The normal, whose length is between one and two.
+    pub(crate) fn normal(&self) -> V {
+        self.normal
+    }
+
+    /// `(n·Σ terms − subtracted)/|n|`, by one sum of products in twice the precision. Where nothing is rounded there is no error, so that
+    /// what moves along the plane is known to.
+    ///
+    /// With what `k` products and sums have lost, `lᵢ`, the sum is wrong by no more than `(k + 1)·ε·Σ |lᵢ|` and its own rounding. The length
+    /// and the quotient lose another eight halves of ε.
+    fn level<const N: usize>(&self, terms: [V; N], subtracted: V::Scalar) -> Level<V::Scalar> {
+        let zero = V::Scalar::ZERO;
+        let (mut sum, mut lost, mut magnitude, mut tiny) = (-subtracted, zero, zero, zero);
+        let subnormal = V::Scalar::min_positive_value() / V::Scalar::EPSILON;
+        for i in 0..V::DIM {
+            for term in terms {
+                let (n, x) = (self.normal.get(i), term.get(i));
+                let [product, lost_in_product] = two_product(n, x);
+                let [next, lost_in_sum] = two_sum(sum, product);
+                sum = next;
+                lost += lost_in_product + lost_in_sum;
+                magnitude += lost_in_product.abs() + lost_in_sum.abs();
+                // What is lost is subnormal itself.
+                if product.abs() < subnormal && n != zero && x != zero {
+                    tiny += least();
+                }
+            }
+        }
+        let value = (sum + lost) / self.length;
+        let of_losses = magnitude * (V::Scalar::EPSILON * V::Scalar::from_f64((2 * N * V::DIM + 1) as f64));
+        let error = raised(of_losses + roundings(9.0, value.abs())) + tiny;
+        Level { value, error }
+    }
+}

@@ -1,0 +1,113 @@
+//! Where a ray, or what sinks like one, enters a half-space.
+
+use convex_support::numerics::bound::roundings;
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use super::HalfSpace;
+use super::plane::{Level, Plane};
+use crate::{Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, Status};
+
+impl<V: Vector> HalfSpace<V> {
+    /// The ray's first point in the half-space: where n·(s + λd) = offset, λ = (n·s − offset)/(−n·d).
+    ///
+    /// It begins and ends as of [`ray_cast`](crate::ray_cast()). Height and speed are each known to a few roundings of itself, so that λ is.
+    ///
+    /// # Errors
+    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+    pub fn ray_cast(&self, ray: Ray<V>, options: RayCastOptions<V>) -> Result<RayCast<V>, RayCastError> {
+        ray.check()?;
+        let zero = V::Scalar::ZERO;
+        let plane = self.plane();
+        let begin = options.min_lambda.max(zero);
+        let (height, sinking) = if begin > zero {
+            let way = ray.direction * begin;
+            // The product is rounded, coordinate by coordinate.
+            let rounded = plane.per_length(roundings(2.0, plane.normal().abs().dot(way.abs())));
+            (plane.height([ray.source, way], rounded, zero), plane.sinking([ray.direction]))
+        } else {
+            (plane.height([ray.source], zero, zero), plane.sinking([ray.direction]))
+        };
+        let Crossing { outcome, lower, upper, status } = plane.crossing(height, sinking, options.max_lambda - begin);
+        // What the sums lose.
+        let from_source = |lambda, count| begin + lambda + roundings(count, begin + lambda);
+        let is_at_once = begin <= zero;
+        let outcome = match outcome {
+            Outcome::Hit(lambda) if lambda > zero => {
+                let lambda = if is_at_once { lambda } else { begin + lambda };
+                Outcome::Hit(RayHit { lambda, point: ray.at(lambda), normal: Some(plane.unit) })
+            }
+            Outcome::Hit(_) => {
+                let point = if is_at_once { ray.source } else { ray.at(begin) };
+                Outcome::Hit(RayHit { lambda: begin, point, normal: None })
+            }
+            Outcome::Miss(miss) => Outcome::Miss(miss),
+            Outcome::Undecided => Outcome::Undecided,
+        };
+        let (lower, upper) = if is_at_once {
+            (lower, upper)
+        } else if upper <= zero {
+            (begin, begin)
+        } else {
+            (from_source(lower, -4.0).max(begin), from_source(upper, 4.0))
+        };
+        Ok(RayCast { outcome, lower, upper, status, iterations: 0 })
+    }
+}
+
+/// When what sinks comes to the plane: its time, and bounds on it, of what begins at zero.
+pub(super) struct Crossing<V: Vector> {
+    pub(super) outcome: Outcome<V::Scalar, V>,
+    pub(super) lower: V::Scalar,
+    pub(super) upper: V::Scalar,
+    pub(super) status: Status,
+}
+
+impl<V: Vector> Plane<V> {
+    /// When something at a height, which sinks at a speed, comes to the plane, if it does so until `end`. What may be in the half-space
+    /// already is met at once, and for certain where it is in there by more than its error, or sinks for certain.
+    pub(super) fn crossing(&self, height: Level<V::Scalar>, sinking: Level<V::Scalar>, end: V::Scalar) -> Crossing<V> {
+        let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+        let miss = Crossing {
+            outcome: Outcome::Miss(Miss { axis: self.unit }),
+            lower: infinity,
+            upper: infinity,
+            status: Status::Converged,
+        };
+        let undecided =
+            |lower| Crossing { outcome: Outcome::Undecided, lower, upper: infinity, status: Status::Stalled };
+        let is_known = height.value.is_finite() && height.error.is_finite() && !sinking.value.is_nan();
+        if !is_known {
+            return undecided(zero);
+        }
+        if end < zero {
+            return miss;
+        }
+        // The quotient loses half an ε.
+        let latest = |height: V::Scalar| {
+            let time = height / sinking.least();
+            if sinking.least() > zero { time + roundings(2.0, time) } else { infinity }
+        };
+        if !(height.least() > zero) {
+            let upper = if height.most() <= zero { zero } else { latest(height.most()) };
+            return Crossing { outcome: Outcome::Hit(zero), lower: zero, upper, status: Status::Converged };
+        }
+        if !(sinking.most() > zero) {
+            return miss;
+        }
+        let earliest = height.least() / sinking.most();
+        let lower = earliest - roundings(2.0, earliest);
+        if lower > end {
+            return miss;
+        }
+        if !(sinking.least() > zero) {
+            return undecided(lower);
+        }
+        // Whether a hit at the very end counts is decided by the time as it is returned.
+        let time = height.value / sinking.value;
+        if !(time <= end) {
+            return miss;
+        }
+        Crossing { outcome: Outcome::Hit(time), lower, upper: latest(height.most()), status: Status::Converged }
+    }
+}
