@@ -173,7 +173,8 @@ impl<V: Vector> Line<V> {
         let number = V::Scalar::from_f64;
         // The length of the direction squared is no more than the dimension times this.
         let squared = self.longest * self.longest;
-        if slope * slope * body.rolling_radius() > error * (squared * number(3.0 * DEEP)) {
+        let radius = body.rolling_radius();
+        if radius > V::Scalar::ZERO && slope * slope * radius > error * (squared * number(3.0 * DEEP)) {
             return Some(entry + error * number(1.5) / slope);
         }
         match body.eroded_line_crossing(self.source, self.direction, error + error) {
