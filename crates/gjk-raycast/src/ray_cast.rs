@@ -5,6 +5,7 @@ use num_traits::Float as _;
 
 use crate::body::{Body as _, Single};
 use crate::cast::{Cast, CastHit, LocalRay, Part, cast, direct, settle_start};
+use crate::unit::power_of_two_near;
 use crate::{Iterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit};
 
 /// The first point of a ray in a shape, with the normal there.
@@ -73,23 +74,51 @@ fn searched<S: SupportMap + ?Sized>(
     target: &S,
     ray: Ray<S::Vector>,
     options: RayCastOptions<S::Vector>,
-    observer: impl FnMut(Iterate<'_, S::Vector>),
+    mut observer: impl FnMut(Iterate<'_, S::Vector>),
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     ray.check()?;
-    let begin = options.min_lambda;
-    let is_whole = !(begin > Scalar::ZERO);
-    let part = if is_whole { Part::Whole } else { Part::From(begin) };
-    let wanted = if is_whole { options } else { options.with_max_lambda(options.max_lambda - begin) };
+    if options.min_lambda > Scalar::ZERO {
+        return Ok(late(target, ray, options, &mut observer));
+    }
     let mut body = Single::new(target);
-    let mut cast = cast(&mut body, ray, Scalar::ZERO, part, wanted, observer);
-    if is_whole {
-        settle_start(&mut cast, target, Scalar::ZERO, || Point::new(ray.source).ok(), ray.direction, &options);
-        Ok(answer(cast, ray))
-    } else {
-        // Where the ray begins is rounded itself, and no start is settled.
-        let whole = LocalRay::new(ray, body.origin(), cast.scale);
-        let slack = whole.error(whole.mu(begin), Scalar::ZERO);
-        Ok(of_whole_ray(answer(cast, ray), ray, options, slack))
+    let mut cast = cast(&mut body, ray, Scalar::ZERO, Part::Whole, options, observer);
+    settle_start(&mut cast, target, Scalar::ZERO, || Point::new(ray.source).ok(), ray.direction, &options);
+    Ok(answer(cast, ray))
+}
+
+/// The cast of a ray that begins at [`min_lambda`](RayCastOptions::min_lambda).
+///
+/// Where that is on the line is known to within a slack, so that the ray is cast from as much before it. What it hits after as much behind
+/// it is a hit like any other; and what it hits earlier is hit where it begins, at the latest where one hits it that begins behind it.
+#[cold]
+#[inline(never)]
+fn late<S: SupportMap + ?Sized>(
+    target: &S,
+    ray: Ray<S::Vector>,
+    options: RayCastOptions<S::Vector>,
+    mut observer: &mut dyn FnMut(Iterate<'_, S::Vector>),
+) -> RayCast<S::Vector> {
+    let (zero, begin) = (<S::Vector as Vector>::Scalar::ZERO, options.min_lambda);
+    let mut body = Single::new(target);
+    let (origin, size) = (body.origin(), body.extent() + body.radius());
+    let whole = LocalRay::new(ray, origin, power_of_two_near(size.max((ray.source - origin).norm())));
+    let error = whole.error(whole.mu(begin), zero);
+    let slack = if begin <= options.max_lambda { error + error } else { zero };
+    let mut from = |begin| {
+        let wanted = options.with_max_lambda(options.max_lambda - begin);
+        answer(cast(&mut body, ray, zero, Part::From(begin), wanted, &mut observer), ray)
+    };
+    let early = from(begin - slack);
+    match early.outcome {
+        Outcome::Hit(hit) if hit.lambda <= slack + slack => {
+            let behind = from(begin + slack);
+            let upper =
+                if early.upper <= zero && behind.upper <= zero { begin } else { begin + slack + behind.upper + error };
+            let hit = RayHit { lambda: begin, point: ray.at(begin), normal: None };
+            let iterations = early.iterations + behind.iterations;
+            RayCast { outcome: Outcome::Hit(hit), lower: begin, upper, iterations, ..early }
+        }
+        _ => of_whole_ray(early, ray, options, [begin - slack, error]),
     }
 }
 
@@ -107,22 +136,19 @@ fn answer<V: Vector>(cast: Cast<V, ()>, ray: Ray<V>) -> RayCast<V> {
     RayCast { outcome, lower: cast.lower, upper: cast.upper, status: cast.status, iterations: cast.iterations }
 }
 
-/// The answer of a ray that begins at [`min_lambda`](RayCastOptions::min_lambda), with its parameters counted from the source. Where
-/// it begins is known to within the slack.
+/// The answer of a ray that begins at a parameter of another, which is known to within an `error`, with its parameters counted as of that.
 fn of_whole_ray<V: Vector>(
     mut answer: RayCast<V>,
     ray: Ray<V>,
     options: RayCastOptions<V>,
-    slack: V::Scalar,
+    [start, error]: [V::Scalar; 2],
 ) -> RayCast<V> {
-    let (zero, begin) = (V::Scalar::ZERO, options.min_lambda);
+    let begin = options.min_lambda;
     if let Outcome::Hit(hit) = &mut answer.outcome {
-        hit.lambda = (begin + hit.lambda).min(options.max_lambda);
+        hit.lambda = (start + hit.lambda).max(begin).min(options.max_lambda);
         hit.point = ray.at(hit.lambda);
     }
-    // What begins in the target does so where the ray begins.
-    let from_source = |lambda: V::Scalar, slack| if lambda > zero { begin + lambda + slack } else { begin };
-    answer.lower = from_source(answer.lower, -slack).max(begin);
-    answer.upper = from_source(answer.upper, slack);
+    answer.lower = (start + answer.lower - error).max(begin);
+    answer.upper = start + answer.upper + error;
     answer
 }

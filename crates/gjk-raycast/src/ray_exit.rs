@@ -39,6 +39,7 @@ pub fn ray_exit<S: SupportMap + ?Sized>(
     ray.check()?;
     let mut exit = exit_of_line(target, ray, options);
     let (begin, end) = (options.min_lambda.max(Scalar::ZERO), options.max_lambda);
+    let infinity = <S::Vector as Vector>::Scalar::infinity();
     let Outcome::Hit(hit) = exit.outcome else { return Ok(exit) };
     if exit.upper < begin || end < begin {
         return Ok(
@@ -53,21 +54,18 @@ pub fn ray_exit<S: SupportMap + ?Sized>(
         return Ok(match entry.outcome {
             Outcome::Hit(_) => {
                 let outcome = Outcome::Hit(RayHit { lambda: end, point: ray.at(end), normal: None });
-                RayExit { outcome, lower: end.min(exit.lower), upper: end, ..exit }
+                // It is in the shape from where it enters for certain to where it leaves at the earliest.
+                let is_known = entry.upper <= end || exit.lower <= end;
+                let lower = if is_known { end.min(exit.lower) } else { -infinity };
+                RayExit { outcome, lower, upper: end, ..exit }.on_ray(begin)
             }
             Outcome::Miss(miss) => RayExit { outcome: Outcome::Miss(miss), ..exit }.missed(),
-            Outcome::Undecided => RayExit {
-                outcome: Outcome::Undecided,
-                lower: -<S::Vector as Vector>::Scalar::infinity(),
-                upper: end,
-                ..exit
-            },
+            Outcome::Undecided => RayExit { outcome: Outcome::Undecided, lower: -infinity, upper: end, ..exit },
         });
     }
     let lambda = hit.lambda.max(begin);
     exit.outcome = Outcome::Hit(RayHit { lambda, point: ray.at(lambda), normal: hit.normal });
-    exit.lower = exit.lower.max(begin);
-    Ok(exit)
+    Ok(exit.on_ray(begin))
 }
 
 /// Where the whole line of the ray leaves a shape.
@@ -96,6 +94,11 @@ fn exit_of_line<S: SupportMap + ?Sized>(
 }
 
 impl<V: Vector> RayExit<V> {
+    /// Of a ray that begins at a parameter of the line: what is in the shape before that is not of the ray.
+    fn on_ray(self, begin: V::Scalar) -> Self {
+        if self.lower >= begin { self } else { Self { lower: -V::Scalar::infinity(), ..self } }
+    }
+
     /// With the bounds of a miss.
     fn missed(self) -> Self {
         let infinity = V::Scalar::infinity();

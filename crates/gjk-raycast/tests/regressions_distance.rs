@@ -508,3 +508,32 @@ fn an_edge_of_length_zero_by_rounding_is_measured() -> Result<(), InvalidShape> 
     assert_eq!(warm.overlap, apart(&needle, &plate).overlap);
     Ok(())
 }
+
+/// Edges that cross a millionth apart, along an axis of the box: the offset between them is of the order of their rounding, and a search that
+/// went on from there led astray, to "overlap". Gaps are those of the same numbers in double precision.
+#[test]
+fn a_search_near_contact_that_goes_astray_loses_nothing() -> Result<(), InvalidShape> {
+    let cuboid = Cuboid::new(Vec3A::new(1.0, 0.5, 0.25))?;
+    for (turn, place, gap) in [
+        (
+            Quat::from_xyzw(0.120_206_26, -0.947_450_76, 0.237_374_96, 0.177_596_98),
+            Vec3A::new(0.609_434_9, 0.949_544_6, -1.053_206_2),
+            1.007_973e-6,
+        ),
+        (
+            Quat::from_xyzw(-0.747_735_86, 0.599_54, -0.196_899_31, -0.206_576_13),
+            Vec3A::new(0.029_718_11, 0.081_110_24, -0.965_022_6),
+            9.709_283e-7,
+        ),
+        (
+            Quat::from_xyzw(0.328_432_1, 0.238_910_6, -0.911_247_97, -0.068_419_52),
+            Vec3A::new(0.310_802_7, 0.558_997_4, 1.223_579_4),
+            1.016_088e-6,
+        ),
+    ] {
+        let answer = apart(&cuboid, &Posed::new(cuboid, turn, place)?);
+        assert!((answer.distance - gap).abs() < 3e-7, "{gap}: {answer:?}");
+        assert!(answer.lower <= gap && gap <= answer.upper, "{gap}: {answer:?}");
+    }
+    Ok(())
+}

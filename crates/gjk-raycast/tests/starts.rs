@@ -359,3 +359,15 @@ fn a_hit_ahead_has_a_normal() {
     both(run::<Vec3A>, run::<DVec3>);
     both(run::<Vec2>, run::<DVec2>);
 }
+
+/// Rounded boxes that are apart by less than single precision tells, and rest: no later time is known at which they have met.
+#[test]
+fn what_rests_beside_another_has_no_time_of_contact() {
+    let rounded = |sizes: [f64; 2], radius: f64| {
+        Rounded::new(cuboid::<Vec2>([sizes[0], sizes[1], 0.0]), s::<Vec2>(radius)).expect(VALID)
+    };
+    let a = rounded([0.200_000_003, 0.990_502_5], 0.200_000_003);
+    let b = at(rounded([0.200_000_003, 0.200_000_003], 0.137_976_66), [0.737_976_85, 0.0, 0.0]);
+    let cast = linear_cast(&a, &b, Motion::default(), LinearCastOptions::new()).expect("finite");
+    assert!(cast.upper == 0.0 || cast.upper == f32::INFINITY, "{cast:?}");
+}

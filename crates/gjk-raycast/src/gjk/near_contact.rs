@@ -114,10 +114,22 @@ fn look<V: Vector>(
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
     let mut state = begun.unwrap_or_else(|| begin(&pair, &frame, size, max_iterations));
+    let begun = state;
     let end = go_on(&mut state, &mut pair, &frame, max_iterations);
 
     let seen = Seen::new(&pair, &frame);
-    let (Plane { n, level, error }, pierced) = seen.best_plane(&mut pair, &state)?;
+    let mut best = seen.best_plane(&mut pair, &state);
+    // Within rounding a search may go astray, and end around zero, or where no plane is as far as its points.
+    let is_doubtful = |(best, _): &(Plane<V>, _)| best.level <= frame.radius || best.level + best.error < state.length;
+    if best.as_ref().is_none_or(is_doubtful) {
+        let certain = |best: &(Plane<V>, V::Scalar)| best.0.level - best.0.error;
+        let before = seen.best_plane(&mut pair, &begun);
+        if before.as_ref().map(certain) > best.as_ref().map(certain) {
+            (state, best) = (Gjk { iterations: state.iterations, ..begun }, before);
+            state.ensure_measured();
+        }
+    }
+    let (Plane { n, level, error }, pierced) = best?;
     let gap = level - frame.radius;
     let upper = seen.length(&state).min(pierced) - frame.radius;
     let upper = upper + roundings(2.0, frame.radius);

@@ -10,7 +10,7 @@ use convex_support::{Scalar, SupportMap, Vector};
 use gjk_raycast::{
     Distance, DistanceOptions, HalfSpace, IntersectOptions, LinearCastOptions, Motion, MotionCastOptions, Outcome, Ray,
     RayCastOptions, RigidMotion, SignedDistance, SignedDistanceOptions, distance, intersects, linear_cast, motion_cast,
-    ray_cast, signed_distance,
+    ray_cast, ray_exit, signed_distance,
 };
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
@@ -265,6 +265,66 @@ fn brackets_over_half_spaces<D: Double>(
     let answer = half_space.motion_cast(&body.is::<D::Single>(), motion, options).expect("finite");
     let claim = Claim::new(&answer.outcome, answer.lower, answer.upper);
     let is_true = claim.may_be(&Claim::new(&truth.outcome, truth.lower, truth.upper), 1.0);
+    prop_assert!(is_true, "{:?} {:?}", answer, truth);
+    Ok(())
+}
+
+/// Of a ray as above that begins later, and of where it leaves the body.
+fn brackets_of_late_rays_and_exits<D: Double>(pair: [Body<D>; 2], [from, aside]: [D; 2], begin: f64) -> Held {
+    let [_, target] = pair;
+    let aim = signed(pair).point_b;
+    let source = rounded(target.place + from);
+    let direction = rounded(aim + aside - source);
+    prop_assume!(direction != D::ZERO);
+    let begin = begin as f32;
+    let ray = Ray { source: single(source), direction: single(direction) };
+    let late = RayCastOptions::new().with_min_lambda(begin);
+    let answer = ray_cast(&target.is::<D::Single>(), ray, late).expect("finite");
+    let double = Ray { source, direction };
+    let late = RayCastOptions::new().with_min_lambda(f64::from(begin));
+    let truth = ray_cast(&target.is::<D>(), double, late).expect("finite");
+    let claim = Claim::new(&answer.outcome, answer.lower, answer.upper);
+    let is_true = claim.may_be(&Claim::new(&truth.outcome, truth.lower, truth.upper), f64::INFINITY);
+    prop_assert!(is_true, "{:?} {:?}", answer, truth);
+
+    let answer = ray_exit(&target.is::<D::Single>(), ray, RayCastOptions::default()).expect("finite");
+    let truth = ray_exit(&target.is::<D>(), double, RayCastOptions::default()).expect("finite");
+    let (claims_exit, is_left) = (answer.lower.is_finite(), truth.lower.is_finite());
+    let is_true = if answer.outcome.is_miss() {
+        !is_left
+    } else {
+        !(claims_exit && truth.outcome.is_miss())
+            && (!is_left || truth.lower <= answer.upper.into())
+            && (!claims_exit || truth.upper >= answer.lower.into())
+    };
+    prop_assert!(is_true, "{:?} {:?}", answer, truth);
+    Ok(())
+}
+
+/// Of distances that need not be known beyond limits, and of casts to a distance.
+fn brackets_within_limits<D: Double>(pair: [Body<D>; 2], [u, w]: [D; 2], target: f64) -> Held {
+    let target = target as f32;
+    let plain = signed(pair);
+    let [a, b] = pair.map(|body| body.is::<D::Single>());
+    let limited = SignedDistanceOptions::default().with_limit(target * 1e-3).with_depth_limit(target * 1e-6);
+    let answer = signed_distance(&a, &b, limited);
+    let holds = f64::from(answer.lower) <= plain.upper && plain.lower <= f64::from(answer.upper);
+    prop_assert!(holds, "{:?} {:?}", answer, plain);
+    let answer = distance(&a, &b, DistanceOptions::default().with_limit(target * 1e-3));
+    let holds = f64::from(answer.lower) <= plain.upper.max(0.0) && plain.lower <= f64::from(answer.upper);
+    prop_assert!(holds, "{:?} {:?}", answer, plain);
+
+    let end = 10.0;
+    let apart = Body { place: rounded(pair[1].place - plain.normal * f64::from(target)), ..pair[1] };
+    let options = LinearCastOptions::new().with_max_time(end).with_target_distance(f64::from(target));
+    let [a, b] = [pair[0], apart].map(|body| body.is::<D>());
+    let truth = linear_cast(&a, &b, Motion { velocity_a: u, velocity_b: w }, options).expect("finite");
+    let options = LinearCastOptions::new().with_max_time(end as f32).with_target_distance(target);
+    let [a, b] = [pair[0], apart].map(|body| body.is::<D::Single>());
+    let motion = Motion { velocity_a: single(u), velocity_b: single(w) };
+    let answer = linear_cast(&a, &b, motion, options).expect("finite");
+    let claim = Claim::new(&answer.outcome, answer.lower, answer.upper);
+    let is_true = claim.may_be(&Claim::new(&truth.outcome, truth.lower, truth.upper), end);
     prop_assert!(is_true, "{:?} {:?}", answer, truth);
     Ok(())
 }

@@ -124,4 +124,22 @@ proptest! {
         prop_assume!(velocity != DVec3::ZERO);
         super::brackets_over_half_spaces(pair[0], [normal, velocity, center], ulps, spin.to_array())?;
     }
+
+    #[test]
+    fn brackets_of_late_rays_and_exits_hold_the_truth(
+        pair in bodies::<DVec3>(shape),
+        (from, aside) in (vector(3.0), prop_oneof![vector(1e-6), vector(0.5)]),
+        begin in prop_oneof![0.0..2.0_f64, 1.0 - 1e-6..1.0 + 1e-6_f64],
+    ) {
+        super::brackets_of_late_rays_and_exits(pair, [from, aside], begin)?;
+    }
+
+    #[test]
+    fn brackets_within_limits_hold_the_truth(
+        pair in bodies::<DVec3>(shape),
+        (u, w) in (vector(1.0), vector(1.0)),
+        target in prop_oneof![1e-4..1e-2_f64, 0.01..0.5_f64],
+    ) {
+        super::brackets_within_limits(pair, [u, w], target)?;
+    }
 }
