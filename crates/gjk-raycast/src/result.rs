@@ -132,7 +132,8 @@ pub struct Miss<V> {
 pub struct RayCast<V: Vector> {
     /// Hit, miss, or undecided.
     pub outcome: Outcome<RayHit<V>, V>,
-    /// No point of the ray before this parameter is in the target.
+    /// No point of the ray before this parameter is in the target. Infinite of a miss, but where rounding decides whether the ray ends before
+    /// it would hit.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
     /// The point of the ray at this parameter is in the target; infinite where no such point is known, as of a hit that is a graze or a
@@ -194,8 +195,8 @@ pub struct RayExit<V: Vector> {
 pub struct LinearCast<V: Vector> {
     /// Hit, miss, or undecided. The axis of a miss points from `b` to `a`.
     pub outcome: Outcome<LinearHit<V>, V>,
-    /// The shapes have no point in common before this time. Infinite of a miss, and of one that
-    /// [leaves a contact](crate::StartInContact::IfDeeper) that it started in, which does not count.
+    /// The shapes have no point in common before this time. Infinite of a miss, but where rounding decides whether the motion ends before
+    /// they would meet; and of one that [leaves a contact](crate::StartInContact::IfDeeper) that it started in, which does not count.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
     /// The shapes have a point in common at this time; infinite where no such time is known, as of a hit that is a graze or a contact at

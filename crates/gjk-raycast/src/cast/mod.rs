@@ -133,7 +133,8 @@ fn conclude<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
                 (Outcome::Hit(hit), (lower, upper), Status::Converged)
             } else if lower > max_lambda || upper < infinity {
                 let axis = normal.unwrap_or(-ray.line.direction);
-                (Outcome::Miss(Miss { axis }), (infinity, infinity), Status::Converged)
+                let lower = if lower > max_lambda { infinity } else { lower };
+                (Outcome::Miss(Miss { axis }), (lower, infinity), Status::Converged)
             } else {
                 // What may be hit anywhere, or not at all, may be hit before the end.
                 (Outcome::Undecided, (lower, infinity), Status::Stalled)

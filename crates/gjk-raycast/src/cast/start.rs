@@ -56,7 +56,12 @@ pub(crate) fn settle_start<A, B, W>(
             Way::Unknown => {}
             Way::Leaves { axis } => cast.miss(axis),
             // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
-            Way::Enters { lambda, axis, .. } if lambda > options.max_lambda => cast.miss(axis),
+            Way::Enters { lambda, axis, lower, .. } if lambda > options.max_lambda => {
+                cast.miss(axis);
+                if lower <= options.max_lambda {
+                    cast.lower = lower;
+                }
+            }
             Way::Enters { lambda, axis, lower, entry } => cast.enter(lambda, axis, lower, entry, start.spot),
         }
     }

@@ -106,7 +106,7 @@ impl<V: Vector> Plane<V> {
         // Whether a hit at the very end counts is decided by the time as it is returned.
         let time = height.value / sinking.value;
         if !(time <= end) {
-            return miss;
+            return Crossing { lower, ..miss };
         }
         Crossing { outcome: Outcome::Hit(time), lower, upper: latest(height.most()), status: Status::Converged }
     }

@@ -119,7 +119,8 @@ impl Claim {
     fn may_be(&self, truth: &Self, end: f64) -> bool {
         let hits = !truth.is_miss && truth.upper.is_finite();
         if self.is_miss {
-            return !(hits && truth.upper < end);
+            // Where the end is within rounding of a hit, no more is claimed than that nothing is hit before.
+            return !(hits && truth.upper < end && truth.upper < self.lower);
         }
         // A later one is that of a motion that goes on.
         let claims_hit = self.upper <= end && self.upper.is_finite();
