@@ -125,7 +125,7 @@ where
     let is_known = [core_a.kind, core_b.kind].iter().any(|kind| matches!(kind, CoreKind::Point(_)));
     let known = if is_known { direct(&mut body, ray, direction_error, &wanted, &mut observer) } else { None };
     let cast = known.unwrap_or_else(|| {
-        let mut cast = cast(&mut body, ray, direction_error, Part::Whole, wanted, observer);
+        let mut cast = cast(&mut body, ray, direction_error, Part::Whole, &wanted, observer);
         settle_start(&mut cast, a, target, || Some(b), ray.direction, &wanted);
         cast
     });

@@ -65,25 +65,28 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
     {
         return Ok(answer(cast, ray));
     }
-    searched(target, ray, options, observer)
+    ray.check()?;
+    Ok(if options.min_lambda > Scalar::ZERO {
+        late(target, ray, options, &mut observer)
+    } else {
+        searched(target, ray, Part::Whole, &options, &mut observer)
+    })
 }
 
-/// The cast by a search.
+/// The cast of a part of the ray by a search; compiled once for whole and for late rays.
 #[inline(never)]
 fn searched<S: SupportMap + ?Sized>(
     target: &S,
     ray: Ray<S::Vector>,
-    options: RayCastOptions<S::Vector>,
-    mut observer: impl FnMut(Iterate<'_, S::Vector>),
-) -> Result<RayCast<S::Vector>, RayCastError> {
-    ray.check()?;
-    if options.min_lambda > Scalar::ZERO {
-        return Ok(late(target, ray, options, &mut observer));
+    part: Part<<S::Vector as Vector>::Scalar>,
+    options: &RayCastOptions<S::Vector>,
+    observer: &mut impl FnMut(Iterate<'_, S::Vector>),
+) -> RayCast<S::Vector> {
+    let mut cast = cast(&mut Single::new(target), ray, Scalar::ZERO, part, options, observer);
+    if matches!(part, Part::Whole) {
+        settle_start(&mut cast, target, Scalar::ZERO, || Point::new(ray.source).ok(), ray.direction, options);
     }
-    let mut body = Single::new(target);
-    let mut cast = cast(&mut body, ray, Scalar::ZERO, Part::Whole, options, observer);
-    settle_start(&mut cast, target, Scalar::ZERO, || Point::new(ray.source).ok(), ray.direction, &options);
-    Ok(answer(cast, ray))
+    answer(cast, ray)
 }
 
 /// The cast of a ray that begins at [`min_lambda`](RayCastOptions::min_lambda).
@@ -96,17 +99,17 @@ fn late<S: SupportMap + ?Sized>(
     target: &S,
     ray: Ray<S::Vector>,
     options: RayCastOptions<S::Vector>,
-    mut observer: &mut dyn FnMut(Iterate<'_, S::Vector>),
+    observer: &mut impl FnMut(Iterate<'_, S::Vector>),
 ) -> RayCast<S::Vector> {
     let (zero, begin) = (<S::Vector as Vector>::Scalar::ZERO, options.min_lambda);
-    let mut body = Single::new(target);
+    let body = Single::new(target);
     let (origin, size) = (body.origin(), body.extent() + body.radius());
     let whole = LocalRay::new(ray, origin, power_of_two_near(size.max((ray.source - origin).norm())));
     let error = whole.error(whole.mu(begin), zero);
     let slack = if begin <= options.max_lambda { error + error } else { zero };
     let mut from = |begin| {
         let wanted = options.with_max_lambda(options.max_lambda - begin);
-        answer(cast(&mut body, ray, zero, Part::From(begin), wanted, &mut observer), ray)
+        searched(target, ray, Part::From(begin), &wanted, observer)
     };
     let early = from(begin - slack);
     match early.outcome {

@@ -77,7 +77,7 @@ fn exit_of_line<S: SupportMap + ?Sized>(
     let infinity = <S::Vector as Vector>::Scalar::infinity();
     let wanted = RayCastOptions { min_lambda: Scalar::ZERO, max_lambda: infinity, ..options };
     let mut body = Single::new(target);
-    let cast = cast(&mut body, ray, Scalar::ZERO, Part::Reversed, wanted, |_| {});
+    let cast = cast(&mut body, ray, Scalar::ZERO, Part::Reversed, &wanted, |_| {});
     let forward = LocalRay::new(ray, body.origin(), cast.scale);
     let (reverse, error) = (|lambda| forward.reverse(lambda), forward.error_of_reverse());
     let (lower, upper) = (reverse(cast.upper) - error, reverse(cast.lower) + error);

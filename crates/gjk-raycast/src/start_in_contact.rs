@@ -3,9 +3,10 @@
 use convex_support::{Posed, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
+use crate::contact::signed_distance_of_any;
+use crate::gjk::Shape;
 use crate::{
     Distance, DistanceOptions, LinearCastOptions, Motion, SignedDistance, SignedDistanceOptions, distance_with,
-    signed_distance,
 };
 
 /// Closing speeds below this many ε of the speed are of rounding: a normal is known to a few.
@@ -13,8 +14,8 @@ const SLIDES: f64 = 16.0;
 
 /// Two shapes where a cast begins. They are asked behind pointers, so that what is rarely needed is compiled once.
 pub(crate) struct Start<'s, V: Vector> {
-    pub(crate) a: &'s dyn SupportMap<Vector = V>,
-    pub(crate) b: &'s dyn SupportMap<Vector = V>,
+    pub(crate) a: Shape<'s, V>,
+    pub(crate) b: Shape<'s, V>,
     /// How far apart they count as touching.
     pub(crate) target: V::Scalar,
 }
@@ -25,7 +26,7 @@ impl<V: Vector> Start<'_, V> {
     #[inline(never)]
     pub(crate) fn distance(&self, options: &LinearCastOptions<V>) -> Distance<V> {
         let wanted = DistanceOptions::new().with_max_iterations(options.max_iterations);
-        distance_with(&self.a, &self.b, wanted.with_sub_algorithm(options.sub_algorithm), |_| {})
+        distance_with(self.a, self.b, wanted.with_sub_algorithm(options.sub_algorithm), |_| {})
     }
 
     /// The normal of contact where the shapes only touch; `None` where they are certain to be deeper than that. And the support
@@ -41,7 +42,7 @@ impl<V: Vector> Start<'_, V> {
     fn signed_distance(&self, options: &LinearCastOptions<V>, depth_limit: V::Scalar) -> SignedDistance<V> {
         let mut wanted = SignedDistanceOptions::new().with_depth_limit(depth_limit);
         wanted.axis = options.axis;
-        signed_distance(&self.a, &self.b, wanted)
+        signed_distance_of_any(self.a, self.b, wanted)
     }
 
     /// What is known of shapes that touch or overlap at the start, to a slack that is the rounding of their places; `None` where they are
@@ -90,7 +91,7 @@ impl<V: Vector> Start<'_, V> {
         let moved = Posed::translated(self.a, velocity.unit()? * step).ok()?;
         // So small a part of the step that it is a small angle that remains in doubt.
         let tolerance = root * V::Scalar::from_f64(1.0 / 64.0);
-        Some(signed_distance(&moved, &self.b, SignedDistanceOptions::new().with_tolerance(tolerance)))
+        Some(signed_distance_of_any(&moved, self.b, SignedDistanceOptions::new().with_tolerance(tolerance)))
     }
 }
 

@@ -33,10 +33,10 @@ pub(crate) fn cast<B: Body>(
     ray: Ray<B::Vector>,
     direction_error: ScalarOf<B>,
     part: Part<ScalarOf<B>>,
-    options: RayCastOptions<B::Vector>,
+    options: &RayCastOptions<B::Vector>,
     observer: impl FnMut(Iterate<'_, B::Vector>),
 ) -> Cast<B::Vector, B::Witness> {
-    let mut bracket = Bracket::new(body, ray, direction_error, part, &options, observer);
+    let mut bracket = Bracket::new(body, ray, direction_error, part, options, observer);
     let found = match bracket.enter_ball() {
         Ok(()) => search(&mut bracket),
         Err(stop) => Err(stop),

@@ -11,9 +11,9 @@ use num_traits::Float;
 
 use super::{Cast, CastHit};
 use crate::body::PointPair;
-use crate::contact::gap_along;
+use crate::contact::{gap_along, signed_distance_of_any};
 use crate::gjk::{NearContact, Shape, near_contact};
-use crate::{Miss, Outcome, RayCastOptions, SignedDistanceOptions, Status, signed_distance};
+use crate::{Miss, Outcome, RayCastOptions, SignedDistanceOptions, Status};
 
 /// Decides about a hit that may be at the source, or about a search that stalled before it left it, of the ray that `b` draws as it
 /// moves along `direction` towards `a` swept by a ball, its skin.
@@ -204,7 +204,7 @@ fn entry<V: Vector>(
         let length = step.norm();
         // NaN ends this too.
         let Ok(moved) = Posed::translated(b, step) else { break };
-        let there = signed_distance(&a, &moved, wanted);
+        let there = signed_distance_of_any(a, &moved, wanted);
         *iterations += there.iterations;
         // The step is rounded, coordinate by coordinate.
         let rounded = roundings(4.0, length) + astray;
@@ -216,7 +216,7 @@ fn entry<V: Vector>(
             // A plane that tells so was crossed earlier.
             // The product is right to a few roundings.
             let leaving = -there.normal.dot(direction) + roundings(8.0, direction.norm());
-            let since = (gap_along(&a, &moved, there.normal) - rounded) / leaving;
+            let since = (gap_along(a, &moved, there.normal) - rounded) / leaving;
             let at = if leaving > V::Scalar::ZERO { lambda - (since - roundings(16.0, lambda)) } else { lambda };
             best.at = best.at.min(at.max(V::Scalar::ZERO));
             break;

@@ -26,5 +26,5 @@ pub(crate) use newton::across;
 pub use options::SignedDistanceOptions;
 pub(crate) use outline::{ContactPlane, Corner, Ellipse, Outline};
 pub use result::{Contact, ContactPoint, SignedDistance};
-pub(crate) use signed_distance::signed_distance_and_axis;
 pub use signed_distance::{signed_distance, signed_distance_with};
+pub(crate) use signed_distance::{signed_distance_and_axis, signed_distance_of_any};

@@ -8,7 +8,7 @@ use super::cores::{ClosedForm, Cores, Vertex};
 use super::expansion::{Expanded, expand};
 use super::{SignedDistance, SignedDistanceOptions};
 use crate::body::{PointPair, Witness as _};
-use crate::gjk::{End, Gjk};
+use crate::gjk::{End, Gjk, Shape};
 use crate::simplex::MAX_POINTS;
 use crate::{Iterate, Status};
 
@@ -73,6 +73,17 @@ where
     let mut cores = Cores::new(a, b);
     let reached = reach(&mut cores, options, |_| {});
     (reached.answer(&cores), reached.axis)
+}
+
+/// [`signed_distance`] of shapes behind pointers: compiled once for all that rarely ask it.
+#[cold]
+#[inline(never)]
+pub(crate) fn signed_distance_of_any<V: Vector>(
+    a: Shape<'_, V>,
+    b: Shape<'_, V>,
+    options: SignedDistanceOptions<V>,
+) -> SignedDistance<V> {
+    signed_distance(a, b, options)
 }
 
 /// What can be known of the cores.
