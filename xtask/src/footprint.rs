@@ -13,7 +13,8 @@ struct Program {
     name: &'static str,
     /// The crate it imports, and the features it does so with; none for the program to compare with.
     import: Option<(&'static str, &'static str)>,
-    body: &'static str,
+    /// The parts of its text.
+    body: &'static [&'static str],
 }
 
 const SUPPORT: &str = "
@@ -27,12 +28,37 @@ const HULL: &str = "
     let cube = Polytope::hull_of((0..8).map(corner)).unwrap();
     println!(\"{}\", cube.support(DVec3::splat(input())));";
 
+/// Two boxes, of which the second is turned and moved.
+const BOXES: &str = "
+    use gjk_raycast::convex_support::{Cuboid, Posed, glam::{DQuat, DVec3}};
+    let a = Cuboid::new(DVec3::splat(input())).unwrap();
+    let turn = DQuat::from_rotation_x(input());
+    let b = Posed::new(Cuboid::new(DVec3::splat(0.5 * input())).unwrap(), turn, DVec3::splat(9.0 * input())).unwrap();";
+
+const INTERSECTS: &str = "
+    println!(\"{:?}\", gjk_raycast::intersects(&a, &b, Default::default()).overlap);";
+
+const DISTANCE: &str = "
+    println!(\"{:?}\", gjk_raycast::distance(&a, &b, Default::default()).lower);";
+
+const DEPTH: &str = "
+    println!(\"{:?}\", gjk_raycast::signed_distance(&a, &b, Default::default()).lower);";
+
 const RAY: &str = "
-    use gjk_raycast::convex_support::{Cuboid, glam::DVec3};
     use gjk_raycast::{Ray, RayCastOptions, ray_cast};
-    let cuboid = Cuboid::new(DVec3::splat(input())).unwrap();
-    let ray = Ray { source: DVec3::splat(9.0 * input()), direction: DVec3::splat(-input()) };
-    println!(\"{:?}\", ray_cast(&cuboid, ray, RayCastOptions::default()).unwrap().lower);";
+    let ray = Ray { source: DVec3::splat(12.0 * input()), direction: DVec3::splat(-input()) };
+    println!(\"{:?}\", ray_cast(&b, ray, RayCastOptions::default()).unwrap().lower);";
+
+const LINEAR: &str = "
+    use gjk_raycast::{LinearCastOptions, Motion, linear_cast};
+    let motion = Motion { velocity_a: DVec3::splat(input()), velocity_b: DVec3::ZERO };
+    println!(\"{:?}\", linear_cast(&a, &b, motion, LinearCastOptions::default()).unwrap().lower);";
+
+const TURNING: &str = "
+    use gjk_raycast::{MotionCastOptions, RigidMotion, motion_cast};
+    let turning = RigidMotion::rotation(DVec3::splat(input()), DVec3::splat(9.0));
+    let options = MotionCastOptions::new().with_max_time(input());
+    println!(\"{:?}\", motion_cast(&a, turning, &b, RigidMotion::default(), options).unwrap().lower);";
 
 const ENCLOSING: &str = "
     use lj_ellipsoid::{EnclosingOptions, enclosing};
@@ -51,40 +77,63 @@ const EIGEN: &str = "
     let at = |x| Ellipsoid::new(DVec3::splat(x), DVec3::new(1.0, 2.0, input()), DQuat::IDENTITY).unwrap();
     println!(\"{}\", ellip_margin::paper::free_margin_eigen(&at(0.0), &at(9.0)).margin);";
 
+const GJK_RAYCAST: Option<(&str, &str)> = Some(("gjk-raycast", "\"std\", \"f64\""));
+
 const PROGRAMS: &[Program] = &[
-    Program { name: "nothing", import: None, body: "println!(\"{}\", input());" },
-    Program { name: "convex-support", import: Some(("convex-support", "\"std\", \"f64\"")), body: SUPPORT },
-    Program { name: "convex-support, libm", import: Some(("convex-support", "\"libm\", \"f64\"")), body: SUPPORT },
+    Program { name: "nothing", import: None, body: &["println!(\"{}\", input());"] },
+    Program { name: "convex-support", import: Some(("convex-support", "\"std\", \"f64\"")), body: &[SUPPORT] },
+    Program { name: "convex-support, libm", import: Some(("convex-support", "\"libm\", \"f64\"")), body: &[SUPPORT] },
     Program {
         name: "convex-support, hull",
         import: Some(("convex-support", "\"std\", \"f64\", \"hull\"")),
-        body: HULL,
+        body: &[HULL],
     },
     Program {
         name: "convex-support, serde",
         import: Some(("convex-support", "\"std\", \"f64\", \"serde\"")),
-        body: SUPPORT,
+        body: &[SUPPORT],
     },
     Program {
         name: "convex-support, mint",
         import: Some(("convex-support", "\"std\", \"f64\", \"mint\"")),
-        body: SUPPORT,
+        body: &[SUPPORT],
     },
-    Program { name: "gjk-raycast", import: Some(("gjk-raycast", "\"std\", \"f64\"")), body: RAY },
-    Program { name: "gjk-raycast, libm", import: Some(("gjk-raycast", "\"libm\", \"f64\"")), body: RAY },
-    Program { name: "gjk-raycast, serde", import: Some(("gjk-raycast", "\"std\", \"f64\", \"serde\"")), body: RAY },
-    Program { name: "lj-ellipsoid", import: Some(("lj-ellipsoid", "")), body: ENCLOSING },
-    Program { name: "lj-ellipsoid, rayon", import: Some(("lj-ellipsoid", "\"rayon\"")), body: ENCLOSING },
+    Program { name: "gjk-raycast, `intersects`", import: GJK_RAYCAST, body: &[BOXES, INTERSECTS] },
+    Program { name: "gjk-raycast, `distance`", import: GJK_RAYCAST, body: &[BOXES, DISTANCE] },
+    Program { name: "gjk-raycast, `signed_distance`", import: GJK_RAYCAST, body: &[BOXES, DEPTH] },
+    Program { name: "gjk-raycast, `ray_cast`", import: GJK_RAYCAST, body: &[BOXES, RAY] },
+    Program { name: "gjk-raycast, `linear_cast`", import: GJK_RAYCAST, body: &[BOXES, LINEAR] },
+    Program { name: "gjk-raycast, `motion_cast`", import: GJK_RAYCAST, body: &[BOXES, TURNING] },
+    Program {
+        name: "gjk-raycast, libm, `distance`",
+        import: Some(("gjk-raycast", "\"libm\", \"f64\"")),
+        body: &[BOXES, DISTANCE],
+    },
+    Program {
+        name: "gjk-raycast, serde, `distance`",
+        import: Some(("gjk-raycast", "\"std\", \"f64\", \"serde\"")),
+        body: &[BOXES, DISTANCE],
+    },
+    Program { name: "lj-ellipsoid", import: Some(("lj-ellipsoid", "")), body: &[ENCLOSING] },
+    Program { name: "lj-ellipsoid, rayon", import: Some(("lj-ellipsoid", "\"rayon\"")), body: &[ENCLOSING] },
     Program {
         name: "lj-ellipsoid, convex-support",
         import: Some(("lj-ellipsoid", "\"convex-support\"")),
-        body: ENCLOSING,
+        body: &[ENCLOSING],
     },
-    Program { name: "lj-ellipsoid, serde", import: Some(("lj-ellipsoid", "\"serde\"")), body: ENCLOSING },
-    Program { name: "ellip-margin", import: Some(("ellip-margin", "\"std\", \"f64\"")), body: MARGIN },
-    Program { name: "ellip-margin, libm", import: Some(("ellip-margin", "\"libm\", \"f64\"")), body: MARGIN },
-    Program { name: "ellip-margin, paper", import: Some(("ellip-margin", "\"std\", \"f64\", \"paper\"")), body: EIGEN },
-    Program { name: "ellip-margin, simd", import: Some(("ellip-margin", "\"std\", \"f64\", \"simd\"")), body: MARGIN },
+    Program { name: "lj-ellipsoid, serde", import: Some(("lj-ellipsoid", "\"serde\"")), body: &[ENCLOSING] },
+    Program { name: "ellip-margin", import: Some(("ellip-margin", "\"std\", \"f64\"")), body: &[MARGIN] },
+    Program { name: "ellip-margin, libm", import: Some(("ellip-margin", "\"libm\", \"f64\"")), body: &[MARGIN] },
+    Program {
+        name: "ellip-margin, paper",
+        import: Some(("ellip-margin", "\"std\", \"f64\", \"paper\"")),
+        body: &[EIGEN],
+    },
+    Program {
+        name: "ellip-margin, simd",
+        import: Some(("ellip-margin", "\"std\", \"f64\", \"simd\"")),
+        body: &[MARGIN],
+    },
 ];
 
 /// What a program costs.
@@ -117,7 +166,7 @@ const INTRODUCTION: &str = "\
 # What importing a crate costs
 
 Written by `cargo xtask footprint`. Each row is a program that imports one crate with one choice of features and asks one
-question: a support point, a hull, a ray cast, an enclosing ellipsoid, a margin. Packages are those that its build compiles for
+question: a support point, a hull, the function that is named, an enclosing ellipsoid, a margin. Packages are those that its build compiles for
 it, the crate included; the time is that of a clean release build, in seconds of processor time of all cores together; the
 code is what the stripped program, with link-time optimisation, is larger than one that asks nothing. The bridges to parry
 (which cost what parry costs) and the strategies for tests (`proptest`) are left out.
@@ -156,7 +205,7 @@ fn measure(folder: &Path) -> Result<String, String> {
 
 fn build(program: &Program, folder: &Path) -> Result<Cost, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
-    let here = folder.join(program.name.replace(", ", "-"));
+    let here = folder.join(program.name.replace(", ", "-").replace('`', ""));
     let failed = |why: io::Error| format!("cannot build {}: {why}", program.name);
     let import = program.import.map_or_else(String::new, |(name, features)| {
         let path = root.join("crates").join(name);
@@ -166,8 +215,10 @@ fn build(program: &Program, folder: &Path) -> Result<Cost, String> {
         "[package]\nname = \"program\"\nversion = \"0.0.0\"\nedition = \"2024\"\n[workspace]\n[dependencies]\n{import}\
          [profile.release]\nlto = true\ncodegen-units = 1\nstrip = true\npanic = \"abort\"\n"
     );
-    let source =
-        format!("fn input() -> f64 {{ std::env::args().count() as f64 }}\nfn main() {{\n{}\n}}\n", program.body);
+    let source = format!(
+        "fn input() -> f64 {{ std::env::args().count() as f64 }}\nfn main() {{\n{}\n}}\n",
+        program.body.concat()
+    );
     fs::create_dir_all(here.join("src")).map_err(failed)?;
     fs::write(here.join("Cargo.toml"), manifest).map_err(failed)?;
     fs::write(here.join("src/main.rs"), source).map_err(failed)?;
