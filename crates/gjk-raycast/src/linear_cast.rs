@@ -1,10 +1,10 @@
 //! When two shapes meet that move without turning.
 
 use convex_support::numerics::twofold::lost_in_sum;
-use convex_support::{CoreKind, Scalar, SupportMap, Vector};
+use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::Pair;
+use crate::body::{Pair, PointPair};
 use crate::cast::{CastHit, Part, cast, direct, settle_start};
 use crate::ray::check_finite;
 use crate::start_in_contact::Start;
@@ -142,32 +142,21 @@ where
     }
     let start = Start { a: &a, b: &b, target };
     answer.outcome = match cast.outcome {
-        Outcome::Hit(CastHit { lambda: time, normal, spot, witness }) => {
-            let (point, normal) = if normal.is_none() && time == zero {
-                if options.start_in_contact == StartInContact::Report {
-                    // The cast knows where the motion enters, which is behind the start or, sliding, ahead of it.
-                    let at_start = start.distance(&options);
-                    let (normal, iterations) = start.touching_normal(&options);
-                    answer.iterations += at_start.iterations + iterations;
-                    (at_start.point_b, normal)
-                } else {
-                    // Replaced below.
-                    (core_b.origin, None)
-                }
-            } else {
-                // With p a point of a's core and q one of b's, q − p + spot is what lies between them at the time, and is as
-                // long as both radii. The point that divides it as they do is on both shapes, however well the normal is known.
-                let between = (witness.b - witness.a + spot) * cast.scale;
-                let share = if core_b.radius > zero { core_b.radius / (core_a.radius + core_b.radius) } else { zero };
-                let at_start = core_b.origin + witness.b * cast.scale;
-                (at_start + motion.velocity_b * time - between * share, normal.map(|n| -n))
-            };
-            Outcome::Hit(LinearHit { time, point, normal })
+        Outcome::Hit(hit) if hit.normal.is_some() || hit.lambda != zero => {
+            Outcome::Hit(hit_on_the_way(&hit, cast.scale, [core_a, core_b], motion.velocity_b))
         }
-        Outcome::Miss(mut miss) => {
-            miss.axis = -miss.axis;
-            Outcome::Miss(miss)
+        // Where only deeper motions count, what is replaced below.
+        Outcome::Hit(_) if options.start_in_contact == StartInContact::IfDeeper => {
+            Outcome::Hit(LinearHit { time: zero, point: core_b.origin, normal: None })
         }
+        Outcome::Hit(_) => {
+            // The cast knows where the motion enters, which is behind the start or, sliding, ahead of it.
+            let at_start = start.distance(&options);
+            let (normal, iterations) = start.touching_normal(&options);
+            answer.iterations += at_start.iterations + iterations;
+            Outcome::Hit(LinearHit { time: zero, point: at_start.point_b, normal })
+        }
+        Outcome::Miss(miss) => Outcome::Miss(Miss { axis: -miss.axis }),
         Outcome::Undecided => Outcome::Undecided,
     };
     if options.start_in_contact == StartInContact::IfDeeper {
@@ -206,6 +195,25 @@ fn ray_of<V: Vector>(
     let lost = lost_in_sum(motion.velocity_b, -motion.velocity_a);
     let direction_error = if lost == V::ZERO { zero } else { lost.norm() / ray.direction.norm() };
     (ray, direction_error, wanted)
+}
+
+/// A hit of bodies that are apart at the start.
+///
+/// With `p` a point of a's core and `q` one of b's, `q − p + spot` is what lies between them at the time, and is as long as both radii.
+/// The point that divides it as they do is on both shapes, however well the normal is known.
+#[inline(always)]
+fn hit_on_the_way<V: Vector>(
+    hit: &CastHit<V, PointPair<V>>,
+    scale: V::Scalar,
+    [core_a, core_b]: [Core<V>; 2],
+    velocity_b: V,
+) -> LinearHit<V> {
+    let &CastHit { lambda: time, normal, spot, witness: PointPair { a: p, b: q } } = hit;
+    let between = (q - p + spot) * scale;
+    let zero = V::Scalar::ZERO;
+    let share = if core_b.radius > zero { core_b.radius / (core_a.radius + core_b.radius) } else { zero };
+    let at_start = core_b.origin + q * scale;
+    LinearHit { time, point: at_start + velocity_b * time - between * share, normal: normal.map(|n| -n) }
 }
 
 /// What is to be answered where only a motion that goes deeper counts as a hit, of what is otherwise. Shapes that are apart by no more
