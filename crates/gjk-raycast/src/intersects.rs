@@ -4,14 +4,17 @@ use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _, Untraced};
-use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk, is_near_contact, near_contact, rounding};
+use crate::gjk::{
+    Boxes, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, is_near_contact, near_contact, rounding,
+};
 use crate::unit::is_moderate;
 use crate::{IntersectOptions, Intersection, Iterate, Status};
 
 /// Whether two shapes have a point in common, decided as soon as it can be.
 ///
 /// This is the incremental separating axis variant of GJK: it ends at the first plane that separates the shapes, and
-/// beginning with the axis of a similar query usually finds one at once.
+/// beginning with the axis of a similar query usually finds one at once. Two boxes are asked along the normals of their faces and the
+/// products of their edges; only within rounding of contact are they searched like others.
 ///
 /// ```
 /// use convex_support::{Cuboid, Posed, glam::DVec2};
@@ -108,6 +111,15 @@ where
 {
     let size = pair.size(first.offset);
     let frame = Frame::new(pair, first.offset, size);
+    if first.point.is_some()
+        && let Some(boxes) = boxes(pair, &frame)
+    {
+        let (overlap, axis) = match boxes {
+            Boxes::Meet => (true, None),
+            Boxes::Apart(axis) => (false, Some(axis)),
+        };
+        return Intersection { overlap, axis, status: Status::Converged, iterations: 1 };
+    }
     let mut state = Gjk::new(first.direction);
     let meet = state.begin_at_closest(pair, &frame, size);
     // What begins elsewhere looks along another direction.

@@ -5,6 +5,7 @@
 mod aimed;
 mod algorithm_1;
 mod batch;
+mod boxes;
 mod brackets;
 mod cast_derivatives;
 mod cast_methods;

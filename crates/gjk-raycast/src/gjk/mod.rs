@@ -1,6 +1,7 @@
 //! GJK: the closest points of two bodies' cores, for [`distance`](crate::distance) and [`intersects`](crate::intersects)
 //! (the paper's Algorithm 2).
 
+mod boxes;
 mod near_contact;
 mod next_direction;
 mod order;
@@ -14,6 +15,7 @@ use num_traits::Float as _;
 use crate::body::{Body as _, Pair, TracedSupport};
 use crate::unit::{power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Status, SubAlgorithm};
+pub(crate) use boxes::{Boxes, boxes};
 pub(crate) use near_contact::{NEAR, NearContact, Shape, is_near_contact, near_contact};
 use next_direction::NextDirection;
 pub(crate) use order::InOrder;
