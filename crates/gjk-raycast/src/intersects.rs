@@ -103,7 +103,7 @@ fn search<A, B>(
     pair: &mut Pair<'_, A, B>,
     options: &IntersectOptions<A::Vector>,
     first: &First<A::Vector>,
-    observer: impl FnMut(Iterate<'_, A::Vector>),
+    mut observer: impl FnMut(Iterate<'_, A::Vector>),
 ) -> Intersection<A::Vector>
 where
     A: SupportMap + ?Sized,
@@ -111,9 +111,12 @@ where
 {
     let size = pair.size(first.offset);
     let frame = Frame::new(pair, first.offset, size);
-    if first.point.is_some()
+    if let Some(point) = first.point
         && let Some(boxes) = boxes(pair, &frame)
     {
+        let (zero, upper) = (Scalar::ZERO, Float::infinity());
+        let (v, w) = (first.direction, point + first.offset);
+        observer(Iterate { iteration: 0, simplex: &[], v, w, scale: Scalar::ONE, lower: zero, upper });
         let (overlap, axis) = match boxes {
             Boxes::Meet => (true, None),
             Boxes::Apart(axis) => (false, Some(axis)),

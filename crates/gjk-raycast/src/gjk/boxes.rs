@@ -1,4 +1,4 @@
-//! Whether two boxes meet, by the axes that may separate them (Gottschalk, Lin and Manocha, *OBBTree*, 1996).
+//! Whether two boxes meet, by the axes that may separate them (Gottschalk, Lin and Manocha, 1996, on trees of oriented boxes).
 //!
 //! The difference of two boxes is `c + Σ sᵢ·hᵢuᵢ + Σ tₖ·fₖ` with all `|sᵢ|, |tₖ| ≤ 1`: `uᵢ` are unit vectors along the edges of the first
 //! and `hᵢ` half their lengths, `fₖ` half edges of the second. Zero is in it unless it is beyond a facet, and each facet is spanned by two edges, so
@@ -118,9 +118,9 @@ impl Seen {
         // Those of the second.
         let products = [cross(f[1], f[2]), cross(f[2], f[0]), cross(f[0], f[1])];
         let volume = dot(products[0], f[0]).abs();
-        for k in 0..3 {
-            let (n, [l, m]) = (products[k], [(k + 1) % 3, (k + 2) % 3]);
-            let along = dot(n, *c);
+        for (k, n) in products.iter().enumerate() {
+            let [l, m] = [(k + 1) % 3, (k + 2) % 3];
+            let along = dot(*n, *c);
             let gap = along.abs() - (h[0] * n[0].abs() + h[1] * n[1].abs() + h[2] * n[2].abs() + volume);
             let length = lengths[l] * lengths[m];
             if gap > error * length {
@@ -131,8 +131,7 @@ impl Seen {
         // And those of an edge of each.
         for k in 0..3 {
             let (f, [l, m]) = (&f[k], [(k + 1) % 3, (k + 2) % 3]);
-            for i in 0..3 {
-                let [p, q] = [(i + 1) % 3, (i + 2) % 3];
+            for [i, p, q] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
                 let along = f[p] * c[q] - f[q] * c[p];
                 let reach = h[p] * f[q].abs() + h[q] * f[p].abs() + products[l][i].abs() + products[m][i].abs();
                 let gap = along.abs() - reach;
