@@ -188,6 +188,16 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         point.is_finite().then_some(Vertex { point, along: direction, pair })
     }
 
+    /// The plane by which GJK knows best how far the difference reaches beyond zero: how far at most, and the unit vector across it into
+    /// the difference.
+    #[inline]
+    pub(super) fn best_plane(
+        &self,
+        state: &Gjk<A::Vector, PointPair<A::Vector>>,
+    ) -> Option<(<A::Vector as Vector>::Scalar, A::Vector)> {
+        state.axis.unit().map(|n| (self.error_along(n) - state.lower, n))
+    }
+
     /// The point of the difference that points of both cores make.
     pub(super) fn difference(&self, PointPair { a, b }: PointPair<A::Vector>) -> A::Vector {
         a - b + self.frame.offset
@@ -306,7 +316,8 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         Some(ClosedForm { u: nearest.unit(), depth, inner: inner - error, outer: outer + error, points })
     }
 
-    /// GJK, until the distance of the cores is known, or they meet to rounding.
+    /// GJK, until the distance of the cores is known, or they meet to rounding. The shortest vector is measured, unless it is no vector,
+    /// since zero is within a simplex of full dimension.
     #[inline]
     pub(super) fn approach(
         &mut self,
@@ -322,7 +333,9 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         let options = GjkOptions { limit, ..GjkOptions::new(state.normal, max_iterations) };
         let mut cores = Peeled { pair: &mut self.pair, radii: self.peeled };
         let end = if meet { End::Overlap } else { gjk(&mut state, &mut cores, self.frame, options, None, observer) };
-        state.ensure_measured();
+        if end != End::Overlap || state.simplex.points().len() <= A::Vector::DIM {
+            state.ensure_measured();
+        }
         self.iterations += state.iterations;
         (state, end)
     }

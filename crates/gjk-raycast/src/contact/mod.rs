@@ -8,6 +8,7 @@ mod contact;
 mod cores;
 mod expansion;
 mod manifold;
+mod met;
 mod newton;
 mod options;
 mod orientation;

@@ -2,14 +2,13 @@
 
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
-use smallvec::SmallVec;
 
-use super::cores::{ClosedForm, Cores, Vertex};
+use super::cores::{ClosedForm, Cores};
 use super::expansion::{Expanded, expand};
+use super::met::Met;
 use super::{SignedDistance, SignedDistanceOptions};
-use crate::body::{PointPair, Witness as _};
+use crate::body::PointPair;
 use crate::gjk::{End, Gjk};
-use crate::simplex::MAX_POINTS;
 use crate::{Iterate, Status};
 
 /// How far apart two shapes are, or how deep in one another, and which way out is the shortest.
@@ -104,23 +103,13 @@ where
     if !cores.is_well_apart(state.length) {
         cores.sharpen();
     }
-    let apart = Reached::of_gjk(cores, &state, end);
     if end == End::Separated || !state.length.is_finite() {
-        return apart;
+        return Reached::of_gjk(cores, &mut state, end);
     }
-    let simplex: SmallVec<[_; MAX_POINTS]> = vertices(&state).collect();
-    let met = (cores.difference(apart.points), apart.points);
-    match expand(cores, &simplex, met, -apart.inner, &options, &mut observer) {
-        Some(expanded) => Reached::of_expansion(cores, &expanded, &apart, end),
-        None => Reached { status: Status::Stalled, ..apart },
+    match expand(cores, &mut state, &options, &mut observer) {
+        Some(expanded) => Reached::of_expansion(cores, &expanded, &mut state, end),
+        None => Reached { status: Status::Stalled, ..Reached::of_gjk(cores, &mut state, end) },
     }
-}
-
-/// The points that GJK ended with.
-fn vertices<V: Vector>(state: &Gjk<V, PointPair<V>>) -> impl Iterator<Item = Vertex<V>> {
-    let (points, along) = (state.simplex.points().iter(), state.simplex.along().iter());
-    let corners = points.zip(along).zip(state.simplex.weighted());
-    corners.map(|((&point, &along), (_, pair))| Vertex { point, along: along.unit().unwrap_or(along), pair })
 }
 
 /// What is known of the cores; lengths in their unit.
@@ -141,31 +130,23 @@ struct Reached<V: Vector> {
 impl<V: Vector> Reached<V> {
     /// By GJK alone.
     #[inline]
-    fn of_gjk<A, B>(cores: &Cores<'_, A, B>, state: &Gjk<V, PointPair<V>>, end: End) -> Self
+    fn of_gjk<A, B>(cores: &Cores<'_, A, B>, state: &mut Gjk<V, PointPair<V>>, end: End) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,
         B: SupportMap<Vector = V> + ?Sized,
     {
-        let (mut points, mut closest, mut sum) = (PointPair::default(), V::ZERO, V::Scalar::ZERO);
-        for (&point, (weight, pair)) in state.simplex.points().iter().zip(state.simplex.weighted()) {
-            points = points.plus(pair, weight);
-            closest += point * weight;
-            sum += weight;
-        }
-        let closest = closest / sum;
-        let infinity = V::Scalar::infinity();
+        let Met { point, points, reached } = Met::new(cores, state);
         // The direction of the closest points, or where rounding may have made that up, or they are not yet found, of the best plane.
         let is_closed = cores.is_closed(state.length - state.lower);
-        let direction = if is_closed && cores.is_well_known(closest) { closest } else { state.axis };
+        let direction = if is_closed && cores.is_well_known(point) { point } else { state.axis };
         let n = direction.unit().or_else(|| state.normal.unit()).unwrap_or_else(|| V::axis(0));
-        let axis = state.axis.unit();
-        let is_known = state.length.is_finite() && sum > V::Scalar::ZERO;
+        let plane = cores.best_plane(state);
         Self {
             u: -n,
             depth: -state.length,
-            inner: if is_known { -cores.greatest_length(closest) } else { -infinity },
-            outer: axis.map_or(infinity, |n| cores.error_along(n) - state.lower),
-            axis: axis.unwrap_or(n),
+            inner: -reached,
+            outer: plane.map_or(V::Scalar::infinity(), |(outer, _)| outer),
+            axis: plane.map_or(n, |(_, axis)| axis),
             points,
             status: end.status(),
             unexpanded: 0,
@@ -178,7 +159,13 @@ impl<V: Vector> Reached<V> {
     }
 
     /// By an expansion, after GJK had come to an end.
-    fn of_expansion<A, B>(cores: &Cores<'_, A, B>, expanded: &Expanded<V>, apart: &Self, end: End) -> Self
+    #[inline]
+    fn of_expansion<A, B>(
+        cores: &Cores<'_, A, B>,
+        expanded: &Expanded<V>,
+        state: &mut Gjk<V, PointPair<V>>,
+        end: End,
+    ) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,
         B: SupportMap<Vector = V> + ?Sized,
@@ -186,24 +173,16 @@ impl<V: Vector> Reached<V> {
         let &Expanded { way, points, inner, status, unexpanded } = expanded;
         let by_way = way.h + cores.error_along(way.u());
         // NaN is no bound.
-        let is_better = by_way < apart.outer || apart.outer.is_nan();
-        let (outer, axis) = if is_better { (by_way, -way.u()) } else { (apart.outer, apart.axis) };
+        let plane = cores.best_plane(state).filter(|(outer, _)| *outer <= by_way);
+        let (outer, axis) = plane.unwrap_or((by_way, -way.u()));
         // Where the cores turn out to be apart, GJK's points are nearer than those of a facet.
-        let is_apart = way.h < Scalar::ZERO && end != End::Overlap;
-        if is_apart {
-            let u = if is_better { way.u() } else { apart.u };
-            return Self { u, outer, axis, ..*apart };
+        if way.h < Scalar::ZERO && end != End::Overlap {
+            let apart = Self::of_gjk(cores, state, end);
+            let u = if plane.is_some() { apart.u } else { way.u() };
+            return Self { u, outer, axis, ..apart };
         }
-        Self {
-            u: way.u(),
-            depth: way.h,
-            inner,
-            outer,
-            axis,
-            points: points.unwrap_or(apart.points),
-            status,
-            unexpanded,
-        }
+        let points = points.unwrap_or_else(|| Met::new(cores, state).points);
+        Self { u: way.u(), depth: way.h, inner, outer, axis, points, status, unexpanded }
     }
 
     /// The answer in the world's unit, with the radii.
