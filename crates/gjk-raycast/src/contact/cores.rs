@@ -85,7 +85,7 @@ impl<V: Vector> Uncertainty<V> {
 
 /// How far apart shapes are along a unit vector from `b` to `a`, at least.
 pub(crate) fn gap_along<V: Vector>(a: &dyn SupportMap<Vector = V>, b: &dyn SupportMap<Vector = V>, n: V) -> V::Scalar {
-    let mut cores = Cores::new(a, b);
+    let mut cores = Cores::new(a, b, [a.core(), b.core()]);
     cores.sharpen();
     let Some(vertex) = cores.support(-n) else { return -V::Scalar::infinity() };
     let gap = (n.dot(vertex.point) - cores.error_along(n)) * cores.scale() - cores.radius();
@@ -106,9 +106,8 @@ pub(super) struct ClosedForm<V: Vector> {
 
 impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cores<'a, A, B> {
     #[inline]
-    pub(super) fn new(a: &'a A, b: &'a B) -> Self {
-        let mut pair = Pair::new(a, b);
-        let parts = [pair.core_a, pair.core_b];
+    pub(super) fn new(a: &'a A, b: &'a B, parts: [Core<A::Vector>; 2]) -> Self {
+        let mut pair = Pair::of_cores(a, b, parts);
         let [from, to] = [parts[0].origin, parts[1].origin];
         let offset = from - to;
         let size = pair.size(offset);
@@ -198,11 +197,6 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         state.axis.unit().map(|n| (self.error_along(n) - state.lower, n))
     }
 
-    /// The point of the difference that points of both cores make.
-    pub(super) fn difference(&self, PointPair { a, b }: PointPair<A::Vector>) -> A::Vector {
-        a - b + self.frame.offset
-    }
-
     /// Whether the difference reaches beyond zero along a direction.
     pub(super) fn reaches_beyond(&mut self, direction: A::Vector) -> bool {
         self.is_curved() && self.support(direction).is_some_and(|vertex| direction.dot(vertex.point) > Scalar::ZERO)
@@ -238,7 +232,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     /// and what it is wrong by across hardly adds to the length.
     pub(super) fn greatest_length(&self, p: A::Vector) -> <A::Vector as Vector>::Scalar {
         let error = self.greatest_error();
-        let along = p.unit().map_or(error, |n| self.error_along(n));
+        let along = if self.uncertainty.is_some() { p.unit().map_or(error, |n| self.error_along(n)) } else { error };
         let length = p.norm() + along;
         // Of √(l² + e²), which l + e²/2l is no less than, nothing overflows.
         if error < length { length + error * (error / length) } else { length + error }
@@ -260,32 +254,6 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     #[inline]
     pub(super) fn rounding_along(&self, n: A::Vector) -> <A::Vector as Vector>::Scalar {
         self.error_along(n) * Scalar::from_f64(2.0)
-    }
-
-    /// The plain case: cores that are well apart, of which the closest points are known in closed form. The plane of the support point
-    /// across the vector between those points is as far as they are, to rounding, or it is left to the search.
-    #[inline]
-    pub(super) fn known_apart(
-        &mut self,
-        max_iterations: usize,
-        observer: impl FnOnce(Iterate<'_, A::Vector>),
-    ) -> Option<ClosedForm<A::Vector>> {
-        let Frame { offset, scale, .. } = self.frame;
-        let points = self.pair.closest_points(offset * scale, self.size * scale)?;
-        let v = self.difference(points);
-        let length = v.length();
-        if !self.is_well_apart(length) || max_iterations == 0 {
-            return None;
-        }
-        let w = self.support(-v)?.point;
-        let lower = (v.dot(w) / length).min(length);
-        if !self.is_closed(length - lower) {
-            return None;
-        }
-        observer(Iterate { iteration: 0, simplex: &[v], v, w, scale, lower: lower * scale, upper: length * scale });
-        let n = v / length;
-        let (inner, outer) = (-self.greatest_length(v), self.error_along(n) - lower);
-        Some(ClosedForm { u: -n, depth: -length, inner, outer, points })
     }
 
     /// The way out of two parallelotopes that certainly overlap; a plane across `axis`, or across their offset, may tell them apart
@@ -316,27 +284,36 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         Some(ClosedForm { u: nearest.unit(), depth, inner: inner - error, outer: outer + error, points })
     }
 
+    /// GJK before its first step.
+    #[inline(always)]
+    pub(super) fn first_state(
+        &self,
+        options: &SignedDistanceOptions<A::Vector>,
+    ) -> Gjk<A::Vector, PointPair<A::Vector>> {
+        Gjk::new(first_direction(options.axis, self.frame.offset))
+    }
+
     /// GJK, until the distance of the cores is known, or they meet to rounding. The shortest vector is measured, unless it is no vector,
     /// since zero is within a simplex of full dimension.
     #[inline]
     pub(super) fn approach(
         &mut self,
         options: &SignedDistanceOptions<A::Vector>,
+        state: &mut Gjk<A::Vector, PointPair<A::Vector>>,
         observer: impl FnMut(Iterate<'_, A::Vector>),
-    ) -> (Gjk<A::Vector, PointPair<A::Vector>>, End) {
-        let Frame { offset, per_unit, scale, .. } = self.frame;
-        let mut state = Gjk::new(first_direction(options.axis, offset));
+    ) -> End {
+        let Frame { per_unit, scale, .. } = self.frame;
         let is_whole = self.peeled == [Scalar::ZERO; 2];
         let meet = is_whole && state.begin_at_closest(&self.pair, &self.frame, self.size * scale) == Some(true);
         let limit = (options.limit + self.radius()) * per_unit;
         let max_iterations = options.max_iterations.saturating_sub(self.iterations);
         let options = GjkOptions { limit, ..GjkOptions::new(state.normal, max_iterations) };
         let mut cores = Peeled { pair: &mut self.pair, radii: self.peeled };
-        let end = if meet { End::Overlap } else { gjk(&mut state, &mut cores, self.frame, options, None, observer) };
+        let end = if meet { End::Overlap } else { gjk(state, &mut cores, self.frame, options, None, observer) };
         if end != End::Overlap || state.simplex.points().len() <= A::Vector::DIM {
             state.ensure_measured();
         }
         self.iterations += state.iterations;
-        (state, end)
+        end
     }
 }

@@ -6,6 +6,7 @@ mod clip;
 #[allow(clippy::module_inception, reason = "a file is a public function, and the folder has the name of the subject")]
 mod contact;
 mod cores;
+mod direct;
 mod expansion;
 mod manifold;
 mod met;

@@ -4,6 +4,7 @@ use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::cores::{ClosedForm, Cores};
+use super::direct::direct;
 use super::expansion::{Expanded, expand};
 use super::met::Met;
 use super::{SignedDistance, SignedDistanceOptions};
@@ -48,14 +49,17 @@ pub fn signed_distance_with<A, B>(
     a: &A,
     b: &B,
     options: SignedDistanceOptions<A::Vector>,
-    observer: impl FnMut(Iterate<'_, A::Vector>),
+    mut observer: impl FnMut(Iterate<'_, A::Vector>),
 ) -> SignedDistance<A::Vector>
 where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let mut cores = Cores::new(a, b);
-    reach(&mut cores, options, observer).answer(&cores)
+    let parts = [a.core(), b.core()];
+    direct(a, b, parts, options.max_iterations, &mut observer).unwrap_or_else(|| {
+        let mut cores = Cores::new(a, b, parts);
+        reach(&mut cores, options, observer).answer(&cores)
+    })
 }
 
 /// [`signed_distance`], and the unit vector from `b` to `a` of the plane that proves its lower bound.
@@ -69,7 +73,11 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let mut cores = Cores::new(a, b);
+    let parts = [a.core(), b.core()];
+    if let Some(answer) = direct(a, b, parts, options.max_iterations, |_| {}) {
+        return (answer, answer.normal);
+    }
+    let mut cores = Cores::new(a, b, parts);
     let reached = reach(&mut cores, options, |_| {});
     (reached.answer(&cores), reached.axis)
 }
@@ -85,20 +93,27 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    if let Some(known) = cores.known_apart(options.max_iterations, &mut observer) {
-        return Reached::of_closed_form(known);
-    }
-    if let Some(known) = cores.closed_form(options.axis) {
+    // Rounded cores are mostly apart, which takes a search to know.
+    let is_rounded = cores.radius() > Scalar::ZERO;
+    if !is_rounded && let Some(known) = cores.closed_form(options.axis) {
         return Reached::of_closed_form(known);
     }
     // Cores that overlapped in the last frame do so still, if no plane across its normal tells them apart.
     let is_warm = options.axis.and_then(|axis| axis.unit()).is_some_and(|axis| cores.reaches_beyond(-axis));
     let is_peeled = is_warm && cores.peel();
-    let (mut state, mut end) = cores.approach(&options, &mut observer);
+    let mut state = cores.first_state(&options);
+    let mut end = cores.approach(&options, &mut state, &mut observer);
+    if is_rounded
+        && end == End::Overlap
+        && let Some(known) = cores.closed_form(options.axis)
+    {
+        return Reached::of_closed_form(known);
+    }
     // Half of what may be asked for is left for a second run.
     let may_repeat = end == End::Overlap && state.length.is_finite() && 2 * state.iterations < options.max_iterations;
     if may_repeat && !is_peeled && cores.peel() {
-        (state, end) = cores.approach(&options, &mut observer);
+        state = cores.first_state(&options);
+        end = cores.approach(&options, &mut state, &mut observer);
     }
     if !cores.is_well_apart(state.length) {
         cores.sharpen();
