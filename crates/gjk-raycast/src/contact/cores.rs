@@ -83,14 +83,35 @@ impl<V: Vector> Uncertainty<V> {
     }
 }
 
+/// How far points of the difference of two cores may be from those they stand for, as a length, in the world's unit; the same as of
+/// [`Uncertainty`], since no sum of products of coordinates is more than the product of the lengths.
+#[inline(always)]
+pub(super) fn error_of_points<A, B>(pair: &Pair<'_, A, B>) -> <A::Vector as Vector>::Scalar
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let epsilon: <A::Vector as Vector>::Scalar = Scalar::EPSILON;
+    let [from, to] = [pair.core_a.origin, pair.core_b.origin];
+    let of_sum = pair.extent() * (epsilon * Scalar::from_f64(SUM));
+    let of_offset = (from - to).norm() * (epsilon * Scalar::from_f64(OFFSET)) + lost_in_sum(from, -to).norm();
+    pair.error() + of_sum + of_offset
+}
+
+/// What a signed distance in the world's unit loses: unit vectors are so to 2ε, and the sum of the radii and the two sums that the radii
+/// and the length go into round to half of that.
+#[inline(always)]
+pub(super) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
+    S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
+}
+
 /// How far apart shapes are along a unit vector from `b` to `a`, at least.
 pub(crate) fn gap_along<V: Vector>(a: &dyn SupportMap<Vector = V>, b: &dyn SupportMap<Vector = V>, n: V) -> V::Scalar {
     let mut cores = Cores::new(a, b, [a.core(), b.core()]);
     cores.sharpen();
     let Some(vertex) = cores.support(-n) else { return -V::Scalar::infinity() };
     let gap = (n.dot(vertex.point) - cores.error_along(n)) * cores.scale() - cores.radius();
-    // As in an answer: the unit vector, the radii and the sums.
-    gap - V::Scalar::EPSILON * Scalar::from_f64(3.0) * (gap.abs() + cores.radius())
+    gap - slack(gap, cores.radius())
 }
 
 /// How deep cores are in one another, or minus how far they are apart, in closed form, in the unit.
@@ -113,13 +134,19 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         let size = pair.size(offset);
         // The distance of the cores is wanted even where their radii overlap.
         let frame = Frame { radius: Scalar::ZERO, ..Frame::new(&mut pair, offset, size) };
-        let (zero, epsilon) = (Scalar::ZERO, <A::Vector as Vector>::Scalar::EPSILON);
-        // As of Uncertainty, since no sum of products of coordinates is more than the product of the lengths.
-        let lost =
-            pair.extent() * (epsilon * Scalar::from_f64(SUM)) + offset.norm() * (epsilon * Scalar::from_f64(OFFSET));
-        let error = (pair.error() + lost + lost_in_sum(from, -to).norm()) * frame.per_unit;
-        let (size, peeled) = (size * frame.per_unit, [zero; 2]);
-        Self { pair, parts, frame, peeled, size, peeled_error: zero, error, uncertainty: None, iterations: 0 }
+        let error = error_of_points(&pair) * frame.per_unit;
+        let (zero, size) = (Scalar::ZERO, size * frame.per_unit);
+        Self {
+            pair,
+            parts,
+            frame,
+            peeled: [zero; 2],
+            size,
+            peeled_error: zero,
+            error,
+            uncertainty: None,
+            iterations: 0,
+        }
     }
 
     /// Asks the shapes how well they know their points, coordinate by coordinate, which takes longer than many a distance. Of a floor that

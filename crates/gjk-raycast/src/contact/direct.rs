@@ -4,6 +4,7 @@ use convex_support::{Core, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::SignedDistance;
+use super::cores::{error_of_points, slack};
 use crate::body::{Body as _, Pair, TracedSupport as _};
 use crate::gjk::{NEAR, rounding};
 use crate::{Iterate, Status};
@@ -30,8 +31,7 @@ where
     let size = pair.size(offset);
     let points = pair.closest_points(offset, size)?;
     let v = points.a - points.b + offset;
-    let (length, radius, noise) = (v.length(), pair.radius(), rounding(size));
-    let error = noise + pair.error();
+    let (length, radius, error) = (v.length(), pair.radius(), error_of_points(&pair));
     let near = error * Scalar::from_f64(NEAR);
     // NaN is left to the search.
     if !(length.min((length - radius).abs()) >= near) || max_iterations == 0 {
@@ -39,17 +39,19 @@ where
     }
     let w = pair.support(-v).0 + offset;
     let lower = (v.dot(w) / length).min(length);
-    if !(length - lower <= noise) {
+    if !(length - lower <= rounding(size)) {
         return None;
     }
     let (scale, upper) = (Scalar::ONE, length);
     observer(Iterate { iteration: 0, simplex: &[v], v, w, scale, lower, upper });
     let normal = v / length;
     let signed_distance = length - radius;
+    // What a vector is wrong by across adds no more to its length than that squared, by twice the length.
+    let (lower, upper) = (lower - error - radius, length + error + error * (error / length) - radius);
     Some(SignedDistance {
         signed_distance,
-        lower: lower - error - radius,
-        upper: length + error - radius,
+        lower: lower - slack(lower, radius),
+        upper: upper + slack(upper, radius),
         normal,
         point_a: pair.core_a.origin + points.a - normal * pair.core_a.radius,
         point_b: pair.core_b.origin + points.b + normal * pair.core_b.radius,

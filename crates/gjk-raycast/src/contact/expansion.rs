@@ -12,15 +12,14 @@ use crate::gjk::Gjk;
 use crate::{Iterate, Status};
 
 /// Where the boundary is smooth, a way ends at the support point but for the square root of this part of its length.
-const SMOOTH: f64 = 1e-10;
+const SMOOTH: f64 = 1e-3;
 
 /// The cosine of the angle between a facet's normal and the way out, below which the normal leans towards the way.
 const NEAR_BY: f64 = 0.9;
 
-/// The part of the way from a facet's normal to the way out that is leaned, of facets with a corner where the way ends, and of others.
-/// With more of it, ellipsoids that are nearly tied take up to all support points.
-const LEAN_AT_END: f64 = 0.65;
-const LEAN_NEAR_BY: f64 = 0.2;
+/// The part of the way from a facet's normal to the way out that is leaned, of facets with a corner where the way ends. With the whole of
+/// it, or with some of it at others, ellipsoids take more support points.
+const LEAN: f64 = 0.8;
 
 /// A plane that supports the difference, by the support point, which knows the outward unit normal that it was found along.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +39,7 @@ impl<V: Vector> WayOut<V> {
         self.vertex.along
     }
 
-    /// The unit normal of a facet with these corners, leaned towards the way where that ends at a smooth place near by.
+    /// The unit normal of a facet with these corners, leaned towards the way where that ends at one of them and at a smooth place.
     ///
     /// At a distance `x` from such a place, the ball of radius `h` about zero is `x²·(1/h − 1/R)/2` below the boundary of `K`, whose radius of
     /// curvature is `R`, and a facet of size `s` at most `s²/8R`. So the facets that the proof needs may grow in proportion to `x`. The
@@ -51,11 +50,10 @@ impl<V: Vector> WayOut<V> {
         let (u, point) = (self.u(), self.vertex.point);
         let aside = (point - u * self.h).length_squared();
         let is_smooth = aside < self.h * self.h * V::Scalar::from_f64(SMOOTH);
-        if !(is_smooth && normal.dot(u) > V::Scalar::from_f64(NEAR_BY)) {
+        if !(is_smooth && normal.dot(u) > V::Scalar::from_f64(NEAR_BY) && corners.contains(&point)) {
             return normal;
         }
-        let part = if corners.contains(&point) { LEAN_AT_END } else { LEAN_NEAR_BY };
-        (normal + (u - normal) * V::Scalar::from_f64(part)).unit().unwrap_or(normal)
+        (normal + (u - normal) * V::Scalar::from_f64(LEAN)).unit().unwrap_or(normal)
     }
 }
 

@@ -3,7 +3,7 @@
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use super::cores::{ClosedForm, Cores};
+use super::cores::{ClosedForm, Cores, slack};
 use super::direct::direct;
 use super::expansion::{Expanded, expand};
 use super::met::Met;
@@ -210,12 +210,9 @@ impl<V: Vector> Reached<V> {
         let scale = cores.scale();
         let [a, b] = &cores.parts;
         let radius = cores.radius();
-        // Unit vectors are so to 2ε, and the sum of the radii and the two sums below round to half of that.
-        let rounding = V::Scalar::from_f64(3.0) * V::Scalar::EPSILON;
         let world = |depth: V::Scalar| -(depth * scale) - radius;
-        let slack = |x: V::Scalar| rounding * (x.abs() + radius);
         let (lower, upper) = (world(self.outer), world(self.inner));
-        let (lower, upper) = (lower - slack(lower), upper + slack(upper));
+        let (lower, upper) = (lower - slack(lower, radius), upper + slack(upper, radius));
         // Numbers that are not finite, or contradict one another, are of a support map that is none, and bound nothing.
         let is_bounded = lower.is_finite() && upper.is_finite() && lower <= upper;
         let infinity = V::Scalar::infinity();
