@@ -16,8 +16,8 @@ const MAX_STEPS: usize = 12;
 const PATIENCE: usize = 2;
 
 /// Newton's method from a direction to the bottom of its basin, on one smooth piece of the boundary or along the fold between two.
-/// `others` are support points near by, one of which may be of the second piece. Whatever support points are found make the
-/// polytope larger as well. `None` where a support point is not finite.
+/// `others` are support points near by, one of which may be of the second piece. The bottom, and what was not
+/// foretold on the way there, make the polytope larger as well. `None` where a support point is not finite.
 pub(super) fn descend<A, B>(
     cores: &mut Cores<'_, A, B>,
     boundary: &mut Boundary<A::Vector>,
@@ -35,7 +35,7 @@ where
     if let Some(other) = other {
         second = Some(Piece::new(cores, other));
     }
-    let (mut failures, mut stale) = (0, Side::Far);
+    let (mut failures, mut stale, mut is_added) = (0, Side::Far, true);
     for _ in 0..MAX_STEPS {
         let u = match &second {
             Some(second) => first.step_along_fold(second, stale),
@@ -43,11 +43,14 @@ where
         };
         let Some(u) = u.filter(|_| cores.iterations < options.max_iterations && failures < PATIENCE) else { break };
         let next = WayOut::new(cores.support(u)?);
-        let _ = boundary.insert_anywhere(&next.vertex);
         let piece = Piece::new(cores, &next.vertex);
         let is_lower = next.h < way.h;
         let is_lowest = (next.h - way.h).abs() <= cores.error_along(u);
-        if first.foretells(&next.vertex) {
+        let is_foretold = first.foretells(&next.vertex);
+        if !is_foretold {
+            let _ = boundary.insert_anywhere(&next.vertex);
+        }
+        if is_foretold {
             (first, stale) = (piece, Side::Far);
         } else if is_lower {
             (second, stale) = (Some(core::mem::replace(&mut first, piece)), Side::Far);
@@ -55,13 +58,16 @@ where
             (second, stale) = (Some(piece), Side::Near);
         }
         if is_lower {
-            (way, failures) = (next, 0);
+            (way, failures, is_added) = (next, 0, !is_foretold);
         } else {
             failures += 1;
         }
         if is_lowest {
             break;
         }
+    }
+    if !is_added {
+        let _ = boundary.insert_anywhere(&way.vertex);
     }
     Some(way)
 }

@@ -15,6 +15,14 @@ const MAX_CORNERS: usize = MAX_POINTS - 1;
 /// What the rounding of a normal is, in ε, where the edges it is made of are across one another.
 const TILT: f64 = 8.0;
 
+/// The sine of the angle between two edges below which the normal of a facet is computed with more care: at most this, and where distances
+/// need not be known to the last digit so many ε, in units of what they are to be known to.
+const ACUTE: f64 = 0.125;
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Squares below this may have underflowed.
+const LEAST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+
 /// Facets that are walked over to one that a point is beyond.
 const MAX_WALK: usize = 32;
 
@@ -63,6 +71,8 @@ pub(super) struct Boundary<V: Vector> {
     facets: SmallVec<[Facet<V>; 128]>,
     /// A lower bound on the distance of zero from each facet, negative where zero is beyond it; infinite for what is no facet any more.
     inner: SmallVec<[V::Scalar; 128]>,
+    /// The squared sine of the angle between two edges below which a normal is computed with more care.
+    acute: f64,
     insertions: u32,
     /// A facet at the last point.
     last: usize,
@@ -84,8 +94,9 @@ struct Fresh {
 }
 
 impl<V: Vector> Boundary<V> {
-    /// No polytope yet.
-    pub(super) fn new() -> Self {
+    /// No polytope yet. The distances of its facets are to be known to `accuracy`, relative to its size, or as well as may be.
+    pub(super) fn new(accuracy: f64) -> Self {
+        let acute = (ROUNDING / accuracy).min(ACUTE);
         Self {
             vertices: SmallVec::new(),
             points: SmallVec::new(),
@@ -93,6 +104,7 @@ impl<V: Vector> Boundary<V> {
             ends: SmallVec::new(),
             facets: SmallVec::new(),
             inner: SmallVec::new(),
+            acute: acute * acute,
             insertions: 0,
             last: 0,
             seen: SmallVec::new(),
@@ -100,11 +112,9 @@ impl<V: Vector> Boundary<V> {
         }
     }
 
-    /// Begins with the simplex of `DIM + 1` points; `false` where it has no volume.
-    pub(super) fn begin(&mut self, points: &[Vertex<V>]) -> bool {
-        for vertex in points {
-            self.push(vertex);
-        }
+    /// Begins with the simplex of `DIM + 1` points. `false`, and there is none, where it is no thicker than the given length, or has no
+    /// volume.
+    pub(super) fn begin(&mut self, points: &[Vertex<V>], thickness: V::Scalar) -> bool {
         // Facet k is the one without vertex k, seen from outside where the last point is behind the last facet.
         let faces: &[[u16; MAX_CORNERS]] = if V::DIM == 2 {
             &[[1, 2, NONE], [2, 0, NONE], [0, 1, NONE]]
@@ -115,18 +125,40 @@ impl<V: Vector> Boundary<V> {
             let corners = order.map(|i| points[i].point);
             is_beyond(&corners[..V::DIM], points[V::DIM].point)
         };
-        if is_beyond_base([0, 1, 2]) {
-            self.vertices.swap(0, 1);
-            self.points.swap(0, 1);
-        } else if !is_beyond_base([1, 0, 2]) {
+        let is_turned = is_beyond_base([0, 1, 2]);
+        if !is_turned && !is_beyond_base([1, 0, 2]) {
             return false;
         }
-        for &corners in faces {
-            let (facet, inner) = Facet::new(&self.points, corners, corners);
+        for vertex in points {
+            self.push(vertex);
+        }
+        if is_turned {
+            self.vertices.swap(0, 1);
+            self.points.swap(0, 1);
+        }
+        for (&corners, opposite) in faces.iter().zip(0..) {
+            let (facet, inner) = Facet::new(&self.points, corners, corners, self.acute);
+            let height = inner - facet.normal.dot(self.points[opposite]);
+            // NaN fails this too.
+            if !(height > thickness) && thickness > V::Scalar::ZERO {
+                self.clear();
+                return false;
+            }
             self.inner.push(inner);
             self.facets.push(facet);
         }
         true
+    }
+
+    /// No polytope again.
+    #[cold]
+    fn clear(&mut self) {
+        self.vertices.clear();
+        self.points.clear();
+        self.begins.clear();
+        self.ends.clear();
+        self.facets.clear();
+        self.inner.clear();
     }
 
     fn push(&mut self, vertex: &Vertex<V>) {
@@ -312,6 +344,7 @@ impl<V: Vector> Boundary<V> {
         let (fresh, places, points) = (&self.fresh[..count], &self.seen[..seen.max(count)], self.points.as_slice());
         let (facets, inner) = (self.facets.as_mut_slice(), self.inner.as_mut_slice());
         let (begins, ends) = (self.begins.as_slice(), self.ends.as_slice());
+        let acute = self.acute;
         for (k, new) in fresh.iter().enumerate() {
             let [from, to] = new.ridge;
             let (corners, across) = if V::DIM == 2 {
@@ -322,7 +355,7 @@ impl<V: Vector> Boundary<V> {
                 ([apex, from, to], [new.outer, places[usize::from(next)], places[usize::from(last)]])
             };
             let index = places[k];
-            (facets[usize::from(index)], inner[usize::from(index)]) = Facet::new(points, corners, across);
+            (facets[usize::from(index)], inner[usize::from(index)]) = Facet::new(points, corners, across, acute);
             facets[usize::from(new.outer)].across[usize::from(new.back)] = index;
         }
         for &old in &places[count..] {
@@ -369,11 +402,11 @@ fn is_exactly_beyond<V: Vector>(facet: &Facet<V>, points: &[V], point: V) -> boo
 impl<V: Vector> Facet<V> {
     /// A facet with its normal, and how far its plane is from zero, as far as its corners are behind it.
     #[inline(always)]
-    fn new(points: &[V], corners: [u16; MAX_CORNERS], across: [u16; MAX_CORNERS]) -> (Self, V::Scalar) {
+    fn new(points: &[V], corners: [u16; MAX_CORNERS], across: [u16; MAX_CORNERS], acute: f64) -> (Self, V::Scalar) {
         let at: [V; MAX_CORNERS] = core::array::from_fn(|i| points[usize::from(corners[i.min(V::DIM - 1)])]);
         // Of a facet that is nearly without area no more is known than that its corners are near to one another, or to a line:
         // the direction of one of them bounds its distance well enough, and tells nothing of what is beyond.
-        let (normal, tilt) = if V::DIM == 2 { edge_normal([at[0], at[1]]) } else { triangle_normal(at) }
+        let (normal, tilt) = if V::DIM == 2 { edge_normal([at[0], at[1]]) } else { triangle_normal(at, acute) }
             .unwrap_or_else(|| (at[0].unit().unwrap_or_else(|| V::axis(0)), V::Scalar::infinity()));
         let least = |a: V::Scalar, b: V::Scalar| if b < a { b } else { a };
         let inner = least(least(normal.dot(at[0]), normal.dot(at[1])), normal.dot(at[2]));
@@ -394,30 +427,64 @@ fn edge_normal<V: Vector>([a, b]: [V; 2]) -> Option<(V, V::Scalar)> {
 }
 
 /// The unit normal of a triangle, counterclockwise as seen from where it points to, and what its rounding is for a point at unit
-/// distance: that is relative to the product of the lengths of two edges. The two shortest leave least of it, and double precision
-/// leaves none to `f32`.
+/// distance: that is relative to the product of the lengths of two edges, which the mean of their squares is no less than. Double
+/// precision leaves none of it to `f32`.
+///
+/// Any two edges will do, unless they are nearly along one another: the square of the sine of their angle less than `acute`. To choose the
+/// best two takes a processor as long as all the rest.
 #[inline(always)]
-fn triangle_normal<V: Vector>([a, b, c]: [V; 3]) -> Option<(V, V::Scalar)> {
-    let coordinate = |p: V, i: usize| p.get(i.min(V::DIM - 1)).as_f64();
-    let along = |from: V, to: V, i: usize| coordinate(to, i) - coordinate(from, i);
-    let edge = |from: V, to: V| [along(from, to, 0), along(from, to, 1), along(from, to, 2)];
-    let squared = |[x, y, z]: [f64; 3]| x * x + y * y + z * z;
-    let (ab, bc, ca) = (edge(a, b), edge(b, c), edge(c, a));
-    let (sab, sbc, sca) = (squared(ab), squared(bc), squared(ca));
-    let ([ux, uy, uz], [vx, vy, vz], product) = if sab >= sbc && sab >= sca {
-        (bc, ca, sbc * sca)
-    } else if sbc >= sca {
-        (ca, ab, sca * sab)
+fn triangle_normal<V: Vector>([a, b, c]: [V; 3], acute: f64) -> Option<(V, V::Scalar)> {
+    let (u, v) = (edge(a, b), edge(a, c));
+    let (squared_u, squared_v) = (dot(u, u), dot(v, v));
+    let normal = cross(u, v);
+    let area = dot(normal, normal);
+    if area > LEAST && area > squared_u * squared_v * acute {
+        Some(unit_normal(normal, area, squared_u + squared_v))
     } else {
-        (ab, bc, sab * sbc)
-    };
-    let normal = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
-    let area = squared(normal);
-    // Below, squares have underflowed.
-    if !(area > f64::MIN_POSITIVE / f64::EPSILON) {
-        return None;
+        careful_normal([a, b, c])
     }
+}
+
+/// The same by the two shortest edges, which leave least of the rounding.
+#[cold]
+#[inline(never)]
+fn careful_normal<V: Vector>([a, b, c]: [V; 3]) -> Option<(V, V::Scalar)> {
+    let (ab, bc, ca) = (edge(a, b), edge(b, c), edge(c, a));
+    let (sab, sbc, sca) = (dot(ab, ab), dot(bc, bc), dot(ca, ca));
+    let (u, v, sum) = if sab >= sbc && sab >= sca {
+        (bc, ca, sbc + sca)
+    } else if sbc >= sca {
+        (ca, ab, sca + sab)
+    } else {
+        (ab, bc, sab + sbc)
+    };
+    let normal = cross(u, v);
+    let area = dot(normal, normal);
+    (area > LEAST).then(|| unit_normal(normal, area, sum))
+}
+
+/// The unit vector along the product of two edges of which the squared length and the sum of the squared lengths of the edges are given,
+/// and its rounding.
+#[inline(always)]
+fn unit_normal<V: Vector>(normal: [f64; 3], area: f64, sum: f64) -> (V, V::Scalar) {
     let per = area.sqrt().recip();
-    let tilt = V::Scalar::from_f64(TILT * product.sqrt() * per) * V::Scalar::EPSILON;
-    Some((V::from_fn(|i| V::Scalar::from_f64(normal[i] * per)), tilt))
+    let tilt = V::Scalar::from_f64(0.5 * TILT * sum * per) * V::Scalar::EPSILON;
+    (V::from_fn(|i| V::Scalar::from_f64(normal[i] * per)), tilt)
+}
+
+#[inline(always)]
+fn edge<V: Vector>(from: V, to: V) -> [f64; 3] {
+    let coordinate = |p: V, i: usize| p.get(i.min(V::DIM - 1)).as_f64();
+    let along = |i: usize| coordinate(to, i) - coordinate(from, i);
+    [along(0), along(1), along(2)]
+}
+
+#[inline(always)]
+fn dot([x, y, z]: [f64; 3], [u, v, w]: [f64; 3]) -> f64 {
+    x * u + y * v + z * w
+}
+
+#[inline(always)]
+fn cross([ux, uy, uz]: [f64; 3], [vx, vy, vz]: [f64; 3]) -> [f64; 3] {
+    [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx]
 }

@@ -83,14 +83,35 @@ impl<V: Vector> Uncertainty<V> {
     }
 }
 
+/// How far points of the difference of two cores may be from those they stand for, as a length, in the world's unit; the same as of
+/// [`Uncertainty`], since no sum of products of coordinates is more than the product of the lengths.
+#[inline(always)]
+pub(super) fn error_of_points<A, B>(pair: &Pair<'_, A, B>) -> <A::Vector as Vector>::Scalar
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let epsilon: <A::Vector as Vector>::Scalar = Scalar::EPSILON;
+    let [from, to] = [pair.core_a.origin, pair.core_b.origin];
+    let of_sum = pair.extent() * (epsilon * Scalar::from_f64(SUM));
+    let of_offset = (from - to).norm() * (epsilon * Scalar::from_f64(OFFSET)) + lost_in_sum(from, -to).norm();
+    pair.error() + of_sum + of_offset
+}
+
+/// What a signed distance in the world's unit loses: unit vectors are so to 2ε, and the sum of the radii and the two sums that the radii
+/// and the length go into round to half of that.
+#[inline(always)]
+pub(super) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
+    S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
+}
+
 /// How far apart shapes are along a unit vector from `b` to `a`, at least.
 pub(crate) fn gap_along<V: Vector>(a: &dyn SupportMap<Vector = V>, b: &dyn SupportMap<Vector = V>, n: V) -> V::Scalar {
-    let mut cores = Cores::new(a, b);
+    let mut cores = Cores::new(a, b, [a.core(), b.core()]);
     cores.sharpen();
     let Some(vertex) = cores.support(-n) else { return -V::Scalar::infinity() };
     let gap = (n.dot(vertex.point) - cores.error_along(n)) * cores.scale() - cores.radius();
-    // As in an answer: the unit vector, the radii and the sums.
-    gap - V::Scalar::EPSILON * Scalar::from_f64(3.0) * (gap.abs() + cores.radius())
+    gap - slack(gap, cores.radius())
 }
 
 /// How deep cores are in one another, or minus how far they are apart, in closed form, in the unit.
@@ -106,21 +127,26 @@ pub(super) struct ClosedForm<V: Vector> {
 
 impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cores<'a, A, B> {
     #[inline]
-    pub(super) fn new(a: &'a A, b: &'a B) -> Self {
-        let mut pair = Pair::new(a, b);
-        let parts = [pair.core_a, pair.core_b];
+    pub(super) fn new(a: &'a A, b: &'a B, parts: [Core<A::Vector>; 2]) -> Self {
+        let mut pair = Pair::of_cores(a, b, parts);
         let [from, to] = [parts[0].origin, parts[1].origin];
         let offset = from - to;
         let size = pair.size(offset);
         // The distance of the cores is wanted even where their radii overlap.
         let frame = Frame { radius: Scalar::ZERO, ..Frame::new(&mut pair, offset, size) };
-        let (zero, epsilon) = (Scalar::ZERO, <A::Vector as Vector>::Scalar::EPSILON);
-        // As of Uncertainty, since no sum of products of coordinates is more than the product of the lengths.
-        let lost =
-            pair.extent() * (epsilon * Scalar::from_f64(SUM)) + offset.norm() * (epsilon * Scalar::from_f64(OFFSET));
-        let error = (pair.error() + lost + lost_in_sum(from, -to).norm()) * frame.per_unit;
-        let (size, peeled) = (size * frame.per_unit, [zero; 2]);
-        Self { pair, parts, frame, peeled, size, peeled_error: zero, error, uncertainty: None, iterations: 0 }
+        let error = error_of_points(&pair) * frame.per_unit;
+        let (zero, size) = (Scalar::ZERO, size * frame.per_unit);
+        Self {
+            pair,
+            parts,
+            frame,
+            peeled: [zero; 2],
+            size,
+            peeled_error: zero,
+            error,
+            uncertainty: None,
+            iterations: 0,
+        }
     }
 
     /// Asks the shapes how well they know their points, coordinate by coordinate, which takes longer than many a distance. Of a floor that
@@ -188,9 +214,14 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         point.is_finite().then_some(Vertex { point, along: direction, pair })
     }
 
-    /// The point of the difference that points of both cores make.
-    pub(super) fn difference(&self, PointPair { a, b }: PointPair<A::Vector>) -> A::Vector {
-        a - b + self.frame.offset
+    /// The plane by which GJK knows best how far the difference reaches beyond zero: how far at most, and the unit vector across it into
+    /// the difference.
+    #[inline]
+    pub(super) fn best_plane(
+        &self,
+        state: &Gjk<A::Vector, PointPair<A::Vector>>,
+    ) -> Option<(<A::Vector as Vector>::Scalar, A::Vector)> {
+        state.axis.unit().map(|n| (self.error_along(n) - state.lower, n))
     }
 
     /// Whether the difference reaches beyond zero along a direction.
@@ -228,7 +259,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     /// and what it is wrong by across hardly adds to the length.
     pub(super) fn greatest_length(&self, p: A::Vector) -> <A::Vector as Vector>::Scalar {
         let error = self.greatest_error();
-        let along = p.unit().map_or(error, |n| self.error_along(n));
+        let along = if self.uncertainty.is_some() { p.unit().map_or(error, |n| self.error_along(n)) } else { error };
         let length = p.norm() + along;
         // Of √(l² + e²), which l + e²/2l is no less than, nothing overflows.
         if error < length { length + error * (error / length) } else { length + error }
@@ -250,32 +281,6 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     #[inline]
     pub(super) fn rounding_along(&self, n: A::Vector) -> <A::Vector as Vector>::Scalar {
         self.error_along(n) * Scalar::from_f64(2.0)
-    }
-
-    /// The plain case: cores that are well apart, of which the closest points are known in closed form. The plane of the support point
-    /// across the vector between those points is as far as they are, to rounding, or it is left to the search.
-    #[inline]
-    pub(super) fn known_apart(
-        &mut self,
-        max_iterations: usize,
-        observer: impl FnOnce(Iterate<'_, A::Vector>),
-    ) -> Option<ClosedForm<A::Vector>> {
-        let Frame { offset, scale, .. } = self.frame;
-        let points = self.pair.closest_points(offset * scale, self.size * scale)?;
-        let v = self.difference(points);
-        let length = v.length();
-        if !self.is_well_apart(length) || max_iterations == 0 {
-            return None;
-        }
-        let w = self.support(-v)?.point;
-        let lower = (v.dot(w) / length).min(length);
-        if !self.is_closed(length - lower) {
-            return None;
-        }
-        observer(Iterate { iteration: 0, simplex: &[v], v, w, scale, lower: lower * scale, upper: length * scale });
-        let n = v / length;
-        let (inner, outer) = (-self.greatest_length(v), self.error_along(n) - lower);
-        Some(ClosedForm { u: -n, depth: -length, inner, outer, points })
     }
 
     /// The way out of two parallelotopes that certainly overlap; a plane across `axis`, or across their offset, may tell them apart
@@ -306,24 +311,36 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         Some(ClosedForm { u: nearest.unit(), depth, inner: inner - error, outer: outer + error, points })
     }
 
-    /// GJK, until the distance of the cores is known, or they meet to rounding.
+    /// GJK before its first step.
+    #[inline(always)]
+    pub(super) fn first_state(
+        &self,
+        options: &SignedDistanceOptions<A::Vector>,
+    ) -> Gjk<A::Vector, PointPair<A::Vector>> {
+        Gjk::new(first_direction(options.axis, self.frame.offset))
+    }
+
+    /// GJK, until the distance of the cores is known, or they meet to rounding. The shortest vector is measured, unless it is no vector,
+    /// since zero is within a simplex of full dimension.
     #[inline]
     pub(super) fn approach(
         &mut self,
         options: &SignedDistanceOptions<A::Vector>,
+        state: &mut Gjk<A::Vector, PointPair<A::Vector>>,
         observer: impl FnMut(Iterate<'_, A::Vector>),
-    ) -> (Gjk<A::Vector, PointPair<A::Vector>>, End) {
-        let Frame { offset, per_unit, scale, .. } = self.frame;
-        let mut state = Gjk::new(first_direction(options.axis, offset));
+    ) -> End {
+        let Frame { per_unit, scale, .. } = self.frame;
         let is_whole = self.peeled == [Scalar::ZERO; 2];
         let meet = is_whole && state.begin_at_closest(&self.pair, &self.frame, self.size * scale) == Some(true);
         let limit = (options.limit + self.radius()) * per_unit;
         let max_iterations = options.max_iterations.saturating_sub(self.iterations);
         let options = GjkOptions { limit, ..GjkOptions::new(state.normal, max_iterations) };
         let mut cores = Peeled { pair: &mut self.pair, radii: self.peeled };
-        let end = if meet { End::Overlap } else { gjk(&mut state, &mut cores, self.frame, options, None, observer) };
-        state.ensure_measured();
+        let end = if meet { End::Overlap } else { gjk(state, &mut cores, self.frame, options, None, observer) };
+        if end != End::Overlap || state.simplex.points().len() <= A::Vector::DIM {
+            state.ensure_measured();
+        }
         self.iterations += state.iterations;
-        (state, end)
+        end
     }
 }

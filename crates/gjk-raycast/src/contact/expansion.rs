@@ -5,20 +5,21 @@ use num_traits::Float as _;
 
 use super::boundary::Boundary;
 use super::cores::{Cores, Vertex};
+use super::met::Met;
 use super::{SignedDistanceOptions, basin, start, witness};
 use crate::body::PointPair;
+use crate::gjk::Gjk;
 use crate::{Iterate, Status};
 
 /// Where the boundary is smooth, a way ends at the support point but for the square root of this part of its length.
-const SMOOTH: f64 = 1e-10;
+const SMOOTH: f64 = 1e-3;
 
 /// The cosine of the angle between a facet's normal and the way out, below which the normal leans towards the way.
 const NEAR_BY: f64 = 0.9;
 
-/// The part of the way from a facet's normal to the way out that is leaned, of facets with a corner where the way ends, and of others.
-/// With more of it, ellipsoids that are nearly tied take up to all support points.
-const LEAN_AT_END: f64 = 0.65;
-const LEAN_NEAR_BY: f64 = 0.2;
+/// The part of the way from a facet's normal to the way out that is leaned, of facets with a corner where the way ends. With the whole of
+/// it, or with some of it at others, ellipsoids take more support points.
+const LEAN: f64 = 0.8;
 
 /// A plane that supports the difference, by the support point, which knows the outward unit normal that it was found along.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +39,7 @@ impl<V: Vector> WayOut<V> {
         self.vertex.along
     }
 
-    /// The unit normal of a facet with these corners, leaned towards the way where that ends at a smooth place near by.
+    /// The unit normal of a facet with these corners, leaned towards the way where that ends at one of them and at a smooth place.
     ///
     /// At a distance `x` from such a place, the ball of radius `h` about zero is `x²·(1/h − 1/R)/2` below the boundary of `K`, whose radius of
     /// curvature is `R`, and a facet of size `s` at most `s²/8R`. So the facets that the proof needs may grow in proportion to `x`. The
@@ -49,11 +50,10 @@ impl<V: Vector> WayOut<V> {
         let (u, point) = (self.u(), self.vertex.point);
         let aside = (point - u * self.h).length_squared();
         let is_smooth = aside < self.h * self.h * V::Scalar::from_f64(SMOOTH);
-        if !(is_smooth && normal.dot(u) > V::Scalar::from_f64(NEAR_BY)) {
+        if !(is_smooth && normal.dot(u) > V::Scalar::from_f64(NEAR_BY) && corners.contains(&point)) {
             return normal;
         }
-        let part = if corners.contains(&point) { LEAN_AT_END } else { LEAN_NEAR_BY };
-        (normal + (u - normal) * V::Scalar::from_f64(part)).unit().unwrap_or(normal)
+        (normal + (u - normal) * V::Scalar::from_f64(LEAN)).unit().unwrap_or(normal)
     }
 }
 
@@ -78,17 +78,13 @@ pub(super) struct Expanded<V: Vector> {
 /// queries and penetration depth computation on 3D game objects*, 2001). Zero need not be within the polytope at first. Facets that
 /// it is beyond are the nearest by their sign, and grow until it is within, or one of them separates it from `K`. Until then how far
 /// it is beyond their planes proves nothing, since two planes may meet at an angle as sharp as one likes; zero is no farther from `K`
-/// than GJK has `reached`, or than a point of the polytope.
+/// than the point that GJK has met, or than a point of the polytope.
 ///
 /// Where `K` is smooth its facets never are of the boundary, and the polytope is only to show that there is no shorter way; the
 /// way itself is found by Newton's method, in each basin that a facet leads to.
-///
-/// GJK has `met` a point of `K`, and the points of both cores that it is made of; it knows that zero is no farther from `K` than `reached`.
 pub(super) fn expand<A, B>(
     cores: &mut Cores<'_, A, B>,
-    simplex: &[Vertex<A::Vector>],
-    met: (A::Vector, PointPair<A::Vector>),
-    reached: <A::Vector as Vector>::Scalar,
+    state: &mut Gjk<A::Vector, PointPair<A::Vector>>,
     options: &SignedDistanceOptions<A::Vector>,
     mut observer: impl FnMut(Iterate<'_, A::Vector>),
 ) -> Option<Expanded<A::Vector>>
@@ -96,21 +92,24 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
+    let is_curved = cores.is_curved();
+    let relative = if is_curved { options.tolerance } else { Scalar::ZERO };
+    let tolerance = relative * cores.size;
     // In its place from the beginning: it is a large object to move.
-    let mut boundary = Boundary::new();
-    let mut way = match start::start(cores, simplex, &mut boundary)? {
-        start::Start::Flat(way) => return Some(flat(way, reached)),
+    let mut boundary = Boundary::new(relative.max(Scalar::EPSILON).as_f64());
+    let mut way = match start::start(cores, state, &mut boundary)? {
+        start::Start::Flat(way) => return Some(flat(way, Met::new(cores, state).reached)),
         start::Start::Full(way) => way,
     };
-    let is_curved = cores.is_curved();
-    let tolerance = if is_curved { options.tolerance * cores.size } else { Scalar::ZERO };
     let depth_limit = (options.depth_limit - cores.radius()) / cores.scale();
     let mut enough = tolerance.max(cores.rounding_along(way.u()));
+    let mut met = None;
     // Whether directions may lean; not next after one whose support point was not beyond the facet.
     let mut may_lean = is_curved;
     let status = loop {
         let (nearest, inner) = boundary.nearest();
-        let inner = if inner > Scalar::ZERO { inner } else { -reached };
+        let inner =
+            if inner > Scalar::ZERO { inner } else { -met.get_or_insert_with(|| Met::new(cores, state)).reached };
         let normal = boundary.facet_at(nearest).normal;
         // NaN fails this too.
         if !(way.h - inner > enough) {
@@ -169,19 +168,18 @@ where
         certain
     } else {
         let (foot, _) = witness::at_foot(&boundary, nearest);
+        let Met { reached, .. } = *met.get_or_insert_with(|| Met::new(cores, state));
         -cores.greatest_length(foot).min(reached)
     };
     let status = match status {
         Status::Stalled if way.h - inner <= cores.rounding_along(way.u()) * Scalar::from_f64(2.0) => Status::Converged,
         status => status,
     };
-    Some(Expanded {
-        way,
-        points: Some(witness::points(&boundary, nearest, &way, met)),
-        inner,
-        status,
-        unexpanded: boundary.len(),
-    })
+    let points = witness::points(&boundary, nearest, &way, cores.rounding_along(way.u()), || {
+        let Met { point, points, .. } = *met.get_or_insert_with(|| Met::new(cores, state));
+        (point, points)
+    });
+    Some(Expanded { way, points: Some(points), inner, status, unexpanded: boundary.len() })
 }
 
 /// A difference without an inside: the way out is across it, and no length.

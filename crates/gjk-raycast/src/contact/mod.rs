@@ -6,8 +6,10 @@ mod clip;
 #[allow(clippy::module_inception, reason = "a file is a public function, and the folder has the name of the subject")]
 mod contact;
 mod cores;
+mod direct;
 mod expansion;
 mod manifold;
+mod met;
 mod newton;
 mod options;
 mod orientation;

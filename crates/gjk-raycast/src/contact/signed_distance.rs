@@ -2,14 +2,14 @@
 
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
-use smallvec::SmallVec;
 
-use super::cores::{ClosedForm, Cores, Vertex};
+use super::cores::{ClosedForm, Cores, slack};
+use super::direct::direct;
 use super::expansion::{Expanded, expand};
+use super::met::Met;
 use super::{SignedDistance, SignedDistanceOptions};
-use crate::body::{PointPair, Witness as _};
+use crate::body::PointPair;
 use crate::gjk::{End, Gjk, Shape};
-use crate::simplex::MAX_POINTS;
 use crate::{Iterate, Status};
 
 /// How far apart two shapes are, or how deep in one another, and which way out is the shortest.
@@ -49,14 +49,17 @@ pub fn signed_distance_with<A, B>(
     a: &A,
     b: &B,
     options: SignedDistanceOptions<A::Vector>,
-    observer: impl FnMut(Iterate<'_, A::Vector>),
+    mut observer: impl FnMut(Iterate<'_, A::Vector>),
 ) -> SignedDistance<A::Vector>
 where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let mut cores = Cores::new(a, b);
-    reach(&mut cores, options, observer).answer(&cores)
+    let parts = [a.core(), b.core()];
+    direct(a, b, parts, options.max_iterations, &mut observer).unwrap_or_else(|| {
+        let mut cores = Cores::new(a, b, parts);
+        reach(&mut cores, options, observer).answer(&cores)
+    })
 }
 
 /// [`signed_distance`], and the unit vector from `b` to `a` of the plane that proves its lower bound.
@@ -70,7 +73,11 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let mut cores = Cores::new(a, b);
+    let parts = [a.core(), b.core()];
+    if let Some(answer) = direct(a, b, parts, options.max_iterations, |_| {}) {
+        return (answer, answer.normal);
+    }
+    let mut cores = Cores::new(a, b, parts);
     let reached = reach(&mut cores, options, |_| {});
     (reached.answer(&cores), reached.axis)
 }
@@ -97,41 +104,38 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    if let Some(known) = cores.known_apart(options.max_iterations, &mut observer) {
-        return Reached::of_closed_form(known);
-    }
-    if let Some(known) = cores.closed_form(options.axis) {
+    // Rounded cores are mostly apart, which takes a search to know.
+    let is_rounded = cores.radius() > Scalar::ZERO;
+    if !is_rounded && let Some(known) = cores.closed_form(options.axis) {
         return Reached::of_closed_form(known);
     }
     // Cores that overlapped in the last frame do so still, if no plane across its normal tells them apart.
     let is_warm = options.axis.and_then(|axis| axis.unit()).is_some_and(|axis| cores.reaches_beyond(-axis));
     let is_peeled = is_warm && cores.peel();
-    let (mut state, mut end) = cores.approach(&options, &mut observer);
+    let mut state = cores.first_state(&options);
+    let mut end = cores.approach(&options, &mut state, &mut observer);
+    if is_rounded
+        && end == End::Overlap
+        && let Some(known) = cores.closed_form(options.axis)
+    {
+        return Reached::of_closed_form(known);
+    }
     // Half of what may be asked for is left for a second run.
     let may_repeat = end == End::Overlap && state.length.is_finite() && 2 * state.iterations < options.max_iterations;
     if may_repeat && !is_peeled && cores.peel() {
-        (state, end) = cores.approach(&options, &mut observer);
+        state = cores.first_state(&options);
+        end = cores.approach(&options, &mut state, &mut observer);
     }
     if !cores.is_well_apart(state.length) {
         cores.sharpen();
     }
-    let apart = Reached::of_gjk(cores, &state, end);
     if end == End::Separated || !state.length.is_finite() {
-        return apart;
+        return Reached::of_gjk(cores, &mut state, end);
     }
-    let simplex: SmallVec<[_; MAX_POINTS]> = vertices(&state).collect();
-    let met = (cores.difference(apart.points), apart.points);
-    match expand(cores, &simplex, met, -apart.inner, &options, &mut observer) {
-        Some(expanded) => Reached::of_expansion(cores, &expanded, &apart, end),
-        None => Reached { status: Status::Stalled, ..apart },
+    match expand(cores, &mut state, &options, &mut observer) {
+        Some(expanded) => Reached::of_expansion(cores, &expanded, &mut state, end),
+        None => Reached { status: Status::Stalled, ..Reached::of_gjk(cores, &mut state, end) },
     }
-}
-
-/// The points that GJK ended with.
-fn vertices<V: Vector>(state: &Gjk<V, PointPair<V>>) -> impl Iterator<Item = Vertex<V>> {
-    let (points, along) = (state.simplex.points().iter(), state.simplex.along().iter());
-    let corners = points.zip(along).zip(state.simplex.weighted());
-    corners.map(|((&point, &along), (_, pair))| Vertex { point, along: along.unit().unwrap_or(along), pair })
 }
 
 /// What is known of the cores; lengths in their unit.
@@ -152,31 +156,23 @@ struct Reached<V: Vector> {
 impl<V: Vector> Reached<V> {
     /// By GJK alone.
     #[inline]
-    fn of_gjk<A, B>(cores: &Cores<'_, A, B>, state: &Gjk<V, PointPair<V>>, end: End) -> Self
+    fn of_gjk<A, B>(cores: &Cores<'_, A, B>, state: &mut Gjk<V, PointPair<V>>, end: End) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,
         B: SupportMap<Vector = V> + ?Sized,
     {
-        let (mut points, mut closest, mut sum) = (PointPair::default(), V::ZERO, V::Scalar::ZERO);
-        for (&point, (weight, pair)) in state.simplex.points().iter().zip(state.simplex.weighted()) {
-            points = points.plus(pair, weight);
-            closest += point * weight;
-            sum += weight;
-        }
-        let closest = closest / sum;
-        let infinity = V::Scalar::infinity();
+        let Met { point, points, reached } = Met::new(cores, state);
         // The direction of the closest points, or where rounding may have made that up, or they are not yet found, of the best plane.
         let is_closed = cores.is_closed(state.length - state.lower);
-        let direction = if is_closed && cores.is_well_known(closest) { closest } else { state.axis };
+        let direction = if is_closed && cores.is_well_known(point) { point } else { state.axis };
         let n = direction.unit().or_else(|| state.normal.unit()).unwrap_or_else(|| V::axis(0));
-        let axis = state.axis.unit();
-        let is_known = state.length.is_finite() && sum > V::Scalar::ZERO;
+        let plane = cores.best_plane(state);
         Self {
             u: -n,
             depth: -state.length,
-            inner: if is_known { -cores.greatest_length(closest) } else { -infinity },
-            outer: axis.map_or(infinity, |n| cores.error_along(n) - state.lower),
-            axis: axis.unwrap_or(n),
+            inner: -reached,
+            outer: plane.map_or(V::Scalar::infinity(), |(outer, _)| outer),
+            axis: plane.map_or(n, |(_, axis)| axis),
             points,
             status: end.status(),
             unexpanded: 0,
@@ -189,7 +185,13 @@ impl<V: Vector> Reached<V> {
     }
 
     /// By an expansion, after GJK had come to an end.
-    fn of_expansion<A, B>(cores: &Cores<'_, A, B>, expanded: &Expanded<V>, apart: &Self, end: End) -> Self
+    #[inline]
+    fn of_expansion<A, B>(
+        cores: &Cores<'_, A, B>,
+        expanded: &Expanded<V>,
+        state: &mut Gjk<V, PointPair<V>>,
+        end: End,
+    ) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,
         B: SupportMap<Vector = V> + ?Sized,
@@ -197,24 +199,16 @@ impl<V: Vector> Reached<V> {
         let &Expanded { way, points, inner, status, unexpanded } = expanded;
         let by_way = way.h + cores.error_along(way.u());
         // NaN is no bound.
-        let is_better = by_way < apart.outer || apart.outer.is_nan();
-        let (outer, axis) = if is_better { (by_way, -way.u()) } else { (apart.outer, apart.axis) };
+        let plane = cores.best_plane(state).filter(|(outer, _)| *outer <= by_way);
+        let (outer, axis) = plane.unwrap_or((by_way, -way.u()));
         // Where the cores turn out to be apart, GJK's points are nearer than those of a facet.
-        let is_apart = way.h < Scalar::ZERO && end != End::Overlap;
-        if is_apart {
-            let u = if is_better { way.u() } else { apart.u };
-            return Self { u, outer, axis, ..*apart };
+        if way.h < Scalar::ZERO && end != End::Overlap {
+            let apart = Self::of_gjk(cores, state, end);
+            let u = if plane.is_some() { apart.u } else { way.u() };
+            return Self { u, outer, axis, ..apart };
         }
-        Self {
-            u: way.u(),
-            depth: way.h,
-            inner,
-            outer,
-            axis,
-            points: points.unwrap_or(apart.points),
-            status,
-            unexpanded,
-        }
+        let points = points.unwrap_or_else(|| Met::new(cores, state).points);
+        Self { u: way.u(), depth: way.h, inner, outer, axis, points, status, unexpanded }
     }
 
     /// The answer in the world's unit, with the radii.
@@ -227,12 +221,9 @@ impl<V: Vector> Reached<V> {
         let scale = cores.scale();
         let [a, b] = &cores.parts;
         let radius = cores.radius();
-        // Unit vectors are so to 2ε, and the sum of the radii and the two sums below round to half of that.
-        let rounding = V::Scalar::from_f64(3.0) * V::Scalar::EPSILON;
         let world = |depth: V::Scalar| -(depth * scale) - radius;
-        let slack = |x: V::Scalar| rounding * (x.abs() + radius);
         let (lower, upper) = (world(self.outer), world(self.inner));
-        let (lower, upper) = (lower - slack(lower), upper + slack(upper));
+        let (lower, upper) = (lower - slack(lower, radius), upper + slack(upper, radius));
         // Numbers that are not finite, or contradict one another, are of a support map that is none, and bound nothing.
         let is_bounded = lower.is_finite() && upper.is_finite() && lower <= upper;
         let infinity = V::Scalar::infinity();

@@ -1,12 +1,13 @@
 //! The first polytope of an expansion.
 
-use convex_support::{SupportMap, Vector};
+use convex_support::{Scalar, SupportMap, Vector};
 
 use super::boundary::Boundary;
 use super::cores::{Cores, Vertex};
 use super::expansion::WayOut;
-use crate::simplex::MAX_POINTS;
-use crate::simplex::cross;
+use crate::body::PointPair;
+use crate::gjk::Gjk;
+use crate::simplex::{MAX_POINTS, cross};
 
 /// Where an expansion begins, with the best way out that was met on the way there.
 #[derive(Clone, Copy, Debug)]
@@ -19,19 +20,40 @@ pub(super) enum Start<V: Vector> {
 
 /// A simplex of support points, beginning with those that GJK ended with; `None` where a support point is not finite.
 ///
-/// As long as the points span no volume, the points farthest both ways across them are looked for, and the farther one is added.
+/// Cores that are well in one another have led to a simplex that is thicker than rounding. As long as points span no volume, those
+/// farthest both ways across them are looked for, and the farther one is added.
+#[inline]
 pub(super) fn start<A, B>(
     cores: &mut Cores<'_, A, B>,
-    simplex: &[Vertex<A::Vector>],
+    state: &Gjk<A::Vector, PointPair<A::Vector>>,
     boundary: &mut Boundary<A::Vector>,
 ) -> Option<Start<A::Vector>>
 where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
+    let known = state.simplex.points().len();
+    let is_curved = cores.is_curved();
+    let vertex = |i: usize| {
+        let along = state.simplex.along()[i];
+        // Nothing asks for the length of others.
+        let along = if is_curved { along.unit().unwrap_or(along) } else { along };
+        Vertex { point: state.simplex.points()[i], along, pair: state.simplex.witnesses()[i] }
+    };
+    if known > A::Vector::DIM
+        && let Some(n) = state.axis.unit()
+    {
+        let corners: [_; MAX_POINTS] = core::array::from_fn(|i| vertex(i.min(known - 1)));
+        let thickness = cores.greatest_error() * Scalar::from_f64(2.0);
+        if boundary.begin(&corners[..known], thickness) {
+            // The support point of GJK's best plane may be left behind.
+            let vertex = Vertex { along: -n, ..corners[0] };
+            return Some(Start::Full(WayOut { h: -state.lower, vertex }));
+        }
+    }
     let mut span = Span::new();
-    for &vertex in simplex {
-        let _ = span.add(vertex, |u| cores.rounding_along(u));
+    for i in 0..known {
+        let _ = span.add(vertex(i), |u| cores.rounding_along(u));
     }
     let mut best: Option<WayOut<A::Vector>> = None;
     while span.len < A::Vector::DIM + 1 {
@@ -50,7 +72,7 @@ where
             return Some(Start::Flat(least));
         }
     }
-    if !boundary.begin(&span.points[..span.len]) {
+    if !boundary.begin(&span.points[..span.len], Scalar::ZERO) {
         return None;
     }
     let best = match best {

@@ -8,6 +8,9 @@ use super::expansion::WayOut;
 use crate::body::{PointPair, Witness as _};
 use crate::simplex::{MAX_POINTS, cross, project};
 
+/// The part of rounding that a boundary may be below a plane to count as flat: that of the difference is flatter than those of the shapes.
+const FLAT: f64 = 1.0 / 1024.0;
+
 /// Facets that are walked over at most.
 const MAX_WALK: usize = 64;
 
@@ -16,22 +19,37 @@ const MAX_WALK: usize = 64;
 /// Where the difference is smooth there, they are those that the support point is made of. Where it has a face or an edge, they are
 /// the weighted sums of the corners of the facet that zero's foot is in. That facet is beside another end where several ways are as
 /// short, as of shapes about one centre; then it is the one that the way out leads through. Which of these it is shows by which comes
-/// nearest to `h·u`, as points of cores that barely meet do which GJK has `met`; what is left of the difference is split between both.
+/// nearest to `h·u`, as points of cores that barely meet do which GJK has `met`; the first to come within `rounding` will do. What is left
+/// of the difference is split between both.
+///
+/// A support point is beside the end, if at all, in the plane through it. A ball of radius `h` touches the boundary there from within,
+/// so that it is below that plane by no more than `x²/2h` at a distance `x`.
 pub(super) fn points<V: Vector>(
     boundary: &Boundary<V>,
     nearest: usize,
     way: &WayOut<V>,
-    met: (V, PointPair<V>),
+    rounding: V::Scalar,
+    met: impl FnOnce() -> (V, PointPair<V>),
 ) -> PointPair<V> {
     let u = way.u();
     let end = u * way.h;
-    let rest = |(point, _): &(V, PointPair<V>)| (end - *point).length_squared();
+    let rest = |point: V| (end - point).length_squared();
     let mut best = (way.vertex.point, way.vertex.pair);
-    let on_way = (boundary.facet_at(nearest).normal != u).then(|| on_way(boundary, nearest, u));
-    for found in [Some(at_foot(boundary, nearest)), on_way, Some(met)].into_iter().flatten() {
-        if rest(&found) < rest(&best) {
-            best = found;
+    let mut least = rest(best.0);
+    let enough = rounding * rounding;
+    let is_end = least <= enough.max(rounding * way.h * V::Scalar::from_f64(FLAT));
+    let mut consider = |found: (V, PointPair<V>)| {
+        let rest = rest(found.0);
+        if rest < least {
+            (best, least) = (found, rest);
         }
+        rest <= enough
+    };
+    if !is_end && !consider(at_foot(boundary, nearest)) {
+        if boundary.facet_at(nearest).normal != u {
+            let _ = consider(on_way(boundary, nearest, u));
+        }
+        let _ = consider(met());
     }
     let (point, pair) = best;
     let half = (end - point) * V::Scalar::from_f64(0.5);

@@ -144,6 +144,11 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
         &self.along[..self.len]
     }
 
+    /// What the points are made of.
+    pub(crate) fn witnesses(&self) -> &[W] {
+        &self.witnesses[..self.len]
+    }
+
     /// The weights and witnesses.
     pub(crate) fn weighted(&self) -> impl Iterator<Item = (V::Scalar, W)> + '_ {
         (0..self.len).map(|i| (self.weights[i], self.witnesses[i]))

@@ -1,0 +1,63 @@
+//! The plain case: shapes of which the closest points are known in closed form.
+
+use convex_support::{Core, Scalar, SupportMap, Vector};
+use num_traits::Float as _;
+
+use super::SignedDistance;
+use super::cores::{error_of_points, slack};
+use crate::body::{Body as _, Pair, TracedSupport as _};
+use crate::gjk::{NEAR, rounding};
+use crate::{Iterate, Status};
+
+/// The signed distance of shapes whose cores are apart by more than a few errors, and whose closest points are known in closed form, as of
+/// a ball and a box, whether the ball reaches the box or not. There is nothing to search, and all is done in the world's unit. Near contact
+/// they are looked at more closely.
+///
+/// The plane of the support point across the vector between those points is as far as they are, to rounding, or it is left to the search.
+#[inline(always)]
+pub(super) fn direct<A, B>(
+    a: &A,
+    b: &B,
+    cores: [Core<A::Vector>; 2],
+    max_iterations: usize,
+    observer: impl FnOnce(Iterate<'_, A::Vector>),
+) -> Option<SignedDistance<A::Vector>>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let mut pair = Pair::of_cores(a, b, cores);
+    let offset = pair.core_a.origin - pair.core_b.origin;
+    let size = pair.size(offset);
+    let points = pair.closest_points(offset, size)?;
+    let v = points.a - points.b + offset;
+    let (length, radius, error) = (v.length(), pair.radius(), error_of_points(&pair));
+    let near = error * Scalar::from_f64(NEAR);
+    // NaN is left to the search.
+    if !(length.min((length - radius).abs()) >= near) || max_iterations == 0 {
+        return None;
+    }
+    let w = pair.support(-v).0 + offset;
+    let lower = (v.dot(w) / length).min(length);
+    if !(length - lower <= rounding(size)) {
+        return None;
+    }
+    let (scale, upper) = (Scalar::ONE, length);
+    observer(Iterate { iteration: 0, simplex: &[v], v, w, scale, lower, upper });
+    let normal = v / length;
+    let signed_distance = length - radius;
+    // What a vector is wrong by across adds no more to its length than that squared, by twice the length.
+    let (lower, upper) = (lower - error - radius, length + error + error * (error / length) - radius);
+    Some(SignedDistance {
+        signed_distance,
+        lower: lower - slack(lower, radius),
+        upper: upper + slack(upper, radius),
+        normal,
+        point_a: pair.core_a.origin + points.a - normal * pair.core_a.radius,
+        point_b: pair.core_b.origin + points.b + normal * pair.core_b.radius,
+        overlap: signed_distance <= Scalar::ZERO,
+        status: Status::Converged,
+        iterations: 1,
+        unexpanded: 0,
+    })
+}
