@@ -14,6 +14,12 @@ pub struct Core<V: Vector> {
     pub origin: V,
     /// The radius of the ball that sweeps the core.
     pub radius: V::Scalar,
+    /// The radius of a ball that rolls around within the core: the core is some smaller convex set swept by it. A smaller radius is right
+    /// as well, and 0 always.
+    ///
+    /// A ball of radius `r` rolls within a smooth convex body if no radius of curvature is less than `r` (Blaschke's rolling theorem).
+    /// What sweeps two shapes beside their radii lets a penetration depth less than that be found as a distance.
+    pub rolling_radius: V::Scalar,
     /// An upper bound on the length of every vector that [`core_support`](crate::SupportMap::core_support) computes with, which is
     /// what its rounding errors are proportional to.
     pub extent: V::Scalar,

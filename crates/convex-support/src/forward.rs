@@ -61,6 +61,18 @@ macro_rules! forward {
                 $inner.core_line_crossing(source, direction, radius)
             }
 
+            #[inline(always)]
+            fn certain_crossing(
+                &self,
+                source: $V,
+                direction: $V,
+                radius: <$V as $crate::Vector>::Scalar,
+                error: <$V as $crate::Vector>::Scalar,
+            ) -> Option<$crate::CertainCrossing<$V>> {
+                let $this = self;
+                $inner.certain_crossing(source, direction, radius, error)
+            }
+
             #[inline]
             fn core_support_feature(
                 &self,
@@ -70,12 +82,6 @@ macro_rules! forward {
             ) {
                 let $this = self;
                 $inner.core_support_feature(direction, slab, feature);
-            }
-
-            #[inline]
-            fn core_rolling_radius(&self) -> <$V as $crate::Vector>::Scalar {
-                let $this = self;
-                $inner.core_rolling_radius()
             }
 
             #[inline]
@@ -119,7 +125,6 @@ mod tests {
         assert_eq!(pointer.core().kind, CoreKind::Polytope, "a segment is the core");
         assert_eq!(pointer.core_support_hessian(d, [d, d]), capsule.core_support_hessian(d, [d, d]));
         assert_eq!(pointer.rounding(), capsule.rounding());
-        assert_eq!(pointer.core_rolling_radius(), capsule.core_rolling_radius());
         assert_eq!(pointer.core_parallelotope(), capsule.core_parallelotope());
         assert!(pointer.core_parallelotope().is_some(), "a segment");
         assert_eq!(pointer.core_closest_point(d), Some(DVec3::NEG_Y));

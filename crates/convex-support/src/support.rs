@@ -4,7 +4,7 @@ use num_traits::Float as _;
 
 use crate::numerics::bound::roundings;
 use crate::numerics::range::is_comfortable;
-use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, Vector};
+use crate::{CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, Vector};
 
 /// A nonempty, closed, bounded convex set, known by its support mapping.
 ///
@@ -82,6 +82,7 @@ pub trait SupportMap {
         Core {
             origin: Self::Vector::ZERO,
             radius: Scalar::ZERO,
+            rolling_radius: Scalar::ZERO,
             extent,
             error: roundings(8.0, extent),
             kind: CoreKind::Curved,
@@ -136,6 +137,23 @@ pub trait SupportMap {
         LineCrossing::Unknown
     }
 
+    /// Where the line through `source` along `direction` enters the whole set, swept by a further ball of the given `radius`, in closed form
+    /// and as far as that is certain: whatever rounding has done to the shape and here, if the line is known to within `error` near the
+    /// shape. Provided: nothing is.
+    ///
+    /// It is trusted. Where it is `None`, a [crossing of the core](Self::core_line_crossing) is certified by a support point.
+    #[inline]
+    fn certain_crossing(
+        &self,
+        source: Self::Vector,
+        direction: Self::Vector,
+        radius: ScalarOf<Self>,
+        error: ScalarOf<Self>,
+    ) -> Option<CertainCrossing<Self::Vector>> {
+        let _ = (source, direction, radius, error);
+        None
+    }
+
     /// Adds to a feature the points of the core that lie within a slab behind its supporting plane, relative to the
     /// [origin](Core::origin): those `p` of its vertices with `direction·p ≥ h(direction) − slab`. So a face against the plane, or
     /// nearly so, shows its corners, and an edge its ends. Provided: the support point, as of a smooth surface.
@@ -144,16 +162,6 @@ pub trait SupportMap {
     fn core_support_feature(&self, direction: Self::Vector, slab: ScalarOf<Self>, feature: &mut Feature<Self::Vector>) {
         let _ = slab;
         feature.push(self.core_support(direction, &mut Hint::new()), 0);
-    }
-
-    /// The radius of a ball that rolls around within the core: the core is some smaller convex set swept by it. A smaller radius is right
-    /// as well. Provided: 0.
-    ///
-    /// A ball of radius `r` rolls within a smooth convex body if no radius of curvature is less than `r` (Blaschke's rolling theorem).
-    /// What sweeps two shapes beside their [radii](Core::radius) lets a penetration depth less than that be found as a distance.
-    #[inline]
-    fn core_rolling_radius(&self) -> ScalarOf<Self> {
-        Scalar::ZERO
     }
 
     /// The core as a parallelotope, relative to the [origin](Core::origin), where it is one and not a single point. Provided: `None`.

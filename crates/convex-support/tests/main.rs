@@ -4,6 +4,7 @@
 
 mod bad_input;
 mod bvh;
+mod certain_crossing;
 mod closest_point;
 mod exact;
 mod faceted;

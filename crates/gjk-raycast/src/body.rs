@@ -132,7 +132,7 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
     }
 
     fn rolling_radius(&self) -> <S::Vector as Vector>::Scalar {
-        self.core.radius + self.shape.core_rolling_radius()
+        self.core.radius + self.core.rolling_radius
     }
 
     fn error(&self) -> <S::Vector as Vector>::Scalar {
@@ -298,7 +298,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
     }
 
     fn rolling_radius(&self) -> <A::Vector as Vector>::Scalar {
-        self.radius() + (self.a.core_rolling_radius() + self.b.core_rolling_radius())
+        self.radius() + (self.core_a.rolling_radius + self.core_b.rolling_radius)
     }
 
     #[inline]

@@ -1,12 +1,14 @@
 //! Where a ray enters a shape (the paper's Algorithm 3).
 
-use convex_support::{Point, Scalar, SupportMap, Vector};
-use num_traits::Float as _;
+use convex_support::{CertainCrossing, Point, Scalar, SupportMap, Vector};
+use num_traits::Float;
 
-use crate::body::{Body as _, Single};
+use crate::body::{Body as _, Single, TracedSupport as _};
 use crate::cast::{Cast, CastHit, LocalRay, Part, cast, direct, settle_start};
 use crate::unit::power_of_two_near;
-use crate::{Iterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit};
+use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, Status};
+
+type ScalarOf<S> = <<S as SupportMap>::Vector as Vector>::Scalar;
 
 /// The first point of a ray in a shape, with the normal there.
 ///
@@ -45,7 +47,11 @@ pub fn ray_cast<S: SupportMap + ?Sized>(
     ray: Ray<S::Vector>,
     options: RayCastOptions<S::Vector>,
 ) -> Result<RayCast<S::Vector>, RayCastError> {
-    ray_cast_with(target, ray, options, |_| {})
+    let ray = ray.by_coordinates();
+    match certain(target, ray, &options) {
+        Some(answer) => Ok(answer),
+        None => searched(target, ray, options, |_| {}),
+    }
 }
 
 /// [`ray_cast`], showing an observer every iterate.
@@ -59,31 +65,86 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
     options: RayCastOptions<S::Vector>,
     mut observer: impl FnMut(Iterate<'_, S::Vector>),
 ) -> Result<RayCast<S::Vector>, RayCastError> {
-    let ray = ray.by_coordinates();
-    if options.min_lambda <= Scalar::ZERO
-        && let Some(cast) = direct(&mut Single::new(target), ray, Scalar::ZERO, &options, &mut observer)
-    {
-        return Ok(answer(cast, ray));
+    let Some(answer) = certain(target, ray, &options) else { return searched(target, ray, options, observer) };
+    let (at, axis) = match answer.outcome {
+        Outcome::Hit(RayHit { point, normal: Some(normal), .. }) => (point, normal),
+        Outcome::Miss(Miss { axis }) => (ray.source, axis),
+        Outcome::Hit(_) | Outcome::Undecided => return Ok(answer),
+    };
+    let mut body = Single::new(target);
+    let w = at - body.origin() - body.support(axis).0;
+    let (lower, upper) = (Scalar::ZERO, Float::infinity());
+    observer(Iterate { iteration: 0, simplex: &[], v: axis, w, scale: Scalar::ONE, lower, upper });
+    Ok(answer)
+}
+
+/// The cast where the shape knows for certain where the ray enters it, or that its line misses.
+#[inline(always)]
+fn certain<S: SupportMap + ?Sized>(
+    target: &S,
+    ray: Ray<S::Vector>,
+    options: &RayCastOptions<S::Vector>,
+) -> Option<RayCast<S::Vector>> {
+    let (zero, infinity) = (ScalarOf::<S>::ZERO, ScalarOf::<S>::infinity());
+    let is_plain = options.min_lambda <= zero && options.method == CastMethod::Portal && options.max_iterations > 0;
+    if !is_plain {
+        return None;
     }
+    let missed = |axis| (Outcome::Miss(Miss { axis }), [infinity; 2]);
+    let (outcome, [lower, upper]) = match target.certain_crossing(ray.source, ray.direction, zero, zero)? {
+        CertainCrossing::Misses(axis) => {
+            // What is left of it along the ray would count far from here.
+            let along = axis.dot(ray.direction) / ray.direction.length_squared();
+            missed((axis - ray.direction * along).unit().unwrap_or(axis))
+        }
+        CertainCrossing::Enters { entry, bounds, normal } => {
+            let [earliest, _] = bounds;
+            let is_after_end = entry > options.max_lambda;
+            // By rounding alone, the source may be in the target, or the end of the ray where it enters. NaN tells nothing.
+            if !(earliest > if is_after_end { options.max_lambda } else { zero }) {
+                return None;
+            }
+            if is_after_end {
+                missed(normal)
+            } else {
+                (Outcome::Hit(RayHit { lambda: entry, point: ray.at(entry), normal: Some(normal) }), bounds)
+            }
+        }
+    };
+    Some(RayCast { outcome, lower, upper, status: Status::Converged, iterations: 1 })
+}
+
+/// The cast where that is not so.
+#[inline(never)]
+fn searched<S: SupportMap + ?Sized>(
+    target: &S,
+    ray: Ray<S::Vector>,
+    options: RayCastOptions<S::Vector>,
+    mut observer: impl FnMut(Iterate<'_, S::Vector>),
+) -> Result<RayCast<S::Vector>, RayCastError> {
     ray.check()?;
     Ok(if options.min_lambda > Scalar::ZERO {
         late(target, ray, options, &mut observer)
     } else {
-        searched(target, ray, Part::Whole, &options, &mut observer)
+        cast_part(target, ray, Part::Whole, &options, &mut observer)
     })
 }
 
-/// The cast of a part of the ray by a search; compiled once for whole and for late rays.
+/// The cast of a part of the ray; compiled once for whole and for late rays.
 #[inline(never)]
-fn searched<S: SupportMap + ?Sized>(
+fn cast_part<S: SupportMap + ?Sized>(
     target: &S,
     ray: Ray<S::Vector>,
     part: Part<<S::Vector as Vector>::Scalar>,
     options: &RayCastOptions<S::Vector>,
     observer: &mut impl FnMut(Iterate<'_, S::Vector>),
 ) -> RayCast<S::Vector> {
-    let mut cast = cast(&mut Single::new(target), ray, Scalar::ZERO, part, options, observer);
-    if matches!(part, Part::Whole) {
+    let (mut body, is_whole) = (Single::new(target), matches!(part, Part::Whole));
+    if is_whole && let Some(cast) = direct(&mut body, ray, Scalar::ZERO, options, &mut *observer) {
+        return answer(cast, ray);
+    }
+    let mut cast = cast(&mut body, ray, Scalar::ZERO, part, options, observer);
+    if is_whole {
         settle_start(&mut cast, target, Scalar::ZERO, || Point::new(ray.source).ok(), ray.direction, options);
     }
     answer(cast, ray)
@@ -109,7 +170,7 @@ fn late<S: SupportMap + ?Sized>(
     let slack = if begin <= options.max_lambda { error + error } else { zero };
     let mut from = |begin| {
         let wanted = options.with_max_lambda(options.max_lambda - begin);
-        searched(target, ray, Part::From(begin), &wanted, observer)
+        cast_part(target, ray, Part::From(begin), &wanted, observer)
     };
     let early = from(begin - slack);
     match early.outcome {

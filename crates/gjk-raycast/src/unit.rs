@@ -3,6 +3,7 @@
 //! Numbers of magnitude about one neither over- nor underflow when they are multiplied a few times, in `f32` as in
 //! `f64`; and since the unit is a power of two, scaling a scene by one changes nothing but the unit.
 
+pub(crate) use convex_support::numerics::range::is_moderate;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
@@ -30,13 +31,6 @@ pub(crate) fn reciprocal_of_power<S: Scalar>(power: S) -> S {
 /// The bits of the exponent of an `f64`, and the least of them.
 const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
 const EXPONENT_STEP: u64 = 0x0010_0000_0000_0000;
-
-/// Whether products of a few such numbers, and their rounding errors, are far from over- and underflow.
-#[inline]
-pub(crate) fn is_moderate<S: Scalar>(x: S) -> bool {
-    let tiny = S::min_positive_value().sqrt().sqrt();
-    x > tiny && x < tiny.recip()
-}
 
 /// The same direction at a length that is moderate, by a power of two and so without rounding. `None` for the zero vector
 /// and where a coordinate is not finite.

@@ -154,7 +154,7 @@ impl SupportMap for Liar {
     }
 
     fn core(&self) -> Core<DVec3> {
-        Core { origin: DVec3::ZERO, radius: 0.0, extent: 1.0, error: 0.0, kind: CoreKind::Curved }
+        Core { origin: DVec3::ZERO, radius: 0.0, rolling_radius: 0.0, extent: 1.0, error: 0.0, kind: CoreKind::Curved }
     }
 
     fn core_support(&self, direction: DVec3, _: &mut Hint) -> DVec3 {

@@ -14,7 +14,7 @@ use crate::{Aabb, Core, CoreKind, Scalar, ScalarOf, SupportMap, Vector};
 /// own query, not only in truth.
 #[must_use]
 pub fn outer_box<S: SupportMap + ?Sized>(shape: &S) -> Option<Aabb<S::Vector>> {
-    let Core { origin, radius, extent, error, kind } = shape.core();
+    let Core { origin, radius, extent, error, kind, .. } = shape.core();
     let core = match kind {
         CoreKind::Point(at) => Aabb { min: at, max: at },
         _ => core_box(shape),

@@ -102,7 +102,7 @@ impl<S: SupportMap> SupportMap for Affine<S> {
 
     #[inline(always)]
     fn core(&self) -> Core<S::Vector> {
-        let Core { origin, radius, extent, kind, .. } = self.shape.core();
+        let Core { origin, radius, rolling_radius, extent, kind, .. } = self.shape.core();
         let kind = match kind {
             _ if self.swept > ScalarOf::<S>::ZERO => CoreKind::Curved,
             CoreKind::Point(at) => CoreKind::Point(self.matrix * at + self.lost),
@@ -113,9 +113,12 @@ impl<S: SupportMap> SupportMap for Affine<S> {
             // |M·x| and every product in it are bounded by the Frobenius norm of M times |x|.
             None => (frobenius_norm(&self.matrix) * (extent + radius), ScalarOf::<S>::ZERO),
         };
+        // The ratio is known to a few roundings.
+        let less = ScalarOf::<S>::ONE - ScalarOf::<S>::EPSILON * Scalar::from_f64(16.0);
         Core {
             origin: self.matrix * origin + self.translation,
             radius,
+            rolling_radius: self.scale.map_or(Scalar::ZERO, |scale| scale * less * rolling_radius),
             extent: extent + self.lost.abs().max_element() * Scalar::from_f64(2.0),
             error: self.error,
             kind,
@@ -174,14 +177,6 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         self.shape.core_support_feature(direction, slab / self.unit, feature);
         let swept = swept(self.swept, direction);
         feature.map(|point| self.matrix * (point + swept) + self.lost);
-    }
-
-    /// Where the map keeps angles.
-    #[inline]
-    fn core_rolling_radius(&self) -> ScalarOf<S> {
-        // The ratio is known to a few roundings.
-        let less = ScalarOf::<S>::ONE - ScalarOf::<S>::EPSILON * Scalar::from_f64(16.0);
-        self.scale.map_or(Scalar::ZERO, |scale| scale * less * self.shape.core_rolling_radius())
     }
 
     #[inline]

@@ -109,6 +109,7 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for Hull<A, B>
         Core {
             origin: middle(&a, &b),
             radius: a.radius.min(b.radius),
+            rolling_radius: Scalar::ZERO,
             extent,
             // The offset of a part, its sums and the radius that stays with it lose 10 roundings; 4 of the difference tell which part
             // is farther.

@@ -66,6 +66,7 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
         Core {
             origin: a.origin + b.origin,
             radius,
+            rolling_radius: a.rolling_radius + b.rolling_radius,
             extent,
             // Two sums of points, and one of radii.
             error: a.error + b.error + roundings(2.0, extent) + roundings(1.0, radius),
@@ -110,11 +111,6 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
             (_, CoreKind::Point(b)) => self.a.core_line_crossing(source - b, direction, radius),
             _ => LineCrossing::Unknown,
         }
-    }
-
-    #[inline]
-    fn core_rolling_radius(&self) -> ScalarOf<A> {
-        self.a.core_rolling_radius() + self.b.core_rolling_radius()
     }
 
     /// Where one of the cores is a point.

@@ -4,11 +4,13 @@ use num_traits::Float as _;
 
 use super::placement::{Placement, is_near, length_of_error, lost_in_origin};
 use crate::error::{InvalidShape, finite, orthonormal};
+use crate::line_crossing::{NearLine, skew};
 use crate::numerics::bound::roundings;
 use crate::numerics::twofold::lost_in_sum;
 use crate::support::ScalarOf;
 use crate::{
-    Core, CoreKind, Feature, Hint, LineCrossing, Matrix, Parallelotope, Rotation, Rounding, Scalar, SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, Matrix, Parallelotope, Rotation, Rounding, Scalar,
+    SupportMap, Vector,
 };
 
 /// The image `R·C + t` of a shape under a rotation and then a translation.
@@ -34,6 +36,8 @@ pub struct Posed<S: SupportMap> {
     lost: S::Vector,
     /// What the support points of the core are wrong by at most, as a length.
     error: ScalarOf<S>,
+    /// How far points are at most from where they would be if the transpose of the rotation were its inverse, beside that.
+    skew: ScalarOf<S>,
 }
 
 /// What a rotation matrix is wrong by at most, in units of epsilon: every entry, and where it takes a unit vector.
@@ -58,7 +62,8 @@ impl<S: SupportMap> Posed<S> {
         let core = shape.core();
         let lost = lost_in_origin(&rotation, core.origin, core.extent + core.radius, translation)?;
         let error = length_of_error(&core, Scalar::ONE, Scalar::from_f64(errors.operator), translation, lost);
-        Ok(Self { shape, rotation, rotation_error: Scalar::from_f64(errors.entry), translation, lost, error })
+        let skew = if errors.operator > 0.0 { Scalar::ZERO } else { skew(&rotation) * (core.extent + core.radius) };
+        Ok(Self { shape, rotation, rotation_error: Scalar::from_f64(errors.entry), translation, lost, error, skew })
     }
 
     /// The shape turned about the origin by `rotation` (an angle in radians in 2D, a quaternion in 3D, which is
@@ -114,7 +119,7 @@ impl<S: SupportMap> Posed<S> {
         // Products with the identity are exact, and the sum with nothing is.
         let summed = if lost == S::Vector::ZERO { zero } else { roundings(1.0, core.extent + lost.norm()) };
         let (rotation, error) = (Matrix::IDENTITY, core.error + summed);
-        Ok(Self { shape, rotation, rotation_error: zero, translation, lost, error })
+        Ok(Self { shape, rotation, rotation_error: zero, translation, lost, error, skew: zero })
     }
 
     /// The shape before it is moved.
@@ -205,14 +210,29 @@ impl<S: SupportMap> SupportMap for Posed<S> {
         crossing.with_normal(|normal| self.rotation * normal)
     }
 
+    /// Of a shape about zero.
+    #[inline(always)]
+    fn certain_crossing(
+        &self,
+        source: S::Vector,
+        direction: S::Vector,
+        radius: ScalarOf<S>,
+        error: ScalarOf<S>,
+    ) -> Option<CertainCrossing<S::Vector>> {
+        let core = self.shape.core();
+        if core.origin != S::Vector::ZERO {
+            return None;
+        }
+        let (size, error) = (core.extent + core.radius + radius, error + self.error + self.skew);
+        NearLine::new(source, direction, self.translation, size, error)?
+            .turned(&self.rotation, |source, direction, error| {
+                self.shape.certain_crossing(source, direction, radius, error)
+            })
+    }
+
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {
         self.shape.core_support_feature(self.rotation.transpose_mul(direction), slab, feature);
         feature.map(|point| self.rotation * point + self.lost);
-    }
-
-    #[inline]
-    fn core_rolling_radius(&self) -> ScalarOf<S> {
-        self.shape.core_rolling_radius()
     }
 
     #[inline]

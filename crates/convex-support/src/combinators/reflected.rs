@@ -58,11 +58,6 @@ impl<S: SupportMap> SupportMap for Reflected<S> {
     }
 
     #[inline]
-    fn core_rolling_radius(&self) -> ScalarOf<S> {
-        self.0.core_rolling_radius()
-    }
-
-    #[inline]
     fn core_parallelotope(&self) -> Option<Parallelotope<S::Vector>> {
         let parallelotope = self.0.core_parallelotope()?;
         Some(Parallelotope { center: -parallelotope.center, ..parallelotope })

@@ -3,9 +3,10 @@
 use crate::error::{InvalidShape, non_negative};
 use num_traits::Float as _;
 
+use crate::numerics::bound::roundings;
 use crate::numerics::twofold::two_sum;
 use crate::support::{ScalarOf, support_of_parts};
-use crate::{Core, Feature, Hint, LineCrossing, Parallelotope, Rounding, SupportMap, Vector};
+use crate::{CertainCrossing, Core, Feature, Hint, LineCrossing, Parallelotope, Rounding, SupportMap, Vector};
 
 /// The Minkowski sum of a shape and a ball: the shape grown by a radius, its edges and corners rounded.
 ///
@@ -89,13 +90,21 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
         self.shape.core_line_crossing(source, direction, radius)
     }
 
-    fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {
-        self.shape.core_support_feature(direction, slab, feature);
+    /// As of the shape; the sum of the radii is rounded.
+    #[inline(always)]
+    fn certain_crossing(
+        &self,
+        source: S::Vector,
+        direction: S::Vector,
+        radius: ScalarOf<S>,
+        error: ScalarOf<S>,
+    ) -> Option<CertainCrossing<S::Vector>> {
+        let sum = self.radius + radius;
+        self.shape.certain_crossing(source, direction, sum, error + roundings(1.0, sum))
     }
 
-    #[inline]
-    fn core_rolling_radius(&self) -> ScalarOf<S> {
-        self.shape.core_rolling_radius()
+    fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {
+        self.shape.core_support_feature(direction, slab, feature);
     }
 
     #[inline]

@@ -8,6 +8,7 @@
 
 mod ball;
 mod capsule;
+mod certain;
 mod cone;
 mod cuboid;
 mod cylinder;
@@ -21,6 +22,8 @@ use num_traits::Float as _;
 
 pub(crate) use ball::ball;
 pub(crate) use capsule::{edge, upright};
+pub use certain::CertainCrossing;
+pub(crate) use certain::{NearLine, skew};
 pub(crate) use cone::cone;
 pub(crate) use cuboid::cuboid;
 pub(crate) use cylinder::cylinder;
@@ -191,6 +194,8 @@ struct Chord<V: Vector> {
     half: V::Scalar,
     /// The point of the line nearest zero.
     nearest: V,
+    /// The square of the radius less that of the distance there.
+    inside: V::Scalar,
 }
 
 /// Where the line is nearest zero; `recip` is `1/|direction|²`.
@@ -209,7 +214,7 @@ impl<V: Vector> Chord<V> {
     #[inline(always)]
     fn about(middle: V::Scalar, nearest: V, recip: V::Scalar, radius: V::Scalar) -> Self {
         let inside = radius * radius - nearest.length_squared();
-        Self { middle, half: (inside * recip).sqrt(), nearest }
+        Self { middle, half: (inside * recip).sqrt(), nearest, inside }
     }
 
     /// Whether the line meets the ball.
@@ -250,6 +255,8 @@ fn axis_of<V: Vector>(v: V, value: V::Scalar) -> V {
 #[inline(always)]
 fn across_two_axes<V: Vector>([a, b]: [V; 2], source: V, direction: V) -> V {
     let across = a * b.dot(direction) - b * a.dot(direction);
+    // A line along both of the slabs that these are across is outside of each.
+    let across = if across == V::ZERO { a } else { across };
     across * V::Scalar::ONE.copysign(across.dot(source))
 }
 

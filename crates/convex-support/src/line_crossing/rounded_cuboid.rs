@@ -9,7 +9,7 @@ use crate::{Scalar, Vector};
 /// any two neighbouring crossings of the planes `xᵢ = ±hᵢ`. The line enters the rounded box where `φ` falls to `radius²`,
 /// and not before it enters the box of half extents `hᵢ + radius`: from there, piece after piece is searched. Most lines
 /// enter through one of the flat sides, in the first piece. They leave where the reversed line enters.
-#[inline]
+#[inline(always)]
 pub(crate) fn rounded_cuboid<V: Vector>(h: V, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, dd, unit) = comfortable(direction);
     let (base, source) = rebased(source, direction, dd.recip());
@@ -54,24 +54,10 @@ impl<V: Vector> Line<V> {
     /// Where the line enters the rounded box, which is between `begin` and `end`; the shortest vector to it where it misses.
     #[inline(always)]
     fn entry(&self, radius: V::Scalar, begin: V::Scalar, end: V::Scalar) -> Result<V::Scalar, V> {
-        let zero = V::Scalar::ZERO;
-        let (mut lambda, mut nearest) = (begin, V::ZERO);
+        let (mut lambda, mut nearest) = (begin, None);
         // Each coordinate changes its piece at most twice.
         for _ in 0..=2 * V::DIM {
-            // The piece from λ on: by how much the line is outside of the box, and how fast that changes.
-            let (mut outside, mut speed, mut beyond, mut next) = (V::ZERO, V::ZERO, 0, V::Scalar::infinity());
-            for i in 0..V::DIM {
-                let (enters, leaves) = (self.enters.get(i), self.leaves.get(i));
-                let before = lambda < enters;
-                if before | !(lambda < leaves) {
-                    let side = if before { self.near.get(i) } else { -self.near.get(i) };
-                    outside += V::axis(i) * (self.source.get(i) - side);
-                    speed += V::axis(i) * self.direction.get(i);
-                    beyond += 1;
-                }
-                let change = if before { enters } else { leaves };
-                next = if (lambda < change) & (change < next) { change } else { next };
-            }
+            let Piece { outside, speed, beyond, next } = self.piece(lambda);
             let dd = speed.length_squared();
             if beyond == 0 {
                 return Ok(lambda);
@@ -84,25 +70,70 @@ impl<V: Vector> Line<V> {
             let middle = -outside.dot(speed) * recip;
             let chord = Chord::about(middle, outside + speed * middle, recip, radius);
             // The distance is least where a piece is nearest the box before it ends.
-            nearest = if (lambda <= middle) & (middle <= next) { chord.nearest } else { nearest };
+            nearest = if (lambda <= middle) & (middle <= next) { Some(chord.nearest) } else { nearest };
             let (enters, leaves) = chord.ends();
-            if dd == zero {
+            if dd == V::Scalar::ZERO {
                 if outside.length_squared() <= radius * radius {
                     return Ok(lambda);
                 }
             } else if chord.is_some() {
                 if leaves < lambda {
-                    return Err(chord.nearest);
+                    break;
                 }
                 if enters <= next {
                     return Ok(if enters > lambda { enters } else { lambda });
                 }
             }
             if !(next < end) {
-                return Err(nearest);
+                break;
             }
             lambda = next;
         }
-        Err(nearest)
+        Err(nearest.unwrap_or_else(|| self.nearest()))
     }
+
+    /// The shortest vector from the box to the line, which passes it.
+    fn nearest(&self) -> V {
+        let mut lambda = -V::Scalar::infinity();
+        for _ in 0..=2 * V::DIM {
+            let Piece { outside, speed, next, .. } = self.piece(lambda);
+            let middle = -outside.dot(speed) / speed.length_squared();
+            if middle <= next {
+                return outside + speed * middle;
+            }
+            lambda = next;
+        }
+        V::ZERO
+    }
+
+    /// The piece from a parameter on.
+    #[inline(always)]
+    fn piece(&self, lambda: V::Scalar) -> Piece<V> {
+        let (mut outside, mut speed, mut beyond, mut next) = (V::ZERO, V::ZERO, 0, V::Scalar::infinity());
+        for i in 0..V::DIM {
+            let (enters, leaves) = (self.enters.get(i), self.leaves.get(i));
+            let before = lambda < enters;
+            if before | !(lambda < leaves) {
+                let side = if before { self.near.get(i) } else { -self.near.get(i) };
+                outside += V::axis(i) * (self.source.get(i) - side);
+                speed += V::axis(i) * self.direction.get(i);
+                beyond += 1;
+            }
+            let change = if before { enters } else { leaves };
+            next = if (lambda < change) & (change < next) { change } else { next };
+        }
+        Piece { outside, speed, beyond, next }
+    }
+}
+
+/// A part of a line in which its distance from a box is one quadratic.
+struct Piece<V: Vector> {
+    /// By how much the line is outside of the box, at its source.
+    outside: V,
+    /// How fast that changes.
+    speed: V,
+    /// In how many coordinates it is outside.
+    beyond: usize,
+    /// Where the piece ends.
+    next: V::Scalar,
 }

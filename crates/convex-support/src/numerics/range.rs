@@ -9,6 +9,13 @@ pub fn is_comfortable<S: Scalar>(squared: S) -> bool {
     squared >= S::min_positive_value() / S::EPSILON && squared < S::infinity()
 }
 
+/// Whether products of a few such numbers, and their rounding errors, are far from over- and underflow.
+#[inline]
+pub fn is_moderate<S: Scalar>(x: S) -> bool {
+    let tiny = S::min_positive_value().sqrt().sqrt();
+    x > tiny && x < tiny.recip()
+}
+
 /// A power of two in which a quantity of size `largest` may be measured without its square over- or underflowing: 1
 /// wherever that will do.
 #[inline]

@@ -1,5 +1,7 @@
 //! Sums and products without rounding: as the nearest number and what it loses.
 
+use num_traits::Float as _;
+
 use crate::{Scalar, Vector};
 
 /// What the rounding of `a + b` loses (Knuth's two-sum), exactly.
@@ -8,6 +10,16 @@ pub fn lost_in_sum<V: Vector>(a: V, b: V) -> V {
     let sum = a + b;
     let seen = sum - a;
     (a - (sum - seen)) + (b - seen)
+}
+
+/// The parameter of the point of a line that is closest to an origin, and the point as it is seen from there. However far the source, it is
+/// right to two roundings of its own length: what the difference from the origin loses is added to what a fused multiply-add rounds once.
+#[inline(always)]
+pub fn foot_from<V: Vector>(origin: V, source: V, direction: V) -> (V::Scalar, V) {
+    let seen = source - origin;
+    let base = -seen.dot(direction) / direction.length_squared();
+    let moved = V::from_fn(|i| base.mul_add(direction.get(i), seen.get(i)));
+    (base, moved + lost_in_sum(source, -origin))
 }
 
 /// `a + b` and what its rounding loses.

@@ -1,9 +1,9 @@
 //! A ball about the origin.
 
 use crate::error::{InvalidShape, non_negative};
-use crate::line_crossing::ball;
+use crate::line_crossing::{NearLine, ball};
 use crate::support::swept;
-use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
+use crate::{CertainCrossing, Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
 /// The ball `|x| ≤ radius`; a disc in 2D. Its core is a point.
 ///
@@ -53,6 +53,7 @@ impl<V: Vector> SupportMap for Ball<V> {
         Core {
             origin: V::ZERO,
             radius: self.radius,
+            rolling_radius: V::Scalar::ZERO,
             extent: V::Scalar::ZERO,
             error: V::Scalar::ZERO,
             kind: CoreKind::Point(V::ZERO),
@@ -75,6 +76,18 @@ impl<V: Vector> SupportMap for Ball<V> {
             return LineCrossing::Unknown;
         }
         ball(radius, source, direction).into()
+    }
+
+    #[inline(always)]
+    fn certain_crossing(
+        &self,
+        source: V,
+        direction: V,
+        radius: V::Scalar,
+        error: V::Scalar,
+    ) -> Option<CertainCrossing<V>> {
+        let radius = self.radius + radius;
+        NearLine::new(source, direction, V::ZERO, radius, error)?.ball(radius)
     }
 
     fn rounding(&self) -> Rounding<V> {

@@ -3,9 +3,11 @@
 use num_traits::Float as _;
 
 use crate::error::{InvalidShape, non_negative};
-use crate::line_crossing::upright;
+use crate::line_crossing::{NearLine, upright};
 use crate::support::support_of_parts;
-use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector};
+use crate::{
+    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector,
+};
 
 /// The segment from `(0, −half_height)` to `(0, half_height)` along the second axis, swept by a ball. Its core is the
 /// segment.
@@ -64,6 +66,7 @@ impl<V: Vector> SupportMap for Capsule<V> {
         Core {
             origin: V::ZERO,
             radius: self.radius,
+            rolling_radius: V::Scalar::ZERO,
             extent: self.half_height,
             error: V::Scalar::ZERO,
             kind: CoreKind::Polytope,
@@ -86,6 +89,22 @@ impl<V: Vector> SupportMap for Capsule<V> {
             return LineCrossing::Unknown;
         }
         upright(self.half_height, radius, source, direction).into()
+    }
+
+    #[inline(always)]
+    fn certain_crossing(
+        &self,
+        source: V,
+        direction: V,
+        radius: V::Scalar,
+        error: V::Scalar,
+    ) -> Option<CertainCrossing<V>> {
+        let radius = self.radius + radius;
+        let closest = |x: V| V::axis(1) * x.get(1).max(-self.half_height).min(self.half_height);
+        let support_value = |d: V| d.get(1).abs() * self.half_height;
+        let line = NearLine::new(source, direction, V::ZERO, self.half_height + radius, error)?;
+        let crossed = upright(self.half_height, radius, line.source, line.direction);
+        line.swept(radius, closest, support_value, crossed)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

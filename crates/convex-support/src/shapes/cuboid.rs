@@ -1,8 +1,10 @@
 //! A box about the origin, along the axes.
 
 use crate::error::{InvalidShape, finite, measurable};
-use crate::line_crossing::{cuboid, rounded_cuboid};
-use crate::{Core, CoreKind, Feature, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector};
+use crate::line_crossing::{NearLine, cuboid, rounded_cuboid};
+use crate::{
+    CertainCrossing, Core, CoreKind, Feature, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector,
+};
 
 /// The box `|xᵢ| ≤ half_extentsᵢ`; a rectangle in 2D.
 ///
@@ -61,6 +63,7 @@ impl<V: Vector> SupportMap for Cuboid<V> {
         Core {
             origin: V::ZERO,
             radius: V::Scalar::ZERO,
+            rolling_radius: V::Scalar::ZERO,
             extent: self.extent,
             error: V::Scalar::ZERO,
             kind: CoreKind::Polytope,
@@ -82,6 +85,23 @@ impl<V: Vector> SupportMap for Cuboid<V> {
             return LineCrossing::Unknown;
         }
         cuboid(eroded, source, direction).into()
+    }
+
+    #[inline(always)]
+    fn certain_crossing(
+        &self,
+        source: V,
+        direction: V,
+        radius: V::Scalar,
+        error: V::Scalar,
+    ) -> Option<CertainCrossing<V>> {
+        let h = self.half_extents;
+        let line = NearLine::new(source, direction, V::ZERO, self.extent + radius, error)?;
+        if radius > V::Scalar::ZERO {
+            let crossed = rounded_cuboid(h, radius, line.source, line.direction);
+            return line.swept(radius, |x| x.max(-h).min(h), |d| d.abs().dot(h), crossed);
+        }
+        line.cuboid(h)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

@@ -4,11 +4,11 @@ use num_traits::Float as _;
 
 use crate::closest_point::closest_of_ball;
 use crate::error::{InvalidShape, measurable, non_negative};
-use crate::line_crossing::cylinder;
+use crate::line_crossing::{NearLine, cylinder};
 use crate::numerics::bound::roundings;
 use crate::numerics::range::is_comfortable;
 use crate::support::{swept, swept_hessian};
-use crate::{Core, CoreKind, Feature, LineCrossing, Rounding, Scalar, SupportMap, Vector3};
+use crate::{CertainCrossing, Core, CoreKind, Feature, LineCrossing, Rounding, Scalar, SupportMap, Vector3};
 
 /// The cylinder `x² + z² ≤ radius²`, `|y| ≤ half_height`.
 ///
@@ -89,6 +89,7 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
         Core {
             origin: V::ZERO,
             radius: V::Scalar::ZERO,
+            rolling_radius: V::Scalar::ZERO,
             extent: self.extent,
             error: roundings(9.0, self.radius),
             kind: CoreKind::Curved,
@@ -113,6 +114,20 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
             return LineCrossing::Unknown;
         }
         cylinder(half_height, disc_radius, source, direction).into()
+    }
+
+    #[inline(always)]
+    fn certain_crossing(
+        &self,
+        source: V,
+        direction: V,
+        radius: V::Scalar,
+        error: V::Scalar,
+    ) -> Option<CertainCrossing<V>> {
+        if radius > V::Scalar::ZERO {
+            return None;
+        }
+        NearLine::new(source, direction, V::ZERO, self.extent, error)?.cylinder(self.half_height, self.radius)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

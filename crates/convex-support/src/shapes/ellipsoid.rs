@@ -4,12 +4,14 @@ use num_traits::Float as _;
 
 use crate::closest_point::closest_of_ellipsoid;
 use crate::error::{InvalidShape, finite, finite_matrix, orthonormal};
-use crate::line_crossing::{ellipsoid, times_within};
+use crate::line_crossing::{NearLine, ellipsoid, skew, times_within};
 use crate::numerics::bound::{image, raised, roundings, roundings_of};
 use crate::numerics::jacobi;
 use crate::numerics::range::power_of_two_below;
 use crate::support::swept_hessian;
-use crate::{Core, CoreKind, Hint, LineCrossing, Matrix, Rotation, Rounding, Scalar, SupportMap, Vector};
+use crate::{
+    CertainCrossing, Core, CoreKind, Hint, LineCrossing, Matrix, Rotation, Rounding, Scalar, SupportMap, Vector,
+};
 
 /// The ellipsoid `{ c + R·diag(a)·u : |u| ≤ 1 }`; an ellipse in 2D.
 ///
@@ -37,6 +39,10 @@ pub struct Ellipsoid<V: Vector> {
     axes_error: V::Scalar,
     /// What the support points are wrong by at most, as a length.
     error: V::Scalar,
+    /// How far the points are at most from where they would be if the transpose of the axes were their inverse, and these were exact.
+    skew: V::Scalar,
+    /// The radius of a ball that rolls around within.
+    rolling_radius: V::Scalar,
     /// The semi-axes in units of a power of two near the largest: products with a direction stay in range.
     scaled_semi_axes: V,
     /// That power of two.
@@ -53,7 +59,7 @@ impl<V: Vector> Ellipsoid<V> {
         let axes_error = V::Scalar::from_f64(V::Rotation::MATRIX_ERROR);
         let turned = roundings(2.0 * V::Rotation::OPERATOR_ERROR, semi_axes.max_element());
         let about_axes = Self::from_axes(center, semi_axes, axes)?;
-        Ok(Self { axes_error, error: about_axes.error + turned, ..about_axes })
+        Ok(Self { axes_error, error: about_axes.error + turned, skew: about_axes.skew + turned, ..about_axes })
     }
 
     /// The ellipsoid about `center` whose semi-axis `i` lies along column `i` of `axes`, which must be orthonormal.
@@ -77,6 +83,8 @@ impl<V: Vector> Ellipsoid<V> {
                 inverse_semi_axes: V::ONE / semi_axes,
                 axes_error: V::Scalar::ZERO,
                 error: roundings(SUPPORT_POINT_ERROR, semi_axes.max_element()),
+                skew: skew(&axes) * semi_axes.max_element(),
+                rolling_radius: rolling_radius(semi_axes),
                 scaled_semi_axes: semi_axes / unit,
                 unit,
             }),
@@ -163,6 +171,17 @@ impl<V: Vector> Ellipsoid<V> {
     }
 }
 
+/// The radius of a ball that rolls around within an ellipsoid.
+///
+/// The least radius of curvature is `c²/a`, of the least and the largest semi-axis. Axes that are orthonormal to half of their digits
+/// may change it by a part, which an eighth is more than unless the ellipsoid is thin; and then there is not much to gain.
+fn rolling_radius<V: Vector>(semi_axes: V) -> V::Scalar {
+    let (least, largest) = (semi_axes.min_element(), semi_axes.max_element());
+    let ratio = least / largest;
+    let is_thin = ratio < V::Scalar::from_f64(1.0 / 16.0);
+    if is_thin { V::Scalar::ZERO } else { ratio * least * V::Scalar::from_f64(0.875) }
+}
+
 /// What a support point `R·(a∘u)` is wrong by, in roundings of the largest semi-axis: 8 for the unit vector and the products with the
 /// semi-axes, `3√3` for those with the axes; and twice the `3√3 + 1` that the direction loses in the ellipsoid's frame.
 const SUPPORT_POINT_ERROR: f64 = 26.0;
@@ -183,7 +202,14 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
     #[inline(always)]
     fn core(&self) -> Core<V> {
         let extent = self.semi_axes.max_element();
-        Core { origin: self.center, radius: V::Scalar::ZERO, extent, error: self.error, kind: CoreKind::Curved }
+        Core {
+            origin: self.center,
+            radius: V::Scalar::ZERO,
+            rolling_radius: self.rolling_radius,
+            extent,
+            error: self.error,
+            kind: CoreKind::Curved,
+        }
     }
 
     #[inline(always)]
@@ -218,13 +244,19 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
         }
     }
 
-    /// The least radius of curvature is `c²/a`, of the least and the largest semi-axis. Axes that are orthonormal to half of their digits
-    /// may change it by a part, which an eighth is more than unless the ellipsoid is thin; and then there is not much to gain.
-    fn core_rolling_radius(&self) -> V::Scalar {
-        let (least, largest) = (-(-self.semi_axes).max_element(), self.semi_axes.max_element());
-        let ratio = least / largest;
-        let is_thin = ratio < V::Scalar::from_f64(1.0 / 16.0);
-        if is_thin { V::Scalar::ZERO } else { ratio * least * V::Scalar::from_f64(0.875) }
+    #[inline(always)]
+    fn certain_crossing(
+        &self,
+        source: V,
+        direction: V,
+        radius: V::Scalar,
+        error: V::Scalar,
+    ) -> Option<CertainCrossing<V>> {
+        if radius > V::Scalar::ZERO {
+            return None;
+        }
+        NearLine::new(source, direction, self.center, self.semi_axes.max_element(), error + self.skew)?
+            .ellipsoid(&self.axes, self.inverse_semi_axes)
     }
 
     /// The support point is `R·(a∘u)` with a unit vector `u` that is right to 7 roundings, whatever direction it is farthest along:

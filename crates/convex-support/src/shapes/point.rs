@@ -45,7 +45,14 @@ impl<V: Vector> SupportMap for Point<V> {
     #[inline(always)]
     fn core(&self) -> Core<V> {
         let zero = V::Scalar::ZERO;
-        Core { origin: self.at, radius: zero, extent: zero, error: zero, kind: CoreKind::Point(V::ZERO) }
+        Core {
+            origin: self.at,
+            radius: zero,
+            rolling_radius: zero,
+            extent: zero,
+            error: zero,
+            kind: CoreKind::Point(V::ZERO),
+        }
     }
 
     #[inline]

@@ -68,7 +68,14 @@ impl<V: Vector> SupportMap for Segment<V> {
     #[inline(always)]
     fn core(&self) -> Core<V> {
         let (origin, extent) = (middle(self.points), extent(&self.points).norm());
-        Core { origin, radius: V::Scalar::ZERO, extent, error: roundings(9.0, extent), kind: CoreKind::Polytope }
+        Core {
+            origin,
+            radius: V::Scalar::ZERO,
+            rolling_radius: V::Scalar::ZERO,
+            extent,
+            error: roundings(9.0, extent),
+            kind: CoreKind::Polytope,
+        }
     }
 
     #[inline]

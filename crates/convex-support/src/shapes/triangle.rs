@@ -103,7 +103,14 @@ impl<V: Vector> SupportMap for Triangle<V> {
     #[inline(always)]
     fn core(&self) -> Core<V> {
         let (origin, extent) = (middle(self.points), extent(&self.points).norm());
-        Core { origin, radius: V::Scalar::ZERO, extent, error: roundings(24.0, extent), kind: CoreKind::Polytope }
+        Core {
+            origin,
+            radius: V::Scalar::ZERO,
+            rolling_radius: V::Scalar::ZERO,
+            extent,
+            error: roundings(24.0, extent),
+            kind: CoreKind::Polytope,
+        }
     }
 
     #[inline]

@@ -1,5 +1,5 @@
-//! The plain case of a closed form: the ray comes from outside and crosses a plane at a definite angle, or passes the body by a
-//! definite distance.
+//! The plain case of a closed form of which the shape does not say how certain it is, and of linear casts: the ray comes from outside and
+//! crosses a plane at a definite angle, or passes the body by a definite distance.
 //!
 //! What is certain rests on the same as in a [`Bracket`](super::bracket::Bracket): a miss and a lower bound on the plane of one support
 //! point, an upper bound on a ball that rolls within the body, or on where the line enters what is left of it without two errors. But nothing is prepared for a search:
@@ -7,7 +7,7 @@
 //! in doubt is left to the bracket. `docs/ray-cast.md` derives the bounds.
 
 use convex_support::numerics::range::is_comfortable;
-use convex_support::numerics::twofold::lost_in_sum;
+use convex_support::numerics::twofold::foot_from;
 use convex_support::{Crossing, LineCrossing, Scalar, Vector};
 use num_traits::Float;
 
@@ -52,12 +52,19 @@ pub(crate) fn direct<B: Body>(
     if !is_moderate || options.method != CastMethod::Portal || options.max_iterations == 0 {
         return None;
     }
-    let origin = body.origin();
+    let (origin, number) = (body.origin(), ScalarOf::<B>::from_f64);
     let (base, source) = match near(ray, origin, size) {
         Some(source) => (ScalarOf::<B>::ZERO, source),
         // Far along a direction that is wrong, a line is anywhere.
         None if direction_error > ScalarOf::<B>::ZERO => return None,
-        None => moved_near(ray, origin, size)?,
+        None => {
+            let (base, foot) = foot_from(origin, ray.source, ray.direction);
+            let near = size * number(0.5 * NEAR);
+            if !(foot.length_squared() <= near * near) {
+                return None;
+            }
+            (base, foot)
+        }
     };
     let turned = if direction_error > ScalarOf::<B>::ZERO {
         direction_error * size * ScalarOf::<B>::from_f64(NEAR + 2.0)
@@ -78,18 +85,6 @@ fn near<V: Vector>(ray: Ray<V>, origin: V, size: V::Scalar) -> Option<V> {
     let source = ray.source - origin;
     let near = size * V::Scalar::from_f64(NEAR);
     (source.length_squared() <= near * near).then_some(source)
-}
-
-/// The point of the line closest to the origin, after its parameter, if that is near. However far the source, it is right to two
-/// roundings of its own length: what the difference from the origin loses is added to what a fused multiply-add rounds once.
-#[inline(always)]
-fn moved_near<V: Vector>(ray: Ray<V>, origin: V, size: V::Scalar) -> Option<(V::Scalar, V)> {
-    let source = ray.source - origin;
-    let base = -source.dot(ray.direction) / ray.direction.length_squared();
-    let moved = V::from_fn(|i| base.mul_add(ray.direction.get(i), source.get(i)));
-    let point = moved + lost_in_sum(ray.source, -origin);
-    let near = size * V::Scalar::from_f64(0.5 * NEAR);
-    (point.length_squared() <= near * near).then_some((base, point))
 }
 
 /// The line of a ray, in the frame of a body of a `size`, that passes near it at its parameter `base`.

@@ -178,8 +178,8 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     ///
     /// Cores that overlap by less than those radii are apart then, and their depth is a distance.
     pub(super) fn peel(&mut self) -> bool {
-        let Pair { a, b, .. } = &self.pair;
-        let radii = [a.core_rolling_radius(), b.core_rolling_radius()];
+        let Pair { core_a, core_b, .. } = &self.pair;
+        let radii = [core_a.rolling_radius, core_b.rolling_radius];
         let sum = radii[0] + radii[1];
         if !(sum > Scalar::ZERO && sum.is_finite()) {
             return false;

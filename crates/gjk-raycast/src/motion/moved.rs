@@ -102,11 +102,6 @@ impl<S: SupportMap + ?Sized> SupportMap for Moved<'_, S> {
     }
 
     #[inline]
-    fn core_rolling_radius(&self) -> ScalarOf<S> {
-        self.shape.core_rolling_radius()
-    }
-
-    #[inline]
     fn core_parallelotope(&self) -> Option<Parallelotope<S::Vector>> {
         let Parallelotope { center, half_edges } = self.shape.core_parallelotope()?;
         Some(Parallelotope { center: self.rotation * center, half_edges: half_edges.map(|edge| self.rotation * edge) })

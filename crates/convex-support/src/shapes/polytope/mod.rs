@@ -168,6 +168,7 @@ impl<V: Vector> SupportMap for Polytope<V> {
         Core {
             origin: self.middle,
             radius: V::Scalar::ZERO,
+            rolling_radius: V::Scalar::ZERO,
             extent: self.extent,
             error: self.rounding.error_length,
             kind: CoreKind::Polytope,

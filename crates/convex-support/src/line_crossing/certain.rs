@@ -1,0 +1,384 @@
+//! What is certain about where a line enters a shape, of what its closed form computes.
+//!
+//! A closed form computes the crossing of a line that is nowhere near the shape farther from the true one than an error `e`: a few
+//! roundings of the size and of the distance of the line's source, no more than [`NEAR`] sizes, and what rounding has done to the shape.
+//! So a line misses for certain that passes at more than `e`. And it enters for certain between two of its parameters, if the point at the
+//! first is more than `e` outside of the shape and that at the second more than `e` inside: the shape is convex, so that no point
+//! before the first is in it.
+
+use num_traits::Float as _;
+
+use super::{Chord, Crossed, Crossing, across_two_axes, axis_of, past_rim, rebased};
+use crate::numerics::bound::roundings;
+use crate::numerics::range::{is_comfortable, is_moderate};
+use crate::numerics::twofold::foot_from;
+use crate::shapes::across;
+use crate::{Cone, Matrix, Scalar, Vector, Vector3};
+
+/// Where a line enters a convex set, as far as that is certain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub enum CertainCrossing<V: Vector> {
+    /// The line misses the set: a plane across this vector, which is across the line and of any length, has the set behind it and the
+    /// line before it.
+    Misses(V),
+    /// The line meets the set.
+    Enters {
+        /// Where it enters.
+        entry: V::Scalar,
+        /// It enters between these, for certain, to the rounding of the parameters themselves.
+        bounds: [V::Scalar; 2],
+        /// The unit outward normal there; one of them at an edge or a corner.
+        normal: V,
+    },
+}
+
+/// From how many sizes away a line is looked at, at most.
+const NEAR: f64 = 8.0;
+
+/// What a closed form is wrong by at most, as a displacement of the line near the shape, in units of ε times the size and times the distance
+/// of the line's source.
+///
+/// With `u = ε/2`, a distance `D` and a size `S`, the difference from the origin loses `uD`. From there:
+/// - to a ball, the foot of the line loses `uD + uS` in the step and its sum; its square, the radius and the difference `2.5uS`. Along
+///   the line the sum of the two steps loses `uD`, that of the middle and the half `uD + uS`, and the half `2.5uS`: in all `4uD + 7uS`;
+/// - to a slab, the difference from the side, that with the error and the quotient lose `4u(D + S)`: in all `5uD + 4uS`;
+/// - to a cylinder, the foot loses `2uD + 2uS`, its disc and its slab from there `8uS`, and the sum with the foot's parameter `uD`;
+/// - to a swept core or a cone, a point of the line, at a parameter that is a sum, loses `2uD + 3uS`, and its distance at most `6uS`.
+const OF_DISTANCE: f64 = 2.5;
+const OF_SIZE: f64 = 6.0;
+
+/// What a line that is taken from its foot before it is turned loses beside that, in units of ε times the size.
+///
+/// The foot loses `3uD + 2uS`. That is no more than 2 sizes from the origin where it matters, and one for a hit, which is within a
+/// size from there: the products with a rotation lose `3√3u` of both lengths, and those with the semi-axes of an ellipsoid `2u`, in all `15uS`;
+/// and to its ball `13uS`.
+const OF_TURN: f64 = 11.0;
+
+/// A line that is near a shape: as it is seen from the shape's origin, from a point at most [`NEAR`] sizes away.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NearLine<V: Vector> {
+    /// The parameter of that point.
+    base: V::Scalar,
+    pub(crate) source: V,
+    pub(crate) direction: V,
+    /// The size of the shape.
+    size: V::Scalar,
+    /// What the crossing of the line is wrong by at most, as a displacement.
+    error: V::Scalar,
+}
+
+impl<V: Vector> NearLine<V> {
+    /// The line through `source` along `direction`, and a shape of a `size` about an `origin` that is known to within `error`. `None`
+    /// where it passes far from there, or where numbers are too small or large to be squared.
+    #[inline(always)]
+    pub(crate) fn new(source: V, direction: V, origin: V, size: V::Scalar, error: V::Scalar) -> Option<Self> {
+        let number = V::Scalar::from_f64;
+        // NaN and zero are not moderate.
+        let is_moderate = is_moderate(size) & is_moderate(direction.abs().max_element());
+        let (seen, near) = (source - origin, size * number(NEAR));
+        let squared = seen.length_squared();
+        let rounding =
+            |distance: V::Scalar| V::Scalar::EPSILON * (size * number(OF_SIZE) + distance * number(OF_DISTANCE));
+        if !is_moderate {
+            None
+        } else if squared <= near * near {
+            let error = error + rounding(sum_of_coordinates(seen));
+            Some(Self { base: V::Scalar::ZERO, source: seen, direction, size, error })
+        } else {
+            let (base, foot) = foot_from(origin, source, direction);
+            let error = error + rounding(sum_of_coordinates(foot));
+            (foot.length_squared() <= near * near).then_some(Self { base, source: foot, direction, size, error })
+        }
+    }
+
+    /// The same line from where it is closest to the origin, to be turned.
+    #[inline(always)]
+    fn from_foot(&self) -> Self {
+        let Self { source, direction, size, .. } = *self;
+        let (base, source) = rebased(source, direction, direction.length_squared().recip());
+        let error = self.error + size * (V::Scalar::EPSILON * V::Scalar::from_f64(OF_TURN));
+        Self { base: self.base + base, source, error, ..*self }
+    }
+
+    /// The line in the frame of a shape that is the image of another under a rotation: what is certain there
+    /// of `shape`, a set about zero, by a source, a direction and an error.
+    #[inline(always)]
+    pub(crate) fn turned(
+        &self,
+        rotation: &V::Matrix,
+        shape: impl FnOnce(V, V, V::Scalar) -> Option<CertainCrossing<V>>,
+    ) -> Option<CertainCrossing<V>> {
+        let line = self.from_foot();
+        let source = rotation.transpose_mul(line.source);
+        match shape(source, rotation.transpose_mul(line.direction), line.error)? {
+            CertainCrossing::Misses(axis) => Some(CertainCrossing::Misses(*rotation * axis)),
+            CertainCrossing::Enters { entry, bounds: [earliest, latest], normal } => {
+                Some(line.enters([earliest, entry, latest], *rotation * normal))
+            }
+        }
+    }
+
+    /// The line enters the shape between two of its parameters, counted from the base.
+    #[inline(always)]
+    fn enters(&self, [earliest, entry, latest]: [V::Scalar; 3], normal: V) -> CertainCrossing<V> {
+        let (entry, earliest, latest) = (self.base + entry, self.base + earliest, self.base + latest);
+        let rounding = entry.abs() * (V::Scalar::EPSILON + V::Scalar::EPSILON);
+        CertainCrossing::Enters { entry, bounds: [earliest - rounding, latest + rounding], normal }
+    }
+
+    /// A ball about zero.
+    #[inline(always)]
+    pub(crate) fn ball(&self, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+        let recip = self.direction.length_squared().recip();
+        let chord = super::ball::chord(radius, self.source, self.direction, recip);
+        if chord.is_past(radius, self.error) {
+            return Some(CertainCrossing::Misses(chord.nearest));
+        }
+        let slack = chord.slack(radius, self.error, recip)?;
+        let entry = chord.ends().0;
+        Some(self.enters([entry - slack, entry, entry + slack], chord.normal(radius, self.direction, recip)))
+    }
+
+    /// A box about zero: the line is in all of its slabs, each smaller and larger by the error.
+    ///
+    /// A line that is parallel to a slab divides by zero, and is in it from `−∞` to `∞` or nowhere; `0/0`, in the plane of a side that was
+    /// moved by the error, compares false and leaves things as they are: it is in that slab still, or not known to miss it.
+    #[inline(always)]
+    pub(crate) fn cuboid(&self, half_extents: V) -> Option<CertainCrossing<V>> {
+        let Self { source, direction, error, .. } = *self;
+        let per_unit = V::ONE / direction;
+        let near = half_extents.copysign(-direction);
+        let (to_near, to_far) = (near - source, -near - source);
+        let shift = V::splat(error).copysign(direction);
+        let enters = to_near * per_unit;
+        let (enters_early, enters_late) = ((to_near - shift) * per_unit, (to_near + shift) * per_unit);
+        let (leaves_early, leaves_late) = ((to_far - shift) * per_unit, (to_far + shift) * per_unit);
+        let (earliest, latest) = (largest(enters_early), largest(enters_late));
+        if latest <= least(leaves_early) {
+            let entry = largest(enters);
+            let normal = axis_of(enters, entry) * V::ONE.copysign(-direction);
+            return Some(self.enters([earliest, entry, latest], normal));
+        }
+        let leaves = least(leaves_late);
+        // One slab is left before the other is entered: seen along both of them, the line passes a rectangle.
+        let axes = || [axis_of(enters_early, earliest), axis_of(leaves_late, leaves)];
+        (earliest > leaves).then(|| CertainCrossing::Misses(across_two_axes(axes(), source, direction)))
+    }
+}
+
+impl<V: Vector> NearLine<V> {
+    /// An ellipsoid about zero, by its axes and the reciprocals of its semi-axes.
+    ///
+    /// With `A = diag(1/a)·Rᵀ`, the ellipsoid is `F(x) = |w|² − 1 ≤ 0` for `w = Ax`, and a displacement by `e` changes `F` by no more
+    /// than `2eg + e²k²`, with `g = |Aᵀw|` and the largest reciprocal `k` of a semi-axis. Along the line `F` is as of a ball, and at
+    /// `σ = 1.25·e·g/(m|Ad|²)` from the end of a chord `2m` it is less than `−2.34eg` or more than `2.5eg` (`Chord::slack`), while `g` has
+    /// changed by `σk|Ad|` at most. That is less than `g/20` if `m²|Ad|² > 625·e²k²`, and `e²k²` less than `eg/5` if `e·k²` is less than a fifth of
+    /// the least reciprocal; both, and that the slack is less than `m/8`, follow from `m²|Ad|² > 128·e·k`.
+    ///
+    /// A line passes at more than `e` if `|w|(|w| − 1) > eg` for its nearest point; the left side is at least `(|w|² − 1)/2`, and `g` is at
+    /// most `k|w| ≤ k(1 + |w|²)/2`.
+    #[inline(always)]
+    pub(crate) fn ellipsoid(&self, axes: &V::Matrix, inverse_semi_axes: V) -> Option<CertainCrossing<V>> {
+        let number = V::Scalar::from_f64;
+        let line = self.from_foot();
+        let onto_ball = |v: V| axes.transpose_mul(v) * inverse_semi_axes;
+        let (source, direction, error) = (onto_ball(line.source), onto_ball(line.direction), line.error);
+        let (least, most) = (inverse_semi_axes.min_element(), inverse_semi_axes.max_element());
+        if !(error * (most * most) <= least * number(0.2)) {
+            return None;
+        }
+        let recip = direction.length_squared().recip();
+        let middle = -source.dot(direction) * recip;
+        let chord = Chord::about(middle, source + direction * middle, recip, V::Scalar::ONE);
+        if -chord.inside >= error * most * (number(3.0) - chord.inside * number(1.5)) {
+            return Some(CertainCrossing::Misses(*axes * (chord.nearest * inverse_semi_axes)));
+        }
+        if !(chord.inside >= error * most * number(128.0)) {
+            return None;
+        }
+        let gradient = (chord.nearest - direction * chord.half) * inverse_semi_axes;
+        let length = gradient.length();
+        let slack = length * recip / chord.half * (error * number(1.25));
+        let entry = chord.ends().0;
+        Some(line.enters([entry - slack, entry, entry + slack], *axes * (gradient * length.recip())))
+    }
+
+    /// A set about zero that tells its closest point and how far it reaches, swept by a ball, of which the closed form told a crossing.
+    ///
+    /// The points at `1.5e` before and behind the surface, as it is seen along the normal at the entry, are measured against the set.
+    #[inline(always)]
+    pub(crate) fn swept(
+        &self,
+        radius: V::Scalar,
+        closest: impl Fn(V) -> V,
+        support_value: impl Fn(V) -> V::Scalar,
+        crossed: Crossed<V>,
+    ) -> Option<CertainCrossing<V>> {
+        let Self { source, direction, error, .. } = *self;
+        let Crossing { entry, normal, .. } = match crossed {
+            Ok(crossing) => crossing,
+            Err(axis) => return self.passes(axis, support_value(axis), radius),
+        };
+        let from_core = |at: V::Scalar| {
+            let x = source + direction * at;
+            x - closest(x)
+        };
+        let approach = -from_core(entry).dot(direction);
+        let slack = radius / approach * (error * V::Scalar::from_f64(1.5));
+        let (inner, outer) = (radius - error, radius + error);
+        let is_certain = (inner > V::Scalar::ZERO)
+            & (slack >= V::Scalar::ZERO)
+            & (from_core(entry + slack).length_squared() <= inner * inner)
+            & (from_core(entry - slack).length_squared() >= outer * outer);
+        is_certain.then(|| self.enters([entry - slack, entry, entry + slack], normal))
+    }
+
+    /// The line misses a set, swept by a ball, that reaches along an axis as far as is told, if that is less by more than the error.
+    ///
+    /// Of the line only what is near the set counts, at most `NEAR + 1` sizes from the source: there it comes no nearer than by that times
+    /// `|n·d|/|d|`. That product loses `3u`, which is `27u` of the size there, and `n·x` another `24u`: more than one error, and less than two.
+    #[inline(always)]
+    fn passes(&self, axis: V, support_value: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+        let reach = self.size * V::Scalar::from_f64(NEAR + 1.0) / self.direction.abs().max_element();
+        let ahead = axis.dot(self.source) - support_value - axis.dot(self.direction).abs() * reach;
+        let (squared, apart) = (axis.length_squared(), radius + self.error + self.error);
+        let passes = is_comfortable(squared) & (ahead > V::Scalar::ZERO) & (ahead * ahead >= apart * apart * squared);
+        passes.then_some(CertainCrossing::Misses(axis))
+    }
+}
+
+impl<V: Vector3> NearLine<V> {
+    /// A cone about the second axis.
+    ///
+    /// It is behind the plane of its base and within its slant, `G(x) = cosα·ρ − sinα·(h − y) ≤ 0` at a distance `ρ` from the axis. `G` is how far
+    /// a point is before the plane along the slant there, and it is crossed at the speed `(cos²α·(ρ·d) + sin²α·(h − y)·d_y)/(sinα·(h − y))`.
+    /// As of a [swept set](Self::swept), two points of the line tell.
+    #[inline(always)]
+    pub(crate) fn cone(&self, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
+        let Self { source, direction, error, .. } = *self;
+        let (h, (cosine, sine)) = (shape.half_height(), shape.slant());
+        let Crossing { entry, normal, .. } = match super::cone(shape, source, direction) {
+            Ok(crossing) => crossing,
+            Err(axis) => {
+                let (apex, middle) = (h * axis.get(1), shape.disc_radius() * across(axis).length());
+                return self.passes(axis, apex.max(middle - apex), V::Scalar::ZERO);
+            }
+        };
+        let at = source + direction * entry;
+        let below = (h - at.get(1)) * sine;
+        let (out, radial, rise) = (across(at) * cosine, across(direction) * cosine, direction.get(1));
+        let per_speed =
+            if at.get(1) <= error - h { rise.recip() } else { -below / (out.dot(radial) + below * (sine * rise)) };
+        let slack = per_speed * (error * V::Scalar::from_f64(1.5));
+        let (inner, outer) = (source + direction * (entry + slack), source + direction * (entry - slack));
+        let slant = |x: V, by: V::Scalar| (across(x) * cosine, sine * (h - x.get(1)) + by);
+        let is_in = {
+            let (out, room) = slant(inner, -error);
+            (room >= V::Scalar::ZERO) & (out.length_squared() <= room * room) & (inner.get(1) >= error - h)
+        };
+        let is_out = {
+            let (out, room) = slant(outer, error);
+            (room < V::Scalar::ZERO) | (out.length_squared() >= room * room) | (outer.get(1) <= -error - h)
+        };
+        ((slack >= V::Scalar::ZERO) & is_in & is_out)
+            .then(|| self.enters([entry - slack, entry, entry + slack], normal))
+    }
+
+    /// A cylinder about the second axis: the line is in the disc, as it is seen along the axis, and in the slab.
+    #[inline(always)]
+    pub(crate) fn cylinder(&self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+        let Self { source, direction, error, .. } = *self;
+        let dd = direction.length_squared();
+        let (base, source) = rebased(source, direction, dd.recip());
+        let (out, radial) = (across(source), across(direction));
+        let slope = radial.length_squared();
+        // Along the axis to rounding.
+        if !(slope > dd * (V::Scalar::EPSILON * V::Scalar::EPSILON)) {
+            return None;
+        }
+        let recip = slope.recip();
+        let middle = -out.dot(radial) * recip;
+        let side = Chord::about(middle, out + radial * middle, recip, radius);
+        if side.is_past(radius, error) {
+            return Some(CertainCrossing::Misses(side.nearest));
+        }
+        let slack = side.slack(radius, error, recip)?;
+        let (enters, leaves) = side.ends();
+        let (y, rise) = (source.get(1), direction.get(1));
+        let per_rise = rise.recip();
+        let near = half_height.copysign(-rise);
+        let shift = error.copysign(rise);
+        let (to_near, to_far) = (near - y, -near - y);
+        let (top, bottom) = (to_near * per_rise, to_far * per_rise);
+        let earliest = later(enters - slack, (to_near - shift) * per_rise);
+        let latest = later(enters + slack, (to_near + shift) * per_rise);
+        if latest <= sooner(leaves - slack, (to_far - shift) * per_rise) {
+            let lid = V::axis(1) * V::Scalar::ONE.copysign(-rise);
+            let normal = if enters > top { side.normal(radius, radial, recip) } else { lid };
+            return Some(self.enters([earliest, later(enters, top), latest].map(|at| base + at), normal));
+        }
+        // The line leaves the side before it is at the height of the lids, or enters it after that.
+        let axis = || past_rim(source, direction, if leaves < top { top } else { bottom });
+        let leaves_late = sooner(leaves + slack, (to_far + shift) * per_rise);
+        (earliest > leaves_late).then(|| CertainCrossing::Misses(axis()))
+    }
+}
+
+impl<V: Vector> Chord<V> {
+    /// By how much the ends of the chord that a ball cuts out of the line may be wrong, if all that is known of them is wrong by an `error`;
+    /// `None` where the line may miss the ball. `recip` is `1/|direction|²`.
+    ///
+    /// With the half `m`, `F = |x|² − r²` is `|d|²·σ·(σ ∓ 2m)` at `σ` within or before an end. With `σ = 1.25·e·r/(m|d|²)`, which is less
+    /// than `m/8` if `m²|d|² > 10er`, that is less than `−2.3er` and more than `2.5er`: one point is deeper than `e`, and the other
+    /// farther out.
+    #[inline(always)]
+    fn slack(&self, radius: V::Scalar, error: V::Scalar, recip: V::Scalar) -> Option<V::Scalar> {
+        let number = V::Scalar::from_f64;
+        (self.inside >= radius * error * number(10.0)).then(|| radius * recip / self.half * (error * number(1.25)))
+    }
+
+    /// Whether the line passes the ball by more than an error: `|x| ≥ r + e` for its point nearest the middle.
+    #[inline(always)]
+    fn is_past(&self, radius: V::Scalar, error: V::Scalar) -> bool {
+        -self.inside >= (radius + error) * error * V::Scalar::from_f64(3.0)
+    }
+}
+
+/// The sum of the magnitudes of the coordinates, which a length is no more than.
+#[inline(always)]
+fn sum_of_coordinates<V: Vector>(v: V) -> V::Scalar {
+    v.abs().dot(V::ONE)
+}
+
+/// The later of two parameters; the first, if the second is `NaN`.
+#[inline(always)]
+fn later<S: Scalar>(a: S, b: S) -> S {
+    if b > a { b } else { a }
+}
+
+/// The earlier of two parameters; the first, if the second is `NaN`.
+#[inline(always)]
+fn sooner<S: Scalar>(a: S, b: S) -> S {
+    if b < a { b } else { a }
+}
+
+/// The largest coordinate; `NaN` is passed over.
+#[inline(always)]
+fn largest<V: Vector>(v: V) -> V::Scalar {
+    (0..V::DIM).fold(-V::Scalar::infinity(), |most, i| later(most, v.get(i)))
+}
+
+/// The smallest coordinate; `NaN` is passed over.
+#[inline(always)]
+fn least<V: Vector>(v: V) -> V::Scalar {
+    (0..V::DIM).fold(V::Scalar::infinity(), |least, i| sooner(least, v.get(i)))
+}
+
+/// How far a matrix `R` that is nearly orthogonal is at most from the inverse of its transpose, where it takes a unit vector:
+/// `R⁻ᵀ − R = R⁻ᵀ(1 − RᵀR)`. The products lose `3u`.
+pub(crate) fn skew<M: Matrix>(matrix: &M) -> <M::Vector as Vector>::Scalar {
+    let gram = M::from_cols_fn(|j| matrix.transpose_mul(matrix.col(j)));
+    let off = M::Vector::from_fn(|j| (gram.col(j) - M::Vector::axis(j)).length());
+    (off.length() + roundings(12.0, Scalar::ONE)) * Scalar::from_f64(1.125)
+}

@@ -1,0 +1,132 @@
+//! What single precision is certain of about where lines enter shapes, against the closed forms of the same numbers in double precision.
+
+use std::cell::Cell;
+
+use convex_support::glam::{DVec3, Vec3A};
+use convex_support::{
+    Ball, Capsule, CertainCrossing, Cone, Cuboid, Cylinder, Ellipsoid, Posed, Rotation as _, Rounded, Scalar,
+    SupportMap, Vector3, line_crossing,
+};
+use proptest::prelude::*;
+use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
+
+type AnyShape<V> = Box<dyn SupportMap<Vector = V>>;
+
+/// How many kinds of shapes [`shape`] makes.
+const KINDS: usize = 7;
+
+/// A shape of three lengths, in either precision.
+fn shape<V: Vector3>(kind: usize, lengths: [f32; 3], [x, y, z, w]: [f32; 4]) -> AnyShape<V> {
+    let [a, b, c] = lengths.map(|length| V::Scalar::from_f64(f64::from(length)));
+    let extents = V::from_fn(|i| [a, b, c][i]);
+    let rotation = V::Rotation::from_xyzw([x, y, z, w].map(|q| V::Scalar::from_f64(f64::from(q))));
+    match kind {
+        0 => Box::new(Ball::new(a).unwrap()),
+        1 => Box::new(Cuboid::new(extents).unwrap()),
+        2 => Box::new(Capsule::new(a, b).unwrap()),
+        3 => Box::new(Cylinder::new(a, b).unwrap()),
+        4 => Box::new(Cone::new(a, b).unwrap()),
+        5 => Box::new(Ellipsoid::new(V::ZERO, extents, rotation).unwrap()),
+        _ => Box::new(Rounded::new(Cuboid::new(extents).unwrap(), a).unwrap()),
+    }
+}
+
+/// The same swept by a ball of half a length, turned and moved, each if it is asked for. Of the shapes that cannot be swept none is.
+fn changed<V: Vector3>(
+    (kind, lengths, rotation): (usize, [f32; 3], [f32; 4]),
+    [is_swept, is_posed]: [bool; 2],
+    translation: [f32; 3],
+) -> AnyShape<V> {
+    let number = |x: f32| V::Scalar::from_f64(f64::from(x));
+    let mut it = shape::<V>(kind, lengths, rotation);
+    if is_swept && [0, 1, 2, 6].contains(&kind) {
+        it = Box::new(Rounded::new(it, number(lengths[0])).unwrap());
+    }
+    if is_posed {
+        let turn = V::Rotation::from_xyzw(rotation.map(number));
+        it = Box::new(Posed::new(it, turn, V::from_fn(|i| number(translation[i]))).unwrap());
+    }
+    it
+}
+
+fn single(v: DVec3) -> Vec3A {
+    v.as_vec3a()
+}
+
+fn double(v: Vec3A) -> DVec3 {
+    v.as_dvec3()
+}
+
+prop_compose! {
+    fn unit()(x in -1.0..1.0, y in -1.0..1.0, z in -1.0..1.0) -> DVec3 {
+        DVec3::new(x, y, z).try_normalize().unwrap_or(DVec3::X)
+    }
+}
+
+/// Lines are aimed at points of the surface, at edges, and past them by less than rounding and more, from near and far.
+#[test]
+fn what_is_certain_in_single_precision_is_so_in_double() {
+    let (certain, asked) = (Cell::new([0; 2]), Cell::new(0));
+    let length = || (-1.3..1.3_f64).prop_map(|x| 10.0_f64.powf(x) as f32);
+    let body = (0..KINDS, [length(), length(), length()], any::<[i8; 4]>(), any::<[bool; 2]>(), -3.0..100.0_f32);
+    let line = (unit(), unit(), unit(), [0.0..1.0, 0.0..1.0], -8.0..0.0, 0..5_usize, 0..6_usize);
+    let cases = ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(60_000) };
+    TestRunner::new_with_rng(cases, TestRng::deterministic_rng(RngAlgorithm::ChaCha))
+        .run(&(body, line), |((kind, lengths, q, changes, far), (n, m, aside, [part, by], exponent, aim, from))| {
+            let quaternion = if q == [0; 4] { [0.0, 0.0, 0.0, 1.0] } else { q.map(f32::from) };
+            let parts = (kind, lengths, quaternion);
+            let translation = [far, -0.5 * far, 0.25 * far];
+            let here = changed::<Vec3A>(parts, changes, translation);
+            let truth = changed::<DVec3>(parts, changes, translation);
+            let core = truth.core();
+            let (origin, size) = (core.origin, core.extent + core.radius);
+            let tilted = |n: DVec3, by: f64| (n + m * by).normalize();
+            let on_surface = match aim {
+                0 => origin + m * (size * part),
+                1 => truth.support(n),
+                2 => truth.support(n).lerp(truth.support(tilted(n, 1e-3)), part),
+                3 => truth.support(DVec3::X).lerp(truth.support(tilted(DVec3::X, 0.3)), part),
+                _ => truth.support(n).lerp(truth.support(m), part),
+            };
+            let target = on_surface + aside * (size * 10.0_f64.powf(exponent) * (by - 0.5));
+            let along = n.cross(m).try_normalize().unwrap_or(DVec3::Y);
+            let away =
+                [n, m, tilted(n, by), (along + n * 10.0_f64.powf(exponent)).normalize(), DVec3::Z, DVec3::NEG_X][from];
+            let source = single(target + away * (size * [1e-6, 1e-3, 3.0, 7.0, 50.0][aim]));
+            let direction = single(if part < 0.5 { target - double(source) } else { -away });
+            if direction == Vec3A::ZERO {
+                return Ok(());
+            }
+            asked.set(asked.get() + 1);
+            let crossing = line_crossing(&truth, double(source), double(direction)).crossing();
+            let lost = 1e-12 * (size + origin.length() + double(source).length()) / double(direction).length();
+            match here.certain_crossing(source, direction, 0.0, 0.0) {
+                None => {}
+                Some(CertainCrossing::Misses(axis)) => {
+                    certain.set([certain.get()[0] + 1, certain.get()[1]]);
+                    prop_assert!(crossing.is_none(), "it hits: {:?}", crossing);
+                    let (n, d) = (double(axis).normalize(), double(direction).normalize());
+                    let reach = size + (double(source) - origin).length();
+                    prop_assert!(n.dot(d).abs() < 1e-3, "not across the line: {}", n.dot(d));
+                    let across = (n - d * n.dot(d)).normalize();
+                    let ahead = across.dot(double(source)) - truth.support_value(across);
+                    prop_assert!(ahead > -3e-6 * reach, "not apart by {}", -ahead);
+                }
+                Some(CertainCrossing::Enters { entry, bounds: [earliest, latest], normal }) => {
+                    certain.set([certain.get()[0], certain.get()[1] + 1]);
+                    prop_assert!(earliest <= entry && entry <= latest, "{:?}", [earliest, entry, latest]);
+                    prop_assert!((normal.length() - 1.0).abs() < 1e-4, "no unit vector: {}", normal);
+                    let Some(crossing) = crossing else {
+                        // Rounding decides it in double precision too, within the bounds.
+                        return Err(TestCaseError::fail(format!("it misses: {earliest} {entry} {latest}")));
+                    };
+                    prop_assert!(f64::from(earliest) <= crossing.entry + lost, "{} {:?}", earliest, crossing);
+                    prop_assert!(f64::from(latest) >= crossing.entry - lost, "{} {:?}", latest, crossing);
+                }
+            }
+            Ok(())
+        })
+        .unwrap();
+    let [misses, hits] = certain.get();
+    assert!(misses > asked.get() / 20 && hits > asked.get() / 3, "{misses} misses and {hits} hits of {}", asked.get());
+}
