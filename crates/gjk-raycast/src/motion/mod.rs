@@ -3,6 +3,7 @@
 mod approach;
 mod chain_motion;
 mod contact;
+mod corners;
 mod first_contact;
 mod free_interval;
 mod instant;

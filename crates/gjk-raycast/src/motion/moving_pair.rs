@@ -6,10 +6,10 @@ use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
 use super::approach::Approach;
+use super::corners::Corners;
 use super::instant::{Instant, Limits};
 use super::moving_body::{MovingBody, length_bound};
 use super::placed::Placed;
-use super::rough_look::Corners;
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::SignedDistanceOptions;
 use crate::body::{Body as _, Pair, TracedSupport as _};
@@ -35,7 +35,7 @@ where
     MB: Trajectory<Vector = A::Vector>,
 {
     pub(super) fn new(a: MovingBody<'s, A, MA>, b: MovingBody<'s, B, MB>) -> Self {
-        Self { a, b, closest: Cell::new(Corners::NONE), iterations: Cell::new(0) }
+        Self { a, b, closest: Cell::new(Corners::none()), iterations: Cell::new(0) }
     }
 
     /// Counts support points.
@@ -131,8 +131,8 @@ where
     }
 
     fn stays_far_apart(&self, interval: [ScalarOf<A>; 2]) -> Option<A::Vector> {
-        let a = self.a.motion.moving_ball(self.a.ball(), interval);
-        let b = self.b.motion.moving_ball(self.b.ball(), interval);
+        let a = self.a.moving_ball(interval);
+        let b = self.b.moving_ball(interval);
         let (start, velocity) = (a.start - b.start, a.velocity - b.velocity);
         let duration = interval[1] - interval[0];
         // The time at which start + t·velocity is shortest.
