@@ -86,6 +86,12 @@ impl<V: Vector> Face<V> {
         self.corners().zip(&self.weights).fold(zero, |sum, ((_, pair), &weight)| sum.plus(pair, weight))
     }
 
+    /// The corners, and how many they are.
+    #[inline(always)]
+    pub(super) fn points(&self) -> ([V; MAX_POINTS], usize) {
+        (self.points, self.len)
+    }
+
     /// The corners, and what they are made of.
     #[inline(always)]
     pub(super) fn corners(&self) -> impl Iterator<Item = (V, PointPair<V>)> + '_ {

@@ -11,6 +11,7 @@ mod motion_cast;
 mod moved;
 mod moving_body;
 mod moving_pair;
+mod near_look;
 mod next_time;
 mod options;
 mod over_half_space;

@@ -112,6 +112,10 @@ where
         self.closely_placed(time, &self.placed(time), axis, limits)
     }
 
+    fn by_last_corners(&self, time: ScalarOf<A>, axis: A::Vector) -> Option<Instant<A::Vector>> {
+        self.near_look(time, axis)
+    }
+
     fn level(&self, time: ScalarOf<A>, normal: A::Vector) -> (ScalarOf<A>, ScalarOf<A>) {
         let Placed { a, b, offset, .. } = &self.placed(time);
         let mut pair = Pair::new(a, b);
