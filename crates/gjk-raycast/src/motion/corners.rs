@@ -29,21 +29,20 @@ impl<V: Vector> Corners<V> {
         Self { pairs: [PointPair { a: V::ZERO, b: V::ZERO }; MAX_POINTS], len: 0 }
     }
 
-    /// The given corners, where the bodies are at a time.
-    pub(super) fn new<A, B>(
+    /// Takes the given corners, where the bodies are at a time, instead.
+    pub(super) fn keep<A, B>(
+        &mut self,
         corners: impl Iterator<Item = PointPair<V>>,
         Placed { a, b, .. }: &Placed<'_, A, B>,
-    ) -> Self
-    where
+    ) where
         A: SupportMap<Vector = V> + ?Sized,
         B: SupportMap<Vector = V> + ?Sized,
     {
-        let mut kept = Self::none();
-        for (to, corner) in kept.pairs.iter_mut().zip(corners) {
+        self.len = 0;
+        for (to, corner) in self.pairs.iter_mut().zip(corners) {
             *to = PointPair { a: a.before(corner.a), b: b.before(corner.b) };
-            kept.len += 1;
+            self.len += 1;
         }
-        kept
     }
 
     /// The face closest to zero, where the bodies are at a time. Corners that leave the point closest to zero of their hull outside are
@@ -54,10 +53,12 @@ impl<V: Vector> Corners<V> {
         A: SupportMap<Vector = V> + ?Sized,
         B: SupportMap<Vector = V> + ?Sized,
     {
-        let (mut pairs, mut points, mut len) = (self.pairs, [V::ZERO; MAX_POINTS], self.len.min(MAX_POINTS));
-        for (pair, point) in pairs[..len].iter_mut().zip(&mut points) {
-            *pair = PointPair { a: a.turned(pair.a), b: b.turned(pair.b) };
-            *point = pair.a - pair.b + *offset;
+        let mut len = self.len.min(MAX_POINTS);
+        let zero = PointPair { a: V::ZERO, b: V::ZERO };
+        let (mut pairs, mut points) = ([zero; MAX_POINTS], [V::ZERO; MAX_POINTS]);
+        for (i, kept) in self.pairs[..len].iter().enumerate() {
+            pairs[i] = PointPair { a: a.turned(kept.a), b: b.turned(kept.b) };
+            points[i] = pairs[i].a - pairs[i].b + *offset;
         }
         while len > 0 {
             let foot = project(&points[..len], |corner| -corner);

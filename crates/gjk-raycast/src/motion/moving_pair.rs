@@ -1,6 +1,6 @@
 //! Two bodies and their motions.
 
-use core::cell::Cell;
+use core::cell::{Cell, RefCell};
 
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
@@ -22,7 +22,7 @@ pub(super) struct MovingPair<'s, A: SupportMap + ?Sized, MA, B: SupportMap + ?Si
     pub(super) a: MovingBody<'s, A, MA>,
     pub(super) b: MovingBody<'s, B, MB>,
     /// The corners of the faces that were closest at the last look.
-    pub(super) closest: Cell<Corners<A::Vector>>,
+    pub(super) closest: RefCell<Corners<A::Vector>>,
     /// The support points computed of each shape.
     iterations: Cell<usize>,
 }
@@ -35,7 +35,7 @@ where
     MB: Trajectory<Vector = A::Vector>,
 {
     pub(super) fn new(a: MovingBody<'s, A, MA>, b: MovingBody<'s, B, MB>) -> Self {
-        Self { a, b, closest: Cell::new(Corners::none()), iterations: Cell::new(0) }
+        Self { a, b, closest: RefCell::new(Corners::none()), iterations: Cell::new(0) }
     }
 
     /// Counts support points.

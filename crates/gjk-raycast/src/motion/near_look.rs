@@ -9,27 +9,26 @@ use num_traits::Float as _;
 
 use super::corners::Face;
 use super::instant::Instant;
+use super::moved::Moved;
 use super::moving_pair::MovingPair;
 use super::trajectory::Trajectory;
-use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
-use crate::gjk::rounding;
-use crate::simplex::{MAX_POINTS, cross};
+use crate::body::{Pair, PointPair};
+use crate::contact::Cores;
+use crate::simplex::{MAX_POINTS, cross, project};
 use crate::unit::is_moderate;
 
-/// In how many ε of the smaller body its distance from the other is to be known for all errors to be those of lengths. Of bodies of very
-/// different sizes, or that are far from what they turn about, coordinates may be known better.
-const ALIKE: f64 = 256.0;
-
 /// What corners may be off a plane by, in errors.
-const IN_PLANE: f64 = 2.0;
+const IN_PLANE: f64 = 4.0;
 
 /// The direction of closest points that are apart by this part of the size of both bodies is known to rounding.
 const LONG: f64 = 1.0 / 16.0;
 
-/// Points of the cores that are closest to one another, with the vector between them, and the unit vector across the plane between them.
+/// What may have been closest, lengths in the world's unit.
 struct Closest<V: Vector> {
+    /// Points of the cores, each relative to its body's origin, and the vector between them.
     points: PointPair<V>,
     v: V,
+    /// The unit vector across the plane between them.
     unit: V,
 }
 
@@ -44,48 +43,87 @@ where
     /// or overlap.
     pub(super) fn near_look(&self, time: ScalarOf<A>, axis: A::Vector) -> Option<Instant<A::Vector>> {
         let placed = self.placed(time);
-        let mut pair = Pair::new(&placed.a, &placed.b);
-        let (size, radius) = (pair.size(placed.offset), pair.radius());
-        let error = rounding(size) + pair.error();
-        let [a, b] = [&self.a.core, &self.b.core].map(|core| core.extent + core.radius);
-        let smaller = if a < b { a } else { b };
-        if !(is_moderate(size) && error <= smaller * ScalarOf::<A>::EPSILON * Scalar::from_f64(ALIKE)) {
+        let pair = Pair::new(&placed.a, &placed.b);
+        let size = pair.size(placed.offset);
+        if !is_moderate(size) {
             return None;
         }
         let (closest, face) = match pair.closest_points(placed.offset, size) {
             Some(points) => (Closest::new(points, points.a - points.b + placed.offset, size)?, None),
             None => {
-                let face = self.closest.get().closest_face(&placed)?;
+                let face = self.closest.borrow().closest_face(&placed)?;
                 let closest = Closest::new(face.closest_points(), face.v, size);
-                let closest = closest.or_else(|| Closest::in_plane(&face, axis))?;
-                (closest, Some(face))
+                (closest.or_else(|| Closest::in_plane(&face, axis))?, Some(face))
             }
         };
         let Closest { points, v, unit } = closest;
-        // They have passed through one another.
-        if unit.dot(axis) < Scalar::ZERO {
+        // Not where they have passed through one another.
+        if !(unit.dot(axis) > Scalar::ZERO) {
             return None;
         }
-        self.count(1);
-        let lower = unit.dot(pair.support(-unit).0 + placed.offset);
-        // NaN is neither.
-        if !(unit.dot(v) - lower <= error * Scalar::from_f64(IN_PLANE)) {
-            return None;
-        }
+        let mut cores = Cores::new(&placed.a, &placed.b);
+        cores.sharpen();
+        let (scale, radius) = (cores.scale(), cores.radius());
+        // As in an answer: the unit vector, the radii and the sums.
+        let slack = |length: ScalarOf<A>| ScalarOf::<A>::EPSILON * Scalar::from_f64(3.0) * (length + radius);
+        let lower = unit.dot(cores.support(-unit)?.point) * scale;
+        let error = cores.error_along(unit) * scale + slack(lower.abs());
+        // NaN is not in the plane.
+        let is_closest = unit.dot(v) - lower <= error * Scalar::from_f64(IN_PLANE);
         let distance = lower - radius;
-        let mut upper = v.length() - radius + error;
-        if !(distance > error || upper < Scalar::ZERO) {
-            self.count(1);
-            let farthest = pair.support(unit).0 + placed.offset;
-            upper = error - room_around_zero(&face?, farthest);
-            if !(radius == Scalar::ZERO && upper < Scalar::ZERO) {
-                return None;
-            }
+        let mut upper = ScalarOf::<A>::infinity();
+        if is_closest && !(distance > error) {
+            upper = match &face {
+                None => cores.greatest_length(v / scale) * scale - radius + slack(v.length()),
+                Some(face) => self.overlap_of_corners(&mut cores, face, unit)?,
+            };
+        }
+        self.count(cores.iterations);
+        if !is_closest || !(distance > error || upper < Scalar::ZERO) {
+            return None;
         }
         let point_a = placed.place + placed.offset + points.a - unit * self.a.core.radius;
         let point = placed.place + points.b + unit * self.b.core.radius;
         let closing = self.closing(time, unit, [point_a, point]);
-        Some(Instant { time, normal: unit, gap: distance - error, distance, upper, error, closing, point, is_close: true })
+        let gap = distance - error;
+        Some(Instant { time, normal: unit, gap, distance, upper, error, closing, point, is_close: true })
+    }
+
+    /// What the signed distance is certainly not more than, if the corners of a face prove that the bodies overlap; infinity if not.
+    ///
+    /// Each is looked for anew, along a direction that leans to it: as it was kept, it is not known as well as a support point.
+    fn overlap_of_corners(
+        &self,
+        cores: &mut Cores<'_, Moved<'_, A>, Moved<'_, B>>,
+        face: &Face<A::Vector>,
+        unit: A::Vector,
+    ) -> Option<ScalarOf<A>> {
+        let (zero, infinity) = (ScalarOf::<A>::ZERO, ScalarOf::<A>::infinity());
+        let (scale, radius, dimension) = (cores.scale(), cores.radius(), A::Vector::DIM);
+        let lean = ScalarOf::<A>::EPSILON.sqrt() / scale;
+        let (mut points, mut len) = ([A::Vector::ZERO; MAX_POINTS], 0);
+        for (corner, _) in face.corners() {
+            points[len] = cores.support((corner - face.v) * lean - unit)?.point;
+            len += 1;
+        }
+        if radius > zero {
+            let weights = project(&points[..len], |corner| -corner).coordinates;
+            if !weights[..len].iter().all(|&weight| weight > zero) {
+                return Some(infinity);
+            }
+            let (mut closest, mut sum) = (A::Vector::ZERO, zero);
+            for (&point, &weight) in points[..len].iter().zip(&weights) {
+                closest += point * weight;
+                sum += weight;
+            }
+            let length = cores.greatest_length(closest / sum) * scale;
+            return Some(length - radius + ScalarOf::<A>::EPSILON * Scalar::from_f64(3.0) * (length + radius));
+        }
+        if len != dimension {
+            return Some(infinity);
+        }
+        points[len] = cores.support(unit)?.point;
+        Some((cores.greatest_error() - room_around_zero(&points)) * scale)
     }
 }
 
@@ -107,36 +145,33 @@ impl<V: Vector> Closest<V> {
     }
 }
 
-/// The radius of a ball about zero that is within the simplex of a face's corners and one more point; not positive where there is none.
+/// The radius of a ball about zero that is within the simplex of one more point than there are dimensions; not positive where there is
+/// none.
 ///
 /// If all points are wrong by less, zero is still inside: else they would lie beyond a plane through zero, and before they were wrong
 /// all of their simplex less than that before it.
-fn room_around_zero<V: Vector>(face: &Face<V>, point: V) -> V::Scalar {
-    let (zero, (mut points, len)) = (V::Scalar::ZERO, face.points());
-    if len != V::DIM {
-        return zero;
-    }
-    points[len] = point;
+fn room_around_zero<V: Vector>(points: &[V; MAX_POINTS]) -> V::Scalar {
     let mut room = V::Scalar::infinity();
-    for (i, &opposite) in points.iter().enumerate().take(len + 1) {
-        let mut others = points;
-        others.swap(i, len);
+    for (i, &opposite) in points.iter().enumerate().take(V::DIM + 1) {
+        let mut others = *points;
+        others.swap(i, V::DIM);
         let (normal, wrong) = normal(&others);
-        let (level, side) = (normal.dot(others[0]), normal.dot(opposite - others[0]));
-        let height = if side > zero { -level } else { level } - wrong * others[0].length();
+        let edge = opposite - others[0];
+        let (level, side) = (normal.dot(others[0]), normal.dot(edge));
+        let height = if side > V::Scalar::ZERO { -level } else { level } - wrong * others[0].length();
         // Zero is no farther from the face than the corner opposite, of which this tells on which side it is.
-        let most = side.abs() - wrong * (opposite - others[0]).length();
+        let most = side.abs() - wrong * edge.length();
         let height = (if height < most { height } else { most }) / normal.length();
         if height.is_nan() {
-            return zero;
+            return V::Scalar::ZERO;
         }
         room = if height < room { height } else { room };
     }
     room
 }
 
-/// A vector across the first points, as many as there are dimensions, and what that is wrong by, its product with another included relative to
-/// the other's length.
+/// A vector across the first points, as many as there are dimensions; and what its product with another is wrong by, relative to the
+/// other's length.
 ///
 /// In space, with `u = ε/2`, both edges are wrong by `u`, and a coordinate of their product is a difference of products: `4u·√3` of the
 /// product of the lengths. The scalar product loses `3u`.

@@ -127,19 +127,17 @@ impl<V: Vector> RigidMotion<V> {
         TurningPlane { from, to }: TurningPlane<V>,
         interval: [V::Scalar; 2],
     ) -> V::Scalar {
-        let two = V::Scalar::from_f64(2.0);
-        let twice_rate = if from == to { V::ZERO } else { (to - from) * (two / (interval[1] - interval[0])) };
+        let (w, turns) = (self.angular_velocity.cross_matrix(), self.angular_velocity != Default::default());
+        if from == to {
+            return if turns { longer([w * (w * from); 2]) * reach + least::<V::Scalar>() } else { V::Scalar::ZERO };
+        }
+        let twice_rate = (to - from) * (V::Scalar::from_f64(2.0) / (interval[1] - interval[0]));
         let straight = twice_rate.dot(self.velocity);
-        if self.angular_velocity == Default::default() {
+        if !turns {
             return straight;
         }
-        let w = self.angular_velocity.cross_matrix();
         let bent = [w * (w * from - twice_rate), w * (w * to - twice_rate)];
-        let (squared_from, squared_to) = (bent[0].length_squared(), bent[1].length_squared());
-        let squared = if squared_from > squared_to { squared_from } else { squared_to };
-        let in_range = V::Scalar::min_positive_value() / (V::Scalar::EPSILON * V::Scalar::EPSILON);
-        let bent = if squared > in_range { squared.sqrt() } else { hardly_bent(bent) };
-        straight + bent * reach + least::<V::Scalar>()
+        straight + longer(bent) * reach + least::<V::Scalar>()
     }
 
     /// The distance from the axis through the centre within which all of a ball stays.
@@ -174,6 +172,15 @@ pub(super) fn turn_error<V: Vector>(turn: &V::Matrix) -> V::Scalar {
     // Four more for the product with a vector.
     let units = <V::AngularVelocity as AngularVelocity<V>>::TURN_ERROR + 4.0;
     squared.sqrt() * V::Scalar::EPSILON * V::Scalar::from_f64(units)
+}
+
+/// The length of the longer of two vectors.
+#[inline(always)]
+fn longer<V: Vector>(vectors: [V; 2]) -> V::Scalar {
+    let [first, second] = vectors.map(V::length_squared);
+    let squared = if first > second { first } else { second };
+    let in_range = V::Scalar::min_positive_value() / (V::Scalar::EPSILON * V::Scalar::EPSILON);
+    if squared > in_range { squared.sqrt() } else { hardly_bent(vectors) }
 }
 
 /// The length of the longer of two vectors whose squares underflow, with what products of such numbers may have lost.

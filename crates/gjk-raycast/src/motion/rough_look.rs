@@ -3,7 +3,7 @@
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
-use super::corners::{Corners, Face};
+use super::corners::Face;
 use super::instant::{Instant, NEAR};
 use super::moved::Moved;
 use super::moving_pair::MovingPair;
@@ -79,7 +79,7 @@ where
             let seen = Seen::new(v, v.length(), w + placed.offset, points, error);
             return is_well_apart(seen.lower).then(|| self.instant(time, placed, &seen));
         }
-        let face = if is_moderate(size) { self.closest.get().closest_face(placed) } else { None };
+        let face = if is_moderate(size) { self.closest.borrow().closest_face(placed) } else { None };
         // Not where they have passed through one another, and their plane is the other way round.
         let face = face.filter(|face| face.v.length() > radius && face.v.dot(axis) > Scalar::ZERO);
         let Some(face) = face else { return self.searched(time, placed, pair, Begin::Along(axis), limit) };
@@ -134,7 +134,7 @@ where
             // Of curved bodies the corners would be others.
             if !pair.is_curved() {
                 let corners = state.simplex.weighted().map(|(_, corner)| in_world(corner, scale));
-                self.closest.set(Corners::new(corners, placed));
+                self.closest.borrow_mut().keep(corners, placed);
             }
             return Some(self.instant(time, placed, &seen(state.simplex.weighted_witness())));
         }
