@@ -10,7 +10,7 @@ use super::result::MotionIterate;
 use crate::{StartInContact, Status};
 
 /// How much deeper than touching an overlap is looked for, in units of what the distance may be wrong by.
-const DEPTH: f64 = 3.0;
+const DEPTH: f64 = 2.0;
 
 impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> {
     /// Where the contact is as near as can be told: looks for a time just after it at which the bodies overlap. `None` where they are

@@ -91,7 +91,8 @@ where
 
     /// What the signed distance is certainly not more than, if the corners of a face prove that the bodies overlap; infinity if not.
     ///
-    /// Each is looked for anew, along a direction that leans to it: as it was kept, it is not known as well as a support point.
+    /// Each is looked for anew, along a direction that leans away from the others: as it was kept, it is not known as well as a support
+    /// point.
     fn overlap_of_corners(
         &self,
         cores: &mut Cores<'_, Moved<'_, A>, Moved<'_, B>>,
@@ -100,11 +101,15 @@ where
     ) -> Option<ScalarOf<A>> {
         let (zero, infinity) = (ScalarOf::<A>::ZERO, ScalarOf::<A>::infinity());
         let (scale, radius, dimension) = (cores.scale(), cores.radius(), A::Vector::DIM);
-        let lean = ScalarOf::<A>::EPSILON.sqrt() / scale;
-        let (mut points, mut len) = ([A::Vector::ZERO; MAX_POINTS], 0);
-        for (corner, _) in face.corners() {
-            points[len] = cores.support((corner - face.v) * lean - unit)?.point;
-            len += 1;
+        let (corners, len) = face.points();
+        let mut points = [A::Vector::ZERO; MAX_POINTS];
+        for (i, point) in points[..len].iter_mut().enumerate() {
+            let mut direction = -unit;
+            for j in (0..len).filter(|&j| j != i) {
+                let edge = corners[i] - corners[j];
+                direction += edge * (ScalarOf::<A>::EPSILON.sqrt() / edge.length());
+            }
+            *point = cores.support(direction)?.point;
         }
         if radius > zero {
             let weights = project(&points[..len], |corner| -corner).coordinates;
