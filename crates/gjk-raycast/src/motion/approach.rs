@@ -22,9 +22,6 @@ pub(super) trait Approach<V: Vector> {
     /// The bodies at a time as well as it can be known.
     fn closely(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>) -> Instant<V>;
 
-    /// The same, if what was closest at the last look is so still, and proves that the bodies are apart or overlap.
-    fn by_last_corners(&self, time: V::Scalar, axis: V) -> Option<Instant<V>>;
-
     /// How far apart the plane across a unit vector keeps the bodies at a time, and what that is wrong by at most.
     fn level(&self, time: V::Scalar, normal: V) -> (V::Scalar, V::Scalar);
 

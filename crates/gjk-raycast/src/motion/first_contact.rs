@@ -192,9 +192,7 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
     /// The bodies at a time as well as it can be known, which the observer is shown.
     pub(super) fn look(&mut self, time: V::Scalar, limits: Limits<V::Scalar>) -> Instant<V> {
         let axis = self.expected_normal(time);
-        let is_depth_asked = limits.depth > Scalar::ZERO;
-        let quick = if is_depth_asked { None } else { self.bodies.by_last_corners(time, axis) };
-        let there = quick.unwrap_or_else(|| self.bodies.closely(time, axis, limits));
+        let there = self.bodies.closely(time, axis, limits);
         self.looks += 1;
         self.show(&there);
         there

@@ -43,8 +43,22 @@ where
         self.iterations.set(self.iterations.get() + iterations);
     }
 
-    /// The bodies where they are at a time, by their signed distance.
+    /// The bodies where they are at a time, by what was closest at the last look, or by their signed distance.
     fn closely_placed(
+        &self,
+        time: ScalarOf<A>,
+        placed: &Placed<'_, A, B>,
+        axis: A::Vector,
+        limits: Limits<ScalarOf<A>>,
+    ) -> Instant<A::Vector> {
+        let is_depth_asked = limits.depth > Scalar::ZERO;
+        let known = if is_depth_asked { None } else { self.near_look(time, placed, axis) };
+        known.unwrap_or_else(|| self.by_signed_distance(time, placed, axis, limits))
+    }
+
+    /// The bodies where they are at a time, by their signed distance.
+    #[inline(never)]
+    fn by_signed_distance(
         &self,
         time: ScalarOf<A>,
         Placed { a, b, place, .. }: &Placed<'_, A, B>,
@@ -110,10 +124,6 @@ where
 
     fn closely(&self, time: ScalarOf<A>, axis: A::Vector, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
         self.closely_placed(time, &self.placed(time), axis, limits)
-    }
-
-    fn by_last_corners(&self, time: ScalarOf<A>, axis: A::Vector) -> Option<Instant<A::Vector>> {
-        self.near_look(time, axis)
     }
 
     fn level(&self, time: ScalarOf<A>, normal: A::Vector) -> (ScalarOf<A>, ScalarOf<A>) {

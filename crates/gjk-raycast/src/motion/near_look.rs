@@ -11,6 +11,7 @@ use super::corners::Face;
 use super::instant::Instant;
 use super::moved::Moved;
 use super::moving_pair::MovingPair;
+use super::placed::Placed;
 use super::trajectory::Trajectory;
 use crate::body::{Pair, PointPair};
 use crate::contact::Cores;
@@ -41,8 +42,12 @@ where
 {
     /// The bodies at a time as well as it can be known, if what was closest at the last look is so still, and proves that they are apart
     /// or overlap.
-    pub(super) fn near_look(&self, time: ScalarOf<A>, axis: A::Vector) -> Option<Instant<A::Vector>> {
-        let placed = self.placed(time);
+    pub(super) fn near_look(
+        &self,
+        time: ScalarOf<A>,
+        placed: &Placed<'_, A, B>,
+        axis: A::Vector,
+    ) -> Option<Instant<A::Vector>> {
         let pair = Pair::new(&placed.a, &placed.b);
         let size = pair.size(placed.offset);
         if !is_moderate(size) {
@@ -51,7 +56,7 @@ where
         let (closest, face) = match pair.closest_points(placed.offset, size) {
             Some(points) => (Closest::new(points, points.a - points.b + placed.offset, size)?, None),
             None => {
-                let face = self.closest.borrow().closest_face(&placed)?;
+                let face = self.closest.borrow().closest_face(placed)?;
                 let closest = Closest::new(face.closest_points(), face.v, size);
                 (closest.or_else(|| Closest::in_plane(&face, axis))?, Some(face))
             }

@@ -163,10 +163,6 @@ where
         }
     }
 
-    fn by_last_corners(&self, _time: ScalarOf<S>, _axis: S::Vector) -> Option<Instant<S::Vector>> {
-        None
-    }
-
     /// The normal is that of the plane, whichever is asked for.
     fn level(&self, time: ScalarOf<S>, _normal: S::Vector) -> (ScalarOf<S>, ScalarOf<S>) {
         let Level { value, error } = self.lowest(time).height;
