@@ -91,7 +91,8 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'
             shift: displacement.shift,
             swing: displacement.turned(origin),
             rotation,
-            error: displacement.shift_error + if displacement.turn_error > Scalar::ZERO { turning } else { Scalar::ZERO },
+            error: displacement.shift_error
+                + if displacement.turn_error > Scalar::ZERO { turning } else { Scalar::ZERO },
         }
     }
 

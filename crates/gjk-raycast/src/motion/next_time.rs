@@ -121,8 +121,9 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
         // Newton's method on the cubic.
         let mut s = after;
         for _ in 0..STEPS {
-            let (third, half) = (j * s * s, c * s);
-            s += (way - (w + half * from_f64(0.5) + third * from_f64(1.0 / 6.0)) * s) / (w + half + third * from_f64(0.5));
+            let (growth, bend) = (c * s, j * s * s);
+            let come = (w + growth * from_f64(0.5) + bend * from_f64(1.0 / 6.0)) * s;
+            s += (way - come) / (w + growth + bend * from_f64(0.5));
         }
         // NaN is not near.
         if (s - after).abs() < after * from_f64(0.5) { s } else { after }

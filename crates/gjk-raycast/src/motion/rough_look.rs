@@ -31,7 +31,7 @@ impl<V: Vector> Seen<V> {
     /// The points whose difference is `v`, and the plane through the support point `w` across that.
     #[inline(always)]
     fn new(v: V, length: V::Scalar, w: V, points: PointPair<V>, error: V::Scalar) -> Self {
-        Self { unit: v / length, lower: (v.dot(w) / length).min(length), error, points }
+        Self { unit: v / length, lower: v.dot(w) / length, error, points }
     }
 }
 
@@ -82,7 +82,8 @@ where
         let face = if is_moderate(size) { self.closest.borrow().closest_face(placed) } else { None };
         // Not where they have passed through one another, and their plane is the other way round.
         let face = face.filter(|face| face.v.length() > radius && face.v.dot(axis) > Scalar::ZERO);
-        let Some(face) = face else { return self.searched(time, placed, pair, Begin::Along(axis), limit) };
+        let Some(face) = face else { return self.searched(time, placed, &mut pair, Begin::Along(axis), limit) };
+        // They are no farther apart than that.
         if !is_well_apart(face.v.length()) {
             return None;
         }
@@ -93,7 +94,7 @@ where
             self.count(1);
             return Some(self.instant(time, placed, &seen));
         }
-        self.searched(time, placed, pair, Begin::At(&face, known), limit)
+        self.searched(time, placed, &mut pair, Begin::At(&face, known), limit)
     }
 
     /// The same by GJK, which begins with a face and the support point across the vector to it, or along an axis.
@@ -101,12 +102,12 @@ where
         &self,
         time: ScalarOf<A>,
         placed: &Placed<'_, A, B>,
-        mut pair: Pair<'_, Moved<'_, A>, Moved<'_, B>>,
+        pair: &mut Pair<'_, Moved<'_, A>, Moved<'_, B>>,
         begin: Begin<'_, A::Vector>,
         limit: ScalarOf<A>,
     ) -> Option<Instant<A::Vector>> {
         let size = pair.size(placed.offset);
-        let frame = Frame::new(&mut pair, placed.offset, size);
+        let frame = Frame::new(pair, placed.offset, size);
         let Frame { scale, per_unit, radius, error, .. } = frame;
         let in_unit = |points: PointPair<A::Vector>| PointPair { a: points.a * per_unit, b: points.b * per_unit };
         let (mut state, known) = match begin {
@@ -122,7 +123,7 @@ where
             tolerance: Scalar::from_f64(ROUGH),
             ..GjkOptions::new(state.normal, SignedDistanceOptions::<A::Vector>::new().max_iterations)
         };
-        let end = gjk(&mut state, &mut pair, frame, options, known, |_| {});
+        let end = gjk(&mut state, pair, frame, options, known, |_| {});
         self.count(state.iterations);
         let (distance, near) = (state.lower - radius, error * Scalar::from_f64(NEAR));
         let unit = state.axis.unit()?;
