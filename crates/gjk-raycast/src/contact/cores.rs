@@ -21,15 +21,15 @@ const OFFSET: f64 = 2.1;
 
 /// A support point of the difference, and the points of both cores that it is made of.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Vertex<V> {
-    pub(super) point: V,
+pub(crate) struct Vertex<V> {
+    pub(crate) point: V,
     /// The direction it was found along.
     pub(super) along: V,
     pub(super) pair: PointPair<V>,
 }
 
 /// The difference `K = K_A − K_B` of two cores as seen from zero, in units of a power of two near its size.
-pub(super) struct Cores<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
+pub(crate) struct Cores<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
     pair: Pair<'a, A, B>,
     /// What both shapes are split into, in the world's unit.
     pub(super) parts: [Core<A::Vector>; 2],
@@ -45,7 +45,7 @@ pub(super) struct Cores<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Ve
     /// The same coordinate by coordinate; `None` as long as the length will do.
     uncertainty: Option<Uncertainty<A::Vector>>,
     /// The support points computed.
-    pub(super) iterations: usize,
+    pub(crate) iterations: usize,
 }
 
 /// How far the points of the difference may be from those they stand for, in the unit: what the shapes say of their own, and what
@@ -127,7 +127,7 @@ pub(super) struct ClosedForm<V: Vector> {
 
 impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cores<'a, A, B> {
     #[inline]
-    pub(super) fn new(a: &'a A, b: &'a B, parts: [Core<A::Vector>; 2]) -> Self {
+    pub(crate) fn new(a: &'a A, b: &'a B, parts: [Core<A::Vector>; 2]) -> Self {
         let mut pair = Pair::of_cores(a, b, parts);
         let [from, to] = [parts[0].origin, parts[1].origin];
         let offset = from - to;
@@ -152,7 +152,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     /// Asks the shapes how well they know their points, coordinate by coordinate, which takes longer than many a distance. Of a floor that
     /// lies flat it has nothing to do with its width.
     #[inline(never)]
-    pub(super) fn sharpen(&mut self) {
+    pub(crate) fn sharpen(&mut self) {
         if self.uncertainty.is_some() {
             return;
         }
@@ -196,18 +196,18 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     }
 
     /// What lengths in the unit are to be multiplied by.
-    pub(super) fn scale(&self) -> <A::Vector as Vector>::Scalar {
+    pub(crate) fn scale(&self) -> <A::Vector as Vector>::Scalar {
         self.frame.scale
     }
 
     /// The radii of both, in the world's unit.
-    pub(super) fn radius(&self) -> <A::Vector as Vector>::Scalar {
+    pub(crate) fn radius(&self) -> <A::Vector as Vector>::Scalar {
         self.parts[0].radius + self.parts[1].radius
     }
 
     /// The support point along a direction; `None` where it is not finite.
     #[inline]
-    pub(super) fn support(&mut self, direction: A::Vector) -> Option<Vertex<A::Vector>> {
+    pub(crate) fn support(&mut self, direction: A::Vector) -> Option<Vertex<A::Vector>> {
         self.iterations += 1;
         let (point, pair) = Peeled { pair: &mut self.pair, radii: self.peeled }.support(direction);
         let point = point + self.frame.offset;
@@ -246,18 +246,18 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     /// How far `n·p` may be from its true value, for a unit vector `n` and a point `p` of the difference; and by how much a
     /// support point along `n` may fall short of the support value.
     #[inline]
-    pub(super) fn error_along(&self, n: A::Vector) -> <A::Vector as Vector>::Scalar {
+    pub(crate) fn error_along(&self, n: A::Vector) -> <A::Vector as Vector>::Scalar {
         self.uncertainty.as_ref().map_or(self.error, |known| known.along(n)) + self.peeled_error
     }
 
     /// A bound on [`error_along`](Self::error_along) in any direction.
-    pub(super) fn greatest_error(&self) -> <A::Vector as Vector>::Scalar {
+    pub(crate) fn greatest_error(&self) -> <A::Vector as Vector>::Scalar {
         self.uncertainty.as_ref().map_or(self.error, Uncertainty::length) + self.peeled_error
     }
 
     /// A bound on the length of what a point `p` of the difference stands for. Along `p` it is as wrong as along any unit vector,
     /// and what it is wrong by across hardly adds to the length.
-    pub(super) fn greatest_length(&self, p: A::Vector) -> <A::Vector as Vector>::Scalar {
+    pub(crate) fn greatest_length(&self, p: A::Vector) -> <A::Vector as Vector>::Scalar {
         let error = self.greatest_error();
         let along = if self.uncertainty.is_some() { p.unit().map_or(error, |n| self.error_along(n)) } else { error };
         let length = p.norm() + along;

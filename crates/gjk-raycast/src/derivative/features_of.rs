@@ -93,7 +93,7 @@ impl<V: Vector> SignedDistance<V> {
         let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
         let push = little(size);
         let pushed = Core { origin: core_a.origin - self.normal * push, ..core_a };
-        let moved = Moved::new(a, pushed, Matrix::IDENTITY, a.rounding(), Scalar::ZERO);
+        let moved = Moved::new(a, pushed, None, Scalar::ZERO);
         let least = V::Scalar::EPSILON * V::Scalar::from_f64(8.0);
         let other = signed_distance(&moved, b, SignedDistanceOptions::default().with_tolerance(least));
         let cosine = other.normal.dot(self.normal);
@@ -246,7 +246,7 @@ where
     let displacement = motion.displacement(time);
     let core = shape.core();
     let core = Core { origin: displacement.of(core.origin), ..core };
-    Moved::new(shape, core, displacement.rotation(), shape.rounding(), Scalar::ZERO)
+    Moved::new(shape, core, Some(displacement.rotation()), Scalar::ZERO)
 }
 
 /// How much later two bodies touch whose start poses change. The change of a start pose is turned by the motion until the contact.

@@ -56,17 +56,16 @@ impl<V: Vector, W: Copy + Default> Gjk<V, W> {
         self.length <= frame.touching()
     }
 
-    /// Begins with points of the difference, no more than there are dimensions, where they are apart from zero; with none where they
-    /// are not.
+    /// The state at a face of the difference, of which `v` is the point closest to zero and is made of its corners with these weights.
     #[inline]
-    pub(crate) fn begin_with(&mut self, corners: impl Iterator<Item = (V, W)>, frame: &Frame<V>) {
+    pub(crate) fn at_face(corners: impl Iterator<Item = (V, W)>, weights: [V::Scalar; MAX_POINTS], v: V) -> Self {
+        let mut state = Self::new(v);
         for (point, witness) in corners {
-            self.simplex.push(point, -self.axis, witness);
+            state.simplex.push(point, -v, witness);
         }
-        // NaN is not apart.
-        if self.measure().is_none() || !(self.length > frame.touching()) {
-            *self = Self::new(self.axis);
-        }
+        state.simplex.weigh(weights);
+        (state.length, state.measured) = (v.norm(), true);
+        state
     }
 
     /// Raises the lower bound to the plane through the support point `w` along a direction, if it is higher: no point of

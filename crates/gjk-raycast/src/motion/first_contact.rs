@@ -25,8 +25,9 @@ pub(super) struct Search<'p, V: Vector, P, F> {
     observer: F,
     /// The last time up to which the bodies are proved apart.
     pub(super) near: Instant<V>,
-    /// How long the last step was, and what the normal and the closing speed have changed in it.
+    /// How long the last step was, how much nearer the bodies came in it, and what the normal and the closing speed have changed.
     pub(super) step: V::Scalar,
+    pub(super) came_nearer: V::Scalar,
     pub(super) turned: V,
     pub(super) sped_up: V::Scalar,
     /// Whether that foretells the next step: the same points were the closest ones all the way.
@@ -74,6 +75,7 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
             observer,
             near,
             step: Scalar::ONE,
+            came_nearer: zero,
             turned: V::ZERO,
             sped_up: zero,
             is_smooth: false,
@@ -129,6 +131,7 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
     pub(super) fn take_ahead(&mut self) -> bool {
         let Some(ahead) = self.ahead.filter(|ahead| is_free(self.bodies, &self.near, ahead)) else { return false };
         self.step = ahead.time - self.near.time;
+        self.came_nearer = self.near.distance - ahead.distance;
         self.turned = ahead.normal - self.near.normal;
         self.sped_up = ahead.closing - self.near.closing;
         self.is_smooth = self.near.goes_smoothly_to(&ahead);

@@ -3,6 +3,7 @@
 mod approach;
 mod chain_motion;
 mod contact;
+mod corners;
 mod first_contact;
 mod free_interval;
 mod instant;
@@ -10,6 +11,7 @@ mod motion_cast;
 mod moved;
 mod moving_body;
 mod moving_pair;
+mod near_look;
 mod next_time;
 mod options;
 mod over_half_space;

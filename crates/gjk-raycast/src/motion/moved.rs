@@ -9,50 +9,49 @@ use convex_support::{
 /// A shape turned by a rotation, whose origin is put where one wants it, and whose radius may be grown.
 pub(crate) struct Moved<'s, S: SupportMap + ?Sized> {
     shape: &'s S,
-    rotation: <S::Vector as Vector>::Matrix,
+    /// The rotation about the origin; `None` for a shape as it is.
+    rotation: Option<<S::Vector as Vector>::Matrix>,
     core: Core<S::Vector>,
-    rounding: Rounding<S::Vector>,
+    /// What moving the shape may have added to the error of its points, as a length.
+    error: ScalarOf<S>,
     /// Where what one query found is kept for the next.
     hint: Option<&'s Cell<Hint>>,
 }
 
 impl<'s, S: SupportMap + ?Sized> Moved<'s, S> {
     /// The shape with the given core, which may have another origin and another radius than its own, turned by `rotation` about the
-    /// origin. Before that its points were known as `rounding` says, and moving it took them where they should be but for `error`.
-    #[inline]
+    /// origin. Moving it took its points where they should be but for `error`.
+    #[inline(always)]
     pub(crate) fn new(
         shape: &'s S,
         core: Core<S::Vector>,
-        rotation: <S::Vector as Vector>::Matrix,
-        rounding: Rounding<S::Vector>,
+        rotation: Option<<S::Vector as Vector>::Matrix>,
         error: ScalarOf<S>,
     ) -> Self {
+        let Some(matrix) = rotation else {
+            let core = Core { error: core.error + error, ..core };
+            return Self { shape, rotation, core, error, hint: None };
+        };
         let kind = match core.kind {
-            CoreKind::Point(at) => CoreKind::Point(rotation * at),
+            CoreKind::Point(at) => CoreKind::Point(matrix * at),
             kind => kind,
         };
-        let rounding = if rotation == Matrix::IDENTITY {
-            let error_length = rounding.error_length + error;
-            Rounding { error: rounding.error + Vector::splat(error), error_length, ..rounding }
-        } else {
-            // The length of an error stays. The product with the matrix is wrong by at most three ε of the extent, and so may be the
-            // support value along a direction that is turned.
-            let error = rounding.error_length + error + ScalarOf::<S>::from_f64(6.0) * Scalar::EPSILON * core.extent;
-            Rounding { extent: Vector::splat(core.extent), error: Vector::splat(error), error_length: error }
-        };
-        Self { shape, rotation, core: Core { kind, error: rounding.error_length, ..core }, rounding, hint: None }
+        // The length of an error stays. The product with the matrix is wrong by at most three ε of the extent, and so may be the
+        // support value along a direction that is turned.
+        let error = error + ScalarOf::<S>::from_f64(6.0) * Scalar::EPSILON * core.extent;
+        Self { shape, rotation, core: Core { kind, error: core.error + error, ..core }, error, hint: None }
     }
 
     /// A vector of the shape as it is turned.
-    #[inline]
+    #[inline(always)]
     pub(super) fn turned(&self, vector: S::Vector) -> S::Vector {
-        self.rotation * vector
+        self.rotation.map_or(vector, |rotation| rotation * vector)
     }
 
     /// A vector of the turned shape as it was.
-    #[inline]
+    #[inline(always)]
     pub(super) fn before(&self, vector: S::Vector) -> S::Vector {
-        self.rotation.transpose_mul(vector)
+        self.rotation.map_or(vector, |rotation| rotation.transpose_mul(vector))
     }
 
     /// The same, which begins its searches where the last ones ended, whoever made them.
@@ -76,38 +75,43 @@ impl<S: SupportMap + ?Sized> SupportMap for Moved<'_, S> {
 
     #[inline(always)]
     fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
-        let local = self.rotation.transpose_mul(direction);
-        let Some(kept) = self.hint else { return self.rotation * self.shape.core_support(local, hint) };
+        let local = self.before(direction);
+        let Some(kept) = self.hint else { return self.turned(self.shape.core_support(local, hint)) };
         let mut hint = kept.get();
         hint.rewind();
         let point = self.shape.core_support(local, &mut hint);
         kept.set(hint);
-        self.rotation * point
+        self.turned(point)
     }
 
     #[inline(always)]
     fn core_support_hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> [ScalarOf<S>; 3] {
-        let turned = |v| self.rotation.transpose_mul(v);
-        self.shape.core_support_hessian(turned(direction), [turned(changes[0]), turned(changes[1])])
+        self.shape.core_support_hessian(self.before(direction), [self.before(changes[0]), self.before(changes[1])])
     }
 
     #[inline]
     fn core_closest_point(&self, x: S::Vector) -> Option<S::Vector> {
-        Some(self.rotation * self.shape.core_closest_point(self.rotation.transpose_mul(x))?)
+        Some(self.turned(self.shape.core_closest_point(self.before(x))?))
     }
 
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {
-        self.shape.core_support_feature(self.rotation.transpose_mul(direction), slab, feature);
-        feature.map(|point| self.rotation * point);
+        self.shape.core_support_feature(self.before(direction), slab, feature);
+        feature.map(|point| self.turned(point));
     }
 
     #[inline]
     fn core_parallelotope(&self) -> Option<Parallelotope<S::Vector>> {
         let Parallelotope { center, half_edges } = self.shape.core_parallelotope()?;
-        Some(Parallelotope { center: self.rotation * center, half_edges: half_edges.map(|edge| self.rotation * edge) })
+        Some(Parallelotope { center: self.turned(center), half_edges: half_edges.map(|edge| self.turned(edge)) })
     }
 
+    /// Of a shape that is turned the coordinates are no better known than the length.
     fn rounding(&self) -> Rounding<S::Vector> {
-        self.rounding
+        if self.rotation.is_some() {
+            let Core { extent, error, .. } = self.core;
+            return Rounding { extent: Vector::splat(extent), error: Vector::splat(error), error_length: error };
+        }
+        let Rounding { extent, error, error_length } = self.shape.rounding();
+        Rounding { extent, error: error + Vector::splat(self.error), error_length: error_length + self.error }
     }
 }

@@ -2,99 +2,178 @@
 
 use core::cell::Cell;
 
-use convex_support::{AngularVelocity, BoundingSphere, Core, Hint, Rounding, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{AngularVelocity, BoundingSphere, Core, Hint, Matrix, Scalar, ScalarOf, Spin, SupportMap, Vector};
 
 use super::moved::Moved;
-use super::rigid_motion::{RigidMotion, SpinOf};
-use super::trajectory::{Displacement, Trajectory, TurningPlane};
-
-/// A rigid motion of a body, with its spin and the reach of the body's core.
-struct Rigid<V: Vector> {
-    motion: RigidMotion<V>,
-    spin: SpinOf<V>,
-    reach: V::Scalar,
-}
+use super::rigid_motion::{RigidMotion, SpinOf, turn_error};
+use super::trajectory::{MovingBall, Trajectory, TurningPlane};
 
 /// A body and its motion.
 pub(super) struct MovingBody<'s, S: SupportMap + ?Sized, M> {
     shape: &'s S,
-    pub(super) motion: M,
-    /// The motion once more, if it is a rigid one, with what of it does not depend on time.
-    rigid: Option<Rigid<S::Vector>>,
+    motion: M,
+    course: Course<S::Vector>,
     /// What the shape is split into at time 0, with its radius grown by the target distance.
     pub(super) core: Core<S::Vector>,
-    /// How well its points are known.
-    rounding: Rounding<S::Vector>,
     /// What was found at the last time, which is mostly found again.
     hint: Cell<Hint>,
+}
+
+/// What of a motion does not depend on time.
+enum Course<V: Vector> {
+    /// The body stays where it is, as one of two bodies mostly does.
+    Rest,
+    Rigid(Rigid<V>),
+    Other,
+}
+
+/// A rigid motion of a body.
+struct Rigid<V: Vector> {
+    motion: RigidMotion<V>,
+    /// A bound on what rounding the shift loses per unit of time.
+    shift_error: V::Scalar,
+    turning: Option<Turning<V>>,
+}
+
+/// How a body turns.
+struct Turning<V: Vector> {
+    spin: SpinOf<V>,
+    /// The vector from the centre to the body's origin.
+    arm: V,
+    /// A bound on the distance of the core's points from the centre.
+    lever: V::Scalar,
+    /// The greatest distance of the core's points from the axis.
+    reach: V::Scalar,
+}
+
+/// Where a body is at a time: it is turned about its origin, which has moved.
+pub(super) struct Place<V: Vector> {
+    /// How far the centre that the body is turned about has moved, and how far turning about it has moved the origin.
+    pub(super) shift: V,
+    pub(super) swing: V,
+    /// The rotation, if it has turned.
+    pub(super) rotation: Option<V::Matrix>,
+    /// A bound on the error of a point of the core by all that.
+    pub(super) error: V::Scalar,
 }
 
 impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'s, S, M> {
     pub(super) fn new(shape: &'s S, motion: M, margin: ScalarOf<S>) -> Self {
         let core = shape.core();
-        let ball = BoundingSphere { center: core.origin, radius: core.extent };
-        let rigid = motion.as_rigid_motion().map(|motion| Rigid {
-            motion,
-            spin: motion.angular_velocity.spin(),
-            reach: motion.reach(ball),
-        });
-        Self {
-            shape,
-            motion,
-            rigid,
-            core: Core { radius: core.radius + margin, ..core },
-            rounding: shape.rounding(),
-            hint: Cell::new(Hint::new()),
+        let course = match motion.as_rigid_motion() {
+            None => Course::Other,
+            Some(motion) if motion.is_rest() => Course::Rest,
+            Some(motion) => Course::Rigid(Rigid::new(motion, &core)),
+        };
+        let core = Core { radius: core.radius + margin, ..core };
+        Self { shape, motion, course, core, hint: Cell::new(Hint::new()) }
+    }
+
+    /// Where the body is at a time.
+    #[inline(always)]
+    pub(super) fn place(&self, time: ScalarOf<S>) -> Place<S::Vector> {
+        match &self.course {
+            Course::Rest => Place::START,
+            Course::Rigid(rigid) if time > Scalar::ZERO => rigid.place(time, self.core.extent),
+            Course::Rigid(_) => Place::START,
+            Course::Other => self.place_on_trajectory(time),
         }
     }
 
-    /// Where the body is at a time, as of [`Trajectory::displacement`].
-    #[inline(always)]
-    pub(super) fn displacement(&self, time: ScalarOf<S>) -> Displacement<S::Vector> {
-        match &self.rigid {
-            Some(Rigid { motion, spin, .. }) => motion.displacement_by(spin, time),
-            None => self.motion.displacement(time),
+    #[inline(never)]
+    fn place_on_trajectory(&self, time: ScalarOf<S>) -> Place<S::Vector> {
+        let displacement = self.motion.displacement(time);
+        let (origin, extent) = (self.core.origin, self.core.extent);
+        let lever = length_bound(origin - displacement.pivot) + extent;
+        let rotation = Some(displacement.rotation()).filter(|&rotation| rotation != Matrix::IDENTITY);
+        let turning = displacement.turn_error * lever + ScalarOf::<S>::EPSILON * extent;
+        Place {
+            shift: displacement.shift,
+            swing: displacement.turned(origin),
+            rotation,
+            error: displacement.shift_error
+                + if displacement.turn_error > Scalar::ZERO { turning } else { Scalar::ZERO },
         }
+    }
+
+    /// The shape at a place, with its origin put at the given point, which is wrong by `error` at most.
+    #[inline(always)]
+    pub(super) fn moved(&self, place: &Place<S::Vector>, origin: S::Vector, error: ScalarOf<S>) -> Moved<'_, S> {
+        Moved::new(self.shape, Core { origin, ..self.core }, place.rotation, error).with_hint(&self.hint)
     }
 
     /// A bound on the acceleration of points of the core, as of [`Trajectory::acceleration_along`].
+    #[inline(always)]
     pub(super) fn acceleration_along(&self, plane: TurningPlane<S::Vector>, interval: [ScalarOf<S>; 2]) -> ScalarOf<S> {
-        match &self.rigid {
-            Some(Rigid { motion, reach, .. }) => motion.acceleration_within(*reach, plane, interval),
-            None => self.motion.acceleration_along(self.ball(), plane, interval),
+        match &self.course {
+            Course::Rest => Scalar::ZERO,
+            Course::Rigid(Rigid { motion, turning, .. }) => {
+                let reach = turning.as_ref().map_or(self.core.extent, |turning| turning.reach);
+                motion.acceleration_within(reach, plane, interval)
+            }
+            Course::Other => self.motion.acceleration_along(self.ball(), plane, interval),
         }
     }
 
     /// The velocity, at a time, of the body's point that is at `point` then.
+    #[inline(always)]
     pub(super) fn velocity(&self, time: ScalarOf<S>, point: S::Vector) -> S::Vector {
-        self.motion.velocity(time, point)
+        match &self.course {
+            Course::Rest => Vector::ZERO,
+            _ => self.motion.velocity(time, point),
+        }
+    }
+
+    /// A ball that moves at constant velocity and contains the core throughout the interval, as of [`Trajectory::moving_ball`].
+    pub(super) fn moving_ball(&self, interval: [ScalarOf<S>; 2]) -> MovingBall<S::Vector> {
+        let ball = self.ball();
+        match &self.course {
+            Course::Rest => MovingBall { start: ball.center, velocity: Vector::ZERO, radius: ball.radius },
+            _ => self.motion.moving_ball(ball, interval),
+        }
     }
 
     /// A ball around the core at time 0.
-    pub(super) fn ball(&self) -> BoundingSphere<S::Vector> {
+    fn ball(&self) -> BoundingSphere<S::Vector> {
         BoundingSphere { center: self.core.origin, radius: self.core.extent }
     }
+}
 
-    /// The shape as turned by a displacement, with its origin at the given point, which is wrong by `error` at most.
+impl<V: Vector> Rigid<V> {
+    fn new(motion: RigidMotion<V>, core: &Core<V>) -> Self {
+        // One rounding of each coordinate.
+        let shift_error = length_bound(motion.velocity) * V::Scalar::EPSILON * V::Scalar::from_f64(0.5);
+        let turning = (motion.angular_velocity != Default::default()).then(|| {
+            let arm = core.origin - motion.center;
+            Turning {
+                spin: motion.angular_velocity.spin(),
+                arm,
+                lever: length_bound(arm) + core.extent,
+                reach: motion.reach(BoundingSphere { center: core.origin, radius: core.extent }),
+            }
+        });
+        Self { motion, shift_error, turning }
+    }
+
     #[inline(always)]
-    pub(super) fn moved(
-        &self,
-        displacement: &Displacement<S::Vector>,
-        origin: S::Vector,
-        error: ScalarOf<S>,
-    ) -> Moved<'_, S> {
-        let core = Core { origin, ..self.core };
-        Moved::new(self.shape, core, displacement.rotation(), self.rounding, error).with_hint(&self.hint)
-    }
-
-    /// What rounding the displacement may add to the error of a point of the core.
-    pub(super) fn displacement_error(&self, displacement: &Displacement<S::Vector>) -> ScalarOf<S> {
-        if displacement.turn_error == Scalar::ZERO {
-            return displacement.shift_error;
+    fn place(&self, time: V::Scalar, extent: V::Scalar) -> Place<V> {
+        let (shift, error) = (self.motion.velocity * time, self.shift_error * time);
+        let Some(Turning { spin, arm, lever, .. }) = &self.turning else {
+            return Place { shift, error, ..Place::START };
+        };
+        let turn = spin.turn(time);
+        Place {
+            shift,
+            swing: turn * *arm,
+            rotation: Some(V::Matrix::IDENTITY + turn),
+            error: turn_error::<V>(&turn) * *lever + error + V::Scalar::EPSILON * extent,
         }
-        let lever = length_bound(self.core.origin - displacement.pivot) + self.core.extent;
-        displacement.turn_error * lever + displacement.shift_error + ScalarOf::<S>::EPSILON * self.core.extent
     }
+}
+
+impl<V: Vector> Place<V> {
+    /// Where a body starts.
+    const START: Self = Self { shift: V::ZERO, swing: V::ZERO, rotation: None, error: V::Scalar::ZERO };
 }
 
 /// A bound on the length of a vector that is no more than √3 too large.

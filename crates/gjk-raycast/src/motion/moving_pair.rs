@@ -1,15 +1,15 @@
 //! Two bodies and their motions.
 
-use core::cell::Cell;
+use core::cell::{Cell, RefCell};
 
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
 use super::approach::Approach;
+use super::corners::Corners;
 use super::instant::{Instant, Limits};
 use super::moving_body::{MovingBody, length_bound};
 use super::placed::Placed;
-use super::rough_look::Corners;
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::SignedDistanceOptions;
 use crate::body::{Body as _, Pair, TracedSupport as _};
@@ -22,7 +22,7 @@ pub(super) struct MovingPair<'s, A: SupportMap + ?Sized, MA, B: SupportMap + ?Si
     pub(super) a: MovingBody<'s, A, MA>,
     pub(super) b: MovingBody<'s, B, MB>,
     /// The corners of the faces that were closest at the last look.
-    pub(super) closest: Cell<Corners<A::Vector>>,
+    pub(super) closest: RefCell<Corners<A::Vector>>,
     /// The support points computed of each shape.
     iterations: Cell<usize>,
 }
@@ -35,7 +35,7 @@ where
     MB: Trajectory<Vector = A::Vector>,
 {
     pub(super) fn new(a: MovingBody<'s, A, MA>, b: MovingBody<'s, B, MB>) -> Self {
-        Self { a, b, closest: Cell::new(Corners::NONE), iterations: Cell::new(0) }
+        Self { a, b, closest: RefCell::new(Corners::none()), iterations: Cell::new(0) }
     }
 
     /// Counts support points.
@@ -43,8 +43,22 @@ where
         self.iterations.set(self.iterations.get() + iterations);
     }
 
-    /// The bodies where they are at a time, by their signed distance.
+    /// The bodies where they are at a time, by what was closest at the last look, or by their signed distance.
     fn closely_placed(
+        &self,
+        time: ScalarOf<A>,
+        placed: &Placed<'_, A, B>,
+        axis: A::Vector,
+        limits: Limits<ScalarOf<A>>,
+    ) -> Instant<A::Vector> {
+        let is_depth_asked = limits.depth > Scalar::ZERO;
+        let known = if is_depth_asked { None } else { self.near_look(time, placed, axis) };
+        known.unwrap_or_else(|| self.by_signed_distance(time, placed, axis, limits))
+    }
+
+    /// The bodies where they are at a time, by their signed distance.
+    #[inline(never)]
+    fn by_signed_distance(
         &self,
         time: ScalarOf<A>,
         Placed { a, b, place, .. }: &Placed<'_, A, B>,
@@ -131,8 +145,8 @@ where
     }
 
     fn stays_far_apart(&self, interval: [ScalarOf<A>; 2]) -> Option<A::Vector> {
-        let a = self.a.motion.moving_ball(self.a.ball(), interval);
-        let b = self.b.motion.moving_ball(self.b.ball(), interval);
+        let a = self.a.moving_ball(interval);
+        let b = self.b.moving_ball(interval);
         let (start, velocity) = (a.start - b.start, a.velocity - b.velocity);
         let duration = interval[1] - interval[0];
         // The time at which start + t·velocity is shortest.

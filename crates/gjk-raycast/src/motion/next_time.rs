@@ -11,8 +11,10 @@ use super::trajectory::TurningPlane;
 
 /// How much of the farthest end that can be expected to be proved is asked for.
 const CAUTION: f64 = 0.9;
-/// The part of the second-order change of a step that is left to go.
+/// The part of the third-order change of a step that is left to go.
 const LEFT: f64 = 0.05;
+/// Steps of Newton's method from the root of a parabola to that of a cubic.
+const STEPS: usize = 2;
 /// How far apart bodies are, as a part of their size, for other points to become the closest ones before they touch.
 const FAR: f64 = 0.03;
 /// How much a plane may leave of the distance of bodies, before their normal is looked for again.
@@ -92,24 +94,39 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
         self.bodies.acceleration_along(plane, [time, time + self.step]).max(Scalar::ZERO)
     }
 
-    /// The time after which the bodies have come nearer by `way`, by Newton's method of the second order: with the closing speed `w`
-    /// and its growth `c` that is where `w·s + c·s²/2` is. A small part of what the growth changes is left to go, so that the next
-    /// step starts on this side of the contact. Where the last step does not tell the growth, it is the most that it may be.
+    /// The time after which the bodies have come nearer by `way`, as far as the last two looks foretell it.
+    ///
+    /// With the closing speeds `w₀` and `w` at the beginning and the end of the last step `h`, in which they came nearer by `m·h`, the only
+    /// cubic that agrees is `w·s + c·s²/2 + j·s³/6` with
+    ///
+    /// > j·h² = 12·((w₀ + w)/2 − m),   c·h = w − w₀ + j·h²/2.
+    ///
+    /// A small part of what is due to `j` is left to go, so that the next step starts on this side of the contact. Where the last step
+    /// does not tell what comes, the growth `c` is the most that it may be.
     fn newton(&self, way: V::Scalar) -> V::Scalar {
-        let (two, Instant { time, normal, closing: w, .. }) = (V::Scalar::from_f64(2.0), self.near);
+        let from_f64 = V::Scalar::from_f64;
+        let (two, Instant { time, normal, closing: w, .. }) = (from_f64(2.0), self.near);
         if !self.is_smooth {
             let plane = TurningPlane { from: normal, to: normal };
             let most = self.bodies.acceleration_along(plane, [time, time + way / w]).max(Scalar::ZERO);
             return two * way / (w + (w * w + two * most * way).sqrt());
         }
-        let c = self.sped_up / self.step;
-        let after = |way: V::Scalar| {
-            let squared = w * w + two * c * way;
-            if squared > Scalar::ZERO { two * way / (w + squared.sqrt()) } else { way / w }
-        };
-        let straight = way / w;
-        let changed = (c * straight * straight).abs() * V::Scalar::from_f64(LEFT);
-        after((way - changed).max(way * V::Scalar::from_f64(0.5)))
+        let (h, sped_up) = (self.step, self.sped_up);
+        let bent = from_f64(12.0) * (w - sped_up * from_f64(0.5) - self.came_nearer / h);
+        let (c, j) = ((sped_up + bent * from_f64(0.5)) / h, bent / (h * h));
+        let squared = w * w + two * c * way;
+        let after = if squared > Scalar::ZERO { two * way / (w + squared.sqrt()) } else { way / w };
+        let left = j.abs() * after * after * (h * from_f64(0.25) + after * from_f64(1.0 / 6.0)) * from_f64(LEFT);
+        let way = (way - left).max(way * from_f64(0.5));
+        // Newton's method on the cubic.
+        let mut s = after;
+        for _ in 0..STEPS {
+            let (growth, bend) = (c * s, j * s * s);
+            let come = (w + growth * from_f64(0.5) + bend * from_f64(1.0 / 6.0)) * s;
+            s += (way - come) / (w + growth + bend * from_f64(0.5));
+        }
+        // NaN is not near.
+        if (s - after).abs() < after * from_f64(0.5) { s } else { after }
     }
 
     /// A time at which the plane between the bodies, if it does not turn, keeps them apart by a small part of their distance; `None`

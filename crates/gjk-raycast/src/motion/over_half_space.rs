@@ -111,15 +111,15 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> OverHalfSpac
     /// plane is known as well as any other.
     fn lowest(&self, time: ScalarOf<S>) -> Lowest<S::Vector> {
         let (origin, radius) = (self.body.core.origin, self.body.core.radius);
-        let displacement = self.body.displacement(time);
-        let (shift, turned) = (displacement.shift, displacement.turned(origin));
-        let place = origin + shift + turned;
-        let moved = self.body.moved(&displacement, place, self.body.displacement_error(&displacement));
+        let place = self.body.place(time);
+        let (shift, turned) = (place.shift, place.swing);
+        let moved_origin = origin + shift + turned;
+        let moved = self.body.moved(&place, moved_origin, place.error);
         let point = moved.core_support(-self.plane.normal(), &mut Hint::new());
         self.iterations.set(self.iterations.get() + 1);
         let error = self.plane.error_along(&moved.rounding());
         let height = self.plane.height([origin, shift, turned, point], error, radius);
-        Lowest { height, core_point: place + point }
+        Lowest { height, core_point: moved_origin + point }
     }
 }
 
@@ -178,7 +178,7 @@ where
     /// The ball is lowest at one of the ends.
     fn stays_far_apart(&self, interval: [ScalarOf<S>; 2]) -> Option<S::Vector> {
         let zero = ScalarOf::<S>::ZERO;
-        let ball = self.body.motion.moving_ball(self.body.ball(), interval);
+        let ball = self.body.moving_ball(interval);
         let reach = ball.radius + self.body.core.radius;
         let height = self.plane.height([ball.start], zero, reach).least();
         let sinking = self.plane.sinking([ball.velocity]).most();

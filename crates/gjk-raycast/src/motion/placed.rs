@@ -26,22 +26,20 @@ where
     /// The bodies where they are at a time.
     #[inline]
     pub(super) fn placed(&self, time: ScalarOf<A>) -> Placed<'_, A, B> {
-        let (da, db) = (self.a.displacement(time), self.b.displacement(time));
+        let (a, b) = (self.a.place(time), self.b.place(time));
         // What lies between is of the order of the bodies, however far from the world's origin they are.
         let between = self.a.core.origin - self.b.core.origin;
-        let (shifts, turned_b) = (da.shift - db.shift, db.turned(self.b.core.origin));
-        let turns = da.turned(self.a.core.origin) - turned_b;
-        let offset = between + shifts + turns;
+        let (shifts, swings) = (a.shift - b.shift, a.swing - b.swing);
+        let offset = between + shifts + swings;
 
         // A rounding for each difference and sum.
-        let magnitude = length_bound(between) + length_bound(shifts) + length_bound(turns);
-        let placing = ScalarOf::<A>::from_f64(1.5) * ScalarOf::<A>::EPSILON * magnitude
-            + (self.a.displacement_error(&da) + self.b.displacement_error(&db));
+        let magnitude = length_bound(between.abs() + shifts.abs() + swings.abs());
+        let rounding = ScalarOf::<A>::from_f64(1.5) * ScalarOf::<A>::EPSILON * magnitude;
         Placed {
-            a: self.a.moved(&da, offset, placing),
-            b: self.b.moved(&db, A::Vector::ZERO, Scalar::ZERO),
+            a: self.a.moved(&a, offset, rounding + (a.error + b.error)),
+            b: self.b.moved(&b, A::Vector::ZERO, Scalar::ZERO),
             offset,
-            place: self.b.core.origin + db.shift + turned_b,
+            place: self.b.core.origin + b.shift + b.swing,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Motion at constant linear and angular velocity.
 
 use convex_support::numerics::bound::least;
-use convex_support::{AngularVelocity, BoundingSphere, Matrix, Scalar, Spin, Vector};
+use convex_support::{AngularVelocity, BoundingSphere, Matrix, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::trajectory::{Displacement, MovingBall, Trajectory, TurningPlane};
@@ -107,20 +107,9 @@ impl<V: Vector> RigidMotion<V> {
         Self { velocity: (moved - across) / duration, center, ..straight }
     }
 
-    /// [`displacement`](Trajectory::displacement), by the spin of its angular velocity.
-    #[inline(always)]
-    pub(super) fn displacement_by(&self, spin: &SpinOf<V>, time: V::Scalar) -> Displacement<V> {
-        let mut displacement = Displacement::shifted(self.velocity * time);
-        if self.angular_velocity != Default::default() {
-            let turn = spin.turn(time);
-            let squared = (0..V::DIM).fold(V::Scalar::ZERO, |sum, j| sum + turn.col(j).length_squared());
-            // Four more for the product with a vector.
-            let units = <V::AngularVelocity as AngularVelocity<V>>::TURN_ERROR + 4.0;
-            displacement.turn_error = squared.sqrt() * V::Scalar::EPSILON * V::Scalar::from_f64(units);
-            displacement.pivot = self.center;
-            displacement.turn = turn;
-        }
-        displacement
+    /// Whether nothing moves.
+    pub(super) fn is_rest(&self) -> bool {
+        self.velocity == V::ZERO && self.angular_velocity == Default::default()
     }
 
     /// [`acceleration_along`](Trajectory::acceleration_along), by the [reach](Self::reach) of the ball.
@@ -138,23 +127,17 @@ impl<V: Vector> RigidMotion<V> {
         TurningPlane { from, to }: TurningPlane<V>,
         interval: [V::Scalar; 2],
     ) -> V::Scalar {
-        // At rest, as one of two bodies mostly is.
-        if self.velocity == V::ZERO && self.angular_velocity == Default::default() {
-            return V::Scalar::ZERO;
+        let (w, turns) = (self.angular_velocity.cross_matrix(), self.angular_velocity != Default::default());
+        if from == to {
+            return if turns { longer([w * (w * from); 2]) * reach + least::<V::Scalar>() } else { V::Scalar::ZERO };
         }
-        let two = V::Scalar::from_f64(2.0);
-        let twice_rate = if from == to { V::ZERO } else { (to - from) * (two / (interval[1] - interval[0])) };
+        let twice_rate = (to - from) * (V::Scalar::from_f64(2.0) / (interval[1] - interval[0]));
         let straight = twice_rate.dot(self.velocity);
-        if self.angular_velocity == Default::default() {
+        if !turns {
             return straight;
         }
-        let w = self.angular_velocity.cross_matrix();
         let bent = [w * (w * from - twice_rate), w * (w * to - twice_rate)];
-        let (squared_from, squared_to) = (bent[0].length_squared(), bent[1].length_squared());
-        let squared = if squared_from > squared_to { squared_from } else { squared_to };
-        let in_range = V::Scalar::min_positive_value() / (V::Scalar::EPSILON * V::Scalar::EPSILON);
-        let bent = if squared > in_range { squared.sqrt() } else { hardly_bent(bent) };
-        straight + bent * reach + least::<V::Scalar>()
+        straight + longer(bent) * reach + least::<V::Scalar>()
     }
 
     /// The distance from the axis through the centre within which all of a ball stays.
@@ -182,6 +165,24 @@ pub(super) fn rate<M: Matrix>(w: &M) -> <M::Vector as Vector>::Scalar {
     M::Vector::from_fn(|i| w.col((i + 1) % 3).get((i + 2) % 3)).norm()
 }
 
+/// A bound on the error of a [turn](AngularVelocity::turn) as an operator, its product with a vector included.
+#[inline(always)]
+pub(super) fn turn_error<V: Vector>(turn: &V::Matrix) -> V::Scalar {
+    let squared = (0..V::DIM).fold(V::Scalar::ZERO, |sum, j| sum + turn.col(j).length_squared());
+    // Four more for the product with a vector.
+    let units = <V::AngularVelocity as AngularVelocity<V>>::TURN_ERROR + 4.0;
+    squared.sqrt() * V::Scalar::EPSILON * V::Scalar::from_f64(units)
+}
+
+/// The length of the longer of two vectors.
+#[inline(always)]
+fn longer<V: Vector>(vectors: [V; 2]) -> V::Scalar {
+    let [first, second] = vectors.map(V::length_squared);
+    let squared = if first > second { first } else { second };
+    let in_range = V::Scalar::min_positive_value() / (V::Scalar::EPSILON * V::Scalar::EPSILON);
+    if squared > in_range { squared.sqrt() } else { hardly_bent(vectors) }
+}
+
 /// The length of the longer of two vectors whose squares underflow, with what products of such numbers may have lost.
 #[cold]
 #[inline(never)]
@@ -194,7 +195,14 @@ impl<V: Vector> Trajectory for RigidMotion<V> {
 
     #[inline]
     fn displacement(&self, time: V::Scalar) -> Displacement<V> {
-        self.displacement_by(&self.angular_velocity.spin(), time)
+        let mut displacement = Displacement::shifted(self.velocity * time);
+        if self.angular_velocity != Default::default() {
+            let turn = self.angular_velocity.turn(time);
+            displacement.turn_error = turn_error::<V>(&turn);
+            displacement.pivot = self.center;
+            displacement.turn = turn;
+        }
+        displacement
     }
 
     #[inline]

@@ -1,29 +1,51 @@
-//! A look at two moving bodies by GJK alone, which is all that the search needs of bodies that are well apart.
+//! A look at two moving bodies that are well apart, of which the search needs to know their distance only roughly.
 
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
+use super::corners::Face;
 use super::instant::{Instant, NEAR};
 use super::moved::Moved;
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use super::trajectory::Trajectory;
 use crate::SignedDistanceOptions;
-use crate::body::{Pair, PointPair, TracedSupport as _};
-use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk};
-use crate::simplex::MAX_POINTS;
+use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
+use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk, rounding};
+use crate::unit::is_moderate;
 
 /// How wide a bracket on the distance of bodies that are well apart may stay, relative to it: where they are looked at next hardly
 /// depends on it, and their gap is proved however wide it is. A narrower one takes more support points, a wider one more looks.
 const ROUGH: f64 = 0.2;
 
-/// Corners of a simplex, of which some are none, each relative to its body's origin and turned back to time 0.
-#[derive(Clone, Copy)]
-pub(super) struct Corners<V>([Option<PointPair<V>>; MAX_POINTS]);
+/// What was seen of two cores: how far apart the plane across a unit vector keeps them, what that may be wrong by, and points of them that
+/// are nearly the closest, each relative to its body's origin.
+struct Seen<V: Vector> {
+    unit: V,
+    lower: V::Scalar,
+    error: V::Scalar,
+    points: PointPair<V>,
+}
 
-impl<V> Corners<V> {
-    /// No corner.
-    pub(super) const NONE: Self = Self([const { None }; MAX_POINTS]);
+impl<V: Vector> Seen<V> {
+    /// The points whose difference is `v`, and the plane through the support point `w` across that.
+    #[inline(always)]
+    fn new(v: V, length: V::Scalar, w: V, points: PointPair<V>, error: V::Scalar) -> Self {
+        Self { unit: v / length, lower: v.dot(w) / length, error, points }
+    }
+}
+
+/// Where a search begins.
+enum Begin<'f, V: Vector> {
+    /// Along an axis.
+    Along(V),
+    /// At a face, with the support point across the vector to it and what that is made of.
+    At(&'f Face<V>, (V, PointPair<V>)),
+}
+
+/// Points in units of the scale, in the world's unit.
+fn in_world<V: Vector>(points: PointPair<V>, scale: V::Scalar) -> PointPair<V> {
+    PointPair { a: points.a * scale, b: points.b * scale }
 }
 
 impl<A, MA, B, MB> MovingPair<'_, A, MA, B, MB>
@@ -33,89 +55,120 @@ where
     MA: Trajectory<Vector = A::Vector>,
     MB: Trajectory<Vector = A::Vector>,
 {
-    /// The pair at a time by GJK alone, which begins with the simplex of the last time; `None` where the bodies are nearly in contact or
-    /// overlap.
+    /// The pair at a time; `None` where the bodies are nearly in contact or overlap.
     ///
-    /// Where they overlap by more than rounding, the best plane known tells about how much, which is all that the search needs.
+    /// Where the closest points are known in closed form, or the corners that were closest at the last time are so still, one support
+    /// point proves it. Otherwise GJK goes on from there. Where the bodies overlap by more than rounding, the best plane known tells about
+    /// how much, which is all that the search needs.
     pub(super) fn roughly(
         &self,
         time: ScalarOf<A>,
-        Placed { a, b, offset, place }: &Placed<'_, A, B>,
+        placed: &Placed<'_, A, B>,
         axis: A::Vector,
         limit: ScalarOf<A>,
     ) -> Option<Instant<A::Vector>> {
-        let mut pair = Pair::new(a, b);
-        let size = pair.size(*offset);
-        let frame = Frame::new(&mut pair, *offset, size);
-        let Frame { scale, per_unit, radius, error, .. } = frame;
-        let mut state = Gjk::new(axis);
-        match state.begin_at_closest(&pair, &frame, size) {
-            Some(true) => return None,
-            Some(false) => {}
-            None => {
-                let moved = |points: PointPair<A::Vector>| PointPair {
-                    a: a.turned(points.a) * per_unit,
-                    b: b.turned(points.b) * per_unit,
-                };
-                let corners = self.closest.get().0.into_iter().flatten().map(moved);
-                state.begin_with(corners.map(|points| (points.a - points.b + frame.offset, points)), &frame);
-                if state.normal.dot(axis) < Scalar::ZERO {
-                    // They have passed through one another, and their plane is the other way round.
-                    state = Gjk::new(-state.normal);
-                }
-            }
+        let mut pair = Pair::new(&placed.a, &placed.b);
+        let (size, radius) = (pair.size(placed.offset), pair.radius());
+        let error = rounding(size) + pair.error();
+        // NaN is not.
+        let is_well_apart = |lower: ScalarOf<A>| lower - radius > error * Scalar::from_f64(NEAR);
+        if let Some(points) = pair.closest_points(placed.offset, size) {
+            let v = points.a - points.b + placed.offset;
+            let (w, _) = pair.support(-v);
+            self.count(1);
+            let seen = Seen::new(v, v.length(), w + placed.offset, points, error);
+            return is_well_apart(seen.lower).then(|| self.instant(time, placed, &seen));
         }
+        let face = if is_moderate(size) { self.closest.borrow().closest_face(placed) } else { None };
+        // Not where they have passed through one another, and their plane is the other way round.
+        let face = face.filter(|face| face.v.length() > radius && face.v.dot(axis) > Scalar::ZERO);
+        let Some(face) = face else { return self.searched(time, placed, &mut pair, Begin::Along(axis), limit) };
+        // They are no farther apart than that.
+        if !is_well_apart(face.v.length()) {
+            return None;
+        }
+        let (length, known) = (face.v.length(), pair.support(-face.v));
+        let seen = Seen::new(face.v, length, known.0 + placed.offset, face.closest_points(), error);
+        let gap = seen.lower - radius;
+        if is_well_apart(seen.lower) && (length - seen.lower <= gap * Scalar::from_f64(ROUGH) || gap > limit + error) {
+            self.count(1);
+            return Some(self.instant(time, placed, &seen));
+        }
+        self.searched(time, placed, &mut pair, Begin::At(&face, known), limit)
+    }
+
+    /// The same by GJK, which begins with a face and the support point across the vector to it, or along an axis.
+    fn searched(
+        &self,
+        time: ScalarOf<A>,
+        placed: &Placed<'_, A, B>,
+        pair: &mut Pair<'_, Moved<'_, A>, Moved<'_, B>>,
+        begin: Begin<'_, A::Vector>,
+        limit: ScalarOf<A>,
+    ) -> Option<Instant<A::Vector>> {
+        let size = pair.size(placed.offset);
+        let frame = Frame::new(pair, placed.offset, size);
+        let Frame { scale, per_unit, radius, error, .. } = frame;
+        let in_unit = |points: PointPair<A::Vector>| PointPair { a: points.a * per_unit, b: points.b * per_unit };
+        let (mut state, known) = match begin {
+            Begin::Along(axis) => (Gjk::new(axis), None),
+            Begin::At(face, (point, witness)) => {
+                let corners = face.corners().map(|(point, pair)| (point * per_unit, in_unit(pair)));
+                let state = Gjk::at_face(corners, face.weights, face.v * per_unit);
+                (state, Some((point * per_unit, in_unit(witness))))
+            }
+        };
         let options = GjkOptions {
             limit: limit * per_unit + radius,
             tolerance: Scalar::from_f64(ROUGH),
             ..GjkOptions::new(state.normal, SignedDistanceOptions::<A::Vector>::new().max_iterations)
         };
-        let end = gjk(&mut state, &mut pair, frame, options, None, |_| {});
+        let end = gjk(&mut state, pair, frame, options, known, |_| {});
         self.count(state.iterations);
         let (distance, near) = (state.lower - radius, error * Scalar::from_f64(NEAR));
+        let unit = state.axis.unit()?;
+        let lower = state.lower;
+        let seen = |points| Seen { unit, lower: lower * scale, error: error * scale, points: in_world(points, scale) };
         // NaN is neither.
-        let is_apart = end == gjk::End::Separated && distance > near;
-        let seem_to_overlap = end == gjk::End::Overlap && distance < -near;
-        let normal = state.axis.unit().filter(|_| is_apart || seem_to_overlap)?;
-        let points = if is_apart {
+        if end == gjk::End::Separated && distance > near {
             state.ensure_measured();
-            state.simplex.weighted_witness()
-        } else {
-            self.count(1);
-            pair.support(-normal).1
-        };
-        let point_a = *place + *offset + points.a * scale - normal * self.a.core.radius;
-        let point = *place + points.b * scale + normal * self.b.core.radius;
-        // Of curved bodies the corners would be others.
-        if is_apart && !pair.is_curved() {
-            self.keep_corners(&state, a, b, scale);
+            // Of curved bodies the corners would be others.
+            if !pair.is_curved() {
+                let corners = state.simplex.weighted().map(|(_, corner)| in_world(corner, scale));
+                self.closest.borrow_mut().keep(corners, placed);
+            }
+            return Some(self.instant(time, placed, &seen(state.simplex.weighted_witness())));
         }
-        let (distance, error) = (distance * scale, error * scale);
-        Some(Instant {
+        if end == gjk::End::Overlap && distance < -near {
+            self.count(1);
+            let (_, points) = pair.support(-unit);
+            return Some(self.instant(time, placed, &seen(points)));
+        }
+        None
+    }
+
+    /// What is known of a time, of bodies that are certainly apart.
+    #[inline(always)]
+    fn instant(
+        &self,
+        time: ScalarOf<A>,
+        placed: &Placed<'_, A, B>,
+        &Seen { unit, lower, error, points }: &Seen<A::Vector>,
+    ) -> Instant<A::Vector> {
+        let (radius_a, radius_b) = (self.a.core.radius, self.b.core.radius);
+        let point_a = placed.place + placed.offset + points.a - unit * radius_a;
+        let point = placed.place + points.b + unit * radius_b;
+        let distance = lower - (radius_a + radius_b);
+        Instant {
             time,
-            normal,
+            normal: unit,
             gap: distance - error,
             distance,
             upper: Float::infinity(),
             error,
-            closing: self.closing(time, normal, [point_a, point]),
+            closing: self.closing(time, unit, [point_a, point]),
             point,
             is_close: false,
-        })
-    }
-
-    /// Keeps the corners of a simplex for the next look.
-    fn keep_corners(
-        &self,
-        state: &Gjk<A::Vector, PointPair<A::Vector>>,
-        a: &Moved<'_, A>,
-        b: &Moved<'_, B>,
-        scale: ScalarOf<A>,
-    ) {
-        let mut closest = Corners::NONE;
-        for (corner, (_, points)) in closest.0.iter_mut().zip(state.simplex.weighted()) {
-            *corner = Some(PointPair { a: a.before(points.a * scale), b: b.before(points.b * scale) });
         }
-        self.closest.set(closest);
     }
 }

@@ -1,0 +1,197 @@
+//! A look at two bodies nearly in contact, by what was closest at the last look.
+//!
+//! Near contact the same corners are mostly closest as a moment ago. Then a plane across them is known, and one support point proves that
+//! it separates the bodies. Where they overlap, the closest points of their cores prove that if they are nearer than the radii; and
+//! of cores that overlap themselves, a simplex of the corners and the point of the difference farthest from them has zero inside.
+
+use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
+use num_traits::Float as _;
+
+use super::corners::Face;
+use super::instant::Instant;
+use super::moved::Moved;
+use super::moving_pair::MovingPair;
+use super::placed::Placed;
+use super::trajectory::Trajectory;
+use crate::body::{Pair, PointPair};
+use crate::contact::Cores;
+use crate::simplex::{MAX_POINTS, cross, project};
+use crate::unit::is_moderate;
+
+/// What corners may be off a plane by, in errors.
+const IN_PLANE: f64 = 4.0;
+
+/// The direction of closest points that are apart by this part of the size of both bodies is known to rounding.
+const LONG: f64 = 1.0 / 16.0;
+
+/// What may have been closest, lengths in the world's unit.
+struct Closest<V: Vector> {
+    /// Points of the cores, each relative to its body's origin, and the vector between them.
+    points: PointPair<V>,
+    v: V,
+    /// The unit vector across the plane between them.
+    unit: V,
+}
+
+impl<A, MA, B, MB> MovingPair<'_, A, MA, B, MB>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+    MA: Trajectory<Vector = A::Vector>,
+    MB: Trajectory<Vector = A::Vector>,
+{
+    /// The bodies at a time as well as it can be known, if what was closest at the last look is so still, and proves that they are apart
+    /// or overlap.
+    pub(super) fn near_look(
+        &self,
+        time: ScalarOf<A>,
+        placed: &Placed<'_, A, B>,
+        axis: A::Vector,
+    ) -> Option<Instant<A::Vector>> {
+        let pair = Pair::new(&placed.a, &placed.b);
+        let size = pair.size(placed.offset);
+        if !is_moderate(size) {
+            return None;
+        }
+        let (closest, face) = match pair.closest_points(placed.offset, size) {
+            Some(points) => (Closest::new(points, points.a - points.b + placed.offset, size)?, None),
+            None => {
+                let face = self.closest.borrow().closest_face(placed)?;
+                let closest = Closest::new(face.closest_points(), face.v, size);
+                (closest.or_else(|| Closest::in_plane(&face, axis))?, Some(face))
+            }
+        };
+        let Closest { points, v, unit } = closest;
+        // Not where they have passed through one another.
+        if !(unit.dot(axis) > Scalar::ZERO) {
+            return None;
+        }
+        let mut cores = Cores::new(&placed.a, &placed.b, [pair.core_a, pair.core_b]);
+        cores.sharpen();
+        let (scale, radius) = (cores.scale(), cores.radius());
+        // As in an answer: the unit vector, the radii and the sums.
+        let slack = |length: ScalarOf<A>| ScalarOf::<A>::EPSILON * Scalar::from_f64(3.0) * (length + radius);
+        let lower = unit.dot(cores.support(-unit)?.point) * scale;
+        let error = cores.error_along(unit) * scale + slack(lower.abs());
+        // NaN is not in the plane.
+        let is_closest = unit.dot(v) - lower <= error * Scalar::from_f64(IN_PLANE);
+        let distance = lower - radius;
+        let mut upper = ScalarOf::<A>::infinity();
+        if is_closest && !(distance > error) {
+            upper = match &face {
+                None => cores.greatest_length(v / scale) * scale - radius + slack(v.length()),
+                Some(face) => self.overlap_of_corners(&mut cores, face, unit)?,
+            };
+        }
+        self.count(cores.iterations);
+        if !is_closest || !(distance > error || upper < Scalar::ZERO) {
+            return None;
+        }
+        let point_a = placed.place + placed.offset + points.a - unit * self.a.core.radius;
+        let point = placed.place + points.b + unit * self.b.core.radius;
+        let closing = self.closing(time, unit, [point_a, point]);
+        let gap = distance - error;
+        Some(Instant { time, normal: unit, gap, distance, upper, error, closing, point, is_close: true })
+    }
+
+    /// What the signed distance is certainly not more than, if the corners of a face prove that the bodies overlap; infinity if not.
+    ///
+    /// Each is looked for anew, along a direction that leans away from the others: as it was kept, it is not known as well as a support
+    /// point.
+    fn overlap_of_corners(
+        &self,
+        cores: &mut Cores<'_, Moved<'_, A>, Moved<'_, B>>,
+        face: &Face<A::Vector>,
+        unit: A::Vector,
+    ) -> Option<ScalarOf<A>> {
+        let (zero, infinity) = (ScalarOf::<A>::ZERO, ScalarOf::<A>::infinity());
+        let (scale, radius, dimension) = (cores.scale(), cores.radius(), A::Vector::DIM);
+        let (corners, len) = face.points();
+        let mut points = [A::Vector::ZERO; MAX_POINTS];
+        for (i, point) in points[..len].iter_mut().enumerate() {
+            let mut direction = -unit;
+            for j in (0..len).filter(|&j| j != i) {
+                let edge = corners[i] - corners[j];
+                direction += edge * (ScalarOf::<A>::EPSILON.sqrt() / edge.length());
+            }
+            *point = cores.support(direction)?.point;
+        }
+        if radius > zero {
+            let weights = project(&points[..len], |corner| -corner).coordinates;
+            if !weights[..len].iter().all(|&weight| weight > zero) {
+                return Some(infinity);
+            }
+            let (mut closest, mut sum) = (A::Vector::ZERO, zero);
+            for (&point, &weight) in points[..len].iter().zip(&weights) {
+                closest += point * weight;
+                sum += weight;
+            }
+            let length = cores.greatest_length(closest / sum) * scale;
+            return Some(length - radius + ScalarOf::<A>::EPSILON * Scalar::from_f64(3.0) * (length + radius));
+        }
+        if len != dimension {
+            return Some(infinity);
+        }
+        points[len] = cores.support(unit)?.point;
+        Some((cores.greatest_error() - room_around_zero(&points)) * scale)
+    }
+}
+
+impl<V: Vector> Closest<V> {
+    /// Points that are apart by `v`, for bodies of the given size; `None` where that is too short to have a direction.
+    #[inline(always)]
+    fn new(points: PointPair<V>, v: V, size: V::Scalar) -> Option<Self> {
+        let length = v.length();
+        (length > size * Scalar::from_f64(LONG)).then(|| Self { points, v, unit: v / length })
+    }
+
+    /// The closest points of a face that spans a plane.
+    fn in_plane(face: &Face<V>, axis: V) -> Option<Self> {
+        let (corners, len) = face.points();
+        let (normal, _) = if len == V::DIM { normal(&corners) } else { return None };
+        let unit = normal.unit()?;
+        let unit = if unit.dot(axis) < V::Scalar::ZERO { -unit } else { unit };
+        Some(Self { points: face.closest_points(), v: face.v, unit })
+    }
+}
+
+/// The radius of a ball about zero that is within the simplex of one more point than there are dimensions; not positive where there is
+/// none.
+///
+/// If all points are wrong by less, zero is still inside: else they would lie beyond a plane through zero, and before they were wrong
+/// all of their simplex less than that before it.
+fn room_around_zero<V: Vector>(points: &[V; MAX_POINTS]) -> V::Scalar {
+    let mut room = V::Scalar::infinity();
+    for (i, &opposite) in points.iter().enumerate().take(V::DIM + 1) {
+        let mut others = *points;
+        others.swap(i, V::DIM);
+        let (normal, wrong) = normal(&others);
+        let edge = opposite - others[0];
+        let (level, side) = (normal.dot(others[0]), normal.dot(edge));
+        let height = if side > V::Scalar::ZERO { -level } else { level } - wrong * others[0].length();
+        // Zero is no farther from the face than the corner opposite, of which this tells on which side it is.
+        let most = side.abs() - wrong * edge.length();
+        let height = (if height < most { height } else { most }) / normal.length();
+        if height.is_nan() {
+            return V::Scalar::ZERO;
+        }
+        room = if height < room { height } else { room };
+    }
+    room
+}
+
+/// A vector across the first points, as many as there are dimensions; and what its product with another is wrong by, relative to the
+/// other's length.
+///
+/// In space, with `u = ε/2`, both edges are wrong by `u`, and a coordinate of their product is a difference of products: `4u·√3` of the
+/// product of the lengths. The scalar product loses `3u`.
+fn normal<V: Vector>(points: &[V; MAX_POINTS]) -> (V, V::Scalar) {
+    let edge = points[1] - points[0];
+    if V::DIM == 2 {
+        let across = V::from_fn(|i| if i == 0 { edge.get(1) } else { -edge.get(0) });
+        return (across, V::Scalar::EPSILON * V::Scalar::from_f64(2.0) * edge.length());
+    }
+    let other = points[2] - points[0];
+    let lengths = edge.length() * other.length();
+    (cross(edge, other), V::Scalar::EPSILON * V::Scalar::from_f64(5.5) * lengths)
+}
