@@ -8,9 +8,9 @@
 use alloc::vec::Vec;
 
 use super::frame::Frame;
-use super::node::{Child, Link, Node, Slot, WIDTH};
+use super::node::{Boxes, Link, Node, Slot, WIDTH};
 use super::{Bvh, node};
-use crate::glam::Vec3A;
+use crate::glam::{Vec3A, Vec4};
 use crate::{Aabb, Vector};
 
 const BINS: usize = 16;
@@ -20,6 +20,14 @@ const BINS: usize = 16;
 pub(super) struct Entry {
     pub(super) around: Aabb<Vec3A>,
     pub(super) item: u32,
+}
+
+impl Entry {
+    /// Twice the centre, which orders entries as well as the centre does.
+    #[inline(always)]
+    fn center(&self) -> Vec3A {
+        self.around.min + self.around.max
+    }
 }
 
 /// A part of the entries, with the box around it and that around the centres.
@@ -36,7 +44,7 @@ impl Range {
     }
 }
 
-/// The box around some entries, and that around their centres.
+/// The box around some entries, and that around their (twice) centres.
 #[derive(Clone, Copy)]
 struct Extent {
     around: Aabb<Vec3A>,
@@ -53,7 +61,7 @@ impl Extent {
 
     #[inline(always)]
     fn with(self, entry: &Entry) -> Self {
-        let center = entry.around.center();
+        let center = entry.center();
         self.union(&Self { around: entry.around, centers: Aabb { min: center, max: center } })
     }
 
@@ -131,16 +139,20 @@ impl<V: Vector> Bvh<V> {
     /// How much work a random question is expected to be: the area of all inner boxes by that of the whole. Not a number
     /// where areas over- or underflow.
     pub(super) fn cost(&self) -> f64 {
-        let mut sum = 0.0;
-        for node in self.nodes.iter().filter(|node| node.parent != Slot::DEAD) {
-            for (lane, link) in node.children.iter().enumerate() {
-                if let Child::Node(_) = link.child() {
-                    sum += f64::from(area::<V>(&node.boxes.get(lane)));
-                }
-            }
-        }
-        sum / f64::from(area::<V>(&self.nodes[0].boxes.union()))
+        let of_nodes = |node: &Node| {
+            let areas = areas::<V>(&node.boxes).to_array().into_iter().zip(node.children);
+            areas.map(|(area, link)| if link.is_node() { area } else { 0.0 }).sum::<f32>()
+        };
+        let live = self.nodes.iter().filter(|node| node.parent != Slot::DEAD);
+        live.map(|node| f64::from(of_nodes(node))).sum::<f64>() / f64::from(area::<V>(&self.nodes[0].boxes.union()))
     }
+}
+
+/// Half the surfaces of a node's boxes, as [`area`] does.
+#[inline(always)]
+fn areas<V: Vector>(boxes: &Boxes) -> Vec4 {
+    let [x, y, z] = [0, 1, 2].map(|axis| boxes.max(axis) - boxes.min(axis));
+    if V::DIM == 2 { x + y } else { x * y + y * z + z * x }
 }
 
 /// The levels of the shallowest tree of `count` items: ⌈log₄ count⌉.
@@ -202,7 +214,7 @@ fn split<V: Vector>(entries: &mut [Entry], range: &Range, halves: bool) -> [Rang
     }
     let middle = entries.len() / 2;
     entries.select_nth_unstable_by(middle, |a, b| {
-        let [x, y] = [a, b].map(|entry| entry.around.center()[axis]);
+        let [x, y] = [a, b].map(|entry| entry.center()[axis]);
         x.partial_cmp(&y).unwrap_or(core::cmp::Ordering::Equal).then(a.item.cmp(&b.item))
     });
     let [first, second] = [&entries[..middle], &entries[middle..]].map(Extent::of);
@@ -227,7 +239,7 @@ impl Bins {
 
     #[inline(always)]
     fn of(&self, entry: &Entry) -> usize {
-        let bin = (entry.around.center()[self.axis] - self.low) * self.per_bin;
+        let bin = (entry.center()[self.axis] - self.low) * self.per_bin;
         (bin as usize).min(self.count - 1)
     }
 
@@ -240,38 +252,39 @@ impl Bins {
             counts[bin] += 1;
             extents[bin] = extents[bin].with(entry);
         }
-        // What lies behind each split, from the end; then what lies before it.
-        let mut behind = [(0, Extent::EMPTY); BINS];
-        for bin in (1..self.count).rev() {
-            let (count, extent) = behind[bin];
-            behind[bin - 1] = (count + counts[bin], extent.union(&extents[bin]));
+        let (counts, extents) = (&counts[..self.count], &extents[..self.count]);
+        // What the part behind each split costs, from the end; then what the part before it does.
+        let mut behind = [0.0; BINS];
+        let (mut count, mut around) = (0, Extent::NOTHING);
+        for bin in (1..counts.len()).rev() {
+            (count, around) = (count + counts[bin], around.union(&extents[bin].around));
+            behind[bin - 1] = count as f32 * area::<V>(&around);
         }
-        let (mut count, mut extent) = (0, Extent::EMPTY);
+        let (mut count, mut around) = (0, Extent::NOTHING);
         let (mut least, mut best) = (f32::INFINITY, None);
-        for bin in 0..self.count - 1 {
-            (count, extent) = (count + counts[bin], extent.union(&extents[bin]));
-            let (rest, other) = behind[bin];
-            let cost = count as f32 * area::<V>(&extent.around) + rest as f32 * area::<V>(&other.around);
-            if count > 0 && rest > 0 && cost < least {
-                (least, best) = (cost, Some((bin, [extent, other])));
+        for bin in 0..counts.len() - 1 {
+            (count, around) = (count + counts[bin], around.union(&extents[bin].around));
+            let cost = count as f32 * area::<V>(&around) + behind[bin];
+            if cost < least && count > 0 && count < entries.len() as u32 {
+                (least, best) = (cost, Some(bin));
             }
         }
-        best
+        let sum = |bins: &[Extent]| bins.iter().fold(Extent::EMPTY, |sum, extent| sum.union(extent));
+        best.map(|last| (last, [sum(&extents[..=last]), sum(&extents[last + 1..])]))
     }
 }
 
-/// Brings the entries that `first` picks to the front, and returns their number.
+/// Brings the entries that `first` picks to the front, and returns their number. Every one is exchanged, which takes no branch: who is
+/// picked nobody can foretell.
+#[inline(always)]
 fn partition<T>(entries: &mut [T], first: impl Fn(&T) -> bool) -> usize {
-    let (mut i, mut j) = (0, entries.len());
-    while i < j {
-        if first(&entries[i]) {
-            i += 1;
-        } else {
-            j -= 1;
-            entries.swap(i, j);
-        }
+    let mut picked = 0;
+    for i in 0..entries.len() {
+        let is_first = first(&entries[i]);
+        entries.swap(i, picked);
+        picked += usize::from(is_first);
     }
-    i
+    picked
 }
 
 /// Half the surface of a box; half the circumference in 2D.

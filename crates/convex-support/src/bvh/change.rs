@@ -28,11 +28,9 @@ impl<V: Vector> Bvh<V> {
     ///
     /// Items are asked for in the order of their numbers.
     pub fn refit(&mut self, mut box_of: impl FnMut(usize) -> Aabb<V>) {
-        let mut is_beyond = false;
         for (item, around) in self.boxes.iter_mut().enumerate() {
             if self.slots[item] != Slot::NONE {
                 *around = box_of(item);
-                is_beyond |= self.frame.is_beyond(around);
             }
         }
         // Children come after their parents, so that a node is complete before its box is wanted.
@@ -51,7 +49,7 @@ impl<V: Vector> Bvh<V> {
                 self.nodes[parent.node()].boxes.set(parent.lane(), around);
             }
         }
-        if is_beyond || self.cost() > self.built_cost * WORSE {
+        if self.frame.sees_beyond(&self.nodes[0].boxes.union()) || self.cost() > self.built_cost * WORSE {
             self.rebuild();
         }
     }

@@ -55,6 +55,12 @@ impl<V: Vector> Frame<V> {
         distance(self.origin, around) > BEYOND * self.reach
     }
 
+    /// The same of a box as it is seen.
+    pub(super) fn sees_beyond(&self, around: &Aabb<Vec3A>) -> bool {
+        let reach = f64::from(around.min.abs().max(around.max.abs()).max_element());
+        reach > BEYOND * self.reach * self.per_unit + 1.0
+    }
+
     /// What boxes are seen from.
     #[must_use]
     pub fn origin(&self) -> V {
@@ -65,14 +71,19 @@ impl<V: Vector> Frame<V> {
     #[inline(always)]
     #[must_use]
     pub fn down(&self, axis: usize, x: V::Scalar) -> f32 {
-        down((x.as_f64() - self.origin.get(axis).as_f64()) * self.per_unit)
+        down(self.seen(axis, x))
     }
 
     /// At least the coordinate `x` as it is seen.
     #[inline(always)]
     #[must_use]
     pub fn up(&self, axis: usize, x: V::Scalar) -> f32 {
-        up((x.as_f64() - self.origin.get(axis).as_f64()) * self.per_unit)
+        up(self.seen(axis, x))
+    }
+
+    #[inline(always)]
+    fn seen(&self, axis: usize, x: V::Scalar) -> f64 {
+        (x.as_f64() - self.origin.get(axis).as_f64()) * self.per_unit
     }
 
     /// The unit of lengths as they are seen.
@@ -81,14 +92,16 @@ impl<V: Vector> Frame<V> {
         RoughUnit::new::<V::Scalar>(self.per_unit)
     }
 
-    /// A box as it is seen; in the plane, at zero of the third coordinate.
+    /// A box as it is seen; in the plane, about zero of the third coordinate.
     #[inline(always)]
     pub(super) fn outwards(&self, around: &Aabb<V>) -> Aabb<Vec3A> {
         let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
         for axis in 0..V::DIM {
-            (min[axis], max[axis]) = (self.down(axis, around.min.get(axis)), self.up(axis, around.max.get(axis)));
+            min[axis] = below_infinity(self.seen(axis, around.min.get(axis)));
+            max[axis] = below_infinity(-self.seen(axis, around.max.get(axis)));
         }
-        Aabb { min: min.into(), max: max.into() }
+        let step_down = |x: [f32; 3]| Vec3A::from(x) - step(Vec3A::from(x).abs());
+        Aabb { min: step_down(min), max: -step_down(max) }
     }
 
     /// The same box as this frame sees it, and not another.
@@ -117,14 +130,25 @@ fn distance<V: Vector>(origin: V, around: &Aabb<V>) -> f64 {
     (around.max - origin).max(origin - around.min).max_element().as_f64()
 }
 
-/// At most `x`, by at most two steps; what is too large for single precision is its largest number. Nothing is below NaN but that.
-///
-/// Rounding to the nearest moves a number by less than ε/2 of itself, or of the smallest normal number.
+/// At most `x`, by a few steps of single precision; what is too large for it is its largest number, and so is NaN.
 #[inline(always)]
 fn down(x: f64) -> f32 {
-    let low = x - (x.abs() * f64::from(f32::EPSILON) + f64::from(f32::MIN_POSITIVE));
-    let largest = f64::from(f32::MAX);
-    (if low < largest { low } else { largest }) as f32
+    let nearest = below_infinity(x);
+    nearest - step(nearest.abs())
+}
+
+/// The nearest number in single precision that is not infinite or NaN; or minus infinity.
+#[inline(always)]
+fn below_infinity(x: f64) -> f32 {
+    let nearest = x as f32;
+    if nearest < f32::MAX { nearest } else { f32::MAX }
+}
+
+/// Of numbers of this size, one step at least, and at most two; of the smallest ones more. Rounding to the nearest moves `x` by half a step,
+/// and a difference by a whole number of steps not at all.
+#[inline(always)]
+fn step<T: core::ops::Mul<f32, Output = T> + core::ops::Add<f32, Output = T>>(size: T) -> T {
+    size * f32::EPSILON + f32::MIN_POSITIVE
 }
 
 /// At least `x`, as [`down`] is at most.

@@ -106,6 +106,11 @@ impl Link {
     }
 
     #[inline]
+    pub(super) fn is_node(self) -> bool {
+        self.0 & Self::ITEM == 0
+    }
+
+    #[inline]
     pub(super) fn child(self) -> Child {
         match self {
             Self::NONE => Child::None,
