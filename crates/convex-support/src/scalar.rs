@@ -2,8 +2,6 @@
 
 use core::fmt::{Debug, Display};
 
-use crate::Lanes;
-
 /// A floating-point number: `f32` or `f64`.
 ///
 /// Arithmetic and functions come from [`num_traits::Float`]; this trait adds what generic geometry needs beside
@@ -22,9 +20,6 @@ pub trait Scalar:
     /// The distance from 1 to the next larger number, 2⁻²³ or 2⁻⁵².
     const EPSILON: Self;
 
-    /// Four of these numbers side by side.
-    type Lanes: Lanes<Self>;
-
     /// The nearest number of this type; a constant argument folds away.
     fn from_f64(value: f64) -> Self;
 
@@ -36,8 +31,6 @@ impl Scalar for f32 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
     const EPSILON: Self = Self::EPSILON;
-
-    type Lanes = glam::Vec4;
 
     #[inline]
     #[allow(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is the purpose")]
@@ -55,8 +48,6 @@ impl Scalar for f64 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
     const EPSILON: Self = Self::EPSILON;
-
-    type Lanes = glam::DVec4;
 
     #[inline]
     fn from_f64(value: f64) -> Self {

@@ -1,30 +1,39 @@
 //! What a question says of a box: the least value that anything in it can have.
 
+use core::marker::PhantomData;
+
 use num_traits::Float as _;
 
-use super::lanes::Lanes;
-use super::node::{Boxes, LanesOf};
-use crate::numerics::range::comfortable_unit_of_length;
+use super::frame::{Frame, RoughUnit, power_of_two_near};
+use super::node::Boxes;
+use crate::glam::Vec4;
 use crate::{Aabb, Scalar, Vector};
 
 /// A lower bound on a quantity, such as a distance, of everything that lies in a box.
 ///
-/// An implementor must obey one law, *to the last bit*: the bound of a box is not greater than that of any box within it.
-/// Bounds computed by the same monotone operations (sums, differences, products with a constant, minima and maxima, as
-/// rounded by IEEE 754) obey it. Then which items a [search](super::Bvh::search) leaves out depends on their boxes alone,
-/// not on the tree.
+/// The bound of an item's own box decides whether the item is [shown](super::Bvh::search). Which boxes around it are looked into is
+/// decided by [rougher](RoughBound) bounds, in single precision and for four boxes at once. An implementor must obey one law, whatever
+/// rounding does: *where the bound of a box is at most a limit, so is the rough bound of every box around it.* Then what a search
+/// leaves out depends on the items' boxes alone, not on the tree.
 pub trait Bound<V: Vector> {
-    /// The bounds of four boxes; infinity where nothing in a box concerns the question. Those of places without a child do
-    /// not matter.
-    fn bounds(&self, boxes: &Boxes<V>) -> LanesOf<V>;
+    /// The same question in single precision.
+    type Rough: RoughBound;
 
-    /// A bit for each of four boxes, the lowest for the first: for those with a bound of at most `limit`, and perhaps for others whose
-    /// bound rounding cannot tell from it. It obeys the same law: with a bit for a box there is one for every box around it. Provided: by
-    /// the bounds.
-    #[inline]
-    fn near(&self, boxes: &Boxes<V>, limit: V::Scalar) -> u32 {
-        self.bounds(boxes).at_most(limit)
-    }
+    /// The bound of one box; infinity where nothing in it concerns the question.
+    fn bound(&self, around: &Aabb<V>) -> V::Scalar;
+
+    /// The same question to the boxes of a tree, which are seen in this frame.
+    fn rough(&self, frame: &Frame<V>) -> Self::Rough;
+}
+
+/// A question to four boxes in single precision.
+pub trait RoughBound {
+    /// Numbers, none of them negative or NaN, in the order of the bounds of four boxes, in any unit and on any scale; infinity where
+    /// nothing in a box concerns the question. Those of places without a child do not matter.
+    fn bounds(&self, boxes: &Boxes) -> Vec4;
+
+    /// The finite number of that kind that bounds of boxes do not exceed if they are at most `limit`.
+    fn limit(&self, limit: f64) -> f32;
 }
 
 /// The rounding of the few operations that a bound is made of, relative to the bound.
@@ -45,55 +54,108 @@ fn rounding<S: Scalar>() -> S {
 /// boxes or the half extents (see [`outer_box`](super::outer_box)).
 #[derive(Clone, Copy, Debug)]
 pub struct SweptBox<V: Vector> {
-    /// By coordinate, what the smallest and the largest of a box are compared with: s + h and s − h.
-    from: [[LanesOf<V>; 2]; 3],
-    /// 1/d, in a unit of d in which its square is an ordinary number.
-    inverse: [LanesOf<V>; 3],
-    /// The side of a box that is met first.
-    first: [usize; 3],
-    /// From the unit of d to λ, rounded down.
-    deflate: LanesOf<V>,
+    /// What the smallest and the largest of a box are compared with: s + h and s − h.
+    from: [V; 2],
+    /// 1/d, in the unit of d.
+    inverse: V,
+    /// A power of two about as large as the largest coordinate of d.
+    unit: V::Scalar,
 }
 
 impl<V: Vector> SweptBox<V> {
     /// The box of these half extents about `source`, moving along `direction`.
     #[must_use]
     pub fn new(half_extents: V, source: V, direction: V) -> Self {
-        let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
-        let unit = comfortable_unit_of_length(direction.abs().max_element());
-        let mut swept = Self {
-            from: [[Lanes::splat(zero); 2]; 3],
-            inverse: [Lanes::splat(one); 3],
-            first: [0; 3],
-            deflate: Lanes::splat((one - rounding::<V::Scalar>()) / unit),
-        };
-        for i in 0..V::DIM {
-            let (s, h) = (source.get(i), half_extents.get(i));
-            let inverse = (direction.get(i) / unit).recip();
-            swept.from[i] = [Lanes::splat(s + h), Lanes::splat(s - h)];
-            swept.inverse[i] = Lanes::splat(inverse);
-            swept.first[i] = usize::from(inverse.is_sign_negative());
-        }
-        swept
+        let unit = V::Scalar::from_f64(power_of_two_near(direction.abs().max_element().as_f64()));
+        let unit = unit.max(V::Scalar::min_positive_value());
+        let inverse = V::from_fn(|i| V::Scalar::ONE / (direction.get(i) / unit));
+        Self { from: [source + half_extents, source - half_extents], inverse, unit }
     }
 }
 
 impl<V: Vector> Bound<V> for SweptBox<V> {
+    type Rough = RoughSweptBox<V>;
+
     #[inline]
-    fn bounds(&self, boxes: &Boxes<V>) -> LanesOf<V> {
-        let infinity = Lanes::splat(V::Scalar::infinity());
-        let (mut entry, mut exit): (LanesOf<V>, LanesOf<V>) = (Lanes::splat(V::Scalar::ZERO), infinity);
+    fn bound(&self, around: &Aabb<V>) -> V::Scalar {
+        let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
+        let (after, before) = (around.min - self.from[0], around.max - self.from[1]);
+        let (mut entry, mut exit) = (zero, V::Scalar::infinity());
+        for i in 0..V::DIM {
+            let inverse = self.inverse.get(i);
+            let sides = (after.get(i) * inverse, before.get(i) * inverse);
+            // Where d is zero, the quotient is ±∞ by the side of the plane, and NaN on it, which is then passed over.
+            let (begins, ends) = if inverse.is_sign_negative() { (sides.1, sides.0) } else { sides };
+            entry = if begins > entry { begins } else { entry };
+            exit = if ends < exit { ends } else { exit };
+        }
+        if entry <= exit * (one + rounding::<V::Scalar>()) {
+            (entry * ((one - rounding::<V::Scalar>()) / self.unit)).min(V::Scalar::max_value())
+        } else {
+            V::Scalar::infinity()
+        }
+    }
+
+    /// Coordinates are rounded so that the box begins earlier and ends later, the end is put off by all that rounds, and the limit has
+    /// room for what rounds the beginning.
+    #[inline]
+    fn rough(&self, frame: &Frame<V>) -> RoughSweptBox<V> {
+        let mut rough = RoughSweptBox {
+            from: [[Vec4::ZERO; 2]; 3],
+            inverse: [[Vec4::ONE; 2]; 3],
+            first: [0; 3],
+            unit: RoughUnit::new::<V::Scalar>(self.unit.as_f64() * frame.unit().per_unit()),
+            space: PhantomData,
+        };
+        let largest = f64::from(f32::MAX);
+        for i in 0..V::DIM {
+            let inverse = self.inverse.get(i).as_f64();
+            // Along a plane a box never ends where it has begun, and begins at the end of all numbers where it has not.
+            let (begin, end) = (inverse.clamp(-largest, largest), inverse * (1.0 + 2.0 * RoughUnit::ROUNDING));
+            rough.inverse[i] = [begin, end].map(|inverse| Vec4::splat(inverse as f32));
+            rough.from[i] = [frame.up(i, self.from[0].get(i)), frame.down(i, self.from[1].get(i))].map(Vec4::splat);
+            rough.first[i] = usize::from(inverse.is_sign_negative());
+        }
+        rough
+    }
+}
+
+/// A [`SweptBox`] in the frame of a tree, with λ in a unit in which the largest coordinate of the direction is between 1 and 2.
+#[derive(Clone, Copy, Debug)]
+pub struct RoughSweptBox<V> {
+    from: [[Vec4; 2]; 3],
+    /// For where a box begins, and for where it ends.
+    inverse: [[Vec4; 2]; 3],
+    /// The side of a box that is met first.
+    first: [usize; 3],
+    unit: RoughUnit,
+    space: PhantomData<V>,
+}
+
+impl<V> RoughSweptBox<V> {
+    /// The unit of λ.
+    #[must_use]
+    pub fn unit(&self) -> RoughUnit {
+        self.unit
+    }
+}
+
+impl<V: Vector> RoughBound for RoughSweptBox<V> {
+    #[inline(always)]
+    fn bounds(&self, boxes: &Boxes) -> Vec4 {
+        let (mut entry, mut exit) = (Vec4::ZERO, Vec4::INFINITY);
         for i in 0..V::DIM {
             let (near, far) = (self.first[i], 1 - self.first[i]);
-            let (from, inverse) = (self.from[i], self.inverse[i]);
-            // Where d is zero, the quotient is ±∞ by the side of the plane, and NaN on it, which is then passed over.
-            let begins: LanesOf<V> = (boxes.side(i, near) - from[near]) * inverse;
-            let ends: LanesOf<V> = (boxes.side(i, far) - from[far]) * inverse;
-            (entry, exit) = (begins.max(entry), ends.min(exit));
+            // What is NaN, on a plane along the direction, is outside, and may be passed over or not.
+            entry = ((boxes.side(i, near) - self.from[i][near]) * self.inverse[i][0]).max(entry);
+            exit = ((boxes.side(i, far) - self.from[i][far]) * self.inverse[i][1]).min(exit);
         }
-        let latest = exit * Lanes::splat(V::Scalar::ONE + rounding::<V::Scalar>());
-        let bound = (entry * self.deflate).min(Lanes::splat(V::Scalar::max_value()));
-        entry.if_at_most(latest, bound, infinity)
+        Vec4::select(entry.cmple(exit), entry.min(Vec4::MAX), Vec4::INFINITY)
+    }
+
+    #[inline]
+    fn limit(&self, limit: f64) -> f32 {
+        self.unit.limit(limit)
     }
 }
 
@@ -102,8 +164,7 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
 /// Coordinate by coordinate the gap is what one begins after the other ends, or 0; the distance is the length of the gaps.
 #[derive(Clone, Copy, Debug)]
 pub struct BoxDistance<V: Vector> {
-    /// By coordinate, the smallest and the largest.
-    of: [[LanesOf<V>; 2]; 3],
+    of: Aabb<V>,
 }
 
 impl<V: Vector> BoxDistance<V> {
@@ -111,48 +172,52 @@ impl<V: Vector> BoxDistance<V> {
     #[inline]
     #[must_use]
     pub fn new(of: Aabb<V>) -> Self {
-        let mut sides = [[Lanes::splat(V::Scalar::ZERO); 2]; 3];
-        for (i, side) in sides.iter_mut().enumerate().take(V::DIM) {
-            *side = [Lanes::splat(of.min.get(i)), Lanes::splat(of.max.get(i))];
-        }
-        Self { of: sides }
-    }
-
-    /// The squared length of the gaps, and the largest of them.
-    #[inline(always)]
-    fn gaps(&self, boxes: &Boxes<V>) -> (LanesOf<V>, LanesOf<V>) {
-        let zero: LanesOf<V> = Lanes::splat(V::Scalar::ZERO);
-        let (mut squared, mut largest) = (zero, zero);
-        for i in 0..V::DIM {
-            let before = boxes.min(i) - self.of[i][1];
-            let behind = self.of[i][0] - boxes.max(i);
-            let gap = before.max(behind).max(zero);
-            (squared, largest) = (squared + gap * gap, gap.max(largest));
-        }
-        (squared, largest)
+        Self { of }
     }
 }
 
 impl<V: Vector> Bound<V> for BoxDistance<V> {
-    #[inline(always)]
-    fn bounds(&self, boxes: &Boxes<V>) -> LanesOf<V> {
-        let huge: LanesOf<V> = Lanes::splat(V::Scalar::max_value());
-        let (squared, largest) = self.gaps(boxes);
-        // A length is at least its largest coordinate, which is what remains where squares under- or overflow.
-        let length = squared.min(huge).sqrt().max(largest);
-        (length * Lanes::splat(V::Scalar::ONE - rounding::<V::Scalar>())).min(huge)
+    type Rough = RoughBoxDistance<V>;
+
+    #[inline]
+    fn bound(&self, around: &Aabb<V>) -> V::Scalar {
+        let gaps = (around.min - self.of.max).max(self.of.min - around.max).max(V::ZERO);
+        if gaps == V::ZERO {
+            return V::Scalar::ZERO;
+        }
+        (gaps.norm() * (V::Scalar::ONE - rounding::<V::Scalar>())).min(V::Scalar::max_value())
     }
 
-    /// By the squares, which takes no root, where that of a positive limit is an ordinary number: what underflows of a gap is nothing to
-    /// it, and what overflows is beyond it.
+    #[inline]
+    fn rough(&self, frame: &Frame<V>) -> RoughBoxDistance<V> {
+        let of = frame.outwards(&self.of);
+        let of = core::array::from_fn(|i| [of.min[i], of.max[i]].map(Vec4::splat));
+        RoughBoxDistance { of, unit: frame.unit(), space: PhantomData }
+    }
+}
+
+/// A [`BoxDistance`] in the frame of a tree: the bounds are the squares of distances, and all rounding is in the limit.
+#[derive(Clone, Copy, Debug)]
+pub struct RoughBoxDistance<V> {
+    /// By coordinate, the smallest and the largest.
+    of: [[Vec4; 2]; 3],
+    unit: RoughUnit,
+    space: PhantomData<V>,
+}
+
+impl<V: Vector> RoughBound for RoughBoxDistance<V> {
     #[inline(always)]
-    fn near(&self, boxes: &Boxes<V>, limit: V::Scalar) -> u32 {
-        let end = limit * limit;
-        let is_ordinary = end > V::Scalar::min_positive_value() / V::Scalar::EPSILON && end.is_finite();
-        if !(is_ordinary && limit > V::Scalar::ZERO) {
-            return self.bounds(boxes).at_most(limit);
+    fn bounds(&self, boxes: &Boxes) -> Vec4 {
+        let mut squared = Vec4::ZERO;
+        for i in 0..V::DIM {
+            let gap = (boxes.min(i) - self.of[i][1]).max(self.of[i][0] - boxes.max(i)).max(Vec4::ZERO);
+            squared += gap * gap;
         }
-        let deflate = V::Scalar::ONE - rounding::<V::Scalar>() - rounding::<V::Scalar>();
-        (self.gaps(boxes).0 * Lanes::splat(deflate)).at_most(end)
+        squared.min(Vec4::MAX)
+    }
+
+    #[inline]
+    fn limit(&self, limit: f64) -> f32 {
+        self.unit.limit_of_squares(limit)
     }
 }

@@ -7,33 +7,74 @@
 
 use alloc::vec::Vec;
 
-use num_traits::Float as _;
-
-use super::Bvh;
-use super::node::{Child, Link, Node, Slot, WIDTH};
-use crate::{Aabb, Scalar, Vector};
+use super::frame::Frame;
+use super::node::{Boxes, Link, Node, Slot, WIDTH};
+use super::{Bvh, node};
+use crate::glam::{Vec3A, Vec4};
+use crate::{Aabb, Vector};
 
 const BINS: usize = 16;
 
 /// An item to be put into the tree.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Entry<V: Vector> {
-    pub(super) around: Aabb<V>,
-    pub(super) item: usize,
+pub(super) struct Entry {
+    pub(super) around: Aabb<Vec3A>,
+    pub(super) item: u32,
 }
 
-/// A part of the entries, with the box around it.
+impl Entry {
+    /// Twice the centre, which orders entries as well as the centre does.
+    #[inline(always)]
+    fn center(&self) -> Vec3A {
+        self.around.min + self.around.max
+    }
+}
+
+/// A part of the entries, with the box around it and that around the centres.
 #[derive(Clone, Copy)]
-struct Range<V: Vector> {
+struct Range {
     start: usize,
     end: usize,
-    around: Aabb<V>,
+    extent: Extent,
+}
+
+impl Range {
+    fn len(&self) -> usize {
+        self.end - self.start
+    }
+}
+
+/// The box around some entries, and that around their (twice) centres.
+#[derive(Clone, Copy)]
+struct Extent {
+    around: Aabb<Vec3A>,
+    centers: Aabb<Vec3A>,
+}
+
+impl Extent {
+    const NOTHING: Aabb<Vec3A> = Aabb { min: Vec3A::INFINITY, max: Vec3A::NEG_INFINITY };
+    const EMPTY: Self = Self { around: Self::NOTHING, centers: Self::NOTHING };
+
+    fn of(entries: &[Entry]) -> Self {
+        entries.iter().fold(Self::EMPTY, |sum, entry| sum.with(entry))
+    }
+
+    #[inline(always)]
+    fn with(self, entry: &Entry) -> Self {
+        let center = entry.center();
+        self.union(&Self { around: entry.around, centers: Aabb { min: center, max: center } })
+    }
+
+    #[inline(always)]
+    fn union(&self, other: &Self) -> Self {
+        Self { around: self.around.union(&other.around), centers: self.centers.union(&other.centers) }
+    }
 }
 
 /// A range that a node is to be made of, in that place, and the levels it may take.
-struct Task<V: Vector> {
+struct Task {
     node: usize,
-    range: Range<V>,
+    range: Range,
     levels: u32,
 }
 
@@ -44,36 +85,50 @@ impl<V: Vector> Bvh<V> {
     /// If there are 2³⁰ boxes or more.
     #[must_use]
     pub fn new(boxes: &[Aabb<V>]) -> Self {
-        let entries: Vec<_> = boxes.iter().enumerate().map(|(item, &around)| Entry { around, item }).collect();
         let mut tree = Self {
-            nodes: Vec::with_capacity(boxes.len() / 2 + 1),
-            slots: alloc::vec![Slot::NONE; boxes.len()],
+            nodes: alloc::vec![Node::empty(Slot::NONE)],
+            frame: Frame::empty(),
+            boxes: boxes.to_vec(),
+            // Every item is in the tree from here on; where is to be found out.
+            slots: alloc::vec![Slot::new(0, 0); boxes.len()],
             dead: 0,
-            built_cost: V::Scalar::ZERO,
+            built_cost: 0.0,
         };
-        tree.nodes.push(Node::empty(Slot::NONE));
-        tree.build(0, entries);
-        tree.built_cost = tree.cost();
+        tree.rebuild();
         tree
     }
 
+    /// Builds the tree anew over the boxes as they are.
+    pub fn rebuild(&mut self) {
+        let items = || (0..self.boxes.len()).filter(|&item| self.slots[item] != Slot::NONE);
+        let count = items().count();
+        self.frame = Frame::of(count, items().map(|item| self.boxes[item]));
+        let entry = |item| Entry { around: self.frame.outwards(&self.boxes[item]), item: node::index(item) };
+        let entries: Vec<_> = items().map(entry).collect();
+        self.nodes.truncate(1);
+        self.nodes.reserve(count / 2);
+        self.dead = 0;
+        self.build(0, entries);
+        self.built_cost = self.cost();
+    }
+
     /// Makes the entries all there is under node `root`; its place in its parent stays.
-    pub(super) fn build(&mut self, root: usize, mut entries: Vec<Entry<V>>) {
+    pub(super) fn build(&mut self, root: usize, mut entries: Vec<Entry>) {
         self.nodes[root] = Node { count: entries.len() as u32, ..Node::empty(self.nodes[root].parent) };
-        let range = Range { start: 0, end: entries.len(), around: union(&entries) };
+        let range = Range { start: 0, end: entries.len(), extent: Extent::of(&entries) };
         let mut tasks = alloc::vec![Task { node: root, range, levels: allowed_levels(entries.len()) }];
         while let Some(Task { node, range, levels }) = tasks.pop() {
-            let (parts, count) = split_in_four(&mut entries, range, levels);
+            let (parts, count) = split_in_four::<V>(&mut entries, range, levels);
             for (lane, part) in parts[..count].iter().enumerate() {
                 let slot = Slot::new(node, lane);
-                self.nodes[node].boxes.set(lane, part.around);
-                self.nodes[node].children[lane] = if part.end - part.start == 1 {
-                    let item = entries[part.start].item;
+                self.nodes[node].boxes.set(lane, part.extent.around);
+                self.nodes[node].children[lane] = if part.len() == 1 {
+                    let item = entries[part.start].item as usize;
                     self.slots[item] = slot;
                     Link::item(item)
                 } else {
                     let child = self.nodes.len();
-                    self.nodes.push(Node { count: (part.end - part.start) as u32, ..Node::empty(slot) });
+                    self.nodes.push(Node { count: part.len() as u32, ..Node::empty(slot) });
                     tasks.push(Task { node: child, range: *part, levels: levels - 1 });
                     Link::node(child)
                 };
@@ -83,17 +138,21 @@ impl<V: Vector> Bvh<V> {
 
     /// How much work a random question is expected to be: the area of all inner boxes by that of the whole. Not a number
     /// where areas over- or underflow.
-    pub(super) fn cost(&self) -> V::Scalar {
-        let mut sum = V::Scalar::ZERO;
-        for node in self.nodes.iter().filter(|node| node.parent != Slot::DEAD) {
-            for (lane, link) in node.children.iter().enumerate() {
-                if let Child::Node(_) = link.child() {
-                    sum += area(&node.boxes.get(lane));
-                }
-            }
-        }
-        sum / area(&self.nodes[0].boxes.union())
+    pub(super) fn cost(&self) -> f64 {
+        let of_nodes = |node: &Node| {
+            let areas = areas::<V>(&node.boxes).to_array().into_iter().zip(node.children);
+            areas.map(|(area, link)| if link.is_node() { area } else { 0.0 }).sum::<f32>()
+        };
+        let live = self.nodes.iter().filter(|node| node.parent != Slot::DEAD);
+        live.map(|node| f64::from(of_nodes(node))).sum::<f64>() / f64::from(area::<V>(&self.nodes[0].boxes.union()))
     }
+}
+
+/// Half the surfaces of a node's boxes, as [`area`] does.
+#[inline(always)]
+fn areas<V: Vector>(boxes: &Boxes) -> Vec4 {
+    let [x, y, z] = [0, 1, 2].map(|axis| boxes.max(axis) - boxes.min(axis));
+    if V::DIM == 2 { x + y } else { x * y + y * z + z * x }
 }
 
 /// The levels of the shallowest tree of `count` items: ⌈log₄ count⌉.
@@ -112,143 +171,125 @@ fn allowed_levels(count: usize) -> u32 {
 ///
 /// The part with the largest surface is split first. Where the levels that remain are only just enough, the largest part is
 /// split in halves instead: a quarter of the items needs a level less.
-fn split_in_four<V: Vector>(entries: &mut [Entry<V>], range: Range<V>, levels: u32) -> ([Range<V>; WIDTH], usize) {
+fn split_in_four<V: Vector>(entries: &mut [Entry], range: Range, levels: u32) -> ([Range; WIDTH], usize) {
     let mut parts = [range; WIDTH];
-    let length = |part: &Range<V>| part.end - part.start;
-    if length(&range) <= WIDTH {
-        for (i, entry) in entries[range.start..range.end].iter().enumerate() {
-            parts[i] = Range { start: range.start + i, end: range.start + i + 1, around: entry.around };
+    if range.len() <= WIDTH {
+        for (i, part) in parts[..range.len()].iter_mut().enumerate() {
+            let start = range.start + i;
+            *part = Range { start, end: start + 1, extent: Extent::of(&entries[start..=start]) };
         }
-        return (parts, length(&range));
+        return (parts, range.len());
     }
-    let halves = levels <= least_levels(length(&range)) + 1;
+    let halves = levels <= least_levels(range.len()) + 1;
     for count in 1..WIDTH {
         let mut widest = 0;
         for i in 1..count {
-            let wider = if halves || length(&parts[widest]) == 1 {
-                length(&parts[i]) > length(&parts[widest])
+            let wider = if halves || parts[widest].len() == 1 {
+                parts[i].len() > parts[widest].len()
             } else {
-                length(&parts[i]) > 1 && area(&parts[i].around) > area(&parts[widest].around)
+                parts[i].len() > 1 && area::<V>(&parts[i].extent.around) > area::<V>(&parts[widest].extent.around)
             };
             if wider {
                 widest = i;
             }
         }
-        let Range { start, end, .. } = parts[widest];
-        let middle = start + split(&mut entries[start..end], halves);
-        parts[widest] = Range { start, end: middle, around: union(&entries[start..middle]) };
-        parts[count] = Range { start: middle, end, around: union(&entries[middle..end]) };
+        [parts[widest], parts[count]] = split::<V>(entries, &parts[widest], halves);
     }
     (parts, WIDTH)
 }
 
-/// Orders the entries, of which there are two or more, so that a part of them comes first, and returns its length.
-fn split<V: Vector>(entries: &mut [Entry<V>], halves: bool) -> usize {
-    let (mut low, mut high) = (center(&entries[0]), center(&entries[0]));
-    for entry in &entries[1..] {
-        (low, high) = (low.min(center(entry)), high.max(center(entry)));
-    }
-    let size = high - low;
-    let axis = (1..V::DIM).fold(0, |a, i| if size.get(i) > size.get(a) { i } else { a });
-    let per_bin = V::Scalar::from_f64(BINS as f64) / size.get(axis);
-    if !halves && per_bin.is_finite() {
-        let bins = Bins { axis, low: low.get(axis), per_bin };
-        if let Some(last) = bins.cheapest_split(entries) {
-            let middle = partition(entries, |entry| bins.of(entry) <= last);
-            if middle > 0 && middle < entries.len() {
-                return middle;
-            }
-        }
+/// Orders the entries of a range, of which there are two or more, so that those of its first part come first.
+fn split<V: Vector>(entries: &mut [Entry], range: &Range, halves: bool) -> [Range; 2] {
+    let &Range { start, end, extent: Extent { centers, .. } } = range;
+    let entries = &mut entries[start..end];
+    let size = centers.max - centers.min;
+    let axis = (1..V::DIM).fold(0, |a, i| if size[i] > size[a] { i } else { a });
+    let bins = Bins::new(axis, &centers, entries.len());
+    if !halves
+        && bins.per_bin.is_finite()
+        && let Some((last, [first, second])) = bins.cheapest_split::<V>(entries)
+    {
+        let middle = start + partition(entries, |entry| bins.of(entry) <= last);
+        return [Range { start, end: middle, extent: first }, Range { start: middle, end, extent: second }];
     }
     let middle = entries.len() / 2;
     entries.select_nth_unstable_by(middle, |a, b| {
-        let [x, y] = [a, b].map(|entry| center(entry).get(axis));
+        let [x, y] = [a, b].map(|entry| entry.center()[axis]);
         x.partial_cmp(&y).unwrap_or(core::cmp::Ordering::Equal).then(a.item.cmp(&b.item))
     });
-    middle
+    let [first, second] = [&entries[..middle], &entries[middle..]].map(Extent::of);
+    [Range { start, end: start + middle, extent: first }, Range { start: start + middle, end, extent: second }]
 }
 
 /// Bins of equal width along an axis.
-struct Bins<S> {
+struct Bins {
     axis: usize,
-    low: S,
-    per_bin: S,
+    low: f32,
+    per_bin: f32,
+    /// Of few entries, as many as there are.
+    count: usize,
 }
 
-impl<S: Scalar> Bins<S> {
-    #[inline]
-    fn of<V: Vector<Scalar = S>>(&self, entry: &Entry<V>) -> usize {
-        let bin = (center(entry).get(self.axis) - self.low) * self.per_bin;
-        (bin.as_f64() as usize).min(BINS - 1)
+impl Bins {
+    fn new(axis: usize, centers: &Aabb<Vec3A>, entries: usize) -> Self {
+        let count = entries.min(BINS);
+        let (low, high) = (centers.min[axis], centers.max[axis]);
+        Self { axis, low, per_bin: count as f32 / (high - low), count }
     }
 
-    /// The last bin of the first part of the cheapest split; `None` where no split is cheaper than any other.
-    fn cheapest_split<V: Vector<Scalar = S>>(&self, entries: &[Entry<V>]) -> Option<usize> {
-        let mut counts = [0_u32; BINS];
-        let mut around = [empty(); BINS];
+    #[inline(always)]
+    fn of(&self, entry: &Entry) -> usize {
+        let bin = (entry.center()[self.axis] - self.low) * self.per_bin;
+        (bin as usize).min(self.count - 1)
+    }
+
+    /// The last bin of the first part of the cheapest split, and the extents of both parts; `None` where no split is cheaper than any
+    /// other.
+    fn cheapest_split<V: Vector>(&self, entries: &[Entry]) -> Option<(usize, [Extent; 2])> {
+        let (mut counts, mut extents) = ([0_u32; BINS], [Extent::EMPTY; BINS]);
         for entry in entries {
             let bin = self.of(entry);
             counts[bin] += 1;
-            around[bin] = around[bin].union(&entry.around);
+            extents[bin] = extents[bin].with(entry);
         }
-        // What lies behind each split, from the end; then what lies before it.
-        let mut behind = [S::ZERO; BINS];
-        let (mut sum, mut count) = (empty(), 0);
-        for bin in (1..BINS).rev() {
-            (sum, count) = (sum.union(&around[bin]), count + counts[bin]);
-            behind[bin - 1] = cost(count, &sum);
+        let (counts, extents) = (&counts[..self.count], &extents[..self.count]);
+        // What the part behind each split costs, from the end; then what the part before it does.
+        let mut behind = [0.0; BINS];
+        let (mut count, mut around) = (0, Extent::NOTHING);
+        for bin in (1..counts.len()).rev() {
+            (count, around) = (count + counts[bin], around.union(&extents[bin].around));
+            behind[bin - 1] = count as f32 * area::<V>(&around);
         }
-        (sum, count) = (empty(), 0);
-        let mut best = (S::infinity(), None);
-        for bin in 0..BINS - 1 {
-            (sum, count) = (sum.union(&around[bin]), count + counts[bin]);
-            let total = cost(count, &sum) + behind[bin];
-            if total < best.0 && count > 0 && (count as usize) < entries.len() {
-                best = (total, Some(bin));
+        let (mut count, mut around) = (0, Extent::NOTHING);
+        let (mut least, mut best) = (f32::INFINITY, None);
+        for bin in 0..counts.len() - 1 {
+            (count, around) = (count + counts[bin], around.union(&extents[bin].around));
+            let cost = count as f32 * area::<V>(&around) + behind[bin];
+            if cost < least && count > 0 && count < entries.len() as u32 {
+                (least, best) = (cost, Some(bin));
             }
         }
-        best.1
+        let sum = |bins: &[Extent]| bins.iter().fold(Extent::EMPTY, |sum, extent| sum.union(extent));
+        best.map(|last| (last, [sum(&extents[..=last]), sum(&extents[last + 1..])]))
     }
 }
 
-fn cost<V: Vector>(count: u32, around: &Aabb<V>) -> V::Scalar {
-    if count == 0 { V::Scalar::ZERO } else { V::Scalar::from_f64(f64::from(count)) * area(around) }
-}
-
-/// Brings the entries that `first` picks to the front, and returns their number.
+/// Brings the entries that `first` picks to the front, and returns their number. Every one is exchanged, which takes no branch: who is
+/// picked nobody can foretell.
+#[inline(always)]
 fn partition<T>(entries: &mut [T], first: impl Fn(&T) -> bool) -> usize {
-    let (mut i, mut j) = (0, entries.len());
-    while i < j {
-        if first(&entries[i]) {
-            i += 1;
-        } else {
-            j -= 1;
-            entries.swap(i, j);
-        }
+    let mut picked = 0;
+    for i in 0..entries.len() {
+        let is_first = first(&entries[i]);
+        entries.swap(i, picked);
+        picked += usize::from(is_first);
     }
-    i
-}
-
-#[inline]
-fn center<V: Vector>(entry: &Entry<V>) -> V {
-    entry.around.center()
+    picked
 }
 
 /// Half the surface of a box; half the circumference in 2D.
 #[inline]
-pub(super) fn area<V: Vector>(b: &Aabb<V>) -> V::Scalar {
+pub(super) fn area<V: Vector>(b: &Aabb<Vec3A>) -> f32 {
     let d = b.max - b.min;
-    if V::DIM == 2 {
-        return d.get(0) + d.get(1);
-    }
-    d.get(0) * d.get(1) + d.get(1) * d.get(2) + d.get(2) * d.get(0)
-}
-
-/// The box around nothing.
-fn empty<V: Vector>() -> Aabb<V> {
-    Aabb { min: V::splat(V::Scalar::infinity()), max: V::splat(V::Scalar::neg_infinity()) }
-}
-
-fn union<V: Vector>(entries: &[Entry<V>]) -> Aabb<V> {
-    entries.iter().fold(empty(), |sum, entry| sum.union(&entry.around))
+    if V::DIM == 2 { d.x + d.y } else { d.x * d.y + d.y * d.z + d.z * d.x }
 }

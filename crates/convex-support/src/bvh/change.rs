@@ -16,7 +16,8 @@ use super::Bvh;
 use super::build::{Entry, area, least_levels};
 use super::node::{Child, Link, Node, Slot, WIDTH};
 use super::search::MAX_DEPTH;
-use crate::{Aabb, Scalar, Vector};
+use crate::glam::Vec3A;
+use crate::{Aabb, Vector};
 
 /// How much worse a tree that is refitted may become before it is built anew.
 const WORSE: f64 = 1.5;
@@ -25,8 +26,13 @@ impl<V: Vector> Bvh<V> {
     /// Gives every item the box that `box_of` says, in time proportional to their number; where the boxes have moved so far
     /// that the tree has become half as costly again as when it was built, it is built anew.
     ///
-    /// Items are asked for in no particular order.
+    /// Items are asked for in the order of their numbers.
     pub fn refit(&mut self, mut box_of: impl FnMut(usize) -> Aabb<V>) {
+        for (item, around) in self.boxes.iter_mut().enumerate() {
+            if self.slots[item] != Slot::NONE {
+                *around = box_of(item);
+            }
+        }
         // Children come after their parents, so that a node is complete before its box is wanted.
         for index in (0..self.nodes.len()).rev() {
             let node = &mut self.nodes[index];
@@ -35,7 +41,7 @@ impl<V: Vector> Bvh<V> {
             }
             for lane in 0..WIDTH {
                 if let Child::Item(item) = node.children[lane].child() {
-                    node.boxes.set(lane, box_of(item));
+                    node.boxes.set(lane, self.frame.outwards(&self.boxes[item]));
                 }
             }
             if index > 0 {
@@ -43,18 +49,9 @@ impl<V: Vector> Bvh<V> {
                 self.nodes[parent.node()].boxes.set(parent.lane(), around);
             }
         }
-        if self.cost() > self.built_cost * V::Scalar::from_f64(WORSE) {
+        if self.frame.sees_beyond(&self.nodes[0].boxes.union()) || self.cost() > self.built_cost * WORSE {
             self.rebuild();
         }
-    }
-
-    /// Builds the tree anew over the boxes as they are.
-    pub fn rebuild(&mut self) {
-        let entries = self.entries_under(0);
-        self.nodes.truncate(1);
-        self.dead = 0;
-        self.build(0, entries);
-        self.built_cost = self.cost();
     }
 
     /// Gives one item another box, in time proportional to the depth. An item that is not in the tree is inserted.
@@ -64,8 +61,10 @@ impl<V: Vector> Bvh<V> {
     pub fn set(&mut self, item: usize, around: Aabb<V>) {
         match self.slots.get(item) {
             Some(&slot) if slot != Slot::NONE => {
-                self.nodes[slot.node()].boxes.set(slot.lane(), around);
+                self.boxes[item] = around;
+                self.nodes[slot.node()].boxes.set(slot.lane(), self.frame.outwards(&around));
                 self.tell_parents(slot.node());
+                self.rebuild_if_beyond(&around);
             }
             _ => self.insert(item, around),
         }
@@ -82,16 +81,19 @@ impl<V: Vector> Bvh<V> {
         let link = Link::item(item);
         if item >= self.slots.len() {
             self.slots.resize(item + 1, Slot::NONE);
+            self.boxes.resize(item + 1, around);
         }
+        self.boxes[item] = around;
+        let seen = self.frame.outwards(&around);
         let mut node = 0;
         // The depth is bounded; this says so.
         for _ in 0..=MAX_DEPTH {
-            let lane = self.lane_for(node, &around);
+            let lane = self.lane_for(node, &seen);
             let slot = Slot::new(node, lane);
             match self.nodes[node].children[lane].child() {
                 Child::Node(child) => node = child,
                 Child::None => {
-                    self.put(slot, link, around);
+                    self.put(slot, link, seen);
                     break;
                 }
                 Child::Item(_) => {
@@ -100,13 +102,14 @@ impl<V: Vector> Bvh<V> {
                     self.nodes.push(Node { count: 1, ..Node::empty(slot) });
                     self.put(slot, Link::node(node), its_box);
                     self.put(Slot::new(node, 0), other, its_box);
-                    self.put(Slot::new(node, 1), link, around);
+                    self.put(Slot::new(node, 1), link, seen);
                     break;
                 }
             }
         }
         self.tell_parents(node);
         self.count_in(node);
+        self.rebuild_if_beyond(&around);
     }
 
     /// Takes an item out; whether it was there.
@@ -141,14 +144,14 @@ impl<V: Vector> Bvh<V> {
     }
 
     /// The place for a box under a node: one that is free, or of the child that grows least.
-    fn lane_for(&self, node: usize, around: &Aabb<V>) -> usize {
+    fn lane_for(&self, node: usize, around: &Aabb<Vec3A>) -> usize {
         let Node { children, boxes, .. } = &self.nodes[node];
         if let Some(free) = children.iter().position(|link| *link == Link::NONE) {
             return free;
         }
         let growth = |lane| {
             let before = boxes.get(lane);
-            area(&before.union(around)) - area(&before)
+            area::<V>(&before.union(around)) - area::<V>(&before)
         };
         let mut best = (growth(0), 0);
         for lane in 1..WIDTH {
@@ -161,7 +164,7 @@ impl<V: Vector> Bvh<V> {
     }
 
     /// Puts a child into a place.
-    fn put(&mut self, slot: Slot, link: Link, around: Aabb<V>) {
+    fn put(&mut self, slot: Slot, link: Link, around: Aabb<Vec3A>) {
         let node = &mut self.nodes[slot.node()];
         node.children[slot.lane()] = link;
         node.boxes.set(slot.lane(), around);
@@ -206,14 +209,14 @@ impl<V: Vector> Bvh<V> {
     }
 
     /// The items under a node with their boxes. All nodes under it are dead from then on.
-    fn entries_under(&mut self, root: usize) -> Vec<Entry<V>> {
+    fn entries_under(&mut self, root: usize) -> Vec<Entry> {
         let mut entries = Vec::with_capacity(self.nodes[root].count as usize);
         let mut below = alloc::vec![root];
         while let Some(index) = below.pop() {
             let node = self.nodes[index];
             for (lane, link) in node.children.into_iter().enumerate() {
                 match link.child() {
-                    Child::Item(item) => entries.push(Entry { around: node.boxes.get(lane), item }),
+                    Child::Item(item) => entries.push(Entry { around: node.boxes.get(lane), item: item as u32 }),
                     Child::Node(child) => below.push(child),
                     Child::None => {}
                 }
@@ -224,6 +227,13 @@ impl<V: Vector> Bvh<V> {
             }
         }
         entries
+    }
+
+    /// Builds anew, in a frame that fits, where a box has come that is far from all others.
+    fn rebuild_if_beyond(&mut self, around: &Aabb<V>) {
+        if self.frame.is_beyond(around) {
+            self.rebuild();
+        }
     }
 
     fn rebuild_if_mostly_dead(&mut self) {

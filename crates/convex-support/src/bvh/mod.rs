@@ -3,7 +3,7 @@
 mod bound;
 mod build;
 mod change;
-mod lanes;
+mod frame;
 mod node;
 mod outer_box;
 mod pairs;
@@ -13,8 +13,8 @@ use alloc::vec::Vec;
 
 use crate::{Aabb, Vector};
 
-pub use self::bound::{Bound, BoxDistance, SweptBox};
-pub use self::lanes::Lanes;
+pub use self::bound::{Bound, BoxDistance, RoughBound, RoughBoxDistance, RoughSweptBox, SweptBox};
+pub use self::frame::{Frame, RoughUnit};
 pub use self::node::{Boxes, WIDTH};
 use self::node::{Node, Slot};
 pub use self::outer_box::outer_box;
@@ -22,8 +22,8 @@ pub use self::pairs::PairSearch;
 
 /// A tree over the boxes of items, which are numbers from 0 to 2³⁰ − 1 of the caller's choice.
 ///
-/// A node holds the boxes of its four children side by side, so that one pass of arithmetic bounds all of them; a child is
-/// a node or an item. The tree is [built](Self::new) by the surface area heuristic, follows boxes that move
+/// A node holds the boxes of its four children side by side and in single precision, as a [`Frame`] sees them, so that one pass of
+/// arithmetic bounds all of them; a child is a node or an item. What a question is told of an item is by the item's own box. The tree is [built](Self::new) by the surface area heuristic, follows boxes that move
 /// ([`refit`](Self::refit), [`set`](Self::set)), and takes items in and out ([`insert`](Self::insert),
 /// [`remove`](Self::remove)). Its depth stays below 36 whatever the boxes and their order: where a part has become
 /// lopsided, that part is built anew. So a question needs a stack of fixed size, and no memory.
@@ -52,13 +52,17 @@ pub use self::pairs::PairSearch;
 #[derive(Clone, Debug)]
 pub struct Bvh<V: Vector> {
     /// Node 0 is the root. Children come after their parents, so that one pass from the end meets them first.
-    nodes: Vec<Node<V>>,
+    nodes: Vec<Node>,
+    /// How nodes see the boxes.
+    frame: Frame<V>,
+    /// The box of each item.
+    boxes: Vec<Aabb<V>>,
     /// Where each item is.
     slots: Vec<Slot>,
     /// How many nodes are no longer part of the tree.
     dead: usize,
     /// The measure of how well the tree culls, when it was last built.
-    built_cost: V::Scalar,
+    built_cost: f64,
 }
 
 impl<V: Vector> Bvh<V> {
@@ -78,7 +82,7 @@ impl<V: Vector> Bvh<V> {
     #[must_use]
     pub fn get(&self, item: usize) -> Option<Aabb<V>> {
         let slot = *self.slots.get(item)?;
-        (slot != Slot::NONE).then(|| self.nodes[slot.node()].boxes.get(slot.lane()))
+        (slot != Slot::NONE).then(|| self.boxes[item])
     }
 }
 

@@ -1,95 +1,79 @@
 //! Nodes: four boxes side by side, and what is in them.
 
-use num_traits::Float as _;
-
-use super::lanes::Lanes;
-use crate::{Aabb, Scalar, Vector};
+use crate::Aabb;
+use crate::glam::{Vec3A, Vec4};
 
 /// The number of children of a node.
 pub const WIDTH: usize = 4;
 
-/// Four numbers of a space side by side.
-pub(super) type LanesOf<V> = <<V as Vector>::Scalar as Scalar>::Lanes;
-
-/// The boxes of a node's children, coordinate by coordinate and side by side, so that the same arithmetic on all four is
-/// one vector instruction. A place without a child has `min = ∞` and `max = −∞`.
+/// The boxes of a node's children as the tree's [frame](super::Frame) sees them, coordinate by coordinate and side by side, so that the
+/// same arithmetic on all four is one vector instruction. A place without a child has `min = ∞` and `max = −∞`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Boxes<V: Vector> {
-    /// By coordinate, of which only [`Vector::DIM`] are used; then the smallest and the largest.
-    planes: [[LanesOf<V>; 2]; 3],
+pub struct Boxes {
+    /// By coordinate, the smallest and the largest. Of boxes in the plane, the third is zero.
+    planes: [[Vec4; 2]; 3],
 }
 
-impl<V: Vector> Boxes<V> {
-    pub(super) fn empty() -> Self {
-        Self { planes: [[Lanes::splat(V::Scalar::infinity()), Lanes::splat(V::Scalar::neg_infinity())]; 3] }
-    }
+impl Boxes {
+    const EMPTY: Self = Self { planes: [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 3] };
 
     /// The smallest values of coordinate `axis`, by child.
     ///
     /// # Panics
-    /// If `axis >= DIM`.
+    /// If `axis >= 3`.
     #[inline]
     #[must_use]
-    pub fn min(&self, axis: usize) -> LanesOf<V> {
+    pub fn min(&self, axis: usize) -> Vec4 {
         self.planes[axis][0]
     }
 
     /// The largest values of coordinate `axis`, by child.
     ///
     /// # Panics
-    /// If `axis >= DIM`.
+    /// If `axis >= 3`.
     #[inline]
     #[must_use]
-    pub fn max(&self, axis: usize) -> LanesOf<V> {
+    pub fn max(&self, axis: usize) -> Vec4 {
         self.planes[axis][1]
     }
 
     /// The smallest values for side 0, the largest for side 1.
     #[inline]
-    pub(super) fn side(&self, axis: usize, side: usize) -> LanesOf<V> {
+    pub(super) fn side(&self, axis: usize, side: usize) -> Vec4 {
         self.planes[axis][side]
     }
 
     /// The box of child `lane`.
-    ///
-    /// # Panics
-    /// If `lane >= WIDTH`.
     #[inline]
-    #[must_use]
-    pub fn get(&self, lane: usize) -> Aabb<V> {
-        Aabb {
-            min: V::from_fn(|axis| self.planes[axis][0].get(lane)),
-            max: V::from_fn(|axis| self.planes[axis][1].get(lane)),
-        }
+    pub(super) fn get(&self, lane: usize) -> Aabb<Vec3A> {
+        let [x, y, z] = &self.planes;
+        let side = |side: usize| Vec3A::new(x[side][lane], y[side][lane], z[side][lane]);
+        Aabb { min: side(0), max: side(1) }
     }
 
     #[inline]
-    pub(super) fn set(&mut self, lane: usize, b: Aabb<V>) {
-        for axis in 0..V::DIM {
-            self.planes[axis][0].set(lane, b.min.get(axis));
-            self.planes[axis][1].set(lane, b.max.get(axis));
+    pub(super) fn set(&mut self, lane: usize, b: Aabb<Vec3A>) {
+        for (axis, [min, max]) in self.planes.iter_mut().enumerate() {
+            (min[lane], max[lane]) = (b.min[axis], b.max[axis]);
         }
     }
 
     #[inline]
     pub(super) fn clear(&mut self, lane: usize) {
-        for axis in 0..V::DIM {
-            self.planes[axis][0].set(lane, V::Scalar::infinity());
-            self.planes[axis][1].set(lane, V::Scalar::neg_infinity());
+        for [min, max] in &mut self.planes {
+            (min[lane], max[lane]) = (f32::INFINITY, f32::NEG_INFINITY);
         }
     }
 
     /// The box around all four.
     #[inline]
-    pub(super) fn union(&self) -> Aabb<V> {
-        (1..WIDTH).fold(self.get(0), |sum, lane| sum.union(&self.get(lane)))
+    pub(super) fn union(&self) -> Aabb<Vec3A> {
+        let [x, y, z] = self.planes;
+        Aabb {
+            min: Vec3A::new(x[0].min_element(), y[0].min_element(), z[0].min_element()),
+            max: Vec3A::new(x[1].max_element(), y[1].max_element(), z[1].max_element()),
+        }
     }
-}
-
-/// The lesser of two; the second where one is NaN. One machine instruction, which `Float::min` is not.
-#[inline]
-pub(super) fn lesser<S: Scalar>(a: S, b: S) -> S {
-    if a < b { a } else { b }
 }
 
 /// A child in four bytes: nothing, an item, or a node.
@@ -106,6 +90,7 @@ pub(super) enum Child {
 
 impl Link {
     pub(super) const NONE: Self = Self(u32::MAX);
+    pub(super) const ROOT: Self = Self(0);
     const ITEM: u32 = 1 << 31;
     /// Items and nodes are below this, so that [`Slot`]s fit as well.
     pub(super) const END: usize = 1 << 30;
@@ -121,12 +106,29 @@ impl Link {
     }
 
     #[inline]
+    pub(super) fn is_node(self) -> bool {
+        self.0 & Self::ITEM == 0
+    }
+
+    #[inline]
     pub(super) fn child(self) -> Child {
         match self {
             Self::NONE => Child::None,
             Self(item) if item & Self::ITEM != 0 => Child::Item((item & !Self::ITEM) as usize),
             Self(node) => Child::Node(node as usize),
         }
+    }
+
+    /// A bound and a link as one number, in the order of the bounds, which are not negative.
+    #[inline(always)]
+    pub(super) fn after(self, bound: f32) -> u64 {
+        u64::from(bound.to_bits()) << 32 | u64::from(self.0)
+    }
+
+    /// The bound and the link that a number says.
+    #[inline(always)]
+    pub(super) fn with_bound(number: u64) -> (Self, f32) {
+        (Self(number as u32), f32::from_bits((number >> 32) as u32))
     }
 }
 
@@ -135,7 +137,7 @@ impl Link {
 /// # Panics
 /// If there are too many items, 2³⁰ or more.
 #[inline]
-fn index(of: usize) -> u32 {
+pub(super) fn index(of: usize) -> u32 {
     assert!(of < Link::END, "a tree holds fewer than 2³⁰ items, and {of} is not the number of one");
     of as u32
 }
@@ -166,10 +168,11 @@ impl Slot {
     }
 }
 
-/// A node: its children with their boxes.
+/// A node: its children with their boxes, in two lines of the cache.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node<V: Vector> {
-    pub(super) boxes: Boxes<V>,
+#[repr(align(64))]
+pub(super) struct Node {
+    pub(super) boxes: Boxes,
     pub(super) children: [Link; WIDTH],
     /// Its place in its parent; [`Slot::NONE`] for the root.
     pub(super) parent: Slot,
@@ -177,8 +180,8 @@ pub(super) struct Node<V: Vector> {
     pub(super) count: u32,
 }
 
-impl<V: Vector> Node<V> {
+impl Node {
     pub(super) fn empty(parent: Slot) -> Self {
-        Self { boxes: Boxes::empty(), children: [Link::NONE; WIDTH], parent, count: 0 }
+        Self { boxes: Boxes::EMPTY, children: [Link::NONE; WIDTH], parent, count: 0 }
     }
 }

@@ -6,11 +6,12 @@ use core::ops::ControlFlow;
 
 use super::Bvh;
 use super::bound::{Bound, BoxDistance};
-use super::node::{Child, Link, Slot, WIDTH};
-use super::search::MAX_DEPTH;
-use crate::{Aabb, Vector};
+use super::node::{Boxes, Child, Link, Node, WIDTH};
+use super::search::{MAX_DEPTH, finite};
+use crate::glam::{BVec4A, Vec3A, Vec4};
+use crate::{Aabb, Scalar as _, Vector};
 
-/// Two nodes leave at most 15 of 16 pairs of children behind, a node and an item 3 of 4.
+/// Two nodes leave at most 16 pairs of children behind, and a node and an item 4, one of which is looked into next.
 const STACK: usize = (WIDTH * WIDTH + WIDTH) * MAX_DEPTH;
 
 /// The pairs of items whose boxes are within a distance; asked by [`visit`](Self::visit), in [pieces](Self::split) if need
@@ -22,49 +23,60 @@ pub struct PairSearch<'t, V: Vector> {
     /// Whether pairs of one tree are meant, each of which counts once.
     same: bool,
     distance: V::Scalar,
+    /// At least the distance, as the trees see it.
+    rooms: [f32; 2],
     start: Pair,
 }
 
-/// A place of the first tree and one of the second; no place is the root.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Pair(Slot, Slot);
+/// A child of the first tree and one of the second.
+type Pair = (Link, Link);
 
 impl<V: Vector> Bvh<V> {
     /// All pairs of different items whose boxes are at most `distance` apart, each once.
     #[must_use]
     pub fn pairs_within(&self, distance: V::Scalar) -> PairSearch<'_, V> {
-        PairSearch { a: self, b: self, same: true, distance, start: Pair(Slot::NONE, Slot::NONE) }
+        PairSearch { same: true, ..self.pairs_between(self, distance) }
     }
 
     /// All pairs of an item of this tree and one of `other` whose boxes are at most `distance` apart.
     #[must_use]
     pub fn pairs_between<'t>(&'t self, other: &'t Self, distance: V::Scalar) -> PairSearch<'t, V> {
-        PairSearch { a: self, b: other, same: false, distance, start: Pair(Slot::NONE, Slot::NONE) }
+        let rooms = [self, other].map(|tree| tree.frame.unit().limit(distance.as_f64()));
+        PairSearch { a: self, b: other, same: false, distance, rooms, start: (Link::ROOT, Link::ROOT) }
     }
 
+    /// The box of a child, which is not the root, as the tree sees it.
     #[inline]
-    fn link(&self, slot: Slot) -> Link {
-        if slot == Slot::NONE { Link::node(0) } else { self.nodes[slot.node()].children[slot.lane()] }
+    fn seen(&self, child: Child) -> Aabb<Vec3A> {
+        let slot = match child {
+            Child::Item(item) => self.slots[item],
+            Child::Node(node) => self.nodes[node].parent,
+            Child::None => return Aabb { min: Vec3A::INFINITY, max: Vec3A::NEG_INFINITY },
+        };
+        self.nodes[slot.node()].boxes.get(slot.lane())
     }
 }
 
 impl<'t, V: Vector> PairSearch<'t, V> {
-    /// Shows every pair, in no particular order, until `visit` breaks off; perhaps others that [rounding cannot tell](Bound::near) from
-    /// those. Returns the number of pairs of nodes, or of a node and an item, that were looked into.
+    /// Shows every pair, in no particular order, until `visit` breaks off. Returns the number of pairs of nodes, or of a node and an item,
+    /// that were looked into.
     pub fn visit(self, mut visit: impl FnMut(usize, usize) -> ControlFlow<()>) -> usize {
+        let mut looked = 0;
+        let Some(distance) = finite(self.distance) else { return looked };
         let mut stack = [self.start; STACK];
-        let (mut top, mut looked) = (1, 0);
+        let mut top = 1;
         while top > 0 {
             top -= 1;
-            let pair = stack[top];
-            if let (Child::Item(i), Child::Item(j)) = self.children(pair) {
-                if visit(i, j).is_break() {
+            let (a, b) = stack[top];
+            if let (Child::Item(i), Child::Item(j)) = (a.child(), b.child()) {
+                // Seen roughly, they are near.
+                if BoxDistance::new(self.a.boxes[i]).bound(&self.b.boxes[j]) <= distance && visit(i, j).is_break() {
                     return looked;
                 }
                 continue;
             }
             looked += 1;
-            self.expand(pair, |next| {
+            self.expand((a, b), |next| {
                 stack[top] = next;
                 top += 1;
             });
@@ -80,7 +92,7 @@ impl<'t, V: Vector> PairSearch<'t, V> {
         let mut whole = 0;
         while pieces.len() < at_least && whole < pieces.len() {
             let Some(pair) = pieces.pop_front() else { break };
-            if let (Child::Item(_), Child::Item(_)) = self.children(pair) {
+            if let (Child::Item(_), Child::Item(_)) = (pair.0.child(), pair.1.child()) {
                 pieces.push_back(pair);
                 whole += 1;
             } else {
@@ -91,57 +103,99 @@ impl<'t, V: Vector> PairSearch<'t, V> {
         pieces.into_iter().map(|start| Self { start, ..self }).collect()
     }
 
-    #[inline]
-    fn children(&self, Pair(a, b): Pair) -> (Child, Child) {
-        (self.a.link(a).child(), self.b.link(b).child())
+    /// Boxes that the first tree sees, as the second does.
+    fn as_b_sees(&self, boxes: &Boxes) -> Boxes {
+        let mut seen = *boxes;
+        for lane in 0..WIDTH {
+            seen.set(lane, self.b.frame.from_other(&self.a.frame, &boxes.get(lane)));
+        }
+        seen
     }
 
-    /// The pairs that a pair consists of and whose boxes are near. Not for two items.
-    #[inline]
-    fn expand(&self, pair: Pair, mut push: impl FnMut(Pair)) {
-        match self.children(pair) {
-            (Child::Node(a), Child::Node(b)) => {
-                for lane in 0..WIDTH {
-                    if self.a.nodes[a].children[lane] == Link::NONE {
-                        continue;
-                    }
-                    let slot = Slot::new(a, lane);
-                    let mut first = 0;
-                    if self.same && a == b {
-                        // A pair counts once, and an item makes none with itself.
-                        first = lane + 1;
-                        if let Child::Node(_) = self.a.nodes[a].children[lane].child() {
-                            push(Pair(slot, slot));
+    /// The pairs that a pair consists of and whose boxes are near, roughly. Not for two items.
+    #[inline(always)]
+    fn expand(&self, (a, b): Pair, mut push: impl FnMut(Pair)) {
+        match (a.child(), b.child()) {
+            (Child::Node(i), Child::Node(j)) => {
+                let (first, second) = (&self.a.nodes[i], &self.b.nodes[j]);
+                let mut near = if self.same {
+                    near_pairs::<V>(&first.boxes, &second.boxes, self.rooms[1])
+                } else {
+                    near_pairs::<V>(&self.as_b_sees(&first.boxes), &second.boxes, self.rooms[1])
+                };
+                if self.same && i == j {
+                    // A pair counts once, and an item makes none with itself.
+                    near &= 0b0000_1000_1100_1110;
+                    for link in first.children {
+                        if let Child::Node(_) = link.child() {
+                            push((link, link));
                         }
                     }
-                    self.near(self.a.nodes[a].boxes.get(lane), self.b, b, first, |other| {
-                        push(Pair(slot, other));
-                    });
+                }
+                while near != 0 {
+                    let bit = near.trailing_zeros() as usize;
+                    near &= near - 1;
+                    let (a, b) = (first.children[bit / WIDTH], second.children[bit % WIDTH]);
+                    if a != Link::NONE && b != Link::NONE {
+                        push((a, b));
+                    }
                 }
             }
-            (Child::Node(a), Child::Item(_)) => {
-                let around = self.b.nodes[pair.1.node()].boxes.get(pair.1.lane());
-                self.near(around, self.a, a, 0, |slot| push(Pair(slot, pair.1)));
+            (Child::Node(i), other @ Child::Item(_)) => {
+                let around = self.b.seen(other);
+                let around = if self.same { around } else { self.a.frame.from_other(&self.b.frame, &around) };
+                near::<V>(&around, self.rooms[0], &self.a.nodes[i], |link| push((link, b)));
             }
-            (Child::Item(_), Child::Node(b)) => {
-                let around = self.a.nodes[pair.0.node()].boxes.get(pair.0.lane());
-                self.near(around, self.b, b, 0, |slot| push(Pair(pair.0, slot)));
+            (other @ Child::Item(_), Child::Node(j)) => {
+                let around = self.a.seen(other);
+                let around = if self.same { around } else { self.b.frame.from_other(&self.a.frame, &around) };
+                near::<V>(&around, self.rooms[1], &self.b.nodes[j], |link| push((a, link)));
             }
             _ => {}
         }
     }
+}
 
-    /// The children of a node, from `first` on, that are near a box.
-    #[inline]
-    fn near(&self, around: Aabb<V>, tree: &Bvh<V>, node: usize, first: usize, mut push: impl FnMut(Slot)) {
-        let holder = &tree.nodes[node];
-        let mut near = BoxDistance::new(around).near(&holder.boxes, self.distance) & !((1 << first) - 1);
-        while near != 0 {
-            let lane = near.trailing_zeros() as usize;
-            near &= near - 1;
-            if holder.children[lane] != Link::NONE {
-                push(Slot::new(node, lane));
-            }
+/// The children of a node that are near a box: no farther along any coordinate.
+#[inline(always)]
+fn near<V: Vector>(around: &Aabb<Vec3A>, room: f32, node: &Node, mut push: impl FnMut(Link)) {
+    let mut near = near_box::<V>(&around.min.into(), &around.max.into(), &grown::<V>(&node.boxes, room));
+    while near != 0 {
+        let link = node.children[near.trailing_zeros() as usize];
+        near &= near - 1;
+        if link != Link::NONE {
+            push(link);
         }
     }
+}
+
+/// The pairs of boxes that are near each other: a bit for each, of which four are for the first of `a`.
+#[inline(always)]
+fn near_pairs<V: Vector>(a: &Boxes, b: &Boxes, room: f32) -> u32 {
+    let b = grown::<V>(b, room);
+    let planes: [[[f32; WIDTH]; 2]; 3] = core::array::from_fn(|axis| [a.min(axis).into(), a.max(axis).into()]);
+    (0..WIDTH).fold(0, |near, lane| {
+        let [min, max] = [0, 1].map(|side| core::array::from_fn(|axis| planes[axis][side][lane]));
+        near | near_box::<V>(&min, &max, &b) << (WIDTH * lane)
+    })
+}
+
+/// Boxes that are larger by this room. What is not above a sum without rounding is not above the rounded one.
+#[inline(always)]
+fn grown<V: Vector>(boxes: &Boxes, room: f32) -> [[Vec4; 2]; 3] {
+    let room = Vec4::splat(room);
+    core::array::from_fn(|axis| [boxes.min(axis) - room, boxes.max(axis) + room])
+}
+
+/// Which of four boxes have a point in common with another.
+#[inline(always)]
+fn near_box<V: Vector>(min: &[f32; 3], max: &[f32; 3], boxes: &[[Vec4; 2]; 3]) -> u32 {
+    (1..V::DIM)
+        .fold(common(min[0], max[0], boxes[0]), |all, axis| all & common(min[axis], max[axis], boxes[axis]))
+        .bitmask()
+}
+
+#[inline(always)]
+fn common(min: f32, max: f32, [low, high]: [Vec4; 2]) -> BVec4A {
+    Vec4::splat(min).cmple(high) & Vec4::splat(max).cmpge(low)
 }

@@ -2,12 +2,10 @@
 
 use core::ops::ControlFlow;
 
-use num_traits::Float as _;
-
-use super::bound::Bound;
-use super::lanes::Lanes;
+use super::Bvh;
+use super::bound::{Bound, RoughBound};
 use super::node::{Child, Link, WIDTH};
-use super::{Bvh, node::lesser};
+use crate::glam::Vec4;
 use crate::{Scalar, Vector};
 
 /// The greatest number of nodes from the root to an item; `change.rs` says why.
@@ -28,46 +26,59 @@ impl<V: Vector> Bvh<V> {
         limit: V::Scalar,
         mut visit: impl FnMut(usize, V::Scalar) -> ControlFlow<(), V::Scalar>,
     ) -> usize {
-        let huge = V::Scalar::max_value();
-        // NaN stays NaN, which nothing is within.
-        let mut limit = lesser(huge, limit);
-        let (mut pending, mut nodes) = (Pending::root(), 0);
-        while let Some((link, bound)) = pending.pop() {
-            let is_near = bound <= limit;
-            if !is_near {
+        let Some(mut limit) = finite(limit) else { return 0 };
+        let rough = question.rough(&self.frame);
+        let mut end = rough_limit(&rough, limit);
+        // What remains to be looked at, the least bound on top. Places that are not read before they are written are all bits zero, which
+        // is soon done.
+        let mut pending = [0; STACK];
+        pending[0] = Link::ROOT.after(0.0);
+        let (mut top, mut nodes) = (1, 0);
+        while top > 0 {
+            top -= 1;
+            let (link, bound) = Link::with_bound(pending[top]);
+            if bound > end {
                 continue;
             }
             match link.child() {
                 Child::None => {}
-                Child::Item(item) => match visit(item, bound) {
-                    ControlFlow::Continue(next) => limit = lesser(huge, next),
-                    ControlFlow::Break(()) => return nodes,
-                },
+                Child::Item(item) => {
+                    let bound = question.bound(&self.boxes[item]);
+                    if bound <= limit {
+                        let ControlFlow::Continue(next) = visit(item, bound) else { return nodes };
+                        let Some(next) = finite(next) else { return nodes };
+                        if next != limit {
+                            (limit, end) = (next, rough_limit(&rough, next));
+                        }
+                    }
+                }
                 Child::Node(index) => {
                     nodes += 1;
                     let node = &self.nodes[index];
-                    let bounds = question.bounds(&node.boxes);
-                    pending.push_sorted(bounds.at_most(limit), node.children, bounds.to_array());
+                    let bounds = rough.bounds(&node.boxes);
+                    let near = bounds.cmple(Vec4::splat(end)).bitmask();
+                    if near != 0 {
+                        let sorted = sorted(near, node.children, bounds.to_array());
+                        pending[top..top + WIDTH].copy_from_slice(&sorted);
+                        top += near.count_ones() as usize;
+                    }
                 }
             }
         }
         nodes
     }
 
-    /// Shows the items whose bound is at most `limit`, and perhaps others whose bound [rounding cannot tell](Bound::near) from it, in no
-    /// particular order, until `visit` breaks off. Returns the number of nodes that were looked into.
+    /// Shows the items whose bound is at most `limit`, in no particular order, until `visit` breaks off. Returns the number of nodes that
+    /// were looked into.
     pub fn within<B: Bound<V>>(
         &self,
         question: &B,
         limit: V::Scalar,
         mut visit: impl FnMut(usize) -> ControlFlow<()>,
     ) -> usize {
-        let limit = lesser(V::Scalar::max_value(), limit);
-        // Nothing is within NaN.
-        let is_any = limit >= V::Scalar::ZERO;
-        if !is_any {
-            return 0;
-        }
+        let Some(limit) = finite(limit) else { return 0 };
+        let rough = question.rough(&self.frame);
+        let end = Vec4::splat(rough_limit(&rough, limit));
         // The root, and places that are not read before they are written.
         let mut below = [0; STACK];
         let (mut top, mut nodes) = (1, 0);
@@ -75,14 +86,14 @@ impl<V: Vector> Bvh<V> {
             top -= 1;
             nodes += 1;
             let node = &self.nodes[below[top]];
-            let mut near = question.near(&node.boxes, limit);
+            let mut near = rough.bounds(&node.boxes).cmple(end).bitmask();
             while near != 0 {
                 let child = node.children[near.trailing_zeros() as usize].child();
                 near &= near - 1;
                 match child {
                     Child::None => {}
                     Child::Item(item) => {
-                        if visit(item).is_break() {
+                        if question.bound(&self.boxes[item]) <= limit && visit(item).is_break() {
                             return nodes;
                         }
                     }
@@ -97,65 +108,27 @@ impl<V: Vector> Bvh<V> {
     }
 }
 
-/// Children that remain to be looked at, each with its bound.
-struct Pending<S> {
-    links: [Link; STACK],
-    bounds: [S; STACK],
-    top: usize,
+/// A limit that something can be within; infinity is as good as the largest number.
+#[inline]
+pub(super) fn finite<S: Scalar>(limit: S) -> Option<S> {
+    (limit >= S::ZERO).then(|| limit.min(S::max_value()))
 }
 
-impl<S: Scalar> Pending<S> {
-    /// The root alone. Places that are not read before they are written are all bits zero, which is soon done.
-    #[inline(always)]
-    fn root() -> Self {
-        Self { links: [Link::node(0); STACK], bounds: [S::ZERO; STACK], top: 1 }
-    }
-
-    #[inline(always)]
-    fn push(&mut self, link: Link, bound: S) {
-        (self.links[self.top], self.bounds[self.top]) = (link, bound);
-        self.top += 1;
-    }
-
-    #[inline(always)]
-    fn pop(&mut self) -> Option<(Link, S)> {
-        self.top = self.top.checked_sub(1)?;
-        Some((self.links[self.top], self.bounds[self.top]))
-    }
-
-    /// Those children that the bits of `near` say, the one with the least bound on top.
-    #[inline(always)]
-    fn push_sorted(&mut self, near: u32, children: [Link; WIDTH], bounds: [S; WIDTH]) {
-        if near.count_ones() > 2 {
-            for (lane, place) in places(near, bounds).into_iter().enumerate() {
-                (self.links[self.top + place], self.bounds[self.top + place]) = (children[lane], bounds[lane]);
-            }
-            self.top += near.count_ones() as usize;
-        } else if near != 0 {
-            // Mostly there are one or two, and one is both the first and the last: it is then written over, which takes no branch.
-            let (first, last) = (near.trailing_zeros() as usize, near.ilog2() as usize);
-            let (far, close) = if bounds[first] < bounds[last] { (last, first) } else { (first, last) };
-            self.push(children[far], bounds[far]);
-            self.top -= usize::from(far == close);
-            self.push(children[close], bounds[close]);
-        }
-    }
+/// The rough limit for a limit. A bound that is the largest number may stand for a larger one.
+#[inline]
+fn rough_limit<S: Scalar>(rough: &impl RoughBound, limit: S) -> f32 {
+    rough.limit(if limit < S::max_value() { limit.as_f64() } else { f64::INFINITY })
 }
 
-/// The places of four bounds in descending order, of which those that the bits of `near` leave out come last.
+/// The children with their bounds in descending order, of which those that the bits of `near` leave out come last.
 ///
-/// Every two are compared, and none of it branches: which of them is the lesser nobody can foretell.
+/// A network of five exchanges, none of which branches: which of two is the lesser nobody can foretell.
 #[inline(always)]
-fn places<S: Scalar>(near: u32, bounds: [S; WIDTH]) -> [usize; WIDTH] {
-    let keys: [S; WIDTH] =
-        core::array::from_fn(|lane| if near & 1 << lane == 0 { S::neg_infinity() } else { bounds[lane] });
-    let mut places = [0; WIDTH];
-    for i in 0..WIDTH {
-        for j in i + 1..WIDTH {
-            let is_behind = keys[j] > keys[i];
-            places[i] += usize::from(is_behind);
-            places[j] += usize::from(!is_behind);
-        }
+fn sorted(near: u32, children: [Link; WIDTH], bounds: [f32; WIDTH]) -> [u64; WIDTH] {
+    let mut sorted: [u64; WIDTH] =
+        core::array::from_fn(|lane| if near & 1 << lane == 0 { 0 } else { children[lane].after(bounds[lane]) });
+    for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
+        (sorted[i], sorted[j]) = (sorted[i].max(sorted[j]), sorted[i].min(sorted[j]));
     }
-    places
+    sorted
 }

@@ -1,47 +1,85 @@
 //! How high boxes are above a half-space.
 
-use convex_support::{Bound, Boxes, Lanes, Scalar, Vector};
+use convex_support::glam::Vec4;
+use convex_support::{Aabb, Bound, Boxes, Frame, RoughBound, RoughUnit, Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::HalfSpace;
 
 /// The distance of a box from a half-space, from below: that of its lowest corner.
 pub(super) struct HeightBound<V: Vector> {
-    /// The unit normal; coordinates that are not used are zero.
-    normal: [V::Scalar; 3],
-    /// The side of a box that is nearest.
-    nearest: [usize; 3],
+    /// The unit normal.
+    normal: V,
     /// The offset with room for its rounding.
     offset: V::Scalar,
 }
 
 impl<V: Vector> HeightBound<V> {
     pub(super) fn new(half_space: &HalfSpace<V>) -> Self {
-        let unit = half_space.normal() / half_space.length;
-        let normal = core::array::from_fn(|i| if i < V::DIM { unit.get(i) } else { V::Scalar::ZERO });
         let offset = half_space.offset() / half_space.length;
         Self {
-            normal,
-            nearest: normal.map(|n| usize::from(n < V::Scalar::ZERO)),
+            normal: half_space.normal() / half_space.length,
             offset: offset + V::Scalar::from_f64(32.0) * V::Scalar::EPSILON * offset.abs(),
         }
     }
 }
 
-/// Four scalars.
-type LanesOf<V> = <<V as Vector>::Scalar as Scalar>::Lanes;
-
 impl<V: Vector> Bound<V> for HeightBound<V> {
-    fn bounds(&self, boxes: &Boxes<V>) -> LanesOf<V> {
-        let zero = LanesOf::<V>::splat(V::Scalar::ZERO);
-        let mut height = zero - LanesOf::<V>::splat(self.offset);
+    type Rough = RoughHeight;
+
+    fn bound(&self, around: &Aabb<V>) -> V::Scalar {
+        let mut height = -self.offset;
         for i in 0..V::DIM {
-            let side = if self.nearest[i] == 0 { boxes.min(i) } else { boxes.max(i) };
-            height = height + side * LanesOf::<V>::splat(self.normal[i]);
+            let n = self.normal.get(i);
+            height += n * if n < V::Scalar::ZERO { around.max } else { around.min }.get(i);
         }
         let deflate = V::Scalar::ONE - V::Scalar::from_f64(8.0) * V::Scalar::EPSILON;
         // A sum that overflows says nothing.
-        let bound = height.max(zero) * LanesOf::<V>::splat(deflate);
-        bound.min(LanesOf::<V>::splat(V::Scalar::max_value()))
+        (height.max(V::Scalar::ZERO) * deflate).min(V::Scalar::max_value())
+    }
+
+    /// In the frame of a tree, `x = o + ξ/k`, a height is `(n·ξ + k(n·o − c))/k`, of which the second part is one number. Both bounds are
+    /// sums, which rounding moves by a few ε of their terms.
+    fn rough(&self, frame: &Frame<V>) -> RoughHeight {
+        let (unit, epsilon) = (frame.unit(), V::Scalar::EPSILON.as_f64());
+        let (mut rest, mut terms) = (-self.offset.as_f64(), self.offset.as_f64().abs());
+        let mut rough = RoughHeight { normal: [Vec4::ZERO; 3], nearest: [0; 3], rest: 0.0, unit };
+        for i in 0..V::DIM {
+            let n = self.normal.get(i).as_f64();
+            let term = n * frame.origin().get(i).as_f64();
+            (rest, terms) = (rest + term, terms + term.abs());
+            rough.normal[i] = Vec4::splat(n as f32);
+            rough.nearest[i] = usize::from(n < 0.0);
+        }
+        rough.rest = RoughUnit::down((rest - 16.0 * epsilon * terms) * unit.per_unit());
+        rough
+    }
+}
+
+/// A [`HeightBound`] in the frame of a tree.
+pub(super) struct RoughHeight {
+    /// Coordinates that are not used are zero.
+    normal: [Vec4; 3],
+    /// The side of a box that is nearest.
+    nearest: [usize; 3],
+    /// What is the same for all boxes, from below.
+    rest: f32,
+    unit: RoughUnit,
+}
+
+impl RoughBound for RoughHeight {
+    fn bounds(&self, boxes: &Boxes) -> Vec4 {
+        let (mut height, mut terms) = (Vec4::splat(self.rest), Vec4::splat(self.rest.abs()));
+        for i in 0..3 {
+            let term = self.normal[i] * if self.nearest[i] == 0 { boxes.min(i) } else { boxes.max(i) };
+            (height, terms) = (height + term, terms + term.abs());
+        }
+        height -= terms * (16.0 * f32::EPSILON);
+        // What is not a number says nothing.
+        Vec4::select(height.cmpgt(Vec4::ZERO), height.min(Vec4::MAX), Vec4::ZERO)
+    }
+
+    fn limit(&self, limit: f64) -> f32 {
+        self.unit.limit(limit)
     }
 }

@@ -15,7 +15,7 @@ mod single;
 
 use alloc::vec::Vec;
 
-use convex_support::{Aabb, Bvh, SupportMap, outer_box};
+use convex_support::{Aabb, Bvh, SupportMap, Vector as _, outer_box};
 
 use crate::HalfSpace;
 
@@ -82,8 +82,6 @@ pub struct Scene<S: SupportMap> {
     half_spaces: Vec<usize>,
     /// Indices of bodies that were removed, for new ones.
     free: Vec<usize>,
-    /// The boxes of an update, kept for the next.
-    moved: Vec<Aabb<S::Vector>>,
 }
 
 /// What is in a [`Scene`].
@@ -124,7 +122,7 @@ impl<S: SupportMap> Scene<S> {
             let around = body.as_ref().and_then(Body::convex).and_then(outer_box);
             boxes.push(around.ok_or(SceneError::NotFinite { body: index })?);
         }
-        Ok(Self { bodies, tree: Bvh::new(&boxes), half_spaces: Vec::new(), free: Vec::new(), moved: boxes })
+        Ok(Self { bodies, tree: Bvh::new(&boxes), half_spaces: Vec::new(), free: Vec::new() })
     }
 
     /// The number of bodies.
@@ -216,24 +214,23 @@ impl<S: SupportMap> Scene<S> {
     /// [`SceneError::NotFinite`] for the first body whose box would not be finite: it and others like it stay as they were;
     /// the rest are moved.
     pub fn update(&mut self, mut moved: impl FnMut(usize, &S) -> S) -> Result<(), SceneError> {
-        let Self { bodies, tree, moved: boxes, .. } = self;
         let mut refused = None;
-        let nowhere = Aabb { min: S::Vector::default(), max: S::Vector::default() };
-        boxes.clear();
-        for (index, place) in bodies.iter_mut().enumerate() {
-            let mut around = nowhere;
-            if let Some(Body::Convex(body)) = place {
-                let next = moved(index, body);
-                if let Some(outer) = outer_box(&next) {
-                    (*body, around) = (next, outer);
-                } else {
+        let bodies = &mut self.bodies;
+        let nowhere = Aabb { min: S::Vector::ZERO, max: S::Vector::ZERO };
+        self.tree.refit(|index| {
+            let Some(Some(Body::Convex(body))) = bodies.get_mut(index) else { return nowhere };
+            let next = moved(index, body);
+            match outer_box(&next) {
+                Some(around) => {
+                    *body = next;
+                    around
+                }
+                None => {
                     refused = refused.or(Some(index));
-                    around = tree.get(index).unwrap_or(nowhere);
+                    outer_box(body).unwrap_or(nowhere)
                 }
             }
-            boxes.push(around);
-        }
-        tree.refit(|index| boxes[index]);
+        });
         refused.map_or(Ok(()), |body| Err(SceneError::NotFinite { body }))
     }
 
@@ -245,6 +242,6 @@ impl<S: SupportMap> Scene<S> {
 
 impl<S: SupportMap> Default for Scene<S> {
     fn default() -> Self {
-        Self { bodies: Vec::new(), tree: Bvh::default(), half_spaces: Vec::new(), free: Vec::new(), moved: Vec::new() }
+        Self { bodies: Vec::new(), tree: Bvh::default(), half_spaces: Vec::new(), free: Vec::new() }
     }
 }

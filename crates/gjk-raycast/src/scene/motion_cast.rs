@@ -1,6 +1,9 @@
 //! Which body a shape meets first that moves and turns.
 
-use convex_support::{Bound, Boxes, Lanes, Scalar, SupportMap, SweptBox, Vector};
+use convex_support::glam::Vec4;
+use convex_support::{
+    Aabb, Bound, Boxes, Frame, RoughBound, RoughSweptBox, RoughUnit, Scalar, SupportMap, SweptBox, Vector,
+};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
@@ -87,15 +90,59 @@ impl<V: Vector> MovingBox<V> {
 }
 
 impl<V: Vector> Bound<V> for MovingBalls<V> {
-    fn bounds(&self, boxes: &Boxes<V>) -> <V::Scalar as Scalar>::Lanes {
-        let splat = <V::Scalar as Scalar>::Lanes::splat;
-        let infinity = splat(V::Scalar::infinity());
+    type Rough = RoughMovingBalls<V>;
+
+    fn bound(&self, around: &Aabb<V>) -> V::Scalar {
         // What the sum of a piece's start and the time in it loses.
-        let deflate = splat(V::Scalar::ONE - V::Scalar::from_f64(4.0) * V::Scalar::EPSILON);
-        self.0.iter().fold(infinity, |first, piece| {
-            let after = piece.swept.bounds(boxes);
-            let time = (splat(piece.start) + after) * deflate;
-            first.min(after.if_at_most(splat(piece.duration), time, infinity))
+        let deflate = V::Scalar::ONE - V::Scalar::from_f64(4.0) * V::Scalar::EPSILON;
+        self.0.iter().fold(V::Scalar::infinity(), |first, piece| {
+            let after = piece.swept.bound(around);
+            if after <= piece.duration { first.min((piece.start + after) * deflate) } else { first }
         })
+    }
+
+    fn rough(&self, frame: &Frame<V>) -> RoughMovingBalls<V> {
+        let rough = |piece: &MovingBox<V>| {
+            let swept = piece.swept.rough(frame);
+            // Without an end it ends where all numbers do.
+            let duration = swept.limit(piece.duration.as_f64());
+            RoughMovingBox { start: 0.0, duration, per_piece: 1.0, swept }
+        };
+        let mut balls: SmallVec<[_; MAX_PIECES]> = self.0.iter().map(rough).collect();
+        // All in the finest unit of time.
+        let per_unit = balls.iter().map(|ball| ball.swept.unit().per_unit()).fold(0.0, f64::max).min(f64::MAX);
+        for (ball, piece) in balls.iter_mut().zip(&self.0) {
+            ball.start = RoughUnit::down(piece.start.as_f64() * per_unit).max(0.0);
+            ball.per_piece = RoughUnit::down(per_unit / ball.swept.unit().per_unit());
+        }
+        RoughMovingBalls { balls, unit: RoughUnit::new::<V::Scalar>(per_unit) }
+    }
+}
+
+/// [`MovingBalls`] in the frame of a tree.
+struct RoughMovingBalls<V> {
+    balls: SmallVec<[RoughMovingBox<V>; MAX_PIECES]>,
+    unit: RoughUnit,
+}
+
+struct RoughMovingBox<V> {
+    start: f32,
+    /// In the unit of the piece.
+    duration: f32,
+    per_piece: f32,
+    swept: RoughSweptBox<V>,
+}
+
+impl<V: Vector> RoughBound for RoughMovingBalls<V> {
+    fn bounds(&self, boxes: &Boxes) -> Vec4 {
+        self.balls.iter().fold(Vec4::INFINITY, |first, piece| {
+            let after = piece.swept.bounds(boxes);
+            let time = (after * piece.per_piece + piece.start).min(Vec4::MAX);
+            first.min(Vec4::select(after.cmple(Vec4::splat(piece.duration)), time, Vec4::INFINITY))
+        })
+    }
+
+    fn limit(&self, limit: f64) -> f32 {
+        self.unit.limit(limit)
     }
 }
