@@ -34,7 +34,7 @@ where
     let (length, radius, error) = (v.length(), pair.radius(), error_of_points(&pair));
     let near = error * Scalar::from_f64(NEAR);
     // NaN is left to the search.
-    if !(length.min((length - radius).abs()) >= near) || max_iterations == 0 {
+    if !(length.min((length - radius).abs()) > near) || max_iterations == 0 {
         return None;
     }
     let w = pair.support(-v).0 + offset;
