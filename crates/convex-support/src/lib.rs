@@ -83,8 +83,8 @@ pub use glam;
 pub use angular_velocity::{AngularVelocity, Spin};
 pub use bounds::{Aabb, BoundingSphere, bounding_box, bounding_sphere};
 pub use bvh::{
-    Bound, BoxDistance, Boxes, Bvh, Frame, PairSearch, RoughBound, RoughBoxDistance, RoughSweptBox, RoughUnit, SweptBox, WIDTH,
-    outer_box,
+    Bound, BoxDistance, Boxes, Bvh, Frame, PairSearch, RoughBound, RoughBoxDistance, RoughSweptBox, RoughUnit,
+    SweptBox, WIDTH, outer_box,
 };
 pub use closest_point::closest_point;
 pub use combinators::{Affine, Difference, Hull, MinkowskiSum, Posed, Rounded};

@@ -37,7 +37,7 @@ impl Numbers {
 }
 
 /// What kinds of scenes there are.
-const KINDS: usize = 8;
+const KINDS: usize = 9;
 
 fn scene<V: Vector>(numbers: &mut Numbers, kind: usize, count: usize) -> Vec<Aabb<V>> {
     let tiny = V::Scalar::min_positive_value().as_f64();
@@ -55,6 +55,12 @@ fn scene<V: Vector>(numbers: &mut Numbers, kind: usize, count: usize) -> Vec<Aab
             },
             5 => {
                 let far = V::splat(V::Scalar::from_f64(1e7));
+                let Aabb { min, max } = numbers.around::<V>(10.0, 1.0);
+                Aabb { min: min + far, max: max + far }
+            }
+            // Two towns, of which no single origin is near.
+            8 => {
+                let far = V::splat(V::Scalar::from_f64(if i % 2 == 0 { 1e9 } else { -1e9 }));
                 let Aabb { min, max } = numbers.around::<V>(10.0, 1.0);
                 Aabb { min: min + far, max: max + far }
             }
@@ -259,6 +265,37 @@ fn items_inserted_in_order_make_no_chain() {
         assert_eq!(left, usize::from(i < 1999), "the last one stays to the end");
     }
     assert!(tree.is_empty(), "nothing is left");
+}
+
+/// Each tree sees boxes from its own origin and in its own unit; which pairs there are does not depend on that.
+#[test]
+fn pairs_of_trees_that_see_differently() {
+    let mut numbers = Numbers(6);
+    for (reach, outlier) in [(1.0, 1e3), (1e-5, 1e12), (1e3, 1e-3)] {
+        let mut boxes = || (0..80).map(|_| numbers.around::<DVec3>(1.0, 0.3)).collect::<Vec<_>>();
+        let (a, mut b) = (boxes(), boxes());
+        b.extend(boxes().iter().map(|around| {
+            let away = DVec3::splat(outlier);
+            Aabb { min: around.min * reach + away, max: around.max * reach + away }
+        }));
+        let (tree, other) = (Bvh::new(&a), Bvh::new(&b));
+        let (mut found, mut back, mut due) = (Vec::new(), Vec::new(), Vec::new());
+        tree.pairs_between(&other, 0.05).visit(|i, j| {
+            found.push((i, j));
+            ControlFlow::Continue(())
+        });
+        other.pairs_between(&tree, 0.05).visit(|j, i| {
+            back.push((i, j));
+            ControlFlow::Continue(())
+        });
+        for (i, a) in a.iter().enumerate() {
+            due.extend((0..b.len()).filter(|&j| BoxDistance::new(*a).bound(&b[j]) <= 0.05).map(|j| (i, j)));
+        }
+        found.sort_unstable();
+        back.sort_unstable();
+        assert!(due.len() > 80, "no fair sample");
+        assert_eq!((&found, &back), (&due, &due), "pairs, and the same in the other order");
+    }
 }
 
 /// What cannot be culled is looked at once: the work is proportional to what is found.

@@ -76,7 +76,7 @@ impl<V: Vector> SweptBox<V> {
 impl<V: Vector> Bound<V> for SweptBox<V> {
     type Rough = RoughSweptBox<V>;
 
-    #[inline]
+    #[inline(always)]
     fn bound(&self, around: &Aabb<V>) -> V::Scalar {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
         let (after, before) = (around.min - self.from[0], around.max - self.from[1]);
@@ -179,7 +179,7 @@ impl<V: Vector> BoxDistance<V> {
 impl<V: Vector> Bound<V> for BoxDistance<V> {
     type Rough = RoughBoxDistance<V>;
 
-    #[inline]
+    #[inline(always)]
     fn bound(&self, around: &Aabb<V>) -> V::Scalar {
         let gaps = (around.min - self.of.max).max(self.of.min - around.max).max(V::ZERO);
         if gaps == V::ZERO {

@@ -105,7 +105,7 @@ impl<V: Vector> Frame<V> {
     }
 
     /// The same box as this frame sees it, and not another.
-    pub(super) fn from_other(&self, other: &Self, around: &Aabb<Vec3A>) -> Aabb<Vec3A> {
+    pub(super) fn outwards_from(&self, other: &Self, around: &Aabb<Vec3A>) -> Aabb<Vec3A> {
         // What is computed in double precision is nothing to a step of single precision, of the other's coordinate or of this one.
         let at = |axis: usize, c: f32| {
             let world = f64::from(c) / other.per_unit + other.origin.get(axis).as_f64();

@@ -107,7 +107,7 @@ impl<'t, V: Vector> PairSearch<'t, V> {
     fn as_b_sees(&self, boxes: &Boxes) -> Boxes {
         let mut seen = *boxes;
         for lane in 0..WIDTH {
-            seen.set(lane, self.b.frame.from_other(&self.a.frame, &boxes.get(lane)));
+            seen.set(lane, self.b.frame.outwards_from(&self.a.frame, &boxes.get(lane)));
         }
         seen
     }
@@ -143,12 +143,12 @@ impl<'t, V: Vector> PairSearch<'t, V> {
             }
             (Child::Node(i), other @ Child::Item(_)) => {
                 let around = self.b.seen(other);
-                let around = if self.same { around } else { self.a.frame.from_other(&self.b.frame, &around) };
+                let around = if self.same { around } else { self.a.frame.outwards_from(&self.b.frame, &around) };
                 near::<V>(&around, self.rooms[0], &self.a.nodes[i], |link| push((link, b)));
             }
             (other @ Child::Item(_), Child::Node(j)) => {
                 let around = self.a.seen(other);
-                let around = if self.same { around } else { self.b.frame.from_other(&self.a.frame, &around) };
+                let around = if self.same { around } else { self.b.frame.outwards_from(&self.a.frame, &around) };
                 near::<V>(&around, self.rooms[1], &self.b.nodes[j], |link| push((a, link)));
             }
             _ => {}
@@ -159,7 +159,7 @@ impl<'t, V: Vector> PairSearch<'t, V> {
 /// The children of a node that are near a box: no farther along any coordinate.
 #[inline(always)]
 fn near<V: Vector>(around: &Aabb<Vec3A>, room: f32, node: &Node, mut push: impl FnMut(Link)) {
-    let mut near = near_box::<V>(&around.min.into(), &around.max.into(), &grown::<V>(&node.boxes, room));
+    let mut near = near_box::<V>(&around.min.into(), &around.max.into(), &grown(&node.boxes, room));
     while near != 0 {
         let link = node.children[near.trailing_zeros() as usize];
         near &= near - 1;
@@ -172,7 +172,7 @@ fn near<V: Vector>(around: &Aabb<Vec3A>, room: f32, node: &Node, mut push: impl 
 /// The pairs of boxes that are near each other: a bit for each, of which four are for the first of `a`.
 #[inline(always)]
 fn near_pairs<V: Vector>(a: &Boxes, b: &Boxes, room: f32) -> u32 {
-    let b = grown::<V>(b, room);
+    let b = grown(b, room);
     let planes: [[[f32; WIDTH]; 2]; 3] = core::array::from_fn(|axis| [a.min(axis).into(), a.max(axis).into()]);
     (0..WIDTH).fold(0, |near, lane| {
         let [min, max] = [0, 1].map(|side| core::array::from_fn(|axis| planes[axis][side][lane]));
@@ -182,7 +182,7 @@ fn near_pairs<V: Vector>(a: &Boxes, b: &Boxes, room: f32) -> u32 {
 
 /// Boxes that are larger by this room. What is not above a sum without rounding is not above the rounded one.
 #[inline(always)]
-fn grown<V: Vector>(boxes: &Boxes, room: f32) -> [[Vec4; 2]; 3] {
+fn grown(boxes: &Boxes, room: f32) -> [[Vec4; 2]; 3] {
     let room = Vec4::splat(room);
     core::array::from_fn(|axis| [boxes.min(axis) - room, boxes.max(axis) + room])
 }
