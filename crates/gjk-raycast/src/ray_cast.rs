@@ -100,8 +100,9 @@ fn certain<S: SupportMap + ?Sized>(
         CertainCrossing::Enters { entry, bounds, normal } => {
             let [earliest, _] = bounds;
             let is_after_end = entry > options.max_lambda;
-            // By rounding alone, the source may be in the target, or the end of the ray where it enters. NaN tells nothing.
-            if !(earliest > if is_after_end { options.max_lambda } else { zero }) {
+            // By rounding alone, the source may be in the target, or the end of the ray where it enters. NaN and infinity tell nothing.
+            let begin = if is_after_end { options.max_lambda } else { zero };
+            if !(earliest > begin && earliest < infinity) {
                 return None;
             }
             if is_after_end {

@@ -374,3 +374,25 @@ fn a_ray_past_an_edge_by_rounding_is_decided() {
         assert!(answer.lower <= hit.lambda && hit.lambda <= answer.upper, "{answer:?}");
     }
 }
+
+/// Found by comparing scenes: so short a direction that its λ overflows hit at infinity, at a point that was not a number, converged.
+/// There is no number for such a λ; but a ray with an end misses what is beyond it.
+#[test]
+fn a_lambda_that_overflows_is_not_a_hit() {
+    fn run<V: Quaternion>(short: f64) {
+        let shapes: [Box<dyn SupportMap<Vector = V>>; 3] = [
+            Box::new(at(cuboid::<V>([1.0; 3]), [1e7, 0.0, 0.0])),
+            Box::new(at(Ball::<V>::new(s::<V>(1.0)).expect("a radius"), [1e7, 0.0, 0.0])),
+            Box::new(at(Cone::<V>::new(s::<V>(1.0), s::<V>(1.0)).expect("a cone"), [1e7, 0.0, 0.0])),
+        ];
+        for shape in &shapes {
+            let ray = Ray { source: v::<V>([0.0, 0.125, 0.125]), direction: v([short, 0.0, 0.0]) };
+            let open = ray_cast(shape, ray, RayCastOptions::default()).expect("finite");
+            assert!(matches!(open.outcome, Outcome::Undecided), "{open:?}");
+            assert!(open.lower.as_f64().is_finite() && open.status == Status::Stalled, "{open:?}");
+            let ended = ray_cast(shape, ray, RayCastOptions::new().with_max_lambda(s::<V>(1.0))).expect("finite");
+            assert!(ended.outcome.is_miss(), "{ended:?}");
+        }
+    }
+    both(|| run::<Vec3A>(1e-35), || run::<DVec3>(1e-304));
+}

@@ -128,6 +128,8 @@ impl<V: Vector> Line<V> {
             & (slope >= self.longest * number(LEAST_SLOPE))
             & (ahead.abs() <= noise)
             & (x.length_squared() <= self.size * self.size * number(1.125))
+            // There is a number for it.
+            & (lambda < V::Scalar::infinity())
             // The plane is crossed after the ray's start.
             & ((lambda - rounding) * slope > error - ahead);
         if !is_plain {

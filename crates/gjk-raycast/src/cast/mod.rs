@@ -128,7 +128,7 @@ fn conclude<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
             let (lower, upper) = bracket.bounds(Some(lambda));
             let max_lambda = bracket.options.max_lambda;
             // Whether a hit at the very end of the ray counts is decided by λ as it is returned.
-            if !(lambda > max_lambda) {
+            if !(lambda > max_lambda) && lambda < infinity {
                 let hit = CastHit { lambda, normal, spot: ray.line.at(mu), witness };
                 (Outcome::Hit(hit), (lower, upper), Status::Converged)
             } else if lower > max_lambda || upper < infinity {
@@ -136,8 +136,8 @@ fn conclude<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
                 let lower = if lower > max_lambda { infinity } else { lower };
                 (Outcome::Miss(Miss { axis }), (lower, infinity), Status::Converged)
             } else {
-                // What may be hit anywhere, or not at all, may be hit before the end.
-                (Outcome::Undecided, (lower, infinity), Status::Stalled)
+                // What may be hit anywhere, or not at all, may be hit before the end; and there is no number for a λ that overflows.
+                (Outcome::Undecided, (if lower < infinity { lower } else { zero }, infinity), Status::Stalled)
             }
         }
         Err(Stop::Miss(n)) => {
