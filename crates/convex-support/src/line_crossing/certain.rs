@@ -94,7 +94,7 @@ impl<V: Vector> NearLine<V> {
 
     /// The same line from where it is closest to the origin, to be turned.
     #[inline(always)]
-    fn from_foot(&self) -> Self {
+    fn at_foot(&self) -> Self {
         let Self { source, direction, size, .. } = *self;
         let (base, source) = rebased(source, direction, direction.length_squared().recip());
         let error = self.error + size * (V::Scalar::EPSILON * V::Scalar::from_f64(OF_TURN));
@@ -109,7 +109,7 @@ impl<V: Vector> NearLine<V> {
         rotation: &V::Matrix,
         shape: impl FnOnce(V, V, V::Scalar) -> Option<CertainCrossing<V>>,
     ) -> Option<CertainCrossing<V>> {
-        let line = self.from_foot();
+        let line = self.at_foot();
         let source = rotation.transpose_mul(line.source);
         match shape(source, rotation.transpose_mul(line.direction), line.error)? {
             CertainCrossing::Misses(axis) => Some(CertainCrossing::Misses(*rotation * axis)),
@@ -181,7 +181,7 @@ impl<V: Vector> NearLine<V> {
     #[inline(always)]
     pub(crate) fn ellipsoid(&self, axes: &V::Matrix, inverse_semi_axes: V) -> Option<CertainCrossing<V>> {
         let number = V::Scalar::from_f64;
-        let line = self.from_foot();
+        let line = self.at_foot();
         let onto_ball = |v: V| axes.transpose_mul(v) * inverse_semi_axes;
         let (source, direction, error) = (onto_ball(line.source), onto_ball(line.direction), line.error);
         let (least, most) = (inverse_semi_axes.min_element(), inverse_semi_axes.max_element());

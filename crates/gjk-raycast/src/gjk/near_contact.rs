@@ -113,26 +113,24 @@ fn look<V: Vector>(
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
-    let mut state = begun.unwrap_or_else(|| begin(&pair, &frame, size, max_iterations));
-    let begun = state;
-    let end = go_on(&mut state, &mut pair, &frame, max_iterations);
-
     let seen = Seen::new(&pair, &frame);
-    let mut best = seen.best_plane(&mut pair, &state);
-    // Within rounding a search may go astray, and end around zero, or where no plane is as far as its points.
-    let is_doubtful = |(best, _): &(Plane<V>, _)| best.level <= frame.radius || best.level + best.error < state.length;
-    if best.as_ref().is_none_or(is_doubtful) {
-        let certain = |best: &(Plane<V>, V::Scalar)| best.0.level - best.0.error;
-        let before = seen.best_plane(&mut pair, &begun);
-        if before.as_ref().map(certain) > best.as_ref().map(certain) {
-            (state, best) = (Gjk { iterations: state.iterations, ..begun }, before);
-            state.ensure_measured();
+    let (mut state, are_closest) = match begun {
+        Some(begun) => (begun, false),
+        None => begin(&pair, &frame, size, max_iterations),
+    };
+    let known = if are_closest && max_iterations > 0 { seen.plane_of_closest(&mut pair, &state) } else { None };
+    let (end, Plane { n, level, error }, length) = match known {
+        Some((plane, length)) => {
+            state.iterations += 1;
+            (End::Separated, plane, length)
         }
-    }
-    let (Plane { n, level, error }, pierced) = best?;
+        None => {
+            let (end, plane, pierced) = seen.search(&mut state, &mut pair, &frame, max_iterations)?;
+            (end, plane, seen.length(&state).min(pierced))
+        }
+    };
     let gap = level - frame.radius;
-    let upper = seen.length(&state).min(pierced) - frame.radius;
-    let upper = upper + roundings(2.0, frame.radius);
+    let upper = length - frame.radius + roundings(2.0, frame.radius);
     let overlaps_certainly = is_around_zero(state.simplex.points(), seen.error_of_corners());
     let (lower, upper) = (gap - error, upper.max(gap - error));
     let (points, length, iterations) = (state.simplex.weighted_witness(), state.length, state.iterations);
@@ -152,17 +150,17 @@ fn look<V: Vector>(
     })
 }
 
-/// GJK from the closest points, where they are known in closed form, or from the offset of the origins to the noise.
+/// GJK from the closest points, where they are known in closed form, or from the offset of the origins to the noise; and which of the two.
 fn begin<V: Vector>(
     pair: &PairOfAny<'_, V>,
     frame: &Frame<V>,
     size: V::Scalar,
     max_iterations: usize,
-) -> Gjk<V, PointPair<V>> {
+) -> (Gjk<V, PointPair<V>>, bool) {
     let first = first_direction(None, frame.offset);
     let mut state = Gjk::new(first);
     match state.begin_at_closest(pair, frame, size) {
-        Some(false) => {}
+        Some(false) => return (state, true),
         // Where they meet, the vector from one to the other is no direction to look along.
         Some(true) => state = Gjk::new(first),
         None => {
@@ -172,7 +170,7 @@ fn begin<V: Vector>(
             gjk(&mut state, &mut pair, *frame, GjkOptions::new(first, max_iterations), None, |_| {});
         }
     }
-    state
+    (state, false)
 }
 
 /// Goes on with GJK to a sixteenth of the noise.
@@ -242,6 +240,44 @@ impl<V: Vector> Seen<V> {
         dot_minus(parts, V::Scalar::ZERO)
     }
 
+    /// The plane across the vector between the closest points of both cores, and a bound on its length, where the two meet to what they are
+    /// wrong by and are beyond the radii: then there is nothing to search.
+    fn plane_of_closest(
+        &self,
+        pair: &mut PairOfAny<'_, V>,
+        state: &Gjk<V, PointPair<V>>,
+    ) -> Option<(Plane<V>, V::Scalar)> {
+        let plane = self.plane(pair, state.normal)?;
+        let length = self.length(state);
+        let is_closed = length <= plane.level + plane.error * V::Scalar::from_f64(2.0);
+        (is_closed && plane.level > self.radius).then_some((plane, length))
+    }
+
+    /// GJK, and the best plane that it leads to; with a bound on the distance of the bodies from the face that the line across it pierces.
+    fn search(
+        &self,
+        state: &mut Gjk<V, PointPair<V>>,
+        pair: &mut PairOfAny<'_, V>,
+        frame: &Frame<V>,
+        max_iterations: usize,
+    ) -> Option<(End, Plane<V>, V::Scalar)> {
+        let begun = *state;
+        let end = go_on(state, pair, frame, max_iterations);
+        let mut best = self.best_plane(pair, state);
+        // Within rounding a search may go astray, and end around zero, or where no plane is as far as its points.
+        let is_doubtful =
+            |(best, _): &(Plane<V>, _)| best.level <= frame.radius || best.level + best.error < state.length;
+        if best.as_ref().is_none_or(is_doubtful) {
+            let certain = |best: &(Plane<V>, V::Scalar)| best.0.level - best.0.error;
+            let before = self.best_plane(pair, &begun);
+            if before.as_ref().map(certain) > best.as_ref().map(certain) {
+                (*state, best) = (Gjk { iterations: state.iterations, ..begun }, before);
+                state.ensure_measured();
+            }
+        }
+        best.map(|(plane, pierced)| (end, plane, pierced))
+    }
+
     /// The plane that is farthest from zero for certain, of those across the faces that a search has ended at, and across its last two
     /// directions; and a bound on the distance of the bodies from the face that the line across the plane pierces. Where the two meet,
     /// no other plane is looked at.
@@ -302,7 +338,8 @@ impl<V: Vector> Seen<V> {
     /// A bound on the length of the shortest vector found.
     ///
     /// With `x = Σ wᵢ·(aᵢ − bᵢ) + offset` and `u` the unit vector along it, the true vector is `x` but for some `e`. Along `u` that adds
-    /// `|u|·|e|`, taken coordinate by coordinate, and across it hardly anything: the length is at most `√((|x| + |u|·|e|)² + |e|²)`.
+    /// `|u|·|e|`, taken coordinate by coordinate, and across it hardly anything: the length is at most `√(p² + |e|²)` with
+    /// `p = |x| + |u|·|e|`, which is `p + |e|²/(p + √(p² + |e|²))`.
     fn length(&self, state: &Gjk<V, PointPair<V>>) -> V::Scalar {
         let zero = V::Scalar::ZERO;
         let (mut sum, mut x) = (zero, V::ZERO);
@@ -324,8 +361,12 @@ impl<V: Vector> Seen<V> {
         };
         let error = self.error + rounded + self.lost.abs();
         let across = raised(error.norm().min(self.error_length + (rounded + self.lost.abs()).norm()));
-        let along = x.unit().map_or(across, |u| raised(u.abs().dot(error)));
-        let length = raised((x.norm() + along).hypot(across));
+        let along = x.unit().map_or(across, |u| u.abs().dot(error));
+        // The length itself is right to 3 roundings, and the sum to one: what is beside it is raised alone.
+        let norm = x.norm();
+        let ahead = norm + along;
+        let beside = (across * across / (ahead + ahead.hypot(across))).min(across);
+        let length = norm + (raised(along + beside) + roundings(8.0, norm));
         if length.is_finite() { length } else { Float::infinity() }
     }
 
