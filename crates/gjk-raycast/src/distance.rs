@@ -184,9 +184,9 @@ fn apart<V: Vector>(
     let &Frame { scale, radius, error, .. } = frame;
     let &Gjk { normal, length, lower, axis, .. } = state;
     let overlap = end == End::Overlap;
-    let n = if length > zero && (overlap || radius > zero || lower <= zero) { normal.unit() } else { None };
-    let [point_a, point_b] =
-        surface_points(cores, frame, core_points, n.unwrap_or(Vector::ZERO), overlap.then_some(length));
+    let n = if length > zero && !overlap && (radius > zero || lower <= zero) { normal.unit() } else { None };
+    let along = if overlap { None } else { Some(n.unwrap_or(Vector::ZERO)) };
+    let [point_a, point_b] = surface_points(cores, frame, core_points, along);
     let gap = |l: V::Scalar| ((l - radius) * scale).max(zero);
     // The shortest vector is measured across the affine hull of its points, and they are what proves it.
     let squared = (core_points.a - core_points.b + frame.offset).length_squared();
@@ -223,8 +223,8 @@ fn touching<V: Vector>(
     let (zero, scale) = (V::Scalar::ZERO, near.frame.scale);
     let overlap = near.overlap();
     // What is in one another by more than an error has a point in common that is nearer to both cores.
-    let length = Some(near.length).filter(|_| overlap == Some(true));
-    let [point_a, point_b] = surface_points(near.cores, &near.frame, near.points, near.normal, length);
+    let along = if overlap == Some(true) { None } else { Some(near.normal) };
+    let [point_a, point_b] = surface_points(near.cores, &near.frame, near.points, along);
     let upper = near.upper.max(zero) * scale;
     Some(Distance {
         distance: (near.gap.max(zero) * scale).min(upper),
@@ -240,24 +240,25 @@ fn touching<V: Vector>(
     })
 }
 
-/// The points of both bodies beside points of their cores, in the world: along the unit vector `n` from `b` to `a`. Where the cores are
-/// apart by a `length` shorter than both radii, a point in both bodies.
+/// The points of both bodies beside points of their cores, in the world: along the unit vector from `b` to `a`, or where none is given
+/// between the points of the cores, which are no farther apart than both radii: there a point in both bodies.
 #[inline(always)]
 fn surface_points<V: Vector>(
     [core_a, core_b]: [Core<V>; 2],
-    &Frame { scale, per_unit, radius, .. }: &Frame<V>,
+    &Frame { scale, per_unit, offset, radius, .. }: &Frame<V>,
     PointPair { a, b }: PointPair<V>,
-    n: V,
-    length: Option<V::Scalar>,
+    along: Option<V>,
 ) -> [V; 2] {
-    let one = V::Scalar::ONE;
-    let (from_a, from_b) = match length {
-        None => (core_a.radius, core_b.radius),
-        Some(length) => {
-            let share = |core: Core<V>| length * (core.radius * per_unit / radius).min(one) * scale;
-            // Without radii the cores themselves meet.
-            if radius > V::Scalar::ZERO { (share(core_a), share(core_b)) } else { Default::default() }
+    let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
+    let (from_a, from_b) = match along {
+        Some(n) => (n * core_a.radius, n * core_b.radius),
+        // Without radii the cores themselves meet.
+        None if radius <= zero => (V::ZERO, V::ZERO),
+        None => {
+            let v = (a - b + offset) * scale;
+            let share = |core: Core<V>| v * (core.radius * per_unit / radius).min(one);
+            (share(core_a), share(core_b))
         }
     };
-    [core_a.origin + a * scale - n * from_a, core_b.origin + b * scale + n * from_b]
+    [core_a.origin + a * scale - from_a, core_b.origin + b * scale + from_b]
 }

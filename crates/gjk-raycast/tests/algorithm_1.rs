@@ -53,8 +53,14 @@ fn agree<V: Quaternion>(
     let source = v::<V>(from);
     let ray = Ray { source, direction: v::<V>(aim) - source };
     let (one, three) = (algorithm_1(&target, ray), ray_cast(&target, ray, RayCastOptions::default()).expect("finite"));
-    prop_assert_eq!(one.status, Status::Converged, "{:?}", one);
     let speed = ray.direction.norm().as_f64();
+    if one.status == Status::IterationLimit {
+        // Along a graze it comes nearer to the surface by ever smaller steps, and says that it did not arrive.
+        let nearest = nearest(&target, ray);
+        prop_assert!(nearest <= 1e-6 * speed && one.lower <= three.upper, "{} {:?} {:?}", nearest, one, three);
+        return Ok(None);
+    }
+    prop_assert_eq!(one.status, Status::Converged, "{:?}", one);
     let allowed = 256.0 * V::Scalar::EPSILON.as_f64() * (1.0 + source.norm().as_f64() / 16.0);
     match (one.outcome, three.outcome) {
         (Outcome::Hit(a), Outcome::Hit(b)) => {
