@@ -124,10 +124,12 @@ fn searched<S: SupportMap + ?Sized>(
     mut observer: impl FnMut(Iterate<'_, S::Vector>),
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     ray.check()?;
-    Ok(if options.min_lambda > Scalar::ZERO {
-        late(target, ray, options, &mut observer)
-    } else {
-        cast_part(target, ray, Part::Whole, &options, &mut observer)
+    if options.min_lambda > Scalar::ZERO {
+        return Ok(late(target, ray, options, &mut observer));
+    }
+    Ok(match direct(&mut Single::new(target), ray, Scalar::ZERO, &options, &mut observer) {
+        Some(cast) => answer(cast, ray),
+        None => cast_part(target, ray, Part::Whole, &options, &mut observer),
     })
 }
 
@@ -140,12 +142,8 @@ fn cast_part<S: SupportMap + ?Sized>(
     options: &RayCastOptions<S::Vector>,
     observer: &mut impl FnMut(Iterate<'_, S::Vector>),
 ) -> RayCast<S::Vector> {
-    let (mut body, is_whole) = (Single::new(target), matches!(part, Part::Whole));
-    if is_whole && let Some(cast) = direct(&mut body, ray, Scalar::ZERO, options, &mut *observer) {
-        return answer(cast, ray);
-    }
-    let mut cast = cast(&mut body, ray, Scalar::ZERO, part, options, observer);
-    if is_whole {
+    let mut cast = cast(&mut Single::new(target), ray, Scalar::ZERO, part, options, observer);
+    if matches!(part, Part::Whole) {
         settle_start(&mut cast, target, Scalar::ZERO, || Point::new(ray.source).ok(), ray.direction, options);
     }
     answer(cast, ray)
