@@ -105,6 +105,7 @@ mod data;
 mod derivative;
 mod distance;
 mod distances;
+mod double;
 mod error;
 mod gjk;
 mod half_space;

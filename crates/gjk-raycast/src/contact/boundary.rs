@@ -6,8 +6,8 @@ use smallvec::SmallVec;
 
 use super::cores::Vertex;
 use super::orientation::is_beyond;
-use crate::simplex::MAX_POINTS;
-use crate::simplex::nearest_face;
+use crate::double::{Vec3, cross, dot};
+use crate::simplex::{MAX_POINTS, nearest_face};
 
 /// Corners of a facet, of which a polygon's has two and a polyhedron's three.
 const MAX_CORNERS: usize = MAX_POINTS - 1;
@@ -436,7 +436,7 @@ fn edge_normal<V: Vector>([a, b]: [V; 2]) -> Option<(V, V::Scalar)> {
 fn triangle_normal<V: Vector>([a, b, c]: [V; 3], acute: f64) -> Option<(V, V::Scalar)> {
     let (u, v) = (edge(a, b), edge(a, c));
     let (squared_u, squared_v) = (dot(u, u), dot(v, v));
-    let normal = cross(u, v);
+    let normal = cross(&u, &v);
     let area = dot(normal, normal);
     if area > LEAST && area > squared_u * squared_v * acute {
         Some(unit_normal(normal, area, squared_u + squared_v))
@@ -458,7 +458,7 @@ fn careful_normal<V: Vector>([a, b, c]: [V; 3]) -> Option<(V, V::Scalar)> {
     } else {
         (ab, bc, sab + sbc)
     };
-    let normal = cross(u, v);
+    let normal = cross(&u, &v);
     let area = dot(normal, normal);
     (area > LEAST).then(|| unit_normal(normal, area, sum))
 }
@@ -466,25 +466,15 @@ fn careful_normal<V: Vector>([a, b, c]: [V; 3]) -> Option<(V, V::Scalar)> {
 /// The unit vector along the product of two edges of which the squared length and the sum of the squared lengths of the edges are given,
 /// and its rounding.
 #[inline(always)]
-fn unit_normal<V: Vector>(normal: [f64; 3], area: f64, sum: f64) -> (V, V::Scalar) {
+fn unit_normal<V: Vector>(normal: Vec3, area: f64, sum: f64) -> (V, V::Scalar) {
     let per = area.sqrt().recip();
     let tilt = V::Scalar::from_f64(0.5 * TILT * sum * per) * V::Scalar::EPSILON;
     (V::from_fn(|i| V::Scalar::from_f64(normal[i] * per)), tilt)
 }
 
 #[inline(always)]
-fn edge<V: Vector>(from: V, to: V) -> [f64; 3] {
+fn edge<V: Vector>(from: V, to: V) -> Vec3 {
     let coordinate = |p: V, i: usize| p.get(i.min(V::DIM - 1)).as_f64();
     let along = |i: usize| coordinate(to, i) - coordinate(from, i);
     [along(0), along(1), along(2)]
-}
-
-#[inline(always)]
-fn dot([x, y, z]: [f64; 3], [u, v, w]: [f64; 3]) -> f64 {
-    x * u + y * v + z * w
-}
-
-#[inline(always)]
-fn cross([ux, uy, uz]: [f64; 3], [vx, vy, vz]: [f64; 3]) -> [f64; 3] {
-    [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx]
 }

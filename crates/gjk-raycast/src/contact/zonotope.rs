@@ -5,6 +5,7 @@ use convex_support::{Core, CoreKind, Parallelotope, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use crate::body::PointPair;
+use crate::double::{Vec3, array, cross, dot};
 
 /// Edges of two parallelotopes.
 const EDGES: usize = 6;
@@ -69,8 +70,6 @@ const OTHERS: [[[f64; EDGES]; EDGES]; EDGES] = {
     }
     others
 };
-
-type Vec3 = [f64; 3];
 
 /// The difference of two parallelotopes: `center + Σ tₖ·edgesₖ` with all `|tₖ| ≤ 1`, the edges of the first and then of the second.
 ///
@@ -364,22 +363,12 @@ fn span_of_one(e: Vec3) -> Span {
 }
 
 #[inline(always)]
-fn dot(a: Vec3, b: Vec3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
 fn sum(a: Vec3, b: Vec3) -> Vec3 {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 fn length(a: Vec3) -> f64 {
     Float::sqrt(dot(a, a))
-}
-
-#[inline(always)]
-fn cross(a: &Vec3, b: &Vec3) -> Vec3 {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The same with every coordinate right to its last digit but one, however much of the products cancels.
@@ -391,10 +380,6 @@ fn exact_cross(a: &Vec3, b: &Vec3) -> Vec3 {
         (p - q) + (lost_p - lost_q)
     };
     [minor(1, 2), minor(2, 0), minor(0, 1)]
-}
-
-fn array<V: Vector>(v: V) -> Vec3 {
-    core::array::from_fn(|i| if i < V::DIM { v.get(i).as_f64() } else { 0.0 })
 }
 
 fn vector<V: Vector>(a: Vec3) -> V {

@@ -19,6 +19,7 @@ use num_traits::Float;
 
 use super::Frame;
 use crate::body::Pair;
+use crate::double::{Vec3, array, cross, dot};
 
 /// What rounding loses here, in ε of the bound on all lengths: coordinates `4ε` each, products of two `12ε`, sums of seven `6ε`, of both sides.
 const ROUNDING: f64 = 64.0;
@@ -32,8 +33,6 @@ const LARGEST_SKEW: f64 = 1.0 / 1024.0;
 /// A bound on the sum of all lengths, in units of the frame: its size is below two, the centre and the edges of a box together are at most
 /// twice its extent, and in the plane a sheet has a thickness of one.
 const LENGTHS: f64 = 5.0;
-
-type Vec3 = [f64; 3];
 
 /// How two boxes are to one another.
 pub(crate) enum Boxes<V> {
@@ -116,7 +115,7 @@ impl Seen {
             all_meet &= -gap > deep;
         }
         // Those of the second.
-        let products = [cross(f[1], f[2]), cross(f[2], f[0]), cross(f[0], f[1])];
+        let products = [cross(&f[1], &f[2]), cross(&f[2], &f[0]), cross(&f[0], &f[1])];
         let volume = dot(products[0], f[0]).abs();
         for (k, n) in products.iter().enumerate() {
             let [l, m] = [(k + 1) % 3, (k + 2) % 3];
@@ -154,18 +153,4 @@ impl Seen {
         let length = Float::sqrt(dot(along, along));
         Boxes::Apart(V::from_fn(|i| V::Scalar::from_f64(along[i] / length)))
     }
-}
-
-fn array<V: Vector>(v: V) -> Vec3 {
-    core::array::from_fn(|i| if i < V::DIM { v.get(i).as_f64() } else { 0.0 })
-}
-
-#[inline(always)]
-fn dot(a: Vec3, b: Vec3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn cross(a: Vec3, b: Vec3) -> Vec3 {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

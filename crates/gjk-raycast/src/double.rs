@@ -1,0 +1,21 @@
+//! Vectors of either precision by their coordinates, in double precision.
+
+use convex_support::{Scalar, Vector};
+
+/// Three coordinates; in the plane the last is zero.
+pub(crate) type Vec3 = [f64; 3];
+
+/// The coordinates of a vector.
+pub(crate) fn array<V: Vector>(v: V) -> Vec3 {
+    core::array::from_fn(|i| if i < V::DIM { v.get(i).as_f64() } else { 0.0 })
+}
+
+#[inline(always)]
+pub(crate) fn dot(a: Vec3, b: Vec3) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+pub(crate) fn cross(a: &Vec3, b: &Vec3) -> Vec3 {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
