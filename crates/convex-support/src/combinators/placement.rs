@@ -1,9 +1,11 @@
 //! What rounding does to a set that is mapped and moved.
 
+use core::array;
+
 use num_traits::Float as _;
 
 use crate::error::InvalidShape;
-use crate::numerics::bound::{image, raised, raised_vector, roundings};
+use crate::numerics::bound::{image, raised, raised_vector, roundings, roundings_of};
 use crate::numerics::twofold::{dot_minus, lost_in_sum};
 use crate::{Core, Matrix, Rounding, Scalar, Vector};
 
@@ -93,6 +95,31 @@ fn is_signed_unit<S: Scalar>(entries: impl Iterator<Item = S>) -> bool {
     others.next().is_some_and(|entry| num_traits::Float::abs(entry) == S::ONE) && others.next().is_none()
 }
 
+/// Which rows and columns of a matrix are those of `±eⱼ`; `None` where none is.
+struct Exact {
+    rows: Option<[bool; 3]>,
+    columns: Option<[bool; 3]>,
+}
+
+impl Exact {
+    fn of<M: Matrix>(m: &M) -> Self {
+        let dim = M::Vector::DIM;
+        // Hardly a matrix has an entry of zero, unless it is made by hand.
+        if (0..dim).all(|j| m.col(j).abs().min_element() > <M::Vector as Vector>::Scalar::ZERO) {
+            return Self { rows: None, columns: None };
+        }
+        let entry = |i: usize, j: usize| m.col(j).get(i);
+        let rows = array::from_fn(|i| i < dim && is_signed_unit((0..dim).map(|j| entry(i, j))));
+        let columns = array::from_fn(|j| j < dim && is_signed_unit((0..dim).map(|i| entry(i, j))));
+        Self { rows: Some(rows), columns: Some(columns) }
+    }
+}
+
+/// The vector without some of its coordinates.
+fn without<V: Vector>(v: V, left_out: [bool; 3]) -> V {
+    V::from_fn(|i| if left_out[i] { V::Scalar::ZERO } else { v.get(i) })
+}
+
 /// A linear map and a translation, and what is known of their rounding.
 pub(super) struct Placement<'a, V: Vector> {
     pub(super) matrix: &'a V::Matrix,
@@ -118,37 +145,31 @@ impl<V: Vector> Placement<'_, V> {
     /// - what was lost is known to `u` of itself and `16ε²` of the numbers it comes of.
     pub(super) fn image(&self, shape: Rounding<V>, origin: V, length: V::Scalar) -> Rounding<V> {
         let (zero, m) = (V::Scalar::ZERO, self.matrix);
-        let entry = |i: usize, j: usize| m.col(j).get(i);
-        let is_row_exact = |i: usize| is_signed_unit((0..V::DIM).map(|j| entry(i, j)));
-        let is_column_exact = |j: usize| is_signed_unit((0..V::DIM).map(|i| entry(i, j)));
+        let Exact { rows, columns } = Exact::of(m);
 
         let reached = image(m, shape.extent);
         let within = self.scale.map_or(V::Scalar::infinity(), |scale| raised(scale * length));
         let extent = raised_vector(reached.min(V::splat(within)) + self.lost.abs());
-        let turned = V::from_fn(|j| if is_column_exact(j) { zero } else { shape.extent.get(j) });
         let sum = |v: V| (1..V::DIM).fold(v.get(0), |sum, i| sum + v.get(i));
         let moved = roundings(2.0, sum(shape.extent) + sum(shape.error) + sum(origin.abs())) * self.matrix_error;
-        let short = if turned == shape.extent { reached } else { image(m, turned) };
-        let turned_origin = image(m, origin.abs());
-        let placed = turned_origin + self.translation.abs();
-        let squared = V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(16.0);
-        let error = V::from_fn(|i| {
-            let (reached, lost) = (reached.get(i), num_traits::Float::abs(self.lost.get(i)));
-            let mut error = roundings(6.0, short.get(i));
-            if lost != zero {
-                error += roundings(1.0, extent.get(i));
+        let short = match columns {
+            None => reached,
+            Some(is_exact) => image(m, without(shape.extent, is_exact)),
+        };
+        let mut inexact = roundings_of(3.0, reached) + V::splat(moved);
+        if origin != V::ZERO {
+            let turned_origin = image(m, origin.abs());
+            let squared = V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(16.0);
+            inexact += roundings_of(1.0, self.lost.abs()) + (turned_origin + self.translation.abs()) * squared;
+            if self.is_near {
+                inexact += roundings_of(3.0, turned_origin);
             }
-            if !is_row_exact(i) {
-                error += roundings(3.0, reached) + moved;
-                if origin != V::ZERO {
-                    error += roundings(1.0, lost) + squared * placed.get(i);
-                }
-                if self.is_near {
-                    error += roundings(3.0, turned_origin.get(i));
-                }
-            }
-            error
-        });
+        }
+        let mut error = roundings_of(6.0, short) + rows.map_or(inexact, |is_exact| without(inexact, is_exact));
+        if self.lost != V::ZERO {
+            let is_nothing = |i: usize| self.lost.get(i) == zero;
+            error += roundings_of(1.0, without(extent, [is_nothing(0), is_nothing(1), V::DIM > 2 && is_nothing(2)]));
+        }
         // Of a map that keeps lengths, what was wrong before is no longer than it was.
         let (before, length) = match self.scale {
             Some(scale) => (raised(scale * shape.error_length), scale * shape.error_length),

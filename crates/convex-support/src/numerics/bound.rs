@@ -27,7 +27,7 @@ pub fn roundings<S: Scalar>(count: f64, magnitude: S) -> S {
 /// [`roundings`] coordinate by coordinate.
 #[inline]
 pub fn roundings_of<V: Vector>(count: f64, magnitudes: V) -> V {
-    V::from_fn(|i| roundings(count, magnitudes.get(i)))
+    magnitudes * (V::Scalar::from_f64(0.5 * count) * V::Scalar::EPSILON) + least_of(magnitudes)
 }
 
 /// A bound on the coordinates of `matrix·x` for all `x` whose coordinates are at most as large as those of `magnitudes`.
@@ -36,10 +36,11 @@ pub fn image<M: Matrix>(matrix: &M, magnitudes: M::Vector) -> M::Vector {
     if magnitudes == M::Vector::ZERO {
         return magnitudes;
     }
-    M::Vector::from_fn(|i| {
-        let term = |j: usize| product(num_traits::Float::abs(matrix.col(j).get(i)), magnitudes.get(j));
-        (1..M::Vector::DIM).fold(term(0), |sum, j| sum + term(j))
-    })
+    let term = |j: usize| {
+        let (column, magnitude) = (matrix.col(j).abs(), magnitudes.get(j));
+        column * magnitude + column.min(least_of(M::Vector::splat(magnitude)))
+    };
+    (1..M::Vector::DIM).fold(term(0), |sum, j| sum + term(j))
 }
 
 /// A bound that makes up for the rounding of up to 60 operations on non-negative numbers.
@@ -51,5 +52,11 @@ pub fn raised<S: Scalar>(bound: S) -> S {
 /// [`raised`] coordinate by coordinate.
 #[inline]
 pub fn raised_vector<V: Vector>(bounds: V) -> V {
-    V::from_fn(|i| raised(bounds.get(i)))
+    bounds + roundings_of(64.0, bounds)
+}
+
+/// The smallest positive number where a coordinate of `magnitudes` is not zero: no other number is less, so that it is their minimum.
+#[inline]
+fn least_of<V: Vector>(magnitudes: V) -> V {
+    magnitudes.min(V::splat(least()))
 }
