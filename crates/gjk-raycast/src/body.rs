@@ -166,12 +166,6 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pai
     pub(crate) fn of_cores(a: &'a A, b: &'a B, [core_a, core_b]: [Core<A::Vector>; 2]) -> Self {
         Self { a, b, core_a, core_b, hint_a: Hint::new(), hint_b: Hint::new(), per_unit: Scalar::ONE }
     }
-
-    /// The same in the other order.
-    pub(crate) fn swapped(self) -> Pair<'a, B, A> {
-        let Self { a, b, core_a, core_b, hint_a, hint_b, per_unit } = self;
-        Pair { a: b, b: a, core_a: core_b, core_b: core_a, hint_a: hint_b, hint_b: hint_a, per_unit }
-    }
 }
 
 impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_, A, B> {

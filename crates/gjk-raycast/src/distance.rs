@@ -80,7 +80,7 @@ where
     let error = noise + pair.error();
     let near = error * number(NEAR);
     if (length - radius).abs() < near {
-        return touching(&a, &b, None, max_iterations);
+        return touching([&a, &b], [pair.core_a, pair.core_b], None, max_iterations);
     }
     // NaN is left to the search, and so is what is deep.
     if !(length - radius >= near) || max_iterations == 0 {
@@ -158,7 +158,7 @@ where
             && !(options.tolerance > Scalar::ZERO)
             && !(state.lower > search.limit + frame.error);
         let (begun, before) = if is_plain { (Some(&state), 0) } else { (None, state.iterations) };
-        if let Some(answer) = touching(&a, &b, begun, options.max_iterations) {
+        if let Some(answer) = touching([&a, &b], [pair.core_a, pair.core_b], begun, options.max_iterations) {
             return Distance { iterations: before + answer.iterations, ..answer };
         }
     }
@@ -214,17 +214,17 @@ fn apart<V: Vector>(
 #[cold]
 #[inline(never)]
 fn touching<V: Vector>(
-    a: Shape<'_, V>,
-    b: Shape<'_, V>,
+    shapes: [Shape<'_, V>; 2],
+    cores: [Core<V>; 2],
     begun: Option<&Gjk<V, PointPair<V>>>,
     max_iterations: usize,
 ) -> Option<Distance<V>> {
-    let near = near_contact(a, b, begun, max_iterations)?;
+    let near = near_contact(shapes, cores, begun, max_iterations)?;
     let (zero, scale) = (V::Scalar::ZERO, near.frame.scale);
     let overlap = near.overlap();
     // What is in one another by more than an error has a point in common that is nearer to both cores.
     let along = if overlap == Some(true) { None } else { Some(near.normal) };
-    let [point_a, point_b] = surface_points(near.cores, &near.frame, near.points, along);
+    let [point_a, point_b] = surface_points(cores, &near.frame, near.points, along);
     let upper = near.upper.max(zero) * scale;
     Some(Distance {
         distance: (near.gap.max(zero) * scale).min(upper),

@@ -144,7 +144,11 @@ where
         End::Separated if state.lower > frame.radius + frame.error => (false, state.axis.unit(), Status::Converged),
         _ => {
             let is_near = is_near_contact(&mut state, &frame);
-            let near = if is_near { near_contact(&pair.a, &pair.b, None, max_iterations) } else { None };
+            let near = if is_near {
+                near_contact([&pair.a, &pair.b], [pair.core_a, pair.core_b], None, max_iterations)
+            } else {
+                None
+            };
             match near {
                 Some(near) => {
                     iterations += near.iterations;

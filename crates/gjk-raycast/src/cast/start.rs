@@ -99,7 +99,7 @@ enum Way<V: Vector> {
 #[inline(never)]
 fn start<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iterations: usize) -> Start<V> {
     let zero = V::Scalar::ZERO;
-    let Some(near) = near_contact(a, b, None, max_iterations) else {
+    let Some(near) = near_contact([a, b], [a.core(), b.core()], None, max_iterations) else {
         let spot = Spot { source: V::ZERO, points: PointPair::default(), scale: V::Scalar::ONE };
         return Start { way: Way::Unknown, spot, iterations: 0 };
     };
@@ -250,7 +250,7 @@ fn after_hit<V: Vector>(
     let unknown = AfterHit { latest: Float::infinity(), iterations: 0 };
     let step = direction * lambda;
     let Ok(there) = Posed::translated(b, step) else { return unknown };
-    let Some(near) = near_contact(a, &there, None, max_iterations) else { return unknown };
+    let Some(near) = near_contact([a, &there], [a.core(), there.core()], None, max_iterations) else { return unknown };
     let mut iterations = near.iterations;
     // The step and the direction are rounded, coordinate by coordinate.
     let astray = roundings(8.0, step.norm());

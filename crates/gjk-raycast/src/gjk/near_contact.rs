@@ -7,8 +7,8 @@
 //! The search begins at the offset of the origins, whatever axis the query began at, and the [larger body comes first](super::order).
 //! So all queries about one pair decide alike.
 
-use convex_support::numerics::bound::{raised, raised_vector, roundings};
-use convex_support::numerics::twofold::{dot_minus, lost_in_sum, two_sum};
+use convex_support::numerics::bound::{raised, raised_vector, roundings, roundings_of};
+use convex_support::numerics::twofold::{dot_minus, lost_in_sum};
 use convex_support::{Core, Rounding, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
@@ -23,13 +23,12 @@ pub(crate) const NEAR: f64 = 16.0;
 /// Whether bodies may be nearer to contact than a few errors, as a search has left them.
 #[inline(always)]
 pub(crate) fn is_near_contact<V: Vector, W: Copy + Default>(state: &mut Gjk<V, W>, frame: &Frame<V>) -> bool {
-    let near = frame.error * V::Scalar::from_f64(NEAR);
     if state.simplex.points().len() > V::DIM {
         // A simplex of full dimension has zero inside, perhaps by rounding.
-        return !is_around_zero(state.simplex.points(), near);
+        return !is_around_zero(state.simplex.points(), frame.error * V::Scalar::from_f64(2.0));
     }
     state.ensure_measured();
-    (state.length - frame.radius).abs() < near
+    (state.length - frame.radius).abs() < frame.error * V::Scalar::from_f64(NEAR)
 }
 
 /// A shape behind a pointer.
@@ -38,7 +37,6 @@ type PairOfAny<'s, V> = Pair<'s, dyn SupportMap<Vector = V> + 's, dyn SupportMap
 
 /// What is known of bodies near contact; lengths in units of the frame, from body to body.
 pub(crate) struct NearContact<V: Vector> {
-    pub(crate) cores: [Core<V>; 2],
     pub(crate) frame: Frame<V>,
     /// The points of the cores closest to one another, and how far apart they are as they are measured.
     pub(crate) points: PointPair<V>,
@@ -52,7 +50,8 @@ pub(crate) struct NearContact<V: Vector> {
     pub(crate) lower: V::Scalar,
     /// Points of the bodies are no farther apart than this.
     pub(crate) upper: V::Scalar,
-    /// Whether the bodies have points in common for certain: a simplex of points of their difference has zero inside.
+    /// Whether the bodies have points in common for certain: a simplex of points of their difference has zero inside. Then no plane is
+    /// between them, and `gap` and `lower` are infinitely deep.
     pub(crate) overlaps_certainly: bool,
 }
 
@@ -74,9 +73,8 @@ impl<V: Vector> NearContact<V> {
 
     /// The same, of the bodies in the other order.
     fn reversed(self) -> Self {
-        let [core_a, core_b] = self.cores;
         let frame = Frame { offset: -self.frame.offset, ..self.frame };
-        Self { cores: [core_b, core_a], frame, points: self.points.reversed(), normal: -self.normal, ..self }
+        Self { frame, points: self.points.reversed(), normal: -self.normal, ..self }
     }
 }
 
@@ -85,82 +83,54 @@ impl<V: Vector> NearContact<V> {
 /// A search that is over may have begun where all do: with the bodies [in order](super::InOrder), without an axis of its own, and to
 /// no tolerance but the noise. Then what it came to is gone on with, and else it is made once more.
 ///
-/// The bodies are set up anew, so that a query that does not come here keeps what it needs in registers; and they are asked behind
-/// pointers, so that what is rarely needed is compiled once.
+/// The bodies are asked behind pointers, so that what is rarely needed is compiled once.
 #[cold]
 #[inline(never)]
 pub(crate) fn near_contact<V: Vector>(
-    a: Shape<'_, V>,
-    b: Shape<'_, V>,
+    [a, b]: [Shape<'_, V>; 2],
+    [core_a, core_b]: [Core<V>; 2],
     begun: Option<&Gjk<V, PointPair<V>>>,
     max_iterations: usize,
 ) -> Option<NearContact<V>> {
-    let pair = Pair::new(a, b);
-    if comes_first(&pair.core_b, &pair.core_a) {
+    if comes_first(&core_b, &core_a) {
         let begun = begun.map(|&begun| Gjk { simplex: begun.simplex.made_of(PointPair::reversed), ..begun });
-        look(pair.swapped(), begun, max_iterations).map(NearContact::reversed)
+        look(Pair::of_cores(b, a, [core_b, core_a]), begun.as_ref(), max_iterations).map(NearContact::reversed)
     } else {
-        look(pair, begun.copied(), max_iterations)
+        look(Pair::of_cores(a, b, [core_a, core_b]), begun, max_iterations)
     }
 }
 
 /// The same for bodies that are in order.
 fn look<V: Vector>(
     mut pair: PairOfAny<'_, V>,
-    begun: Option<Gjk<V, PointPair<V>>>,
+    begun: Option<&Gjk<V, PointPair<V>>>,
     max_iterations: usize,
 ) -> Option<NearContact<V>> {
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
     let seen = Seen::new(&pair, &frame);
-    let (mut state, are_closest) = match begun {
-        Some(begun) => (begun, false),
-        None => begin(&pair, &frame, size, max_iterations),
-    };
-    let known = if are_closest && max_iterations > 0 { seen.plane_of_closest(&mut pair, &state) } else { None };
-    let (end, Plane { n, level, error }, length) = match known {
-        Some((plane, length)) => {
-            state.iterations += 1;
-            (End::Separated, plane, length)
-        }
-        None => {
-            let (end, plane, pierced) = seen.search(&mut state, &mut pair, &frame, max_iterations)?;
-            (end, plane, seen.length(&state).min(pierced))
-        }
-    };
-    let gap = level - frame.radius;
-    let upper = length - frame.radius + roundings(2.0, frame.radius);
-    let overlaps_certainly = is_around_zero(state.simplex.points(), seen.error_of_corners());
-    let (lower, upper) = (gap - error, upper.max(gap - error));
-    let (points, length, iterations) = (state.simplex.weighted_witness(), state.length, state.iterations);
-    let cores = [pair.core_a, pair.core_b];
-    Some(NearContact {
-        cores,
-        frame,
-        points,
-        length,
-        end,
-        iterations,
-        normal: n,
-        gap,
-        lower,
-        upper,
-        overlaps_certainly,
-    })
+    if begun.is_none()
+        && max_iterations > 0
+        && let Some(points) = pair.closest_points(offset, size)
+        && let Some(known) = seen.between_closest(&mut pair, &frame, points)
+    {
+        return Some(known);
+    }
+    seen.search(&mut pair, &frame, begun, size, max_iterations)
 }
 
-/// GJK from the closest points, where they are known in closed form, or from the offset of the origins to the noise; and which of the two.
+/// GJK from the closest points, where they are known in closed form, or from the offset of the origins to the noise.
 fn begin<V: Vector>(
     pair: &PairOfAny<'_, V>,
     frame: &Frame<V>,
     size: V::Scalar,
     max_iterations: usize,
-) -> (Gjk<V, PointPair<V>>, bool) {
+) -> Gjk<V, PointPair<V>> {
     let first = first_direction(None, frame.offset);
     let mut state = Gjk::new(first);
     match state.begin_at_closest(pair, frame, size) {
-        Some(false) => return (state, true),
+        Some(false) => {}
         // Where they meet, the vector from one to the other is no direction to look along.
         Some(true) => state = Gjk::new(first),
         None => {
@@ -170,7 +140,7 @@ fn begin<V: Vector>(
             gjk(&mut state, &mut pair, *frame, GjkOptions::new(first, max_iterations), None, |_| {});
         }
     }
-    (state, false)
+    state
 }
 
 /// Goes on with GJK to a sixteenth of the noise.
@@ -180,12 +150,9 @@ fn go_on<V: Vector>(
     frame: &Frame<V>,
     max_iterations: usize,
 ) -> End {
-    state.ensure_measured();
-    // A simplex with zero inside is never left, nor is zero itself.
-    let is_over = state.simplex.points().len() > V::DIM || state.length <= Scalar::ZERO;
     let frame = Frame { noise: frame.noise * Scalar::from_f64(0.0625), ..*frame };
     let options = GjkOptions::new(state.normal, max_iterations);
-    let end = if is_over { End::Overlap } else { gjk(state, pair, frame, options, None, |_| {}) };
+    let end = gjk(state, pair, frame, options, None, |_| {});
     state.ensure_measured();
     end
 }
@@ -196,6 +163,55 @@ struct Plane<V: Vector> {
     /// How far it is from zero, and what that is wrong by at most.
     level: V::Scalar,
     error: V::Scalar,
+}
+
+impl<V: Vector> Plane<V> {
+    /// Whether the plane is certainly farther from zero than this.
+    fn is_beyond(&self, radius: V::Scalar) -> bool {
+        self.level - self.error > radius
+    }
+
+    /// Whether the plane is as far as points of the difference are, to what both are wrong by.
+    fn meets(&self, upper: V::Scalar) -> bool {
+        upper <= self.level + self.error * V::Scalar::from_f64(2.0)
+    }
+}
+
+/// Where a search has ended.
+struct Found<V: Vector> {
+    end: End,
+    iterations: usize,
+    points: PointPair<V>,
+    length: V::Scalar,
+}
+
+impl<V: Vector> Found<V> {
+    /// The answer by a plane, and a bound on how far from one another the closest points of the cores are.
+    fn near_contact(self, frame: &Frame<V>, &Plane { n, level, error }: &Plane<V>, upper: V::Scalar) -> NearContact<V> {
+        let Self { end, iterations, points, length } = self;
+        let gap = level - frame.radius;
+        let lower = gap - error;
+        let upper = (upper - frame.radius + roundings(2.0, frame.radius)).max(lower);
+        let (normal, overlaps_certainly) = (n, false);
+        NearContact { frame: *frame, points, length, end, iterations, normal, gap, lower, upper, overlaps_certainly }
+    }
+}
+
+/// The answer of a search that has ended at a simplex with zero inside for certain: no plane is between the bodies.
+fn overlapping<V: Vector>(state: &Gjk<V, PointPair<V>>, frame: &Frame<V>) -> NearContact<V> {
+    let (zero, below) = (V::Scalar::ZERO, -V::Scalar::infinity());
+    NearContact {
+        frame: *frame,
+        points: state.simplex.weighted_witness(),
+        length: zero,
+        end: End::Overlap,
+        iterations: state.iterations,
+        normal: state.axis.unit().unwrap_or_else(|| Vector::axis(0)),
+        gap: below,
+        lower: below,
+        upper: zero,
+        overlaps_certainly: true,
+    }
 }
 
 /// What positions are computed from, coordinate by coordinate, in units of the frame.
@@ -240,46 +256,80 @@ impl<V: Vector> Seen<V> {
         dot_minus(parts, V::Scalar::ZERO)
     }
 
-    /// The plane across the vector between the closest points of both cores, and a bound on its length, where the two meet to what they are
-    /// wrong by and are beyond the radii: then there is nothing to search.
-    fn plane_of_closest(
+    /// What the points of both cores closest to one another tell, where the plane across the vector between them meets that to what
+    /// both are wrong by and is beyond the radii: then there is nothing to search.
+    fn between_closest(
         &self,
-        pair: &mut PairOfAny<'_, V>,
-        state: &Gjk<V, PointPair<V>>,
-    ) -> Option<(Plane<V>, V::Scalar)> {
-        let plane = self.plane(pair, state.normal)?;
-        let length = self.length(state);
-        let is_closed = length <= plane.level + plane.error * V::Scalar::from_f64(2.0);
-        (is_closed && plane.level > self.radius).then_some((plane, length))
-    }
-
-    /// GJK, and the best plane that it leads to; with a bound on the distance of the bodies from the face that the line across it pierces.
-    fn search(
-        &self,
-        state: &mut Gjk<V, PointPair<V>>,
         pair: &mut PairOfAny<'_, V>,
         frame: &Frame<V>,
+        points: PointPair<V>,
+    ) -> Option<NearContact<V>> {
+        let v = points.a - points.b + self.offset;
+        let plane = self.plane(pair, v)?;
+        let upper = self.length_between(points);
+        let is_known = plane.meets(upper) && plane.level > self.radius;
+        let found = Found { end: End::Separated, iterations: 1, points, length: v.norm() };
+        is_known.then(|| found.near_contact(frame, &plane, upper))
+    }
+
+    /// What GJK comes to, as it was begun or from where all queries begin.
+    fn search(
+        &self,
+        pair: &mut PairOfAny<'_, V>,
+        frame: &Frame<V>,
+        begun: Option<&Gjk<V, PointPair<V>>>,
+        size: V::Scalar,
         max_iterations: usize,
-    ) -> Option<(End, Plane<V>, V::Scalar)> {
-        let begun = *state;
-        let end = go_on(state, pair, frame, max_iterations);
-        let mut best = self.best_plane(pair, state);
+    ) -> Option<NearContact<V>> {
+        let mut state = match begun {
+            Some(&begun) => begun,
+            None => begin(pair, frame, size, max_iterations),
+        };
+        state.ensure_measured();
+        if is_around_zero(state.simplex.points(), self.error_of_corners()) {
+            return Some(overlapping(&state, frame));
+        }
+        let before = self.best_plane(pair, &state);
+        let is_settled = |(plane, upper): &(Plane<V>, V::Scalar)| plane.meets(*upper) && plane.level > self.radius;
+        if before.as_ref().is_some_and(is_settled) {
+            return before.map(|found| self.found(&state, End::Separated, frame, found));
+        }
+        // A simplex of full dimension is never left, nor is zero itself.
+        if state.simplex.points().len() > V::DIM || state.length <= Scalar::ZERO {
+            return before.map(|found| self.found(&state, End::Overlap, frame, found));
+        }
+        let begun = state;
+        let end = go_on(&mut state, pair, frame, max_iterations);
+        if is_around_zero(state.simplex.points(), self.error_of_corners()) {
+            return Some(overlapping(&state, frame));
+        }
+        let mut best = self.best_plane(pair, &state);
         // Within rounding a search may go astray, and end around zero, or where no plane is as far as its points.
         let is_doubtful =
             |(best, _): &(Plane<V>, _)| best.level <= frame.radius || best.level + best.error < state.length;
         if best.as_ref().is_none_or(is_doubtful) {
-            let certain = |best: &(Plane<V>, V::Scalar)| best.0.level - best.0.error;
-            let before = self.best_plane(pair, &begun);
+            let certain = |(best, _): &(Plane<V>, _)| best.level - best.error;
             if before.as_ref().map(certain) > best.as_ref().map(certain) {
-                (*state, best) = (Gjk { iterations: state.iterations, ..begun }, before);
-                state.ensure_measured();
+                (state, best) = (Gjk { iterations: state.iterations, ..begun }, before);
             }
         }
-        best.map(|(plane, pierced)| (end, plane, pierced))
+        best.map(|found| self.found(&state, end, frame, found))
+    }
+
+    /// What a search has come to, with the best plane and a bound on the length of the shortest vector.
+    fn found(
+        &self,
+        state: &Gjk<V, PointPair<V>>,
+        end: End,
+        frame: &Frame<V>,
+        (plane, upper): (Plane<V>, V::Scalar),
+    ) -> NearContact<V> {
+        let points = state.simplex.weighted_witness();
+        Found { end, iterations: state.iterations, points, length: state.length }.near_contact(frame, &plane, upper)
     }
 
     /// The plane that is farthest from zero for certain, of those across the faces that a search has ended at, and across its last two
-    /// directions; and a bound on the distance of the bodies from the face that the line across the plane pierces. Where the two meet,
+    /// directions; and a bound on the length of the shortest vector found. Where the line across a plane pierces the face that is as far,
     /// no other plane is looked at.
     fn best_plane<A, B>(&self, pair: &mut Pair<'_, A, B>, state: &Gjk<V, PointPair<V>>) -> Option<(Plane<V>, V::Scalar)>
     where
@@ -293,23 +343,28 @@ impl<V: Vector> Seen<V> {
         }
         let faces = across_faces(&pairs[..points.len()], state.axis);
         let normal = Some(state.normal).filter(|&n| n != state.axis);
-        let mut best: Option<(Plane<V>, V::Scalar)> = None;
+        let (mut best, mut length): (Option<Plane<V>>, Option<V::Scalar>) = (None, None);
+        let mut upper = V::Scalar::infinity();
         for n in faces.chain(normal).chain([state.axis]) {
-            let certain = best.as_ref().map_or(-V::Scalar::infinity(), |(best, _)| best.level - best.error);
+            let certain = best.as_ref().map_or(-V::Scalar::infinity(), |best| best.level - best.error);
             if self.may_be_beyond(n, points, certain)
                 && let Some(plane) = self.plane(pair, n)
                 && (best.is_none() || plane.level - plane.error > certain)
             {
-                let pierced = self.length_at_pierced(state, plane.n);
+                upper = upper.min(self.length_at_pierced(state, plane.n));
                 // The face's corners are as far along `n` as the support point: what is left between the bounds is their error.
-                let is_closed = pierced <= plane.level + plane.error * V::Scalar::from_f64(1.0625);
-                best = Some((plane, pierced));
+                let is_of_face = upper <= plane.level + plane.error * V::Scalar::from_f64(1.0625);
+                if !is_of_face {
+                    upper = upper.min(*length.get_or_insert_with(|| self.length(state)));
+                }
+                let is_closed = is_of_face || plane.meets(upper) && plane.is_beyond(self.radius);
+                best = Some(plane);
                 if is_closed {
                     break;
                 }
             }
         }
-        best
+        best.map(|plane| (plane, upper))
     }
 
     /// Whether a plane across `n` that supports the difference may be certain to be farther than `level` from zero: it is no farther
@@ -335,32 +390,45 @@ impl<V: Vector> Seen<V> {
         level.is_finite().then(|| Plane { n, level, error: raised(self.error_along(n) + rounded) })
     }
 
-    /// A bound on the length of the shortest vector found.
-    ///
-    /// With `x = Σ wᵢ·(aᵢ − bᵢ) + offset` and `u` the unit vector along it, the true vector is `x` but for some `e`. Along `u` that adds
-    /// `|u|·|e|`, taken coordinate by coordinate, and across it hardly anything: the length is at most `√(p² + |e|²)` with
-    /// `p = |x| + |u|·|e|`, which is `p + |e|²/(p + √(p² + |e|²))`.
+    /// A bound on the length of the shortest vector found, `Σ wᵢ·(aᵢ − bᵢ + offset) / Σ wᵢ`: whatever the weights, that is a vector of the
+    /// difference. Its coordinates are added up in twice the precision.
     fn length(&self, state: &Gjk<V, PointPair<V>>) -> V::Scalar {
-        let zero = V::Scalar::ZERO;
-        let (mut sum, mut x) = (zero, V::ZERO);
-        for (weight, PointPair { a, b }) in state.simplex.weighted() {
+        let mut sum = V::Scalar::ZERO;
+        for (weight, _) in state.simplex.weighted() {
             sum += weight;
-            x += (a - b) * weight;
         }
-        let x = x / sum + self.offset;
-        // Differences, products, sums, what the weights sum up to, and the quotient: 11 roundings.
-        // Of a single pair of points it is known what the two sums lose.
-        let mut pairs = state.simplex.weighted().map(|(_, pair)| pair);
-        let rounded = match (pairs.next(), pairs.next()) {
-            (Some(PointPair { a, b }), None) => V::from_fn(|i| {
-                let [apart, lost] = two_sum(a.get(i), -b.get(i));
-                let [_, lost_again] = two_sum(apart, self.offset.get(i));
-                lost.abs() + lost_again.abs()
-            }),
-            _ => V::from_fn(|i| roundings(11.0, self.extent.get(i))),
-        };
-        let error = self.error + rounded + self.lost.abs();
-        let across = raised(error.norm().min(self.error_length + (rounded + self.lost.abs()).norm()));
+        let x = V::from_fn(|i| {
+            let parts = state.simplex.weighted().flat_map(|(weight, PointPair { a, b })| {
+                [a, -b, self.offset, self.lost].map(|part| (weight, part.get(i)))
+            });
+            dot_minus(parts, V::Scalar::ZERO)
+        });
+        let x = x / sum;
+        // What the weights sum up to is right to three roundings, and to one each the sum of the products and the quotient.
+        self.length_of(x, roundings_of(5.0, x.abs()) + self.rounded_twice())
+    }
+
+    /// What sums of up to 16 products lose that are added up in twice the precision, beside one rounding of the sum: 17² quarters of `ε²`.
+    fn rounded_twice(&self) -> V {
+        self.extent * (V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(128.0))
+    }
+
+    /// The same of the vector between two points, of which it is known what the two sums lose.
+    fn length_between(&self, PointPair { a, b }: PointPair<V>) -> V::Scalar {
+        let apart = a - b;
+        let lost = lost_in_sum(a, -b).abs() + lost_in_sum(apart, self.offset).abs();
+        self.length_of(apart + self.offset, lost + self.lost.abs())
+    }
+
+    /// A bound on the length of a vector `x` of the difference, which rounding has moved by no more than `rounded`, coordinate by
+    /// coordinate, beside what its points are wrong by.
+    ///
+    /// With `u` the unit vector along it, the true vector is `x` but for some `e`. Along `u` that adds `|u|·|e|`, taken coordinate by
+    /// coordinate, and across it hardly anything: the length is at most `√(p² + |e|²)` with `p = |x| + |u|·|e|`, which is
+    /// `p + |e|²/(p + √(p² + |e|²))`.
+    fn length_of(&self, x: V, rounded: V) -> V::Scalar {
+        let error = self.error + rounded;
+        let across = raised(error.norm().min(self.error_length + rounded.norm()));
         let along = x.unit().map_or(across, |u| u.abs().dot(error));
         // The length itself is right to 3 roundings, and the sum to one: what is beside it is raised alone.
         let norm = x.norm();
@@ -419,29 +487,37 @@ impl<V: Vector> Seen<V> {
     }
 }
 
-/// Whether zero is in the simplex of some points, even if each is wrong by an error.
+/// Whether zero is in the simplex of some points, even if each is wrong by an error, which is at least `8ε` of the longest.
 ///
-/// It is where it has the same orientation with each face as the corner opposite. That is the sign of a determinant, which an error
-/// of the corners changes by no more than its product with the squared size, once for each corner.
+/// It is where it has the same orientation with each face as the corner opposite. That is the sign of a determinant, of which an error `e`
+/// of each corner changes no more than `e·Σ(|q| + e)(|r| + e)` over the pairs of corners of the face; in the plane `e·Σ(|q| + e)`. As it
+/// is computed, it loses no more than as much again.
 fn is_around_zero<V: Vector>(points: &[V], error: V::Scalar) -> bool {
-    // The squared size.
-    let squared = points.iter().fold(error * error, |squared, p| squared.max(p.length_squared()));
-    let wrong = error * V::Scalar::from_f64(4.5);
+    let length = |p: V| p.length() + error;
+    let twice = error * V::Scalar::from_f64(2.0);
+    let mut sides = (0, 0);
+    let mut sees = |determinant: V::Scalar, wrong: V::Scalar| {
+        sides.0 += usize::from(determinant > wrong);
+        sides.1 += usize::from(determinant < -wrong);
+    };
     match *points {
         [p, q, r] if V::DIM == 2 => {
-            let area = |p: V, q: V| p.get(0) * q.get(1) - p.get(1) * q.get(0);
-            let areas = [area(p, q), area(q, r), area(r, p)];
-            let wrong = wrong * squared.sqrt();
-            areas.iter().all(|&a| a > wrong) || areas.iter().all(|&a| a < -wrong)
+            for [p, q] in [[p, q], [q, r], [r, p]] {
+                sees(p.get(0) * q.get(1) - p.get(1) * q.get(0), twice * (length(p) + length(q)));
+            }
         }
         [p, q, r, s] => {
             let (pq, rs) = (cross(p, q), cross(r, s));
-            let volumes = [q.dot(rs), -p.dot(rs), s.dot(pq), -r.dot(pq)];
-            let wrong = wrong * squared;
-            volumes.iter().all(|&v| v > wrong) || volumes.iter().all(|&v| v < -wrong)
+            let [lp, lq, lr, ls] = [p, q, r, s].map(length);
+            let (sum_pq, sum_rs, product_pq, product_rs) = (lp + lq, lr + ls, lp * lq, lr * ls);
+            sees(q.dot(rs), twice * (product_rs + lq * sum_rs));
+            sees(-p.dot(rs), twice * (product_rs + lp * sum_rs));
+            sees(s.dot(pq), twice * (product_pq + ls * sum_pq));
+            sees(-r.dot(pq), twice * (product_pq + lr * sum_pq));
         }
-        _ => false,
+        _ => return false,
     }
+    sides.0.max(sides.1) == V::DIM + 1
 }
 
 /// Vectors across the faces that the points of a simplex span, as they follow from the points of both shapes: what is exact about their
