@@ -28,7 +28,7 @@ type Hull = Polytope<DVec3>;
 
 /// Rows that stand for the rest: polytopes, smooth and rounded bodies, small and large, known and behind `dyn`, in space and
 /// in the plane, each kind of query. Only their shapes are compiled.
-const ROWS: [Row; 23] = [
+const ROWS: [Row; 24] = [
     ("ray_cast/cuboid", || ray_cast::<Block>("cuboid")),
     ("ray_cast/hull1024", || ray_cast::<Hull>("hull1024")),
     ("linear_cast/hull64-hull64", || linear_cast::<Hull, Hull>("hull64-hull64")),
@@ -56,6 +56,7 @@ const ROWS: [Row; 23] = [
     ("near_contact/ball-cuboid-f32", || near_contact::<Ball<Vec3A>, Cuboid<Vec3A>>("ball-cuboid")),
     ("near_contact/cuboid-cuboid-f32", || near_contact::<Cuboid<Vec3A>, Cuboid<Vec3A>>("cuboid-cuboid")),
     ("near_contact/hull64-hull64-f32", || near_contact::<Polytope<Vec3A>, Polytope<Vec3A>>("hull64-hull64")),
+    ("intersect/hull64-hull64-f32", || intersect::<Polytope<Vec3A>, Polytope<Vec3A>>("hull64-hull64")),
 ];
 
 fn rays(name: &str, solver: impl Fn(RayCasts<'_>, &Shape) -> Solver) -> Solver {
