@@ -51,6 +51,8 @@ impl<V: Vector> Core<V> {
 pub enum CoreKind<V> {
     /// A single point, relative to the origin: a ball that meets a set with a closest point needs no iteration.
     Point(V),
+    /// The segment from `−h` to `h`, relative to the origin: two of these meet without an iteration.
+    Segment(V),
     /// A polytope, whose support point jumps from vertex to vertex and does not move in between: its Hessian is always zero.
     Polytope,
     /// Anything else.
@@ -65,6 +67,19 @@ impl<V> CoreKind<V> {
             (Self::Point(a), Self::Point(b)) => Self::Point(points(a, b)),
             (Self::Curved, _) | (_, Self::Curved) => Self::Curved,
             _ => Self::Polytope,
+        }
+    }
+}
+
+impl<V: Vector> CoreKind<V> {
+    /// The kind of the core's image under a linear map, moved by what the rounding of the origin lost.
+    #[inline(always)]
+    pub(crate) fn image(self, map: impl FnOnce(V) -> V, lost: V) -> Self {
+        match self {
+            Self::Point(at) => Self::Point(map(at) + lost),
+            Self::Segment(half) if lost == V::ZERO => Self::Segment(map(half)),
+            Self::Segment(_) => Self::Polytope,
+            kind => kind,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use convex_support::{Core, CoreKind, Crossing, Hint, LineCrossing, Scalar, SupportMap, Vector};
 
+use crate::segments;
 use crate::symmetric::Symmetric;
 use crate::unit::{is_moderate, reciprocal_of_power};
 
@@ -176,7 +177,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
     }
 
     /// Points of the cores that are closest to one another, in units of the scale, where one core is a point and the other
-    /// says its closest one. For bodies of the given [size](Self::size) whose origins differ by `offset`, both in the world's unit.
+    /// says its closest one, or both are segments. For bodies of the given [size](Self::size) whose origins differ by `offset`, both in the world's unit.
     #[inline(always)]
     pub(crate) fn closest_points(
         &self,
@@ -186,10 +187,23 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
         let (a, b) = match (self.core_a.kind, self.core_b.kind) {
             (CoreKind::Point(a), _) => (a, self.b.core_closest_point(a + offset)?),
             (_, CoreKind::Point(b)) => (self.a.core_closest_point(b - offset)?, b),
+            (CoreKind::Segment(u), CoreKind::Segment(w)) => segments::closest_points(u, w, offset),
             _ => return None,
         };
         // What closed forms compute of larger or smaller numbers may have left the range of the scalar.
         is_moderate(size).then(|| PointPair { a: a * self.per_unit, b: b * self.per_unit })
+    }
+
+    /// A vector along the normal of the plane between the [closest points](Self::closest_points), which is `v` from the one to the other
+    /// but for rounding.
+    #[inline(always)]
+    pub(crate) fn normal_between(&self, PointPair { a, b }: PointPair<A::Vector>, v: A::Vector) -> A::Vector {
+        match (self.core_a.kind, self.core_b.kind) {
+            (CoreKind::Segment(u), CoreKind::Segment(w)) => {
+                segments::normal_between([u * self.per_unit, w * self.per_unit], [a, b], v)
+            }
+            _ => v,
+        }
     }
 }
 

@@ -120,6 +120,7 @@ mod ray_casts;
 mod ray_exit;
 mod result;
 mod scene;
+mod segments;
 mod simplex;
 mod start_in_contact;
 mod symmetric;

@@ -1,9 +1,11 @@
-//! Where one core is a point and the other says its closest one, that is where a descent begins, and mostly ends.
+//! Where one core is a point and the other says its closest one, or both are segments, that is where a descent begins, and mostly ends.
 
 use crate::common::{Plain, Quaternion, at, cuboid, s, turned, ulps, v};
 use convex_support::glam::{DVec2, DVec3, Vec3A};
-use convex_support::{Ball, Capsule, Cone, Cylinder, Ellipsoid, Point, Rounded, Segment, SupportMap, Triangle};
-use gjk_raycast::{DistanceOptions, IntersectOptions, Status, distance, intersects};
+use convex_support::{Ball, Capsule, Cone, Cylinder, Ellipsoid, Point, Rounded, Scalar, Segment, SupportMap, Triangle};
+use gjk_raycast::{
+    DistanceOptions, IntersectOptions, SignedDistanceOptions, Status, distance, intersects, signed_distance,
+};
 use num_traits::Float as _;
 
 const VALID: &str = "positive sizes";
@@ -68,6 +70,37 @@ fn a_ball_needs_one_support_point() {
                 assert_eq!(meeting.decided(), Some(found.overlap), "{what}");
                 assert!(meeting.iterations <= 2, "{what}: {meeting:?}");
             }
+        }
+    }
+    run::<DVec3>();
+    run::<Vec3A>();
+}
+
+/// Two capsules, posed all around one another, beside ones whose closed forms nobody knows: across, parallel, nearly parallel and as short
+/// as balls.
+#[test]
+fn two_capsules_need_one_too() {
+    fn run<V: Quaternion>() {
+        let turns = [[0.0, 0.0, 0.0, 1.0], [1e-7, 0.0, 0.0, 1.0], [0.3, 0.2, -0.4, 0.8], [0.7, 0.0, 0.1, 0.7]];
+        let capsules = [(1.0, 0.25), (0.5, 0.03), (1e-6, 0.3)];
+        for (turn, (centre, (half_height, radius))) in
+            centres().enumerate().map(|(i, centre)| (turns[i % 4], (centre, capsules[i % 3])))
+        {
+            let fixed =
+                turned(Capsule::<V>::new(s::<V>(1.0), s::<V>(0.25)).expect(VALID), V::quaternion(turns[2]), [0.0; 3]);
+            let body = Capsule::<V>::new(s::<V>(half_height), s::<V>(radius)).expect(VALID);
+            let body = turned(body, V::quaternion(turn), centre);
+            let found = distance(&fixed, &body, DistanceOptions::default());
+            let other = distance(&Plain(&fixed), &Plain(&body), DistanceOptions::default());
+            let signed = signed_distance(&fixed, &body, SignedDistanceOptions::default());
+            let meeting = intersects(&fixed, &body, IntersectOptions::default());
+            let what = format!("{body:?}: {found:?}, {other:?}, {signed:?}");
+            assert!(found.lower <= other.upper && other.lower <= found.upper, "{what}");
+            assert!(signed.lower <= found.upper && found.lower <= signed.upper.max(V::Scalar::ZERO), "{what}");
+            assert_eq!((found.overlap, found.status), (other.overlap, Status::Converged), "{what}");
+            assert_eq!(meeting.decided(), Some(found.overlap), "{what}");
+            let is_apart = found.lower > V::Scalar::ZERO;
+            assert!(!is_apart || found.iterations == 1 && signed.iterations == 1, "{what}");
         }
     }
     run::<DVec3>();

@@ -103,11 +103,8 @@ impl<S: SupportMap> SupportMap for Affine<S> {
     #[inline(always)]
     fn core(&self) -> Core<S::Vector> {
         let Core { origin, radius, rolling_radius, extent, kind, .. } = self.shape.core();
-        let kind = match kind {
-            _ if self.swept > ScalarOf::<S>::ZERO => CoreKind::Curved,
-            CoreKind::Point(at) => CoreKind::Point(self.matrix * at + self.lost),
-            kind => kind,
-        };
+        let is_swept = self.swept > ScalarOf::<S>::ZERO;
+        let kind = if is_swept { CoreKind::Curved } else { kind.image(|v| self.matrix * v, self.lost) };
         let (extent, radius) = match self.scale {
             Some(scale) => (scale * extent, scale * radius),
             // |M·x| and every product in it are bounded by the Frobenius norm of M times |x|.

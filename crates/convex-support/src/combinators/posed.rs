@@ -9,8 +9,8 @@ use crate::numerics::bound::roundings;
 use crate::numerics::twofold::lost_in_sum;
 use crate::support::ScalarOf;
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, Matrix, Parallelotope, Rotation, Rounding, Scalar,
-    SupportMap, Vector,
+    CertainCrossing, Core, Feature, Hint, LineCrossing, Matrix, Parallelotope, Rotation, Rounding, Scalar, SupportMap,
+    Vector,
 };
 
 /// The image `R·C + t` of a shape under a rotation and then a translation.
@@ -173,10 +173,7 @@ impl<S: SupportMap> SupportMap for Posed<S> {
             origin: self.rotation * core.origin + self.translation,
             extent: core.extent + self.lost.abs().max_element() * Scalar::from_f64(2.0),
             error: self.error,
-            kind: match core.kind {
-                CoreKind::Point(at) => CoreKind::Point(self.rotation * at + self.lost),
-                kind => kind,
-            },
+            kind: core.kind.image(|v| self.rotation * v, self.lost),
             ..core
         }
     }

@@ -1,7 +1,7 @@
 //! A shape mirrored through zero.
 
 use crate::support::ScalarOf;
-use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, SupportMap};
+use crate::{Core, Feature, Hint, LineCrossing, Parallelotope, Rounding, SupportMap, Vector};
 
 /// The set `−C = { −x : x ∈ C }`: what a difference adds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,8 +23,7 @@ impl<S: SupportMap> SupportMap for Reflected<S> {
     #[inline(always)]
     fn core(&self) -> Core<S::Vector> {
         let core = self.0.core();
-        let kind = if let CoreKind::Point(at) = core.kind { CoreKind::Point(-at) } else { core.kind };
-        Core { origin: -core.origin, kind, ..core }
+        Core { origin: -core.origin, kind: core.kind.image(|v| -v, Vector::ZERO), ..core }
     }
 
     #[inline(always)]

@@ -69,7 +69,7 @@ impl<V: Vector> SupportMap for Capsule<V> {
             rolling_radius: V::Scalar::ZERO,
             extent: self.half_height,
             error: V::Scalar::ZERO,
-            kind: CoreKind::Polytope,
+            kind: CoreKind::Segment(V::axis(1) * self.half_height),
         }
     }
 

@@ -48,7 +48,7 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let are_polytopes = matches!((pair.core_a.kind, pair.core_b.kind), (CoreKind::Polytope, CoreKind::Polytope));
+    let are_polytopes = [pair.core_a.kind, pair.core_b.kind].iter().all(|kind| matches!(kind, CoreKind::Polytope));
     if !are_polytopes || frame.radius > Scalar::ZERO {
         return None;
     }

@@ -265,7 +265,7 @@ impl<V: Vector> Seen<V> {
         points: PointPair<V>,
     ) -> Option<NearContact<V>> {
         let v = points.a - points.b + self.offset;
-        let plane = self.plane(pair, v)?;
+        let plane = self.plane(pair, pair.normal_between(points, v))?;
         let upper = self.length_between(points);
         let is_known = plane.meets(upper) && plane.level > self.radius;
         let found = Found { end: End::Separated, iterations: 1, points, length: v.norm() };

@@ -1,0 +1,60 @@
+//! The closest points of two segments, as of the cores of capsules, in closed form.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+/// The points of the segments from `−u` to `u`, moved by `offset`, and from `−w` to `w` that are closest to one another, each relative to its
+/// segment's middle.
+///
+/// The length of `r + s·u − t·w`, with `r` the offset, is least where
+///
+/// > s·u² − t·u·w = −u·r,   t·w² − s·u·w = w·r,
+///
+/// if `s` and `t` are from −1 to 1. Else one of them is at an end: the first is cut there, and then each is told by the other. Points of
+/// parallel segments are as good as others. If `u` or `w` is zero, any number will do, and what is not one is cut to one.
+#[inline(always)]
+pub(crate) fn closest_points<V: Vector>(u: V, w: V, offset: V) -> (V, V) {
+    let (uu, ww, uw) = (u.length_squared(), w.length_squared(), u.dot(w));
+    let (ur, wr) = (u.dot(offset), w.dot(offset));
+    let share = uw / uu;
+    let t = cut((wr - share * ur) / (ww - share * uw));
+    let s = cut((t * uw - ur) / uu);
+    let t = cut((s * uw + wr) / ww);
+    (u * s, w * t)
+}
+
+/// A vector along the normal of the plane between two segments, as `u` and `w` are, at their closest points `a` and `b`, given the vector
+/// `v` from `b` to `a`.
+///
+/// Where a point is within its segment, the normal is across that. Of points that are near one another rounding is much of the vector
+/// between them, and a step of Newton takes the part of it along the segments away, to what is rounded of the vector itself.
+#[inline(always)]
+pub(crate) fn normal_between<V: Vector>([u, w]: [V; 2], [a, b]: [V; 2], v: V) -> V {
+    let zero = V::Scalar::ZERO;
+    let (uu, ww, uw) = (u.length_squared(), w.length_squared(), u.dot(w));
+    let is_within_u = a.dot(u).abs() < uu;
+    let is_within_w = b.dot(w).abs() < ww;
+    let (uv, wv) = (if is_within_u { u.dot(v) } else { zero }, if is_within_w { w.dot(v) } else { zero });
+    // Parallel segments are both across a vector that one of them is across.
+    let squared_sine = uu * ww - uw * uw;
+    let is_across_both = is_within_u && is_within_w && squared_sine > uu * ww * V::Scalar::from_f64(PARALLEL);
+    let (s, t) = if is_across_both {
+        ((uw * wv - ww * uv) / squared_sine, (uu * wv - uw * uv) / squared_sine)
+    } else if is_within_u {
+        (-uv / uu, zero)
+    } else if is_within_w {
+        (zero, wv / ww)
+    } else {
+        (zero, zero)
+    };
+    v + u * s - w * t
+}
+
+/// The squared sine of the angle between segments below which they are as good as parallel.
+const PARALLEL: f64 = 1e-6;
+
+/// The nearest number from −1 to 1; one of them for NaN.
+#[inline(always)]
+fn cut<S: Scalar>(x: S) -> S {
+    x.max(-S::ONE).min(S::ONE)
+}
