@@ -100,7 +100,10 @@ impl<V: Vector> ClosestFeatures<V> {
         let least = size * rounding();
         let is_searched = closest.is_near || gap.abs() <= least || closest.error > least;
         let seen = || bodies.at(closest, tilt);
-        let refined = || bodies.refined(seen(), closest);
+        let refined = || {
+            let mut features = seen();
+            bodies.refine(&mut features, closest).then_some(features)
+        };
         let settled = || bodies.settled(closest, tilt, reach(size, gap, closest.error));
         let found = if is_curved {
             settled().or_else(refined)
@@ -184,9 +187,8 @@ where
         let plane = ContactPlane { normal, across: across(normal), origin: A::Vector::ZERO };
         let middle = points[0] * half + points[1] * half;
         let from = Viewpoint { tilt, middle, unit, plane };
-        let of_a = Seen::new(self.a, &self.cores[0], -normal, &from);
-        let of_b = Seen::new(self.b, &self.cores[1], normal, &from);
-        ClosestFeatures {
+        let [core_a, core_b] = &self.cores;
+        let mut features = ClosestFeatures {
             normal,
             across: plane.across,
             points,
@@ -194,13 +196,20 @@ where
             unit,
             signed_distance: signed_distance / unit,
             radii: self.cores.map(|core| core.radius / unit),
-            hessians: [of_a.hessian, of_b.hessian],
+            hessians: [Symmetric::ZERO; 2],
             is_foretold: true,
-            spans: [of_a.span, of_b.span],
-            outlines: [of_a.outline, of_b.outline],
+            outlines: [Outline::empty(), Outline::empty()],
+            spans: [Span::Vertex; 2],
             tilt,
             is_tied: false,
-        }
+        };
+        let [outline_a, outline_b] = &mut features.outlines;
+        draw(outline_a, self.a, core_a, -normal, &from);
+        draw(outline_b, self.b, core_b, normal, &from);
+        features.spans = [Span::of(outline_a), Span::of(outline_b)];
+        features.hessians =
+            [hessian(self.a, core_a, -normal, outline_a, &from), hessian(self.b, core_b, normal, outline_b, &from)];
+        features
     }
 
     /// The features at the normal within `reach` of that of an answer along which they overlap, which is the condition of the closest points; `None`
@@ -220,64 +229,61 @@ where
             if !(within > tilt) {
                 break;
             }
-            let seen = self.at(closest, within);
-            let are_vertices = seen.spans == [Span::Vertex; 2];
-            // Vertices are so within less.
-            let held =
-                if are_vertices { Some(ClosestFeatures { tilt, ..seen }) } else { self.held(closest, seen, reach) };
-            let found = held.and_then(|held| self.refined(held, closest));
-            if found.is_some() || are_vertices {
-                return found;
+            let mut seen = self.at(closest, within);
+            if seen.spans == [Span::Vertex; 2] {
+                // They are so within less.
+                seen.tilt = tilt;
+                return self.refine(&mut seen, closest).then_some(seen);
+            }
+            if self.hold(closest, &mut seen, reach) && self.refine(&mut seen, closest) {
+                return Some(seen);
             }
             within *= Scalar::from_f64(NEARER);
         }
         None
     }
 
-    /// The features at a normal across which what is seen holds it, to rounding, if they overlap.
-    fn held(
-        &self,
-        closest: Closest<A::Vector>,
-        mut seen: ClosestFeatures<A::Vector>,
-        reach: ScalarOf<A>,
-    ) -> Option<ClosestFeatures<A::Vector>> {
+    /// Turns to the normal across which what is seen holds it, to rounding; whether there is one, along which the features overlap.
+    fn hold(&self, closest: Closest<A::Vector>, seen: &mut ClosestFeatures<A::Vector>, reach: ScalarOf<A>) -> bool {
         let radii = self.cores.map(|core| core.radius);
-        let turned = |seen: &ClosestFeatures<A::Vector>, turn: A::Vector, tilt, sides: &[usize]| {
-            let normal = (seen.normal + turn).unit()?;
+        let turn = |seen: &mut ClosestFeatures<A::Vector>, turn: A::Vector, tilt, sides: &[usize]| {
+            let Some(normal) = (seen.normal + turn).unit() else { return false };
             if !((normal - closest.normal).length() <= reach + reach) {
-                return None;
+                return false;
             }
             let at = self.at(Closest { normal, ..closest }, tilt);
-            let is_kept = sides.iter().all(|&i| at.spans[i].kind() == seen.spans[i].kind());
-            (is_kept && !are_apart(&at.outlines, at.slack() + tilt)).then_some(at)
+            let is_kept = sides.iter().all(|&i| at.spans[i].kind() == seen.spans[i].kind())
+                && !are_apart(&at.outlines, at.slack() + tilt);
+            if is_kept {
+                *seen = at;
+            }
+            is_kept
         };
         for _ in 0..MAX_STEPS {
             let Some(step) = seen.newton_step(radii) else {
                 // A face holds all of the normal, and of two edges that are parallel each a part.
                 let [a, b] = seen.spans.map(Span::kind);
-                return [0, 1].into_iter().filter(|&i| seen.spans[i].kind() == a.max(b)).find_map(|i| {
-                    turned(&seen, seen.out_of_plane(seen.spans[i].turn(&seen.outlines[i])), rounding(), &[i])
+                return [0, 1].into_iter().filter(|&i| [a, b][i] == a.max(b)).any(|i| {
+                    let across = seen.out_of_plane(seen.spans[i].turn(&seen.outlines[i]));
+                    turn(seen, across, rounding(), &[i])
                 });
             };
             // A step of Newton's method leaves the square of what it takes away.
             let left = step.turn.length() * step.turn.length();
-            seen = turned(&seen, step.turn, rounding::<ScalarOf<A>>() + left, &[0, 1])?;
+            if !turn(seen, step.turn, rounding::<ScalarOf<A>>() + left, &[0, 1]) {
+                return false;
+            }
             if left <= rounding() {
-                return Some(seen);
+                return true;
             }
         }
-        None
+        false
     }
 
-    /// Newton's method for the normal and the points, as long as the steps become shorter; `None` where it does not lead to points that are
-    /// opposite to each other, along the same features.
-    fn refined(
-        &self,
-        mut best: ClosestFeatures<A::Vector>,
-        closest: Closest<A::Vector>,
-    ) -> Option<ClosestFeatures<A::Vector>> {
+    /// Newton's method for the normal and the points, as long as the steps become shorter; whether it leads to points that are opposite to each
+    /// other, along the same features.
+    fn refine(&self, best: &mut ClosestFeatures<A::Vector>, closest: Closest<A::Vector>) -> bool {
         let mut length = ScalarOf::<A>::from_f64(LONGEST_STEP);
-        let least = ScalarOf::<A>::from_f64(4.0) * Scalar::EPSILON;
         let radii = self.cores.map(|core| core.radius);
         for _ in 0..MAX_STEPS {
             let Some(step) = best.newton_step(radii) else { break };
@@ -293,21 +299,24 @@ where
             if error > rounding() {
                 best.signed_distance = step.signed_distance;
             }
-            // No shorter, or less than rounding: then the features are those along this normal, and where the points are.
-            let is_least = size <= least && shifts[0].max(shifts[1]) <= self.unit * least;
-            if size > length * Scalar::from_f64(0.5) || is_least {
+            if size > length * Scalar::from_f64(0.5) {
                 break;
             }
-            let normal = (best.normal + step.turn).unit()?;
+            let Some(normal) = (best.normal + step.turn).unit() else { return false };
+            if size <= rounding() && shifts[0].max(shifts[1]) <= self.unit * rounding() {
+                // The features along this normal are those that were seen, to rounding.
+                (best.normal, best.across) = (normal, across(normal));
+                break;
+            }
             let signed_distance = best.signed_distance * self.unit;
             let next = self.at(Closest { normal, points: step.points, signed_distance, ..closest }, rounding());
             if next.spans.iter().zip(&best.spans).any(|(next, best)| next.kind() != best.kind()) {
-                return None;
+                return false;
             }
-            (best, length) = (next, size);
+            (*best, length) = (next, size);
         }
         let slack = best.slack();
-        (best.off() <= slack && !are_apart(&best.outlines, slack)).then_some(best)
+        best.off() <= slack && !are_apart(&best.outlines, slack)
     }
 
     /// Whether the support points nearby are where the Hessians say.
@@ -353,51 +362,54 @@ struct Viewpoint<V: Vector> {
     plane: ContactPlane<V>,
 }
 
-/// A body as seen from the other.
-struct Seen<S: Scalar> {
-    outline: Outline<S>,
-    span: Span<S>,
-    hessian: Symmetric<S>,
+/// Draws the outline of what a body shows along a direction.
+fn draw<B: SupportMap + ?Sized>(
+    outline: &mut Outline<ScalarOf<B>>,
+    body: &B,
+    core: &Core<B::Vector>,
+    direction: B::Vector,
+    from: &Viewpoint<B::Vector>,
+) {
+    let per_unit = reciprocal_of_power(from.unit);
+    let mut feature = Feature::new();
+    body.core_support_feature(direction, from.tilt * core.extent * Scalar::from_f64(2.0), &mut feature);
+    if feature.points().is_empty() {
+        // Where numbers are not finite.
+        feature.push(body.core_support(direction, &mut Hint::new()), 0);
+    }
+    feature.map(|point| point * per_unit);
+    outline.draw(&feature, (core.origin - from.middle) * per_unit, &from.plane);
 }
 
-impl<S: Scalar> Seen<S> {
-    fn new<B>(body: &B, core: &Core<B::Vector>, direction: B::Vector, from: &Viewpoint<B::Vector>) -> Self
-    where
-        B: SupportMap + ?Sized,
-        B::Vector: Vector<Scalar = S>,
-    {
-        let per_unit = reciprocal_of_power(from.unit);
-        let mut feature = Feature::new();
-        body.core_support_feature(direction, from.tilt * core.extent * S::from_f64(2.0), &mut feature);
-        if feature.points().is_empty() {
-            // Where numbers are not finite.
-            feature.push(body.core_support(direction, &mut Hint::new()), 0);
+/// The Hessian of the support value of a body across a direction, along which it shows a feature; that of its radius included.
+fn hessian<B: SupportMap + ?Sized>(
+    body: &B,
+    core: &Core<B::Vector>,
+    direction: B::Vector,
+    outline: &Outline<ScalarOf<B>>,
+    from: &Viewpoint<B::Vector>,
+) -> Symmetric<ScalarOf<B>> {
+    let per_unit = reciprocal_of_power(from.unit);
+    let along = |direction| {
+        let entries = body.core_support_hessian(direction, from.plane.across);
+        let [a, b, d] = entries.map(|entry| entry * per_unit);
+        Symmetric { a, b, d }.plus(core.radius * per_unit)
+    };
+    match Span::of(outline) {
+        Span::Vertex => along(direction),
+        Span::Edge(_) if B::Vector::DIM == 2 => Symmetric::ZERO,
+        Span::Edge(e) if matches!(core.kind, CoreKind::Curved) => {
+            let edge = from.plane.across[0] * e.0 + from.plane.across[1] * e.1;
+            let turn = turn(from.tilt);
+            // Of the curves on either side, from two directions each.
+            let [first, second] = [-turn, turn].map(|turn| {
+                let [near, far] = [turn, turn + turn].map(|turn| along(direction + edge * turn));
+                near.blend(far, -ScalarOf::<B>::ONE)
+            });
+            across_edge(first.blend(second, share(outline, e)), e)
         }
-        feature.map(|point| point * per_unit);
-        let outline = Outline::new(&feature, (core.origin - from.middle) * per_unit, &from.plane);
-        let span = Span::of(&outline);
-        let hessian_along = |direction| {
-            let entries = body.core_support_hessian(direction, from.plane.across);
-            let [a, b, d] = entries.map(|entry| entry * per_unit);
-            Symmetric { a, b, d }.plus(core.radius * per_unit)
-        };
-        let hessian = match span {
-            Span::Vertex => hessian_along(direction),
-            Span::Edge(_) if <B::Vector as Vector>::DIM == 2 => Symmetric::ZERO,
-            Span::Edge(e) if matches!(core.kind, CoreKind::Curved) => {
-                let along = from.plane.across[0] * e.0 + from.plane.across[1] * e.1;
-                let turn = turn(from.tilt);
-                // Of the curves on either side, from two directions each.
-                let [first, second] = [-turn, turn].map(|turn| {
-                    let [near, far] = [turn, turn + turn].map(|turn| hessian_along(direction + along * turn));
-                    near.blend(far, -S::ONE)
-                });
-                across_edge(first.blend(second, share(&outline, e)), e)
-            }
-            Span::Edge(e) => across_edge(hessian_along(direction), e),
-            Span::Face => Symmetric::ZERO,
-        };
-        Self { outline, span, hessian }
+        Span::Edge(e) => across_edge(along(direction), e),
+        Span::Face => Symmetric::ZERO,
     }
 }
 
@@ -427,23 +439,19 @@ fn is_foretold<B: SupportMap + ?Sized>(
     if at.spans[index] != Span::Vertex {
         return true;
     }
-    let [e, f] = at.across;
     let per_unit = reciprocal_of_power(at.unit);
     let hessian = at.hessians[index].plus(-core.radius * per_unit);
-    let mut hint = Hint::new();
-    let mut support = |direction| body.core_support(direction, &mut hint) * per_unit;
-    let point = support(direction);
+    let (mut hint, origin, from) =
+        (Hint::new(), at.in_plane((core.origin - at.middle) * per_unit), at.outlines[index].corners[0].at);
     let rounding = ScalarOf::<B>::from_f64(64.0) * ScalarOf::<B>::EPSILON;
-    let rows = [(e, (hessian.a, hessian.b)), (f, (hessian.b, hessian.d))];
-    rows.into_iter().take(B::Vector::DIM - 1).all(|(change, row)| {
-        let foretold = (e * row.0 + f * row.1) * turn;
+    let rows = [(hessian.a, hessian.b), (hessian.b, hessian.d)];
+    at.across.into_iter().zip(rows).take(B::Vector::DIM - 1).all(|(change, row)| {
         [turn, -turn].into_iter().all(|turn| {
-            let moved = support(direction + change * turn) - point;
-            // Along the direction it moves by the square of the turn.
-            let across = moved - direction * moved.dot(direction);
-            let foretold = if turn > Scalar::ZERO { foretold } else { -foretold };
-            let slack = foretold.length() * ScalarOf::<B>::from_f64(SURPRISE) + rounding;
-            (across - foretold).length() <= slack
+            let point = at.in_plane(body.core_support(direction + change * turn, &mut hint) * per_unit);
+            let foretold = (row.0 * turn, row.1 * turn);
+            let off = (point.0 + origin.0 - from.0 - foretold.0, point.1 + origin.1 - from.1 - foretold.1);
+            let slack = dot(foretold, foretold).sqrt() * ScalarOf::<B>::from_f64(SURPRISE) + rounding;
+            dot(off, off) <= slack * slack
         })
     })
 }
