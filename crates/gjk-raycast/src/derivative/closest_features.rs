@@ -69,7 +69,7 @@ pub(super) struct Closest<V: Vector> {
 
 impl<V: Vector> ClosestFeatures<V> {
     /// At the normal and the points of an answer. Of curved shapes both are known to about half their digits, since the distance is
-    /// stationary in them; [`Self::refined`] finds the rest.
+    /// stationary in them; Newton's method finds the rest.
     pub(super) fn new<A, B>(a: &A, b: &B, closest: Closest<V>) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,
@@ -86,21 +86,22 @@ impl<V: Vector> ClosestFeatures<V> {
         // NaN is nowhere near.
         let least = size * rounding();
         let is_searched = closest.is_near || gap.abs() <= least || closest.error > least;
-        let seen = || bodies.at(closest, tilt);
-        let refined = || {
-            let mut features = seen();
-            bodies.refine(&mut features, closest).then_some(features)
+        let mut features = bodies.unseen();
+        let seen = &mut features;
+        let refine = |seen: &mut Self| {
+            bodies.look(seen, closest, tilt);
+            bodies.refine(seen, closest)
         };
-        let settled = || bodies.settled(closest, tilt, reach(size, gap, closest.error));
-        let found = if is_curved {
-            settled().or_else(refined)
-        } else if is_searched {
-            // The features along a normal that is right to rounding meet the condition of the closest points; those of another do not.
-            refined().or_else(settled)
+        let settle = |seen: &mut Self| bodies.settle(seen, closest, tilt, reach(size, gap, closest.error));
+        let is_found = if is_curved {
+            settle(seen) || refine(seen)
         } else {
-            None
+            // The features along a normal that is right to rounding meet the condition of the closest points; those of another do not.
+            is_searched && (refine(seen) || settle(seen))
         };
-        let mut features = found.unwrap_or_else(seen);
+        if !is_found {
+            bodies.look(seen, closest, tilt);
+        }
         features.is_foretold = bodies.are_foretold(&features);
         features
     }

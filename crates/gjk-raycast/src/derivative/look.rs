@@ -29,37 +29,47 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    /// The features along the normal, which may be wrong by `tilt`.
-    pub(super) fn at(&self, closest: Closest<A::Vector>, tilt: ScalarOf<A>) -> ClosestFeatures<A::Vector> {
+    /// Before anything was looked at.
+    pub(super) fn unseen(&self) -> ClosestFeatures<A::Vector> {
+        let zero = A::Vector::ZERO;
+        ClosestFeatures {
+            normal: zero,
+            across: [zero; 2],
+            points: [zero; 2],
+            middle: zero,
+            unit: self.unit,
+            signed_distance: Scalar::ZERO,
+            radii: self.cores.map(|core| core.radius / self.unit),
+            hessians: [Symmetric::ZERO; 2],
+            is_foretold: true,
+            outlines: [Outline::empty(), Outline::empty()],
+            spans: [Span::Vertex; 2],
+            tilt: Scalar::ZERO,
+            is_tied: false,
+        }
+    }
+
+    /// Sees the features along the normal, which may be wrong by `tilt`. Outlines are long: features are seen where they stay, not moved there.
+    pub(super) fn look(
+        &self,
+        features: &mut ClosestFeatures<A::Vector>,
+        closest: Closest<A::Vector>,
+        tilt: ScalarOf<A>,
+    ) {
         let Closest { normal, points, signed_distance, .. } = closest;
         let (unit, half) = (self.unit, ScalarOf::<A>::from_f64(0.5));
         // In the unit; zero is the middle of the closest points, which is on both sides of the plane that outlines are seen in.
         let plane = ContactPlane { normal, across: across(normal), origin: A::Vector::ZERO };
         let middle = points[0] * half + points[1] * half;
-        let from = Viewpoint { tilt, middle, unit, plane };
-        let [core_a, core_b] = &self.cores;
-        let mut features = ClosestFeatures {
-            normal,
-            across: plane.across,
-            points,
-            middle,
-            unit,
-            signed_distance: signed_distance / unit,
-            radii: self.cores.map(|core| core.radius / unit),
-            hessians: [Symmetric::ZERO; 2],
-            is_foretold: true,
-            outlines: [Outline::empty(), Outline::empty()],
-            spans: [Span::Vertex; 2],
-            tilt,
-            is_tied: false,
-        };
+        (features.normal, features.across, features.points, features.middle) = (normal, plane.across, points, middle);
+        (features.signed_distance, features.tilt) = (signed_distance / unit, tilt);
+        let (from, [core_a, core_b]) = (Viewpoint { tilt, middle, unit, plane }, &self.cores);
         let [outline_a, outline_b] = &mut features.outlines;
         draw(outline_a, self.a, core_a, -normal, &from);
         draw(outline_b, self.b, core_b, normal, &from);
         features.spans = [Span::of(outline_a), Span::of(outline_b)];
         features.hessians =
             [hessian(self.a, core_a, -normal, outline_a, &from), hessian(self.b, core_b, normal, outline_b, &from)];
-        features
     }
 
     /// Whether the support points nearby are where the Hessians say.

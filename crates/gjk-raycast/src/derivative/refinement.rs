@@ -22,65 +22,66 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    /// The features at the normal within `reach` of that of an answer along which they overlap, which is the condition of the closest points; `None`
-    /// where there is none, but for what is seen within `tilt`.
+    /// Looks along the normal within `reach` of that of an answer along which the features overlap, which is the condition of the closest points;
+    /// whether there is one, but for what is seen within `tilt`.
     ///
     /// What is seen within reach is tried: the normal across it. Where that is none, as where the answer is at an edge of a face that is seen,
     /// what is seen within less is tried.
-    pub(super) fn settled(
+    pub(super) fn settle(
         &self,
+        features: &mut ClosestFeatures<A::Vector>,
         closest: Closest<A::Vector>,
         tilt: ScalarOf<A>,
         reach: ScalarOf<A>,
-    ) -> Option<ClosestFeatures<A::Vector>> {
+    ) -> bool {
         let mut within = reach;
         for _ in 0..ROUNDS {
             // NaN ends this too.
             if !(within > tilt) {
                 break;
             }
-            let mut seen = self.at(closest, within);
-            if seen.spans == [Span::Vertex; 2] {
+            self.look(features, closest, within);
+            if features.spans == [Span::Vertex; 2] {
                 // They are so within less.
-                seen.tilt = tilt;
-                return self.refine(&mut seen, closest).then_some(seen);
+                features.tilt = tilt;
+                return self.refine(features, closest);
             }
-            if self.hold(closest, &mut seen, reach) && self.refine(&mut seen, closest) {
-                return Some(seen);
+            if self.hold(features, closest, reach) && self.refine(features, closest) {
+                return true;
             }
             within *= Scalar::from_f64(NEARER);
         }
-        None
+        false
     }
 
     /// Turns to the normal across which what is seen holds it, to rounding; whether there is one, along which the features overlap.
-    fn hold(&self, closest: Closest<A::Vector>, seen: &mut ClosestFeatures<A::Vector>, reach: ScalarOf<A>) -> bool {
+    fn hold(&self, seen: &mut ClosestFeatures<A::Vector>, closest: Closest<A::Vector>, reach: ScalarOf<A>) -> bool {
         let radii = self.cores.map(|core| core.radius);
-        let turn = |seen: &mut ClosestFeatures<A::Vector>, turn: A::Vector, tilt, sides: &[usize]| {
-            let Some(normal) = (seen.normal + turn).unit() else { return false };
+        // Whether the features along another normal are of these kinds, where that is asked, and overlap.
+        let is_kept = |seen: &mut ClosestFeatures<A::Vector>, normal: A::Vector, tilt, kinds: [Option<usize>; 2]| {
+            let Some(normal) = normal.unit() else { return false };
             if !((normal - closest.normal).length() <= reach + reach) {
                 return false;
             }
-            let at = self.at(Closest { normal, ..closest }, tilt);
-            let is_kept = sides.iter().all(|&i| at.spans[i].kind() == seen.spans[i].kind())
-                && !are_apart(&at.outlines, at.slack() + tilt);
-            if is_kept {
-                *seen = at;
-            }
-            is_kept
+            self.look(seen, Closest { normal, ..closest }, tilt);
+            seen.spans.iter().zip(kinds).all(|(span, kind)| kind.is_none_or(|kind| span.kind() == kind))
+                && !are_apart(&seen.outlines, seen.slack() + tilt)
         };
         for _ in 0..MAX_STEPS {
+            let kinds = seen.spans.map(Span::kind);
             let Some(step) = seen.newton_step(radii) else {
                 // A face holds all of the normal, and of two edges that are parallel each a part.
-                let [a, b] = seen.spans.map(Span::kind);
-                return [0, 1].into_iter().filter(|&i| [a, b][i] == a.max(b)).any(|i| {
-                    let across = seen.out_of_plane(seen.spans[i].turn(&seen.outlines[i]));
-                    turn(seen, across, rounding(), &[i])
+                let normals = [0, 1].map(|i| {
+                    let turn = seen.spans[i].turn(&seen.outlines[i]);
+                    seen.normal + seen.out_of_plane(turn)
                 });
+                let most = kinds[0].max(kinds[1]);
+                return (kinds[0] == most && is_kept(seen, normals[0], rounding(), [Some(most), None]))
+                    || (kinds[1] == most && is_kept(seen, normals[1], rounding(), [None, Some(most)]));
             };
             // A step of Newton's method leaves the square of what it takes away.
             let left = step.turn.length() * step.turn.length();
-            if !turn(seen, step.turn, rounding::<ScalarOf<A>>() + left, &[0, 1]) {
+            if !is_kept(seen, seen.normal + step.turn, rounding::<ScalarOf<A>>() + left, kinds.map(Some)) {
                 return false;
             }
             if left <= rounding() {
@@ -119,11 +120,12 @@ where
                 break;
             }
             let signed_distance = best.signed_distance * self.unit;
-            let next = self.at(Closest { normal, points: step.points, signed_distance, ..closest }, rounding());
-            if next.spans.iter().zip(&best.spans).any(|(next, best)| next.kind() != best.kind()) {
+            let kinds = best.spans.map(Span::kind);
+            self.look(best, Closest { normal, points: step.points, signed_distance, ..closest }, rounding());
+            if best.spans.map(Span::kind) != kinds {
                 return false;
             }
-            (*best, length) = (next, size);
+            length = size;
         }
         let slack = best.slack();
         best.off() <= slack && !are_apart(&best.outlines, slack)
