@@ -27,7 +27,9 @@
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use crate::numerics::{Vec, add, combine, dot, unit};
+use super::motion::Units;
+use super::side::{Side, spun, wedge};
+use crate::numerics::{Vec, add, dot, unit};
 use crate::pair::Pair;
 
 /// Weights f and g of ‖N‖, h₁ and h₂: what is maximised, and what is 1.
@@ -70,26 +72,6 @@ impl Mover {
     }
 }
 
-/// One body as N sees it.
-#[derive(Clone, Copy, Debug)]
-struct Side<const N: usize> {
-    axes: [Vec<N>; N],
-    a: Vec<N>,
-    e: Vec<N>,
-    h: f64,
-    /// v = ∇h: from the centre to the point that touches.
-    v: Vec<N>,
-    /// The tangents of the plane across N, in the body's axes.
-    tangents: [Vec<N>; 2],
-}
-
-impl<const N: usize> Side<N> {
-    fn new(axes: [Vec<N>; N], a: Vec<N>, e: Vec<N>, h: f64, tangents: &[Vec<N>; 2]) -> Self {
-        let v = combine(axes, core::array::from_fn(|i| a[i] * e[i]));
-        Self { axes, a, e, h, v, tangents: tangents.map(|tangent| axes.map(|axis| dot(axis, tangent))) }
-    }
-}
-
 /// The stationary normal, with all that the derivatives need.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact<const N: usize> {
@@ -108,31 +90,23 @@ pub(super) struct Contact<const N: usize> {
     root: [f64; 3],
 }
 
-/// What a motion changes: s, γ, and R⁻ᵀq.
+/// The unit of a Hessian and what it is of: slope·s + ½·curvature·s², s the value of a contact less what it is.
 #[derive(Clone, Copy, Debug)]
-struct Rate {
-    value: f64,
-    constraint: f64,
-    whitened: [f64; 2],
+pub(super) struct Form {
+    pub(super) slope: f64,
+    pub(super) curvature: f64,
+    pub(super) units: Units,
 }
 
-impl Rate {
-    const ZERO: Self = Self { value: 0.0, constraint: 0.0, whitened: [0.0; 2] };
-
-    /// The part of s″ that is of first rates: q_θ·A⁻¹q_φ − s_θγ_φ − s_φγ_θ.
-    #[inline]
-    fn with(&self, other: &Self) -> f64 {
-        let followed = self.whitened[0] * other.whitened[0] + self.whitened[1] * other.whitened[1];
-        followed - (self.value * other.constraint + other.value * self.constraint)
-    }
-}
-
-/// t, m and b of a rotation.
+/// What each coordinate of a pose changes, translations first; as many as a pose has, 3 in 2D.
 #[derive(Clone, Copy, Debug)]
-struct Turn<const N: usize> {
-    t: f64,
-    m: Vec<N>,
-    b: Vec<N>,
+struct Rates {
+    /// s.
+    value: [f64; 6],
+    /// γ.
+    constraint: [f64; 6],
+    /// R⁻ᵀq.
+    whitened: [[f64; 6]; 2],
 }
 
 impl<const N: usize> Contact<N> {
@@ -170,7 +144,7 @@ impl<const N: usize> Contact<N> {
     /// One step of Newton's method for N. An answer's value is stationary in N and may have been found with half its digits.
     /// Kept if it brings L nearer to being stationary: else what was left was rounding.
     pub(super) fn refined(self, pair: &Pair<N>) -> Self {
-        let [x, y] = self.solved(self.whitened(self.across(self.residual())));
+        let [x, y] = self.solved(self.whitened(self.residual()));
         let step: Vec<N> = core::array::from_fn(|i| x * self.tangents[0][i] + y * self.tangents[1][i]);
         match Self::new(pair, self.quantity, add(self.normal, step)) {
             Some(next) if next.slope() < 0.25 * self.slope() => next,
@@ -178,14 +152,14 @@ impl<const N: usize> Contact<N> {
         }
     }
 
-    /// ∇L, which is r − k₁v₁ − k₂v₂ on the tangent plane.
-    fn residual(&self) -> Vec<N> {
-        let [first, second] = &self.sides;
-        core::array::from_fn(|i| self.r[i] - self.k[1] * first.v[i] - self.k[2] * second.v[i])
+    /// ∇L on the tangent plane: r − k₁v₁ − k₂v₂.
+    fn residual(&self) -> [f64; 2] {
+        let (r, [first, second]) = (self.across(self.r), self.sides.each_ref().map(Side::reach));
+        core::array::from_fn(|c| r[c] - self.k[1] * first[c] - self.k[2] * second[c])
     }
 
     fn slope(&self) -> f64 {
-        let [x, y] = self.across(self.residual());
+        let [x, y] = self.residual();
         x.hypot(y)
     }
 
@@ -215,67 +189,71 @@ impl<const N: usize> Contact<N> {
         (self.normal.map(|x| -sign * x), side.e, -k * side.h)
     }
 
-    /// The second derivatives s″ and the first s′: entry by entry, the translations first. Of s″ the lower triangle.
+    /// The second derivatives, translations first; in 2D 3 by 3 of them.
     #[inline]
-    pub(super) fn hessian(&self, mover: Mover) -> ([[f64; 6]; 6], [f64; 6]) {
+    pub(super) fn hessian(&self, mover: Mover, form: Form) -> [[f64; 6]; 6] {
         let (rotations, is_seen) = (N * (N - 1) / 2, self.is_stiffer(mover));
         let (side, k, sign) = self.of(mover);
         // The body with which L_ωω is written, and the sense in which it turns: the other one, backwards, where N is as seen by the
         // body that moves.
         let written = if is_seen { mover.other() } else { mover };
         let (other, other_k, _) = self.of(written);
-        let weight = self.quantity.constraint[written.index()];
-        let turns = Turn::about_world(other, if is_seen { -1.0 } else { 1.0 });
-        let values = if is_seen { twists(side) } else { turns.map(|turn| turn.t) };
+        let turns = other.turns();
+        let (sense, values) = if is_seen { (-1.0, side.twists()) } else { (1.0, turns.t) };
         // What N sees of the constraint and of v.
         let [_, g1, g2] = self.quantity.constraint;
-        let [first, second] = &self.sides;
-        let gauge = self.across(core::array::from_fn(|i| g1 * first.v[i] + g2 * second.v[i]));
-        let reach = self.across(other.v);
+        let [first, second] = self.sides.each_ref().map(Side::reach);
+        let gauge: [f64; 2] = core::array::from_fn(|c| g1 * first[c] + g2 * second[c]);
+        let reach = match written {
+            Mover::First => first,
+            Mover::Second => second,
+        };
 
-        let mut rates = [Rate::ZERO; 6];
+        let mut rates = Rates { value: [0.0; 6], constraint: [0.0; 6], whitened: [[0.0; 6]; 2] };
         for i in 0..N {
             let value = -sign * self.normal[i];
-            let [x, y] = core::array::from_fn(|c| -sign * self.tangents[c][i] - value * gauge[c]);
-            rates[i] = Rate { value, constraint: 0.0, whitened: self.whitened([x, y]) };
+            let q = core::array::from_fn(|c| -sign * self.tangents[c][i] - value * gauge[c]);
+            rates.set(i, value, 0.0, self.whitened(q));
         }
+        let weight = self.quantity.constraint[written.index()];
         for about in 0..rotations {
-            let (turn, value) = (&turns[about], k * side.h * values[about]);
-            let [x, y] = core::array::from_fn(|c| {
-                let cross = -other_k * (dot(other.tangents[c], turn.b) + reach[c] * turn.t);
+            let (t, value) = (sense * turns.t[about], k * side.h * values[about]);
+            let q = core::array::from_fn(|c| {
+                let cross = -other_k * (sense * turns.b[c][about] + reach[c] * t);
                 let moment = if is_seen { wedge(self.r, self.tangents[c], about) } else { 0.0 };
                 cross - moment - value * gauge[c]
             });
-            let constraint = -weight * other.h * turn.t;
-            rates[N + about] = Rate { value, constraint, whitened: self.whitened([x, y]) };
+            rates.set(N + about, value, -weight * other.h * t, self.whitened(q));
         }
 
-        let mut second = [[0.0; 6]; 6];
-        for i in 0..N {
-            for j in 0..=i {
-                second[i][j] = rates[i].with(&rates[j]);
-            }
-        }
+        let (mut hessian, size) = (rates.hessian(N, form), form.slope * form.units.value);
         for p in 0..rotations {
-            let spin = if is_seen { spun(self.normal, p) } else { [0.0; N] };
-            for j in 0..N {
-                second[N + p][j] = rates[N + p].with(&rates[j]) - sign * spin[j];
-            }
-            for q in 0..=p {
-                let (x, y) = (&turns[p], &turns[q]);
-                let turned = 0.5 * (dot(x.m, y.b) + dot(y.m, x.b)) + other.h * (x.t * y.t);
-                second[N + p][N + q] = rates[N + p].with(&rates[N + q]) + other_k * turned;
+            for q in 0..rotations {
+                hessian[N + p][N + q] += size * (other_k * turns.second[p][q]);
             }
         }
         if is_seen {
-            let [spins, moments] = [self.normal, self.r].map(|x| [0, 1, 2].map(|about| spun(x, about)));
-            for p in 0..rotations {
-                for q in 0..=p {
-                    second[N + p][N + q] -= 0.5 * (dot(spins[p], moments[q]) + dot(spins[q], moments[p]));
-                }
+            self.add_seen(&mut hessian, size, sign / form.units.length);
+        }
+        hessian
+    }
+
+    /// Adds `size` times what L_ωω and L_δω have besides where N is as seen by the body that moves: with (ω × N)·(φ × r) =
+    /// (ω·φ)(N·r) − (ω·r)(φ·N), in the plane N·r, and `sign` in the unit of length.
+    fn add_seen(&self, hessian: &mut [[f64; 6]; 6], size: f64, sign: f64) {
+        let (n, r, along) = (&self.normal, &self.r, dot(self.normal, self.r));
+        for p in 0..N * (N - 1) / 2 {
+            let spin = spun(self.normal, p);
+            for j in 0..N {
+                let mixed = size * sign * spin[j];
+                hessian[N + p][j] -= mixed;
+                hessian[j][N + p] -= mixed;
+            }
+            for q in 0..N * (N - 1) / 2 {
+                let aside = if N == 2 { 0.0 } else { 0.5 * (n[p] * r[q] + n[q] * r[p]) };
+                hessian[N + p][N + q] -= size * (if p == q { along } else { 0.0 } - aside);
             }
         }
-        (second, rates.map(|rate| rate.value))
     }
 
     /// Whether L_ωω of the body that moves is the greater: about k·(a_max² − a_min²)‖N‖²/h.
@@ -297,65 +275,38 @@ impl<const N: usize> Contact<N> {
     }
 }
 
-impl<const N: usize> Turn<N> {
-    const ZERO: Self = Self { t: 0.0, m: [0.0; N], b: [0.0; N] };
+impl Rates {
+    fn set(&mut self, i: usize, value: f64, constraint: f64, [x, y]: [f64; 2]) {
+        (self.value[i], self.constraint[i]) = (value, constraint);
+        (self.whitened[0][i], self.whitened[1][i]) = (x, y);
+    }
 
-    /// Of `sign` times the unit rotations about the world axes, in 2D the only one.
+    /// All but L_θφ: slope·(q_θ·A⁻¹q_φ − s_θγ_φ − s_φγ_θ) + curvature·s_θs_φ, which is w_θ·w_φ − (s_θg_φ + s_φg_θ) with
+    /// w = √slope·R⁻ᵀq and g = slope·γ − ½·curvature·s. Units are put into the factors, of which there are fewer than entries.
     #[inline]
-    fn about_world(side: &Side<N>, sign: f64) -> [Self; 3] {
-        let Side { axes, a, e, h, .. } = side;
-        // n/h = e/a
-        let n: Vec<N> = core::array::from_fn(|i| sign * (e[i] / a[i]));
-        let mut turns = [Self::ZERO; 3];
-        for i in 0..N {
-            for j in i + 1..N {
-                let difference = (a[j] - a[i]) * (a[j] + a[i]);
-                let twist = n[i] * (sign * n[j]) * difference;
-                let (m, b) = ([n[j] * h, n[i] * h], [n[j] * difference, n[i] * difference]);
-                for (about, turn) in turns.iter_mut().enumerate().take(N * (N - 1) / 2) {
-                    // Wᵢⱼ = −Wⱼᵢ with W = Rᵀ[ω]R; the difference too has the other sign for j, i.
-                    let w = wedge(axes[j], axes[i], about);
-                    turn.m[i] += w * m[0];
-                    turn.m[j] -= w * m[1];
-                    turn.b[i] += w * b[0];
-                    turn.b[j] += w * b[1];
-                    turn.t -= w * twist;
-                }
+    fn hessian(mut self, dimension: usize, Form { slope, curvature, units }: Form) -> [[f64; 6]; 6] {
+        // The unit of length is a power of two.
+        let inverse = 1.0 / units.length;
+        let (slope, curvature) = (slope * units.value, 0.5 * (curvature * units.value));
+        let root = slope.sqrt();
+        let mut offset = [0.0; 6];
+        for i in 0..6 {
+            let per = if i < dimension { inverse } else { 1.0 };
+            offset[i] = (slope * self.constraint[i] - curvature * self.value[i]) * per;
+            self.value[i] *= per;
+            for whitened in &mut self.whitened {
+                whitened[i] *= root * per;
             }
         }
-        turns
-    }
-}
-
-/// t of the unit rotations about the world axes, in 2D the only one.
-#[inline]
-fn twists<const N: usize>(side: &Side<N>) -> [f64; 3] {
-    let Side { axes, a, e, .. } = side;
-    let mut twists = [0.0; 3];
-    for i in 0..N {
-        for j in i + 1..N {
-            let twist = (e[i] / a[i]) * (e[j] / a[j]) * ((a[j] - a[i]) * (a[j] + a[i]));
-            for (about, t) in twists.iter_mut().enumerate().take(N * (N - 1) / 2) {
-                *t -= wedge(axes[j], axes[i], about) * twist;
+        let (s, [x, y]) = (&self.value, &self.whitened);
+        let mut hessian = [[0.0; 6]; 6];
+        for i in 0..6 {
+            for j in 0..6 {
+                hessian[i][j] = (x[i] * x[j] + y[i] * y[j]) - (s[i] * offset[j] + s[j] * offset[i]);
             }
         }
+        hessian
     }
-    twists
-}
-
-/// y·(ω × x) = ω·(x × y) for the unit rotation about world axis number `about`, in 2D the only one.
-#[inline]
-fn wedge<const N: usize>(x: Vec<N>, y: Vec<N>, about: usize) -> f64 {
-    let (p, q) = if N == 2 { (0, 1) } else { ((about + 1) % 3, (about + 2) % 3) };
-    x[p] * y[q] - x[q] * y[p]
-}
-
-/// ω × x for the unit rotation about world axis number `about`, in 2D the only one.
-fn spun<const N: usize>(x: Vec<N>, about: usize) -> Vec<N> {
-    let (p, q) = if N == 2 { (0, 1) } else { ((about + 1) % 3, (about + 2) % 3) };
-    let mut spun = [0.0; N];
-    (spun[p], spun[q]) = (-x[q], x[p]);
-    spun
 }
 
 /// diag(a)Rᵀn for both bodies: vectors of length h.

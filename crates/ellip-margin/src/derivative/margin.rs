@@ -13,7 +13,7 @@
 
 use convex_support::{Ellipsoid, Scalar, Vector};
 
-use super::contact::{Contact, Mover, Quantity};
+use super::contact::{Contact, Form, Mover, Quantity};
 use super::motion::{MotionGradient, MotionHessian, Units, torque};
 use crate::numerics::{combine, dot, load, size, store, sub, unit};
 use crate::pair::Pair;
@@ -155,6 +155,7 @@ fn hessian<V: Wedge, const N: usize>(
     let (pair, length) = Pair::<N>::new(e1, e2).in_own_unit();
     let contact = Contact::at_points(&pair, Quantity::GROWTH, z.map(|z| -z), points);
     contact.as_ref().map_or_else(MotionHessian::zero, |contact| {
-        MotionHessian::of_contact(contact, mover, 2.0 * contact.value, 2.0, Units { value: 1.0, length })
+        let units = Units { value: 1.0, length };
+        MotionHessian::of_contact(contact, mover, Form { slope: 2.0 * contact.value, curvature: 2.0, units })
     })
 }

@@ -24,6 +24,7 @@ mod margin;
 mod motion;
 mod scaling;
 mod shape;
+mod side;
 mod value_of_contact;
 
 pub use self::motion::{MotionGradient, MotionHessian};

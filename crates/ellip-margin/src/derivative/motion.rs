@@ -2,7 +2,7 @@
 
 use convex_support::{Ellipsoid, Matrix, Scalar};
 
-use super::contact::{Contact, Mover};
+use super::contact::{Contact, Form, Mover};
 use crate::Wedge;
 use crate::numerics::{Vec, load, load_columns, store};
 
@@ -116,26 +116,10 @@ impl<V: Wedge> MotionHessian<V> {
         Self { matrix: V::motion_matrix(|_, _| V::Scalar::ZERO) }
     }
 
-    /// Of `slope`·s + ½·`curvature`·s², s the value of a contact less what it is: slope·s″ + curvature·s′s′ᵀ.
-    pub(super) fn of_contact<const N: usize>(
-        contact: &Contact<N>,
-        mover: Mover,
-        slope: f64,
-        curvature: f64,
-        units: Units,
-    ) -> Self {
-        let (mut second, first) = contact.hessian(mover);
-        // The unit of length is a power of two.
-        let inverse = 1.0 / units.length;
-        let per = |i: usize| if i < N { inverse } else { 1.0 };
-        for i in 0..N * (N + 1) / 2 {
-            for j in 0..=i {
-                let entry = slope * second[i][j] + curvature * (first[i] * first[j]);
-                second[i][j] = entry * units.value * per(i) * per(j);
-                second[j][i] = second[i][j];
-            }
-        }
-        Self { matrix: V::motion_matrix(|i, j| V::Scalar::from_f64(second[i][j])) }
+    /// Of a number that is a function of the value of a contact.
+    pub(super) fn of_contact<const N: usize>(contact: &Contact<N>, mover: Mover, form: Form) -> Self {
+        let hessian = contact.hessian(mover, form);
+        Self { matrix: V::motion_matrix(|i, j| V::Scalar::from_f64(hessian[i][j])) }
     }
 }
 

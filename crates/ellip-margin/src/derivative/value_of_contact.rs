@@ -2,7 +2,7 @@
 
 use convex_support::Ellipsoid;
 
-use super::contact::{Contact, Mover};
+use super::contact::{Contact, Form, Mover};
 use super::motion::{MotionGradient, MotionHessian, Units};
 use crate::{Answer, Wedge};
 
@@ -34,10 +34,14 @@ pub(super) fn hessian<V: Wedge, A: ValueOfContact<V>>(answer: &Answer<'_, V, A>,
     let (first, second) = (answer.first(), answer.second());
     let hessian = if V::DIM == 2 {
         let contact = answer.contact::<2>(first, second);
-        contact.map(|(contact, units)| MotionHessian::of_contact(&contact, mover, 1.0, 0.0, units))
+        contact.map(|(contact, units)| {
+            MotionHessian::of_contact(&contact, mover, Form { slope: 1.0, curvature: 0.0, units })
+        })
     } else {
         let contact = answer.contact::<3>(first, second);
-        contact.map(|(contact, units)| MotionHessian::of_contact(&contact, mover, 1.0, 0.0, units))
+        contact.map(|(contact, units)| {
+            MotionHessian::of_contact(&contact, mover, Form { slope: 1.0, curvature: 0.0, units })
+        })
     };
     hessian.unwrap_or_else(MotionHessian::zero)
 }

@@ -70,19 +70,32 @@ pub(crate) struct Ellipse<S> {
 }
 
 impl<S: Scalar> Outline<S> {
+    /// Without corners.
+    pub(crate) fn empty() -> Self {
+        Self { corners: SmallVec::new(), rim: None, is_complete: true }
+    }
+
     /// The outline of a feature whose points are relative to `origin`.
     pub(crate) fn new<V: Vector<Scalar = S>>(feature: &Feature<V>, origin: V, plane: &ContactPlane<V>) -> Self {
+        let mut outline = Self::empty();
+        outline.draw(feature, origin, plane);
+        outline
+    }
+
+    /// Becomes that of a feature. An outline is long, and so better drawn where it stays than moved there.
+    pub(crate) fn draw<V: Vector<Scalar = S>>(&mut self, feature: &Feature<V>, origin: V, plane: &ContactPlane<V>) {
         let from = origin - plane.origin;
         let [e, f] = plane.across;
         let seen = |(&point, &id): (&V, &u32)| {
             let p = from + point;
             Corner { at: (e.dot(p), f.dot(p)), height: plane.normal.dot(p), id }
         };
+        self.corners.clear();
+        (self.rim, self.is_complete) = (None, feature.is_complete());
         // Of what is curved, and of a vertex, there is nothing to wrap and nothing to copy.
         if let ([point], [id]) = (feature.points(), feature.ids()) {
-            let mut corners = SmallVec::new();
-            corners.push(seen((point, id)));
-            return Self { corners, rim: None, is_complete: feature.is_complete() };
+            self.corners.push(seen((point, id)));
+            return;
         }
         let points: SmallVec<[_; 16]> = feature.points().iter().zip(feature.ids()).map(seen).collect();
         let across = |v: V| (e.dot(v), f.dot(v));
@@ -90,7 +103,8 @@ impl<S: Scalar> Outline<S> {
             center: across(from + rim.center),
             radii: rim.ends.map(|end| across(end - rim.center)),
         };
-        Self { corners: wrapped(&points), rim: feature.rim().map(ellipse), is_complete: feature.is_complete() }
+        self.rim = feature.rim().map(ellipse);
+        wrap(&points, &mut self.corners);
     }
 
     /// The height at a place of the plane through the three corners that span most; linear along a segment.
@@ -120,10 +134,9 @@ impl<S: Scalar> Outline<S> {
 
 /// The convex hull of points in the plane, counterclockwise, by wrapping: from each corner the next is the one that has no point to
 /// its right. Points within rounding of an edge are none of the corners.
-fn wrapped<S: Scalar>(points: &[Corner<S>]) -> SmallVec<[Corner<S>; 16]> {
-    let mut corners: SmallVec<[Corner<S>; 16]> = SmallVec::new();
+fn wrap<S: Scalar>(points: &[Corner<S>], corners: &mut SmallVec<[Corner<S>; 16]>) {
     let is_before = |a: &Corner<S>, b: &Corner<S>| a.at.0 < b.at.0 || (a.at.0 == b.at.0 && a.at.1 < b.at.1);
-    let Some(first) = points.iter().reduce(|a, b| if is_before(b, a) { b } else { a }) else { return corners };
+    let Some(first) = points.iter().reduce(|a, b| if is_before(b, a) { b } else { a }) else { return };
     let edge = |a: &Corner<S>, b: &Corner<S>| (b.at.0 - a.at.0, b.at.1 - a.at.1);
     let reach = points.iter().map(|p| edge(first, p)).map(|e| dot(e, e)).fold(S::ZERO, S::max);
     let rounding = S::EPSILON * S::from_f64(64.0) * reach;
@@ -153,5 +166,4 @@ fn wrapped<S: Scalar>(points: &[Corner<S>]) -> SmallVec<[Corner<S>; 16]> {
         }
         last = *next;
     }
-    corners
 }

@@ -1,34 +1,21 @@
 //! The features of two bodies that face each other where they are closest.
 
-use convex_support::{Core, CoreKind, Feature, Hint, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{CoreKind, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use super::overlap::are_apart;
+use super::look::Bodies;
 use super::span::{Joint, Span};
-use crate::contact::{ContactPlane, Outline, across};
-use crate::symmetric::{Across, Symmetric, dot};
-use crate::unit::{power_of_two_near, reciprocal_of_power};
+use crate::contact::Outline;
+use crate::symmetric::Symmetric;
+use crate::unit::power_of_two_near;
 
 /// What the normal may be wrong by, in units of the rounding of the points that it is computed from.
 const TILT: f64 = 64.0;
 
 /// The largest angle that a normal is taken to be wrong by: beyond it, features that lean by it would be called parallel. And the largest
-/// within which features are tried that may hold the normal, in how many rounds, each of which looks within a part of the last.
+/// within which features are tried that may hold the normal.
 const LARGEST_TILT: f64 = 1e-3;
 const LARGEST_REACH: f64 = 0.03;
-const ROUNDS: usize = 4;
-const NEARER: f64 = 1.0 / 16.0;
-
-/// How far a direction is turned to see which curve an edge between two of them belongs to, and where a support point goes, in units
-/// of the square root of ε.
-const TURN: f64 = 16.0;
-
-/// The longest step of the unit normal that is one of refinement, and how many are made.
-const LONGEST_STEP: f64 = 0.1;
-const MAX_STEPS: usize = 5;
-
-/// By how much a support point may differ from where its curvature foretells it, as a part of how far that moves.
-const SURPRISE: f64 = 0.25;
 
 /// Where two bodies are closest, or deepest in one another: a vertex, an edge or a face of each, and how they curve there.
 ///
@@ -82,7 +69,7 @@ pub(super) struct Closest<V: Vector> {
 
 impl<V: Vector> ClosestFeatures<V> {
     /// At the normal and the points of an answer. Of curved shapes both are known to about half their digits, since the distance is
-    /// stationary in them; [`Self::refined`] finds the rest.
+    /// stationary in them; Newton's method finds the rest.
     pub(super) fn new<A, B>(a: &A, b: &B, closest: Closest<V>) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,
@@ -99,18 +86,22 @@ impl<V: Vector> ClosestFeatures<V> {
         // NaN is nowhere near.
         let least = size * rounding();
         let is_searched = closest.is_near || gap.abs() <= least || closest.error > least;
-        let seen = || bodies.at(closest, tilt);
-        let refined = || bodies.refined(seen(), closest);
-        let settled = || bodies.settled(closest, tilt, reach(size, gap, closest.error));
-        let found = if is_curved {
-            settled().or_else(refined)
-        } else if is_searched {
-            // The features along a normal that is right to rounding meet the condition of the closest points; those of another do not.
-            refined().or_else(settled)
-        } else {
-            None
+        let mut features = bodies.unseen();
+        let seen = &mut features;
+        let refine = |seen: &mut Self| {
+            bodies.look(seen, closest, tilt);
+            bodies.refine(seen, closest)
         };
-        let mut features = found.unwrap_or_else(seen);
+        let settle = |seen: &mut Self| bodies.settle(seen, closest, tilt, reach(size, gap, closest.error));
+        let is_found = if is_curved {
+            settle(seen) || refine(seen)
+        } else {
+            // The features along a normal that is right to rounding meet the condition of the closest points; those of another do not.
+            is_searched && (refine(seen) || settle(seen))
+        };
+        if !is_found {
+            bodies.look(seen, closest, tilt);
+        }
         features.is_foretold = bodies.are_foretold(&features);
         features
     }
@@ -163,163 +154,8 @@ impl<V: Vector> ClosestFeatures<V> {
     }
 }
 
-/// Two bodies, and the unit of length.
-struct Bodies<'s, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
-    a: &'s A,
-    b: &'s B,
-    cores: [Core<A::Vector>; 2],
-    unit: ScalarOf<A>,
-}
-
-impl<A, B> Bodies<'_, A, B>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
-    /// The features along the normal, which may be wrong by `tilt`.
-    fn at(&self, closest: Closest<A::Vector>, tilt: ScalarOf<A>) -> ClosestFeatures<A::Vector> {
-        let Closest { normal, points, signed_distance, .. } = closest;
-        let (unit, half) = (self.unit, ScalarOf::<A>::from_f64(0.5));
-        // In the unit; zero is the middle of the closest points, which is on both sides of the plane that outlines are seen in.
-        let plane = ContactPlane { normal, across: across(normal), origin: A::Vector::ZERO };
-        let middle = points[0] * half + points[1] * half;
-        let from = Viewpoint { tilt, middle, unit, plane };
-        let of_a = Seen::new(self.a, &self.cores[0], -normal, &from);
-        let of_b = Seen::new(self.b, &self.cores[1], normal, &from);
-        ClosestFeatures {
-            normal,
-            across: plane.across,
-            points,
-            middle,
-            unit,
-            signed_distance: signed_distance / unit,
-            radii: self.cores.map(|core| core.radius / unit),
-            hessians: [of_a.hessian, of_b.hessian],
-            is_foretold: true,
-            spans: [of_a.span, of_b.span],
-            outlines: [of_a.outline, of_b.outline],
-            tilt,
-            is_tied: false,
-        }
-    }
-
-    /// The features at the normal within `reach` of that of an answer along which they overlap, which is the condition of the closest points; `None`
-    /// where there is none, but for what is seen within `tilt`.
-    ///
-    /// What is seen within reach is tried: the normal across it. Where that is none, as where the answer is at an edge of a face that is seen,
-    /// what is seen within less is tried.
-    fn settled(
-        &self,
-        closest: Closest<A::Vector>,
-        tilt: ScalarOf<A>,
-        reach: ScalarOf<A>,
-    ) -> Option<ClosestFeatures<A::Vector>> {
-        let mut within = reach;
-        for _ in 0..ROUNDS {
-            // NaN ends this too.
-            if !(within > tilt) {
-                break;
-            }
-            let seen = self.at(closest, within);
-            let are_vertices = seen.spans == [Span::Vertex; 2];
-            // Vertices are so within less.
-            let held =
-                if are_vertices { Some(ClosestFeatures { tilt, ..seen }) } else { self.held(closest, seen, reach) };
-            let found = held.and_then(|held| self.refined(held, closest));
-            if found.is_some() || are_vertices {
-                return found;
-            }
-            within *= Scalar::from_f64(NEARER);
-        }
-        None
-    }
-
-    /// The features at a normal across which what is seen holds it, to rounding, if they overlap.
-    fn held(
-        &self,
-        closest: Closest<A::Vector>,
-        mut seen: ClosestFeatures<A::Vector>,
-        reach: ScalarOf<A>,
-    ) -> Option<ClosestFeatures<A::Vector>> {
-        let radii = self.cores.map(|core| core.radius);
-        let turned = |seen: &ClosestFeatures<A::Vector>, turn: A::Vector, tilt, sides: &[usize]| {
-            let normal = (seen.normal + turn).unit()?;
-            if !((normal - closest.normal).length() <= reach + reach) {
-                return None;
-            }
-            let at = self.at(Closest { normal, ..closest }, tilt);
-            let is_kept = sides.iter().all(|&i| at.spans[i].kind() == seen.spans[i].kind());
-            (is_kept && !are_apart(&at.outlines, at.slack() + tilt)).then_some(at)
-        };
-        for _ in 0..MAX_STEPS {
-            let Some(step) = seen.newton_step(radii) else {
-                // A face holds all of the normal, and of two edges that are parallel each a part.
-                let [a, b] = seen.spans.map(Span::kind);
-                return [0, 1].into_iter().filter(|&i| seen.spans[i].kind() == a.max(b)).find_map(|i| {
-                    turned(&seen, seen.out_of_plane(seen.spans[i].turn(&seen.outlines[i])), rounding(), &[i])
-                });
-            };
-            // A step of Newton's method leaves the square of what it takes away.
-            let left = step.turn.length() * step.turn.length();
-            seen = turned(&seen, step.turn, rounding::<ScalarOf<A>>() + left, &[0, 1])?;
-            if left <= rounding() {
-                return Some(seen);
-            }
-        }
-        None
-    }
-
-    /// Newton's method for the normal and the points, as long as the steps become shorter; `None` where it does not lead to points that are
-    /// opposite to each other, along the same features.
-    fn refined(
-        &self,
-        mut best: ClosestFeatures<A::Vector>,
-        closest: Closest<A::Vector>,
-    ) -> Option<ClosestFeatures<A::Vector>> {
-        let mut length = ScalarOf::<A>::from_f64(LONGEST_STEP);
-        let least = ScalarOf::<A>::from_f64(4.0) * Scalar::EPSILON;
-        let radii = self.cores.map(|core| core.radius);
-        for _ in 0..MAX_STEPS {
-            let Some(step) = best.newton_step(radii) else { break };
-            let size = step.turn.length();
-            // NaN ends this too.
-            if !(size < length) {
-                break;
-            }
-            let shifts = [0, 1].map(|i| (step.points[i] - best.points[i]).length());
-            best.points = step.points;
-            // An answer knows the distance to its tolerance; to that of rounding, it stays.
-            let error = (step.signed_distance - best.signed_distance).abs();
-            if error > rounding() {
-                best.signed_distance = step.signed_distance;
-            }
-            // No shorter, or less than rounding: then the features are those along this normal, and where the points are.
-            let is_least = size <= least && shifts[0].max(shifts[1]) <= self.unit * least;
-            if size > length * Scalar::from_f64(0.5) || is_least {
-                break;
-            }
-            let normal = (best.normal + step.turn).unit()?;
-            let signed_distance = best.signed_distance * self.unit;
-            let next = self.at(Closest { normal, points: step.points, signed_distance, ..closest }, rounding());
-            if next.spans.iter().zip(&best.spans).any(|(next, best)| next.kind() != best.kind()) {
-                return None;
-            }
-            (best, length) = (next, size);
-        }
-        let slack = best.slack();
-        (best.off() <= slack && !are_apart(&best.outlines, slack)).then_some(best)
-    }
-
-    /// Whether the support points nearby are where the Hessians say.
-    fn are_foretold(&self, at: &ClosestFeatures<A::Vector>) -> bool {
-        let turn = turn(at.tilt);
-        let of_a = is_foretold(self.a, &self.cores[0], -at.normal, at, 0, turn);
-        of_a && is_foretold(self.b, &self.cores[1], at.normal, at, 1, turn)
-    }
-}
-
 /// What a normal is wrong by that is known to rounding.
-fn rounding<S: Scalar>() -> S {
+pub(super) fn rounding<S: Scalar>() -> S {
     S::EPSILON * S::from_f64(TILT)
 }
 
@@ -338,112 +174,4 @@ fn reach<S: Scalar>(size: S, gap: S, error: S) -> S {
     let error = error.max(S::EPSILON * size * S::from_f64(4.0));
     let over = if gap > S::ZERO { gap } else { size * S::from_f64(1.0 / 16.0) };
     (error / over * S::from_f64(2.0)).sqrt().min(S::from_f64(LARGEST_REACH))
-}
-
-/// How far a direction is turned to look nearby.
-fn turn<S: Scalar>(tilt: S) -> S {
-    (S::EPSILON.sqrt() * S::from_f64(TURN)).max(tilt * S::from_f64(4.0))
-}
-
-/// From where the bodies are seen.
-struct Viewpoint<V: Vector> {
-    tilt: V::Scalar,
-    middle: V,
-    unit: V::Scalar,
-    plane: ContactPlane<V>,
-}
-
-/// A body as seen from the other.
-struct Seen<S: Scalar> {
-    outline: Outline<S>,
-    span: Span<S>,
-    hessian: Symmetric<S>,
-}
-
-impl<S: Scalar> Seen<S> {
-    fn new<B>(body: &B, core: &Core<B::Vector>, direction: B::Vector, from: &Viewpoint<B::Vector>) -> Self
-    where
-        B: SupportMap + ?Sized,
-        B::Vector: Vector<Scalar = S>,
-    {
-        let per_unit = reciprocal_of_power(from.unit);
-        let mut feature = Feature::new();
-        body.core_support_feature(direction, from.tilt * core.extent * S::from_f64(2.0), &mut feature);
-        if feature.points().is_empty() {
-            // Where numbers are not finite.
-            feature.push(body.core_support(direction, &mut Hint::new()), 0);
-        }
-        feature.map(|point| point * per_unit);
-        let outline = Outline::new(&feature, (core.origin - from.middle) * per_unit, &from.plane);
-        let span = Span::of(&outline);
-        let hessian_along = |direction| {
-            let entries = body.core_support_hessian(direction, from.plane.across);
-            let [a, b, d] = entries.map(|entry| entry * per_unit);
-            Symmetric { a, b, d }.plus(core.radius * per_unit)
-        };
-        let hessian = match span {
-            Span::Vertex => hessian_along(direction),
-            Span::Edge(_) if <B::Vector as Vector>::DIM == 2 => Symmetric::ZERO,
-            Span::Edge(e) if matches!(core.kind, CoreKind::Curved) => {
-                let along = from.plane.across[0] * e.0 + from.plane.across[1] * e.1;
-                let turn = turn(from.tilt);
-                // Of the curves on either side, from two directions each.
-                let [first, second] = [-turn, turn].map(|turn| {
-                    let [near, far] = [turn, turn + turn].map(|turn| hessian_along(direction + along * turn));
-                    near.blend(far, -S::ONE)
-                });
-                across_edge(first.blend(second, share(&outline, e)), e)
-            }
-            Span::Edge(e) => across_edge(hessian_along(direction), e),
-            Span::Face => Symmetric::ZERO,
-        };
-        Self { outline, span, hessian }
-    }
-}
-
-/// How far along an edge the point of contact is, which is at zero: as a part of its length.
-fn share<S: Scalar>(outline: &Outline<S>, e: Across<S>) -> S {
-    let [from, to] = [&outline.corners[0], &outline.corners[outline.corners.len() - 1]].map(|corner| dot(corner.at, e));
-    (-from / (to - from)).max(S::ZERO).min(S::ONE)
-}
-
-/// What of a Hessian is across a unit vector. Along the edge itself a support point is free.
-fn across_edge<S: Scalar>(hessian: Symmetric<S>, e: Across<S>) -> Symmetric<S> {
-    let f = (-e.1, e.0);
-    let bend = dot(f, hessian.times(f));
-    Symmetric { a: bend * f.0 * f.0, b: bend * f.0 * f.1, d: bend * f.1 * f.1 }
-}
-
-/// Whether the support points of a body along directions near that of the other are where its Hessian says. They are not where a
-/// shape does not say how it curves, or which face it shows.
-fn is_foretold<B: SupportMap + ?Sized>(
-    body: &B,
-    core: &Core<B::Vector>,
-    direction: B::Vector,
-    at: &ClosestFeatures<B::Vector>,
-    index: usize,
-    turn: ScalarOf<B>,
-) -> bool {
-    if at.spans[index] != Span::Vertex {
-        return true;
-    }
-    let [e, f] = at.across;
-    let per_unit = reciprocal_of_power(at.unit);
-    let hessian = at.hessians[index].plus(-core.radius * per_unit);
-    let mut hint = Hint::new();
-    let mut support = |direction| body.core_support(direction, &mut hint) * per_unit;
-    let point = support(direction);
-    let rounding = ScalarOf::<B>::from_f64(64.0) * ScalarOf::<B>::EPSILON;
-    let rows = [(e, (hessian.a, hessian.b)), (f, (hessian.b, hessian.d))];
-    rows.into_iter().take(B::Vector::DIM - 1).all(|(change, row)| {
-        let foretold = (e * row.0 + f * row.1) * turn;
-        [turn, -turn].into_iter().all(|turn| {
-            let moved = support(direction + change * turn) - point;
-            // Along the direction it moves by the square of the turn.
-            let across = moved - direction * moved.dot(direction);
-            let foretold = if turn > Scalar::ZERO { foretold } else { -foretold };
-            let slack = foretold.length() * ScalarOf::<B>::from_f64(SURPRISE) + rounding;
-            (across - foretold).length() <= slack
-        })
-    })
 }

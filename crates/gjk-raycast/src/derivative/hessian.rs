@@ -4,7 +4,7 @@ use convex_support::{AngularVelocity, Scalar, Vector};
 
 use super::ClosestFeatures;
 use super::velocities::{Shifted, Solver};
-use crate::symmetric::{Across, dot};
+use crate::symmetric::Across;
 
 /// The coordinates of a pose: three of a translation and three of a rotation in space, two and one in the plane.
 const MAX: usize = 6;
@@ -116,13 +116,13 @@ impl<V: Vector> ClosestFeatures<V> {
     #[must_use]
     pub fn hessian(&self, center_a: V, center_b: V) -> Option<PairHessian<V>> {
         let solver = self.solver()?;
-        let coordinates = [self.coordinates(0, center_a), self.coordinates(1, center_b)];
-        let [by_a, by_b] = [0, 1].map(|body| moved(&solver, body, &coordinates[body]));
-        Some(PairHessian {
-            a: symmetric(self.rows(0, &by_a, &coordinates[0], true)),
-            b: symmetric(self.rows(1, &by_b, &coordinates[1], true)),
-            mixed: MotionHessian { rows: self.rows(1, &by_a, &coordinates[1], false) },
-        })
+        let [of_a, of_b] = [self.coordinates(0, center_a), self.coordinates(1, center_b)];
+        let [by_a, by_b] = [0, 1].map(|body| solver.responses(body));
+        let mut mixed = by_a.moved(&of_a, 1).along::<V>(&of_b);
+        for entry in mixed.rows.as_flattened_mut() {
+            *entry = -*entry;
+        }
+        Some(PairHessian { a: by_a.hessian(&of_a, 0), b: by_b.hessian(&of_b, 1), mixed })
     }
 
     /// The same by the pose of `a` alone.
@@ -138,88 +138,120 @@ impl<V: Vector> ClosestFeatures<V> {
     }
 
     fn hessian_of(&self, body: usize, center: V) -> Option<MotionHessian<V>> {
-        let solver = self.solver()?;
-        let coordinates = self.coordinates(body, center);
-        let moved = moved(&solver, body, &coordinates);
-        Some(symmetric(self.rows(body, &moved, &coordinates, true)))
+        Some(self.solver()?.responses(body).hessian(&self.coordinates(body, center), body))
     }
 
-    /// The coordinates of the pose of a body, translations first, and in 2D zeros.
-    fn coordinates(&self, body: usize, center: V) -> [Coordinate<V::Scalar>; MAX] {
+    /// The coordinates of the pose of a body. Of a turn `ω` the part along a unit vector `e` is `e·(ω × arm) = ω·(arm × e)`, which is that of a
+    /// moment.
+    #[inline]
+    fn coordinates(&self, body: usize, center: V) -> Coordinates<V::Scalar> {
         let arm = self.points[body] - center;
-        let zero = (V::Scalar::ZERO, V::Scalar::ZERO);
-        let mut coordinates = [Coordinate { velocity: zero, swing: zero, turn: zero }; MAX];
-        let (translations, rotations) = coordinates.split_at_mut(V::DIM);
-        for (i, translation) in translations.iter_mut().enumerate() {
-            translation.velocity = self.in_plane(V::axis(i));
-        }
-        for (k, rotation) in rotations.iter_mut().enumerate().take(MotionHessian::<V>::SIZE - V::DIM) {
-            let one = |i: usize| if i == k { V::Scalar::ONE } else { V::Scalar::ZERO };
-            let cross = V::AngularVelocity::from_coordinates(one).cross_matrix();
-            let swing = self.in_plane(cross * arm);
-            *rotation = Coordinate { velocity: swing, swing, turn: self.in_plane(cross * self.normal) };
+        let mut coordinates = Coordinates { velocity: [[V::Scalar::ZERO; MAX]; 2], turn: [[V::Scalar::ZERO; MAX]; 2] };
+        for (along, e) in self.across.into_iter().enumerate() {
+            let (swing, turn) = (V::AngularVelocity::moment(arm, e), V::AngularVelocity::moment(self.normal, e));
+            for i in 0..V::DIM {
+                coordinates.velocity[along][i] = e.get(i);
+            }
+            for k in 0..MotionHessian::<V>::SIZE - V::DIM {
+                coordinates.velocity[along][V::DIM + k] = swing.coordinate(k);
+                coordinates.turn[along][V::DIM + k] = turn.coordinate(k);
+            }
         }
         coordinates
     }
+}
 
-    /// `Q(θ)·φ` for the force on a body, by what the coordinates `θ` of a pose do, its own or the other's, and the coordinates `φ` of its own. A
-    /// translation takes its centre along, so that of `a′ − δ` there is the shift.
-    fn rows(
-        &self,
-        body: usize,
-        moved: &[Shifted<V::Scalar>; MAX],
-        coordinates: &[Coordinate<V::Scalar>; MAX],
-        is_own: bool,
-    ) -> [[V::Scalar; MAX]; MAX] {
-        let sign = if body == 0 { V::Scalar::ONE } else { -V::Scalar::ONE };
-        let size = MotionHessian::<V>::SIZE;
-        let mut rows = [[V::Scalar::ZERO; MAX]; MAX];
-        for i in 0..size {
-            let Shifted { normal, shifts } = moved[i];
-            let ((x, y), swing) = (shifts[body], coordinates[i].swing);
-            let shifted = if is_own { (x + swing.0, y + swing.1) } else { (x, y) };
-            for j in 0..size {
-                let Coordinate { velocity, turn, .. } = coordinates[j];
-                rows[i][j] = (dot(normal, velocity) - dot(shifted, turn)) * sign;
+/// The coordinates of a pose, translations first, and in 2D zeros: across the normal, along either unit vector, the velocity of the material
+/// point that is closest, and how it turns the normal.
+struct Coordinates<S> {
+    velocity: [[S; MAX]; 2],
+    turn: [[S; MAX]; 2],
+}
+
+/// What unit velocities of the closest material point of a body across the normal do, and unit turns of the normal by it: with them it is known
+/// what every coordinate of the pose of the body does.
+struct Responses<S> {
+    velocities: [Shifted<S>; 2],
+    turns: [Shifted<S>; 2],
+}
+
+/// What the coordinates of a pose do, along either unit vector across the normal: how they turn the normal, and by what the point of a body moves
+/// more than the centre of that.
+struct Moved<S> {
+    normal: [[S; MAX]; 2],
+    shift: [[S; MAX]; 2],
+}
+
+impl<V: Vector> Solver<'_, V> {
+    #[inline]
+    fn responses(&self, body: usize) -> Responses<V::Scalar> {
+        let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
+        let (rest, toward) = ((zero, zero), if body == 0 { one } else { -one });
+        let turned = |turn| self.shifted(rest, if body == 0 { [turn, rest] } else { [rest, turn] });
+        Responses {
+            velocities: [self.shifted((toward, zero), [rest; 2]), self.shifted((zero, toward), [rest; 2])],
+            turns: [turned((one, zero)), turned((zero, one))],
+        }
+    }
+}
+
+impl<S: Scalar> Responses<S> {
+    /// What the coordinates of the pose of the body do, with the point of the body of that index.
+    #[inline]
+    fn moved(&self, coordinates: &Coordinates<S>, index: usize) -> Moved<S> {
+        let Coordinates { velocity: [v, w], turn: [t, u] } = coordinates;
+        let [[p, q], [r, s]] = [&self.velocities, &self.turns];
+        let sum = |p: S, q: S, r: S, s: S| {
+            let mut sum = [S::ZERO; MAX];
+            for i in 0..MAX {
+                sum[i] = p * v[i] + q * w[i] + (r * t[i] + s * u[i]);
+            }
+            sum
+        };
+        let both = |[p, q, r, s]: [Across<S>; 4]| [sum(p.0, q.0, r.0, s.0), sum(p.1, q.1, r.1, s.1)];
+        let all = [p, q, r, s];
+        Moved { normal: both(all.map(|of| of.normal)), shift: both(all.map(|of| of.shifts[index])) }
+    }
+
+    /// The Hessian by the pose of the body. Of two rotations it is the symmetric part of `Q`; what a rotation does along a translation, which
+    /// turns nothing, is `n′·v`.
+    #[inline]
+    fn hessian<V: Vector<Scalar = S>>(&self, coordinates: &Coordinates<S>, body: usize) -> MotionHessian<V> {
+        let Moved { normal: [n, m], shift: [a, b] } = self.moved(coordinates, body);
+        let Coordinates { velocity: [v, w], turn: [t, u] } = coordinates;
+        let (half, sign) = (S::from_f64(0.5), if body == 0 { S::ONE } else { -S::ONE });
+        let mut rows = [[S::ZERO; MAX]; MAX];
+        for i in 0..MotionHessian::<V>::SIZE {
+            for j in 0..i.min(V::DIM - 1) + 1 {
+                rows[i][j] = (n[i] * v[j] + m[i] * w[j]) * sign;
+                rows[j][i] = rows[i][j];
             }
         }
-        rows
+        for i in V::DIM..MotionHessian::<V>::SIZE {
+            // A turn about the centre moves the material point, and the point that is closest with it.
+            let (a, b) = (a[i] + v[i], b[i] + w[i]);
+            for j in V::DIM..MotionHessian::<V>::SIZE {
+                let along = (n[i] * v[j] + m[i] * w[j] - (a * t[j] + b * u[j])) * (half * sign);
+                rows[i][j] += along;
+                rows[j][i] += along;
+            }
+        }
+        MotionHessian { rows }
     }
 }
 
-/// A coordinate of a pose, across the normal: the velocity of the material point that is closest, the part of it that is of a turn about the centre,
-/// and how it turns the normal.
-#[derive(Clone, Copy, Debug)]
-struct Coordinate<S> {
-    velocity: Across<S>,
-    swing: Across<S>,
-    turn: Across<S>,
-}
-
-impl<S: Scalar> Coordinate<S> {
-    /// What it does as a coordinate of the pose of a body.
-    fn shifted<V: Vector<Scalar = S>>(self, solver: &Solver<'_, V>, body: usize) -> Shifted<S> {
-        let ((x, y), zero) = (self.velocity, (S::ZERO, S::ZERO));
-        if body == 0 { solver.shifted((x, y), [self.turn, zero]) } else { solver.shifted((-x, -y), [zero, self.turn]) }
+impl<S: Scalar> Moved<S> {
+    /// `Q(θ)·φ` for a force along the normal, by coordinates `φ` of the pose of its body.
+    #[inline]
+    fn along<V: Vector<Scalar = S>>(&self, coordinates: &Coordinates<S>) -> MotionHessian<V> {
+        let Self { normal: [n, m], shift: [a, b] } = self;
+        let Coordinates { velocity: [v, w], turn: [t, u] } = coordinates;
+        let mut rows = [[S::ZERO; MAX]; MAX];
+        for i in 0..MAX {
+            for j in 0..MAX {
+                rows[i][j] = n[i] * v[j] + m[i] * w[j] - (a[i] * t[j] + b[i] * u[j]);
+            }
+        }
+        MotionHessian { rows }
     }
-}
-
-/// What each coordinate of the pose of a body does; in 2D the last do nothing.
-fn moved<V: Vector>(
-    solver: &Solver<'_, V>,
-    body: usize,
-    coordinates: &[Coordinate<V::Scalar>; MAX],
-) -> [Shifted<V::Scalar>; MAX] {
-    let zero = (V::Scalar::ZERO, V::Scalar::ZERO);
-    let mut moved = [Shifted { normal: zero, shifts: [zero; 2] }; MAX];
-    for (moved, coordinate) in moved.iter_mut().zip(coordinates).take(MotionHessian::<V>::SIZE) {
-        *moved = coordinate.shifted(solver, body);
-    }
-    moved
-}
-
-/// The symmetric part.
-fn symmetric<V: Vector>(rows: [[V::Scalar; MAX]; MAX]) -> MotionHessian<V> {
-    let half = V::Scalar::from_f64(0.5);
-    MotionHessian { rows: core::array::from_fn(|i| core::array::from_fn(|j| (rows[i][j] + rows[j][i]) * half)) }
 }

@@ -1,0 +1,188 @@
+//! What two bodies show each other along a normal, and how they curve there.
+
+use convex_support::{Core, CoreKind, Feature, Hint, Scalar, ScalarOf, SupportMap, Vector};
+use num_traits::Float as _;
+
+use super::closest_features::{Closest, ClosestFeatures};
+use super::span::Span;
+use crate::contact::{ContactPlane, Outline, across};
+use crate::symmetric::{Across, Symmetric, dot};
+use crate::unit::reciprocal_of_power;
+
+/// How far a direction is turned to see which curve an edge between two of them belongs to, and where a support point goes, in units
+/// of the square root of ε.
+const TURN: f64 = 16.0;
+
+/// By how much a support point may differ from where its curvature foretells it, as a part of how far that moves.
+const SURPRISE: f64 = 0.25;
+
+/// Two bodies, and the unit of length.
+pub(super) struct Bodies<'s, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
+    pub(super) a: &'s A,
+    pub(super) b: &'s B,
+    pub(super) cores: [Core<A::Vector>; 2],
+    pub(super) unit: ScalarOf<A>,
+}
+
+impl<A, B> Bodies<'_, A, B>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    /// Before anything was looked at.
+    pub(super) fn unseen(&self) -> ClosestFeatures<A::Vector> {
+        let zero = A::Vector::ZERO;
+        ClosestFeatures {
+            normal: zero,
+            across: [zero; 2],
+            points: [zero; 2],
+            middle: zero,
+            unit: self.unit,
+            signed_distance: Scalar::ZERO,
+            radii: self.cores.map(|core| core.radius / self.unit),
+            hessians: [Symmetric::ZERO; 2],
+            is_foretold: true,
+            outlines: [Outline::empty(), Outline::empty()],
+            spans: [Span::Vertex; 2],
+            tilt: Scalar::ZERO,
+            is_tied: false,
+        }
+    }
+
+    /// Sees the features along the normal, which may be wrong by `tilt`. Outlines are long: features are seen where they stay, not moved there.
+    pub(super) fn look(
+        &self,
+        features: &mut ClosestFeatures<A::Vector>,
+        closest: Closest<A::Vector>,
+        tilt: ScalarOf<A>,
+    ) {
+        let Closest { normal, points, signed_distance, .. } = closest;
+        let (unit, half) = (self.unit, ScalarOf::<A>::from_f64(0.5));
+        // In the unit; zero is the middle of the closest points, which is on both sides of the plane that outlines are seen in.
+        let plane = ContactPlane { normal, across: across(normal), origin: A::Vector::ZERO };
+        let middle = points[0] * half + points[1] * half;
+        (features.normal, features.across, features.points, features.middle) = (normal, plane.across, points, middle);
+        (features.signed_distance, features.tilt) = (signed_distance / unit, tilt);
+        let (from, [core_a, core_b]) = (Viewpoint { tilt, middle, unit, plane }, &self.cores);
+        let [outline_a, outline_b] = &mut features.outlines;
+        draw(outline_a, self.a, core_a, -normal, &from);
+        draw(outline_b, self.b, core_b, normal, &from);
+        features.spans = [Span::of(outline_a), Span::of(outline_b)];
+        features.hessians =
+            [hessian(self.a, core_a, -normal, outline_a, &from), hessian(self.b, core_b, normal, outline_b, &from)];
+    }
+
+    /// Whether the support points nearby are where the Hessians say.
+    pub(super) fn are_foretold(&self, at: &ClosestFeatures<A::Vector>) -> bool {
+        let turn = turn(at.tilt);
+        let of_a = is_foretold(self.a, &self.cores[0], -at.normal, at, 0, turn);
+        of_a && is_foretold(self.b, &self.cores[1], at.normal, at, 1, turn)
+    }
+}
+
+/// How far a direction is turned to look nearby.
+fn turn<S: Scalar>(tilt: S) -> S {
+    (S::EPSILON.sqrt() * S::from_f64(TURN)).max(tilt * S::from_f64(4.0))
+}
+
+/// From where the bodies are seen.
+struct Viewpoint<V: Vector> {
+    tilt: V::Scalar,
+    middle: V,
+    unit: V::Scalar,
+    plane: ContactPlane<V>,
+}
+
+/// Draws the outline of what a body shows along a direction.
+fn draw<B: SupportMap + ?Sized>(
+    outline: &mut Outline<ScalarOf<B>>,
+    body: &B,
+    core: &Core<B::Vector>,
+    direction: B::Vector,
+    from: &Viewpoint<B::Vector>,
+) {
+    let per_unit = reciprocal_of_power(from.unit);
+    let mut feature = Feature::new();
+    body.core_support_feature(direction, from.tilt * core.extent * Scalar::from_f64(2.0), &mut feature);
+    if feature.points().is_empty() {
+        // Where numbers are not finite.
+        feature.push(body.core_support(direction, &mut Hint::new()), 0);
+    }
+    feature.map(|point| point * per_unit);
+    outline.draw(&feature, (core.origin - from.middle) * per_unit, &from.plane);
+}
+
+/// The Hessian of the support value of a body across a direction, along which it shows a feature; that of its radius included.
+fn hessian<B: SupportMap + ?Sized>(
+    body: &B,
+    core: &Core<B::Vector>,
+    direction: B::Vector,
+    outline: &Outline<ScalarOf<B>>,
+    from: &Viewpoint<B::Vector>,
+) -> Symmetric<ScalarOf<B>> {
+    let per_unit = reciprocal_of_power(from.unit);
+    let along = |direction| {
+        let entries = body.core_support_hessian(direction, from.plane.across);
+        let [a, b, d] = entries.map(|entry| entry * per_unit);
+        Symmetric { a, b, d }.plus(core.radius * per_unit)
+    };
+    match Span::of(outline) {
+        Span::Vertex => along(direction),
+        Span::Edge(_) if B::Vector::DIM == 2 => Symmetric::ZERO,
+        Span::Edge(e) if matches!(core.kind, CoreKind::Curved) => {
+            let edge = from.plane.across[0] * e.0 + from.plane.across[1] * e.1;
+            let turn = turn(from.tilt);
+            // Of the curves on either side, from two directions each.
+            let [first, second] = [-turn, turn].map(|turn| {
+                let [near, far] = [turn, turn + turn].map(|turn| along(direction + edge * turn));
+                near.blend(far, -ScalarOf::<B>::ONE)
+            });
+            across_edge(first.blend(second, share(outline, e)), e)
+        }
+        Span::Edge(e) => across_edge(along(direction), e),
+        Span::Face => Symmetric::ZERO,
+    }
+}
+
+/// How far along an edge the point of contact is, which is at zero: as a part of its length.
+fn share<S: Scalar>(outline: &Outline<S>, e: Across<S>) -> S {
+    let [from, to] = [&outline.corners[0], &outline.corners[outline.corners.len() - 1]].map(|corner| dot(corner.at, e));
+    (-from / (to - from)).max(S::ZERO).min(S::ONE)
+}
+
+/// What of a Hessian is across a unit vector. Along the edge itself a support point is free.
+fn across_edge<S: Scalar>(hessian: Symmetric<S>, e: Across<S>) -> Symmetric<S> {
+    let f = (-e.1, e.0);
+    let bend = dot(f, hessian.times(f));
+    Symmetric { a: bend * f.0 * f.0, b: bend * f.0 * f.1, d: bend * f.1 * f.1 }
+}
+
+/// Whether the support points of a body along directions near that of the other are where its Hessian says. They are not where a
+/// shape does not say how it curves, or which face it shows.
+fn is_foretold<B: SupportMap + ?Sized>(
+    body: &B,
+    core: &Core<B::Vector>,
+    direction: B::Vector,
+    at: &ClosestFeatures<B::Vector>,
+    index: usize,
+    turn: ScalarOf<B>,
+) -> bool {
+    if at.spans[index] != Span::Vertex {
+        return true;
+    }
+    let per_unit = reciprocal_of_power(at.unit);
+    let hessian = at.hessians[index].plus(-core.radius * per_unit);
+    let (mut hint, origin, from) =
+        (Hint::new(), at.in_plane((core.origin - at.middle) * per_unit), at.outlines[index].corners[0].at);
+    let rounding = ScalarOf::<B>::from_f64(64.0) * ScalarOf::<B>::EPSILON;
+    let rows = [(hessian.a, hessian.b), (hessian.b, hessian.d)];
+    at.across.into_iter().zip(rows).take(B::Vector::DIM - 1).all(|(change, row)| {
+        [turn, -turn].into_iter().all(|turn| {
+            let point = at.in_plane(body.core_support(direction + change * turn, &mut hint) * per_unit);
+            let foretold = (row.0 * turn, row.1 * turn);
+            let off = (point.0 + origin.0 - from.0 - foretold.0, point.1 + origin.1 - from.1 - foretold.1);
+            let slack = dot(foretold, foretold).sqrt() * ScalarOf::<B>::from_f64(SURPRISE) + rounding;
+            dot(off, off) <= slack * slack
+        })
+    })
+}

@@ -1,0 +1,133 @@
+//! The normal and the points to rounding, by Newton's method along the features that are near those of an answer.
+
+use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
+use num_traits::Float as _;
+
+use super::closest_features::{Closest, ClosestFeatures, rounding};
+use super::look::Bodies;
+use super::overlap::are_apart;
+use super::span::Span;
+use crate::contact::across;
+
+/// The longest step of the unit normal that is one of refinement, and how many are made.
+const LONGEST_STEP: f64 = 0.1;
+const MAX_STEPS: usize = 5;
+
+/// In how many rounds features are tried that may hold the normal, each of which looks within a part of the last.
+const ROUNDS: usize = 4;
+const NEARER: f64 = 1.0 / 16.0;
+
+impl<A, B> Bodies<'_, A, B>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    /// Looks along the normal within `reach` of that of an answer along which the features overlap, which is the condition of the closest points;
+    /// whether there is one, but for what is seen within `tilt`.
+    ///
+    /// What is seen within reach is tried: the normal across it. Where that is none, as where the answer is at an edge of a face that is seen,
+    /// what is seen within less is tried.
+    pub(super) fn settle(
+        &self,
+        features: &mut ClosestFeatures<A::Vector>,
+        closest: Closest<A::Vector>,
+        tilt: ScalarOf<A>,
+        reach: ScalarOf<A>,
+    ) -> bool {
+        let mut within = reach;
+        for _ in 0..ROUNDS {
+            // NaN ends this too.
+            if !(within > tilt) {
+                break;
+            }
+            self.look(features, closest, within);
+            if features.spans == [Span::Vertex; 2] {
+                // They are so within less.
+                features.tilt = tilt;
+                return self.refine(features, closest);
+            }
+            if self.hold(features, closest, reach) && self.refine(features, closest) {
+                return true;
+            }
+            within *= Scalar::from_f64(NEARER);
+        }
+        false
+    }
+
+    /// Turns to the normal across which what is seen holds it, to rounding; whether there is one, along which the features overlap.
+    fn hold(&self, seen: &mut ClosestFeatures<A::Vector>, closest: Closest<A::Vector>, reach: ScalarOf<A>) -> bool {
+        let radii = self.cores.map(|core| core.radius);
+        // Whether the features along another normal are of these kinds, where that is asked, and overlap.
+        let is_kept = |seen: &mut ClosestFeatures<A::Vector>, normal: A::Vector, tilt, kinds: [Option<usize>; 2]| {
+            let Some(normal) = normal.unit() else { return false };
+            if !((normal - closest.normal).length() <= reach + reach) {
+                return false;
+            }
+            self.look(seen, Closest { normal, ..closest }, tilt);
+            seen.spans.iter().zip(kinds).all(|(span, kind)| kind.is_none_or(|kind| span.kind() == kind))
+                && !are_apart(&seen.outlines, seen.slack() + tilt)
+        };
+        for _ in 0..MAX_STEPS {
+            let kinds = seen.spans.map(Span::kind);
+            let Some(step) = seen.newton_step(radii) else {
+                // A face holds all of the normal, and of two edges that are parallel each a part.
+                let normals = [0, 1].map(|i| {
+                    let turn = seen.spans[i].turn(&seen.outlines[i]);
+                    seen.normal + seen.out_of_plane(turn)
+                });
+                let most = kinds[0].max(kinds[1]);
+                return (kinds[0] == most && is_kept(seen, normals[0], rounding(), [Some(most), None]))
+                    || (kinds[1] == most && is_kept(seen, normals[1], rounding(), [None, Some(most)]));
+            };
+            // A step of Newton's method leaves the square of what it takes away.
+            let left = step.turn.length() * step.turn.length();
+            if !is_kept(seen, seen.normal + step.turn, rounding::<ScalarOf<A>>() + left, kinds.map(Some)) {
+                return false;
+            }
+            if left <= rounding() {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Newton's method for the normal and the points, as long as the steps become shorter; whether it leads to points that are opposite to each
+    /// other, along the same features.
+    pub(super) fn refine(&self, best: &mut ClosestFeatures<A::Vector>, closest: Closest<A::Vector>) -> bool {
+        let mut length = ScalarOf::<A>::from_f64(LONGEST_STEP);
+        let radii = self.cores.map(|core| core.radius);
+        for _ in 0..MAX_STEPS {
+            let Some(step) = best.newton_step(radii) else { break };
+            let size = step.turn.length();
+            // NaN ends this too.
+            if !(size < length) {
+                break;
+            }
+            let shifts = [0, 1].map(|i| (step.points[i] - best.points[i]).length());
+            best.points = step.points;
+            // An answer knows the distance to its tolerance; to that of rounding, it stays.
+            let error = (step.signed_distance - best.signed_distance).abs();
+            if error > rounding() {
+                best.signed_distance = step.signed_distance;
+            }
+            if size > length * Scalar::from_f64(0.5) {
+                break;
+            }
+            let Some(normal) = (best.normal + step.turn).unit() else { return false };
+            if size <= rounding() && shifts[0].max(shifts[1]) <= self.unit * rounding() {
+                // The features along this normal are those that were seen, to rounding.
+                (best.normal, best.across) = (normal, across(normal));
+                break;
+            }
+            let signed_distance = best.signed_distance * self.unit;
+            let kinds = best.spans.map(Span::kind);
+            self.look(best, Closest { normal, points: step.points, signed_distance, ..closest }, rounding());
+            if best.spans.map(Span::kind) != kinds {
+                return false;
+            }
+            length = size;
+        }
+        let slack = best.slack();
+        best.off() <= slack && !are_apart(&best.outlines, slack)
+    }
+}
