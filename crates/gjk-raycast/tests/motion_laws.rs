@@ -92,6 +92,11 @@ fn body(x: f64) -> impl Strategy<Value = Body> {
     )
 }
 
+/// Half the length of a segment, which may be a point.
+fn half_length() -> impl Strategy<Value = f64> {
+    prop_oneof![4 => 0.0..1.0, 1 => Just(0.0), 1 => Just(1e-8), 1 => Just(1e-200)]
+}
+
 fn cast(a: &Body, b: &Body, end: f64) -> MotionCast<DVec3> {
     let options = MotionCastOptions::new().with_max_time(end);
     motion_cast(&a.shape(), a.motion, &b.shape(), b.motion, options).expect("finite")
@@ -180,6 +185,35 @@ proptest! {
         prop_assert_eq!((cast.lower, cast.upper, cast.status), (linear.lower.min(1.2), linear.upper, linear.status));
         let (hit, linear) = (cast.outcome.hit(), linear.outcome.hit());
         prop_assert_eq!(hit.map(|hit| (hit.time, hit.point)), linear.map(|hit| (hit.time, hit.point)));
+    }
+
+    /// The closest points of thick capsules are known in closed form, those of rounded polytopes are searched for.
+    #[test]
+    fn capsules_meet_as_rounded_polytopes_do(
+        a in body(-3.0),
+        b in body(3.0),
+        lengths in [half_length(), half_length()],
+        radii in (0.2..1.0, 0.2..1.0),
+        are_parallel in any::<bool>(),
+    ) {
+        let b = if are_parallel { Body { rotation: a.rotation, ..b } } else { b };
+        let posed = |shape: Shape, body: &Body| Posed::new(shape, body.rotation, body.place).expect("a pose");
+        let capsule = |length: f64, radius| Box::new(Capsule::<DVec3>::new(length, radius).expect("valid sizes"));
+        let searched = |length: f64, radius| {
+            let ends = Polytope::new([DVec3::Y * length, DVec3::NEG_Y * length]).expect("finite");
+            Box::new(Rounded::new(ends, radius).expect("a valid radius"))
+        };
+        let options = MotionCastOptions::new().with_max_time(1.2);
+        let cast = |shapes: [Shape; 2]| {
+            let [one, other] = shapes;
+            motion_cast(&posed(one, &a), a.motion, &posed(other, &b), b.motion, options).expect("finite")
+        };
+        let (known, found) = (
+            cast([capsule(lengths[0], radii.0), capsule(lengths[1], radii.1)]),
+            cast([searched(lengths[0], radii.0), searched(lengths[1], radii.1)]),
+        );
+        prop_assert!(agree(&known, &found, 1.0), "{:?} and {:?}", known, found);
+        prop_assert_eq!(known.status, found.status, "{:?} and {:?}", known, found);
     }
 
     /// So slow a turn changes nothing that can be seen.

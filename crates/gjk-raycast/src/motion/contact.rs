@@ -24,7 +24,7 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
         let error = error.max(self.closest() * Scalar::from_f64(0.25));
         let deep = distance.max(zero) + error * Scalar::from_f64(DEPTH);
         // As fast as it closes, or after the time that it would take to come so deep from rest.
-        let (at_speed, from_rest) = (deep / closing, (two * deep / self.expected_acceleration()).sqrt());
+        let (at_speed, from_rest) = (deep / closing, (two * deep / self.acceleration.max(zero)).sqrt());
         let mut step = if closing > zero && at_speed < from_rest { at_speed } else { from_rest };
         while self.looks < self.options.max_iterations {
             let next = (time + step).max(next_after(time)).min(end);
@@ -40,8 +40,7 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
                 return Some(End::Contact);
             }
             if there.gap > zero {
-                self.ahead = Some(there);
-                if self.take_ahead() {
+                if self.advance_to(&there) {
                     self.beyond = None;
                     return None;
                 }

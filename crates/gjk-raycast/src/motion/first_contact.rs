@@ -8,15 +8,19 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::approach::Approach;
-use super::free_interval::is_free;
+use super::free_interval::acceleration_if_free;
 use super::instant::{Instant, Limits, NEAR};
 use super::next_time::PATIENCE;
 use super::options::MotionCastOptions;
 use super::result::{MotionCast, MotionHit, MotionIterate};
+use super::trajectory::TurningPlane;
 use crate::{Miss, Outcome, StartInContact, Status};
 
 /// Where to be when a contact is as near as can be told: its distance in units of what that may be wrong by.
 pub(super) const AIM: f64 = 1.5;
+
+/// The square of an angle, in radians, that is too far for a normal to have turned for a step to be like the one before.
+const FAR: f64 = 0.25;
 
 /// The search, which has come to [`near`](Self::near).
 pub(super) struct Search<'p, V: Vector, P, F> {
@@ -30,6 +34,8 @@ pub(super) struct Search<'p, V: Vector, P, F> {
     pub(super) came_nearer: V::Scalar,
     pub(super) turned: V,
     pub(super) sped_up: V::Scalar,
+    /// The bound `M` to be expected of a step like it; at the start, along a plane that does not turn.
+    pub(super) acceleration: V::Scalar,
     /// Whether that foretells the next step: the same points were the closest ones all the way.
     pub(super) is_smooth: bool,
     /// A later time at which they are apart, though they may not be in between.
@@ -69,10 +75,12 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
         let limits = Limits { distance: infinity, depth: if leaves { infinity } else { zero } };
         let near = bodies.at(zero, axis, limits);
         let near = if near.gap > zero || near.is_close { near } else { bodies.closely(zero, axis, limits) };
+        let plane = TurningPlane { from: near.normal, to: near.normal };
         let mut search = Self {
             bodies,
             options,
             observer,
+            acceleration: bodies.acceleration_along(plane, [zero, Scalar::ONE]),
             near,
             step: Scalar::ONE,
             came_nearer: zero,
@@ -117,25 +125,33 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
             };
             let there = self.glance(time);
             if there.gap > zero {
-                self.ahead = Some(there);
+                self.advance_to(&there);
             } else {
                 self.block(&there);
             }
-            self.take_ahead();
             self.watch_progress();
         }
         End::Undecided(Status::IterationLimit)
     }
 
-    /// Goes on to the time ahead, if the bodies are proved apart until then.
-    pub(super) fn take_ahead(&mut self) -> bool {
-        let Some(ahead) = self.ahead.filter(|ahead| is_free(self.bodies, &self.near, ahead)) else { return false };
-        self.step = ahead.time - self.near.time;
-        self.came_nearer = self.near.distance - ahead.distance;
-        self.turned = ahead.normal - self.near.normal;
-        self.sped_up = ahead.closing - self.near.closing;
-        self.is_smooth = self.near.goes_smoothly_to(&ahead);
-        self.near = ahead;
+    /// Goes on to a time at which the bodies are apart, if they are proved to be so until then; if not, that is remembered.
+    pub(super) fn advance_to(&mut self, there: &Instant<V>) -> bool {
+        let Some(acceleration) = acceleration_if_free(self.bodies, &self.near, there) else {
+            self.ahead = Some(*there);
+            return false;
+        };
+        self.step = there.time - self.near.time;
+        self.came_nearer = self.near.distance - there.distance;
+        self.turned = there.normal - self.near.normal;
+        self.acceleration = acceleration;
+        // A normal that has turned far makes the next step less like the last one.
+        if self.turned.length_squared() > Scalar::from_f64(FAR) {
+            let plane = TurningPlane { from: there.normal, to: there.normal + self.turned };
+            self.acceleration = self.bodies.acceleration_along(plane, [there.time, there.time + self.step]);
+        }
+        self.sped_up = there.closing - self.near.closing;
+        self.is_smooth = self.near.goes_smoothly_to(there);
+        self.near = *there;
         self.ahead = None;
         true
     }

@@ -24,7 +24,6 @@
 //! large, one of them may do at both times.
 
 use convex_support::{Scalar, Vector};
-use num_traits::Float as _;
 
 use super::approach::Approach;
 use super::instant::Instant;
@@ -33,36 +32,40 @@ use super::trajectory::TurningPlane;
 /// What may be lost to rounding where both sides of the condition are computed.
 const ROUNDING: f64 = 64.0;
 
-/// Whether the bodies are certainly apart throughout the interval between two times at which they are.
-pub(super) fn is_free<V: Vector>(bodies: &impl Approach<V>, from: &Instant<V>, to: &Instant<V>) -> bool {
+/// Whether the bodies are certainly apart throughout the interval between two times at which they are; if so, the bound `M` along the
+/// plane that turns from the one normal to the other, whichever plane proves it.
+pub(super) fn acceleration_if_free<V: Vector>(
+    bodies: &impl Approach<V>,
+    from: &Instant<V>,
+    to: &Instant<V>,
+) -> Option<V::Scalar> {
+    let times = [from.time, to.time];
+    let most = |normals: [V; 2]| bodies.acceleration_along(TurningPlane { from: normals[0], to: normals[1] }, times);
+    let turning = most([from.normal, to.normal]);
+    if keeps_apart([from.gap, to.gap], turning, times) {
+        return Some(turning);
+    }
+    // Of one plane nothing else can be said.
+    if from.normal == to.normal {
+        return None;
+    }
     let gap_along = |time, normal| {
         let (level, error) = bodies.level(time, normal);
         level - error
     };
-    let times = [from.time, to.time];
-    if keeps_apart(bodies, [from.normal, to.normal], [from.gap, to.gap], times) {
-        return true;
-    }
-    // Of one plane nothing else can be said.
-    from.normal != to.normal
-        && (keeps_apart(bodies, [to.normal; 2], [gap_along(from.time, to.normal), to.gap], times)
-            || keeps_apart(bodies, [from.normal; 2], [from.gap, gap_along(to.time, from.normal)], times))
+    let is_free = keeps_apart([gap_along(from.time, to.normal), to.gap], most([to.normal; 2]), times)
+        || keeps_apart([from.gap, gap_along(to.time, from.normal)], most([from.normal; 2]), times);
+    is_free.then_some(turning)
 }
 
-/// Whether a plane that turns from one normal to another, and at the ends separates the bodies by these gaps, does so in between.
-fn keeps_apart<V: Vector>(
-    bodies: &impl Approach<V>,
-    normals: [V; 2],
-    gaps: [V::Scalar; 2],
-    times: [V::Scalar; 2],
-) -> bool {
-    if !gaps.iter().all(|&gap| gap > Scalar::ZERO) {
+/// Whether planes that separate the bodies by these gaps at the ends of an interval do so in between, with this bound.
+fn keeps_apart<S: Scalar>(gaps: [S; 2], most: S, times: [S; 2]) -> bool {
+    if !gaps.iter().all(|&gap| gap > S::ZERO) {
         return false;
     }
     let duration = times[1] - times[0];
-    let most = bodies.acceleration_along(TurningPlane { from: normals[0], to: normals[1] }, times);
     let roots = gaps[0].sqrt() + gaps[1].sqrt();
-    let half = V::Scalar::from_f64(0.5 + 0.5 * ROUNDING * V::Scalar::EPSILON.as_f64());
+    let half = S::from_f64(0.5 + 0.5 * ROUNDING * S::EPSILON.as_f64());
     // NaN is no proof.
     duration * duration * most * half < roots * roots
 }

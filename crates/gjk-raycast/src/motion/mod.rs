@@ -19,6 +19,7 @@ mod placed;
 mod result;
 mod rigid_motion;
 mod rough_look;
+mod segments;
 mod trajectory;
 
 pub use chain_motion::ChainMotion;

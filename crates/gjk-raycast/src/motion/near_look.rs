@@ -13,7 +13,7 @@ use super::moved::Moved;
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use super::trajectory::Trajectory;
-use crate::body::{Pair, PointPair};
+use crate::body::{Body as _, Pair, PointPair};
 use crate::contact::Cores;
 use crate::simplex::{MAX_POINTS, cross, project};
 use crate::unit::is_moderate;
@@ -53,7 +53,7 @@ where
         if !is_moderate(size) {
             return None;
         }
-        let (closest, face) = match pair.closest_points(placed.offset, size) {
+        let (closest, face) = match self.closest_points(placed, &pair, size) {
             Some(points) => (Closest::new(points, points.a - points.b + placed.offset, size)?, None),
             None => {
                 let face = self.closest.borrow().closest_face(placed)?;
@@ -79,7 +79,11 @@ where
         let mut upper = ScalarOf::<A>::infinity();
         if is_closest && !(distance > error) {
             upper = match &face {
-                None => cores.greatest_length(v / scale) * scale - radius + slack(v.length()),
+                None => {
+                    // Points of segments are rounded by a product and a sum more than support points.
+                    let lost = ScalarOf::<A>::EPSILON * pair.extent();
+                    cores.greatest_length(v / scale) * scale - radius + slack(v.length()) + lost
+                }
                 Some(face) => self.overlap_of_corners(&mut cores, face, unit)?,
             };
         }

@@ -15,36 +15,21 @@ const CAUTION: f64 = 0.9;
 const LEFT: f64 = 0.05;
 /// Steps of Newton's method from the root of a parabola to that of a cubic.
 const STEPS: usize = 2;
-/// How far apart bodies are, as a part of their size, for other points to become the closest ones before they touch.
-const FAR: f64 = 0.03;
-/// How much a plane may leave of the distance of bodies, before their normal is looked for again.
-const LEFT_APART: f64 = 0.05;
-/// How many times are tried for that.
-const TRIES: usize = 4;
 /// How often in a row the search for a contact may come nearer by less than half before it halves the interval.
 pub(super) const PATIENCE: u8 = 2;
 
 impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> {
     /// Where to look next; `None` where no time lies between those known.
     ///
-    /// With the gap `g` and the speed `w` at which it closes, it is expected to be `g − w·s` after the time `s`. So with `k = √(M/2)`
+    /// With the gap `g` and the speed `w` at which it closes, it is expected to be `g − w·s` after the time `s`. So with `k = √(M/2)`, of the `M` of the last step,
     /// an interval can be expected to be proved if `√g + √(g − w·s) > k·s`, which ends at `s = (2√g − w/k)/k` if the gap is still
     /// open then, that is if `w < k·√g`. Otherwise the contact itself is within reach.
     pub(super) fn next_time(&self) -> Option<V::Scalar> {
         let from_f64 = V::Scalar::from_f64;
         let Instant { time, gap, distance, error, closing, .. } = self.near;
         let end = self.options.max_time.min(self.upper);
-        let (k, root) = ((self.expected_acceleration() * from_f64(0.5)).sqrt(), gap.sqrt());
+        let (k, root) = ((self.acceleration.max(Scalar::ZERO) * from_f64(0.5)).sqrt(), gap.sqrt());
         let is_within_reach = closing > k * root;
-        if is_within_reach
-            && !self.is_smooth
-            && distance > self.bodies.size() * from_f64(FAR)
-            && self.ahead.is_none()
-            && self.slow <= PATIENCE
-            && let Some(next) = self.nearly_touching()
-        {
-            return Some(next);
-        }
         let step = if is_within_reach {
             self.newton(distance - error * from_f64(AIM))
         } else {
@@ -87,13 +72,6 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
         })
     }
 
-    /// The bound `M` of a step like the last one.
-    pub(super) fn expected_acceleration(&self) -> V::Scalar {
-        let Instant { time, normal, .. } = self.near;
-        let plane = TurningPlane { from: normal, to: normal + self.turned };
-        self.bodies.acceleration_along(plane, [time, time + self.step]).max(Scalar::ZERO)
-    }
-
     /// The time after which the bodies have come nearer by `way`, as far as the last two looks foretell it.
     ///
     /// With the closing speeds `w₀` and `w` at the beginning and the end of the last step `h`, in which they came nearer by `m·h`, the only
@@ -105,11 +83,9 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
     /// does not tell what comes, the growth `c` is the most that it may be.
     fn newton(&self, way: V::Scalar) -> V::Scalar {
         let from_f64 = V::Scalar::from_f64;
-        let (two, Instant { time, normal, closing: w, .. }) = (from_f64(2.0), self.near);
+        let (two, w) = (from_f64(2.0), self.near.closing);
         if !self.is_smooth {
-            let plane = TurningPlane { from: normal, to: normal };
-            let most = self.bodies.acceleration_along(plane, [time, time + way / w]).max(Scalar::ZERO);
-            return two * way / (w + (w * w + two * most * way).sqrt());
+            return two * way / (w + (w * w + two * self.acceleration.max(Scalar::ZERO) * way).sqrt());
         }
         let (h, sped_up) = (self.step, self.sped_up);
         let bent = from_f64(12.0) * (w - sped_up * from_f64(0.5) - self.came_nearer / h);
@@ -127,38 +103,6 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
         }
         // NaN is not near.
         if (s - after).abs() < after * from_f64(0.5) { s } else { after }
-    }
-
-    /// A time at which the plane between the bodies, if it does not turn, keeps them apart by a small part of their distance; `None`
-    /// where there is none before the end.
-    ///
-    /// Where other points have become the closest ones, Newton's method leads astray. The plane keeps the bodies apart by no more than
-    /// their distance, so that they do not touch there, and its support points are whichever are the nearest by then.
-    fn nearly_touching(&self) -> Option<V::Scalar> {
-        let (zero, from_f64) = (V::Scalar::ZERO, V::Scalar::from_f64);
-        let Instant { time, normal, distance, closing, .. } = self.near;
-        let end = self.beyond.map_or(self.options.max_time.min(self.upper), |beyond| beyond.time);
-        let target = distance * from_f64(LEFT_APART * 0.5);
-        // The last two times at which the plane kept them apart, and the last one at which it did not.
-        let (mut last, mut from, mut to) = (None, (time, distance), None);
-        let mut next = time + (distance - target) / closing;
-        for _ in 0..TRIES {
-            if !(next > from.0 && next < end) {
-                break;
-            }
-            let (level, _) = self.bodies.level(next, normal);
-            if level > zero {
-                (last, from) = (Some(from), (next, level));
-                if level < distance * from_f64(LEFT_APART) {
-                    break;
-                }
-            } else {
-                to = Some((next, level));
-            }
-            let Some(other) = to.or(last) else { break };
-            next = from.0 + (from.1 - target) * (other.0 - from.0) / (from.1 - other.1);
-        }
-        Some(from.0).filter(|&next| next > time)
     }
 
     /// The distance at a time that would be enough to prove the rest of the motion along the present normal; infinity elsewhere.

@@ -55,7 +55,7 @@ where
     MA: Trajectory<Vector = A::Vector>,
     MB: Trajectory<Vector = A::Vector>,
 {
-    /// The pair at a time; `None` where the bodies are nearly in contact or overlap.
+    /// The pair at a time; `None` where the bodies are nearly in contact, or overlap and nobody can tell by how much.
     ///
     /// Where the closest points are known in closed form, or the corners that were closest at the last time are so still, one support
     /// point proves it. Otherwise GJK goes on from there. Where the bodies overlap by more than rounding, the best plane known tells about
@@ -68,33 +68,57 @@ where
         limit: ScalarOf<A>,
     ) -> Option<Instant<A::Vector>> {
         let mut pair = Pair::new(&placed.a, &placed.b);
-        let (size, radius) = (pair.size(placed.offset), pair.radius());
-        let error = rounding(size) + pair.error();
-        // NaN is not.
-        let is_well_apart = |lower: ScalarOf<A>| lower - radius > error * Scalar::from_f64(NEAR);
-        if let Some(points) = pair.closest_points(placed.offset, size) {
+        let size = pair.size(placed.offset);
+        if let Some(points) = self.closest_points(placed, &pair, size) {
             let v = points.a - points.b + placed.offset;
             let (w, _) = pair.support(-v);
             self.count(1);
+            let error = rounding(size) + pair.error();
             let seen = Seen::new(v, v.length(), w + placed.offset, points, error);
-            return is_well_apart(seen.lower).then(|| self.instant(time, placed, &seen));
+            let is_well_apart = seen.lower - pair.radius() > error * Scalar::from_f64(NEAR);
+            return is_well_apart.then(|| self.instant(time, placed, &seen));
         }
         let face = if is_moderate(size) { self.closest.borrow().closest_face(placed) } else { None };
-        // Not where they have passed through one another, and their plane is the other way round.
-        let face = face.filter(|face| face.v.length() > radius && face.v.dot(axis) > Scalar::ZERO);
-        let Some(face) = face else { return self.searched(time, placed, &mut pair, Begin::Along(axis), limit) };
+        match face {
+            Some(face) => self.at_face(time, placed, &mut pair, &face, axis, limit),
+            None => self.searched(time, placed, &mut pair, Begin::Along(axis), limit),
+        }
+    }
+
+    /// The same by the face that was closest at the last time, or if it is no longer, by GJK.
+    fn at_face(
+        &self,
+        time: ScalarOf<A>,
+        placed: &Placed<'_, A, B>,
+        pair: &mut Pair<'_, Moved<'_, A>, Moved<'_, B>>,
+        face: &Face<A::Vector>,
+        axis: A::Vector,
+        limit: ScalarOf<A>,
+    ) -> Option<Instant<A::Vector>> {
+        let (zero, radius, length) = (ScalarOf::<A>::ZERO, pair.radius(), face.v.length());
+        let error = rounding(pair.size(placed.offset)) + pair.error();
+        // NaN is not.
+        let is_well_off = |distance: ScalarOf<A>| distance.abs() > error * Scalar::from_f64(NEAR);
+        // Where the cores have passed through one another, its plane is the other way round.
+        let (v, signed) = if face.v.dot(axis) > zero { (face.v, length) } else { (-face.v, -length) };
         // They are no farther apart than that.
-        if !is_well_apart(face.v.length()) {
+        if !is_well_off(signed - radius) {
             return None;
         }
-        let (length, known) = (face.v.length(), pair.support(-face.v));
-        let seen = Seen::new(face.v, length, known.0 + placed.offset, face.closest_points(), error);
-        let gap = seen.lower - radius;
-        if is_well_apart(seen.lower) && (length - seen.lower <= gap * Scalar::from_f64(ROUGH) || gap > limit + error) {
-            self.count(1);
-            return Some(self.instant(time, placed, &seen));
+        let known = pair.support(-v);
+        let seen = Seen::new(v, length, known.0 + placed.offset, face.closest_points(), error);
+        let distance = seen.lower - radius;
+        if is_well_off(distance) {
+            let is_closest = signed - seen.lower <= distance.abs() * Scalar::from_f64(ROUGH);
+            // A body may be thinner than cores would be in one another, and left behind.
+            let mut is_between = || v.dot(pair.support(v).0 + placed.offset) > zero;
+            if is_closest && (signed > zero || is_between()) || distance > limit + error {
+                self.count(if signed > zero { 1 } else { 2 });
+                return Some(self.instant(time, placed, &seen));
+            }
         }
-        self.searched(time, placed, &mut pair, Begin::At(&face, known), limit)
+        let begin = if signed > radius { Begin::At(face, known) } else { Begin::Along(axis) };
+        self.searched(time, placed, pair, begin, limit)
     }
 
     /// The same by GJK, which begins with a face and the support point across the vector to it, or along an axis.
@@ -147,7 +171,7 @@ where
         None
     }
 
-    /// What is known of a time, of bodies that are certainly apart.
+    /// What is known of a time by what was seen of the cores.
     #[inline(always)]
     fn instant(
         &self,
