@@ -19,7 +19,6 @@ mod placed;
 mod result;
 mod rigid_motion;
 mod rough_look;
-mod segments;
 mod trajectory;
 
 pub use chain_motion::ChainMotion;

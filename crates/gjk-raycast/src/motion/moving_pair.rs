@@ -8,13 +8,11 @@ use num_traits::Float;
 use super::approach::Approach;
 use super::corners::Corners;
 use super::instant::{Instant, Limits};
-use super::moved::Moved;
 use super::moving_body::{MovingBody, length_bound};
 use super::placed::Placed;
-use super::segments::Segments;
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::SignedDistanceOptions;
-use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
+use crate::body::{Body as _, Pair, TracedSupport as _};
 use crate::contact::signed_distance_and_axis;
 use crate::gjk::rounding;
 use crate::unit::is_moderate;
@@ -23,7 +21,6 @@ use crate::unit::is_moderate;
 pub(super) struct MovingPair<'s, A: SupportMap + ?Sized, MA, B: SupportMap + ?Sized, MB> {
     pub(super) a: MovingBody<'s, A, MA>,
     pub(super) b: MovingBody<'s, B, MB>,
-    segments: Option<Segments<A::Vector>>,
     /// The corners of the faces that were closest at the last look.
     pub(super) closest: RefCell<Corners<A::Vector>>,
     /// The support points computed of each shape.
@@ -38,22 +35,7 @@ where
     MB: Trajectory<Vector = A::Vector>,
 {
     pub(super) fn new(a: MovingBody<'s, A, MA>, b: MovingBody<'s, B, MB>) -> Self {
-        let segments = Segments::of(&a, &b);
-        Self { a, b, segments, closest: RefCell::new(Corners::none()), iterations: Cell::new(0) }
-    }
-
-    /// Points of the cores that are closest to one another, where they are known in closed form.
-    #[inline(always)]
-    pub(super) fn closest_points(
-        &self,
-        placed: &Placed<'_, A, B>,
-        pair: &Pair<'_, Moved<'_, A>, Moved<'_, B>>,
-        size: ScalarOf<A>,
-    ) -> Option<PointPair<A::Vector>> {
-        match &self.segments {
-            Some(segments) if is_moderate(size) => Some(segments.closest_points(placed)),
-            _ => pair.closest_points(placed.offset, size),
-        }
+        Self { a, b, closest: RefCell::new(Corners::none()), iterations: Cell::new(0) }
     }
 
     /// Counts support points.

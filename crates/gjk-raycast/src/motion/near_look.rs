@@ -53,8 +53,11 @@ where
         if !is_moderate(size) {
             return None;
         }
-        let (closest, face) = match self.closest_points(placed, &pair, size) {
-            Some(points) => (Closest::new(points, points.a - points.b + placed.offset, size)?, None),
+        let (closest, face) = match pair.closest_points(placed.offset, size) {
+            Some(points) => {
+                let v = pair.normal_between(points, points.a - points.b + placed.offset);
+                (Closest::new(points, v, size)?, None)
+            }
             None => {
                 let face = self.closest.borrow().closest_face(placed)?;
                 let closest = Closest::new(face.closest_points(), face.v, size);

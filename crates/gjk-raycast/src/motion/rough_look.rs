@@ -69,8 +69,8 @@ where
     ) -> Option<Instant<A::Vector>> {
         let mut pair = Pair::new(&placed.a, &placed.b);
         let size = pair.size(placed.offset);
-        if let Some(points) = self.closest_points(placed, &pair, size) {
-            let v = points.a - points.b + placed.offset;
+        if let Some(points) = pair.closest_points(placed.offset, size) {
+            let v = pair.normal_between(points, points.a - points.b + placed.offset);
             let (w, _) = pair.support(-v);
             self.count(1);
             let error = rounding(size) + pair.error();
