@@ -298,6 +298,13 @@ fn everything_is_shown_once() {
                 if shown < end { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
             });
             assert_eq!(shown, end, "tree {kind}");
+            let (mut shown, end) = (0, 1 + numbers.below(left));
+            let _ = tree.pairs_within(f64::INFINITY).visit(|i, j| {
+                assert!(i != j && i >= removed && j >= removed, "tree {kind}: {i} and {j}");
+                shown += 1;
+                if shown < end { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+            });
+            assert_eq!(shown, end, "tree {kind}, pairs");
         }
     }
 }
