@@ -267,6 +267,73 @@ fn items_inserted_in_order_make_no_chain() {
     assert!(tree.is_empty(), "nothing is left");
 }
 
+/// All of a tree is within reach: the most that can wait to be looked at, in trees as lopsided as they get.
+#[test]
+fn everything_is_shown_once() {
+    let mut numbers = Numbers(0x5EED);
+    let size = |i: usize| 10f64.powi(-(i as i32 % 60));
+    let mut trees = [Bvh::<DVec3>::default(), Bvh::default(), Bvh::default()];
+    for i in 0..5000 {
+        trees[0].insert(i, Aabb { min: DVec3::X * i as f64, max: DVec3::X * (i as f64 + 0.5) });
+        trees[1].insert(i, numbers.around(size(i), size(i)));
+        trees[2].insert(i, numbers.around(1.0, 0.05));
+    }
+    for (kind, mut tree) in trees.into_iter().enumerate() {
+        for removed in [0, 1000, 4000] {
+            (0..removed).for_each(|i| _ = tree.remove(i));
+            let left = tree.len();
+            assert_eq!(left, 5000 - removed, "tree {kind}");
+            let question = BoxDistance::new(numbers.around(1.0, 0.0));
+            let mut times = vec![0; 5000];
+            let nodes = tree.within(&question, f64::INFINITY, |item| {
+                times[item] += 1;
+                ControlFlow::Continue(())
+            });
+            assert!((0..5000).all(|i| times[i] == usize::from(i >= removed)), "tree {kind}: each once");
+            assert!(nodes <= left, "tree {kind}: {nodes} nodes, each once, which hold two or more");
+            // Broken off after any number of items, no more are shown.
+            let (mut shown, end) = (0, 1 + numbers.below(left));
+            let _ = tree.within(&question, f64::INFINITY, |_| {
+                shown += 1;
+                if shown < end { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+            });
+            assert_eq!(shown, end, "tree {kind}");
+            let (mut shown, end) = (0, 1 + numbers.below(left));
+            let _ = tree.pairs_within(f64::INFINITY).visit(|i, j| {
+                assert!(i != j && i >= removed && j >= removed, "tree {kind}: {i} and {j}");
+                shown += 1;
+                if shown < end { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+            });
+            assert_eq!(shown, end, "tree {kind}, pairs");
+        }
+    }
+}
+
+/// A bound is a distance, less what it may be rounded by: of boxes that overlap or touch 0, and of tiny and huge gaps as well.
+#[test]
+fn bounds_of_boxes_at_every_magnitude() {
+    fn check<V: Vector>(magnitudes: &[f64]) {
+        let at = |x: V| Aabb { min: x, max: x + V::ONE * V::Scalar::ZERO };
+        for &m in magnitudes {
+            let m = V::Scalar::from_f64(m);
+            let gap = V::from_fn(|axis| [m, m + m, V::Scalar::ZERO][axis % 3]);
+            let bound = BoxDistance::new(at(V::ZERO)).bound(&at(gap));
+            let slack = V::Scalar::from_f64(1.0 - 16.0 * V::Scalar::EPSILON.as_f64());
+            assert!(bound <= gap.norm() && bound >= gap.norm() * slack, "{bound:?} of {gap:?}");
+        }
+        let overlapping = Aabb { min: -V::ONE, max: V::ONE };
+        assert_eq!(BoxDistance::new(overlapping).bound(&at(V::ZERO)), V::Scalar::ZERO, "one in the other");
+        assert_eq!(BoxDistance::new(overlapping).bound(&at(V::ONE)), V::Scalar::ZERO, "touching");
+    }
+    let double = [1e-300, 1e-160, 1e-8, 1.0, 1e8, 1e160, 1e300];
+    check::<DVec3>(&double);
+    check::<DVec2>(&double);
+    let single = [1e-30, 1e-20, 1e-8, 1.0, 1e8, 1e20, 1e30];
+    check::<Vec2>(&single);
+    check::<Vec3>(&single);
+    check::<Vec3A>(&single);
+}
+
 /// Each tree sees boxes from its own origin and in its own unit; which pairs there are does not depend on that.
 #[test]
 fn pairs_of_trees_that_see_differently() {

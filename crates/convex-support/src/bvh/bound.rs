@@ -7,6 +7,7 @@ use num_traits::Float as _;
 use super::frame::{Frame, RoughUnit, power_of_two_near};
 use super::node::Boxes;
 use crate::glam::Vec4;
+use crate::numerics::range::is_comfortable;
 use crate::{Aabb, Scalar, Vector};
 
 /// A lower bound on a quantity, such as a distance, of everything that lies in a box.
@@ -182,10 +183,11 @@ impl<V: Vector> Bound<V> for BoxDistance<V> {
     #[inline(always)]
     fn bound(&self, around: &Aabb<V>) -> V::Scalar {
         let gaps = (around.min - self.of.max).max(self.of.min - around.max).max(V::ZERO);
-        if gaps == V::ZERO {
-            return V::Scalar::ZERO;
-        }
-        (gaps.norm() * (V::Scalar::ONE - rounding::<V::Scalar>())).min(V::Scalar::max_value())
+        // Whether boxes overlap nobody can foretell, and so it is no branch: only a gap whose square leaves the range takes another way.
+        let squared = gaps.length_squared();
+        let is_plain = is_comfortable(squared) | (gaps.max_element() == V::Scalar::ZERO);
+        let length = if is_plain { squared.sqrt() } else { gaps.norm() };
+        (length * (V::Scalar::ONE - rounding::<V::Scalar>())).min(V::Scalar::max_value())
     }
 
     #[inline]

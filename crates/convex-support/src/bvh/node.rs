@@ -111,6 +111,17 @@ impl Link {
     }
 
     #[inline]
+    pub(super) fn is_item(self) -> bool {
+        !self.is_node() && self != Self::NONE
+    }
+
+    /// The number of the node or the item.
+    #[inline]
+    pub(super) fn index(self) -> usize {
+        (self.0 & !Self::ITEM) as usize
+    }
+
+    #[inline]
     pub(super) fn child(self) -> Child {
         match self {
             Self::NONE => Child::None,

@@ -12,6 +12,7 @@ use crate::{Aabb, Core, CoreKind, Scalar, ScalarOf, SupportMap, Vector};
 /// A query's answer is that of a shape which is off by its rounding, a few ε of the origin, the core's extent and the
 /// radius. Since the box has room for that, a body whose box shows it to be farther than an answer is also farther by its
 /// own query, not only in truth.
+#[inline]
 #[must_use]
 pub fn outer_box<S: SupportMap + ?Sized>(shape: &S) -> Option<Aabb<S::Vector>> {
     let Core { origin, radius, extent, error, kind, .. } = shape.core();

@@ -28,8 +28,17 @@ pub struct PairSearch<'t, V: Vector> {
     start: Pair,
 }
 
+/// How many pairs of items are found before their own boxes are looked at: one after the other and without a branch, so that those that
+/// are not in the caches are fetched together.
+const BATCH: usize = 4 * WIDTH * WIDTH;
+
 /// A child of the first tree and one of the second.
 type Pair = (Link, Link);
+
+#[inline(always)]
+fn are_items((a, b): Pair) -> bool {
+    a.is_item() & b.is_item()
+}
 
 impl<V: Vector> Bvh<V> {
     /// All pairs of different items whose boxes are at most `distance` apart, each once.
@@ -63,25 +72,45 @@ impl<'t, V: Vector> PairSearch<'t, V> {
     pub fn visit(self, mut visit: impl FnMut(usize, usize) -> ControlFlow<()>) -> usize {
         let mut looked = 0;
         let Some(distance) = finite(self.distance) else { return looked };
-        let mut stack = [self.start; STACK];
-        let mut top = 1;
+        let (mut stack, mut found) = ([self.start; STACK], [self.start; BATCH]);
+        let (mut top, mut count) = if are_items(self.start) { (0, 1) } else { (1, 0) };
         while top > 0 {
             top -= 1;
-            let (a, b) = stack[top];
-            if let (Child::Item(i), Child::Item(j)) = (a.child(), b.child()) {
-                // Seen roughly, they are near.
-                if BoxDistance::new(self.a.boxes[i]).bound(&self.b.boxes[j]) <= distance && visit(i, j).is_break() {
+            looked += 1;
+            self.expand(stack[top], |pair| {
+                if are_items(pair) {
+                    (found[count], count) = (pair, count + 1);
+                } else {
+                    (stack[top], top) = (pair, top + 1);
+                }
+            });
+            if count > BATCH - WIDTH * WIDTH {
+                if self.show(&found[..count], distance, &mut visit).is_break() {
                     return looked;
                 }
-                continue;
+                count = 0;
             }
-            looked += 1;
-            self.expand((a, b), |next| {
-                stack[top] = next;
-                top += 1;
-            });
         }
+        // Whether it breaks off no longer matters.
+        let _ = self.show(&found[..count], distance, &mut visit);
         looked
+    }
+
+    /// Shows those of some pairs of items, at most a batch, whose own boxes are near. Seen roughly, all are.
+    #[inline(always)]
+    fn show(
+        &self,
+        pairs: &[Pair],
+        distance: V::Scalar,
+        visit: &mut impl FnMut(usize, usize) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let mut are_near = [false; BATCH];
+        for (is_near, (a, b)) in are_near.iter_mut().zip(pairs) {
+            let bound = BoxDistance::new(self.a.boxes[a.index()]).bound(&self.b.boxes[b.index()]);
+            *is_near = bound <= distance;
+        }
+        let mut near = pairs.iter().zip(are_near).filter(|(_, is_near)| *is_near);
+        near.try_for_each(|((a, b), _)| visit(a.index(), b.index()))
     }
 
     /// The same search in pieces, `at_least` so many if there are as many pairs, for as many threads. Which ones does not
@@ -92,7 +121,7 @@ impl<'t, V: Vector> PairSearch<'t, V> {
         let mut whole = 0;
         while pieces.len() < at_least && whole < pieces.len() {
             let Some(pair) = pieces.pop_front() else { break };
-            if let (Child::Item(_), Child::Item(_)) = (pair.0.child(), pair.1.child()) {
+            if are_items(pair) {
                 pieces.push_back(pair);
                 whole += 1;
             } else {

@@ -14,6 +14,13 @@ pub(super) const MAX_DEPTH: usize = 36;
 /// A level leaves at most three children behind while the fourth is looked into; and of the lowest all four are written, near or not.
 const STACK: usize = (WIDTH - 1) * (MAX_DEPTH + 1) + 1;
 
+/// The same where the next node is taken before the children of this one are put down. Then the children of a node end at most
+/// `2·WIDTH − 2` places above its own: they come after those of the node before it, one of which has been taken.
+const STACK_WITHIN: usize = 2 * (WIDTH - 1) * (MAX_DEPTH + 1) + 1;
+
+/// How many items are found before they are looked at.
+const BATCH: usize = 32;
+
 impl<V: Vector> Bvh<V> {
     /// Shows the items whose bound is at most `limit`, mostly the least bound first, and returns the number of nodes that
     /// were looked into.
@@ -70,6 +77,9 @@ impl<V: Vector> Bvh<V> {
 
     /// Shows the items whose bound is at most `limit`, in no particular order, until `visit` breaks off. Returns the number of nodes that
     /// were looked into.
+    ///
+    /// Nodes do not wait for one another: which one is next is known before this one's children are, and it is fetched meanwhile; and no
+    /// branch depends on which children are near, or what they are. Each is put down as both a node and an item, and counts as one.
     pub fn within<B: Bound<V>>(
         &self,
         question: &B,
@@ -79,33 +89,51 @@ impl<V: Vector> Bvh<V> {
         let Some(limit) = finite(limit) else { return 0 };
         let rough = question.rough(&self.frame);
         let end = Vec4::splat(rough_limit(&rough, limit));
-        // The root, and places that are not read before they are written.
-        let mut below = [0; STACK];
-        let (mut top, mut nodes) = (1, 0);
-        while top > 0 {
-            top -= 1;
+        // Of places, the first is of the root, and others are not read before they are written.
+        let (mut below, mut found) = ([Link::ROOT; STACK_WITHIN], [Link::NONE; BATCH]);
+        let (mut top, mut count, mut nodes, mut next) = (1, 0, 0, None);
+        while let Some(link) = next.or_else(|| pop(&below, &mut top)) {
+            next = pop(&below, &mut top);
             nodes += 1;
-            let node = &self.nodes[below[top]];
-            let mut near = rough.bounds(&node.boxes).cmple(end).bitmask();
-            while near != 0 {
-                let child = node.children[near.trailing_zeros() as usize].child();
-                near &= near - 1;
-                match child {
-                    Child::None => {}
-                    Child::Item(item) => {
-                        if question.bound(&self.boxes[item]) <= limit && visit(item).is_break() {
-                            return nodes;
-                        }
-                    }
-                    Child::Node(index) => {
-                        below[top] = index;
-                        top += 1;
-                    }
+            let node = &self.nodes[link.index()];
+            let near = rough.bounds(&node.boxes).cmple(end).bitmask();
+            for (lane, &child) in node.children.iter().enumerate() {
+                let is_near = near >> lane & 1 != 0;
+                (below[top], found[count]) = (child, child);
+                top += usize::from(is_near & child.is_node());
+                count += usize::from(is_near & child.is_item());
+            }
+            if count > BATCH - WIDTH {
+                if self.show(question, limit, &found[..count], &mut visit).is_break() {
+                    return nodes;
                 }
+                count = 0;
             }
         }
+        // Whether it breaks off no longer matters.
+        let _ = self.show(question, limit, &found[..count], &mut visit);
         nodes
     }
+
+    /// Shows those of some items whose own bound is at most `limit`.
+    #[inline(always)]
+    fn show<B: Bound<V>>(
+        &self,
+        question: &B,
+        limit: V::Scalar,
+        items: &[Link],
+        visit: &mut impl FnMut(usize) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let mut near = items.iter().map(|link| link.index()).filter(|&item| question.bound(&self.boxes[item]) <= limit);
+        near.try_for_each(visit)
+    }
+}
+
+/// Takes what is on top.
+#[inline(always)]
+fn pop(stack: &[Link], top: &mut usize) -> Option<Link> {
+    *top = top.checked_sub(1)?;
+    Some(stack[*top])
 }
 
 /// A limit that something can be within; infinity is as good as the largest number.
