@@ -10,7 +10,7 @@ use super::trajectory::{MovingBall, Trajectory, TurningPlane};
 
 /// A body and its motion.
 pub(super) struct MovingBody<'s, S: SupportMap + ?Sized, M> {
-    pub(super) shape: &'s S,
+    shape: &'s S,
     motion: M,
     course: Course<S::Vector>,
     /// What the shape is split into at time 0, with its radius grown by the target distance.
