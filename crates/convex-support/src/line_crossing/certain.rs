@@ -44,6 +44,7 @@ const NEAR: f64 = 8.0;
 ///   the line the sum of the two steps loses `uD`, that of the middle and the half `uD + uS`, and the half `2.5uS`: in all `4uD + 7uS`;
 /// - to a slab, the difference from the side, that with the error and the quotient lose `4u(D + S)`: in all `5uD + 4uS`;
 /// - to a cylinder, the foot loses `2uD + 2uS`, its disc and its slab from there `8uS`, and the sum with the foot's parameter `uD`;
+/// - to a capsule's side, `3uD + 10uS` as to that of a cylinder; to the ball at an end, whose centre is a size away, `5uD + 12uS`;
 /// - to a swept core or a cone, a point of the line, at a parameter that is a sum, loses `2uD + 3uS`, and its distance at most `6uS`.
 const OF_DISTANCE: f64 = 2.5;
 const OF_SIZE: f64 = 6.0;
@@ -202,6 +203,46 @@ impl<V: Vector> NearLine<V> {
         let slack = length * recip / chord.half * (error * number(1.25));
         let entry = chord.ends().0;
         Some(line.enters([entry - slack, entry, entry + slack], *axes * (gradient * length.recip())))
+    }
+
+    /// The segment between `±half_height` on the second axis, swept by a ball. `None` too where the line passes near a rim, or past an end.
+    ///
+    /// It is within the infinite cylinder, and contains the ball at each end. So where the line enters the side between the ends, the slack of the
+    /// side's chord is certain before the entry, and behind it as well if that point is between the ends by more than the error. Beyond an
+    /// end the closest point of the segment is that end: there the slack of the ball's chord is certain, if the point before the entry is
+    /// beyond the end by more than the error.
+    #[inline(always)]
+    pub(crate) fn capsule(&self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+        let Self { direction, error, .. } = *self;
+        let recip = direction.length_squared().recip();
+        let (base, source) = rebased(self.source, direction, recip);
+        let split = |v: V| (v.get(1), V::from_fn(|i| if i == 1 { V::Scalar::ZERO } else { v.get(i) }));
+        let ((along, out), (rise, radial)) = (split(source), split(direction));
+        let slope = radial.length_squared();
+        // Along the axis to rounding.
+        if !(slope * recip > V::Scalar::EPSILON * V::Scalar::EPSILON) {
+            return None;
+        }
+        let per_slope = slope.recip();
+        let middle = -out.dot(radial) * per_slope;
+        let side = Chord::about(middle, out + radial * middle, per_slope, radius);
+        if side.is_past(radius, error) {
+            return Some(CertainCrossing::Misses(side.nearest));
+        }
+        let slack = side.slack(radius, error, per_slope)?;
+        let entry = side.ends().0;
+        let height_at = |at: V::Scalar| along + rise * at;
+        if height_at(entry + slack).abs() <= half_height - error {
+            let at = base + entry;
+            return Some(self.enters([at - slack, at, at + slack], side.normal(radius, radial, per_slope)));
+        }
+        let end = V::axis(1) * half_height.copysign(height_at(entry));
+        let cap = super::ball::chord(radius, self.source - end, direction, recip);
+        let slack = cap.slack(radius, error, recip)?;
+        let entry = cap.ends().0;
+        let height = height_at(entry - base - slack) * V::Scalar::ONE.copysign(end.get(1));
+        (height >= half_height + error)
+            .then(|| self.enters([entry - slack, entry, entry + slack], cap.normal(radius, direction, recip)))
     }
 
     /// A set about zero that tells its closest point and how far it reaches, swept by a ball, of which the closed form told a crossing.

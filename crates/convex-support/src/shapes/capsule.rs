@@ -103,6 +103,9 @@ impl<V: Vector> SupportMap for Capsule<V> {
         let closest = |x: V| V::axis(1) * x.get(1).max(-self.half_height).min(self.half_height);
         let support_value = |d: V| d.get(1).abs() * self.half_height;
         let line = NearLine::new(source, direction, V::ZERO, self.half_height + radius, error)?;
+        if let Some(known) = line.capsule(self.half_height, radius) {
+            return Some(known);
+        }
         let crossed = upright(self.half_height, radius, line.source, line.direction);
         line.swept(radius, closest, support_value, crossed)
     }
