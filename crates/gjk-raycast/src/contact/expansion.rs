@@ -162,24 +162,42 @@ where
             enough = tolerance.max(cores.rounding_along(way.u()));
         }
     };
+    Some(settled(cores, state, &mut boundary, way, met, status))
+}
+
+/// What an expansion knows where it has ended.
+#[inline(always)]
+fn settled<A, B>(
+    cores: &Cores<'_, A, B>,
+    state: &mut Gjk<A::Vector, PointPair<A::Vector>>,
+    boundary: &mut Boundary<A::Vector>,
+    way: WayOut<A::Vector>,
+    mut met: Option<Met<A::Vector>>,
+    status: Status,
+) -> Expanded<A::Vector>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
     let (nearest, _) = boundary.nearest();
     let certain = boundary.certain_inner(|n| cores.error_along(n), cores.greatest_error());
     let inner = if certain > Scalar::ZERO {
         certain
     } else {
-        let (foot, _) = witness::at_foot(&boundary, nearest);
+        let (foot, _) = witness::at_foot(boundary, nearest);
         let Met { reached, .. } = *met.get_or_insert_with(|| Met::new(cores, state));
         -cores.greatest_length(foot).min(reached)
     };
+    let rounding = cores.rounding_along(way.u());
     let status = match status {
-        Status::Stalled if way.h - inner <= cores.rounding_along(way.u()) * Scalar::from_f64(2.0) => Status::Converged,
+        Status::Stalled if way.h - inner <= rounding * Scalar::from_f64(2.0) => Status::Converged,
         status => status,
     };
-    let points = witness::points(&boundary, nearest, &way, cores.rounding_along(way.u()), || {
+    let points = witness::points(boundary, nearest, &way, rounding, || {
         let Met { point, points, .. } = *met.get_or_insert_with(|| Met::new(cores, state));
         (point, points)
     });
-    Some(Expanded { way, points: Some(points), inner, status, unexpanded: boundary.len() })
+    Expanded { way, points: Some(points), inner, status, unexpanded: boundary.len() }
 }
 
 /// A difference without an inside: the way out is across it, and no length.
