@@ -194,10 +194,11 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
         is_moderate(size).then(|| PointPair { a: a * self.per_unit, b: b * self.per_unit })
     }
 
-    /// A vector along the normal of the plane between the [closest points](Self::closest_points), which is `v` from the one to the other
-    /// but for rounding.
+    /// The vector between the [closest points](Self::closest_points) of bodies whose origins differ by `offset` in the unit, which is along the
+    /// normal of the plane between them.
     #[inline(always)]
-    pub(crate) fn normal_between(&self, PointPair { a, b }: PointPair<A::Vector>, v: A::Vector) -> A::Vector {
+    pub(crate) fn vector_between(&self, PointPair { a, b }: PointPair<A::Vector>, offset: A::Vector) -> A::Vector {
+        let v = a - b + offset;
         match (self.core_a.kind, self.core_b.kind) {
             (CoreKind::Segment(u), CoreKind::Segment(w)) => {
                 segments::normal_between([u * self.per_unit, w * self.per_unit], [a, b], v)

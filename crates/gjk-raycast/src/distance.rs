@@ -75,7 +75,7 @@ where
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let points = pair.closest_points(offset, size)?;
-    let v = pair.normal_between(points, points.a - points.b + offset);
+    let v = pair.vector_between(points, offset);
     let (length, radius, noise) = (v.length(), pair.radius(), rounding(size));
     let error = noise + pair.error();
     let near = error * number(NEAR);

@@ -57,7 +57,7 @@ where
     // length of the offset without a root.
     let size = pair.extent() + pair.radius() + offset.abs().dot(Vector::ONE);
     let closest = if options.axis.is_none() { pair.closest_points(offset, size) } else { None };
-    let shortest = closest.map(|points| pair.normal_between(points, points.a - points.b + offset));
+    let shortest = closest.map(|points| pair.vector_between(points, offset));
     // Points no farther apart than the radii, by more than they may be wrong by, meet; others are looked at more closely.
     if shortest.is_some_and(|v| v.length() + (rounding(size) + pair.error()) <= pair.radius()) {
         return Intersection { overlap: true, axis: None, status: Status::Converged, iterations: 0 };

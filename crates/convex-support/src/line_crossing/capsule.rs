@@ -11,8 +11,7 @@ pub(crate) fn upright<V: Vector>(half_height: V::Scalar, radius: V::Scalar, sour
     let (direction, dd, unit) = comfortable(direction);
     let recip = dd.recip();
     let (base, source) = rebased(source, direction, recip);
-    let split = |v: V| (v.get(1), V::from_fn(|i| if i == 1 { V::Scalar::ZERO } else { v.get(i) }));
-    let (source, direction) = ((source, split(source)), (direction, split(direction)));
+    let (source, direction) = ((source, split_upright(source)), (direction, split_upright(direction)));
     capsule(V::axis(1), half_height, radius, source, direction, recip)?.shifted(base, unit, || V::ZERO)
 }
 
@@ -33,6 +32,12 @@ pub(crate) fn edge<V: Vector>([a, b]: [V; 2], radius: V::Scalar, source: V, dire
     };
     let (source, direction) = ((source, split(source)), (direction, split(direction)));
     capsule(axis, to_b.norm(), radius, source, direction, recip)?.shifted(base, unit, || V::ZERO)
+}
+
+/// The parts of a vector along and across the second axis.
+#[inline(always)]
+pub(super) fn split_upright<V: Vector>(v: V) -> (V::Scalar, V) {
+    (v.get(1), V::from_fn(|i| if i == 1 { V::Scalar::ZERO } else { v.get(i) }))
 }
 
 /// A vector and its parts along and across an axis.

@@ -8,6 +8,7 @@
 
 use num_traits::Float as _;
 
+use super::capsule::split_upright;
 use super::{Chord, Crossed, Crossing, across_two_axes, axis_of, past_rim, rebased};
 use crate::numerics::bound::roundings;
 use crate::numerics::range::{is_comfortable, is_moderate};
@@ -216,8 +217,7 @@ impl<V: Vector> NearLine<V> {
         let Self { direction, error, .. } = *self;
         let recip = direction.length_squared().recip();
         let (base, source) = rebased(self.source, direction, recip);
-        let split = |v: V| (v.get(1), V::from_fn(|i| if i == 1 { V::Scalar::ZERO } else { v.get(i) }));
-        let ((along, out), (rise, radial)) = (split(source), split(direction));
+        let ((along, out), (rise, radial)) = (split_upright(source), split_upright(direction));
         let slope = radial.length_squared();
         // Along the axis to rounding.
         if !(slope * recip > V::Scalar::EPSILON * V::Scalar::EPSILON) {

@@ -30,7 +30,7 @@ where
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let points = pair.closest_points(offset, size)?;
-    let v = pair.normal_between(points, points.a - points.b + offset);
+    let v = pair.vector_between(points, offset);
     let (length, radius, error) = (v.length(), pair.radius(), error_of_points(&pair));
     let near = error * Scalar::from_f64(NEAR);
     // NaN is left to the search.

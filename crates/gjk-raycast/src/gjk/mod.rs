@@ -2,6 +2,7 @@
 //! (the paper's Algorithm 2).
 
 mod boxes;
+mod faces;
 mod near_contact;
 mod next_direction;
 mod order;

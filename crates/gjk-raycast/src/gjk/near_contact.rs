@@ -12,10 +12,11 @@ use convex_support::numerics::twofold::{dot_minus, lost_in_sum};
 use convex_support::{Core, Rounding, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
+use super::faces::{across_faces, is_around_zero};
 use super::order::comes_first;
 use super::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
-use crate::simplex::{MAX_POINTS, cross};
+use crate::simplex::MAX_POINTS;
 
 /// How many errors apart, or in one another, bodies are looked at once more.
 pub(crate) const NEAR: f64 = 16.0;
@@ -137,7 +138,7 @@ fn begin<V: Vector>(
             // Searches of its own, as of a query that begins here.
             let mut pair = Pair::of_cores(pair.a, pair.b, [pair.core_a, pair.core_b]);
             pair.set_scale(frame.scale);
-            gjk(&mut state, &mut pair, *frame, GjkOptions::new(first, max_iterations), None, |_| {});
+            run(&mut state, &mut pair, *frame, first, max_iterations);
         }
     }
     state
@@ -151,10 +152,21 @@ fn go_on<V: Vector>(
     max_iterations: usize,
 ) -> End {
     let frame = Frame { noise: frame.noise * Scalar::from_f64(0.0625), ..*frame };
-    let options = GjkOptions::new(state.normal, max_iterations);
-    let end = gjk(state, pair, frame, options, None, |_| {});
+    let end = run(state, pair, frame, state.normal, max_iterations);
     state.ensure_measured();
     end
+}
+
+/// GJK from a direction, compiled once.
+#[inline(never)]
+fn run<V: Vector>(
+    state: &mut Gjk<V, PointPair<V>>,
+    pair: &mut PairOfAny<'_, V>,
+    frame: Frame<V>,
+    first: V,
+    max_iterations: usize,
+) -> End {
+    gjk(state, pair, frame, GjkOptions::new(first, max_iterations), None, |_| {})
 }
 
 /// A plane that the difference of the cores lies beyond, across a unit vector.
@@ -228,11 +240,7 @@ struct Seen<V: Vector> {
 }
 
 impl<V: Vector> Seen<V> {
-    fn new<A, B>(pair: &Pair<'_, A, B>, frame: &Frame<V>) -> Self
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    fn new(pair: &PairOfAny<'_, V>, frame: &Frame<V>) -> Self {
         let per_unit = frame.per_unit;
         let (a, b): (Rounding<V>, Rounding<V>) = (pair.a.rounding(), pair.b.rounding());
         Self {
@@ -264,8 +272,8 @@ impl<V: Vector> Seen<V> {
         frame: &Frame<V>,
         points: PointPair<V>,
     ) -> Option<NearContact<V>> {
-        let v = points.a - points.b + self.offset;
-        let plane = self.plane(pair, pair.normal_between(points, v))?;
+        let v = pair.vector_between(points, self.offset);
+        let plane = self.plane(pair, v)?;
         let upper = self.length_between(points);
         let is_known = plane.meets(upper) && plane.level > self.radius;
         let found = Found { end: End::Separated, iterations: 1, points, length: v.norm() };
@@ -331,11 +339,7 @@ impl<V: Vector> Seen<V> {
     /// The plane that is farthest from zero for certain, of those across the faces that a search has ended at, and across its last two
     /// directions; and a bound on the length of the shortest vector found. Where the line across a plane pierces the face that is as far,
     /// no other plane is looked at.
-    fn best_plane<A, B>(&self, pair: &mut Pair<'_, A, B>, state: &Gjk<V, PointPair<V>>) -> Option<(Plane<V>, V::Scalar)>
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    fn best_plane(&self, pair: &mut PairOfAny<'_, V>, state: &Gjk<V, PointPair<V>>) -> Option<(Plane<V>, V::Scalar)> {
         let points = state.simplex.points();
         let mut pairs = [PointPair::default(); MAX_POINTS];
         for (corner, (_, found)) in pairs.iter_mut().zip(state.simplex.weighted()) {
@@ -376,11 +380,7 @@ impl<V: Vector> Seen<V> {
     }
 
     /// The plane across `n` that supports the difference.
-    fn plane<A, B>(&self, pair: &mut Pair<'_, A, B>, n: V) -> Option<Plane<V>>
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    fn plane(&self, pair: &mut PairOfAny<'_, V>, n: V) -> Option<Plane<V>> {
         let n = n.unit()?;
         let level = self.level(n, pair.support(-n).1);
         // The unit vector's length is right to 6 roundings; the sum of the products is rounded once, and is right to 1024ε² of what
@@ -485,77 +485,4 @@ impl<V: Vector> Seen<V> {
         let farthest = levels.fold(V::Scalar::ZERO, V::Scalar::max);
         raised(farthest + self.error_along(n) + roundings(8.0, farthest))
     }
-}
-
-/// Whether zero is in the simplex of some points, even if each is wrong by an error, which is at least `8ε` of the longest.
-///
-/// It is where it has the same orientation with each face as the corner opposite. That is the sign of a determinant, of which an error `e`
-/// of each corner changes no more than `e·Σ(|q| + e)(|r| + e)` over the pairs of corners of the face; in the plane `e·Σ(|q| + e)`. As it
-/// is computed, it loses no more than as much again.
-fn is_around_zero<V: Vector>(points: &[V], error: V::Scalar) -> bool {
-    let length = |p: V| p.length() + error;
-    let twice = error * V::Scalar::from_f64(2.0);
-    let mut sides = (0, 0);
-    let mut sees = |determinant: V::Scalar, wrong: V::Scalar| {
-        sides.0 += usize::from(determinant > wrong);
-        sides.1 += usize::from(determinant < -wrong);
-    };
-    match *points {
-        [p, q, r] if V::DIM == 2 => {
-            for [p, q] in [[p, q], [q, r], [r, p]] {
-                sees(p.get(0) * q.get(1) - p.get(1) * q.get(0), twice * (length(p) + length(q)));
-            }
-        }
-        [p, q, r, s] => {
-            let (pq, rs) = (cross(p, q), cross(r, s));
-            let [lp, lq, lr, ls] = [p, q, r, s].map(length);
-            let (sum_pq, sum_rs, product_pq, product_rs) = (lp + lq, lr + ls, lp * lq, lr * ls);
-            sees(q.dot(rs), twice * (product_rs + lq * sum_rs));
-            sees(-p.dot(rs), twice * (product_rs + lp * sum_rs));
-            sees(s.dot(pq), twice * (product_pq + ls * sum_pq));
-            sees(-r.dot(pq), twice * (product_pq + lr * sum_pq));
-        }
-        _ => return false,
-    }
-    sides.0.max(sides.1) == V::DIM + 1
-}
-
-/// Vectors across the faces that the points of a simplex span, as they follow from the points of both shapes: what is exact about their
-/// edges, as of boxes along the axes, stays so. A face has two sides; the one along `axis` comes first, and of a simplex of full
-/// dimension, with zero inside perhaps, both count. Where the simplex is an edge in space, the vector across it nearest to `axis`.
-fn across_faces<V: Vector>(pairs: &[PointPair<V>], axis: V) -> impl Iterator<Item = V> {
-    let edge = |from: PointPair<V>, to: PointPair<V>| (to.a - from.a) - (to.b - from.b);
-    let mut across = [V::ZERO; MAX_POINTS];
-    let count = match *pairs {
-        [p, q] if V::DIM == 2 => {
-            across[0] = turned_right(edge(p, q));
-            1
-        }
-        [p, q] => {
-            across[0] = cross(cross(edge(p, q), axis), edge(p, q));
-            1
-        }
-        [p, q, r] if V::DIM == 2 => {
-            across = [edge(p, q), edge(q, r), edge(r, p), V::ZERO].map(turned_right);
-            3
-        }
-        [p, q, r] => {
-            across[0] = cross(edge(p, q), edge(p, r));
-            1
-        }
-        [p, q, r, s] => {
-            let face = |a, b, c| cross(edge(a, b), edge(a, c));
-            across = [face(p, q, r), face(p, q, s), face(p, r, s), face(q, r, s)];
-            4
-        }
-        _ => 0,
-    };
-    let sides = if count > 1 { 2 } else { 1 };
-    let along = move |n: V| if n.dot(axis) < V::Scalar::ZERO { -n } else { n };
-    across.into_iter().take(count).map(along).flat_map(move |n| [n, -n].into_iter().take(sides))
-}
-
-/// A vector of the plane turned by a right angle.
-fn turned_right<V: Vector>(v: V) -> V {
-    V::from_fn(|i| if i == 0 { v.get(1) } else { -v.get(0) })
 }

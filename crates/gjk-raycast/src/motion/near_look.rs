@@ -55,7 +55,7 @@ where
         }
         let (closest, face) = match pair.closest_points(placed.offset, size) {
             Some(points) => {
-                let v = pair.normal_between(points, points.a - points.b + placed.offset);
+                let v = pair.vector_between(points, placed.offset);
                 (Closest::new(points, v, size)?, None)
             }
             None => {

@@ -70,7 +70,7 @@ where
         let mut pair = Pair::new(&placed.a, &placed.b);
         let size = pair.size(placed.offset);
         if let Some(points) = pair.closest_points(placed.offset, size) {
-            let v = pair.normal_between(points, points.a - points.b + placed.offset);
+            let v = pair.vector_between(points, placed.offset);
             let (w, _) = pair.support(-v);
             self.count(1);
             let error = rounding(size) + pair.error();

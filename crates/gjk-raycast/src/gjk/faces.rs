@@ -1,0 +1,79 @@
+//! The faces of a simplex of points of the difference, about which zero is or is not.
+
+use convex_support::{Scalar, Vector};
+
+use crate::body::PointPair;
+use crate::simplex::{MAX_POINTS, cross};
+
+/// Whether zero is in the simplex of some points, even if each is wrong by an error, which is at least `8ε` of the longest.
+///
+/// It is where it has the same orientation with each face as the corner opposite. That is the sign of a determinant, of which an error `e`
+/// of each corner changes no more than `e·Σ(|q| + e)(|r| + e)` over the pairs of corners of the face; in the plane `e·Σ(|q| + e)`. As it
+/// is computed, it loses no more than as much again.
+pub(super) fn is_around_zero<V: Vector>(points: &[V], error: V::Scalar) -> bool {
+    let length = |p: V| p.length() + error;
+    let twice = error * V::Scalar::from_f64(2.0);
+    let mut sides = (0, 0);
+    let mut sees = |determinant: V::Scalar, wrong: V::Scalar| {
+        sides.0 += usize::from(determinant > wrong);
+        sides.1 += usize::from(determinant < -wrong);
+    };
+    match *points {
+        [p, q, r] if V::DIM == 2 => {
+            for [p, q] in [[p, q], [q, r], [r, p]] {
+                sees(p.get(0) * q.get(1) - p.get(1) * q.get(0), twice * (length(p) + length(q)));
+            }
+        }
+        [p, q, r, s] => {
+            let (pq, rs) = (cross(p, q), cross(r, s));
+            let [lp, lq, lr, ls] = [p, q, r, s].map(length);
+            let (sum_pq, sum_rs, product_pq, product_rs) = (lp + lq, lr + ls, lp * lq, lr * ls);
+            sees(q.dot(rs), twice * (product_rs + lq * sum_rs));
+            sees(-p.dot(rs), twice * (product_rs + lp * sum_rs));
+            sees(s.dot(pq), twice * (product_pq + ls * sum_pq));
+            sees(-r.dot(pq), twice * (product_pq + lr * sum_pq));
+        }
+        _ => return false,
+    }
+    sides.0.max(sides.1) == V::DIM + 1
+}
+
+/// Vectors across the faces that the points of a simplex span, as they follow from the points of both shapes: what is exact about their
+/// edges, as of boxes along the axes, stays so. A face has two sides; the one along `axis` comes first, and of a simplex of full
+/// dimension, with zero inside perhaps, both count. Where the simplex is an edge in space, the vector across it nearest to `axis`.
+pub(super) fn across_faces<V: Vector>(pairs: &[PointPair<V>], axis: V) -> impl Iterator<Item = V> {
+    let edge = |from: PointPair<V>, to: PointPair<V>| (to.a - from.a) - (to.b - from.b);
+    let mut across = [V::ZERO; MAX_POINTS];
+    let count = match *pairs {
+        [p, q] if V::DIM == 2 => {
+            across[0] = turned_right(edge(p, q));
+            1
+        }
+        [p, q] => {
+            across[0] = cross(cross(edge(p, q), axis), edge(p, q));
+            1
+        }
+        [p, q, r] if V::DIM == 2 => {
+            across = [edge(p, q), edge(q, r), edge(r, p), V::ZERO].map(turned_right);
+            3
+        }
+        [p, q, r] => {
+            across[0] = cross(edge(p, q), edge(p, r));
+            1
+        }
+        [p, q, r, s] => {
+            let face = |a, b, c| cross(edge(a, b), edge(a, c));
+            across = [face(p, q, r), face(p, q, s), face(p, r, s), face(q, r, s)];
+            4
+        }
+        _ => 0,
+    };
+    let sides = if count > 1 { 2 } else { 1 };
+    let along = move |n: V| if n.dot(axis) < V::Scalar::ZERO { -n } else { n };
+    across.into_iter().take(count).map(along).flat_map(move |n| [n, -n].into_iter().take(sides))
+}
+
+/// A vector of the plane turned by a right angle.
+fn turned_right<V: Vector>(v: V) -> V {
+    V::from_fn(|i| if i == 0 { v.get(1) } else { -v.get(0) })
+}
