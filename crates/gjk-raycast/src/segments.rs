@@ -1,4 +1,5 @@
-//! The closest points of two segments, as of the cores of capsules, in closed form.
+//! The closest points of two segments, as of the cores of capsules, in closed form. Not compiled into their callers, so that other pairs do
+//! not take longer.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -12,8 +13,28 @@ use num_traits::Float as _;
 ///
 /// if `s` and `t` are from −1 to 1. Else one of them is at an end: the first is cut there, and then each is told by the other. Points of
 /// parallel segments are as good as others. If `u` or `w` is zero, any number will do, and what is not one is cut to one.
-#[inline(always)]
+///
+/// Segments given the other way round have the same points, to the last bit.
+#[inline(never)]
 pub(crate) fn closest_points<V: Vector>(u: V, w: V, offset: V) -> (V, V) {
+    if is_in_order(u, w, offset) {
+        points_in_order(u, w, offset)
+    } else {
+        let (b, a) = points_in_order(w, u, -offset);
+        (a, b)
+    }
+}
+
+/// Whether segments are looked at as they are given: the longer one comes first, or of equal ones the one that is farther along the axes.
+#[inline(always)]
+fn is_in_order<V: Vector>(u: V, w: V, from_second: V) -> bool {
+    let (uu, ww, zero) = (u.length_squared(), w.length_squared(), V::Scalar::ZERO);
+    let first = (0..V::DIM).map(|i| from_second.get(i)).find(|&x| x != zero);
+    if uu == ww { first.is_none_or(|x| x > zero) } else { uu > ww }
+}
+
+#[inline(always)]
+fn points_in_order<V: Vector>(u: V, w: V, offset: V) -> (V, V) {
     let (uu, ww, uw) = (u.length_squared(), w.length_squared(), u.dot(w));
     let (ur, wr) = (u.dot(offset), w.dot(offset));
     let share = uw / uu;
@@ -28,8 +49,13 @@ pub(crate) fn closest_points<V: Vector>(u: V, w: V, offset: V) -> (V, V) {
 ///
 /// Where a point is within its segment, the normal is across that. Of points that are near one another rounding is much of the vector
 /// between them, and a step of Newton takes the part of it along the segments away, to what is rounded of the vector itself.
-#[inline(always)]
+#[inline(never)]
 pub(crate) fn normal_between<V: Vector>([u, w]: [V; 2], [a, b]: [V; 2], v: V) -> V {
+    if is_in_order(u, w, v) { normal_in_order([u, w], [a, b], v) } else { -normal_in_order([w, u], [b, a], -v) }
+}
+
+#[inline(always)]
+fn normal_in_order<V: Vector>([u, w]: [V; 2], [a, b]: [V; 2], v: V) -> V {
     let zero = V::Scalar::ZERO;
     let (uu, ww, uw) = (u.length_squared(), w.length_squared(), u.dot(w));
     let is_within_u = a.dot(u).abs() < uu;
