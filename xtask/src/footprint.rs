@@ -80,7 +80,7 @@ const EIGEN: &str = "
 const GJK_RAYCAST: Option<(&str, &str)> = Some(("gjk-raycast", "\"std\", \"f64\""));
 
 const PROGRAMS: &[Program] = &[
-    Program { name: "nothing", import: None, body: &["println!(\"{}\", input());"] },
+    Program { name: "nothing", import: None, body: &["println!(\"{:?}\", input());"] },
     Program { name: "convex-support", import: Some(("convex-support", "\"std\", \"f64\"")), body: &[SUPPORT] },
     Program { name: "convex-support, libm", import: Some(("convex-support", "\"libm\", \"f64\"")), body: &[SUPPORT] },
     Program {

@@ -5,8 +5,9 @@ use num_traits::Float as _;
 
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
 use crate::gjk::{
-    End, Frame, Gjk, GjkOptions, InOrder, NEAR, Shape, first_direction, gjk, is_near_contact, near_contact, rounding,
+    End, Frame, Gjk, GjkOptions, InOrder, NEAR, first_direction, gjk, is_near_contact, near_contact, rounding,
 };
+use crate::shape::{Shape, WithoutLines};
 use crate::{Distance, DistanceOptions, Iterate, Status, SubAlgorithm};
 
 /// The distance of two shapes, and where they are closest.
@@ -80,7 +81,7 @@ where
     let error = noise + pair.error();
     let near = error * number(NEAR);
     if (length - radius).abs() < near {
-        return touching([&a, &b], [pair.core_a, pair.core_b], None, max_iterations);
+        return touching([&WithoutLines(a), &WithoutLines(b)], [pair.core_a, pair.core_b], None, max_iterations);
     }
     // NaN is left to the search, and so is what is deep.
     if !(length - radius >= near) || max_iterations == 0 {
@@ -158,7 +159,9 @@ where
             && !(options.tolerance > Scalar::ZERO)
             && !(state.lower > search.limit + frame.error);
         let (begun, before) = if is_plain { (Some(&state), 0) } else { (None, state.iterations) };
-        if let Some(answer) = touching([&a, &b], [pair.core_a, pair.core_b], begun, options.max_iterations) {
+        if let Some(answer) =
+            touching([&WithoutLines(a), &WithoutLines(b)], [pair.core_a, pair.core_b], begun, options.max_iterations)
+        {
             return Distance { iterations: before + answer.iterations, ..answer };
         }
     }

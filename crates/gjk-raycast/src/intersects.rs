@@ -7,6 +7,7 @@ use crate::body::{Body as _, Pair, TracedSupport as _, Untraced};
 use crate::gjk::{
     Boxes, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, is_near_contact, near_contact, rounding,
 };
+use crate::shape::WithoutLines;
 use crate::unit::is_moderate;
 use crate::{IntersectOptions, Intersection, Iterate, Status};
 
@@ -145,7 +146,12 @@ where
         _ => {
             let is_near = is_near_contact(&mut state, &frame);
             let near = if is_near {
-                near_contact([&pair.a, &pair.b], [pair.core_a, pair.core_b], None, max_iterations)
+                near_contact(
+                    [&WithoutLines(pair.a), &WithoutLines(pair.b)],
+                    [pair.core_a, pair.core_b],
+                    None,
+                    max_iterations,
+                )
             } else {
                 None
             };

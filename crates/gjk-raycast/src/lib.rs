@@ -121,6 +121,7 @@ mod ray_exit;
 mod result;
 mod scene;
 mod segments;
+mod shape;
 mod simplex;
 mod start_in_contact;
 mod symmetric;

@@ -7,6 +7,7 @@ use num_traits::Float as _;
 use crate::body::{Pair, PointPair};
 use crate::cast::{CastHit, Part, cast, direct, settle_start};
 use crate::ray::check_finite;
+use crate::shape::WithoutLines;
 use crate::start_in_contact::Start;
 use crate::{
     Iterate, LinearCast, LinearCastOptions, LinearHit, Miss, Outcome, Ray, RayCastError, RayCastOptions,
@@ -140,7 +141,7 @@ where
         // What rests does not come to where a ray from its start would be.
         answer.upper = <A::Vector as Vector>::Scalar::infinity();
     }
-    let start = Start { a: &a, b: &b, target };
+    let start = Start { a: &WithoutLines(a), b: &WithoutLines(b), target };
     answer.outcome = match cast.outcome {
         Outcome::Hit(hit) if hit.normal.is_some() || hit.lambda != zero => {
             Outcome::Hit(hit_on_the_way(&hit, cast.scale, [core_a, core_b], motion.velocity_b))

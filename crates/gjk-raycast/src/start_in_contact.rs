@@ -4,7 +4,7 @@ use convex_support::{Posed, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::contact::signed_distance_of_any;
-use crate::gjk::Shape;
+use crate::shape::{Shape, WithoutLines};
 use crate::{
     Distance, DistanceOptions, LinearCastOptions, Motion, SignedDistance, SignedDistanceOptions, distance_with,
 };
@@ -91,7 +91,11 @@ impl<V: Vector> Start<'_, V> {
         let moved = Posed::translated(self.a, velocity.unit()? * step).ok()?;
         // So small a part of the step that it is a small angle that remains in doubt.
         let tolerance = root * V::Scalar::from_f64(1.0 / 64.0);
-        Some(signed_distance_of_any(&moved, self.b, SignedDistanceOptions::new().with_tolerance(tolerance)))
+        Some(signed_distance_of_any(
+            &WithoutLines(&moved),
+            self.b,
+            SignedDistanceOptions::new().with_tolerance(tolerance),
+        ))
     }
 }
 

@@ -9,7 +9,7 @@ use crate::{Scalar, Vector};
 /// any two neighbouring crossings of the planes `xᵢ = ±hᵢ`. The line enters the rounded box where `φ` falls to `radius²`,
 /// and not before it enters the box of half extents `hᵢ + radius`: from there, piece after piece is searched. Most lines
 /// enter through one of the flat sides, in the first piece. They leave where the reversed line enters.
-#[inline(always)]
+#[inline]
 pub(crate) fn rounded_cuboid<V: Vector>(h: V, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, dd, unit) = comfortable(direction);
     let (base, source) = rebased(source, direction, dd.recip());

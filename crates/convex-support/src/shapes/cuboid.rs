@@ -43,6 +43,21 @@ impl<V: Vector> Cuboid<V> {
     pub fn half_extents(&self) -> V {
         self.half_extents
     }
+
+    /// Where a line certainly enters the box swept by a ball.
+    #[inline(never)]
+    fn certain_crossing_swept(
+        &self,
+        source: V,
+        direction: V,
+        radius: V::Scalar,
+        error: V::Scalar,
+    ) -> Option<CertainCrossing<V>> {
+        let h = self.half_extents;
+        let line = NearLine::new(source, direction, V::ZERO, self.extent + radius, error)?;
+        let crossed = rounded_cuboid(h, radius, line.source, line.direction);
+        line.swept(radius, |x| x.max(-h).min(h), |d| d.abs().dot(h), crossed)
+    }
 }
 
 impl<V: Vector> SupportMap for Cuboid<V> {
@@ -95,13 +110,10 @@ impl<V: Vector> SupportMap for Cuboid<V> {
         radius: V::Scalar,
         error: V::Scalar,
     ) -> Option<CertainCrossing<V>> {
-        let h = self.half_extents;
-        let line = NearLine::new(source, direction, V::ZERO, self.extent + radius, error)?;
         if radius > V::Scalar::ZERO {
-            let crossed = rounded_cuboid(h, radius, line.source, line.direction);
-            return line.swept(radius, |x| x.max(-h).min(h), |d| d.abs().dot(h), crossed);
+            return self.certain_crossing_swept(source, direction, radius, error);
         }
-        line.cuboid(h)
+        NearLine::new(source, direction, V::ZERO, self.extent + radius, error)?.cuboid(self.half_extents)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

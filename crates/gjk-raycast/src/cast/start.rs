@@ -12,7 +12,8 @@ use num_traits::Float;
 use super::{Cast, CastHit};
 use crate::body::PointPair;
 use crate::contact::{gap_along, signed_distance_of_any};
-use crate::gjk::{NearContact, Shape, near_contact};
+use crate::gjk::{NearContact, near_contact};
+use crate::shape::{Shape, WithoutLines};
 use crate::{Miss, Outcome, RayCastOptions, SignedDistanceOptions, Status};
 
 /// Decides about a hit that may be at the source, or about a search that stalled before it left it, of the ray that `b` draws as it
@@ -41,6 +42,7 @@ pub(crate) fn settle_start<A, B, W>(
         && let Some(b) = b()
         && let Ok(a) = Rounded::new(a, skin)
     {
+        let (a, b) = (WithoutLines(&a), WithoutLines(&b));
         if !is_to_be_settled {
             if let Outcome::Hit(CastHit { lambda, .. }) = cast.outcome {
                 let after = after_hit(&a, &b, direction, lambda, options.max_iterations);
@@ -204,6 +206,7 @@ fn entry<V: Vector>(
         let length = step.norm();
         // NaN ends this too.
         let Ok(moved) = Posed::translated(b, step) else { break };
+        let moved = WithoutLines(&moved);
         let there = signed_distance_of_any(a, &moved, wanted);
         *iterations += there.iterations;
         // The step is rounded, coordinate by coordinate.
@@ -250,6 +253,7 @@ fn after_hit<V: Vector>(
     let unknown = AfterHit { latest: Float::infinity(), iterations: 0 };
     let step = direction * lambda;
     let Ok(there) = Posed::translated(b, step) else { return unknown };
+    let there = WithoutLines(&there);
     let Some(near) = near_contact([a, &there], [a.core(), there.core()], None, max_iterations) else { return unknown };
     let mut iterations = near.iterations;
     // The step and the direction are rounded, coordinate by coordinate.

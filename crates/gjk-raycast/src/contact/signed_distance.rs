@@ -9,7 +9,8 @@ use super::expansion::{Expanded, expand};
 use super::met::Met;
 use super::{SignedDistance, SignedDistanceOptions};
 use crate::body::PointPair;
-use crate::gjk::{End, Gjk, Shape};
+use crate::gjk::{End, Gjk};
+use crate::shape::Shape;
 use crate::{Iterate, Status};
 
 /// How far apart two shapes are, or how deep in one another, and which way out is the shortest.

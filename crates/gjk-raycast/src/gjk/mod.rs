@@ -17,7 +17,7 @@ use crate::body::{Body as _, Pair, TracedSupport};
 use crate::unit::{power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Status, SubAlgorithm};
 pub(crate) use boxes::{Boxes, boxes};
-pub(crate) use near_contact::{NEAR, NearContact, Shape, is_near_contact, near_contact};
+pub(crate) use near_contact::{NEAR, NearContact, is_near_contact, near_contact};
 use next_direction::NextDirection;
 pub(crate) use order::InOrder;
 pub(crate) use progress::Progress;

@@ -16,6 +16,7 @@ use super::faces::{across_faces, is_around_zero};
 use super::order::comes_first;
 use super::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
+use crate::shape::Shape;
 use crate::simplex::MAX_POINTS;
 
 /// How many errors apart, or in one another, bodies are looked at once more.
@@ -32,8 +33,6 @@ pub(crate) fn is_near_contact<V: Vector, W: Copy + Default>(state: &mut Gjk<V, W
     (state.length - frame.radius).abs() < frame.error * V::Scalar::from_f64(NEAR)
 }
 
-/// A shape behind a pointer.
-pub(crate) type Shape<'s, V> = &'s dyn SupportMap<Vector = V>;
 type PairOfAny<'s, V> = Pair<'s, dyn SupportMap<Vector = V> + 's, dyn SupportMap<Vector = V> + 's>;
 
 /// What is known of bodies near contact; lengths in units of the frame, from body to body.

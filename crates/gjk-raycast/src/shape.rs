@@ -1,0 +1,59 @@
+//! A shape behind a pointer, for what is rarely needed and so is compiled once.
+
+use convex_support::{Core, Hint, Parallelotope, Rounding, SupportMap, Vector};
+
+type ScalarOf<S> = <<S as SupportMap>::Vector as Vector>::Scalar;
+
+/// A shape [without line crossings](WithoutLines), behind a pointer.
+pub(crate) type Shape<'s, V> = &'s dyn SupportMap<Vector = V>;
+
+/// A shape as distances and depths see it: where a line crosses it, and which feature supports it, they do not ask.
+///
+/// Of a shape behind a pointer all methods are compiled into a program, whether it asks them or not. The closed forms of line
+/// crossings are as much code as the whole search for a distance, so they are left out here.
+#[derive(Clone, Copy)]
+pub(crate) struct WithoutLines<'s, S: ?Sized>(pub(crate) &'s S);
+
+impl<S: SupportMap + ?Sized> SupportMap for WithoutLines<'_, S> {
+    type Vector = S::Vector;
+
+    #[inline]
+    fn support(&self, direction: S::Vector) -> S::Vector {
+        self.0.support(direction)
+    }
+
+    #[inline]
+    fn support_value(&self, direction: S::Vector) -> ScalarOf<S> {
+        self.0.support_value(direction)
+    }
+
+    #[inline]
+    fn core(&self) -> Core<S::Vector> {
+        self.0.core()
+    }
+
+    #[inline]
+    fn core_support(&self, direction: S::Vector, hint: &mut Hint) -> S::Vector {
+        self.0.core_support(direction, hint)
+    }
+
+    #[inline]
+    fn core_support_hessian(&self, direction: S::Vector, changes: [S::Vector; 2]) -> [ScalarOf<S>; 3] {
+        self.0.core_support_hessian(direction, changes)
+    }
+
+    #[inline]
+    fn core_closest_point(&self, x: S::Vector) -> Option<S::Vector> {
+        self.0.core_closest_point(x)
+    }
+
+    #[inline]
+    fn core_parallelotope(&self) -> Option<Parallelotope<S::Vector>> {
+        self.0.core_parallelotope()
+    }
+
+    #[inline]
+    fn rounding(&self) -> Rounding<S::Vector> {
+        self.0.rounding()
+    }
+}
