@@ -98,11 +98,11 @@ fn certain<S: SupportMap + ?Sized>(
             missed((axis - ray.direction * along).unit().unwrap_or(axis))
         }
         CertainCrossing::Enters { entry, bounds, normal } => {
-            let [earliest, _] = bounds;
+            let [earliest, latest] = bounds;
             let is_after_end = entry > options.max_lambda;
             // By rounding alone, the source may be in the target, or the end of the ray where it enters. NaN and infinity tell nothing.
             let begin = if is_after_end { options.max_lambda } else { zero };
-            if !(earliest > begin && earliest < infinity) {
+            if !(earliest > begin && latest < infinity) {
                 return None;
             }
             if is_after_end {

@@ -9,8 +9,8 @@ use crate::numerics::bound::roundings;
 use crate::numerics::twofold::lost_in_sum;
 use crate::support::ScalarOf;
 use crate::{
-    CertainCrossing, Core, Feature, Hint, LineCrossing, Matrix, Parallelotope, Rotation, Rounding, Scalar, SupportMap,
-    Vector,
+    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, Matrix, Parallelotope, Rotation, Rounding, Scalar,
+    SupportMap, Vector,
 };
 
 /// The image `R·C + t` of a shape under a rotation and then a translation.
@@ -221,10 +221,14 @@ impl<S: SupportMap> SupportMap for Posed<S> {
             return None;
         }
         let (size, error) = (core.extent + core.radius + radius, error + self.error + self.skew);
-        NearLine::new(source, direction, self.translation, size, error)?
-            .turned(&self.rotation, |source, direction, error| {
-                self.shape.certain_crossing(source, direction, radius, error)
-            })
+        let line = NearLine::new(source, direction, self.translation, size, error)?;
+        if core.kind == CoreKind::Point(S::Vector::ZERO) {
+            // A ball, whichever way it is turned.
+            return line.ball(size);
+        }
+        line.turned(&self.rotation, |source, direction, error| {
+            self.shape.certain_crossing(source, direction, radius, error)
+        })
     }
 
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {
