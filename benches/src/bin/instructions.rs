@@ -10,7 +10,7 @@ use benches::ours::Effort;
 use benches::ours::shapes::{Boxed, OfWorkload, with, with_both};
 use benches::ours::tasks::{Distances, Intersections, LinearCasts, MotionCasts, RayCasts, SignedDistances};
 use convex_support::glam::{DVec2, DVec3, Vec3A};
-use convex_support::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope};
+use convex_support::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, Polytope};
 use gjk_raycast::{Ray, RayCastOptions};
 use workloads::pairs::Pair;
 use workloads::shapes::{Shape, hull_points};
@@ -37,6 +37,7 @@ const ROWS: [Row; 24] = [
     ("distance/ellipsoid-ellipsoid", || distance::<Ellipsoid<DVec3>, Ellipsoid<DVec3>>("ellipsoid-ellipsoid")),
     ("intersect/cuboid-cuboid", || intersect::<Block, Block>("cuboid-cuboid")),
     ("ray_cast/ball", || ray_cast::<Ball<DVec3>>("ball")),
+    ("ray_cast/hull16", || ray_cast::<Faceted<DVec3>>("hull16")),
     ("ray_cast/cylinder", || ray_cast::<Cylinder<DVec3>>("cylinder")),
     ("ray_cast/plane-hull64", planar_ray_cast),
     ("ray_cast/cuboid-dyn", || rays("cuboid", |rays, shape| with::<Block>(shape, Boxed(rays)))),

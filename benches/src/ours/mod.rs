@@ -36,6 +36,8 @@ pub struct Effort {
     pub iterations: bool,
     /// Whether shapes come as `Box<dyn SupportMap>`.
     pub boxed: bool,
+    /// Whether a hull knows its facets, as it does where it is to be hit by rays and small.
+    pub faceted: bool,
 }
 
 impl Default for Effort {
@@ -48,6 +50,7 @@ impl Default for Effort {
             method: RayCastOptions::<DVec3>::default().method,
             iterations: false,
             boxed: false,
+            faceted: false,
         }
     }
 }
@@ -71,14 +74,14 @@ pub fn ray_casts(precision: Precision, shape: &Shape, rays: &[Ray], effort: Effo
 #[must_use]
 pub fn closed_form_ray_casts(precision: Precision, shape: &Shape, rays: &[Ray]) -> Solver {
     match precision {
-        Precision::Double => in_closed_form::<DVec3>(shape, ClosedFormRayCasts(rays)),
-        Precision::Single => in_closed_form::<Vec3A>(shape, ClosedFormRayCasts(rays)),
+        Precision::Double => with_facets::<DVec3>(shape, ClosedFormRayCasts(rays), true),
+        Precision::Single => with_facets::<Vec3A>(shape, ClosedFormRayCasts(rays), true),
     }
 }
 
-/// Of a hull only its facets know a closed form.
-fn in_closed_form<V: Space>(shape: &Shape, task: impl Task<V>) -> Solver {
-    if let Shape::Hull { .. } = shape { with::<Faceted<V>>(shape, task) } else { with_shape(shape, task) }
+/// The solver of a task for any shape; of hulls, if wanted, with their facets, by which alone a closed form is known of them.
+fn with_facets<V: Space>(shape: &Shape, task: impl Task<V>, faceted: bool) -> Solver {
+    if faceted && let Shape::Hull { .. } = shape { with::<Faceted<V>>(shape, task) } else { with_shape(shape, task) }
 }
 
 /// Linear casts.
@@ -110,10 +113,10 @@ pub fn intersections(
 
 fn of_shape(precision: Precision, shape: &Shape, task: impl Task<DVec3> + Task<Vec3A>, effort: Effort) -> Solver {
     match (precision, effort.boxed) {
-        (Precision::Double, false) => with_shape::<DVec3>(shape, task),
-        (Precision::Double, true) => with_shape::<DVec3>(shape, Boxed(task)),
-        (Precision::Single, false) => with_shape::<Vec3A>(shape, task),
-        (Precision::Single, true) => with_shape::<Vec3A>(shape, Boxed(task)),
+        (Precision::Double, false) => with_facets::<DVec3>(shape, task, effort.faceted),
+        (Precision::Double, true) => with_facets::<DVec3>(shape, Boxed(task), effort.faceted),
+        (Precision::Single, false) => with_facets::<Vec3A>(shape, task, effort.faceted),
+        (Precision::Single, true) => with_facets::<Vec3A>(shape, Boxed(task), effort.faceted),
     }
 }
 

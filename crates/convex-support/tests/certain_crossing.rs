@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use convex_support::glam::{DVec3, Vec3A};
 use convex_support::{
-    Ball, Capsule, CertainCrossing, Cone, Cuboid, Cylinder, Ellipsoid, Posed, Rotation as _, Rounded, Scalar,
+    Ball, Capsule, CertainCrossing, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, Posed, Rotation as _, Rounded, Scalar,
     SupportMap, Vector3, line_crossing,
 };
 use proptest::prelude::*;
@@ -13,7 +13,7 @@ use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 type AnyShape<V> = Box<dyn SupportMap<Vector = V>>;
 
 /// How many kinds of shapes [`shape`] makes.
-const KINDS: usize = 7;
+const KINDS: usize = 8;
 
 /// A shape of three lengths, in either precision.
 fn shape<V: Vector3>(kind: usize, lengths: [f32; 3], [x, y, z, w]: [f32; 4]) -> AnyShape<V> {
@@ -27,8 +27,21 @@ fn shape<V: Vector3>(kind: usize, lengths: [f32; 3], [x, y, z, w]: [f32; 4]) -> 
         3 => Box::new(Cylinder::new(a, b).unwrap()),
         4 => Box::new(Cone::new(a, b).unwrap()),
         5 => Box::new(Ellipsoid::new(V::ZERO, extents, rotation).unwrap()),
-        _ => Box::new(Rounded::new(Cuboid::new(extents).unwrap(), a).unwrap()),
+        6 => Box::new(Rounded::new(Cuboid::new(extents).unwrap(), a).unwrap()),
+        _ => {
+            Box::new(Faceted::hull_of(hull(lengths).map(|p| V::from_fn(|i| V::Scalar::from_f64(p[i].into())))).unwrap())
+        }
     }
+}
+
+/// The corners of a box and three points beside it, which have their middle aside of zero.
+fn hull([a, b, c]: [f32; 3]) -> [[f32; 3]; 11] {
+    core::array::from_fn(|i| match i {
+        8 => [2.0 * a, 0.5 * b, 0.0],
+        9 => [0.0, 1.5 * b, -0.25 * c],
+        10 => [-0.5 * a, -0.25 * b, 3.0 * c],
+        _ => [(a, 1), (b, 2), (c, 4)].map(|(length, bit)| if i & bit == 0 { length } else { -length }),
+    })
 }
 
 /// The same swept by a ball of half a length, turned and moved, each if it is asked for. Of the shapes that cannot be swept none is.

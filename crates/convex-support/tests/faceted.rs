@@ -3,7 +3,8 @@
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::strategies as any;
 use convex_support::{
-    Crossing, Cuboid, Faceted, LineCrossing, Posed, Scalar, SupportMap, Triangle, Vector, line_crossing,
+    CertainCrossing, Crossing, Cuboid, Faceted, LineCrossing, Posed, Scalar, SupportMap, Triangle, Vector,
+    line_crossing,
 };
 use num_traits::Float;
 use proptest::prelude::*;
@@ -167,4 +168,25 @@ fn directions_may_have_any_length() {
             (unit.entry, unit.exit, unit.normal)
         );
     }
+}
+
+/// Also where the middle is not zero, and in a pose; a flat hull has no inside to be sure of.
+#[test]
+fn rays_at_facets_are_certain_without_a_search() {
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let hull = Faceted::hull_of(corners).unwrap();
+    let (source, direction) = (DVec3::splat(0.2) - DVec3::Z * 3.0, DVec3::Z);
+    let bounds_of = |shape: &dyn SupportMap<Vector = DVec3>, source: DVec3| match shape
+        .certain_crossing(source, direction, 0.0, 0.0)
+    {
+        Some(CertainCrossing::Enters { bounds, .. }) => Some(bounds),
+        _ => None,
+    };
+    let [earliest, latest] = bounds_of(&hull, source).expect("a hit");
+    assert!(earliest <= 2.8 && 2.8 <= latest && latest - earliest < 1e-13, "{earliest} {latest}");
+    let posed = Posed::new(hull, DQuat::from_rotation_z(0.25), DVec3::new(9.0, 0.0, 0.0)).unwrap();
+    let aside = posed.rotation() * DVec3::new(0.2, 0.2, -3.0) + posed.translation();
+    let [earliest, latest] = bounds_of(&posed, aside).expect("a hit");
+    assert!(earliest <= 3.0 && 3.0 <= latest && latest - earliest < 1e-12, "{earliest} {latest}");
+    assert_eq!(bounds_of(&Faceted::hull_of([DVec3::ZERO, DVec3::X, DVec3::Y]).unwrap(), source), None);
 }

@@ -207,7 +207,11 @@ impl<S: SupportMap> SupportMap for Posed<S> {
         crossing.with_normal(|normal| self.rotation * normal)
     }
 
-    /// Of a shape about zero.
+    /// The line is seen from where the shape's origin is taken to.
+    ///
+    /// Where that is not zero, the foot of the line, no more than 2 sizes `S` from there, loses `4uS` and `u|c|` as what the image of the
+    /// origin `c` has lost is taken off and `c` is put on. What was lost is turned, of which is lost `3u`; where it is larger than the size,
+    /// no line is near the shape to rounding.
     #[inline(always)]
     fn certain_crossing(
         &self,
@@ -217,17 +221,22 @@ impl<S: SupportMap> SupportMap for Posed<S> {
         error: ScalarOf<S>,
     ) -> Option<CertainCrossing<S::Vector>> {
         let core = self.shape.core();
-        if core.origin != S::Vector::ZERO {
-            return None;
-        }
         let (size, error) = (core.extent + core.radius + radius, error + self.error + self.skew);
-        let line = NearLine::new(source, direction, self.translation, size, error)?;
-        if core.kind == CoreKind::Point(S::Vector::ZERO) {
-            // A ball, whichever way it is turned.
-            return line.ball(size);
+        if core.origin == S::Vector::ZERO {
+            let line = NearLine::new(source, direction, self.translation, size, error)?;
+            if core.kind == CoreKind::Point(S::Vector::ZERO) {
+                // A ball, whichever way it is turned.
+                return line.ball(size);
+            }
+            return line.turned(&self.rotation, |source, direction, error| {
+                self.shape.certain_crossing(source, direction, radius, error)
+            });
         }
-        line.turned(&self.rotation, |source, direction, error| {
-            self.shape.certain_crossing(source, direction, radius, error)
+        let origin = self.rotation * core.origin + self.translation;
+        NearLine::new(source, direction, origin, size, error)?.turned(&self.rotation, |source, direction, error| {
+            let source = source - self.rotation.transpose_mul(self.lost) + core.origin;
+            let rounding = roundings(8.0, size) + roundings(2.0, core.origin.norm() + self.lost.norm());
+            self.shape.certain_crossing(source, direction, radius, error + rounding)
         })
     }
 

@@ -67,7 +67,7 @@ pub(crate) struct NearLine<V: Vector> {
     /// The size of the shape.
     size: V::Scalar,
     /// What the crossing of the line is wrong by at most, as a displacement.
-    error: V::Scalar,
+    pub(super) error: V::Scalar,
 }
 
 impl<V: Vector> NearLine<V> {
@@ -96,7 +96,7 @@ impl<V: Vector> NearLine<V> {
 
     /// The same line from where it is closest to the origin, to be turned.
     #[inline(always)]
-    fn at_foot(&self) -> Self {
+    pub(super) fn at_foot(&self) -> Self {
         let Self { source, direction, size, .. } = *self;
         let (base, source) = rebased(source, direction, direction.length_squared().recip());
         let error = self.error + size * (V::Scalar::EPSILON * V::Scalar::from_f64(OF_TURN));
@@ -123,7 +123,7 @@ impl<V: Vector> NearLine<V> {
 
     /// The line enters the shape between two of its parameters, counted from the base.
     #[inline(always)]
-    fn enters(&self, [earliest, entry, latest]: [V::Scalar; 3], normal: V) -> CertainCrossing<V> {
+    pub(super) fn enters(&self, [earliest, entry, latest]: [V::Scalar; 3], normal: V) -> CertainCrossing<V> {
         let (entry, earliest, latest) = (self.base + entry, self.base + earliest, self.base + latest);
         let rounding = entry.abs() * (V::Scalar::EPSILON + V::Scalar::EPSILON);
         CertainCrossing::Enters { entry, bounds: [earliest - rounding, latest + rounding], normal }

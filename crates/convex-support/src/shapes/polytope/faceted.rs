@@ -1,6 +1,9 @@
 //! Polytopes that know the planes of their facets.
 
+use alloc::vec;
 use alloc::vec::Vec;
+
+use num_traits::Float as _;
 
 use glam::DVec3;
 
@@ -9,15 +12,16 @@ use super::convex_hull::ConvexHull;
 use super::hull::FromPoints;
 use super::lanes::{WIDTH, coordinate, side_by_side};
 use crate::error::InvalidShape;
-use crate::line_crossing::faceted;
-use crate::{Core, Feature, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
+use crate::line_crossing::{NearLine, faceted};
+use crate::numerics::bound::roundings;
+use crate::{CertainCrossing, Core, Feature, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
 /// [`WIDTH`] planes, each a unit outward normal by coordinates and how far the polytope reaches along it from the middle.
 pub(crate) type Planes<S> = [[S; WIDTH]; 4];
 
 /// The convex hull of points both ways: by its vertices, as a [`Polytope`], and by the half-spaces of its facets.
 ///
-/// It is for lines: [`line_crossing`](crate::line_crossing) clips one by every facet and tells where it leaves, too. That takes time
+/// It is for lines: a ray cast clips a ray by every facet, and [`line_crossing`](crate::line_crossing) tells where it leaves, too. That takes time
 /// proportional to the number of facets. Up to about a hundred of them it is less than that of a ray cast by support points, which
 /// needs no facets and hardly grows (measured: docs/performance.md, W1).
 ///
@@ -43,6 +47,9 @@ pub struct Faceted<V: Vector> {
     polytope: Polytope<V>,
     planes: Vec<Planes<V::Scalar>>,
     count: usize,
+    /// What is behind all planes by more than this is in the hull of the points as they are seen from the middle; infinite where that is
+    /// not known.
+    uncut: V::Scalar,
 }
 
 impl<V: Vector> Faceted<V> {
@@ -51,17 +58,27 @@ impl<V: Vector> Faceted<V> {
     /// # Errors
     /// As [`Polytope::new`].
     pub fn hull_of(points: impl IntoIterator<Item = V>) -> Result<Self, InvalidShape> {
-        let FromPoints { polytope, seen, hull } = FromPoints::new(points)?;
+        let FromPoints { polytope, seen, unit, hull } = FromPoints::new(points)?;
         // Without a hull, the bounding box is all that is known.
-        let mut normals: Vec<V> = normals(&hull.unwrap_or(ConvexHull::Point(0)), &seen, V::DIM)
+        let hull = hull.unwrap_or(ConvexHull::Point(0));
+        let normals: Vec<V> = normals(&hull, &seen, V::DIM)
             .into_iter()
             .filter_map(|n| V::from_fn(|i| V::Scalar::from_f64(n[i])).unit())
             .collect();
-        distinct(&mut normals);
-        let facet = |n: &V| (*n, n.dot(polytope.core_support(*n, &mut Hint::new())));
-        let facets: Vec<(V, V::Scalar)> = normals.iter().map(facet).collect();
+        let (distinct, plane_of) = distinct(&normals);
+        let reaching = |n: V| (n, n.dot(polytope.core_support(n, &mut Hint::new())));
+        let facets: Vec<(V, V::Scalar)> = distinct.into_iter().map(reaching).collect();
+        let corner = |i: u32| V::from_fn(|axis| V::Scalar::from_f64(seen[i as usize][axis])) * unit;
+        let corners = corners(&hull, V::DIM);
+        // A facet without a normal has no plane.
+        let uncut = if corners.len() == normals.len() {
+            let facets_of = plane_of.iter().map(|&plane| facets[plane]);
+            uncut(&polytope, &facets, corners.into_iter().map(|corners| corners.map(corner)).zip(facets_of))
+        } else {
+            V::Scalar::infinity()
+        };
         let planes = side_by_side(&facets, |(n, reach), i| if i == 3 { reach } else { coordinate(n, i) });
-        Ok(Self { planes, count: facets.len(), polytope })
+        Ok(Self { planes, count: facets.len(), uncut, polytope })
     }
 
     /// The same set by its vertices.
@@ -97,12 +114,59 @@ impl<V: Vector> Faceted<V> {
     }
 }
 
-/// Takes away what is another normal again to rounding: the triangles of one plane.
-fn distinct<V: Vector>(normals: &mut Vec<V>) {
-    let key = |n: &V| [0, 1, V::DIM - 1].map(|i| n.get(i).as_f64());
-    normals.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(core::cmp::Ordering::Equal));
+/// The normals without what is another one again to rounding, as the triangles of one plane have it; and of each which of those it is.
+fn distinct<V: Vector>(normals: &[V]) -> (Vec<V>, Vec<usize>) {
+    let key = |i: usize| [0, 1, V::DIM - 1].map(|axis| normals[i].get(axis).as_f64());
+    let mut order: Vec<usize> = (0..normals.len()).collect();
+    order.sort_by(|&a, &b| key(a).partial_cmp(&key(b)).unwrap_or(core::cmp::Ordering::Equal));
     let within = V::Scalar::from_f64(4.0) * V::Scalar::EPSILON;
-    normals.dedup_by(|a, b| (*a - *b).abs().max_element() <= within);
+    let (mut kept, mut which): (Vec<V>, Vec<usize>) = (Vec::new(), vec![0; normals.len()]);
+    for i in order {
+        let is_known = kept.last().is_some_and(|&last| (normals[i] - last).abs().max_element() <= within);
+        if !is_known {
+            kept.push(normals[i]);
+        }
+        which[i] = kept.len() - 1;
+    }
+    (kept, which)
+}
+
+/// The corners of the facets of a hull that spans the space, in the order of their [`normals`]; in the plane the second is told twice.
+fn corners(hull: &ConvexHull, dimension: usize) -> Vec<[u32; 3]> {
+    match hull {
+        ConvexHull::Polygon(corners) if dimension == 2 => {
+            let next = corners.iter().cycle().skip(1);
+            corners.iter().zip(next).map(|(&p, &q)| [p, q, q]).collect()
+        }
+        ConvexHull::Polyhedron(triangles) => triangles.clone(),
+        _ => Vec::new(),
+    }
+}
+
+/// Of corners that are farther behind the plane of their facet, in ε of the size, nothing is told: they are of slivers.
+const FARTHEST_BEHIND: f64 = 64.0;
+
+/// What is behind all planes by more than this is in the hull. The facets are all that it has, each with its corners and its plane.
+///
+/// Let no corner be farther behind the plane of its facet than that, and let a point `o` of the hull, here the mean of the vertices, be farther
+/// behind all planes. A line from `o` to a point `x` outside leaves the hull through some facet, at a point `q` between its corners. From `o`
+/// to `q` the line comes nearer to the plane of that facet, and from there to `x` still nearer or past it: so `x` is not farther behind
+/// that plane than the corners are.
+fn uncut<V: Vector>(
+    polytope: &Polytope<V>,
+    planes: &[(V, V::Scalar)],
+    facets: impl Iterator<Item = ([V; 3], (V, V::Scalar))>,
+) -> V::Scalar {
+    let (count, extent) = (polytope.points.len() as f64, polytope.extent);
+    let behind = |(n, reach): (V, V::Scalar), p: V| reach - n.dot(p);
+    let of_corners = facets.flat_map(|(corners, plane)| corners.map(|p| behind(plane, p)));
+    let farthest = of_corners.fold(V::Scalar::ZERO, V::Scalar::max) + roundings(8.0, extent);
+    let sum = polytope.points.iter().fold(V::ZERO, |sum, &p| sum + (p - polytope.middle));
+    let mean = sum / V::Scalar::from_f64(count);
+    let apart = farthest + roundings(count + 16.0, extent);
+    let is_known = farthest <= extent * (V::Scalar::EPSILON * V::Scalar::from_f64(FARTHEST_BEHIND))
+        && planes.iter().all(|&plane| behind(plane, mean) > apart);
+    if is_known { farthest } else { V::Scalar::infinity() }
 }
 
 /// Outward normals, of any length, of half-spaces whose intersection the hull is, in the first `dimension` coordinates.
@@ -176,6 +240,21 @@ impl<V: Vector> SupportMap for Faceted<V> {
             return LineCrossing::Unknown;
         }
         faceted(self, radius, source, direction).into()
+    }
+
+    #[inline]
+    fn certain_crossing(
+        &self,
+        source: V,
+        direction: V,
+        radius: V::Scalar,
+        error: V::Scalar,
+    ) -> Option<CertainCrossing<V>> {
+        let Core { origin, extent, error: of_core, .. } = self.core();
+        if radius != V::Scalar::ZERO || self.uncut == V::Scalar::infinity() {
+            return None;
+        }
+        NearLine::new(source, direction, origin, extent, error + of_core + self.uncut)?.faceted(self)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

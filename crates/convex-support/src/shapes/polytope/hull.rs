@@ -30,8 +30,10 @@ impl<V: Vector> Polytope<V> {
 /// A polytope and what it was found from.
 pub(super) struct FromPoints<V: Vector> {
     pub(super) polytope: Polytope<V>,
-    /// The points seen from the middle.
+    /// The points seen from the middle, in the unit.
     pub(super) seen: Vec<[f64; 3]>,
+    /// The unit of those.
+    pub(super) unit: V::Scalar,
     /// The hull of those. There is none of points a hundred orders of magnitude apart: then nothing is lost of the polytope but the
     /// time of a scan.
     pub(super) hull: Option<ConvexHull>,
@@ -44,7 +46,7 @@ impl<V: Vector> FromPoints<V> {
         let (seen, unit) = relative(&points, middle);
         let coordinates = coordinates(&seen);
         let Some(hull) = convex_hull(&coordinates) else {
-            return Ok(Self { polytope: Polytope::new(points)?, seen: coordinates, hull: None });
+            return Ok(Self { polytope: Polytope::new(points)?, seen: coordinates, unit, hull: None });
         };
         let edges = edges(&hull);
         let mut kept: Vec<u32> = edges.iter().map(|e| e[0]).collect();
@@ -59,7 +61,8 @@ impl<V: Vector> FromPoints<V> {
             let edges: Vec<_> = edges.into_iter().map(|e| e.map(place)).collect();
             Search::Look { graph: Graph::new(&seen, &edges), unit }
         };
-        Ok(Self { polytope: Polytope::searched_by(search, vertices, middle)?, seen: coordinates, hull: Some(hull) })
+        let polytope = Polytope::searched_by(search, vertices, middle)?;
+        Ok(Self { polytope, seen: coordinates, unit, hull: Some(hull) })
     }
 }
 
