@@ -28,7 +28,7 @@ type Hull = Polytope<DVec3>;
 
 /// Rows that stand for the rest: polytopes, smooth and rounded bodies, small and large, known and behind `dyn`, in space and
 /// in the plane, each kind of query. Only their shapes are compiled.
-const ROWS: [Row; 24] = [
+const ROWS: [Row; 25] = [
     ("ray_cast/cuboid", || ray_cast::<Block>("cuboid")),
     ("ray_cast/hull1024", || ray_cast::<Hull>("hull1024")),
     ("linear_cast/hull64-hull64", || linear_cast::<Hull, Hull>("hull64-hull64")),
