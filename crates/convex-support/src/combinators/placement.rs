@@ -46,6 +46,7 @@ pub(super) fn is_near<V: Vector>(origin: V, size: V::Scalar) -> bool {
 ///
 /// With `u = ε/2` and `n` dimensions, a product with a matrix of norm `scale` loses `n·√n·u` of that, and so does the direction in the
 /// shape's frame, by which a point found along it is short of the farthest by twice that times its extent.
+#[inline(always)]
 pub(super) fn length_of_error<V: Vector>(
     core: &Core<V>,
     scale: V::Scalar,
@@ -53,24 +54,33 @@ pub(super) fn length_of_error<V: Vector>(
     translation: V,
     lost: V,
 ) -> V::Scalar {
-    let count = V::DIM as f64;
-    let product = count * if V::DIM == 2 { 1.42 } else { 1.74 };
     // The matrix itself is wrong twice, as a map of points and of directions.
-    let units = scale * V::Scalar::from_f64(3.0 * product + 1.0) + operator_error * V::Scalar::from_f64(2.0);
+    let units = scale * V::Scalar::from_f64(3.0 * of_product::<V>() + 1.0) + operator_error * V::Scalar::from_f64(2.0);
     let turned = scale * core.error + roundings(1.0, units * core.extent);
     // Most shapes are about zero, and then nothing else is lost.
     if core.origin == V::ZERO {
         return raised(turned);
     }
-    let (origin, near) = (core.origin.norm(), is_near(core.origin, core.extent + core.radius));
-    let moved = scale * origin;
+    let placed = error_of_origin(core.origin, core.extent + core.radius, scale, translation);
+    raised(turned + placed + roundings(2.0, operator_error * core.origin.norm()) + roundings(2.0, lost.norm()))
+}
+
+/// What rounding moves the image of an origin by that is not zero, of a set of some size about it, beside what the matrix is wrong by.
+#[inline(never)]
+fn error_of_origin<V: Vector>(origin: V, size: V::Scalar, scale: V::Scalar, translation: V) -> V::Scalar {
+    let moved = scale * origin.norm();
     // What was lost is known to a rounding of itself, if it is of the product too, and to 16ε² of what it comes of.
-    let placed = if near {
-        roundings(product, moved)
+    if is_near(origin, size) {
+        roundings(of_product::<V>(), moved)
     } else {
         roundings(32.0, V::Scalar::EPSILON * (moved + translation.norm()))
-    };
-    raised(turned + placed + roundings(2.0, operator_error * origin) + roundings(2.0, lost.norm()))
+    }
+}
+
+/// What a product with a matrix loses, in `u` times the norm of both.
+#[inline(always)]
+fn of_product<V: Vector>() -> f64 {
+    V::DIM as f64 * if V::DIM == 2 { 1.42 } else { 1.74 }
 }
 
 #[inline(never)]

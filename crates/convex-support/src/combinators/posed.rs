@@ -25,19 +25,22 @@ use crate::{
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+// In this order, the rotation, which is known last, lies behind the numbers of an error that `new` might return in its place. What shares room
+// with those is copied in pieces of other sizes than it was written in, for which a processor waits.
+#[repr(C)]
 pub struct Posed<S: SupportMap> {
-    shape: S,
-    rotation: <S::Vector as Vector>::Matrix,
-    /// What every entry of the rotation is wrong by at most, but for rows along a coordinate axis, in units of epsilon.
-    rotation_error: ScalarOf<S>,
-    translation: S::Vector,
-    /// What the origin `R·c + t` loses by its rounding. Far from the world's origin that is much of the shape's size, and it
-    /// stays with the core.
-    lost: S::Vector,
     /// What the support points of the core are wrong by at most, as a length.
     error: ScalarOf<S>,
     /// How far points are at most from where they would be if the transpose of the rotation were its inverse, beside that.
     skew: ScalarOf<S>,
+    /// What every entry of the rotation is wrong by at most, but for rows along a coordinate axis, in units of epsilon.
+    rotation_error: ScalarOf<S>,
+    shape: S,
+    /// What the origin `R·c + t` loses by its rounding. Far from the world's origin that is much of the shape's size, and it
+    /// stays with the core.
+    lost: S::Vector,
+    translation: S::Vector,
+    rotation: <S::Vector as Vector>::Matrix,
 }
 
 /// What a rotation matrix is wrong by at most, in units of epsilon: every entry, and where it takes a unit vector.
