@@ -23,8 +23,18 @@ const LEAN: f64 = 0.8;
 
 /// How wide a bracket may stay, relative to the way out, where it is as narrow as the tolerance; and how many more support points it is
 /// given to become so. A tolerance relative to the size may be many times as wide as the way is long, of bodies that barely touch.
-const LITTLE: f64 = 1e-7;
+const LITTLE: f64 = 1e-6;
 const MORE: usize = 24;
+
+/// How many of these may find nothing lower.
+const PATIENCE: usize = 4;
+
+/// Since when the bracket is as narrow as the tolerance, when a lower way out was found last, and which; times in support points.
+struct Closed<S> {
+    from: usize,
+    lowered: usize,
+    h: S,
+}
 
 /// A plane that supports the difference, by the support point, which knows the outward unit normal that it was found along.
 #[derive(Clone, Copy, Debug)]
@@ -111,7 +121,7 @@ where
     let mut met = None;
     // Whether directions may lean; not next after one whose support point was not beyond the facet.
     let mut may_lean = is_curved;
-    let mut closed_at = None;
+    let mut closed: Option<Closed<_>> = None;
     let status = loop {
         let (nearest, inner) = boundary.nearest();
         let inner =
@@ -120,9 +130,13 @@ where
         // NaN fails this too.
         if !(way.h - inner > enough) {
             let little = cores.rounding_along(way.u()).max(way.h.abs() * Scalar::from_f64(LITTLE));
-            let is_first = closed_at.is_none();
-            let spent = cores.iterations - *closed_at.get_or_insert(cores.iterations);
-            if !(is_curved && way.h - inner > little && spent < MORE) {
+            let is_first = closed.is_none();
+            let last = closed.get_or_insert(Closed { from: cores.iterations, lowered: cores.iterations, h: way.h });
+            if last.h - way.h > little {
+                (last.lowered, last.h) = (cores.iterations, way.h);
+            }
+            let is_spent = cores.iterations >= last.from + MORE || cores.iterations >= last.lowered + PATIENCE;
+            if is_spent || !(is_curved && way.h - inner > little) {
                 break Status::Converged;
             }
             if is_first {
@@ -157,7 +171,7 @@ where
             upper: -inner * cores.scale(),
         });
         // NaN fails this too.
-        if closed_at.is_none() && !(way.h - inner > enough) {
+        if closed.is_none() && !(way.h - inner > enough) {
             continue;
         }
         let descends = is_curved && seen.h == way.h;
@@ -176,11 +190,11 @@ where
         }
         may_lean = is_curved;
         if let Some(corners) = corners {
-            way = basin::descend(cores, &mut boundary, way, &corners[..A::Vector::DIM], options, closed_at.is_some())?;
+            way = basin::descend(cores, &mut boundary, way, &corners[..A::Vector::DIM], options, closed.is_some())?;
             enough = tolerance.max(cores.rounding_along(way.u()));
         }
     };
-    let status = if closed_at.is_some() { Status::Converged } else { status };
+    let status = if closed.is_some() { Status::Converged } else { status };
     Some(settled(cores, state, &mut boundary, way, met, status))
 }
 
