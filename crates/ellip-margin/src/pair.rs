@@ -112,6 +112,12 @@ impl<const N: usize> Pair<N> {
     #[cold]
     #[inline(never)]
     pub(crate) fn compensated_margin(self, y: Vec<N>, nu: f64) -> f64 {
+        self.compensated_lagrangian(y, nu).0
+    }
+
+    /// The same, and w = By − g, of which what `y` was rounded by is a part.
+    #[inline]
+    pub(crate) fn compensated_lagrangian(self, y: Vec<N>, nu: f64) -> (f64, Vec<N>) {
         // p = x − x₁ = R₂·diag(a₂)·y − r
         let mut p: [DoubleDouble; N] = core::array::from_fn(|i| DoubleDouble::sum(self.x2[i], -self.x1[i]));
         let mut sphere = DoubleDouble::from(-1.0);
@@ -123,6 +129,7 @@ impl<const N: usize> Pair<N> {
             sphere = sphere + DoubleDouble::product(y[j], y[j]);
         }
         let mut margin = DoubleDouble::from(-1.0) + sphere * nu;
+        let mut rounded_w = [0.0; N];
         for i in 0..N {
             let mut e = DoubleDouble::ZERO;
             for k in 0..N {
@@ -130,7 +137,8 @@ impl<const N: usize> Pair<N> {
             }
             let w = e.divided_by(self.a1[i]);
             margin = margin + w * w;
+            rounded_w[i] = w.value();
         }
-        margin.value()
+        (margin.value(), rounded_w)
     }
 }

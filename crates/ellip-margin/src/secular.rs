@@ -56,7 +56,8 @@ pub(crate) fn solve<const N: usize>(
         return Solution::inside(c);
     }
 
-    let Svd { sigma, u, v } = svd(pair.b());
+    let basis = svd(pair.b());
+    let Svd { sigma, u, v } = basis;
     let largest = sigma.iter().fold(0.0f64, |m, s| m.max(*s));
     let ratio = sigma.map(|s| (largest / s) * (largest / s));
     // ĉ = Vᵀc = Σ⁻¹Uᵀg: each coordinate from the side with the smaller rounding error.
@@ -117,19 +118,26 @@ pub(crate) fn solve<const N: usize>(
     let x = x.map(|x| x / norm);
     let nu = tau * scale;
     let y = combine(v, x);
-    let margin = margin(&pair, y, nu);
+    let margin = plain_margin(&pair, y).unwrap_or_else(|| refined_margin(&pair, &basis, y, nu));
     // Sizes beyond the square root of the range of `f64`.
     let status = if margin.is_finite() && nu.is_finite() { status } else { Status::Stalled };
     Solution { nu, y, margin, status, iterations }
 }
 
-/// m = ‖w‖² − 1 for the unit vector y, with w = diag(a₁)⁻¹R₁ᵀ(v − r), v = x* − x₂ = R₂·diag(a₂)y.
+/// m = ‖w‖² − 1 for the unit vector y, with w = diag(a₁)⁻¹R₁ᵀ(v − r), v = x* − x₂ = R₂·diag(a₂)y; by the compensated Lagrangian where
+/// rounding could show in that.
+#[cfg(feature = "paper")]
+#[inline]
+pub(crate) fn margin<const N: usize>(pair: &Pair<N>, y: Vec<N>, nu: f64) -> f64 {
+    plain_margin(pair, y).unwrap_or_else(|| pair.compensated_margin(y, nu))
+}
+
+/// ‖w‖² − 1; `None` where rounding could show.
 ///
 /// Among the points of E₂ the nearest is stationary, so that the rounding errors of y enter squared, and those of ν not at all.
 /// What remains are errors of about ε(‖v‖ + ‖r‖) in the units of space, which E₁'s least semi-axis turns into errors of w.
-/// Where they could show, m is taken from the compensated Lagrangian.
 #[inline]
-pub(crate) fn margin<const N: usize>(pair: &Pair<N>, y: Vec<N>, nu: f64) -> f64 {
+fn plain_margin<const N: usize>(pair: &Pair<N>, y: Vec<N>) -> Option<f64> {
     let (v, r) = (pair.out_of_ball(y), pair.r());
     let p = sub(v, r);
     let w: Vec<N> = core::array::from_fn(|i| dot(pair.axes1[i], p) / pair.a1[i]);
@@ -138,5 +146,26 @@ pub(crate) fn margin<const N: usize>(pair: &Pair<N>, y: Vec<N>, nu: f64) -> f64 
     let least = (1..N).fold(pair.a1[0], |m, i| m.min(pair.a1[i]));
     // (‖v‖ + ‖r‖)‖w‖/a₁ against 64·m
     let sure = (size(v) + size(r)) * squared.sqrt() < 64.0 * (plain.abs() * least);
-    if sure || !squared.is_finite() { plain } else { pair.compensated_margin(y, nu) }
+    (sure || !squared.is_finite()).then_some(plain)
+}
+
+/// The compensated Lagrangian less what the rounding of y adds to it.
+///
+/// Where E₁ is thinner than the rounding of E₂'s points, y cannot be told to E₁'s size: `‖B‖²ε²` is no longer little. But the
+/// Lagrangian is quadratic in y, so that with h = Bᵀw + νy, half its gradient, its least value for this ν is
+///
+/// > L(y) − hᵀ(C + ν)⁻¹h = L(y) − Σ (σᵢ·(uᵢ·w) + ν·(vᵢ·y))²/(σᵢ² + ν),
+///
+/// in the singular basis: the margin to the square of the error of ν.
+#[inline(never)]
+fn refined_margin<const N: usize>(pair: &Pair<N>, basis: &Svd<N>, y: Vec<N>, nu: f64) -> f64 {
+    let (lagrangian, w) = pair.compensated_lagrangian(y, nu);
+    let mut excess = 0.0;
+    for i in 0..N {
+        let sigma = basis.sigma[i];
+        let root = sigma.hypot(nu.sqrt());
+        let part = (sigma / root) * dot(basis.u[i], w) + (nu / root) * dot(basis.v[i], y);
+        excess += part * part;
+    }
+    if excess.is_finite() { lagrangian - excess } else { lagrangian }
 }

@@ -228,3 +228,26 @@ fn the_ends_of_the_range() {
         }
     }
 }
+
+/// E₁ is a needle thinner than the rounding of E₂'s points: of the point where they touch, as rounded, E₁'s norm is off by a
+/// hundredth, and the margin was off by the square of that, 6.5e-5, though the Lagrangian was evaluated in twice the precision. The truth is
+/// of 60 digits.
+#[test]
+fn a_needle_thinner_than_rounding_has_all_digits_of_its_margin() {
+    let rotation = DQuat::from_xyzw(0.7860294979486924, -0.8007517954872019, -0.6256291211727534, 0.4461618344665423);
+    let axes = DVec3::new(4.587712236025963e-14, 7.876739738682144e-11, 9.5367431640625e-07);
+    let needle = Ellipsoid::new(DVec3::ZERO, axes, rotation).expect("valid");
+    let center = DVec3::new(0.29313459242586126, 0.4205549616292588, 0.8041773897445733);
+    let ball = Ellipsoid::new(center, DVec3::splat(0.95367431640625), DQuat::IDENTITY).expect("valid");
+    let m = margin(&needle, &ball);
+    assert!((m - -3.880_660_181_822_573_3e-6).abs() < 1e-9, "{m:e}");
+    // Touching balls know their margin by a formula.
+    for thickness in [1e-6, 1e-9, 1e-12, 1e-15] {
+        let plate = Ellipsoid::new(DVec3::ZERO, DVec3::new(1.0, 0.5, thickness), rotation).expect("valid");
+        let normal = rotation.normalize() * DVec3::X;
+        let ball = Ellipsoid::new(normal * 2.5, DVec3::splat(1.0), DQuat::IDENTITY).expect("valid");
+        // The plate's tip is as far from its middle as it is long.
+        let m = margin(&plate, &ball);
+        assert!((m - 1.25).abs() < 1e-12, "{thickness:e}: {m}");
+    }
+}

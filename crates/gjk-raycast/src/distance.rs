@@ -225,8 +225,10 @@ fn touching<V: Vector>(
     let near = near_contact(shapes, cores, begun, max_iterations)?;
     let (zero, scale) = (V::Scalar::ZERO, near.frame.scale);
     let overlap = near.overlap();
-    // What is in one another by more than an error has a point in common that is nearer to both cores.
-    let along = if overlap == Some(true) { None } else { Some(near.normal) };
+    // What is in one another by more than an error has a point in common that is nearer to both cores. Of others the points of the surfaces
+    // are between those of the cores, which the plane may lean to by the root of the rounding.
+    let between = near.points.a - near.points.b + near.frame.offset;
+    let along = if overlap == Some(true) { None } else { Some(between.unit().unwrap_or(near.normal)) };
     let [point_a, point_b] = surface_points(cores, &near.frame, near.points, along);
     let upper = near.upper.max(zero) * scale;
     Some(Distance {

@@ -4,12 +4,13 @@ use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use crate::body::{Body as _, Pair, TracedSupport as _, Untraced};
+use crate::contact::signed_distance_and_axis;
 use crate::gjk::{
-    Boxes, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, is_near_contact, near_contact, rounding,
+    Boxes, End, Frame, Gjk, GjkOptions, Shape, boxes, first_direction, gjk, is_near_contact, near_contact, rounding,
 };
 use crate::shape::WithoutLines;
 use crate::unit::is_moderate;
-use crate::{IntersectOptions, Intersection, Iterate, Status};
+use crate::{IntersectOptions, Intersection, Iterate, SignedDistanceOptions, Status};
 
 /// Whether two shapes have a point in common, decided as soon as it can be.
 ///
@@ -163,9 +164,32 @@ where
                         None => (near.gap <= Scalar::ZERO, Some(near.normal), Status::Stalled),
                     }
                 }
+                None if end == End::Stalled => {
+                    let again = closely([&pair.a, &pair.b], max_iterations.saturating_sub(iterations));
+                    iterations += again.iterations;
+                    return Intersection { iterations, ..again };
+                }
                 None => (end == End::Overlap || state.lower <= frame.radius, state.axis.unit(), end.status()),
             }
         }
     };
     Intersection { overlap, axis: axis.filter(|_| !overlap), status, iterations }
+}
+
+/// The answer where the search came to no end: it goes by support points alone, and along an edge of a curved body it may make no
+/// progress, where one that asks for the closest points goes on by the curvature.
+#[cold]
+#[inline(never)]
+fn closely<V: Vector>([a, b]: [Shape<'_, V>; 2], max_iterations: usize) -> Intersection<V> {
+    let zero = V::Scalar::ZERO;
+    let options = SignedDistanceOptions::new().with_max_iterations(max_iterations);
+    let (there, axis) = signed_distance_and_axis(a, b, options.with_limit(zero).with_depth_limit(zero));
+    let (apart, meet) = (there.lower > zero, there.upper <= zero);
+    let status = match there.status {
+        _ if apart || meet => Status::Converged,
+        Status::Converged => Status::Stalled,
+        status => status,
+    };
+    let overlap = if apart { false } else { meet || there.overlap };
+    Intersection { overlap, axis: (!overlap).then_some(axis), status, iterations: there.iterations }
 }

@@ -155,6 +155,10 @@ where
             let at_start = start.distance(&options);
             let (normal, iterations) = start.touching_normal(&options);
             answer.iterations += at_start.iterations + iterations;
+            if normal.is_none() {
+                // They are certainly deeper than touching, whatever the motion.
+                answer.upper = zero;
+            }
             Outcome::Hit(LinearHit { time: zero, point: at_start.point_b, normal })
         }
         Outcome::Miss(miss) => Outcome::Miss(Miss { axis: -miss.axis }),

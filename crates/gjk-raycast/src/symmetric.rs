@@ -55,6 +55,17 @@ impl<S: Scalar> Symmetric<S> {
         (trace > S::ZERO && length > S::ZERO).then(|| (trace, (column.0 / length, column.1 / length)))
     }
 
+    /// The greatest eigenvalue of a matrix without negative ones, and its unit eigenvector; `None` where that is no number.
+    pub(crate) fn greatest_eigen(self) -> Option<(S, Across<S>)> {
+        let half = S::from_f64(0.5);
+        let (mean, difference) = ((self.a + self.d) * half, (self.a - self.d) * half);
+        let greatest = mean + difference.hypot(self.b);
+        // (H − λ)·x = 0: of both rows the one that cancels less.
+        let x = if difference > S::ZERO { (greatest - self.d, self.b) } else { (self.b, greatest - self.a) };
+        let length = x.0.hypot(x.1);
+        (length > S::ZERO).then(|| (greatest, (x.0 / length, x.1 / length)))
+    }
+
     /// Whether all of it is zero, for a matrix without negative eigenvalues.
     pub(crate) fn is_zero(self) -> bool {
         self.a == S::ZERO && self.d == S::ZERO

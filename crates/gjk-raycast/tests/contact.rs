@@ -4,8 +4,11 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use crate::common::{at, cuboid, turned};
 use convex_support::glam::{DQuat, DVec2, DVec3};
-use convex_support::{Affine, Ball, Capsule, Cone, Cylinder, Matrix, Polytope, Rounded, SupportMap, Vector, glam};
-use gjk_raycast::{Contact, SignedDistanceOptions, contact};
+use convex_support::{
+    Affine, Ball, Capsule, Cone, Cylinder, Matrix, Polytope, Posed, Rounded, Segment, SupportMap, Triangle, Vector,
+    closest_point, glam,
+};
+use gjk_raycast::{Contact, SignedDistanceOptions, contact, signed_distance};
 
 const VALID: &str = "positive sizes";
 
@@ -28,7 +31,7 @@ fn has<V: Vector<Scalar = f64>>(contact: &Contact<V>, count: usize, depth: f64) 
     }
 }
 
-fn floor() -> convex_support::Posed<convex_support::Cuboid<DVec3>> {
+fn floor() -> Posed<convex_support::Cuboid<DVec3>> {
     at(cuboid([5.0, 1.0, 5.0]), [0.0, -1.0, 0.0])
 }
 
@@ -137,4 +140,41 @@ fn a_capsule_seen_from_its_end_is_no_deeper_than_it_is() {
     let contact =
         contact(&plate, &turned(capsule, angle, [0.0; 3]), 1e-3, SignedDistanceOptions::default()).expect("they touch");
     assert!(contact.points().iter().all(|p| p.signed_distance >= contact.distance.lower - 1e-15), "{contact:?}");
+}
+
+/// What lies within the distance asked for is no feature if it is not nearly flat: from the silhouette of a whole shape, points were made
+/// that were on none of them, and the closest were not among these.
+#[test]
+fn the_closest_points_are_in_every_manifold() {
+    let triangle = Triangle::new([DVec2::new(-1.44, 1.84), DVec2::new(0.17, -1.06), DVec2::new(1.18, -1.14)]);
+    let triangle = Posed::new(triangle.expect("finite"), -3.8, DVec2::new(-4.0, 2.9)).expect("a pose");
+    let segment = Segment::new([DVec2::new(-0.06, 0.72), DVec2::new(1.08, -0.24)]).expect("finite");
+    let answer = signed_distance(&triangle, &segment, SignedDistanceOptions::default());
+    let far = contact(&triangle, &segment, 4.0, SignedDistanceOptions::default()).expect("within 4");
+    let least = far.points().iter().map(|p| p.signed_distance).fold(f64::INFINITY, f64::min);
+    assert!((least - answer.signed_distance).abs() < 1e-12, "{least} for {answer:?}: {far:?}");
+
+    let unit = cuboid::<DVec3>([0.5, 0.5, 0.5]);
+    let tipped = DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.2, 0.5);
+    // A pyramid so flat that its base is within the slab behind its apex, upside down.
+    let corners = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|[x, z]| DVec3::new(x, 0.01, z));
+    let pyramid = Polytope::new(corners.into_iter().chain([DVec3::ZERO])).expect("points");
+    for within in [0.0, 0.1, 1.0, 10.0] {
+        for height in [0.9, 1.2, 3.0] {
+            let above = turned(unit, tipped, [0.1, height, 0.0]);
+            let Some(found) = contact(&above, &floor(), within, SignedDistanceOptions::default()) else { continue };
+            let depth = found.distance.signed_distance;
+            let least = found.points().iter().map(|p| p.signed_distance).fold(f64::INFINITY, f64::min);
+            assert!((least - depth).abs() < 1e-9, "{within}, {height}: {found:?}");
+            for p in found.points() {
+                let off = closest_point(&above, p.point_a).map_or(0.0, |q| q.distance(p.point_a));
+                assert!(off < 0.05, "{within}, {height}: {off} off the box: {found:?}");
+            }
+        }
+        let touching =
+            contact(&at(pyramid.clone(), [0.0, -0.001, 0.0]), &floor(), within, SignedDistanceOptions::default());
+        let touching = touching.expect("they touch");
+        let least = touching.points().iter().map(|p| p.signed_distance).fold(f64::INFINITY, f64::min);
+        assert!((least + 0.001).abs() < 1e-12 && touching.points().len() <= 4, "{touching:?}");
+    }
 }

@@ -4,7 +4,9 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, TAU};
 
 use crate::common::behind_pointers::{linear_cast, motion_cast};
 use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3A};
-use convex_support::{Ball, Capsule, Cone, Cuboid, Ellipsoid, Posed, Rounded, Segment, SupportMap};
+use convex_support::{
+    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Posed, Rounded, Scalar as _, Segment, SupportMap,
+};
 use gjk_raycast::{
     LinearCastOptions, Motion, MotionCast, MotionCastOptions, Outcome, Pose, RayCastError, RigidMotion, StartInContact,
     Status, Trajectory,
@@ -343,4 +345,65 @@ fn a_needle_does_not_pass_through_a_plate() {
     let cast = motion_cast(&needle, swing, &plate, RigidMotion::default(), until(1.0_f32)).expect("finite");
     // In double precision.
     assert!(!cast.outcome.is_miss() && cast.lower <= 9.702_485e-6 && 9.702_484e-6 <= cast.upper, "{cast:?}");
+}
+
+/// Bodies without an inside: what has passed through another was never deeper in it than rounding, and yet they have met.
+fn pass_through<V: convex_support::Vector>(cast: MotionCast<V>, time: f64) {
+    let hit = cast.outcome.hit().unwrap_or_else(|| panic!("{cast:?} is no hit"));
+    let rounding = 64.0 * V::Scalar::EPSILON.as_f64();
+    let [lower, upper, at] = [cast.lower, cast.upper, hit.time].map(convex_support::Scalar::as_f64);
+    assert!(lower <= time * (1.0 + rounding) && time * (1.0 - rounding) <= upper, "{time} is not in {cast:?}");
+    assert!(
+        upper - lower < 64.0 * rounding && (at - time).abs() < 4.0 * rounding,
+        "{time} is not the time of {cast:?}"
+    );
+}
+
+#[test]
+fn a_point_passes_through_a_rod_and_a_plate() {
+    let rod = Segment::new([DVec2::ZERO, DVec2::X]).expect("finite");
+    let swing = RigidMotion::rotation(1.0, DVec2::ZERO);
+    for angle in [0.3, 1.0, 3.0] {
+        let point = at(Cuboid::new(DVec2::ZERO).expect("not negative"), DVec2::from_angle(angle) * 0.4);
+        pass_through(motion_cast(&rod, swing, &point, REST, until(4.0)).expect("finite"), angle);
+        pass_through(motion_cast(&point, REST, &rod, swing, until(4.0)).expect("finite"), angle);
+        // Beyond its tip it is missed.
+        let beyond = at(Cuboid::new(DVec2::ZERO).expect("not negative"), DVec2::from_angle(angle) * 1.001);
+        let miss = motion_cast(&rod, swing, &beyond, REST, until(4.0)).expect("finite");
+        assert!(miss.outcome.is_miss(), "{miss:?}");
+    }
+    let swing = RigidMotion::rotation(1.0, Vec2::ZERO);
+    let rod = Segment::new([Vec2::ZERO, Vec2::X]).expect("finite");
+    let point = at(Cuboid::new(Vec2::ZERO).expect("not negative"), Vec2::from_angle(0.8) * 0.4);
+    let rest = RigidMotion { velocity: Vec2::ZERO, angular_velocity: 0.0, center: Vec2::ZERO };
+    pass_through(motion_cast(&rod, swing, &point, rest, until(4.0)).expect("finite"), 0.8);
+    // A door in the plane x = 0 is hung on the z axis.
+    let door = at(Cuboid::new(DVec3::new(0.5, 0.0, 1.0)).expect("not negative"), DVec3::X * 0.5);
+    let swing = RigidMotion::rotation(DVec3::Z, DVec3::ZERO);
+    let spot = DVec2::from_angle(0.6) * 0.7;
+    let point = at(Cuboid::new(DVec3::ZERO).expect("not negative"), spot.extend(0.3));
+    pass_through(motion_cast(&door, swing, &point, STILL, until(4.0)).expect("finite"), 0.6);
+    // A point that turns, too, and a disc instead of the door.
+    let disc = Cylinder::new(0.0, 1.0).expect("not negative");
+    let falls = RigidMotion { velocity: -DVec3::Y, angular_velocity: DVec3::ONE, center: DVec3::new(0.3, 2.0, 0.1) };
+    let point = at(Cuboid::new(DVec3::ZERO).expect("not negative"), falls.center);
+    pass_through(motion_cast(&point, falls, &disc, STILL, until(4.0)).expect("finite"), 2.0);
+}
+
+#[test]
+fn rods_pass_through_one_another() {
+    let rod = Segment::new([DVec3::ZERO, DVec3::X]).expect("finite");
+    let swing = RigidMotion::rotation(DVec3::Z, DVec3::ZERO);
+    for angle in [0.3, 1.0, 3.0] {
+        let post = at(
+            Segment::new([-DVec3::Z, DVec3::Z * 0.5]).expect("finite"),
+            (DVec2::from_angle(angle) * 0.4).extend(0.0),
+        );
+        pass_through(motion_cast(&rod, swing, &post, STILL, until(4.0)).expect("finite"), angle);
+        let thin =
+            at(Capsule::<DVec3>::new(0.5, 0.0).expect("not negative"), (DVec2::from_angle(angle) * 0.4).extend(0.0));
+        let tilted = Posed::new(thin, DQuat::IDENTITY, DVec3::ZERO).expect("a pose");
+        let beside = motion_cast(&rod, swing, &at(tilted, DVec3::Z * 0.01), STILL, until(4.0)).expect("finite");
+        assert!(beside.outcome.is_miss(), "a hundredth above: {beside:?}");
+    }
 }

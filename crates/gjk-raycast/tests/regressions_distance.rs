@@ -3,10 +3,10 @@
 
 use crate::common::behind_pointers::{distance, intersects};
 use crate::common::{Quaternion, apart, at, cuboid, directions, meets, s, turned, ulps, v};
-use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3, Vec3A};
+use convex_support::glam::{DMat3, DQuat, DVec2, DVec3, Quat, Vec2, Vec3, Vec3A};
 use convex_support::{
-    Capsule, Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Point, Polytope, Posed, Rounded, Scalar, SupportMap,
-    Triangle, Vector,
+    Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Point, Polytope, Posed, Rounded, Scalar,
+    SupportMap, Triangle, Vector,
 };
 use gjk_raycast::{DistanceOptions, IntersectOptions, Status};
 
@@ -535,5 +535,45 @@ fn a_search_near_contact_that_goes_astray_loses_nothing() -> Result<(), InvalidS
         assert!((answer.distance - gap).abs() < 3e-7, "{gap}: {answer:?}");
         assert!(answer.lower <= gap && gap <= answer.upper, "{gap}: {answer:?}");
     }
+    Ok(())
+}
+
+/// The plane between rounded bodies near contact leans to the vector between the points of their cores by the root of the rounding. The
+/// points of the surfaces were taken along the plane's normal, and in `f32` were a thousand times as far apart as the answer said.
+#[test]
+fn points_near_contact_are_as_far_apart_as_the_bodies() -> Result<(), InvalidShape> {
+    let ball = Ball::<Vec2>::new(1_048_576.0)?;
+    for i in 0..200_u16 {
+        let angle = 0.05 + 0.03 * f32::from(i);
+        let ellipse = Ellipsoid::new(Vec2::ZERO, Vec2::new(1.8e6, 9e5), angle)?;
+        let toward = Vec2::from_angle(2.0 * angle);
+        let spot = toward * (1_048_576.0 + 105.0) - ellipse.support(-toward);
+        let d = distance(&Posed::translated(ellipse, spot)?, &ball, DistanceOptions::default());
+        let apart = (d.point_a - d.point_b).length();
+        // Coordinates of a million are known to a sixteenth.
+        assert!(apart <= d.upper + 2.0, "{apart} for {d:?}");
+    }
+    Ok(())
+}
+
+/// `intersects` goes by support points alone, and may come to a stand along an edge where `distance` goes on by the curvature.
+#[test]
+fn a_flat_triangle_before_the_base_of_a_cone_is_decided() -> Result<(), InvalidShape> {
+    let corners = [
+        DVec3::new(-1.5510984269739345, 0.3642707710872011, -0.12989127703056713),
+        DVec3::new(1.7333569212484456, 0.3953733316784307, 1.313485327096533),
+        DVec3::new(1.9092006742171201, 0.17952507966869558, 0.41332590033776606),
+    ];
+    let matrix = DMat3::from_cols_array_2d(&[
+        [-1.3044045873519763, 2.6088091747039526, 0.6119006976802135],
+        [-0.8655489905059296, 1.7310979810118592, -1.327946151959019],
+        [-1.127860114039723, 2.255720228079446, -0.6825765423779206],
+    ]);
+    let flat = Affine::new(Triangle::new(corners)?, matrix, DVec3::ZERO)?;
+    let flat = Posed::translated(flat, DVec3::new(4.084641418510601, -8.669282847021202, 0.3609464579825218))?;
+    let cone = Cone::<DVec3>::new(0.5, 2.0)?;
+    let near = distance(&flat, &cone, DistanceOptions::default());
+    let decided = intersects(&flat, &cone, IntersectOptions::default());
+    assert_eq!((near.overlap, decided.decided()), (false, Some(false)), "{near:?} {decided:?}");
     Ok(())
 }

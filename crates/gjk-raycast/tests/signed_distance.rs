@@ -285,3 +285,36 @@ fn points_of_shapes_that_barely_touch_are_of_the_shapes() {
     let bar = turned(cuboid([0.5941347914072728, 0.005941347914072728, 0.005941347914072728]), lean, [0.0; 3]);
     points_are_of_the_shapes(&point, &bar, 1e-14);
 }
+
+/// A point that touches a rim or an apex, or is hardly deeper: a bracket as narrow as the tolerance of 1e-9 sizes says nothing about so
+/// short a way, and the search ended there, with any plane that GJK had left, before a step was taken towards the bottom.
+#[test]
+fn points_on_rims_and_apexes_are_as_deep_as_they_are() {
+    let cylinder = Cylinder::<DVec3>::new(0.5, 2.0).expect(VALID);
+    let cone = Cone::<DVec3>::new(2.0, 0.5).expect(VALID);
+    let point = |at: DVec3| Point::new(at).expect("finite");
+    let check = |shape: &dyn SupportMap<Vector = DVec3>, spot: DVec3, depth: f64| {
+        let there = DVec3::new(-0.26, 1.75, 3.8);
+        let answer = ask(&Posed::translated(shape, there).expect("finite"), &point(there + spot));
+        let error = (answer.signed_distance + depth).abs();
+        assert!(error < 1e-14 + 1e-4 * depth, "{depth:e} deep at {spot}: {answer:?}");
+        assert!(
+            answer.lower <= -depth + 2e-15 && -depth - 2e-15 <= answer.upper,
+            "{depth:e} deep at {spot}: {answer:?}"
+        );
+    };
+    for i in 0..40 {
+        let (sine, cosine) = (0.1 + 0.15 * f64::from(i)).sin_cos();
+        let around = DVec3::new(cosine, 0.0, sine);
+        check(&cylinder, around * 2.0 + DVec3::Y * 0.5, 0.0);
+        check(&cone, around * 0.5 - DVec3::Y * 2.0, 0.0);
+        // On the slant, between rim and apex.
+        check(&cone, around * 0.25, 0.0);
+    }
+    check(&cone, DVec3::Y * 2.0, 0.0);
+    // A little above the base, an ordinary way in from the side.
+    for depth in [1e-9, 1e-7, 1e-5] {
+        check(&cone, DVec3::new(0.1, depth - 2.0, 0.2), depth);
+        check(&cylinder, DVec3::new(0.1, 0.5 - depth, 0.2), depth);
+    }
+}

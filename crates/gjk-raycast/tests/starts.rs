@@ -371,3 +371,15 @@ fn what_rests_beside_another_has_no_time_of_contact() {
     let cast = linear_cast(&a, &b, Motion::default(), LinearCastOptions::new()).expect("finite");
     assert!(cast.upper == 0.0 || cast.upper == f32::INFINITY, "{cast:?}");
 }
+
+/// What rests deep in another, its middle on the other's to the last bit, has met it, and that is certain.
+#[test]
+fn what_rests_deep_in_another_meets_it_at_once() {
+    let (cube, cylinder) = (cuboid::<DVec3>([1.0; 3]), Cylinder::<DVec3>::new(1.0, 1.0).expect(VALID));
+    let at_rest = |a: &dyn SupportMap<Vector = DVec3>, b: &dyn SupportMap<Vector = DVec3>| {
+        linear_cast(&a, &b, Motion::default(), LinearCastOptions::new()).expect("finite")
+    };
+    for cast in [at_rest(&cube, &cube), at_rest(&cube, &cylinder), at_rest(&cylinder, &cylinder)] {
+        assert_eq!((cast.lower, cast.upper), (0.0, 0.0), "{cast:?}");
+    }
+}

@@ -289,3 +289,27 @@ fn rotations_of_all_kinds() {
     let angle = ellipse.rotation();
     assert!((angle - quarter).abs().min((angle + 3.0 * quarter).abs()) < 1e-11, "angle {angle}");
 }
+
+/// A triangle as long as 1e8 of its width, by its sides and by half-spaces beside them: −Σaᵢ is a combination of two rows with weights
+/// of 1e8, whose rounding was taken for a direction in which the triangle is open. The largest ellipse in it is the image of the circle
+/// in the regular triangle, of π/(3√3) of its area.
+#[test]
+fn a_bounded_needle_is_not_called_unbounded() {
+    let mut rng = Rng(7);
+    for long in [1e4, 1e6, 1e8, 1e9] {
+        for _ in 0..20 {
+            let mut sides = Vec::new();
+            for third in 0..3 {
+                let (sine, cosine) = (std::f64::consts::TAU / 3.0 * f64::from(third)).sin_cos();
+                sides.push(Halfspace { normal: [cosine / long, sine], offset: 1.0 });
+            }
+            for _ in 0..30 {
+                let (sine, cosine) = (3.0 * rng.normal()).sin_cos();
+                sides.push(Halfspace { normal: [cosine / long, sine], offset: 1.5 });
+            }
+            let answer = inscribed(&sides, InscribedOptions::default()).expect("it is bounded");
+            let [a, b] = [answer.ellipsoid.semi_axes()[0], answer.ellipsoid.semi_axes()[1]];
+            assert!((a * b / long - 1.0).abs() < 1e-6, "{long:e}: {a} {b}");
+        }
+    }
+}

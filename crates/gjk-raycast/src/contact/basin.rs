@@ -17,13 +17,15 @@ const PATIENCE: usize = 2;
 
 /// Newton's method from a direction to the bottom of its basin, on one smooth piece of the boundary or along the fold between two.
 /// `others` are support points near by, one of which may be of the second piece. The bottom, and what was not
-/// foretold on the way there, make the polytope larger as well. `None` where a support point is not finite.
+/// foretold on the way there, make the polytope larger as well. A `last` look goes to edges, too, where pieces without a bottom of their
+/// own meet others, which the polytope comes to by itself if it goes on. `None` where a support point is not finite.
 pub(super) fn descend<A, B>(
     cores: &mut Cores<'_, A, B>,
     boundary: &mut Boundary<A::Vector>,
     mut way: WayOut<A::Vector>,
     others: &[Vertex<A::Vector>],
     options: &SignedDistanceOptions<A::Vector>,
+    last: bool,
 ) -> Option<WayOut<A::Vector>>
 where
     A: SupportMap + ?Sized,
@@ -33,7 +35,7 @@ where
     let mut second = None;
     let other = contradiction(&first, others);
     if let Some(other) = other {
-        second = Some(Piece::new(cores, other));
+        second = Some(first.beside(cores, other));
     }
     let (mut failures, mut stale, mut is_added) = (0, Side::Far, true);
     for _ in 0..MAX_STEPS {
@@ -41,6 +43,7 @@ where
             Some(second) => first.step_along_fold(second, stale),
             None => first.step(),
         };
+        let u = u.or_else(|| if last { first.step_to_edge(second.as_ref()) } else { None });
         let Some(u) = u.filter(|_| cores.iterations < options.max_iterations && failures < PATIENCE) else { break };
         let next = WayOut::new(cores.support(u)?);
         let piece = Piece::new(cores, &next.vertex);

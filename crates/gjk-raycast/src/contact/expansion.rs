@@ -21,6 +21,21 @@ const NEAR_BY: f64 = 0.9;
 /// it, or with some of it at others, ellipsoids take more support points.
 const LEAN: f64 = 0.8;
 
+/// How wide a bracket may stay, relative to the way out, where it is as narrow as the tolerance; and how many more support points it is
+/// given to become so. A tolerance relative to the size may be many times as wide as the way is long, of bodies that barely touch.
+const LITTLE: f64 = 1e-6;
+const MORE: usize = 24;
+
+/// How many of these may find nothing lower.
+const PATIENCE: usize = 4;
+
+/// Since when the bracket is as narrow as the tolerance, when a lower way out was found last, and which; times in support points.
+struct Closed<S> {
+    from: usize,
+    lowered: usize,
+    h: S,
+}
+
 /// A plane that supports the difference, by the support point, which knows the outward unit normal that it was found along.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WayOut<V: Vector> {
@@ -106,6 +121,7 @@ where
     let mut met = None;
     // Whether directions may lean; not next after one whose support point was not beyond the facet.
     let mut may_lean = is_curved;
+    let mut closed: Option<Closed<_>> = None;
     let status = loop {
         let (nearest, inner) = boundary.nearest();
         let inner =
@@ -113,7 +129,23 @@ where
         let normal = boundary.facet_at(nearest).normal;
         // NaN fails this too.
         if !(way.h - inner > enough) {
-            break Status::Converged;
+            let little = cores.rounding_along(way.u()).max(way.h.abs() * Scalar::from_f64(LITTLE));
+            let is_first = closed.is_none();
+            let last = closed.get_or_insert(Closed { from: cores.iterations, lowered: cores.iterations, h: way.h });
+            if last.h - way.h > little {
+                (last.lowered, last.h) = (cores.iterations, way.h);
+            }
+            let is_spent = cores.iterations >= last.from + MORE || cores.iterations >= last.lowered + PATIENCE;
+            if is_spent || !(is_curved && way.h - inner > little) {
+                break Status::Converged;
+            }
+            if is_first {
+                // Perhaps no step was taken towards the bottom yet.
+                let corners = boundary.corners(nearest);
+                way = basin::descend(cores, &mut boundary, way, &corners[..A::Vector::DIM], options, true)?;
+                enough = tolerance.max(cores.rounding_along(way.u()));
+                continue;
+            }
         }
         if inner > depth_limit {
             break Status::Converged;
@@ -139,8 +171,8 @@ where
             upper: -inner * cores.scale(),
         });
         // NaN fails this too.
-        if !(way.h - inner > enough) {
-            break Status::Converged;
+        if closed.is_none() && !(way.h - inner > enough) {
+            continue;
         }
         let descends = is_curved && seen.h == way.h;
         let corners = descends.then(|| boundary.corners(nearest));
@@ -158,10 +190,11 @@ where
         }
         may_lean = is_curved;
         if let Some(corners) = corners {
-            way = basin::descend(cores, &mut boundary, way, &corners[..A::Vector::DIM], options)?;
+            way = basin::descend(cores, &mut boundary, way, &corners[..A::Vector::DIM], options, closed.is_some())?;
             enough = tolerance.max(cores.rounding_along(way.u()));
         }
     };
+    let status = if closed.is_some() { Status::Converged } else { status };
     Some(settled(cores, state, &mut boundary, way, met, status))
 }
 

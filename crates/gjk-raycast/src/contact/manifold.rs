@@ -19,8 +19,8 @@ const SLAB: f64 = 1.0 / 64.0;
 /// The points of a manifold.
 pub(super) type Points<V> = SmallVec<[ContactPoint<V>; MAX_POINTS]>;
 
-/// The points where the features of both shapes that face each other overlap, at most four; the closest points alone where one of
-/// the features is a vertex, or where edges cross.
+/// The points where the features of both shapes that face each other overlap, at most four, and the closest points, if those are not among
+/// them; they are alone where one of the features is a vertex, or where edges cross.
 pub(super) fn manifold<A, B>(a: &A, b: &B, answer: &SignedDistance<A::Vector>, within: ScalarOf<A>) -> Points<A::Vector>
 where
     A: SupportMap + ?Sized,
@@ -33,7 +33,8 @@ where
     let (core_a, core_b) = (a.core(), b.core());
     let smaller = (core_a.extent + core_a.radius).min(core_b.extent + core_b.radius);
     let near = smaller * ScalarOf::<A>::from_f64(SLAB);
-    let slab = near + within.max(Scalar::ZERO);
+    // Of shapes that are apart their faces may lean by as much more, but not farther than they are nearly flat.
+    let slab = near + within.max(Scalar::ZERO).min(near);
     let outline = |shape: &dyn Fn(&mut Feature<A::Vector>), origin| {
         let mut feature = Feature::new();
         shape(&mut feature);
@@ -44,8 +45,7 @@ where
     let of_b =
         outline(&|feature| b.core_support_feature(normal, slab, feature), core_b.origin + normal * core_b.radius);
     let facing = Facing { plane, of_a, of_b };
-    let points = facing.points(within + slab, near, answer.lower);
-    if points.is_empty() { SmallVec::from_slice(&[facing.closest(answer)]) } else { points }
+    facing.points(answer, within + near, near)
 }
 
 /// The same of a shape over a plane, `b`, without an end: the corners of the feature that faces it.
@@ -60,14 +60,15 @@ where
     let normal = answer.normal;
     let plane = ContactPlane { normal, across: across(normal), origin: answer.point_b };
     let core = a.core();
-    let slab = (core.extent + core.radius) * Scalar::from_f64(SLAB) + within.max(Scalar::ZERO);
+    let near = (core.extent + core.radius) * ScalarOf::<A>::from_f64(SLAB);
+    let slab = near + within.max(Scalar::ZERO).min(near);
     let mut feature = Feature::new();
     a.core_support_feature(-normal, slab, &mut feature);
     let of_a = Outline::new(&feature, core.origin - normal * core.radius, &plane);
     let of_b = Outline { corners: SmallVec::new(), rim: None, is_complete: true };
     let facing = Facing { plane, of_a, of_b };
-    let corners = facing.of_a.corners.iter().filter(|corner| corner.height <= within + slab);
-    let candidates: SmallVec<[_; 16]> = corners
+    let corners = facing.of_a.corners.iter().filter(|corner| corner.height <= within + near);
+    let mut candidates: Candidates<_> = corners
         .map(|corner| Candidate {
             at: corner.at,
             heights: [corner.height.max(answer.lower), Scalar::ZERO],
@@ -75,9 +76,10 @@ where
         })
         .collect();
     if candidates.len() < 2 {
-        return SmallVec::from_slice(&[facing.closest(answer)]);
+        candidates.clear();
     }
-    reduced(&candidates).iter().map(|candidate| facing.point(candidate)).collect()
+    facing.with_closest(&mut candidates, answer, [answer.signed_distance, Scalar::ZERO], near);
+    facing.reduced(&candidates)
 }
 
 type ScalarOf<A> = <<A as SupportMap>::Vector as Vector>::Scalar;
@@ -103,18 +105,29 @@ impl<S: Scalar> Candidate<S> {
     }
 }
 
+/// Points that a manifold may have.
+type Candidates<S> = SmallVec<[Candidate<S>; 32]>;
+
 impl<V: Vector> Facing<V> {
-    /// The corners of the overlap where the features are no farther apart than `within`, reduced to four. Those `near` the same
-    /// corner of a feature are one. None is deeper than the `deepest`.
-    fn points(&self, within: V::Scalar, near: V::Scalar, deepest: V::Scalar) -> Points<V> {
+    /// The corners of the overlap where the features are no farther apart than `within`, and the closest points, reduced to four. Those
+    /// `near` the same corner of a feature are one.
+    fn points(&self, answer: &SignedDistance<V>, within: V::Scalar, near: V::Scalar) -> Points<V> {
+        let mut candidates = self.corners_of_overlap(within, near, answer.lower);
+        let half = answer.signed_distance * Scalar::from_f64(0.5);
+        self.with_closest(&mut candidates, answer, [half, -half], near);
+        self.reduced(&candidates)
+    }
+
+    /// The same without the closest points. None is deeper than the `deepest`.
+    fn corners_of_overlap(&self, within: V::Scalar, near: V::Scalar, deepest: V::Scalar) -> Candidates<V::Scalar> {
         let (of_a, of_b) = (&self.of_a, &self.of_b);
+        let mut candidates = Candidates::new();
         if of_a.corners.len() < 2 || of_b.corners.len() < 2 {
-            return SmallVec::new();
+            return candidates;
         }
         // A segment is clipped by a polygon.
         let is_swapped = of_a.corners.len() > of_b.corners.len();
         let overlap: Overlap<V::Scalar> = if is_swapped { clip(of_b, of_a) } else { clip(of_a, of_b) };
-        let mut candidates: SmallVec<[Candidate<V::Scalar>; 32]> = SmallVec::new();
         for corner in &overlap {
             let [own, other] = corner.parts;
             let parts = if is_swapped { [other, own] } else { [own, other] };
@@ -128,7 +141,37 @@ impl<V: Vector> Facing<V> {
                 candidates.push(candidate);
             }
         }
-        reduced(&candidates).iter().map(|candidate| self.point(candidate)).collect()
+        candidates
+    }
+
+    /// Adds the closest points, whose heights above the plane are given, if none of the candidates is as deep: features that are not quite
+    /// flat are closest in their midst, and those of vertices, or of edges that cross, have no corners in common.
+    fn with_closest(
+        &self,
+        candidates: &mut Candidates<V::Scalar>,
+        answer: &SignedDistance<V>,
+        heights: [V::Scalar; 2],
+        near: V::Scalar,
+    ) {
+        let known_to = answer.upper - answer.lower + near * V::Scalar::EPSILON.sqrt();
+        let deepest = answer.signed_distance + known_to;
+        // NaN is as deep as anything.
+        if candidates.iter().any(|candidate| !(candidate.gap() > deepest)) {
+            return;
+        }
+        let part = |outline: &Outline<V::Scalar>| match outline.corners.as_slice() {
+            [corner] => Part::Vertex(corner.id),
+            [from, to] => Part::Edge(from.id, to.id),
+            _ => Part::Face,
+        };
+        let parts = [part(&self.of_a), part(&self.of_b)];
+        candidates.push(Candidate { at: (V::Scalar::ZERO, V::Scalar::ZERO), heights, parts });
+    }
+
+    /// At most four of the candidates, in the plane two.
+    fn reduced(&self, candidates: &[Candidate<V::Scalar>]) -> Points<V> {
+        let most = if V::DIM == 2 { 2 } else { MAX_POINTS };
+        reduced(candidates, most).iter().map(|candidate| self.point(candidate)).collect()
     }
 
     /// What a point is of both shapes: a corner of a feature that it is near to, or else what clipping says. Where corners of both lie
@@ -158,28 +201,11 @@ impl<V: Vector> Facing<V> {
             feature_b,
         }
     }
-
-    /// The closest points.
-    fn closest(&self, answer: &SignedDistance<V>) -> ContactPoint<V> {
-        let part = |outline: &Outline<V::Scalar>| match outline.corners.as_slice() {
-            [] => Part::Face,
-            [corner] => Part::Vertex(corner.id),
-            [from, to] => Part::Edge(from.id, to.id),
-            _ => Part::Face,
-        };
-        ContactPoint {
-            point_a: answer.point_a,
-            point_b: answer.point_b,
-            signed_distance: answer.signed_distance,
-            feature_a: part(&self.of_a).code(),
-            feature_b: part(&self.of_b).code(),
-        }
-    }
 }
 
-/// At most four of the candidates: the deepest, the farthest from it, and those that make most area with the two on either side.
-fn reduced<S: Scalar>(candidates: &[Candidate<S>]) -> SmallVec<[Candidate<S>; MAX_POINTS]> {
-    if candidates.len() <= MAX_POINTS {
+/// At most so many of the candidates: the deepest, the farthest from it, and those that make most area with the two on either side.
+fn reduced<S: Scalar>(candidates: &[Candidate<S>], most: usize) -> SmallVec<[Candidate<S>; MAX_POINTS]> {
+    if candidates.len() <= most {
         return SmallVec::from_slice(candidates);
     }
     let best = |value: &dyn Fn(&Candidate<S>) -> S| {

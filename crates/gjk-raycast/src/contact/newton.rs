@@ -50,6 +50,19 @@ impl<V: Vector> Piece<V> {
         Self { n: vertex.along, point: vertex.point, across, hessian: cores.hessian(vertex.along, across) }
     }
 
+    /// The piece of a support point as seen from this one. Of a point that was not found along any direction, such as one that coincides
+    /// with zero, no more is known than that it is a corner.
+    pub(super) fn beside<A, B>(&self, cores: &Cores<'_, A, B>, vertex: &Vertex<V>) -> Self
+    where
+        A: SupportMap<Vector = V> + ?Sized,
+        B: SupportMap<Vector = V> + ?Sized,
+    {
+        if vertex.along == V::ZERO {
+            return Self { point: vertex.point, hessian: Symmetric::ZERO, ..*self };
+        }
+        Self::new(cores, vertex)
+    }
+
     /// How far the point moves as the direction turns from `n` to `n + c`.
     fn shift(&self, c: V) -> V {
         let [e, f] = self.across;
@@ -163,6 +176,42 @@ impl<V: Vector> Piece<V> {
             step = (step.0 + across.0 * aside, step.1 + across.1 * aside);
         }
         turned(self.n, self.across, step)
+    }
+}
+
+impl<V: Vector> Piece<V> {
+    /// The unit vector on the way to the edge of a piece that has no bottom of its own, for where [`step`](Self::step) and
+    /// [`step_along_fold`](Self::step_along_fold) lead nowhere: to the fold with another piece, if there is one that is lower.
+    pub(super) fn step_to_edge(&self, other: Option<&Self>) -> Option<V> {
+        let [e, f] = self.across;
+        let slope = (e.dot(self.point), f.dot(self.point));
+        let Some(other) = other else { return turned(self.n, self.across, self.step_along_curvature(slope)?) };
+        let Seen { slope: of_other, value, .. } = other.seen(self.n, self.across);
+        let e = (of_other.0 - slope.0, of_other.1 - slope.1);
+        let along = (self.n.dot(self.point) - value) / dot(e, e);
+        turned(self.n, self.across, (e.0 * along, e.1 * along))
+    }
+
+    /// The step on a piece that is curved along one direction only, as around a rim or an apex.
+    ///
+    /// Along that direction the minimum is where it would be on any piece. Across it the support value has a slope and no bottom: it falls
+    /// until another piece begins, at the latest where it would be zero. That is far away as long as the first step is worth its
+    /// while, which is then taken alone; else the second leads a little farther than to zero, onto the other piece.
+    fn step_along_curvature(&self, slope: Across<V::Scalar>) -> Option<Across<V::Scalar>> {
+        let (zero, number) = (V::Scalar::ZERO, V::Scalar::from_f64);
+        let value = self.n.dot(self.point);
+        let (curvature, along) = self.hessian.greatest_eigen()?;
+        let bend = curvature - value;
+        let downhill = dot(slope, along);
+        let size = if bend > zero { -downhill / bend } else { zero };
+        let step = (along.0 * size, along.1 * size);
+        let fall = dot(slope, (-along.1, along.0));
+        let is_enough = -size * downhill * number(2.0) > value;
+        if is_enough || !(value > zero) || fall == zero {
+            return Some(step);
+        }
+        let aside = -value / fall * number(1.0 + LEAD);
+        Some((step.0 - along.1 * aside, step.1 + along.0 * aside))
     }
 }
 

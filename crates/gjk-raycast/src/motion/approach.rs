@@ -36,6 +36,10 @@ pub(super) trait Approach<V: Vector> {
     /// The speed of the closest points against one another, where they are.
     fn speed_at(&self, there: &Instant<V>) -> V::Scalar;
 
+    /// Whether bodies that a plane separates at the time of `near` certainly have a point in common at some time until the given one,
+    /// because they have no inside and have passed through one another.
+    fn pass_through(&self, near: &Instant<V>, time: V::Scalar) -> bool;
+
     /// The velocity, at a time, of the point of `b` that is at `point` then.
     fn velocity_of_b(&self, time: V::Scalar, point: V) -> V;
 }

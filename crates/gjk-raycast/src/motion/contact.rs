@@ -12,6 +12,10 @@ use crate::{StartInContact, Status};
 /// How much deeper than touching an overlap is looked for, in units of what the distance may be wrong by.
 const DEPTH: f64 = 2.0;
 
+/// How far apart again bodies are looked at after a graze, in units of how near to contact they were brought: that they have passed
+/// through one another takes some errors to show.
+const GRAZE: f64 = 16.0;
+
 impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> {
     /// Where the contact is as near as can be told: looks for a time just after it at which the bodies overlap. `None` where they are
     /// proved apart there, and the search goes on.
@@ -44,8 +48,12 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
                     self.beyond = None;
                     return None;
                 }
+                if self.bodies.pass_through(&self.near, there.time) {
+                    self.upper = there.time;
+                    return Some(End::Contact);
+                }
                 // They are apart again after a graze that nobody can tell from a contact.
-                if there.gap > self.closest() && there.closing <= zero {
+                if there.gap > self.closest() * V::Scalar::from_f64(GRAZE) && there.closing <= zero {
                     return Some(End::Undecided(Status::Stalled));
                 }
             }

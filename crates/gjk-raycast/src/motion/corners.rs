@@ -45,6 +45,19 @@ impl<V: Vector> Corners<V> {
         }
     }
 
+    /// The corners of the difference, where the bodies are at a time; zero beyond the last.
+    pub(super) fn differences<A, B>(&self, Placed { a, b, offset, .. }: &Placed<'_, A, B>) -> [V; MAX_POINTS]
+    where
+        A: SupportMap<Vector = V> + ?Sized,
+        B: SupportMap<Vector = V> + ?Sized,
+    {
+        let mut points = [V::ZERO; MAX_POINTS];
+        for (point, kept) in points.iter_mut().zip(&self.pairs[..self.len.min(MAX_POINTS)]) {
+            *point = a.turned(kept.a) - b.turned(kept.b) + *offset;
+        }
+        points
+    }
+
     /// The face closest to zero, where the bodies are at a time. Corners that leave the point closest to zero of their hull outside are
     /// dropped, which finds a face that is near if not the nearest; `None` where no face is found.
     #[inline(always)]

@@ -15,6 +15,7 @@ mod near_look;
 mod next_time;
 mod options;
 mod over_half_space;
+mod pass_through;
 mod placed;
 mod result;
 mod rigid_motion;

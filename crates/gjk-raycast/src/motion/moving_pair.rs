@@ -170,6 +170,10 @@ where
         length_bound(self.a.velocity(time, point)) + length_bound(self.b.velocity(time, point))
     }
 
+    fn pass_through(&self, near: &Instant<A::Vector>, time: ScalarOf<A>) -> bool {
+        self.have_met(near, time)
+    }
+
     fn velocity_of_b(&self, time: ScalarOf<A>, point: A::Vector) -> A::Vector {
         self.b.velocity(time, point)
     }

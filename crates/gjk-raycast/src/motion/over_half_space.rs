@@ -194,6 +194,11 @@ where
         length_bound(self.body.velocity(there.time, there.point))
     }
 
+    /// A half-space has an inside.
+    fn pass_through(&self, _: &Instant<S::Vector>, _: ScalarOf<S>) -> bool {
+        false
+    }
+
     fn velocity_of_b(&self, _time: ScalarOf<S>, _point: S::Vector) -> S::Vector {
         S::Vector::ZERO
     }

@@ -20,7 +20,8 @@ pub struct MotionCast<V: Vector> {
     /// The bodies have no point in common before this time; of a miss, the end of the motion.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
-    /// The bodies have a point in common at this time, though it need not be their first; infinite where no such time is known.
+    /// The bodies have a point in common at this time, though it need not be their first, or have had one before, if they have no inside and
+    /// have passed through one another; infinite where no such time is known.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
     /// How the search ended.

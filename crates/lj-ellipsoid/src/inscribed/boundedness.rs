@@ -16,6 +16,8 @@ pub(crate) fn positively_spans(n: usize, rows: &[f64]) -> bool {
     let tolerance = 1e-12 * m as f64;
     let mut passive: Vec<usize> = Vec::new();
     let mut weights: Vec<f64> = Vec::new();
+    // Whether the weights are those of the least squares, all positive.
+    let mut is_solved = false;
     for _ in 0..20 * (m + n) {
         let mut residual = target.clone();
         for (&i, w) in passive.iter().zip(&weights) {
@@ -29,9 +31,14 @@ pub(crate) fn positively_spans(n: usize, rows: &[f64]) -> bool {
             .filter(|i| !passive.contains(i))
             .map(|i| (i, dot(unit(i), &residual)))
             .fold((usize::MAX, 1e-13 * length), |best, now| if now.1 > best.1 { now } else { best });
+        if is_solved && passive.len() == n {
+            // Independent rows that span the space combine to anything: what is left is the rounding of large weights, as of a needle.
+            return true;
+        }
         if best.0 == usize::MAX || passive.len() == n {
             return false;
         }
+        is_solved = false;
         passive.push(best.0);
         weights.push(0.0);
         while let Some(solution) = least_squares(&passive.iter().map(|&i| unit(i)).collect::<Vec<_>>(), &target) {
@@ -42,6 +49,7 @@ pub(crate) fn positively_spans(n: usize, rows: &[f64]) -> bool {
                 .fold((usize::MAX, 1.0), |least, now| if now.1 <= least.1 { now } else { least });
             weights.iter_mut().zip(&solution).for_each(|(w, s)| *w += alpha * (s - *w));
             if blocking == usize::MAX {
+                is_solved = true;
                 break;
             }
             passive.remove(blocking);
