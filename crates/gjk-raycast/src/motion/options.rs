@@ -16,13 +16,13 @@ const MAX_ITERATIONS: usize = 10_000;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct MotionCastOptions<V: Vector> {
-    /// The end of the motion; it belongs to the motion. Below zero it is taken for zero. Default: infinity.
+    /// The end of the motion; it belongs to the motion. A negative value is taken for zero. Default: infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub max_time: V::Scalar,
     /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
     /// of rounding always ends the search. Default: 0.
     pub tolerance: V::Scalar,
-    /// The distance at which bodies count as touching: the cast stops that far from contact. Below zero it is taken for zero.
+    /// The distance at which bodies count as touching: the cast stops that far from contact. A negative value is taken for zero.
     /// Default: 0.
     pub target_distance: V::Scalar,
     /// What to answer where the bodies touch at the start. Default: [`StartInContact::Report`].
