@@ -19,14 +19,13 @@ const LARGEST_REACH: f64 = 0.03;
 
 /// Where two bodies are closest, or deepest in one another: a vertex, an edge or a face of each, and how they curve there.
 ///
-/// It says whether an answer changes [smoothly](Self::smoothness) with the poses of the bodies, its
-/// [one-sided derivative](Self::rate) where it does not, and where it does how the [normal and the points move](Self::velocities),
-/// and the [second derivatives](Self::hessian). It is found from an answer and the shapes that were asked about, by
-/// [`SignedDistance::closest_features`](crate::SignedDistance::closest_features) and its like, for about the price of four
-/// support points of each shape.
+/// It says whether an answer changes [smoothly](Self::smoothness) with the poses of the bodies. If it does, it has the
+/// [velocities of the normal and the points](Self::velocities) and the [second derivatives](Self::hessian); if not, it still has
+/// [one-sided derivatives](Self::rate). It is found from an answer and the shapes that were asked about, by
+/// [`SignedDistance::closest_features`](crate::SignedDistance::closest_features) and the same methods of other answers.
 ///
-/// Faces and edges are those that the shapes show by [`SupportMap::core_support_feature`]; a shape that does not say them, as sums and
-/// hulls, is taken to be smooth. Of a face with more than 16 corners every second, third, … is [seen](Self::are_complete).
+/// Faces and edges are found by [`SupportMap::core_support_feature`]. A shape that does not implement it, such as a sum or a hull, is taken
+/// to be smooth. Of a face with more than 16 corners only every second, third, … is [known](Self::are_complete).
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct ClosestFeatures<V: Vector> {
@@ -128,8 +127,8 @@ impl<V: Vector> ClosestFeatures<V> {
         rounding + self.tilt * (a + b)
     }
 
-    /// Whether the features are known as a whole. Not where a shape shows a part of a face, as of one with more than 16 corners; then
-    /// one-sided [rates](Self::rate) are of points of that part.
+    /// Whether the features are known as a whole. If a shape shows only a part of a face, as of one with more than 16 corners, they are
+    /// not; then one-sided [rates](Self::rate) take only the points of that part into account.
     #[must_use]
     pub fn are_complete(&self) -> bool {
         self.outlines.iter().all(|outline| outline.is_complete)

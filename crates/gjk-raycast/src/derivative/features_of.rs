@@ -125,9 +125,9 @@ impl<V: Vector> LinearHit<V> {
         Self { normal: Some(features.normal), point: features.points[1], ..self }
     }
 
-    /// How much later the shapes touch as their start poses begin to change, per unit of that: the one-sided derivative of the time,
-    /// exact where faces or edges touch that are parallel too. `None` where there is no [`gradient`](Self::gradient), or the normal
-    /// is [not the only one](ClosestFeatures::is_normal_unique).
+    /// How much later the shapes touch as their start poses begin to move, per unit of time of that motion: the one-sided derivative of the
+    /// time of contact. It is exact also where parallel faces or edges touch. `None` where there is no [`gradient`](Self::gradient), or the
+    /// normal is [not the only one](ClosestFeatures::is_normal_unique).
     #[must_use]
     pub fn rate<A, B>(
         &self,
@@ -171,8 +171,7 @@ impl<V: Vector> MotionHit<V> {
         Self { normal: Some(features.normal), point: features.points[1], ..self }
     }
 
-    /// How much later the bodies touch as their start poses begin to change, per unit of that: the one-sided derivative of the time,
-    /// as of [`LinearHit::rate`].
+    /// How much later the bodies touch as their start poses begin to move, per unit of time of that motion, as [`LinearHit::rate`].
     #[must_use]
     pub fn rate<A, MA, B, MB>(
         &self,

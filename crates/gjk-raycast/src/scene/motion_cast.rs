@@ -14,7 +14,7 @@ use crate::motion::{check, checked};
 use crate::{MotionCastOptions, RayCastError, Trajectory};
 
 impl<S: SupportMap> Scene<S> {
-    /// The first body that a shape meets as it moves and turns among bodies at rest: the end time of
+    /// The first body that a shape meets as it moves and turns among bodies at rest: the least time of
     /// [`motion_cast`](crate::motion_cast()) of the shape, `a`, against each body, `b`.
     ///
     /// ```
