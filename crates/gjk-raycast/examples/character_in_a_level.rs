@@ -72,7 +72,8 @@ impl Character {
         let body = self.body().expect("the character is at a finite place");
         let motion = Motion { velocity_a: self.velocity, ..Motion::default() };
         let first = level.linear_cast(&body, motion, options)?.first;
-        Ok(first.map(|first| (first.hit.time, first.hit.normal.expect("hits have one where only deeper motions count"))))
+        Ok(first
+            .map(|first| (first.hit.time, first.hit.normal.expect("hits have one where only deeper motions count"))))
     }
 }
 
