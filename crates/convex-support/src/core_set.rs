@@ -1,4 +1,4 @@
-//! What a set is split into, and how well its numbers are known.
+//! The parts of a set (origin, core and radius), and bounds on what rounding has done to them.
 
 use crate::numerics::bound::{raised, raised_vector, roundings, roundings_of};
 use crate::{Scalar, Vector};

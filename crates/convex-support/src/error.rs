@@ -80,7 +80,9 @@ impl fmt::Display for InvalidShape {
             Self::TooLarge { parameter } => {
                 write!(f, "{parameter} makes the shape too large for the range of its floating-point type")
             }
-            Self::Mirrors => f.write_str("the matrix must be a rotation, but its determinant is negative, so that it mirrors"),
+            Self::Mirrors => {
+                f.write_str("the matrix must be a rotation, but its determinant is negative, so that it mirrors")
+            }
             Self::ZeroRotation => f.write_str("the rotation must not be the zero quaternion"),
         }
     }

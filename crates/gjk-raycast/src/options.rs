@@ -1,4 +1,4 @@
-//! What can be asked of each query beside its shapes.
+//! The options of queries.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;

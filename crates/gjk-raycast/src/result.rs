@@ -1,4 +1,4 @@
-//! What queries answer.
+//! The answers of queries.
 
 use convex_support::{Scalar, Vector};
 

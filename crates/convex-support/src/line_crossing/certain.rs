@@ -1,4 +1,4 @@
-//! What is certain about where a line enters a shape, of what its closed form computes.
+//! Bounds on where a line enters a shape that are certain, from its closed form.
 //!
 //! A closed form computes the crossing of a line that is nowhere near the shape farther from the true one than an error `e`: a few
 //! roundings of the size and of the distance of the line's source, no more than [`NEAR`] sizes, and what rounding has done to the shape.

@@ -1,8 +1,8 @@
-//! What proves the bracket of an answer, for whoever would rather check than trust (`docs/certificates.md`).
+//! Proofs of the brackets of answers, for checkers that do not trust the solver (`docs/certificates.md`).
 //!
-//! A bracket has two ends, and each is proved by few numbers. The lower one by a plane that has all of the set `C` behind it,
-//! where `C` is the target of a ray, or `A − B`; the upper one by points of `C`, each told by a direction along which it is
-//! farthest. Both are found again here after the answer, of the original shapes, so that nothing is paid by who does not ask.
+//! A bracket has two ends, and a few numbers prove each. The lower end is proved by a plane that has all of the set `C` behind it,
+//! where `C` is the target of a ray, or `A − B`. The upper end is proved by points of `C`, each given by a direction along which it is
+//! farthest. Both are computed here after the answer, from the original shapes, so that a query without a certificate takes no longer.
 
 mod points;
 

@@ -1,4 +1,4 @@
-//! Which body a shape meets first that moves and turns.
+//! Which body is first met by a shape that moves and turns.
 
 use convex_support::glam::Vec4;
 use convex_support::{
