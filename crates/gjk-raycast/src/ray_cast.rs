@@ -152,8 +152,9 @@ fn cast_part<S: SupportMap + ?Sized>(
 
 /// The cast of a ray that begins at [`min_lambda`](RayCastOptions::min_lambda).
 ///
-/// Where that is on the line is known to within a slack, so that the ray is cast from as much before it. What it hits after as much behind
-/// it is a hit like any other; and what it hits earlier is hit where it begins, at the latest where one hits it that begins behind it.
+/// The place of that beginning on the line is known only to within a slack. So the ray is cast from a slack before it. A hit later than a
+/// slack behind it is a hit like any other. A hit that is earlier is reported at the beginning; its upper bound is where a ray that begins a
+/// slack behind it hits.
 #[cold]
 #[inline(never)]
 fn late<S: SupportMap + ?Sized>(
@@ -200,7 +201,7 @@ fn answer<V: Vector>(cast: Cast<V, ()>, ray: Ray<V>) -> RayCast<V> {
     RayCast { outcome, lower: cast.lower, upper: cast.upper, status: cast.status, iterations: cast.iterations }
 }
 
-/// The answer of a ray that begins at a parameter of another, which is known to within an `error`, with its parameters counted as of that.
+/// The answer in the parameters of the whole ray, for a part of it that begins at a parameter which is known to within an `error`.
 fn of_whole_ray<V: Vector>(
     mut answer: RayCast<V>,
     ray: Ray<V>,
