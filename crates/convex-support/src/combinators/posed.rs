@@ -28,15 +28,15 @@ use crate::{
 pub struct Posed<S: SupportMap> {
     shape: S,
     rotation: <S::Vector as Vector>::Matrix,
-    /// What every entry of the rotation is wrong by at most, but for rows along a coordinate axis, in units of epsilon.
+    /// A bound on the error of every entry of the rotation, in units of epsilon; rows along a coordinate axis are exact.
     rotation_error: ScalarOf<S>,
     translation: S::Vector,
-    /// What the origin `R·c + t` loses by its rounding. Far from the world's origin that is much of the shape's size, and it
-    /// stays with the core.
+    /// What the origin `R·c + t` loses by its rounding. Far from the world's origin this is a large part of the shape's size, so that it
+    /// is added to the core.
     lost: S::Vector,
-    /// What the support points of the core are wrong by at most, as a length.
+    /// A bound on the error of the core's support points, as a length.
     error: ScalarOf<S>,
-    /// How far points are at most from where they would be if the transpose of the rotation were its inverse, beside that.
+    /// A further bound: how far points are from where they would be if the transpose of the rotation were exactly its inverse.
     skew: ScalarOf<S>,
 }
 

@@ -79,7 +79,7 @@ enum Search<V: Vector> {
 }
 
 impl<V: Vector> Polytope<V> {
-    /// The convex hull of the points, each of which every query looks at.
+    /// The convex hull of the points. Every support point takes a look at each of them.
     ///
     /// # Errors
     /// [`InvalidShape::NoPoints`], [`InvalidShape::NonFinite`] naming the index of the point that is not finite, or
