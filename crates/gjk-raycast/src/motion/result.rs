@@ -25,7 +25,7 @@ pub struct MotionCast<V: Vector> {
     pub upper: V::Scalar,
     /// How the search ended.
     pub status: Status,
-    /// The number of support points computed of each shape.
+    /// The number of support points computed of each shape, for all times that were looked at.
     pub iterations: usize,
 }
 

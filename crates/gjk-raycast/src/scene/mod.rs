@@ -142,7 +142,7 @@ impl<S: SupportMap> Scene<S> {
         self.len() == 0
     }
 
-    /// The body with this index.
+    /// The body with this index, if there is one: a shape, or a half-space. [`Body::convex`] takes the shape out.
     #[must_use]
     pub fn get(&self, body: usize) -> Option<&Body<S>> {
         self.bodies.get(body)?.as_ref()
