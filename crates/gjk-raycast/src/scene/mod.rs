@@ -89,7 +89,7 @@ pub struct Scene<S: SupportMap> {
     free: Vec<usize>,
 }
 
-/// What is in a [`Scene`].
+/// A body of a [`Scene`]: a bounded shape, or a half-space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound(serialize = "S: serde::Serialize, HalfSpace<S::Vector>: serde::Serialize")))]
