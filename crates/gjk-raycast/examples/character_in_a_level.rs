@@ -10,8 +10,7 @@
 use convex_support::glam::{Quat, Vec3};
 use convex_support::{Ball, Capsule, Cuboid, InvalidShape, Posed, SupportMap};
 use gjk_raycast::{
-    Body, DistanceOptions, LinearCastOptions, Motion, RayCastError, Scene, SignedDistanceOptions, StartInContact,
-    contact,
+    DistanceOptions, LinearCastOptions, Motion, RayCastError, Scene, SignedDistanceOptions, StartInContact,
 };
 
 /// Shapes of any kind, in single precision as games have it.
@@ -94,8 +93,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut near = Vec::new();
     let _ = level.all_within(&body, 2.0 * SKIN, DistanceOptions::default(), &mut near);
     for found in &near {
-        let shape = level.get(found.body).and_then(Body::convex).ok_or("the level has no half-spaces")?;
-        let touching = contact(&body, shape, 2.0 * SKIN, SignedDistanceOptions::default()).ok_or("it is near")?;
+        let part = level.get(found.body).ok_or("it was just found")?;
+        let touching = part.contact(&body, 2.0 * SKIN, SignedDistanceOptions::default()).ok_or("it is near")?;
         println!("touches body {} in {} points, normal {:.3}", found.body, touching.points().len(), touching.normal);
         assert!((touching.distance.signed_distance - SKIN).abs() < 1e-3, "{}", touching.distance.signed_distance);
     }

@@ -45,8 +45,8 @@
 //!   and [`RayHit`]. [`ClosestFeatures`] tells whether that derivative is unique, and has second derivatives.
 //! - *What proves it?* [`distance_certificate`] and its like: a [`Certificate`] for a checker that trusts nothing else.
 //!
-//! Every answer says how the iteration ended ([`Status`]), and carries a lower and an upper bound that come from the geometry: one from
-//! a separating plane, the other from points of the bodies. [`Outcome`] tells a hit, a miss and an undecided cast apart; where a program
+//! Every answer says how the iteration ended ([`Status`]), and every distance, depth, λ and time has a lower and an upper bound that come
+//! from the geometry: one from a separating plane, the other from points of the bodies. [`Outcome`] tells a hit, a miss and an undecided cast apart; where a program
 //! has to choose, it is safe to treat an undecided cast as a hit at its lower bound. The iterative functions have a variant `…_with` that
 //! shows an [observer](Iterate) every iterate.
 //!

@@ -3,6 +3,7 @@
 mod all_within;
 mod among;
 mod cast;
+mod contact;
 mod error;
 mod height_bound;
 mod mesh;
@@ -34,8 +35,7 @@ pub use self::result::{
 /// ([`insert_half_space`](Self::insert_half_space)).
 ///
 /// Scenes answer ray casts, linear and motion casts, distances and pairs. For the depth or the manifold of bodies in contact, find the
-/// bodies that are near by [`all_within`](Self::all_within), and ask [`contact`](crate::contact()) about each of them, which
-/// [`get`](Self::get) returns.
+/// bodies that are near by [`all_within`](Self::all_within), and ask each for its [contact](Body::contact).
 ///
 /// # Answers
 /// Every answer is the one that results if the single query is asked of each body (or pair) in the order of their indices, *to the last
@@ -142,7 +142,7 @@ impl<S: SupportMap> Scene<S> {
         self.len() == 0
     }
 
-    /// The body with this index, if there is one: a shape, or a half-space. [`Body::convex`] takes the shape out.
+    /// The body with this index, if there is one: a shape, or a half-space.
     #[must_use]
     pub fn get(&self, body: usize) -> Option<&Body<S>> {
         self.bodies.get(body)?.as_ref()
