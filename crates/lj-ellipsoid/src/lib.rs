@@ -93,7 +93,7 @@ pub use ellipsoid::Ellipsoid;
 pub use enclosing::{Enclosing, EnclosingIterate, MovingPoints, enclosing, enclosing_with};
 pub use error::{EnclosingError, InscribedError};
 pub use inscribed::{
-    Halfspace, Inscribed, InscribedIterate, inscribed, inscribed_in_hull, inscribed_in_hull_with, inscribed_with,
+    HalfSpace, Inscribed, InscribedIterate, inscribed, inscribed_in_hull, inscribed_in_hull_with, inscribed_with,
 };
 pub use options::{EnclosingMethod, EnclosingOptions, FlatPolicy, InscribedOptions, Status};
 pub use weight::Weight;
