@@ -4,15 +4,15 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use lj_ellipsoid::{Halfspace, InscribedOptions, Status, inscribed, inscribed_in_hull};
+use lj_ellipsoid::{HalfSpace, InscribedOptions, Status, inscribed, inscribed_in_hull};
 use workloads::w4_enclosing::{Cloud, cloud, halfspaces};
 
 fn from_halfspaces<const N: usize>(c: &mut Criterion) {
     let mut group = c.benchmark_group(format!("inscribed/halfspaces/n{N}"));
     group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_secs(1));
     for count in [12, 60, 300, 2_000] {
-        let body: Vec<Halfspace<N>> =
-            halfspaces(count).into_iter().map(|(normal, offset)| Halfspace { normal, offset }).collect();
+        let body: Vec<HalfSpace<N>> =
+            halfspaces(count).into_iter().map(|(normal, offset)| HalfSpace { normal, offset }).collect();
         let answer = inscribed(&body, InscribedOptions::new()).expect("a bounded body");
         assert_eq!(answer.status, Status::Converged, "{count} half-spaces, gap {}", answer.log_det_gap);
         group.bench_function(BenchmarkId::from_parameter(count), |b| {

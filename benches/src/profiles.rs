@@ -30,15 +30,15 @@ const OTHERS: [(Build, &str); 2] = [
     (
         Build { profile: "release", flags: "", folder: "" },
         "## As users build it\n\n\
-         Times in cargo's own `release` profile (no LTO between crates, 16 codegen units) over those in the profile `bench` of all other\n\
-         tables (thin LTO, one codegen unit), from runs in turn: the geometric mean, and the cases with the least and the most.\n",
+         All other tables are of the profile `bench` (thin LTO, one codegen unit). This one has the times in cargo's own `release` profile (no LTO between crates, 16 codegen units)\n\
+         over those in `bench`, from alternating runs: the geometric mean of the ratios, and the cases with the least and the greatest.\n",
     ),
     (
         Build { profile: "bench", flags: "-C no-vectorize-slp", folder: "../target/no-slp" },
         "## Without pairs of numbers in one register\n\n\
          The compiler packs neighbouring coordinates into vector registers where it can (LLVM's SLP vectorizer). Vectors of three numbers\n\
-         are then written in one way and read in another, which the processor waits for. `RUSTFLAGS=\"-C no-vectorize-slp\"` leaves that out:\n\
-         times with the flag over those without, in the profile `bench`, as above.\n",
+         are then written to memory in one way and read in another, which makes the processor wait. `RUSTFLAGS=\"-C no-vectorize-slp\"` turns the packing off.\n\
+         The table has the times with this flag over those without it, in the profile `bench`.\n",
     ),
 ];
 

@@ -68,18 +68,19 @@ fn title(workload: Workload) -> &'static str {
 const CELLS: &str = "\
 ## All rows
 
-A cell is `ns / p99 error / wrong answers`: the error that 99 % of the answers stay below, where there are lengths or times to compare, and
-how many answers are wrong, where any is. Bold is the time of the best right peer of either precision.
+A cell is `ns / p99 error / wrong answers`. The error is the one that 99 % of the answers stay below; it is left out if the answer is yes or no. The number of wrong
+answers is left out if there are none. The time of the best right peer of either precision is bold.
 
 ";
 
 /// How to read the table of ratios to peers.
 const BESIDE_PEERS: &str = "\
-Geometric means of ratios of times: below 1 ours is faster. A row is a shape or pair of a workload. The *best right peer* is the fastest
-other library that answers all of a row rightly in the same precision: parry's GJK, parry as its users call it, and in `f32`
-Box3D or Jolt. Rows that ours or everybody else gets wrong are counted and not compared; parry's GJK is compared whatever it answers.
-Ours are the defaults, but for the two lines of `line_crossing`, the closed form alone, which are not among all rows.
-[benches/README.md](../benches/README.md) says what is asked and what is wrong. Depths, bodies that turn, coal, MuJoCo, FCL and the IPC toolkit are in
+The ratios are geometric means of ratios of times: below 1, ours is faster. A row is a shape or a pair of shapes of a workload. The *best right peer* of a row is the
+fastest other library that answers all its questions rightly in the same precision: parry's GJK, parry as its users call it, and in `f32`
+Box3D or Jolt. *Ahead* and *behind* count the rows in which ours is faster or slower than that peer. Rows that all other libraries get wrong (*no right peer*), or that ours
+gets wrong, are counted but not compared; parry's GJK is compared whatever it answers.
+Ours are the default options. The two lines of `line_crossing` time the closed form alone, and are not among *all rows*.
+[benches/README.md](../benches/README.md) says what the questions are, and which answers count as wrong. For depths, bodies that turn, coal, MuJoCo, FCL and the IPC toolkit see
 [judge.md](judge.md).
 
 ";
@@ -176,7 +177,7 @@ fn beside_ourselves(rows: &[Row]) -> String {
     ];
     let mut text = String::from(
         "## Our methods beside one another\n\n\
-         The geometric mean of the ratios, and the cases with the least and the most. Warm tests are those of bodies that are apart.\n\n| |",
+         The geometric mean of the ratios, and the cases with the least and the greatest. *Warm* is `intersects` told the axis that the same query ended with before, for bodies that are apart.\n\n| |",
     );
     for (method, than) in PAIRS {
         let _ = write!(text, " {} / {} |", method.name(), than.name());

@@ -166,12 +166,12 @@ const INTRODUCTION: &str = "\
 # What importing a crate costs
 
 Written by `cargo xtask footprint`. Each row is a program that imports one crate with one choice of features and asks one
-question: a support point, a hull, the function that is named, an enclosing ellipsoid, a margin. Packages are those that its build compiles for
-it, the crate included; the time is that of a clean release build, in seconds of processor time of all cores together; the
-code is what the stripped program, with link-time optimisation, is larger than one that asks nothing. The bridges to parry
+question: a support point, a hull, the function that is named, an enclosing ellipsoid, a margin. The packages are those that its build compiles,
+the crate included. The time is that of a clean release build, in seconds of processor time of all cores together. The
+code is how much larger the stripped program, with link-time optimisation, is than one that asks nothing. The bridges to parry
 (which cost what parry costs) and the strategies for tests (`proptest`) are left out.
 
-CI fails where gjk-raycast needs more than 8 packages, or faer.
+CI fails if gjk-raycast needs more than 8 packages, or faer.
 
 ";
 

@@ -21,31 +21,31 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Task {
-    /// Answer the queries in files, one JSON line out per line in.
+    /// Answer the queries in files: one JSON line is written for each line read.
     ///
     /// The queries, shapes, and answers are described in `xtask/README.md`; try
     /// `echo '{"query":"distance","a":{"type":"ball","radius":1},"b":{"type":"point","at":[3,0,0]}}' | cargo xtask query -`.
     ///
-    /// Exit status: 0 where every line was answered, 1 where some line got an error in place of an answer, 2 where a file
+    /// Exit status: 0 if every line was answered, 1 if the answer to some line is an error, 2 if a file
     /// could not be read or the arguments are wrong.
     Query(query::Choice),
     /// Compare answers with the truth, and write the report: error against run time.
     ///
-    /// Exit status: 0 where everything is right, 1 where some answer is wrong, 2 where a file could not be read.
+    /// Exit status: 0 if everything is right, 1 if some answer is wrong, 2 if a file could not be read.
     Validate(validate::Scope),
     /// Prove answers by their certificates, in interval arithmetic that shares no solver and no shape with the crates.
     ///
     /// `cargo xtask query --certify FILE | cargo xtask prove -`; `docs/certificates.md` says what is proved, and how.
     ///
-    /// Exit status: 0 where every line is proved, 1 where some line is not proved or disproved, 2 where a file could not be read.
+    /// Exit status: 0 if every line is proved, 1 if some line is not proved or is disproved, 2 if a file could not be read.
     Prove(prove::Choice),
     /// Try damaged query lines, and hulls of integers against an exact oracle, for a bounded time.
     ///
-    /// Exit status: 0 where nothing failed, 1 where something did, 2 where the suite could not be read.
+    /// Exit status: 0 if nothing failed, 1 if something did, 2 if the suite could not be read.
     Fuzz(fuzz::Scope),
     /// Build the API documentation of the libraries as docs.rs does, and check that no link leads nowhere.
     ///
-    /// Exit status: 0, or 1 where a note or page refers to what is not there, or 2 where the documentation does not build.
+    /// Exit status: 0, or 1 if a note or page has a link that leads nowhere, or 2 if the documentation does not build.
     Docs,
     /// Measure what importing each crate alone costs, and write `docs/footprint.md`: packages, build time, code size.
     Footprint {
@@ -56,10 +56,10 @@ enum Task {
     /// Move a robot along its trajectory among obstacles (a study).
     #[command(disable_help_flag = true)]
     Scene(Passed),
-    /// Hold casts and distances at every scale against references in thirty digits (a study).
+    /// Compare casts, distances and derivatives with references in thirty digits, at every scale (a study).
     #[command(disable_help_flag = true)]
     Sweep(Passed),
-    /// Hold the answers of parry, and of others out of files, against what is proved (a study).
+    /// Compare the answers of parry, and of others from files, with brackets that are proved (a study).
     #[command(disable_help_flag = true)]
     Judge(Passed),
     /// Draw how the time of a question to a scene grows with its bodies, and parry's beside it (a study).

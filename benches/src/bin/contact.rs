@@ -1,4 +1,5 @@
-//! Depths and manifolds of the bodies of W3b that overlap, in `f64`: nanoseconds per query, as the table in `docs/contact.md` has them.
+//! Depths and manifolds of the bodies of W3b that overlap, in `f64`: nanoseconds and support points per query, as the table in
+//! `docs/contact.md` has them.
 #![allow(clippy::print_stdout, reason = "printing is what it is for")]
 
 use std::time::Duration;
@@ -45,7 +46,7 @@ impl PairTask<DVec3> for Warm<'_> {
     }
 }
 
-/// The depth, and the points in which they carry each other.
+/// The depth, and the points in which the bodies support each other.
 struct Manifolds<'a>(&'a [IntersectQuery]);
 
 impl PairTask<DVec3> for Manifolds<'_> {
@@ -63,37 +64,63 @@ impl PairTask<DVec3> for Manifolds<'_> {
     }
 }
 
-/// The columns for one pair.
-fn cells(pair: &Pair) -> [Option<f64>; 6] {
-    let overlapping: Vec<IntersectQuery> =
-        w3b_intersect::queries(pair).into_iter().filter(|query| query.meet).collect();
+/// The support points of each shape that a depth takes.
+struct SupportPoints<'a>(&'a [IntersectQuery]);
+
+impl PairTask<DVec3> for SupportPoints<'_> {
+    fn solver<A, B>(self, a: A, b: B) -> Solver
+    where
+        A: SupportMap<Vector = DVec3> + 'static,
+        B: SupportMap<Vector = DVec3> + 'static,
+    {
+        let queries = self.0.iter().map(|query| placed::<DVec3>(query.pose)).collect();
+        Solver::new(queries, move |&(rotation, translation)| {
+            let b = Posed::new(&b, rotation, translation).expect(VALID);
+            signed_distance(&a, &b, SignedDistanceOptions::default()).iterations as f64
+        })
+    }
+}
+
+/// The columns of times for one pair.
+fn times(pair: &Pair, overlapping: &[IntersectQuery]) -> [Option<f64>; 6] {
     let apart: &[DistanceQuery] = &w3_distance::queries(pair)[..w3_distance::FAR];
     let time = |solver: &Solver| solver.nanoseconds(0..solver.count(), BUDGET);
-    let depth = time(&with_pair::<DVec3>(pair, SignedDistances(&overlapping, Effort::default())));
+    let depth = time(&with_pair::<DVec3>(pair, SignedDistances(overlapping, Effort::default())));
     #[cfg(feature = "parry")]
-    let parry = benches::parry::double::front_door_depths(pair, &overlapping).map(|solver| time(&solver));
+    let parry = benches::parry::double::front_door_depths(pair, overlapping).map(|solver| time(&solver));
     #[cfg(not(feature = "parry"))]
     let parry: Option<f64> = None;
     [
         Some(time(&with_pair::<DVec3>(pair, Distances(apart, Effort::default())))),
         Some(depth),
-        Some(time(&with_pair::<DVec3>(pair, Warm(&overlapping)))),
-        Some(time(&with_pair::<DVec3>(pair, Manifolds(&overlapping)))),
+        Some(time(&with_pair::<DVec3>(pair, Warm(overlapping)))),
+        Some(time(&with_pair::<DVec3>(pair, Manifolds(overlapping)))),
         parry,
         parry.map(|parry| parry / depth),
     ]
 }
 
+/// The mean and the most of the support points that depths of one pair take.
+fn support_points(pair: &Pair, overlapping: &[IntersectQuery]) -> String {
+    let counts = with_pair::<DVec3>(pair, SupportPoints(overlapping)).answers();
+    let most = counts.iter().copied().fold(0.0, f64::max);
+    format!("{:.1}, {most}", counts.iter().sum::<f64>() / counts.len() as f64)
+}
+
 fn main() {
-    println!("| | distance, apart | depth | depth, warm | depth and manifold | parry's depth | parry's / ours |");
-    println!("|---|---:|---:|---:|---:|---:|---:|");
+    println!(
+        "| | distance, apart | depth | depth, warm | depth and manifold | parry's depth | parry's / ours | support points of a depth: mean, most |"
+    );
+    println!("|---|---:|---:|---:|---:|---:|---:|---:|");
     for name in PAIR_NAMES {
-        let cells = cells(&Pair::named(name));
-        let cells: Vec<String> = cells
+        let pair = Pair::named(name);
+        let overlapping: Vec<IntersectQuery> =
+            w3b_intersect::queries(&pair).into_iter().filter(|query| query.meet).collect();
+        let times: Vec<String> = times(&pair, &overlapping)
             .iter()
             .enumerate()
             .map(|(i, cell)| cell.map_or_else(|| "-".to_owned(), |x| format!("{x:.*}", usize::from(i == 5))))
             .collect();
-        println!("| {name} | {} |", cells.join(" | "));
+        println!("| {name} | {} | {} |", times.join(" | "), support_points(&pair, &overlapping));
     }
 }

@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use cpu_time::ThreadTime;
 use lj_ellipsoid::{
-    Enclosing, EnclosingMethod, EnclosingOptions, Halfspace, InscribedOptions, MovingPoints, enclosing, inscribed,
+    Enclosing, EnclosingMethod, EnclosingOptions, HalfSpace, InscribedOptions, MovingPoints, enclosing, inscribed,
 };
 use workloads::rng::Rng;
 use workloads::w4_enclosing::{Cloud, cloud, corners, halfspaces, in_ball, on_sphere};
@@ -142,8 +142,8 @@ fn compared() {
 
 fn inscribed_ellipsoids() {
     println!("\n| half-spaces | time | goal | | |\n|---|---|---|---|---|");
-    let body: Vec<Halfspace<3>> =
-        halfspaces(60).into_iter().map(|(normal, offset)| Halfspace { normal, offset }).collect();
+    let body: Vec<HalfSpace<3>> =
+        halfspaces(60).into_iter().map(|(normal, offset)| HalfSpace { normal, offset }).collect();
     let options = InscribedOptions::new();
     let answer = inscribed(&body, options).expect("a bounded body");
     let time = seconds(BUDGET, || _ = black_box(inscribed(black_box(&body), options)));

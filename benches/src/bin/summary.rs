@@ -14,7 +14,8 @@ use benches::rows::{Workload, measure};
 const INTRODUCTION: &str = "\
 # Performance
 
-Ours beside other libraries, on the same inputs, of which the answers are known: nanoseconds of thread CPU time for one query, from one run of
+This page compares the crates here (*ours*) with other libraries, on the same inputs, whose answers are known. Times are nanoseconds of thread CPU time for one query, from one
+run of
 
 ```sh
 cargo run --profile bench -p benches --features parry,box3d,jolt --bin summary -- --profiles --write

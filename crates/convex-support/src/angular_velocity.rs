@@ -20,20 +20,20 @@ pub trait AngularVelocity<V: Vector>:
     /// and in units of the scalar's epsilon.
     const TURN_ERROR: f64;
 
-    /// What of a rotation at this velocity does not depend on time.
+    /// The type of a rotation at this velocity.
     type Spin: Spin<V>;
 
     /// The matrix `W` with `W·x = ω × x`.
     fn cross_matrix(self) -> V::Matrix;
 
-    /// The rotation at this velocity, to be asked at many times.
+    /// The rotation at this velocity, prepared for many times.
     fn spin(self) -> Self::Spin;
 
-    /// What the rotation by `|ω|·time` about `ω` adds to a vector: the matrix `R − 1`, which is small where the angle is, and
-    /// accurate relative to that.
+    /// The matrix `R − 1` with `R` the rotation by `|ω|·time` about `ω`: what the rotation adds to a vector. It is small if the angle is
+    /// small, and its error is relative to its size.
     ///
-    /// The angle may be many turns: it is computed to twice the digits. Beyond 2⁵⁰ it is not known well enough even so, and the
-    /// matrix is of NaNs.
+    /// The angle may be many turns, since it is computed in twice the precision. Beyond 2⁵⁰ this is not enough, and the matrix consists
+    /// of NaNs.
     #[inline]
     fn turn(self, time: V::Scalar) -> V::Matrix {
         self.spin().turn(time)
@@ -73,7 +73,7 @@ pub trait AngularVelocity<V: Vector>:
     fn from_coordinates(f: impl FnMut(usize) -> V::Scalar) -> Self;
 }
 
-/// A rotation at a constant [angular velocity](AngularVelocity), of which what does not depend on time is computed once.
+/// A rotation at a constant [angular velocity](AngularVelocity). Everything that does not depend on time is computed once.
 ///
 /// ```
 /// use convex_support::{AngularVelocity, Spin, glam::DVec3};

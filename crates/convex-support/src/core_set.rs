@@ -1,33 +1,34 @@
-//! What a set is split into, and how well its numbers are known.
+//! The parts of a set (origin, core and radius), and bounds on what rounding has done to them.
 
 use crate::numerics::bound::{raised, raised_vector, roundings, roundings_of};
 use crate::{Scalar, Vector};
 
 /// What a convex set `C = o + K ⊕ B(r)` is split into: an origin `o`, a core `K` near zero, and a ball of radius `r` that sweeps it.
 ///
-/// A ball, a capsule and everything [rounded](crate::Rounded) is a smaller set, its *core*, swept by a ball. Iterative methods
+/// A ball, a capsule and every [rounded](crate::Rounded) shape is a smaller set, its *core*, swept by a ball. Iterative methods
 /// converge slowly on round surfaces and finish at once on a point or a segment, so they work on the core and add the radius at
-/// the end. And they work near the body rather than near the world's origin, where coordinates have digits to spare.
+/// the end. They also work relative to the origin of the body, where coordinates are small and rounding is too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Core<V: Vector> {
     /// A point near the set, which the core is relative to.
     pub origin: V,
     /// The radius of the ball that sweeps the core.
     pub radius: V::Scalar,
-    /// The radius of a ball that rolls around within the core: the core is some smaller convex set swept by it. A smaller radius is right
-    /// as well, and 0 always.
+    /// The radius of a ball that rolls around within the core: the core is some smaller convex set swept by this ball. Any smaller radius
+    /// is right as well, and 0 always is.
     ///
     /// A ball of radius `r` rolls within a smooth convex body if no radius of curvature is less than `r` (Blaschke's rolling theorem).
-    /// What sweeps two shapes beside their radii lets a penetration depth less than that be found as a distance.
+    /// If two shapes overlap by less than the balls that roll within them, their penetration depth can be found as the distance of the
+    /// smaller sets.
     pub rolling_radius: V::Scalar,
-    /// An upper bound on the length of every vector that [`core_support`](crate::SupportMap::core_support) computes with, which is
-    /// what its rounding errors are proportional to.
+    /// An upper bound on the length of every vector that [`core_support`](crate::SupportMap::core_support) computes with. Its rounding
+    /// errors are proportional to this length.
     pub extent: V::Scalar,
-    /// An upper bound on how far rounding has moved the core, as a length: with the origin as it was computed, every
-    /// [support point](crate::SupportMap::core_support) is that near to a point of the exact core, and what is lacking of the exact
-    /// support value is no more than that along a unit direction. What the radius is wrong by is counted in.
+    /// An upper bound on how far rounding has moved the core, as a length, with the origin as it was computed: every
+    /// [support point](crate::SupportMap::core_support) is at most so far from a point of the exact core, and the support value along a
+    /// unit direction falls short of the exact one by no more. The error of the radius is included.
     ///
-    /// It is at hand for every query, and [`rounding`](crate::SupportMap::rounding) says the same coordinate by coordinate.
+    /// Every query has this bound at once; [`rounding`](crate::SupportMap::rounding) computes finer ones, coordinate by coordinate.
     pub error: V::Scalar,
     /// What kind of set the core is.
     pub kind: CoreKind<V>,
@@ -49,9 +50,9 @@ impl<V: Vector> Core<V> {
 /// What kind of set a [core](Core) is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CoreKind<V> {
-    /// A single point, relative to the origin: a ball that meets a set with a closest point needs no iteration.
+    /// A single point, relative to the origin. Its distance from a shape that knows its closest points takes no iteration.
     Point(V),
-    /// The segment from `−h` to `h`, relative to the origin: two of these meet without an iteration.
+    /// The segment from `−h` to `h`, relative to the origin. The distance of two segments takes no iteration.
     Segment(V),
     /// A polytope, whose support point jumps from vertex to vertex and does not move in between: its Hessian is always zero.
     Polytope,
@@ -84,12 +85,11 @@ impl<V: Vector> CoreKind<V> {
     }
 }
 
-/// How well the support points of a core are known: bounds on what rounding has moved them by, since the numbers that the shape was
-/// built from.
+/// Bounds on how far rounding has moved the support points of a core.
 ///
 /// Let `K` be the core exactly as it follows from the numbers given to the constructors, relative to the computed
-/// [origin](Core::origin), with what the radius is wrong by counted in; and let `k(d)` be the computed
-/// [support point](crate::SupportMap::core_support). Then with `|·|` taken coordinate by coordinate
+/// [origin](Core::origin), with the error of the radius included; and let `k(d)` be the computed
+/// [support point](crate::SupportMap::core_support). Then, with `|·|` taken coordinate by coordinate,
 ///
 /// > |k(d) − x| ≤ error for a point x of K, and  max { d·y : y ∈ K } ≤ d·k(d) + |d|·error.
 ///
@@ -99,9 +99,9 @@ impl<V: Vector> CoreKind<V> {
 pub struct Rounding<V: Vector> {
     /// A bound on the coordinates of all points of the core.
     pub extent: V,
-    /// The bound on what coordinates are wrong by.
+    /// The bound on the error of each coordinate.
     pub error: V,
-    /// A bound on the length of that error. Rotations keep it, where coordinates would be counted up to `√3` times each.
+    /// A bound on the length of the error. A rotation keeps it, whereas the bound on the coordinates grows by up to `√3`.
     pub error_length: V::Scalar,
 }
 

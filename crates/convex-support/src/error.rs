@@ -63,13 +63,13 @@ impl fmt::Display for InvalidShape {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::NonFinite { parameter, index } => {
-                write!(f, "{parameter} must be finite, but number {index} of it is NaN or infinite")
+                write!(f, "{parameter} must be finite, but is NaN or infinite at index {index}")
             }
             Self::Negative { parameter, index, value } => {
-                write!(f, "{parameter} must not be negative, but number {index} of it is {value}")
+                write!(f, "{parameter} must not be negative, but is {value} at index {index}")
             }
             Self::NotPositive { parameter, index, value } => {
-                write!(f, "{parameter} must be greater than zero, but number {index} of it is {value}")
+                write!(f, "{parameter} must be greater than zero, but is {value} at index {index}")
             }
             Self::NoPoints => f.write_str("at least one point is needed, but the list is empty"),
             Self::NotSymmetric { row, column } => {
@@ -78,9 +78,11 @@ impl fmt::Display for InvalidShape {
             Self::NotPositiveDefinite => f.write_str("the matrix must be positive definite, but it is not"),
             Self::NotOrthonormal => f.write_str("the columns of the matrix must be orthonormal, but they are not"),
             Self::TooLarge { parameter } => {
-                write!(f, "{parameter} makes a shape that is larger than the largest number of its precision")
+                write!(f, "{parameter} makes the shape too large for the range of its floating-point type")
             }
-            Self::Mirrors => f.write_str("the matrix must be a rotation, but it mirrors: its determinant is negative"),
+            Self::Mirrors => {
+                f.write_str("the matrix must be a rotation, but its determinant is negative, so that it mirrors")
+            }
             Self::ZeroRotation => f.write_str("the rotation must not be the zero quaternion"),
         }
     }

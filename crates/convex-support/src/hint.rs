@@ -5,9 +5,9 @@ const SLOTS: usize = 4;
 
 /// The vertices that the polytopes within a body answered with last.
 ///
-/// Successive support queries of an iterative method, and of successive frames, have nearly the same answer. A large
-/// polytope that is told its last vertex climbs to the new one in a few steps. An empty hint (the default) is always
-/// right, and a stale one costs time, never correctness.
+/// Successive support queries of an iterative method, and of successive frames, have nearly the same answer. If a large
+/// polytope is given its last vertex, it climbs to the new one in a few steps. An empty hint (the default) is always
+/// right, and an outdated one costs time, never correctness.
 ///
 /// A body is a tree of combinators with shapes at its leaves; every query visits the leaves in the same order, and each
 /// polytope among them takes the next slot. [`rewind`](Self::rewind) starts a query.

@@ -1,15 +1,15 @@
 //! Convex shapes as support maps, for collision detection, ray casting and motion planning: 2D and 3D, `f32` and `f64`,
 //! on [glam](https://docs.rs/glam)'s vectors.
 //!
-//! A convex shape is known here by one function, its [support mapping](SupportMap): which of its points lies farthest
-//! along a direction. That one function is enough for ray casts, distances and continuous collision detection, and it
+//! A convex shape is described by one function, its [support mapping](SupportMap): which of its points lies farthest
+//! along a given direction. That one function is enough for ray casts, distances and continuous collision detection. It also
 //! composes: the Minkowski sum, the difference (the configuration space obstacle), the hull, a pose, an affine map and
-//! rounding are each a few lines over the shapes they are made of.
+//! rounding each take a few lines, given the support mappings of the shapes they are made of.
 //!
 //! ```
 //! use convex_support::{Ball, Cuboid, Difference, Posed, SupportMap, glam::DVec3};
 //!
-//! // A ball of radius 0.5 can touch a box from any centre on the surface of their difference.
+//! // A ball of radius 0.5 touches a box where its centre is on the surface of their difference.
 //! let wall = Cuboid::new(DVec3::new(1.0, 4.0, 4.0))?;
 //! let wall = Posed::translated(wall, DVec3::new(10.0, 0.0, 0.0))?;
 //! let ball = Ball::new(0.5)?;
@@ -20,26 +20,27 @@
 //! ```
 //!
 //! # What is here
-//! - The traits: [`SupportMap`] (implement it for shapes of your own), [`Vector`], [`Rotation`] and [`Scalar`] (glam's types).
-//! - What all shapes can be asked: [`bounding_box`], [`bounding_sphere`], [`outer_box`]; and what those with a closed form can: [`closest_point`],
-//!   [`line_crossing`].
-//! - A tree of boxes, [`Bvh`], for questions to many shapes.
-//! - Shapes in any dimension: [`Point`], [`Segment`], [`Triangle`], [`Ball`], [`Cuboid`], [`Capsule`], [`Ellipsoid`],
-//!   [`Polytope`]; in 3D [`Cylinder`] and [`Cone`].
-//! - Shapes made of shapes: [`Posed`], [`Affine`], [`MinkowskiSum`], [`Difference`], [`Hull`], [`Rounded`]. They nest,
-//!   by value, by reference, or boxed as `dyn SupportMap<Vector = DVec3>`.
+//! - Shapes in 2D and 3D: [`Point`], [`Segment`], [`Triangle`], [`Ball`], [`Cuboid`], [`Capsule`], [`Ellipsoid`],
+//!   [`Polytope`]; in 3D also [`Cylinder`] and [`Cone`].
+//! - Combinators, which make shapes of shapes: [`Posed`], [`Affine`], [`MinkowskiSum`], [`Difference`], [`Hull`], [`Rounded`]. They can be
+//!   nested, and take shapes by value, by reference, or boxed as `Box<dyn SupportMap<Vector = DVec3>>`.
+//! - Questions that every shape answers: [`bounding_box`], [`bounding_sphere`], [`outer_box`]; and questions that shapes with a closed
+//!   form answer: [`closest_point`], [`line_crossing`].
+//! - The traits: [`SupportMap`], to be implemented for shapes of your own; and [`Vector`], [`Rotation`] and [`Scalar`], which glam's types
+//!   implement.
+//! - A tree of boxes, [`Bvh`], for questions about many shapes.
 //!
-//! Constructors check their numbers and return [`InvalidShape`]; support mappings then never fail.
+//! Constructors check their numbers and return [`InvalidShape`] if one is wrong; after that, support mappings never fail.
 //!
 //! # Features
 //! - `std` (default): floating-point functions from the standard library.
 //! - `libm`: the same from the libm crate, for `no_std` targets; `alloc` is needed in any case.
-//! - `f64` (default): glam's double precision, to be left out with glam 0.32, which has no such feature.
+//! - `f64` (default): asks glam for double precision; leave it out with glam 0.32, which has no such feature.
 //! - `hull`: `Polytope::hull_of`, the exact convex hull of raw points, for polytopes of thousands of vertices; and `Faceted`, a
 //!   hull with its half-spaces.
-//! - `serde`: shapes as serde data, checked on the way in; boxes, spheres and crossings, too. Errors can be written and not read.
-//! - `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`: parry's shapes as shapes of this crate, and back; its
-//!   compounds and meshes as their pieces.
+//! - `serde`: shapes, boxes, spheres and crossings as data, checked as they are read. Errors can be written but not read.
+//! - `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`: conversions of parry's shapes to shapes of this crate and back, and of its
+//!   compounds and meshes to their convex pieces.
 //! - `mint`: glam's conversions from and to mint's vectors.
 //! - `proptest`: the module `strategies`, which generates shapes and poses of wild aspect and scale, for property tests.
 

@@ -51,9 +51,12 @@ use crate::{CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, Parall
 /// - only the direction of `d` matters, not its length;
 /// - the same argument gives the same answer, and the provided methods describe the same set.
 ///
-/// Beyond that, a shape may say what it is split into ([`core`](Self::core)), how it curves, which of its points is closest, where a
-/// line crosses it, and how well all that is known. What is not said costs time, never correctness. All of it is about the core:
-/// [`closest_point`](crate::closest_point) and [`line_crossing`](crate::line_crossing) ask for whole shapes.
+/// Queries take a support point to be right to four units in the last place of the shape's extent. If yours is less accurate, say so in
+/// [`core`](Self::core) and [`rounding`](Self::rounding): the bounds of an answer are certain only if these are right.
+///
+/// The other methods are optional, and only make queries faster. They tell how the shape splits into a core and a radius
+/// ([`core`](Self::core)), how it curves, which of its points is closest, and where a line crosses it. They are about the core; to ask
+/// about a whole shape, use [`closest_point`](crate::closest_point) and [`line_crossing`](crate::line_crossing).
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a convex shape",
     note = "implement `SupportMap` for it: only `support` is required"
@@ -72,10 +75,11 @@ pub trait SupportMap {
         direction.dot(self.support(direction))
     }
 
-    /// What the set is split into: an origin, a core and a radius. Algorithms ask once for each query.
+    /// The parts of the set: an origin, a core and a radius. Algorithms call this once for each query.
     ///
-    /// Provided: the core is all there is, about zero, and known to four units in the last place of its extent. A shape with an origin
-    /// or a radius says so here and writes out [`core_support`](Self::core_support) too.
+    /// The provided method takes the whole set for the core, with its origin at zero and a radius of 0, and its support points to be right to
+    /// four units in the last place of its extent. A shape with another origin or a radius implements this and
+    /// [`core_support`](Self::core_support).
     #[inline(always)]
     fn core(&self) -> Core<Self::Vector> {
         let extent = extent_along_axes(|d| self.support(d)).norm();
@@ -92,7 +96,7 @@ pub trait SupportMap {
     /// A point of the core farthest along `direction`, relative to the [origin](Core::origin).
     ///
     /// `hint` carries what the previous call found, so that a large polytope need not start its search afresh. It
-    /// never changes how far along `direction` the answer lies. Provided: [`support`](Self::support).
+    /// never changes how far along `direction` the answer lies. The provided method is [`support`](Self::support).
     #[inline]
     fn core_support(&self, direction: Self::Vector, hint: &mut Hint) -> Self::Vector {
         let _ = hint;
@@ -102,16 +106,16 @@ pub trait SupportMap {
     /// How the core curves: the entries `u·Hu`, `u·Hw` and `w·Hw` of the Hessian `H` of its support value at `direction`, which is
     /// how fast the support point moves as the direction turns.
     ///
-    /// Provided: zeros, as they are at the vertices of a polytope. A curved shape that says more lets iterative methods
-    /// double their digits with each step, where otherwise they gain a few.
+    /// The provided method returns zeros, which is right at the vertices of a polytope. If a curved shape implements it, iterative methods
+    /// double their digits with each step; otherwise they gain only a few.
     #[inline]
     fn core_support_hessian(&self, direction: Self::Vector, [u, w]: [Self::Vector; 2]) -> [ScalarOf<Self>; 3] {
         let _ = (direction, u, w);
         [Scalar::ZERO; 3]
     }
 
-    /// The point of the core closest to `x`, both relative to the [origin](Core::origin), where it costs no more than a few
-    /// support points; `x` itself within the core. Provided: `None`.
+    /// The point of the core closest to `x`, both relative to the [origin](Core::origin), or `x` itself if it is in the core. `None`, as the
+    /// provided method returns, if this would cost more than a few support points.
     ///
     /// It must be a point of the core. Algorithms check by a support point whether it is the closest one.
     #[inline]
@@ -121,11 +125,12 @@ pub trait SupportMap {
     }
 
     /// Where the line through `source` along `direction` is in the core swept by a ball of the given `radius`, in closed form;
-    /// `source` is relative to the [origin](Core::origin). Provided: it is unknown.
+    /// `source` is relative to the [origin](Core::origin). The provided method answers [`LineCrossing::Unknown`].
     ///
-    /// A negative radius erodes the core: asked for is any set that is in it when swept by a ball of the radius `−radius`. A line that is
-    /// in there is in the core, whatever has moved that by less. A flat core has no such set: asked for is where a line has crossed it,
-    /// at the latest, whatever has moved its points by less, for both ends of the stretch.
+    /// A negative radius erodes the core: the answer may then be about any set that lies in the core even if it is swept by a ball of the
+    /// radius `−radius`. So a line that enters this set enters the core, even if rounding has moved the core by up to that length. A flat
+    /// core contains no such set; then both ends of the stretch are where the line has certainly crossed the core, even if rounding has moved
+    /// its points by up to that length.
     #[inline]
     fn core_line_crossing(
         &self,
@@ -137,11 +142,12 @@ pub trait SupportMap {
         LineCrossing::Unknown
     }
 
-    /// Where the line through `source` along `direction` enters the whole set, swept by a further ball of the given `radius`, in closed form
-    /// and as far as that is certain: whatever rounding has done to the shape and here, if the line is known to within `error` near the
-    /// shape. Provided: nothing is.
+    /// Where the line through `source` along `direction` enters the whole set, swept by a further ball of the given `radius`: an answer in
+    /// closed form that is certain. It must hold whatever rounding has done to the shape and to this computation, and for every line that
+    /// passes within `error` of the given one near the shape. `None`, as the provided method returns, if nothing is certain.
     ///
-    /// It is trusted. Where it is `None`, a [crossing of the core](Self::core_line_crossing) is certified by a support point.
+    /// Algorithms trust it without a check. Where it is `None`, they certify a [crossing of the core](Self::core_line_crossing) by a
+    /// support point.
     #[inline]
     fn certain_crossing(
         &self,
@@ -156,27 +162,30 @@ pub trait SupportMap {
 
     /// Adds to a feature the points of the core that lie within a slab behind its supporting plane, relative to the
     /// [origin](Core::origin): those `p` of its vertices with `direction·p ≥ h(direction) − slab`. So a face against the plane, or
-    /// nearly so, shows its corners, and an edge its ends. Provided: the support point, as of a smooth surface.
+    /// nearly so, shows its corners, and an edge its ends. The provided method adds the support point alone, as is right for a smooth
+    /// surface.
     ///
-    /// Where two shapes touch, the points of both features tell where they carry each other.
+    /// Where two shapes touch, the points of both features tell in which points they support each other.
     fn core_support_feature(&self, direction: Self::Vector, slab: ScalarOf<Self>, feature: &mut Feature<Self::Vector>) {
         let _ = slab;
         feature.push(self.core_support(direction, &mut Hint::new()), 0);
     }
 
-    /// The core as a parallelotope, relative to the [origin](Core::origin), where it is one and not a single point. Provided: `None`.
+    /// The core as a parallelotope, relative to the [origin](Core::origin), if it is one and not a single point; `None`, as the provided
+    /// method returns, otherwise.
     ///
-    /// What its points are wrong by is no more than what [`rounding`](Self::rounding) says of support points. Of two such cores that
-    /// overlap the depth is known in closed form.
+    /// Its points must be as near to those of the exact core as [`rounding`](Self::rounding) says of support points. If the cores of two
+    /// shapes that overlap are parallelotopes, the depth is found in closed form.
     #[inline]
     fn core_parallelotope(&self) -> Option<Parallelotope<Self::Vector>> {
         None
     }
 
-    /// How well the support points of the core are known. Algorithms ask once, at the end of a query, to prove what they found.
+    /// Bounds on the rounding errors of the core's support points. Algorithms call this once, at the end of a query, to prove what they
+    /// found.
     ///
-    /// Provided: the support points along the axes say how large the core is, and each is wrong by four units in the last place of
-    /// that.
+    /// The provided method finds the size of the core by support points along the axes, and takes every support point to be right to four
+    /// units in the last place of that size.
     fn rounding(&self) -> Rounding<Self::Vector> {
         Rounding::relative(extent_along_axes(|d| self.core_support(d, &mut Hint::new())), 4.0)
     }

@@ -26,11 +26,11 @@ fn hash<V: Vector>(point: V) -> u32 {
 }
 
 /// The points of a shape that lie within a slab behind its supporting plane: a vertex, the ends of an edge, or the corners of a
-/// face, in no order, and perhaps with points in between. Of a disc they are some points of the rim, and the [rim](Self::rim) says which
-/// disc that is; of a face with more corners than there is room for they are [some of them](Self::is_complete).
+/// face, in no order, and perhaps with points in between. For a disc they are some points of the rim, and [`rim`](Self::rim) gives the
+/// disc. If a face has more corners than there is room for, they are [some of the corners](Self::is_complete).
 ///
 /// Two shapes in contact touch where their features face each other. Each point has a number that stays the same as long as it is
-/// the same point of the shape, so that what is known of a contact can be found again in the next frame.
+/// the same point of the shape, so that a contact can be recognised in the next frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feature<V> {
     points: [V; MAX_POINTS],
@@ -95,8 +95,8 @@ impl<V: Vector> Feature<V> {
         self.rim = Some(rim);
     }
 
-    /// Whether the points and the rim are all of the feature. Not where a face has more than 16 corners, nor where a shape of another
-    /// library is known by its support points alone: then the points span a part of it.
+    /// Whether the points and the rim are the whole feature. If a face has more than 16 corners, or a shape of another library is known
+    /// only by its support points, they span a part of it.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.is_complete

@@ -41,7 +41,7 @@ fn shapes_survive_a_round_trip() {
 #[test]
 fn invalid_shapes_are_not_read() {
     let error = from_str::<Ball<DVec3>>(r#"{"radius":-1.0}"#).expect_err("a negative radius");
-    assert_eq!(error.to_string(), "radius must not be negative, but number 0 of it is -1");
+    assert_eq!(error.to_string(), "radius must not be negative, but is -1 at index 0");
     let mirrored = r#"{"shape":{"radius":1.0},"rotation":[-1,0,0,0,1,0,0,0,1],"translation":[0,0,0]}"#;
     let error = from_str::<Posed<Ball<DVec3>>>(mirrored).expect_err("a mirror is no pose");
     assert!(error.to_string().contains("mirrors"), "{error}");

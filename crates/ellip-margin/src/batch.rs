@@ -18,14 +18,14 @@ use crate::{Answer, EllipsoidPair, InvalidQuery, Margin, MarginOptions, Method, 
 
 const LANES: usize = 8;
 
-/// The free margins of many pairs, of `e1[k]` about `e2[k]` for each k: what [`free_margin`](crate::free_margin) gives, at a
+/// The free margins of many pairs, of `e1[k]` about `e2[k]` for each k: the answers of [`free_margin`](crate::free_margin), in a
 /// fraction of the time.
 ///
 /// The margins are the same to 1e-14 of 1 + m and the rounding of m, ν to 1e-12 of itself, the signs exactly; all are the same
 /// on every processor.
-/// `iterations` is that of the batch, 5, where the pair was not asked again.
+/// `iterations` is 5, that of the batch, for a pair that did not have to be solved again by itself.
 ///
-/// A list of a single ellipsoid stands for as many of it as the other list has.
+/// If one list has a single ellipsoid, it is paired with every ellipsoid of the other list.
 ///
 /// ```
 /// use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};
@@ -69,7 +69,8 @@ pub fn free_margins_into<V: Vector>(
     Ok(())
 }
 
-/// What `ask` makes of the margin of each pair, solved side by side as by [`free_margins`]: gradients and Hessians, for instance.
+/// Calls `ask` with the margin of each pair and returns what it returns, such as gradients and Hessians. The margins are solved side by
+/// side as by [`free_margins`].
 ///
 /// ```
 /// use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};
@@ -106,9 +107,9 @@ pub fn map_margins<'a, V: Vector, T: Send>(
     Ok(answers)
 }
 
-/// [`map_margins`] into a column: `answers[k]` is what `ask` makes of pair k. Nothing is allocated.
+/// [`map_margins`] into a slice: `answers[k]` becomes what `ask` returns for pair k. Nothing is allocated.
 ///
-/// This is the function for columns of a data frame, of which a single number is wanted in a buffer that is there already.
+/// This is the function for columns of a data frame, if a single number of each answer is to go into an existing buffer.
 ///
 /// ```
 /// use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};
@@ -147,7 +148,8 @@ pub fn map_margins_into<'a, V: Vector, T: Send>(
     Ok(())
 }
 
-/// What `ask` makes of each pair, on all cores with the feature `rayon`: distances, common scales, and their derivatives.
+/// Calls `ask` with each pair and returns what it returns, such as distances, common scales, and their derivatives. With the feature
+/// `rayon` it uses all cores.
 ///
 /// ```
 /// use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};

@@ -8,7 +8,7 @@ use crate::{
     Distance, DistanceBracket, Margin, MarginOptions, Scaling, distance, distance_bracket, free_margin, scaling,
 };
 
-/// Two ellipsoids of which the margin, the distance and the common scale can be asked, with their derivatives.
+/// Two ellipsoids, which can be asked for their margin, their distance and their common scale, with the derivatives of each.
 ///
 /// Nothing is computed before it is asked for. An [`Answer`] refers to the same two ellipsoids, so that its derivatives cannot be
 /// those of others.
@@ -39,7 +39,7 @@ pub struct EllipsoidPair<'a, V: Vector> {
 }
 
 impl<'a, V: Vector> EllipsoidPair<'a, V> {
-    /// The pair E₁, E₂, and what may be spent on each answer.
+    /// The pair E₁, E₂, with the options of each answer.
     #[must_use]
     #[inline]
     pub const fn new(first: &'a Ellipsoid<V>, second: &'a Ellipsoid<V>, options: MarginOptions) -> Self {
@@ -85,8 +85,8 @@ impl<'a, V: Vector> EllipsoidPair<'a, V> {
     }
 }
 
-/// An answer about a pair, with the pair: it is read as the answer itself, and asked for `gradient`, `gradient_of_second`,
-/// `hessian` and `hessian_of_second`.
+/// An answer about a pair, together with the pair. It dereferences to the answer itself, and has the methods `gradient`,
+/// `gradient_of_second`, `hessian` and `hessian_of_second`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Answer<'a, V: Vector, A> {

@@ -1,4 +1,4 @@
-//! What can be wrong with what is asked.
+//! Errors of options and lists.
 
 use core::fmt;
 

@@ -1,4 +1,4 @@
-//! How a margin is asked for, and how the answer ended.
+//! The options of a margin, and how its iteration ended.
 
 use crate::InvalidQuery;
 

@@ -24,8 +24,8 @@ use crate::{MarginOptions, Status};
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Scaling<V: Vector> {
-    /// α ≥ 0: scaled by it about their centres, the bodies just touch. Above 1 they are disjoint, below 1 they overlap, 0
-    /// is concentric.
+    /// The scale α ≥ 0: if both bodies are scaled by it about their centres, they just touch. If it is above 1 they are disjoint, below 1
+    /// they overlap, and it is 0 if they are concentric.
     pub scale: V::Scalar,
     /// Where they touch then.
     pub point: V,
@@ -46,8 +46,8 @@ pub struct Scaling<V: Vector> {
 
 /// The scale α about their own centres at which `e1` and `e2` touch (Perram and Wertheim's contact function is α²).
 ///
-/// α − 1 has the sign of the margin, and is smooth and informative at any depth, where the margin has reached its floor of −1
-/// too; it is symmetric in the two. Its derivatives are asked of [`EllipsoidPair::scaling`](crate::EllipsoidPair::scaling).
+/// α − 1 has the sign of the margin and is symmetric in the two. It is smooth, and has a slope at any depth, also where the margin has
+/// reached its floor of −1. [`EllipsoidPair::scaling`](crate::EllipsoidPair::scaling) has its derivatives.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec3};

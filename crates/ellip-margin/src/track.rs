@@ -8,8 +8,8 @@ use crate::{Margin, MarginOptions};
 
 /// The margin of one pair along a trajectory, each step started from the last.
 ///
-/// Newton's method for the secular equation converges from any start, so that there is no limit to the step: a turn of
-/// 90 degrees, a teleport, another pair of bodies altogether give what [`free_margin`](crate::free_margin) gives, in
+/// Newton's method for the secular equation converges from any start, so that a step may be of any size. After a turn of
+/// 90 degrees, a jump, or even for another pair of bodies, the answer is that of [`free_margin`](crate::free_margin); it only takes
 /// a few more iterations.
 ///
 /// ```

@@ -1,4 +1,4 @@
-//! My shape is not in the list. What do I have to write? One function: the point farthest along a direction.
+//! How to add a shape of your own. It needs one function: the point farthest along a direction.
 //!
 //! `cargo run -p gjk-raycast --example a_shape_of_your_own`
 

@@ -1,4 +1,4 @@
-//! A box slides down a slope and comes to rest, where friction says.
+//! A box slides down a slope and comes to rest after the distance that the laws of friction give.
 //!
 //! On a slope of angle θ with friction μ > tan θ it decelerates by g·(μ·cos θ − sin θ), so that from a speed v it slides
 //! v²/2g/(μ·cos θ − sin θ).

@@ -1,4 +1,4 @@
-//! How deep one polyhedron is in another, and the proof that no way out is shorter.
+//! How deep is one polyhedron in another, and what proves that no way out is shorter?
 //!
 //! `cargo run --release -p gjk-raycast --example depth_of_hulls`
 

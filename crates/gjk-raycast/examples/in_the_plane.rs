@@ -1,4 +1,4 @@
-//! The same in 2D: how far is a robot's footprint from the walls of a room, and how far may it drive straight on?
+//! The queries in 2D: how far is a robot's footprint from the walls of a room, and how far may it drive straight on?
 //!
 //! `cargo run -p gjk-raycast --example in_the_plane`
 

@@ -1,4 +1,4 @@
-//! A ball comes up under a blade that turns forty times a second. Sampling at any rate a game would use steps over the stroke.
+//! A ball comes up under a blade that turns forty times a second. Does the blade strike it? Sampling at the rate of a game would miss the stroke.
 //!
 //! `cargo run -p gjk-raycast --example spinning_blade_over_a_ball`
 

@@ -25,8 +25,9 @@ use crate::{Distance, DistanceOptions, Iterate, Status, SubAlgorithm};
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 ///
-/// Two points of the shapes bound the distance from above, and a slab between the shapes from below. The iteration ends
-/// where the two meet.
+/// Two points of the shapes bound the distance from above, and a slab between the shapes bounds it from below. The iteration ends
+/// when these bounds meet. Where the shapes overlap, the distance is 0 and the depth is not known:
+/// [`signed_distance`](crate::signed_distance) finds it.
 ///
 #[doc = include_str!("../doc/bracket.svg")]
 #[inline]

@@ -27,8 +27,10 @@ impl Display for RayCastError {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
             Self::ZeroDirection => f.write_str("the direction of the ray is the zero vector"),
-            Self::NonFinite { parameter, index } => write!(f, "{parameter}[{index}] is not finite"),
-            Self::NoClosestPoint => f.write_str("the set has no closed form of its closest point"),
+            Self::NonFinite { parameter, index } => write!(f, "{parameter} is NaN or infinite at index {index}"),
+            Self::NoClosestPoint => {
+                f.write_str("the shape has no closed form of its closest point: use `ray_cast`, which needs none")
+            }
         }
     }
 }

@@ -6,17 +6,17 @@ use num_traits::Float;
 use crate::body::{Body as _, Pair, TracedSupport as _, Untraced};
 use crate::contact::signed_distance_and_axis;
 use crate::gjk::{
-    Boxes, End, Frame, Gjk, GjkOptions, Shape, boxes, first_direction, gjk, is_near_contact, near_contact, rounding,
+    Boxes, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, is_near_contact, near_contact, rounding,
 };
-use crate::shape::WithoutLines;
+use crate::shape::{Shape, WithoutLines};
 use crate::unit::is_moderate;
 use crate::{IntersectOptions, Intersection, Iterate, SignedDistanceOptions, Status};
 
-/// Whether two shapes have a point in common, decided as soon as it can be.
+/// Whether two shapes have a point in common. Touching counts as meeting.
 ///
-/// This is the incremental separating axis variant of GJK: it ends at the first plane that separates the shapes, and
-/// beginning with the axis of a similar query usually finds one at once. Two boxes are asked along the normals of their faces and the
-/// products of their edges; only within rounding of contact are they searched like others.
+/// This is the incremental separating axis variant of GJK. It ends at the first plane that separates the shapes. If it begins with the
+/// axis of a similar query, the first plane is usually one. For two boxes it tests the normals of their faces and the cross products of
+/// their edges instead, and searches only if the boxes are within rounding of contact.
 ///
 /// ```
 /// use convex_support::{Cuboid, Posed, glam::DVec2};

@@ -7,12 +7,12 @@ use crate::cast::LocalRay;
 use crate::unit::power_of_two_near;
 use crate::{Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, Status};
 
-/// The first point of a ray in a convex set that is known by its closest points: `closest_point(x)` is the point of
-/// the set closest to `x`, which is `x` itself within the set, or `None` where that is not known.
+/// The first point of a ray in a convex set that is given by its closest points: `closest_point(x)` is the point of
+/// the set closest to `x`, or `x` itself within the set, or `None` if it is not known.
 ///
-/// The method moves to the plane through the closest point, again and again. It is Newton's iteration for the distance
-/// along the ray: on a polytope it ends after finitely many steps, and on a curved surface the digits double with each.
-/// Any set will do that gives closest points, not only shapes: so it is taken as a function. That of a shape is
+/// Each step moves along the ray to the plane through the closest point. This is Newton's iteration for the distance
+/// along the ray: on a polytope it ends after finitely many steps, and on a curved surface the digits double with each step.
+/// The set is given by a function, so that it need not be a shape; for a shape, the function is
 /// [`closest_point`](convex_support::closest_point).
 ///
 /// ```
@@ -28,9 +28,9 @@ use crate::{Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, 
 /// ```
 ///
 /// # Accuracy
-/// λ is within rounding of the truth, as for [`ray_cast`](crate::ray_cast), if the closest point is within rounding of
-/// the coordinates of `x` and of the set. The point closest to the source tells where the set is; the ray is based at its
-/// own point closest to that, so that a far source costs nothing but its own digits.
+/// λ is as accurate as that of [`ray_cast`](crate::ray_cast), if the closest point is right to rounding of
+/// the coordinates of `x` and of the set. The point closest to the source tells where the set is. The ray is based at its
+/// own point closest to that one, so that a far source loses only its own digits.
 ///
 /// # Errors
 /// [`RayCastError`] if the direction is zero or a coordinate is not finite, or where a closest point is not known.

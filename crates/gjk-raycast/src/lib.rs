@@ -1,7 +1,8 @@
-//! Ray casts, distances, contacts and continuous collision detection, of bodies that turn too, for general convex shapes, by
-//! the Gilbert–Johnson–Keerthi algorithm (GJK): 2D and 3D, `f32` and `f64`, with certified answers.
+//! Ray casts, distances, contacts and continuous collision detection for convex shapes of any kind, which may also turn as they
+//! move, by the Gilbert–Johnson–Keerthi algorithm (GJK): 2D and 3D, `f32` and `f64`, with certified answers.
 //!
-//! Shapes are support maps of [`convex_support`]: its primitives, its combinators, or your own.
+//! Shapes are support maps of [`convex_support`]: its primitives, its combinators, or your own. That crate is exported again as
+//! [`gjk_raycast::convex_support`](convex_support), and glam as `gjk_raycast::convex_support::glam`.
 //!
 //! ```
 //! use convex_support::{Cuboid, Posed, glam::DVec3};
@@ -21,26 +22,33 @@
 //! ```
 //!
 //! # Questions it answers
-//! - *How far apart are two shapes, and where are they closest?* [`distance`] (GJK, Algorithm 2 of the paper).
-//! - *How far apart, or how deep in one another, and which way out?* [`signed_distance`] (GJK, then expanding polytopes).
-//! - *In which points do they carry each other?* [`contact`], a manifold of up to four points.
+//! About two shapes:
+//! - *How far apart are they, and which points are closest?* [`distance`] (GJK, Algorithm 2 of the paper).
+//! - *If they overlap, how deep, and which way out is shortest?* [`signed_distance`] (GJK, then an expanding polytope).
+//! - *In which points do they support each other?* [`contact`], a manifold of up to four points.
 //! - *Do they meet?* [`intersects`], which stops at the first separating axis and can start from the last one.
-//! - *Where does a ray enter a shape?* [`ray_cast`] (Algorithm 3).
-//! - *Many rays at once?* [`ray_casts`]. Many pairs, into a column? [`map_distances_into`].
-//! - *Many bodies?* [`Scene`]: the first hit, the nearest, all within a distance, and pairs.
-//! - *Where does a ray leave a shape?* [`ray_exit`].
-//! - *When do two shapes meet that move without turning?* [`linear_cast`] (Algorithm 3 on their difference).
-//! - *When do two shapes meet that move and turn?* [`motion_cast`], along [rigid motions](RigidMotion), [chains of joints](ChainMotion)
+//! - *When do they meet, moving without turning?* [`linear_cast`] (Algorithm 3 on their difference).
+//! - *When do they meet, moving and turning?* [`motion_cast`], along [rigid motions](RigidMotion), [chains of joints](ChainMotion)
 //!   or a [`Trajectory`] of your own.
-//! - *And a shape and a floor without an end?* The methods of [`HalfSpace`].
-//! - *How does an answer change with a pose, a joint, a velocity?* `gradient()` of [`SignedDistance`], [`LinearHit`], [`MotionHit`], [`RayHit`];
-//!   and whether that is smooth, with second derivatives, [`ClosestFeatures`].
-//! - *The same from closest points alone:* [`iterative_ray_cast`] (Algorithm 1), for shapes with a closed form.
-//! - *What proves an answer?* [`distance_certificate`] and the like: a [`Certificate`] for a checker that trusts nothing.
+//! - *The same questions about a shape and an infinite floor or wall:* the methods of [`HalfSpace`].
 //!
-//! Each has a variant `…_with` that shows an [observer](Iterate) every iterate, and every answer says how it ended
-//! ([`Status`]) and carries bounds on the value that come from the geometry: a separating plane below, points of the
-//! bodies above.
+//! About a ray and a shape:
+//! - *Where does the ray enter?* [`ray_cast`] (Algorithm 3), and [`ray_casts`] for many rays. *Where does it leave?* [`ray_exit`].
+//! - *The same from closest points alone:* [`iterative_ray_cast`] (Algorithm 1), for shapes whose closest points have a closed form.
+//!
+//! About many shapes:
+//! - *Which is hit first, which is nearest, which are within a distance, which pairs are near each other?* [`Scene`].
+//! - *How far apart is each of many pairs?* [`map_distances_into`] writes one number of each answer into a slice.
+//!
+//! About an answer:
+//! - *How does it change with a pose, a joint, a velocity?* `gradient` of [`Distance`], [`SignedDistance`], [`LinearHit`], [`MotionHit`]
+//!   and [`RayHit`]. [`ClosestFeatures`] tells whether that derivative is unique, and has second derivatives.
+//! - *What proves it?* [`distance_certificate`] and its like: a [`Certificate`] for a checker that trusts nothing else.
+//!
+//! Every answer says how the iteration ended ([`Status`]), and every distance, depth, λ and time has a lower and an upper bound that come
+//! from the geometry: one from a separating plane, the other from points of the bodies. [`Outcome`] tells a hit, a miss and an undecided cast apart; where a program
+//! has to choose, it is safe to treat an undecided cast as a hit at its lower bound. The iterative functions have a variant `…_with` that
+//! shows an [observer](Iterate) every iterate.
 //!
 //! # References
 //! Gino van den Bergen, *Ray Casting against General Convex Objects with Application to Continuous Collision
@@ -49,13 +57,13 @@
 //! # Features
 //! - `std` (default): floating-point functions from the standard library.
 //! - `libm`: the same from the libm crate, for `no_std` targets.
-//! - `f64` (default): as of `convex-support`, to be left out with glam 0.32.
-//! - `rayon`: batches on all threads, `par_ray_casts`, `Scene::par_ray_casts` and `Among::par_pairs_within`.
+//! - `f64` (default): asks glam for double precision; leave it out with glam 0.32, which has no such feature.
+//! - `rayon`: `par_ray_casts`, `Scene::par_ray_casts` and `Among::par_pairs_within`, which use all threads.
 //! - `serde`: options, answers and certificates as data, beside the shapes of `convex-support`.
 //!
 //! # Answers as data
-//! With the feature `serde`, what is asked and what is answered can be written and read back, to the last bit, by any format of
-//! [serde](https://docs.rs/serde): options, rays, motions and poses, half-spaces and [`Body`]; every answer, [`Certificate`] and derivative.
+//! With the feature `serde`, questions and answers can be written in any format of [serde](https://docs.rs/serde) and read back to the
+//! last bit: options, rays, motions and poses, half-spaces and [`Body`]; every answer, [`Certificate`] and derivative.
 //! For JSON, `serde_json` needs its feature `float_roundtrip`.
 //!
 //! ```
@@ -76,13 +84,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! - An option that is left out has its default, and one that does not exist is an error. As in code, any number may be given, and the
-//!   query takes what is below zero for zero where the option says so.
-//! - JSON has no infinity. A bound or a limit that is infinite is `null` there: a ray without an end, an upper bound that is not known.
-//!   Where a shape's support map returned numbers that are not finite, the answer has points that JSON cannot tell, and is not read back.
-//! - Errors can be written and not read, as they name parameters of this crate. Left out are what observers are shown, what a
-//!   [`Trajectory`] answers, [`ChainMotion`], whose joints are [`RigidMotion`]s, [`ClosestFeatures`], which an answer and its shapes give
-//!   again, and [`Scene`], which is made of its bodies.
+//! - An option that is left out has its default, and an unknown option is an error. As in code, an option may have any value; where its
+//!   documentation says so, the query takes a negative number for zero.
+//! - JSON has no infinity. An infinite bound or limit is `null` there, such as the end of a ray that has none, or an unknown upper bound.
+//!   If the support map of a shape returned numbers that are not finite, the answer may have coordinates that JSON cannot hold, and then it
+//!   cannot be read back.
+//! - Errors can be written but not read, as they name parameters of this crate. Some types are no data: what observers are shown; what a
+//!   [`Trajectory`] answers; [`ChainMotion`], which borrows its [`RigidMotion`]s; [`ClosestFeatures`], which can be found again from an answer
+//!   and its shapes; and [`Scene`], which can be built again from its bodies.
 
 #![no_std]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "comparisons are written so that NaN ends the loop they are in")]

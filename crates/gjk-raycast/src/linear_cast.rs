@@ -1,4 +1,4 @@
-//! When two shapes meet that move without turning.
+//! When two shapes that move without turning meet.
 
 use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector};
@@ -36,10 +36,10 @@ impl<V: Vector> Motion<V> {
     }
 }
 
-/// When two shapes first touch that move at constant velocities without turning, and where.
+/// When and where two shapes that move at constant velocities, without turning, first touch.
 ///
-/// A ray is cast against their configuration space obstacle: `A + t·v_A` and `B + t·v_B` have a point in common just
-/// where `t·(v_B − v_A)` is in `A − B`. Where the velocities are equal, the shapes hit only if they overlap.
+/// A ray is cast against their configuration space obstacle: `A + t·v_A` and `B + t·v_B` have a point in common if and only
+/// if `t·(v_B − v_A)` is in `A − B`. If the velocities are equal, the answer is a hit only if the shapes overlap.
 ///
 /// ```
 /// use convex_support::{Ball, Posed, glam::DVec2};
@@ -55,8 +55,8 @@ impl<V: Vector> Motion<V> {
 /// ```
 ///
 /// # Stepping a world
-/// Shapes that were moved to their contact touch, and the next cast starts there. By default it is a hit at time 0 again, whatever the
-/// motion. With [`StartInContact::IfDeeper`] it is one only if the motion goes deeper; one that leaves the contact, or slides along
+/// If shapes are moved to their contact, the next cast starts with shapes that touch. By default it is a hit at time 0 again, whatever the
+/// motion. With [`StartInContact::IfDeeper`] it is a hit only if the motion goes deeper. A motion that leaves the contact, or slides along
 /// it, is a miss, since shapes that move straight do not meet again:
 ///
 /// ```
@@ -77,7 +77,7 @@ impl<V: Vector> Motion<V> {
 /// ```
 ///
 /// A cast to a [`target_distance`](LinearCastOptions::target_distance) is that of `a` swept by a ball of that radius, and is
-/// certified alike.
+/// certified in the same way.
 ///
 /// # Errors
 /// [`RayCastError::NonFinite`] if a velocity is not finite, or the target distance is NaN.

@@ -1,4 +1,4 @@
-//! What can be asked of each query beside its shapes.
+//! The options of queries.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -97,8 +97,8 @@ pub struct DistanceOptions<V: Vector> {
     /// The width of the bracket at which to stop, relative to the distance. A bracket at the level of
     /// rounding, relative to the size of what is compared, always ends the iteration. Default: 0.
     pub tolerance: V::Scalar,
-    /// Stop as soon as the distance is certain to exceed this limit; the bracket is then as wide as it is known. Default:
-    /// infinity.
+    /// Stop as soon as the distance is certain to exceed this limit; the bracket is then left as wide as it is at that moment.
+    /// Default: infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub limit: V::Scalar,
     /// The iterations after which to give up. Default: 200.
@@ -162,17 +162,18 @@ impl<V: Vector> Default for IntersectOptions<V> {
     }
 }
 
-/// How a cast finds the planes that it moves the ray up to, and when it ends. The bounds are computed alike.
+/// How a cast finds the planes that bound its hit. The bounds are computed in the same way by every method, so that the choice changes
+/// only the time that a cast takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum CastMethod {
-    /// What the shape knows in [closed form](convex_support::SupportMap::core_line_crossing) is tried first. In 3D, triangles of
-    /// support points that the ray pierces are then brought nearer, by the simplex method of linear programming; where that is
-    /// in doubt, and in 2D, as [`Gjk`](Self::Gjk): the fastest.
+    /// The fastest. First the [closed form](convex_support::SupportMap::core_line_crossing) is tried, if the shape has one. Then, in 3D,
+    /// a triangle of support points that the ray pierces (a portal) is moved towards the surface, by the simplex method of linear
+    /// programming. Where that is in doubt, and in 2D, this is the same as [`Gjk`](Self::Gjk).
     #[default]
     Portal,
-    /// The vector from the ray's point to the simplex of support points, as in the paper's Algorithm 3.
+    /// The paper's Algorithm 3: each plane is across the vector from the ray's point to the simplex of support points.
     Gjk,
 }
 
@@ -184,9 +185,11 @@ pub enum StartInContact {
     /// A hit at time 0, whatever the motion.
     #[default]
     Report,
-    /// A hit at time 0 only if the motion brings the bodies deeper into one another. If it takes them apart, the first contact
-    /// after they are. Bodies that are apart, or in one another, by less than the rounding of their sizes and places, 16ε of those and 4ε of
-    /// these, count as touching here: while they leave they may touch again within that.
+    /// A hit at time 0 only if the motion brings the bodies deeper into one another. If it takes them apart, the answer is the first
+    /// contact after they have separated. Bodies that move straight, and leave or slide along each other, do not meet again: a miss.
+    ///
+    /// Bodies count as touching if the distance or the depth is less than the rounding of their numbers: 16ε of their sizes and 4ε of how
+    /// far from the origin they are. Bodies that leave one another may touch again within that distance.
     IfDeeper,
 }
 
@@ -196,8 +199,8 @@ pub enum StartInContact {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct RayCastOptions<V: Vector> {
-    /// The beginning of the ray, in units of its direction; it belongs to the ray. What is hit before does not count, so that a
-    /// ray may start on a surface and leave it. Below zero it is taken for zero. Default: 0.
+    /// The beginning of the ray, in units of its direction; it belongs to the ray. Anything hit before it does not count, so that a
+    /// ray can start on a surface and leave it. A negative value is taken for zero. Default: 0.
     pub min_lambda: V::Scalar,
     /// The end of the ray, in units of its direction; the end belongs to the ray. Default: infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
@@ -262,11 +265,11 @@ pub struct LinearCastOptions<V: Vector> {
     /// The end of the motion; it belongs to the motion. Default: infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub max_time: V::Scalar,
-    /// The distance at which the shapes count as touching: the cast stops that far from contact. Below zero it is taken for zero.
+    /// The distance at which the shapes count as touching: the cast stops that far from contact. A negative value is taken for zero.
     /// Default: 0.
     pub target_distance: V::Scalar,
-    /// What to answer where the shapes touch at the start. Shapes that move straight and leave one another do not meet again, and are
-    /// a miss if asked [`StartInContact::IfDeeper`]. Default: [`StartInContact::Report`].
+    /// What to answer where the shapes touch at the start. To step a world from contact to contact, take
+    /// [`StartInContact::IfDeeper`]. Default: [`StartInContact::Report`].
     pub start_in_contact: StartInContact,
     /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
     /// of rounding always ends the iteration. Default: 0.

@@ -27,17 +27,18 @@ type ScalarOf<S> = <<S as SupportMap>::Vector as Vector>::Scalar;
 #[doc = include_str!("../doc/ray.svg")]
 ///
 /// # How it begins and ends
-/// - A source in the target, or no farther from it than its own error, is a hit at λ = 0 with no normal, whatever the direction.
-/// - A source outside is a hit or a miss by the ray alone, by however little it is outside: one that leaves or slides by misses.
-/// - A ray that grazes the target within rounding may be either. A hit is certain where [`upper`](RayCast::upper) is finite.
-/// - The end of the ray, [`max_lambda`](RayCastOptions::max_lambda), belongs to it. So does its beginning, if that is not the source
-///   but at [`min_lambda`](RayCastOptions::min_lambda): where that is in the target it is hit there, with no normal. A shadow ray, from
-///   a surface, leaves it so.
-/// - Where the ray leaves the target again, [`ray_exit`](crate::ray_exit) tells.
+/// - If the source is in the target, or no farther from it than its own error, the answer is a hit at λ = 0 with no normal, whatever the
+///   direction.
+/// - If the source is outside, by however little, a ray that leaves or slides past the target is a miss.
+/// - A ray that grazes the target within rounding may be a hit or a miss. A hit is certain where [`upper`](RayCast::upper) is finite.
+/// - The end of the ray, [`max_lambda`](RayCastOptions::max_lambda), belongs to the ray.
+/// - A ray can begin beyond its source, at [`min_lambda`](RayCastOptions::min_lambda), which belongs to the ray: a shadow ray leaves the
+///   surface that it starts on in this way. If it begins in the target, the answer is a hit there, with no normal.
+/// - [`ray_exit`](crate::ray_exit) tells where the ray leaves the target again.
 ///
 /// # Accuracy
-/// λ is within rounding of the truth: a few ulps of the target's size (divided by the cosine at grazing incidence) and
-/// of the source's distance.
+/// The error of λ is a few ulps of the target's size, divided by the cosine of the angle of incidence, and a few ulps of the distance of the
+/// source.
 ///
 /// # Errors
 /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
@@ -151,8 +152,9 @@ fn cast_part<S: SupportMap + ?Sized>(
 
 /// The cast of a ray that begins at [`min_lambda`](RayCastOptions::min_lambda).
 ///
-/// Where that is on the line is known to within a slack, so that the ray is cast from as much before it. What it hits after as much behind
-/// it is a hit like any other; and what it hits earlier is hit where it begins, at the latest where one hits it that begins behind it.
+/// The place of that beginning on the line is known only to within a slack. So the ray is cast from a slack before it. A hit later than a
+/// slack behind it is a hit like any other. A hit that is earlier is reported at the beginning; its upper bound is where a ray that begins a
+/// slack behind it hits.
 #[cold]
 #[inline(never)]
 fn late<S: SupportMap + ?Sized>(
@@ -199,7 +201,7 @@ fn answer<V: Vector>(cast: Cast<V, ()>, ray: Ray<V>) -> RayCast<V> {
     RayCast { outcome, lower: cast.lower, upper: cast.upper, status: cast.status, iterations: cast.iterations }
 }
 
-/// The answer of a ray that begins at a parameter of another, which is known to within an `error`, with its parameters counted as of that.
+/// The answer in the parameters of the whole ray, for a part of it that begins at a parameter which is known to within an `error`.
 fn of_whole_ray<V: Vector>(
     mut answer: RayCast<V>,
     ray: Ray<V>,

@@ -12,9 +12,9 @@ const RAYS_PER_PIECE: usize = 256;
 
 /// Casts many rays against one shape, in their order; each begins with the axis that the one before ended with.
 ///
-/// Rays that follow one another in space, those of a picture or a lidar, then take fewer support points each. Where a ray
-/// hits and where it misses is what [`ray_cast`] answers, within the same bounds; the last digits may differ from those of
-/// a cast that begins elsewhere. Every 256 rays the axis of the options is taken again.
+/// Rays that are near one another, such as those of a picture or a lidar, then take fewer support points each. The hits and misses are
+/// those of [`ray_cast`], within the same bounds; the last digits may differ from those of a cast that begins with another axis. Every
+/// 256 rays the axis of the options is taken again, so that batches can be cut there.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec3};

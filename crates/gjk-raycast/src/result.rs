@@ -1,4 +1,4 @@
-//! What queries answer.
+//! The answers of queries.
 
 use convex_support::{Scalar, Vector};
 
@@ -8,9 +8,9 @@ use crate::simplex::MAX_POINTS;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Status {
-    /// The bracket is as narrow as was asked for, or as rounding lets it be.
+    /// The bracket is as narrow as was asked for, or as narrow as rounding allows.
     Converged,
-    /// The allowed iterations were used up first.
+    /// The allowed iterations were used up before the bracket was that narrow.
     IterationLimit,
     /// No further progress was possible in floating point before the bracket was that narrow; or a support map
     /// returned numbers that are not finite.
@@ -22,20 +22,22 @@ pub enum Status {
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Distance<V: Vector> {
-    /// The distance of the two sets; 0 where they overlap, or what is measured where they touch to less than its own error.
+    /// The distance of the two shapes; 0 where they overlap. Where they touch, so that the measured distance is smaller than its own
+    /// error, it is the measured distance.
     pub distance: V::Scalar,
     /// The distance is certainly not less: a plane separates the shapes by this much.
     pub lower: V::Scalar,
     /// The distance is certainly not more: two points of the shapes are this far apart.
     pub upper: V::Scalar,
-    /// Whether the shapes have a point in common. Shapes that no plane is known to separate, and whose points are no farther apart than
-    /// they are known to, touch, and count as overlapping.
+    /// Whether the shapes have a point in common. Shapes touch, and count as overlapping, if no plane certainly separates them and their
+    /// closest points are no farther apart than the error of these points.
     pub overlap: bool,
-    /// The point of `a` closest to `b`; where they overlap, a point in or near both.
+    /// The point of `a` closest to `b`, in the world; where the shapes overlap, a point in or near both.
     pub point_a: V,
-    /// The point of `b` closest to `a`.
+    /// The point of `b` closest to `a`, in the world; where the shapes overlap, a point in or near both.
     pub point_b: V,
-    /// The unit vector from `point_b` to `point_a`, also where they touch; `None` where the shapes overlap by more than rounding.
+    /// The unit vector from `b` to `a`, along which `point_a` lies before `point_b`. It is there also where the shapes touch, and `None`
+    /// where they overlap by more than rounding.
     pub normal: Option<V>,
     /// How the iteration ended.
     pub status: Status,
@@ -56,13 +58,13 @@ impl<V: Vector> Distance<V> {
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Intersection<V: Vector> {
-    /// Whether the shapes have a point in common, if `status` is [`Status::Converged`]; else only the better guess.
-    /// It agrees with [`Distance::overlap`].
+    /// Whether the shapes have a point in common. This is certain if `status` is [`Status::Converged`], and otherwise only the better
+    /// guess; [`decided`](Self::decided) tells the two apart. It agrees with [`Distance::overlap`].
     pub overlap: bool,
     /// A unit vector along which a plane separates the shapes, pointing from `b` to `a`; `None` where they overlap.
     ///
-    /// Its components are rounded: where the gap itself is at the level of rounding, a few ε of the extent of both shapes,
-    /// planes across it may overlap by an ulp of that extent.
+    /// Its components are rounded. So if the gap is as small as rounding, a few ε of the extent of both shapes, the slab that the rounded
+    /// axis leaves between the shapes may be negative, by an ulp of that extent.
     pub axis: Option<V>,
     /// How the iteration ended.
     pub status: Status,
@@ -78,16 +80,17 @@ impl<V: Vector> Intersection<V> {
     }
 }
 
-/// How a cast came out.
+/// How a cast ended: with a hit, with a miss, or with neither.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Outcome<H, V> {
-    /// It hits.
+    /// A hit. It is certain where the upper bound of the answer is finite.
     Hit(H),
-    /// It misses.
+    /// A miss, which is certain: a plane proves it.
     Miss(Miss<V>),
-    /// The iteration ended, for the reason given by the status, before either was certain.
+    /// The iteration ended, for the reason given by the status, before a hit or a miss was certain. Nothing is hit before the lower bound
+    /// of the answer, so that a program which has to choose is safe if it takes that for the hit.
     Undecided,
 }
 
@@ -115,8 +118,8 @@ pub struct Miss<V> {
     /// A unit vector along which a plane separates the shape from the whole ray (up to its end, if it has one),
     /// pointing from the shape to the ray; a good [first axis](crate::RayCastOptions::axis) for a similar query.
     ///
-    /// Its components are rounded, so that at a distance `L` along the ray the plane is off by `L` times half an ulp: a
-    /// point of the ray that is a million sizes away may be behind it in `f32`.
+    /// Its components are rounded, so that at a distance `L` along the ray the plane is off by `L` times half an ulp. In `f32`, a point of
+    /// the ray that is a million sizes of the shape away may be on the wrong side of it.
     pub axis: V,
 }
 
@@ -132,12 +135,12 @@ pub struct Miss<V> {
 pub struct RayCast<V: Vector> {
     /// Hit, miss, or undecided.
     pub outcome: Outcome<RayHit<V>, V>,
-    /// No point of the ray before this parameter is in the target. Infinite of a miss, but where rounding decides whether the ray ends before
-    /// it would hit.
+    /// No point of the ray before this parameter is in the target. For a miss it is infinite, unless only rounding decides whether the
+    /// ray ends before it would hit.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
-    /// The point of the ray at this parameter is in the target; infinite where no such point is known, as of a hit that is a graze or a
-    /// contact at the source within rounding, and may be a miss.
+    /// The point of the ray at this parameter is in the target. It is infinite where no such point is known: for a miss, and for a hit
+    /// that may be a miss, since the ray grazes the target, or touches it at its source, within rounding.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
     /// How the iteration ended.
@@ -152,10 +155,9 @@ pub struct RayCast<V: Vector> {
 pub struct RayHit<V: Vector> {
     /// The hit parameter, in units of the ray's direction; 0 where the source is in the target.
     pub lambda: V::Scalar,
-    /// The hit spot, in the frame of the ray and the target: the source plus λ times the direction.
+    /// The point that is hit, in the frame of the ray and the target: the source plus λ times the direction.
     pub point: V,
-    /// The unit outward normal at the hit spot; any of them at an edge or a vertex; `None` where the source is in the
-    /// target.
+    /// The unit outward normal there; at an edge or a vertex, one of the normals. `None` where the ray begins in the target.
     pub normal: Option<V>,
 }
 
@@ -174,7 +176,7 @@ pub struct RayExit<V: Vector> {
     /// The point of the ray at this parameter is in the target; minus infinity where no such point is known.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
     pub lower: V::Scalar,
-    /// No point of the ray after this parameter is in the target; minus infinity of a miss.
+    /// No point of the ray after this parameter is in the target; minus infinity for a miss.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
     pub upper: V::Scalar,
     /// How the iteration ended.
@@ -195,12 +197,12 @@ pub struct RayExit<V: Vector> {
 pub struct LinearCast<V: Vector> {
     /// Hit, miss, or undecided. The axis of a miss points from `b` to `a`.
     pub outcome: Outcome<LinearHit<V>, V>,
-    /// The shapes have no point in common before this time. Infinite of a miss, but where rounding decides whether the motion ends before
-    /// they would meet; and of one that [leaves a contact](crate::StartInContact::IfDeeper) that it started in, which does not count.
+    /// The shapes have no point in common before this time. For a miss it is infinite, unless only rounding decides whether the motion ends
+    /// before they would meet. It does not count a contact at the start that the motion [leaves](crate::StartInContact::IfDeeper).
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
-    /// The shapes have a point in common at this time; infinite where no such time is known, as of a hit that is a graze or a contact at
-    /// the start within rounding, and may be a miss.
+    /// The shapes have a point in common at this time. It is infinite where no such time is known: for a miss, and for a hit that may be a
+    /// miss, since the shapes graze each other, or touch at the start, within rounding.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
     /// How the iteration ended.
@@ -214,36 +216,35 @@ pub struct LinearCast<V: Vector> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LinearHit<V: Vector> {
-    /// The time of first contact; 0 where the shapes overlap at the start.
+    /// The time of first contact; 0 where the shapes touch or overlap at the start.
     pub time: V::Scalar,
-    /// A point of contact, in the world, at that time: a point of `b`, if a [target
-    /// distance](crate::LinearCastOptions::target_distance) was asked for. Where the shapes overlap at the start, a point in or near
-    /// both, as of [`distance`](crate::distance).
+    /// A point of contact, in the world, at that time. With a [target distance](crate::LinearCastOptions::target_distance) it is a point of
+    /// `b`. Where the shapes overlap at the start, it is a point in or near both, as of [`distance`](crate::distance).
     pub point: V,
-    /// The unit normal of contact, out of `b` towards `a`. Where the shapes overlap at the start by more than rounding, `None`; or the
-    /// shortest way out, if it was asked whether the motion [goes deeper](crate::StartInContact::IfDeeper).
+    /// The unit normal of contact, out of `b` towards `a`. Where the shapes overlap at the start by more than rounding, it is `None`; with
+    /// [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper), it is the shortest way out.
     pub normal: Option<V>,
 }
 
 /// What an observer is shown in every iteration.
 ///
-/// Points and vectors are those of the configuration space obstacle as seen from the query point: the points of
-/// `A − B` for [`distance`](crate::distance) and [`intersects`](crate::intersects), and the points `x − p` of
-/// `{x} − C` with the current point `x` of the ray for casts. So it is always zero that is looked for.
+/// Its points and vectors are those of the configuration space obstacle, relative to the query point: the points of
+/// `A − B` for [`distance`](crate::distance) and [`intersects`](crate::intersects), and for casts the points `x − p` of
+/// `{x} − C`, with the current point `x` of the ray. So in every case the iteration looks for zero.
 #[derive(Clone, Copy, Debug)]
 pub struct Iterate<'a, V: Vector> {
-    /// Counts from 0: the first iterate has an empty simplex and the first direction for its `v`; or, where a shape says its
+    /// The number of the iterate, from 0. The first has an empty simplex and the first direction for its `v`; or, if a shape knows its
     /// [closest point](convex_support::SupportMap::core_closest_point), that point for its simplex.
     pub iteration: usize,
-    /// The vertices of the simplex that `v` lies in (the paper's `W`, `S_k` in the book); none at first. Relative to
-    /// the query point, in units of `scale`.
+    /// The vertices of the simplex that `v` lies in (the paper's `W`, `S_k` in the book), relative to the query point, in units of
+    /// `scale`; none at first.
     pub simplex: &'a [V],
-    /// The point of the simplex closest to zero (`V_k`), in units of `scale`; the first direction at first.
+    /// The point of the simplex closest to zero (`V_k`), in units of `scale`; in the first iterate, the first direction.
     pub v: V,
-    /// The support point found along `v` (`W_k`), in units of `scale`; in space at times along a direction that has been
-    /// turned from it, by curvature or towards the best plane known.
+    /// The support point found along `v` (`W_k`), in units of `scale`. In 3D the direction may have been turned from `v`, by
+    /// curvature or towards the best plane known.
     pub w: V,
-    /// What the vectors above are to be multiplied by: a power of two.
+    /// The factor, a power of two, that turns the vectors above into lengths of the world.
     pub scale: V::Scalar,
     /// The lower bound: of the distance of the cores, or of the hit parameter λ.
     pub lower: V::Scalar,

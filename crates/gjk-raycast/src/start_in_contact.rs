@@ -29,7 +29,7 @@ impl<V: Vector> Start<'_, V> {
         distance_with(self.a, self.b, wanted.with_sub_algorithm(options.sub_algorithm), |_| {})
     }
 
-    /// The normal of contact where the shapes only touch; `None` where they are certain to be deeper than that. And the support
+    /// The normal of contact if the shapes only touch, and `None` if they certainly overlap by more than that; with the number of support
     /// points computed.
     #[cold]
     #[inline(never)]
@@ -38,21 +38,21 @@ impl<V: Vector> Start<'_, V> {
         ((start.upper >= self.target).then_some(start.normal), start.iterations)
     }
 
-    /// The signed distance at the start, as far as it is not certain to be deeper than a limit.
+    /// The signed distance at the start; the search stops as soon as the depth is certain to exceed a limit.
     fn signed_distance(&self, options: &LinearCastOptions<V>, depth_limit: V::Scalar) -> SignedDistance<V> {
         let mut wanted = SignedDistanceOptions::new().with_depth_limit(depth_limit);
         wanted.axis = options.axis;
         signed_distance_of_any(self.a, self.b, wanted)
     }
 
-    /// What is known of shapes that touch or overlap at the start, to a slack that is the rounding of their places; `None` where they are
+    /// The contact of shapes that touch or overlap at the start, to a slack that is the rounding of their places; `None` if they are
     /// certainly apart by more.
     ///
-    /// The depth of a point in a convex set is a concave function of it, the least of its distances from the supporting planes. So it
-    /// falls along the whole of a line along which it falls at first; and where it is `−s`, along the normal `n`, it changes with the
-    /// relative velocity `w` of `a` by `−n·w`. That is the least of several where several ways out are equally short. Where the shapes
-    /// touch in corners, `n` is one of many normals, along some of which they may part although they close in along `n`: there it
-    /// counts whether they certainly overlap a little later.
+    /// The depth of a point in a convex set is a concave function of the point: it is the least of the distances from the supporting planes.
+    /// So if it falls at first along a line, it falls along all of it. Where the depth is `−s`, along the normal `n`, it changes by `−n·w` with
+    /// the relative velocity `w` of `a`; if several ways out are equally short, by the least of these. If the shapes touch at corners, `n` is
+    /// one of many normals, and the shapes may part along another one although they close in along `n`. Then it counts whether they
+    /// certainly overlap a little later.
     #[cold]
     #[inline(never)]
     pub(crate) fn of_motion(

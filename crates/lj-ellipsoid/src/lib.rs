@@ -1,8 +1,9 @@
-//! The Löwner–John ellipsoids: the smallest around points, the largest inside a body, each with a certified gap.
+//! The Löwner–John ellipsoids: the one of least volume around points, and the one of greatest volume inside a polytope. Each comes with
+//! a certified bound on how far its volume is from the optimum.
 //!
 #![doc = include_str!("../doc/pair.svg")]
 //!
-//! Which ellipsoid encloses this link, and how much does it waste?
+//! Which ellipsoid encloses this bar, and how well does it fit?
 //!
 //! ```
 //! use lj_ellipsoid::{EnclosingOptions, InscribedOptions, enclosing, inscribed_in_hull};
@@ -15,7 +16,7 @@
 //! let outer = enclosing(&bar, EnclosingOptions::default())?;
 //! // Every point is inside, as evaluated in f64.
 //! assert!(bar.iter().all(|&corner| outer.ellipsoid.contains(corner)));
-//! assert!(outer.log_det_gap <= 1e-9); // certified: no smaller ellipsoid does, beyond this
+//! assert!(outer.log_det_gap <= 1e-9); // certified: no ellipsoid around the points is smaller by more than this
 //! assert!((outer.ellipsoid.semi_axes()[0] - 3.0 * 3f64.sqrt()).abs() < 1e-9);
 //!
 //! let inner = inscribed_in_hull(&bar, InscribedOptions::default())?;
@@ -26,18 +27,18 @@
 //! ```
 //!
 //! # What is here
-//! Around points: [`enclosing()`] and [`enclosing_with`] (an observer sees every iterate); [`MovingPoints`] where points come,
-//! go and move. [`EnclosingMethod`] selects among four algorithms. Points that span no volume are an error, or on request
-//! ([`FlatPolicy::AffineHull`]) a disc, a segment or a point.
+//! Around points: [`enclosing()`]; [`enclosing_with`] shows an observer every iterate, and [`MovingPoints`] keeps the answer while points
+//! are added, removed and moved. [`EnclosingMethod`] selects one of four algorithms. Points that span no volume are an error; with
+//! [`FlatPolicy::AffineHull`] their ellipsoid is a disc, a segment or a point.
 //!
-//! Inside a body: [`inscribed()`] for half-spaces, [`inscribed_in_hull()`] for the hull of points in 2D and 3D.
+//! Inside a polytope: [`inscribed()`] for an intersection of half-spaces, [`inscribed_in_hull()`] for the hull of points in 2D and 3D.
 //!
-//! Points are anything that converts into `[f64; N]`: arrays, glam's `DVec2` and `DVec3`, your own. Where the
-//! dimension is known at run time only, they are slices of one length: [`enclosing_dyn`], [`inscribed_dyn`].
+//! Points are anything that converts into `[f64; N]`: arrays, glam's `DVec2` and `DVec3`, or a type of your own. If the
+//! dimension is known only at run time, points are slices of one length: [`enclosing_dyn`], [`inscribed_dyn`].
 //!
 //! # What every answer says
-//! The gap is *certified*: computed from the duality of the problem, not from the size of the last step, with the rounding
-//! of its own evaluation added. [`Status`] tells whether it is what was asked for. Whatever the status, the
+//! The gap is *certified*: it is computed from the duality of the problem, not from the size of the last step, and the rounding
+//! of its own evaluation is added. [`Status`] tells whether it is as small as was asked for. Whatever the status, the
 //! enclosing ellipsoid contains every point and the inscribed one stays within every half-space, as evaluated in `f64`.
 //! All tolerances are relative: scaling the input by a power of two changes no bit of any mantissa.
 //!
@@ -46,12 +47,11 @@
 //!
 //! - `rayon`: passes over many points use all cores. The answer is the same to the last bit.
 //! - `convex-support`: conversions to that crate's `Ellipsoid`.
-//! - `serde`: options, half-spaces and answers as data, by any format of [serde](https://docs.rs/serde), read back to the last bit
-//!   (`serde_json` needs its feature `float_roundtrip` for that). An option that is left out has its default, and a gap
-//!   of which nothing is known is `null`. What is read
-//!   is checked: the ranges of options, and of an ellipsoid its dimension, its numbers, the order of its semi-axes and that its axes
-//!   are orthonormal. Errors can be written and not read. What observers are shown is left out, and [`MovingPoints`], which is made of
-//!   its points.
+//! - `serde`: options, half-spaces and answers as data, in any format of [serde](https://docs.rs/serde), read back to the last bit
+//!   (`serde_json` needs its feature `float_roundtrip` for that). An option that is left out has its default, and an unknown gap
+//!   is `null`. What is read is checked: options have to be in range, and an ellipsoid needs the right dimension, finite numbers, semi-axes
+//!   in order and orthonormal axes. Errors can be written but not read. What observers are shown is no data, nor is [`MovingPoints`], which
+//!   can be built again from its points.
 //!
 //! ```
 //! # #[cfg(feature = "serde")] {
@@ -93,7 +93,7 @@ pub use ellipsoid::Ellipsoid;
 pub use enclosing::{Enclosing, EnclosingIterate, MovingPoints, enclosing, enclosing_with};
 pub use error::{EnclosingError, InscribedError};
 pub use inscribed::{
-    Halfspace, Inscribed, InscribedIterate, inscribed, inscribed_in_hull, inscribed_in_hull_with, inscribed_with,
+    HalfSpace, Inscribed, InscribedIterate, inscribed, inscribed_in_hull, inscribed_in_hull_with, inscribed_with,
 };
 pub use options::{EnclosingMethod, EnclosingOptions, FlatPolicy, InscribedOptions, Status};
 pub use weight::Weight;

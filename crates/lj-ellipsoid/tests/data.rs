@@ -4,7 +4,7 @@
 use std::fmt::Debug;
 
 use lj_ellipsoid::{
-    Ellipsoid, EllipsoidDyn, EnclosingError, EnclosingMethod, EnclosingOptions, FlatPolicy, Halfspace,
+    Ellipsoid, EllipsoidDyn, EnclosingError, EnclosingMethod, EnclosingOptions, FlatPolicy, HalfSpace,
     InscribedOptions, enclosing, enclosing_dyn, inscribed, inscribed_dyn, inscribed_in_hull,
 };
 use serde::Serialize;
@@ -47,7 +47,7 @@ fn answers_are_read_back() {
         let options = InscribedOptions::new().with_max_iterations(steps);
         round_trip(&options);
         round_trip(&inscribed_in_hull(&points::<2>(), options).expect("they span the plane"));
-        let halfspaces = points::<3>().into_iter().map(|normal| Halfspace { normal, offset: 1.0 }).collect::<Vec<_>>();
+        let halfspaces = points::<3>().into_iter().map(|normal| HalfSpace { normal, offset: 1.0 }).collect::<Vec<_>>();
         round_trip(&halfspaces);
         round_trip(&inscribed(&halfspaces, options).expect("normals all around"));
         round_trip(&inscribed_dyn(&points::<4>(), &[1.0; 40], options).expect("normals all around"));
@@ -67,7 +67,7 @@ fn options_are_checked() {
     assert!(why(r#"{"flat_tolerance":-1.0}"#).starts_with("the flat tolerance must not be negative"), "negative");
     assert!(why(r#"{"epsilom":1.0}"#).starts_with("unknown field `epsilom`"), "a field that means nothing");
     assert!(from_str::<InscribedOptions>(r#"{"epsilon":-1.0}"#).is_err(), "negative");
-    assert!(from_str::<Halfspace<3>>(r#"{"normal":[1,2],"offset":0}"#).is_err(), "a normal of the plane");
+    assert!(from_str::<HalfSpace<3>>(r#"{"normal":[1,2],"offset":0}"#).is_err(), "a normal of the plane");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use crate::common::{Rng, apply, assert_contains};
 use lj_ellipsoid::{
-    EnclosingMethod, EnclosingOptions, Halfspace, InscribedOptions, Status, enclosing, inscribed, inscribed_in_hull,
+    EnclosingMethod, EnclosingOptions, HalfSpace, InscribedOptions, Status, enclosing, inscribed, inscribed_in_hull,
 };
 use proptest::prelude::*;
 
@@ -239,20 +239,20 @@ proptest! {
     /// Whatever half-spaces: what is inscribed keeps within every one as given, evaluated in `f64`.
     #[test]
     fn inscribed_stays_within_as_evaluated(rows in prop::collection::vec((prop::array::uniform3(-1.0..1.0f64), -6.0..6.0f64, 0.1..2.0f64), 4..40), shift in prop::array::uniform3(-1e6..1e6f64)) {
-        let mut halfspaces: Vec<Halfspace<3>> = rows
+        let mut halfspaces: Vec<HalfSpace<3>> = rows
             .into_iter()
             .map(|(normal, scale, room)| {
                 let normal = normal.map(|x| x * 10f64.powf(scale));
                 let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
                 let at: f64 = normal.iter().zip(shift).map(|(x, s)| x * s).sum();
-                Halfspace { normal, offset: at + room * length }
+                HalfSpace { normal, offset: at + room * length }
             })
             .filter(|h| h.normal != [0.0; 3])
             .collect();
         for k in 0..3 {
             for sign in [1.0, -1.0] {
                 let normal = std::array::from_fn(|l| if k == l { sign } else { 0.0 });
-                halfspaces.push(Halfspace { normal, offset: sign * shift[k] + 1.0 });
+                halfspaces.push(HalfSpace { normal, offset: sign * shift[k] + 1.0 });
             }
         }
         let answer = inscribed(&halfspaces, InscribedOptions::new()).expect("a body around the shift");

@@ -2,7 +2,7 @@
 
 use crate::common::Rng;
 use lj_ellipsoid::{
-    EnclosingError, EnclosingOptions, Halfspace, InscribedError, InscribedOptions, MovingPoints, Status, enclosing,
+    EnclosingError, EnclosingOptions, HalfSpace, InscribedError, InscribedOptions, MovingPoints, Status, enclosing,
     inscribed, inscribed_in_hull,
 };
 
@@ -11,7 +11,7 @@ use lj_ellipsoid::{
 fn numbers_out_of_range_are_errors_that_say_so() {
     let triangle = [[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]];
     let sides = [([1.0, 0.0], 1.0), ([-1.0, 1.0], 1.0), ([0.0, -1.0], 1.0)]
-        .map(|(normal, offset)| Halfspace { normal, offset });
+        .map(|(normal, offset)| HalfSpace { normal, offset });
     for epsilon in [f64::NAN, 0.0, -0.0, -1e-9, f64::NEG_INFINITY] {
         let why = enclosing(&triangle, EnclosingOptions::new().with_epsilon(epsilon)).unwrap_err();
         assert!(matches!(why, EnclosingError::InvalidEpsilon { .. }), "{why}");

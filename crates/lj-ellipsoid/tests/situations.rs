@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use crate::common::{Rng, apply, assert_contains, assert_near, corners};
 use lj_ellipsoid::{
-    EnclosingError, EnclosingMethod, EnclosingOptions, FlatPolicy, Halfspace, InscribedError, InscribedOptions, Status,
+    EnclosingError, EnclosingMethod, EnclosingOptions, FlatPolicy, HalfSpace, InscribedError, InscribedOptions, Status,
     enclosing, inscribed, inscribed_in_hull,
 };
 
@@ -326,7 +326,7 @@ fn s18_not_finite() {
             ),
             "the inscribed ellipsoid names it as well"
         );
-        let half = [Halfspace { normal: [1.0, 0.0], offset: 1.0 }, Halfspace { normal: [0.0, 1.0], offset: bad }];
+        let half = [HalfSpace { normal: [1.0, 0.0], offset: 1.0 }, HalfSpace { normal: [0.0, 1.0], offset: bad }];
         assert!(
             matches!(
                 inscribed(&half, InscribedOptions::new()),
@@ -337,12 +337,12 @@ fn s18_not_finite() {
     }
     assert_eq!(enclosing::<[f64; 2], 2>(&[], TIGHT).unwrap_err(), EnclosingError::Empty);
     assert_eq!(inscribed::<2>(&[], InscribedOptions::new()).unwrap_err(), InscribedError::Empty);
-    let zero = [Halfspace { normal: [0.0, 0.0], offset: 1.0 }];
+    let zero = [HalfSpace { normal: [0.0, 0.0], offset: 1.0 }];
     assert_eq!(inscribed(&zero, InscribedOptions::new()).unwrap_err(), InscribedError::ZeroNormal { index: 0 });
 }
 
-fn halfspaces<const N: usize>(rows: &[([f64; N], f64)]) -> Vec<Halfspace<N>> {
-    rows.iter().map(|&(normal, offset)| Halfspace { normal, offset }).collect()
+fn halfspaces<const N: usize>(rows: &[([f64; N], f64)]) -> Vec<HalfSpace<N>> {
+    rows.iter().map(|&(normal, offset)| HalfSpace { normal, offset }).collect()
 }
 
 /// Drake #20839: rows that are not normalised made the solver fail.
@@ -402,8 +402,8 @@ fn s19_polygons() {
         assert_near("radius at the middle of a side", answer.ellipsoid.radius_at(middle), 1.0, 1e-9);
     }
     for m in [4u32, 5, 17, 360] {
-        let sides: Vec<Halfspace<2>> = (0..m)
-            .map(|i| Halfspace { normal: (2.0 * PI * f64::from(i) / f64::from(m)).sin_cos().into(), offset: 1.0 })
+        let sides: Vec<HalfSpace<2>> = (0..m)
+            .map(|i| HalfSpace { normal: (2.0 * PI * f64::from(i) / f64::from(m)).sin_cos().into(), offset: 1.0 })
             .collect();
         let answer = inscribed(&sides, InscribedOptions::new()).expect("a polygon");
         assert_near("ln det of the unit disc", answer.ellipsoid.log_det(), 0.0, 1e-9);

@@ -3,7 +3,7 @@
 
 use crate::common::{Rng, apply, assert_near, corners};
 use lj_ellipsoid::{
-    Ellipsoid, EnclosingOptions, Halfspace, Inscribed, InscribedError, InscribedOptions, Status, enclosing, inscribed,
+    Ellipsoid, EnclosingOptions, HalfSpace, Inscribed, InscribedError, InscribedOptions, Status, enclosing, inscribed,
     inscribed_in_hull,
 };
 
@@ -14,14 +14,14 @@ const U: f64 = f64::EPSILON / 2.0;
 const WIDE: [f64; 2] = [1.0, 0.7];
 
 /// The six sides of a plate about `center`, turned at random.
-fn plate(rng: &mut Rng, thickness: f64, center: [f64; 3]) -> Vec<Halfspace<3>> {
+fn plate(rng: &mut Rng, thickness: f64, center: [f64; 3]) -> Vec<HalfSpace<3>> {
     let axes = rng.rotation::<3>();
     let mut sides = Vec::new();
     for (axis, half) in axes.into_iter().zip([WIDE[0], WIDE[1], thickness]) {
         for sign in [1.0, -1.0] {
             let normal = axis.map(|x| sign * x);
             let at: f64 = normal.iter().zip(center).map(|(n, c)| n * c).sum();
-            sides.push(Halfspace { normal, offset: at + half });
+            sides.push(HalfSpace { normal, offset: at + half });
         }
     }
     sides
@@ -34,7 +34,7 @@ fn lost_to_the_axes(thickness: f64) -> f64 {
 }
 
 #[track_caller]
-fn assert_within(answer: &Inscribed<3>, sides: &[Halfspace<3>]) {
+fn assert_within(answer: &Inscribed<3>, sides: &[HalfSpace<3>]) {
     for side in sides {
         let reach = answer.ellipsoid.support_value(side.normal);
         assert!(reach <= side.offset, "reaches {reach:e} in {side:?}");
@@ -56,9 +56,9 @@ fn turned_plates_of_any_thickness() {
             let mut sides = plate(&mut rng, thickness, [0.0; 3]);
             if round % 2 == 1 {
                 // Redundant ones, near and far.
-                let around = rng.sphere::<3>(40).into_iter().map(|normal| Halfspace { normal, offset: 2.0 });
+                let around = rng.sphere::<3>(40).into_iter().map(|normal| HalfSpace { normal, offset: 2.0 });
                 sides.extend(around);
-                sides.push(Halfspace { normal: [0.6, 0.0, 0.8], offset: 1e9 });
+                sides.push(HalfSpace { normal: [0.6, 0.0, 0.8], offset: 1e9 });
             }
             let answer = inscribed(&sides, InscribedOptions::new()).expect("a plate");
             assert_within(&answer, &sides);
@@ -98,19 +98,19 @@ fn plates_of_normals_of_any_length() {
 fn squashed<const N: usize>(seed: u64) {
     let mut rng = Rng(seed);
     for round in 0..100 {
-        let round_body: Vec<Halfspace<N>> = rng
+        let round_body: Vec<HalfSpace<N>> = rng
             .sphere::<N>(4 * N + 10)
             .into_iter()
-            .map(|normal| Halfspace { normal, offset: 0.3 + rng.unit() })
+            .map(|normal| HalfSpace { normal, offset: 0.3 + rng.unit() })
             .collect();
         let Ok(upright) = inscribed(&round_body, InscribedOptions::new()) else { continue };
         // x' = R·diag(d)·x, so the normals become R·diag(1/d)·a.
         let squash: [f64; N] = std::array::from_fn(|_| 10f64.powf(-13.0 * rng.unit()));
         let rotation = rng.rotation::<N>();
         let turn = |v: [f64; N]| if round % 2 == 0 { v } else { apply(&rotation, v) };
-        let thin: Vec<Halfspace<N>> = round_body
+        let thin: Vec<HalfSpace<N>> = round_body
             .iter()
-            .map(|h| Halfspace { normal: turn(std::array::from_fn(|k| h.normal[k] / squash[k])), offset: h.offset })
+            .map(|h| HalfSpace { normal: turn(std::array::from_fn(|k| h.normal[k] / squash[k])), offset: h.offset })
             .collect();
         let answer = inscribed(&thin, InscribedOptions::new()).expect("a body");
         for side in &thin {
@@ -162,7 +162,7 @@ fn aligned_plates() {
                 ([0.0, 1.0], thickness),
                 ([0.0, -1.0], thickness),
             ]
-            .map(|(normal, offset)| Halfspace { normal, offset });
+            .map(|(normal, offset)| HalfSpace { normal, offset });
             let answer = inscribed(&sides, InscribedOptions::new()).expect("a plate");
             assert_eq!(answer.status, Status::Converged, "gap {:e} at {thickness:e}", answer.log_det_gap);
             let [long, short] = answer.ellipsoid.semi_axes();
@@ -301,11 +301,11 @@ fn a_bounded_needle_is_not_called_unbounded() {
             let mut sides = Vec::new();
             for third in 0..3 {
                 let (sine, cosine) = (std::f64::consts::TAU / 3.0 * f64::from(third)).sin_cos();
-                sides.push(Halfspace { normal: [cosine / long, sine], offset: 1.0 });
+                sides.push(HalfSpace { normal: [cosine / long, sine], offset: 1.0 });
             }
             for _ in 0..30 {
                 let (sine, cosine) = (3.0 * rng.normal()).sin_cos();
-                sides.push(Halfspace { normal: [cosine / long, sine], offset: 1.5 });
+                sides.push(HalfSpace { normal: [cosine / long, sine], offset: 1.5 });
             }
             let answer = inscribed(&sides, InscribedOptions::default()).expect("it is bounded");
             let [a, b] = [answer.ellipsoid.semi_axes()[0], answer.ellipsoid.semi_axes()[1]];

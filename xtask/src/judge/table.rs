@@ -236,10 +236,17 @@ corners of either, each with a weight of 0.004 at least.
 
 /// What the columns are.
 const INTRODUCTION: &str = "\
-Every answer is held against a bracket that is proved by geometry, not against an answer of ours. *Right*: within what is allowed, a \
-length: the tolerance that the library documents, for some a part of the motion, or the rounding of the precision, whichever is most. *Off*: the hit, miss, overlap or \
-gap is as said, its time or length is not. *Disproved*: a hit, miss, overlap or gap that is shown not to be, by more than is allowed: \
-bodies that are apart at the time of a claimed hit, that are deep in one another on the way of a claimed miss. *No answer*: an error. \
-*Open*: the bracket did not close; or a miss, where rounding decides whether a corner is met. Shapes that a library does not have are not asked of it, nor what its documentation leaves undefined. An error is a length in parts of the reach of \
-the scene, the distance from the origin of the farthest corner of a body's box: of a time, how far the bodies are from touching then, or how far they \
-moved on since they did.";
+Every answer is compared with a bracket that is proved by geometry, not with an answer of ours. It is
+
+- *right* if its error is at most what is allowed. That is a length, the greatest of these: the tolerance that \
+the library documents, for some libraries a part of the motion, and the rounding of the precision.
+- *off* if the hit, miss, overlap or gap is as claimed, but its time or length is not right.
+- *disproved* if the claimed hit, miss, overlap or gap is proved to be false, by more than what is allowed: the \
+bodies are apart at the time of a claimed hit, or deep in one another on the way of a claimed miss.
+- *no answer* if the library returned an error.
+- *open* if the bracket did not close, or if it is a miss and only rounding decides whether a corner is met.
+
+A library is not asked about shapes that it does not have, nor about cases that its documentation leaves \
+undefined. An error is a length in units of the reach of the scene, the distance from the origin of the farthest \
+corner of a body's box. The error of a time is how far the bodies are from touching at that time, or how far \
+they have moved since they touched.";

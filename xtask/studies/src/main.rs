@@ -28,24 +28,24 @@ struct Arguments {
 enum Task {
     /// Compare answers with the truth, and write the report: error against run time.
     ///
-    /// Exit status: 0 where everything is right, 1 where some answer is wrong, 2 where a file could not be read.
+    /// Exit status: 0 if everything is right, 1 if some answer is wrong, 2 if a file could not be read.
     Validate(validate::Scope),
     /// Move a robot along its trajectory among obstacles: ellipsoids first, exact distances where they cannot decide.
     ///
-    /// Exit status: 0, or 1 where an answer differs from the truth given, or 2 where a file could not be read.
+    /// Exit status: 0, or 1 if an answer differs from the given truth, or 2 if a file could not be read.
     Scene(scene::Choice),
-    /// Cast rays at every scale, and hold them against references in thirty digits; the same for linear casts and distances.
+    /// Compare ray casts, linear casts, distances and derivatives with references in thirty digits, at every scale.
     ///
-    /// Exit status: 0 where everything is right, 1 where some answer is wrong, 2 where the table could not be written.
+    /// Exit status: 0 if everything is right, 1 if some answer is wrong, 2 if the table could not be written.
     Sweep(sweep::Scope),
     /// Hold the answers of other libraries, and ours, against what is proved; one table and one figure.
     ///
-    /// Exit status: 0, or 1 where a bracket of ours does not hold the truth or a claim of ours is disproved, or 2 where a file
+    /// Exit status: 0, or 1 if a bracket of ours does not hold the truth or a claim of ours is disproved, or 2 if a file
     /// could not be read or written.
     Judge(judge::Scope),
     /// Measure how the time of each question to a scene grows with the number of its bodies, and draw it.
     ///
-    /// Exit status: 0, or 2 where a file could not be written.
+    /// Exit status: 0, or 2 if a file could not be written.
     Growth(scene_growth::Choice),
     /// Draw the descent of GJK in the plane, step by step.
     Book2d {

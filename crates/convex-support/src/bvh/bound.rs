@@ -10,12 +10,12 @@ use crate::glam::Vec4;
 use crate::numerics::range::is_comfortable;
 use crate::{Aabb, Scalar, Vector};
 
-/// A lower bound on a quantity, such as a distance, of everything that lies in a box.
+/// A question to a tree of boxes: a lower bound on a quantity, such as a distance, for everything that lies in a box.
 ///
-/// The bound of an item's own box decides whether the item is [shown](super::Bvh::search). Which boxes around it are looked into is
-/// decided by [rougher](RoughBound) bounds, in single precision and for four boxes at once. An implementor must obey one law, whatever
-/// rounding does: *where the bound of a box is at most a limit, so is the rough bound of every box around it.* Then what a search
-/// leaves out depends on the items' boxes alone, not on the tree.
+/// The bound of an item's own box decides whether the item is [shown](super::Bvh::search). Which nodes are looked into is
+/// decided by [rougher](RoughBound) bounds of their boxes, in single precision and for four boxes at once. An implementor must obey one
+/// law, whatever rounding does: *if the bound of a box is at most a limit, so is the rough bound of every box around it.* Then what a
+/// search leaves out depends on the items' boxes alone, not on the tree.
 pub trait Bound<V: Vector> {
     /// The same question in single precision.
     type Rough: RoughBound;

@@ -6,11 +6,11 @@ use crate::bounds::core_box;
 use crate::{Aabb, Core, CoreKind, Scalar, ScalarOf, SupportMap, Vector};
 
 /// A box that contains the set that the shape stands for, and every point that a query computes of it: the
-/// [`bounding_box`](crate::bounding_box) grown by 32 ε of the numbers that the shape is computed from, and by what its core is
-/// [known](Core::error) to. `None` if a number is not finite.
+/// [`bounding_box`](crate::bounding_box), grown by 32 ε of the numbers that the shape is computed from and by the
+/// [error](Core::error) of its core. `None` if a number is not finite.
 ///
-/// A query's answer is that of a shape which is off by its rounding, a few ε of the origin, the core's extent and the
-/// radius. Since the box has room for that, a body whose box shows it to be farther than an answer is also farther by its
+/// The answer of a query is that of a shape which is off by rounding, a few ε of the origin, the core's extent and the
+/// radius. The box has room for that. So if the box of a body is farther away than some answer, the body is farther away also by its
 /// own query, not only in truth.
 #[inline]
 #[must_use]

@@ -22,11 +22,11 @@ const STACK_WITHIN: usize = 2 * (WIDTH - 1) * (MAX_DEPTH + 1) + 1;
 const BATCH: usize = 32;
 
 impl<V: Vector> Bvh<V> {
-    /// Shows the items whose bound is at most `limit`, mostly the least bound first, and returns the number of nodes that
+    /// Calls `visit` for the items whose bound is at most `limit`, mostly the least bound first, and returns the number of nodes that
     /// were looked into.
     ///
-    /// `visit` is given an item and its bound, and answers with the limit from then on, or breaks off. An item whose bound
-    /// exceeds the limit that holds at the end may have been shown or not; every other has been.
+    /// `visit` is given an item and its bound, and returns the limit from then on, or breaks off. If the bound of an item is at most the
+    /// limit that holds at the end, the item has been visited; other items may have been visited too.
     pub fn search<B: Bound<V>>(
         &self,
         question: &B,

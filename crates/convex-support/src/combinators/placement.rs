@@ -9,8 +9,8 @@ use crate::numerics::bound::{image, raised, raised_vector, roundings, roundings_
 use crate::numerics::twofold::{dot_minus, lost_in_sum};
 use crate::{Core, Matrix, Rounding, Scalar, Vector};
 
-/// What the rounding of `matrix·origin + translation` loses, for a shape of the given size; but for the roundings of the product, where
-/// the shape is [near](is_near) zero.
+/// What the rounding of `matrix·origin + translation` loses, for a shape of the given size. If the shape is [near](is_near) zero, the
+/// roundings of the product are not included.
 ///
 /// # Errors
 /// [`InvalidShape::TooLarge`] if that overflows.
@@ -42,10 +42,10 @@ pub(super) fn is_near<V: Vector>(origin: V, size: V::Scalar) -> bool {
     origin.abs().max_element() <= size
 }
 
-/// What rounding moves the image of a set by, as a length.
+/// A bound on how far rounding moves the image of a set.
 ///
-/// With `u = ε/2` and `n` dimensions, a product with a matrix of norm `scale` loses `n·√n·u` of that, and so does the direction in the
-/// shape's frame, by which a point found along it is short of the farthest by twice that times its extent.
+/// With `u = ε/2` and `n` dimensions, a product with a matrix of norm `scale` loses `n·√n·u·scale` of the length of the vector. The
+/// direction in the shape's frame loses as much, so that the point found along it is short of the farthest by twice that times the extent.
 #[inline(always)]
 pub(super) fn length_of_error<V: Vector>(
     core: &Core<V>,
@@ -133,9 +133,9 @@ fn without<V: Vector>(v: V, left_out: [bool; 3]) -> V {
 /// A linear map and a translation, and what is known of their rounding.
 pub(super) struct Placement<'a, V: Vector> {
     pub(super) matrix: &'a V::Matrix,
-    /// A bound on what every entry of the matrix is wrong by, but for rows `±eⱼ`.
+    /// A bound on the error of every entry of the matrix, except in rows `±eⱼ`, which are exact.
     pub(super) matrix_error: V::Scalar,
-    /// How much longer a vector becomes at most, where the matrix keeps lengths, or all of them in one ratio, to rounding.
+    /// If the matrix multiplies all lengths by one factor, to rounding: a bound on that factor.
     pub(super) scale: Option<V::Scalar>,
     pub(super) translation: V,
     /// What the rounding of the origin lost.
@@ -145,14 +145,14 @@ pub(super) struct Placement<'a, V: Vector> {
 }
 
 impl<V: Vector> Placement<'_, V> {
-    /// What is known of the image `matrix·k(matrixᵀd) + lost` of a core about `origin`, whose points are at most `length` long.
+    /// Bounds on the rounding of the image `matrix·k(matrixᵀd) + lost` of a core about `origin`, whose points are at most `length` long.
     ///
-    /// With `u = ε/2`, and with rows and columns `±eⱼ` exact, since a row has two exact zeros only where the rotation has:
+    /// With `u = ε/2`, and with rows and columns `±eⱼ` exact, since a row has two exact zeros only if the rotation has:
     /// - the product of a row with `k` is wrong by `3u·Σ|mᵢⱼ|·extentⱼ`, and the sum with what was lost by `u`;
     /// - the direction in the shape's frame is wrong by `3u·|matrixᵀ|·|d|`, so that a point found along it may be short of the
     ///   farthest by that times twice the extent: `|d|·(6u·|matrix|·extent)`;
-    /// - the matrix itself is wrong, which moves the core and its origin;
-    /// - what was lost is known to `u` of itself and `16ε²` of the numbers it comes of.
+    /// - the error of the matrix itself moves the core and its origin;
+    /// - what was lost is known to `u` of itself and to `16ε²` of the numbers that it was computed from.
     pub(super) fn image(&self, shape: Rounding<V>, origin: V, length: V::Scalar) -> Rounding<V> {
         let (zero, m) = (V::Scalar::ZERO, self.matrix);
         let Exact { rows, columns } = Exact::of(m);

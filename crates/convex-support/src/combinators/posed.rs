@@ -31,7 +31,7 @@ use crate::{
 pub struct Posed<S: SupportMap> {
     /// What the support points of the core are wrong by at most, as a length.
     error: ScalarOf<S>,
-    /// How far points are at most from where they would be if the transpose of the rotation were its inverse, beside that.
+    /// A further bound: how far points are from where they would be if the transpose of the rotation were exactly its inverse.
     skew: ScalarOf<S>,
     /// What every entry of the rotation is wrong by at most, but for rows along a coordinate axis, in units of epsilon.
     rotation_error: ScalarOf<S>,

@@ -1,10 +1,10 @@
-//! What is certain about where a line enters a shape, of what its closed form computes.
+//! Bounds on where a line enters a shape that are certain, from its closed form.
 //!
-//! A closed form computes the crossing of a line that is nowhere near the shape farther from the true one than an error `e`: a few
-//! roundings of the size and of the distance of the line's source, no more than [`NEAR`] sizes, and what rounding has done to the shape.
-//! So a line misses for certain that passes at more than `e`. And it enters for certain between two of its parameters, if the point at the
-//! first is more than `e` outside of the shape and that at the second more than `e` inside: the shape is convex, so that no point
-//! before the first is in it.
+//! A closed form computes the crossing of a slightly wrong line. Near the shape, that line is nowhere farther from the true one than an error
+//! `e`: a few roundings of the size and of the distance of the line's source, which is no more than [`NEAR`] sizes, and the rounding of
+//! the shape itself. So a line certainly misses if it passes at more than `e`. And it certainly enters between two of its parameters if the
+//! point at the first is more than `e` outside of the shape and the point at the second more than `e` inside: since the shape is convex, no
+//! point before the first is in it.
 
 use num_traits::Float as _;
 
@@ -20,25 +20,25 @@ use crate::{Cone, Matrix, Scalar, Vector, Vector3};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub enum CertainCrossing<V: Vector> {
-    /// The line misses the set: a plane across this vector, which is across the line and of any length, has the set behind it and the
-    /// line before it.
+    /// The line misses the set. The vector is across the line and of any length; a plane across it has the set behind it and the line
+    /// before it.
     Misses(V),
     /// The line meets the set.
     Enters {
         /// Where it enters.
         entry: V::Scalar,
-        /// It enters between these, for certain, to the rounding of the parameters themselves.
+        /// It certainly enters between these, to the rounding of the parameters themselves.
         bounds: [V::Scalar; 2],
         /// The unit outward normal there; one of them at an edge or a corner.
         normal: V,
     },
 }
 
-/// From how many sizes away a line is looked at, at most.
+/// The greatest distance of a line's source, in sizes, that the bounds here are for.
 const NEAR: f64 = 8.0;
 
-/// What a closed form is wrong by at most, as a displacement of the line near the shape, in units of ε times the size and times the distance
-/// of the line's source.
+/// The error of a closed form, as a displacement of the line near the shape, is at most the sum of these, in units of ε times the distance of
+/// the line's source and times the size.
 ///
 /// With `u = ε/2`, a distance `D` and a size `S`, the difference from the origin loses `uD`. From there:
 /// - to a ball, the foot of the line loses `uD + uS` in the step and its sum; its square, the radius and the difference `2.5uS`. Along
@@ -50,7 +50,7 @@ const NEAR: f64 = 8.0;
 const OF_DISTANCE: f64 = 2.5;
 const OF_SIZE: f64 = 6.0;
 
-/// What a line that is taken from its foot before it is turned loses beside that, in units of ε times the size.
+/// The further error of a line that is taken from its foot and then turned, in units of ε times the size.
 ///
 /// The foot loses `3uD + 2uS`. That is no more than 2 sizes from the origin where it matters, and one for a hit, which is within a
 /// size from there: the products with a rotation lose `3√3u` of both lengths, and those with the semi-axes of an ellipsoid `2u`, in all `15uS`;
@@ -66,7 +66,7 @@ pub(crate) struct NearLine<V: Vector> {
     pub(crate) direction: V,
     /// The size of the shape.
     size: V::Scalar,
-    /// What the crossing of the line is wrong by at most, as a displacement.
+    /// A bound on the error of the line's crossing, as a displacement of the line.
     pub(super) error: V::Scalar,
 }
 
@@ -103,8 +103,8 @@ impl<V: Vector> NearLine<V> {
         Self { base: self.base + base, source, error, ..*self }
     }
 
-    /// The line in the frame of a shape that is the image of another under a rotation: what is certain there
-    /// of `shape`, a set about zero, by a source, a direction and an error.
+    /// The crossing of a turned shape: `shape` finds the crossing of the set about zero that was turned, given the source, the direction
+    /// and the error of the line in its frame.
     #[inline(always)]
     pub(crate) fn turned(
         &self,
@@ -144,8 +144,9 @@ impl<V: Vector> NearLine<V> {
 
     /// A box about zero: the line is in all of its slabs, each smaller and larger by the error.
     ///
-    /// A line that is parallel to a slab divides by zero, and is in it from `−∞` to `∞` or nowhere; `0/0`, in the plane of a side that was
-    /// moved by the error, compares false and leaves things as they are: it is in that slab still, or not known to miss it.
+    /// For a line that is parallel to a slab this divides by zero, and the line is in the slab from `−∞` to `∞` or nowhere. If it lies in the
+    /// plane of a side that was moved by the error, `0/0` compares false and changes nothing: the line counts as being in that slab, or as
+    /// not known to miss it.
     #[inline(always)]
     pub(crate) fn cuboid(&self, half_extents: V) -> Option<CertainCrossing<V>> {
         let Self { source, direction, error, .. } = *self;
@@ -245,9 +246,9 @@ impl<V: Vector> NearLine<V> {
             .then(|| self.enters([entry - slack, entry, entry + slack], cap.normal(radius, direction, recip)))
     }
 
-    /// A set about zero that tells its closest point and how far it reaches, swept by a ball, of which the closed form told a crossing.
+    /// A set about zero, swept by a ball, whose crossing has a closed form and whose closest points and support values are known.
     ///
-    /// The points at `1.5e` before and behind the surface, as it is seen along the normal at the entry, are measured against the set.
+    /// The points at `1.5e` before and behind the surface, along the normal at the entry, are measured against the set.
     #[inline(always)]
     pub(crate) fn swept(
         &self,
@@ -275,10 +276,10 @@ impl<V: Vector> NearLine<V> {
         is_certain.then(|| self.enters([entry - slack, entry, entry + slack], normal))
     }
 
-    /// The line misses a set, swept by a ball, that reaches along an axis as far as is told, if that is less by more than the error.
+    /// A miss, if along `axis` the line passes beyond the given support value of the set, and the radius of the ball, by more than the error.
     ///
-    /// Of the line only what is near the set counts, at most `NEAR + 1` sizes from the source: there it comes no nearer than by that times
-    /// `|n·d|/|d|`. That product loses `3u`, which is `27u` of the size there, and `n·x` another `24u`: more than one error, and less than two.
+    /// Only the part of the line near the set counts, at most `NEAR + 1` sizes from the source. There it comes nearer by at most that length
+    /// times `|n·d|/|d|`. This product loses `3u`, which is `27u` of the size, and `n·x` another `24u`: more than one error, and less than two.
     #[inline(always)]
     fn passes(&self, axis: V, support_value: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let reach = self.size * V::Scalar::from_f64(NEAR + 1.0) / self.direction.abs().max_element();
@@ -367,12 +368,12 @@ impl<V: Vector3> NearLine<V> {
 }
 
 impl<V: Vector> Chord<V> {
-    /// By how much the ends of the chord that a ball cuts out of the line may be wrong, if all that is known of them is wrong by an `error`;
-    /// `None` where the line may miss the ball. `recip` is `1/|direction|²`.
+    /// A bound on the error of the ends of the chord that a ball cuts out of the line, if the line is displaced by up to `error`;
+    /// `None` if the line may miss the ball. `recip` is `1/|direction|²`.
     ///
     /// With the half `m`, `F = |x|² − r²` is `|d|²·σ·(σ ∓ 2m)` at `σ` within or before an end. With `σ = 1.25·e·r/(m|d|²)`, which is less
-    /// than `m/8` if `m²|d|² > 10er`, that is less than `−2.3er` and more than `2.5er`: one point is deeper than `e`, and the other
-    /// farther out.
+    /// than `m/8` if `m²|d|² > 10er`, `F` is less than `−2.3er` at the one and more than `2.5er` at the other: one point is deeper than
+    /// `e`, and the other farther out.
     #[inline(always)]
     fn slack(&self, radius: V::Scalar, error: V::Scalar, recip: V::Scalar) -> Option<V::Scalar> {
         let number = V::Scalar::from_f64;

@@ -37,7 +37,7 @@ use crate::numerics::range::is_comfortable;
 use crate::shapes::across;
 use crate::{Core, Scalar, SupportMap, Vector, Vector3};
 
-/// The stretch of a line that lies in a convex set: `{ λ : source + λ·direction ∈ C }` is the interval from `entry` to
+/// The part of a line that lies in a convex set: `{ λ : source + λ·direction ∈ C }` is the interval from `entry` to
 /// `exit`, in units of the direction.
 ///
 /// It is about the whole line: for a ray, an `entry` below 0 means that the source is inside, and an `exit` below 0 that
@@ -99,10 +99,10 @@ impl<V: Vector> Crossing<V> {
     serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
 )]
 pub enum LineCrossing<V: Vector> {
-    /// There is no closed form here.
+    /// The shape has no closed form, or none in this case.
     Unknown,
-    /// The line misses the set. A vector across the line, of any length: where it is not zero, a plane across it has the set behind
-    /// it and the line before it. Algorithms check that.
+    /// The line misses the set. The vector is across the line and of any length. If it is not zero, a plane across it has the set behind
+    /// it and the line before it; algorithms check that.
     Misses(V),
     /// The stretch of the line that is in the set.
     Crosses(Crossing<V>),
@@ -142,9 +142,10 @@ impl<V: Vector> From<Crossed<V>> for LineCrossing<V> {
 
 /// Where the line through `source` along `direction` is in a shape.
 ///
-/// For ray tracers, and as the independent reference of ray casts that only use the support mapping. Points, segments, triangles,
-/// balls, boxes, capsules, cylinders, cones and ellipsoids have closed forms, and so have the first six of these swept by a ball.
-/// Poses, invertible affine maps, roundings and sums with a point pass them through, behind any pointer.
+/// This is for ray tracers, and it is an independent reference for ray casts that only use the support mapping. Points, segments,
+/// triangles, balls, boxes, capsules, cylinders, cones and ellipsoids have closed forms, and so have the first six of these swept by a
+/// ball. It also works through poses, invertible affine maps, roundings and sums with a point, and behind any pointer. For other
+/// shapes the answer is [`LineCrossing::Unknown`].
 ///
 /// ```
 /// use convex_support::{Cone, Cuboid, LineCrossing, Posed, Rounded, glam::DVec3, line_crossing};

@@ -10,7 +10,8 @@ use crate::{
 };
 
 /// The segment from `(0, −half_height)` to `(0, half_height)` along the second axis, swept by a ball. Its core is the
-/// segment.
+/// segment. [`Posed`](crate::Posed) puts it elsewhere. A capsule between two given points can also be had as
+/// `Rounded::new(Segment::new([a, b])?, radius)`; its distances take a search, where those of two capsules have a closed form.
 ///
 /// ```
 /// use convex_support::{Capsule, SupportMap, glam::DVec2};

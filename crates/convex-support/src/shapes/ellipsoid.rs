@@ -93,8 +93,8 @@ impl<V: Vector> Ellipsoid<V> {
 
     /// The ellipsoid `{ x : (x − center)ᵀ·matrix·(x − center) ≤ 1 }`.
     ///
-    /// What it stands for from then on are the semi-axes that are found. The axes are found from a pivoted Cholesky factor by one-sided Jacobi rotations in `f64`: semi-axes are
-    /// as accurate, relative to themselves, as the matrix determines them.
+    /// The axes and semi-axes are found from a pivoted Cholesky factor by one-sided Jacobi rotations in `f64`: each semi-axis is
+    /// as accurate, relative to itself, as the matrix determines it. From then on the ellipsoid is the one that these describe.
     ///
     /// # Errors
     /// [`InvalidShape`] if a number is not finite, or the matrix is not symmetric or not positive definite to rounding.

@@ -1,4 +1,4 @@
-//! What a clearance answers.
+//! The answers of a clearance.
 
 use convex_support::Vector;
 

@@ -6,7 +6,7 @@ use super::contact::{Contact, Form, Mover};
 use crate::Wedge;
 use crate::numerics::{Vec, load, load_columns, store};
 
-/// How a quantity changes with the motion of one of the two ellipsoids: a force at a point.
+/// The derivative of a quantity by the motion of one of the two ellipsoids. It is like a force that acts on the body at a point.
 ///
 /// It is zero where the quantity is at its floor: the margin where x₁ lies in E₂, the distance where the bodies overlap, the
 /// common scale where they are concentric.
@@ -31,14 +31,14 @@ impl<V: Wedge> MotionGradient<V> {
         V::bivector(|i| V::coordinates(&self.rotation)[i] + V::coordinates(&carried)[i])
     }
 
-    /// The change per radian of a revolute joint through `pivot` about the unit `axis` (in 2D: 1 for counter-clockwise),
-    /// with the body downstream of it: one entry of ∂/∂q.
+    /// The change per radian of a revolute joint that carries the body, about the unit vector `axis` through `pivot` (in 2D an axis of
+    /// 1 is counter-clockwise): one entry of the gradient by the joint angles.
     #[must_use]
     pub fn revolute(&self, pivot: V, axis: V::Bivector) -> V::Scalar {
         V::bivector_dot(self.rotation_about(pivot), axis)
     }
 
-    /// The change per length of a prismatic joint along the unit `axis`, with the body downstream of it.
+    /// The change per unit of length of a prismatic joint that carries the body, along the unit vector `axis`.
     #[must_use]
     pub fn prismatic(&self, axis: V) -> V::Scalar {
         self.translation.dot(axis)

@@ -1,8 +1,8 @@
-//! What proves the bracket of an answer, for whoever would rather check than trust (`docs/certificates.md`).
+//! Proofs of the brackets of answers, for checkers that do not trust the solver (`docs/certificates.md`).
 //!
-//! A bracket has two ends, and each is proved by few numbers. The lower one by a plane that has all of the set `C` behind it,
-//! where `C` is the target of a ray, or `A − B`; the upper one by points of `C`, each told by a direction along which it is
-//! farthest. Both are found again here after the answer, of the original shapes, so that nothing is paid by who does not ask.
+//! A bracket has two ends, and a few numbers prove each. The lower end is proved by a plane that has all of the set `C` behind it,
+//! where `C` is the target of a ray, or `A − B`. The upper end is proved by points of `C`, each given by a direction along which it is
+//! farthest. Both are computed here after the answer, from the original shapes, so that a query without a certificate takes no longer.
 
 mod points;
 
@@ -20,11 +20,11 @@ use crate::{Distance, Intersection, LinearCast, Motion, Outcome, Ray, RayCast};
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Certificate<V: Vector> {
-    /// A vector `n` across a plane that has the target behind it, and the ray's start or all of the ray before it; for two shapes
-    /// it points from `b` to `a`, and the plane has `b` behind it and `a` before it. `None` where nothing below is claimed.
+    /// A normal of a plane that has the target behind it, and the start of the ray, or all of the ray, before it. For two shapes the normal
+    /// points from `b` to `a`, and the plane has `b` behind it and `a` before it. `None` if the answer claims no lower bound.
     pub plane: Option<V>,
-    /// At most one more point of the core `K` than there are dimensions. Their weighted mean is the closest point found, or
-    /// where the ray enters; the weights are not negative, and their sum is 1 to rounding. Empty where nothing above is claimed.
+    /// Points of the core `K`, at most one more than there are dimensions. Their weighted mean is the closest point found, or the point
+    /// where the ray enters. The weights are not negative, and their sum is 1 to rounding. Empty if the answer claims no upper bound.
     pub points: Vec<WeightedSupport<V>>,
 }
 
@@ -38,8 +38,8 @@ impl<V: Vector> Certificate<V> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WeightedSupport<V> {
-    /// No other point of the core is farther along this direction, of any length: with few decimals, and not along the normal of
-    /// a face, so that it tells one corner however it is rounded.
+    /// The point is the farthest of the core along this direction, which may have any length. It has few decimals, and is not along the
+    /// normal of a face, so that it identifies one corner in whatever precision it is used.
     pub direction: V,
     /// Its weight; in double precision, as it is measured from the numbers of the shape.
     pub weight: f64,

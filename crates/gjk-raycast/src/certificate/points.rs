@@ -1,8 +1,8 @@
-//! Points of a core whose weighted mean is the one that is looked for, each told by a direction.
+//! Points of a core whose weighted mean is a given point, each identified by the direction along which it is farthest.
 //!
-//! It is known where on the core that point is, and the normal there. What is looked for are directions that tell the points around it
-//! for certain: not the normal itself, along which all of a face is farthest, but directions that are turned from it by a bit,
-//! towards each corner in turn. How big a bit depends on the surface, and is tried.
+//! The given point is on the core, and the normal there is known. The normal itself does not identify a point if all of a face is farthest
+//! along it. So the search looks along directions that are turned from it a little, towards each corner of the face. How far they have
+//! to be turned depends on the surface, and is found by trial.
 
 use alloc::vec::Vec;
 
@@ -19,16 +19,16 @@ pub(super) fn wide<V: Vector>(v: V) -> DVec3 {
     DVec3::new(v.get(0).as_f64(), v.get(1).as_f64(), if V::DIM == 3 { v.get(2).as_f64() } else { 0.0 })
 }
 
-/// The support map of a core, about the point that is looked for.
+/// The support map of a core, relative to the given point.
 pub(super) type Support<'s, V> = dyn FnMut(V) -> DVec3 + 's;
 
-/// How the point that is looked for, here zero, is seen from the core.
+/// What is known about the given point, which is zero here.
 #[derive(Clone, Copy)]
 pub(super) struct Seen {
     pub(super) radius: f64,
     /// A bound on all lengths.
     pub(super) size: f64,
-    /// The outward normal there, of any length; `None` within.
+    /// The outward normal there, of any length; `None` if the point is inside the core.
     pub(super) normal: Option<DVec3>,
     /// The direction of the ray through it.
     pub(super) along: Option<DVec3>,
@@ -41,9 +41,9 @@ struct Found<V> {
     point: DVec3,
 }
 
-/// How far directions are turned away from a normal: a flat face shows one corner at a time only along directions beside its
-/// normal, so far that rounding cannot tell them from it; a curved one is left by half the square of that, and a polytope of many
-/// nearly parallel faces shows that of the normal alone where the turn is less than what they are turned by.
+/// The angles by which directions are turned away from a normal, from large to small. A flat face shows one corner at a time only if the angle
+/// is larger than rounding. On a curved surface the points found leave it by half the square of the angle. A polytope of many nearly
+/// parallel faces shows only the face of the normal if the angle is smaller than those between its faces.
 fn turns<S: Scalar>() -> impl Iterator<Item = f64> {
     let mut turn = 8.0;
     core::iter::from_fn(move || {
@@ -73,7 +73,7 @@ pub(super) fn points<V: Vector>(support: &mut Support<'_, V>, seen: &Seen) -> Ve
             };
             let simplex = search.simplex;
             let length = simplex.mean().length();
-            // What is gained must be more than rounding: coarser turns are told more surely.
+            // A smaller angle has to gain more than rounding, since larger ones identify points more reliably.
             if left <= 0.0 || length < best.length - rounding || best.simplex.found.is_empty() {
                 best = Best { length, left, simplex };
             }
@@ -84,14 +84,14 @@ pub(super) fn points<V: Vector>(support: &mut Support<'_, V>, seen: &Seen) -> Ve
     }
     let is_outside = best.left > 0.0 && normal.is_none() && seen.along.is_some();
     if let Some(outward) = best.simplex.mean_direction().filter(|_| is_outside) {
-        // A ray that begins on the boundary, to rounding, and not within: the directions found are about the normal there.
+        // The ray begins on the boundary, to rounding, and not inside; the mean of the directions found is about the normal there.
         let (radius, size) = (seen.radius * scale, seen.size * scale);
         return points(support, &Seen { radius, size, normal: Some(outward), ..seen });
     }
     best.simplex.weighted().collect()
 }
 
-/// The best points so far, how far their mean is from zero, and how much of that is left to gain.
+/// The best points so far, the distance of their mean from zero, and how much of it a better choice could gain.
 struct Best<V> {
     length: f64,
     left: f64,
@@ -135,7 +135,8 @@ impl<V: Vector> Simplex<V> {
         self.found.into_iter().zip(self.weights).map(|(f, weight)| WeightedSupport { direction: f.direction, weight })
     }
 
-    /// Keeps the face closest to zero as `seen`, in as many dimensions, with its weights; and the vector there, as seen.
+    /// Keeps the face closest to zero, with its weights, after the projection `seen` into so many dimensions. Returns the projected vector
+    /// to its closest point.
     fn reduce(&mut self, dimension: usize, seen: impl Fn(DVec3) -> DVec3) -> Option<DVec3> {
         let points: Vec<DVec3> = self.found.iter().map(|f| seen(f.point)).collect();
         let closest = nearest_face(&points, dimension)?;
@@ -159,7 +160,7 @@ enum Care {
 }
 
 impl Care {
-    /// After a step that brought something, or did not; `None` where there is no more care to take.
+    /// The care to take after a step that came nearer, or did not; `None` if there is no greater care.
     fn after(self, is_nearer: bool) -> Option<Self> {
         match self {
             _ if is_nearer => Some(Self::Little),
@@ -170,7 +171,7 @@ impl Care {
     }
 }
 
-/// A search with directions that are turned by a bit, and have few decimals.
+/// A search along directions that are turned by a small angle and have few decimals.
 struct Search<'a, 's, V> {
     support: &'a mut Support<'s, V>,
     scale: f64,
@@ -183,8 +184,9 @@ struct Search<'a, 's, V> {
 const MOST_STEPS: usize = 64;
 
 impl<V: Vector> Search<'_, '_, V> {
-    /// The support point along a direction that is turned a bit more, so that nothing is met by accident, and then rounded to few
-    /// decimals, none of them zero; or hardly turned, one way or the other, for the sake of a thin body.
+    /// The support point along a direction. With little care the direction is turned a little further, so that it is not by accident the
+    /// normal of a face, and rounded to few decimals, none of them zero. With much care, for thin bodies, it is hardly turned, one way or
+    /// the other.
     fn look(&mut self, direction: DVec3, care: Care) -> Found<V> {
         let aside = if V::DIM == 3 { DVec3::new(0.62, -0.37, 0.69) } else { DVec3::new(0.62, -0.78, 0.0) };
         let turned = |by: f64| direction + aside * (self.turn * by);
@@ -203,9 +205,9 @@ impl<V: Vector> Search<'_, '_, V> {
         Found { direction, point: (self.support)(direction) / self.scale }
     }
 
-    /// Looks for the points around zero beside a unit vector `around`: GJK in the plane that lies across the ray, or across the
-    /// normal where there is none or a radius is to be bridged; with the support map of what that vector leaves of the core. How far
-    /// the mean of the points found is from zero there, and behind the plane of the normal.
+    /// Looks for points around zero along directions near the unit vector `around`. It runs GJK on the projection of the core along the ray,
+    /// or along the normal if there is no ray or a radius has to be bridged. Returns how far the mean of the points found is from zero in
+    /// this projection, and behind the plane of the normal.
     fn around(&mut self, around: DVec3, normal: DVec3, seen: &Seen) -> f64 {
         let ray = seen.along.filter(|_| seen.radius == 0.0).and_then(DVec3::try_normalize);
         let axis = ray.unwrap_or(normal);
@@ -246,8 +248,8 @@ impl<V: Vector> Search<'_, '_, V> {
         left + normal.dot(support - self.simplex.mean()).max(0.0)
     }
 
-    /// Adds points on the sides of a corner or an edge that the ray runs through: only within the simplex with them is it in the
-    /// body for certain. They have no weight.
+    /// Adds points on the sides of a corner or an edge that the ray runs through, since the ray is certainly in the body only inside the
+    /// simplex with these points. They have no weight.
     fn widen(&mut self, normal: DVec3, [u, w]: [DVec3; 2]) {
         let sides = match *self.simplex.found.as_slice() {
             [a, b] if V::DIM == 3 => {
@@ -267,7 +269,8 @@ impl<V: Vector> Search<'_, '_, V> {
         }
     }
 
-    /// Looks for a simplex that contains zero, or comes within the radius of it: GJK. Zero, or how far its mean is from zero.
+    /// Looks by GJK for a simplex that contains zero, or comes within the radius of it. Returns zero if there is one, and otherwise the distance of
+    /// its mean from zero.
     fn within(&mut self, radius: f64) -> f64 {
         let (mut toward, mut care) = (DVec3::X, Care::Little);
         let mut least = f64::INFINITY;

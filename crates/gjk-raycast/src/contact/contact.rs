@@ -6,8 +6,8 @@ use super::manifold::manifold;
 use super::{Contact, SignedDistanceOptions, signed_distance};
 use num_traits::Float as _;
 
-/// The contact of two shapes that are no farther apart than `within`; `None` where they are. The options are those of the signed
-/// distance, of which [`axis`](SignedDistanceOptions::axis) may be the normal of the last frame; the limit is `within`.
+/// The contact of two shapes; `None` if they are farther apart than `within`. The options are those of the signed distance, but `within`
+/// takes the place of the limit. The normal of the last frame is a good first [`axis`](SignedDistanceOptions::axis).
 ///
 /// ```
 /// use convex_support::{Cuboid, Posed, glam::DVec3};
@@ -28,7 +28,7 @@ use num_traits::Float as _;
 ///
 /// The features of both shapes that face each other, each a vertex, an edge or a face
 /// ([`core_support_feature`](SupportMap::core_support_feature)), are clipped against each other in the plane of contact. Of the
-/// corners of their overlap at most four are kept, in 2D two, that carry as the whole does.
+/// corners of their overlap at most four are kept, in 2D two: the deepest, and others that span the overlap well.
 pub fn contact<A, B>(
     a: &A,
     b: &B,

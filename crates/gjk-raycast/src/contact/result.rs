@@ -13,16 +13,16 @@ pub struct SignedDistance<V: Vector> {
     /// The distance where the shapes are apart; where they overlap, minus the penetration depth: the length of the shortest
     /// translation of `a` after which they have no interior point in common.
     pub signed_distance: V::Scalar,
-    /// The signed distance is certainly not less: a plane tells so, across [`normal`](Self::normal) or, where closest points tell that
-    /// better, a vector near it. Minus infinity where a support map returned numbers that are not finite.
+    /// The signed distance is certainly not less: this is proved by a plane across [`normal`](Self::normal), or across a vector near it
+    /// that closest points give. Minus infinity where a support map returned numbers that are not finite.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
     pub lower: V::Scalar,
     /// The signed distance is certainly not more: two points of the shapes are this far apart, or a polytope within the
     /// difference `A − B` reaches this far around zero. Infinity where a support map returned numbers that are not finite.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
-    /// The unit vector from `b` to `a`: `a` moved by the depth along it no longer overlaps. Where several directions are equally
-    /// short, one of them.
+    /// The unit vector from `b` to `a`. If `a` is moved along it by the depth, the shapes no longer overlap. Where several ways out are
+    /// equally short, it is the direction of one of them.
     pub normal: V,
     /// The point of `a` closest to `b`, or deepest in it.
     pub point_a: V,
@@ -35,8 +35,8 @@ pub struct SignedDistance<V: Vector> {
     pub status: Status,
     /// The number of support points computed of each shape.
     pub iterations: usize,
-    /// Facets of the last polytope that were left as they were, since the shapes cannot leave one another through them on a
-    /// shorter way. 0 where no polytope was needed.
+    /// The number of facets of the last polytope that did not have to be expanded, since no way out through them is shorter. 0 where no
+    /// polytope was needed.
     pub unexpanded: usize,
 }
 
@@ -82,8 +82,9 @@ pub struct ContactPoint<V: Vector> {
     pub point_b: V,
     /// How far `point_a` is before `point_b` along the normal; negative where the shapes overlap.
     pub signed_distance: V::Scalar,
-    /// What the point is of `a`, a vertex, an edge or a face: a number that stays the same while that does.
+    /// The vertex, edge or face of `a` that the point is on, as a number. It stays the same from frame to frame as long as the point is on
+    /// the same feature, so that a solver can find its impulses of the last frame again.
     pub feature_a: u32,
-    /// What the point is of `b`.
+    /// The vertex, edge or face of `b` that the point is on, in the same way.
     pub feature_b: u32,
 }

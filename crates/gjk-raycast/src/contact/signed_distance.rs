@@ -29,10 +29,11 @@ use crate::{Iterate, Status};
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 ///
-/// With `C = A − B` and its support value `h`, the signed distance is `−min h(u)` over all unit vectors `u`, and the normal is `−u`:
-/// where zero is outside `C`, the plane farthest from it that separates; where it is inside, the nearest plane that supports. Cores
-/// that are apart answer both by their distance, less the radii. Of cores that overlap, an [expanding
-/// polytope](SignedDistance::unexpanded) proves that no way out is shorter than the one found.
+/// With `C = A − B` and its support value `h`, the signed distance is `−min h(u)` over all unit vectors `u`, and the normal is `−u`. If the
+/// shapes are apart, zero is outside `C`, and this is the distance of the farthest plane that separates zero from `C`. If they overlap, zero
+/// is inside, and it is minus the distance of the nearest plane that supports `C`. Where the cores are apart, GJK finds both as the distance
+/// of the cores, less the radii. Where the cores overlap, an [expanding polytope](SignedDistance::unexpanded) proves that no way out is
+/// shorter than the one found; for two boxes the depth has a closed form.
 #[inline]
 pub fn signed_distance<A, B>(a: &A, b: &B, options: SignedDistanceOptions<A::Vector>) -> SignedDistance<A::Vector>
 where

@@ -9,24 +9,23 @@ use crate::contact::Outline;
 use crate::symmetric::Symmetric;
 use crate::unit::power_of_two_near;
 
-/// What the normal may be wrong by, in units of the rounding of the points that it is computed from.
+/// The error of the normal, in units of the rounding of the points that it is computed from.
 const TILT: f64 = 64.0;
 
-/// The largest angle that a normal is taken to be wrong by: beyond it, features that lean by it would be called parallel. And the largest
-/// within which features are tried that may hold the normal.
+/// The largest error of a normal, as an angle, that is allowed for; a larger one would call features parallel that lean visibly. And the
+/// largest angle within which features are tried that may hold the normal.
 const LARGEST_TILT: f64 = 1e-3;
 const LARGEST_REACH: f64 = 0.03;
 
 /// Where two bodies are closest, or deepest in one another: a vertex, an edge or a face of each, and how they curve there.
 ///
-/// It says whether an answer changes [smoothly](Self::smoothness) with the poses of the bodies, its
-/// [one-sided derivative](Self::rate) where it does not, and where it does how the [normal and the points move](Self::velocities),
-/// and the [second derivatives](Self::hessian). It is found from an answer and the shapes that were asked about, by
-/// [`SignedDistance::closest_features`](crate::SignedDistance::closest_features) and its like, for about the price of four
-/// support points of each shape.
+/// It says whether an answer changes [smoothly](Self::smoothness) with the poses of the bodies. If it does, it has the
+/// [velocities of the normal and the points](Self::velocities) and the [second derivatives](Self::hessian); if not, it still has
+/// [one-sided derivatives](Self::rate). It is found from an answer and the shapes that were asked about, by
+/// [`SignedDistance::closest_features`](crate::SignedDistance::closest_features) and the same methods of other answers.
 ///
-/// Faces and edges are those that the shapes show by [`SupportMap::core_support_feature`]; a shape that does not say them, as sums and
-/// hulls, is taken to be smooth. Of a face with more than 16 corners every second, third, … is [seen](Self::are_complete).
+/// Faces and edges are found by [`SupportMap::core_support_feature`]. A shape that does not implement it, such as a sum or a hull, is taken
+/// to be smooth. Of a face with more than 16 corners only every second, third, … is [known](Self::are_complete).
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct ClosestFeatures<V: Vector> {
@@ -63,13 +62,13 @@ pub(super) struct Closest<V: Vector> {
     pub(super) signed_distance: V::Scalar,
     /// By how much the signed distance may be wrong.
     pub(super) error: V::Scalar,
-    /// Whether the normal is that of bodies somewhere near, as that of a hit is of a time near it.
+    /// Whether the normal is that of slightly different poses: the normal of a hit is that of a time near it.
     pub(super) is_near: bool,
 }
 
 impl<V: Vector> ClosestFeatures<V> {
-    /// At the normal and the points of an answer. Of curved shapes both are known to about half their digits, since the distance is
-    /// stationary in them; Newton's method finds the rest.
+    /// The features at the normal and the points of an answer. For curved shapes these are known only to about half their digits, since the
+    /// distance is stationary in them; Newton's method finds the rest.
     pub(super) fn new<A, B>(a: &A, b: &B, closest: Closest<V>) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,
@@ -80,8 +79,8 @@ impl<V: Vector> ClosestFeatures<V> {
         let gap = closest.signed_distance + cores[0].radius + cores[1].radius;
         let bodies = Bodies { a, b, cores, unit: power_of_two_near(size + closest.signed_distance.abs()) };
         let tilt = tilt(size, gap, closest.error);
-        // The normal of polytopes that are apart is that of their closest points, and of those that overlap that of a face. Where they touch, it is
-        // as good as a search knows it, and so it is where the search ended early.
+        // The normal of polytopes that are apart is that of their closest points, and if they overlap it is that of a face: both are right to
+        // rounding. If they touch, or the search ended early, it is only as accurate as the search left it.
         let is_curved = cores.iter().any(|core| matches!(core.kind, CoreKind::Curved));
         // NaN is nowhere near.
         let least = size * rounding();
@@ -119,8 +118,8 @@ impl<V: Vector> ClosestFeatures<V> {
         Symmetric { a: a.a + b.a, b: a.b + b.b, d: a.d + b.d }.plus(self.signed_distance)
     }
 
-    /// By how much the places of the corners of features may be wrong, in the unit: the rounding of coordinates in the world and of
-    /// the sizes of both bodies, and how far the features of curved bodies move as the normal turns by what it may be wrong by.
+    /// A bound on the error of the places of features' corners, in the unit: the rounding of coordinates in the world and of the sizes of
+    /// both bodies, and how far the features of curved bodies move as the normal turns by its error.
     pub(super) fn slack(&self) -> V::Scalar {
         let world = self.middle.abs().max_element() / self.unit;
         let rounding = rounding::<V::Scalar>() * (world + V::Scalar::from_f64(2.0));
@@ -128,8 +127,8 @@ impl<V: Vector> ClosestFeatures<V> {
         rounding + self.tilt * (a + b)
     }
 
-    /// Whether the features are known as a whole. Not where a shape shows a part of a face, as of one with more than 16 corners; then
-    /// one-sided [rates](Self::rate) are of points of that part.
+    /// Whether the features are known as a whole. If a shape shows only a part of a face, as of one with more than 16 corners, they are
+    /// not; then one-sided [rates](Self::rate) take only the points of that part into account.
     #[must_use]
     pub fn are_complete(&self) -> bool {
         self.outlines.iter().all(|outline| outline.is_complete)
@@ -159,17 +158,18 @@ pub(super) fn rounding<S: Scalar>() -> S {
     S::EPSILON * S::from_f64(TILT)
 }
 
-/// What the normal may be wrong by: the rounding of the points it is computed from, as seen over the gap between the cores, and what
-/// the distance may be wrong by, as seen over the size of the bodies.
+/// The error of the normal, as an angle: the rounding of the points that it is computed from over the gap between the cores, and the error of
+/// the distance over the size of the bodies.
 fn tilt<S: Scalar>(size: S, gap: S, error: S) -> S {
     let magnified = if gap > S::ZERO { rounding::<S>() * (size / gap) } else { S::ZERO };
     let open = if error.is_finite() { error / size * S::from_f64(4.0) } else { S::ZERO };
     (rounding::<S>() + magnified + open).min(S::from_f64(LARGEST_TILT))
 }
 
-/// What the normal between curved bodies may be wrong by. Of two cores `g` apart the closest vector `v` is nearer to any other `w` that a
-/// bracket `u ≥ g ≥ l` allows than `√(u² − l²)`, for `w·v ≥ g²`; so the angle between them is up to `√(2(u − l)/g)`. Within one another the signed
-/// distance along a normal falls with the square of its angle as well, times a stiffness that is taken for a part of the size.
+/// The error of the normal between curved bodies, as an angle. Let `v` be the shortest vector between two cores that are `g` apart, and `w`
+/// any other one that a bracket `u ≥ g ≥ l` allows. Since `w·v ≥ g²`, the two differ by at most `√(u² − l²)`, so that the angle between them is up
+/// to `√(2(u − l)/g)`. If the cores overlap, the signed distance along a normal falls with the square of its angle as well, times a stiffness
+/// that is taken for a part of the size.
 fn reach<S: Scalar>(size: S, gap: S, error: S) -> S {
     let error = error.max(S::EPSILON * size * S::from_f64(4.0));
     let over = if gap > S::ZERO { gap } else { size * S::from_f64(1.0 / 16.0) };

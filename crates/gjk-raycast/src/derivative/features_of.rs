@@ -12,15 +12,15 @@ use crate::{
     Trajectory, signed_distance,
 };
 
-/// By how much overlapping bodies are pushed into one another to see whether there is another way out, and how far apart bodies are
-/// at a hit that are so on purpose: as a part of their size, in units of the square root of ε.
+/// How far overlapping bodies are pushed into one another to see whether there is another way out, as a part of their size, in units of
+/// the square root of ε. If bodies are farther apart than this at a hit, the cast had a target distance.
 const LITTLE: f64 = 64.0;
 
-/// How many times the square of what bodies are pushed by, in units of their size, may be gained by it at most; and no more than a part
-/// of their size, which single precision would leave room for.
+/// How much a push may gain: at most so many times its square, in units of the size, and at most this part of the size, which leaves room
+/// for single precision.
 const GAIN: [f64; 2] = [16.0, 1e-4];
 
-/// Normals whose angle has a cosine of no less are those of one way out.
+/// If the cosine of the angle between two normals is at least this, they are of the same way out.
 const SAME_NORMAL: f64 = 1.0 - 1e-6;
 
 fn little<S: Scalar>(size: S) -> S {
@@ -81,10 +81,10 @@ impl<V: Vector> SignedDistance<V> {
         Self { normal: features.normal, point_a, point_b, ..self }
     }
 
-    /// Whether another normal is as good. With `a` moved by `−η·n`, the signed distance along any normal `m` falls by `η·n·m`, so that
-    /// the best is found to be another where that is as good to within less than `η·(1 − n·m)`; and then it is measured. What its bracket
-    /// leaves open may be a tie. Where the bodies are curved the other normal turns a little as they are pushed, which gains `η²` over
-    /// twice the stiffness.
+    /// Whether another normal is as good. If `a` is moved by `−η·n`, the signed distance along any normal `m` falls by `η·n·m`. So if
+    /// another normal was as good to within `η·(1 − n·m)`, it is now the best, is found, and can be measured. Whatever its bracket leaves
+    /// open may be a tie. If the bodies are curved, the other normal turns a little as they are pushed, which gains `η²` over twice the
+    /// stiffness.
     fn is_tied<A, B>(&self, a: &A, core_a: Core<V>, b: &B, core_b: Core<V>) -> bool
     where
         A: SupportMap<Vector = V> + ?Sized,
@@ -125,9 +125,9 @@ impl<V: Vector> LinearHit<V> {
         Self { normal: Some(features.normal), point: features.points[1], ..self }
     }
 
-    /// How much later the shapes touch as their start poses begin to change, per unit of that: the one-sided derivative of the time,
-    /// exact where faces or edges touch that are parallel too. `None` where there is no [`gradient`](Self::gradient), or the normal
-    /// is [not the only one](ClosestFeatures::is_normal_unique).
+    /// How much later the shapes touch as their start poses begin to move, per unit of time of that motion: the one-sided derivative of the
+    /// time of contact. It is exact also where parallel faces or edges touch. `None` where there is no [`gradient`](Self::gradient), or the
+    /// normal is [not the only one](ClosestFeatures::is_normal_unique).
     #[must_use]
     pub fn rate<A, B>(
         &self,
@@ -171,8 +171,7 @@ impl<V: Vector> MotionHit<V> {
         Self { normal: Some(features.normal), point: features.points[1], ..self }
     }
 
-    /// How much later the bodies touch as their start poses begin to change, per unit of that: the one-sided derivative of the time,
-    /// as of [`LinearHit::rate`].
+    /// How much later the bodies touch as their start poses begin to move, per unit of time of that motion, as [`LinearHit::rate`].
     #[must_use]
     pub fn rate<A, MA, B, MB>(
         &self,

@@ -19,13 +19,13 @@ pub struct LinearCastGradient<V: Vector> {
     pub velocity_a: V,
     /// By the velocity of `b`.
     pub velocity_b: V,
-    /// By the radius of either body, with which it is grown all around: never positive.
+    /// By the radius of either body, that is, as the body is grown all around: never positive.
     pub radius: V::Scalar,
 }
 
 impl<V: Vector> LinearHit<V> {
-    /// The derivatives of the time of the hit, of a cast with the given motion. `None` where the shapes overlap at the start, or
-    /// touch and do not approach one another: then the time is 0, or jumps.
+    /// The derivatives of the time of the hit, for the motion of the cast that it is the answer of. `None` where the shapes overlap at the
+    /// start, since the time is then 0, or touch and do not approach one another, since it then jumps.
     ///
     /// With `n` the normal, `p` the point of contact and `w = v_A − v_B`, the gap between the shapes along `n` changes by `n·w` per
     /// time, so that
@@ -35,8 +35,8 @@ impl<V: Vector> LinearHit<V> {
     /// A turn at the start displaces the point of `a` that will be in contact, which is at `p − t·v_A` then; a change of the
     /// velocity displaces it by `t` times as much. The derivatives grow as `1/(n·w)` towards grazing contacts.
     ///
-    /// They are derivatives where the contact is the only one ([`closest_features`](Self::closest_features) tells), and
-    /// one-sided ones elsewhere.
+    /// Where there is only one point of contact they are derivatives, and elsewhere one-sided derivatives;
+    /// [`closest_features`](Self::closest_features) tells which.
     ///
     /// ```
     /// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};

@@ -15,12 +15,12 @@ pub struct MotionCastGradient<V: Vector> {
     pub pose_a: MotionGradient<V>,
     /// By the pose of `b` at the start.
     pub pose_b: MotionGradient<V>,
-    /// By where `a` is at the time of contact: a change of its motion, however it comes about, changes the time by how it displaces
-    /// the body then. [`RigidMotion::gradient`] says how for one.
+    /// By the place of `a` at the time of contact. With it the time can be derived by any parameter of the motion: find how the parameter
+    /// displaces the body at that time. [`RigidMotion::gradient`] does so for the parameters of a rigid motion.
     pub contact_a: MotionGradient<V>,
-    /// By where `b` is at the time of contact.
+    /// By the place of `b` at the time of contact.
     pub contact_b: MotionGradient<V>,
-    /// By the radius of either body, with which it is grown all around, and by the target distance: never positive.
+    /// By the radius of either body, that is, as the body is grown all around, and by the target distance: never positive.
     pub radius: V::Scalar,
 }
 
@@ -38,15 +38,15 @@ pub struct RigidMotionGradient<V: Vector> {
 }
 
 impl<V: Vector> MotionHit<V> {
-    /// The derivatives of the time of first contact, of a cast with the given motions. `None` where the bodies overlap at the start,
-    /// or touch and do not approach one another.
+    /// The derivatives of the time of first contact, for the motions of the cast that it is the answer of. `None` where the bodies overlap
+    /// at the start, or touch and do not approach one another.
     ///
     /// With `n` the normal at the time `t`, `p` the point of contact and `w` the velocity there of `a` as seen from `b`, a displacement
     /// `δ` of `a` at that time changes it by `−n·δ/(n·w)`. A displacement of the start pose is turned by the motion until then: the
     /// force on it is `Rᵀ(−n/(n·w))`, at the point of the body that will be in contact, where that is at the start.
     ///
-    /// They are derivatives where the contact is the only one ([`closest_features`](Self::closest_features) tells), and
-    /// one-sided ones elsewhere.
+    /// Where there is only one point of contact they are derivatives, and elsewhere one-sided derivatives;
+    /// [`closest_features`](Self::closest_features) tells which.
     ///
     /// ```
     /// use convex_support::{Ball, Capsule, Posed, glam::DVec3};
@@ -102,8 +102,8 @@ fn at_start<M: Trajectory + ?Sized>(
 }
 
 impl<V: Vector> RigidMotion<V> {
-    /// The derivatives by the motion's parameters of a number whose derivative by the pose of the body at a time is given, such as
-    /// [`MotionCastGradient::contact_a`].
+    /// The derivatives of a number by the parameters of this motion, given `force`, its derivative by the pose that the body has at `time`;
+    /// such as [`MotionCastGradient::contact_a`] and the time of the hit.
     ///
     /// With `x = c + t·v + y`, `y = R(tω)·(x₀ − c)`, the parameters displace a point by
     ///

@@ -4,7 +4,7 @@ use convex_support::{AngularVelocity, Scalar, Vector};
 
 use crate::RigidMotion;
 
-/// How a number changes with the motion of a body: a force at a point.
+/// The derivative of a number by the motion of a body. It is like a force that acts on the body at a point.
 ///
 /// A translation `δ` of the body changes the number by `translation·δ`, and a turn `ω` about any point `p` by
 /// `((point − p) × translation)·ω`, in world axes and to first order.
@@ -39,21 +39,21 @@ impl<V: Vector> MotionGradient<V> {
         V::AngularVelocity::moment(self.point - pivot, self.translation)
     }
 
-    /// The change per radian of a revolute joint through `pivot` about the unit `axis` (in 2D 1 for counterclockwise), with the
-    /// body beyond it: one entry of ∂/∂q.
+    /// The change per radian of a revolute joint that carries the body, about the unit vector `axis` through `pivot` (in 2D an axis of 1
+    /// is counterclockwise): one entry of the gradient by the joint angles.
     #[must_use]
     pub fn revolute(&self, pivot: V, axis: V::AngularVelocity) -> V::Scalar {
         self.translation.dot(axis.cross_matrix() * (self.point - pivot))
     }
 
-    /// The change per length of a prismatic joint along the unit `axis`, with the body beyond it.
+    /// The change per unit of length of a prismatic joint that carries the body, along the unit vector `axis`.
     #[must_use]
     pub fn prismatic(&self, axis: V) -> V::Scalar {
         self.translation.dot(axis)
     }
 
-    /// The change per unit of time as the body begins to move: with a velocity, an angular velocity and a centre, also that per
-    /// radian of a joint that a [screw](RigidMotion) describes.
+    /// The change per unit of time as the body begins to move along a rigid motion. If the motion is what a joint does per radian, it is
+    /// the change per radian of the joint.
     #[must_use]
     pub fn along(&self, motion: RigidMotion<V>) -> V::Scalar {
         self.prismatic(motion.velocity) + self.revolute(motion.center, motion.angular_velocity)

@@ -1,7 +1,7 @@
 //! Where the features of two bodies overlap, seen along the normal.
 //!
-//! It is never empty, for the closest points are in it; but often it has no area: boxes side by side have the edges of their faces
-//! in common, and of boxes across a corner the corners alone. So a corner within rounding of a line is on both sides of it.
+//! It is never empty, since the closest points are in it, but often it has no area: boxes side by side have the edges of their faces
+//! in common, and boxes across a corner only the corners. Therefore a corner within rounding of a line counts as being on both sides of it.
 
 use convex_support::Scalar;
 use smallvec::SmallVec;
@@ -9,11 +9,10 @@ use smallvec::SmallVec;
 use crate::contact::{Corner, Ellipse, Outline};
 use crate::symmetric::{Across, cross, dot};
 
-/// How many tangents of discs are cut along at most. Each halves the angle in which the least value is, and its error so falls to a
-/// quarter.
+/// The most tangents along which discs are cut. Each halves the angle in which the least value lies, so that its error falls to a quarter.
 const MAX_CUTS: usize = 48;
 
-/// The overlap of two features: a convex polygon, a segment or a point, and of it what is in discs.
+/// The overlap of two features: a convex polygon, a segment or a point, and the rims of discs by which it is cut.
 #[derive(Clone, Debug)]
 pub(super) struct Overlap<S: Scalar> {
     corners: SmallVec<[Across<S>; 32]>,
@@ -85,14 +84,14 @@ impl<S: Scalar> Overlap<S> {
     }
 }
 
-/// The directions, as unit vectors, along which two features do not overlap but touch at most: those in which the normal could turn if
-/// nothing else held it.
+/// The directions, as unit vectors, along which two features only touch, or are apart. The normal could turn in these directions if nothing
+/// else held it.
 pub(super) fn separating<S: Scalar>(outlines: &[Outline<S>; 2], slack: S) -> SmallVec<[Across<S>; 16]> {
     axes(outlines).into_iter().filter(|&u| gap(outlines, u) >= -slack).collect()
 }
 
-/// Whether two features do not overlap and are more than rounding from it. Of edges that are parallel, and of an edge and a vertex, it is
-/// asked along the edges only.
+/// Whether two features are apart by more than rounding. For parallel edges, and for an edge and a vertex, this is tested only along the
+/// edges.
 pub(super) fn are_apart<S: Scalar>(outlines: &[Outline<S>; 2], slack: S) -> bool {
     axes(outlines).into_iter().any(|u| gap(outlines, u) > slack)
 }
@@ -103,8 +102,8 @@ fn gap<S: Scalar>([a, b]: &[Outline<S>; 2], u: Across<S>) -> S {
     (of_a[0] - of_b[1]).max(of_b[0] - of_a[1])
 }
 
-/// The directions along one of which two features are apart that do not overlap: those across the edges of both, and those from the centre of
-/// a disc to the corners of the other.
+/// Directions of which two features that do not overlap are apart along at least one: those across the edges of both, and those from the
+/// centre of a disc to the corners of the other.
 fn axes<S: Scalar>([a, b]: &[Outline<S>; 2]) -> SmallVec<[Across<S>; 16]> {
     let edge = |outline: &Outline<S>| match outline.corners[..] {
         [from, to] => Some(direction(from.at, to.at)),

@@ -5,7 +5,7 @@ use convex_support::{Scalar, Vector};
 use super::{ClosestFeatures, MotionGradient};
 use crate::{Distance, RigidMotion, SignedDistance};
 
-/// How a distance changes with the motion of either body and with their radii.
+/// The derivatives of a distance by the motion of either body and by their radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -14,7 +14,7 @@ pub struct PairGradient<V: Vector> {
     pub a: MotionGradient<V>,
     /// By the motion of `b`: minus the normal, at the closest point of `b`.
     pub b: MotionGradient<V>,
-    /// By the radius of either body, with which it is grown all around: −1.
+    /// By the radius of either body, that is, as the body is grown all around: −1.
     pub radius: V::Scalar,
 }
 
@@ -38,20 +38,20 @@ impl<V: Vector> ClosestFeatures<V> {
     /// The derivative of the signed distance by the poses and radii of both shapes, to rounding, where it is
     /// [smooth](Self::smoothness).
     ///
-    /// The [gradient](SignedDistance::gradient) of an answer uses the normal and the points of that. Of curved shapes they are known to
-    /// about half their digits, since the distance is stationary in them.
+    /// The [gradient](SignedDistance::gradient) of an answer uses the normal and the points of the answer. For curved shapes these are known
+    /// only to about half their digits, since the distance is stationary in them; here they are known to rounding.
     pub fn gradient(&self) -> PairGradient<V> {
         PairGradient::new(self.normal, self.points[0], self.points[1])
     }
 }
 
 impl<V: Vector> Distance<V> {
-    /// The derivative of the distance by the poses and radii of both shapes; zero where they overlap, where the distance is 0
-    /// however they move. To tell the way out, ask [`signed_distance`](crate::signed_distance).
+    /// The derivative of the distance by the poses and radii of both shapes. It is zero where they overlap, since the distance then stays
+    /// 0 however they move; the derivative of [`signed_distance`](crate::signed_distance) tells the way out.
     ///
-    /// It is the derivative wherever the closest points are the only ones
-    /// ([`closest_features`](Self::closest_features) tells), and one of several one-sided ones elsewhere. By translations it is
-    /// the derivative of any two shapes that are apart. It is as accurate as the normal and the points.
+    /// Where there is only one pair of closest points it is the derivative, and elsewhere one of several one-sided derivatives;
+    /// [`closest_features`](Self::closest_features) tells which. For translations alone it is the derivative of any two shapes that are
+    /// apart. It is as accurate as the normal and the points of the answer.
     ///
     /// ```
     /// use convex_support::{Ball, Posed, glam::DVec2};
@@ -78,9 +78,8 @@ impl<V: Vector> Distance<V> {
 impl<V: Vector> SignedDistance<V> {
     /// The derivative of the signed distance by the poses and radii of both shapes, at any depth.
     ///
-    /// It is the derivative wherever the normal and the points are the only ones
-    /// ([`closest_features`](Self::closest_features) tells), and one of several one-sided ones elsewhere. It is as accurate as the
-    /// normal and the points.
+    /// Where the normal and the points are the only ones it is the derivative, and elsewhere one of several one-sided derivatives;
+    /// [`closest_features`](Self::closest_features) tells which. It is as accurate as the normal and the points of the answer.
     ///
     /// ```
     /// use convex_support::{Cuboid, Posed, glam::DVec3};

@@ -8,18 +8,18 @@ use crate::symmetric::Across;
 use crate::{RigidMotion, Trajectory};
 
 impl<V: Vector> ClosestFeatures<V> {
-    /// How fast the signed distance changes as the bodies begin to move: its one-sided derivative, exact at parallel faces and
-    /// edges too. `None` where the normal is [not the only one](Self::is_normal_unique).
+    /// How fast the signed distance changes as the bodies begin to move: its one-sided derivative. It is exact also where faces or edges
+    /// are parallel. `None` where the normal is [not the only one](Self::is_normal_unique).
     ///
     /// The signed distance falls as fast as the fastest of all closest points come nearer. With `M` the overlap of both features in
     /// the plane across the normal `n` (Danskin, *The theory of max-min, with applications*, 1966),
     ///
     /// > ds/dt = min { n·(v_A(p) − v_B(p)) : p ∈ M },
     ///
-    /// and since velocities are linear in `p`, the least is at a corner of `M`. In overlap, where the distance is the most over all
-    /// normals of the least over all points, the normal turns to meet the condition that both points of a pair are in `M`, which is
-    /// the dual of the same linear program. A disc is a disc here. Of a face that is known [in part](Self::are_complete) the corners
-    /// left out may be faster: the answer is the rate of the part, an upper bound of that of the whole.
+    /// and since velocities are linear in `p`, the least is at a corner of `M`. In overlap the signed distance is the maximum over all
+    /// normals of a minimum over points; by the duality of linear programs its derivative is the same minimum. Discs are not replaced by
+    /// polygons. If a face is known only [in part](Self::are_complete), corners that are left out may come nearer faster: the answer is
+    /// then an upper bound.
     ///
     /// ```
     /// use convex_support::{Cuboid, Posed, glam::DVec2};

@@ -17,12 +17,12 @@ pub struct RayCastGradient<V: Vector> {
     pub source: V,
     /// By the direction of the ray.
     pub direction: V,
-    /// By the radius of the target, with which it is grown all around: never positive.
+    /// By the radius of the target, that is, as the target is grown all around: never positive.
     pub radius: V::Scalar,
 }
 
 impl<V: Vector> RayHit<V> {
-    /// The derivatives of λ, of a cast of the given ray. `None` where the source is in the target, where λ is 0.
+    /// The derivatives of λ, for the ray of the cast that it is the answer of. `None` where the source is in the target, so that λ is 0.
     ///
     /// With `n` the normal and `d` the direction, the ray comes nearer to the tangent plane by `−n·d` per λ, so that moving the source
     /// by `δ` changes λ by `−n·δ/(n·d)`, moving the target by the opposite, and changing the direction by `λ` times as much. The

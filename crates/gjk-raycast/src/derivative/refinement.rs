@@ -1,4 +1,4 @@
-//! The normal and the points to rounding, by Newton's method along the features that are near those of an answer.
+//! Refinement: the normal and the points right to rounding, by Newton's method along the features near those of an answer.
 
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
@@ -9,11 +9,11 @@ use super::overlap::are_apart;
 use super::span::Span;
 use crate::contact::across;
 
-/// The longest step of the unit normal that is one of refinement, and how many are made.
+/// The longest step of the unit normal that counts as refinement, and the most steps that are taken.
 const LONGEST_STEP: f64 = 0.1;
 const MAX_STEPS: usize = 5;
 
-/// In how many rounds features are tried that may hold the normal, each of which looks within a part of the last.
+/// The number of rounds in which features are tried that may hold the normal, and the angle of each round as a part of that of the last.
 const ROUNDS: usize = 4;
 const NEARER: f64 = 1.0 / 16.0;
 
@@ -22,11 +22,11 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    /// Looks along the normal within `reach` of that of an answer along which the features overlap, which is the condition of the closest points;
-    /// whether there is one, but for what is seen within `tilt`.
+    /// Looks for a normal, within the angle `reach` of that of an answer, along which the features overlap, as the closest points require.
+    /// Returns whether there is one; features within the angle `tilt` count as held by rounding.
     ///
-    /// What is seen within reach is tried: the normal across it. Where that is none, as where the answer is at an edge of a face that is seen,
-    /// what is seen within less is tried.
+    /// Every feature found within `reach` is tried by making the normal exactly across it. If none fits, as when the answer is at an edge
+    /// of a face within reach, features within a smaller angle are tried.
     pub(super) fn settle(
         &self,
         features: &mut ClosestFeatures<A::Vector>,
@@ -54,7 +54,7 @@ where
         false
     }
 
-    /// Turns to the normal across which what is seen holds it, to rounding; whether there is one, along which the features overlap.
+    /// Turns the normal to be exactly across the features seen. Returns whether there is such a normal along which the features overlap.
     fn hold(&self, seen: &mut ClosestFeatures<A::Vector>, closest: Closest<A::Vector>, reach: ScalarOf<A>) -> bool {
         let radii = self.cores.map(|core| core.radius);
         // Whether the features along another normal are of these kinds, where that is asked, and overlap.
@@ -91,8 +91,8 @@ where
         false
     }
 
-    /// Newton's method for the normal and the points, as long as the steps become shorter; whether it leads to points that are opposite to each
-    /// other, along the same features.
+    /// Takes steps of Newton's method for the normal and the points, as long as they become shorter. Returns whether they lead to points
+    /// that are opposite to each other, along the same features.
     pub(super) fn refine(&self, best: &mut ClosestFeatures<A::Vector>, closest: Closest<A::Vector>) -> bool {
         let mut length = ScalarOf::<A>::from_f64(LONGEST_STEP);
         let radii = self.cores.map(|core| core.radius);

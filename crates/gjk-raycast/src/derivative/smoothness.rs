@@ -14,28 +14,28 @@ use crate::symmetric::{Across, Symmetric, dot};
 pub enum Smoothness {
     /// The normal and the closest points are the only ones. They change continuously, and the gradient is the derivative.
     Smooth,
-    /// There are several, as between parallel faces or edges, where a vertex touches a vertex, or where two ways out are equally
-    /// short. The gradient is one of several one-sided ones.
+    /// There are several normals or pairs of closest points: between parallel faces or edges, where a vertex touches a vertex, or where
+    /// two ways out are equally short. The gradient is one of several one-sided derivatives.
     Edge,
 }
 
 impl<V: Vector> ClosestFeatures<V> {
-    /// Whether the answer changes smoothly with the poses of both bodies, as far as rounding can tell: features that are parallel to
-    /// within what the normal may be wrong by are an [`Edge`](Smoothness::Edge).
+    /// Whether the answer changes smoothly with the poses of both bodies. If features are parallel to within the error of the normal, the
+    /// answer is [`Edge`](Smoothness::Edge), since rounding leaves it open.
     #[must_use]
     pub fn smoothness(&self) -> Smoothness {
         if self.is_normal_unique() && self.are_points_unique() { Smoothness::Smooth } else { Smoothness::Edge }
     }
 
-    /// Whether the closest points are the only ones along the normal: not where a face is parallel to a face or an edge, or an edge
-    /// to an edge.
+    /// Whether there is only one pair of closest points. There are more where a face is parallel to a face or an edge, or an edge to an
+    /// edge.
     #[must_use]
     pub fn are_points_unique(&self) -> bool {
         self.joint().is_some()
     }
 
-    /// Whether the normal is the only one: then the answer is differentiable by translations at least. So it is wherever the bodies
-    /// are apart; not where a vertex touches a vertex or an edge, or where several ways out are equally short.
+    /// Whether there is only one normal. Then the answer is differentiable at least by translations. This is so wherever the bodies are
+    /// apart; it is not where a vertex touches a vertex or an edge, or where several ways out are equally short.
     #[must_use]
     pub fn is_normal_unique(&self) -> bool {
         let stiffness = self.stiffness();

@@ -32,7 +32,7 @@ use crate::{RigidMotion, Trajectory};
 pub struct ClosestVelocities<V: Vector> {
     /// The rate at which the signed distance changes.
     pub signed_distance: V::Scalar,
-    /// That of the unit normal, which it is across.
+    /// The rate at which the unit normal changes, a vector across the normal.
     pub normal: V,
     /// The velocity of the closest point of `a`: of the place, not of the point of the body that is there.
     pub point_a: V,
@@ -41,10 +41,10 @@ pub struct ClosestVelocities<V: Vector> {
 }
 
 impl<V: Vector> ClosestFeatures<V> {
-    /// How the signed distance, the normal and the closest points change as the bodies begin to move: their derivatives.
+    /// How fast the signed distance, the normal and the closest points change as the bodies begin to move.
     ///
-    /// `None` at an [edge](crate::Smoothness::Edge), and where the shapes do not say how they curve: where support points nearby are not
-    /// where [`SupportMap::core_support_hessian`](convex_support::SupportMap::core_support_hessian) foretells them.
+    /// `None` at an [edge](crate::Smoothness::Edge); and where the curvature of the shapes is not known, which shows in support points
+    /// nearby that are not where [`SupportMap::core_support_hessian`](convex_support::SupportMap::core_support_hessian) predicts them.
     ///
     /// ```
     /// use convex_support::{Ball, Posed, glam::DVec3};

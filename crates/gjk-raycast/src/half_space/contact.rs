@@ -7,7 +7,7 @@ use crate::Contact;
 use crate::contact::manifold_over_plane;
 
 impl<V: Vector> HalfSpace<V> {
-    /// The contact of a shape, `a`, that is no farther than `within` from the half-space, `b`; `None` where it is.
+    /// The contact of a shape, `a`, with the half-space, `b`; `None` if the shape is farther than `within` from it.
     ///
     /// ```
     /// use convex_support::{Cuboid, Posed, glam::DVec3};
@@ -23,8 +23,8 @@ impl<V: Vector> HalfSpace<V> {
     /// # Ok::<(), convex_support::InvalidShape>(())
     /// ```
     ///
-    /// The points are the corners of the shape's feature that faces the half-space, at most four, in 2D two, that carry as all of them
-    /// do. What they are of the half-space is always the face.
+    /// The points are corners of the shape's feature that faces the half-space. If there are more than four, in 2D two, they are those that
+    /// span the feature best.
     pub fn contact<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A, within: V::Scalar) -> Option<Contact<V>> {
         let answer = self.signed_distance(shape);
         // NaN is farther than anything.

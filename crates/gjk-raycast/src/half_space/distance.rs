@@ -24,7 +24,7 @@ impl<V: Vector> HalfSpace<V> {
     /// # Ok::<(), convex_support::InvalidShape>(())
     /// ```
     ///
-    /// It is the height of the shape's lowest point, right to a few roundings of itself and to what the shape says of its
+    /// It is the height of the shape's lowest point. Its error is a few roundings of the height itself, and what the shape says of its
     /// [rounding](SupportMap::rounding), however far along the plane the shape is.
     pub fn signed_distance<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A) -> SignedDistance<V> {
         let plane = self.plane();
@@ -45,7 +45,8 @@ impl<V: Vector> HalfSpace<V> {
         }
     }
 
-    /// The distance from a shape, `a`, to the half-space, `b`. The [signed one](Self::signed_distance) says how deep it is in there.
+    /// The distance from a shape, `a`, to the half-space, `b`; 0 if it reaches into the half-space, where
+    /// [`signed_distance`](Self::signed_distance) tells how deep.
     pub fn distance_from<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A) -> Distance<V> {
         let zero = V::Scalar::default();
         let SignedDistance { signed_distance, lower, upper, normal, point_a, point_b, status, iterations, .. } =

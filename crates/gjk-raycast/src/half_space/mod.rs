@@ -1,7 +1,7 @@
-//! Half-spaces: floors and walls without an end.
+//! Half-spaces: infinite floors and walls.
 //!
-//! A half-space is no shape with support points, since it has no farthest point along most directions. But along `−n` a shape's point
-//! nearest to it, or deepest in it, is one support point, and so its queries are closed forms: of how [high](plane) that point is, and
+//! A half-space has no support points, since it has no farthest point along most directions. But the point of a shape that is nearest to it,
+//! or deepest in it, is the support point of the shape along `−n`. So its queries are closed forms of how [high](plane) that point is and
 //! how fast it sinks.
 
 mod contact;
@@ -17,7 +17,7 @@ pub(crate) use plane::{Level, Plane};
 
 /// The points x with n·x ≤ offset: everything on one side of a plane.
 ///
-/// It is no [`SupportMap`](convex_support::SupportMap), and has its own queries: [`ray_cast`](Self::ray_cast),
+/// It is no [`SupportMap`](convex_support::SupportMap), as it is unbounded, and has its own queries: [`ray_cast`](Self::ray_cast),
 /// [`linear_cast`](Self::linear_cast), [`motion_cast`](Self::motion_cast), [`distance_from`](Self::distance_from),
 /// [`signed_distance`](Self::signed_distance) and [`contact`](Self::contact). It can be a body of a [`Scene`](crate::Scene).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,7 +11,8 @@ use crate::{Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, S
 impl<V: Vector> HalfSpace<V> {
     /// The ray's first point in the half-space: where n·(s + λd) = offset, λ = (n·s − offset)/(−n·d).
     ///
-    /// It begins and ends as of [`ray_cast`](crate::ray_cast()). Height and speed are each known to a few roundings of itself, so that λ is.
+    /// Its beginning and end are treated as by [`ray_cast`](crate::ray_cast()). The height and the speed are each known to a few roundings of
+    /// themselves, and so is λ.
     ///
     /// # Errors
     /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
@@ -64,8 +65,8 @@ pub(super) struct Crossing<V: Vector> {
 }
 
 impl<V: Vector> Plane<V> {
-    /// When something at a height, which sinks at a speed, comes to the plane, if it does so until `end`. What may be in the half-space
-    /// already is met at once, and for certain where it is in there by more than its error, or sinks for certain.
+    /// When something at a height, which sinks at a speed, comes to the plane, if it does so until `end`. If it may be in the half-space
+    /// already, the answer is a hit at once. That hit is certain if it is inside by more than its error, or certainly sinks.
     pub(super) fn crossing(&self, height: Level<V::Scalar>, sinking: Level<V::Scalar>, end: V::Scalar) -> Crossing<V> {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
         let miss = Crossing {

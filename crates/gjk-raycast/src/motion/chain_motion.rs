@@ -9,14 +9,35 @@ use super::trajectory::{Displacement, Trajectory, TurningPlane};
 /// The motion of a body at the end of a chain of joints, each of which moves at a constant rate: a link of a robot along a straight
 /// edge in joint space.
 ///
-/// Every joint is said as what it would do alone to the links beyond it from where they are at time 0: a revolute joint is the
-/// [rotation](RigidMotion::rotation) at its rate about a point of its axis in the world, a prismatic one the
-/// [translation](RigidMotion::translation), a helical one a screw. They compose to
+/// Each joint is given by the motion that it alone would give to the links beyond it, starting from where they are in the world at time 0.
+/// For a revolute joint this is the [rotation](RigidMotion::rotation) at its rate about a point of its axis, for a prismatic joint the
+/// [translation](RigidMotion::translation), and for a helical joint a screw. Together they move the body by
 ///
 /// > x(t) = J₁(t)∘J₂(t)∘…∘Jₙ(t) (x),
 ///
 /// the first joint being the one nearest to the base (Brockett's product of exponentials, Murray, Li and Sastry, *A Mathematical
-/// Introduction to Robotic Manipulation*, 1994, section 3.2). A base that moves is one more joint in front.
+/// Introduction to Robotic Manipulation*, 1994, section 3.2). If the base moves too, its motion is one more joint in front of the others.
+/// The joints are borrowed, so that the links of one arm can share them: link `k` is carried by the first `k` joints.
+///
+/// ```
+/// use convex_support::{Ball, Posed, Rounded, Segment, glam::DVec3};
+/// use gjk_raycast::{ChainMotion, MotionCastOptions, RigidMotion, motion_cast};
+///
+/// // An arm of two links of length 1 lies along x. Within a unit of time its shoulder turns by 90°
+/// // about z, and its elbow by 30°.
+/// let (shoulder, elbow, hand) = (DVec3::ZERO, DVec3::X, 2.0 * DVec3::X);
+/// let joints = [
+///     RigidMotion::rotation(DVec3::Z * 90f64.to_radians(), shoulder),
+///     RigidMotion::rotation(DVec3::Z * 30f64.to_radians(), elbow),
+/// ];
+/// let forearm = Rounded::new(Segment::new([elbow, hand])?, 0.05)?;
+/// let obstacle = Posed::translated(Ball::new(0.1)?, DVec3::new(0.0, 1.5, 0.0))?;
+/// let (motion, rest) = (ChainMotion::new(&joints), RigidMotion::default());
+/// let options = MotionCastOptions::new().with_max_time(1.0);
+/// let cast = motion_cast(&forearm, motion, &obstacle, rest, options)?;
+/// assert!(cast.outcome.hit().is_some_and(|hit| 0.7 < hit.time && hit.time < 0.9));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChainMotion<'j, V: Vector> {
     joints: &'j [RigidMotion<V>],

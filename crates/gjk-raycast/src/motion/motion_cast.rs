@@ -35,11 +35,12 @@ use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, linear_ca
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// The motions are [`RigidMotion`]s or any other [`Trajectory`]. Up to `lower` the bodies are proved to be apart at all times, not
-/// only at those looked at; at `upper` they overlap. A miss is proved for the whole motion. Where the bodies graze one another, so
-/// that rounding decides, the answer is [`Outcome::Undecided`], with the time of it for `lower`.
+/// The motions are [`RigidMotion`]s, [`ChainMotion`](crate::ChainMotion)s or any other [`Trajectory`]; a body at rest has the motion
+/// `RigidMotion::default()`. Up to `lower` the bodies are proved to be apart at all times, not only at those looked at; at `upper` they
+/// overlap. A miss is proved for the whole motion. Where the bodies graze one another, so that rounding decides, the answer is
+/// [`Outcome::Undecided`], and `lower` is the time of the graze.
 ///
-/// Where nothing turns this is [`linear_cast`].
+/// Where neither body turns, the answer is that of [`linear_cast`].
 ///
 /// # Errors
 /// [`RayCastError::NonFinite`] if a number of a [`RigidMotion`] is not finite, or [`max_time`](MotionCastOptions::max_time),

@@ -16,20 +16,23 @@ const MAX_ITERATIONS: usize = 10_000;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct MotionCastOptions<V: Vector> {
-    /// The end of the motion; it belongs to the motion. Below zero it is taken for zero. Default: infinity.
+    /// The end of the motion; it belongs to the motion. A negative value is taken for zero. Default: infinity. Set an end if a body spins:
+    /// beside another body, no finite search can prove that it never touches it, and the answer is undecided after
+    /// [`max_iterations`](Self::max_iterations).
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub max_time: V::Scalar,
     /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
     /// of rounding always ends the search. Default: 0.
     pub tolerance: V::Scalar,
-    /// The distance at which bodies count as touching: the cast stops that far from contact. Below zero it is taken for zero.
+    /// The distance at which bodies count as touching: the cast stops that far from contact. A negative value is taken for zero.
     /// Default: 0.
     pub target_distance: V::Scalar,
     /// What to answer where the bodies touch at the start. Default: [`StartInContact::Report`].
     pub start_in_contact: StartInContact,
     /// A first guess of the direction from `b` to `a` at the start, such as the axis of the last miss. Default: none.
     pub axis: Option<V>,
-    /// The times to look at, after which to give up. Default: 10 000.
+    /// The number of times to look at, after which to give up; each takes a few support points, which
+    /// [`MotionCast::iterations`](crate::MotionCast::iterations) counts. Default: 10 000.
     pub max_iterations: usize,
 }
 

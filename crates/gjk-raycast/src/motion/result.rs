@@ -14,10 +14,10 @@ use crate::{Outcome, Status};
     serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
 )]
 pub struct MotionCast<V: Vector> {
-    /// Hit, miss, or undecided. A miss is proved over the whole motion; its axis, from `b` to `a`, is that of the last separating
+    /// Hit, miss, or undecided. A miss is proved over the whole motion; its axis, from `b` to `a`, is the normal of the last separating
     /// plane.
     pub outcome: Outcome<MotionHit<V>, V>,
-    /// The bodies have no point in common before this time; of a miss, the end of the motion.
+    /// The bodies have no point in common before this time. For a miss it is the end of the motion.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
     /// The bodies have a point in common at this time, though it need not be their first, or have had one before, if they have no inside and
@@ -26,7 +26,7 @@ pub struct MotionCast<V: Vector> {
     pub upper: V::Scalar,
     /// How the search ended.
     pub status: Status,
-    /// The number of support points computed of each shape.
+    /// The number of support points computed of each shape, for all times that were looked at.
     pub iterations: usize,
 }
 

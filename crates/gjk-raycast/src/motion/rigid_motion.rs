@@ -31,7 +31,7 @@ pub struct RigidMotion<V: Vector> {
     pub velocity: V,
     /// The angular velocity `ω`, in radians per unit of time: a vector in 3D, a number in 2D.
     pub angular_velocity: V::AngularVelocity,
-    /// The centre `c` of the rotation at time 0, in the world. Any point will do that moves at the velocity above, such as the
+    /// The centre `c` of the rotation at time 0, in the world. It may be any point that moves at the velocity above, such as the
     /// centre of mass.
     pub center: V,
 }
@@ -39,7 +39,7 @@ pub struct RigidMotion<V: Vector> {
 /// The spin of the angular velocities of a space.
 pub(super) type SpinOf<V> = <<V as Vector>::AngularVelocity as AngularVelocity<V>>::Spin;
 
-/// Where a body is: it is turned about zero, then moved.
+/// The pose of a body: the body is turned about zero, then moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose<V: Vector> {
@@ -87,9 +87,9 @@ impl<V: Vector> RigidMotion<V> {
         }
     }
 
-    /// The same between two times of any unit, along a screw (Chasles): a rotation about an axis and a translation along it, which
-    /// has the same points of the body on the axis all the way. In 2D, where the axis is a point, a rotation about that. Where
-    /// nothing turns, a translation.
+    /// The motion from one pose to another within `duration` along a screw (Chasles): a rotation about an axis and a translation along it, so
+    /// that the points of the body on the axis stay on it. In 2D the axis is a point, and the motion a rotation about it. If the body does
+    /// not turn, it is a translation.
     #[must_use]
     pub fn screw_between(from: Pose<V>, to: Pose<V>, duration: V::Scalar) -> Self {
         let straight = Self::between(from, to, duration);

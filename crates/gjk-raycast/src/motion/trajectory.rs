@@ -6,22 +6,22 @@ use num_traits::Float as _;
 use super::RigidMotion;
 use super::moving_body::length_bound;
 
-/// A rigid motion: where the body is at any time, and how unevenly its points may move in between.
+/// A rigid motion: where the body is at any time, and a bound on the acceleration of its points in between.
 ///
-/// Times are ≥ 0, and a body is where its shape says at time 0 displaced by the [displacement](Self::displacement) of time 0, which
-/// for most motions is none. [`RigidMotion`] is the motion at constant velocities. A motion of your own, such as a link of a robot
-/// whose joints move linearly, says the same things of itself.
+/// Times are at least 0. At any time the body is where its shape says, moved by the [displacement](Self::displacement) of that time; for
+/// most motions the displacement of time 0 is none. [`RigidMotion`] is the motion at constant velocities, and
+/// [`ChainMotion`](crate::ChainMotion) that of a link whose joints move linearly. Implement this trait for other motions.
 ///
 /// # What an implementor must obey
-/// A first contact is certified by the bounds. They must hold for all points of the body, and for all times of the interval:
-/// [`acceleration_along`](Self::acceleration_along) above all, since no time between two that are looked at is left out because of
-/// it. A larger bound costs time; a smaller one may let bodies pass through one another. [`velocity`](Self::velocity) steers the
-/// search, and where it is wrong, that costs time, never correctness.
+/// The bounds certify a first contact, so they must hold for all points of the body and for all times of the interval. This is most
+/// important for [`acceleration_along`](Self::acceleration_along), which alone proves that nothing happens between two times that are
+/// looked at. A larger bound costs time; a smaller one may let bodies pass through one another. [`velocity`](Self::velocity) only steers
+/// the search, so that a wrong one costs time, never correctness.
 pub trait Trajectory {
     /// The space the body moves in.
     type Vector: Vector;
 
-    /// Where the body is at a time, as seen from where its shape says.
+    /// Where the body is at a time, relative to where its shape says.
     fn displacement(&self, time: ScalarOf<Self>) -> Displacement<Self::Vector>;
 
     /// The velocity, at a time, of the body's point that is at `point` then.
@@ -39,8 +39,9 @@ pub trait Trajectory {
         interval: [ScalarOf<Self>; 2],
     ) -> ScalarOf<Self>;
 
-    /// A ball that moves at constant velocity and contains, throughout the interval, what starts in `ball`. The interval may be
-    /// infinite. Provided: the ball moved along the chord of the motion of its centre, grown by what the motion may leave the chord.
+    /// A ball that moves at constant velocity and contains, throughout the interval, everything that starts in `ball`. The interval may be
+    /// infinite. The provided method moves the ball along the chord of the way of its centre, and grows it by how far the motion may
+    /// leave that chord.
     fn moving_ball(
         &self,
         ball: BoundingSphere<Self::Vector>,
@@ -61,8 +62,8 @@ pub trait Trajectory {
         MovingBall { start, velocity, radius: ball.radius + sagitta }
     }
 
-    /// The same motion as a [`RigidMotion`], if it is one. Provided: `None`. What does not turn is cast by
-    /// [`linear_cast`](crate::linear_cast), and what moves alike does not meet.
+    /// The same motion as a [`RigidMotion`], if it is one; the provided method returns `None`. Bodies whose motions do not turn are cast
+    /// by [`linear_cast`](crate::linear_cast), and bodies whose motions are equal do not meet.
     fn as_rigid_motion(&self) -> Option<RigidMotion<Self::Vector>> {
         None
     }
@@ -73,8 +74,8 @@ pub(crate) type ScalarOf<M> = <<M as Trajectory>::Vector as Vector>::Scalar;
 
 /// Where a rigid motion has taken a body: `x ↦ x + shift + turn·(x − pivot)`, with `1 + turn` for the rotation.
 ///
-/// It is said by what it adds, so that bodies far from the world's origin or from what they turn about keep the digits of what lies
-/// between them.
+/// It holds what the motion adds to a point, so that bodies far from the world's origin, or from the point that they turn about, keep the
+/// digits of the distance between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Displacement<V: Vector> {
     /// The point that the body is turned about, in the world at time 0.
@@ -83,8 +84,8 @@ pub struct Displacement<V: Vector> {
     pub shift: V,
     /// The rotation about it, less the identity.
     pub turn: V::Matrix,
-    /// A bound on the error of the turn as an operator, its product with a vector included: how far it may take a vector from where it
-    /// should, relative to the vector's length.
+    /// A bound on the error of the turn as an operator, with the rounding of a product included: how far the computed product with a vector
+    /// may be from the exact one, relative to the vector's length.
     pub turn_error: V::Scalar,
     /// A bound on the length of the error of the shift.
     pub shift_error: V::Scalar,

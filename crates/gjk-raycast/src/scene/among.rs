@@ -4,7 +4,8 @@ use convex_support::SupportMap;
 
 use super::{Body, Scene, Work};
 
-/// The bodies of a scene that a question is about: all, or those that a closure picks.
+/// The bodies of a scene that a question is about: all of them, or those that a closure picks. [`Scene::all`] and [`Scene::among`] make it,
+/// and it answers the same questions as a [`Scene`].
 ///
 /// ```
 /// use convex_support::{Ball, Posed, glam::DVec2};
@@ -59,13 +60,14 @@ impl<S: SupportMap> core::fmt::Debug for Among<'_, S> {
 }
 
 impl<S: SupportMap> Scene<S> {
-    /// Questions about all bodies: the same as asking the scene itself, unless more is said.
+    /// Questions about all bodies. They have the same answers as those of the scene itself, unless [`Among::without_pairs`] or
+    /// [`Among::until`] narrows them down.
     #[must_use]
     pub fn all(&self) -> Among<'_, S> {
         Among { scene: self, bodies: None, without_pairs: None, until: None }
     }
 
-    /// Questions about the bodies that `picked` says, by layers, groups or whatever is known of an index.
+    /// Questions about the bodies for whose index `picked` returns true, such as those of a layer or a group.
     #[must_use]
     pub fn among<'s>(&'s self, picked: &'s (dyn Fn(usize) -> bool + Sync + 's)) -> Among<'s, S> {
         Among { bodies: Some(picked), ..self.all() }
@@ -73,14 +75,15 @@ impl<S: SupportMap> Scene<S> {
 }
 
 impl<'s, S: SupportMap> Among<'s, S> {
-    /// Without the pairs that `left_out` says: of one group, or allowed to collide. It is asked once for each pair whose
-    /// boxes are near, with the lower index first, or that in the first scene.
+    /// Leaves out the pairs for whose indices `left_out` returns true, such as those of one group, or those that may collide. It is called
+    /// once for each pair whose boxes are near: with the lower index first, or for two scenes with the index in the first one.
     #[must_use]
     pub fn without_pairs(self, left_out: &'s (dyn Fn(usize, usize) -> bool + Sync + 's)) -> Self {
         Self { without_pairs: Some(left_out), ..self }
     }
 
-    /// Until `stop` says so, which is asked before each single query.
+    /// Ends a question early, as soon as `stop` returns true; it is called before each single query. The answer is then about the bodies
+    /// asked so far, and [`Work::cancelled`](crate::Work::cancelled) is set.
     #[must_use]
     pub fn until(self, stop: &'s (dyn Fn() -> bool + Sync + 's)) -> Self {
         Self { until: Some(stop), ..self }

@@ -53,7 +53,8 @@ impl<S: SupportMap> Scene<S> {
     }
 
     /// The first body that the moving shape meets: the least time of [`linear_cast`](crate::linear_cast) of the shape, `a`,
-    /// against each body, `b`. All bodies move alike.
+    /// against each body, `b`. All bodies move with the same velocity, which is zero for a scene at rest:
+    /// `Motion { velocity_a, ..Motion::default() }`.
     ///
     /// # Errors
     /// [`RayCastError::NonFinite`] if a velocity is not finite.

@@ -30,10 +30,12 @@ pub enum SceneError {
 impl Display for SceneError {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotFinite { body } => write!(f, "the box of body {body} is not finite"),
+            Self::NotFinite { body } => {
+                write!(f, "body {body} has no finite bounding box: one of its support points is NaN or infinite")
+            }
             Self::NoSuchBody { body } => write!(f, "no bounded body has the index {body}"),
             Self::NoSuchVertex { triangle, vertex } => {
-                write!(f, "triangle {triangle} names vertex {vertex}, which is not there")
+                write!(f, "triangle {triangle} has a corner with the index {vertex}, but there is no such vertex")
             }
         }
     }

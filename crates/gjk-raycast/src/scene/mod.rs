@@ -1,8 +1,9 @@
-//! Many bodies, of which a question concerns few.
+//! Questions about many bodies, of which few have to be asked.
 
 mod all_within;
 mod among;
 mod cast;
+mod contact;
 mod error;
 mod height_bound;
 mod mesh;
@@ -28,19 +29,22 @@ pub use self::result::{
 
 /// Bodies that are asked together: which is hit first, which is nearest, which pairs are near each other.
 ///
-/// A body is any [`SupportMap`]: of one type, of an enum of yours, or `Box<dyn SupportMap<Vector = DVec3>>`; by value or by
-/// reference. It is known by its index, which stays as long as the body does. Half-spaces, which are no support maps since
-/// they have no end, can be bodies too ([`insert_half_space`](Self::insert_half_space)).
+/// All bodies are of one type `S`, which is any [`SupportMap`]: one kind of shape, an enum of yours, or
+/// `Box<dyn SupportMap<Vector = DVec3>>` for a mixture; by value or by reference. For methods that use several threads, it has to be `Sync`:
+/// `Box<dyn SupportMap<Vector = DVec3> + Sync>`. A body is named by its index, which stays the same until the body is removed. A half-space is no support map, since it has no end, but can be a body too
+/// ([`insert_half_space`](Self::insert_half_space)).
+///
+/// Scenes answer ray casts, linear and motion casts, distances and pairs. For the depth or the manifold of bodies in contact, find the
+/// bodies that are near by [`all_within`](Self::all_within), and ask each for its [contact](Body::contact).
 ///
 /// # Answers
-/// Every answer is that of the single query asked of each body (or pair) in the order of their indices, *to the last bit*,
-/// with the lowest index of equals; on one thread or on many, however the scene came about. A tree of boxes tells which
-/// bodies need not be asked: the box of a body has room for the rounding of its queries, so that a box which is too far is
-/// a proof about the query, not only about the body. How much was left out is part of every answer ([`Work`]).
+/// Every answer is the one that results if the single query is asked of each body (or pair) in the order of their indices, *to the last
+/// bit*; of equal answers the one with the lowest index counts. It does not depend on the number of threads or on how the scene was built.
+/// A tree of boxes tells which bodies need not be asked. The box of a body has room for the rounding of its queries, so that a box which is
+/// too far away is a proof about the query, not only about the body. Every answer says how much was left out ([`Work`]).
 ///
-/// What a box proves of a body is never less than what its own query does: where a query ends undecided, or with a hit
-/// whose bracket is still open, the body counts from where its bracket begins or from where its box begins, whichever is
-/// later.
+/// If a query ends undecided, or with a hit whose bracket is still open, the box of the body may prove more than the query did. Then the
+/// body counts from where its bracket begins or from where its box begins, whichever is later.
 ///
 /// ```
 /// use convex_support::{Ball, Cuboid, Posed, SupportMap, glam::DVec3};
@@ -66,14 +70,15 @@ pub use self::result::{
 /// ```
 ///
 /// # Bodies that move
-/// [`update`](Self::update) moves all, [`replace`](Self::replace) one; [`insert`](Self::insert) and
-/// [`remove`](Self::remove) bring and take them. The tree follows, and is built anew where that is worth it. A body that
-/// moves along a straight line during a step covers its `MinkowskiSum` with a `Segment`, which is a body as well: pairs of
-/// such that are within 0 are the ones that may meet in the step.
+/// [`update`](Self::update) moves all bodies and [`replace`](Self::replace) one; [`insert`](Self::insert) adds a body, and
+/// [`remove`](Self::remove) takes one out. The tree is adjusted each time, and is built anew when that is worth it.
+///
+/// To find the pairs of bodies that may meet while all of them move straight during a step, put into a scene what each covers in that
+/// time, the `MinkowskiSum` of the body and a `Segment`, and ask for the pairs within 0.
 ///
 /// # Groups
-/// A compound is several bodies that are moved together, and a link's pieces are asked about by [`Among`], which leaves out
-/// bodies and pairs by closures.
+/// A compound is represented by several bodies that are moved together. [`among`](Self::among) asks only about the bodies that a closure
+/// picks, such as those of a layer, and [`Among::without_pairs`] leaves out pairs, such as those of neighbouring links.
 #[derive(Clone, Debug)]
 pub struct Scene<S: SupportMap> {
     bodies: Vec<Option<Body<S>>>,
@@ -84,7 +89,7 @@ pub struct Scene<S: SupportMap> {
     free: Vec<usize>,
 }
 
-/// What is in a [`Scene`].
+/// A body of a [`Scene`]: a bounded shape, or a half-space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound(serialize = "S: serde::Serialize, HalfSpace<S::Vector>: serde::Serialize")))]
@@ -137,7 +142,7 @@ impl<S: SupportMap> Scene<S> {
         self.len() == 0
     }
 
-    /// The body with this index.
+    /// The body with this index, if there is one: a shape, or a half-space.
     #[must_use]
     pub fn get(&self, body: usize) -> Option<&Body<S>> {
         self.bodies.get(body)?.as_ref()
@@ -154,7 +159,7 @@ impl<S: SupportMap> Scene<S> {
         &self.tree
     }
 
-    /// Adds a body, and returns its index: the one that became free last, or a new one.
+    /// Adds a body and returns its index: the index that became free last, or a new one.
     ///
     /// # Errors
     /// [`SceneError::NotFinite`], with the index that it would have had, if its box is not finite.
@@ -184,7 +189,7 @@ impl<S: SupportMap> Scene<S> {
         }
     }
 
-    /// Takes a body out; `None` if there is none with this index, which a later body may be given.
+    /// Takes a body out and returns it; `None` if there is no body with this index. A body that is added later may get the index.
     pub fn remove(&mut self, body: usize) -> Option<Body<S>> {
         let removed = self.bodies.get_mut(body)?.take()?;
         self.free.push(body);
@@ -207,12 +212,12 @@ impl<S: SupportMap> Scene<S> {
         Ok(core::mem::replace(place, body))
     }
 
-    /// Replaces every bounded body by what `moved` makes of it, in the order of the indices, in time proportional to their
-    /// number.
+    /// Replaces every bounded body by the one that `moved` returns for its index and the body, in the order of the indices, in time
+    /// proportional to their number.
     ///
     /// # Errors
-    /// [`SceneError::NotFinite`] for the first body whose box would not be finite: it and others like it stay as they were;
-    /// the rest are moved.
+    /// [`SceneError::NotFinite`] for the first body whose box would not be finite. All such bodies stay as they were, and the rest are
+    /// moved.
     pub fn update(&mut self, mut moved: impl FnMut(usize, &S) -> S) -> Result<(), SceneError> {
         let mut refused = None;
         let bodies = &mut self.bodies;

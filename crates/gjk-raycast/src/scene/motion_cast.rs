@@ -1,4 +1,4 @@
-//! Which body a shape meets first that moves and turns.
+//! Which body is first met by a shape that moves and turns.
 
 use convex_support::glam::Vec4;
 use convex_support::{
@@ -14,7 +14,7 @@ use crate::motion::{check, checked};
 use crate::{MotionCastOptions, RayCastError, Trajectory};
 
 impl<S: SupportMap> Scene<S> {
-    /// The first body that a shape meets as it moves and turns among bodies at rest: the end time of
+    /// The first body that a shape meets as it moves and turns among bodies at rest: the least time of
     /// [`motion_cast`](crate::motion_cast()) of the shape, `a`, against each body, `b`.
     ///
     /// ```

@@ -5,14 +5,14 @@ use num_traits::Float as _;
 
 use crate::{MotionCastOptions, MovingBall, Trajectory};
 
-/// Pieces that a motion is seen in at most.
+/// The most pieces that a motion is cut into.
 pub(super) const MAX_PIECES: usize = 16;
 
-/// How much larger than the shape's the ball of a piece may be, before the motion is seen in more pieces.
+/// How much larger than the ball of the shape the ball of a piece may be, before the motion is cut into more pieces.
 const GROWTH: f64 = 1.5;
 
-/// A part of a motion, and a ball at constant velocity that contains the shape, and all that is no farther from it than the target
-/// distance, throughout.
+/// A part of a motion, and a ball that moves at constant velocity. Throughout the part, the ball contains the shape, and everything no
+/// farther from it than the target distance.
 pub(super) struct Piece<V: Vector> {
     pub(super) start: V::Scalar,
     pub(super) duration: V::Scalar,
@@ -20,7 +20,7 @@ pub(super) struct Piece<V: Vector> {
 }
 
 impl<V: Vector> Piece<V> {
-    /// A bound on the coordinates of the ball's points throughout, which are infinite where it moves for ever.
+    /// A bound on the coordinates of the ball's points throughout the part; infinite if it moves for ever.
     pub(super) fn reach(&self) -> V {
         let MovingBall { start, velocity, radius } = self.ball;
         V::from_fn(|i| {
@@ -31,7 +31,7 @@ impl<V: Vector> Piece<V> {
     }
 }
 
-/// A motion in as few pieces as it takes for their balls to be hardly larger than the shape's. One without an end is one piece.
+/// A motion in as few pieces as make their balls hardly larger than that of the shape. A motion without an end is one piece.
 pub(super) struct Pieces<'m, M: Trajectory> {
     motion: &'m M,
     ball: BoundingSphere<M::Vector>,

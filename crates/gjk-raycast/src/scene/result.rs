@@ -1,4 +1,4 @@
-//! What a scene answers.
+//! The answers of a scene.
 
 use alloc::vec::Vec;
 

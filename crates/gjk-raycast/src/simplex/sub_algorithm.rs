@@ -14,11 +14,11 @@ use crate::simplex::signed_volumes::signed_volumes;
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SubAlgorithm {
-    /// The regions of the faces that the newest point is a corner of; every face where that leaves a doubt: the fastest.
-    /// Casts look at every face at once.
+    /// The fastest: it looks only at the faces that the newest point is a corner of, and at every face where that leaves a doubt. Casts
+    /// look at every face at once.
     #[default]
     Regions,
-    /// Every face is projected upon, and the nearest taken that zero projects into: the most robust.
+    /// The most robust: zero is projected on every face, and of the faces that contain the projection the nearest is taken.
     NearestFace,
     /// Johnson's determinants, as in the paper.
     Johnson,

@@ -27,7 +27,7 @@ use crate::weight::Weight;
 /// The half-space { x : normal·x ≤ offset }. The normal points outward and need not be of unit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Halfspace<const N: usize> {
+pub struct HalfSpace<const N: usize> {
     /// The outward normal.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::point"))]
     pub normal: [f64; N],
@@ -98,14 +98,14 @@ pub struct InscribedIterate {
 ///
 /// # Examples
 /// ```
-/// use lj_ellipsoid::{Halfspace, InscribedOptions, inscribed};
+/// use lj_ellipsoid::{HalfSpace, InscribedOptions, inscribed};
 ///
 /// // A box of 4 × 2 about (1, 0).
 /// let sides = [
-///     Halfspace { normal: [1.0, 0.0], offset: 3.0 },
-///     Halfspace { normal: [-1.0, 0.0], offset: 1.0 },
-///     Halfspace { normal: [0.0, 1.0], offset: 1.0 },
-///     Halfspace { normal: [0.0, -1.0], offset: 1.0 },
+///     HalfSpace { normal: [1.0, 0.0], offset: 3.0 },
+///     HalfSpace { normal: [-1.0, 0.0], offset: 1.0 },
+///     HalfSpace { normal: [0.0, 1.0], offset: 1.0 },
+///     HalfSpace { normal: [0.0, -1.0], offset: 1.0 },
 /// ];
 /// let answer = inscribed(&sides, InscribedOptions::default())?;
 /// assert!((answer.ellipsoid.center()[0] - 1.0).abs() < 1e-9);
@@ -113,7 +113,7 @@ pub struct InscribedIterate {
 /// # Ok::<(), lj_ellipsoid::InscribedError>(())
 /// ```
 pub fn inscribed<const N: usize>(
-    halfspaces: &[Halfspace<N>],
+    halfspaces: &[HalfSpace<N>],
     options: InscribedOptions,
 ) -> Result<Inscribed<N>, InscribedError> {
     inscribed_with(halfspaces, options, |_| {})
@@ -124,7 +124,7 @@ pub fn inscribed<const N: usize>(
 /// # Errors
 /// As [`inscribed`](inscribed()).
 pub fn inscribed_with<const N: usize>(
-    halfspaces: &[Halfspace<N>],
+    halfspaces: &[HalfSpace<N>],
     options: InscribedOptions,
     mut observer: impl FnMut(InscribedIterate),
 ) -> Result<Inscribed<N>, InscribedError> {

@@ -22,8 +22,8 @@ pub(crate) type Planes<S> = [[S; WIDTH]; 4];
 /// The convex hull of points both ways: by its vertices, as a [`Polytope`], and by the half-spaces of its facets.
 ///
 /// It is for lines: a ray cast clips a ray by every facet, and [`line_crossing`](crate::line_crossing) tells where it leaves, too. That takes time
-/// proportional to the number of facets. Up to about a hundred of them it is less than that of a ray cast by support points, which
-/// needs no facets and hardly grows (measured: docs/performance.md, W1).
+/// proportional to the number of facets. Up to about a hundred facets it takes less time than a ray cast by support points, which
+/// needs no facets and whose time hardly grows (measured: docs/performance.md, W1).
 ///
 /// ```
 /// use convex_support::{Faceted, glam::DVec3, line_crossing};

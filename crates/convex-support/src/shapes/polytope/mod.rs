@@ -43,15 +43,15 @@ pub(crate) use lanes::WIDTH as PLANES;
 /// ```
 ///
 /// # Speed
-/// [`new`](Self::new) keeps the points as they are and scans all of them in each query, several at a time. With the
-/// feature `hull`, `Polytope::hull_of` finds the vertices and edges of the hull first, and where there are more than
-/// eight, which of them can be farthest along the directions of each cell of a grid: queries look at a handful, however
-/// many there are. In a cell of too many they climb along the edges, from a vertex of the cell or from the last answer
-/// ([`Hint`]).
+/// [`new`](Self::new) keeps the points as they are and scans all of them for each support point, several at a time. With the
+/// feature `hull`, `Polytope::hull_of` finds the vertices and edges of the hull first. If there are more than eight vertices, it also
+/// finds, for each cell of a grid of directions, those that can be farthest along a direction of the cell. A support point then takes a
+/// look at a handful of vertices, however many there are. In a cell that has too many, it climbs along the edges instead, from a vertex
+/// of the cell or from the last answer ([`Hint`]).
 ///
 /// # Ties
-/// Of points that reach equally far along a direction, to the last bit of the dot product with what they are relative to
-/// the middle, the answer is the first of [`points`](Self::points), except where it was climbed to.
+/// If several points reach equally far along a direction, to the last bit of the dot products computed relative to
+/// the middle, the answer is the first of them in [`points`](Self::points), unless it was found by climbing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polytope<V: Vector> {
     points: Vec<V>,
@@ -79,7 +79,7 @@ enum Search<V: Vector> {
 }
 
 impl<V: Vector> Polytope<V> {
-    /// The convex hull of the points, each of which every query looks at.
+    /// The convex hull of the points. Every support point takes a look at each of them.
     ///
     /// # Errors
     /// [`InvalidShape::NoPoints`], [`InvalidShape::NonFinite`] naming the index of the point that is not finite, or

@@ -1,0 +1,107 @@
+//! A character in a game walks over a floor, against a wall, and slides along it.
+//!
+//! In each frame a capsule moves to its first contact, loses the part of its velocity that leads into the obstacle, and goes on with
+//! the rest. Afterwards the contacts tell what it stands on and leans against.
+//!
+//! `cargo run -p gjk-raycast --example character_in_a_level`
+
+#![allow(clippy::print_stdout, reason = "an example talks")]
+
+use convex_support::glam::{Quat, Vec3};
+use convex_support::{Ball, Capsule, Cuboid, InvalidShape, Posed, SupportMap};
+use gjk_raycast::{
+    DistanceOptions, LinearCastOptions, Motion, RayCastError, Scene, SignedDistanceOptions, StartInContact,
+};
+
+/// Shapes of any kind, in single precision as games have it.
+type Shape = Box<dyn SupportMap<Vector = Vec3>>;
+
+const FRAME: f32 = 1.0 / 60.0;
+/// The character stops this far from everything, so that rounding never puts it into a wall.
+const SKIN: f32 = 0.01;
+
+fn level() -> Result<Vec<Shape>, InvalidShape> {
+    let wall = Cuboid::new(Vec3::new(0.5, 2.0, 10.0))?;
+    Ok(vec![
+        Box::new(Posed::translated(Cuboid::new(Vec3::new(20.0, 0.5, 20.0))?, Vec3::new(0.0, -0.5, 0.0))?),
+        Box::new(Posed::new(wall, Quat::from_rotation_y(0.3), Vec3::new(5.0, 2.0, 0.0))?),
+        Box::new(Posed::translated(Ball::new(1.0)?, Vec3::new(-3.0, 0.0, 3.0))?),
+    ])
+}
+
+struct Character {
+    shape: Capsule<Vec3>,
+    /// The middle of the capsule.
+    at: Vec3,
+    velocity: Vec3,
+}
+
+impl Character {
+    fn body(&self) -> Result<Posed<Capsule<Vec3>>, InvalidShape> {
+        Posed::translated(self.shape, self.at)
+    }
+
+    /// Moves for one frame. A corner takes as many slides as it has walls, so that a few are enough.
+    fn step(&mut self, level: &Scene<Shape>) -> Result<(), Box<dyn std::error::Error>> {
+        let mut left = FRAME;
+        for _ in 0..4 {
+            let normal = match self.first_contact(level, left)? {
+                None => {
+                    self.at += self.velocity * left;
+                    return Ok(());
+                }
+                Some((time, normal)) => {
+                    self.at += self.velocity * time;
+                    left -= time;
+                    normal
+                }
+            };
+            self.velocity -= normal * self.velocity.dot(normal).min(0.0);
+        }
+        Ok(())
+    }
+
+    /// When the character first comes within the skin of something, and the normal there, out of the obstacle.
+    fn first_contact(&self, level: &Scene<Shape>, within: f32) -> Result<Option<(f32, Vec3)>, RayCastError> {
+        // Contacts that the motion leaves or slides along do not count.
+        let options = LinearCastOptions::new()
+            .with_max_time(within)
+            .with_target_distance(SKIN)
+            .with_start_in_contact(StartInContact::IfDeeper);
+        let body = self.body().expect("the character is at a finite place");
+        let motion = Motion { velocity_a: self.velocity, ..Motion::default() };
+        let first = level.linear_cast(&body, motion, options)?.first;
+        Ok(first
+            .map(|first| (first.hit.time, first.hit.normal.expect("hits have one where only deeper motions count"))))
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let level = Scene::new(level()?)?;
+    let mut character =
+        Character { shape: Capsule::new(0.5, 0.3)?, at: Vec3::new(0.0, 0.8 + SKIN, 0.0), velocity: Vec3::ZERO };
+    for frame in 0..240 {
+        character.velocity = Vec3::new(4.0, character.velocity.y - 9.81 * FRAME, 0.5);
+        character.step(&level)?;
+        if frame % 60 == 59 {
+            println!("after {} s: at {:.3}, velocity {:.3}", (frame + 1) / 60, character.at, character.velocity);
+        }
+    }
+
+    // What it touches: the bodies nearby, and a contact with each.
+    let body = character.body()?;
+    let mut near = Vec::new();
+    let _ = level.all_within(&body, 2.0 * SKIN, DistanceOptions::default(), &mut near);
+    for found in &near {
+        let part = level.get(found.body).ok_or("it was just found")?;
+        let touching = part.contact(&body, 2.0 * SKIN, SignedDistanceOptions::default()).ok_or("it is near")?;
+        println!("touches body {} in {} points, normal {:.3}", found.body, touching.points().len(), touching.normal);
+        assert!((touching.distance.signed_distance - SKIN).abs() < 1e-3, "{}", touching.distance.signed_distance);
+    }
+    assert_eq!(near.iter().map(|found| found.body).collect::<Vec<_>>(), [0, 1], "it stands on the floor, by the wall");
+    // Along the wall, whose outward normal is (−cos 0.3, 0, sin 0.3), nothing slows it down.
+    let along = Vec3::new(0.3_f32.sin(), 0.0, 0.3_f32.cos());
+    let walked = Vec3::new(4.0, 0.0, 0.5).dot(along);
+    assert!((character.velocity.dot(along) - walked).abs() < 1e-3, "{} along the wall", character.velocity);
+    Ok(())
+}
