@@ -4,13 +4,13 @@ use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use crate::body::{Body as _, Pair, TracedSupport as _, Untraced};
-use crate::contact::signed_distance_and_axis;
+use crate::distance::distance_with;
 use crate::gjk::{
     Boxes, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, is_near_contact, near_contact, rounding,
 };
 use crate::shape::{Shape, WithoutLines};
 use crate::unit::is_moderate;
-use crate::{IntersectOptions, Intersection, Iterate, SignedDistanceOptions, Status};
+use crate::{DistanceOptions, IntersectOptions, Intersection, Iterate, Status};
 
 /// Whether two shapes have a point in common. Touching counts as meeting.
 ///
@@ -165,7 +165,10 @@ where
                     }
                 }
                 None if end == End::Stalled => {
-                    let again = closely([&pair.a, &pair.b], max_iterations.saturating_sub(iterations));
+                    let again = closely(
+                        [&WithoutLines(pair.a), &WithoutLines(pair.b)],
+                        max_iterations.saturating_sub(iterations),
+                    );
                     iterations += again.iterations;
                     return Intersection { iterations, ..again };
                 }
@@ -181,15 +184,11 @@ where
 #[cold]
 #[inline(never)]
 fn closely<V: Vector>([a, b]: [Shape<'_, V>; 2], max_iterations: usize) -> Intersection<V> {
-    let zero = V::Scalar::ZERO;
-    let options = SignedDistanceOptions::new().with_max_iterations(max_iterations);
-    let (there, axis) = signed_distance_and_axis(a, b, options.with_limit(zero).with_depth_limit(zero));
-    let (apart, meet) = (there.lower > zero, there.upper <= zero);
-    let status = match there.status {
-        _ if apart || meet => Status::Converged,
-        Status::Converged => Status::Stalled,
-        status => status,
-    };
-    let overlap = if apart { false } else { meet || there.overlap };
-    Intersection { overlap, axis: (!overlap).then_some(axis), status, iterations: there.iterations }
+    let there = distance_with(a, b, DistanceOptions::new().with_max_iterations(max_iterations), |_| {});
+    Intersection {
+        overlap: there.overlap,
+        axis: there.normal.filter(|_| !there.overlap),
+        status: there.status,
+        iterations: there.iterations,
+    }
 }
