@@ -145,7 +145,8 @@ impl<V: Vector> Facing<V> {
     }
 
     /// Adds the closest points, whose heights above the plane are given, if none of the candidates is as deep: features that are not quite
-    /// flat are closest in their midst, and those of vertices, or of edges that cross, have no corners in common.
+    /// flat are closest in their midst, and those of vertices, or of edges that cross, have no corners in common. A candidate `near` them is
+    /// the same point, and moves there: beside it, they would only take the place of another corner.
     fn with_closest(
         &self,
         candidates: &mut Candidates<V::Scalar>,
@@ -159,13 +160,19 @@ impl<V: Vector> Facing<V> {
         if candidates.iter().any(|candidate| !(candidate.gap() > deepest)) {
             return;
         }
+        let is_near = |candidate: &&mut Candidate<V::Scalar>| dot(candidate.at, candidate.at) <= near * near;
+        let at = (V::Scalar::ZERO, V::Scalar::ZERO);
+        if let Some(candidate) = candidates.iter_mut().find(is_near) {
+            (candidate.at, candidate.heights) = (at, heights);
+            return;
+        }
         let part = |outline: &Outline<V::Scalar>| match outline.corners.as_slice() {
             [corner] => Part::Vertex(corner.id),
             [from, to] => Part::Edge(from.id, to.id),
             _ => Part::Face,
         };
         let parts = [part(&self.of_a), part(&self.of_b)];
-        candidates.push(Candidate { at: (V::Scalar::ZERO, V::Scalar::ZERO), heights, parts });
+        candidates.push(Candidate { at, heights, parts });
     }
 
     /// At most four of the candidates, in the plane two.
