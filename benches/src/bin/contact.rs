@@ -64,23 +64,6 @@ impl PairTask<DVec3> for Manifolds<'_> {
     }
 }
 
-/// The support points of each shape that a depth takes.
-struct SupportPoints<'a>(&'a [IntersectQuery]);
-
-impl PairTask<DVec3> for SupportPoints<'_> {
-    fn solver<A, B>(self, a: A, b: B) -> Solver
-    where
-        A: SupportMap<Vector = DVec3> + 'static,
-        B: SupportMap<Vector = DVec3> + 'static,
-    {
-        let queries = self.0.iter().map(|query| placed::<DVec3>(query.pose)).collect();
-        Solver::new(queries, move |&(rotation, translation)| {
-            let b = Posed::new(&b, rotation, translation).expect(VALID);
-            signed_distance(&a, &b, SignedDistanceOptions::default()).iterations as f64
-        })
-    }
-}
-
 /// The columns of times for one pair.
 fn times(pair: &Pair, overlapping: &[IntersectQuery]) -> [Option<f64>; 6] {
     let apart: &[DistanceQuery] = &w3_distance::queries(pair)[..w3_distance::FAR];
@@ -102,7 +85,8 @@ fn times(pair: &Pair, overlapping: &[IntersectQuery]) -> [Option<f64>; 6] {
 
 /// The mean and the most of the support points that depths of one pair take.
 fn support_points(pair: &Pair, overlapping: &[IntersectQuery]) -> String {
-    let counts = with_pair::<DVec3>(pair, SupportPoints(overlapping)).answers();
+    let counting = Effort { iterations: true, ..Effort::default() };
+    let counts = with_pair::<DVec3>(pair, SignedDistances(overlapping, counting)).answers();
     let most = counts.iter().copied().fold(0.0, f64::max);
     format!("{:.1}, {most}", counts.iter().sum::<f64>() / counts.len() as f64)
 }

@@ -36,6 +36,20 @@ struct Closed<S> {
     h: S,
 }
 
+impl<S: Scalar> Closed<S> {
+    fn new(time: usize, h: S) -> Self {
+        Self { from: time, lowered: time, h }
+    }
+
+    /// Whether all support points are spent, at a time when the way out is `h`; what is lower by no more than a `little` is none.
+    fn is_spent(&mut self, time: usize, h: S, little: S) -> bool {
+        if self.h - h > little {
+            (self.lowered, self.h) = (time, h);
+        }
+        time >= self.from + MORE || time >= self.lowered + PATIENCE
+    }
+}
+
 /// A plane that supports the difference, by the support point, which knows the outward unit normal that it was found along.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WayOut<V: Vector> {
@@ -117,7 +131,8 @@ where
         start::Start::Full(way) => way,
     };
     let depth_limit = (options.depth_limit - cores.radius()) / cores.scale();
-    let mut enough = tolerance.max(cores.rounding_along(way.u()));
+    let enough_of = |cores: &Cores<'_, A, B>, way: &WayOut<A::Vector>| tolerance.max(cores.rounding_along(way.u()));
+    let mut enough = enough_of(cores, &way);
     let mut met = None;
     // Whether directions may lean; not next after one whose support point was not beyond the facet.
     let mut may_lean = is_curved;
@@ -131,19 +146,15 @@ where
         if !(way.h - inner > enough) {
             let little = cores.rounding_along(way.u()).max(way.h.abs() * Scalar::from_f64(LITTLE));
             let is_first = closed.is_none();
-            let last = closed.get_or_insert(Closed { from: cores.iterations, lowered: cores.iterations, h: way.h });
-            if last.h - way.h > little {
-                (last.lowered, last.h) = (cores.iterations, way.h);
-            }
-            let is_spent = cores.iterations >= last.from + MORE || cores.iterations >= last.lowered + PATIENCE;
-            if is_spent || !(is_curved && way.h - inner > little) {
+            let closed = closed.get_or_insert_with(|| Closed::new(cores.iterations, way.h));
+            if closed.is_spent(cores.iterations, way.h, little) || !(is_curved && way.h - inner > little) {
                 break Status::Converged;
             }
             if is_first {
                 // Perhaps no step was taken towards the bottom yet.
                 let corners = boundary.corners(nearest);
                 way = basin::descend(cores, &mut boundary, way, &corners[..A::Vector::DIM], options, true)?;
-                enough = tolerance.max(cores.rounding_along(way.u()));
+                enough = enough_of(cores, &way);
                 continue;
             }
         }
@@ -159,7 +170,7 @@ where
         let seen = WayOut::new(vertex);
         if seen.h < way.h {
             way = seen;
-            enough = tolerance.max(cores.rounding_along(way.u()));
+            enough = enough_of(cores, &way);
         }
         observer(Iterate {
             iteration: cores.iterations - 1,
@@ -191,7 +202,7 @@ where
         may_lean = is_curved;
         if let Some(corners) = corners {
             way = basin::descend(cores, &mut boundary, way, &corners[..A::Vector::DIM], options, closed.is_some())?;
-            enough = tolerance.max(cores.rounding_along(way.u()));
+            enough = enough_of(cores, &way);
         }
     };
     let status = if closed.is_some() { Status::Converged } else { status };

@@ -36,8 +36,8 @@ use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, linear_ca
 /// ```
 ///
 /// The motions are [`RigidMotion`]s, [`ChainMotion`](crate::ChainMotion)s or any other [`Trajectory`]; a body at rest has the motion
-/// `RigidMotion::default()`. Up to `lower` the bodies are proved to be apart at all times, not only at those looked at; at `upper` they
-/// overlap. A miss is proved for the whole motion. Where the bodies graze one another, so that rounding decides, the answer is
+/// `RigidMotion::default()`. Up to `lower` the bodies are proved to be apart at all times, not only at those looked at; by `upper` they
+/// have met. A miss is proved for the whole motion. Where the bodies graze one another, so that rounding decides, the answer is
 /// [`Outcome::Undecided`], and `lower` is the time of the graze.
 ///
 /// Where neither body turns, the answer is that of [`linear_cast`].
