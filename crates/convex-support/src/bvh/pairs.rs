@@ -8,7 +8,7 @@ use super::Bvh;
 use super::bound::{Bound, BoxDistance};
 use super::node::{Boxes, Child, Link, Node, WIDTH};
 use super::search::{MAX_DEPTH, finite};
-use crate::glam::{BVec4A, Vec3A, Vec4};
+use crate::glam::{BVec4A, Vec3A, Vec4, Vec4Swizzles as _};
 use crate::{Aabb, Scalar as _, Vector};
 
 /// Two nodes leave at most 16 pairs of children behind, and a node and an item 4, one of which is looked into next.
@@ -152,14 +152,10 @@ impl<'t, V: Vector> PairSearch<'t, V> {
                 } else {
                     near_pairs::<V>(&self.as_b_sees(&first.boxes), &second.boxes, self.rooms[1])
                 };
-                if self.same && i == j {
+                let is_one = self.same && i == j;
+                if is_one {
                     // A pair counts once, and an item makes none with itself.
                     near &= 0b0000_1000_1100_1110;
-                    for link in first.children {
-                        if let Child::Node(_) = link.child() {
-                            push((link, link));
-                        }
-                    }
                 }
                 while near != 0 {
                     let bit = near.trailing_zeros() as usize;
@@ -167,6 +163,15 @@ impl<'t, V: Vector> PairSearch<'t, V> {
                     let (a, b) = (first.children[bit / WIDTH], second.children[bit % WIDTH]);
                     if a != Link::NONE && b != Link::NONE {
                         push((a, b));
+                    }
+                }
+                if is_one {
+                    // On top, so that each part is looked into on its own, in the order in which its nodes lie in memory, before parts are
+                    // compared.
+                    for link in first.children {
+                        if let Child::Node(_) = link.child() {
+                            push((link, link));
+                        }
                     }
                 }
             }
@@ -188,7 +193,9 @@ impl<'t, V: Vector> PairSearch<'t, V> {
 /// The children of a node that are near a box: no farther along any coordinate.
 #[inline(always)]
 fn near<V: Vector>(around: &Aabb<Vec3A>, room: f32, node: &Node, mut push: impl FnMut(Link)) {
-    let mut near = near_box::<V>(&around.min.into(), &around.max.into(), &grown(&node.boxes, room));
+    let all_of = |corner: Vec3A| [Vec4::splat(corner.x), Vec4::splat(corner.y), Vec4::splat(corner.z)];
+    let boxes = grown(&node.boxes, room);
+    let mut near = are_near::<V>(&all_of(around.min), &all_of(around.max), &boxes).bitmask();
     while near != 0 {
         let link = node.children[near.trailing_zeros() as usize];
         near &= near - 1;
@@ -202,11 +209,20 @@ fn near<V: Vector>(around: &Aabb<Vec3A>, room: f32, node: &Node, mut push: impl 
 #[inline(always)]
 fn near_pairs<V: Vector>(a: &Boxes, b: &Boxes, room: f32) -> u32 {
     let b = grown(b, room);
-    let planes: [[[f32; WIDTH]; 2]; 3] = core::array::from_fn(|axis| [a.min(axis).into(), a.max(axis).into()]);
-    (0..WIDTH).fold(0, |near, lane| {
-        let [min, max] = [0, 1].map(|side| core::array::from_fn(|axis| planes[axis][side][lane]));
-        near | near_box::<V>(&min, &max, &b) << (WIDTH * lane)
-    })
+    let (min, max) = (by_lane(a.min(0), a.min(1), a.min(2)), by_lane(a.max(0), a.max(1), a.max(2)));
+    (0..WIDTH).fold(0, |near, lane| near | are_near::<V>(&min[lane], &max[lane], &b).bitmask() << (WIDTH * lane))
+}
+
+/// Of four points, coordinate by coordinate, each in all places of a vector. It stays in registers: what is written to memory number by
+/// number and read as a vector makes the processor wait.
+#[inline(always)]
+fn by_lane(x: Vec4, y: Vec4, z: Vec4) -> [[Vec4; 3]; WIDTH] {
+    [
+        [x.xxxx(), y.xxxx(), z.xxxx()],
+        [x.yyyy(), y.yyyy(), z.yyyy()],
+        [x.zzzz(), y.zzzz(), z.zzzz()],
+        [x.wwww(), y.wwww(), z.wwww()],
+    ]
 }
 
 /// Boxes that are larger by this room. What is not above a sum without rounding is not above the rounded one.
@@ -218,13 +234,11 @@ fn grown(boxes: &Boxes, room: f32) -> [[Vec4; 2]; 3] {
 
 /// Which of four boxes have a point in common with another.
 #[inline(always)]
-fn near_box<V: Vector>(min: &[f32; 3], max: &[f32; 3], boxes: &[[Vec4; 2]; 3]) -> u32 {
-    (1..V::DIM)
-        .fold(common(min[0], max[0], boxes[0]), |all, axis| all & common(min[axis], max[axis], boxes[axis]))
-        .bitmask()
-}
-
-#[inline(always)]
-fn common(min: f32, max: f32, [low, high]: [Vec4; 2]) -> BVec4A {
-    Vec4::splat(min).cmple(high) & Vec4::splat(max).cmpge(low)
+fn are_near<V: Vector>(min: &[Vec4; 3], max: &[Vec4; 3], boxes: &[[Vec4; 2]; 3]) -> BVec4A {
+    let along = |axis: usize| {
+        let [low, high]: [Vec4; 2] = boxes[axis];
+        min[axis].cmple(high) & max[axis].cmpge(low)
+    };
+    let in_plane = along(0) & along(1);
+    if V::DIM == 2 { in_plane } else { in_plane & along(2) }
 }
