@@ -183,19 +183,17 @@ impl<V: Space> PairTask<V> for Intersections<'_> {
         B: SupportMap<Vector = V> + 'static,
     {
         let Self { queries, is_warm, effort } = self;
-        let ask = move |(rotation, translation), options| {
-            let b = Posed::new(&b, rotation, translation).expect(VALID);
-            intersects(&a, &b, options)
-        };
+        let cold = IntersectOptions::default()
+            .with_max_iterations(effort.max_iterations)
+            .with_sub_algorithm(effort.sub_algorithm);
         let prepared = queries.iter().map(|query| {
-            let (pose, cold) = (placed::<V>(query.pose), IntersectOptions::default());
-            let axis = if is_warm { ask(pose, cold).axis } else { None };
-            let options = axis.map_or(cold, |axis| cold.with_axis(axis));
-            let options = options.with_max_iterations(effort.max_iterations);
-            (pose, options.with_sub_algorithm(effort.sub_algorithm))
+            let pose = placed::<V>(query.pose);
+            let axis = if is_warm { axis_of(&a, &b, pose) } else { None };
+            (pose, axis.map_or(cold, |axis| cold.with_axis(axis)))
         });
-        Solver::new(prepared.collect(), move |&(pose, options)| {
-            let answer = ask(pose, options);
+        Solver::new(prepared.collect(), move |&((rotation, translation), options)| {
+            let b = Posed::new(&b, rotation, translation).expect(VALID);
+            let answer = intersects(&a, &b, options);
             let value = match answer.status {
                 Status::Converged => f64::from(u8::from(answer.overlap)),
                 Status::IterationLimit | Status::Stalled => f64::NAN,
@@ -203,6 +201,17 @@ impl<V: Space> PairTask<V> for Intersections<'_> {
             effort.tell(value, answer.iterations)
         })
     }
+}
+
+/// The axis that separates two bodies, if they are apart. Apart from the query that is timed, which is compiled into its loop.
+#[inline(never)]
+fn axis_of<V: Space>(
+    a: &impl SupportMap<Vector = V>,
+    b: &impl SupportMap<Vector = V>,
+    (rotation, translation): (V::Rotation, V),
+) -> Option<V> {
+    let b = Posed::new(b, rotation, translation).expect(VALID);
+    intersects(a, &b, IntersectOptions::default()).axis
 }
 
 /// The rotation and translation of a pose.
