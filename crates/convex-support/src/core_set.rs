@@ -52,8 +52,13 @@ impl<V: Vector> Core<V> {
 pub enum CoreKind<V> {
     /// A single point, relative to the origin. Its distance from a shape that knows its closest points takes no iteration.
     Point(V),
-    /// The segment from `−h` to `h`, relative to the origin. The distance of two segments takes no iteration.
-    Segment(V),
+    /// A segment. The distance of two segments takes no iteration.
+    Segment {
+        /// The point halfway between its ends, relative to the origin.
+        middle: V,
+        /// The vector from there to one of the ends.
+        half: V,
+    },
     /// A polytope, whose support point jumps from vertex to vertex and does not move in between: its Hessian is always zero.
     Polytope,
     /// Anything else.
@@ -66,6 +71,8 @@ impl<V> CoreKind<V> {
     pub(crate) fn plus(self, other: Self, points: impl FnOnce(V, V) -> V) -> Self {
         match (self, other) {
             (Self::Point(a), Self::Point(b)) => Self::Point(points(a, b)),
+            (Self::Point(a), Self::Segment { middle, half }) => Self::Segment { middle: points(a, middle), half },
+            (Self::Segment { middle, half }, Self::Point(b)) => Self::Segment { middle: points(middle, b), half },
             (Self::Curved, _) | (_, Self::Curved) => Self::Curved,
             _ => Self::Polytope,
         }
@@ -75,11 +82,14 @@ impl<V> CoreKind<V> {
 impl<V: Vector> CoreKind<V> {
     /// The kind of the core's image under a linear map, moved by what the rounding of the origin lost.
     #[inline(always)]
-    pub(crate) fn image(self, map: impl FnOnce(V) -> V, lost: V) -> Self {
+    pub(crate) fn image(self, map: impl Fn(V) -> V, lost: V) -> Self {
         match self {
             Self::Point(at) => Self::Point(map(at) + lost),
-            Self::Segment(half) if lost == V::ZERO => Self::Segment(map(half)),
-            Self::Segment(_) => Self::Polytope,
+            // The middle of most is zero, and stays where it is.
+            Self::Segment { middle, half } => {
+                let middle = if middle == V::ZERO { lost } else { map(middle) + lost };
+                Self::Segment { middle, half: map(half) }
+            }
             kind => kind,
         }
     }

@@ -122,7 +122,11 @@ mod tests {
         assert_eq!(pointer.support_value(d), capsule.support_value(d));
         assert_eq!(pointer.core_support(d, &mut Hint::new()), capsule.core_support(d, &mut Hint::new()));
         assert_eq!(pointer.core(), capsule.core());
-        assert_eq!(pointer.core().kind, CoreKind::Segment(DVec3::Y), "a segment is the core");
+        assert_eq!(
+            pointer.core().kind,
+            CoreKind::Segment { middle: DVec3::ZERO, half: DVec3::Y },
+            "a segment is the core"
+        );
         assert_eq!(pointer.core_support_hessian(d, [d, d]), capsule.core_support_hessian(d, [d, d]));
         assert_eq!(pointer.rounding(), capsule.rounding());
         assert_eq!(pointer.core_parallelotope(), capsule.core_parallelotope());

@@ -187,7 +187,10 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
         let (a, b) = match (self.core_a.kind, self.core_b.kind) {
             (CoreKind::Point(a), _) => (a, self.b.core_closest_point(a + offset)?),
             (_, CoreKind::Point(b)) => (self.a.core_closest_point(b - offset)?, b),
-            (CoreKind::Segment(u), CoreKind::Segment(w)) => segments::closest_points(u, w, offset),
+            (CoreKind::Segment { middle: a, half: u }, CoreKind::Segment { middle: b, half: w }) => {
+                let (x, y) = segments::closest_points(u, w, offset - (b - a));
+                (a + x, b + y)
+            }
             _ => return None,
         };
         // What closed forms compute of larger or smaller numbers may have left the range of the scalar.
@@ -200,8 +203,9 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
     pub(crate) fn vector_between(&self, PointPair { a, b }: PointPair<A::Vector>, offset: A::Vector) -> A::Vector {
         let v = a - b + offset;
         match (self.core_a.kind, self.core_b.kind) {
-            (CoreKind::Segment(u), CoreKind::Segment(w)) => {
-                segments::normal_between([u * self.per_unit, w * self.per_unit], [a, b], v)
+            (CoreKind::Segment { middle: x, half: u }, CoreKind::Segment { middle: y, half: w }) => {
+                let [u, w, x, y] = [u, w, x, y].map(|v| v * self.per_unit);
+                segments::normal_between([u, w], [a - x, b - y], v)
             }
             _ => v,
         }

@@ -58,8 +58,9 @@ pub(crate) fn normal_between<V: Vector>([u, w]: [V; 2], [a, b]: [V; 2], v: V) ->
 fn normal_in_order<V: Vector>([u, w]: [V; 2], [a, b]: [V; 2], v: V) -> V {
     let zero = V::Scalar::ZERO;
     let (uu, ww, uw) = (u.length_squared(), w.length_squared(), u.dot(w));
-    let is_within_u = a.dot(u).abs() < uu;
-    let is_within_w = b.dot(w).abs() < ww;
+    let inner = V::Scalar::ONE - V::Scalar::EPSILON * V::Scalar::from_f64(AT_END);
+    let is_within_u = a.dot(u).abs() < uu * inner;
+    let is_within_w = b.dot(w).abs() < ww * inner;
     let (uv, wv) = (if is_within_u { u.dot(v) } else { zero }, if is_within_w { w.dot(v) } else { zero });
     // Parallel segments are both across a vector that one of them is across.
     let squared_sine = uu * ww - uw * uw;
@@ -75,6 +76,10 @@ fn normal_in_order<V: Vector>([u, w]: [V; 2], [a, b]: [V; 2], v: V) -> V {
     };
     v + u * s - w * t
 }
+
+/// Points that are by this many ε of the half length from an end are at the end: a point that was put relative to the origin and back is not
+/// exactly where it was.
+const AT_END: f64 = 8.0;
 
 /// The squared sine of the angle between segments below which they are as good as parallel.
 const PARALLEL: f64 = 1e-6;

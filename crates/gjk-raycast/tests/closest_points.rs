@@ -90,18 +90,38 @@ fn two_capsules_need_one_too() {
                 turned(Capsule::<V>::new(s::<V>(1.0), s::<V>(0.25)).expect(VALID), V::quaternion(turns[2]), [0.0; 3]);
             let body = Capsule::<V>::new(s::<V>(half_height), s::<V>(radius)).expect(VALID);
             let body = turned(body, V::quaternion(turn), centre);
-            let found = distance(&fixed, &body, DistanceOptions::default());
-            let other = distance(&Plain(&fixed), &Plain(&body), DistanceOptions::default());
-            let signed = signed_distance(&fixed, &body, SignedDistanceOptions::default());
-            let meeting = intersects(&fixed, &body, IntersectOptions::default());
-            let what = format!("{body:?}: {found:?}, {other:?}, {signed:?}");
-            assert!(found.lower <= other.upper && other.lower <= found.upper, "{what}");
-            assert!(signed.lower <= found.upper && found.lower <= signed.upper.max(V::Scalar::ZERO), "{what}");
-            assert_eq!((found.overlap, found.status), (other.overlap, Status::Converged), "{what}");
-            assert_eq!(meeting.decided(), Some(found.overlap), "{what}");
-            let is_apart = found.lower > V::Scalar::ZERO;
-            assert!(!is_apart || found.iterations == 1 && signed.iterations == 1, "{what}");
+            is_known_between(&fixed, &body);
+            // The same by their ends, as users build links of robots: once where they are, and once turned and moved.
+            let upright = |half_height: f64| [-1.0, 1.0].map(|end| v::<V>([0.5, half_height * end, 0.25]));
+            let link = Rounded::new(Segment::new(upright(half_height)).expect(VALID), s::<V>(radius)).expect(VALID);
+            let there = [fixed.shape().half_height(), -fixed.shape().half_height()]
+                .map(|y| fixed.rotation() * (V::axis(1) * y));
+            let fixed_link = Rounded::new(Segment::new(there).expect(VALID), s::<V>(0.25)).expect(VALID);
+            is_known_between(&fixed_link, &turned(link, V::quaternion(turn), centre));
+            is_known_between(
+                &fixed,
+                &turned(turned(link, V::quaternion(turns[1]), centre), V::quaternion(turn), centre),
+            );
         }
+    }
+
+    /// The closed form of two segments beside what is found without.
+    fn is_known_between<A, B>(fixed: &A, body: &B)
+    where
+        A: SupportMap + core::fmt::Debug,
+        B: SupportMap<Vector = A::Vector> + core::fmt::Debug,
+    {
+        let found = distance(fixed, body, DistanceOptions::default());
+        let other = distance(&Plain(fixed), &Plain(body), DistanceOptions::default());
+        let signed = signed_distance(fixed, body, SignedDistanceOptions::default());
+        let meeting = intersects(fixed, body, IntersectOptions::default());
+        let what = format!("{body:?}: {found:?}, {other:?}, {signed:?}");
+        assert!(found.lower <= other.upper && other.lower <= found.upper, "{what}");
+        assert!(signed.lower <= found.upper && found.lower <= signed.upper.max(Scalar::ZERO), "{what}");
+        assert_eq!((found.overlap, found.status), (other.overlap, Status::Converged), "{what}");
+        assert_eq!(meeting.decided(), Some(found.overlap), "{what}");
+        let is_apart = found.lower > Scalar::ZERO;
+        assert!(!is_apart || found.iterations == 1 && signed.iterations == 1, "{what}");
     }
     run::<DVec3>();
     run::<Vec3A>();

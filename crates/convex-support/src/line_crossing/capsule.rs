@@ -5,39 +5,59 @@ use num_traits::Float as _;
 use super::{Chord, Crossed, Crossing, comfortable, rebased};
 use crate::{Scalar, Vector};
 
-/// The crossing of the segment between `±half_height` on the second axis, swept by a ball.
-#[inline(always)]
-pub(crate) fn upright<V: Vector>(half_height: V::Scalar, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
-    let (direction, dd, unit) = comfortable(direction);
-    let recip = dd.recip();
-    let (base, source) = rebased(source, direction, recip);
-    let (source, direction) = ((source, split_upright(source)), (direction, split_upright(direction)));
-    capsule(V::axis(1), half_height, radius, source, direction, recip)?.shifted(base, unit, || V::ZERO)
+/// A segment, by its middle, the unit vector along it and half its length.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spine<V: Vector> {
+    pub(super) middle: V,
+    pub(super) axis: V,
+    pub(super) half_height: V::Scalar,
+    /// The axis is the second one, so that vectors are split without arithmetic.
+    pub(super) is_upright: bool,
 }
 
-/// The crossing of the segment between two points, swept by a ball.
-#[inline]
-pub(crate) fn edge<V: Vector>([a, b]: [V; 2], radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
-    let (direction, dd, unit) = comfortable(direction);
-    let half = V::Scalar::from_f64(0.5);
-    let to_b = (b - a) * half;
-    let axis = to_b.unit().unwrap_or_else(|| V::axis(0));
-    let recip = dd.recip();
-    let (base, source) = rebased(source - (a + to_b), direction, recip);
-    let split = |v: V| {
-        let out = v - axis * v.dot(axis);
+impl<V: Vector> Spine<V> {
+    /// The segment between `±half_height` on the second axis.
+    #[inline(always)]
+    pub(crate) fn upright(half_height: V::Scalar) -> Self {
+        Self { middle: V::ZERO, axis: V::axis(1), half_height, is_upright: true }
+    }
+
+    /// The segment between two points.
+    #[inline(always)]
+    pub(crate) fn between([a, b]: [V; 2]) -> Self {
+        let to_b = (b - a) * V::Scalar::from_f64(0.5);
+        let axis = to_b.unit().unwrap_or_else(|| V::axis(0));
+        Self { middle: a + to_b, axis, half_height: to_b.norm(), is_upright: false }
+    }
+
+    /// A point as it is seen from the middle.
+    #[inline(always)]
+    pub(super) fn seen(&self, point: V) -> V {
+        if self.is_upright { point } else { point - self.middle }
+    }
+
+    /// The parts of a vector along and across the axis.
+    #[inline(always)]
+    pub(super) fn split(&self, v: V) -> (V::Scalar, V) {
+        if self.is_upright {
+            return (v.get(1), V::from_fn(|i| if i == 1 { V::Scalar::ZERO } else { v.get(i) }));
+        }
+        let along = v.dot(self.axis);
+        let out = v - self.axis * along;
         // Once more, since what is across may be small beside what was subtracted: of a line nearly along the axis, where it leaves the side
         // is the difference of two large numbers.
-        (v.dot(axis), out - axis * out.dot(axis))
-    };
-    let (source, direction) = ((source, split(source)), (direction, split(direction)));
-    capsule(axis, to_b.norm(), radius, source, direction, recip)?.shifted(base, unit, || V::ZERO)
-}
+        (along, out - self.axis * out.dot(self.axis))
+    }
 
-/// The parts of a vector along and across the second axis.
-#[inline(always)]
-pub(super) fn split_upright<V: Vector>(v: V) -> (V::Scalar, V) {
-    (v.get(1), V::from_fn(|i| if i == 1 { V::Scalar::ZERO } else { v.get(i) }))
+    /// The crossing of the segment, swept by a ball.
+    #[inline(always)]
+    pub(crate) fn crossing(&self, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
+        let (direction, dd, unit) = comfortable(direction);
+        let recip = dd.recip();
+        let (base, source) = rebased(self.seen(source), direction, recip);
+        let (source, direction) = ((source, self.split(source)), (direction, self.split(direction)));
+        capsule(self.axis, self.half_height, radius, source, direction, recip)?.shifted(base, unit, || V::ZERO)
+    }
 }
 
 /// A vector and its parts along and across an axis.

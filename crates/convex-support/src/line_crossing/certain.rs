@@ -8,8 +8,7 @@
 
 use num_traits::Float as _;
 
-use super::capsule::split_upright;
-use super::{Chord, Crossed, Crossing, across_two_axes, axis_of, past_rim, rebased};
+use super::{Chord, Crossed, Crossing, Spine, across_two_axes, axis_of, past_rim, rebased};
 use crate::numerics::bound::roundings;
 use crate::numerics::range::{is_comfortable, is_moderate};
 use crate::numerics::twofold::foot_from;
@@ -56,6 +55,13 @@ const OF_SIZE: f64 = 6.0;
 /// size from there: the products with a rotation lose `3√3u` of both lengths, and those with the semi-axes of an ellipsoid `2u`, in all `15uS`;
 /// and to its ball `13uS`.
 const OF_TURN: f64 = 11.0;
+
+/// The further error of a line that is split along the axis of a segment, in units of ε times the size.
+///
+/// The ends are seen from the origin to `2u` of the size `S`, the middle and the line from there to `2uS`, half the length to `2uS`; the axis is wrong by
+/// `4u`, which is as if the segment were turned by so much. Of a vector the part along the axis loses `7u` of its length, and the part across `3u`, beside
+/// what is along the axis and counts squared. Where a line hits, its foot and the way from there to the hit are no longer than the size. In all `26u`.
+const OF_SPLIT: f64 = 16.0;
 
 /// A line that is near a shape: as it is seen from the shape's origin, from a point at most [`NEAR`] sizes away.
 #[derive(Clone, Copy, Debug)]
@@ -207,18 +213,42 @@ impl<V: Vector> NearLine<V> {
         Some(line.enters([entry - slack, entry, entry + slack], *axes * (gradient * length.recip())))
     }
 
-    /// The segment between `±half_height` on the second axis, swept by a ball. `None` too where the line passes near a rim, or past an end.
+    /// A segment swept by a ball.
+    #[inline(always)]
+    pub(crate) fn segment(&self, spine: &Spine<V>, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+        let line = self.seen_along(spine);
+        if let Some(known) = line.capsule(spine, radius) {
+            return Some(known);
+        }
+        let half_height = spine.half_height;
+        let closest = |x: V| spine.axis * spine.split(x).0.max(-half_height).min(half_height);
+        let support_value = |d: V| spine.split(d).0.abs() * half_height;
+        let crossed = Spine { middle: V::ZERO, ..*spine }.crossing(radius, line.source, line.direction);
+        line.swept(radius, closest, support_value, crossed)
+    }
+
+    /// The line as it is seen from the middle of a segment.
+    #[inline(always)]
+    fn seen_along(&self, spine: &Spine<V>) -> Self {
+        if spine.is_upright {
+            return *self;
+        }
+        let error = self.error + self.size * (V::Scalar::EPSILON * V::Scalar::from_f64(OF_SPLIT));
+        Self { source: self.source - spine.middle, error, ..*self }
+    }
+
+    /// A segment about zero, swept by a ball. `None` too where the line passes near a rim, or past an end.
     ///
     /// It is within the infinite cylinder, and contains the ball at each end. So where the line enters the side between the ends, the slack of the
     /// side's chord is certain before the entry, and behind it as well if that point is between the ends by more than the error. Beyond an
     /// end the closest point of the segment is that end: there the slack of the ball's chord is certain, if the point before the entry is
     /// beyond the end by more than the error.
     #[inline(always)]
-    pub(crate) fn capsule(&self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
-        let Self { direction, error, .. } = *self;
+    fn capsule(&self, spine: &Spine<V>, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+        let (Self { direction, error, .. }, half_height) = (*self, spine.half_height);
         let recip = direction.length_squared().recip();
         let (base, source) = rebased(self.source, direction, recip);
-        let ((along, out), (rise, radial)) = (split_upright(source), split_upright(direction));
+        let ((along, out), (rise, radial)) = (spine.split(source), spine.split(direction));
         let slope = radial.length_squared();
         // Along the axis to rounding.
         if !(slope * recip > V::Scalar::EPSILON * V::Scalar::EPSILON) {
@@ -237,11 +267,12 @@ impl<V: Vector> NearLine<V> {
             let at = base + entry;
             return Some(self.enters([at - slack, at, at + slack], side.normal(radius, radial, per_slope)));
         }
-        let end = V::axis(1) * half_height.copysign(height_at(entry));
+        let side_of_end = V::Scalar::ONE.copysign(height_at(entry));
+        let end = spine.axis * (half_height * side_of_end);
         let cap = super::ball::chord(radius, self.source - end, direction, recip);
         let slack = cap.slack(radius, error, recip)?;
         let entry = cap.ends().0;
-        let height = height_at(entry - base - slack) * V::Scalar::ONE.copysign(end.get(1));
+        let height = height_at(entry - base - slack) * side_of_end;
         (height >= half_height + error)
             .then(|| self.enters([entry - slack, entry, entry + slack], cap.normal(radius, direction, recip)))
     }
@@ -285,7 +316,8 @@ impl<V: Vector> NearLine<V> {
         let reach = self.size * V::Scalar::from_f64(NEAR + 1.0) / self.direction.abs().max_element();
         let ahead = axis.dot(self.source) - support_value - axis.dot(self.direction).abs() * reach;
         let (squared, apart) = (axis.length_squared(), radius + self.error + self.error);
-        let passes = is_comfortable(squared) & (ahead > V::Scalar::ZERO) & (ahead * ahead >= apart * apart * squared);
+        // Not by squares, which of a short axis and a small size are both zero.
+        let passes = is_comfortable(squared) & (ahead > V::Scalar::ZERO) & (ahead >= apart * squared.sqrt());
         passes.then_some(CertainCrossing::Misses(axis))
     }
 }

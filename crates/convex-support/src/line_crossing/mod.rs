@@ -21,7 +21,7 @@ mod triangle;
 use num_traits::Float as _;
 
 pub(crate) use ball::ball;
-pub(crate) use capsule::{edge, upright};
+pub(crate) use capsule::Spine;
 pub use certain::CertainCrossing;
 pub(crate) use certain::{NearLine, skew};
 pub(crate) use cone::cone;

@@ -2,8 +2,7 @@
 
 use num_traits::Float as _;
 
-use super::capsule::edge;
-use super::{Crossed, Crossing, comfortable, rebased};
+use super::{Crossed, Crossing, Spine, comfortable, rebased};
 use crate::shapes::Frame;
 use crate::{Scalar, Triangle, Vector};
 
@@ -22,7 +21,7 @@ pub(crate) fn triangle<V: Vector>(triangle: &Triangle<V>, radius: V::Scalar, sou
     if radius > V::Scalar::ZERO {
         let [a, b, c] = triangle.points();
         for side in [[a, b], [b, c], [c, a]] {
-            union = match (union, edge(side, radius, source, direction).ok()) {
+            union = match (union, Spine::between(side).crossing(radius, source, direction).ok()) {
                 (Some(p), Some(q)) => {
                     let first = if q.entry < p.entry { q } else { p };
                     Some(Crossing { exit: p.exit.max(q.exit), ..first })

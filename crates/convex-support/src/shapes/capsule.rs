@@ -3,7 +3,7 @@
 use num_traits::Float as _;
 
 use crate::error::{InvalidShape, non_negative};
-use crate::line_crossing::{NearLine, upright};
+use crate::line_crossing::{NearLine, Spine};
 use crate::support::support_of_parts;
 use crate::{
     CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector,
@@ -11,7 +11,7 @@ use crate::{
 
 /// The segment from `(0, −half_height)` to `(0, half_height)` along the second axis, swept by a ball. Its core is the
 /// segment. [`Posed`](crate::Posed) puts it elsewhere. A capsule between two given points can also be had as
-/// `Rounded::new(Segment::new([a, b])?, radius)`; its distances take a search, where those of two capsules have a closed form.
+/// `Rounded::new(Segment::new([a, b])?, radius)`, which is as quick.
 ///
 /// ```
 /// use convex_support::{Capsule, SupportMap, glam::DVec2};
@@ -70,7 +70,7 @@ impl<V: Vector> SupportMap for Capsule<V> {
             rolling_radius: V::Scalar::ZERO,
             extent: self.half_height,
             error: V::Scalar::ZERO,
-            kind: CoreKind::Segment(V::axis(1) * self.half_height),
+            kind: CoreKind::Segment { middle: V::ZERO, half: V::axis(1) * self.half_height },
         }
     }
 
@@ -89,7 +89,7 @@ impl<V: Vector> SupportMap for Capsule<V> {
         if radius < V::Scalar::ZERO {
             return LineCrossing::Unknown;
         }
-        upright(self.half_height, radius, source, direction).into()
+        Spine::upright(self.half_height).crossing(radius, source, direction).into()
     }
 
     #[inline(always)]
@@ -101,14 +101,8 @@ impl<V: Vector> SupportMap for Capsule<V> {
         error: V::Scalar,
     ) -> Option<CertainCrossing<V>> {
         let radius = self.radius + radius;
-        let closest = |x: V| V::axis(1) * x.get(1).max(-self.half_height).min(self.half_height);
-        let support_value = |d: V| d.get(1).abs() * self.half_height;
         let line = NearLine::new(source, direction, V::ZERO, self.half_height + radius, error)?;
-        if let Some(known) = line.capsule(self.half_height, radius) {
-            return Some(known);
-        }
-        let crossed = upright(self.half_height, radius, line.source, line.direction);
-        line.swept(radius, closest, support_value, crossed)
+        line.segment(&Spine::upright(self.half_height), radius)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

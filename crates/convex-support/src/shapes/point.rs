@@ -1,8 +1,8 @@
 //! A single point.
 
 use crate::error::{InvalidShape, finite};
-use crate::line_crossing::ball;
-use crate::{Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
+use crate::line_crossing::{NearLine, ball};
+use crate::{CertainCrossing, Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
 /// The set of one point.
 ///
@@ -71,6 +71,17 @@ impl<V: Vector> SupportMap for Point<V> {
             return LineCrossing::Unknown;
         }
         ball(radius, source, direction).into()
+    }
+
+    #[inline(always)]
+    fn certain_crossing(
+        &self,
+        source: V,
+        direction: V,
+        radius: V::Scalar,
+        error: V::Scalar,
+    ) -> Option<CertainCrossing<V>> {
+        NearLine::new(source, direction, self.at, radius, error)?.ball(radius)
     }
 
     fn rounding(&self) -> Rounding<V> {

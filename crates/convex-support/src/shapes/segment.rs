@@ -1,10 +1,14 @@
 //! A straight line segment.
 
+use num_traits::Float as _;
+
 use super::points::{extent, middle, relative, rounding_of_points};
 use crate::error::{InvalidShape, finite, measurable};
-use crate::line_crossing::edge;
+use crate::line_crossing::{NearLine, Spine};
 use crate::numerics::bound::{roundings, roundings_of};
-use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector};
+use crate::{
+    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector,
+};
 
 /// The segment between two points, which may coincide.
 ///
@@ -35,6 +39,14 @@ impl<V: Vector> Segment<V> {
     #[must_use]
     pub fn points(&self) -> [V; 2] {
         self.points
+    }
+
+    /// The point halfway between its ends, relative to the origin, and the vector from there to the second.
+    #[inline(always)]
+    fn middle_and_half(&self) -> (V, V) {
+        let [a, b] = relative(self.points);
+        let half = V::Scalar::from_f64(0.5);
+        ((a + b) * half, (b - a) * half)
     }
 }
 
@@ -68,13 +80,14 @@ impl<V: Vector> SupportMap for Segment<V> {
     #[inline(always)]
     fn core(&self) -> Core<V> {
         let (origin, extent) = (middle(self.points), extent(&self.points).norm());
+        let (middle, half) = self.middle_and_half();
         Core {
             origin,
             radius: V::Scalar::ZERO,
             rolling_radius: V::Scalar::ZERO,
             extent,
             error: roundings(9.0, extent),
-            kind: CoreKind::Polytope,
+            kind: CoreKind::Segment { middle, half },
         }
     }
 
@@ -93,7 +106,20 @@ impl<V: Vector> SupportMap for Segment<V> {
         if radius < V::Scalar::ZERO {
             return LineCrossing::Unknown;
         }
-        edge(relative(self.points), radius, source, direction).into()
+        Spine::between(relative(self.points)).crossing(radius, source, direction).into()
+    }
+
+    #[inline(always)]
+    fn certain_crossing(
+        &self,
+        source: V,
+        direction: V,
+        radius: V::Scalar,
+        error: V::Scalar,
+    ) -> Option<CertainCrossing<V>> {
+        let ends = relative(self.points);
+        let size = ends[0].length().max(ends[1].length()) + radius;
+        NearLine::new(source, direction, middle(self.points), size, error)?.segment(&Spine::between(ends), radius)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
@@ -103,9 +129,8 @@ impl<V: Vector> SupportMap for Segment<V> {
 
     #[inline]
     fn core_parallelotope(&self) -> Option<Parallelotope<V>> {
-        let [a, b] = relative(self.points);
-        let half = V::Scalar::from_f64(0.5);
-        Some(Parallelotope { center: (a + b) * half, half_edges: [(b - a) * half, V::ZERO, V::ZERO] })
+        let (center, half) = self.middle_and_half();
+        Some(Parallelotope { center, half_edges: [half, V::ZERO, V::ZERO] })
     }
 
     /// Which end is farther is told by the product of the direction with the difference, 4 roundings.

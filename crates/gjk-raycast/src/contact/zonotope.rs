@@ -121,7 +121,7 @@ pub(super) fn parallelotope<S: SupportMap + ?Sized>(
 ) -> Option<Parallelotope<S::Vector>> {
     match core.kind {
         CoreKind::Point(at) => Some(Parallelotope::point(at)),
-        CoreKind::Segment(_) | CoreKind::Polytope => shape.core_parallelotope(),
+        CoreKind::Segment { .. } | CoreKind::Polytope => shape.core_parallelotope(),
         CoreKind::Curved => None,
     }
 }

@@ -34,7 +34,7 @@ impl<'s, S: SupportMap + ?Sized> Moved<'s, S> {
         };
         let kind = match core.kind {
             CoreKind::Point(at) => CoreKind::Point(matrix * at),
-            CoreKind::Segment(half) => CoreKind::Segment(matrix * half),
+            CoreKind::Segment { middle, half } => CoreKind::Segment { middle: matrix * middle, half: matrix * half },
             kind => kind,
         };
         // The length of an error stays. The product with the matrix is wrong by at most three ε of the extent, and so may be the
