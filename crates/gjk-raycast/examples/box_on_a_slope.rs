@@ -9,11 +9,10 @@
 
 mod world;
 
-use gjk_raycast::convex_support::InvalidShape;
 use gjk_raycast::convex_support::glam::{DMat3, DVec3};
 use world::{Body, World};
 
-fn main() -> Result<(), InvalidShape> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (angle, friction, speed, g) = (0.3_f64, 0.6, 3.0, 9.81);
     let turn = DMat3::from_rotation_z(-angle);
     let (downhill, up) = (turn.x_axis, turn.y_axis);

@@ -9,9 +9,7 @@
 
 use convex_support::glam::{Quat, Vec3};
 use convex_support::{Ball, Capsule, Cuboid, InvalidShape, Posed, SupportMap};
-use gjk_raycast::{
-    DistanceOptions, LinearCastOptions, Motion, RayCastError, Scene, SignedDistanceOptions, StartInContact,
-};
+use gjk_raycast::{BodyContact, LinearCastOptions, Motion, RayCastError, Scene, SignedDistanceOptions, StartInContact};
 
 /// Shapes of any kind, in single precision as games have it.
 type Shape = Box<dyn SupportMap<Vector = Vec3>>;
@@ -88,17 +86,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
 
-    // What it touches: the bodies nearby, and a contact with each.
-    let body = character.body()?;
-    let mut near = Vec::new();
-    let _ = level.all_within(&body, 2.0 * SKIN, DistanceOptions::default(), &mut near);
-    for found in &near {
-        let part = level.get(found.body).ok_or("it was just found")?;
-        let touching = part.contact(&body, 2.0 * SKIN, SignedDistanceOptions::default()).ok_or("it is near")?;
-        println!("touches body {} in {} points, normal {:.3}", found.body, touching.points().len(), touching.normal);
-        assert!((touching.distance.signed_distance - SKIN).abs() < 1e-3, "{}", touching.distance.signed_distance);
+    // What it touches.
+    let mut contacts = Vec::new();
+    level.contacts_of(&character.body()?, 2.0 * SKIN, SignedDistanceOptions::default(), &mut contacts);
+    for BodyContact { body, contact } in &contacts {
+        println!("touches body {body} in {} points, normal {:.3}", contact.points().len(), contact.normal);
+        assert!((contact.distance.signed_distance - SKIN).abs() < 1e-3, "{}", contact.distance.signed_distance);
     }
-    assert_eq!(near.iter().map(|found| found.body).collect::<Vec<_>>(), [0, 1], "it stands on the floor, by the wall");
+    assert_eq!(
+        contacts.iter().map(|found| found.body).collect::<Vec<_>>(),
+        [0, 1],
+        "it stands on the floor, by the wall"
+    );
     // Along the wall, whose outward normal is (−cos 0.3, 0, sin 0.3), nothing slows it down.
     let along = Vec3::new(0.3_f32.sin(), 0.0, 0.3_f32.cos());
     let walked = Vec3::new(4.0, 0.0, 0.5).dot(along);

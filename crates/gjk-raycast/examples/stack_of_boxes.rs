@@ -7,7 +7,7 @@
 mod world;
 
 use gjk_raycast::convex_support::glam::{DVec3, Vec3};
-use gjk_raycast::convex_support::{InvalidShape, Matrix, Scalar, Vector, Vector3};
+use gjk_raycast::convex_support::{Matrix, Scalar, Vector, Vector3};
 use world::{Body, World};
 
 const BOXES: usize = 10;
@@ -18,7 +18,7 @@ fn vector<V: Vector>(coordinates: [f64; 3]) -> V {
 }
 
 /// How far the boxes are from where they were put, at most, after all steps.
-fn farthest<V: Vector3>() -> Result<f64, InvalidShape> {
+fn farthest<V: Vector3>() -> Result<f64, Box<dyn std::error::Error>> {
     let mut bodies = vec![Body::fixed(vector::<V>([10.0, 1.0, 10.0]), vector([0.0, -1.0, 0.0]), Matrix::IDENTITY)];
     let place = |i: usize| vector::<V>([0.0, 0.5 + i as f64, 0.0]);
     bodies.extend((0..BOXES).map(|i| Body::new(vector([0.5, 0.5, 0.5]), place(i), Matrix::IDENTITY)));
@@ -30,7 +30,7 @@ fn farthest<V: Vector3>() -> Result<f64, InvalidShape> {
     Ok(moved.fold(0.0, f64::max))
 }
 
-fn main() -> Result<(), InvalidShape> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (precision, moved) in [("f32", farthest::<Vec3>()?), ("f64", farthest::<DVec3>()?)] {
         println!("{precision}: after {STEPS} steps no box is farther than {moved:.4} m from its place");
         // Each may rest up to a millimetre deep in the one below.

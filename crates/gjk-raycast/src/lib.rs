@@ -37,7 +37,7 @@
 //! - *The same from closest points alone:* [`iterative_ray_cast`] (Algorithm 1), for shapes whose closest points have a closed form.
 //!
 //! About many shapes:
-//! - *Which is hit first, which is nearest, which are within a distance, which pairs are near each other?* [`Scene`].
+//! - *Which is hit first, which is nearest, which are within a distance, which pairs are near each other, and in which points do they touch?* [`Scene`].
 //! - *How far apart is each of many pairs?* [`map_distances_into`] writes one number of each answer into a slice.
 //!
 //! About an answer:
@@ -58,7 +58,7 @@
 //! - `std` (default): floating-point functions from the standard library.
 //! - `libm`: the same from the libm crate, for `no_std` targets.
 //! - `f64` (default): asks glam for double precision; leave it out with glam 0.32, which has no such feature.
-//! - `rayon`: `par_ray_casts`, `Scene::par_ray_casts` and `Among::par_pairs_within`, which use all threads.
+//! - `rayon`: `par_ray_casts`, `Scene::par_ray_casts`, `Among::par_pairs_within` and `Among::par_contacts_within`, which use all threads.
 //! - `serde`: options, answers and certificates as data, beside the shapes of `convex-support`.
 //!
 //! # Answers as data
@@ -171,7 +171,7 @@ pub use result::{
     Distance, Intersection, Iterate, LinearCast, LinearHit, Miss, Outcome, RayCast, RayExit, RayHit, Status,
 };
 pub use scene::{
-    Among, Body, BodyDistance, BodyHit, PairDistance, Scene, SceneAnyHit, SceneCast, SceneDistance, SceneError,
-    SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, Work,
+    Among, Body, BodyContact, BodyDistance, BodyHit, PairContact, PairDistance, Scene, SceneAnyHit, SceneCast,
+    SceneDistance, SceneError, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, Work,
 };
 pub use simplex::SubAlgorithm;

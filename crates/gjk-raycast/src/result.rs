@@ -46,9 +46,9 @@ pub struct Distance<V: Vector> {
 }
 
 impl<V: Vector> Distance<V> {
-    /// The same of the shapes in the other order.
+    /// The same of the shapes in the other order: from `b` to `a`.
     #[inline(always)]
-    pub(crate) fn reversed(self) -> Self {
+    pub fn reversed(self) -> Self {
         Self { point_a: self.point_b, point_b: self.point_a, normal: self.normal.map(|n| -n), ..self }
     }
 }

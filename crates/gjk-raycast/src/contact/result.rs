@@ -40,6 +40,13 @@ pub struct SignedDistance<V: Vector> {
     pub unexpanded: usize,
 }
 
+impl<V: Vector> SignedDistance<V> {
+    /// The same of the shapes in the other order: from `b` to `a`.
+    pub fn reversed(self) -> Self {
+        Self { normal: -self.normal, point_a: self.point_b, point_b: self.point_a, ..self }
+    }
+}
+
 /// The answer of [`contact`](crate::contact).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
@@ -63,6 +70,18 @@ impl<V: Vector> Contact<V> {
         let len = found.len().min(MAX_POINTS);
         points[..len].copy_from_slice(&found[..len]);
         Self { normal, distance, points, len }
+    }
+
+    /// The same of the shapes in the other order: of `b` with `a`.
+    pub fn reversed(self) -> Self {
+        let points = self.points.map(|point| ContactPoint {
+            point_a: point.point_b,
+            point_b: point.point_a,
+            feature_a: point.feature_b,
+            feature_b: point.feature_a,
+            ..point
+        });
+        Self { normal: -self.normal, distance: self.distance.reversed(), points, len: self.len }
     }
 
     /// The points of the manifold: one to four, in 2D one or two.

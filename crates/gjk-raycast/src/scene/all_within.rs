@@ -33,17 +33,30 @@ impl<S: SupportMap> Among<'_, S> {
         options: DistanceOptions<S::Vector>,
         bodies: &mut Vec<BodyDistance<S::Vector>>,
     ) -> Work {
-        let (found, options) = (reuse(bodies), options.with_limit(within));
+        let options = options.with_limit(within);
+        let work = self.near(shape, within, reuse(bodies), |index, body| {
+            let distance = body.distance_from(shape, options);
+            (distance.distance <= within).then_some(BodyDistance { body: index, distance })
+        });
+        bodies.sort_unstable_by_key(|found| found.body);
+        work
+    }
+
+    /// What there is to `tell` of the bodies whose boxes are no farther than `within` from that of the shape, in no order.
+    pub(super) fn near<A: SupportMap<Vector = S::Vector> + ?Sized, R>(
+        &self,
+        shape: &A,
+        within: ScalarOf<S>,
+        found: &mut Vec<R>,
+        tell: impl Fn(usize, &Body<S>) -> Option<R>,
+    ) -> Work {
         let mut work = Work::default();
         let mut look = |index: usize, body: &Body<S>, work: &mut Work| {
             if self.stops(work) {
                 return ControlFlow::Break(());
             }
             work.tested += 1;
-            let distance = body.distance_from(shape, options);
-            if distance.distance <= within {
-                found.push(BodyDistance { body: index, distance });
-            }
+            found.extend(tell(index, body));
             ControlFlow::Continue(())
         };
         let ended = self.half_spaces().try_for_each(|(index, body)| look(index, body, &mut work));
@@ -54,7 +67,6 @@ impl<S: SupportMap> Among<'_, S> {
                 None => ControlFlow::Continue(()),
             });
         }
-        found.sort_unstable_by_key(|found| found.body);
         self.finish(&mut work);
         work
     }

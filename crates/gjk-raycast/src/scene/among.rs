@@ -18,7 +18,7 @@ use super::{Body, Scene, Work};
 /// assert_eq!(other.nearest.map(|n| n.body), Some(0));
 /// // Bodies 0 and 1 are pieces of one link, and may touch.
 /// let mut pairs = Vec::new();
-/// let _ = scene.all().without_pairs(&|i, j| (i, j) == (0, 1)).pairs_within(
+/// scene.all().without_pairs(&|i, j| (i, j) == (0, 1)).pairs_within(
 ///     2.0,
 ///     DistanceOptions::default(),
 ///     &mut pairs,

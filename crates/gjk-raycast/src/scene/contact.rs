@@ -21,27 +21,7 @@ impl<S: SupportMap> Body<S> {
 
     /// The contact of a shape, `a`, with this body, `b`, by [`contact`](crate::contact()) or, for a half-space, by
     /// [`HalfSpace::contact`](crate::HalfSpace::contact), which needs no options; `None` if they are farther apart than `within`.
-    ///
-    /// ```
-    /// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};
-    /// use gjk_raycast::{DistanceOptions, HalfSpace, Scene, SignedDistanceOptions};
-    ///
-    /// // A ball rests on the floor in front of a box. What does it touch, and which way out?
-    /// let wall = Posed::translated(Cuboid::new(DVec3::ONE)?, DVec3::new(2.0, 1.0, 0.0))?;
-    /// let mut scene = Scene::new([wall])?;
-    /// scene.insert_half_space(HalfSpace::new(DVec3::Y, 0.0)?);
-    /// let ball = Posed::translated(Ball::new(0.5)?, DVec3::new(0.5, 0.5, 0.0))?;
-    ///
-    /// let (mut near, mut normals) = (Vec::new(), Vec::new());
-    /// let _ = scene.all_within(&ball, 0.01, DistanceOptions::default(), &mut near);
-    /// for found in near {
-    ///     let body = scene.get(found.body).ok_or("it was just found")?;
-    ///     let contact = body.contact(&ball, 0.01, SignedDistanceOptions::default());
-    ///     normals.push(contact.ok_or("it is near")?.normal);
-    /// }
-    /// assert_eq!(normals, [DVec3::NEG_X, DVec3::Y]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// [`Scene::contacts_of`](crate::Scene::contacts_of) asks all bodies that are near.
     pub fn contact<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
         shape: &A,

@@ -4,6 +4,7 @@ mod all_within;
 mod among;
 mod cast;
 mod contact;
+mod contacts;
 mod error;
 mod height_bound;
 mod mesh;
@@ -23,8 +24,8 @@ use crate::HalfSpace;
 pub use self::among::Among;
 pub use self::error::SceneError;
 pub use self::result::{
-    BodyDistance, BodyHit, PairDistance, SceneAnyHit, SceneCast, SceneDistance, SceneHits, SceneLinearCast,
-    SceneMotionCast, SceneRayCast, Work,
+    BodyContact, BodyDistance, BodyHit, PairContact, PairDistance, SceneAnyHit, SceneCast, SceneDistance, SceneHits,
+    SceneLinearCast, SceneMotionCast, SceneRayCast, Work,
 };
 
 /// Bodies that are asked together: which is hit first, which is nearest, which pairs are near each other.
@@ -34,8 +35,7 @@ pub use self::result::{
 /// `Box<dyn SupportMap<Vector = DVec3> + Sync>`. A body is named by its index, which stays the same until the body is removed. A half-space is no support map, since it has no end, but can be a body too
 /// ([`insert_half_space`](Self::insert_half_space)).
 ///
-/// Scenes answer ray casts, linear and motion casts, distances and pairs. For the depth or the manifold of bodies in contact, find the
-/// bodies that are near by [`all_within`](Self::all_within), and ask each for its [contact](Body::contact).
+/// Scenes answer ray casts, linear and motion casts, distances, contacts, and near or touching pairs.
 ///
 /// # Answers
 /// Every answer is the one that results if the single query is asked of each body (or pair) in the order of their indices, *to the last

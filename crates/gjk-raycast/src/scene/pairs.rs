@@ -3,12 +3,12 @@
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
-use convex_support::{PairSearch, ScalarOf, SupportMap};
+use convex_support::{PairSearch, ScalarOf, SupportMap, Vector};
 
 use super::height_bound::HeightBound;
-use super::result::{PairDistance, Work, reuse};
+use super::result::{PairContact, PairDistance, Work, reuse};
 use super::{Among, Body, Scene};
-use crate::{Distance, DistanceOptions, distance};
+use crate::{DistanceOptions, distance};
 
 impl<S: SupportMap> Scene<S> {
     /// All pairs of bodies that are no farther than `within` from each other by [`distance`](crate::distance()), in the
@@ -42,10 +42,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: DistanceOptions<S::Vector>,
         pairs: &mut Vec<PairDistance<S::Vector>>,
     ) -> Work {
-        let mut asking = Asking::new(*self, self.scene.all(), true, within, options, reuse(pairs));
-        asking.search(self.scene.tree.pairs_within(within));
-        asking.half_spaces_of_a();
-        asking.finish()
+        self.find_pairs(within, pairs, &|pair, a, b| between(pair, a, b, options.with_limit(within)))
     }
 
     /// [`Scene::pairs_between`] of these bodies and all of another scene.
@@ -56,11 +53,7 @@ impl<S: SupportMap> Among<'_, S> {
         options: DistanceOptions<S::Vector>,
         pairs: &mut Vec<PairDistance<S::Vector>>,
     ) -> Work {
-        let mut asking = Asking::new(*self, other.all(), false, within, options, reuse(pairs));
-        asking.search(self.scene.tree.pairs_between(&other.tree, within));
-        asking.half_spaces_of_a();
-        asking.half_spaces_of_b();
-        asking.finish()
+        self.find_pairs_between(other, within, pairs, &|pair, a, b| between(pair, a, b, options.with_limit(within)))
     }
 
     /// [`pairs_within`](Self::pairs_within) on all threads of the current [rayon](https://docs.rs/rayon) pool, with the same pairs to the last
@@ -75,6 +68,48 @@ impl<S: SupportMap> Among<'_, S> {
     where
         S: Sync,
     {
+        self.par_find_pairs(within, pairs, &|pair, a, b| between(pair, a, b, options.with_limit(within)))
+    }
+
+    /// What there is to `tell` of the pairs of these bodies whose boxes are no farther than `within` from each other.
+    pub(super) fn find_pairs<P: OfPair>(
+        &self,
+        within: ScalarOf<S>,
+        pairs: &mut Vec<P>,
+        tell: &impl Fn([usize; 2], &Body<S>, &Body<S>) -> Option<P>,
+    ) -> Work {
+        let mut asking = Asking::new(*self, self.scene.all(), true, within, tell, reuse(pairs));
+        asking.search(self.scene.tree.pairs_within(within));
+        asking.half_spaces_of_a();
+        asking.finish()
+    }
+
+    /// The same of pairs of one of these bodies and one of another scene.
+    pub(super) fn find_pairs_between<T: SupportMap<Vector = S::Vector>, P: OfPair>(
+        &self,
+        other: &Scene<T>,
+        within: ScalarOf<S>,
+        pairs: &mut Vec<P>,
+        tell: &impl Fn([usize; 2], &Body<S>, &Body<T>) -> Option<P>,
+    ) -> Work {
+        let mut asking = Asking::new(*self, other.all(), false, within, tell, reuse(pairs));
+        asking.search(self.scene.tree.pairs_between(&other.tree, within));
+        asking.half_spaces_of_a();
+        asking.half_spaces_of_b();
+        asking.finish()
+    }
+
+    /// [`find_pairs`](Self::find_pairs) on all threads.
+    #[cfg(feature = "rayon")]
+    pub(super) fn par_find_pairs<P: OfPair + Send>(
+        &self,
+        within: ScalarOf<S>,
+        pairs: &mut Vec<P>,
+        tell: &(impl Fn([usize; 2], &Body<S>, &Body<S>) -> Option<P> + Sync),
+    ) -> Work
+    where
+        S: Sync,
+    {
         use rayon::prelude::*;
         // Enough that threads which are done find another, and not so many that they wait for each other.
         const PIECES: usize = 256;
@@ -83,12 +118,12 @@ impl<S: SupportMap> Among<'_, S> {
             .into_par_iter()
             .map(|piece| {
                 let mut pairs = Vec::new();
-                let mut asking = Asking::new(*self, self.scene.all(), true, within, options, &mut pairs);
+                let mut asking = Asking::new(*self, self.scene.all(), true, within, tell, &mut pairs);
                 asking.search(piece);
                 (asking.work, pairs)
             })
             .collect();
-        let mut asking = Asking::new(*self, self.scene.all(), true, within, options, reuse(pairs));
+        let mut asking = Asking::new(*self, self.scene.all(), true, within, tell, reuse(pairs));
         for (work, pairs) in found {
             asking.pairs.extend(pairs);
             asking.work.nodes += work.nodes;
@@ -100,28 +135,52 @@ impl<S: SupportMap> Among<'_, S> {
     }
 }
 
+/// What a list of pairs holds.
+pub(super) trait OfPair {
+    /// The indices of the bodies.
+    fn indices(&self) -> [usize; 2];
+}
+
+impl<V: Vector> OfPair for PairDistance<V> {
+    fn indices(&self) -> [usize; 2] {
+        [self.a, self.b]
+    }
+}
+
+impl<V: Vector> OfPair for PairContact<V> {
+    fn indices(&self) -> [usize; 2] {
+        [self.a, self.b]
+    }
+}
+
 /// A search for pairs under way.
-struct Asking<'s, 'p, S: SupportMap, T: SupportMap<Vector = S::Vector>> {
+struct Asking<'s, 'p, S: SupportMap, T: SupportMap<Vector = S::Vector>, F, P> {
     a: Among<'s, S>,
     b: Among<'s, T>,
     /// Whether both are one scene.
     same: bool,
     within: ScalarOf<S>,
-    options: DistanceOptions<S::Vector>,
-    pairs: &'p mut Vec<PairDistance<S::Vector>>,
+    /// What is told of two bodies, if anything.
+    tell: &'p F,
+    pairs: &'p mut Vec<P>,
     work: Work,
 }
 
-impl<'s, 'p, S: SupportMap, T: SupportMap<Vector = S::Vector>> Asking<'s, 'p, S, T> {
+impl<'s, 'p, S, T, F, P: OfPair> Asking<'s, 'p, S, T, F, P>
+where
+    S: SupportMap,
+    T: SupportMap<Vector = S::Vector>,
+    F: Fn([usize; 2], &Body<S>, &Body<T>) -> Option<P>,
+{
     fn new(
         a: Among<'s, S>,
         b: Among<'s, T>,
         same: bool,
         within: ScalarOf<S>,
-        options: DistanceOptions<S::Vector>,
-        pairs: &'p mut Vec<PairDistance<S::Vector>>,
+        tell: &'p F,
+        pairs: &'p mut Vec<P>,
     ) -> Self {
-        Self { a, b, same, within, options: options.with_limit(within), pairs, work: Work::default() }
+        Self { a, b, same, within, tell, pairs, work: Work::default() }
     }
 
     /// Asks about the pairs of bounded bodies whose boxes are near.
@@ -169,17 +228,13 @@ impl<'s, 'p, S: SupportMap, T: SupportMap<Vector = S::Vector>> Asking<'s, 'p, S,
             return ControlFlow::Break(());
         }
         self.work.tested += 1;
-        if let Some(distance) = between(a, b, self.options)
-            && distance.distance <= self.within
-        {
-            self.pairs.push(PairDistance { a: i, b: j, distance });
-        }
+        self.pairs.extend((self.tell)([i, j], a, b));
         ControlFlow::Continue(())
     }
 
     /// Sorts the pairs and says what was left out of all.
     fn finish(mut self) -> Work {
-        self.pairs.sort_unstable_by_key(|pair| (pair.a, pair.b));
+        self.pairs.sort_unstable_by_key(OfPair::indices);
         self.work.culled = self.all() - self.work.tested;
         self.work
     }
@@ -196,16 +251,18 @@ impl<'s, 'p, S: SupportMap, T: SupportMap<Vector = S::Vector>> Asking<'s, 'p, S,
     }
 }
 
-/// The distance from one body to another; of two half-spaces there is none to speak of.
+/// The distance from one body to another, if it is within the limit; of two half-spaces there is none to speak of.
 fn between<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
+    [i, j]: [usize; 2],
     a: &Body<S>,
     b: &Body<T>,
     options: DistanceOptions<S::Vector>,
-) -> Option<Distance<S::Vector>> {
-    match (a, b) {
-        (Body::Convex(a), Body::Convex(b)) => Some(distance(a, b, options)),
-        (Body::Convex(a), Body::HalfSpace(b)) => Some(b.distance_from(a)),
-        (Body::HalfSpace(a), Body::Convex(b)) => Some(a.distance_to(b)),
-        (Body::HalfSpace(_), Body::HalfSpace(_)) => None,
-    }
+) -> Option<PairDistance<S::Vector>> {
+    let distance = match (a, b) {
+        (Body::Convex(a), Body::Convex(b)) => distance(a, b, options),
+        (Body::Convex(a), Body::HalfSpace(b)) => b.distance_from(a),
+        (Body::HalfSpace(a), Body::Convex(b)) => a.distance_to(b),
+        (Body::HalfSpace(_), Body::HalfSpace(_)) => return None,
+    };
+    (distance.distance <= options.limit).then_some(PairDistance { a: i, b: j, distance })
 }

@@ -4,9 +4,9 @@ use alloc::vec::Vec;
 
 use convex_support::Vector;
 
-use crate::{Distance, LinearHit, MotionHit, RayHit, Status};
+use crate::{Contact, Distance, LinearHit, MotionHit, RayHit, Status};
 
-/// What was done for an answer, and what was left out.
+/// What was done for an answer, and what was left out: a report that need not be looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Work {
@@ -144,6 +144,38 @@ pub struct PairDistance<V: Vector> {
     pub b: usize,
     /// The distance from the first to the second.
     pub distance: Distance<V>,
+}
+
+/// A body, and its contact with a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
+pub struct BodyContact<V: Vector> {
+    /// The index of the body.
+    pub body: usize,
+    /// The contact of the shape, `a`, with the body, `b`.
+    pub contact: Contact<V>,
+}
+
+/// Two bodies, and their contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
+pub struct PairContact<V: Vector> {
+    /// The index of the first: the lower one, or that in the first scene.
+    pub a: usize,
+    /// The index of the second.
+    pub b: usize,
+    /// The contact of the first with the second.
+    pub contact: Contact<V>,
 }
 
 /// Empties a list of the caller's and keeps its memory.

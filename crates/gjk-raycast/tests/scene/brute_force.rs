@@ -2,9 +2,9 @@
 
 use convex_support::{SupportMap, Vector};
 use gjk_raycast::{
-    Body, BodyDistance, Distance, DistanceOptions, LinearCast, LinearCastOptions, Motion, MotionCast,
-    MotionCastOptions, PairDistance, Ray, RayCast, RayCastOptions, RigidMotion, distance, linear_cast, motion_cast,
-    ray_cast,
+    Body, BodyContact, BodyDistance, Contact, Distance, DistanceOptions, LinearCast, LinearCastOptions, Motion,
+    MotionCast, MotionCastOptions, PairContact, PairDistance, Ray, RayCast, RayCastOptions, RigidMotion,
+    SignedDistanceOptions, contact, distance, linear_cast, motion_cast, ray_cast,
 };
 
 use super::worlds::{Shape, Space, World};
@@ -64,6 +64,30 @@ pub(crate) fn pairs<V: Space>(world: &World<V>, within: V::Scalar) -> Vec<PairDi
         }
     }
     found
+}
+
+/// The contacts of all pairs of bodies, but for two half-spaces.
+pub(crate) fn contacts<V: Space>(world: &World<V>, within: V::Scalar) -> Vec<PairContact<V>> {
+    let mut found = Vec::new();
+    for (a, first) in world.scene.iter() {
+        for (b, second) in world.scene.iter().filter(|&(b, _)| b > a) {
+            let contact = match (first, second) {
+                (Body::Convex(first), Body::Convex(second)) => {
+                    contact(first, second, within, SignedDistanceOptions::default())
+                }
+                (Body::Convex(first), Body::HalfSpace(second)) => second.contact(first, within),
+                (Body::HalfSpace(first), Body::Convex(second)) => first.contact(second, within).map(Contact::reversed),
+                (Body::HalfSpace(_), Body::HalfSpace(_)) => None,
+            };
+            found.extend(contact.map(|contact| PairContact { a, b, contact }));
+        }
+    }
+    found
+}
+
+pub(crate) fn contacts_of<V: Space>(world: &World<V>, shape: &Shape<V>, within: V::Scalar) -> Vec<BodyContact<V>> {
+    let with = |body: &Body<Shape<V>>| body.contact(shape, within, SignedDistanceOptions::default());
+    world.scene.iter().filter_map(|(body, other)| Some(BodyContact { body, contact: with(other)? })).collect()
 }
 
 /// The pairs without half-spaces.

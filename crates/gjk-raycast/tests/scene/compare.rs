@@ -3,7 +3,7 @@
 use convex_support::{AngularVelocity as _, Rotation as _, Scalar, bounding_box};
 use gjk_raycast::{
     BodyHit, DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, Outcome, Ray, RayCastOptions, RigidMotion,
-    Status,
+    SignedDistanceOptions, Status,
 };
 use num_traits::Float;
 
@@ -21,6 +21,7 @@ pub(crate) struct Count {
     undecided: usize,
     within: usize,
     pairs: usize,
+    contacts: usize,
     tested: usize,
     culled: usize,
 }
@@ -32,6 +33,7 @@ impl Count {
             && self.starts > many / 10
             && self.within > many
             && self.pairs > many
+            && self.contacts > many
             && self.culled > self.tested
     }
 }
@@ -45,6 +47,7 @@ pub(crate) fn ask<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut
     }
     motion_cast(world, numbers, count);
     pairs(world, numbers, count);
+    contacts(world, numbers, count);
 }
 
 /// A length at the scale of the world, and a point in it or about.
@@ -240,15 +243,52 @@ fn pairs<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
     }
     // Between two scenes; of a scene and itself each pair twice, and every body with itself.
     let mut between = Vec::new();
-    let _ = world.scene.pairs_between(&world.scene, within, DistanceOptions::default(), &mut between);
+    world.scene.pairs_between(&world.scene, within, DistanceOptions::default(), &mut between);
     between.retain(|pair| pair.a < pair.b);
     let ours: Vec<_> = between.iter().map(|pair| (pair.a, pair.b, pair.distance)).collect();
     assert_eq!(ours, found.iter().map(|pair| (pair.a, pair.b, pair.distance)).collect::<Vec<_>>(), "between two");
     #[cfg(feature = "rayon")]
     {
         let mut parallel = Vec::new();
-        let _ = world.scene.all().par_pairs_within(within, DistanceOptions::default(), &mut parallel);
+        world.scene.all().par_pairs_within(within, DistanceOptions::default(), &mut parallel);
         assert_eq!(parallel, found, "on all threads");
     }
     count.questions += 2;
+}
+
+fn contacts<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
+    let (size, _) = scale(world, numbers);
+    // Some are deep in one another, and some a little apart.
+    let within = V::Scalar::from_f64([0.0, size * 0.1, size, -0.2 * size][numbers.below(4)]);
+    let options = SignedDistanceOptions::default();
+    let mut found = Vec::new();
+    let work = world.scene.contacts_within(within, options, &mut found);
+    let due = brute_force::contacts(world, within);
+    assert_eq!(found, due, "kind {}, contacts within {within}", world.kind);
+    count.contacts += found.len();
+    count.tested += work.tested;
+    count.culled += work.culled;
+    // Between two scenes; of a scene and itself each pair twice, and every body with itself.
+    let mut between = Vec::new();
+    world.scene.contacts_between(&world.scene, within, options, &mut between);
+    between.retain(|pair| pair.a < pair.b);
+    assert_eq!(between, found, "between two");
+    // Some bodies do not count.
+    let even = |index: usize| index.is_multiple_of(2);
+    world.scene.among(&even).contacts_within(within, options, &mut between);
+    let due: Vec<_> = found.iter().copied().filter(|pair| even(pair.a) && even(pair.b)).collect();
+    assert_eq!(between, due, "of every other");
+    #[cfg(feature = "rayon")]
+    {
+        let mut parallel = Vec::new();
+        world.scene.all().par_contacts_within(within, options, &mut parallel);
+        assert_eq!(parallel, found, "on all threads");
+    }
+    // Of one shape.
+    let shape = body::<V>(numbers, world.kind, 1);
+    let mut of_shape = Vec::new();
+    let work = world.scene.contacts_of(&shape, within, options, &mut of_shape);
+    assert_eq!(of_shape, brute_force::contacts_of(world, &shape, within), "kind {}, within {within}", world.kind);
+    assert_eq!(work.tested + work.culled, world.scene.len(), "every body is one or the other");
+    count.questions += 3;
 }

@@ -112,7 +112,7 @@ fn half_spaces_have_no_end() {
         "on the floor"
     );
     let mut pairs = Vec::new();
-    let _ = scene.pairs_within(0.5, DistanceOptions::default(), &mut pairs);
+    scene.pairs_within(0.5, DistanceOptions::default(), &mut pairs);
     assert_eq!(pairs.len(), 1, "the ball is 0.5 above the floor");
     assert_eq!((pairs[0].a, pairs[0].b, pairs[0].distance.normal), (0, floor, Some(DVec3::Y)), "{:?}", pairs[0]);
     let below = scene.nearest(&Point::new(DVec3::Y * -3.0).unwrap(), DistanceOptions::default()).nearest.unwrap();
@@ -174,10 +174,10 @@ fn pieces_of_a_link_do_not_meet_each_other() {
     let link = |piece: usize| piece / 2;
     let mut pairs = Vec::new();
     let same = |i, j| link(i) == link(j);
-    let _ = scene.all().without_pairs(&same).pairs_within(0.0, DistanceOptions::default(), &mut pairs);
+    scene.all().without_pairs(&same).pairs_within(0.0, DistanceOptions::default(), &mut pairs);
     assert_eq!(pairs.iter().map(|p| (p.a, p.b)).collect::<Vec<_>>(), [(1, 2), (3, 4)], "links next to each other");
     let odd = |i: usize| i % 2 == 1;
-    let _ = scene.among(&odd).pairs_within(1.0, DistanceOptions::default(), &mut pairs);
+    scene.among(&odd).pairs_within(1.0, DistanceOptions::default(), &mut pairs);
     assert_eq!(pairs.iter().map(|p| (p.a, p.b)).collect::<Vec<_>>(), [(1, 3), (3, 5)], "both have to be picked");
 }
 

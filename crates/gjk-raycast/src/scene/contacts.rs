@@ -1,0 +1,157 @@
+//! What touches what: the contacts of a shape with the bodies of a scene, and of these with each other.
+
+use alloc::vec::Vec;
+
+use convex_support::{Scalar as _, ScalarOf, SupportMap};
+use num_traits::Float as _;
+
+use super::result::{BodyContact, PairContact, Work, reuse};
+use super::{Among, Body, Scene};
+use crate::{Contact, SignedDistanceOptions, contact};
+
+impl<S: SupportMap> Scene<S> {
+    /// The [contacts](Body::contact) of the shape, `a`, with all bodies, `b`, that are no farther than `within` from it, in the order of their
+    /// indices, into `contacts`, which is emptied first.
+    ///
+    /// ```
+    /// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};
+    /// use gjk_raycast::{HalfSpace, Scene, SignedDistanceOptions};
+    ///
+    /// // A ball rests on the floor in front of a box. What does it touch, and which way out?
+    /// let wall = Posed::translated(Cuboid::new(DVec3::ONE)?, DVec3::new(2.0, 1.0, 0.0))?;
+    /// let mut scene = Scene::new([wall])?;
+    /// scene.insert_half_space(HalfSpace::new(DVec3::Y, 0.0)?);
+    /// let ball = Posed::translated(Ball::new(0.5)?, DVec3::new(0.5, 0.5, 0.0))?;
+    ///
+    /// let mut contacts = Vec::new();
+    /// scene.contacts_of(&ball, 0.01, SignedDistanceOptions::default(), &mut contacts);
+    /// let normals: Vec<_> = contacts.iter().map(|found| (found.body, found.contact.normal)).collect();
+    /// assert_eq!(normals, [(0, DVec3::NEG_X), (1, DVec3::Y)]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn contacts_of<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        within: ScalarOf<S>,
+        options: SignedDistanceOptions<S::Vector>,
+        contacts: &mut Vec<BodyContact<S::Vector>>,
+    ) -> Work {
+        self.all().contacts_of(shape, within, options, contacts)
+    }
+
+    /// The [contacts](crate::contact()) of all pairs of bodies that are no farther than `within` from each other, in the order of their indices,
+    /// into `contacts`, which is emptied first: all that a step of a simulation has to resolve. Half-spaces make no contacts with each other.
+    ///
+    /// ```
+    /// use convex_support::{Cuboid, Posed, glam::DVec3};
+    /// use gjk_raycast::{HalfSpace, Scene, SignedDistanceOptions};
+    ///
+    /// // Two boxes are stacked on the floor, and a third one flies.
+    /// let crate_at = |y| Posed::translated(Cuboid::new(DVec3::splat(0.5))?, DVec3::new(0.0, y, 0.0));
+    /// let mut scene = Scene::new([crate_at(0.5)?, crate_at(1.5)?, crate_at(4.0)?])?;
+    /// let floor = scene.insert_half_space(HalfSpace::new(DVec3::Y, 0.0)?);
+    ///
+    /// let mut contacts = Vec::new();
+    /// let work = scene.contacts_within(0.01, SignedDistanceOptions::default(), &mut contacts);
+    /// assert_eq!(contacts.iter().map(|found| (found.a, found.b)).collect::<Vec<_>>(), [(0, 1), (0, floor)]);
+    /// assert!(contacts.iter().all(|found| found.contact.points().len() == 4));
+    /// assert_eq!((work.tested, work.culled), (2, 4));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn contacts_within(
+        &self,
+        within: ScalarOf<S>,
+        options: SignedDistanceOptions<S::Vector>,
+        contacts: &mut Vec<PairContact<S::Vector>>,
+    ) -> Work {
+        self.all().contacts_within(within, options, contacts)
+    }
+
+    /// The contacts of all pairs of a body of this scene, `a`, and one of another, `b`, that are no farther than `within` from each other.
+    pub fn contacts_between<T: SupportMap<Vector = S::Vector>>(
+        &self,
+        other: &Scene<T>,
+        within: ScalarOf<S>,
+        options: SignedDistanceOptions<S::Vector>,
+        contacts: &mut Vec<PairContact<S::Vector>>,
+    ) -> Work {
+        self.all().contacts_between(other, within, options, contacts)
+    }
+}
+
+impl<S: SupportMap> Among<'_, S> {
+    /// [`Scene::contacts_of`] among these bodies.
+    pub fn contacts_of<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        within: ScalarOf<S>,
+        options: SignedDistanceOptions<S::Vector>,
+        contacts: &mut Vec<BodyContact<S::Vector>>,
+    ) -> Work {
+        let work = self.near(shape, of_boxes::<S>(within), reuse(contacts), |index, body| {
+            Some(BodyContact { body: index, contact: body.contact(shape, within, options)? })
+        });
+        contacts.sort_unstable_by_key(|found| found.body);
+        work
+    }
+
+    /// [`Scene::contacts_within`] among these bodies.
+    pub fn contacts_within(
+        &self,
+        within: ScalarOf<S>,
+        options: SignedDistanceOptions<S::Vector>,
+        contacts: &mut Vec<PairContact<S::Vector>>,
+    ) -> Work {
+        self.find_pairs(of_boxes::<S>(within), contacts, &|pair, a, b| between(pair, a, b, within, options))
+    }
+
+    /// [`Scene::contacts_between`] of these bodies and all of another scene.
+    pub fn contacts_between<T: SupportMap<Vector = S::Vector>>(
+        &self,
+        other: &Scene<T>,
+        within: ScalarOf<S>,
+        options: SignedDistanceOptions<S::Vector>,
+        contacts: &mut Vec<PairContact<S::Vector>>,
+    ) -> Work {
+        self.find_pairs_between(other, of_boxes::<S>(within), contacts, &|pair, a, b| {
+            between(pair, a, b, within, options)
+        })
+    }
+
+    /// [`contacts_within`](Self::contacts_within) on all threads of the current [rayon](https://docs.rs/rayon) pool, with the same contacts to
+    /// the last bit. The nodes of the [`Work`] are those of the pieces that the search is cut into.
+    #[cfg(feature = "rayon")]
+    pub fn par_contacts_within(
+        &self,
+        within: ScalarOf<S>,
+        options: SignedDistanceOptions<S::Vector>,
+        contacts: &mut Vec<PairContact<S::Vector>>,
+    ) -> Work
+    where
+        S: Sync,
+    {
+        self.par_find_pairs(of_boxes::<S>(within), contacts, &|pair, a, b| between(pair, a, b, within, options))
+    }
+}
+
+/// How far boxes may be from each other, whose bodies have to be so deep in one another if it is negative: boxes have no depth.
+fn of_boxes<S: SupportMap>(within: ScalarOf<S>) -> ScalarOf<S> {
+    within.max(ScalarOf::<S>::ZERO)
+}
+
+/// The contact of two bodies, if they are no farther than `within` from each other.
+fn between<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
+    [i, j]: [usize; 2],
+    a: &Body<S>,
+    b: &Body<T>,
+    within: ScalarOf<S>,
+    options: SignedDistanceOptions<S::Vector>,
+) -> Option<PairContact<S::Vector>> {
+    let contact = match (a, b) {
+        (Body::Convex(a), Body::Convex(b)) => contact(a, b, within, options),
+        (Body::Convex(a), Body::HalfSpace(b)) => b.contact(a, within),
+        (Body::HalfSpace(a), Body::Convex(b)) => a.contact(b, within).map(Contact::reversed),
+        (Body::HalfSpace(_), Body::HalfSpace(_)) => None,
+    };
+    Some(PairContact { a: i, b: j, contact: contact? })
+}
