@@ -112,6 +112,7 @@ mod curvature;
 #[cfg(feature = "serde")]
 mod data;
 mod derivative;
+mod displaced;
 mod distance;
 mod distances;
 mod double;

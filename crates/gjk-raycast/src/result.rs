@@ -104,6 +104,18 @@ impl<H, V> Outcome<H, V> {
         }
     }
 
+    /// Whether it is a hit.
+    #[must_use]
+    pub const fn is_hit(&self) -> bool {
+        matches!(self, Self::Hit(_))
+    }
+
+    /// Whether neither a hit nor a miss is certain.
+    #[must_use]
+    pub const fn is_undecided(&self) -> bool {
+        matches!(self, Self::Undecided)
+    }
+
     /// Whether it is a certain miss.
     #[must_use]
     pub const fn is_miss(&self) -> bool {

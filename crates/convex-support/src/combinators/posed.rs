@@ -1,5 +1,7 @@
 //! A shape moved without deforming it.
 
+use core::fmt;
+
 use num_traits::Float as _;
 
 use super::placement::{Placement, is_near, length_of_error, lost_in_origin};
@@ -24,7 +26,7 @@ use crate::{
 /// assert!((upright.support_value(DVec2::Y) - 3.0).abs() < 1e-15);
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 // In this order, the rotation, which is known last, lies behind the numbers of an error that `new` might return in its place. What shares room
 // with those is copied in pieces of other sizes than it was written in, for which a processor waits.
 #[repr(C)]
@@ -41,6 +43,17 @@ pub struct Posed<S: SupportMap> {
     lost: S::Vector,
     translation: S::Vector,
     rotation: <S::Vector as Vector>::Matrix,
+}
+
+/// The numbers that it was made of, without the bounds on their rounding.
+impl<S: SupportMap + fmt::Debug> fmt::Debug for Posed<S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Posed")
+            .field("shape", &self.shape)
+            .field("rotation", &self.rotation)
+            .field("translation", &self.translation)
+            .finish()
+    }
 }
 
 /// What a rotation matrix is wrong by at most, in units of epsilon: every entry, and where it takes a unit vector.

@@ -9,6 +9,8 @@ mod graph;
 mod hull;
 mod lanes;
 
+use core::fmt;
+
 use num_traits::Float as _;
 
 use alloc::vec::Vec;
@@ -52,13 +54,20 @@ pub(crate) use lanes::WIDTH as PLANES;
 /// # Ties
 /// If several points reach equally far along a direction, to the last bit of the dot products computed relative to
 /// the middle, the answer is the first of them in [`points`](Self::points), unless it was found by climbing.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Polytope<V: Vector> {
     points: Vec<V>,
     search: Search<V>,
     middle: V,
     extent: V::Scalar,
     rounding: Rounding<V>,
+}
+
+/// The points, without what is kept to search them.
+impl<V: Vector> fmt::Debug for Polytope<V> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Polytope").field("points", &self.points).finish()
+    }
 }
 
 /// Vertices of a feature that are found along edges; of more, all points are looked at.
