@@ -169,3 +169,22 @@ fn batches() {
     }
     assert!(map_pairs(&first[..2], &second[..3], o, |pair| pair.margin().margin).is_err(), "two and three");
 }
+
+/// Ellipses so far apart that the normal is the line of centres, which a turn does not move: the distance then changes as minus the height
+/// h = √(a²cos² + b²sin²) of the one that turns. The second derivative had been written as a difference of the distance of the centres and
+/// the like, of which 1e12 sizes left four digits.
+#[test]
+fn turns_of_bodies_far_apart() {
+    let o = MarginOptions::default();
+    for (a, b, angle, away) in [(1.0, 0.64, 0.3, 1e12), (1.0, 0.008, 1.1, 1e12), (0.25, 1.0, -0.7, 1e13)] {
+        let mover = Ellipsoid::new(DVec2::ZERO, DVec2::new(a, b), angle).expect("valid");
+        let other = Ellipsoid::new(DVec2::new(away, 0.0), DVec2::new(1.0, 0.016), 0.4).expect("valid");
+        let [c2, s2] = [f64::cos(2.0 * angle), f64::sin(2.0 * angle)];
+        let h = (a * a * f64::cos(angle).powi(2) + b * b * f64::sin(angle).powi(2)).sqrt();
+        let spread = b * b - a * a;
+        let due = -(spread * c2 / h - (spread * s2).powi(2) / (4.0 * h.powi(3)));
+        let first = EllipsoidPair::new(&mover, &other, o).distance().hessian().matrix[2][2];
+        let second = EllipsoidPair::new(&other, &mover, o).distance().hessian_of_second().matrix[2][2];
+        assert!(close(first, due, 1e-10, 0.0) && close(second, due, 1e-10, 0.0), "{first} and {second} for {due}");
+    }
+}

@@ -256,14 +256,17 @@ impl<const N: usize> Contact<N> {
         }
     }
 
-    /// Whether L_ωω of the body that moves is the greater: about k·(a_max² − a_min²)‖N‖²/h.
+    /// Whether N is to be taken as seen by the body that moves, since the terms are smaller then: L_ωω of the body that moves is about
+    /// k·(a_max² − a_min²)‖N‖²/h, and what takes its place is that of the other and ‖N‖‖r‖, which is much where the bodies are far apart.
     fn is_stiffer(&self, mover: Mover) -> bool {
         let stiffness = |mover: Mover| {
             let (side, k, _) = self.of(mover);
             let (least, most) = side.a.iter().fold((side.a[0], side.a[0]), |(l, m), a| (l.min(*a), m.max(*a)));
             k * (most - least) * (most + least) / side.h
         };
-        stiffness(mover) > stiffness(mover.other())
+        let squared = dot(self.normal, self.normal);
+        let lever = (dot(self.r, self.r) / squared).sqrt();
+        stiffness(mover) > stiffness(mover.other()).max(lever)
     }
 
     /// The body, its k, and the sign with which its translation shortens r.
