@@ -78,7 +78,7 @@ pub(crate) fn solve<const N: usize>(
     let scale = largest * largest;
     let mut tau = low.max(start / scale);
     let (mut status, mut iterations) = (Status::IterationLimit, 0);
-    let mut x = ball;
+    let (mut x, mut rises) = (ball, false);
     while iterations < options.max_iterations {
         iterations += 1;
         let (mut phi2, mut slope, mut above) = (0.0, 0.0, excess);
@@ -103,12 +103,13 @@ pub(crate) fn solve<const N: usize>(
             break;
         }
         tau = next;
-        // Newton's method squares the error. After its first step it is below the root, and only rounding takes it back: where
-        // φ is flat, no more digits of τ are to be had.
-        if change * change <= options.tolerance() * (tau * tau) || (iterations > 1 && step <= 0.0) {
+        // Newton's method squares the error. From below it rises to the root, and only rounding takes it back: where φ is flat, no
+        // more digits of τ are to be had. (A start far above the root may take two steps back: ε of it is much.)
+        if change * change <= options.tolerance() * (tau * tau) || (rises && step <= 0.0) {
             status = Status::Converged;
             break;
         }
+        rises = step > 0.0;
     }
     for i in 0..N {
         x[i] = ball[i] / (1.0 + tau * ratio[i]);

@@ -1,7 +1,8 @@
 //! Trackers: any step gives what a cold start gives.
 
 use crate::common::{close, ellipsoid3};
-use convex_support::glam::DQuat;
+use convex_support::Ellipsoid;
+use convex_support::glam::{DQuat, DVec3, Mat3, Vec3};
 use ellip_margin::{MarginOptions, MarginTracker, free_margin};
 use proptest::prelude::*;
 
@@ -34,5 +35,37 @@ proptest! {
             prop_assert!(close(warm.nu, cold.nu, 1e-11, 1e-15), "{} and {}", warm.nu, cold.nu);
         }
         prop_assert!(track.iterations() <= 500, "{} iterations", track.iterations());
+    }
+}
+
+/// A tracker that has seen a ν of 1e11 forecasts it again. Newton's first step back from there is wrong by that times the rounding of the
+/// axes, and the next one goes back once more: that had been taken for the sign that no digits were left, and the answer was −0.0078.
+#[test]
+fn a_forecast_far_above_the_root() {
+    let axes1 = Mat3::from_cols(
+        Vec3::new(0.6174033, 0.7061779, 0.34659192),
+        Vec3::new(-0.5547862, 0.7032462, -0.44458637),
+        Vec3::new(-0.5576965, 0.082204685, 0.8259643),
+    );
+    let axes2 = Mat3::from_cols(
+        Vec3::new(0.7204018, -0.41688633, -0.55428064),
+        Vec3::new(-0.5993453, -0.77636284, -0.19505352),
+        Vec3::new(-0.34900776, 0.4727224, -0.80915207),
+    );
+    let needle = Ellipsoid::from_axes(Vec3::ZERO, Vec3::new(1.0, 0.011725279, 0.011725279), axes1).expect("valid");
+    let center = Vec3::new(-0.29862517, 0.045260817, 0.23249935);
+    let other = Ellipsoid::from_axes(center, Vec3::new(0.3559671, 0.39052156, 1.0), axes2).expect("valid");
+    let cold = free_margin(&needle, &other, MarginOptions::default());
+    assert!(cold.margin.abs() < 1e-6, "nearly touching: {cold:?}");
+    for exponent in 0..20 {
+        // Balls of which ν is the square of the ratio of their radii.
+        let small = Ellipsoid::new(DVec3::ZERO, DVec3::splat(0.1f64.powi(exponent)), DQuat::IDENTITY).expect("valid");
+        let ball = Ellipsoid::new(DVec3::X * 2.0, DVec3::ONE, DQuat::IDENTITY).expect("valid");
+        let mut track = MarginTracker::default();
+        for _ in 0..2 {
+            assert!(close(track.step(&small, &ball).nu, 100f64.powi(exponent), 1e-12, 0.0), "10^{exponent}");
+        }
+        let warm = track.step(&needle, &other);
+        assert_eq!((warm.margin, warm.status), (cold.margin, cold.status), "from 100^{exponent}: {warm:?}");
     }
 }
