@@ -120,8 +120,8 @@ pub(crate) fn solve<const N: usize>(
     let nu = tau * scale;
     let y = combine(v, x);
     let margin = plain_margin(&pair, y).unwrap_or_else(|| refined_margin(&pair, &basis, y, nu));
-    // Sizes beyond the square root of the range of `f64`.
-    let status = if margin.is_finite() && nu.is_finite() { status } else { Status::Stalled };
+    // Sizes beyond the square root of the range of `f64`: x₁ is outside, so that ν is positive.
+    let status = if margin.is_finite() && nu.is_finite() && nu > 0.0 { status } else { Status::Stalled };
     Solution { nu, y, margin, status, iterations }
 }
 

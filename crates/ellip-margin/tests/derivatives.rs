@@ -188,3 +188,32 @@ fn turns_of_bodies_far_apart() {
         assert!(close(first, due, 1e-10, 0.0) && close(second, due, 1e-10, 0.0), "{first} and {second} for {due}");
     }
 }
+
+/// Where x₁ has just left E₂, ρ = √(1 + m) is next to nothing. It had been a difference, which was negative here, so that the root of the
+/// curvature was no number.
+#[test]
+fn the_curvature_of_a_margin_next_to_its_floor() {
+    let turn1 = DMat3::from_cols_array_2d(&[
+        [-0.9459417056420136, 0.0875635921834636, -0.31229298239154557],
+        [0.316297799949074, 0.03600713671382261, -0.9479763646067594],
+        [-0.07176343967824891, -0.9955079625144141, -0.061756823881625955],
+    ]);
+    let turn2 = DMat3::from_cols_array_2d(&[
+        [-0.5990646800353929, -0.27902059486505815, 0.750512502744119],
+        [-0.41383910820138625, -0.6945240730443134, -0.5885350494957953],
+        [0.6854623998857804, -0.6631619859454294, 0.3005952074463938],
+    ]);
+    let a = DVec3::new(0.6442746071287375, 0.011670579184314618, 0.6442746071287375);
+    let e1 = Ellipsoid::from_axes(DVec3::ZERO, a, turn1).expect("valid");
+    let center = DVec3::new(-0.08464408737273964, -0.14123470086164405, -0.12023982185263889);
+    let semi_axes = DVec3::new(0.0004059747194366427, 0.6442746071287375, 0.0005608677573178187);
+    let e2 = Ellipsoid::from_axes(center, semi_axes, turn2).expect("valid");
+    let m = EllipsoidPair::new(&e1, &e2, MarginOptions::default()).margin();
+    assert!(m.margin == -1.0 && m.nu > 0.0 && m.nu < 1e-18, "{m:?}");
+    // E₂ is a half-space from so near: 1 + m = δ²/h² at a depth of δ, with h² = nᵀSn.
+    let n = m.gradient().translation.normalize();
+    let h = (e1.axes().transpose() * n * a).length();
+    let along = m.hessian().along(n, DVec3::ZERO);
+    assert!(close(along, 2.0 / (h * h), 1e-9, 0.0), "{along} and {}", 2.0 / (h * h));
+    assert!(m.hessian().matrix.as_flattened().iter().all(|x| x.is_finite()), "{:?}", m.hessian());
+}

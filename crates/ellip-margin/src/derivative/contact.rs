@@ -113,16 +113,18 @@ impl<const N: usize> Contact<N> {
     /// At the normal along `direction`, from E₁ to E₂; `None` where that is not a direction.
     pub(super) fn new(pair: &Pair<N>, quantity: Quantity, direction: Vec<N>) -> Option<Self> {
         let e = heights(pair, direction).map(unit);
-        Self::at_points(pair, quantity, direction, e)
+        Self::at_points(pair, quantity, direction, e, None)
     }
 
     /// The same where the points that touch, as unit vectors e of the two balls, are known better than from `direction`: turned
-    /// into the axes of a needle it has lost the digits of its small coordinates.
+    /// into the axes of a needle it has lost the digits of its small coordinates. So may be the value, of which next to nothing is left of
+    /// N·r near the floor of the margin.
     pub(super) fn at_points(
         pair: &Pair<N>,
         quantity: Quantity,
         direction: Vec<N>,
         [e1, e2]: [Vec<N>; 2],
+        value: Option<f64>,
     ) -> Option<Self> {
         let unit = unit(direction);
         let [h1, h2] = heights(pair, unit).map(|u| dot(u, u).sqrt());
@@ -135,7 +137,8 @@ impl<const N: usize> Contact<N> {
         ];
         let r = pair.r().map(|x| -x);
         let norm = 1.0 / gauge;
-        let value = dot(normal, r) - weighted(quantity.objective, [norm, sides[0].h, sides[1].h]);
+        let value =
+            value.unwrap_or_else(|| dot(normal, r) - weighted(quantity.objective, [norm, sides[0].h, sides[1].h]));
         let k = core::array::from_fn(|i| quantity.objective[i] + value * quantity.constraint[i]);
         let root = root(k[0] / norm, [(&sides[0], k[1]), (&sides[1], k[2])]);
         value.is_finite().then_some(Self { quantity, r, normal, sides, value, k, tangents, root })

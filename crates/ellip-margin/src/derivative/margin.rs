@@ -12,6 +12,8 @@
 //! The second derivatives are those of m = ρ² − 1: m″ = 2ρρ″ + 2ρ′ρ′ᵀ, a sum of positive semidefinite terms for translations.
 
 use convex_support::{Ellipsoid, Scalar, Vector};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 use super::contact::{Contact, Form, Mover, Quantity};
 use super::motion::{MotionGradient, MotionHessian, Units, torque};
@@ -153,7 +155,8 @@ fn hessian<V: Wedge, const N: usize>(
     let (beta, z) = beta_and_z::<V, N>(m, e1, e2);
     let points = [unit(beta), load::<V, N>(m.ball_point).map(|y| -y)];
     let (pair, length) = Pair::<N>::new(e1, e2).in_own_unit();
-    let contact = Contact::at_points(&pair, Quantity::GROWTH, z.map(|z| -z), points);
+    let rho = dot(beta, beta).sqrt();
+    let contact = Contact::at_points(&pair, Quantity::GROWTH, z.map(|z| -z), points, Some(rho));
     contact.as_ref().map_or_else(MotionHessian::zero, |contact| {
         let units = Units { value: 1.0, length };
         MotionHessian::of_contact(contact, mover, Form { slope: 2.0 * contact.value, curvature: 2.0, units })

@@ -54,7 +54,7 @@ impl<V: Wedge> ValueOfContact<V> for Scaling<V> {
         let [e1, e2]: [Vec<N>; 2] = self.ball_points.map(load);
         // Qv, against E₂'s own normal there.
         let normal = combine(pair.axes2, core::array::from_fn(|j| e2[j] / pair.a2[j]));
-        let contact = Contact::at_points(&pair, Quantity::SCALE, normal, [e1, e2])?;
+        let contact = Contact::at_points(&pair, Quantity::SCALE, normal, [e1, e2], None)?;
         Some((contact, Units { value: 1.0, length }))
     }
 }

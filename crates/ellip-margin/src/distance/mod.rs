@@ -90,10 +90,10 @@ fn bracket_in<V: Vector, const N: usize>(
     let (there, length) = Pair::<N>::new(e1, e2).in_own_unit();
     let back = there.swapped();
     let first = solve(&there, 0.0, options, |_, _| {});
-    let Some(slab) = Slab::of_margin(&there, &first) else { return overlapping(&there, &first, length) };
+    let Some(slab) = Slab::of_margin(&there, &first, options) else { return overlapping(&there, &first, length) };
     let second = solve(&back, 0.0, options, |_, _| {});
     // The slab of the other margin runs from E₂ to E₁.
-    let other = Slab::of_margin(&back, &second).map(|s| Slab::new(&there, s.n.map(|x| -x)));
+    let other = Slab::of_margin(&back, &second, options).map(|s| Slab::new(&there, s.n.map(|x| -x)));
     let best = |a: Slab<N>, b: Option<Slab<N>>, better: fn(&Slab<N>, &Slab<N>) -> bool| match b {
         Some(b) if better(&b, &a) => b,
         _ => a,
@@ -133,7 +133,7 @@ fn distance_in<V: Vector, const N: usize>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, 
         Some(slab) => slab,
         None => {
             let margin = solve(&pair, 0.0, options, |_, _| {});
-            let Some(slab) = Slab::of_margin(&pair, &margin) else {
+            let Some(slab) = Slab::of_margin(&pair, &margin, options) else {
                 let bracket = overlapping(&pair, &margin, length);
                 return Distance { distance: V::Scalar::ZERO, bracket, status: margin.status, iterations: 0 };
             };

@@ -19,9 +19,22 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::DistanceBracket;
-use crate::numerics::{DoubleDouble, Factor, Vec, add, combine, dot, store, sub, unit};
+use crate::numerics::{DoubleDouble, Factor, Vec, add, combine, dot, size, store, sub, unit};
 use crate::pair::Pair;
 use crate::secular::Solution;
+use crate::{MarginOptions, Status};
+
+/// Whether bodies whose margin is not positive have a common point: an iteration that was cut short has found less than their margin.
+/// Then E₂'s point along y has to lie in E₁.
+fn is_proved<const N: usize>(pair: &Pair<N>, solution: &Solution<N>, options: MarginOptions) -> bool {
+    if solution.status == Status::Converged && options.tolerance() <= MarginOptions::new().tolerance() {
+        return true;
+    }
+    let p = sub(pair.out_of_ball(unit(solution.y)), pair.r());
+    let w: Vec<N> = core::array::from_fn(|i| dot(pair.axes1[i], p) / pair.a1[i]);
+    let is_inside = solution.nu == 0.0 && solution.status == Status::Converged;
+    is_inside || dot(w, w) <= 1.0
+}
 
 /// A direction with what the two bodies say to it.
 #[derive(Clone, Copy, Debug)]
@@ -40,12 +53,15 @@ pub(super) struct Slab<const N: usize> {
 }
 
 impl<const N: usize> Slab<N> {
-    /// The slab across the margin's normal; `None` where the bodies overlap.
-    pub(super) fn of_margin(pair: &Pair<N>, solution: &Solution<N>) -> Option<Self> {
-        if solution.margin.is_nan() || solution.margin <= 0.0 {
+    /// The slab across the margin's normal, across the line of centres where the margin has none; `None` where the bodies overlap.
+    pub(super) fn of_margin(pair: &Pair<N>, solution: &Solution<N>, options: MarginOptions) -> Option<Self> {
+        if solution.margin <= 0.0 && is_proved(pair, solution, options) {
             return None;
         }
-        Self::across(pair, solution.y)
+        Self::across(pair, solution.y).or_else(|| {
+            let line = pair.r().map(|x| -x);
+            Some(Self::new(pair, if size(line) > 0.0 { unit(line) } else { pair.axes1[0] }))
+        })
     }
 
     /// The slab whose normal is that of E₂ at its point y of the ball; `None` where that is not a number.
@@ -59,7 +75,9 @@ impl<const N: usize> Slab<N> {
         let side = |axes: &[Vec<N>; N], a: &Vec<N>, sign: f64| {
             let u: Vec<N> = core::array::from_fn(|k| a[k] * dot(axes[k], n));
             let h = dot(u, u).sqrt();
-            (u, h, combine(*axes, core::array::from_fn(|k| a[k] * (sign * u[k] / h))))
+            // A body so small beside the other that its square is below the range is a point.
+            let inverse = if h > 0.0 { sign / h } else { 0.0 };
+            (u, h, combine(*axes, core::array::from_fn(|k| a[k] * (u[k] * inverse))))
         };
         let (u1, h1, offset1) = side(&pair.axes1, &pair.a1, 1.0);
         let (u2, h2, offset2) = side(&pair.axes2, &pair.a2, -1.0);
