@@ -75,7 +75,7 @@ proptest! {
     #[test]
     fn bracket_at_any_aspect(e1 in ellipsoid3(7.0, 2.0), e2 in ellipsoid3(7.0, 2.0), steps in 0usize..20) {
         let full = distance(&e1, &e2, MarginOptions::default());
-        let short = distance(&e1, &e2, MarginOptions::default().with_max_iterations(steps as usize));
+        let short = distance(&e1, &e2, MarginOptions::default().with_max_iterations(steps.into()));
         prop_assert!(short.bracket.lower <= full.bracket.upper && full.bracket.lower <= short.bracket.upper);
         prop_assert!(full.bracket.lower <= full.bracket.upper, "{:?} after {} steps", full, steps);
     }
@@ -121,9 +121,9 @@ fn an_overlap_is_not_taken_from_a_margin_cut_short() {
     let semi_axes = DVec3::new(0.10530396076622422, 0.12429488691574167, 0.0026101425359636036);
     let e2 = Ellipsoid::from_axes(center, semi_axes, plate).expect("valid");
     let all = distance(&e1, &e2, MarginOptions::default()).distance;
-    for steps in 0..20 {
-        let options = MarginOptions::default().with_max_iterations(steps as usize);
-        let rough = MarginOptions::default().with_tolerance(0.1f64.powi(steps)).expect("positive");
+    for steps in 0..20u8 {
+        let options = MarginOptions::default().with_max_iterations(steps.into());
+        let rough = MarginOptions::default().with_tolerance(0.1f64.powi(steps.into())).expect("positive");
         for o in [options, rough] {
             for (bracket, what) in
                 [(distance_bracket(&e1, &e2, o), "bracket"), (distance(&e1, &e2, o).bracket, "distance")]
