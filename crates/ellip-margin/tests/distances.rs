@@ -75,7 +75,7 @@ proptest! {
     #[test]
     fn bracket_at_any_aspect(e1 in ellipsoid3(7.0, 2.0), e2 in ellipsoid3(7.0, 2.0), steps in 0usize..20) {
         let full = distance(&e1, &e2, MarginOptions::default());
-        let short = distance(&e1, &e2, MarginOptions::default().with_max_iterations(steps.into()));
+        let short = distance(&e1, &e2, MarginOptions::default().with_max_iterations(steps));
         prop_assert!(short.bracket.lower <= full.bracket.upper && full.bracket.lower <= short.bracket.upper);
         prop_assert!(full.bracket.lower <= full.bracket.upper, "{:?} after {} steps", full, steps);
     }
@@ -123,7 +123,7 @@ fn an_overlap_is_not_taken_from_a_margin_cut_short() {
     let all = distance(&e1, &e2, MarginOptions::default()).distance;
     for steps in 0..20u8 {
         let options = MarginOptions::default().with_max_iterations(steps.into());
-        let rough = MarginOptions::default().with_tolerance(0.1f64.powi(steps.into())).expect("positive");
+        let rough = MarginOptions::default().with_tolerance(0.1f64.powi(i32::from(steps))).expect("positive");
         for o in [options, rough] {
             for (bracket, what) in
                 [(distance_bracket(&e1, &e2, o), "bracket"), (distance(&e1, &e2, o).bracket, "distance")]
