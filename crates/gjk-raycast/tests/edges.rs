@@ -2,8 +2,8 @@
 
 use crate::common::behind_pointers::{distance, linear_cast, motion_cast, signed_distance};
 use crate::differences::{Body, Random, Space, apart, one_sided};
-use convex_support::glam::{DQuat, DVec2, DVec3};
-use convex_support::{Ball, Capsule, Cone, Cuboid, Cylinder, Polytope, Posed, Rounded, SupportMap, Triangle};
+use convex_support::glam::{DMat3, DQuat, DVec2, DVec3};
+use convex_support::{Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Polytope, Posed, Rounded, SupportMap, Triangle};
 use gjk_raycast::{
     DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, RigidMotion, SignedDistanceOptions, Smoothness,
 };
@@ -331,4 +331,36 @@ fn within_one_another_a_distance_stays_zero() {
     let gradient = answer.gradient();
     assert_eq!((gradient.a.translation, gradient.b.translation, gradient.radius), (DVec3::ZERO, DVec3::ZERO, 0.0));
     assert_eq!(gradient.along(RigidMotion::translation(DVec3::X), RigidMotion::default()), 0.0);
+}
+
+/// The side of a cone turns with the normal, so that a normal across it and across an edge parallel to it is found to the root of rounding: the
+/// two were taken for lines that cross.
+#[test]
+fn an_edge_along_the_side_of_a_cone_is_no_smooth_place() {
+    for (size, turn) in [(1.0, 0.0), (1e6, 0.0), (1e-6, 0.0), (1.0, 0.7), (1e6, 2.1), (1.0, -1.2)] {
+        // The apex is at (0, −1, 0). An edge of the tetrahedron goes the way of the slant from there to (1, 1, 0).
+        let upside_down = DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
+        let cone = Posed::from_matrix(Cone::new(size, size).expect(VALID), upside_down, DVec3::ZERO).expect(VALID);
+        let corners = [[1.0, 0.25, 0.0], [1.0, 0.75, 0.0], [1.0, 0.25, -1.0], [0.75, 0.25, 0.0]];
+        let spin = DQuat::from_rotation_y(turn);
+        let corners = corners.map(|corner| spin * DVec3::from_array(corner) * size);
+        let a = Polytope::new(corners).expect(VALID);
+        for tolerance in [1e-9, 1e-14] {
+            let answer = signed_distance(&a, &cone, SignedDistanceOptions::default().with_tolerance(tolerance));
+            let features = answer.closest_features(&a, &cone);
+            assert_eq!(features.smoothness(), Smoothness::Edge, "{size:e}, {turn}: {features:?}");
+            assert!(features.is_normal_unique(), "{size:e}, {turn}: {features:?}");
+        }
+    }
+}
+
+/// Rims that are nearly flat where they are the way out: as they are pushed on, the other way gains more than the square of the push.
+#[test]
+fn equal_ways_out_of_flat_curves_are_an_edge() {
+    let skewed = DMat3::from_cols_array_2d(&[[1.0, 0.5, 0.0], [0.0, 1.0, 0.0], [0.25, 0.0, 2.0]]);
+    let b = Affine::new(Cylinder::new(0.25, 0.25).expect(VALID), skewed, DVec3::ZERO).expect(VALID);
+    let lean = DMat3::from_rotation_x(std::f64::consts::FRAC_PI_4);
+    let a = Posed::from_matrix(Cylinder::new(1.0, 0.5).expect(VALID), lean, DVec3::Z * 0.5).expect(VALID);
+    let features = apart(&a, &b).closest_features(&a, &b);
+    assert_eq!(features.smoothness(), Smoothness::Edge, "{features:?}");
 }

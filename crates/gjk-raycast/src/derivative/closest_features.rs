@@ -43,7 +43,9 @@ pub struct ClosestFeatures<V: Vector> {
     pub(super) radii: [V::Scalar; 2],
     /// The Hessians of both support values, radii included, across the normal. Zero along an edge, and on a face.
     pub(super) hessians: [Symmetric<V::Scalar>; 2],
-    /// Whether they foretell the support points nearby.
+    /// Whether the feature of a body is an edge that turns with the normal, as the side of a cone.
+    pub(super) are_turning: [bool; 2],
+    /// Whether the Hessians foretell the support points nearby.
     pub(super) is_foretold: bool,
     /// The features, relative to the middle.
     pub(super) outlines: [Outline<V::Scalar>; 2],
@@ -107,7 +109,11 @@ impl<V: Vector> ClosestFeatures<V> {
 
     /// How the features extend together, where the closest points are the only ones.
     pub(super) fn joint(&self) -> Option<Joint<V::Scalar>> {
-        let joint = Joint::of(self.spans, self.tilt * V::Scalar::from_f64(4.0));
+        let least = self.tilt * V::Scalar::from_f64(4.0);
+        // The side of a cone turns with the normal: where it is parallel to an edge, the two conditions that each of them puts to the normal
+        // are met by any normal that is off by the root of their error.
+        let parallel = if self.are_turning == [false; 2] { least } else { least.sqrt() };
+        let joint = Joint::of(self.spans, parallel);
         // In the plane an edge is all of the line across the normal.
         joint.filter(|joint| V::DIM == 3 || !matches!(joint, Joint::Crossed(_)))
     }

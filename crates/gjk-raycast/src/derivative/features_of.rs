@@ -18,7 +18,7 @@ const LITTLE: f64 = 64.0;
 
 /// How much a push may gain: at most so many times its square, in units of the size, and at most this part of the size, which leaves room
 /// for single precision.
-const GAIN: [f64; 2] = [16.0, 1e-4];
+const GAIN: [f64; 2] = [256.0, 1e-4];
 
 /// If the cosine of the angle between two normals is at least this, they are of the same way out.
 const SAME_NORMAL: f64 = 1.0 - 1e-6;

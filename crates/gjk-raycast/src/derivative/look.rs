@@ -16,6 +16,9 @@ const TURN: f64 = 16.0;
 /// By how much a support point may differ from where its curvature foretells it, as a part of how far that moves.
 const SURPRISE: f64 = 0.25;
 
+/// The curves at the ends of an edge are the same if they bend alike to this part of their sum.
+const ALIKE: f64 = 1.0 / 64.0;
+
 /// Two bodies, and the unit of length.
 pub(super) struct Bodies<'s, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
     pub(super) a: &'s A,
@@ -41,6 +44,7 @@ where
             signed_distance: Scalar::ZERO,
             radii: self.cores.map(|core| core.radius / self.unit),
             hessians: [Symmetric::ZERO; 2],
+            are_turning: [false; 2],
             is_foretold: true,
             outlines: [Outline::empty(), Outline::empty()],
             spans: [Span::Vertex; 2],
@@ -68,8 +72,9 @@ where
         draw(outline_a, self.a, core_a, -normal, &from);
         draw(outline_b, self.b, core_b, normal, &from);
         features.spans = [Span::of(outline_a), Span::of(outline_b)];
-        features.hessians =
-            [hessian(self.a, core_a, -normal, outline_a, &from), hessian(self.b, core_b, normal, outline_b, &from)];
+        let of_a = hessian(self.a, core_a, -normal, outline_a, &from);
+        let of_b = hessian(self.b, core_b, normal, outline_b, &from);
+        (features.hessians, features.are_turning) = ([of_a.0, of_b.0], [of_a.1, of_b.1]);
     }
 
     /// Whether the support points nearby are where the Hessians say.
@@ -112,21 +117,22 @@ fn draw<B: SupportMap + ?Sized>(
     outline.draw(&feature, (core.origin - from.middle) * per_unit, &from.plane);
 }
 
-/// The Hessian of the support value of a body across a direction, along which it shows a feature; that of its radius included.
+/// The Hessian of the support value of a body across a direction, along which it shows a feature; that of its radius included. And whether the
+/// feature is an edge that turns with the direction, as the side of a cone: the curves at its ends are not the same.
 fn hessian<B: SupportMap + ?Sized>(
     body: &B,
     core: &Core<B::Vector>,
     direction: B::Vector,
     outline: &Outline<ScalarOf<B>>,
     from: &Viewpoint<B::Vector>,
-) -> Symmetric<ScalarOf<B>> {
+) -> (Symmetric<ScalarOf<B>>, bool) {
     let per_unit = reciprocal_of_power(from.unit);
     let along = |direction| {
         let entries = body.core_support_hessian(direction, from.plane.across);
         let [a, b, d] = entries.map(|entry| entry * per_unit);
         Symmetric { a, b, d }.plus(core.radius * per_unit)
     };
-    match Span::of(outline) {
+    let hessian = match Span::of(outline) {
         Span::Vertex => along(direction),
         Span::Edge(_) if B::Vector::DIM == 2 => Symmetric::ZERO,
         Span::Edge(e) if matches!(core.kind, CoreKind::Curved) => {
@@ -137,11 +143,14 @@ fn hessian<B: SupportMap + ?Sized>(
                 let [near, far] = [turn, turn + turn].map(|turn| along(direction + edge * turn));
                 near.blend(far, -ScalarOf::<B>::ONE)
             });
-            across_edge(first.blend(second, share(outline, e)), e)
+            let [p, q] = [first, second].map(|curve| bend(curve, e));
+            let is_turning = (p - q).abs() > (p + q) * Scalar::from_f64(ALIKE);
+            return (across_edge(first.blend(second, share(outline, e)), e), is_turning);
         }
         Span::Edge(e) => across_edge(along(direction), e),
         Span::Face => Symmetric::ZERO,
-    }
+    };
+    (hessian, false)
 }
 
 /// How far along an edge the point of contact is, which is at zero: as a part of its length.
@@ -152,9 +161,14 @@ fn share<S: Scalar>(outline: &Outline<S>, e: Across<S>) -> S {
 
 /// What of a Hessian is across a unit vector. Along the edge itself a support point is free.
 fn across_edge<S: Scalar>(hessian: Symmetric<S>, e: Across<S>) -> Symmetric<S> {
-    let f = (-e.1, e.0);
-    let bend = dot(f, hessian.times(f));
+    let (f, bend) = ((-e.1, e.0), bend(hessian, e));
     Symmetric { a: bend * f.0 * f.0, b: bend * f.0 * f.1, d: bend * f.1 * f.1 }
+}
+
+/// How much of a Hessian is across a unit vector.
+fn bend<S: Scalar>(hessian: Symmetric<S>, e: Across<S>) -> S {
+    let f = (-e.1, e.0);
+    dot(f, hessian.times(f))
 }
 
 /// Whether the support points of a body along directions near that of the other are where its Hessian says. They are not where a

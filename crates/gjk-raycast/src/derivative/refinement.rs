@@ -7,7 +7,6 @@ use super::closest_features::{Closest, ClosestFeatures, rounding};
 use super::look::Bodies;
 use super::overlap::are_apart;
 use super::span::Span;
-use crate::contact::across;
 
 /// The longest step of the unit normal that counts as refinement, and the most steps that are taken.
 const LONGEST_STEP: f64 = 0.1;
@@ -115,8 +114,9 @@ where
             }
             let Some(normal) = (best.normal + step.turn).unit() else { return false };
             if size <= rounding() && shifts[0].max(shifts[1]) <= self.unit * rounding() {
-                // The features along this normal are those that were seen, to rounding.
-                (best.normal, best.across) = (normal, across(normal));
+                // The features along this normal are those that were seen, to rounding, and in the coordinates in which they were seen: another
+                // basis may be a quarter turn away where two coordinates of the normal are equal.
+                best.normal = normal;
                 break;
             }
             let signed_distance = best.signed_distance * self.unit;
