@@ -10,7 +10,7 @@ use benches::ours::Effort;
 use benches::ours::shapes::{Boxed, OfWorkload, with, with_both};
 use benches::ours::tasks::{Distances, Intersections, LinearCasts, MotionCasts, RayCasts, SignedDistances};
 use convex_support::glam::{DVec2, DVec3, Vec3A};
-use convex_support::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, Polytope};
+use convex_support::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, Polytope, Rounded};
 use gjk_raycast::{Ray, RayCastOptions};
 use workloads::pairs::Pair;
 use workloads::shapes::{Shape, hull_points};
@@ -25,10 +25,11 @@ type Row = (&'static str, fn() -> Solver);
 /// The cuboid and the hull in double precision, of which most rows are.
 type Block = Cuboid<DVec3>;
 type Hull = Polytope<DVec3>;
+type RoundBox = Rounded<Cuboid<DVec3>>;
 
 /// Rows that stand for the rest: polytopes, smooth and rounded bodies, small and large, known and behind `dyn`, in space and
 /// in the plane, each kind of query. Only their shapes are compiled.
-const ROWS: [Row; 25] = [
+const ROWS: [Row; 28] = [
     ("ray_cast/cuboid", || ray_cast::<Block>("cuboid")),
     ("ray_cast/hull1024", || ray_cast::<Hull>("hull1024")),
     ("linear_cast/hull64-hull64", || linear_cast::<Hull, Hull>("hull64-hull64")),
@@ -54,6 +55,9 @@ const ROWS: [Row; 25] = [
     ("motion_cast/ellipsoid-ellipsoid", || motion_cast::<Ellipsoid<DVec3>, Ellipsoid<DVec3>>("ellipsoid-ellipsoid")),
     ("signed_distance/cuboid-cuboid", || signed_distance::<Block, Block>("cuboid-cuboid")),
     ("signed_distance/cylinder-cone", || signed_distance::<Cylinder<DVec3>, Cone<DVec3>>("cylinder-cone")),
+    ("signed_distance/ball-cuboid", || signed_distance::<Ball<DVec3>, Block>("ball-cuboid")),
+    ("signed_distance/roundbox-roundbox", || signed_distance::<RoundBox, RoundBox>("roundbox-roundbox")),
+    ("motion_cast/ball-cuboid", || motion_cast::<Ball<DVec3>, Block>("ball-cuboid")),
     ("near_contact/ball-cuboid-f32", || near_contact::<Ball<Vec3A>, Cuboid<Vec3A>>("ball-cuboid")),
     ("near_contact/cuboid-cuboid-f32", || near_contact::<Cuboid<Vec3A>, Cuboid<Vec3A>>("cuboid-cuboid")),
     ("near_contact/hull64-hull64-f32", || near_contact::<Polytope<Vec3A>, Polytope<Vec3A>>("hull64-hull64")),

@@ -94,7 +94,10 @@ where
     let epsilon: <A::Vector as Vector>::Scalar = Scalar::EPSILON;
     let [from, to] = [pair.core_a.origin, pair.core_b.origin];
     let of_sum = pair.extent() * (epsilon * Scalar::from_f64(SUM));
-    let of_offset = (from - to).norm() * (epsilon * Scalar::from_f64(OFFSET)) + lost_in_sum(from, -to).norm();
+    let lost = lost_in_sum(from, -to);
+    // Nothing is lost where an origin is at zero; the length of tiny vectors takes longer.
+    let lost = if lost == A::Vector::ZERO { Scalar::ZERO } else { lost.norm() };
+    let of_offset = (from - to).norm() * (epsilon * Scalar::from_f64(OFFSET)) + lost;
     pair.error() + of_sum + of_offset
 }
 
@@ -257,6 +260,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
 
     /// A bound on the length of what a point `p` of the difference stands for. Along `p` it is as wrong as along any unit vector,
     /// and what it is wrong by across hardly adds to the length.
+    #[inline(always)]
     pub(crate) fn greatest_length(&self, p: A::Vector) -> <A::Vector as Vector>::Scalar {
         let error = self.greatest_error();
         let along = if self.uncertainty.is_some() { p.unit().map_or(error, |n| self.error_along(n)) } else { error };
@@ -271,7 +275,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     }
 
     /// Whether the direction of a point of the difference is known to half the digits.
-    #[inline]
+    #[inline(always)]
     pub(super) fn is_well_known(&self, p: A::Vector) -> bool {
         let root: <A::Vector as Vector>::Scalar = Scalar::EPSILON;
         self.greatest_error() < root.sqrt() * p.norm()
@@ -285,7 +289,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
 
     /// The way out of two parallelotopes that certainly overlap; a plane across `axis`, or across their offset, may tell them apart
     /// at once.
-    #[inline]
+    #[inline(always)]
     pub(super) fn closed_form(&mut self, axis: Option<A::Vector>) -> Option<ClosedForm<A::Vector>> {
         let Pair { a, b, core_a, core_b, .. } = &self.pair;
         let reach = self.pair.extent() * self.frame.per_unit;

@@ -18,6 +18,7 @@ pub(super) struct Met<V: Vector> {
 }
 
 impl<V: Vector> Met<V> {
+    #[inline(always)]
     pub(super) fn new<A, B>(cores: &Cores<'_, A, B>, state: &mut Gjk<V, PointPair<V>>) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,

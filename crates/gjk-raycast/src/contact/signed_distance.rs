@@ -34,7 +34,8 @@ use crate::{Iterate, Status};
 /// is inside, and it is minus the distance of the nearest plane that supports `C`. Where the cores are apart, GJK finds both as the distance
 /// of the cores, less the radii. Where the cores overlap, an [expanding polytope](SignedDistance::unexpanded) proves that no way out is
 /// shorter than the one found; for two boxes the depth has a closed form.
-#[inline]
+// Left to the compiler, it is a call in some programs, in which a ball and a box take half as long again.
+#[inline(always)]
 pub fn signed_distance<A, B>(a: &A, b: &B, options: SignedDistanceOptions<A::Vector>) -> SignedDistance<A::Vector>
 where
     A: SupportMap + ?Sized,
@@ -46,7 +47,7 @@ where
 /// [`signed_distance`], showing an observer every iterate: those of [`distance`](crate::distance) as long as the cores may be
 /// apart. After that the simplex is the facet nearest to zero, `v` its foot, `w` the support point along its normal or
 /// between that and the best way out, and the bounds are those of the signed distance of the cores.
-#[inline]
+#[inline(always)]
 pub fn signed_distance_with<A, B>(
     a: &A,
     b: &B,
@@ -115,7 +116,28 @@ where
     let is_warm = options.axis.and_then(|axis| axis.unit()).is_some_and(|axis| cores.reaches_beyond(-axis));
     let is_peeled = is_warm && cores.peel();
     let mut state = cores.first_state(&options);
-    let mut end = cores.approach(&options, &mut state, &mut observer);
+    let end = cores.approach(&options, &mut state, &mut observer);
+    if end == End::Separated && cores.is_well_apart(state.length) {
+        return Reached::of_gjk(cores, &mut state, end);
+    }
+    reach_closely(cores, options, &mut state, end, is_peeled, &mut observer)
+}
+
+/// What can be known of cores that overlap or nearly touch, after a search for the points that are closest.
+#[inline(never)]
+fn reach_closely<A, B>(
+    cores: &mut Cores<'_, A, B>,
+    options: SignedDistanceOptions<A::Vector>,
+    state: &mut Gjk<A::Vector, PointPair<A::Vector>>,
+    mut end: End,
+    is_peeled: bool,
+    observer: &mut impl FnMut(Iterate<'_, A::Vector>),
+) -> Reached<A::Vector>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let is_rounded = !is_peeled && cores.radius() > Scalar::ZERO;
     if is_rounded
         && end == End::Overlap
         && let Some(known) = cores.closed_form(options.axis)
@@ -125,18 +147,20 @@ where
     // Half of what may be asked for is left for a second run.
     let may_repeat = end == End::Overlap && state.length.is_finite() && 2 * state.iterations < options.max_iterations;
     if may_repeat && !is_peeled && cores.peel() {
-        state = cores.first_state(&options);
-        end = cores.approach(&options, &mut state, &mut observer);
+        *state = cores.first_state(&options);
+        end = cores.approach(&options, state, &mut *observer);
     }
     if !cores.is_well_apart(state.length) {
         cores.sharpen();
     }
-    if end == End::Separated || !state.length.is_finite() {
-        return Reached::of_gjk(cores, &mut state, end);
-    }
-    match expand(cores, &mut state, &options, &mut observer) {
-        Some(expanded) => Reached::of_expansion(cores, &expanded, &mut state, end),
-        None => Reached { status: Status::Stalled, ..Reached::of_gjk(cores, &mut state, end) },
+    let is_apart = end == End::Separated || !state.length.is_finite();
+    let expanded = if is_apart { None } else { expand(cores, state, &options, observer) };
+    match expanded {
+        Some(expanded) => Reached::of_expansion(cores, &expanded, state, end),
+        None => {
+            let known = Reached::of_gjk(cores, state, end);
+            Reached { status: if is_apart { known.status } else { Status::Stalled }, ..known }
+        }
     }
 }
 
@@ -157,7 +181,7 @@ struct Reached<V: Vector> {
 
 impl<V: Vector> Reached<V> {
     /// By GJK alone.
-    #[inline]
+    #[inline(always)]
     fn of_gjk<A, B>(cores: &Cores<'_, A, B>, state: &mut Gjk<V, PointPair<V>>, end: End) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,

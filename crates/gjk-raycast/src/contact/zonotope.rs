@@ -251,6 +251,10 @@ impl Zonotope {
         let mut rest: Vec3 = core::array::from_fn(|i| n[i] * facet.depth - self.center[i]);
         let (mut plane, mut count) = ([0; EDGES], 0);
         for (k, &edge) in self.edges.iter().enumerate() {
+            // Edges without a length that counts, as those of a point, span nothing and lead nowhere.
+            if self.squared[k] <= 0.0 {
+                continue;
+            }
             let height = dot(n, edge);
             if facet.edges.contains(&k) || height.abs() <= flat {
                 plane[count] = k;
