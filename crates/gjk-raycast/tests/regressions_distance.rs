@@ -577,3 +577,21 @@ fn a_flat_triangle_before_the_base_of_a_cone_is_decided() -> Result<(), InvalidS
     assert_eq!((near.overlap, decided.decided()), (false, Some(false)), "{near:?} {decided:?}");
     Ok(())
 }
+
+/// Two segments touch end to end. Their closest points say that they meet, and the search that looks closer then began at nothing: where it came
+/// to no better plane than its first, the answer was the middles of the two, as points in both, and an infinite upper bound.
+#[test]
+fn segments_that_touch_end_to_end_have_a_point_in_common() -> Result<(), InvalidShape> {
+    for i in 0..2000_u16 {
+        let number = |k: u16| (f64::from(i) * 0.37 + 1.9 * f64::from(k)).sin();
+        let turn = |k: u16| DQuat::from_xyzw(number(k), number(k + 1) * 0.7, number(k + 2), 0.3).normalize();
+        let end = DVec3::new(number(9), number(10), number(11));
+        let thin = |half_height: f64, turn: DQuat| {
+            let middle = end + turn * DVec3::Y * half_height;
+            Posed::new(Capsule::<DVec3>::new(half_height.abs(), 0.0)?, turn, middle)
+        };
+        let d = distance(&thin(0.5, turn(0))?, &thin(-0.3, turn(4))?, DistanceOptions::default());
+        assert!(d.upper < 1e-14 && (d.point_a - d.point_b).length() < 1e-14, "{i}: {d:?}");
+    }
+    Ok(())
+}

@@ -129,16 +129,13 @@ fn begin<V: Vector>(
 ) -> Gjk<V, PointPair<V>> {
     let first = first_direction(None, frame.offset);
     let mut state = Gjk::new(first);
-    match state.begin_at_closest(pair, frame, size) {
-        Some(false) => {}
+    if state.begin_at_closest(pair, frame, size) != Some(false) {
         // Where they meet, the vector from one to the other is no direction to look along.
-        Some(true) => state = Gjk::new(first),
-        None => {
-            // Searches of its own, as of a query that begins here.
-            let mut pair = Pair::of_cores(pair.a, pair.b, [pair.core_a, pair.core_b]);
-            pair.set_scale(frame.scale);
-            run(&mut state, &mut pair, *frame, first, max_iterations);
-        }
+        state = Gjk::new(first);
+        // Searches of its own, as of a query that begins here.
+        let mut pair = Pair::of_cores(pair.a, pair.b, [pair.core_a, pair.core_b]);
+        pair.set_scale(frame.scale);
+        run(&mut state, &mut pair, *frame, first, max_iterations);
     }
     state
 }
