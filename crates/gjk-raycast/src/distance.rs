@@ -195,7 +195,7 @@ fn apart<V: Vector>(
     // The shortest vector is measured across the affine hull of its points, and they are what proves it.
     let squared = (core_points.a - core_points.b + frame.offset).length_squared();
     let found = if squared <= length * length { length } else { squared.sqrt() };
-    Distance {
+    let answer = Distance {
         distance: if overlap { zero } else { gap(length) },
         lower: if overlap { zero } else { gap((lower - error).min(length)) },
         upper: if overlap { gap(found + error).min(error * scale) } else { gap(found + error) },
@@ -211,6 +211,12 @@ fn apart<V: Vector>(
         },
         status: end.status(),
         iterations: state.iterations,
+    };
+    // The support points of a shape that is none may contradict one another, or be no numbers: then nothing is known.
+    if answer.lower <= answer.upper {
+        answer
+    } else {
+        Distance { lower: zero, upper: V::Scalar::infinity(), status: Status::Stalled, ..answer }
     }
 }
 

@@ -28,6 +28,7 @@ mod half_space;
 mod half_space_motion;
 mod hit_derivatives;
 mod invariances;
+mod lies;
 mod motion_cast;
 mod motion_laws;
 mod paper;

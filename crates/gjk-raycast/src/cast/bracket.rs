@@ -15,6 +15,9 @@ use crate::simplex::MAX_POINTS;
 use crate::unit::{is_moderate, power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Ray, RayCastOptions, Status};
 
+/// The largest tolerance, in sizes of the body.
+const LARGEST_TOLERANCE: f64 = 16.0;
+
 /// What rounding moves points by that a search compares, in units of ε times the size.
 pub(super) const NOISE: f64 = 8.0;
 
@@ -235,9 +238,10 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         self.low() - self.certain(self.low.bound) > self.ray.start
     }
 
-    /// How far the bounds may stay apart, across the last plane.
+    /// How far the bounds may stay apart, across the last plane: at most some sizes of the body, so that a bound that is infinite since nothing is
+    /// known is never near enough.
     pub(super) fn tolerance(&self) -> ScalarOf<B> {
-        self.noise.max(self.options.tolerance)
+        self.noise.max(self.options.tolerance).min(Scalar::from_f64(LARGEST_TOLERANCE))
     }
 
     /// Where on the line the ray ends, or leaves the ball about the body.

@@ -40,8 +40,8 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let answer = signed_distance(a, b, SignedDistanceOptions { limit: options.limit.min(within), ..options });
-    // NaN is farther than anything.
-    if !(answer.signed_distance <= within) {
+    // NaN is farther than anything, and so is what nothing is known of.
+    if !(answer.signed_distance <= within && answer.signed_distance.is_finite()) {
         return None;
     }
     Some(Contact::new(answer.normal, answer, &manifold(a, b, &answer, within)))

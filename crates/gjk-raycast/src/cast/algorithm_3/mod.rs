@@ -74,6 +74,10 @@ fn approach<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
             nearing = Progress::new();
         }
         if !simplex.points().contains(&point) {
+            // All points of a simplex are kept where x is in it and yet far from it, which only the points of a shape that is none tell.
+            if simplex.points().len() > B::Vector::DIM {
+                return Err(Stop::InDoubt);
+            }
             simplex.push(point, n, witness);
             let found = entry(simplex.points(), line, bracket.radius, bracket.noise);
             if let Some(found) = found.filter(|e| e.mu >= bracket.earliest() - bracket.noise) {

@@ -102,7 +102,7 @@ fn close<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     coarse: &mut Option<OnLine<B::Vector, B::Witness>>,
 ) -> Result<Contact<B>, Stop<B::Vector>> {
     let within = bracket.tolerance() * best.alpha.length();
-    let fine = (bracket.noise + bracket.noise).max(bracket.options.tolerance);
+    let fine = (bracket.noise + bracket.noise).max(bracket.tolerance());
     // A segment first, since the weights in a flat triangle may be nothing but rounding.
     let passed = pieces.passed(bracket.noise).filter(|below| below.high >= start);
     let enclosing = (portal.high - best.tau <= within).then(|| OnLine::from(*portal));
