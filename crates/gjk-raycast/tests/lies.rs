@@ -24,7 +24,7 @@ impl SupportMap for Liar {
     fn support(&self, direction: DVec3) -> DVec3 {
         self.asked.set(self.asked.get() + 1);
         let point = self.shape.support(direction);
-        if self.asked.get() % self.every == 0 { (self.lie)(point) } else { point }
+        if self.asked.get().is_multiple_of(self.every) { (self.lie)(point) } else { point }
     }
 }
 

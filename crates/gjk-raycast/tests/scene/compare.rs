@@ -114,7 +114,7 @@ fn ray<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
     if options.tolerance > V::Scalar::ZERO {
         // Where a bracket stays open the box may prove that the end comes first.
         assert!(found.iter().all(|hit| due.contains(hit)), "all hits of {ray:?}");
-        assert!(any.hit == !found.is_empty(), "any hit of {ray:?}");
+        assert_ne!(any.hit, found.is_empty(), "any hit of {ray:?}");
     } else {
         assert_eq!(found, due, "all hits of {ray:?}");
         assert_eq!(any.hit, !due.is_empty(), "any hit of {ray:?}");
