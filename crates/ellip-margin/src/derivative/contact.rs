@@ -16,7 +16,8 @@
 //! > L_Nδ = ∓δ, L_Nω = −k(Rₖb + vt), L_δδ = L_δω = 0, L_ωω = k(½(m_θ·b_φ + m_φ·b_θ) + ht_θt_φ), γ_ω = −gₖht.
 //!
 //! *Stiff bodies.* N turns with a needle, and against one: a turn with N held is then answered by an N′ that takes nearly all of L_ωω
-//! back. So for the rotations of the body that is the stiffer of the two, N is taken as seen by that body. This is to turn all else by
+//! back. So for the rotations of the body that is the stiffer of the two, and stiffer than the bodies are apart, N is taken as seen by that
+//! body. This is to turn all else by
 //! −ω, so that t, m and b are those of the other body for −ω, and of r ↦ exp(−[ω])(r ∓ δ) there remain
 //!
 //! > L_Nω: −ω × r, L_ωω: −½((ω × N)·(φ × r) + (φ × N)·(ω × r)), L_δω: ∓δ·(ω × N).
