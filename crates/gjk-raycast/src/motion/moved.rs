@@ -90,7 +90,7 @@ impl<S: SupportMap + ?Sized> SupportMap for Moved<'_, S> {
         self.shape.core_support_hessian(self.before(direction), [self.before(changes[0]), self.before(changes[1])])
     }
 
-    #[inline]
+    #[inline(always)]
     fn core_closest_point(&self, x: S::Vector) -> Option<S::Vector> {
         Some(self.turned(self.shape.core_closest_point(self.before(x))?))
     }

@@ -69,6 +69,11 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'
         Self { shape, motion, course, core, hint: Cell::new(Hint::new()) }
     }
 
+    /// The point of the core closest to a point at time 0, both relative to the origin, if it is known in closed form.
+    pub(super) fn closest_point(&self, x: S::Vector) -> Option<S::Vector> {
+        self.shape.core_closest_point(x)
+    }
+
     /// Where the body is at a time.
     #[inline(always)]
     pub(super) fn place(&self, time: ScalarOf<S>) -> Place<S::Vector> {

@@ -2,7 +2,7 @@
 
 use core::cell::{Cell, RefCell};
 
-use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{CoreKind, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
 use super::approach::Approach;
@@ -21,6 +21,8 @@ use crate::unit::is_moderate;
 pub(super) struct MovingPair<'s, A: SupportMap + ?Sized, MA, B: SupportMap + ?Sized, MB> {
     pub(super) a: MovingBody<'s, A, MA>,
     pub(super) b: MovingBody<'s, B, MB>,
+    /// Whether the closest points of the cores are known in closed form, or were at the start.
+    knows_points: bool,
     /// The corners of the faces that were closest at the last look.
     pub(super) closest: RefCell<Corners<A::Vector>>,
     /// The support points computed of each shape.
@@ -35,7 +37,14 @@ where
     MB: Trajectory<Vector = A::Vector>,
 {
     pub(super) fn new(a: MovingBody<'s, A, MA>, b: MovingBody<'s, B, MB>) -> Self {
-        Self { a, b, closest: RefCell::new(Corners::none()), iterations: Cell::new(0) }
+        let between = a.core.origin - b.core.origin;
+        let knows_points = match (a.core.kind, b.core.kind) {
+            (CoreKind::Segment(_), CoreKind::Segment(_)) => true,
+            (CoreKind::Point(a), _) => b.closest_point(a + between).is_some(),
+            (_, CoreKind::Point(b)) => a.closest_point(b - between).is_some(),
+            _ => false,
+        };
+        Self { a, b, knows_points, closest: RefCell::new(Corners::none()), iterations: Cell::new(0) }
     }
 
     /// Counts support points.
@@ -87,6 +96,7 @@ where
     }
 
     /// How fast points of both bodies come nearer to one another along a normal.
+    #[inline(always)]
     pub(super) fn closing(
         &self,
         time: ScalarOf<A>,
@@ -117,6 +127,11 @@ where
     }
 
     fn at(&self, time: ScalarOf<A>, axis: A::Vector, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
+        if self.knows_points
+            && let Some(known) = self.by_closest_points(time)
+        {
+            return known.unwrap_or_else(|| self.closely(time, axis, limits));
+        }
         let placed = self.placed(time);
         let there = self.roughly(time, &placed, axis, limits.distance);
         there.unwrap_or_else(|| self.closely_placed(time, &placed, axis, limits))

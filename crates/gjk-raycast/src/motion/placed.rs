@@ -24,8 +24,14 @@ where
     MB: Trajectory<Vector = A::Vector>,
 {
     /// The bodies where they are at a time.
-    #[inline]
+    #[inline(never)]
     pub(super) fn placed(&self, time: ScalarOf<A>) -> Placed<'_, A, B> {
+        self.placed_here(time)
+    }
+
+    /// The same, compiled into its caller.
+    #[inline(always)]
+    pub(super) fn placed_here(&self, time: ScalarOf<A>) -> Placed<'_, A, B> {
         let (a, b) = (self.a.place(time), self.b.place(time));
         // What lies between is of the order of the bodies, however far from the world's origin they are.
         let between = self.a.core.origin - self.b.core.origin;
