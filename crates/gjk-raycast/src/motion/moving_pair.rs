@@ -39,7 +39,7 @@ where
     pub(super) fn new(a: MovingBody<'s, A, MA>, b: MovingBody<'s, B, MB>) -> Self {
         let between = a.core.origin - b.core.origin;
         let knows_points = match (a.core.kind, b.core.kind) {
-            (CoreKind::Segment(_), CoreKind::Segment(_)) => true,
+            (CoreKind::Segment { .. }, CoreKind::Segment { .. }) => true,
             (CoreKind::Point(a), _) => b.closest_point(a + between).is_some(),
             (_, CoreKind::Point(b)) => a.closest_point(b - between).is_some(),
             _ => false,
