@@ -17,8 +17,7 @@
 //!
 //! *Stiff bodies.* N turns with a needle, and against one: a turn with N held is then answered by an N′ that takes nearly all of L_ωω
 //! back. So for the rotations of the body that is the stiffer of the two, and stiffer than the bodies are apart, N is taken as seen by that
-//! body. This is to turn all else by
-//! −ω, so that t, m and b are those of the other body for −ω, and of r ↦ exp(−[ω])(r ∓ δ) there remain
+//! body. This is to turn all else by −ω, so that t, m and b are those of the other body for −ω, and of r ↦ exp(−[ω])(r ∓ δ) there remain
 //!
 //! > L_Nω: −ω × r, L_ωω: −½((ω × N)·(φ × r) + (φ × N)·(ω × r)), L_δω: ∓δ·(ω × N).
 //!
