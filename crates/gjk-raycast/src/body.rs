@@ -205,7 +205,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
         match (self.core_a.kind, self.core_b.kind) {
             (CoreKind::Segment { middle: x, half: u }, CoreKind::Segment { middle: y, half: w }) => {
                 let [u, w, x, y] = [u, w, x, y].map(|v| v * self.per_unit);
-                segments::normal_between([u, w], [a - x, b - y], v)
+                segments::normal_between([u, w], [x, y], [a, b], v)
             }
             _ => v,
         }

@@ -44,23 +44,25 @@ fn points_in_order<V: Vector>(u: V, w: V, offset: V) -> (V, V) {
     (u * s, w * t)
 }
 
-/// A vector along the normal of the plane between two segments, as `u` and `w` are, at their closest points `a` and `b`, given the vector
-/// `v` from `b` to `a`.
+/// A vector along the normal of the plane between two segments, with the given halves and middles, at their closest points `a` and `b`,
+/// given the vector `v` from `b` to `a`.
 ///
 /// Where a point is within its segment, the normal is across that. Of points that are near one another rounding is much of the vector
 /// between them, and a step of Newton takes the part of it along the segments away, to what is rounded of the vector itself.
 #[inline(never)]
-pub(crate) fn normal_between<V: Vector>([u, w]: [V; 2], [a, b]: [V; 2], v: V) -> V {
-    if is_in_order(u, w, v) { normal_in_order([u, w], [a, b], v) } else { -normal_in_order([w, u], [b, a], -v) }
+pub(crate) fn normal_between<V: Vector>([u, w]: [V; 2], [x, y]: [V; 2], [a, b]: [V; 2], v: V) -> V {
+    if is_in_order(u, w, v) {
+        normal_in_order([u, w], [x, y], [a, b], v)
+    } else {
+        -normal_in_order([w, u], [y, x], [b, a], -v)
+    }
 }
 
 #[inline(always)]
-fn normal_in_order<V: Vector>([u, w]: [V; 2], [a, b]: [V; 2], v: V) -> V {
+fn normal_in_order<V: Vector>([u, w]: [V; 2], middles: [V; 2], [a, b]: [V; 2], v: V) -> V {
     let zero = V::Scalar::ZERO;
     let (uu, ww, uw) = (u.length_squared(), w.length_squared(), u.dot(w));
-    let inner = V::Scalar::ONE - V::Scalar::EPSILON * V::Scalar::from_f64(AT_END);
-    let is_within_u = a.dot(u).abs() < uu * inner;
-    let is_within_w = b.dot(w).abs() < ww * inner;
+    let (is_within_u, is_within_w) = (is_within(u, middles[0], a), is_within(w, middles[1], b));
     let (uv, wv) = (if is_within_u { u.dot(v) } else { zero }, if is_within_w { w.dot(v) } else { zero });
     // Parallel segments are both across a vector that one of them is across.
     let squared_sine = uu * ww - uw * uw;
@@ -77,9 +79,17 @@ fn normal_in_order<V: Vector>([u, w]: [V; 2], [a, b]: [V; 2], v: V) -> V {
     v + u * s - w * t
 }
 
-/// Points that are by this many ε of the half length from an end are at the end: a point that was put relative to the origin and back is not
-/// exactly where it was.
+/// How many ε a point may be wrong by, of the half length and of the middle.
 const AT_END: f64 = 8.0;
+
+/// Whether a point of a segment is certainly not one of its ends: a point that was added to the middle is not exactly where it was, and of a
+/// middle far from the origin that may be as much as the segment is long.
+#[inline(always)]
+fn is_within<V: Vector>(half: V, middle: V, point: V) -> bool {
+    let squared = half.length_squared();
+    let error = (squared + middle.abs().dot(half.abs())) * (V::Scalar::EPSILON * V::Scalar::from_f64(AT_END));
+    (point - middle).dot(half).abs() < squared - error
+}
 
 /// The squared sine of the angle between segments below which they are as good as parallel.
 const PARALLEL: f64 = 1e-6;

@@ -176,3 +176,26 @@ fn sizes_beyond_squares_are_left_to_the_descent() {
         assert_eq!(intersects(&ball, &cone, IntersectOptions::default()).decided(), Some(false));
     }
 }
+
+/// A segment much shorter than the rounding of where it is counts as a point, and is no direction to be across.
+#[test]
+fn a_segment_shorter_than_its_rounding_is_a_point() {
+    use convex_support::{Posed, glam::Vec2};
+
+    let speck = Segment::new([Vec2::new(-1.0, 3.237145e-10), Vec2::new(-1.0, 4.343262e-10)]).expect(VALID);
+    let rod = Segment::new([Vec2::ZERO, Vec2::new(0.0, -1.0)]).expect(VALID);
+    let rod = Posed::new(rod, core::f32::consts::PI, Vec2::ZERO).expect(VALID);
+    let first = Vec2::new(-1.0, -0.999_999_76);
+    let speck = Posed::translated(speck, first).expect(VALID);
+    for t in (0..200).map(|k| 0.01 * k as f32).chain([1.071_206_7]) {
+        let by = Vec2::new(-0.894_427_3, -0.447_213_53) * t;
+        let speck = Posed::translated(&speck, by).expect(VALID);
+        let truth = (first - Vec2::X + by).length();
+        let (found, depth) = (
+            distance(&speck, &rod, DistanceOptions::default()),
+            signed_distance(&speck, &rod, SignedDistanceOptions::default()),
+        );
+        assert!(found.lower <= truth && truth <= found.upper, "{t}: {truth} {found:?}");
+        assert!(depth.lower <= truth && truth <= depth.upper, "{t}: {truth} {depth:?}");
+    }
+}

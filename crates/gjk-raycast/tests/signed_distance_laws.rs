@@ -78,14 +78,24 @@ fn is_symmetric<V: Vector>(a: &Shape<V>, b: &Shape<V>) -> Result<(), TestCaseErr
     Ok(())
 }
 
-/// A translation by `t` along the normal adds `t`, through contact and beyond.
+/// A translation by `t` along the normal adds `t`, through contact and beyond: exactly to the gap along that normal, and to the signed
+/// distance all but what the normal is wrong by.
+///
+/// Of curved bodies a normal is known to an angle `δ` of some roots of the precision, of which `1 − cos δ` is lost. What is allowed here
+/// is `δ = 256√ε`.
 fn grows_along_the_normal<V: Vector>(a: &Shape<V>, b: &Shape<V>, part: f64) -> Result<(), TestCaseError> {
     let (answer, size) = (ask(a, b), size(a, b));
+    let n = answer.normal;
+    let gap = -(a.support_value(-n) + b.support_value(n));
     let t = answer.signed_distance.abs() * V::Scalar::from_f64(part);
-    let moved = ask(&Posed::translated(a, answer.normal * t).expect("a finite translation"), b);
+    let moved = ask(&Posed::translated(a, n * t).expect("a finite translation"), b);
     let error = ulps::<V::Scalar>(16.0) * (size + t);
     prop_assert!(moved.lower <= answer.upper + t + error, "{t}: {answer:?} {moved:?}");
-    prop_assert!(answer.lower + t <= moved.upper + error, "{t}: {answer:?} {moved:?}");
+    // Support values are rounded where the bodies are in the world.
+    let of_gap = error + ulps::<V::Scalar>(16.0) * (a.core().origin.norm() + b.core().origin.norm());
+    prop_assert!(gap + t <= moved.upper + of_gap, "{t} and {gap}: {answer:?} {moved:?}");
+    let lost = ulps::<V::Scalar>(0.5 * 256.0 * 256.0) * t;
+    prop_assert!(answer.lower + t <= moved.upper + error + lost, "{t}: {answer:?} {moved:?}");
     Ok(())
 }
 
