@@ -10,7 +10,7 @@ use super::trajectory::{MovingBall, Trajectory, TurningPlane};
 
 /// A body and its motion.
 pub(super) struct MovingBody<'s, S: SupportMap + ?Sized, M> {
-    shape: &'s S,
+    pub(super) shape: &'s S,
     motion: M,
     course: Course<S::Vector>,
     /// What the shape is split into at time 0, with its radius grown by the target distance.
@@ -67,11 +67,6 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'
         };
         let core = Core { radius: core.radius + margin, ..core };
         Self { shape, motion, course, core, hint: Cell::new(Hint::new()) }
-    }
-
-    /// The point of the core closest to a point at time 0, both relative to the origin, if it is known in closed form.
-    pub(super) fn closest_point(&self, x: S::Vector) -> Option<S::Vector> {
-        self.shape.core_closest_point(x)
     }
 
     /// Where the body is at a time.

@@ -2,7 +2,7 @@
 
 use core::cell::{Cell, RefCell};
 
-use convex_support::{CoreKind, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
 use super::approach::Approach;
@@ -21,7 +21,7 @@ use crate::unit::is_moderate;
 pub(super) struct MovingPair<'s, A: SupportMap + ?Sized, MA, B: SupportMap + ?Sized, MB> {
     pub(super) a: MovingBody<'s, A, MA>,
     pub(super) b: MovingBody<'s, B, MB>,
-    /// Whether the closest points of the cores are known in closed form, or were at the start.
+    /// Whether the closest points of the cores were known in closed form at the start.
     knows_points: bool,
     /// The corners of the faces that were closest at the last look.
     pub(super) closest: RefCell<Corners<A::Vector>>,
@@ -37,13 +37,9 @@ where
     MB: Trajectory<Vector = A::Vector>,
 {
     pub(super) fn new(a: MovingBody<'s, A, MA>, b: MovingBody<'s, B, MB>) -> Self {
-        let between = a.core.origin - b.core.origin;
-        let knows_points = match (a.core.kind, b.core.kind) {
-            (CoreKind::Segment { .. }, CoreKind::Segment { .. }) => true,
-            (CoreKind::Point(a), _) => b.closest_point(a + between).is_some(),
-            (_, CoreKind::Point(b)) => a.closest_point(b - between).is_some(),
-            _ => false,
-        };
+        let offset = a.core.origin - b.core.origin;
+        let pair = Pair::of_cores(a.shape, b.shape, [a.core, b.core]);
+        let knows_points = pair.closest_points(offset, pair.size(offset)).is_some();
         Self { a, b, knows_points, closest: RefCell::new(Corners::none()), iterations: Cell::new(0) }
     }
 
