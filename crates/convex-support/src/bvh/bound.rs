@@ -114,7 +114,11 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
             // Along a plane a box never ends where it has begun, and begins at the end of all numbers where it has not.
             let (begin, end) = (inverse.clamp(-largest, largest), inverse * (1.0 + 2.0 * RoughUnit::ROUNDING));
             rough.inverse[i] = [begin, end].map(|inverse| Vec4::splat(inverse as f32));
-            rough.from[i] = [frame.up(i, self.from[0].get(i)), frame.down(i, self.from[1].get(i))].map(Vec4::splat);
+            let mut from = [frame.up(i, self.from[0].get(i)), frame.down(i, self.from[1].get(i))].map(Vec4::splat);
+            if inverse.is_sign_negative() {
+                from.reverse();
+            }
+            rough.from[i] = from;
             rough.first[i] = usize::from(inverse.is_sign_negative());
         }
         rough
@@ -124,6 +128,7 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
 /// A [`SweptBox`] in the frame of a tree, with λ in a unit in which the largest coordinate of the direction is between 1 and 2.
 #[derive(Clone, Copy, Debug)]
 pub struct RoughSweptBox<V> {
+    /// What the side of a box that is met first is compared with, and what the other.
     from: [[Vec4; 2]; 3],
     /// For where a box begins, and for where it ends.
     inverse: [[Vec4; 2]; 3],
@@ -148,8 +153,8 @@ impl<V: Vector> RoughBound for RoughSweptBox<V> {
         for i in 0..V::DIM {
             let (near, far) = (self.first[i], 1 - self.first[i]);
             // What is NaN, on a plane along the direction, is outside, and may be passed over or not.
-            entry = ((boxes.side(i, near) - self.from[i][near]) * self.inverse[i][0]).max(entry);
-            exit = ((boxes.side(i, far) - self.from[i][far]) * self.inverse[i][1]).min(exit);
+            entry = ((boxes.side(i, near) - self.from[i][0]) * self.inverse[i][0]).max(entry);
+            exit = ((boxes.side(i, far) - self.from[i][1]) * self.inverse[i][1]).min(exit);
         }
         Vec4::select(entry.cmple(exit), entry.min(Vec4::MAX), Vec4::INFINITY)
     }

@@ -36,26 +36,21 @@ impl<V: Vector> Bvh<V> {
         let Some(mut limit) = finite(limit) else { return 0 };
         let rough = question.rough(&self.frame);
         let mut end = rough_limit(&rough, limit);
-        // What remains to be looked at, the least bound on top. Places that are not read before they are written are all bits zero, which
-        // is soon done.
+        // What remains to be looked at, the least bound on top, and what is looked at next: of a node the least of its children, for whose
+        // order it need not wait. Places that are not read before they are written are all bits zero, which is soon done.
         let mut pending = [0; STACK];
-        pending[0] = Link::ROOT.after(0.0);
-        let (mut top, mut nodes) = (1, 0);
-        while top > 0 {
-            top -= 1;
-            let (link, bound) = Link::with_bound(pending[top]);
-            if bound > end {
-                continue;
-            }
-            match link.child() {
+        let (mut next, mut top, mut nodes) = (Link::ROOT.after(0.0), 0, 0);
+        loop {
+            let (link, bound) = Link::with_bound(next);
+            match if bound <= end { link.child() } else { Child::None } {
                 Child::None => {}
                 Child::Item(item) => {
                     let bound = question.bound(&self.boxes[item]);
                     if bound <= limit {
-                        let ControlFlow::Continue(next) = visit(item, bound) else { return nodes };
-                        let Some(next) = finite(next) else { return nodes };
-                        if next != limit {
-                            (limit, end) = (next, rough_limit(&rough, next));
+                        let ControlFlow::Continue(least) = visit(item, bound) else { return nodes };
+                        let Some(least) = finite(least) else { return nodes };
+                        if least != limit {
+                            (limit, end) = (least, rough_limit(&rough, least));
                         }
                     }
                 }
@@ -65,14 +60,20 @@ impl<V: Vector> Bvh<V> {
                     let bounds = rough.bounds(&node.boxes);
                     let near = bounds.cmple(Vec4::splat(end)).bitmask();
                     if near != 0 {
-                        let sorted = sorted(near, node.children, bounds.to_array());
+                        let (sorted, least) = sorted(near, node.children, bounds.to_array());
                         pending[top..top + WIDTH].copy_from_slice(&sorted);
-                        top += near.count_ones() as usize;
+                        top += near.count_ones() as usize - 1;
+                        next = least;
+                        continue;
                     }
                 }
             }
+            if top == 0 {
+                return nodes;
+            }
+            top -= 1;
+            next = pending[top];
         }
-        nodes
     }
 
     /// Shows the items whose bound is at most `limit`, in no particular order, until `visit` breaks off. Returns the number of nodes that
@@ -148,15 +149,17 @@ fn rough_limit<S: Scalar>(rough: &impl RoughBound, limit: S) -> f32 {
     rough.limit(if limit < S::max_value() { limit.as_f64() } else { f64::INFINITY })
 }
 
-/// The children with their bounds in descending order, of which those that the bits of `near` leave out come last.
+/// The children with their bounds in descending order, of which those that the bits of `near` leave out come last; and the least of all,
+/// which is known before their order is.
 ///
 /// A network of five exchanges, none of which branches: which of two is the lesser nobody can foretell.
 #[inline(always)]
-fn sorted(near: u32, children: [Link; WIDTH], bounds: [f32; WIDTH]) -> [u64; WIDTH] {
-    let mut sorted: [u64; WIDTH] =
-        core::array::from_fn(|lane| if near & 1 << lane == 0 { 0 } else { children[lane].after(bounds[lane]) });
+fn sorted(near: u32, children: [Link; WIDTH], bounds: [f32; WIDTH]) -> ([u64; WIDTH], u64) {
+    let keys: [u64; WIDTH] = core::array::from_fn(|lane| children[lane].after(bounds[lane]));
+    let least = keys[0].min(keys[1]).min(keys[2].min(keys[3]));
+    let mut sorted: [u64; WIDTH] = core::array::from_fn(|lane| if near & 1 << lane == 0 { 0 } else { keys[lane] });
     for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
         (sorted[i], sorted[j]) = (sorted[i].max(sorted[j]), sorted[i].min(sorted[j]));
     }
-    sorted
+    (sorted, least)
 }
