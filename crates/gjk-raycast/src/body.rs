@@ -185,6 +185,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
         size: <A::Vector as Vector>::Scalar,
     ) -> Option<PointPair<A::Vector>> {
         let (a, b) = match (self.core_a.kind, self.core_b.kind) {
+            (CoreKind::Point(a), CoreKind::Point(b)) => (a, b),
             (CoreKind::Point(a), _) => (a, self.b.core_closest_point(a + offset)?),
             (_, CoreKind::Point(b)) => (self.a.core_closest_point(b - offset)?, b),
             (CoreKind::Segment { middle: a, half: u }, CoreKind::Segment { middle: b, half: w }) => {

@@ -1,6 +1,6 @@
 //! The distance of two shapes (the paper's Algorithm 2).
 
-use convex_support::{Core, Scalar, SupportMap, Vector};
+use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
@@ -88,8 +88,13 @@ where
     if !(length - radius >= near) || max_iterations == 0 {
         return None;
     }
-    let w = pair.support(-v).0 + offset;
-    let lower = (v.dot(w) / length).min(length);
+    let (w, lower) = if matches!((pair.core_a.kind, pair.core_b.kind), (CoreKind::Point(_), CoreKind::Point(_))) {
+        // There are no other points.
+        (v, length)
+    } else {
+        let w = pair.support(-v).0 + offset;
+        (w, (v.dot(w) / length).min(length))
+    };
     if !(length - lower <= noise) {
         return None;
     }

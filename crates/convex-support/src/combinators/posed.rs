@@ -155,6 +155,13 @@ impl<S: SupportMap> Posed<S> {
     pub fn translation(&self) -> S::Vector {
         self.translation
     }
+
+    /// A vector of the shape as it is turned. Of zero, which is where most shapes have their origin and balls their core, the rotation need
+    /// not even be read.
+    #[inline(always)]
+    fn turned(&self, v: S::Vector) -> S::Vector {
+        if v == S::Vector::ZERO { v } else { self.rotation * v }
+    }
 }
 
 /// What an entry of a [`polished`] matrix is away from the nearest rotation at most, in units of epsilon. With `RᵀR = 1 + E`, the step
@@ -186,10 +193,10 @@ impl<S: SupportMap> SupportMap for Posed<S> {
     fn core(&self) -> Core<S::Vector> {
         let core = self.shape.core();
         Core {
-            origin: self.rotation * core.origin + self.translation,
+            origin: self.turned(core.origin) + self.translation,
             extent: core.extent + self.lost.abs().max_element() * Scalar::from_f64(2.0),
             error: self.error,
-            kind: core.kind.image(|v| self.rotation * v, self.lost),
+            kind: core.kind.image(|v| self.turned(v), self.lost),
             ..core
         }
     }
