@@ -121,6 +121,12 @@ impl Link {
         (self.0 & !Self::ITEM) as usize
     }
 
+    /// The number of the node, if it is one that is not after `last`; else `last`.
+    #[inline]
+    pub(super) fn node_or(self, last: usize) -> usize {
+        (self.0 as usize).min(last)
+    }
+
     #[inline]
     pub(super) fn child(self) -> Child {
         match self {

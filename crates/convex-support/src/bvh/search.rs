@@ -1,10 +1,11 @@
 //! Items in the order of a bound, with a limit that shrinks.
 
+use core::hint::black_box;
 use core::ops::ControlFlow;
 
 use super::Bvh;
 use super::bound::{Bound, RoughBound};
-use super::node::{Child, Link, WIDTH};
+use super::node::{Child, Link, Node, WIDTH};
 use crate::glam::Vec4;
 use crate::{Scalar, Vector};
 
@@ -57,6 +58,7 @@ impl<V: Vector> Bvh<V> {
                 Child::Node(index) => {
                     nodes += 1;
                     let node = &self.nodes[index];
+                    self.fetch(node);
                     let bounds = rough.bounds(&node.boxes);
                     let near = bounds.cmple(Vec4::splat(end)).bitmask();
                     if near != 0 {
@@ -97,6 +99,7 @@ impl<V: Vector> Bvh<V> {
             next = pop(&below, &mut top);
             nodes += 1;
             let node = &self.nodes[link.index()];
+            self.fetch(node);
             let near = rough.bounds(&node.boxes).cmple(end).bitmask();
             for (lane, &child) in node.children.iter().enumerate() {
                 let is_near = near >> lane & 1 != 0;
@@ -114,6 +117,20 @@ impl<V: Vector> Bvh<V> {
         // Whether it breaks off no longer matters.
         let _ = self.show(question, limit, &found[..count], &mut visit);
         nodes
+    }
+
+    /// Loads something of the children of a node that are nodes, before it is known which of them will be looked into. In a tree that does
+    /// not fit into the caches, a search would else spend much of its time waiting for the next node.
+    ///
+    /// Nobody needs the values: `black_box` keeps the loads, one from either line of the cache. In place of a child that is no node the
+    /// last node is loaded, since a branch on what the child is would often be foretold wrongly.
+    #[inline(always)]
+    fn fetch(&self, node: &Node) {
+        let last = self.nodes.len() - 1;
+        for child in node.children {
+            let child = &self.nodes[child.node_or(last)];
+            black_box((child.boxes.min(0).x, child.count));
+        }
     }
 
     /// Shows those of some items whose own bound is at most `limit`.
