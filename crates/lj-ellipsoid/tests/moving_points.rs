@@ -52,6 +52,20 @@ fn a_far_jump_and_a_collapse_start_afresh() {
     assert_eq!(points.enclosing().expect("a triangle").contacts.len(), 3);
 }
 
+/// In the old frame the three are one point beside the fourth. That was an index out of bounds.
+#[test]
+fn a_point_so_far_away_that_the_others_seem_to_be_one_starts_afresh() {
+    let mut points = MovingPoints::new(&[[0.0, 1.0], [1.0, -1.0], [0.0, -1.0]], TIGHT).expect("finite");
+    points.enclosing().expect("a triangle");
+    points.insert([816497758.8503735, -816497758.8503735]).expect("finite");
+    let answer = points.enclosing().expect("full rank").clone();
+    assert_contains(&answer, points.points());
+    let cold = enclosing(points.points(), TIGHT).expect("full rank");
+    assert_eq!(answer.status, cold.status);
+    let allowed = answer.log_det_gap + cold.log_det_gap + 1e-12;
+    assert_near("ln det", answer.ellipsoid.log_det(), cold.ellipsoid.log_det(), allowed);
+}
+
 #[test]
 fn bad_points_change_nothing() {
     let mut points = MovingPoints::new(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], TIGHT).expect("finite");

@@ -11,6 +11,10 @@
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{cholesky_log_det, dot, solve_lower};
 
+/// What is left of an entry on the diagonal of the scatter, relative to it, where that is more than rounding: some ninety units of the last
+/// place. If less is left, all points with weight may lie in one plane.
+const PLANE: f64 = 1e-14;
+
 /// What follows from the weights of a working set.
 #[derive(Clone, Debug)]
 pub(crate) struct Moments<D: Dimension> {
@@ -33,7 +37,7 @@ impl<D: Dimension> Moments<D> {
         Self { rank, mean: rank.zero(), factor: rank.zero_matrix(), log_det_scatter: 0.0, z, q }
     }
 
-    /// Computes everything from the points `y` and weights `u`; false where the scatter is not positive definite.
+    /// Computes everything from the points `y` and weights `u`; false where the points with weight span no volume, to rounding.
     pub(crate) fn compute(&mut self, y: &[f64], u: &[f64]) -> bool {
         self.compute_scatter(y, u) && {
             self.compute_distances(y);
@@ -71,7 +75,7 @@ impl<D: Dimension> Moments<D> {
                 }
             }
         }
-        let log_det = cholesky_log_det(rank, factor);
+        let log_det = cholesky_log_det(rank, factor).filter(|_| spans_volume(r, factor));
         self.log_det_scatter = log_det.unwrap_or(f64::NEG_INFINITY);
         log_det.is_some()
     }
@@ -125,4 +129,9 @@ impl<D: Dimension> Moments<D> {
         let r = self.rank.get() as f64;
         r * (self.furthest().1 / r).ln()
     }
+}
+
+/// Whether each pivot Lᵢᵢ² of S = L·Lᵀ is more than the rounding of the diagonal that it is left of, Sᵢᵢ = Σₖ Lᵢₖ².
+fn spans_volume(r: usize, factor: &[f64]) -> bool {
+    factor.chunks_exact(r).enumerate().all(|(i, row)| row[i] * row[i] > PLANE * dot(&row[..=i], &row[..=i]))
 }

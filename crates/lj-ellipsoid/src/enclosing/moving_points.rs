@@ -7,7 +7,7 @@ use crate::enclosing::working_set::WorkingSet;
 use crate::enclosing::{Enclosing, solve, solve_from};
 use crate::error::EnclosingError;
 use crate::numerics::dimension::{Const, Square};
-use crate::options::EnclosingOptions;
+use crate::options::{EnclosingOptions, Status};
 use crate::points::PointSlice;
 
 /// Points with their minimum-volume enclosing ellipsoid, kept up to date when points are added, removed or moved.
@@ -131,8 +131,11 @@ impl<const N: usize> MovingPoints<N> {
             earlier => {
                 self.solves += 1;
                 let points = PointSlice(&self.points);
-                let solution = match earlier.and_then(|answer| self.warm_start(&answer)) {
-                    Some(start) => solve_from(&points, start, self.options, &mut |_| {})?,
+                let warm = earlier.and_then(|answer| self.warm_start(&answer));
+                let warm = warm.and_then(|start| solve_from(&points, start, self.options, &mut |_| {}).ok());
+                // In the old frame the points may have become flat, or one of them be too far away.
+                let solution = match warm.filter(|solution| solution.status != Status::Stalled) {
+                    Some(solution) => solution,
                     None => solve(&points, self.options, &mut |_| {})?,
                 };
                 self.current = true;

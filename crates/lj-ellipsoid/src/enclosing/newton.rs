@@ -63,6 +63,7 @@ pub(crate) fn solve<D: Dimension>(at: &mut Iterate<D>, work: &mut Workspace<D>, 
     let mut best_gap = f64::INFINITY;
     let mut without_progress = 0;
     thin_out(rank, set, moments, &mut work.best);
+    work.best.copy_from(set);
     loop {
         lift_far_points(rank, set, moments);
         let now = moments.log_det_gap();
@@ -77,9 +78,10 @@ pub(crate) fn solve<D: Dimension>(at: &mut Iterate<D>, work: &mut Workspace<D>, 
         } else {
             without_progress += 1;
         }
-        // None of these has weight at the optimum of this set (Harman and Pronzato).
-        forget(rank, set, moments, elimination_threshold(rank.get(), moments.furthest().1));
-        if steps >= max_steps
+        // None of these has weight at the optimum of this set (Harman and Pronzato). Where rounding says that they have, it is not to be trusted.
+        let threshold = elimination_threshold(rank.get(), moments.furthest().1);
+        if !forget(rank, set, moments, threshold)
+            || steps >= max_steps
             || (without_progress >= 3 && best_gap < 1e-9)
             || (without_progress >= 1 && best_gap < 1e-13)
             || without_progress >= 12
@@ -89,10 +91,8 @@ pub(crate) fn solve<D: Dimension>(at: &mut Iterate<D>, work: &mut Workspace<D>, 
         }
         steps += 1;
     }
-    if best_gap < f64::INFINITY {
-        std::mem::swap(set, &mut work.best);
-        moments.compute(&set.y, &set.u);
-    }
+    std::mem::swap(set, &mut work.best);
+    moments.compute(&set.y, &set.u);
     steps
 }
 
@@ -105,6 +105,8 @@ fn thin_out<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D
             break;
         }
         set.u.iter_mut().zip(&moments.q).for_each(|(u, q)| *u *= (1.0 + q) / (r + 1.0));
+        let total: f64 = set.u.iter().sum();
+        set.u.iter_mut().for_each(|u| *u /= total);
         before.copy_from(set);
         let sound = moments.compute(&set.y, &set.u) && {
             let expected = r + EAGER * (moments.furthest().1 - r);
@@ -130,9 +132,13 @@ fn lift_far_points<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Mo
             break;
         }
         let beta = (omega - n) / (n * (omega - 1.0));
+        let before = set.u.clone();
         set.u.iter_mut().for_each(|u| *u *= 1.0 - beta);
         set.u[j] += beta;
         if !moments.compute(&set.y, &set.u) {
+            // So far out that beside it the others seem to be one point.
+            set.u = before;
+            moments.compute(&set.y, &set.u);
             break;
         }
     }

@@ -116,8 +116,9 @@ pub(crate) fn finish<P: Points>(
     }
     // ln det X* − ln det X: the transformation into the frame cancels, and with it its size.
     let logarithms: f64 = semi_axes.iter().map(|a| a.ln().abs()).sum();
-    let log_det_gap =
-        (certificate.log_det_bound + 2.0 * r as f64 * growth.ln() + 4.0 * UNIT_ROUNDOFF * logarithms).max(0.0);
+    let log_det_gap = certificate.log_det_bound + 2.0 * r as f64 * growth.ln() + 4.0 * UNIT_ROUNDOFF * logarithms;
+    // What is no number proves nothing.
+    let log_det_gap = if log_det_gap.is_nan() { f64::INFINITY } else { log_det_gap.max(0.0) };
     let status = match ended {
         Status::IterationLimit if log_det_gap > epsilon => Status::IterationLimit,
         _ if log_det_gap <= epsilon => Status::Converged,
