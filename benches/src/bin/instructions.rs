@@ -29,7 +29,7 @@ type RoundBox = Rounded<Cuboid<DVec3>>;
 
 /// Rows that stand for the rest: polytopes, smooth and rounded bodies, small and large, known and behind `dyn`, in space and
 /// in the plane, each kind of query. Only their shapes are compiled.
-const ROWS: [Row; 28] = [
+const ROWS: [Row; 29] = [
     ("ray_cast/cuboid", || ray_cast::<Block>("cuboid")),
     ("ray_cast/hull1024", || ray_cast::<Hull>("hull1024")),
     ("linear_cast/hull64-hull64", || linear_cast::<Hull, Hull>("hull64-hull64")),
@@ -57,6 +57,7 @@ const ROWS: [Row; 28] = [
     ("signed_distance/cylinder-cone", || signed_distance::<Cylinder<DVec3>, Cone<DVec3>>("cylinder-cone")),
     ("signed_distance/ball-cuboid", || signed_distance::<Ball<DVec3>, Block>("ball-cuboid")),
     ("signed_distance/roundbox-roundbox", || signed_distance::<RoundBox, RoundBox>("roundbox-roundbox")),
+    ("motion_cast/capsule-capsule", || motion_cast::<Capsule<DVec3>, Capsule<DVec3>>("capsule-capsule")),
     ("motion_cast/ball-cuboid", || motion_cast::<Ball<DVec3>, Block>("ball-cuboid")),
     ("near_contact/ball-cuboid-f32", || near_contact::<Ball<Vec3A>, Cuboid<Vec3A>>("ball-cuboid")),
     ("near_contact/cuboid-cuboid-f32", || near_contact::<Cuboid<Vec3A>, Cuboid<Vec3A>>("cuboid-cuboid")),

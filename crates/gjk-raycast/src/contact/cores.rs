@@ -50,7 +50,7 @@ pub(crate) struct Cores<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Ve
 
 /// How far the points of the difference may be from those they stand for, in the unit: what the shapes say of their own, and what
 /// is lost here, coordinate by coordinate.
-struct Uncertainty<V: Vector> {
+pub(crate) struct Uncertainty<V: Vector> {
     shapes: [Rounding<V>; 2],
     lost: V,
     /// The length of what is lost in the offset of their origins.
@@ -61,17 +61,24 @@ impl<V: Vector> Uncertainty<V> {
     /// Of the sum of two points, each rounded to the shapes' extents, and the offset of their origins.
     #[inline]
     fn new(shapes: [Rounding<V>; 2], offset: V, lost_in_offset: V) -> Self {
+        let known = Self::of_exact_offset(shapes, offset);
+        // The product with the power of two loses nothing, and its length a few ulps.
+        let length = lost_in_offset.norm() * Scalar::from_f64(1.01);
+        Self { lost: known.lost + lost_in_offset.abs(), lost_in_offset: length, ..known }
+    }
+
+    /// The same where the offset is exact.
+    #[inline(always)]
+    pub(crate) fn of_exact_offset(shapes: [Rounding<V>; 2], offset: V) -> Self {
         let epsilon: V::Scalar = Scalar::EPSILON;
         let extents = shapes[0].extent + shapes[1].extent;
         let lost = extents * (epsilon * Scalar::from_f64(SUM)) + offset.abs() * (epsilon * Scalar::from_f64(OFFSET));
-        // The product with the power of two loses nothing, and its length a few ulps.
-        let length = lost_in_offset.norm() * Scalar::from_f64(1.01);
-        Self { shapes, lost: lost + lost_in_offset.abs(), lost_in_offset: length }
+        Self { shapes, lost, lost_in_offset: Scalar::ZERO }
     }
 
     /// Along a unit vector.
     #[inline]
-    fn along(&self, n: V) -> V::Scalar {
+    pub(crate) fn along(&self, n: V) -> V::Scalar {
         let n = n.abs();
         let of_shapes = self.shapes.iter().map(|shape| n.dot(shape.error).min(shape.error_length));
         of_shapes.fold(n.dot(self.lost), |sum, error| sum + error)
@@ -80,6 +87,13 @@ impl<V: Vector> Uncertainty<V> {
     /// In any direction.
     fn length(&self) -> V::Scalar {
         self.shapes.iter().fold(self.lost.norm(), |sum, shape| sum + shape.error_length)
+    }
+
+    /// A bound on the length of what a point of the difference stands for, which is at `length` from zero and wrong by `along` in its
+    /// own direction.
+    #[inline(always)]
+    pub(crate) fn greatest_length(&self, length: V::Scalar, along: V::Scalar) -> V::Scalar {
+        greatest_length(length + along, self.length())
     }
 }
 
@@ -99,6 +113,13 @@ where
     let lost = if lost == A::Vector::ZERO { Scalar::ZERO } else { lost.norm() };
     let of_offset = (from - to).norm() * (epsilon * Scalar::from_f64(OFFSET)) + lost;
     pair.error() + of_sum + of_offset
+}
+
+/// A bound on the length of what is as long as `length` along a direction and wrong by `error` across: of √(l² + e²), which l + e²/2l is no
+/// less than, nothing overflows.
+#[inline(always)]
+fn greatest_length<S: Scalar>(length: S, error: S) -> S {
+    if error < length { length + error * (error / length) } else { length + error }
 }
 
 /// What a signed distance in the world's unit loses: unit vectors are so to 2ε, and the sum of the radii and the two sums that the radii
@@ -264,9 +285,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     pub(crate) fn greatest_length(&self, p: A::Vector) -> <A::Vector as Vector>::Scalar {
         let error = self.greatest_error();
         let along = if self.uncertainty.is_some() { p.unit().map_or(error, |n| self.error_along(n)) } else { error };
-        let length = p.norm() + along;
-        // Of √(l² + e²), which l + e²/2l is no less than, nothing overflows.
-        if error < length { length + error * (error / length) } else { length + error }
+        greatest_length(p.norm() + along, error)
     }
 
     /// Whether a bracket on the distance is as narrow as GJK makes one.

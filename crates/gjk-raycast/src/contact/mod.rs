@@ -22,7 +22,7 @@ mod witness;
 mod zonotope;
 
 pub use contact::contact;
-pub(crate) use cores::{Cores, gap_along};
+pub(crate) use cores::{Cores, Uncertainty, gap_along};
 pub(crate) use manifold::manifold_over_plane;
 pub(crate) use newton::across;
 pub use options::SignedDistanceOptions;

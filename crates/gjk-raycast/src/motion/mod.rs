@@ -2,6 +2,7 @@
 
 mod approach;
 mod chain_motion;
+mod closest_points;
 mod contact;
 mod corners;
 mod first_contact;

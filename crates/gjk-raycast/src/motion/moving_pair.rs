@@ -6,6 +6,7 @@ use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
 use super::approach::Approach;
+use super::closest_points::Look;
 use super::corners::Corners;
 use super::instant::{Instant, Limits};
 use super::moving_body::{MovingBody, length_bound};
@@ -123,10 +124,10 @@ where
     }
 
     fn at(&self, time: ScalarOf<A>, axis: A::Vector, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
-        if self.knows_points
-            && let Some(known) = self.by_closest_points(time)
-        {
-            return known.unwrap_or_else(|| self.closely(time, axis, limits));
+        let look = if limits.depth > Scalar::ZERO { Look::Rough } else { Look::AsNear };
+        if self.knows_points {
+            let there = self.by_closest_points(time, axis, look);
+            return there.unwrap_or_else(|| self.closely_placed(time, &self.placed(time), axis, limits));
         }
         let placed = self.placed(time);
         let there = self.roughly(time, &placed, axis, limits.distance);
@@ -134,6 +135,12 @@ where
     }
 
     fn closely(&self, time: ScalarOf<A>, axis: A::Vector, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
+        if self.knows_points
+            && limits.depth <= Scalar::ZERO
+            && let Some(there) = self.by_closest_points(time, axis, Look::Close)
+        {
+            return there;
+        }
         self.closely_placed(time, &self.placed(time), axis, limits)
     }
 

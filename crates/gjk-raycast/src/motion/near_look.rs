@@ -8,21 +8,15 @@ use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::corners::Face;
-use super::instant::Instant;
+use super::instant::{IN_PLANE, Instant, LONG};
 use super::moved::Moved;
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use super::trajectory::Trajectory;
-use crate::body::{Body as _, Pair, PointPair};
+use crate::body::{Pair, PointPair};
 use crate::contact::Cores;
 use crate::simplex::{MAX_POINTS, cross, project};
 use crate::unit::is_moderate;
-
-/// What corners may be off a plane by, in errors.
-const IN_PLANE: f64 = 4.0;
-
-/// The direction of closest points that are apart by this part of the size of both bodies is known to rounding.
-const LONG: f64 = 1.0 / 16.0;
 
 /// What may have been closest, lengths in the world's unit.
 struct Closest<V: Vector> {
@@ -53,18 +47,9 @@ where
         if !is_moderate(size) {
             return None;
         }
-        let (closest, face) = match pair.closest_points(placed.offset, size) {
-            Some(points) => {
-                let v = pair.vector_between(points, placed.offset);
-                (Closest::new(points, v, size)?, None)
-            }
-            None => {
-                let face = self.closest.borrow().closest_face(placed)?;
-                let closest = Closest::new(face.closest_points(), face.v, size);
-                (closest.or_else(|| Closest::in_plane(&face, axis))?, Some(face))
-            }
-        };
-        let Closest { points, v, unit } = closest;
+        let face = self.closest.borrow().closest_face(placed)?;
+        let closest = Closest::new(face.closest_points(), face.v, size);
+        let Closest { points, v, unit } = closest.or_else(|| Closest::in_plane(&face, axis))?;
         // Not where they have passed through one another.
         if !(unit.dot(axis) > Scalar::ZERO) {
             return None;
@@ -81,14 +66,7 @@ where
         let distance = lower - radius;
         let mut upper = ScalarOf::<A>::infinity();
         if is_closest && !(distance > error) {
-            upper = match &face {
-                None => {
-                    // Points of segments are rounded by a product and a sum more than support points.
-                    let lost = ScalarOf::<A>::EPSILON * pair.extent();
-                    cores.greatest_length(v / scale) * scale - radius + slack(v.length()) + lost
-                }
-                Some(face) => self.overlap_of_corners(&mut cores, face, unit)?,
-            };
+            upper = self.overlap_of_corners(&mut cores, &face, unit)?;
         }
         self.count(cores.iterations);
         if !is_closest || !(distance > error || upper < Scalar::ZERO) {

@@ -55,39 +55,9 @@ where
     MA: Trajectory<Vector = A::Vector>,
     MB: Trajectory<Vector = A::Vector>,
 {
-    /// The pair at a time by the closest points of its cores; `None` where they are not known in closed form, and nothing within it where the
-    /// bodies are nearly in contact or overlap.
-    ///
-    /// All is compiled into one function, so that what is known of the bodies at the time need not be written to memory and read again.
-    #[inline(never)]
-    pub(super) fn by_closest_points(&self, time: ScalarOf<A>) -> Option<Option<Instant<A::Vector>>> {
-        let placed = self.placed_here(time);
-        self.across_closest_points(time, &placed, &mut Pair::new(&placed.a, &placed.b))
-    }
-
-    /// The same of bodies that are placed: one support point proves that the plane between the points keeps them apart.
-    #[inline(always)]
-    fn across_closest_points(
-        &self,
-        time: ScalarOf<A>,
-        placed: &Placed<'_, A, B>,
-        pair: &mut Pair<'_, Moved<'_, A>, Moved<'_, B>>,
-    ) -> Option<Option<Instant<A::Vector>>> {
-        let size = pair.size(placed.offset);
-        let points = pair.closest_points(placed.offset, size)?;
-        let v = pair.vector_between(points, placed.offset);
-        let (w, _) = pair.support(-v);
-        self.count(1);
-        let error = rounding(size) + pair.error();
-        let seen = Seen::new(v, v.length(), w + placed.offset, points, error);
-        let is_well_apart = seen.lower - pair.radius() > error * Scalar::from_f64(NEAR);
-        Some(is_well_apart.then(|| self.instant(time, placed, &seen)))
-    }
-
     /// The pair at a time; `None` where the bodies are nearly in contact, or overlap and nobody can tell by how much.
     ///
-    /// Where the closest points are known in closed form, or the corners that were closest at the last time are so still, one support
-    /// point proves it. Otherwise GJK goes on from there. Where the bodies overlap by more than rounding, the best plane known tells about
+    /// Where the corners that were closest at the last time are so still, one support point proves it. Otherwise GJK goes on from there. Where the bodies overlap by more than rounding, the best plane known tells about
     /// how much, which is all that the search needs.
     pub(super) fn roughly(
         &self,
@@ -97,9 +67,6 @@ where
         limit: ScalarOf<A>,
     ) -> Option<Instant<A::Vector>> {
         let mut pair = Pair::new(&placed.a, &placed.b);
-        if let Some(known) = self.across_closest_points(time, placed, &mut pair) {
-            return known;
-        }
         let size = pair.size(placed.offset);
         let face = if is_moderate(size) { self.closest.borrow().closest_face(placed) } else { None };
         match face {
