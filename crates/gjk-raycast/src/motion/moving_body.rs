@@ -38,8 +38,8 @@ struct Rigid<V: Vector> {
 /// How a body turns.
 struct Turning<V: Vector> {
     spin: SpinOf<V>,
-    /// The vector from the centre to the body's origin.
-    arm: V,
+    /// The vector from the centre to the body's origin, unless it is there.
+    arm: Option<V>,
     /// A bound on the distance of the core's points from the centre.
     lever: V::Scalar,
     /// The greatest distance of the core's points from the axis.
@@ -147,7 +147,7 @@ impl<V: Vector> Rigid<V> {
             let arm = core.origin - motion.center;
             Turning {
                 spin: motion.angular_velocity.spin(),
-                arm,
+                arm: Some(arm).filter(|&arm| arm != V::ZERO),
                 lever: length_bound(arm) + core.extent,
                 reach: motion.reach(BoundingSphere { center: core.origin, radius: core.extent }),
             }
@@ -164,7 +164,7 @@ impl<V: Vector> Rigid<V> {
         let turn = spin.turn(time);
         Place {
             shift,
-            swing: turn * *arm,
+            swing: arm.map_or(V::ZERO, |arm| turn * arm),
             rotation: Some(V::Matrix::IDENTITY + turn),
             error: turn_error::<V>(&turn) * *lever + error + V::Scalar::EPSILON * extent,
         }

@@ -5,6 +5,7 @@ use convex_support::{AngularVelocity, BoundingSphere, Matrix, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::trajectory::{Displacement, MovingBall, Trajectory, TurningPlane};
+use crate::simplex::cross;
 
 /// A body's motion at a constant velocity and a constant angular velocity about a centre that moves with it:
 ///
@@ -127,16 +128,16 @@ impl<V: Vector> RigidMotion<V> {
         TurningPlane { from, to }: TurningPlane<V>,
         interval: [V::Scalar; 2],
     ) -> V::Scalar {
-        let (w, turns) = (self.angular_velocity.cross_matrix(), self.angular_velocity != Default::default());
+        let (w, turns) = (|v| crossed(self.angular_velocity, v), self.angular_velocity != Default::default());
         if from == to {
-            return if turns { longer([w * (w * from); 2]) * reach + least::<V::Scalar>() } else { V::Scalar::ZERO };
+            return if turns { longer([w(w(from)); 2]) * reach + least::<V::Scalar>() } else { V::Scalar::ZERO };
         }
         let twice_rate = (to - from) * (V::Scalar::from_f64(2.0) / (interval[1] - interval[0]));
         let straight = twice_rate.dot(self.velocity);
         if !turns {
             return straight;
         }
-        let bent = [w * (w * from - twice_rate), w * (w * to - twice_rate)];
+        let bent = [w(w(from) - twice_rate), w(w(to) - twice_rate)];
         straight + longer(bent) * reach + least::<V::Scalar>()
     }
 
@@ -150,9 +151,8 @@ impl<V: Vector> RigidMotion<V> {
         if self.angular_velocity == Default::default() {
             return (V::Scalar::ZERO, ball.radius);
         }
-        let w = self.angular_velocity.cross_matrix();
-        let rate = rate(&w);
-        let off = if rate > V::Scalar::ZERO { (w * (ball.center - self.center)).norm() / rate } else { rate };
+        let (rate, arm) = (rate(&self.angular_velocity.cross_matrix()), ball.center - self.center);
+        let off = if arm == V::ZERO { V::Scalar::ZERO } else { crossed(self.angular_velocity, arm).norm() / rate };
         (rate, off + ball.radius)
     }
 }
@@ -166,12 +166,26 @@ pub(super) fn rate<M: Matrix>(w: &M) -> <M::Vector as Vector>::Scalar {
 }
 
 /// A bound on the error of a [turn](AngularVelocity::turn) as an operator, its product with a vector included.
+///
+/// It is relative to the root of the sum of the squared entries of `R − 1`, which is the trace of `(R − 1)ᵀ(R − 1) = (1 − R) + (1 − R)ᵀ`.
+/// Nothing cancels there, as no entry of the diagonal of `1 − R` is negative.
 #[inline(always)]
 pub(super) fn turn_error<V: Vector>(turn: &V::Matrix) -> V::Scalar {
-    let squared = (0..V::DIM).fold(V::Scalar::ZERO, |sum, j| sum + turn.col(j).length_squared());
+    let trace = (0..V::DIM).fold(V::Scalar::ZERO, |sum, j| sum - turn.col(j).get(j));
+    let squared = trace + trace;
     // Four more for the product with a vector.
     let units = <V::AngularVelocity as AngularVelocity<V>>::TURN_ERROR + 4.0;
     squared.sqrt() * V::Scalar::EPSILON * V::Scalar::from_f64(units)
+}
+
+/// `ω × v`, as the [matrix](AngularVelocity::cross_matrix) of `ω` makes it, without the products with its zeros.
+#[inline(always)]
+fn crossed<V: Vector>(w: V::AngularVelocity, v: V) -> V {
+    if V::DIM == 2 {
+        let w = w.coordinate(0);
+        return V::from_fn(|i| if i == 0 { -w * v.get(1) } else { w * v.get(0) });
+    }
+    cross(V::from_fn(|i| w.coordinate(i)), v)
 }
 
 /// The length of the longer of two vectors.
@@ -207,8 +221,7 @@ impl<V: Vector> Trajectory for RigidMotion<V> {
 
     #[inline]
     fn velocity(&self, time: V::Scalar, point: V) -> V {
-        let w = self.angular_velocity.cross_matrix();
-        self.velocity + w * (point - self.center - self.velocity * time)
+        self.velocity + crossed(self.angular_velocity, point - self.center - self.velocity * time)
     }
 
     #[inline]
@@ -225,17 +238,21 @@ impl<V: Vector> Trajectory for RigidMotion<V> {
     /// `1 − cos(ωs/2) ≤ (ωs)²/8` of its distance from the axis, where that is less.
     fn moving_ball(&self, ball: BoundingSphere<V>, [from, to]: [V::Scalar; 2]) -> MovingBall<V> {
         let arm = ball.center - self.center;
-        let about_center = MovingBall {
-            start: self.center + self.velocity * from,
-            velocity: self.velocity,
-            radius: arm.norm() + ball.radius,
+        let about = |arm| {
+            let start = self.center + self.velocity * from;
+            MovingBall { start, velocity: self.velocity, radius: arm + ball.radius }
         };
+        // Most bodies turn about their own centre.
+        if arm == V::ZERO {
+            return about(V::Scalar::ZERO);
+        }
+        let arm = arm.norm();
         let duration = to - from;
         let (rate, off_axis) = self.lever(BoundingSphere { radius: V::Scalar::ZERO, ..ball });
         let angle = rate * duration;
         let sagitta = off_axis * angle * angle * V::Scalar::from_f64(0.125);
-        if !(sagitta < arm.norm()) {
-            return about_center;
+        if !(sagitta < arm) {
+            return about(arm);
         }
         let [start, end] = [from, to].map(|time| self.displacement(time).of(ball.center));
         let velocity = if duration > V::Scalar::ZERO { (end - start) / duration } else { V::ZERO };
