@@ -49,6 +49,14 @@ where
         self.iterations.set(self.iterations.get() + iterations);
     }
 
+    /// The bodies at a time, whose closest points are not known in closed form.
+    #[inline(never)]
+    fn by_search(&self, time: ScalarOf<A>, axis: A::Vector, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
+        let placed = self.placed(time);
+        let there = self.roughly(time, &placed, axis, limits.distance);
+        there.unwrap_or_else(|| self.closely_placed(time, &placed, axis, limits))
+    }
+
     /// The bodies where they are at a time, by what was closest at the last look, or by their signed distance.
     fn closely_placed(
         &self,
@@ -123,15 +131,14 @@ where
         self.a.core.origin - self.b.core.origin
     }
 
+    #[inline(always)]
     fn at(&self, time: ScalarOf<A>, axis: A::Vector, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
-        let look = if limits.depth > Scalar::ZERO { Look::Rough } else { Look::AsNear };
-        if self.knows_points {
-            let there = self.by_closest_points(time, axis, look);
-            return there.unwrap_or_else(|| self.closely_placed(time, &self.placed(time), axis, limits));
+        if !self.knows_points {
+            return self.by_search(time, axis, limits);
         }
-        let placed = self.placed(time);
-        let there = self.roughly(time, &placed, axis, limits.distance);
-        there.unwrap_or_else(|| self.closely_placed(time, &placed, axis, limits))
+        let look = if limits.depth > Scalar::ZERO { Look::Rough } else { Look::AsNear };
+        let there = self.by_closest_points(time, axis, look);
+        there.unwrap_or_else(|| self.by_signed_distance(time, &self.placed(time), axis, limits))
     }
 
     fn closely(&self, time: ScalarOf<A>, axis: A::Vector, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {

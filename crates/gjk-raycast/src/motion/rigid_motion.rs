@@ -121,7 +121,7 @@ impl<V: Vector> RigidMotion<V> {
     ///
     /// and the last vector is across ω, along which `y` reaches no farther than from the axis to the far side of the ball. Of a normal
     /// that turns with the body, `r = Wn`, no more is left than of one that does not turn.
-    #[inline]
+    #[inline(always)]
     pub(super) fn acceleration_within(
         &self,
         reach: V::Scalar,
