@@ -58,6 +58,7 @@ pub(super) struct Place<V: Vector> {
 }
 
 impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'s, S, M> {
+    #[inline(always)]
     pub(super) fn new(shape: &'s S, motion: M, margin: ScalarOf<S>) -> Self {
         let core = shape.core();
         let course = match motion.as_rigid_motion() {

@@ -37,6 +37,7 @@ where
     MA: Trajectory<Vector = A::Vector>,
     MB: Trajectory<Vector = A::Vector>,
 {
+    #[inline(always)]
     pub(super) fn new(a: MovingBody<'s, A, MA>, b: MovingBody<'s, B, MB>) -> Self {
         let offset = a.core.origin - b.core.origin;
         let pair = Pair::of_cores(a.shape, b.shape, [a.core, b.core]);
