@@ -24,14 +24,16 @@ pub(super) enum Look {
     Close,
 }
 
-/// What the plane between the closest points of two cores tells, lengths in the world's unit.
+/// A plane between the closest points of two cores, lengths in the world's unit.
 struct Between<V: Vector> {
-    /// Its unit normal, and the distance of the points along it and of the cores' support points.
+    /// The unit vector across it.
     unit: V,
+    /// How far the points are from one another, and how far along the unit vector.
     length: V::Scalar,
-    lower: V::Scalar,
-    /// The vector between the points along the unit normal.
     along: V::Scalar,
+    /// How far the plane keeps the cores apart.
+    lower: V::Scalar,
+    /// The radii of both bodies, the extents of both cores, and the offset of their origins.
     radius: V::Scalar,
     extent: V::Scalar,
     offset: V,
@@ -83,8 +85,8 @@ where
                 return None;
             }
             let shapes = [placed.a.rounding(), placed.b.rounding()];
-            let along = unit.dot(v);
-            Between { unit, length, lower, along, radius, extent: pair.extent(), offset }.closely(shapes)?
+            let (along, extent) = (unit.dot(v), pair.extent());
+            Between { unit, length, along, lower, radius, extent, offset }.closely(shapes)?
         };
         let point_a = placed.place + offset + points.a - unit * self.a.core.radius;
         let point = placed.place + points.b + unit * self.b.core.radius;
@@ -99,7 +101,7 @@ impl<V: Vector> Between<V> {
     /// neither that they are apart nor that they overlap.
     #[inline(always)]
     fn closely(self, shapes: [Rounding<V>; 2]) -> Option<(V::Scalar, V::Scalar)> {
-        let Self { unit, length, lower, along, radius, extent, offset } = self;
+        let Self { unit, length, along, lower, radius, extent, offset } = self;
         // The origin of `b` is at zero, so that nothing is lost of their difference.
         let known = Uncertainty::of_exact_offset(shapes, offset);
         // As in an answer: the unit vector, the radii and the sums.

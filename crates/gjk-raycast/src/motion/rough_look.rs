@@ -57,8 +57,8 @@ where
 {
     /// The pair at a time; `None` where the bodies are nearly in contact, or overlap and nobody can tell by how much.
     ///
-    /// Where the corners that were closest at the last time are so still, one support point proves it. Otherwise GJK goes on from there. Where the bodies overlap by more than rounding, the best plane known tells about
-    /// how much, which is all that the search needs.
+    /// Where the corners that were closest at the last time are so still, one support point proves it. Otherwise GJK goes on from there. Where
+    /// the bodies overlap by more than rounding, the best plane known tells about how much, which is all that the search needs.
     pub(super) fn roughly(
         &self,
         time: ScalarOf<A>,
