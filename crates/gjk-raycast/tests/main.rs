@@ -31,6 +31,7 @@ mod invariances;
 mod lies;
 mod motion_cast;
 mod motion_laws;
+mod moving_boxes;
 mod paper;
 mod regressions_distance;
 mod regressions_linear_cast;

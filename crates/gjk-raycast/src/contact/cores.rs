@@ -85,7 +85,7 @@ impl<V: Vector> Uncertainty<V> {
     }
 
     /// In any direction.
-    fn length(&self) -> V::Scalar {
+    pub(crate) fn length(&self) -> V::Scalar {
         self.shapes.iter().fold(self.lost.norm(), |sum, shape| sum + shape.error_length)
     }
 

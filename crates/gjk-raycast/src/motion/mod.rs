@@ -1,6 +1,8 @@
 //! Motion: the first contact of bodies that turn, and motions of any kind.
 
 mod approach;
+mod box_look;
+mod boxes;
 mod chain_motion;
 mod closest_points;
 mod contact;

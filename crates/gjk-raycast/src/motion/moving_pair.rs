@@ -6,6 +6,7 @@ use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
 use super::approach::Approach;
+use super::boxes::{Block, Span};
 use super::closest_points::Look;
 use super::corners::Corners;
 use super::instant::{Instant, Limits};
@@ -24,6 +25,10 @@ pub(super) struct MovingPair<'s, A: SupportMap + ?Sized, MA, B: SupportMap + ?Si
     pub(super) b: MovingBody<'s, B, MB>,
     /// Whether the closest points of the cores were known in closed form at the start.
     knows_points: bool,
+    /// Both cores as they start, if they are boxes.
+    boxes: Option<[Block<A::Vector>; 2]>,
+    /// What spans the facet that they were seen by at the last look, if zero's foot was within it.
+    pub(super) facet: Cell<Option<Span>>,
     /// The corners of the faces that were closest at the last look.
     pub(super) closest: RefCell<Corners<A::Vector>>,
     /// The support points computed of each shape.
@@ -42,7 +47,10 @@ where
         let offset = a.core.origin - b.core.origin;
         let pair = Pair::of_cores(a.shape, b.shape, [a.core, b.core]);
         let knows_points = pair.closest_points(offset, pair.size(offset)).is_some();
-        Self { a, b, knows_points, closest: RefCell::new(Corners::none()), iterations: Cell::new(0) }
+        let blocks = || Some([Block::of(a.shape, &a.core)?, Block::of(b.shape, &b.core)?]);
+        let boxes = if knows_points { None } else { blocks() };
+        let facet = Cell::new(None);
+        Self { a, b, knows_points, boxes, facet, closest: RefCell::new(Corners::none()), iterations: Cell::new(0) }
     }
 
     /// Counts support points.
@@ -53,6 +61,11 @@ where
     /// The bodies at a time, whose closest points are not known in closed form.
     #[inline(never)]
     fn by_search(&self, time: ScalarOf<A>, axis: A::Vector, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
+        if let Some(boxes) = &self.boxes
+            && let Some(known) = self.by_boxes(time, boxes, axis, limits, false)
+        {
+            return known;
+        }
         let placed = self.placed(time);
         let there = self.roughly(time, &placed, axis, limits.distance);
         there.unwrap_or_else(|| self.closely_placed(time, &placed, axis, limits))
@@ -148,6 +161,12 @@ where
             && let Some(there) = self.by_closest_points(time, axis, Look::Close)
         {
             return there;
+        }
+        if limits.depth <= Scalar::ZERO
+            && let Some(boxes) = &self.boxes
+            && let Some(known) = self.by_boxes(time, boxes, axis, limits, true)
+        {
+            return known;
         }
         self.closely_placed(time, &self.placed(time), axis, limits)
     }

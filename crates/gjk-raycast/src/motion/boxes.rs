@@ -1,0 +1,266 @@
+//! Two boxes where they are at a time, and the facets of their difference.
+//!
+//! The difference of two boxes is `c + Σ tₖ·hₖ·eₖ` with all `|tₖ| ≤ 1`: `eₖ` are unit vectors along the six edges of both, and `hₖ` half the
+//! lengths of these. Each of its facets is spanned by two edges, those of a face of one box or one of each, and all other edges lead to it
+//! from the centre. So along the unit vector `n` across a facet zero is beyond it by
+//!
+//! > level(n) = n·c − Σ hₖ·|n·eₖ|,
+//!
+//! which is how far apart the plane keeps the boxes. Of boxes that overlap the highest level of all facets is minus the depth. Of boxes that
+//! are apart it is their distance if zero's foot is within the facet. Otherwise an edge or a corner of the difference is closest, and the
+//! highest level is less, but no less than `1/√3` of the distance: the vector to the closest point is a sum of normals of facets that meet
+//! there, and all of these are in one octant as the first box sees it.
+//!
+//! The highest facet mostly stays the highest, and as long as it does, its level is as smooth as the motion, also where the boxes begin to
+//! overlap.
+
+use convex_support::{Core, CoreKind, Parallelotope, Scalar, SupportMap, Vector};
+use num_traits::Float;
+
+use super::moved::Moved;
+use crate::double::{Vec3, array, cross, dot};
+
+/// Edges of two boxes.
+const EDGES: usize = 6;
+
+/// The cosine of the angle between two edges of what is no box.
+const SKEW: f64 = 1e-6;
+
+/// Squares below this may have underflowed; an edge so short counts as none.
+const LEAST: f64 = 1e-250;
+
+/// The squared sine of the angle between edges whose facet is not looked at. It is a sliver, and what is beyond it is seen to be beyond
+/// others but for the sine times the shorter edge.
+const PARALLEL: f64 = 1e-6;
+
+/// Which part of a level may be overlooked.
+const OVERLOOKED: f64 = 0.1;
+
+/// What the unit vector along an edge is wrong by, in ε: three for either rotation, and one for its length.
+const TURNED: f64 = 8.0;
+
+/// How far within a facet zero's foot is to be, in units of what points are wrong by.
+const WITHIN: f64 = 64.0;
+
+/// What a product with a unit vector is wrong by, in ε of the magnitudes of its terms.
+const PRODUCT: f64 = 3.0;
+
+/// A core that is a box, as its body starts: its centre relative to the body's origin, unit vectors along its edges, and half the lengths
+/// of these.
+#[derive(Clone, Copy)]
+pub(super) struct Block<V> {
+    center: V,
+    units: [V; 3],
+    halves: [f64; 3],
+}
+
+/// The difference of two boxes where they are at a time.
+pub(super) struct Boxes {
+    /// The centre of the second, relative to its body's origin, and the centre of the difference.
+    from: Vec3,
+    center: Vec3,
+    /// Unit vectors along the edges of the first and then of the second, by their coordinates: all first ones, all second ones, all third
+    /// ones. In 2D the third edges are across the plane, and so long that nothing is beyond them.
+    units: [[f64; EDGES]; 3],
+    halves: [f64; EDGES],
+}
+
+/// The two edges that span a facet.
+pub(super) type Span = [usize; 2];
+
+/// A facet of the difference of two boxes.
+pub(super) struct Facet {
+    pub(super) span: Span,
+    /// The unit vector across it, from the second box to the first.
+    pub(super) normal: Vec3,
+    /// How far zero is beyond it.
+    pub(super) level: f64,
+    /// How far zero's foot is from the sides of the facet; negative if it is not within.
+    pub(super) room: f64,
+    /// The point of the second box, relative to its body's origin, that goes into zero's foot, or if that is not within, one that is near.
+    pub(super) point: Vec3,
+}
+
+impl<V: Vector> Block<V> {
+    /// The core of a shape, if it is a box without a radius. In space it may be flat.
+    pub(super) fn of<S: SupportMap<Vector = V> + ?Sized>(shape: &S, core: &Core<V>) -> Option<Self> {
+        if !matches!(core.kind, CoreKind::Polytope) || core.radius > Scalar::ZERO {
+            return None;
+        }
+        let Parallelotope { center, half_edges } = shape.core_parallelotope()?;
+        let mut edges = half_edges.map(array);
+        if V::DIM == 2 {
+            edges[2] = [0.0, 0.0, 1.0];
+        }
+        let squared = edges.map(|edge| dot(edge, edge));
+        let halves = squared.map(|squared| if squared > LEAST { Float::sqrt(squared) } else { 0.0 });
+        let mut units: [Vec3; 3] = core::array::from_fn(|i| edges[i].map(|x| x / halves[i]));
+        if let Some(i) = halves.iter().position(|&half| half == 0.0) {
+            units[i] = cross(&units[(i + 1) % 3], &units[(i + 2) % 3]);
+        }
+        // If another edge has no length either, this is NaN.
+        let is_box = (0..3).all(|i| dot(units[i], units[(i + 1) % 3]).abs() < SKEW);
+        is_box.then(|| Self { center, units: units.map(vector), halves })
+    }
+}
+
+impl Boxes {
+    /// The boxes of two bodies, together of the given size, whose origins differ by `offset`.
+    #[inline(always)]
+    pub(super) fn new<A, B>(
+        [first, second]: &[Block<A::Vector>; 2],
+        (a, b): (&Moved<'_, A>, &Moved<'_, B>),
+        offset: A::Vector,
+        size: f64,
+    ) -> Self
+    where
+        A: SupportMap + ?Sized,
+        B: SupportMap<Vector = A::Vector> + ?Sized,
+    {
+        let is_across = |k: usize| A::Vector::DIM == 2 && k % 3 == 2;
+        let units: [Vec3; EDGES] = core::array::from_fn(|k| match k {
+            _ if is_across(k) => [0.0, 0.0, 1.0],
+            0..3 => array(a.turned(first.units[k])),
+            _ => array(b.turned(second.units[k - 3])),
+        });
+        let halves = core::array::from_fn(|k| match k {
+            _ if is_across(k) => size,
+            0..3 => first.halves[k],
+            _ => second.halves[k - 3],
+        });
+        // Mostly both are zero.
+        let (from, center) = if [first.center, second.center] == [A::Vector::ZERO; 2] {
+            (A::Vector::ZERO, offset)
+        } else {
+            let from = b.turned(second.center);
+            (from, offset + (a.turned(first.center) - from))
+        };
+        let units = core::array::from_fn(|x| core::array::from_fn(|k| units[k][x]));
+        Self { from: array(from), center: array(center), units, halves }
+    }
+
+    /// The unit vector along an edge.
+    #[inline(always)]
+    fn unit(&self, k: usize) -> Vec3 {
+        let [x, y, z] = &self.units;
+        [x[k], y[k], z[k]]
+    }
+
+    /// What spans the highest facet; `None` where edges are so nearly parallel that it may be one of theirs.
+    #[inline(always)]
+    pub(super) fn highest(&self) -> Option<Span> {
+        let (u, w) = ([self.unit(0), self.unit(1), self.unit(2)], [self.unit(3), self.unit(4), self.unit(5)]);
+        let (h, k) = (&self.halves[..3], &self.halves[3..]);
+        // In coordinates along the edges of the first.
+        let r: [Vec3; 3] = core::array::from_fn(|i| core::array::from_fn(|j| dot(u[i], w[j])));
+        let m = r.map(|row| row.map(f64::abs));
+        let c: Vec3 = core::array::from_fn(|i| dot(u[i], self.center));
+        let (mut highest, mut span) = (f64::NEG_INFINITY, [1, 2]);
+        for i in 0..3 {
+            let level = c[i].abs() - (h[i] + k[0] * m[i][0] + k[1] * m[i][1] + k[2] * m[i][2]);
+            if level > highest {
+                (highest, span) = (level, [(i + 1) % 3, (i + 2) % 3]);
+            }
+        }
+        for j in 0..3 {
+            let along = dot(w[j], self.center).abs();
+            let level = along - (k[j] + h[0] * m[0][j] + h[1] * m[1][j] + h[2] * m[2][j]);
+            if level > highest {
+                (highest, span) = (level, [3 + (j + 1) % 3, 3 + (j + 2) % 3]);
+            }
+        }
+        // An edge of each, whose product is as long as the sine of the angle between them: by squares that keep their signs.
+        let (mut highest, mut overlooked) = (highest * highest.abs(), 0.0);
+        for i in 0..3 {
+            let [p, q] = [(i + 1) % 3, (i + 2) % 3];
+            for j in 0..3 {
+                let [o, l] = [(j + 1) % 3, (j + 2) % 3];
+                let squared_sine = 1.0 - r[i][j] * r[i][j];
+                if squared_sine < PARALLEL {
+                    let shorter = h[i].min(k[j]);
+                    overlooked += squared_sine.abs() * shorter * shorter;
+                    continue;
+                }
+                let along = (c[p] * r[q][j] - c[q] * r[p][j]).abs();
+                let level = along - (h[p] * m[q][j] + h[q] * m[p][j] + k[o] * m[i][l] + k[l] * m[i][o]);
+                let squared = level * level.abs();
+                if squared > highest * squared_sine {
+                    (highest, span) = (squared / squared_sine, [i, 3 + j]);
+                }
+            }
+        }
+        // NaN has no highest.
+        (overlooked <= highest.abs() * (OVERLOOKED * OVERLOOKED)).then_some(span)
+    }
+
+    /// The facet that is spanned by two edges, on the side of zero.
+    #[inline(always)]
+    pub(super) fn facet(&self, span: Span) -> Facet {
+        let [i, j] = span;
+        let Self { from, center, units: [x, y, z], halves } = self;
+        let (first, second) = (self.unit(i), self.unit(j));
+        let across = cross(&first, &second);
+        let squared_sine = dot(across, across);
+        let sine = Float::sqrt(squared_sine);
+        let per = Float::copysign(sine.recip(), dot(across, *center));
+        let n = across.map(|x| x * per);
+        let heights: [f64; EDGES] = core::array::from_fn(|k| n[0] * x[k] + n[1] * y[k] + n[2] * z[k]);
+        let sides: [f64; EDGES] = core::array::from_fn(|k| Float::copysign(halves[k], heights[k]));
+        let reach: [f64; EDGES] = core::array::from_fn(|k| heights[k] * sides[k]);
+        let level = dot(n, *center) - ((reach[0] + reach[2] + reach[4]) + (reach[1] + reach[3] + reach[5]));
+        // A corner of the facet is the difference of a corner of each box, and zero's foot is so far from there along both edges.
+        let sum = |c: &[f64; EDGES], k: usize| c[k] * sides[k] + c[k + 1] * sides[k + 1] + c[k + 2] * sides[k + 2];
+        let (of_first, of_second) = ([sum(x, 0), sum(y, 0), sum(z, 0)], [sum(x, 3), sum(y, 3), sum(z, 3)]);
+        let corner: Vec3 = core::array::from_fn(|x| center[x] - (of_first[x] + of_second[x]));
+        let (cosine, on_first, on_second) = (dot(first, second), dot(first, corner), dot(second, corner));
+        let way = [(cosine * on_second - on_first) / squared_sine, (cosine * on_first - on_second) / squared_sine];
+        let room = (halves[i] - (way[0] - sides[i]).abs()).min(halves[j] - (way[1] - sides[j]).abs()) * sine;
+        let within = |k: usize, way: f64| way.max(sides[k] - halves[k]).min(sides[k] + halves[k]);
+        let [p, q] = [(i, way[0]), (j, way[1])].map(|(k, way)| if k < 3 { 0.0 } else { within(k, way) });
+        let point = core::array::from_fn(|x| from[x] + (of_second[x] - first[x] * p - second[x] * q));
+        Facet { span, normal: n, level, room, point }
+    }
+
+    /// Whether the line through zero along the normal certainly goes through the facet, and on within the difference to the other side of
+    /// zero.
+    ///
+    /// Zero is `depth` behind the facet, and points of the difference are wrong by `error`, which is less. The other edges lead from the facet
+    /// to the opposite one, `2H` behind it and aside of it by `2R` at most. So `s` behind it there is the same parallelogram, aside by
+    /// `s·R/H` at most. Here `s` is eight times the depth.
+    pub(super) fn is_pierced(&self, facet: &Facet, depth: f64, error: f64) -> bool {
+        let [i, j] = facet.span;
+        let (mut behind, mut aside) = (0.0, 0.0);
+        for k in (0..EDGES).filter(|&k| k != i && k != j) {
+            behind += self.halves[k] * dot(facet.normal, self.unit(k)).abs();
+            aside += self.halves[k];
+        }
+        // Coordinates along edges are the less well known the smaller the angle between these.
+        let across = cross(&self.unit(i), &self.unit(j));
+        let error = WITHIN * error / Float::sqrt(dot(across, across));
+        let s = 8.0 * depth;
+        s < behind && (facet.room - error) * behind > s * aside
+    }
+
+    /// How much higher than its lowest corner a facet may be along a unit vector near its normal: its edges lean, and are wrong by what a turn
+    /// loses, or by no more than the points of their box.
+    pub(super) fn leaning(&self, facet: &Facet, n: Vec3, errors: [f64; 2], epsilon: f64) -> f64 {
+        let turned = TURNED * epsilon;
+        let mut leaning = 0.0;
+        for k in 0..EDGES {
+            let (half, unit) = (self.halves[k], self.unit(k));
+            let height = dot(n, unit).abs();
+            // Of another that lies in the plane it is not certain which of its ends is the lower one.
+            if facet.span.contains(&k) || height < turned * 4.0 {
+                let magnitude = dot(n.map(f64::abs), unit.map(f64::abs));
+                let wrong = (turned * half).min(2.0 * errors[k / 3]);
+                leaning += 2.0 * (half * (height + PRODUCT * epsilon * magnitude) + wrong);
+            }
+        }
+        leaning
+    }
+}
+
+/// Coordinates in the precision of the bodies.
+pub(super) fn vector<V: Vector>(v: Vec3) -> V {
+    V::from_fn(|i| V::Scalar::from_f64(v[i]))
+}
