@@ -114,12 +114,10 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
             // Along a plane a box never ends where it has begun, and begins at the end of all numbers where it has not.
             let (begin, end) = (inverse.clamp(-largest, largest), inverse * (1.0 + 2.0 * RoughUnit::ROUNDING));
             rough.inverse[i] = [begin, end].map(|inverse| Vec4::splat(inverse as f32));
-            let mut from = [frame.up(i, self.from[0].get(i)), frame.down(i, self.from[1].get(i))].map(Vec4::splat);
-            if inverse.is_sign_negative() {
-                from.reverse();
-            }
-            rough.from[i] = from;
-            rough.first[i] = usize::from(inverse.is_sign_negative());
+            let first = usize::from(inverse.is_sign_negative());
+            let from = [frame.up(i, self.from[0].get(i)), frame.down(i, self.from[1].get(i))];
+            rough.from[i] = [from[first], from[1 - first]].map(Vec4::splat);
+            rough.first[i] = first;
         }
         rough
     }

@@ -5,7 +5,7 @@ use convex_support::{Core, CoreKind, Parallelotope, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use crate::body::PointPair;
-use crate::double::{Vec3, array, cross, dot};
+use crate::double::{LEAST, Vec3, array, cross, dot};
 
 /// Edges of two parallelotopes.
 const EDGES: usize = 6;
@@ -15,9 +15,6 @@ const ACUTE: f64 = 0.25;
 
 /// Edges with a sine of the angle below this many ε count as parallel.
 const PARALLEL: f64 = 8.0;
-
-/// Products of squares below this may have underflowed, and one of the edges is so short that it does not count.
-const LEAST: f64 = 1e-250;
 
 /// How much a unit normal may be turned by rounding, in ε: the product of two edges is wrong by one of the product of their lengths, which
 /// is at most twice as long; the rest are its own roundings.

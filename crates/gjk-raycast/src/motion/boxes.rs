@@ -18,16 +18,13 @@ use convex_support::{Core, CoreKind, Parallelotope, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use super::moved::Moved;
-use crate::double::{Vec3, array, cross, dot};
+use crate::double::{LEAST, Vec3, array, cross, dot};
 
 /// Edges of two boxes.
 const EDGES: usize = 6;
 
 /// The cosine of the angle between two edges of what is no box.
 const SKEW: f64 = 1e-6;
-
-/// Squares below this may have underflowed; an edge so short counts as none.
-const LEAST: f64 = 1e-250;
 
 /// The squared sine of the angle between edges whose facet is not looked at. It is a sliver, and what is beyond it is seen to be beyond
 /// others but for the sine times the shorter edge.

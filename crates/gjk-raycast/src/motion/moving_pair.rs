@@ -156,19 +156,13 @@ where
     }
 
     fn closely(&self, time: ScalarOf<A>, axis: A::Vector, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
-        if self.knows_points
-            && limits.depth <= Scalar::ZERO
-            && let Some(there) = self.by_closest_points(time, axis, Look::Close)
-        {
-            return there;
-        }
-        if limits.depth <= Scalar::ZERO
-            && let Some(boxes) = &self.boxes
-            && let Some(known) = self.by_boxes(time, boxes, axis, limits, true)
-        {
-            return known;
-        }
-        self.closely_placed(time, &self.placed(time), axis, limits)
+        let known = match &self.boxes {
+            _ if limits.depth > Scalar::ZERO => None,
+            Some(boxes) => self.by_boxes(time, boxes, axis, limits, true),
+            None if self.knows_points => self.by_closest_points(time, axis, Look::Close),
+            None => None,
+        };
+        known.unwrap_or_else(|| self.closely_placed(time, &self.placed(time), axis, limits))
     }
 
     fn level(&self, time: ScalarOf<A>, normal: A::Vector) -> (ScalarOf<A>, ScalarOf<A>) {

@@ -63,9 +63,8 @@ pub(crate) fn solve<D: Dimension>(at: &mut Iterate<D>, work: &mut Workspace<D>, 
     let mut best_gap = f64::INFINITY;
     let mut without_progress = 0;
     thin_out(rank, set, moments, &mut work.best);
-    work.best.copy_from(set);
     loop {
-        lift_far_points(rank, set, moments);
+        lift_far_points(rank, set, moments, &mut work.trial);
         let now = moments.log_det_gap();
         if now <= gap {
             return steps;
@@ -77,6 +76,10 @@ pub(crate) fn solve<D: Dimension>(at: &mut Iterate<D>, work: &mut Workspace<D>, 
             work.best.copy_from(set);
         } else {
             without_progress += 1;
+            if steps == 0 {
+                // A gap that is no number: there is nothing better to come back to.
+                work.best.copy_from(set);
+            }
         }
         // None of these has weight at the optimum of this set (Harman and Pronzato). Where rounding says that they have, it is not to be trusted.
         let threshold = elimination_threshold(rank.get(), moments.furthest().1);
@@ -123,7 +126,7 @@ fn thin_out<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D
 
 /// The model of a point far outside with little weight is poor: Newton would only double its weight each step. The
 /// exact line search of the first-order method (Todd and Yıldırım), β = (ω − n)/(n(ω − 1)), brings such points in.
-fn lift_far_points<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D>) {
+fn lift_far_points<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D>, before: &mut Vec<f64>) {
     let n = rank.get() as f64 + 1.0;
     for _ in 0..set.len() {
         let (j, q) = moments.furthest();
@@ -132,12 +135,12 @@ fn lift_far_points<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Mo
             break;
         }
         let beta = (omega - n) / (n * (omega - 1.0));
-        let before = set.u.clone();
+        before.clone_from(&set.u);
         set.u.iter_mut().for_each(|u| *u *= 1.0 - beta);
         set.u[j] += beta;
         if !moments.compute(&set.y, &set.u) {
             // So far out that beside it the others seem to be one point.
-            set.u = before;
+            std::mem::swap(&mut set.u, before);
             moments.compute(&set.y, &set.u);
             break;
         }
