@@ -96,7 +96,10 @@ fn s04_duplicates_of_corners_of_a_grid() {
         [[-1.0, 1.0], [0.0, -1.0], [-1.0, -1.0], [0.0, -1.0], [-1.0, -1.0], [0.0, -1.0], [-1.0, -1.0], [1.0, 1.0]];
     let h = 0.3299577554504438;
     let second = [[-1.0, h], [0.0, h], [-1.0, h], [1.0, -h], [-1.0, -h], [-1.0, h], [0.0, h], [0.0, h]];
-    for (points, distinct) in [(first, [0, 1, 2, 7]), (second, [0, 1, 3, 4])] {
+    // Of the two points of this one all second coordinates are equal, and their mean is a rounding off.
+    let (a, b) = (0.011081986441707244, 0.0022667562261289315);
+    let third = [[0.0, 0.0], [a, b], [0.0, 0.0], [a, 0.0], [-a, b], [a, 0.0], [a, 0.0], [0.0, 0.0]];
+    for (points, distinct) in [(first, [0, 1, 2, 7]), (second, [0, 1, 3, 4]), (third, [0, 1, 3, 4])] {
         let answer = enclosing(&points, EnclosingOptions::new()).expect("four corners");
         assert_contains(&answer, &points);
         let corners = distinct.map(|i| points[i]);

@@ -75,7 +75,7 @@ impl<D: Dimension> Moments<D> {
                 }
             }
         }
-        let log_det = cholesky_log_det(rank, factor).filter(|_| spans_volume(r, factor));
+        let log_det = cholesky_log_det(rank, factor).filter(|_| spans_volume(r, mean, factor));
         self.log_det_scatter = log_det.unwrap_or(f64::NEG_INFINITY);
         log_det.is_some()
     }
@@ -131,7 +131,11 @@ impl<D: Dimension> Moments<D> {
     }
 }
 
-/// Whether each pivot Lᵢᵢ² of S = L·Lᵀ is more than the rounding of the diagonal that it is left of, Sᵢᵢ = Σₖ Lᵢₖ².
-fn spans_volume(r: usize, factor: &[f64]) -> bool {
-    factor.chunks_exact(r).enumerate().all(|(i, row)| row[i] * row[i] > PLANE * dot(&row[..=i], &row[..=i]))
+/// Whether each pivot Lᵢᵢ² of S = L·Lᵀ is more than the rounding of the diagonal that it is left of, Sᵢᵢ = Σₖ Lᵢₖ², which itself is a square
+/// of what is left of coordinates as large as the mean.
+fn spans_volume(r: usize, mean: &[f64], factor: &[f64]) -> bool {
+    factor.chunks_exact(r).zip(mean).enumerate().all(|(i, (row, mean))| {
+        let diagonal = dot(&row[..=i], &row[..=i]);
+        row[i] * row[i] > PLANE * (diagonal + PLANE * mean * mean)
+    })
 }
