@@ -27,7 +27,6 @@
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use super::motion::Units;
 use super::side::{Side, spun, wedge};
 use crate::numerics::{Vec, add, dot, unit};
 use crate::pair::Pair;
@@ -88,6 +87,13 @@ pub(super) struct Contact<const N: usize> {
     tangents: [Vec<N>; 2],
     /// R of M = QR: r₁₁, r₁₂, r₂₂; in 2D the first only.
     root: [f64; 3],
+}
+
+/// The units in which a contact was computed: of its value, and of length.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Units {
+    pub(super) value: f64,
+    pub(super) length: f64,
 }
 
 /// The unit of a Hessian and what it is of: slope·s + ½·curvature·s², s the value of a contact less what it is.
@@ -186,7 +192,7 @@ impl<const N: usize> Contact<N> {
         [(x[0] - r12 * second) / r11, second]
     }
 
-    /// ∂s/∂δ in world axes, and ∂s/∂ω of the plane eᵢ∧eⱼ as kh·eᵢeⱼ(…): the factor −kh and e, for [`super::motion::torque`].
+    /// ∂s/∂δ in world axes, and ∂s/∂ω of the plane eᵢ∧eⱼ as kh·eᵢeⱼ(…): the factor −kh and e, which the torque is made of.
     pub(super) fn gradient(&self, mover: Mover) -> (Vec<N>, Vec<N>, f64) {
         let (side, k, sign) = self.of(mover);
         (self.normal.map(|x| -sign * x), side.e, -k * side.h)

@@ -2,8 +2,8 @@
 
 use convex_support::Ellipsoid;
 
-use super::contact::{Contact, Mover, Quantity};
-use super::motion::{MotionGradient, MotionHessian, Units};
+use super::contact::{Contact, Mover, Quantity, Units};
+use super::motion::{MotionGradient, MotionHessian};
 use super::value_of_contact::{ValueOfContact, gradient, hessian};
 use crate::numerics::load;
 use crate::pair::Pair;

@@ -15,8 +15,8 @@ use convex_support::{Ellipsoid, Scalar, Vector};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use super::contact::{Contact, Form, Mover, Quantity};
-use super::motion::{MotionGradient, MotionHessian, Units, torque};
+use super::contact::{Contact, Form, Mover, Quantity, Units};
+use super::motion::{MotionGradient, MotionHessian, torque};
 use crate::numerics::{combine, dot, load, size, store, sub, unit};
 use crate::pair::Pair;
 use crate::{Answer, Margin, Wedge};

@@ -2,7 +2,7 @@
 
 use convex_support::{Ellipsoid, Matrix, Scalar};
 
-use super::contact::{Contact, Form, Mover};
+use super::contact::{Contact, Form, Mover, Units};
 use crate::Wedge;
 use crate::numerics::{Vec, load, load_columns, store};
 
@@ -63,13 +63,6 @@ impl<V: Wedge> MotionGradient<V> {
             center: body.center(),
         }
     }
-}
-
-/// The units in which a contact was computed: of its value, and of length.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Units {
-    pub(super) value: f64,
-    pub(super) length: f64,
 }
 
 /// The second derivatives of a quantity by the motion of one of the two ellipsoids.

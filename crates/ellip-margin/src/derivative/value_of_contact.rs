@@ -2,8 +2,8 @@
 
 use convex_support::Ellipsoid;
 
-use super::contact::{Contact, Form, Mover};
-use super::motion::{MotionGradient, MotionHessian, Units};
+use super::contact::{Contact, Form, Mover, Units};
+use super::motion::{MotionGradient, MotionHessian};
 use crate::{Answer, Wedge};
 
 /// An answer about two ellipsoids that is the value of their contact.

@@ -5,6 +5,7 @@
 //! the [bracket](super::bracket) finds that in doubt, so is the answer, and Algorithm 3 takes over.
 
 mod best_plane;
+mod closing;
 mod pieces;
 mod ray_frame;
 mod rounded;

@@ -3,8 +3,8 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::closing::OnLine;
 use super::ray_frame::{Alpha, RayPoint, weights_of_zero};
-use super::sqp::Portal;
 use crate::curvature::turned;
 use crate::symmetric::{Across, Symmetric, dot};
 
@@ -87,26 +87,6 @@ pub(super) const MAX_PIECES: usize = 4;
 /// How far, of the way that a point has moved, it may be from where it was expected to be the same piece's.
 const SAME_PIECE: f64 = 0.5;
 
-/// Up to three points of the body, and a combination of them that is on the ray.
-#[derive(Clone, Copy)]
-pub(super) struct OnLine<V: Vector, W> {
-    corners: [RayPoint<V, W>; 3],
-    weights: [V::Scalar; 3],
-    len: usize,
-    /// Where on the ray it is.
-    pub(super) high: V::Scalar,
-}
-
-impl<V: Vector, W> OnLine<V, W> {
-    pub(super) fn corners(&self) -> &[RayPoint<V, W>] {
-        &self.corners[..self.len]
-    }
-
-    pub(super) fn weights(&self) -> &[V::Scalar] {
-        &self.weights[..self.len]
-    }
-}
-
 /// Whether zero is within a triangle, farther than `by` from its sides: twice the area that it spans with one is the length of that times
 /// its distance.
 #[inline(always)]
@@ -115,12 +95,6 @@ pub(super) fn is_surrounded<V: Vector, W>([p, q, s]: [&RayPoint<V, W>; 3], by: V
     let sides = [q.edge_to(s).0, s.edge_to(p).0, p.edge_to(q).0];
     let is_beyond = |i: usize| weights[i] * weights[i] > by * by * dot(sides[i], sides[i]);
     is_beyond(0) & is_beyond(1) & is_beyond(2)
-}
-
-impl<V: Vector, W> From<Portal<V, W>> for OnLine<V, W> {
-    fn from(portal: Portal<V, W>) -> Self {
-        Self { corners: portal.corners, weights: portal.weights, len: 3, high: portal.high }
-    }
 }
 
 /// The last pieces, the newest last.

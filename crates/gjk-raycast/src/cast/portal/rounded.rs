@@ -14,7 +14,8 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::ray_frame::{Alpha, BestPlane, Plane, RayFrame, RayPoint, RayPointOf};
+use super::closing::BestPlane;
+use super::ray_frame::{Alpha, Plane, RayFrame, RayPoint, RayPointOf};
 use super::triangle::MAX_EXCHANGES;
 use crate::Iterate;
 use crate::body::{Body, Witness};

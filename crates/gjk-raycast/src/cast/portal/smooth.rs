@@ -8,8 +8,9 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::closing::BestPlane;
 use super::pieces::{Piece, Pieces};
-use super::ray_frame::{Alpha, BestPlane, RayFrame, RayPointOf};
+use super::ray_frame::{Alpha, RayFrame, RayPointOf};
 use crate::Iterate;
 use crate::body::Body;
 use crate::cast::bracket::{Bracket, ScalarOf};

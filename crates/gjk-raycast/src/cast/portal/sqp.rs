@@ -13,8 +13,9 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::best_plane::best_plane;
-use super::pieces::{OnLine, Piece, Pieces};
-use super::ray_frame::{Alpha, BestPlane, Plane, RayFrame, RayPoint, RayPointOf, weights_of_zero};
+use super::closing::{BestPlane, OnLine};
+use super::pieces::{Piece, Pieces};
+use super::ray_frame::{Alpha, Plane, RayFrame, RayPoint, RayPointOf, weights_of_zero};
 use crate::Iterate;
 use crate::body::Body;
 use crate::cast::bracket::{Bracket, ScalarOf};
@@ -219,5 +220,11 @@ impl<V: Vector, W: Copy> Portal<V, W> {
                 return;
             }
         }
+    }
+}
+
+impl<V: Vector, W> From<Portal<V, W>> for OnLine<V, W> {
+    fn from(portal: Portal<V, W>) -> Self {
+        Self { corners: portal.corners, weights: portal.weights, len: 3, high: portal.high }
     }
 }

@@ -11,8 +11,9 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::closing::BestPlane;
 use super::pieces::is_surrounded;
-use super::ray_frame::{Alpha, BestPlane, Plane, RayFrame, RayPoint, RayPointOf};
+use super::ray_frame::{Alpha, Plane, RayFrame, RayPoint, RayPointOf};
 use super::sqp::{Portal, sqp};
 use crate::Iterate;
 use crate::body::Body;
