@@ -42,7 +42,8 @@
 //! - `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`: conversions of parry's shapes to shapes of this crate and back, and of its
 //!   compounds and meshes to their convex pieces.
 //! - `mint`: glam's conversions from and to mint's vectors.
-//! - `proptest`: the module `strategies`, which generates shapes and poses of wild aspect and scale, for property tests.
+//! - `proptest`: for property tests, the module `laws`, to which a shape of your own can be held, and the module `strategies`, which
+//!   generates shapes and poses of wild aspect and scale.
 
 #![no_std]
 
@@ -66,6 +67,8 @@ mod hint;
 mod interop_parry;
 #[cfg(feature = "serde")]
 mod interop_serde;
+#[cfg(feature = "proptest")]
+pub mod laws;
 mod line_crossing;
 #[doc(hidden)]
 pub mod numerics;

@@ -51,6 +51,8 @@ use crate::{CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, Parall
 /// - only the direction of `d` matters, not its length;
 /// - the same argument gives the same answer, and the provided methods describe the same set.
 ///
+/// With the feature `proptest`, `laws::hold` tests a shape for them.
+///
 /// Queries take a support point to be right to four units in the last place of the shape's extent. If yours is less accurate, say so in
 /// [`core`](Self::core) and [`rounding`](Self::rounding): the bounds of an answer are certain only if these are right.
 ///

@@ -1,0 +1,227 @@
+//! The laws of a support map as property tests, to which any shape can be held; with the feature `proptest`.
+//!
+//! ```
+//! use convex_support::{SupportMap, glam::DVec2, laws};
+//! use proptest::prelude::*;
+//!
+//! /// The square |x| + |y| ≤ r.
+//! #[derive(Debug)]
+//! struct Diamond(f64);
+//!
+//! impl SupportMap for Diamond {
+//!     type Vector = DVec2;
+//!
+//!     fn support(&self, d: DVec2) -> DVec2 {
+//!         self.0 * if d.x.abs() > d.y.abs() { DVec2::X * d.x.signum() } else { DVec2::Y * d.y.signum() }
+//!     }
+//! }
+//!
+//! laws::hold((0.1..10.0).prop_map(Diamond));
+//! ```
+//!
+//! Every law holds to within the rounding that the shape itself states: sixteen times the [`error`](crate::Core::error) of its
+//! [`core`](SupportMap::core), and as many units in the last place of where it is.
+
+use std::fmt::Debug;
+use std::format;
+
+use num_traits::Float as _;
+use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
+
+use crate::{CoreKind, Hint, Scalar, SupportMap, Vector, bounding_box, bounding_sphere, strategies};
+
+/// How many times its own rounding a shape may be off: a law compares up to four support points, each placed and measured.
+const SLACK: f64 = 16.0;
+
+/// A shape of any type, so that the laws are compiled once for each vector type.
+type AnyShape<'s, V> = &'s dyn SupportMap<Vector = V>;
+
+/// A law of one shape and two directions; the last argument is the rounding that the shape states, as a length.
+type Law<V> = fn(AnyShape<'_, V>, V, V, <V as Vector>::Scalar) -> Result<(), TestCaseError>;
+
+/// Checks every law for the shapes of a strategy, along [directions](strategies::direction) that are adversarial.
+///
+/// # Panics
+/// If a law is broken. The message names the law, the shape and the directions.
+pub fn hold<S: SupportMap + Debug>(shapes: impl Strategy<Value = S>) {
+    let directions = strategies::direction::<S::Vector>;
+    let mut runner = TestRunner::new(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() });
+    let outcome = runner.run(&(shapes, directions(), directions()), |(shape, d, e)| check(&shape, d, e));
+    if let Err(error) = outcome {
+        panic!("in {}: {error}", std::any::type_name::<S::Vector>());
+    }
+}
+
+/// Checks every law for one shape and two directions, neither of which is zero.
+///
+/// # Errors
+/// Names the first law that is broken, and by how much it is.
+pub fn check<V: Vector>(shape: AnyShape<'_, V>, d: V, e: V) -> Result<(), TestCaseError> {
+    let laws: [(&str, Law<V>); 10] = [
+        ("the support point reaches the support value", support_point_reaches_the_support_value),
+        ("no support point reaches farther", no_support_point_reaches_farther),
+        ("the support value is positively homogeneous", support_value_is_positively_homogeneous),
+        ("the support value is subadditive", support_value_is_subadditive),
+        ("origin, core and radius make the set", origin_core_and_radius_make_the_set),
+        ("the extent bounds the core", extent_bounds_the_core),
+        ("the closest point of the core is the closest", closest_point_of_the_core_is_the_closest),
+        ("hints never change the value", hints_never_change_the_value),
+        ("bounds contain the set and touch it", bounds_contain_the_set_and_touch_it),
+        ("zero gives a point of the set, and nothing panics", zero_gives_a_point_of_the_set),
+    ];
+    let core = shape.core();
+    let place = core.origin.norm() + core.extent + core.radius;
+    let rounding = V::Scalar::from_f64(SLACK) * (core.error + V::Scalar::EPSILON * place);
+    laws.into_iter().try_for_each(|(name, law)| {
+        law(shape, d, e, rounding).map_err(|broken| TestCaseError::fail(format!("{name}: {broken}")))
+    })
+}
+
+/// Fails unless `a` is at most `b`, as lengths along a direction.
+fn at_most<S: Scalar>(a: S, b: S, rounding: S) -> Result<(), TestCaseError> {
+    // NaN fails this too.
+    prop_assert!(a <= b + rounding, "{:?} is more than {:?} by more than {:?}", a, b, rounding);
+    Ok(())
+}
+
+fn equal<S: Scalar>(a: S, b: S, rounding: S) -> Result<(), TestCaseError> {
+    at_most(a, b, rounding)?;
+    at_most(b, a, rounding)
+}
+
+/// The point of the core farthest along a direction, found without a hint.
+fn core_point<V: Vector>(shape: AnyShape<'_, V>, d: V) -> V {
+    shape.core_support(d, &mut Hint::new())
+}
+
+fn support_point_reaches_the_support_value<V: Vector>(
+    shape: AnyShape<'_, V>,
+    d: V,
+    _: V,
+    rounding: V::Scalar,
+) -> Result<(), TestCaseError> {
+    equal(d.dot(shape.support(d)), shape.support_value(d), rounding * d.norm())
+}
+
+fn no_support_point_reaches_farther<V: Vector>(
+    shape: AnyShape<'_, V>,
+    d: V,
+    e: V,
+    rounding: V::Scalar,
+) -> Result<(), TestCaseError> {
+    at_most(e.dot(shape.support(d)), shape.support_value(e), rounding * e.norm())
+}
+
+fn support_value_is_positively_homogeneous<V: Vector>(
+    shape: AnyShape<'_, V>,
+    d: V,
+    _: V,
+    rounding: V::Scalar,
+) -> Result<(), TestCaseError> {
+    let t = V::Scalar::from_f64(1.7);
+    equal(shape.support_value(d * t), shape.support_value(d) * t, rounding * d.norm() * t)
+}
+
+fn support_value_is_subadditive<V: Vector>(
+    shape: AnyShape<'_, V>,
+    d: V,
+    e: V,
+    rounding: V::Scalar,
+) -> Result<(), TestCaseError> {
+    // Directions of like length, or the sum would say nothing about the shorter.
+    let (Some(d), Some(e)) = (d.unit(), e.unit()) else { return Ok(()) };
+    at_most(shape.support_value(d + e), shape.support_value(d) + shape.support_value(e), rounding)
+}
+
+fn origin_core_and_radius_make_the_set<V: Vector>(
+    shape: AnyShape<'_, V>,
+    d: V,
+    _: V,
+    rounding: V::Scalar,
+) -> Result<(), TestCaseError> {
+    let core = shape.core();
+    let value = d.dot(core.origin) + d.dot(core_point(shape, d)) + d.norm() * core.radius;
+    equal(value, shape.support_value(d), rounding * d.norm())
+}
+
+fn extent_bounds_the_core<V: Vector>(shape: AnyShape<'_, V>, d: V, _: V, _: V::Scalar) -> Result<(), TestCaseError> {
+    let extent = shape.core().extent;
+    at_most(core_point(shape, d).norm(), extent, extent * V::Scalar::EPSILON * V::Scalar::from_f64(8.0))
+}
+
+fn closest_point_of_the_core_is_the_closest<V: Vector>(
+    shape: AnyShape<'_, V>,
+    d: V,
+    e: V,
+    rounding: V::Scalar,
+) -> Result<(), TestCaseError> {
+    let core = shape.core();
+    if let CoreKind::Point(point) = core.kind {
+        prop_assert_eq!(point, core_point(shape, d), "the only point of the core");
+    }
+    let (surface, away) = (core_point(shape, e), e * (core.extent / e.norm()));
+    for x in [surface + away, surface - away, surface * V::Scalar::from_f64(0.5), e] {
+        let Some(p) = shape.core_closest_point(x) else { return Ok(()) };
+        at_most(d.dot(p), d.dot(core_point(shape, d)), rounding * d.norm())?;
+        // (x − p)·(k − p) ≤ 0 for every point k of the core; an error of p costs as much as x is away.
+        let out = x - p;
+        let lengths = x.norm() + core.extent;
+        let slack = rounding + V::Scalar::from_f64(SLACK) * V::Scalar::EPSILON * lengths;
+        at_most(out.dot(core_point(shape, out)) - out.dot(p), V::Scalar::ZERO, slack * lengths)?;
+    }
+    Ok(())
+}
+
+fn hints_never_change_the_value<V: Vector>(
+    shape: AnyShape<'_, V>,
+    d: V,
+    e: V,
+    rounding: V::Scalar,
+) -> Result<(), TestCaseError> {
+    let fresh = d.dot(core_point(shape, d));
+    let mut hint = Hint::new();
+    shape.core_support(e, &mut hint);
+    hint.rewind();
+    equal(d.dot(shape.core_support(d, &mut hint)), fresh, rounding * d.norm())?;
+    // Not even where the hint is another body's.
+    let mut foreign = Hint::new();
+    while let Some(slot) = foreign.next_slot() {
+        *slot = u32::MAX;
+    }
+    foreign.rewind();
+    equal(d.dot(shape.core_support(d, &mut foreign)), fresh, rounding * d.norm())
+}
+
+fn bounds_contain_the_set_and_touch_it<V: Vector>(
+    shape: AnyShape<'_, V>,
+    d: V,
+    _: V,
+    rounding: V::Scalar,
+) -> Result<(), TestCaseError> {
+    let (aabb, sphere, p) = (bounding_box(shape), bounding_sphere(shape), shape.support(d));
+    at_most((p - sphere.center).norm(), sphere.radius, rounding)?;
+    at_most(sphere.radius, aabb.half_extents().norm(), rounding)?;
+    for i in 0..V::DIM {
+        at_most(aabb.min.get(i), p.get(i), rounding)?;
+        at_most(p.get(i), aabb.max.get(i), rounding)?;
+        equal(aabb.min.get(i), shape.support(-V::axis(i)).get(i), rounding)?;
+        equal(aabb.max.get(i), shape.support(V::axis(i)).get(i), rounding)?;
+    }
+    Ok(())
+}
+
+fn zero_gives_a_point_of_the_set<V: Vector>(
+    shape: AnyShape<'_, V>,
+    d: V,
+    e: V,
+    rounding: V::Scalar,
+) -> Result<(), TestCaseError> {
+    let zero = shape.support(V::ZERO);
+    prop_assert!(zero.is_finite(), "the support point for no direction is a point, not {:?}", zero);
+    at_most(e.dot(zero), shape.support_value(e), rounding * e.norm())?;
+    for bad in [V::Scalar::nan(), V::Scalar::infinity(), V::Scalar::neg_infinity()] {
+        let _ = (shape.support(d * bad), shape.support_value(V::splat(bad)), core_point(shape, d * bad));
+    }
+    Ok(())
+}
