@@ -59,6 +59,7 @@
 //! - `libm`: the same from the libm crate, for `no_std` targets.
 //! - `f64` (default): asks glam for double precision; leave it out with glam 0.32, which has no such feature.
 //! - `rayon`: `par_ray_casts`, `Scene::par_ray_casts`, `Among::par_pairs_within` and `Among::par_contacts_within`, which use all threads.
+//! - `paper`: the sub-algorithms of the papers beside the default, for comparison: [`SubAlgorithm`].
 //! - `serde`: options, answers and certificates as data, beside the shapes of `convex-support`.
 //!
 //! # Answers as data

@@ -3,8 +3,10 @@
 
 mod affine_hull;
 mod closest;
+#[cfg(feature = "paper")]
 mod johnson;
 mod regions;
+#[cfg(feature = "paper")]
 mod signed_volumes;
 mod sub_algorithm;
 
@@ -180,21 +182,6 @@ impl Face {
         self.0.count_ones() as usize
     }
 
-    /// A number below 2 to the number of points.
-    pub(crate) fn index(self) -> usize {
-        usize::from(self.0)
-    }
-
-    /// The face with point `index` for another corner.
-    pub(crate) fn with(self, index: usize) -> Self {
-        Self(self.0 | 1 << index)
-    }
-
-    /// The face opposite to corner `index`.
-    pub(crate) fn without(self, index: usize) -> Self {
-        Self(self.0 & !(1 << index))
-    }
-
     /// Whether point `index` is a corner.
     pub(crate) fn has(self, index: usize) -> bool {
         self.0 >> index & 1 == 1
@@ -208,5 +195,23 @@ impl Face {
             len += 1;
         }
         &corners[..len]
+    }
+}
+
+#[cfg(feature = "paper")]
+impl Face {
+    /// A number below 2 to the number of points.
+    pub(crate) fn index(self) -> usize {
+        usize::from(self.0)
+    }
+
+    /// The face with point `index` for another corner.
+    pub(crate) fn with(self, index: usize) -> Self {
+        Self(self.0 | 1 << index)
+    }
+
+    /// The face opposite to corner `index`.
+    pub(crate) fn without(self, index: usize) -> Self {
+        Self(self.0 & !(1 << index))
     }
 }

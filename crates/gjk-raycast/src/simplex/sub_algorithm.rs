@@ -3,13 +3,13 @@
 use convex_support::Vector;
 
 use crate::simplex::closest::{Closest, nearest_face};
-use crate::simplex::johnson::johnson;
-use crate::simplex::signed_volumes::signed_volumes;
+#[cfg(feature = "paper")]
+use crate::simplex::{johnson::johnson, signed_volumes::signed_volumes};
 
 /// How the point of a simplex closest to zero, and the smallest face that contains it, are found.
 ///
 /// All share the orthogonal projection that computes the point once its face is known, and the back-up where signs
-/// are inconsistent; they differ in how they find the face.
+/// are inconsistent; they differ in how they find the face. All but the default are there with the feature `paper`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -19,10 +19,13 @@ pub enum SubAlgorithm {
     #[default]
     Regions,
     /// The most robust: zero is projected on every face, and of the faces that contain the projection the nearest is taken.
+    #[cfg(feature = "paper")]
     NearestFace,
     /// Johnson's determinants, as in the paper.
+    #[cfg(feature = "paper")]
     Johnson,
     /// The signs of volumes, after Montanari, Petrinic and Barbieri.
+    #[cfg(feature = "paper")]
     SignedVolumes,
 }
 
@@ -31,7 +34,9 @@ impl SubAlgorithm {
     /// seen along a ray, where only [`nearest_face`] applies.
     pub(crate) fn closest<V: Vector>(self, points: &[V], dimension: usize) -> Option<Closest<V>> {
         match self {
+            #[cfg(feature = "paper")]
             Self::Johnson if dimension == V::DIM => johnson(points, dimension),
+            #[cfg(feature = "paper")]
             Self::SignedVolumes if dimension == V::DIM => signed_volumes(points, dimension),
             _ => nearest_face(points, dimension),
         }
