@@ -70,6 +70,7 @@ mod interop_serde;
 #[cfg(feature = "proptest")]
 pub mod laws;
 mod line_crossing;
+mod motion_derivative;
 #[doc(hidden)]
 pub mod numerics;
 mod parallelotope;
@@ -104,6 +105,7 @@ pub use interop_parry::parry3d;
 #[cfg(feature = "parry3d-f64")]
 pub use interop_parry::parry3d_f64;
 pub use line_crossing::{CertainCrossing, Crossing, LineCrossing, line_crossing};
+pub use motion_derivative::{MotionGradient, MotionHessian};
 pub use parallelotope::Parallelotope;
 pub use rotation::Rotation;
 pub use scalar::Scalar;

@@ -74,13 +74,13 @@ mod polynomial;
 mod scaling;
 mod secular;
 mod track;
-mod wedge;
 
 pub use convex_support;
 
 pub use batch::{free_margins, free_margins_into, map_margins, map_margins_into, map_pairs};
 pub use clearance::{Clearance, ClearanceResult, LeftOut, NearPair, clearance};
-pub use derivative::{MotionGradient, MotionHessian, ShapeGradient};
+pub use convex_support::{MotionGradient, MotionHessian};
+pub use derivative::ShapeGradient;
 pub use distance::{Distance, DistanceBracket, distance, distance_bracket};
 pub use ellipsoid_pair::{Answer, EllipsoidPair};
 pub use error::InvalidQuery;
@@ -88,7 +88,6 @@ pub use margin::{Margin, free_margin, free_margin_with};
 pub use options::{MarginOptions, Method, Status};
 pub use scaling::{Scaling, scaling};
 pub use track::MarginTracker;
-pub use wedge::Wedge;
 
 /// The README's example, compiled.
 #[cfg(doctest)]

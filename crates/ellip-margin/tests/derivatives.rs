@@ -3,8 +3,8 @@
 
 use crate::common::close;
 use convex_support::glam::{DMat3, DQuat, DVec2, DVec3};
-use convex_support::{Ellipsoid, Matrix, Vector};
-use ellip_margin::{EllipsoidPair, MarginOptions, MotionGradient, MotionHessian, Wedge, map_margins, map_pairs};
+use convex_support::{AngularVelocity, Ellipsoid, Matrix, Vector};
+use ellip_margin::{EllipsoidPair, MarginOptions, MotionGradient, MotionHessian, map_margins, map_pairs};
 
 /// The reference: of the margin, the distance and the scale each value, gradient and upper triangle of the Hessian.
 struct Case<V: Vector> {
@@ -36,22 +36,25 @@ fn cases<V: Vector<Scalar = f64>>(text: &str) -> Vec<Case<V>> {
 
 /// The greatest errors of a gradient and a Hessian, relative to the greatest entry of their blocks: translations, both, and
 /// rotations have different units.
-fn errors<V: Wedge<Scalar = f64>>(gradient: &MotionGradient<V>, hessian: &MotionHessian<V>, truth: &[f64]) -> [f64; 2] {
+fn errors<V: Vector<Scalar = f64>>(
+    gradient: &MotionGradient<V>,
+    hessian: &MotionHessian<V>,
+    truth: &[f64],
+) -> [f64; 2] {
     let n = V::DIM;
-    let turn = V::coordinates(&gradient.rotation);
-    let dof = n + turn.len();
+    let dof = MotionHessian::<V>::SIZE;
     let block = |i: usize| usize::from(i >= n);
     let (mut first, mut second) = ([[0f64; 2]; 2], [[0f64; 2]; 3]);
     for i in 0..dof {
-        let ours = if i < n { gradient.translation.get(i) } else { turn[i - n] };
+        let ours = if i < n { gradient.translation.get(i) } else { gradient.rotation.coordinate(i - n) };
         let [off, size] = &mut first[block(i)];
         (*off, *size) = (off.max((ours - truth[1 + i]).abs()), size.max(truth[1 + i].abs()));
     }
     let mut at = 1 + dof;
     for i in 0..dof {
         for j in i..dof {
-            let ours = V::motion_entry(&hessian.matrix, i, j);
-            assert_eq!(ours, V::motion_entry(&hessian.matrix, j, i), "symmetric");
+            let ours = hessian.entry(i, j);
+            assert_eq!(ours, hessian.entry(j, i), "symmetric");
             let [off, size] = &mut second[block(i) + block(j)];
             (*off, *size) = (off.max((ours - truth[at]).abs()), size.max(truth[at].abs()));
             at += 1;
@@ -62,7 +65,7 @@ fn errors<V: Wedge<Scalar = f64>>(gradient: &MotionGradient<V>, hessian: &Motion
     [greatest(&first), greatest(&second)]
 }
 
-fn check<V: Wedge<Scalar = f64>>() {
+fn check<V: Vector<Scalar = f64>>() {
     let cases = cases::<V>(include_str!("data/derivatives.csv"));
     assert_eq!(cases.len(), 24, "all lines");
     for Case { condition, bodies: [e1, e2], truth } in cases {
@@ -100,7 +103,7 @@ fn of_the_second_body() {
         assert!((first.translation + second.translation).length() <= 1e-10 * size, "{first:?} {second:?}");
         let sum = first.rotation_about(DVec3::ZERO) + second.rotation_about(DVec3::ZERO);
         assert!(sum.length() <= 1e-9 * size, "{sum} of {first:?}");
-        let (a, b) = (there.hessian_of_second().matrix, back.hessian().matrix);
+        let (a, b) = (there.hessian_of_second().matrix::<6>(), back.hessian().matrix::<6>());
         let size = a.as_flattened().iter().fold(0f64, |m, x| m.max(x.abs()));
         for (x, y) in a.as_flattened().iter().zip(b.as_flattened()) {
             assert!(close(*x, *y, 0.0, 1e-9 * size), "{x} and {y} of {size}");
@@ -116,7 +119,7 @@ fn the_gradient_follows_the_hessian() {
     let e2 = body(DVec3::new(1.0, 2.5, 0.7), DVec3::new(1.0, 0.4, 0.7), DQuat::IDENTITY);
     let o = MarginOptions::default();
     let m = EllipsoidPair::new(&e1, &e2, o).margin();
-    let (g, h) = (m.gradient(), m.hessian().matrix);
+    let (g, h) = (m.gradient(), m.hessian().matrix::<6>());
     let (translation, rotation) = (DVec3::new(0.2, -0.5, 0.3) * 1e-6, DVec3::new(0.7, 0.1, -0.4) * 1e-6);
     let turned = DMat3::from_quat(DQuat::from_scaled_axis(rotation)) * e1.axes();
     let moved = Ellipsoid::from_axes(e1.center() + translation, e1.semi_axes(), turned).expect("valid");
@@ -183,8 +186,8 @@ fn turns_of_bodies_far_apart() {
         let h = (a * a * f64::cos(angle).powi(2) + b * b * f64::sin(angle).powi(2)).sqrt();
         let spread = b * b - a * a;
         let due = -(spread * c2 / h - (spread * s2).powi(2) / (4.0 * h.powi(3)));
-        let first = EllipsoidPair::new(&mover, &other, o).distance().hessian().matrix[2][2];
-        let second = EllipsoidPair::new(&other, &mover, o).distance().hessian_of_second().matrix[2][2];
+        let first = EllipsoidPair::new(&mover, &other, o).distance().hessian().entry(2, 2);
+        let second = EllipsoidPair::new(&other, &mover, o).distance().hessian_of_second().entry(2, 2);
         assert!(close(first, due, 1e-10, 0.0) && close(second, due, 1e-10, 0.0), "{first} and {second} for {due}");
     }
 }
@@ -215,5 +218,5 @@ fn the_curvature_of_a_margin_next_to_its_floor() {
     let h = (e1.axes().transpose() * n * a).length();
     let along = m.hessian().along(n, DVec3::ZERO);
     assert!(close(along, 2.0 / (h * h), 1e-9, 0.0), "{along} and {}", 2.0 / (h * h));
-    assert!(m.hessian().matrix.as_flattened().iter().all(|x| x.is_finite()), "{:?}", m.hessian());
+    assert!(m.hessian().matrix::<6>().as_flattened().iter().all(|x| x.is_finite()), "{:?}", m.hessian());
 }

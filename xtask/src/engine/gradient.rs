@@ -48,9 +48,12 @@ pub(super) fn with<V: Space>(answer: Answer, gradient: Option<Gradient<V>>) -> A
 
 /// By a translation, and by a turn about the world's origin.
 fn by_pose<V: Space>(gradient: MotionGradient<V>) -> Answer {
-    let moment = gradient.rotation_about(V::ZERO);
-    let coordinate = |i| Number::of(moment.coordinate(i));
-    let rotation =
-        if V::DIM == 2 { Field::Number(coordinate(0)) } else { Field::Numbers((0..3).map(coordinate).collect()) };
+    let rotation = moment::<V>(gradient.rotation_about(V::ZERO));
     Answer::default().with("translation", Field::vector(gradient.translation)).with("rotation", rotation)
+}
+
+/// A derivative by a turn: a vector in 3D, a number in 2D.
+pub(super) fn moment<V: Space>(moment: V::AngularVelocity) -> Field {
+    let coordinate = |i| Number::of(moment.coordinate(i));
+    if V::DIM == 2 { Field::Number(coordinate(0)) } else { Field::Numbers((0..3).map(coordinate).collect()) }
 }

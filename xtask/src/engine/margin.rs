@@ -5,8 +5,9 @@ use convex_support::{Ellipsoid, Vector};
 use ellip_margin::paper::free_margin_eigen;
 use ellip_margin::{EllipsoidPair, InvalidQuery, MarginOptions, MotionGradient, Status};
 
+use super::gradient::moment;
 use super::{Ask, How, Query, Question};
-use crate::wire::answer::{Answer, Field, Number};
+use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
 use crate::wire::shape::{EllipsoidSpec, Space};
@@ -98,14 +99,9 @@ impl<V: Space> Question for Pair<V> {
             .with("lambda", Field::number(V::ZERO.get(0) - margin.nu))
             .with("point", Field::vector(margin.point));
         if let Some(gradient) = gradient {
-            let rotation: Vec<Number> = V::coordinates(&gradient.rotation).iter().map(|&c| Number::of(c)).collect();
-            let rotation = match rotation[..] {
-                [number] => Field::Number(number),
-                _ => Field::Numbers(rotation),
-            };
             answer = answer
                 .with("gradient_translation", Field::vector(gradient.translation))
-                .with("gradient_rotation", rotation);
+                .with("gradient_rotation", moment::<V>(gradient.rotation));
         }
         Ok(answer.with("iterations", Field::Count(margin.iterations)))
     }

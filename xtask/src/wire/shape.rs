@@ -7,7 +7,6 @@ use convex_support::{
     Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Ellipsoid, Hull, InvalidShape, Matrix, MinkowskiSum,
     Point, Polytope, Posed, Rounded, Scalar, Segment, SupportMap, Triangle, Vector, glam,
 };
-use ellip_margin::Wedge;
 use serde::Deserialize;
 
 use super::error::{Kind, Problem};
@@ -195,7 +194,7 @@ fn round<V: Space>(wide: Ellipsoid<V::Wide>) -> Result<Ellipsoid<V>, InvalidShap
 pub type Solid<V> = Box<dyn SupportMap<Vector = V> + Send + Sync>;
 
 /// The spaces of the format: what depends on the precision or the dimension and is not the vector's own.
-pub trait Space: Vector + Wedge {
+pub trait Space: Vector {
     /// The space of the same dimension in double precision.
     type Wide: Space<Scalar = f64>;
 

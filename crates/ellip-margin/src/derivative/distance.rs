@@ -1,15 +1,14 @@
 //! How the Euclidean distance changes as a body moves.
 
-use convex_support::Ellipsoid;
+use convex_support::{Ellipsoid, MotionGradient, MotionHessian, Vector};
 
 use super::contact::{Contact, Mover, Quantity, Units};
-use super::motion::{MotionGradient, MotionHessian};
 use super::value_of_contact::{ValueOfContact, gradient, hessian};
 use crate::numerics::load;
 use crate::pair::Pair;
-use crate::{Answer, Distance, Wedge};
+use crate::{Answer, Distance};
 
-impl<V: Wedge> Answer<'_, V, Distance<V>> {
+impl<V: Vector> Answer<'_, V, Distance<V>> {
     /// The gradient of the distance with respect to the motion of the first ellipsoid: minus the unit normal, as a force at its
     /// closest point. Zero where the bodies overlap.
     ///
@@ -47,7 +46,7 @@ impl<V: Wedge> Answer<'_, V, Distance<V>> {
     }
 }
 
-impl<V: Wedge> ValueOfContact<V> for Distance<V> {
+impl<V: Vector> ValueOfContact<V> for Distance<V> {
     fn contact<const N: usize>(&self, first: &Ellipsoid<V>, second: &Ellipsoid<V>) -> Option<(Contact<N>, Units)> {
         let (pair, length) = Pair::<N>::new(first, second).in_own_unit();
         let normal = load(self.bracket.normal);

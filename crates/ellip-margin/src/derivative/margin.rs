@@ -11,17 +11,17 @@
 //!
 //! The second derivatives are those of m = ρ² − 1: m″ = 2ρρ″ + 2ρ′ρ′ᵀ, a sum of positive semidefinite terms for translations.
 
-use convex_support::{Ellipsoid, Scalar, Vector};
+use convex_support::{Ellipsoid, MotionGradient, MotionHessian, Scalar, Vector};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
 use super::contact::{Contact, Form, Mover, Quantity, Units};
-use super::motion::{MotionGradient, MotionHessian, torque};
+use super::motion::{self, torque};
 use crate::numerics::{combine, dot, load, size, store, sub, unit};
 use crate::pair::Pair;
-use crate::{Answer, Margin, Wedge};
+use crate::{Answer, Margin};
 
-impl<V: Wedge> Answer<'_, V, Margin<V>> {
+impl<V: Vector> Answer<'_, V, Margin<V>> {
     /// The gradient of the margin with respect to the motion of the first ellipsoid; zero where x₁ lies in E₂.
     ///
     /// ```
@@ -73,7 +73,7 @@ impl<V: Wedge> Answer<'_, V, Margin<V>> {
     /// let pair = EllipsoidPair::new(&link, &obstacle, MarginOptions::default());
     /// let hessian = pair.margin().hessian();
     /// let due = DMat3::from_diagonal(DVec3::new(0.5, 0.4, 0.4));
-    /// assert!(hessian.translation().abs_diff_eq(due, 1e-15));
+    /// assert!(DMat3::from_cols_array_2d(&hessian.matrix()).abs_diff_eq(due, 1e-15));
     /// // A ball may turn as it likes.
     /// assert_eq!(hessian.along(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)), 0.0);
     /// # Ok::<(), convex_support::InvalidShape>(())
@@ -118,17 +118,17 @@ pub(super) fn beta_and_z<V: Vector, const N: usize>(
 }
 
 #[inline]
-fn gradient<V: Wedge, const N: usize>(m: &Margin<V>, e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> MotionGradient<V> {
+fn gradient<V: Vector, const N: usize>(m: &Margin<V>, e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> MotionGradient<V> {
     let (beta, z) = beta_and_z::<V, N>(m, e1, e2);
     MotionGradient {
         translation: store(z.map(|z| 2.0 * m.nu.as_f64() * z)),
         rotation: torque(e1, beta, -2.0),
-        center: e1.center(),
+        point: e1.center(),
     }
 }
 
 #[inline]
-fn gradient_of_second<V: Wedge, const N: usize>(
+fn gradient_of_second<V: Vector, const N: usize>(
     m: &Margin<V>,
     e1: &Ellipsoid<V>,
     e2: &Ellipsoid<V>,
@@ -138,18 +138,18 @@ fn gradient_of_second<V: Wedge, const N: usize>(
     MotionGradient {
         translation: store(z.map(|z| -2.0 * nu * z)),
         rotation: torque(e2, load::<V, N>(m.ball_point), -2.0 * nu),
-        center: e2.center(),
+        point: e2.center(),
     }
 }
 
-fn hessian<V: Wedge, const N: usize>(
+fn hessian<V: Vector, const N: usize>(
     m: &Margin<V>,
     e1: &Ellipsoid<V>,
     e2: &Ellipsoid<V>,
     mover: Mover,
 ) -> MotionHessian<V> {
     if m.nu <= V::Scalar::ZERO {
-        return MotionHessian::zero();
+        return motion::no_hessian();
     }
     // N points along −z; E₁ touches at β, E₂ at y.
     let (beta, z) = beta_and_z::<V, N>(m, e1, e2);
@@ -157,8 +157,8 @@ fn hessian<V: Wedge, const N: usize>(
     let (pair, length) = Pair::<N>::new(e1, e2).in_own_unit();
     let rho = dot(beta, beta).sqrt();
     let contact = Contact::at_points(&pair, Quantity::GROWTH, z.map(|z| -z), points, Some(rho));
-    contact.as_ref().map_or_else(MotionHessian::zero, |contact| {
+    contact.as_ref().map_or_else(motion::no_hessian, |contact| {
         let units = Units { value: 1.0, length };
-        MotionHessian::of_contact(contact, mover, Form { slope: 2.0 * contact.value, curvature: 2.0, units })
+        motion::hessian(contact, mover, Form { slope: 2.0 * contact.value, curvature: 2.0, units })
     })
 }

@@ -27,5 +27,4 @@ mod shape;
 mod side;
 mod value_of_contact;
 
-pub use self::motion::{MotionGradient, MotionHessian};
 pub use self::shape::ShapeGradient;

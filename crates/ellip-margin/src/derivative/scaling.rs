@@ -1,15 +1,14 @@
 //! How the common scale changes as a body moves.
 
-use convex_support::Ellipsoid;
+use convex_support::{Ellipsoid, MotionGradient, MotionHessian, Vector};
 
 use super::contact::{Contact, Mover, Quantity, Units};
-use super::motion::{MotionGradient, MotionHessian};
 use super::value_of_contact::{ValueOfContact, gradient, hessian};
 use crate::numerics::{Vec, combine, load};
 use crate::pair::Pair;
-use crate::{Answer, Scaling, Wedge};
+use crate::{Answer, Scaling};
 
-impl<V: Wedge> Answer<'_, V, Scaling<V>> {
+impl<V: Vector> Answer<'_, V, Scaling<V>> {
     /// The gradient of the scale α with respect to the motion of the first ellipsoid, at any depth: it tells the way out where the
     /// margin has reached its floor. Zero where the bodies are concentric, which is the least α can be.
     ///
@@ -48,7 +47,7 @@ impl<V: Wedge> Answer<'_, V, Scaling<V>> {
     }
 }
 
-impl<V: Wedge> ValueOfContact<V> for Scaling<V> {
+impl<V: Vector> ValueOfContact<V> for Scaling<V> {
     fn contact<const N: usize>(&self, first: &Ellipsoid<V>, second: &Ellipsoid<V>) -> Option<(Contact<N>, Units)> {
         let (pair, length) = Pair::<N>::new(first, second).in_own_unit();
         let [e1, e2]: [Vec<N>; 2] = self.ball_points.map(load);

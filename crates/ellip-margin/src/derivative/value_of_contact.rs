@@ -1,19 +1,19 @@
 //! Derivatives of a quantity that is the value of a contact itself.
 
-use convex_support::Ellipsoid;
+use convex_support::{Ellipsoid, MotionGradient, MotionHessian, Vector};
 
 use super::contact::{Contact, Form, Mover, Units};
-use super::motion::{MotionGradient, MotionHessian};
-use crate::{Answer, Wedge};
+use super::motion;
+use crate::Answer;
 
 /// An answer about two ellipsoids that is the value of their contact.
-pub(super) trait ValueOfContact<V: Wedge> {
+pub(super) trait ValueOfContact<V: Vector> {
     /// The contact, and the units it is in; `None` where the quantity is at its floor.
     fn contact<const N: usize>(&self, first: &Ellipsoid<V>, second: &Ellipsoid<V>) -> Option<(Contact<N>, Units)>;
 }
 
 /// The gradient of an answer with respect to the motion of one of the two.
-pub(super) fn gradient<V: Wedge, A: ValueOfContact<V>>(answer: &Answer<'_, V, A>, mover: Mover) -> MotionGradient<V> {
+pub(super) fn gradient<V: Vector, A: ValueOfContact<V>>(answer: &Answer<'_, V, A>, mover: Mover) -> MotionGradient<V> {
     let (first, second) = (answer.first(), answer.second());
     let body = match mover {
         Mover::First => first,
@@ -21,27 +21,23 @@ pub(super) fn gradient<V: Wedge, A: ValueOfContact<V>>(answer: &Answer<'_, V, A>
     };
     let gradient = if V::DIM == 2 {
         let contact = answer.contact::<2>(first, second);
-        contact.map(|(contact, units)| MotionGradient::of_contact(&contact, mover, body, units))
+        contact.map(|(contact, units)| motion::gradient(&contact, mover, body, units))
     } else {
         let contact = answer.contact::<3>(first, second);
-        contact.map(|(contact, units)| MotionGradient::of_contact(&contact, mover, body, units))
+        contact.map(|(contact, units)| motion::gradient(&contact, mover, body, units))
     };
-    gradient.unwrap_or_else(|| MotionGradient::zero(body))
+    gradient.unwrap_or_else(|| motion::no_gradient(body))
 }
 
 /// The second derivatives.
-pub(super) fn hessian<V: Wedge, A: ValueOfContact<V>>(answer: &Answer<'_, V, A>, mover: Mover) -> MotionHessian<V> {
+pub(super) fn hessian<V: Vector, A: ValueOfContact<V>>(answer: &Answer<'_, V, A>, mover: Mover) -> MotionHessian<V> {
     let (first, second) = (answer.first(), answer.second());
     let hessian = if V::DIM == 2 {
         let contact = answer.contact::<2>(first, second);
-        contact.map(|(contact, units)| {
-            MotionHessian::of_contact(&contact, mover, Form { slope: 1.0, curvature: 0.0, units })
-        })
+        contact.map(|(contact, units)| motion::hessian(&contact, mover, Form { slope: 1.0, curvature: 0.0, units }))
     } else {
         let contact = answer.contact::<3>(first, second);
-        contact.map(|(contact, units)| {
-            MotionHessian::of_contact(&contact, mover, Form { slope: 1.0, curvature: 0.0, units })
-        })
+        contact.map(|(contact, units)| motion::hessian(&contact, mover, Form { slope: 1.0, curvature: 0.0, units }))
     };
-    hessian.unwrap_or_else(MotionHessian::zero)
+    hessian.unwrap_or_else(motion::no_hessian)
 }
