@@ -35,7 +35,8 @@
 //! # Features
 //! - `std` (default): floating-point functions from the standard library.
 //! - `libm`: the same from the libm crate, for `no_std` targets; `alloc` is needed in any case.
-//! - `f64` (default): asks glam for double precision; leave it out with glam 0.32, which has no such feature.
+//! - `f64` (default): asks glam for double precision; with glam 0.32, which has no such feature, turn on `glam-032`
+//!   instead.
 //! - `hull`: `Polytope::hull_of`, the exact convex hull of raw points, for polytopes of thousands of vertices; and `Faceted`, a
 //!   hull with its half-spaces.
 //! - `serde`: shapes, boxes, spheres and crossings as data, checked as they are read. Errors can be written but not read.
@@ -49,6 +50,13 @@
 
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!("convex-support needs floating-point functions: enable the feature `std` or `libm`");
+
+#[cfg(not(any(feature = "f64", feature = "glam-032")))]
+compile_error!(
+    "convex-support needs double precision: turn on its feature `f64` (on by default). A program that is held to glam \
+     0.32, which has no such feature, turns on `glam-032` instead, and runs `cargo update --package glam@0.34 \
+     --precise 0.32.1`"
+);
 
 extern crate alloc;
 #[cfg(any(feature = "std", test))]

@@ -27,13 +27,14 @@
 //! - *If they overlap, how deep, and which way out is shortest?* [`signed_distance`] (GJK, then an expanding polytope).
 //! - *In which points do they support each other?* [`contact`], a manifold of up to four points.
 //! - *Do they meet?* [`intersects`], which stops at the first separating axis and can start from the last one.
-//! - *When do they meet, moving without turning?* [`linear_cast`] (Algorithm 3 on their difference).
+//! - *When do they meet, moving without turning?* [`linear_cast`], a ray cast at their difference.
 //! - *When do they meet, moving and turning?* [`motion_cast`], along [rigid motions](RigidMotion), [chains of joints](ChainMotion)
 //!   or a [`Trajectory`] of your own.
 //! - *The same questions about a shape and an infinite floor or wall:* the methods of [`HalfSpace`].
 //!
 //! About a ray and a shape:
-//! - *Where does the ray enter?* [`ray_cast`] (Algorithm 3), and [`ray_casts`] for many rays. *Where does it leave?* [`ray_exit`].
+//! - *Where does the ray enter?* [`ray_cast`], and [`ray_casts`] for many rays: a closed form, a portal, or Algorithm 3
+//!   of the paper, see [`CastMethod`]. *Where does it leave?* [`ray_exit`].
 //! - *The same from closest points alone:* [`iterative_ray_cast`] (Algorithm 1), for shapes whose closest points have a closed form.
 //!
 //! About many shapes:
@@ -57,9 +58,12 @@
 //! # Features
 //! - `std` (default): floating-point functions from the standard library.
 //! - `libm`: the same from the libm crate, for `no_std` targets.
-//! - `f64` (default): asks glam for double precision; leave it out with glam 0.32, which has no such feature.
+//! - `f64` (default): asks glam for double precision; with glam 0.32, which has no such feature, turn on `glam-032`
+//!   instead.
 //! - `rayon`: `par_ray_casts`, `Scene::par_ray_casts`, `Among::par_pairs_within` and `Among::par_contacts_within`, which use all threads.
 //! - `paper`: the sub-algorithms of the papers beside the default, for comparison: [`SubAlgorithm`].
+//! - `hull`, `mint`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: those of [`convex_support`], for
+//!   its shapes.
 //! - `serde`: options, answers and certificates as data, beside the shapes of `convex-support`.
 //!
 //! # Answers as data

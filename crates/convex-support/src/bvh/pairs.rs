@@ -8,7 +8,7 @@ use super::Bvh;
 use super::bound::{Bound, BoxDistance};
 use super::node::{Boxes, Child, Link, Node, WIDTH};
 use super::search::{MAX_DEPTH, finite};
-use crate::glam::{BVec4A, Vec3A, Vec4, Vec4Swizzles as _};
+use crate::glam::{Vec3A, Vec4, Vec4Swizzles as _};
 use crate::{Aabb, Scalar as _, Vector};
 
 /// Two nodes leave at most 16 pairs of children behind, and a node and an item 4, one of which is looked into next.
@@ -195,7 +195,7 @@ impl<'t, V: Vector> PairSearch<'t, V> {
 fn near<V: Vector>(around: &Aabb<Vec3A>, room: f32, node: &Node, mut push: impl FnMut(Link)) {
     let all_of = |corner: Vec3A| [Vec4::splat(corner.x), Vec4::splat(corner.y), Vec4::splat(corner.z)];
     let boxes = grown(&node.boxes, room);
-    let mut near = are_near::<V>(&all_of(around.min), &all_of(around.max), &boxes).bitmask();
+    let mut near = are_near::<V>(&all_of(around.min), &all_of(around.max), &boxes);
     while near != 0 {
         let link = node.children[near.trailing_zeros() as usize];
         near &= near - 1;
@@ -210,7 +210,7 @@ fn near<V: Vector>(around: &Aabb<Vec3A>, room: f32, node: &Node, mut push: impl 
 fn near_pairs<V: Vector>(a: &Boxes, b: &Boxes, room: f32) -> u32 {
     let b = grown(b, room);
     let (min, max) = (by_lane(a.min(0), a.min(1), a.min(2)), by_lane(a.max(0), a.max(1), a.max(2)));
-    (0..WIDTH).fold(0, |near, lane| near | are_near::<V>(&min[lane], &max[lane], &b).bitmask() << (WIDTH * lane))
+    (0..WIDTH).fold(0, |near, lane| near | are_near::<V>(&min[lane], &max[lane], &b) << (WIDTH * lane))
 }
 
 /// Of four points, coordinate by coordinate, each in all places of a vector. It stays in registers: what is written to memory number by
@@ -232,13 +232,14 @@ fn grown(boxes: &Boxes, room: f32) -> [[Vec4; 2]; 3] {
     core::array::from_fn(|axis| [boxes.min(axis) - room, boxes.max(axis) + room])
 }
 
-/// Which of four boxes have a point in common with another.
+/// Which of four boxes have a point in common with another, a bit for each. (glam's own mask is of another type with
+/// its feature `scalar-math`, which parry's `enhanced-determinism` turns on.)
 #[inline(always)]
-fn are_near<V: Vector>(min: &[Vec4; 3], max: &[Vec4; 3], boxes: &[[Vec4; 2]; 3]) -> BVec4A {
+fn are_near<V: Vector>(min: &[Vec4; 3], max: &[Vec4; 3], boxes: &[[Vec4; 2]; 3]) -> u32 {
     let along = |axis: usize| {
         let [low, high]: [Vec4; 2] = boxes[axis];
         min[axis].cmple(high) & max[axis].cmpge(low)
     };
     let in_plane = along(0) & along(1);
-    if V::DIM == 2 { in_plane } else { in_plane & along(2) }
+    if V::DIM == 2 { in_plane.bitmask() } else { (in_plane & along(2)).bitmask() }
 }
