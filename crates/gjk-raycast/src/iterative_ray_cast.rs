@@ -33,7 +33,7 @@ use crate::{Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, 
 /// own point closest to that one, so that a far source loses only its own digits.
 ///
 /// # Errors
-/// [`RayCastError`] if the direction is zero or a coordinate is not finite, or where a closest point is not known.
+/// [`RayCastError`] if the direction is zero, a coordinate not finite, an option NaN, or a closest point not known.
 pub fn iterative_ray_cast<V: Vector>(
     closest_point: impl FnMut(V) -> Option<V>,
     ray: Ray<V>,
@@ -53,7 +53,7 @@ pub fn iterative_ray_cast_with<V: Vector>(
     options: RayCastOptions<V>,
     mut observer: impl FnMut(Iterate<'_, V>),
 ) -> Result<RayCast<V>, RayCastError> {
-    ray.check()?;
+    ray.check(&options)?;
     let mut closest_point = |x| closest_point(x).ok_or(RayCastError::NoClosestPoint);
     let origin = closest_point(ray.source)?;
     if !origin.is_finite() {

@@ -6,7 +6,7 @@ use num_traits::Float as _;
 
 use crate::body::{Pair, PointPair};
 use crate::cast::{CastHit, Part, cast, direct, settle_start};
-use crate::ray::check_finite;
+use crate::ray::{check_finite, check_numbers};
 use crate::shape::WithoutLines;
 use crate::start_in_contact::Start;
 use crate::{
@@ -17,6 +17,13 @@ use crate::{
 /// Shapes that are apart by so many ε of their sizes, and of how far away they are, may be in contact: they and their places are rounded.
 const NEAR: f64 = 16.0;
 const NEAR_OF_FAR: f64 = 4.0;
+
+/// The error of the limits of a cast of bodies that are none. Within an infinite target distance of one another are
+/// any two bodies at any time, but a body swept by that is none.
+pub(crate) fn check_limits<S: Scalar>([max_time, tolerance, target_distance]: [S; 3]) -> Result<(), RayCastError> {
+    let target = if target_distance < S::infinity() { target_distance } else { S::nan() };
+    check_numbers([("max_time", max_time), ("tolerance", tolerance), ("target_distance", target)])
+}
 
 /// The velocities of two shapes, in units of length per unit of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,10 +36,11 @@ pub struct Motion<V> {
 }
 
 impl<V: Vector> Motion<V> {
-    /// The error of a motion that is none.
-    pub(crate) fn check(&self) -> Result<(), RayCastError> {
+    /// The error of a motion that is none, or cannot be cast with these options.
+    pub(crate) fn check(&self, options: &LinearCastOptions<V>) -> Result<(), RayCastError> {
         check_finite("velocity_a", self.velocity_a)?;
-        check_finite("velocity_b", self.velocity_b)
+        check_finite("velocity_b", self.velocity_b)?;
+        check_limits([options.max_time, options.tolerance, options.target_distance])
     }
 }
 
@@ -80,7 +88,8 @@ impl<V: Vector> Motion<V> {
 /// certified in the same way.
 ///
 /// # Errors
-/// [`RayCastError::NonFinite`] if a velocity is not finite, or the target distance is NaN.
+/// [`RayCastError::NonFinite`] if a velocity is not finite, the target distance is NaN or infinite, or another option
+/// NaN.
 #[inline]
 pub fn linear_cast<A, B>(
     a: &A,
@@ -111,13 +120,9 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    motion.check()?;
+    motion.check(&options)?;
     let zero = <A::Vector as Vector>::Scalar::default();
-    let target = options.target_distance;
-    if target.is_nan() {
-        return Err(RayCastError::NonFinite { parameter: "target_distance", index: 0 });
-    }
-    let target = target.max(zero);
+    let target = options.target_distance.max(zero);
     let mut body = Pair::new(a, b);
     body.core_a = body.core_a.rounded(target);
     let (core_a, core_b) = (body.core_a, body.core_b);

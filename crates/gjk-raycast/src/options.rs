@@ -94,11 +94,12 @@ pub(crate) use setters;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct DistanceOptions<V: Vector> {
-    /// The width of the bracket at which to stop, relative to the distance. A bracket at the level of
-    /// rounding, relative to the size of what is compared, always ends the iteration. Default: 0.
+    /// The width of the bracket at which to stop, relative to the distance. A bracket at the level of rounding,
+    /// relative to the size of what is compared, always ends the iteration. A negative value and NaN are taken for
+    /// zero. Default: 0.
     pub tolerance: V::Scalar,
     /// Stop as soon as the distance is certain to exceed this limit; the bracket is then left as wide as it is at that moment.
-    /// Default: infinity.
+    /// NaN is no limit. Default: infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub limit: V::Scalar,
     /// The iterations after which to give up. Default: 200.
@@ -202,7 +203,8 @@ pub struct RayCastOptions<V: Vector> {
     /// The beginning of the ray, in units of its direction; it belongs to the ray. Anything hit before it does not count, so that a
     /// ray can start on a surface and leave it. A negative value is taken for zero. Default: 0.
     pub min_lambda: V::Scalar,
-    /// The end of the ray, in units of its direction; the end belongs to the ray. Default: infinity.
+    /// The end of the ray, in units of its direction; the end belongs to the ray. If it is before the beginning, the
+    /// ray has no points, and the answer is a miss. Default: infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub max_lambda: V::Scalar,
     /// How far along the ray the hit may stay uncertain, relative to the size of the target. A bracket at the level of
@@ -262,7 +264,8 @@ impl<V: Vector> Default for RayCastOptions<V> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct LinearCastOptions<V: Vector> {
-    /// The end of the motion; it belongs to the motion. Default: infinity.
+    /// The end of the motion; it belongs to the motion. If it is negative, the motion has no time, and the answer is a
+    /// miss. Default: infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub max_time: V::Scalar,
     /// The distance at which the shapes count as touching: the cast stops that far from contact. A negative value is taken for zero.

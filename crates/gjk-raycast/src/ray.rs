@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::RayCastError;
+use crate::{RayCastError, RayCastOptions};
 
 /// The ray of the points `source + λ·direction`, λ ≥ 0. The direction need not be of unit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,14 +33,26 @@ impl<V: Vector> Ray<V> {
         Self { source: copied(self.source), direction: copied(self.direction) }
     }
 
-    /// The error of a ray that cannot be cast.
-    pub(crate) fn check(&self) -> Result<(), RayCastError> {
+    /// The error of a ray that cannot be cast, or not with these options.
+    pub(crate) fn check(&self, options: &RayCastOptions<V>) -> Result<(), RayCastError> {
         // Zero times what is not finite is NaN; a sum that overflows is looked at coordinate by coordinate.
         if (self.source + self.direction).dot(V::ZERO) != V::Scalar::ZERO {
             check_finite("source", self.source)?;
             check_finite("direction", self.direction)?;
         }
-        if self.direction == V::ZERO { Err(RayCastError::ZeroDirection) } else { Ok(()) }
+        if self.direction == V::ZERO {
+            return Err(RayCastError::ZeroDirection);
+        }
+        let RayCastOptions { min_lambda, max_lambda, tolerance, .. } = *options;
+        check_numbers([("min_lambda", min_lambda), ("max_lambda", max_lambda), ("tolerance", tolerance)])
+    }
+}
+
+/// The error of options that are NaN, in which every comparison would be as false as its opposite.
+pub(crate) fn check_numbers<S: Scalar>(options: [(&'static str, S); 3]) -> Result<(), RayCastError> {
+    match options.iter().find(|(_, value)| value.is_nan()) {
+        Some(&(parameter, _)) => Err(RayCastError::NonFinite { parameter, index: 0 }),
+        None => Ok(()),
     }
 }
 

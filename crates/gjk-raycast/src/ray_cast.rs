@@ -1,4 +1,4 @@
-//! Where a ray enters a shape (the paper's Algorithm 3).
+//! Where a ray enters a shape: the paper's question, answered by a closed form, by a portal or by its Algorithm 3.
 
 use convex_support::{CertainCrossing, Point, Scalar, SupportMap, Vector};
 use num_traits::Float;
@@ -41,7 +41,7 @@ type ScalarOf<S> = <<S as SupportMap>::Vector as Vector>::Scalar;
 /// source.
 ///
 /// # Errors
-/// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+/// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
 #[inline]
 pub fn ray_cast<S: SupportMap + ?Sized>(
     target: &S,
@@ -58,7 +58,7 @@ pub fn ray_cast<S: SupportMap + ?Sized>(
 /// [`ray_cast`], showing an observer every iterate.
 ///
 /// # Errors
-/// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+/// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
 #[inline]
 pub fn ray_cast_with<S: SupportMap + ?Sized>(
     target: &S,
@@ -88,7 +88,8 @@ fn certain<S: SupportMap + ?Sized>(
 ) -> Option<RayCast<S::Vector>> {
     let (zero, infinity) = (ScalarOf::<S>::ZERO, ScalarOf::<S>::infinity());
     let is_plain = options.min_lambda <= zero && options.method == CastMethod::Portal && options.max_iterations > 0;
-    if !is_plain {
+    // One look for NaN in both, to be refused.
+    if !is_plain || (options.max_lambda + options.tolerance).is_nan() {
         return None;
     }
     let missed = |axis| (Outcome::Miss(Miss { axis }), [infinity; 2]);
@@ -124,7 +125,7 @@ fn searched<S: SupportMap + ?Sized>(
     options: RayCastOptions<S::Vector>,
     mut observer: impl FnMut(Iterate<'_, S::Vector>),
 ) -> Result<RayCast<S::Vector>, RayCastError> {
-    ray.check()?;
+    ray.check(&options)?;
     if options.min_lambda > Scalar::ZERO {
         return Ok(late(target, ray, options, &mut observer));
     }

@@ -30,13 +30,13 @@ use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, r
 /// - The [`axis`](RayCastOptions::axis) of the options is a guess of the normal at the exit.
 ///
 /// # Errors
-/// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+/// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
 pub fn ray_exit<S: SupportMap + ?Sized>(
     target: &S,
     ray: Ray<S::Vector>,
     options: RayCastOptions<S::Vector>,
 ) -> Result<RayExit<S::Vector>, RayCastError> {
-    ray.check()?;
+    ray.check(&options)?;
     let mut exit = exit_of_line(target, ray, options);
     let (begin, end) = (options.min_lambda.max(Scalar::ZERO), options.max_lambda);
     let infinity = <S::Vector as Vector>::Scalar::infinity();

@@ -32,6 +32,7 @@ mod lies;
 mod motion_cast;
 mod motion_laws;
 mod moving_boxes;
+mod options;
 mod paper;
 mod regressions_distance;
 mod regressions_linear_cast;

@@ -6,8 +6,9 @@ use super::manifold::manifold;
 use super::{Contact, SignedDistanceOptions, signed_distance};
 use num_traits::Float as _;
 
-/// The contact of two shapes; `None` if they are farther apart than `within`. The options are those of the signed distance, but `within`
-/// takes the place of the limit. The normal of the last frame is a good first [`axis`](SignedDistanceOptions::axis).
+/// The contact of two shapes; `None` if they are farther apart than `within`. The options are those of the signed
+/// distance, but `within` takes the place of the limit; NaN is nearer than nothing. The normal of the last frame is a
+/// good first [`axis`](SignedDistanceOptions::axis).
 ///
 /// ```
 /// use convex_support::{Cuboid, Posed, glam::DVec3};

@@ -18,10 +18,11 @@ pub struct SignedDistanceOptions<V: Vector> {
     /// The width of the bracket at which to stop in overlap, relative to the size of what is compared. It concerns curved shapes;
     /// of polytopes the facet that decides is found exactly. Default: 1e-9 in `f64`, 8ε in `f32`.
     pub tolerance: V::Scalar,
-    /// Stop as soon as the shapes are certain to be farther apart than this. Default: infinity.
+    /// Stop as soon as the shapes are certain to be farther apart than this. NaN is no limit. Default: infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub limit: V::Scalar,
-    /// Stop as soon as the shapes are certain to be deeper in one another than this. Default: infinity.
+    /// Stop as soon as the shapes are certain to be deeper in one another than this. NaN is no limit. Default:
+    /// infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub depth_limit: V::Scalar,
     /// The support points of each shape after which to give up. Default: 500.

@@ -12,21 +12,17 @@ impl<V: Vector> HalfSpace<V> {
     /// When a moving shape, `a`, first touches the half-space, `b`: the ray of its lowest point.
     ///
     /// # Errors
-    /// [`RayCastError::NonFinite`] if a velocity is not finite, or the target distance is NaN.
+    /// As of [`linear_cast`](crate::linear_cast()).
     pub fn linear_cast<A: SupportMap<Vector = V> + ?Sized>(
         &self,
         shape: &A,
         motion: Motion<V>,
         options: LinearCastOptions<V>,
     ) -> Result<LinearCast<V>, RayCastError> {
-        motion.check()?;
-        let target = options.target_distance;
-        if target.is_nan() {
-            return Err(RayCastError::NonFinite { parameter: "target_distance", index: 0 });
-        }
+        motion.check(&options)?;
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
         let plane = self.plane();
-        let Lowest { height, point } = plane.lowest(shape, target.max(zero));
+        let Lowest { height, point } = plane.lowest(shape, options.target_distance.max(zero));
         let sinking = plane.sinking([motion.velocity_a, -motion.velocity_b]);
         let goes_deeper = options.start_in_contact == StartInContact::IfDeeper;
         if goes_deeper && height.least() <= zero && !(sinking.most() > zero) {

@@ -15,9 +15,9 @@ impl<V: Vector> HalfSpace<V> {
     /// themselves, and so is λ.
     ///
     /// # Errors
-    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
     pub fn ray_cast(&self, ray: Ray<V>, options: RayCastOptions<V>) -> Result<RayCast<V>, RayCastError> {
-        ray.check()?;
+        ray.check(&options)?;
         let zero = V::Scalar::ZERO;
         let plane = self.plane();
         let begin = options.min_lambda.max(zero);

@@ -11,6 +11,7 @@ use super::result::{MotionCast, MotionHit, MotionIterate};
 use super::rigid_motion::RigidMotion;
 use super::trajectory::Trajectory;
 use crate::error::RayCastError;
+use crate::linear_cast::check_limits;
 use crate::ray::check_finite;
 use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, linear_cast};
 
@@ -43,8 +44,8 @@ use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, linear_ca
 /// Where neither body turns, the answer is that of [`linear_cast`].
 ///
 /// # Errors
-/// [`RayCastError::NonFinite`] if a number of a [`RigidMotion`] is not finite, or [`max_time`](MotionCastOptions::max_time),
-/// [`tolerance`](MotionCastOptions::tolerance) or [`target_distance`](MotionCastOptions::target_distance) is NaN.
+/// [`RayCastError::NonFinite`] if a number of a [`RigidMotion`] is not finite, the target distance is NaN or
+/// infinite, or another option NaN.
 pub fn motion_cast<A, B>(
     a: &A,
     motion_a: impl Trajectory<Vector = A::Vector>,
@@ -133,11 +134,7 @@ pub(crate) fn of_linear_cast<V: Vector>(cast: LinearCast<V>, max_time: V::Scalar
 /// The options, if they are numbers, with what is below zero taken for zero.
 pub(crate) fn checked<V: Vector>(options: MotionCastOptions<V>) -> Result<MotionCastOptions<V>, RayCastError> {
     let MotionCastOptions { max_time, tolerance, target_distance, .. } = options;
-    for (parameter, value) in [("max_time", max_time), ("tolerance", tolerance), ("target_distance", target_distance)] {
-        if value.is_nan() {
-            return Err(RayCastError::NonFinite { parameter, index: 0 });
-        }
-    }
+    check_limits([max_time, tolerance, target_distance])?;
     let zero = V::Scalar::ZERO;
     let (max_time, target_distance) = (max_time.max(zero), target_distance.max(zero));
     Ok(MotionCastOptions { max_time, target_distance, ..options })

@@ -18,7 +18,7 @@ impl<S: SupportMap> Scene<S> {
     /// The first body that the ray hits: the least λ of [`ray_cast`](crate::ray_cast) for each body.
     ///
     /// # Errors
-    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
     pub fn ray_cast(
         &self,
         ray: Ray<S::Vector>,
@@ -30,7 +30,7 @@ impl<S: SupportMap> Scene<S> {
     /// All bodies that the ray hits, in the order of λ and then of their indices, into `hits`, which is emptied first.
     ///
     /// # Errors
-    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
     pub fn ray_cast_all(
         &self,
         ray: Ray<S::Vector>,
@@ -43,7 +43,7 @@ impl<S: SupportMap> Scene<S> {
     /// Whether the ray hits any body: a shadow ray.
     ///
     /// # Errors
-    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
     pub fn any_hit(
         &self,
         ray: Ray<S::Vector>,
@@ -57,7 +57,7 @@ impl<S: SupportMap> Scene<S> {
     /// `Motion { velocity_a, ..Motion::default() }`.
     ///
     /// # Errors
-    /// [`RayCastError::NonFinite`] if a velocity is not finite.
+    /// As of [`linear_cast`](crate::linear_cast()).
     pub fn linear_cast<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
         shape: &A,
@@ -86,27 +86,27 @@ impl<S: SupportMap> Among<'_, S> {
     /// [`Scene::ray_cast`] among these bodies.
     ///
     /// # Errors
-    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
     pub fn ray_cast(
         &self,
         ray: Ray<S::Vector>,
         options: RayCastOptions<S::Vector>,
     ) -> Result<SceneRayCast<S::Vector>, RayCastError> {
-        ray.check()?;
+        ray.check(&options)?;
         self.first(&swept_point(ray), options.max_lambda, |body| Ok(body.ray_cast(ray, options)?.into()))
     }
 
     /// [`Scene::ray_cast_all`] among these bodies.
     ///
     /// # Errors
-    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
     pub fn ray_cast_all(
         &self,
         ray: Ray<S::Vector>,
         options: RayCastOptions<S::Vector>,
         hits: &mut Vec<RayBodyHit<S::Vector>>,
     ) -> Result<SceneHits, RayCastError> {
-        ray.check()?;
+        ray.check(&options)?;
         let hits = reuse(hits);
         let mut undecided = None;
         let work = self.each(&swept_point(ray), options.max_lambda, |index, body| {
@@ -127,13 +127,13 @@ impl<S: SupportMap> Among<'_, S> {
     /// [`Scene::any_hit`] among these bodies.
     ///
     /// # Errors
-    /// [`RayCastError`] if the direction is zero or a coordinate is not finite.
+    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
     pub fn any_hit(
         &self,
         ray: Ray<S::Vector>,
         options: RayCastOptions<S::Vector>,
     ) -> Result<SceneAnyHit, RayCastError> {
-        ray.check()?;
+        ray.check(&options)?;
         let (mut hit, mut undecided) = (false, None);
         let work = self.each(&swept_point(ray), options.max_lambda, |index, body| {
             let single = Single::from(body.ray_cast(ray, options)?);
@@ -149,14 +149,14 @@ impl<S: SupportMap> Among<'_, S> {
     /// [`Scene::linear_cast`] among these bodies.
     ///
     /// # Errors
-    /// [`RayCastError::NonFinite`] if a velocity is not finite.
+    /// As of [`linear_cast`](crate::linear_cast()).
     pub fn linear_cast<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
         shape: &A,
         motion: Motion<S::Vector>,
         options: LinearCastOptions<S::Vector>,
     ) -> Result<SceneLinearCast<S::Vector>, RayCastError> {
-        motion.check()?;
+        motion.check(&options)?;
         let around = grown(outer_box_of_question(shape), options.target_distance);
         let swept = swept_box(around, motion.velocity_a - motion.velocity_b);
         self.first(&swept, options.max_time, |body| Ok(body.linear_cast(shape, motion, options)?.into()))
