@@ -13,16 +13,19 @@ use crate::plot::{duration, raised};
 #[must_use]
 pub fn section(records: &[Record]) -> Section {
     let groups = groups(records);
+    let hard: Vec<&Record> = records.iter().filter(|r| r.tags.iter().any(|tag| difficulty(tag).is_some())).collect();
     let blocks =
         if groups.is_empty() { Vec::new() } else { vec![Block::Table(kinds(&groups)), Block::Table(values(&groups))] };
     Section {
         id: "stiff",
         title: "Stiff and extreme cases",
-        lead: "What happens to the answers where the numbers get hard: long and thin bodies, scenes that are tiny, huge or far from the \
-               origin, bodies that nearly touch, rays that graze. What to see: no answer is wrong, no bound fails to hold the truth, \
-               every error is a small part of what the inputs allow, and iterations stay few. Where a relative error is large, the \
-               answer itself is nearly zero, or a change of the last digits of the inputs changes it as much."
-            .to_owned(),
+        lead: format!(
+            "What happens to the answers where the numbers get hard: long and thin bodies, scenes that are tiny, huge \
+             or far from the origin, bodies that nearly touch, rays that graze. What to see: {}. Where a relative \
+             error is large, is the answer itself nearly zero, or would a change of the last digits of the inputs \
+             change it as much? \"Of allowed\" takes both into account.",
+            Tally::of(&hard).in_words()
+        ),
         blocks,
     }
 }
@@ -89,25 +92,66 @@ fn values(groups: &Groups<'_>) -> Table {
     Table::new("stiff-values", "The same for each value", &headers, rows.collect()).with_names(3).folded()
 }
 
+/// What is true of some cases.
+struct Tally {
+    cases: usize,
+    wrong: usize,
+    /// Answers whose bounds do not hold the truth.
+    violations: usize,
+    /// The worst error in units of what the inputs allow; NaN where none is known.
+    of_allowed: f64,
+    iterations: Option<u64>,
+}
+
+impl Tally {
+    fn of(records: &[&Record]) -> Self {
+        Self {
+            cases: records.len(),
+            wrong: records.iter().filter(|r| !r.verdict.wrong.is_empty()).count(),
+            violations: records.iter().filter(|r| r.verdict.violates_certificate()).count(),
+            of_allowed: worst(records, |v| v.ratio),
+            iterations: records.iter().filter_map(|r| r.iterations).max(),
+        }
+    }
+
+    fn iterations(&self) -> String {
+        self.iterations.map_or_else(|| "–".to_owned(), |i| i.to_string())
+    }
+
+    fn in_words(&self) -> String {
+        let count = |number: usize| if number == 0 { "none".to_owned() } else { number.to_string() };
+        format!(
+            "of {} answers {} {} wrong, and of {} the bounds fail to hold the truth; the worst error is {} of what the \
+             inputs allow, and the most iterations are {}",
+            self.cases,
+            count(self.wrong),
+            if self.wrong > 1 { "are" } else { "is" },
+            count(self.violations),
+            error(self.of_allowed),
+            self.iterations()
+        )
+    }
+}
+
+/// The largest of a number that verdicts have; NaN where none has it.
+fn worst(records: &[&Record], of_verdict: fn(&score::Verdict) -> Option<f64>) -> f64 {
+    records.iter().filter_map(|r| of_verdict(&r.verdict)).fold(f64::NAN, f64::max)
+}
+
 /// The names of a row, and what is true of its cases.
 fn row(names: [String; 3], of: &[&Record]) -> Row {
-    let worst = |of_verdict: fn(&score::Verdict) -> Option<f64>| {
-        of.iter().filter_map(|r| of_verdict(&r.verdict)).fold(f64::NAN, f64::max)
-    };
-    let wrong = of.iter().filter(|r| !r.verdict.wrong.is_empty()).count();
-    let violations = of.iter().filter(|r| r.verdict.violates_certificate()).count();
+    let tally = Tally::of(of);
     let times: Vec<f64> = of.iter().filter_map(|r| r.time).collect();
-    let iterations = of.iter().filter_map(|r| r.iterations).max();
     let numbers = [
-        of.len().to_string(),
-        error(worst(|v| v.relative)),
-        error(worst(|v| v.ratio)),
-        wrong.to_string(),
-        violations.to_string(),
-        iterations.map_or_else(|| "–".to_owned(), |i| i.to_string()),
+        tally.cases.to_string(),
+        error(worst(of, |v| v.relative)),
+        error(tally.of_allowed),
+        tally.wrong.to_string(),
+        tally.violations.to_string(),
+        tally.iterations(),
         quantile(&times, 0.5).map_or_else(|| "–".to_owned(), duration),
     ];
-    Row::of(names.into_iter().chain(numbers)).bad_if(wrong + violations > 0)
+    Row::of(names.into_iter().chain(numbers)).bad_if(tally.wrong + tally.violations > 0)
 }
 
 /// Powers of two are scales; all else is told as it is.
@@ -173,6 +217,33 @@ pub fn difficulty(tag: &str) -> Option<(&str, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The chapter said that no answer is wrong and no bound fails, whatever the run had found.
+    #[test]
+    fn what_is_said_of_a_run_is_counted() {
+        let record = |wrong: &[&str], soft: &[&str], ratio| Record {
+            file: "suite".to_owned(),
+            id: String::new(),
+            query: "distance".to_owned(),
+            precision: "f64",
+            tags: vec!["gap1e-6".to_owned()],
+            verdict: score::Verdict {
+                wrong: wrong.iter().map(|&why| why.to_owned()).collect(),
+                soft: soft.iter().map(|&why| why.to_owned()).collect(),
+                ratio: Some(ratio),
+                ..score::Verdict::default()
+            },
+            time: None,
+            iterations: Some(7),
+        };
+        let said = |records: &[Record]| section(records).lead;
+        let right = said(&[record(&[], &[], 0.25)]);
+        assert!(right.contains("of 1 answers none is wrong, and of none the bounds fail"), "{right}");
+        assert!(right.contains("2.5e-1 of what the inputs allow, and the most iterations are 7"), "{right}");
+        let bad = [record(&["off"], &[], 30.0), record(&["off"], &["bracket"], 2.0), record(&[], &[], 0.1)];
+        let bad = said(&bad);
+        assert!(bad.contains("of 3 answers 2 are wrong, and of 1 the bounds fail"), "{bad}");
+    }
 
     #[test]
     fn difficulties_are_told_from_other_tags() {

@@ -186,10 +186,10 @@ pub(crate) fn figures(lines: &[Line]) -> [Figure; 2] {
         " docs/scenes.md has parry beside it."
     };
     let inputs = format!("{balls}{parry}");
-    let resting = "What to see: ten thousand times the bodies cost a few times as long, and the last steps more than those \
-                   before, since the bodies outgrow the caches.";
-    let moving = "The ball that is cast moves until it hits, the box that turns for ten units of time. What to see: the same; pairs cost \
-                  a constant time for each body.";
+    let resting = "What to expect: ten thousand times the bodies cost a few times as long, and the last steps more \
+                   than those before, since the bodies outgrow the caches.";
+    let moving = "The ball that is cast moves until it hits, the box that turns for ten units of time. What to expect: \
+                  the same; pairs cost a constant time for each body.";
     [
         figure(
             lines,

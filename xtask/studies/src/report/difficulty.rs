@@ -87,8 +87,9 @@ fn figure(query: &str, kind: &str, methods: BTreeMap<String, Worst>) -> Option<F
             floor: 1e-17,
             series: series.collect(),
         },
-        caption: "What to see: our errors stay below what the inputs allow, which is 1e-7 and twice what a change of the inputs by 1000 rounding \
-                  errors does to the truth. The worst among the cases of each value, in f64, relative; of fitted ellipsoids, of the volume."
+        caption: "Beside our errors is what the inputs allow; the table counts the cases that exceed it. It is 1e-7 \
+                  and twice what a change of the inputs by 1000 rounding errors does to the truth. The worst among the \
+                  cases of each value, in f64, relative; of fitted ellipsoids, of the volume."
             .to_owned(),
     })
 }

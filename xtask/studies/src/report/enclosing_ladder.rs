@@ -177,8 +177,9 @@ fn gap_against_time(kind: &Kind) -> Figure {
             series,
         },
         caption: format!(
-            "{} points in space: {}. When each method had certified which gap, its start included; the last mark is the answer, \
-             whose gap counts the rounding of everything. What to see: Newton's method has its last digit before Khachiyan's has its second.{limits}",
+            "{} points in space: {}. When each method had certified which gap, its start included; the last mark is \
+             the answer, whose gap counts the rounding of everything. What to expect: Newton's method has its last \
+             digit before Khachiyan's has its second.{limits}",
             kind.points.len(),
             kind.what,
         ),

@@ -106,9 +106,9 @@ fn vertices() -> Figure {
         "Ray cast: time against vertices",
         "vertices",
         vec![("scan of all points".to_owned(), scan), ("look-up on the hull".to_owned(), climb)],
-        "Rays from three radii away, most of which hit, against the hull of points on a sphere, f64. Scanning looks at every \
-         point in every support query; of the hull, found once, the few vertices that can be farthest are looked up. What to see: a hundred times the \
-         vertices cost a look-up little.",
+        "Rays from three radii away, most of which hit, against the hull of points on a sphere, f64. Scanning looks at \
+         every point in every support query; of the hull, found once, the few vertices that can be farthest are looked \
+         up. What to expect: a hundred times the vertices cost a look-up little.",
     )
 }
 
@@ -142,7 +142,7 @@ fn points() -> Figure {
         "points",
         series,
         "Points spread evenly in a ball, three dimensions, certified gap 1e-7. A method is not tried on ten times the points \
-         once it takes more than 0.1 s. What to see: Newton's method on a working set looks at most points once or \
+         once it takes more than 0.1 s. What to expect: Newton's method on a working set looks at most points once or \
          twice, so that a million cost no more than a few scans.",
     )
 }
@@ -162,7 +162,8 @@ fn dimension() -> Figure {
         "Enclosing ellipsoid: time against dimension",
         "dimension",
         vec![("Newton".to_owned(), measured)],
-        "200 points in a cube, certified gap 1e-9, the dimension known at run time only. What to see: a power, not an exponential.",
+        "200 points in a cube, certified gap 1e-9, the dimension known at run time only. What to expect: a power, not \
+         an exponential.",
     )
 }
 
@@ -192,7 +193,7 @@ fn obstacles() -> Figure {
         "obstacles",
         vec![("culled and tracked".to_owned(), culled), ("all pairs".to_owned(), brute)],
         "A chain of 30 links that turns by 0.01 radians per step among ellipsoids of constant density; the least margin of all \
-         pairs in every step. What to see: all pairs grow with their number, the tracked tree hardly at all.",
+         pairs in every step. What to expect: all pairs grow with their number, the tracked tree hardly at all.",
     )
 }
 

@@ -36,14 +36,16 @@ pub(super) fn section(scope: &Scope) -> Section {
     Section {
         id: "ladders",
         title: "Error against run time",
-        lead: "Each line is a method in a precision, each mark on it a tolerance: lower is more accurate, further left is \
-               faster. What to see: after a few steps the lines fall steeply to the level of rounding, so a loose tolerance \
-               saves little; that is why the default is no tolerance at all. Single marks are methods that have no tolerance to set: closed \
-               forms, and other libraries with the one they come with, hollow where they are recorded and not of this run. Johnson and \
-               signed volumes are other sub-algorithms for the closest point of a simplex. A hull of 64 has 64 vertices. Here everything is \
-               compiled for the types of its shapes; where all kinds of cases stand together, they are behind `dyn SupportMap`, and of \
-               a dimension known at run time."
-            .to_owned(),
+        lead:
+            "Each line is a method in a precision, each mark on it a tolerance: lower is more accurate, further left \
+               is faster. What to expect: after a few steps the lines fall steeply to the level of rounding, so a \
+               loose tolerance saves little; that is why the default is no tolerance at all. Single marks are methods \
+               that have no tolerance to set: closed forms, and other libraries with the one they come with, hollow \
+               where they are recorded and not of this run. Johnson and signed volumes are other sub-algorithms for \
+               the closest point of a simplex. A hull of 64 has 64 vertices. Here everything is compiled for the types \
+               of its shapes; where all kinds of cases stand together, they are behind `dyn SupportMap`, and of a \
+               dimension known at run time."
+                .to_owned(),
         blocks,
     }
 }

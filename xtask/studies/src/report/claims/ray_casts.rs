@@ -105,9 +105,10 @@ pub(super) fn convergence(spheres: &Spheres) -> Figure {
             floor: 0.0,
             series: series.collect(),
         },
-        caption: "400 random rays, most of which hit. What to see: on a sphere the printed algorithm takes a number of steps \
-                  proportional to −log ε; the derivative of the support point replaces them by Newton's few."
-            .to_owned(),
+        caption:
+            "400 random rays, most of which hit. What to expect: on a sphere the printed algorithm takes a number of \
+                  steps proportional to −log ε; the derivative of the support point replaces them by Newton's few."
+                .to_owned(),
     }
 }
 
