@@ -8,6 +8,7 @@ use super::{Ask, How, Query, Question};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
+use crate::wire::names::Names;
 use crate::wire::shape::{EllipsoidSpec, Space};
 
 /// The query as written.
@@ -25,8 +26,10 @@ enum Method {
 }
 
 impl Query for Clearance {
+    const FIELDS: Names = &["links", "obstacles"];
+
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
-        let all = |key| fields.each(key)?.iter().map(EllipsoidSpec::read).collect::<Result<_, _>>();
+        let all = |key| fields.each(key)?.into_iter().map(EllipsoidSpec::read).collect::<Result<_, _>>();
         Ok(Self { links: all("links")?, obstacles: all("obstacles")? })
     }
 

@@ -1,45 +1,40 @@
 //! `contact`.
 
 use convex_support::Vector;
-use gjk_raycast::{ContactPoint, SignedDistanceOptions, contact, signed_distance};
+use gjk_raycast::{Body, ContactPoint, SignedDistanceOptions};
 
+use super::pair::Bodies;
 use super::signed_distance::{certain, options};
 use super::{Ask, How, Query, Question, scalar, status};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::Problem;
 use crate::wire::fields::Fields;
-use crate::wire::shape::{Shape, Solid, Space};
+use crate::wire::names::Names;
+use crate::wire::shape::{Solid, Space};
 
 /// The query as written.
 pub(super) struct Contact {
-    a: Shape,
-    b: Shape,
+    bodies: Bodies,
     within: f64,
 }
 
 impl Query for Contact {
+    const FIELDS: Names = &["a", "b", "within"];
+
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
-        Ok(Self {
-            a: Shape::read(&fields.within("a")?)?,
-            b: Shape::read(&fields.within("b")?)?,
-            within: fields.not_negative("within")?.unwrap_or(0.0),
-        })
+        Ok(Self { bodies: Bodies::read(fields)?, within: fields.not_negative("within")?.unwrap_or(0.0) })
     }
 
     fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
         how.method(&[("gjk", ())])?;
-        Ok(Box::new(Pair::<V> {
-            a: self.a.build("a", how.meshes)?,
-            b: self.b.build("b", how.meshes)?,
-            within: scalar::<V>(self.within),
-            options: options(how)?,
-        }))
+        let (a, b) = self.bodies.build(how)?;
+        Ok(Box::new(Pair::<V> { a, b, within: scalar::<V>(self.within), options: options(how)? }))
     }
 }
 
 struct Pair<V: Vector> {
     a: Solid<V>,
-    b: Solid<V>,
+    b: Body<Solid<V>>,
     within: V::Scalar,
     options: SignedDistanceOptions<V>,
 }
@@ -48,14 +43,14 @@ impl<V: Space> Question for Pair<V> {
     type Solution = Option<gjk_raycast::Contact<V>>;
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
-        Ok(contact(&self.a, &self.b, self.within, self.options))
+        Ok(self.b.contact(&self.a, self.within, self.options))
     }
 
     fn answer(&self, found: Self::Solution) -> Result<Answer, Problem> {
         let (manifold, distance) = match found {
             Some(contact) => (Field::Answer(manifold(&contact)), contact.distance),
             // That there is none is known from the signed distance, which `contact` asks for just so.
-            None => (Field::Null, signed_distance(&self.a, &self.b, self.options.with_limit(self.within))),
+            None => (Field::Null, self.b.signed_distance(&self.a, self.options.with_limit(self.within))),
         };
         certain(&distance, self.within)?;
         Ok(Answer::default()

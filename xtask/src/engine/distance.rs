@@ -1,29 +1,29 @@
 //! `distance`.
 
 use convex_support::Vector;
-use gjk_raycast::{DistanceOptions, Status, distance, distance_certificate};
+use gjk_raycast::{Body, DistanceOptions, Status, distance, distance_certificate};
 
 use super::gradient::{self, Gradient};
+use super::pair::Bodies;
 use super::{Ask, How, Query, Question, certificate, status};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
-use crate::wire::shape::{Shape, Solid, Space};
+use crate::wire::names::Names;
+use crate::wire::shape::{Solid, Space};
 
 /// The query as written.
 pub(super) struct Distance {
-    a: Shape,
-    b: Shape,
+    bodies: Bodies,
     gradient: bool,
 }
 
 impl Query for Distance {
+    const FIELDS: Names = &["a", "b", "gradient"];
+
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
-        Ok(Self {
-            a: Shape::read(&fields.within("a")?)?,
-            b: Shape::read(&fields.within("b")?)?,
-            gradient: gradient::is_wanted(fields)?,
-        })
+        let bodies = Bodies::read(fields)?;
+        Ok(Self { gradient: bodies.gradient(fields)?, bodies })
     }
 
     fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
@@ -32,14 +32,14 @@ impl Query for Distance {
         if let Some(tolerance) = how.tolerance::<V>()? {
             options = options.with_tolerance(tolerance);
         }
-        let (a, b) = (self.a.build("a", how.meshes)?, self.b.build("b", how.meshes)?);
+        let (a, b) = self.bodies.build(how)?;
         Ok(Box::new(Pair::<V> { a, b, gradient: self.gradient, options }))
     }
 }
 
 struct Pair<V: Vector> {
     a: Solid<V>,
-    b: Solid<V>,
+    b: Body<Solid<V>>,
     gradient: bool,
     options: DistanceOptions<V>,
 }
@@ -48,19 +48,23 @@ impl<V: Space> Question for Pair<V> {
     type Solution = (gjk_raycast::Distance<V>, Option<Gradient<V>>);
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
-        let answer = distance(&self.a, &self.b, self.options);
-        let gradient = || match answer.closest_features(&self.a, &self.b) {
+        let b = match &self.b {
+            Body::Convex(b) => b,
+            Body::HalfSpace(half_space) => return Ok((half_space.distance_from(&self.a), None)),
+        };
+        let answer = distance(&self.a, b, self.options);
+        let gradient = || match answer.closest_features(&self.a, b) {
             Some(features) => {
                 let gradient = features.gradient();
                 Gradient::new(gradient.a, gradient.b, features.smoothness())
             }
-            None => Gradient::at_floor(&self.a, &self.b),
+            None => Gradient::at_floor(&self.a, b),
         };
         Ok((answer, self.gradient.then(gradient)))
     }
 
     fn certificate(&self, (d, _): &Self::Solution) -> Option<Answer> {
-        Some(certificate(distance_certificate(&self.a, &self.b, d)))
+        self.b.convex().map(|b| certificate(distance_certificate(&self.a, b, d)))
     }
 
     fn answer(&self, (d, gradient): Self::Solution) -> Result<Answer, Problem> {

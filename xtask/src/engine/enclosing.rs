@@ -6,6 +6,7 @@ use super::fit::{Fitting, Points};
 use super::{Ask, How, Query};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
+use crate::wire::names::Names;
 use crate::wire::shape::Space;
 
 const METHODS: &[(&str, EnclosingMethod)] = &[
@@ -22,8 +23,11 @@ pub(super) struct Enclosing {
 }
 
 impl Query for Enclosing {
+    const FIELDS: Names = &["points", "target", "epsilon"];
+
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
-        Ok(Self { points: Points::read(fields)?, epsilon: fields.positive("epsilon")? })
+        let key = fields.only_one_of(&["points", "target"])?;
+        Ok(Self { points: Points::read(fields, key)?, epsilon: fields.positive("epsilon")? })
     }
 
     /// The same in every space: the points have a dimension of their own.

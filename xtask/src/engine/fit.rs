@@ -11,7 +11,7 @@ use crate::mesh::Meshes;
 use crate::wire::answer::{Answer, Field, Number};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
-use crate::wire::shape::Shape;
+use crate::wire::shape::TYPES;
 
 /// Points of any dimension.
 pub(super) enum Points {
@@ -22,20 +22,17 @@ pub(super) enum Points {
 }
 
 impl Points {
-    /// Those of the field `points`, or of the polytope or mesh `target`.
-    pub(super) fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
-        if fields.has("points") || !fields.has("target") {
+    /// Those of the field `points`, or of the polytope or mesh `target`, whichever is the `key`.
+    pub(super) fn read(fields: &Fields<'_>, key: &str) -> Result<Self, Problem> {
+        if key == "points" {
             return lists(fields, "points").map(Self::Listed);
         }
-        let target = fields.within("target")?;
+        let target = fields.within(key)?;
         // A polytope is read here rather than as a shape: its points may have any number of coordinates.
-        match target.get::<String>("type")?.as_str() {
-            "polytope" => lists(&target, "points").map(Self::Listed),
-            "mesh" => Ok(Self::Mesh(target.get("path")?)),
-            _ => match Shape::read(&target) {
-                Err(problem) if problem.kind == Kind::UnknownShape => Err(problem),
-                _ => Err(Problem::new(Kind::InvalidShape, format!("{} must be a polytope or a mesh", target.place()))),
-            },
+        match target.named("type", TYPES.iter().map(|(name, _)| (*name, *name)), Kind::UnknownShape)? {
+            "polytope" => lists(&target.fields(&["type"], &["points"])?, "points").map(Self::Listed),
+            "mesh" => Ok(Self::Mesh(target.fields(&["type"], &["path"])?.get("path")?)),
+            _ => Err(Problem::new(Kind::InvalidShape, format!("{} must be a polytope or a mesh", target.place()))),
         }
     }
 

@@ -4,14 +4,7 @@ use convex_support::{AngularVelocity as _, Scalar as _, SupportMap};
 use gjk_raycast::{MotionGradient, SignedDistanceOptions, Smoothness, signed_distance};
 
 use crate::wire::answer::{Answer, Field, Number};
-use crate::wire::error::Problem;
-use crate::wire::fields::Fields;
 use crate::wire::shape::Space;
-
-/// Whether a query asks for the derivatives of its scalar.
-pub(super) fn is_wanted(fields: &Fields<'_>) -> Result<bool, Problem> {
-    Ok(fields.maybe("gradient")?.unwrap_or(false))
-}
 
 /// The derivatives of a scalar by the poses of both shapes.
 pub(super) struct Gradient<V> {

@@ -2,12 +2,11 @@
 
 use lj_ellipsoid::{InscribedError, InscribedOptions, inscribed_dyn, inscribed_in_hull_dyn};
 
-use serde::Deserialize;
-
 use super::fit::{Fitting, Points, same_length};
 use super::{Ask, How, Query};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
+use crate::wire::names::Names;
 use crate::wire::shape::Space;
 
 /// The query as written.
@@ -24,22 +23,23 @@ enum Body {
     HalfSpaces(Vec<Vec<f64>>, Vec<f64>),
 }
 
-/// `normal·x ≤ offset`.
-#[derive(Deserialize)]
-struct HalfSpace {
-    normal: Vec<f64>,
-    offset: f64,
-}
-
 impl Query for Inscribed {
+    const FIELDS: Names = &["points", "target", "halfspaces", "epsilon"];
+
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
-        let body = if fields.has("halfspaces") {
-            let halfspaces: Vec<HalfSpace> = fields.get("halfspaces")?;
-            same_length(halfspaces.iter().map(|h| h.normal.len()), &fields.at("halfspaces"))?;
-            let (normals, offsets) = halfspaces.into_iter().map(|h| (h.normal, h.offset)).unzip();
-            Body::HalfSpaces(normals, offsets)
-        } else {
-            Body::Points(Points::read(fields)?)
+        let body = match fields.only_one_of(&["points", "target", "halfspaces"])? {
+            "halfspaces" => {
+                let (mut normals, mut offsets) = (Vec::new(), Vec::new());
+                for written in fields.each("halfspaces")? {
+                    // `normal·x ≤ offset`.
+                    let half_space = written.fields(&["normal", "offset"], &[])?;
+                    normals.push(half_space.get::<Vec<f64>>("normal")?);
+                    offsets.push(half_space.get("offset")?);
+                }
+                same_length(normals.iter().map(Vec::len), &fields.at("halfspaces"))?;
+                Body::HalfSpaces(normals, offsets)
+            }
+            key => Body::Points(Points::read(fields, key)?),
         };
         Ok(Self { body, epsilon: fields.positive("epsilon")? })
     }

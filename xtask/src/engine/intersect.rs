@@ -1,45 +1,58 @@
 //! `intersect`.
 
-use convex_support::Vector;
-use gjk_raycast::{IntersectOptions, Intersection, intersection_certificate, intersects};
+use convex_support::{Scalar as _, Vector};
+use gjk_raycast::{Body, IntersectOptions, Intersection, SignedDistance, Status, intersection_certificate, intersects};
 
+use super::pair::Bodies;
 use super::{Ask, How, Query, Question, certificate, status};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
-use crate::wire::shape::{Shape, Solid, Space};
+use crate::wire::names::Names;
+use crate::wire::shape::{Solid, Space};
 
 /// The query as written.
 pub(super) struct Intersect {
-    a: Shape,
-    b: Shape,
+    bodies: Bodies,
 }
 
 impl Query for Intersect {
+    const FIELDS: Names = &["a", "b"];
+
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
-        Ok(Self { a: Shape::read(&fields.within("a")?)?, b: Shape::read(&fields.within("b")?)? })
+        Ok(Self { bodies: Bodies::read(fields)? })
     }
 
     fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
         how.method(&[("gjk", ())])?;
-        Ok(Box::new(Pair::<V> { a: self.a.build("a", how.meshes)?, b: self.b.build("b", how.meshes)? }))
+        let (a, b) = self.bodies.build(how)?;
+        Ok(Box::new(Pair::<V> { a, b }))
     }
 }
 
 struct Pair<V: Vector> {
     a: Solid<V>,
-    b: Solid<V>,
+    b: Body<Solid<V>>,
 }
 
 impl<V: Space> Question for Pair<V> {
     type Solution = Intersection<V>;
 
     fn solve(&self) -> Result<Intersection<V>, Problem> {
-        Ok(intersects(&self.a, &self.b, IntersectOptions::new()))
+        Ok(match &self.b {
+            Body::Convex(b) => intersects(&self.a, b, IntersectOptions::new()),
+            Body::HalfSpace(half_space) => {
+                let zero = V::Scalar::ZERO;
+                let SignedDistance { lower, upper, normal, iterations, .. } = half_space.signed_distance(&self.a);
+                let (is_apart, overlap) = (lower > zero, upper <= zero);
+                let status = if is_apart || overlap { Status::Converged } else { Status::Stalled };
+                Intersection { overlap, axis: is_apart.then_some(normal), status, iterations }
+            }
+        })
     }
 
     fn certificate(&self, i: &Intersection<V>) -> Option<Answer> {
-        Some(certificate(intersection_certificate(&self.a, &self.b, i)))
+        self.b.convex().map(|b| certificate(intersection_certificate(&self.a, b, i)))
     }
 
     fn answer(&self, i: Intersection<V>) -> Result<Answer, Problem> {

@@ -1,60 +1,53 @@
 //! `linear_cast`.
 
 use convex_support::Vector;
-use gjk_raycast::{LinearCastOptions, LinearHit, Motion, linear_cast, linear_cast_certificate};
+use gjk_raycast::{Body, LinearCastOptions, LinearHit, Motion, linear_cast, linear_cast_certificate};
 
-use super::cast::{self, problem};
+use super::cast::{self, Limits, problem};
 use super::gradient::{self, Gradient};
-use super::{Ask, How, Query, Question, certificate, scalar};
+use super::pair::Bodies;
+use super::{Ask, How, Query, Question, certificate};
 use crate::wire::answer::Answer;
 use crate::wire::error::Problem;
 use crate::wire::fields::{Coordinates, Fields};
-use crate::wire::shape::{Shape, Solid, Space, vector};
+use crate::wire::names::Names;
+use crate::wire::shape::{Solid, Space, vector};
 
 /// The query as written.
 pub(super) struct LinearCast {
-    a: Shape,
-    b: Shape,
+    bodies: Bodies,
     velocity_a: Coordinates,
     velocity_b: Coordinates,
-    max_time: Option<f64>,
+    limits: Limits,
     gradient: bool,
 }
 
 impl Query for LinearCast {
+    const FIELDS: Names =
+        &["a", "b", "velocity_a", "velocity_b", "max_time", "target_distance", "start_in_contact", "gradient"];
+
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+        let bodies = Bodies::read(fields)?;
         Ok(Self {
-            a: Shape::read(&fields.within("a")?)?,
-            b: Shape::read(&fields.within("b")?)?,
             velocity_a: fields.vector_or_zero("velocity_a")?,
             velocity_b: fields.vector_or_zero("velocity_b")?,
-            max_time: fields.maybe("max_time")?,
-            gradient: gradient::is_wanted(fields)?,
+            limits: Limits::read(fields)?,
+            gradient: bodies.gradient(fields)?,
+            bodies,
         })
     }
 
     fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
         how.method(&[("gjk", ())])?;
-        let mut options = LinearCastOptions::new();
-        if let Some(max_time) = self.max_time {
-            options = options.with_max_time(scalar::<V>(max_time));
-        }
-        if let Some(tolerance) = how.tolerance::<V>()? {
-            options = options.with_tolerance(tolerance);
-        }
-        Ok(Box::new(Cast::<V> {
-            a: self.a.build("a", how.meshes)?,
-            b: self.b.build("b", how.meshes)?,
-            motion: Motion { velocity_a: vector(&self.velocity_a), velocity_b: vector(&self.velocity_b) },
-            gradient: self.gradient,
-            options,
-        }))
+        let (a, b) = self.bodies.build(how)?;
+        let motion = Motion { velocity_a: vector(&self.velocity_a), velocity_b: vector(&self.velocity_b) };
+        Ok(Box::new(Cast::<V> { a, b, motion, gradient: self.gradient, options: self.limits.linear(how)? }))
     }
 }
 
 struct Cast<V: Vector> {
     a: Solid<V>,
-    b: Solid<V>,
+    b: Body<Solid<V>>,
     motion: Motion<V>,
     gradient: bool,
     options: LinearCastOptions<V>,
@@ -64,13 +57,17 @@ impl<V: Space> Question for Cast<V> {
     type Solution = (gjk_raycast::LinearCast<V>, Option<Gradient<V>>);
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
-        let cast = linear_cast(&self.a, &self.b, self.motion, self.options).map_err(problem)?;
+        let cast = match &self.b {
+            Body::Convex(b) => linear_cast(&self.a, b, self.motion, self.options),
+            Body::HalfSpace(half_space) => half_space.linear_cast(&self.a, self.motion, self.options),
+        }
+        .map_err(problem)?;
         let hit = if self.gradient { cast.outcome.hit() } else { None };
-        Ok((cast, hit.map(|hit| self.gradient_of(hit))))
+        Ok((cast, hit.and_then(|hit| self.gradient_of(hit))))
     }
 
     fn certificate(&self, (cast, _): &Self::Solution) -> Option<Answer> {
-        Some(certificate(linear_cast_certificate(&self.a, &self.b, self.motion, cast)))
+        self.b.convex().map(|b| certificate(linear_cast_certificate(&self.a, b, self.motion, cast)))
     }
 
     fn answer(&self, (cast, gradient): Self::Solution) -> Result<Answer, Problem> {
@@ -82,12 +79,13 @@ impl<V: Space> Question for Cast<V> {
 
 impl<V: Space> Cast<V> {
     /// The derivatives of the time of a hit.
-    fn gradient_of(&self, hit: LinearHit<V>) -> Gradient<V> {
-        let features = hit.closest_features(&self.a, &self.b, self.motion);
+    fn gradient_of(&self, hit: LinearHit<V>) -> Option<Gradient<V>> {
+        let b = self.b.convex()?;
+        let features = hit.closest_features(&self.a, b, self.motion);
         let smooth = features.and_then(|features| {
             let gradient = hit.refined(&features).gradient(self.motion)?;
             Some(Gradient::new(gradient.pose_a, gradient.pose_b, features.smoothness()))
         });
-        smooth.unwrap_or_else(|| Gradient::at_floor(&self.a, &self.b))
+        Some(smooth.unwrap_or_else(|| Gradient::at_floor(&self.a, b)))
     }
 }

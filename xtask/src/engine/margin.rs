@@ -10,6 +10,7 @@ use super::{Ask, How, Query, Question};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
+use crate::wire::names::Names;
 use crate::wire::shape::{EllipsoidSpec, Space};
 
 pub(super) fn options(tol: Option<f64>) -> Result<MarginOptions, Problem> {
@@ -52,11 +53,13 @@ enum Method {
 }
 
 impl Query for Margin {
+    const FIELDS: Names = &["e1", "e2", "gradient"];
+
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
         Ok(Self {
-            e1: EllipsoidSpec::read(&fields.within("e1")?)?,
-            e2: EllipsoidSpec::read(&fields.within("e2")?)?,
-            gradient: fields.maybe("gradient")?.unwrap_or(false),
+            e1: EllipsoidSpec::read(fields.within("e1")?)?,
+            e2: EllipsoidSpec::read(fields.within("e2")?)?,
+            gradient: fields.flag("gradient")?,
         })
     }
 

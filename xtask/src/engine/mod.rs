@@ -13,7 +13,9 @@ mod linear_cast;
 mod margin;
 mod method;
 mod motion_cast;
+mod pair;
 mod ray_cast;
+mod ray_exit;
 mod scene;
 mod signed_distance;
 mod track;
@@ -22,7 +24,6 @@ use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{Scalar as _, Vector};
 use cpu_time::ThreadTime;
 use gjk_raycast::Certificate;
-use serde::Deserialize;
 
 use self::clearance::Clearance;
 use self::contact::Contact;
@@ -34,13 +35,15 @@ use self::linear_cast::LinearCast;
 use self::margin::Margin;
 use self::motion_cast::MotionCast;
 use self::ray_cast::RayCast;
+use self::ray_exit::RayExit;
 use self::scene::Scene;
 use self::signed_distance::SignedDistance;
 use self::track::Track;
 use crate::mesh::Meshes;
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
-use crate::wire::fields::{Dimension, Fields, Object};
+use crate::wire::fields::{Dimension, Fields, Object, Written};
+use crate::wire::names::Names;
 use crate::wire::shape::Space;
 
 /// A query with its shapes built, ready to be solved.
@@ -115,23 +118,28 @@ fn certificate<V: Vector>(certificate: Certificate<V>) -> Answer {
 }
 
 /// The kinds of queries, as written; a file each.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Name {
-    RayCast,
-    Distance,
-    SignedDistance,
-    Contact,
-    Intersect,
-    LinearCast,
-    MotionCast,
-    Scene,
-    EnclosingEllipsoid,
-    InscribedEllipsoid,
-    Margin,
-    Track,
-    Clearance,
-}
+const QUERIES: &[(&str, Reader)] = &[
+    ("ray_cast", read::<RayCast>),
+    ("ray_exit", read::<RayExit>),
+    ("distance", read::<Distance>),
+    ("signed_distance", read::<SignedDistance>),
+    ("contact", read::<Contact>),
+    ("intersect", read::<Intersect>),
+    ("linear_cast", read::<LinearCast>),
+    ("motion_cast", read::<MotionCast>),
+    ("scene", read::<Scene>),
+    ("enclosing_ellipsoid", read::<Enclosing>),
+    ("inscribed_ellipsoid", read::<Inscribed>),
+    ("margin", read::<Margin>),
+    ("track", read::<Track>),
+    ("clearance", read::<Clearance>),
+];
+
+type Reader = fn(Written<'_>, &Dimension, &Meshes) -> Result<Box<dyn Ask>, Problem>;
+
+/// The fields that a query of any kind may have.
+const EVERY: Names =
+    &["id", "query", "precision", "tol", "method", "expect", "tags", "allow", "allow_fields", "bracket"];
 
 /// The question that a JSON object asks.
 ///
@@ -139,28 +147,13 @@ enum Name {
 /// Where it asks none.
 pub fn question(object: &Object, meshes: &Meshes) -> Result<Box<dyn Ask>, Problem> {
     let dimension = Dimension::default();
-    let fields = Fields::new(object, &dimension);
-    let ask = match fields.name("query", Kind::UnknownQuery)? {
-        Name::RayCast => read::<RayCast>,
-        Name::Distance => read::<Distance>,
-        Name::SignedDistance => read::<SignedDistance>,
-        Name::Contact => read::<Contact>,
-        Name::Intersect => read::<Intersect>,
-        Name::LinearCast => read::<LinearCast>,
-        Name::MotionCast => read::<MotionCast>,
-        Name::Scene => read::<Scene>,
-        Name::EnclosingEllipsoid => read::<Enclosing>,
-        Name::InscribedEllipsoid => read::<Inscribed>,
-        Name::Margin => read::<Margin>,
-        Name::Track => read::<Track>,
-        Name::Clearance => read::<Clearance>,
-    };
-    ask(&fields, &dimension, meshes)
+    let written = Written::new(object, &dimension);
+    let read = written.named("query", QUERIES.iter().copied(), Kind::UnknownQuery)?;
+    read(written, &dimension, meshes)
 }
 
 /// The precision to answer in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Precision {
     F32,
     #[default]
@@ -177,6 +170,9 @@ struct How<'a> {
 
 /// A kind of query.
 trait Query: Sized {
+    /// The names of its own fields.
+    const FIELDS: Names;
+
     /// Its own fields, as written.
     fn read(fields: &Fields<'_>) -> Result<Self, Problem>;
 
@@ -185,10 +181,11 @@ trait Query: Sized {
 }
 
 /// Reads a query. Its vectors say which dimension it has; 3 where there are none.
-fn read<Q: Query>(fields: &Fields<'_>, dimension: &Dimension, meshes: &Meshes) -> Result<Box<dyn Ask>, Problem> {
-    let precision = fields.maybe("precision")?.unwrap_or_default();
+fn read<Q: Query>(written: Written<'_>, dimension: &Dimension, meshes: &Meshes) -> Result<Box<dyn Ask>, Problem> {
+    let fields = written.fields(EVERY, Q::FIELDS)?;
+    let precision = fields.named_or_default("precision", [("f32", Precision::F32), ("f64", Precision::F64)])?;
     let how = How { precision, tol: fields.positive("tol")?, method: fields.maybe("method")?, meshes };
-    let query = Q::read(fields)?;
+    let query = Q::read(&fields)?;
     match (precision, dimension.known().unwrap_or(3)) {
         (Precision::F64, 2) => query.question::<DVec2>(&how),
         (Precision::F64, _) => query.question::<DVec3>(&how),
@@ -199,7 +196,7 @@ fn read<Q: Query>(fields: &Fields<'_>, dimension: &Dimension, meshes: &Meshes) -
 
 impl How<'_> {
     /// The variant of the algorithm that is asked for; the first where none is.
-    fn method<M: Copy>(&self, methods: &[(&str, M)]) -> Result<M, Problem> {
+    fn method<M: Copy>(&self, methods: &[(&'static str, M)]) -> Result<M, Problem> {
         method::choose(self.method.as_deref(), methods)
     }
 
@@ -270,7 +267,7 @@ mod tests {
             (
                 r#"{"query":"inscribed_ellipsoid","halfspaces":[{"normal":[1,0]}]}"#.to_owned(),
                 Kind::Parse,
-                "halfspaces[0]: missing field `offset`",
+                "the field \"offset\" of halfspaces[0] is missing",
             ),
             (
                 r#"{"query":"ray_cast","target":{"type":"cuboid","half_extents":[1,1,1]},"source":[5,0],"direction":[1,0]}"#
@@ -290,13 +287,137 @@ mod tests {
         let (query, shape) =
             (refused(r#"{"query":"raycast"}"#), refused(r#"{"query":"distance","a":{"type":"sphere"}}"#));
         assert_eq!(query.kind, Kind::UnknownQuery, "{query:?}");
-        assert!(
-            query.message.starts_with("query: unknown variant `raycast`, expected one of `ray_cast`, "),
-            "{query:?}"
-        );
+        let meant = "query: \"raycast\" is unknown, did you mean \"ray_cast\"? (known: ray_cast, ray_exit, distance, ";
+        assert!(query.message.starts_with(meant), "{query:?}");
         assert_eq!(shape.kind, Kind::UnknownShape, "{shape:?}");
-        assert!(shape.message.starts_with("a.type: unknown variant `sphere`, expected one of `point`, "), "{shape:?}");
+        assert!(shape.message.starts_with("a.type: \"sphere\" is unknown (known: point, segment, "), "{shape:?}");
+        let half = refused(r#"{"query":"distance","a":{"type":"ball","radius":1},"b":{"type":"halfspace"}}"#);
+        assert!(half.message.starts_with("b.type: \"halfspace\" is unknown, did you mean \"half_space\"?"), "{half:?}");
+        let start = refused(&format!(r#"{{"query":"linear_cast",{PAIR},"start_in_contact":"if_deper"}}"#));
+        assert!(start.message.contains("did you mean \"if_deeper\"? (known: report, if_deeper)"), "{start:?}");
         assert_eq!(refused(r#"{"query":7}"#).kind, Kind::Parse, "no name at all");
+    }
+
+    const PAIR: &str =
+        r#""a":{"type":"ball","radius":1},"b":{"type":"posed","translation":[9,0,0],"of":{"type":"ball","radius":1}}"#;
+
+    /// Whatever is misspelt would otherwise be left out without a word, and the answer be one to another question.
+    #[test]
+    fn a_field_that_nobody_knows_is_an_error_that_says_where() {
+        const ROUND: &str = r#"{"center":[0,0],"semi_axes":[1,1]}"#;
+        let posed = |fields: &str| format!(r#"{{"query":"intersect","a":{{"type":"point","at":[0,0]}},"b":{fields}}}"#);
+        let asked = |ask: &str| format!(r#"{{"query":"scene","bodies":[],"asks":[{ask}]}}"#);
+        let cases = [
+            (
+                format!(r#"{{"query":"linear_cast",{PAIR},"max_tim":1}}"#),
+                "\"max_tim\" is unknown, did you mean \"max_time\"?",
+            ),
+            (format!(r#"{{"query":"distance",{PAIR},"max_time":1}}"#), "\"max_time\" is unknown (known: id, query, "),
+            (
+                posed(r#"{"type":"posed","translaton":[1,0],"of":{"type":"ball","radius":1}}"#),
+                "\"translaton\" of b is unknown, did you mean \"translation\"? (known: type, translation, ",
+            ),
+            (
+                posed(r#"{"type":"hull","of":[{"type":"ball","raduis":1}]}"#),
+                "\"raduis\" of b.of[0] is unknown, did you mean \"radius\"?",
+            ),
+            (
+                posed(r#"{"type":"half_space","normal":[0,1],"ofset":0}"#),
+                "\"ofset\" of b is unknown, did you mean \"offset\"?",
+            ),
+            (
+                posed(r#"{"type":"ellipsoid","center":[0,0],"matrix":[[1,0],[0,1]],"rotation":1}"#),
+                "\"rotation\" of b is unknown (known: type, center, matrix)",
+            ),
+            (
+                format!(r#"{{"query":"motion_cast",{PAIR},"max_time":1,"motion_a":{{"angular_velocty":[0,0,1]}}}}"#),
+                "\"angular_velocty\" of motion_a is unknown, did you mean \"angular_velocity\"?",
+            ),
+            (asked(r#"{"pair_within":1}"#), "\"pair_within\" of asks[0] is unknown, did you mean \"pairs_within\"?"),
+            (
+                asked(r#"{"ray":{"source":[0,0],"direction":[1,0],"max_lamda":1}}"#),
+                "\"max_lamda\" of asks[0].ray is unknown",
+            ),
+            (asked(r#"{"pairs_within":1,"within":2}"#), "\"within\" of asks[0] is unknown"),
+            (
+                format!(r#"{{"query":"track","e1":{ROUND},"e2":{ROUND},"poses":[{{"angle":1}}]}}"#),
+                "\"angle\" of poses[0] is unknown",
+            ),
+            (
+                r#"{"query":"inscribed_ellipsoid","halfspaces":[{"normal":[1,0],"offset":1,"offest":2}]}"#.to_owned(),
+                "\"offest\" of halfspaces[0] is unknown, did you mean \"offset\"?",
+            ),
+        ];
+        for (line, message) in cases {
+            let problem = refused(&line);
+            assert_eq!(problem.kind, Kind::UnknownField, "{line}: {problem:?}");
+            assert!(problem.message.starts_with(&format!("the field {message}")), "{line}: {problem:?}");
+        }
+    }
+
+    #[test]
+    fn remarks_are_read_by_nobody_wherever_they_stand() {
+        let b = r#"{"type":"half_space","normal":[0,1],"offset":0,"_why":"the floor"}"#;
+        let line = format!(
+            r#"{{"query":"intersect","_seed":7,"book":{{}},"a":{{"type":"ball","radius":1,"book":1,"_":[]}},"b":{b}}}"#
+        );
+        assert_eq!(answered(&line)["overlap"], true);
+    }
+
+    /// Every object in a value, by the keys and indices that lead to it.
+    fn objects(value: &mut serde_json::Value, change: &mut impl FnMut(&mut Object)) {
+        match value {
+            serde_json::Value::Object(object) => {
+                change(object);
+                object.values_mut().for_each(|value| objects(value, change));
+            }
+            serde_json::Value::Array(items) => items.iter_mut().for_each(|value| objects(value, change)),
+            _ => {}
+        }
+    }
+
+    /// A field that is known but not read would be as silent as an unknown one. So each field of some line of the
+    /// format is damaged, and that must be an error, and renamed, and that must be an unknown field.
+    #[test]
+    fn every_field_that_is_known_is_read() {
+        let text =
+            std::fs::read_to_string(format!("{}/by_hand.jsonl", crate::validate::EMBEDDED)).expect("it is there");
+        let mut seen = 0;
+        for line in text.lines().filter(|line| line.starts_with('{')) {
+            let mut whole: serde_json::Value = serde_json::from_str(line).expect("JSON");
+            let described = ["id", "tags", "expect", "allow", "allow_fields", "bracket", "_why"];
+            if let Some(line) = whole.as_object_mut() {
+                line.retain(|key, _| !described.contains(&key.as_str()));
+            }
+            let mut places = Vec::new();
+            objects(&mut whole.clone(), &mut |object| places.push(object.keys().cloned().collect::<Vec<_>>()));
+            for (i, key) in places.iter().enumerate().flat_map(|(i, keys)| keys.iter().map(move |key| (i, key))) {
+                let changed = |change: &dyn Fn(&mut Object)| {
+                    let (mut line, mut at) = (whole.clone(), 0);
+                    objects(&mut line, &mut |object| {
+                        if at == i {
+                            change(object);
+                        }
+                        at += 1;
+                    });
+                    refused(&line.to_string())
+                };
+                changed(&|object| drop(object.insert(key.clone(), "?".into())));
+                // What an object is says which fields it has: without that, nothing is known of the others.
+                if !matches!(key.as_str(), "type" | "query") {
+                    let renamed = format!("{key}q");
+                    let problem = changed(&|object| {
+                        let value = object.remove(key).unwrap_or_default();
+                        object.insert(renamed.clone(), value);
+                    });
+                    let is_named = problem.message.contains(&format!("{renamed:?}"))
+                        && problem.message.contains(&format!("{key:?}"));
+                    assert!(problem.kind == Kind::UnknownField && is_named, "{key} in {line}: {problem:?}");
+                }
+                seen += 1;
+            }
+        }
+        assert!(seen > 150, "only {seen} fields");
     }
 
     /// The answer to a line.
@@ -435,7 +556,8 @@ mod tests {
     fn a_question_to_a_scene_is_of_one_kind() {
         let problem =
             refused(r#"{"query":"scene","bodies":[],"asks":[{"pairs_within":1},{"ray":{},"pairs_within":1}]}"#);
-        let message = "asks[1] must have exactly one of ray, nearest, linear_cast, motion_cast, pairs_within";
+        let message =
+            "asks[1] must have exactly one of ray, nearest, linear_cast, motion_cast, pairs_within, contacts_within";
         assert_eq!((problem.kind, problem.message.as_str()), (Kind::Parse, message));
     }
 }

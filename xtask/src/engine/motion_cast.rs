@@ -1,65 +1,58 @@
 //! `motion_cast`.
 
-use convex_support::{Scalar as _, Vector};
-use gjk_raycast::{MotionCastOptions, MotionHit, RigidMotion, motion_cast};
+use convex_support::{AngularVelocity as _, Scalar as _, Vector};
+use gjk_raycast::{
+    Body, ChainMotion, HalfSpace, MotionCastOptions, MotionHit, Outcome, RayCastError, RigidMotion, Trajectory as _,
+    motion_cast,
+};
 
-use super::cast::{self, problem};
+use super::cast::{self, Limits, problem};
 use super::gradient::{self, Gradient};
-use super::{Ask, How, Query, Question, scalar};
+use super::pair::Bodies;
+use super::{Ask, How, Query, Question};
 use crate::wire::answer::Answer;
-use crate::wire::error::{Kind, Problem};
+use crate::wire::error::Problem;
 use crate::wire::fields::Fields;
 use crate::wire::motion::Motion;
-use crate::wire::shape::{Shape, Solid, Space};
+use crate::wire::names::Names;
+use crate::wire::shape::{Solid, Space};
 
 /// The query as written.
 pub(super) struct MotionCast {
-    a: Shape,
-    b: Shape,
+    bodies: Bodies,
     motion_a: Motion,
     motion_b: Motion,
-    max_time: f64,
+    limits: Limits,
     gradient: bool,
 }
 
 impl Query for MotionCast {
+    const FIELDS: Names =
+        &["a", "b", "motion_a", "motion_b", "max_time", "target_distance", "start_in_contact", "gradient"];
+
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+        let bodies = Bodies::read(fields)?;
         Ok(Self {
-            a: Shape::read(&fields.within("a")?)?,
-            b: Shape::read(&fields.within("b")?)?,
             motion_a: Motion::read_or_rest(fields, "motion_a")?,
             motion_b: Motion::read_or_rest(fields, "motion_b")?,
-            max_time: fields.above_zero("max_time")?,
-            gradient: gradient::is_wanted(fields)?,
+            limits: Limits::read_with_end(fields)?,
+            gradient: bodies.gradient(fields)?,
+            bodies,
         })
     }
 
     fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
         how.method(&[("gjk", ())])?;
-        Ok(Box::new(Cast::<V> {
-            a: self.a.build("a", how.meshes)?,
-            b: self.b.build("b", how.meshes)?,
-            motion_a: self.motion_a.build(),
-            motion_b: self.motion_b.build(),
-            gradient: self.gradient,
-            options: options(how, self.max_time, "max_time")?,
-        }))
+        let (a, b) = self.bodies.build(how)?;
+        let (motion_a, motion_b) = (self.motion_a.build(), self.motion_b.build());
+        let options = self.limits.motion(how, "")?;
+        Ok(Box::new(Cast::<V> { a, b, motion_a, motion_b, gradient: self.gradient, options }))
     }
-}
-
-/// The options that a query gives; `place` is where it says the end of the motion, for errors.
-pub(super) fn options<V: Vector>(how: &How<'_>, max_time: f64, place: &str) -> Result<MotionCastOptions<V>, Problem> {
-    let max_time = scalar::<V>(max_time);
-    if !max_time.as_f64().is_finite() {
-        return Err(Problem::new(Kind::NonFinite, format!("{place} is not finite in the precision asked for")));
-    }
-    let options = MotionCastOptions::new().with_max_time(max_time);
-    Ok(how.tolerance::<V>()?.map_or(options, |tolerance| options.with_tolerance(tolerance)))
 }
 
 struct Cast<V: Vector> {
     a: Solid<V>,
-    b: Solid<V>,
+    b: Body<Solid<V>>,
     motion_a: RigidMotion<V>,
     motion_b: RigidMotion<V>,
     gradient: bool,
@@ -70,9 +63,13 @@ impl<V: Space> Question for Cast<V> {
     type Solution = (gjk_raycast::MotionCast<V>, Option<Gradient<V>>);
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
-        let cast = motion_cast(&self.a, self.motion_a, &self.b, self.motion_b, self.options).map_err(problem)?;
+        let cast = match &self.b {
+            Body::Convex(b) => motion_cast(&self.a, self.motion_a, b, self.motion_b, self.options),
+            Body::HalfSpace(half_space) => self.over(half_space),
+        }
+        .map_err(problem)?;
         let hit = if self.gradient { cast.outcome.hit() } else { None };
-        Ok((cast, hit.map(|hit| self.gradient_of(hit))))
+        Ok((cast, hit.and_then(|hit| self.gradient_of(hit))))
     }
 
     fn answer(&self, (cast, gradient): Self::Solution) -> Result<Answer, Problem> {
@@ -83,13 +80,33 @@ impl<V: Space> Question for Cast<V> {
 }
 
 impl<V: Space> Cast<V> {
+    /// The cast over a half-space. The library's is at rest: seen from one that moves, `a` is first moved by its own
+    /// motion, and then back by that of the half-space.
+    fn over(&self, half_space: &HalfSpace<V>) -> Result<gjk_raycast::MotionCast<V>, RayCastError> {
+        if self.motion_b == RigidMotion::default() {
+            return half_space.motion_cast(&self.a, self.motion_a, self.options);
+        }
+        let RigidMotion { velocity, angular_velocity, center } = self.motion_b;
+        let turned_back = RigidMotion::rotation(angular_velocity.scaled(-V::Scalar::ONE), center);
+        let seen = [turned_back, RigidMotion::translation(-velocity), self.motion_a];
+        let cast = half_space.motion_cast(&self.a, ChainMotion::new(&seen), self.options)?;
+        let Outcome::Hit(hit) = cast.outcome else { return Ok(cast) };
+        let place = self.motion_b.displacement(hit.time);
+        let normal = hit.normal.map(|normal| place.rotation() * normal);
+        Ok(gjk_raycast::MotionCast {
+            outcome: Outcome::Hit(MotionHit { point: place.of(hit.point), normal, ..hit }),
+            ..cast
+        })
+    }
+
     /// The derivatives of the time of a hit.
-    fn gradient_of(&self, hit: MotionHit<V>) -> Gradient<V> {
-        let features = hit.closest_features(&self.a, &self.motion_a, &self.b, &self.motion_b);
+    fn gradient_of(&self, hit: MotionHit<V>) -> Option<Gradient<V>> {
+        let b = self.b.convex()?;
+        let features = hit.closest_features(&self.a, &self.motion_a, b, &self.motion_b);
         let smooth = features.and_then(|features| {
             let gradient = hit.refined(&features).gradient(&self.motion_a, &self.motion_b)?;
             Some(Gradient::new(gradient.pose_a, gradient.pose_b, features.smoothness()))
         });
-        smooth.unwrap_or_else(|| Gradient::at_floor(&self.a, &self.b))
+        Some(smooth.unwrap_or_else(|| Gradient::at_floor(&self.a, b)))
     }
 }

@@ -5,19 +5,18 @@ use gjk_raycast::{
     DistanceOptions, Ray, RayCastOptions, RayHit, distance, iterative_ray_cast, ray_cast, ray_cast_certificate,
 };
 
-use super::cast::{self, problem};
-use super::{Ask, How, Query, Question, certificate, scalar};
+use super::cast::{self, RaySpec, problem};
+use super::{Ask, How, Query, Question, certificate};
 use crate::wire::answer::Answer;
 use crate::wire::error::Problem;
-use crate::wire::fields::{Coordinates, Fields};
-use crate::wire::shape::{Shape, Solid, Space, vector};
+use crate::wire::fields::Fields;
+use crate::wire::names::Names;
+use crate::wire::shape::{Shape, Solid, Space};
 
 /// The query as written.
 pub(super) struct RayCast {
     target: Shape,
-    source: Coordinates,
-    direction: Coordinates,
-    max_lambda: Option<f64>,
+    ray: RaySpec,
 }
 
 #[derive(Clone, Copy)]
@@ -29,27 +28,17 @@ enum Method {
 }
 
 impl Query for RayCast {
+    const FIELDS: Names = &["target", "source", "direction", "min_lambda", "max_lambda"];
+
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
-        Ok(Self {
-            target: Shape::read(&fields.within("target")?)?,
-            source: fields.vector("source")?,
-            direction: fields.vector("direction")?,
-            max_lambda: fields.maybe("max_lambda")?,
-        })
+        Ok(Self { target: Shape::read(fields.within("target")?)?, ray: RaySpec::read(fields)? })
     }
 
     fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
-        let mut options = RayCastOptions::new();
-        if let Some(max_lambda) = self.max_lambda {
-            options = options.with_max_lambda(scalar::<V>(max_lambda));
-        }
-        if let Some(tolerance) = how.tolerance::<V>()? {
-            options = options.with_tolerance(tolerance);
-        }
         Ok(Box::new(Cast::<V> {
             target: self.target.build("target", how.meshes)?,
-            ray: Ray { source: vector(&self.source), direction: vector(&self.direction) },
-            options,
+            ray: self.ray.ray(),
+            options: self.ray.options(how)?,
             method: how.method(&[("gjk", Method::Gjk), ("iterative", Method::Iterative)])?,
         }))
     }

@@ -2,18 +2,19 @@
 
 use convex_support::{Scalar, Vector};
 use gjk_raycast::{
-    DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastOptions, RigidMotion, SceneCast,
-    SceneError,
+    BodyHit, DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, PairContact, Ray, RayCastOptions, RayHit,
+    RigidMotion, SceneCast, SceneError, SignedDistanceOptions,
 };
 
-use super::cast::problem;
+use super::cast::{Limits, RaySpec, problem};
 use super::distance::certain;
-use super::{Ask, How, Query, Question, motion_cast as motion, scalar};
+use super::{Ask, How, Query, Question, scalar, signed_distance};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::body::Body;
 use crate::wire::error::{Kind, Problem};
-use crate::wire::fields::{Coordinates, Fields};
+use crate::wire::fields::{Coordinates, Fields, Written};
 use crate::wire::motion::Motion as RigidSpec;
+use crate::wire::names::Names;
 use crate::wire::shape::{Shape, Solid, Space, vector};
 
 /// The query as written.
@@ -24,21 +25,24 @@ pub(super) struct Scene {
 
 /// One question to the scene, as written.
 enum Spec {
-    Ray { source: Coordinates, direction: Coordinates, max_lambda: Option<f64> },
+    Ray { ray: RaySpec, all: bool },
     Nearest { shape: Shape, within: Option<f64> },
-    LinearCast { shape: Shape, velocity: Coordinates, max_time: Option<f64> },
-    MotionCast { shape: Shape, motion: RigidSpec, max_time: f64 },
+    LinearCast { shape: Shape, velocity: Coordinates, limits: Limits },
+    MotionCast { shape: Shape, motion: RigidSpec, limits: Limits },
     PairsWithin(f64),
+    ContactsWithin(f64),
 }
 
 /// The kinds of questions.
-const KINDS: [&str; 5] = ["ray", "nearest", "linear_cast", "motion_cast", "pairs_within"];
+const KINDS: Names = &["ray", "nearest", "linear_cast", "motion_cast", "pairs_within", "contacts_within"];
 
 impl Query for Scene {
+    const FIELDS: Names = &["bodies", "asks"];
+
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
         Ok(Self {
-            bodies: fields.each("bodies")?.iter().map(Body::read).collect::<Result<_, _>>()?,
-            asks: fields.each("asks")?.iter().map(Spec::read).collect::<Result<_, _>>()?,
+            bodies: fields.each("bodies")?.into_iter().map(Body::read).collect::<Result<_, _>>()?,
+            asks: fields.each("asks")?.into_iter().map(Spec::read).collect::<Result<_, _>>()?,
         })
     }
 
@@ -53,69 +57,60 @@ impl Query for Scene {
 }
 
 impl Spec {
-    fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
-        let named: Vec<&str> = KINDS.into_iter().filter(|kind| fields.has(kind)).collect();
-        let [kind] = named[..] else {
-            let message = format!("{} must have exactly one of {}", fields.place(), KINDS.join(", "));
-            return Err(Problem::new(Kind::Parse, message));
-        };
-        if kind == "pairs_within" {
-            return Ok(Self::PairsWithin(fields.not_negative(kind)?.unwrap_or(0.0)));
-        }
-        let of = fields.within(kind)?;
-        let shape = || Shape::read(&of.within("shape")?);
-        Ok(match kind {
-            "ray" => Self::Ray {
-                source: of.vector("source")?,
-                direction: of.vector("direction")?,
-                max_lambda: of.maybe("max_lambda")?,
-            },
+    fn read(written: Written<'_>) -> Result<Self, Problem> {
+        let fields = written.fields(KINDS, &["within"])?;
+        let kind = fields.only_one_of(KINDS)?;
+        if kind == "nearest" {
             // The shape is the field itself, and its limit stands beside it.
-            "nearest" => Self::Nearest { shape: Shape::read(&of)?, within: fields.not_negative("within")? },
-            "linear_cast" => {
-                Self::LinearCast { shape: shape()?, velocity: of.vector("velocity")?, max_time: of.maybe("max_time")? }
+            let within = fields.not_negative("within")?;
+            return Ok(Self::Nearest { shape: Shape::read(fields.within(kind)?)?, within });
+        }
+        let fields = fields.only(KINDS, &[])?;
+        let distance = || Ok(fields.not_negative(kind)?.unwrap_or(0.0));
+        let shape = |of: &Fields<'_>| Shape::read(of.within("shape")?);
+        let cast = |own: Names| fields.within(kind)?.fields(&["max_time", "target_distance", "start_in_contact"], own);
+        Ok(match kind {
+            "ray" => {
+                let of = fields.within(kind)?.fields(&["source", "direction", "min_lambda", "max_lambda"], &["all"])?;
+                Self::Ray { ray: RaySpec::read(&of)?, all: of.flag("all")? }
             }
-            _ => Self::MotionCast {
-                shape: shape()?,
-                motion: RigidSpec::read(&of.within("motion")?)?,
-                max_time: of.above_zero("max_time")?,
-            },
+            "linear_cast" => {
+                let of = cast(&["shape", "velocity"])?;
+                let (shape, velocity) = (shape(&of)?, of.vector("velocity")?);
+                Self::LinearCast { shape, velocity, limits: Limits::read(&of)? }
+            }
+            "motion_cast" => {
+                let of = cast(&["shape", "motion"])?;
+                let (shape, motion) = (shape(&of)?, RigidSpec::read(of.within("motion")?)?);
+                Self::MotionCast { shape, motion, limits: Limits::read_with_end(&of)? }
+            }
+            "pairs_within" => Self::PairsWithin(distance()?),
+            _ => Self::ContactsWithin(distance()?),
         })
     }
 
     /// The question in a space; `place` is where the query says it, for errors.
     fn build<V: Space>(&self, place: &str, how: &How<'_>) -> Result<One<V>, Problem> {
-        let tolerance = how.tolerance::<V>()?;
+        let mut near = DistanceOptions::new();
+        near.tolerance = how.tolerance::<V>()?.unwrap_or(near.tolerance);
         let solid = |shape: &Shape, field: &str| shape.build(&format!("{place}.{field}"), how.meshes);
         Ok(match self {
-            Self::Ray { source, direction, max_lambda } => {
-                let mut options = RayCastOptions::new();
-                options.tolerance = tolerance.unwrap_or(options.tolerance);
-                options.max_lambda = max_lambda.map_or(options.max_lambda, scalar::<V>);
-                One::Ray(Ray { source: vector(source), direction: vector(direction) }, options)
-            }
+            Self::Ray { ray, all: false } => One::Ray(ray.ray(), ray.options(how)?),
+            Self::Ray { ray, all: true } => One::EveryHit(ray.ray(), ray.options(how)?),
             Self::Nearest { shape, within } => {
-                let mut options = DistanceOptions::new();
-                options.tolerance = tolerance.unwrap_or(options.tolerance);
-                options.limit = within.map_or(options.limit, scalar::<V>);
-                One::Nearest(solid(shape, "nearest")?, options)
+                near.limit = within.map_or(near.limit, scalar::<V>);
+                One::Nearest(solid(shape, "nearest")?, near)
             }
-            Self::LinearCast { shape, velocity, max_time } => {
-                let mut options = LinearCastOptions::new();
-                options.tolerance = tolerance.unwrap_or(options.tolerance);
-                options.max_time = max_time.map_or(options.max_time, scalar::<V>);
+            Self::LinearCast { shape, velocity, limits } => {
                 let motion = Motion { velocity_a: vector(velocity), velocity_b: V::ZERO };
-                One::LinearCast(solid(shape, "linear_cast.shape")?, motion, options)
+                One::LinearCast(solid(shape, "linear_cast.shape")?, motion, limits.linear(how)?)
             }
-            Self::MotionCast { shape, motion, max_time } => {
-                let options = motion::options(how, *max_time, &format!("{place}.motion_cast.max_time"))?;
+            Self::MotionCast { shape, motion, limits } => {
+                let options = limits.motion(how, &format!("{place}.motion_cast."))?;
                 One::MotionCast(solid(shape, "motion_cast.shape")?, motion.build(), options)
             }
-            Self::PairsWithin(within) => {
-                let mut options = DistanceOptions::new();
-                options.tolerance = tolerance.unwrap_or(options.tolerance);
-                One::PairsWithin(scalar::<V>(*within), options)
-            }
+            Self::PairsWithin(within) => One::PairsWithin(scalar::<V>(*within), near),
+            Self::ContactsWithin(within) => One::ContactsWithin(scalar::<V>(*within), signed_distance::options(how)?),
         })
     }
 }
@@ -158,10 +153,12 @@ struct Asked<V: Vector> {
 /// One question.
 enum One<V: Vector> {
     Ray(Ray<V>, RayCastOptions<V>),
+    EveryHit(Ray<V>, RayCastOptions<V>),
     Nearest(Solid<V>, DistanceOptions<V>),
     LinearCast(Solid<V>, Motion<V>, LinearCastOptions<V>),
     MotionCast(Solid<V>, RigidMotion<V>, MotionCastOptions<V>),
     PairsWithin(V::Scalar, DistanceOptions<V>),
+    ContactsWithin(V::Scalar, SignedDistanceOptions<V>),
 }
 
 impl<V: Space> Question for Asked<V> {
@@ -183,6 +180,7 @@ impl<V: Space> One<V> {
             Self::Ray(ray, options) => {
                 first("lambda", &scene.ray_cast(*ray, *options).map_err(problem)?, |hit| hit.lambda)
             }
+            Self::EveryHit(ray, options) => every_hit(scene, *ray, *options),
             Self::LinearCast(shape, motion, options) => {
                 first("time", &scene.linear_cast(shape, *motion, *options).map_err(problem)?, |hit| hit.time)
             }
@@ -191,6 +189,7 @@ impl<V: Space> One<V> {
             }
             Self::Nearest(shape, options) => nearest(scene, shape, *options),
             Self::PairsWithin(within, options) => pairs(scene, *within, *options),
+            Self::ContactsWithin(within, options) => contacts(scene, *within, *options),
         }
     }
 }
@@ -207,15 +206,36 @@ fn first<H, S: Scalar>(
     Ok(hit(name, cast.first.as_ref().map(|first| (first.body, scalar(&first.hit), [first.lower, first.upper]))))
 }
 
-/// The body that is hit first, the λ or time of it, and its bracket.
+/// The first hit, if there is one.
 fn hit<S: Scalar>(name: &'static str, first: Option<(usize, S, [S; 2])>) -> Answer {
     let answer = Answer::default().with("hit", Field::Flag(first.is_some()));
-    let Some((body, scalar, [lower, upper])) = first else { return answer };
+    let Some((body, scalar, bracket)) = first else { return answer };
+    hit_of(answer, body, (name, scalar), bracket)
+}
+
+/// With the body that is hit, the λ or time of it, and its bracket.
+fn hit_of<S: Scalar>(answer: Answer, body: usize, (name, scalar): (&'static str, S), [lower, upper]: [S; 2]) -> Answer {
     answer
         .with("body", Field::Count(body))
         .with(name, Field::number(scalar))
         .with_finite("lower", lower)
         .with_finite("upper", upper)
+}
+
+/// All hits of a ray, in its order.
+fn every_hit<V: Space>(
+    scene: &gjk_raycast::Scene<Solid<V>>,
+    ray: Ray<V>,
+    options: RayCastOptions<V>,
+) -> Result<Answer, Problem> {
+    let mut hits = Vec::new();
+    if let Some(body) = scene.ray_cast_all(ray, options, &mut hits).map_err(problem)?.undecided {
+        return Err(undecided(body));
+    }
+    let one = |found: &BodyHit<RayHit<V>, V::Scalar>| {
+        hit_of(Answer::default(), found.body, ("lambda", found.hit.lambda), [found.lower, found.upper])
+    };
+    Ok(Answer::default().with("hits", Field::Answers(hits.iter().map(one).collect())))
 }
 
 /// A cast that does not tell which body is first.
@@ -250,4 +270,28 @@ fn pairs<V: Space>(
     scene.pairs_within(within, options, &mut found);
     found.iter().try_for_each(|pair| certain(&pair.distance))?;
     Ok(Answer::default().with("pairs", Field::Pairs(found.iter().map(|pair| [pair.a, pair.b]).collect())))
+}
+
+/// The contacts of the pairs no farther apart than `within`.
+fn contacts<V: Space>(
+    scene: &gjk_raycast::Scene<Solid<V>>,
+    within: V::Scalar,
+    options: SignedDistanceOptions<V>,
+) -> Result<Answer, Problem> {
+    let mut found = Vec::new();
+    scene.contacts_within(within, options, &mut found);
+    let one = |PairContact { a, b, contact }: &PairContact<V>| {
+        let distance = &contact.distance;
+        signed_distance::certain(distance, within).map_err(|why| why.at(&format!("bodies[{a}] and bodies[{b}]")))?;
+        Ok(Answer::default()
+            .with("a", Field::Count(*a))
+            .with("b", Field::Count(*b))
+            .with("signed_distance", Field::number(distance.signed_distance))
+            .with("normal", Field::vector(contact.normal))
+            .with("points", Field::Count(contact.points().len()))
+            .with_finite("lower", distance.lower)
+            .with_finite("upper", distance.upper))
+    };
+    let contacts = found.iter().map(one).collect::<Result<_, Problem>>()?;
+    Ok(Answer::default().with("contacts", Field::Answers(contacts)))
 }

@@ -1,35 +1,35 @@
 //! `signed_distance`.
 
 use convex_support::{Scalar as _, Vector};
-use gjk_raycast::{SignedDistanceOptions, Status, signed_distance};
+use gjk_raycast::{Body, SignedDistanceOptions, Status};
 
 use super::gradient::{self, Gradient};
+use super::pair::Bodies;
 use super::{Ask, How, Query, Question, status};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
-use crate::wire::shape::{Shape, Solid, Space};
+use crate::wire::names::Names;
+use crate::wire::shape::{Solid, Space};
 
 /// The query as written.
 pub(super) struct SignedDistance {
-    a: Shape,
-    b: Shape,
+    bodies: Bodies,
     gradient: bool,
 }
 
 impl Query for SignedDistance {
+    const FIELDS: Names = &["a", "b", "gradient"];
+
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
-        Ok(Self {
-            a: Shape::read(&fields.within("a")?)?,
-            b: Shape::read(&fields.within("b")?)?,
-            gradient: gradient::is_wanted(fields)?,
-        })
+        let bodies = Bodies::read(fields)?;
+        Ok(Self { gradient: bodies.gradient(fields)?, bodies })
     }
 
     fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
         how.method(&[("gjk", ())])?;
         let options = options(how)?;
-        let (a, b) = (self.a.build("a", how.meshes)?, self.b.build("b", how.meshes)?);
+        let (a, b) = self.bodies.build(how)?;
         Ok(Box::new(Pair::<V> { a, b, gradient: self.gradient, options }))
     }
 }
@@ -42,7 +42,7 @@ pub(super) fn options<V: Vector>(how: &How<'_>) -> Result<SignedDistanceOptions<
 
 struct Pair<V: Vector> {
     a: Solid<V>,
-    b: Solid<V>,
+    b: Body<Solid<V>>,
     gradient: bool,
     options: SignedDistanceOptions<V>,
 }
@@ -51,13 +51,13 @@ impl<V: Space> Question for Pair<V> {
     type Solution = (gjk_raycast::SignedDistance<V>, Option<Gradient<V>>);
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
-        let answer = signed_distance(&self.a, &self.b, self.options);
-        let gradient = || {
-            let features = answer.closest_features(&self.a, &self.b);
+        let answer = self.b.signed_distance(&self.a, self.options);
+        let gradient = self.b.convex().filter(|_| self.gradient).map(|b| {
+            let features = answer.closest_features(&self.a, b);
             let gradient = features.gradient();
             Gradient::new(gradient.a, gradient.b, features.smoothness())
-        };
-        Ok((answer, self.gradient.then(gradient)))
+        });
+        Ok((answer, gradient))
     }
 
     fn answer(&self, (d, gradient): Self::Solution) -> Result<Answer, Problem> {

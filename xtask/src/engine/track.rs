@@ -12,6 +12,7 @@ use super::{Ask, How, Query, Question};
 use crate::wire::answer::{Answer, Field, Number};
 use crate::wire::error::Problem;
 use crate::wire::fields::Fields;
+use crate::wire::names::Names;
 use crate::wire::shape::{EllipsoidSpec, Pose, Space};
 
 /// The query as written.
@@ -22,11 +23,13 @@ pub(super) struct Track {
 }
 
 impl Query for Track {
+    const FIELDS: Names = &["e1", "e2", "poses"];
+
     fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
         Ok(Self {
-            e1: EllipsoidSpec::read(&fields.within("e1")?)?,
-            e2: EllipsoidSpec::read(&fields.within("e2")?)?,
-            poses: fields.each("poses")?.iter().map(Pose::read).collect::<Result<_, _>>()?,
+            e1: EllipsoidSpec::read(fields.within("e1")?)?,
+            e2: EllipsoidSpec::read(fields.within("e2")?)?,
+            poses: fields.each("poses")?.into_iter().map(Pose::read).collect::<Result<_, _>>()?,
         })
     }
 

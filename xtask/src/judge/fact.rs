@@ -8,7 +8,8 @@ use crate::engine;
 use crate::mesh::Meshes;
 use crate::validate::as_read;
 use crate::wire::answer::Line;
-use crate::wire::fields::{Dimension, Fields, Object};
+use crate::wire::fields::{Dimension, Object, Written};
+use crate::wire::names::Names;
 use crate::wire::shape::{Shape, Space};
 use convex_support::glam::{self, DVec2, DVec3};
 use convex_support::{Scalar as _, SupportMap as _};
@@ -211,12 +212,15 @@ fn numbers(value: Option<&Value>) -> Vec<f64> {
 
 /// The dimension of a query.
 fn dimension(object: &Object) -> Option<usize> {
-    let dimension = Dimension::default();
-    let fields = Fields::new(object, &dimension);
-    for name in ["target", "a", "b"].into_iter().filter(|name| fields.has(name)) {
-        Shape::read(&fields.within(name).ok()?).ok()?;
+    const SPACES: Names = &["target", "a", "b", "source", "velocity_a", "velocity_b"];
+    let (dimension, mut object) = (Dimension::default(), object.clone());
+    object.retain(|key, _| SPACES.contains(&key.as_str()));
+    let fields = Written::new(&object, &dimension).fields(SPACES, &[]).ok()?;
+    let (shapes, vectors) = SPACES.split_at(3);
+    for name in shapes.iter().filter(|name| fields.has(name)) {
+        Shape::read(fields.within(name).ok()?).ok()?;
     }
-    for name in ["source", "velocity_a", "velocity_b"] {
+    for name in vectors {
         fields.vector_or_zero(name).ok()?;
     }
     Some(dimension.known().unwrap_or(3))
@@ -225,9 +229,8 @@ fn dimension(object: &Object) -> Option<usize> {
 /// The farthest that a point of each shape can be from the origin, by its box.
 fn extents<V: Space<Scalar = f64>>(shapes: &[Value; 2]) -> Option<[f64; 2]> {
     let of = |shape: &Value| {
-        let Value::Object(object) = json!({"shape": shape}) else { return None };
         let dimension = Dimension::default();
-        let solid = Shape::read(&Fields::new(&object, &dimension).within("shape").ok()?)
+        let solid = Shape::read(Written::new(shape.as_object()?, &dimension))
             .ok()?
             .build::<V>("", &Meshes::relative_to(""))
             .ok()?;

@@ -143,8 +143,10 @@ fn suite(questions: &mut Vec<Question>) {
             let Ok(mut object) = json::object(line.as_bytes()) else { continue };
             let name = object.get("query").and_then(Value::as_str).unwrap_or_default().to_owned();
             let Some(&(_, set)) = SUITE.iter().find(|(query, _)| *query == name) else { continue };
-            let ours = ["precision", "method", "tol"].iter().any(|field| object.contains_key(*field));
-            if ours || line.contains("\"mesh\"") || engine::question(&object, &meshes).is_err() {
+            let options = ["precision", "method", "tol", "min_lambda", "target_distance", "start_in_contact"];
+            let ours = options.iter().any(|option| object.contains_key(*option))
+                || ["mesh", "half_space"].iter().any(|shape| line.contains(&format!("\"{shape}\"")));
+            if ours || engine::question(&object, &meshes).is_err() {
                 continue;
             }
             let expect = object.remove("expect");

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::Record;
-use super::page::{Block, Figure, Row, Section, Table};
-use super::summary::{Group, HEADERS, by_file, by_query, called};
+use super::page::{Block, Figure, Row, Section, Table, error};
+use super::summary::{Group, HEADERS, by_file, by_query, called, quantile};
 use crate::plot::{Plot, Scale, Series};
 
 /// Errors below this are drawn here: it is less than half an ulp.
@@ -41,7 +41,7 @@ pub fn section(records: &[Record]) -> Section {
 }
 
 /// The queries that have a scalar, in the order of their colours.
-const QUERIES: [&str; 10] = [
+const QUERIES: [&str; 11] = [
     "ray_cast",
     "linear_cast",
     "distance",
@@ -52,6 +52,7 @@ const QUERIES: [&str; 10] = [
     "clearance",
     "signed_distance",
     "motion_cast",
+    "ray_exit",
 ];
 
 /// Relative error against time, a colour for each query.
@@ -62,6 +63,8 @@ fn scatter(records: &[Record], precision: &str) -> Option<Figure> {
         (!points.is_empty()).then(|| Series { name: called(query), points, joined: false, colour })
     };
     let series: Vec<Series> = QUERIES.iter().enumerate().filter_map(series).collect();
+    let errors: Vec<f64> = series.iter().flat_map(|series| series.points.iter().map(|[_, error]| *error)).collect();
+    let at_most = |share| error(quantile(&errors, share).unwrap_or(f64::NAN));
     (!series.is_empty()).then(|| Figure {
         name: format!("cases-{precision}"),
         plot: Plot {
@@ -73,9 +76,12 @@ fn scatter(records: &[Record], precision: &str) -> Option<Figure> {
             series,
         },
         caption: format!(
-            "One dot per case, in {precision}; exact answers lie on the lowest line. What to see: nearly everything is at the level of \
-             rounding. Where the answer itself is nearly zero (bodies that almost touch, rays that start on a \
-             surface), a large relative error can be the best that the inputs allow: the tables compare each error with that."
+            "One dot per case, in {precision}; exact answers lie on the lowest line. What to see: half of the errors \
+             are at most {}, and nine in ten at most {}. Where the answer itself is nearly zero (bodies that almost \
+             touch, rays that start on a surface), a large relative error can be the best that the inputs allow: the \
+             tables compare each error with that.",
+            at_most(0.5),
+            at_most(0.9),
         ),
     })
 }

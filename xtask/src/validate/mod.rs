@@ -78,7 +78,17 @@ pub struct Scope {
 const CRATES: [(&str, &[&str]); 3] = [
     (
         "gjk-raycast",
-        &["ray_cast", "linear_cast", "motion_cast", "distance", "signed_distance", "contact", "intersect", "scene"],
+        &[
+            "ray_cast",
+            "ray_exit",
+            "linear_cast",
+            "motion_cast",
+            "distance",
+            "signed_distance",
+            "contact",
+            "intersect",
+            "scene",
+        ],
     ),
     ("lj-ellipsoid", &["enclosing_ellipsoid", "inscribed_ellipsoid"]),
     ("ellip-margin", &["margin", "track", "clearance"]),

@@ -7,7 +7,7 @@ use crate::wire::fields::Object;
 /// The field that holds the scalar of an answer.
 pub fn scalar_of(query: &str) -> Option<&'static str> {
     Some(match query {
-        "ray_cast" => "lambda",
+        "ray_cast" | "ray_exit" => "lambda",
         "distance" => "distance",
         "signed_distance" => "signed_distance",
         "linear_cast" | "motion_cast" => "time",

@@ -1,11 +1,11 @@
-//! The bodies of a scene as written: shapes, and half-spaces, which are none.
+//! Bodies as written: shapes, and half-spaces, which are none.
 
 use convex_support::Scalar as _;
 use gjk_raycast::{Body as SceneBody, HalfSpace};
 
-use super::error::Problem;
-use super::fields::{Coordinates, Fields};
-use super::shape::{Shape, Solid, Space, vector};
+use super::error::{Kind, Problem};
+use super::fields::{Coordinates, Written};
+use super::shape::{Shape, Solid, Space, TYPES, vector};
 use crate::mesh::Meshes;
 
 /// A body as the query says it.
@@ -17,11 +17,13 @@ pub enum Body {
 
 impl Body {
     /// The body that an object is.
-    pub fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
-        if matches!(fields.get::<String>("type").as_deref(), Ok("half_space")) {
-            return Ok(Self::HalfSpace { normal: fields.vector("normal")?, offset: fields.get("offset")? });
+    pub fn read(written: Written<'_>) -> Result<Self, Problem> {
+        let types = TYPES.iter().map(|(name, kind)| (*name, Some(kind))).chain([("half_space", None)]);
+        if let Some(kind) = written.named("type", types, Kind::UnknownShape)? {
+            return kind.read(written).map(Self::Shape);
         }
-        Shape::read(fields).map(Self::Shape)
+        let fields = written.fields(&["type"], &["normal", "offset"])?;
+        Ok(Self::HalfSpace { normal: fields.vector("normal")?, offset: fields.get("offset")? })
     }
 
     /// The body in a space; `place` is where the query says it, for errors.

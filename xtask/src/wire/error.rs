@@ -11,6 +11,8 @@ pub enum Kind {
     Parse,
     /// The `query` is not one of the format's.
     UnknownQuery,
+    /// A field that is not one of the format's, or not of what it stands in.
+    UnknownField,
     /// The `type` of a shape is not one of the format's.
     UnknownShape,
     /// Vectors of different lengths, or of a length the query does not know.

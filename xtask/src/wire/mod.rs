@@ -6,4 +6,5 @@ pub mod error;
 pub mod fields;
 pub mod json;
 pub mod motion;
+pub mod names;
 pub mod shape;

@@ -3,7 +3,7 @@
 use gjk_raycast::RigidMotion;
 
 use super::error::Problem;
-use super::fields::{AngularVelocity, Coordinates, Fields};
+use super::fields::{AngularVelocity, Coordinates, Fields, Written};
 use super::shape::{Space, vector};
 
 /// A motion at constant velocity and angular velocity, as the query says it.
@@ -16,7 +16,8 @@ pub struct Motion {
 
 impl Motion {
     /// The motion that an object is.
-    pub fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+    pub fn read(written: Written<'_>) -> Result<Self, Problem> {
+        let fields = written.fields(&["velocity", "angular_velocity", "center"], &[])?;
         Ok(Self {
             velocity: fields.vector_or_zero("velocity")?,
             angular_velocity: fields.angular_velocity("angular_velocity")?,
@@ -26,7 +27,7 @@ impl Motion {
 
     /// The motion that a field is; rest where it is left out.
     pub fn read_or_rest(fields: &Fields<'_>, key: &str) -> Result<Self, Problem> {
-        if fields.has(key) { Self::read(&fields.within(key)?) } else { Ok(Self::default()) }
+        if fields.has(key) { Self::read(fields.within(key)?) } else { Ok(Self::default()) }
     }
 
     /// The motion in a space.

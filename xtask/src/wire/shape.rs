@@ -7,10 +7,10 @@ use convex_support::{
     Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Difference, Ellipsoid, Hull, InvalidShape, Matrix, MinkowskiSum,
     Point, Polytope, Posed, Rounded, Scalar, Segment, SupportMap, Triangle, Vector, glam,
 };
-use serde::Deserialize;
 
 use super::error::{Kind, Problem};
-use super::fields::{AngularVelocity, Coordinates, Fields, Rotation};
+use super::fields::{AngularVelocity, Coordinates, Fields, Rotation, Written};
+use super::names::Names;
 use crate::mesh::{Mesh, Meshes};
 
 /// A shape as the query says it.
@@ -54,65 +54,87 @@ enum EllipsoidForm {
     Axes { semi_axes: Coordinates, rotation: Option<Rotation> },
 }
 
-/// The types of shapes, as written.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Type {
-    Point,
-    Segment,
-    Triangle,
-    Ball,
-    Cuboid,
-    Capsule,
-    Cylinder,
-    Cone,
-    Ellipsoid,
-    Polytope,
-    Mesh,
-    Posed,
-    Affine,
-    MinkowskiSum,
-    Difference,
-    Hull,
-    Rounded,
+/// A type of shapes: the fields that one has beside `type`, and what they make.
+#[derive(Clone, Copy, Debug)]
+pub struct Type {
+    fields: Names,
+    shape: fn(&Fields<'_>) -> Result<Shape, Problem>,
 }
+
+impl Type {
+    /// The shape that an object of this type is.
+    pub fn read(&self, written: Written<'_>) -> Result<Shape, Problem> {
+        (self.shape)(&written.fields(&["type"], self.fields)?)
+    }
+}
+
+const fn new(fields: Names, shape: fn(&Fields<'_>) -> Result<Shape, Problem>) -> Type {
+    Type { fields, shape }
+}
+
+/// The types of shapes, as written.
+pub const TYPES: &[(&str, Type)] = &[
+    ("point", new(&["at"], |of| Ok(Shape::Point(of.vector("at")?)))),
+    ("segment", new(&["points"], |of| Ok(Shape::Segment(of.corners("points")?)))),
+    ("triangle", new(&["points"], |of| Ok(Shape::Triangle(of.corners("points")?)))),
+    ("ball", new(&["radius"], |of| Ok(Shape::Ball { radius: of.get("radius")? }))),
+    ("cuboid", new(&["half_extents"], |of| Ok(Shape::Cuboid { half_extents: of.vector("half_extents")? }))),
+    (
+        "capsule",
+        new(&["half_height", "radius"], |of| {
+            Ok(Shape::Capsule { half_height: of.get("half_height")?, radius: of.get("radius")? })
+        }),
+    ),
+    ("cylinder", new(&["half_height", "radius"], |of| Shape::upright(of, Upright::Cylinder, "cylinder"))),
+    ("cone", new(&["half_height", "radius"], |of| Shape::upright(of, Upright::Cone, "cone"))),
+    ("ellipsoid", new(EllipsoidSpec::FIELDS, |of| Ok(Shape::Ellipsoid(EllipsoidSpec::of(of)?)))),
+    ("polytope", new(&["points"], |of| Ok(Shape::Polytope(of.vectors("points")?)))),
+    (
+        "mesh",
+        new(&["path"], |of| {
+            of.is_3d("mesh")?;
+            Ok(Shape::Mesh(of.get("path")?))
+        }),
+    ),
+    (
+        "posed",
+        new(&["translation", "rotation", "of"], |of| {
+            let Pose { translation, rotation } = Pose::of(of)?;
+            Ok(Shape::Posed { translation, rotation, of: Shape::within(of)? })
+        }),
+    ),
+    (
+        "affine",
+        new(&["matrix", "translation", "of"], |of| {
+            let (matrix, translation) = (of.matrix("matrix")?, of.vector_or_zero("translation")?);
+            Ok(Shape::Affine { matrix, translation, of: Shape::within(of)? })
+        }),
+    ),
+    ("minkowski_sum", new(&["of"], |of| Ok(Shape::MinkowskiSum(Shape::several(of)?)))),
+    (
+        "difference",
+        new(&["a", "b"], |of| {
+            Ok(Shape::Difference(Box::new([Shape::read(of.within("a")?)?, Shape::read(of.within("b")?)?])))
+        }),
+    ),
+    ("hull", new(&["of"], |of| Ok(Shape::Hull(Shape::several(of)?)))),
+    ("rounded", new(&["radius", "of"], |of| Ok(Shape::Rounded { radius: of.get("radius")?, of: Shape::within(of)? }))),
+];
 
 impl Shape {
     /// The shape that an object is.
-    pub fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
-        let of = || Ok(Box::new(Self::read(&fields.within("of")?)?));
-        let several = || fields.each("of")?.iter().map(Self::read).collect::<Result<Vec<_>, _>>();
-        Ok(match fields.name("type", Kind::UnknownShape)? {
-            Type::Point => Self::Point(fields.vector("at")?),
-            Type::Segment => Self::Segment(fields.corners("points")?),
-            Type::Triangle => Self::Triangle(fields.corners("points")?),
-            Type::Ball => Self::Ball { radius: fields.get("radius")? },
-            Type::Cuboid => Self::Cuboid { half_extents: fields.vector("half_extents")? },
-            Type::Capsule => Self::Capsule { half_height: fields.get("half_height")?, radius: fields.get("radius")? },
-            Type::Cylinder => Self::upright(fields, Upright::Cylinder, "cylinder")?,
-            Type::Cone => Self::upright(fields, Upright::Cone, "cone")?,
-            Type::Ellipsoid => Self::Ellipsoid(EllipsoidSpec::read(fields)?),
-            Type::Polytope => Self::Polytope(fields.vectors("points")?),
-            Type::Mesh => {
-                fields.is_3d("mesh")?;
-                Self::Mesh(fields.get("path")?)
-            }
-            Type::Posed => {
-                let Pose { translation, rotation } = Pose::read(fields)?;
-                Self::Posed { translation, rotation, of: of()? }
-            }
-            Type::Affine => Self::Affine {
-                matrix: fields.matrix("matrix")?,
-                translation: fields.vector_or_zero("translation")?,
-                of: of()?,
-            },
-            Type::MinkowskiSum => Self::MinkowskiSum(several()?),
-            Type::Difference => {
-                Self::Difference(Box::new([Self::read(&fields.within("a")?)?, Self::read(&fields.within("b")?)?]))
-            }
-            Type::Hull => Self::Hull(several()?),
-            Type::Rounded => Self::Rounded { radius: fields.get("radius")?, of: of()? },
-        })
+    pub fn read(written: Written<'_>) -> Result<Self, Problem> {
+        written.named("type", TYPES.iter().copied(), Kind::UnknownShape)?.read(written)
+    }
+
+    /// The one that a shape is made of.
+    fn within(fields: &Fields<'_>) -> Result<Box<Self>, Problem> {
+        Self::read(fields.within("of")?).map(Box::new)
+    }
+
+    /// Those that a shape is made of.
+    fn several(fields: &Fields<'_>) -> Result<Vec<Self>, Problem> {
+        fields.each("of")?.into_iter().map(Self::read).collect()
     }
 
     /// A cylinder or cone.
@@ -131,28 +153,33 @@ pub struct Pose {
 
 impl Pose {
     /// The pose that an object is.
-    pub fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+    pub fn read(written: Written<'_>) -> Result<Self, Problem> {
+        Self::of(&written.fields(&["translation", "rotation"], &[])?)
+    }
+
+    /// The pose that is among the fields of an object.
+    fn of(fields: &Fields<'_>) -> Result<Self, Problem> {
         Ok(Self { translation: fields.vector_or_zero("translation")?, rotation: fields.rotation("rotation")? })
     }
 }
 
 impl EllipsoidSpec {
+    const FIELDS: Names = &["center", "matrix", "semi_axes", "rotation"];
+
     /// The ellipsoid that an object is.
-    pub fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+    pub fn read(written: Written<'_>) -> Result<Self, Problem> {
+        Self::of(&written.fields(&[], Self::FIELDS)?)
+    }
+
+    /// The ellipsoid that is among the fields of an object.
+    fn of(fields: &Fields<'_>) -> Result<Self, Problem> {
         let center = fields.vector("center")?;
-        let form = match (fields.has("matrix"), fields.has("semi_axes")) {
-            (true, false) => EllipsoidForm::Matrix(fields.matrix("matrix")?),
-            (false, true) => {
-                let (semi_axes, rotation) = (fields.vector("semi_axes")?, fields.rotation("rotation")?);
-                EllipsoidForm::Axes { semi_axes, rotation }
-            }
-            _ => {
-                let message = format!(
-                    "{} must have either \"matrix\", or \"semi_axes\" and if wanted \"rotation\"",
-                    fields.place()
-                );
-                return Err(Problem::new(Kind::Parse, message));
-            }
+        let form = if fields.only_one_of(&["matrix", "semi_axes"])? == "matrix" {
+            // It has a rotation of its own.
+            EllipsoidForm::Matrix(fields.only(&["type"], &["center", "matrix"])?.matrix("matrix")?)
+        } else {
+            let (semi_axes, rotation) = (fields.vector("semi_axes")?, fields.rotation("rotation")?);
+            EllipsoidForm::Axes { semi_axes, rotation }
         };
         Ok(Self { center, form })
     }
