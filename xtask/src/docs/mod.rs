@@ -1,6 +1,8 @@
 //! `cargo xtask docs`: the API documentation of the four libraries as docs.rs builds it, with every feature and no warning
 //! let pass; and a check that what the pages and the notes refer to is there, without a network.
 
+mod names;
+
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -10,20 +12,26 @@ const LIBRARIES: [&str; 4] = ["convex-support", "gjk-raycast", "lj-ellipsoid", "
 
 /// Builds the pages, checks them and the notes, and says where they are.
 pub fn run() -> ExitCode {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
-    match build(root).and_then(|pages| Ok((missing(root)?, fetched(&pages)?, pages))) {
-        Ok((missing, fetched, pages)) => {
-            for complaint in missing.iter().chain(&fetched) {
+    let root = root();
+    let checked = |pages: PathBuf| Ok(([missing(root)?, names::missing(root)?, fetched(&pages)?].concat(), pages));
+    match build(root).and_then(checked) {
+        Ok((complaints, pages)) => {
+            for complaint in &complaints {
                 let _ = writeln!(io::stderr(), "error: {complaint}");
             }
             let _ = writeln!(io::stdout(), "{}", pages.join("convex_support/index.html").display());
-            if missing.is_empty() && fetched.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(1) }
+            if complaints.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(1) }
         }
         Err(why) => {
             let _ = writeln!(io::stderr(), "error: {why}");
             ExitCode::from(2)
         }
     }
+}
+
+/// The folder of the workspace.
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."))
 }
 
 /// The folder of the pages.
@@ -89,4 +97,15 @@ fn files(folder: &Path, extension: &str) -> Result<Vec<PathBuf>, String> {
     }
     found.sort();
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_notes_lead_nowhere_that_is_not_there() {
+        let found = missing(root()).and_then(|links| Ok([links, names::missing(root())?].concat()));
+        assert_eq!(found, Ok(Vec::new()));
+    }
 }
