@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use super::{files, read};
 
 /// How the names of files end that a note may speak of.
-const FILES: [&str; 13] = ["rs", "md", "toml", "sh", "py", "csv", "json", "jsonl", "svg", "png", "yml", "css", "txt"];
+const FILES: [&str; 15] =
+    ["rs", "md", "toml", "sh", "py", "csv", "json", "jsonl", "svg", "png", "yml", "css", "txt", "obj", "urdf"];
 
 /// Where items, features, options of programs and fields of data are named.
 const SOURCES: [&str; 6] = ["rs", "toml", "py", "sh", "css", "jsonl"];

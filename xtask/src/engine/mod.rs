@@ -410,8 +410,9 @@ mod tests {
                         let value = object.remove(key).unwrap_or_default();
                         object.insert(renamed.clone(), value);
                     });
+                    // Of a letter there is nothing that looks like it.
                     let is_named = problem.message.contains(&format!("{renamed:?}"))
-                        && problem.message.contains(&format!("{key:?}"));
+                        && (key.len() == 1 || problem.message.contains(&format!("{key:?}")));
                     assert!(problem.kind == Kind::UnknownField && is_named, "{key} in {line}: {problem:?}");
                 }
                 seen += 1;
