@@ -1,11 +1,10 @@
 //! Points whose dimension is known at run time only.
 
-use crate::ellipsoid::{Ellipsoid, radius_at, reach_along};
+use crate::ellipsoid::{Ellipsoid, radius_at, support_value};
 use crate::enclosing::{EnclosingIterate, Solution};
 use crate::error::{EnclosingError, InscribedError};
 use crate::inscribed::InscribedSolution;
 use crate::numerics::dimension::{Const, Dynamic};
-use crate::numerics::linalg::dot;
 use crate::options::{EnclosingOptions, InscribedOptions, Status};
 use crate::points::Copied;
 use crate::shape::Shape;
@@ -93,7 +92,7 @@ impl EllipsoidDyn {
     pub fn support_value(&self, direction: &[f64]) -> f64 {
         let n = self.dimension();
         assert_eq!(direction.len(), n, "the direction has {} coordinates, the ellipsoid {n}", direction.len());
-        dot(direction, &self.shape.center) + reach_along(&self.shape.axes, &self.shape.semi_axes, direction)
+        support_value(&self.shape.center, &self.shape.axes, &self.shape.semi_axes, direction)
     }
 
     /// The logarithm of the volume; see [`Ellipsoid::log_volume`](crate::Ellipsoid::log_volume).

@@ -1,7 +1,7 @@
 //! The ellipsoid as it is returned.
 
 use crate::numerics::dimension::Const;
-use crate::numerics::linalg::dot;
+use crate::numerics::twofold;
 use crate::shape::Shape;
 
 /// The ellipsoid E(c, X) = { x : (x − c)ᵀX(x − c) ≤ 1 } in N dimensions.
@@ -84,11 +84,11 @@ impl<const N: usize> Ellipsoid<N> {
     }
 
     /// max direction·x over the ellipsoid, = direction·c + |diag(a)·R·direction|: how far it reaches along `direction`,
-    /// which need not be of unit length.
+    /// which need not be of unit length. Its sums are in twice the precision, so that it is right to a few roundings however thin
+    /// the ellipsoid.
     #[must_use]
     pub fn support_value(&self, direction: impl Into<[f64; N]>) -> f64 {
-        let direction = direction.into();
-        dot(&direction, &self.center) + reach_along(self.axes.as_flattened(), &self.semi_axes, &direction)
+        support_value(&self.center, self.axes.as_flattened(), &self.semi_axes, &direction.into())
     }
 
     /// The volume of this ellipsoid over that of `outer`, to the power 1/N: with the inscribed and the enclosing
@@ -173,14 +173,44 @@ pub(crate) fn radius_at(center: &[f64], axes: &[f64], semi_axes: &[f64], x: &[f6
     square.sqrt()
 }
 
-/// |diag(a)·R·d|: how far the ellipsoid reaches from its centre along d. What is promised of half-spaces as evaluated in `f64`
-/// is promised of this very evaluation.
-#[inline]
-pub(crate) fn reach_along(axes: &[f64], semi_axes: &[f64], direction: &[f64]) -> f64 {
-    let mut square = 0.0;
-    for (axis, a) in axes.chunks_exact(direction.len()).zip(semi_axes) {
-        let along = a * dot(axis, direction);
-        square += along * along;
+/// No less than |diag(1/a)·R·(x − c)| over the semi-axes that are not zero, the sums taken exactly of the doubles as they are.
+///
+/// As in [`reach_at_most`], with a quotient more.
+pub(crate) fn radius_at_most(center: &[f64], axes: &[f64], semi_axes: &[f64], x: &[f64]) -> f64 {
+    let n = center.len();
+    let mut square = n as f64 * f64::from_bits(1);
+    for (axis, a) in axes.chunks_exact(n).zip(semi_axes).filter(|(_, a)| **a > 0.0) {
+        let to_x = axis.iter().copied().zip(x.iter().copied());
+        let from_center = axis.iter().copied().zip(center.iter().map(|c| -c));
+        let (along, error) = twofold::dot_with_error(to_x.chain(from_center));
+        let ratio = (along.abs() + error) / a;
+        square += ratio * ratio;
     }
-    square.sqrt()
+    square.sqrt() * (1.0 + (n as f64 + 6.0) * f64::EPSILON)
+}
+
+/// direction·c + |diag(a)·R·direction|. What is promised of half-spaces as evaluated in `f64` is promised of this very evaluation.
+///
+/// Of a thin turned ellipsoid a long axis along the direction and the direction along a long axis are differences of large products: a
+/// plain sum would lose 1e-16 of the length of the ellipsoid, and with it all of its thickness.
+pub(crate) fn support_value(center: &[f64], axes: &[f64], semi_axes: &[f64], direction: &[f64]) -> f64 {
+    let reach = square_of_reach(axes, semi_axes, direction, |(along, _)| along).sqrt();
+    let to_center = direction.iter().copied().zip(center.iter().copied());
+    twofold::dot(to_center.chain([(reach, 1.0)]))
+}
+
+/// No less than |diag(a)·R·direction|, the sums taken exactly of the doubles as they are.
+///
+/// Squares, their sum and the root lose less than n + 4 roundings, and a square that underflows less than the smallest number.
+pub(crate) fn reach_at_most(axes: &[f64], semi_axes: &[f64], direction: &[f64]) -> f64 {
+    let n = direction.len() as f64;
+    let square = square_of_reach(axes, semi_axes, direction, |(along, error)| along.abs() + error);
+    (square + n * f64::from_bits(1)).sqrt() * (1.0 + (n + 4.0) * f64::EPSILON)
+}
+
+/// |diag(a)·R·direction|² of components in twice the precision, each as `component` makes it of the sum and the bound on its error.
+fn square_of_reach(axes: &[f64], semi_axes: &[f64], direction: &[f64], component: impl Fn((f64, f64)) -> f64) -> f64 {
+    let along = |axis: &[f64]| twofold::dot_with_error(axis.iter().copied().zip(direction.iter().copied()));
+    let components = axes.chunks_exact(direction.len()).zip(semi_axes).map(|(axis, a)| a * component(along(axis)));
+    components.map(|x| x * x).sum()
 }

@@ -313,3 +313,29 @@ fn a_bounded_needle_is_not_called_unbounded() {
         }
     }
 }
+
+/// {|kx + (k+1)y| ≤ 1, |(k−1)x + ky| ≤ 1} is the image of a square by an integer matrix of determinant one: of the largest ellipse in it
+/// ln det X* = 0, and of the least around it −2·ln 2. So a smaller or larger number is itself the proof that an ellipse sticks out, or leaves a corner
+/// outside. At k = 8e6 that was −0.0191 with a gap of 0.0 and `Converged`: containment was looked at in plain arithmetic, which loses 1e-16 of the length
+/// 2k of terms that cancel to the thickness 1/2k, and the bound on ln det X* that came out below what was returned was clamped to it.
+#[test]
+fn what_is_inside_or_around_a_parallelogram_is_proved_to_be() {
+    for k in [1.0, 2.0, 13.0, 110.0, 924.0, 5756.0, 85628.0, 3e6, 6365106.0, 8e6] {
+        let [a, b] = [[k, k + 1.0], [k - 1.0, k]];
+        let side = |normal: [f64; 2]| HalfSpace { normal, offset: 1.0 };
+        let sides = [side(a), side(a.map(|x| -x)), side(b), side(b.map(|x| -x))];
+        let corner = |s: f64, t: f64| [k * s - (k + 1.0) * t, k * t - (k - 1.0) * s];
+        let corners = [corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0), corner(-1.0, 1.0)];
+        let options = InscribedOptions::new();
+        for inner in [inscribed(&sides, options), inscribed_in_hull(&corners, options)] {
+            let Inscribed { ellipsoid, log_det_gap: gap, .. } = inner.expect("an ellipse");
+            let log_det = ellipsoid.log_det();
+            assert!((0.0..=gap).contains(&log_det), "k = {k}: ln det X = {log_det:e}, gap {gap:e}");
+            // The directions of the axes are rounded, by U of a length that is 4k² of the thickness.
+            assert!(gap < 1e-12 + 30.0 * U * k * k, "k = {k}: gap {gap:e}");
+        }
+        let outer = enclosing(&corners, EnclosingOptions::new()).expect("an ellipse");
+        let (missing, gap) = (-4f64.ln() - outer.ellipsoid.log_det(), outer.log_det_gap);
+        assert!((-U..=gap).contains(&missing), "k = {k}: ln det X falls short by {missing:e}, gap {gap:e}");
+    }
+}

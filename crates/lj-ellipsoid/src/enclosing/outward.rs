@@ -1,8 +1,8 @@
-//! Outward rounding: how far the points reach in an ellipsoid, and the growth that holds every one as evaluated in `f64`.
+//! Outward rounding: how far the points reach in an ellipsoid, and the growth that is proved to hold every one, and does as evaluated in `f64`.
 
 use std::ops::Range;
 
-use crate::ellipsoid::radius_at;
+use crate::ellipsoid::{radius_at, radius_at_most};
 use crate::enclosing::frame::Frame;
 use crate::enclosing::scan::beyond;
 use crate::numerics::dimension::Dimension;
@@ -17,6 +17,8 @@ pub(crate) struct Reach<N: Dimension> {
     pub(crate) frame: Frame<N>,
     /// At least max |diag(1/a)·R·(x − c)|, in whatever order it is evaluated.
     pub(crate) axes: f64,
+    /// At least max |diag(1/a)·R·(x − c)| of the doubles as they are.
+    proved: f64,
     /// max (x − c)ᵀX(x − c).
     pub(crate) matrix: f64,
     /// The points that may be contacts, with |diag(1/a)·R·(x − c)|²; `None` where they are a large part of all.
@@ -53,6 +55,9 @@ impl Found {
 /// Points whose rounding is bounded one by one.
 const MANY: usize = 256;
 
+/// Errors of a radius up to this are rounding of no account.
+const SMALL: f64 = 1e-14;
+
 /// Candidates that are mostly enough.
 pub(crate) const SOME: usize = 16;
 
@@ -64,13 +69,10 @@ struct Evaluation<'a, N: Dimension> {
 }
 
 impl<N: Dimension> Evaluation<'_, N> {
-    /// A relative bound on the rounding of a sum of products of three.
-    fn gamma(&self) -> f64 {
-        (self.n + 3) as f64 * UNIT_ROUNDOFF
-    }
-
-    /// |T·e|, and a bound on the rounding of its evaluation.
+    /// |T·e|, and a bound on the rounding of its evaluation: of a component n + 2 roundings (T and e are themselves rounded), and of
+    /// the length as many again.
     fn radius(&self, e: &[f64]) -> (f64, f64) {
+        let gamma = (2 * self.n + 5) as f64 * UNIT_ROUNDOFF;
         let (mut square, mut error) = (0.0, 0.0);
         for row in self.frame.map().chunks_exact(self.n) {
             let (mut along, mut size) = (0.0, 0.0);
@@ -80,12 +82,13 @@ impl<N: Dimension> Evaluation<'_, N> {
                 size += term.abs();
             }
             square += along * along;
-            error += (self.gamma() * size) * (self.gamma() * size);
+            error += (gamma * size) * (gamma * size);
         }
         (square.sqrt(), error.sqrt())
     }
 
-    /// eᵀXe, and a bound on the rounding of its evaluation. X itself is the product of T with itself only up to rounding of the same size.
+    /// eᵀXe, and a bound on the rounding of its evaluation: n² terms, two roundings of the products, two of the factors e and one of X
+    /// when it is scaled.
     fn level(&self, e: &[f64]) -> (f64, f64) {
         let (mut value, mut size) = (0.0, 0.0);
         for i in 0..self.n {
@@ -95,7 +98,7 @@ impl<N: Dimension> Evaluation<'_, N> {
                 size += term.abs();
             }
         }
-        (value, 2.0 * self.gamma() * size)
+        (value, (self.n * self.n + 5) as f64 * UNIT_ROUNDOFF * size)
     }
 }
 
@@ -129,11 +132,17 @@ pub(crate) fn reach<P: Points>(points: &P, rank: P::Dim, shape: &Shape<P::Dim>, 
         leaders.next().is_none().then_some(found)
     });
     let (mut axes, mut matrix) = (furthest.sqrt() * (1.0 + error), furthest * (1.0 + largest_error));
+    let mut proved = axes;
     if let Some(leaders) = &leaders {
         let mut v = dim.zero();
-        (axes, matrix) = (0.0, 0.0);
+        (axes, matrix, proved) = (0.0, 0.0, 0.0);
         for &i in leaders {
             points.read(i, v.as_mut());
+            // Where terms of the sums do not cancel, a bound on their rounding is as good as sums in twice the precision.
+            let (center, axes_of, semi_axes) = (frame.origin.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());
+            if error > SMALL {
+                proved = proved.max(radius_at_most(center, axes_of, semi_axes, v.as_ref()));
+            }
             let e = &mut v.as_mut()[..n];
             for k in 0..n {
                 e[k] -= frame.origin.as_ref()[k];
@@ -142,8 +151,11 @@ pub(crate) fn reach<P: Points>(points: &P, rank: P::Dim, shape: &Shape<P::Dim>, 
             axes = axes.max(radius + error);
             matrix = matrix.max(level + error_matrix);
         }
+        if !(error > SMALL) {
+            proved = axes;
+        }
     }
-    Reach { frame, axes, matrix, candidates, leaders, passes }
+    Reach { frame, axes, proved, matrix, candidates, leaders, passes }
 }
 
 /// max |T·(v − o)|² over the points, those within the share `near` of it unless they are a large part of all, and the passes
@@ -187,28 +199,31 @@ fn furthest<P: Points>(
     }
 }
 
-/// Scales the semi-axes so that the furthest point touches, and answers by how much: the least that holds every point as
-/// evaluated by [`radius_at`].
+/// Scales the semi-axes so that the furthest point touches, and answers by how much: the least that is proved to hold every point, and
+/// holds it as evaluated by [`radius_at`].
 ///
-/// A scaling that makes the largest radius one may, by its own rounding, leave one a rounding beyond: then once more.
-/// Where points are many, or rounding does not settle, the scaling is what holds them in any order of evaluation.
+/// In a thin ellipsoid that evaluation may be larger than the truth: then once more. Where points are many, or rounding does not settle, the scaling is what
+/// holds them in any order of evaluation.
 pub(crate) fn touch<P: Points>(points: &P, shape: &mut Shape<P::Dim>, reach: &Reach<P::Dim>) -> f64 {
     let mut v = points.dim().zero();
+    // The products with the scale are rounded, by it or by the semi-axes.
     let mut growth = 1.0;
-    for attempt in 0..if reach.leaders.is_some() { 8 } else { 0 } {
+    let mut scale = reach.proved * (1.0 + 4.0 * UNIT_ROUNDOFF);
+    for _ in 0..8 {
+        shape.semi_axes.as_mut().iter_mut().for_each(|a| *a *= scale);
+        growth *= scale;
+        let (center, axes, semi_axes) = (shape.center.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());
         let mut furthest: f64 = 0.0;
         for &i in reach.leaders.iter().flatten() {
             points.read(i, v.as_mut());
-            let (center, axes, semi_axes) = (shape.center.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());
             furthest = furthest.max(radius_at(center, axes, semi_axes, v.as_ref()));
         }
-        if attempt > 0 && furthest <= 1.0 {
+        if furthest <= 1.0 {
             return growth;
         }
-        shape.semi_axes.as_mut().iter_mut().for_each(|a| *a *= furthest);
-        growth *= furthest;
+        scale = furthest * (1.0 + 2.0 * UNIT_ROUNDOFF);
     }
-    let rest = reach.axes / growth * (1.0 + 6.0 * UNIT_ROUNDOFF);
+    let rest = (reach.axes / growth * (1.0 + 6.0 * UNIT_ROUNDOFF)).max(1.0);
     shape.semi_axes.as_mut().iter_mut().for_each(|a| *a *= rest);
     growth * rest
 }

@@ -90,7 +90,7 @@ pub(crate) struct Ending {
     pub(crate) scans: usize,
 }
 
-/// Turns the unit ball of `frame` into the ellipsoid that contains every point as evaluated in `f64`, with its gap.
+/// Turns the unit ball of `frame` into the ellipsoid that is proved to contain every point, with its gap.
 pub(crate) fn finish<P: Points>(
     points: &P,
     rank: P::Dim,
@@ -117,8 +117,9 @@ pub(crate) fn finish<P: Points>(
     // ln det X* − ln det X: the transformation into the frame cancels, and with it its size.
     let logarithms: f64 = semi_axes.iter().map(|a| a.ln().abs()).sum();
     let log_det_gap = certificate.log_det_bound + 2.0 * r as f64 * growth.ln() + 4.0 * UNIT_ROUNDOFF * logarithms;
-    // What is no number proves nothing.
-    let log_det_gap = if log_det_gap.is_nan() { f64::INFINITY } else { log_det_gap.max(0.0) };
+    // The points are proved to be inside, and the bound is one on all ellipsoids that hold them: a difference below zero, or none, would
+    // prove only that numbers left the range in which the errors are bounded.
+    let log_det_gap = if log_det_gap >= 0.0 { log_det_gap } else { f64::INFINITY };
     let status = match ended {
         Status::IterationLimit if log_det_gap > epsilon => Status::IterationLimit,
         _ if log_det_gap <= epsilon => Status::Converged,

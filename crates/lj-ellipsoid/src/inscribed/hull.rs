@@ -14,6 +14,9 @@ use robust::{Coord, Coord3D, orient2d, orient3d};
 pub(crate) struct Facets {
     pub(crate) normals: Vec<f64>,
     pub(crate) offsets: Vec<f64>,
+    /// The least n·x over the corners of what the facet stands for, to rounding. The edges or triangles of all facets are a closed surface, so
+    /// that whatever reaches from within below all of these planes stays within the hull.
+    pub(crate) depths: Vec<f64>,
 }
 
 /// The edges of the hull of points in the plane, by Andrew's monotone chain.
@@ -37,17 +40,19 @@ pub(crate) fn hull2(points: &[[f64; 2]]) -> Facets {
     };
     let mut ring = chain(&mut order.iter().copied());
     ring.extend(chain(&mut order.iter().rev().copied()));
-    let mut facets = Facets { normals: Vec::with_capacity(2 * ring.len()), offsets: Vec::with_capacity(ring.len()) };
+    let m = ring.len();
+    let mut facets =
+        Facets { normals: Vec::with_capacity(2 * m), offsets: Vec::with_capacity(m), depths: Vec::with_capacity(m) };
     for k in 0..ring.len() {
         let (a, b) = (points[ring[k]], points[ring[(k + 1) % ring.len()]]);
         let length = (b[0] - a[0]).hypot(b[1] - a[1]);
         let normal = [(b[1] - a[1]) / length, (a[0] - b[0]) / length];
         let next = points[ring[(k + 2) % ring.len()]];
         let previous = points[ring[(k + ring.len() - 1) % ring.len()]];
-        let offset =
-            [a, b, next, previous].iter().fold(f64::NEG_INFINITY, |m, p| m.max(normal[0] * p[0] + normal[1] * p[1]));
+        let along = |p: [f64; 2]| normal[0] * p[0] + normal[1] * p[1];
         facets.normals.extend(normal);
-        facets.offsets.push(offset);
+        facets.offsets.push([a, b, next, previous].into_iter().map(along).fold(f64::NEG_INFINITY, f64::max));
+        facets.depths.push(along(a).min(along(b)));
     }
     facets
 }
@@ -252,18 +257,19 @@ fn faces(hull: &Hull3<'_>) -> Facets {
     let mut order: Vec<usize> = (0..hull.triangles.len()).filter(|&t| hull.triangles[t].alive).collect();
     order.sort_by(|&s, &t| hull.triangles[t].size.total_cmp(&hull.triangles[s].size));
     let mut merged = vec![false; hull.triangles.len()];
-    let mut facets = Facets { normals: Vec::new(), offsets: Vec::new() };
+    let mut facets = Facets { normals: Vec::new(), offsets: Vec::new(), depths: Vec::new() };
     for seed in order {
         let plane = &hull.triangles[seed];
         if merged[seed] || !plane.offset.is_finite() {
             continue;
         }
-        let mut offset = f64::NEG_INFINITY;
+        let (mut offset, mut depth) = (f64::NEG_INFINITY, f64::INFINITY);
         let mut stack = vec![seed];
         merged[seed] = true;
         while let Some(t) = stack.pop() {
             for &v in &hull.triangles[t].vertices {
-                offset = offset.max(dot3(plane.normal, hull.points[v]));
+                let along = dot3(plane.normal, hull.points[v]);
+                (offset, depth) = (offset.max(along), depth.min(along));
             }
             for &other in &hull.triangles[t].neighbors {
                 // Convexity: a plane that no neighbouring vertex is beyond bounds the hull.
@@ -277,6 +283,7 @@ fn faces(hull: &Hull3<'_>) -> Facets {
         }
         facets.normals.extend(plane.normal);
         facets.offsets.push(offset);
+        facets.depths.push(depth);
     }
     facets
 }

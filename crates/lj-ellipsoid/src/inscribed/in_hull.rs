@@ -6,7 +6,8 @@
 use crate::enclosing;
 use crate::error::{EnclosingError, InscribedError};
 use crate::inscribed::coordinates::{Coordinates, Rows};
-use crate::inscribed::hull::{hull2, hull3};
+use crate::inscribed::hull::{Facets, hull2, hull3};
+use crate::inscribed::solution::Body;
 use crate::inscribed::{Inscribed, InscribedIterate, InscribedSolution, Observer, solution};
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{UNIT_ROUNDOFF, dot};
@@ -75,18 +76,21 @@ pub(crate) fn solve_points<P: Points>(
         axes: shape.axes.as_ref().to_vec(),
         lengths: shape.semi_axes.as_ref().to_vec(),
     };
-    let (images, error) = images(points, &shape);
-    let facets = if n == 2 {
+    let (images, error_of_image) = images(points, &shape);
+    let tolerance = (COPLANAR * UNIT_ROUNDOFF).max(4.0 * error_of_image);
+    let Facets { normals, offsets, depths } = if n == 2 {
         hull2(images.as_chunks::<2>().0)
     } else {
-        let tolerance = (COPLANAR * UNIT_ROUNDOFF).max(4.0 * error);
         hull3(images.as_chunks::<3>().0, tolerance).ok_or(InscribedError::Flat { rank: 2, dimension: 3 })?
     };
-    let error = vec![4.0 * n as f64 * error; facets.offsets.len()];
-    let rows = Rows { n, p: facets.normals, s: facets.offsets, error };
-    let frame = coordinates.clone();
-    let mut within = |shape: &mut Shape<P::Dim>| touch(&frame, &rows, shape);
-    solution::solve(dim, coordinates, &rows, &mut within, options, observer)
+    // The planes are what their doubles say; how far the hull reaches beyond them is added by weight.
+    let error = vec![0.0; offsets.len()];
+    let rows = Rows { n, p: normals, s: offsets, error };
+    // Coordinates of images, and the products and sums along a unit normal, which are at most √n in size.
+    let root = (n as f64).sqrt();
+    let rounding = root * error_of_image + (n + 2) as f64 * UNIT_ROUNDOFF * root;
+    let hull = Hull { coordinates: coordinates.clone(), rows: &rows, depths, images: &images, rounding, tolerance };
+    solution::solve(dim, coordinates, &rows, &hull, options, observer)
 }
 
 /// What keeps points from having an enclosing ellipsoid keeps their hull from having an inscribed one.
@@ -136,14 +140,55 @@ fn images<P: Points>(points: &P, shape: &Shape<P::Dim>) -> (Vec<f64>, f64) {
 /// Terms larger than this, of an image of at most one, cancel.
 const CANCELLING: f64 = 4.0;
 
-/// Scales the semi-axes so that the ellipsoid as it stands, its axes rounded, touches the first facet. `None` where that leaves
-/// nothing.
-fn touch<N: Dimension>(coordinates: &Coordinates, facets: &Rows, shape: &mut Shape<N>) -> Option<()> {
-    let n = facets.n;
-    let (d, e) = coordinates.seen(shape.center.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());
-    let reach = |p: &[f64]| e.chunks_exact(n).map(|e| dot(e, p).powi(2)).sum::<f64>().sqrt();
-    let room = facets.iter().map(|(p, s)| (s - dot(p, &d)) / reach(p)).fold(f64::INFINITY, f64::min);
-    let scale = room * (1.0 - 4.0 * n as f64 * UNIT_ROUNDOFF);
-    shape.semi_axes.as_mut().iter_mut().for_each(|a| *a *= scale);
-    (scale > 0.0 && scale.is_finite()).then_some(())
+/// The hull of points, in the coordinates of their images.
+struct Hull<'a> {
+    coordinates: Coordinates,
+    rows: &'a Rows,
+    /// How far out the corners of each facet are at least.
+    depths: Vec<f64>,
+    images: &'a [f64],
+    /// A bound on what rounding does to p·y of an image.
+    rounding: f64,
+    /// How near to the hull points were taken to be in it.
+    tolerance: f64,
+}
+
+/// Multipliers below this do not pay for a look at all points: what they multiply is as little as the tolerance of the hull.
+const WEIGHTY: f64 = 1e-8;
+
+impl<D: Dimension> Body<D> for Hull<'_> {
+    /// The largest scale that is proved to keep the ellipsoid below the corners of every facet: the surface that these bound is closed and made
+    /// of points of the hull, so that the ellipsoid, the centre of which it surrounds, stays in the hull.
+    fn touch(&self, shape: &mut Shape<D>) -> Option<()> {
+        let n = self.rows.n;
+        let (d, e) = self.coordinates.seen(shape.center.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());
+        let unit = (n + 8) as f64 * UNIT_ROUNDOFF;
+        // Σxᵢ of products with an unit vector, and a bound on what rounding does to it.
+        let along = |p: &[f64], x: &[(f64, f64)]| {
+            let terms = p.iter().zip(x).map(|(p, (x, error))| (p * x, p.abs() * (unit * x.abs() + error)));
+            terms.fold((0.0, 0.0), |(sum, error), (x, e)| (sum + x, error + e))
+        };
+        let mut scale = f64::INFINITY;
+        for ((p, _), depth) in self.rows.iter().zip(&self.depths) {
+            let (center, error) = along(p, &d);
+            let room = depth - center - (error + self.rounding + unit * depth.abs());
+            let components = e.chunks_exact(n).map(|e| along(p, e)).map(|(x, error)| x.abs() + error);
+            scale = scale.min(room / components.map(|x| x * x).sum::<f64>().sqrt());
+        }
+        scale *= 1.0 - 2.0 * unit;
+        shape.semi_axes.as_mut().iter_mut().for_each(|a| *a *= scale);
+        (scale > 0.0 && scale.is_finite()).then_some(())
+    }
+
+    /// By a look at all points.
+    fn beyond(&self, i: usize, weight: f64) -> f64 {
+        let n = self.rows.n;
+        let (p, s) = (&self.rows.p[i * n..(i + 1) * n], self.rows.s[i]);
+        let furthest = if weight < WEIGHTY {
+            s + 64.0 * self.tolerance
+        } else {
+            self.images.chunks_exact(n).map(|y| dot(p, y)).fold(s, f64::max)
+        };
+        (furthest - s + self.rounding) / s
+    }
 }

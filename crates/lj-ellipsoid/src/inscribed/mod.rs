@@ -2,6 +2,7 @@
 
 mod analytic_center;
 mod boundedness;
+mod certificate;
 mod chebyshev;
 mod coordinates;
 mod hull;
@@ -16,12 +17,10 @@ pub use self::in_hull::{inscribed_in_hull, inscribed_in_hull_with};
 use self::interior::round_coordinates;
 use self::polyhedron::Polyhedron;
 pub(crate) use self::solution::InscribedSolution;
-use crate::ellipsoid::{Ellipsoid, reach_along};
+use crate::ellipsoid::Ellipsoid;
 use crate::error::InscribedError;
 use crate::numerics::dimension::{Const, Dimension};
-use crate::numerics::linalg::{UNIT_ROUNDOFF, dot};
 use crate::options::{InscribedOptions, Status};
-use crate::shape::Shape;
 use crate::weight::Weight;
 
 /// The half-space { x : normal·x ≤ offset }. The normal points outward and need not be of unit length.
@@ -145,35 +144,5 @@ pub(crate) fn solve<'a, D: Dimension>(
     options.check()?;
     let polyhedron = Polyhedron::new(dim.get(), halfspaces)?;
     let (coordinates, rows) = round_coordinates(dim, &polyhedron)?;
-    let mut within = |shape: &mut Shape<D>| touch(&polyhedron, shape);
-    solution::solve(dim, coordinates, &rows, &mut within, options, observer)
+    solution::solve(dim, coordinates, &rows, &polyhedron, options, observer)
 }
-
-/// Scales the semi-axes so that the ellipsoid touches the first half-space, the most that keeps it in all of them as evaluated:
-/// a·c + |diag(axes)·R·a| ≤ b. `None` where that leaves nothing.
-///
-/// A scaling may by its own rounding leave a half-space a rounding behind: then it shrinks once more, twice as far every time.
-fn touch<D: Dimension>(polyhedron: &Polyhedron, shape: &mut Shape<D>) -> Option<()> {
-    let reach = |shape: &Shape<D>, a: &[f64]| reach_along(shape.axes.as_ref(), shape.semi_axes.as_ref(), a);
-    let room = polyhedron
-        .rows()
-        .map(|(a, b)| (b - dot(a, shape.center.as_ref())) / reach(shape, a))
-        .fold(f64::INFINITY, f64::min);
-    let mut scale = room;
-    let mut shrinkage = UNIT_ROUNDOFF;
-    for _ in 0..MOST_SHRINKS {
-        if !(scale > 0.0 && scale.is_finite()) {
-            return None;
-        }
-        shape.semi_axes.as_mut().iter_mut().for_each(|a| *a *= scale);
-        if polyhedron.rows().all(|(a, b)| dot(a, shape.center.as_ref()) + reach(shape, a) <= b) {
-            return Some(());
-        }
-        scale = 1.0 - shrinkage;
-        shrinkage *= 2.0;
-    }
-    None
-}
-
-/// Doubling shrinkages: the last is all of the size.
-const MOST_SHRINKS: usize = 54;

@@ -1,7 +1,12 @@
 //! The half-spaces as given, checked and scaled.
 
+use crate::ellipsoid::{reach_at_most, support_value};
 use crate::error::InscribedError;
-use crate::numerics::linalg::power_of_two_inverse;
+use crate::inscribed::solution::Body;
+use crate::numerics::dimension::Dimension;
+use crate::numerics::linalg::{UNIT_ROUNDOFF, power_of_two_inverse};
+use crate::numerics::twofold;
+use crate::shape::Shape;
 
 /// Half-spaces aᵢ·x ≤ bᵢ, the largest coordinate of every aᵢ between one and two; rows of `n` numbers.
 #[derive(Clone, Debug)]
@@ -51,3 +56,45 @@ impl Polyhedron {
         self.normals.chunks_exact(self.n).zip(self.offsets.iter().copied())
     }
 }
+
+impl<D: Dimension> Body<D> for Polyhedron {
+    /// The largest scale that is proved to keep the ellipsoid in all half-spaces: a·c + |diag(axes)·R·a| ≤ b of the doubles as they
+    /// are, by bounds on the rounding of both sides.
+    ///
+    /// [`support_value`] may then by its own rounding still be a rounding above b: the ellipsoid shrinks once more, twice as far
+    /// every time.
+    fn touch(&self, shape: &mut Shape<D>) -> Option<()> {
+        let most = |(a, b): (&[f64], f64)| {
+            let to_center = a.iter().copied().zip(shape.center.as_ref().iter().map(|c| -c));
+            let (room, error) = twofold::dot_with_error([(b, 1.0)].into_iter().chain(to_center));
+            let reach = reach_at_most(shape.axes.as_ref(), shape.semi_axes.as_ref(), a);
+            // The scale itself, and one at which the rounding of the support value is of no account.
+            [(room - error) / reach, (room - error - 16.0 * UNIT_ROUNDOFF * b.abs()) / reach * (1.0 - 1e-12)]
+        };
+        let scales: Vec<[f64; 2]> = self.rows().map(most).collect();
+        // The difference, the quotient and the products with it are rounded.
+        let mut scale = scales.iter().fold(f64::INFINITY, |m, s| m.min(s[0])) * (1.0 - 8.0 * UNIT_ROUNDOFF);
+        let near: Vec<_> = self.rows().zip(&scales).filter(|(_, s)| !(s[1] > scale)).map(|(row, _)| row).collect();
+        let mut shrinkage = UNIT_ROUNDOFF;
+        for _ in 0..MOST_SHRINKS {
+            if !(scale > 0.0 && scale.is_finite()) {
+                return None;
+            }
+            shape.semi_axes.as_mut().iter_mut().for_each(|a| *a *= scale);
+            let (center, axes, semi_axes) = (shape.center.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());
+            if near.iter().all(|&(a, b)| support_value(center, axes, semi_axes, a) <= b) {
+                return Some(());
+            }
+            scale = 1.0 - shrinkage;
+            shrinkage *= 2.0;
+        }
+        None
+    }
+
+    fn beyond(&self, _: usize, _: f64) -> f64 {
+        0.0
+    }
+}
+
+/// Doubling shrinkages: the last is all of the size.
+const MOST_SHRINKS: usize = 54;

@@ -7,19 +7,60 @@
 //! T. J. Dekker, *A floating-point technique for extending the available precision*, Numer. Math. 18 (1971).
 //! T. Ogita, S. M. Rump, S. Oishi, *Accurate sum and dot product*, SIAM J. Sci. Comput. 26 (2005), algorithm Dot2.
 
+use crate::numerics::linalg::UNIT_ROUNDOFF;
+
 /// Σxᵢyᵢ with an error of at most u·|Σxᵢyᵢ| + (k·u)²·Σ|xᵢyᵢ| for k terms, where no product leaves the range of `f64`; there
 /// it is the plain sum.
 pub(crate) fn dot(terms: impl IntoIterator<Item = (f64, f64)>) -> f64 {
-    let (mut sum, mut rest) = (0.0, 0.0);
+    let mut sum = Sum::default();
+    terms.into_iter().for_each(|(x, y)| sum.add_product(x, y));
+    sum.total()
+}
+
+/// [`dot`] and a bound on its error that holds in all of the range of `f64`: products that underflow lose less than the smallest
+/// normal number each, and where the correction overflowed the bound is that of the plain sum.
+pub(crate) fn dot_with_error(terms: impl IntoIterator<Item = (f64, f64)>) -> (f64, f64) {
+    let (mut sum, mut size, mut count) = (Sum::default(), 0.0, 0.0);
     for (x, y) in terms {
-        let (product, product_error) = two_product(x, y);
-        let (next, sum_error) = two_sum(sum, product);
-        sum = next;
-        rest += product_error + sum_error;
+        sum.add_product(x, y);
+        size += (x * y).abs();
+        count += 1.0;
     }
-    let total = sum + rest;
-    // Splitting a factor above 2⁹⁹⁶ overflows: what is lost is the correction.
-    if total.is_nan() { sum } else { total }
+    let (total, lost) = (sum.total(), count * UNIT_ROUNDOFF);
+    // Twice what is proved, which makes up for the rounding of the bound.
+    let of_terms = if sum.is_corrected() { lost * lost } else { lost };
+    (total, 2.0 * (UNIT_ROUNDOFF * total.abs() + of_terms * size + count * f64::MIN_POSITIVE))
+}
+
+/// A sum in twice the precision: the rounded sum, and the sum of what its additions and products lost.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Sum {
+    sum: f64,
+    rest: f64,
+}
+
+impl Sum {
+    pub(crate) fn add(&mut self, x: f64) {
+        let (next, lost) = two_sum(self.sum, x);
+        self.sum = next;
+        self.rest += lost;
+    }
+
+    pub(crate) fn add_product(&mut self, x: f64, y: f64) {
+        let (product, lost) = two_product(x, y);
+        self.add(product);
+        self.rest += lost;
+    }
+
+    /// The sum rounded once.
+    pub(crate) fn total(&self) -> f64 {
+        // Splitting a factor above 2⁹⁹⁶ overflows: what is lost is the correction.
+        if self.is_corrected() { self.sum + self.rest } else { self.sum }
+    }
+
+    fn is_corrected(&self) -> bool {
+        !self.rest.is_nan()
+    }
 }
 
 /// a + b as the rounded sum and its error, which is a number too (Knuth).
