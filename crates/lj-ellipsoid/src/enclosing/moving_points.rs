@@ -1,10 +1,11 @@
 //! Points that come, go and move, and the enclosing ellipsoid that follows them.
 
+use crate::ellipsoid::radius_at_most;
 use crate::enclosing::frame::Frame;
 use crate::enclosing::iterate::Iterate;
-use crate::enclosing::start::Start;
+use crate::enclosing::start::{Start, surely_spans};
 use crate::enclosing::working_set::WorkingSet;
-use crate::enclosing::{Enclosing, solve, solve_from};
+use crate::enclosing::{Enclosing, Solution, solve, solve_from};
 use crate::error::EnclosingError;
 use crate::numerics::dimension::{Const, Square};
 use crate::options::{EnclosingOptions, Status};
@@ -14,7 +15,11 @@ use crate::points::PointSlice;
 ///
 /// A change that cannot touch the ellipsoid costs no solve: a point added inside, or removed or moved inside without having
 /// carried weight, leaves the ellipsoid and its certificate as they are. Otherwise the next [`enclosing`](Self::enclosing)
-/// starts from the old ellipsoid and its weights, which saves the passes of a cold start.
+/// starts from the old ellipsoid and its weights, which saves passes of a cold start.
+///
+/// Whether the points are flat is decided as in [`enclosing()`](crate::enclosing()). An ellipsoid within an affine hull
+/// ([`FlatPolicy::AffineHull`](crate::FlatPolicy::AffineHull)), or one so thin that rounding might count for flatness, says nothing about points
+/// across it, so that after it every change is solved.
 ///
 /// # Examples
 /// ```
@@ -41,6 +46,8 @@ pub struct MovingPoints<const N: usize> {
     answer: Option<Enclosing<N>>,
     /// The answer is that of the points as they are now.
     current: bool,
+    /// No change inside the ellipsoid, with the weights as they are, makes the points flat or the ellipsoid another.
+    steady: bool,
     solves: usize,
 }
 
@@ -56,7 +63,7 @@ impl<const N: usize> MovingPoints<N> {
         for (index, point) in points.iter().enumerate() {
             check_finite(index, point)?;
         }
-        Ok(Self { points, options, answer: None, current: false, solves: 0 })
+        Ok(Self { points, options, answer: None, current: false, steady: false, solves: 0 })
     }
 
     /// The points, in the order of their indices.
@@ -92,7 +99,7 @@ impl<const N: usize> MovingPoints<N> {
         let last = self.points.len() - 1;
         let point = self.points.swap_remove(index);
         if let Some(answer) = &mut self.answer {
-            self.current &= answer.weights.iter().all(|w| w.index != index);
+            self.current &= self.steady && answer.weights.iter().all(|w| w.index != index);
             answer.weights.retain(|w| w.index != index);
             answer.contacts.retain(|&i| i != index);
             answer.weights.iter_mut().filter(|w| w.index == last).for_each(|w| w.index = index);
@@ -131,13 +138,17 @@ impl<const N: usize> MovingPoints<N> {
             earlier => {
                 self.solves += 1;
                 let points = PointSlice(&self.points);
-                let warm = earlier.and_then(|answer| self.warm_start(&answer));
+                let warm = earlier.filter(|_| self.steady).and_then(|answer| self.warm_start(&answer));
                 let warm = warm.and_then(|start| solve_from(&points, start, self.options, &mut |_| {}).ok());
+                let is_steady = |solution: &Solution<Const<N>>| {
+                    solution.log_det_gap < 1.0 && surely_spans(&solution.shape, self.options.flat_tolerance)
+                };
                 // In the old frame the points may have become flat, or one of them be too far away.
-                let solution = match warm.filter(|solution| solution.status != Status::Stalled) {
+                let solution = match warm.filter(|solution| solution.status != Status::Stalled && is_steady(solution)) {
                     Some(solution) => solution,
                     None => solve(&points, self.options, &mut |_| {})?,
                 };
+                self.steady = is_steady(&solution);
                 self.current = true;
                 Enclosing::from_solution(solution)
             }
@@ -145,9 +156,12 @@ impl<const N: usize> MovingPoints<N> {
         Ok(self.answer.insert(answer))
     }
 
-    /// Inside by more than what counts as contact.
+    /// Proved to be inside by more than what counts as contact, and such that this is all that matters.
     fn well_inside(&self, point: [f64; N]) -> bool {
-        self.answer.as_ref().is_some_and(|answer| answer.ellipsoid.radius_at(point) < 1.0 - 1e-8)
+        self.steady
+            && self.answer.as_ref().is_some_and(|Enclosing { ellipsoid: e, .. }| {
+                radius_at_most(&e.center(), e.axes().as_flattened(), &e.semi_axes(), &point) < 1.0 - 1e-8
+            })
     }
 
     /// The old ellipsoid as frame and its points with their weights, unless these no longer span the space.

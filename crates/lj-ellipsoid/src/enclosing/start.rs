@@ -13,6 +13,7 @@ use crate::numerics::dimension::{Dimension, Dynamic, LANES};
 use crate::numerics::linalg::{dot, power_of_two_inverse};
 use crate::points::Points;
 use crate::points::parallel::in_parts;
+use crate::shape::Shape;
 
 /// A spread of this many [`f64::EPSILON`] of the coordinates is rounding of the points, not thickness.
 const ROUNDING_FLOOR: f64 = 32.0;
@@ -191,6 +192,24 @@ pub(crate) fn start<P: Points>(points: &P, flat_tolerance: f64) -> Result<Start<
     }
     let frame = if basis.rank == n { unit.frame(dim, &basis) } else { hull_frame(points, &basis, unit, &working) };
     if frame.is_finite() { Ok(Start { frame, working, weights: None, scans }) } else { Err(EnclosingError::OutOfRange) }
+}
+
+/// Whether [`start`] finds the full rank of whatever points have weights that prove this ellipsoid nearly optimal.
+///
+/// With weights of scatter S the points spread along any d by 2√(dᵀSd) at least, and the ellipsoid reaches √(κ·dᵀSd), κ ≈ N. The spread below
+/// which d is a normal is a sum Σ|dₖ|Wₖ ≤ |diag(a)·R·d|·ΣWₖ|diag(1/a)·R·eₖ|. So ΣWₖ|diag(1/a)·R·eₖ| < 2/√κ is enough; half of 2/N is asked for.
+pub(crate) fn surely_spans<N: Dimension>(shape: &Shape<N>, flat_tolerance: f64) -> bool {
+    let (center, axes, semi_axes) = (shape.center.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());
+    let n = center.len();
+    let column = |k: usize, of: &dyn Fn(f64, f64) -> f64| {
+        axes.chunks_exact(n).zip(semi_axes).map(|(axis, a)| of(axis[k], *a).powi(2)).sum::<f64>().sqrt()
+    };
+    let share = |k: usize| {
+        let half_extent = column(k, &|x, a| x * a);
+        let rounding = ROUNDING_FLOOR * f64::EPSILON * (center[k].abs() + half_extent);
+        rounding.max(flat_tolerance * 2.0 * half_extent) * column(k, &|x, a| x / a)
+    };
+    n as f64 * (0..n).map(share).sum::<f64>() <= 1.0
 }
 
 /// Coordinates (v − center)·scale in which the bounding box is about the origin, its sides near one.
