@@ -172,7 +172,9 @@ where
     if options.start_in_contact == StartInContact::IfDeeper {
         let sizes = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
         let far = core_a.origin.norm() + core_b.origin.norm();
-        let slack = (sizes * Scalar::from_f64(NEAR) + far * Scalar::from_f64(NEAR_OF_FAR)) * Scalar::EPSILON;
+        // By powers of two that are less than 1, so that nothing overflows.
+        let units = |number: f64| <A::Vector as Vector>::Scalar::EPSILON * Scalar::from_f64(number);
+        let slack = sizes * units(NEAR) + far * units(NEAR_OF_FAR);
         only_if_deeper(&mut answer, &start, motion, &options, slack);
     }
     Ok(answer)
@@ -252,6 +254,12 @@ fn only_if_deeper<V: Vector>(
         return;
     }
     let Some(contact) = start.of_motion(motion, options, slack) else { return };
+    if !(slack < infinity && contact.start.upper < infinity) {
+        // Of numbers out of range nothing is known.
+        (answer.outcome, answer.status) = (Outcome::Undecided, Status::Stalled);
+        (answer.lower, answer.upper) = (zero, infinity);
+        return;
+    }
     answer.iterations += contact.start.iterations;
     let is_hit_at_start = matches!(answer.outcome, Outcome::Hit(LinearHit { time, .. }) if time == zero);
     if let Some(axis) = contact.leaves_along {

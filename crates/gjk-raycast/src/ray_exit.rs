@@ -5,7 +5,7 @@ use num_traits::Float as _;
 
 use crate::body::{Body as _, Single};
 use crate::cast::{CastHit, LocalRay, Part, cast};
-use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, ray_cast};
+use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, Status, ray_cast};
 
 /// The last point of a ray in a shape, with the normal there.
 ///
@@ -77,6 +77,10 @@ fn exit_of_line<S: SupportMap + ?Sized>(
     let infinity = <S::Vector as Vector>::Scalar::infinity();
     let wanted = RayCastOptions { min_lambda: Scalar::ZERO, max_lambda: infinity, ..options };
     let mut body = Single::new(target);
+    if !(body.extent() + body.radius()).is_finite() {
+        let (outcome, status) = (Outcome::Undecided, Status::Stalled);
+        return RayExit { outcome, lower: -infinity, upper: infinity, status, iterations: 0 };
+    }
     let cast = cast(&mut body, ray, Scalar::ZERO, Part::Reversed, &wanted, |_| {});
     let forward = LocalRay::new(ray, body.origin(), cast.scale);
     let (reverse, error) = (|lambda| forward.reverse(lambda), forward.error_of_reverse());

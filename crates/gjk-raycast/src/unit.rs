@@ -7,7 +7,7 @@ pub(crate) use convex_support::numerics::range::is_moderate;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-/// A power of two near `size`, or 1 where there is none with a finite reciprocal.
+/// A power of two near `size`, or the nearest that has a finite reciprocal; 1 where `size` is zero or not finite.
 #[inline]
 pub(crate) fn power_of_two_near<S: Scalar>(size: S) -> S {
     // Positive numbers have the order of their bits. The reciprocal is to be finite, and not subnormal: half of the largest
@@ -18,8 +18,23 @@ pub(crate) fn power_of_two_near<S: Scalar>(size: S) -> S {
     if power > least && power <= largest {
         S::from_f64(f64::from_bits(power.min(largest - EXPONENT_STEP)))
     } else {
-        S::ONE
+        unusual_unit(size)
     }
+}
+
+/// The least normal number for those below it.
+#[cold]
+#[inline(never)]
+fn unusual_unit<S: Scalar>(size: S) -> S {
+    if size > S::ZERO && size.is_finite() { S::min_positive_value() } else { S::ONE }
+}
+
+/// What is lost, beside errors that are relative, of lengths of about `size`: nothing, or everything if it is so small
+/// that a product with a short direction may be subnormal. A direction that matters is no shorter than `ε`, and the
+/// least number is to be no more than `ε` of the product.
+#[inline(always)]
+pub(crate) fn lost_to_underflow<S: Scalar>(size: S) -> S {
+    if size >= S::min_positive_value() / S::EPSILON { S::ZERO } else { S::infinity() }
 }
 
 /// The reciprocal of what [`power_of_two_near`] answers, by its exponent: all that follows waits for the unit.

@@ -396,3 +396,28 @@ fn a_lambda_that_overflows_is_not_a_hit() {
     }
     both(|| run::<Vec3A>(1e-35), || run::<DVec3>(1e-304));
 }
+
+/// Found by exact rationals: a body of 1e-308 was looked at in the world's unit, as its own has no reciprocal, and
+/// there the squares of its lengths are zero: rays through it missed. Whatever is subnormal is known to a few hundred
+/// of the least numbers.
+#[test]
+fn rays_at_the_smallest_bodies_do_not_miss_what_they_hit() {
+    fn run<V: Quaternion>(exponents: core::ops::Range<i32>) {
+        for exponent in exponents {
+            let size = s::<V>(2.0_f64.powi(exponent));
+            let corners = (0..3).flat_map(|i| [V::axis(i) * size, -V::axis(i) * size]);
+            let octahedron = Polytope::new(corners).expect("finite");
+            for direction in directions(40) {
+                let unit = s::<V>(2.0_f64.powi(-6));
+                let source = v::<V>(direction) * s::<V>(4.0) * size;
+                let ray = Ray { source, direction: -source * unit };
+                let Ok(cast) = ray_cast(&octahedron, ray, RayCastOptions::default()) else { continue };
+                // It is at the middle after 64, and in the body by then.
+                assert!(cast.lower.as_f64() <= 64.0 && !cast.outcome.is_miss(), "2^{exponent}: {cast:?}");
+                // The ball that is within the octahedron is √3 times smaller.
+                assert!(cast.upper.as_f64() >= 48.0, "2^{exponent}: {cast:?}");
+            }
+        }
+    }
+    both(|| run::<Vec3A>(-149..-100), || run::<DVec3>(-1074..-1000));
+}

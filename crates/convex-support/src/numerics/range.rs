@@ -31,9 +31,11 @@ pub fn power_of_two_below<S: Scalar>(value: S) -> S {
         return S::ONE;
     }
     let (_, exponent, _) = num_traits::Float::integer_decode(value);
-    // The mantissa is an integer of as many bits as EPSILON says.
-    let unit = num_traits::Float::powi(S::from_f64(2.0), i32::from(exponent)) / S::EPSILON;
-    if unit > S::ZERO { unit } else { S::min_positive_value() }
+    // The mantissa is an integer of as many bits as EPSILON says, of which some of a subnormal number are zero. Two
+    // factors, since the reciprocal of the least power is none.
+    let power = |exponent| num_traits::Float::powi(S::from_f64(2.0), exponent);
+    let half = i32::from(exponent) / 2;
+    power(half) / S::EPSILON * power(i32::from(exponent) - half)
 }
 
 /// `v` divided by a power of two near its largest magnitude, and that power as two factors; `None` for zero and NaN.

@@ -13,7 +13,7 @@ use super::line::{Line, LocalRay, Part};
 use super::{Contact, Stop};
 use crate::body::{Body, TracedSupport};
 use crate::simplex::MAX_POINTS;
-use crate::unit::{is_moderate, power_of_two_near, reciprocal_of_power};
+use crate::unit::{is_moderate, lost_to_underflow, power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Ray, RayCastOptions, Status};
 
 /// The largest tolerance, in sizes of the body.
@@ -122,7 +122,8 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         let scale = power_of_two_near(measure);
         body.set_scale(scale);
         let per_unit = reciprocal_of_power(scale);
-        let (radius, size, body_error) = (body.radius() * per_unit, size * per_unit, body.error() * per_unit);
+        let (radius, size) = (body.radius() * per_unit, size * per_unit);
+        let body_error = body.error() * per_unit + lost_to_underflow(scale);
         let ray = LocalRay::new(ray, origin, scale).part(part);
         let noise = if size > zero { number(NOISE) * ScalarOf::<B>::EPSILON * size } else { body_error };
         let turned = if direction_error > zero { direction_error * (ray.start.abs() + size + size) } else { zero };

@@ -38,7 +38,9 @@ pub(crate) fn cast<B: Body>(
 ) -> Cast<B::Vector, B::Witness> {
     let mut bracket = Bracket::new(body, ray, direction_error, part, options, observer);
     let found = match bracket.enter_ball() {
-        Ok(()) => search(&mut bracket),
+        Ok(()) if bracket.error < ScalarOf::<B>::infinity() => search(&mut bracket),
+        // Of numbers out of range nothing is known.
+        Ok(()) => Err(Stop::Exhausted(Status::Stalled)),
         Err(stop) => Err(stop),
     };
     if found.is_ok() && bracket.is_entry_open() && bracket.is_past_start() {

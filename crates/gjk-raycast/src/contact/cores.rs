@@ -11,6 +11,7 @@ use crate::Iterate;
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, first_direction, gjk};
 use crate::symmetric::Symmetric;
+use crate::unit::lost_to_underflow;
 
 /// What is lost of a point of the difference, in units of ε times the coordinates of the cores and of the offset of their origins.
 ///
@@ -158,7 +159,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         let size = pair.size(offset);
         // The distance of the cores is wanted even where their radii overlap.
         let frame = Frame { radius: Scalar::ZERO, ..Frame::new(&mut pair, offset, size) };
-        let error = error_of_points(&pair) * frame.per_unit;
+        let error = error_of_points(&pair) * frame.per_unit + lost_to_underflow(frame.scale);
         let (zero, size) = (Scalar::ZERO, size * frame.per_unit);
         Self {
             pair,
@@ -177,7 +178,8 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     /// lies flat it has nothing to do with its width.
     #[inline(never)]
     pub(crate) fn sharpen(&mut self) {
-        if self.uncertainty.is_some() {
+        // Of numbers out of range nothing is known, whatever the shapes say.
+        if self.uncertainty.is_some() || !self.error.is_finite() {
             return;
         }
         let Frame { offset, per_unit, .. } = self.frame;

@@ -1,5 +1,6 @@
 //! The signed distance of two shapes: how far apart, or how deep in one another.
 
+use convex_support::numerics::bound::least;
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
@@ -249,7 +250,9 @@ impl<V: Vector> Reached<V> {
         let radius = cores.radius();
         let world = |depth: V::Scalar| -(depth * scale) - radius;
         let (lower, upper) = (world(self.outer), world(self.inner));
-        let (lower, upper) = (lower - slack(lower, radius), upper + slack(upper, radius));
+        // A product with the unit may be subnormal.
+        let outwards = |bound| slack(bound, radius) + least();
+        let (lower, upper) = (lower - outwards(lower), upper + outwards(upper));
         // Numbers that are not finite, or contradict one another, are of a support map that is none, and bound nothing.
         let is_bounded = lower.is_finite() && upper.is_finite() && lower <= upper;
         let infinity = V::Scalar::infinity();

@@ -14,7 +14,7 @@ use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::body::{Body as _, Pair, TracedSupport};
-use crate::unit::{power_of_two_near, reciprocal_of_power};
+use crate::unit::{lost_to_underflow, power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Status, SubAlgorithm};
 pub(crate) use boxes::{Boxes, boxes};
 pub(crate) use near_contact::{NEAR, NearContact, is_near_contact, near_contact};
@@ -51,7 +51,7 @@ impl<V: Vector> Frame<V> {
         let per_unit = reciprocal_of_power(scale);
         pair.set_scale(scale);
         let (radius, noise) = (pair.radius() * per_unit, rounding(size) * per_unit);
-        let error = noise + pair.error() * per_unit;
+        let error = noise + pair.error() * per_unit + lost_to_underflow(scale);
         Self { scale, per_unit, offset: offset * per_unit, radius, noise, error }
     }
 
@@ -134,6 +134,10 @@ pub(crate) fn gjk<B: TracedSupport>(
     observer: impl FnMut(Iterate<'_, B::Vector>),
 ) -> End {
     let end = descend(state, body, &frame, &options, known, observer);
+    // Of numbers out of range nothing is known.
+    if !(frame.error < <B::Vector as Vector>::Scalar::infinity()) {
+        return End::Stalled;
+    }
     // Where no progress is possible any more, the cores may be within rounding of touching.
     if end == End::Stalled && state.length < <B::Vector as Vector>::Scalar::infinity() {
         state.ensure_measured();

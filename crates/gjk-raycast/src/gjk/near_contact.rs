@@ -78,7 +78,7 @@ impl<V: Vector> NearContact<V> {
     }
 }
 
-/// Looks at bodies near contact once more; `None` where no plane can be found.
+/// Looks at bodies near contact once more; `None` where no plane can be found, or numbers are out of range.
 ///
 /// A search that is over may have begun where all do: with the bodies [in order](super::InOrder), without an axis of its own, and to
 /// no tolerance but the noise. Then what it came to is gone on with, and else it is made once more.
@@ -109,6 +109,9 @@ fn look<V: Vector>(
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
+    if !frame.error.is_finite() {
+        return None;
+    }
     let seen = Seen::new(&pair, &frame);
     if begun.is_none()
         && max_iterations > 0

@@ -4,6 +4,7 @@
 //! chosen decides only how many there are. Far from contact an end is put as far away as can be expected to be proved. Where the
 //! bodies close in fast enough for their contact to be within reach, it is put there, by Newton's method on the distance.
 
+use convex_support::numerics::range::is_comfortable;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
@@ -54,6 +55,12 @@ pub(super) struct Search<'p, V: Vector, P, F> {
     pub(super) looks: usize,
 }
 
+/// Whether sums and products of a few lengths as large as this neither overflow nor lose digits as they are subnormal.
+/// Of others the search proves nothing.
+fn is_in_range<S: Scalar>(measure: S) -> bool {
+    is_comfortable(measure) && (measure * S::from_f64(65536.0)).is_finite()
+}
+
 /// How a search ended.
 pub(super) enum End<V> {
     Miss(V),
@@ -75,6 +82,11 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
         let limits = Limits { distance: infinity, depth: if leaves { infinity } else { zero } };
         let near = bodies.at(zero, axis, limits);
         let near = if near.gap > zero || near.is_close { near } else { bodies.closely(zero, axis, limits) };
+        let measure = bodies.size() + near.distance.abs() + bodies.speed_at(&near);
+        if !(measure == zero || is_in_range(measure)) {
+            let (outcome, status) = (Outcome::Undecided, Status::Stalled);
+            return MotionCast { outcome, lower: zero, upper: infinity, status, iterations: bodies.iterations() };
+        }
         let plane = TurningPlane { from: near.normal, to: near.normal };
         let mut search = Self {
             bodies,

@@ -2,6 +2,7 @@
 
 use core::cell::{Cell, RefCell};
 
+use convex_support::numerics::range::is_comfortable;
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
@@ -17,7 +18,7 @@ use crate::SignedDistanceOptions;
 use crate::body::{Body as _, Pair, TracedSupport as _};
 use crate::contact::signed_distance_and_axis;
 use crate::gjk::rounding;
-use crate::unit::is_moderate;
+use crate::unit::{is_moderate, lost_to_underflow};
 
 /// Two bodies and their motions.
 pub(super) struct MovingPair<'s, A: SupportMap + ?Sized, MA, B: SupportMap + ?Sized, MB> {
@@ -191,15 +192,15 @@ where
         // The time at which start + t·velocity is shortest.
         let (slope, squared) = (start.dot(velocity), velocity.length_squared());
         // Of velocities whose squares are out of range, that time is not known.
-        if !(is_moderate(squared) || velocity == A::Vector::ZERO) {
+        if !(is_comfortable(squared) && slope.is_finite() || velocity == A::Vector::ZERO) {
             return None;
         }
         let nearest = if slope < Scalar::ZERO { (-slope / squared).min(duration) } else { Scalar::ZERO };
         let between = start + velocity * nearest;
         let reach = a.radius + b.radius + self.a.core.radius + self.b.core.radius;
         let moved = (length_bound(a.velocity) + length_bound(b.velocity)) * nearest;
-        let margin =
-            (reach + length_bound(a.start) + length_bound(b.start) + moved) * Scalar::from_f64(32.0) * Scalar::EPSILON;
+        let measure = reach + length_bound(a.start) + length_bound(b.start) + moved;
+        let margin = measure * Scalar::from_f64(32.0) * Scalar::EPSILON + lost_to_underflow(measure);
         // NaN is not apart.
         if between.norm() > reach + margin { between.unit() } else { None }
     }

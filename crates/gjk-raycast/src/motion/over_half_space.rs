@@ -14,6 +14,7 @@ use super::options::MotionCastOptions;
 use super::result::{MotionCast, MotionIterate};
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::half_space::{Level, Plane};
+use crate::unit::lost_to_underflow;
 use crate::{HalfSpace, Motion, RayCastError};
 
 impl<V: Vector> HalfSpace<V> {
@@ -185,7 +186,8 @@ where
         // For ever, if it does not sink at all.
         let way = if sinking <= zero { zero } else { sinking * (interval[1] - interval[0]) };
         // What the ball itself is rounded by.
-        let margin = (reach + length_bound(ball.start) + way) * ScalarOf::<S>::from_f64(32.0) * ScalarOf::<S>::EPSILON;
+        let measure = reach + length_bound(ball.start) + way;
+        let margin = measure * ScalarOf::<S>::from_f64(32.0) * ScalarOf::<S>::EPSILON + lost_to_underflow(measure);
         // NaN is not apart.
         (height - way > margin).then_some(self.plane.unit)
     }
