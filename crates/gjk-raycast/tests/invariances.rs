@@ -7,8 +7,10 @@ use convex_support::{
     Vector,
 };
 use gjk_raycast::{
-    Distance, DistanceOptions, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions, Status, distance, intersects,
-    linear_cast, ray_cast,
+    ChainMotion, ClosestFeatures, Contact, Distance, DistanceOptions, HalfSpace, LinearCast, LinearCastOptions, Motion,
+    MotionCast, MotionCastOptions, Outcome, Ray, RayCast, RayCastOptions, RayExit, RigidMotion, SceneCast,
+    SignedDistance, StartInContact, Status, contact, distance, intersects, linear_cast, motion_cast, ray_cast,
+    ray_exit, signed_distance,
 };
 use proptest::prelude::*;
 
@@ -68,12 +70,14 @@ struct Scene {
     turns: (DQuat, DQuat),
     place: DVec3,
     velocity: DVec3,
+    spin: DVec3,
 }
 
 /// The bodies of a space: some have a third dimension only.
 trait Space: Vector {
     fn upright(kind: usize, half_height: Self::Scalar, radius: Self::Scalar) -> Result<Shape<Self>, InvalidShape>;
     fn turn(rotation: DQuat) -> Self::Rotation;
+    fn spin(spin: DVec3) -> Self::AngularVelocity;
 }
 
 fn in_space<V: convex_support::Vector3>(kind: usize, h: V::Scalar, r: V::Scalar) -> Result<Shape<V>, InvalidShape> {
@@ -91,6 +95,9 @@ impl Space for DVec3 {
     fn turn(rotation: DQuat) -> DQuat {
         rotation
     }
+    fn spin(spin: DVec3) -> Self {
+        spin
+    }
 }
 
 impl Space for Vec3A {
@@ -99,6 +106,9 @@ impl Space for Vec3A {
     }
     fn turn(rotation: DQuat) -> Self::Rotation {
         rotation.as_quat()
+    }
+    fn spin(spin: DVec3) -> Self::AngularVelocity {
+        spin.as_vec3a()
     }
 }
 
@@ -109,6 +119,9 @@ impl Space for DVec2 {
     fn turn(rotation: DQuat) -> f64 {
         4.0 * rotation.x
     }
+    fn spin(spin: DVec3) -> f64 {
+        spin.z
+    }
 }
 
 impl Space for Vec2 {
@@ -117,6 +130,9 @@ impl Space for Vec2 {
     }
     fn turn(rotation: DQuat) -> f32 {
         4.0 * rotation.as_quat().x
+    }
+    fn spin(spin: DVec3) -> f32 {
+        spin.as_vec3a().z
     }
 }
 
@@ -141,69 +157,335 @@ fn solid<V: Space>(
     Ok(Box::new(Posed::new(shape, V::turn(turn), to(place))?))
 }
 
-/// All four queries in two units: every number that is a length is scaled, and every other is the same, to the bit.
-fn scaled<V: Space>(scene: &Scene, exponent: i32) -> Result<(), TestCaseError> {
-    let unit = V::Scalar::from_f64(2.0_f64.powi(exponent));
-    let to = |p: DVec3| V::from_fn(|i| V::Scalar::from_f64(p[i]));
-    let pair = |unit: V::Scalar| {
-        let a = solid::<V>(scene.kinds.0, scene.sizes.0, scene.turns.0, DVec3::ZERO, unit).expect("valid");
-        let b = solid::<V>(scene.kinds.1, scene.sizes.1, scene.turns.1, scene.place, unit).expect("valid");
-        (a, b)
-    };
-    let ((a, b), (a_big, b_big)) = (pair(V::Scalar::ONE), pair(unit));
+/// The numbers of an answer, lengths divided by the unit: the same in every unit.
+struct Numbers {
+    unit: f64,
+    found: Vec<(&'static str, f64)>,
+    query: &'static str,
+}
 
-    let small = distance(&a, &b, DistanceOptions::default());
-    let big = distance(&a_big, &b_big, DistanceOptions::default());
-    prop_assert_eq!([small.distance, small.lower, small.upper].map(|x| x * unit), [big.distance, big.lower, big.upper]);
-    prop_assert_eq!([small.point_a, small.point_b].map(|p| p * unit), [big.point_a, big.point_b]);
-    prop_assert_eq!((small.normal, small.overlap, small.iterations), (big.normal, big.overlap, big.iterations));
-
-    let meets = intersects(&a, &b, Default::default());
-    prop_assert_eq!(meets, intersects(&a_big, &b_big, Default::default()));
-
-    let velocity = to(scene.velocity);
-    prop_assume!(velocity != V::ZERO);
-    let motion = |unit: V::Scalar| Motion { velocity_a: velocity * unit, velocity_b: V::ZERO };
-    let small = linear_cast(&a, &b, motion(V::Scalar::ONE), LinearCastOptions::default()).expect("finite");
-    let big = linear_cast(&a_big, &b_big, motion(unit), LinearCastOptions::default()).expect("finite");
-    prop_assert_eq!((small.lower, small.upper, small.iterations), (big.lower, big.upper, big.iterations));
-    match (small.outcome, big.outcome) {
-        (Outcome::Hit(x), Outcome::Hit(y)) => {
-            prop_assert_eq!((x.time, x.normal, x.point * unit), (y.time, y.normal, y.point));
-        }
-        (x, y) => prop_assert_eq!(x, y),
+impl Numbers {
+    fn of<S: Scalar>(&mut self, number: S) {
+        self.found.push((self.query, number.as_f64()));
     }
 
-    let ray = |unit: V::Scalar| Ray { source: to(scene.place) * unit, direction: -velocity * unit };
-    let small = ray_cast(&a, ray(V::Scalar::ONE), RayCastOptions::default()).expect("finite");
-    let big = ray_cast(&a_big, ray(unit), RayCastOptions::default()).expect("finite");
-    prop_assert_eq!((small.lower, small.upper, small.iterations), (big.lower, big.upper, big.iterations));
-    match (small.outcome, big.outcome) {
-        (Outcome::Hit(x), Outcome::Hit(y)) => {
-            prop_assert_eq!((x.lambda, x.normal, x.point * unit), (y.lambda, y.normal, y.point));
+    fn count(&mut self, number: usize) {
+        self.found.push((self.query, number as f64));
+    }
+
+    fn length<S: Scalar>(&mut self, length: S) {
+        self.found.push((self.query, length.as_f64() / self.unit));
+    }
+
+    fn place<V: Vector>(&mut self, place: V) {
+        (0..V::DIM).for_each(|i| self.length(place.get(i)));
+    }
+
+    fn direction<V: Vector>(&mut self, direction: Option<V>) {
+        // Where there is none, what no unit vector has.
+        let direction = direction.unwrap_or(V::splat(V::Scalar::from_f64(2.0)));
+        (0..V::DIM).for_each(|i| self.of(direction.get(i)));
+    }
+
+    fn distance<V: Vector>(&mut self, answer: &Distance<V>) {
+        [answer.distance, answer.lower, answer.upper].into_iter().for_each(|x| self.length(x));
+        [answer.point_a, answer.point_b].into_iter().for_each(|p| self.place(p));
+        self.direction(answer.normal);
+        [usize::from(answer.overlap), answer.status as usize, answer.iterations]
+            .into_iter()
+            .for_each(|n| self.count(n));
+    }
+
+    fn signed_distance<V: Vector>(&mut self, answer: &SignedDistance<V>) {
+        [answer.signed_distance, answer.lower, answer.upper].into_iter().for_each(|x| self.length(x));
+        [answer.point_a, answer.point_b].into_iter().for_each(|p| self.place(p));
+        self.direction(Some(answer.normal));
+        [usize::from(answer.overlap), answer.status as usize, answer.iterations]
+            .into_iter()
+            .for_each(|n| self.count(n));
+    }
+
+    fn contact<V: Vector>(&mut self, answer: Option<Contact<V>>) {
+        let Some(contact) = answer else { return self.count(0) };
+        self.signed_distance(&contact.distance);
+        for point in contact.points() {
+            [point.point_a, point.point_b].into_iter().for_each(|p| self.place(p));
+            self.length(point.signed_distance);
+            [point.feature_a, point.feature_b].into_iter().for_each(|id| self.count(id as usize));
         }
-        (x, y) => prop_assert_eq!(x, y),
+    }
+
+    fn features<V: Space>(&mut self, features: &ClosestFeatures<V>) {
+        [features.point_a(), features.point_b()].into_iter().for_each(|p| self.place(p));
+        self.direction(Some(features.normal()));
+        self.count(features.smoothness() as usize);
+        let Some(hessian) = features.hessian(features.point_a(), features.point_b()) else { return };
+        // By a translation and a rotation, of which there is one at least.
+        let (i, j) = (0, V::DIM);
+        self.of(hessian.mixed.entry(i, j));
+        self.length(hessian.a.entry(j, j));
+    }
+
+    /// The answer of a cast: the parameter, the point and the normal of its hit, and the rest.
+    fn cast<V: Vector, H>(
+        &mut self,
+        outcome: Outcome<H, V>,
+        hit: impl FnOnce(H) -> (V::Scalar, V, Option<V>),
+        bounds: [V::Scalar; 2],
+        work: (Status, usize),
+    ) {
+        match outcome {
+            Outcome::Hit(found) => {
+                let (at, point, normal) = hit(found);
+                self.of(at);
+                self.place(point);
+                self.direction(normal);
+            }
+            Outcome::Miss(miss) => self.direction(Some(miss.axis)),
+            Outcome::Undecided => self.count(0),
+        }
+        bounds.into_iter().for_each(|bound| self.of(bound));
+        [work.0 as usize, work.1].into_iter().for_each(|n| self.count(n));
+    }
+
+    fn linear_cast<V: Vector>(&mut self, cast: &LinearCast<V>) {
+        let LinearCast { outcome, lower, upper, status, iterations } = *cast;
+        self.cast(outcome, |hit| (hit.time, hit.point, hit.normal), [lower, upper], (status, iterations));
+    }
+
+    fn motion_cast<V: Vector>(&mut self, cast: &MotionCast<V>) {
+        let MotionCast { outcome, lower, upper, status, iterations } = *cast;
+        self.cast(outcome, |hit| (hit.time, hit.point, hit.normal), [lower, upper], (status, iterations));
+    }
+
+    fn ray_cast<V: Vector>(&mut self, cast: &RayCast<V>) {
+        let RayCast { outcome, lower, upper, status, iterations } = *cast;
+        self.cast(outcome, |hit| (hit.lambda, hit.point, hit.normal), [lower, upper], (status, iterations));
+    }
+
+    fn first<H, V: Vector>(&mut self, cast: &SceneCast<H, V::Scalar>, hit: impl Fn(&H) -> (V::Scalar, V)) {
+        self.of(cast.lower);
+        [cast.work.nodes, cast.work.tested, cast.undecided.map_or(0, |body| body + 1)]
+            .into_iter()
+            .for_each(|n| self.count(n));
+        let Some(first) = &cast.first else { return };
+        self.count(first.body);
+        let (at, point) = hit(&first.hit);
+        [at, first.lower, first.upper].into_iter().for_each(|x| self.of(x));
+        self.place(point);
+    }
+}
+
+/// Every query about a scene, in a unit of length.
+fn asked<V: Space>(scene: &Scene, exponent: i32) -> Vec<(&'static str, f64)> {
+    let unit = V::Scalar::from_f64(2.0_f64.powi(exponent));
+    let to = |p: DVec3| V::from_fn(|i| V::Scalar::from_f64(p[i])) * unit;
+    let number = |x: f64| V::Scalar::from_f64(x) * unit;
+    let a = solid::<V>(scene.kinds.0, scene.sizes.0, scene.turns.0, DVec3::ZERO, unit).expect("valid");
+    let b = solid::<V>(scene.kinds.1, scene.sizes.1, scene.turns.1, scene.place, unit).expect("valid");
+    let mut numbers = Numbers { unit: unit.as_f64(), found: Vec::new(), query: "distance" };
+    let apart = distance(&a, &b, DistanceOptions::default());
+    numbers.distance(&apart);
+    numbers.query = "intersects";
+    let meets = intersects(&a, &b, Default::default());
+    [usize::from(meets.overlap), meets.status as usize, meets.iterations].into_iter().for_each(|n| numbers.count(n));
+    numbers.direction(meets.axis);
+    numbers.query = "signed_distance";
+    let signed = signed_distance(&a, &b, Default::default());
+    numbers.signed_distance(&signed);
+    numbers.query = "contact";
+    numbers.contact(contact(&a, &b, number(0.25), Default::default()));
+    numbers.query = "features";
+    numbers.features(&signed.closest_features(&a, &b));
+    apart.closest_features(&a, &b).iter().for_each(|features| numbers.features(features));
+
+    numbers.query = "linear_cast";
+    let velocity = to(scene.velocity);
+    let motion = Motion { velocity_a: velocity, velocity_b: to(scene.sizes.0) };
+    for options in [LinearCastOptions::new(), LinearCastOptions::new().with_target_distance(number(0.125))] {
+        numbers.linear_cast(&linear_cast(&a, &b, motion, options).expect("finite"));
+    }
+    let half_space = HalfSpace::new(to(scene.place) / unit, number(-0.5)).expect("a normal");
+    numbers.query = "half-space";
+    numbers.distance(&half_space.distance_from(&a));
+    numbers.signed_distance(&half_space.signed_distance(&a));
+    numbers.contact(half_space.contact(&a, number(1.0)));
+    numbers.linear_cast(&half_space.linear_cast(&a, motion, Default::default()).expect("finite"));
+
+    let ray = Ray { source: to(scene.place), direction: -velocity };
+    numbers.query = "ray_cast";
+    numbers.ray_cast(&ray_cast(&a, ray, Default::default()).expect("finite"));
+    numbers.ray_cast(&half_space.ray_cast(ray, Default::default()).expect("finite"));
+    let late = RayCastOptions::new().with_min_lambda(V::Scalar::from_f64(0.25));
+    numbers.ray_cast(&ray_cast(&a, ray, late).expect("finite"));
+    numbers.query = "ray_exit";
+    let RayExit { outcome, lower, upper, status, iterations } = ray_exit(&a, ray, Default::default()).expect("finite");
+    numbers.cast(outcome, |hit| (hit.lambda, hit.point, hit.normal), [lower, upper], (status, iterations));
+
+    numbers.query = "motion_cast";
+    let turning = RigidMotion { velocity, angular_velocity: V::spin(scene.spin), center: to(scene.sizes.1) };
+    let joints = [turning, RigidMotion::rotation(V::spin(scene.spin.yzx()), to(scene.sizes.0))];
+    let (rest, chain) = (RigidMotion::default(), ChainMotion::new(&joints));
+    let options = MotionCastOptions::new().with_max_time(V::Scalar::from_f64(1.5)).with_max_iterations(100);
+    let near = options.with_target_distance(number(0.125));
+    numbers.motion_cast(&motion_cast(&a, turning, &b, rest, options).expect("finite"));
+    numbers.motion_cast(&motion_cast(&a, rest, &b, turning, near).expect("finite"));
+    numbers.motion_cast(&motion_cast(&a, chain, &b, rest, options).expect("finite"));
+    numbers.motion_cast(&half_space.motion_cast(&a, turning, options).expect("finite"));
+
+    let others = (0..5).map(|i| {
+        let place = scene.place + scene.velocity * f64::from(i) - scene.spin;
+        solid::<V>(scene.kinds.1, scene.sizes.1, scene.turns.0, place, unit).expect("valid")
+    });
+    let mut bodies = gjk_raycast::Scene::new(others.chain([b])).expect("finite");
+    bodies.insert_half_space(half_space);
+    numbers.query = "scene ray";
+    let first = bodies.ray_cast(ray, Default::default()).expect("finite");
+    numbers.first(&first, |hit| (hit.lambda, hit.point));
+    numbers.query = "scene linear_cast";
+    let first = bodies.linear_cast(&a, motion, Default::default()).expect("finite");
+    numbers.first(&first, |hit| (hit.time, hit.point));
+    numbers.query = "scene motion_cast";
+    let first = bodies.motion_cast(&a, turning, options).expect("finite");
+    numbers.first(&first, |hit| (hit.time, hit.point));
+    numbers.query = "scene nearest";
+    let nearest = bodies.nearest(&a, Default::default()).nearest.expect("a half-space at least");
+    numbers.count(nearest.body);
+    numbers.distance(&nearest.distance);
+    numbers.query = "scene pairs";
+    let (mut pairs, mut contacts) = (Vec::new(), Vec::new());
+    bodies.pairs_within(number(0.5), Default::default(), &mut pairs);
+    pairs.iter().for_each(|pair| numbers.distance(&pair.distance));
+    bodies.contacts_within(number(0.5), Default::default(), &mut contacts);
+    contacts.iter().for_each(|pair| numbers.contact(Some(pair.contact)));
+    numbers.found
+}
+
+/// Every query in two units: every number that is a length is scaled, and every other is the same, to the bit.
+fn scaled<V: Space>(scene: &Scene, exponent: i32) -> Result<(), TestCaseError> {
+    let (small, big) = (asked::<V>(scene, 0), asked::<V>(scene, exponent));
+    let differ = small.iter().zip(&big).find(|(x, y)| x != y && !(x.1.is_nan() && y.1.is_nan()));
+    prop_assert!(small.len() == big.len() && differ.is_none(), "2^{}: {:?}", exponent, differ);
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// A power of two changes no bit of any mantissa, in both precisions, in space and in the plane, over the range
+    /// that `docs/numerics.md` names: of no query, whatever it computes. Odd powers are no better than even ones,
+    /// though the root of an odd power of two is none: turning casts once took roots of lengths.
+    #[test]
+    fn the_unit_of_length_does_not_matter(
+        (kinds, sizes) in ((0_usize..8, 0_usize..8), (sizes(), sizes())),
+        (turns, place, velocity, spin) in ((rotation(), rotation()), vector(3.0), vector(2.0), vector(2.0)),
+        (far, space) in (prop_oneof![-3_i32..4, -240_i32..240], 0_usize..4),
+    ) {
+        prop_assume!(place.x.hypot(place.y) > 0.01 && velocity.x.hypot(velocity.y) > 0.01);
+        let scene = Scene { kinds, sizes, turns, place, velocity, spin };
+        // Bodies of 1e-6 take a part of the exponents of single precision.
+        let near = if far.abs() > 3 { far / 12 } else { far };
+        match space {
+            0 => scaled::<DVec3>(&scene, far)?,
+            1 => scaled::<DVec2>(&scene, far)?,
+            2 => scaled::<Vec3A>(&scene, near)?,
+            _ => scaled::<Vec2>(&scene, near)?,
+        }
+    }
+}
+
+/// The brackets of the answers about two bodies, in units of the scene's lengths; of what is decided without a number,
+/// what it says of one.
+fn brackets<V: Space>(scene: &Scene, unit: V::Scalar) -> Vec<(&'static str, [f64; 2])> {
+    let to = |p: DVec3| V::from_fn(|i| V::Scalar::from_f64(p[i])) * unit;
+    let bodies = (
+        solid::<V>(scene.kinds.0, scene.sizes.0, scene.turns.0, DVec3::ZERO, unit),
+        solid::<V>(scene.kinds.1, scene.sizes.1, scene.turns.1, scene.place, unit),
+    );
+    let mut found = Vec::new();
+    // A shape may be refused.
+    let (Ok(a), Ok(b)) = bodies else { return found };
+    let mut bounds = |query, lower: V::Scalar, upper: V::Scalar, unit: V::Scalar| {
+        found.push((query, [lower, upper].map(|bound| bound.as_f64() / unit.as_f64())));
+    };
+    let (zero, one, infinity) = (V::Scalar::ZERO, V::Scalar::ONE, V::Scalar::from_f64(f64::INFINITY));
+    let apart = distance(&a, &b, DistanceOptions::default());
+    bounds("distance", apart.lower, apart.upper, unit);
+    let signed = signed_distance(&a, &b, Default::default());
+    bounds("signed distance", signed.lower, signed.upper, unit);
+    // What is said to overlap may be as far apart as the rounding that its distance allows for, if that is a number.
+    let touching = if apart.upper < infinity { apart.upper } else { zero };
+    let meets = intersects(&a, &b, Default::default()).decided() == Some(true);
+    for (query, overlap) in [("overlap", apart.overlap && apart.status == Status::Converged), ("intersects", meets)] {
+        bounds(query, if overlap { zero } else { apart.lower }, if overlap { touching } else { infinity }, unit);
+    }
+    let motion = Motion { velocity_a: to(scene.velocity), velocity_b: V::ZERO };
+    for (query, start) in [("linear cast", StartInContact::Report), ("deeper", StartInContact::IfDeeper)] {
+        let options = LinearCastOptions::new().with_start_in_contact(start);
+        let cast = linear_cast(&a, &b, motion, options).map(|cast| [cast.lower, cast.upper]);
+        let [lower, upper] = cast.unwrap_or([zero, infinity]);
+        bounds(query, lower, upper, one);
+    }
+    let ray = Ray { source: to(scene.place), direction: to(-scene.velocity) };
+    let [lower, upper] =
+        ray_cast(&a, ray, Default::default()).map_or([zero, infinity], |cast| [cast.lower, cast.upper]);
+    bounds("ray cast", lower, upper, one);
+    let turning = RigidMotion { velocity: to(scene.velocity), angular_velocity: V::spin(scene.spin), center: V::ZERO };
+    let options = MotionCastOptions::new().with_max_time(one).with_max_iterations(100);
+    let cast = motion_cast(&a, turning, &b, RigidMotion::default(), options).map(|cast| [cast.lower, cast.upper]);
+    let [lower, upper] = cast.unwrap_or([zero, infinity]);
+    bounds("motion cast", lower, upper, one);
+    found
+}
+
+/// Beyond the range in which the unit does not matter an answer may be wider, undecided or refused, but not false:
+/// numbers that the scalar can hold are asked about twice, as they are and in a unit in which nothing under- or
+/// overflows.
+fn held<V: Space>(mut scene: Scene, exponent: i32) -> Result<(), TestCaseError> {
+    let unit = V::Scalar::from_f64(2.0_f64.powi(exponent));
+    let held = |p: DVec3| DVec3::from_array(p.to_array().map(|x| (V::Scalar::from_f64(x) * unit / unit).as_f64()));
+    scene.sizes = (held(scene.sizes.0), held(scene.sizes.1));
+    (scene.place, scene.velocity) = (held(scene.place), held(scene.velocity));
+    for (truth, answer) in brackets::<V>(&scene, V::Scalar::ONE).iter().zip(brackets::<V>(&scene, unit)) {
+        let [lower, upper] = truth.1;
+        prop_assert!(
+            answer.1[0] <= upper && lower <= answer.1[1],
+            "2^{}: {:?}, in truth {:?}",
+            exponent,
+            answer,
+            truth
+        );
     }
     Ok(())
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig::with_cases(96))]
 
-    /// A power of two changes no bit of any mantissa: of all four queries, in both precisions, in space and in the plane.
+    /// Found in single precision by exact rationals, where bodies were smaller than 1e-33: what a subnormal number
+    /// loses is no part of it, but the least number there is. And sums of lengths near the largest number overflow: a
+    /// bracket that is infinite decides nothing.
     #[test]
-    fn the_unit_of_length_does_not_matter(
+    fn nothing_is_false_at_the_ends_of_the_range(
         (kinds, sizes) in ((0_usize..8, 0_usize..8), (sizes(), sizes())),
-        (turns, place, velocity) in ((rotation(), rotation()), vector(3.0), vector(2.0)),
-        exponent in -60_i32..60,
+        (turns, place, velocity, spin) in ((rotation(), rotation()), vector(3.0), vector(2.0), vector(2.0)),
+        (small, large, end) in (-70_i32..0, 0_i32..24, 0_usize..6),
     ) {
-        let scene = Scene { kinds, sizes, turns, place, velocity };
-        scaled::<DVec3>(&scene, exponent)?;
-        scaled::<DVec2>(&scene, exponent)?;
-        // Single precision has fewer exponents, and the squares of lengths of 1e-6 take a part of them.
-        scaled::<Vec3A>(&scene, exponent / 4)?;
-        scaled::<Vec2>(&scene, exponent / 4)?;
+        prop_assume!(place.x.hypot(place.y) > 0.01 && velocity.x.hypot(velocity.y) > 0.01);
+        let scene = Scene { kinds, sizes, turns, place, velocity, spin };
+        match end {
+            0 => held::<DVec3>(scene, -1000 + small)?,
+            1 => held::<DVec3>(scene, 1022 - large)?,
+            2 => held::<Vec3A>(scene, -100 + small / 2)?,
+            3 => held::<Vec3A>(scene, 126 - large)?,
+            4 => held::<DVec2>(scene, -1000 + small)?,
+            _ => held::<Vec2>(scene, 126 - large)?,
+        }
     }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
 
     /// Moving both bodies by what their coordinates can hold changes no bit; by anything else, no more than the rounding of
     /// the coordinates.

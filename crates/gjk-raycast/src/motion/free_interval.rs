@@ -64,8 +64,11 @@ fn keeps_apart<S: Scalar>(gaps: [S; 2], most: S, times: [S; 2]) -> bool {
         return false;
     }
     let duration = times[1] - times[0];
-    let roots = gaps[0].sqrt() + gaps[1].sqrt();
+    let [less, more] = if gaps[0] < gaps[1] { gaps } else { [gaps[1], gaps[0]] };
+    // The square of the sum of the roots. A root is taken of numbers without a unit only: that of a length would have
+    // other digits in another unit, since the root of an odd power of two is no power of two.
+    let squared = less + more + S::from_f64(2.0) * more * (less / more).sqrt();
     let half = S::from_f64(0.5 + 0.5 * ROUNDING * S::EPSILON.as_f64());
     // NaN is no proof.
-    duration * duration * most * half < roots * roots
+    duration * duration * most * half < squared
 }

@@ -21,19 +21,20 @@ pub(super) const PATIENCE: u8 = 2;
 impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> {
     /// Where to look next; `None` where no time lies between those known.
     ///
-    /// With the gap `g` and the speed `w` at which it closes, it is expected to be `g − w·s` after the time `s`. So with `k = √(M/2)`, of the `M` of the last step,
-    /// an interval can be expected to be proved if `√g + √(g − w·s) > k·s`, which ends at `s = (2√g − w/k)/k` if the gap is still
-    /// open then, that is if `w < k·√g`. Otherwise the contact itself is within reach.
+    /// With the gap `g` and the speed `w` at which it closes, it is expected to be `g − w·s` after the time `s`. So
+    /// with `m = M/2`, of the `M` of the last step, an interval can be expected to be proved if `√g + √(g − w·s) >
+    /// √m·s`, which ends at `s = 2√(g/m) − w/m` if the gap is still open then, that is if `w < √(m·g)`. Otherwise the
+    /// contact itself is within reach.
     pub(super) fn next_time(&self) -> Option<V::Scalar> {
         let from_f64 = V::Scalar::from_f64;
         let Instant { time, gap, distance, error, closing, .. } = self.near;
         let end = self.options.max_time.min(self.upper);
-        let (k, root) = ((self.acceleration.max(Scalar::ZERO) * from_f64(0.5)).sqrt(), gap.sqrt());
-        let is_within_reach = closing > k * root;
+        let m = self.acceleration.max(Scalar::ZERO) * from_f64(0.5);
+        let is_within_reach = closing > (m * gap).sqrt();
         let step = if is_within_reach {
             self.newton(distance - error * from_f64(AIM))
         } else {
-            (root + root - closing / k) / k * from_f64(CAUTION)
+            (from_f64(2.0) * (gap / m).sqrt() - closing / m) * from_f64(CAUTION)
         };
         let next = time + step;
         if let Some(ahead) = self.ahead {
@@ -112,8 +113,10 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
         }
         let plane = TurningPlane { from: self.near.normal, to: self.near.normal };
         let m = self.bodies.acceleration_along(plane, [self.near.time, time]);
-        let root = (time - self.near.time) * (m * Scalar::from_f64(0.5)).sqrt() - self.near.gap.sqrt();
+        let (duration, gap) = (time - self.near.time, self.near.gap);
+        // In units of the gap.
+        let root = duration * (m / gap * Scalar::from_f64(0.5)).sqrt() - Scalar::ONE;
         let root = root.max(Scalar::ZERO);
-        root * root * Scalar::from_f64(1.01)
+        root * root * gap * Scalar::from_f64(1.01)
     }
 }
