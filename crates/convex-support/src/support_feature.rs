@@ -115,6 +115,35 @@ impl<V: Vector> Feature<V> {
         self.rim = self.rim.map(|rim| Rim { center: f(rim.center), ends: rim.ends.map(f) });
     }
 
+    /// Sweeps every point by a flat ellipse with these conjugate radii, or by a segment, if the second is no longer
+    /// than `slab`.
+    pub(crate) fn sweep(&mut self, [p, q]: [V; 2], slab: V::Scalar) {
+        let Self { points, ids, len, .. } = *self;
+        self.clear();
+        let around = if q.norm() > slab {
+            RIM
+        } else if p.norm() > slab {
+            2
+        } else {
+            1
+        };
+        for (&center, &id) in points.iter().zip(&ids).take(len) {
+            for i in 0..around {
+                let (sine, cosine) = (core::f64::consts::TAU * f64::from(i) / f64::from(around)).sin_cos();
+                let sine = if around > 2 { sine } else { 0.0 };
+                let point = center + p * V::Scalar::from_f64(cosine) + q * V::Scalar::from_f64(sine);
+                self.push(point, id.wrapping_mul(RIM).wrapping_add(i));
+            }
+            if around > 2 {
+                self.set_rim(Rim { center, ends: [center + p, center + q] });
+            }
+        }
+        // The hull of several discs is more than their rims.
+        if around > 2 && len > 1 {
+            (self.rim, self.is_complete) = (None, false);
+        }
+    }
+
     /// Of points with these numbers, those no farther than `slab` behind the farthest along a direction.
     pub(crate) fn collect(
         &mut self,

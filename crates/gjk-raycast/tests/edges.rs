@@ -1,11 +1,11 @@
 //! Where answers are not smooth, and what their one-sided derivatives are there.
 
-use crate::common::behind_pointers::{distance, linear_cast, motion_cast, signed_distance};
+use crate::common::behind_pointers::{distance, linear_cast, motion_cast, ray_cast, signed_distance};
 use crate::differences::{Body, Random, Space, apart, one_sided};
 use convex_support::glam::{DMat3, DQuat, DVec2, DVec3};
 use convex_support::{Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Polytope, Posed, Rounded, SupportMap, Triangle};
 use gjk_raycast::{
-    DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, RigidMotion, SignedDistanceOptions, Smoothness,
+    DistanceOptions, LinearCastOptions, Motion, MotionCastOptions, Ray, RigidMotion, SignedDistanceOptions, Smoothness,
 };
 
 const VALID: &str = "positive sizes and finite numbers";
@@ -363,4 +363,104 @@ fn equal_ways_out_of_flat_curves_are_an_edge() {
     let a = Posed::from_matrix(Cylinder::new(1.0, 0.5).expect(VALID), lean, DVec3::Z * 0.5).expect(VALID);
     let features = apart(&a, &b).closest_features(&a, &b);
     assert_eq!(features.smoothness(), Smoothness::Edge, "{features:?}");
+}
+
+#[test]
+fn a_distance_of_zero_is_at_its_floor() {
+    // The distance is max(s, 0) of the signed distance s. Where bodies touch exactly, s is smooth, with the derivative
+    // n by a translation of a; but the distance has that derivative on one side and zero on the other, and so has a
+    // time or a λ that cannot be less than zero.
+    let (ball, floor) = (Ball::<DVec3>::new(1.0).expect(VALID), Cuboid::new(DVec3::new(4.0, 1.0, 4.0)).expect(VALID));
+    let above = |gap: f64| Posed::translated(ball, DVec3::new(0.5, 2.0 + gap, -0.25)).expect(VALID);
+    let fall = Motion { velocity_a: DVec3::NEG_Y, velocity_b: DVec3::ZERO };
+    let (rest, spin) = (
+        RigidMotion::default(),
+        RigidMotion { velocity: DVec3::NEG_Y, ..RigidMotion::rotation(DVec3::X, DVec3::Y * 2.0) },
+    );
+    for (gap, of_clamped) in [(0.0, Smoothness::Edge), (0.25, Smoothness::Smooth)] {
+        let a = above(gap);
+        let signed = apart(&a, &floor);
+        assert_eq!(signed.closest_features(&a, &floor).smoothness(), Smoothness::Smooth, "{signed:?}");
+        let answer = distance(&a, &floor, DistanceOptions::default());
+        assert_eq!(answer.closest_features(&a, &floor).map(|f| f.smoothness()), Some(of_clamped), "{answer:?}");
+        let hit =
+            linear_cast(&a, &floor, fall, LinearCastOptions::default()).expect("finite").outcome.hit().expect("below");
+        assert_eq!(hit.closest_features(&a, &floor, fall).map(|f| f.smoothness()), Some(of_clamped), "{hit:?}");
+        let options = MotionCastOptions::new().with_max_time(2.0);
+        let hit = motion_cast(&a, spin, &floor, rest, options).expect("finite").outcome.hit().expect("below");
+        let features = hit.closest_features(&a, &spin, &floor, &rest);
+        assert!(features.is_none_or(|f| f.smoothness() == of_clamped), "{hit:?}");
+        let ray = Ray { source: DVec3::new(0.5, 1.0 + gap, -0.25), direction: DVec3::NEG_Y };
+        let hit = ray_cast(&floor, ray, Default::default()).expect("finite").outcome.hit().expect("below");
+        let features = hit.closest_features(&floor, ray);
+        assert!(features.is_none_or(|f| f.smoothness() == of_clamped), "{hit:?}");
+    }
+}
+
+#[test]
+fn second_derivatives_jump_above_a_border() {
+    // Over a face the distance of a ball is a height, which is linear. Beyond the border of the face it is that from an
+    // edge, whose second derivative by a step x aside is 1/r, with r the distance of the centre from the edge. Exactly
+    // above the border the gradient is the same on both sides, and the answer smooth; but there are two Hessians.
+    let cube = Cuboid::new(DVec3::ONE).expect(VALID);
+    let along_x = |x: f64| {
+        let ball = Posed::translated(Ball::new(0.5).expect(VALID), DVec3::new(x, 2.0, 0.25)).expect(VALID);
+        let features = apart(&ball, &cube).closest_features(&ball, &cube);
+        assert_eq!(features.smoothness(), Smoothness::Smooth, "{x}: {features:?}");
+        let hessian = features.hessian(DVec3::ZERO, DVec3::ZERO).expect("a ball and a cube");
+        let of_a = features.hessian_of_a(DVec3::ZERO).expect("a ball and a cube");
+        let is_unique = features.is_hessian_unique();
+        let said = [hessian.a.is_unique(), hessian.b.is_unique(), hessian.mixed.is_unique(), of_a.is_unique()];
+        assert_eq!(said, [is_unique; 4]);
+        (hessian.a.entry(0, 0), is_unique)
+    };
+    assert_eq!(along_x(0.9), (0.0, true));
+    assert!(!along_x(1.0).1);
+    let (beyond, is_unique) = along_x(1.0 + 1e-6);
+    assert!(is_unique && (beyond - 1.0).abs() < 1e-6, "{beyond}");
+    // The side of a capsule ends where its caps begin.
+    let over_end = |y: f64| {
+        let ball = Posed::translated(Ball::new(0.5).expect(VALID), DVec3::new(3.0, y, 0.0)).expect(VALID);
+        let capsule = Capsule::new(1.0, 0.5).expect(VALID);
+        apart(&ball, &capsule).closest_features(&ball, &capsule).is_hessian_unique()
+    };
+    assert_eq!([0.5, 1.0, 1.5].map(over_end), [true, false, true]);
+}
+
+#[test]
+fn a_ball_made_flat_is_an_edge_or_a_face() {
+    // A singular matrix makes a segment or a disc of a ball. Across it the support point jumps from end to end, which
+    // no curvature tells: the whole image is what it shows in that direction.
+    let flat = |sizes: [f64; 3], turn: DQuat| {
+        let matrix =
+            DMat3::from_quat(turn) * DMat3::from_diagonal(DVec3::from_array(sizes)) * DMat3::from_rotation_z(0.3);
+        Affine::new(Ball::<DVec3>::new(0.5).expect(VALID), matrix, DVec3::new(0.25, 3.0, 0.0)).expect(VALID)
+    };
+    let cube = Cuboid::new(DVec3::ONE).expect(VALID);
+    let lean = DQuat::from_rotation_z(0.1);
+    let turned = DQuat::from_rotation_y(0.7);
+    for (sizes, turn, gap, expected) in [
+        // A segment along x over a face, and one that leans.
+        ([2.0, 0.0, 0.0], turned, 2.0, Smoothness::Edge),
+        ([2.0, 0.0, 0.0], lean, 2.0 - 0.1_f64.sin(), Smoothness::Smooth),
+        // A disc over a face.
+        ([1.5, 0.0, 0.75], turned, 2.0, Smoothness::Edge),
+        ([1.5, 0.0, 0.75], lean, 2.0 - 0.75 * 0.1_f64.sin(), Smoothness::Smooth),
+    ] {
+        let a = flat(sizes, turn);
+        let answer = apart(&a, &cube);
+        assert!((answer.signed_distance - gap).abs() < 1e-9, "{answer:?}");
+        let features = answer.closest_features(&a, &cube);
+        assert_eq!(features.smoothness(), expected, "{sizes:?}: {features:?}");
+    }
+    // A segment parallel to an edge that is below and aside.
+    let a = flat([2.0, 0.0, 0.0], DQuat::IDENTITY);
+    let beside = Posed::translated(cube, DVec3::new(0.0, 0.0, 2.0)).expect(VALID);
+    let features = apart(&a, &beside).closest_features(&a, &beside);
+    assert_eq!(features.smoothness(), Smoothness::Edge, "{features:?}");
+    // As it begins to turn, one of the ends comes nearer: at the speed of its arm.
+    let turning = RigidMotion::rotation(DVec3::Z, DVec3::new(0.25, 3.0, 0.0));
+    let over = apart(&a, &cube).closest_features(&a, &cube);
+    let rate = over.rate(turning, RigidMotion::default()).expect("one normal");
+    assert!((rate + 1.0).abs() < 1e-12, "{rate}");
 }

@@ -172,8 +172,14 @@ impl<S: SupportMap> SupportMap for Affine<S> {
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {
         let direction = self.onto_shape * direction;
         self.shape.core_support_feature(direction, slab / self.unit, feature);
-        let swept = swept(self.swept, direction);
+        // A ball that the matrix makes flat along the direction is an edge or a face.
+        let is_flat = self.swept > Scalar::ZERO
+            && direction.norm() * self.unit * self.swept * ScalarOf::<S>::from_f64(2.0) <= slab;
+        let swept = if is_flat { Vector::ZERO } else { swept(self.swept, direction) };
         feature.map(|point| self.matrix * (point + swept) + self.lost);
+        if is_flat {
+            feature.sweep(flat_image(&self.matrix).map(|half| half * self.swept), slab);
+        }
     }
 
     #[inline]
@@ -198,6 +204,30 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         // Where the matrix keeps lengths, all of them in one ratio, it does so to 16 roundings.
         image.with_radius_error(self.scale.map_or(Scalar::ZERO, |scale| roundings(32.0, scale * radius)))
     }
+}
+
+/// Conjugate radii of the ellipse or segment that a matrix makes of the unit ball, if that is flat; the second is
+/// nearly zero of a segment.
+///
+/// With `e` along the longest column and `f` across it in the plane of the others, the columns are `N` times that
+/// basis, where `N` has two rows `x` and `y`. The image `{Nu : |u| ≤ 1}` is that of the unit disc by the lower triangle
+/// `L` with `LLᵀ = NNᵀ` (Cholesky), whose columns are `(|x|, x·y/|x|)` and `(0, √(y² − (x·y)²/x²))`.
+fn flat_image<M: Matrix>(matrix: &M) -> [M::Vector; 2] {
+    let columns =
+        |v: M::Vector| M::Vector::from_fn(|j| if j < M::Vector::DIM { matrix.col(j).dot(v) } else { Scalar::ZERO });
+    let longest = |of: &dyn Fn(usize) -> M::Vector| {
+        let longer = |i: usize, j: usize| if of(j).norm() > of(i).norm() { j } else { i };
+        of((1..M::Vector::DIM).fold(0, longer))
+    };
+    let Some(e) = longest(&|j| matrix.col(j)).unit() else { return [M::Vector::ZERO; 2] };
+    let across = |j: usize| matrix.col(j) - e * matrix.col(j).dot(e);
+    let x = columns(e);
+    let length = x.norm();
+    let Some(f) = longest(&across).unit() else { return [e * length, M::Vector::ZERO] };
+    let y = columns(f);
+    let shared = y.dot(x / length);
+    let rest = y - x * (shared / length);
+    [e * length + f * shared, f * rest.norm()]
 }
 
 fn frobenius_norm<M: Matrix>(matrix: &M) -> <M::Vector as Vector>::Scalar {

@@ -54,6 +54,8 @@ pub struct ClosestFeatures<V: Vector> {
     pub(super) tilt: V::Scalar,
     /// Whether another way out of one another is as short.
     pub(super) is_tied: bool,
+    /// Whether the answer is zero and cannot fall, or is so to its error.
+    pub(super) is_at_floor: bool,
 }
 
 /// Where two bodies are closest.

@@ -5,7 +5,7 @@ use convex_support::{Core, Matrix, Point, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::ClosestFeatures;
-use super::closest_features::Closest;
+use super::closest_features::{Closest, rounding};
 use crate::motion::Moved;
 use crate::{
     Distance, LinearHit, Motion, MotionHit, Ray, RayHit, RigidMotion, SignedDistance, SignedDistanceOptions,
@@ -37,11 +37,10 @@ impl<V: Vector> Distance<V> {
     {
         let error = self.upper - self.lower;
         let (points, signed_distance) = ([self.point_a, self.point_b], self.distance);
-        Some(ClosestFeatures::new(
-            a,
-            b,
-            Closest { normal: self.normal?, points, signed_distance, error, is_near: false },
-        ))
+        let closest = Closest { normal: self.normal?, points, signed_distance, error, is_near: false };
+        // NaN is not above it.
+        let is_at_floor = !(self.lower > Scalar::ZERO);
+        Some(ClosestFeatures { is_at_floor, ..ClosestFeatures::new(a, b, closest) })
     }
 }
 
@@ -196,9 +195,9 @@ impl<V: Vector> RayHit<V> {
     where
         S: SupportMap<Vector = V> + ?Sized,
     {
-        let tip = Point::new(ray.at(self.lambda)).ok()?;
-        let rest = RigidMotion::default();
-        touching(self.normal?, self.point, V::Scalar::ZERO, (&tip, &rest), (target, &rest))
+        let tip = Point::new(ray.source).ok()?;
+        let motion = RigidMotion::translation(ray.direction);
+        touching(self.normal?, self.point, self.lambda, (&tip, &motion), (target, &RigidMotion::default()))
     }
 
     /// The hit with the normal of its [feature](Self::closest_features), which is known to rounding, and so its
@@ -224,6 +223,7 @@ where
     MA: Trajectory<Vector = V> + ?Sized,
     MB: Trajectory<Vector = V> + ?Sized,
 {
+    let closing = normal.dot(motion_b.velocity(time, point) - motion_a.velocity(time, point));
     let (a, b) = (at_time(a, motion_a, time), at_time(b, motion_b, time));
     let zero = V::Scalar::ZERO;
     // They are as far apart as the target distance of the cast, which the hit does not know, or not at all.
@@ -233,7 +233,10 @@ where
     // What is not on purpose is what the time or the normal are wrong by.
     let [apart, error] = if gap > little(size) { [gap, zero] } else { [zero, gap.abs()] };
     let points = [point + normal * apart, point];
-    Some(ClosestFeatures::new(&a, &b, Closest { normal, points, signed_distance: apart, error, is_near: true }))
+    let closest = Closest { normal, points, signed_distance: apart, error, is_near: true };
+    // At the start they were as far from contact as they have come nearer since.
+    let is_at_floor = !(closing * time > size * rounding());
+    Some(ClosestFeatures { is_at_floor, ..ClosestFeatures::new(&a, &b, closest) })
 }
 
 /// A body where it is at a time.

@@ -9,6 +9,8 @@ use crate::symmetric::Across;
 /// The coordinates of a pose: three of a translation and three of a rotation in space, two and one in the plane.
 const MAX: usize = 6;
 
+type Rows<S> = [[S; MAX]; MAX];
+
 /// Second derivatives by the motion of one body, or by that of one and that of the other.
 ///
 /// A motion is a translation `δ` and a rotation vector `ω` about a centre of the caller's, both in world axes:
@@ -23,7 +25,8 @@ const MAX: usize = 6;
 #[cfg_attr(feature = "serde", serde(bound(serialize = "V::Scalar: serde::Serialize")))]
 #[cfg_attr(feature = "serde", serde(bound(deserialize = "V::Scalar: serde::Deserialize<'de>")))]
 pub struct MotionHessian<V: Vector> {
-    rows: [[V::Scalar; MAX]; MAX],
+    rows: Rows<V::Scalar>,
+    is_unique: bool,
 }
 
 /// The second derivatives of the signed distance by the poses of both bodies: 12 by 12 numbers in space, 6 by 6 in the plane.
@@ -68,6 +71,13 @@ impl<V: Vector> MotionHessian<V> {
         core::array::from_fn(|i| core::array::from_fn(|j| self.entry(i, j)))
     }
 
+    /// Whether these are the only second derivatives. If not, they jump here, and are those on one side, as of
+    /// [`ClosestFeatures::is_hessian_unique`].
+    #[must_use]
+    pub fn is_unique(&self) -> bool {
+        self.is_unique
+    }
+
     /// `θᵀHφ` for two motions `θ` and `φ`, each a translation and a rotation.
     #[must_use]
     pub fn along(&self, rows: (V, V::AngularVelocity), columns: (V, V::AngularVelocity)) -> V::Scalar {
@@ -97,6 +107,10 @@ impl<V: Vector> ClosestFeatures<V> {
     /// at the point `b`. By the poses of both bodies that is the Hessian, by the pose of one it is `(Q + Qᵀ)/2`. Along a coordinate `φ`, which moves the
     /// material point by `v` and turns the normal by `t = ω × n`, it is `Q(θ)·φ = n′·v − (a′ − δ)·t`, of which both are across the normal.
     ///
+    /// Where second derivatives jump, as of a ball exactly above the border of a face, there is [more than
+    /// one](Self::is_hessian_unique) Hessian, and this is that of the feature that holds the normal fastest, such as
+    /// the face. The Hessian [says so](MotionHessian::is_unique).
+    ///
     /// It is as accurate as the normal and the points, times the condition of the bodies: what turning a needle would do with the
     /// normal held is mostly taken back by the normal.
     ///
@@ -118,11 +132,10 @@ impl<V: Vector> ClosestFeatures<V> {
         let solver = self.solver()?;
         let [of_a, of_b] = [self.coordinates(0, center_a), self.coordinates(1, center_b)];
         let [by_a, by_b] = [0, 1].map(|body| solver.responses(body));
-        let mut mixed = by_a.moved(&of_a, 1).along::<V>(&of_b);
-        for entry in mixed.rows.as_flattened_mut() {
-            *entry = -*entry;
-        }
-        Some(PairHessian { a: by_a.hessian(&of_a, 0), b: by_b.hessian(&of_b, 1), mixed })
+        let is_unique = self.is_hessian_unique();
+        let mixed = by_a.moved(&of_a, 1).along(&of_b).map(|row| row.map(|entry| -entry));
+        let of = |rows| MotionHessian { rows, is_unique };
+        Some(PairHessian { a: of(by_a.hessian::<V>(&of_a, 0)), b: of(by_b.hessian::<V>(&of_b, 1)), mixed: of(mixed) })
     }
 
     /// The same by the pose of `a` alone.
@@ -138,7 +151,8 @@ impl<V: Vector> ClosestFeatures<V> {
     }
 
     fn hessian_of(&self, body: usize, center: V) -> Option<MotionHessian<V>> {
-        Some(self.solver()?.responses(body).hessian(&self.coordinates(body, center), body))
+        let rows = self.solver()?.responses(body).hessian::<V>(&self.coordinates(body, center), body);
+        Some(MotionHessian { rows, is_unique: self.is_hessian_unique() })
     }
 
     /// The coordinates of the pose of a body. Of a turn `ω` the part along a unit vector `e` is `e·(ω × arm) = ω·(arm × e)`, which is that of a
@@ -216,7 +230,7 @@ impl<S: Scalar> Responses<S> {
     /// The Hessian by the pose of the body. Of two rotations it is the symmetric part of `Q`; what a rotation does along a translation, which
     /// turns nothing, is `n′·v`.
     #[inline]
-    fn hessian<V: Vector<Scalar = S>>(&self, coordinates: &Coordinates<S>, body: usize) -> MotionHessian<V> {
+    fn hessian<V: Vector<Scalar = S>>(&self, coordinates: &Coordinates<S>, body: usize) -> Rows<S> {
         let Moved { normal: [n, m], shift: [a, b] } = self.moved(coordinates, body);
         let Coordinates { velocity: [v, w], turn: [t, u] } = coordinates;
         let (half, sign) = (S::from_f64(0.5), if body == 0 { S::ONE } else { -S::ONE });
@@ -236,14 +250,14 @@ impl<S: Scalar> Responses<S> {
                 rows[j][i] += along;
             }
         }
-        MotionHessian { rows }
+        rows
     }
 }
 
 impl<S: Scalar> Moved<S> {
     /// `Q(θ)·φ` for a force along the normal, by coordinates `φ` of the pose of its body.
     #[inline]
-    fn along<V: Vector<Scalar = S>>(&self, coordinates: &Coordinates<S>) -> MotionHessian<V> {
+    fn along(&self, coordinates: &Coordinates<S>) -> Rows<S> {
         let Self { normal: [n, m], shift: [a, b] } = self;
         let Coordinates { velocity: [v, w], turn: [t, u] } = coordinates;
         let mut rows = [[S::ZERO; MAX]; MAX];
@@ -252,6 +266,6 @@ impl<S: Scalar> Moved<S> {
                 rows[i][j] = n[i] * v[j] + m[i] * w[j] - (a[i] * t[j] + b[i] * u[j]);
             }
         }
-        MotionHessian { rows }
+        rows
     }
 }

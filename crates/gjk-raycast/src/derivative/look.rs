@@ -50,6 +50,7 @@ where
             spans: [Span::Vertex; 2],
             tilt: Scalar::ZERO,
             is_tied: false,
+            is_at_floor: false,
         }
     }
 

@@ -15,16 +15,34 @@ pub enum Smoothness {
     /// The normal and the closest points are the only ones. They change continuously, and the gradient is the derivative.
     Smooth,
     /// There are several normals or pairs of closest points: between parallel faces or edges, where a vertex touches a vertex, or where
-    /// two ways out are equally short. The gradient is one of several one-sided derivatives.
+    /// two ways out are equally short. Or the answer is at its floor: a distance, a time or a λ of zero falls no
+    /// further as the bodies come nearer. The gradient is one of several one-sided derivatives.
     Edge,
 }
 
 impl<V: Vector> ClosestFeatures<V> {
-    /// Whether the answer changes smoothly with the poses of both bodies. If features are parallel to within the error of the normal, the
-    /// answer is [`Edge`](Smoothness::Edge), since rounding leaves it open.
+    /// Whether the answer that the features were found from changes smoothly with the poses of both bodies: its first
+    /// derivatives are continuous, and its second ones exist where [they do not jump](Self::is_hessian_unique). If
+    /// features are parallel to within the error of the normal, or the answer is zero to within its own error, this is
+    /// [`Edge`](Smoothness::Edge), since rounding leaves it open.
+    ///
+    /// A [`Distance`](crate::Distance) of bodies that touch, and the time of a hit at the very start, are at their
+    /// floor and not smooth. The [`SignedDistance`](crate::SignedDistance) of the same bodies has no floor.
     #[must_use]
     pub fn smoothness(&self) -> Smoothness {
-        if self.is_normal_unique() && self.are_points_unique() { Smoothness::Smooth } else { Smoothness::Edge }
+        let is_smooth = self.is_normal_unique() && self.are_points_unique() && !self.is_at_floor;
+        if is_smooth { Smoothness::Smooth } else { Smoothness::Edge }
+    }
+
+    /// Whether the second derivatives of the signed distance do not jump here. They do where the closest point leaves
+    /// an edge or a face, as of a ball that is exactly above the border of a face: over the face the distance has no
+    /// curvature, and beyond its border it is that from an edge. If a point is within the error of a border, rounding
+    /// leaves it open, and the answer is no.
+    ///
+    /// The gradient changes continuously all the same. The [Hessian](Self::hessian) is one of those on either side.
+    #[must_use]
+    pub fn is_hessian_unique(&self) -> bool {
+        self.are_points_unique() && separating(&self.outlines, self.slack()).is_empty()
     }
 
     /// Whether there is only one pair of closest points. There are more where a face is parallel to a face or an edge, or an edge to an
