@@ -63,8 +63,9 @@ impl<V: Vector> NextDirection<V> {
             return turned.map_or(v, |n| Direction { n, length: Scalar::ONE });
         }
         let levelled = if leaves_open(state) { in_range(level(state, v)) } else { None };
-        // Both directions may cancel.
-        let levelled = levelled.filter(|direction| direction.length > Scalar::ZERO);
+        // A plane before zero is before all points that are known too. Deep in one another bodies have an axis opposite to the shortest
+        // vector, and would be looked at from where they were looked at before, over and over.
+        let levelled = levelled.filter(|direction| direction.n.dot(v.n) > Scalar::ZERO);
         self.levelled = levelled.is_some();
         levelled.unwrap_or(v)
     }

@@ -23,18 +23,22 @@ pub(crate) struct Closest<V: Vector> {
 /// The points lie in a space of `dimension` dimensions: that of the vectors, or one less for points seen along a ray.
 ///
 /// A new support point brings the simplex nearer, if by less than rounding; so a face with the last point for a corner
-/// is preferred to one that without it is no nearer than that.
+/// is preferred to one that without it is no nearer than that. Near contact the share that the last point has of zero's foot is as small as
+/// the square of the distance, and may be lost in rounding; it turns the plane all the same, so that a share of no less than minus a rounding
+/// counts as none.
 pub(crate) fn nearest_face<V: Vector>(points: &[V], dimension: usize) -> Option<Closest<V>> {
     let newest = points.len().checked_sub(1)?;
     let longest = points.iter().map(|p| p.length_squared()).fold(V::Scalar::ZERO, V::Scalar::max).sqrt();
-    let rounding = V::Scalar::from_f64(8.0) * V::Scalar::EPSILON * longest;
+    let share = V::Scalar::from_f64(8.0) * V::Scalar::EPSILON;
+    let rounding = share * longest;
     let mut best = None;
     let mut least = V::Scalar::infinity();
     // In the order of faces those without the newest point come first.
     for face in faces(points.len(), dimension + 1) {
         let mut corners = [V::ZERO; MAX_POINTS];
         let foot = project(face.of(points, &mut corners), |corner| -corner);
-        if !foot.coordinates[..face.len()].iter().all(|&b| b > V::Scalar::ZERO) {
+        let least_share = if face.has(newest) && face.len() <= dimension { -share } else { V::Scalar::ZERO };
+        if !foot.coordinates[..face.len()].iter().all(|&b| b > least_share) {
             continue;
         }
         // A simplex of full dimension leaves nothing across, or else it is flat, and what spans it is rounding.
@@ -46,7 +50,7 @@ pub(crate) fn nearest_face<V: Vector>(points: &[V], dimension: usize) -> Option<
             if face.has(newest) && known.is_some_and(|b| !b.face.has(newest)) { rounding } else { V::Scalar::ZERO };
         if length < least + bonus {
             least = length;
-            best = Some(Closest { v, face, weights: foot.coordinates });
+            best = Some(Closest { v, face, weights: foot.coordinates.map(|b| b.max(V::Scalar::ZERO)) });
         }
     }
     best
