@@ -203,8 +203,15 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
     #[inline(always)]
     pub(crate) fn vector_between(&self, PointPair { a, b }: PointPair<A::Vector>, offset: A::Vector) -> A::Vector {
         let v = a - b + offset;
-        match (self.core_a.kind, self.core_b.kind) {
-            (CoreKind::Segment { middle: x, half: u }, CoreKind::Segment { middle: y, half: w }) => {
+        // A point is a segment without length.
+        let segment = |core: &Core<A::Vector>| match core.kind {
+            CoreKind::Segment { middle, half } => Some((middle, half)),
+            CoreKind::Point(at) => Some((at, Vector::ZERO)),
+            _ => None,
+        };
+        let are_points = matches!((self.core_a.kind, self.core_b.kind), (CoreKind::Point(_), CoreKind::Point(_)));
+        match (segment(&self.core_a), segment(&self.core_b)) {
+            (Some((x, u)), Some((y, w))) if !are_points => {
                 let [u, w, x, y] = [u, w, x, y].map(|v| v * self.per_unit);
                 segments::normal_between([u, w], [x, y], [a, b], v)
             }

@@ -4,11 +4,12 @@ use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
+use crate::contact::signed_distance_of_any;
 use crate::gjk::{
     End, Frame, Gjk, GjkOptions, InOrder, NEAR, first_direction, gjk, is_near_contact, near_contact, rounding,
 };
 use crate::shape::{Shape, WithoutLines};
-use crate::{Distance, DistanceOptions, Iterate, Status, SubAlgorithm};
+use crate::{Distance, DistanceOptions, Iterate, SignedDistanceOptions, Status, SubAlgorithm};
 
 /// The distance of two shapes, and where they are closest.
 ///
@@ -173,10 +174,45 @@ where
     }
     state.ensure_measured();
     let points = state.simplex.weighted_witness();
-    if is_reversed {
+    let answer = if is_reversed {
         apart([pair.core_b, pair.core_a], &in_order, &state, points.reversed(), end).reversed()
     } else {
         apart([pair.core_a, pair.core_b], &in_order, &state, points, end)
+    };
+    if end == End::Stalled {
+        closely([&WithoutLines(a), &WithoutLines(b)], answer, options.max_iterations)
+    } else {
+        answer
+    }
+}
+
+/// The answer that a search leaves in doubt, with what the signed distance knows: the planes of facets of the difference too, and how deep
+/// bodies are in one another.
+#[cold]
+#[inline(never)]
+fn closely<V: Vector>([a, b]: [Shape<'_, V>; 2], answer: Distance<V>, max_iterations: usize) -> Distance<V> {
+    let zero = V::Scalar::ZERO;
+    let left = max_iterations.saturating_sub(answer.iterations);
+    let there = signed_distance_of_any(a, b, SignedDistanceOptions::new().with_max_iterations(left));
+    let (lower, upper) = (answer.lower.max(there.lower), answer.upper.min(there.upper.max(zero)));
+    let iterations = answer.iterations + there.iterations;
+    // What is no number, or contradicts itself, is of a support map that is none.
+    if !(lower <= upper) || !there.signed_distance.is_finite() {
+        return Distance { iterations, ..answer };
+    }
+    let overlap = !(lower > zero) && (there.overlap || there.status == Status::Converged);
+    let is_nearer = there.upper < answer.upper && there.upper >= zero;
+    let (point_a, point_b) = if is_nearer { (there.point_a, there.point_b) } else { (answer.point_a, answer.point_b) };
+    Distance {
+        distance: there.signed_distance.max(lower).min(upper),
+        lower,
+        upper,
+        overlap,
+        point_a,
+        point_b,
+        normal: Some(there.normal).filter(|_| there.upper >= zero),
+        status: there.status,
+        iterations,
     }
 }
 
@@ -193,6 +229,8 @@ fn apart<V: Vector>(
     let &Frame { scale, radius, error, .. } = frame;
     let &Gjk { normal, length, lower, axis, .. } = state;
     let overlap = end == End::Overlap;
+    // Nearer to contact another look is taken, but for a simplex that has zero inside for certain.
+    let is_certain = overlap && state.simplex.points().len() > V::DIM;
     let n = if length > zero && !overlap && (radius > zero || lower <= zero) { normal.unit() } else { None };
     let along = if overlap { None } else { Some(n.unwrap_or(Vector::ZERO)) };
     let [point_a, point_b] = surface_points(cores, frame, core_points, along);
@@ -203,7 +241,11 @@ fn apart<V: Vector>(
     let answer = Distance {
         distance: if overlap { zero } else { gap(length) },
         lower: if overlap { zero } else { gap((lower - error).min(length)) },
-        upper: if overlap { gap(found + error).min(error * scale) } else { gap(found + error) },
+        upper: match overlap {
+            true if is_certain => zero,
+            true => gap(found + error).min(error * scale),
+            false => gap(found + error),
+        },
         overlap,
         point_a,
         point_b,
@@ -243,7 +285,7 @@ fn touching<V: Vector>(
     let along = if overlap == Some(true) { None } else { Some(between.unit().unwrap_or(near.normal)) };
     let [point_a, point_b] = surface_points(cores, &near.frame, near.points, along);
     let upper = near.upper.max(zero) * scale;
-    Some(Distance {
+    let answer = Distance {
         distance: (near.gap.max(zero) * scale).min(upper),
         lower: near.lower.max(zero) * scale,
         upper,
@@ -252,9 +294,10 @@ fn touching<V: Vector>(
         point_b,
         // Of a point found deep inside, no plane is one of contact.
         normal: Some(near.normal).filter(|_| near.gap >= -near.upper),
-        status: if overlap.is_some() { Status::Converged } else { near.end.status() },
+        status: if near.is_settled() { Status::Converged } else { Status::Stalled },
         iterations: near.iterations,
-    })
+    };
+    Some(if near.is_settled() { answer } else { closely(shapes, answer, max_iterations) })
 }
 
 /// The points of both bodies beside points of their cores, in the world: along the unit vector from `b` to `a`, or where none is given

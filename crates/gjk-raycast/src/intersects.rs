@@ -5,9 +5,7 @@ use num_traits::Float;
 
 use crate::body::{Body as _, Pair, TracedSupport as _, Untraced};
 use crate::distance::distance_with;
-use crate::gjk::{
-    Boxes, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, is_near_contact, near_contact, rounding,
-};
+use crate::gjk::{Boxes, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, is_near_contact, rounding};
 use crate::shape::{Shape, WithoutLines};
 use crate::unit::is_moderate;
 use crate::{DistanceOptions, IntersectOptions, Intersection, Iterate, Status};
@@ -141,46 +139,21 @@ where
     } else {
         gjk(&mut state, &mut Untraced(pair), frame, options, known, observer)
     };
-    let mut iterations = state.iterations;
-    let (overlap, axis, status) = match end {
-        End::Separated if state.lower > frame.radius + frame.error => (false, state.axis.unit(), Status::Converged),
+    let (apart, near) = (state.lower > frame.radius + frame.error, is_near_contact(&mut state, &frame));
+    let (overlap, axis) = match end {
+        End::Separated if apart => (false, state.axis.unit()),
+        End::Overlap if !near => (true, None),
         _ => {
-            let is_near = is_near_contact(&mut state, &frame);
-            let near = if is_near {
-                near_contact(
-                    [&WithoutLines(pair.a), &WithoutLines(pair.b)],
-                    [pair.core_a, pair.core_b],
-                    None,
-                    max_iterations,
-                )
-            } else {
-                None
-            };
-            match near {
-                Some(near) => {
-                    iterations += near.iterations;
-                    match near.overlap() {
-                        Some(overlap) => (overlap, Some(near.normal), Status::Converged),
-                        None => (near.gap <= Scalar::ZERO, Some(near.normal), Status::Stalled),
-                    }
-                }
-                None if end == End::Stalled => {
-                    let again = closely(
-                        [&WithoutLines(pair.a), &WithoutLines(pair.b)],
-                        max_iterations.saturating_sub(iterations),
-                    );
-                    iterations += again.iterations;
-                    return Intersection { iterations, ..again };
-                }
-                None => (end == End::Overlap || state.lower <= frame.radius, state.axis.unit(), end.status()),
-            }
+            let left = max_iterations.saturating_sub(state.iterations);
+            let closely = closely([&WithoutLines(pair.a), &WithoutLines(pair.b)], left);
+            return Intersection { iterations: state.iterations + closely.iterations, ..closely };
         }
     };
-    Intersection { overlap, axis: axis.filter(|_| !overlap), status, iterations }
+    Intersection { overlap, axis, status: Status::Converged, iterations: state.iterations }
 }
 
-/// The answer where the search came to no end: it goes by support points alone, and along an edge of a curved body it may make no
-/// progress, where one that asks for the closest points goes on by the curvature.
+/// The answer of the distance, which knows all that can be known of bodies near contact, and of curved ones goes on by their curvature
+/// where support points alone make no progress.
 #[cold]
 #[inline(never)]
 fn closely<V: Vector>([a, b]: [Shape<'_, V>; 2], max_iterations: usize) -> Intersection<V> {
@@ -188,7 +161,8 @@ fn closely<V: Vector>([a, b]: [Shape<'_, V>; 2], max_iterations: usize) -> Inter
     Intersection {
         overlap: there.overlap,
         axis: there.normal.filter(|_| !there.overlap),
-        status: there.status,
+        // How far apart they are may be known less well.
+        status: if there.lower > Scalar::ZERO { Status::Converged } else { there.status },
         iterations: there.iterations,
     }
 }

@@ -9,7 +9,8 @@ use super::peeled::{Peeled, without_ball};
 use super::zonotope::{Zonotope, parallelotope};
 use crate::Iterate;
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
-use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, first_direction, gjk};
+use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, NearContact, first_direction, gjk, is_near_contact, near_contact};
+use crate::shape::{Shape, WithoutLines};
 use crate::symmetric::Symmetric;
 use crate::unit::lost_to_underflow;
 
@@ -31,7 +32,7 @@ pub(crate) struct Vertex<V> {
 
 /// The difference `K = K_A − K_B` of two cores as seen from zero, in units of a power of two near its size.
 pub(crate) struct Cores<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
-    pair: Pair<'a, A, B>,
+    pub(super) pair: Pair<'a, A, B>,
     /// What both shapes are split into, in the world's unit.
     pub(super) parts: [Core<A::Vector>; 2],
     frame: Frame<A::Vector>,
@@ -45,6 +46,8 @@ pub(crate) struct Cores<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Ve
     error: <A::Vector as Vector>::Scalar,
     /// The same coordinate by coordinate; `None` as long as the length will do.
     uncertainty: Option<Uncertainty<A::Vector>>,
+    /// What a look near contact tells of both bodies.
+    pub(super) near: Option<NearContact<A::Vector>>,
     /// The support points computed.
     pub(crate) iterations: usize,
 }
@@ -170,6 +173,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
             peeled_error: zero,
             error,
             uncertainty: None,
+            near: None,
             iterations: 0,
         }
     }
@@ -191,6 +195,26 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         let shapes = [in_unit(self.pair.a.rounding()), in_unit(self.pair.b.rounding())];
         let [from, to] = [self.parts[0].origin, self.parts[1].origin];
         self.uncertainty = Some(Uncertainty::new(shapes, offset, lost_in_sum(from, -to) * per_unit));
+    }
+
+    /// Looks at the bodies once more if a search has left them nearer to contact than a few errors, as their distance does. What it tells, if
+    /// there is no more to know.
+    pub(super) fn look_near(
+        &mut self,
+        state: &mut Gjk<A::Vector, PointPair<A::Vector>>,
+        max_iterations: usize,
+    ) -> Option<NearContact<A::Vector>> {
+        let frame = Frame { radius: self.radius() * self.frame.per_unit, ..self.frame };
+        let left = max_iterations.saturating_sub(self.iterations);
+        // Rounded bodies whose cores overlap are deep in one another.
+        let are_deep = frame.radius > Scalar::ZERO && state.simplex.points().len() > A::Vector::DIM;
+        if are_deep || left == 0 || !is_near_contact(state, &frame) {
+            return None;
+        }
+        let shapes: [Shape<'_, A::Vector>; 2] = [&WithoutLines(self.pair.a), &WithoutLines(self.pair.b)];
+        self.near = near_contact(shapes, [self.pair.core_a, self.pair.core_b], None, left);
+        self.iterations += self.near.as_ref().map_or(0, |near| near.iterations);
+        self.near.filter(NearContact::is_closed)
     }
 
     /// Whether the error at hand will do for cores that are so far apart: it is little beside that, and beside what is left of it

@@ -32,7 +32,8 @@ where
     let points = pair.closest_points(offset, size)?;
     let v = pair.vector_between(points, offset);
     let (length, radius, error) = (v.length(), pair.radius(), error_of_points(&pair));
-    let near = error * Scalar::from_f64(NEAR);
+    // As near as bodies are looked at closely for their distance, which counts on more for rounding.
+    let near = (rounding(size) + pair.error()) * Scalar::from_f64(NEAR);
     // NaN is left to the search.
     if !(length.min((length - radius).abs()) > near) || max_iterations == 0 {
         return None;

@@ -9,8 +9,8 @@ use super::direct::direct;
 use super::expansion::{Expanded, expand};
 use super::met::Met;
 use super::{SignedDistance, SignedDistanceOptions};
-use crate::body::PointPair;
-use crate::gjk::{End, Gjk};
+use crate::body::{Pair, PointPair};
+use crate::gjk::{End, Gjk, NearContact};
 use crate::shape::Shape;
 use crate::{Iterate, Status};
 
@@ -110,7 +110,10 @@ where
 {
     // Rounded cores are mostly apart, which takes a search to know.
     let is_rounded = cores.radius() > Scalar::ZERO;
-    if !is_rounded && let Some(known) = cores.closed_form(options.axis) {
+    if !is_rounded
+        && let Some(known) = cores.closed_form(options.axis)
+        && known.inner > Scalar::ZERO
+    {
         return Reached::of_closed_form(known);
     }
     // Cores that overlapped in the last frame do so still, if no plane across its normal tells them apart.
@@ -118,6 +121,9 @@ where
     let is_peeled = is_warm && cores.peel();
     let mut state = cores.first_state(&options);
     let end = cores.approach(&options, &mut state, &mut observer);
+    if let Some(known) = cores.look_near(&mut state, options.max_iterations) {
+        return Reached::of_near_contact(cores, &known);
+    }
     if end == End::Separated && cores.is_well_apart(state.length) {
         return Reached::of_gjk(cores, &mut state, end);
     }
@@ -206,6 +212,36 @@ impl<V: Vector> Reached<V> {
         }
     }
 
+    /// By a look near contact. The points of the surfaces are between those of the cores, from which the plane may lean by the root of the
+    /// rounding.
+    #[cold]
+    fn of_near_contact<A, B>(cores: &Cores<'_, A, B>, near: &NearContact<V>) -> Self
+    where
+        A: SupportMap<Vector = V> + ?Sized,
+        B: SupportMap<Vector = V> + ?Sized,
+    {
+        let &NearContact { ref frame, points, normal, gap, lower, upper, .. } = near;
+        let between = (points.a - points.b + frame.offset).unit().unwrap_or(normal);
+        // Both cores may be without balls, which are in their radii then.
+        let Pair { core_a, core_b, .. } = &cores.pair;
+        let [from, to] = &cores.parts;
+        let aside = |whole: V::Scalar, part: V::Scalar| (normal * part - between * whole) * frame.per_unit;
+        let radius = cores.radius() * frame.per_unit;
+        Self {
+            u: -normal,
+            depth: -gap - radius,
+            inner: -upper - radius,
+            outer: -lower - radius,
+            axis: normal,
+            points: PointPair {
+                a: points.a + aside(core_a.radius, from.radius),
+                b: points.b - aside(core_b.radius, to.radius),
+            },
+            status: Status::Converged,
+            unexpanded: 0,
+        }
+    }
+
     /// In closed form.
     fn of_closed_form(ClosedForm { u, depth, inner, outer, points }: ClosedForm<V>) -> Self {
         Self { u, depth, inner, outer, axis: -u, points, status: Status::Converged, unexpanded: 0 }
@@ -253,11 +289,23 @@ impl<V: Vector> Reached<V> {
         // A product with the unit may be subnormal.
         let outwards = |bound| slack(bound, radius) + least();
         let (lower, upper) = (lower - outwards(lower), upper + outwards(upper));
+        // What is known near contact is known without the slack.
+        let (lower, upper, is_narrow) = match &cores.near {
+            Some(near) => {
+                let (lower, upper) = (lower.max(near.lower * scale - least()), upper.min(near.upper * scale + least()));
+                (lower, upper, upper - lower <= near.frame.error * (scale + scale))
+            }
+            None => (lower, upper, false),
+        };
         // Numbers that are not finite, or contradict one another, are of a support map that is none, and bound nothing.
         let is_bounded = lower.is_finite() && upper.is_finite() && lower <= upper;
         let infinity = V::Scalar::infinity();
         let (lower, upper) = if is_bounded { (lower, upper) } else { (-infinity, infinity) };
-        let status = if is_bounded || self.status != Status::Converged { self.status } else { Status::Stalled };
+        let status = match self.status {
+            Status::Converged if !is_bounded => Status::Stalled,
+            Status::Stalled if is_bounded && is_narrow => Status::Converged,
+            status => status,
+        };
         let signed_distance = world(self.depth).max(lower).min(upper);
         SignedDistance {
             signed_distance,

@@ -73,6 +73,16 @@ pub(super) fn across_faces<V: Vector>(pairs: &[PointPair<V>], axis: V) -> impl I
     across.into_iter().take(count).map(along).flat_map(move |n| [n, -n].into_iter().take(sides))
 }
 
+/// The vectors across an edge that are nearest to the axes of the coordinates, on the side of `n`. The rounding of a long edge is that of its
+/// longest coordinates; along a vector that hardly has these, points may be known well enough to tell bodies apart.
+pub(super) fn about_edge<V: Vector>(edge: V, n: V) -> impl Iterator<Item = V> {
+    let across = move |v: V| v - edge * (v.dot(edge) / edge.length_squared());
+    (0..V::DIM).map(move |i| {
+        let v = across(across(Vector::axis(i)));
+        if v.dot(n) < V::Scalar::ZERO { -v } else { v }
+    })
+}
+
 /// A vector of the plane turned by a right angle.
 fn turned_right<V: Vector>(v: V) -> V {
     V::from_fn(|i| if i == 0 { v.get(1) } else { -v.get(0) })

@@ -9,10 +9,10 @@
 
 use convex_support::numerics::bound::{raised, raised_vector, roundings, roundings_of};
 use convex_support::numerics::twofold::{dot_minus, lost_in_sum};
-use convex_support::{Core, Rounding, Scalar, SupportMap, Vector};
+use convex_support::{Core, CoreKind, Rounding, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
-use super::faces::{across_faces, is_around_zero};
+use super::faces::{about_edge, across_faces, is_around_zero};
 use super::order::comes_first;
 use super::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
@@ -36,6 +36,7 @@ pub(crate) fn is_near_contact<V: Vector, W: Copy + Default>(state: &mut Gjk<V, W
 type PairOfAny<'s, V> = Pair<'s, dyn SupportMap<Vector = V> + 's, dyn SupportMap<Vector = V> + 's>;
 
 /// What is known of bodies near contact; lengths in units of the frame, from body to body.
+#[derive(Clone, Copy)]
 pub(crate) struct NearContact<V: Vector> {
     pub(crate) frame: Frame<V>,
     /// The points of the cores closest to one another, and how far apart they are as they are measured.
@@ -69,6 +70,20 @@ impl<V: Vector> NearContact<V> {
         let is_near = self.length - self.frame.radius <= self.frame.error;
         let is_found = is_near || matches!(self.end, End::Overlap | End::Separated);
         is_found.then_some(true)
+    }
+
+    /// Whether a look behind it would tell no more: it is [closed](Self::is_closed), or the bodies have a point in common far beyond any plane
+    /// that was found.
+    pub(crate) fn is_settled(&self) -> bool {
+        let is_deep = self.gap < -self.frame.error * V::Scalar::from_f64(NEAR);
+        self.is_closed() || is_deep && self.length - self.frame.radius <= self.frame.error
+    }
+
+    /// Whether the points are as near as the plane, to what the points are wrong by in any direction. Where it is not known that the bodies are
+    /// apart, to what they are wrong by along the normal: points may be known far less across it, and another plane be beyond zero.
+    pub(crate) fn is_closed(&self) -> bool {
+        let error = if self.is_separated() { self.frame.error } else { self.gap - self.lower };
+        self.upper - self.gap <= error + error
     }
 
     /// The same, of the bodies in the other order.
@@ -169,6 +184,7 @@ fn run<V: Vector>(
 }
 
 /// A plane that the difference of the cores lies beyond, across a unit vector.
+#[derive(Clone, Copy)]
 struct Plane<V: Vector> {
     n: V,
     /// How far it is from zero, and what that is wrong by at most.
@@ -177,9 +193,14 @@ struct Plane<V: Vector> {
 }
 
 impl<V: Vector> Plane<V> {
+    /// It is certainly as far as this.
+    fn certain(&self) -> V::Scalar {
+        self.level - self.error
+    }
+
     /// Whether the plane is certainly farther from zero than this.
     fn is_beyond(&self, radius: V::Scalar) -> bool {
-        self.level - self.error > radius
+        self.certain() > radius
     }
 
     /// Whether the plane is as far as points of the difference are, to what both are wrong by.
@@ -274,9 +295,21 @@ impl<V: Vector> Seen<V> {
         let v = pair.vector_between(points, self.offset);
         let plane = self.plane(pair, v)?;
         let upper = self.length_between(points);
-        let is_known = plane.meets(upper) && plane.level > self.radius;
+        if !(plane.meets(upper) && plane.level > self.radius) {
+            return None;
+        }
         let found = Found { end: End::Separated, iterations: 1, points, length: v.norm() };
-        is_known.then(|| found.near_contact(frame, &plane, upper))
+        let mut best = plane;
+        if !best.is_beyond(self.radius) {
+            // A point is a segment without length.
+            let half = |core: Core<V>| if let CoreKind::Segment { half, .. } = core.kind { half } else { V::ZERO };
+            let halves = [half(pair.core_a), half(pair.core_b)];
+            let edge = if halves[1].norm() > halves[0].norm() { halves[1] } else { halves[0] };
+            for n in about_edge(edge, best.n) {
+                best = self.plane(pair, n).filter(|plane| plane.certain() > best.certain()).unwrap_or(best);
+            }
+        }
+        Some(found.near_contact(frame, &best, upper))
     }
 
     /// What GJK comes to, as it was begun or from where all queries begin.
@@ -315,7 +348,7 @@ impl<V: Vector> Seen<V> {
         let is_doubtful =
             |(best, _): &(Plane<V>, _)| best.level <= frame.radius || best.level + best.error < state.length;
         if best.as_ref().is_none_or(is_doubtful) {
-            let certain = |(best, _): &(Plane<V>, _)| best.level - best.error;
+            let certain = |(best, _): &(Plane<V>, _)| best.certain();
             if before.as_ref().map(certain) > best.as_ref().map(certain) {
                 (state, best) = (Gjk { iterations: state.iterations, ..begun }, before);
             }
@@ -348,11 +381,12 @@ impl<V: Vector> Seen<V> {
         let normal = Some(state.normal).filter(|&n| n != state.axis);
         let (mut best, mut length): (Option<Plane<V>>, Option<V::Scalar>) = (None, None);
         let mut upper = V::Scalar::infinity();
-        for n in faces.chain(normal).chain([state.axis]) {
-            let certain = best.as_ref().map_or(-V::Scalar::infinity(), |best| best.level - best.error);
+        let about = if let (3, &[p, q]) = (V::DIM, points) { Some(about_edge(p - q, state.axis)) } else { None };
+        for n in faces.chain(normal).chain([state.axis]).chain(about.into_iter().flatten()) {
+            let certain = best.as_ref().map_or(-V::Scalar::infinity(), Plane::certain);
             if self.may_be_beyond(n, points, certain)
                 && let Some(plane) = self.plane(pair, n)
-                && (best.is_none() || plane.level - plane.error > certain)
+                && (best.is_none() || plane.certain() > certain)
             {
                 upper = upper.min(self.length_at_pierced(state, plane.n));
                 // The face's corners are as far along `n` as the support point: what is left between the bounds is their error.
