@@ -47,8 +47,10 @@ where
         let Some(u) = u.filter(|_| cores.iterations < options.max_iterations && failures < PATIENCE) else { break };
         let next = WayOut::new(cores.support(u)?);
         let piece = Piece::new(cores, &next.vertex);
-        let is_lower = next.h < way.h;
-        let is_lowest = (next.h - way.h).abs() <= cores.error_along(u);
+        // As high to rounding, the bottom shows by the slope: it is known to twice as many digits as by the height.
+        let is_level = (next.h - way.h).abs() <= cores.error_along(u);
+        let is_lower =
+            if is_level { next.rest().length_squared() < way.rest().length_squared() } else { next.h < way.h };
         let is_foretold = first.foretells(&next.vertex);
         if !is_foretold {
             let _ = boundary.insert_anywhere(&next.vertex);
@@ -65,7 +67,7 @@ where
         } else {
             failures += 1;
         }
-        if is_lowest {
+        if is_level && !(last && is_lower && way.rest().norm() > cores.noise()) {
             break;
         }
     }

@@ -211,6 +211,20 @@ impl<V: Vector> Boundary<V> {
         usize::from(self.facets[index].across[corner])
     }
 
+    /// The facet that the ray from zero along a unit vector leaves through, where zero is within; the `nearest` facet is tried first.
+    pub(super) fn pierced(&self, u: V, nearest: usize) -> usize {
+        if self.facets[nearest].normal == u || !(self.inner[nearest] > V::Scalar::ZERO) {
+            return nearest;
+        }
+        // The facet whose plane is pierced first. Of those that are no more the inverse of the distance is zero.
+        let inverse = |i: usize| self.facets[i].normal.dot(u) / self.inner[i];
+        let most = (0..self.facets.len()).fold((nearest, inverse(nearest)), |most, i| {
+            let inverse = inverse(i);
+            if inverse > most.1 { (i, inverse) } else { most }
+        });
+        most.0
+    }
+
     /// The least distance of zero from the planes of all facets, where each is less than computed by what `error` says of its
     /// normal, and that is never more than `most`.
     pub(super) fn certain_inner(&self, error: impl Fn(V) -> V::Scalar, most: V::Scalar) -> V::Scalar {

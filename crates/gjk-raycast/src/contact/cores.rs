@@ -314,16 +314,9 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         greatest_length(p.norm() + along, error)
     }
 
-    /// Whether a bracket on the distance is as narrow as GJK makes one.
-    pub(super) fn is_closed(&self, width: <A::Vector as Vector>::Scalar) -> bool {
-        width <= self.frame.noise + self.frame.noise
-    }
-
-    /// Whether the direction of a point of the difference is known to half the digits.
-    #[inline(always)]
-    pub(super) fn is_well_known(&self, p: A::Vector) -> bool {
-        let root: <A::Vector as Vector>::Scalar = Scalar::EPSILON;
-        self.greatest_error() < root.sqrt() * p.norm()
+    /// What GJK moves points by as it compares them.
+    pub(super) fn noise(&self) -> <A::Vector as Vector>::Scalar {
+        self.frame.noise
     }
 
     /// How wide a bracket on the depth along `n` rounding leaves.
@@ -392,4 +385,46 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         self.iterations += state.iterations;
         end
     }
+
+    /// The point of the difference nearest to a `target`, as seen from there: that of the face with these corners, and where it is farther
+    /// than rounding, the one that GJK comes to from there.
+    pub(super) fn nearest_to(
+        &mut self,
+        target: A::Vector,
+        corners: &[Vertex<A::Vector>],
+        max_iterations: usize,
+    ) -> Gjk<A::Vector, PointPair<A::Vector>> {
+        let mut state = Gjk::new(target);
+        for &Vertex { point, along, pair } in corners {
+            state.simplex.push(point - target, along, pair);
+        }
+        state.ensure_measured();
+        let max_iterations = max_iterations.saturating_sub(self.iterations);
+        if state.length > self.frame.noise && max_iterations > 0 {
+            let frame = Frame { offset: self.frame.offset - target, ..self.frame };
+            let shapes: [Shape<'_, A::Vector>; 2] = [&WithoutLines(self.pair.a), &WithoutLines(self.pair.b)];
+            go_on(&mut state, shapes, self.parts, frame, self.peeled, max_iterations);
+            self.iterations += state.iterations;
+        }
+        state
+    }
+}
+
+/// Goes on with GJK to a sixteenth of the noise, compiled once.
+#[cold]
+#[inline(never)]
+fn go_on<V: Vector>(
+    state: &mut Gjk<V, PointPair<V>>,
+    [a, b]: [Shape<'_, V>; 2],
+    parts: [Core<V>; 2],
+    frame: Frame<V>,
+    radii: [V::Scalar; 2],
+    max_iterations: usize,
+) {
+    let mut pair = Pair::of_cores(a, b, parts);
+    pair.set_scale(frame.scale);
+    let frame = Frame { noise: frame.noise * Scalar::from_f64(0.0625), ..frame };
+    let options = GjkOptions::new(state.normal, max_iterations);
+    let _ = gjk(state, &mut Peeled { pair: &mut pair, radii }, frame, options, None, |_| {});
+    state.ensure_measured();
 }

@@ -6,7 +6,8 @@ use num_traits::Float as _;
 use super::boundary::Boundary;
 use super::cores::{Cores, Vertex};
 use super::met::Met;
-use super::{SignedDistanceOptions, basin, start, witness};
+use super::witness::{self, Ends};
+use super::{SignedDistanceOptions, basin, start};
 use crate::body::PointPair;
 use crate::gjk::Gjk;
 use crate::{Iterate, Status};
@@ -28,6 +29,9 @@ const MORE: usize = 24;
 
 /// How many of these may find nothing lower.
 const PATIENCE: usize = 4;
+
+/// The part of the support points that may be added to them for the points at the ends of the way.
+const FOR_ENDS: usize = 16;
 
 /// Since when the bracket is as narrow as the tolerance, when a lower way out was found last, and which; times in support points.
 struct Closed<S> {
@@ -68,6 +72,11 @@ impl<V: Vector> WayOut<V> {
         self.vertex.along
     }
 
+    /// From the support point to the end of the way, along the plane.
+    pub(super) fn rest(&self) -> V {
+        self.u() * self.h - self.vertex.point
+    }
+
     /// The unit normal of a facet with these corners, leaned towards the way where that ends at one of them and at a smooth place.
     ///
     /// At a distance `x` from such a place, the ball of radius `h` about zero is `x²·(1/h − 1/R)/2` below the boundary of `K`, whose radius of
@@ -77,7 +86,7 @@ impl<V: Vector> WayOut<V> {
     /// through its corners, whose centre the normal leads to. Where the way ends at a corner, all of the way towards it is.
     fn leaned(&self, normal: V, corners: &[V]) -> V {
         let (u, point) = (self.u(), self.vertex.point);
-        let aside = (point - u * self.h).length_squared();
+        let aside = self.rest().length_squared();
         let is_smooth = aside < self.h * self.h * V::Scalar::from_f64(SMOOTH);
         if !(is_smooth && normal.dot(u) > V::Scalar::from_f64(NEAR_BY) && corners.contains(&point)) {
             return normal;
@@ -90,8 +99,8 @@ impl<V: Vector> WayOut<V> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expanded<V: Vector> {
     pub(super) way: WayOut<V>,
-    /// The points of both cores where the way ends; `None` where it has no length, and any that coincide will do.
-    pub(super) points: Option<PointPair<V>>,
+    /// Points of both cores at its ends.
+    pub(super) ends: Ends<V>,
     /// The ball of this radius about zero is certain to be within the difference. Of a negative number, zero is certain to be no
     /// farther from it than its amount.
     pub(super) inner: V::Scalar,
@@ -127,13 +136,14 @@ where
     // In its place from the beginning: it is a large object to move.
     let mut boundary = Boundary::new(relative.max(Scalar::EPSILON).as_f64());
     let mut way = match start::start(cores, state, &mut boundary)? {
-        start::Start::Flat(way) => return Some(flat(way, Met::new(cores, state).reached)),
+        start::Start::Flat(way) => return Some(flat(way, Met::new(cores, state))),
         start::Start::Full(way) => way,
     };
     let depth_limit = (options.depth_limit - cores.radius()) / cores.scale();
     let enough_of = |cores: &Cores<'_, A, B>, way: &WayOut<A::Vector>| tolerance.max(cores.rounding_along(way.u()));
     let mut enough = enough_of(cores, &way);
     let mut met = None;
+    let mut is_deep = false;
     // Whether directions may lean; not next after one whose support point was not beyond the facet.
     let mut may_lean = is_curved;
     let mut closed: Option<Closed<_>> = None;
@@ -159,6 +169,7 @@ where
             }
         }
         if inner > depth_limit {
+            is_deep = true;
             break Status::Converged;
         }
         if cores.iterations >= options.max_iterations {
@@ -206,18 +217,21 @@ where
         }
     };
     let status = if closed.is_some() { Status::Converged } else { status };
-    Some(settled(cores, state, &mut boundary, way, met, status))
+    // Who asks no more than whether they are so deep asks for no better points.
+    let for_ends = if is_deep { 0 } else { options.max_iterations + options.max_iterations / FOR_ENDS };
+    Some(settled(cores, state, &boundary, way, met, status, for_ends))
 }
 
 /// What an expansion knows where it has ended.
 #[inline(always)]
 fn settled<A, B>(
-    cores: &Cores<'_, A, B>,
+    cores: &mut Cores<'_, A, B>,
     state: &mut Gjk<A::Vector, PointPair<A::Vector>>,
-    boundary: &mut Boundary<A::Vector>,
-    way: WayOut<A::Vector>,
-    mut met: Option<Met<A::Vector>>,
+    boundary: &Boundary<A::Vector>,
+    mut way: WayOut<A::Vector>,
+    met: Option<Met<A::Vector>>,
     status: Status,
+    for_ends: usize,
 ) -> Expanded<A::Vector>
 where
     A: SupportMap + ?Sized,
@@ -225,26 +239,31 @@ where
 {
     let (nearest, _) = boundary.nearest();
     let certain = boundary.certain_inner(|n| cores.error_along(n), cores.greatest_error());
-    let inner = if certain > Scalar::ZERO {
-        certain
-    } else {
-        let (foot, _) = witness::at_foot(boundary, nearest);
-        let Met { reached, .. } = *met.get_or_insert_with(|| Met::new(cores, state));
-        -cores.greatest_length(foot).min(reached)
+    let is_inside = certain > Scalar::ZERO;
+    let (ends, inner) = match witness::ends(cores, boundary, nearest, &mut way, for_ends) {
+        Some(ends) if is_inside => (ends, certain),
+        ends => {
+            // The foot of the nearest facet, or what GJK has met, is the point nearest to zero of those that are known.
+            let mut foot = witness::nearest_to(cores, boundary, nearest, Vector::ZERO, 0);
+            let foot = Met::new(cores, &mut foot);
+            let known = if is_inside { foot } else { met.unwrap_or_else(|| Met::new(cores, state)) };
+            let Met { point, points, reached } = if foot.reached < known.reached { foot } else { known };
+            let one = <A::Vector as Vector>::Scalar::ONE;
+            let (sign, inner) = if is_inside { (one, certain) } else { (-one, -reached) };
+            let u = point.unit().map_or(way.u(), |n| n * sign);
+            (ends.unwrap_or(Ends { u, depth: point.norm() * sign, points }), inner)
+        }
     };
     let rounding = cores.rounding_along(way.u());
     let status = match status {
         Status::Stalled if way.h - inner <= rounding * Scalar::from_f64(2.0) => Status::Converged,
         status => status,
     };
-    let points = witness::points(boundary, nearest, &way, rounding, || {
-        let Met { point, points, .. } = *met.get_or_insert_with(|| Met::new(cores, state));
-        (point, points)
-    });
-    Expanded { way, points: Some(points), inner, status, unexpanded: boundary.len() }
+    Expanded { way, ends, inner, status, unexpanded: boundary.len() }
 }
 
 /// A difference without an inside: the way out is across it, and no length.
-fn flat<V: Vector>(way: WayOut<V>, reached: V::Scalar) -> Expanded<V> {
-    Expanded { way, points: None, inner: -reached, status: Status::Converged, unexpanded: 0 }
+fn flat<V: Vector>(way: WayOut<V>, Met { points, reached, .. }: Met<V>) -> Expanded<V> {
+    let ends = Ends { u: way.u(), depth: way.h, points };
+    Expanded { way, ends, inner: -reached, status: Status::Converged, unexpanded: 0 }
 }

@@ -8,6 +8,7 @@ use super::cores::{ClosedForm, Cores, slack};
 use super::direct::direct;
 use super::expansion::{Expanded, expand};
 use super::met::Met;
+use super::witness::Ends;
 use super::{SignedDistance, SignedDistanceOptions};
 use crate::body::{Pair, PointPair};
 use crate::gjk::{End, Gjk, NearContact};
@@ -194,10 +195,9 @@ impl<V: Vector> Reached<V> {
         A: SupportMap<Vector = V> + ?Sized,
         B: SupportMap<Vector = V> + ?Sized,
     {
-        let Met { point, points, reached } = Met::new(cores, state);
-        // The direction of the closest points, or where rounding may have made that up, or they are not yet found, of the best plane.
-        let is_closed = cores.is_closed(state.length - state.lower);
-        let direction = if is_closed && cores.is_well_known(point) { point } else { state.axis };
+        let Met { points, reached, .. } = Met::new(cores, state);
+        // Across the face that the closest points are on; where rounding may have made that up, across the best plane.
+        let direction = if state.length > cores.noise() { state.normal } else { state.axis };
         let n = direction.unit().or_else(|| state.normal.unit()).unwrap_or_else(|| V::axis(0));
         let plane = cores.best_plane(state);
         Self {
@@ -259,19 +259,17 @@ impl<V: Vector> Reached<V> {
         A: SupportMap<Vector = V> + ?Sized,
         B: SupportMap<Vector = V> + ?Sized,
     {
-        let &Expanded { way, points, inner, status, unexpanded } = expanded;
+        let &Expanded { way, ends, inner, status, unexpanded } = expanded;
         let by_way = way.h + cores.error_along(way.u());
         // NaN is no bound.
         let plane = cores.best_plane(state).filter(|(outer, _)| *outer <= by_way);
         let (outer, axis) = plane.unwrap_or((by_way, -way.u()));
         // Where the cores turn out to be apart, GJK's points are nearer than those of a facet.
         if way.h < Scalar::ZERO && end != End::Overlap {
-            let apart = Self::of_gjk(cores, state, end);
-            let u = if plane.is_some() { apart.u } else { way.u() };
-            return Self { u, outer, axis, ..apart };
+            return Self { outer, axis, ..Self::of_gjk(cores, state, end) };
         }
-        let points = points.unwrap_or_else(|| Met::new(cores, state).points);
-        Self { u: way.u(), depth: way.h, inner, outer, axis, points, status, unexpanded }
+        let Ends { u, depth, points } = ends;
+        Self { u, depth, inner, outer, axis, points, status, unexpanded }
     }
 
     /// The answer in the world's unit, with the radii.

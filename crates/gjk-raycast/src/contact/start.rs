@@ -1,6 +1,7 @@
 //! The first polytope of an expansion.
 
 use convex_support::{Scalar, SupportMap, Vector};
+use num_traits::Float as _;
 
 use super::boundary::Boundary;
 use super::cores::{Cores, Vertex};
@@ -40,22 +41,25 @@ where
         let along = if is_curved { along.unit().unwrap_or(along) } else { along };
         Vertex { point: state.simplex.points()[i], along, pair: state.simplex.witnesses()[i] }
     };
+    // The plane that GJK knows best is a way out; its support point may be left behind.
+    let mut best = state
+        .axis
+        .unit()
+        .filter(|_| known > 0 && state.lower.is_finite())
+        .map(|n| WayOut { h: -state.lower, vertex: Vertex { along: -n, ..vertex(0) } });
     if known > A::Vector::DIM
-        && let Some(n) = state.axis.unit()
+        && let Some(best) = best
     {
         let corners: [_; MAX_POINTS] = core::array::from_fn(|i| vertex(i.min(known - 1)));
         let thickness = cores.greatest_error() * Scalar::from_f64(2.0);
         if boundary.begin(&corners[..known], thickness) {
-            // The support point of GJK's best plane may be left behind.
-            let vertex = Vertex { along: -n, ..corners[0] };
-            return Some(Start::Full(WayOut { h: -state.lower, vertex }));
+            return Some(Start::Full(best));
         }
     }
     let mut span = Span::new();
     for i in 0..known {
         let _ = span.add(vertex(i), |u| cores.rounding_along(u));
     }
-    let mut best: Option<WayOut<A::Vector>> = None;
     while span.len < A::Vector::DIM + 1 {
         let u = span.across();
         let ways = [WayOut::new(cores.support(u)?), WayOut::new(cores.support(-u)?)];

@@ -1,100 +1,114 @@
 //! The points of two cores between which the shortest way out leads.
 
-use convex_support::{Scalar, Vector};
-use num_traits::Float as _;
+use convex_support::{Scalar, SupportMap, Vector};
 
 use super::boundary::Boundary;
+use super::cores::Cores;
 use super::expansion::WayOut;
-use crate::body::{PointPair, Witness as _};
-use crate::simplex::{MAX_POINTS, cross, project};
-
-/// The part of rounding that a boundary may be below a plane to count as flat: that of the difference is flatter than those of the shapes.
-const FLAT: f64 = 1.0 / 1024.0;
+use super::met::Met;
+use crate::body::PointPair;
+use crate::gjk::Gjk;
+use crate::simplex::project;
 
 /// Facets that are walked over at most.
 const MAX_WALK: usize = 64;
 
-/// The points of both cores whose difference is the end `h·u` of the way out.
+/// Points of both cores, which are as far apart as the way out is long.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ends<V: Vector> {
+    /// The unit vector out of the difference of the cores from one point to the other, and how far it is between them.
+    pub(super) u: V,
+    pub(super) depth: V::Scalar,
+    pub(super) points: PointPair<V>,
+}
+
+/// The points of both cores whose difference is the end `h·u` of the way out, which is corrected where it has none.
 ///
-/// Where the difference is smooth there, they are those that the support point is made of. Where it has a face or an edge, they are
-/// the weighted sums of the corners of the facet that zero's foot is in. That facet is beside another end where several ways are as
-/// short, as of shapes about one centre; then it is the one that the way out leads through. Which of these it is shows by which comes
-/// nearest to `h·u`, as points of cores that barely meet do which GJK has `met`; the first to come within `rounding` will do. What is left
-/// of the difference is split between both.
+/// Where `h` is least among directions near `u`, the ball of radius `h` about zero touches the plane across `u` at a point of the boundary,
+/// which is the end. If the boundary is smooth there, that is the support point. If it has a face or an edge, the end is a weighted sum of
+/// support points: of the corners of the facet that the way leads through, where these are of that face, and else of those that GJK comes
+/// to from there, which looks for the point of the difference nearest to the end. Weighted sums with no negative weight are in the cores
+/// whatever they come to, and what they miss the end by is split between both only where it is the rounding of the search.
 ///
-/// A support point is beside the end, if at all, in the plane through it. A ball of radius `h` touches the boundary there from within,
-/// so that it is below that plane by no more than `x²/2h` at a distance `x`.
-pub(super) fn points<V: Vector>(
-    boundary: &Boundary<V>,
+/// If it is more, the way is not at the bottom of a basin yet, and its end is outside the difference by some `δ`. The plane through the
+/// point nearest to the end, across the unit vector `n` from there to it, supports the difference, and is nearer to zero by more than
+/// that: `h(n) = n·(h·u − δ·n) ≤ h − δ`. So it is the next way. Of an edge or a face the plane is known better than the short vector from
+/// it, by what is left of `u` across it. Where no lower way is found, as with no support points left, the way ends at the nearest point,
+/// whose distance from zero is between the bounds. `None` where that point is on no side of zero that the way leads to.
+pub(super) fn ends<A, B>(
+    cores: &mut Cores<'_, A, B>,
+    boundary: &Boundary<A::Vector>,
     nearest: usize,
-    way: &WayOut<V>,
-    rounding: V::Scalar,
-    met: impl FnOnce() -> (V, PointPair<V>),
-) -> PointPair<V> {
-    let u = way.u();
-    let end = u * way.h;
-    let rest = |point: V| (end - point).length_squared();
-    let mut best = (way.vertex.point, way.vertex.pair);
-    let mut least = rest(best.0);
-    let enough = rounding * rounding;
-    let is_end = least <= enough.max(rounding * way.h * V::Scalar::from_f64(FLAT));
-    let mut consider = |found: (V, PointPair<V>)| {
-        let rest = rest(found.0);
-        if rest < least {
-            (best, least) = (found, rest);
-        }
-        rest <= enough
+    way: &mut WayOut<A::Vector>,
+    max_iterations: usize,
+) -> Option<Ends<A::Vector>>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let noise = cores.noise();
+    let ends = |points: PointPair<A::Vector>, u, depth, rest: A::Vector| {
+        let half = rest * <A::Vector as Vector>::Scalar::from_f64(0.5);
+        Ends { u, depth, points: PointPair { a: points.a + half, b: points.b - half } }
     };
-    if !is_end && !consider(at_foot(boundary, nearest)) {
-        if boundary.facet_at(nearest).normal != u {
-            let _ = consider(on_way(boundary, nearest, u));
+    loop {
+        let (u, rest) = (way.u(), way.rest());
+        if rest.norm() <= noise {
+            return Some(ends(way.vertex.pair, u, way.h, rest));
         }
-        let _ = consider(met());
-    }
-    let (point, pair) = best;
-    let half = (end - point) * V::Scalar::from_f64(0.5);
-    PointPair { a: pair.a + half, b: pair.b - half }
-}
-
-/// The point of the boundary next to zero, and the points of both cores that it is made of.
-///
-/// The nearest facet may be one of several in a plane, of which another has zero's foot: the one that lies across the ridges that the
-/// foot is beyond.
-pub(super) fn at_foot<V: Vector>(boundary: &Boundary<V>, nearest: usize) -> (V, PointPair<V>) {
-    walk(boundary, nearest, |corners| project(corners, |corner| -corner).coordinates)
-}
-
-/// The point of the boundary in a direction from zero, which is within, and the points of both cores that it is made of.
-///
-/// The coordinate of a corner is, but for a factor that all have, the volume that the direction spans with the other corners.
-fn on_way<V: Vector>(boundary: &Boundary<V>, nearest: usize, u: V) -> (V, PointPair<V>) {
-    let area = |p: V, q: V| p.get(0) * q.get(1) - p.get(1) * q.get(0);
-    walk(boundary, nearest, |corners| {
-        let mut weights = [V::Scalar::ZERO; MAX_POINTS];
-        match *corners {
-            [p, q] => (weights[0], weights[1]) = (area(u, q), area(p, u)),
-            [p, q, r] => {
-                for (weight, [p, q]) in weights.iter_mut().zip([[q, r], [r, p], [p, q]]) {
-                    *weight = u.dot(cross(p, q));
-                }
+        let end = u * way.h;
+        let mut state = nearest_to(cores, boundary, boundary.pierced(u, nearest), end, max_iterations);
+        let Met { point, points, .. } = Met::new(cores, &mut state);
+        if point.norm() <= noise {
+            return Some(ends(points, u, way.h, -point));
+        }
+        let across = project(state.simplex.points(), |_| u).across.unit();
+        let mut lower = None;
+        for n in [across, state.normal.unit().map(|n| -n)].into_iter().flatten() {
+            if cores.iterations < max_iterations && lower.is_none() {
+                lower = cores.support(n).map(WayOut::new).filter(|next| next.h < way.h);
             }
-            _ => {}
         }
-        let sum = weights.iter().fold(V::Scalar::ZERO, |sum, &w| sum + w.abs());
-        weights.map(|weight| weight / sum)
-    })
+        if let Some(next) = lower {
+            *way = next;
+            continue;
+        }
+        let reached = end + point;
+        let length = reached.norm();
+        let n = reached / length;
+        return if length <= noise {
+            Some(ends(points, u, u.dot(reached), Vector::ZERO))
+        } else if n.dot(u) > Scalar::ZERO && length <= way.h {
+            Some(ends(points, n, length, Vector::ZERO))
+        } else {
+            None
+        };
+    }
 }
 
-/// From facet to facet across the ridge that a point is beyond, as its coordinates by the corners say, to the facet that it is in.
-fn walk<V: Vector>(
-    boundary: &Boundary<V>,
+/// The point of the difference nearest to a `target` outside it or on its boundary, as seen from there: by the facet beside it, and if
+/// that is farther than rounding, by GJK.
+pub(super) fn nearest_to<A, B>(
+    cores: &mut Cores<'_, A, B>,
+    boundary: &Boundary<A::Vector>,
     from: usize,
-    coordinates: impl Fn(&[V]) -> [V::Scalar; MAX_POINTS],
-) -> (V, PointPair<V>) {
+    target: A::Vector,
+    max_iterations: usize,
+) -> Gjk<A::Vector, PointPair<A::Vector>>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let corners = boundary.corners(beside(boundary, from, target));
+    cores.nearest_to(target, &corners[..A::Vector::DIM], max_iterations)
+}
+
+/// The facet that a point is above, or that it is nearly above: that comes next across the ridges that the point's foot is beyond, as the
+/// coordinates of the foot say.
+fn beside<V: Vector>(boundary: &Boundary<V>, from: usize, point: V) -> usize {
     let mut facet = from;
-    let mut weights = [V::Scalar::ZERO; MAX_POINTS];
     for _ in 0..MAX_WALK {
-        weights = coordinates(&boundary.corner_points(facet)[..V::DIM]);
+        let weights = project(&boundary.corner_points(facet)[..V::DIM], |corner| point - corner).coordinates;
         let least = (1..V::DIM).fold(0, |least, i| if weights[i] < weights[least] { i } else { least });
         // NaN ends this too.
         if !(weights[least] < -V::Scalar::EPSILON * V::Scalar::from_f64(16.0)) {
@@ -102,13 +116,5 @@ fn walk<V: Vector>(
         }
         facet = boundary.across(facet, least);
     }
-    let weights = weights.map(|w| w.max(V::Scalar::ZERO));
-    let sum = weights.iter().fold(V::Scalar::ZERO, |sum, &w| sum + w);
-    let mut point = V::ZERO;
-    let mut pair = PointPair::default();
-    for (vertex, &weight) in boundary.corners(facet).iter().zip(&weights[..V::DIM]) {
-        point += vertex.point * (weight / sum);
-        pair = pair.plus(vertex.pair, weight / sum);
-    }
-    (point, pair)
+    facet
 }
