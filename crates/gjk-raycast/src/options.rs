@@ -186,11 +186,15 @@ pub enum StartInContact {
     /// A hit at time 0, whatever the motion.
     #[default]
     Report,
-    /// A hit at time 0 only if the motion brings the bodies deeper into one another. If it takes them apart, the answer is the first
-    /// contact after they have separated. Bodies that move straight, and leave or slide along each other, do not meet again: a miss.
+    /// A hit is the first time from which the bodies get deeper into one another than they began, or at which they touch again after they
+    /// were apart. Sliding, rolling or turning at the same depth is no hit, nor is coming out. Bodies that move straight get deeper at once, a hit
+    /// at time 0, or never: a miss.
     ///
-    /// Bodies count as touching if the distance or the depth is less than the rounding of their numbers: 16ε of their sizes and 4ε of how
-    /// far from the origin they are. Bodies that leave one another may touch again within that distance.
+    /// Deeper is deeper by more than rounding: 16ε of the bodies' sizes, a few times what their places are rounded by, and what their
+    /// depth at the start is known to. As long as bodies that turn are at the depth at which they began, to this slack, nobody can tell when
+    /// they begin to sink, and the lower bound of a hit is 0; if they may have sunk from the start on, the time is 0 too. What comes to
+    /// the surface of an overlap, and goes back, touches or does not touch again within rounding, and is undecided; and so is what rolls on
+    /// edges or round faces, except for balls, of which every moment may be an edge.
     IfDeeper,
 }
 

@@ -12,6 +12,12 @@ use crate::{
 /// Closing speeds below this many ε of the speed are of rounding: a normal is known to a few.
 const SLIDES: f64 = 16.0;
 
+/// How far on shapes are looked at first, in units of what they are known to; how much farther each time; and how often at most, which is more
+/// than their sizes in any precision.
+const FIRST: f64 = 64.0;
+const FARTHER: f64 = 8.0;
+const LOOKS: usize = 18;
+
 /// Two shapes where a cast begins. They are asked behind pointers, so that what is rarely needed is compiled once.
 pub(crate) struct Start<'s, V: Vector> {
     pub(crate) a: Shape<'s, V>,
@@ -49,10 +55,10 @@ impl<V: Vector> Start<'_, V> {
     /// certainly apart by more.
     ///
     /// The depth of a point in a convex set is a concave function of the point: it is the least of the distances from the supporting planes.
-    /// So if it falls at first along a line, it falls along all of it. Where the depth is `−s`, along the normal `n`, it changes by `−n·w` with
-    /// the relative velocity `w` of `a`; if several ways out are equally short, by the least of these. If the shapes touch at corners, `n` is
-    /// one of many normals, and the shapes may part along another one although they close in along `n`. Then it counts whether they
-    /// certainly overlap a little later.
+    /// So if it falls at first along a line, it falls along all of it; and if it is more anywhere along the line than at the start, it grows
+    /// from the start on. Where the depth is `−s`, along the normal `n`, it changes by `−n·w` with the relative velocity `w` of `a`; if several
+    /// ways out are equally short, or the shapes touch at corners, by the least of these. Then `n` is one of many normals, and the shapes may
+    /// part along another one although they close in along `n`. So it counts whether they are certainly deeper later.
     #[cold]
     #[inline(never)]
     pub(crate) fn of_motion(
@@ -66,37 +72,55 @@ impl<V: Vector> Start<'_, V> {
             return None;
         }
         let velocity = motion.velocity_a - motion.velocity_b;
-        let touching = InContact { start, leaves_along: Some(start.normal) };
-        let slides = V::Scalar::from_f64(SLIDES) * V::Scalar::EPSILON * velocity.norm();
-        if !(-start.normal.dot(velocity) > slides) {
-            return Some(touching);
+        let (speed, closing) = (velocity.norm(), -start.normal.dot(velocity));
+        let slides = V::Scalar::from_f64(SLIDES) * V::Scalar::EPSILON * speed;
+        if !(closing > slides) {
+            return Some(InContact { start, leaves_along: Some(start.normal) });
         }
-        let deeper = InContact { start, leaves_along: None };
-        if start.upper < self.target - slack {
-            return Some(deeper);
-        }
-        let later = self.a_little_later(velocity)?;
-        let stays = later.upper < self.target;
-        Some(InContact { leaves_along: (!stays).then_some(later.normal), ..deeper })
+        let touches = start.upper >= self.target - slack;
+        let leaves_along = match self.later(velocity, speed / closing, &start, slack) {
+            Later::Deeper => None,
+            Later::Less(normal) => Some(normal),
+            Later::Unknown(normal) => touches.then_some(normal),
+        };
+        Some(InContact { start, leaves_along })
     }
 
-    /// The signed distance after a motion of `√ε` of the shapes' sizes.
-    fn a_little_later(&self, velocity: V) -> Option<SignedDistance<V>> {
+    /// Whether the shapes get deeper than they start as they move along a velocity, so many times as far as they come nearer along the normal:
+    /// looked at from so far on that it shows, if the normal is the only one, to as far as their sizes.
+    fn later(&self, velocity: V, per_depth: V::Scalar, start: &SignedDistance<V>, slack: V::Scalar) -> Later<V> {
+        let SignedDistance { upper, lower, normal, .. } = *start;
         let size = |shape: &dyn SupportMap<Vector = V>| {
             let core = shape.core();
             core.extent + core.radius
         };
-        let root = V::Scalar::EPSILON.sqrt();
-        let step = root * (size(self.a) + size(self.b) + self.target);
-        let moved = Posed::translated(self.a, velocity.unit()? * step).ok()?;
-        // So small a part of the step that it is a small angle that remains in doubt.
-        let tolerance = root * V::Scalar::from_f64(1.0 / 64.0);
-        Some(signed_distance_of_any(
-            &WithoutLines(&moved),
-            self.b,
-            SignedDistanceOptions::new().with_tolerance(tolerance),
-        ))
+        let (size, unit) = (size(self.a) + size(self.b) + self.target, velocity.unit().unwrap_or(V::ZERO));
+        let mut step = (slack + (upper - lower)) * per_depth * V::Scalar::from_f64(FIRST);
+        let mut last = normal;
+        for _ in 0..LOOKS {
+            if !(step < size) {
+                break;
+            }
+            let Ok(moved) = Posed::translated(self.a, unit * step) else { break };
+            let there = signed_distance_of_any(&WithoutLines(&moved), self.b, SignedDistanceOptions::new());
+            if there.upper < lower.min(self.target - slack) {
+                return Later::Deeper;
+            }
+            if there.lower > upper.max(self.target - slack) {
+                return Later::Less(there.normal);
+            }
+            last = there.normal;
+            step *= V::Scalar::from_f64(FARTHER);
+        }
+        Later::Unknown(last)
     }
+}
+
+/// How shapes in contact are to one another later than at the start; if they are not deeper, with the normal.
+enum Later<V> {
+    Deeper,
+    Less(V),
+    Unknown(V),
 }
 
 /// Two shapes in contact.

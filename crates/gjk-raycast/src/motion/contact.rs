@@ -4,10 +4,11 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::approach::Approach;
-use super::first_contact::{AIM, End, Search};
+use super::first_contact::{End, Search};
+use super::from_contact::Stage;
 use super::instant::{Instant, Limits};
 use super::result::MotionIterate;
-use crate::{StartInContact, Status};
+use crate::Status;
 
 /// How much deeper than touching an overlap is looked for, in units of what the distance may be wrong by.
 const DEPTH: f64 = 2.0;
@@ -48,7 +49,7 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
                     self.beyond = None;
                     return None;
                 }
-                if self.bodies.pass_through(&self.near, there.time) {
+                if self.base.stage == Stage::Apart && self.bodies.pass_through(&self.near, there.time) {
                     self.upper = there.time;
                     return Some(End::Contact);
                 }
@@ -73,10 +74,6 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
         if self.near.overlaps() {
             self.upper = zero;
         }
-        if self.options.start_in_contact == StartInContact::IfDeeper && self.leave_contact() {
-            self.upper = V::Scalar::infinity();
-            return self.advance();
-        }
         if !self.near.overlaps() && !(self.near.distance <= self.near.error) {
             // Neither is known, such as of a support map that returns NaN.
             return End::Undecided(Status::Stalled);
@@ -88,38 +85,6 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
             self.near = touching;
         }
         End::Contact
-    }
-
-    /// Goes on to a time at which the bodies, which touch or overlap, are apart; whether there is one, and they come no nearer before.
-    fn leave_contact(&mut self) -> bool {
-        let from_f64 = V::Scalar::from_f64;
-        let rounding = from_f64(16.0) * V::Scalar::EPSILON;
-        let start = self.near;
-        let mut there = start;
-        let mut step = V::Scalar::ZERO;
-        while self.looks < self.options.max_iterations {
-            let speed = self.bodies.speed_at(&there);
-            if there.closing > speed * rounding || !(there.time < self.options.max_time) {
-                break;
-            }
-            // Where they touch may be known without any error.
-            let error = there.error.max(self.bodies.size() * V::Scalar::EPSILON);
-            let apart = (error * from_f64(AIM) - there.distance) / -there.closing;
-            let least = error / speed;
-            step = (step + step).max(if apart > least { apart } else { least });
-            // NaN ends here.
-            if !(step > Scalar::ZERO) {
-                break;
-            }
-            let everything = Limits { distance: V::Scalar::infinity(), depth: V::Scalar::infinity() };
-            there = self.look((start.time + step).min(self.options.max_time), everything);
-            if there.gap > Scalar::ZERO {
-                self.near = there;
-                return true;
-            }
-        }
-        self.near = start;
-        false
     }
 }
 

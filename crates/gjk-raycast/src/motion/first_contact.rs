@@ -10,6 +10,7 @@ use num_traits::Float as _;
 
 use super::approach::Approach;
 use super::free_interval::acceleration_if_free;
+use super::from_contact::{Base, Stage};
 use super::instant::{Instant, Limits, NEAR};
 use super::next_time::PATIENCE;
 use super::options::MotionCastOptions;
@@ -28,6 +29,8 @@ pub(super) struct Search<'p, V: Vector, P, F> {
     pub(super) bodies: &'p P,
     pub(super) options: MotionCastOptions<V>,
     observer: F,
+    /// From where the distances of all instants are measured.
+    pub(super) base: Base<V::Scalar>,
     /// The last time up to which the bodies are proved apart.
     pub(super) near: Instant<V>,
     /// How long the last step was, how much nearer the bodies came in it, and what the normal and the closing speed have changed.
@@ -92,6 +95,7 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
             bodies,
             options,
             observer,
+            base: Base::CONTACT,
             acceleration: bodies.acceleration_along(plane, [zero, Scalar::ONE]),
             near,
             step: Scalar::ONE,
@@ -109,7 +113,11 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
             looks: 1,
         };
         search.show(&near);
-        let end = if near.gap > zero { search.advance() } else { search.start_in_contact() };
+        let end = match options.start_in_contact {
+            _ if near.gap > zero => search.advance(),
+            StartInContact::Report => search.start_in_contact(),
+            StartInContact::IfDeeper => search.from_contact(),
+        };
         search.answer(end)
     }
 
@@ -129,7 +137,7 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
                 return End::Miss(axis);
             }
             let time = if self.near.distance <= self.closest() { None } else { self.next_time() };
-            let Some(time) = time else {
+            let Some(time) = time.map(|time| self.within(time)) else {
                 match self.close_in() {
                     Some(end) => return end,
                     None => continue,
@@ -148,7 +156,9 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
 
     /// Goes on to a time at which the bodies are apart, if they are proved to be so until then; if not, that is remembered.
     pub(super) fn advance_to(&mut self, there: &Instant<V>) -> bool {
-        let Some(acceleration) = acceleration_if_free(self.bodies, &self.near, there) else {
+        let Some(acceleration) =
+            acceleration_if_free(self.bodies, &self.near, there, &self.base).filter(|_| self.stay_in_contact(there))
+        else {
             self.ahead = Some(*there);
             return false;
         };
@@ -165,6 +175,9 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
         self.is_smooth = self.near.goes_smoothly_to(there);
         self.near = *there;
         self.ahead = None;
+        if self.base.stage != Stage::Apart {
+            self.rise();
+        }
         true
     }
 
@@ -180,8 +193,12 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
     /// How near to contact the bodies are to be brought before it is bracketed.
     pub(super) fn closest(&self) -> V::Scalar {
         let from_f64 = V::Scalar::from_f64;
-        let size = self.bodies.size() * self.options.tolerance * from_f64(0.25);
-        (self.near.error * from_f64(2.0 * AIM)).max(size)
+        let least = self.near.error * from_f64(2.0 * AIM);
+        // A start in contact is as near as the slack.
+        if self.base.stage != Stage::Apart {
+            return least;
+        }
+        least.max(self.bodies.size() * self.options.tolerance * from_f64(0.25))
     }
 
     /// Counts how often in a row the search for a contact has not come nearer by half.
@@ -201,7 +218,7 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
         let limits = Limits { distance: self.enough_at(time), depth: Scalar::ZERO };
         let Instant { distance, error, .. } = self.near;
         let is_near = distance * distance < error * self.bodies.size() * Scalar::from_f64(NEAR);
-        if is_near || self.slow > PATIENCE {
+        if is_near || self.slow > PATIENCE || self.base.stage != Stage::Apart {
             self.beyond = self.beyond.filter(|beyond| beyond.is_close);
             return self.look(time, limits);
         }
@@ -218,36 +235,41 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
     }
 
     /// The bodies at a time as well as it can be known, which the observer is shown.
-    pub(super) fn look(&mut self, time: V::Scalar, limits: Limits<V::Scalar>) -> Instant<V> {
+    pub(super) fn look(&mut self, time: V::Scalar, mut limits: Limits<V::Scalar>) -> Instant<V> {
         let axis = self.expected_normal(time);
+        if self.base.stage != Stage::Apart {
+            limits = Limits { distance: V::Scalar::infinity(), depth: V::Scalar::infinity() };
+        }
         let there = self.bodies.closely(time, axis, limits);
         self.looks += 1;
         self.show(&there);
-        there
+        self.from_level(there)
     }
 
     fn show(&mut self, there: &Instant<V>) {
+        let lower = self.lower();
         (self.observer)(MotionIterate {
             iteration: self.looks - 1,
             time: there.time,
             gap: there.gap,
             normal: there.normal,
-            lower: self.near.time,
+            lower,
             upper: self.upper,
         });
     }
 
     fn answer(&self, end: End<V>) -> MotionCast<V> {
-        let Instant { time: lower, point, normal, gap, distance, closing, .. } = self.near;
+        let Instant { time: near, point, normal, .. } = self.near;
+        let mut lower = self.lower();
         let (outcome, status) = match end {
-            End::Miss(axis) => (Outcome::Miss(Miss { axis }), Status::Converged),
+            End::Miss(axis) => {
+                lower = near;
+                (Outcome::Miss(Miss { axis }), Status::Converged)
+            }
             End::Undecided(status) => (Outcome::Undecided, status),
             End::Contact => {
-                let step = distance / closing;
-                // Where they touch at the start, that is when they do.
-                let step = if step > Scalar::ZERO && gap > Scalar::ZERO { step } else { Scalar::ZERO };
-                let time = (lower + step).min(self.upper).min(self.options.max_time);
-                let point = point + self.bodies.velocity_of_b(lower, point) * (time - lower);
+                let time = self.time_of_contact().min(self.upper).min(self.options.max_time);
+                let point = point + self.bodies.velocity_of_b(near, point) * (time - near);
                 let normal = if self.near.overlaps() { None } else { Some(normal) };
                 (Outcome::Hit(MotionHit { time, point, normal }), Status::Converged)
             }

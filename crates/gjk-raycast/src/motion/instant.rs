@@ -37,6 +37,12 @@ pub(super) struct Instant<V: Vector> {
 }
 
 impl<V: Vector> Instant<V> {
+    /// The same with distances measured from a level, instead of from contact.
+    #[inline(always)]
+    pub(super) fn above(self, level: V::Scalar) -> Self {
+        Self { gap: self.gap - level, distance: self.distance - level, upper: self.upper - level, ..self }
+    }
+
     /// Whether the bodies certainly have a point in common.
     pub(super) fn overlaps(&self) -> bool {
         self.upper < V::Scalar::ZERO

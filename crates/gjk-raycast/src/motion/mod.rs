@@ -9,6 +9,8 @@ mod contact;
 mod corners;
 mod first_contact;
 mod free_interval;
+mod from_contact;
+mod in_contact;
 mod instant;
 mod motion_cast;
 mod moved;

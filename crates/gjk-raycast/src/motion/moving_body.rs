@@ -3,6 +3,7 @@
 use core::cell::Cell;
 
 use convex_support::{AngularVelocity, BoundingSphere, Core, Hint, Matrix, Scalar, ScalarOf, Spin, SupportMap, Vector};
+use num_traits::Float;
 
 use super::moved::Moved;
 use super::rigid_motion::{RigidMotion, SpinOf, turn_error};
@@ -114,6 +115,20 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'
             }
             Course::Other => self.motion.acceleration_along(self.ball(), plane, interval),
         }
+    }
+
+    /// How far a point of the core may be, throughout an interval, from where it would be if the body went from its first place to its last by a
+    /// constant change of all coordinates, and from another point of the core, in either direction along a unit vector; see
+    /// [`in_contact`](super::in_contact).
+    pub(super) fn strays(&self, n: S::Vector, [from, to]: [ScalarOf<S>; 2]) -> ScalarOf<S> {
+        let extent = self.core.extent;
+        let [before, after] =
+            [from, to].map(|time| self.place(time).rotation.map_or(n, |rotation| rotation.transpose_mul(n)));
+        let rounding = ScalarOf::<S>::EPSILON * Scalar::from_f64(8.0);
+        let turned = ((after - before).norm() + rounding) * (extent + extent);
+        let most = |n| self.acceleration_along(TurningPlane { from: n, to: n }, [from, to]);
+        let bent = Float::max(Float::max(most(n), most(-n)), Scalar::ZERO);
+        turned + bent * (to - from) * (to - from) * Scalar::from_f64(0.5)
     }
 
     /// The velocity, at a time, of the body's point that is at `point` then.

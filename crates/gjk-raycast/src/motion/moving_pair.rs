@@ -100,8 +100,8 @@ where
         self.count(answer.iterations);
         let (point_a, point) = (answer.point_a + *place, answer.point_b + *place);
         let distance = answer.signed_distance;
-        // Of bodies that are apart the gap is to be that of a plane, and not of one that is hardly another.
-        let normal = if answer.lower > Scalar::ZERO { axis } else { answer.normal };
+        // Of bodies that are apart, or no deeper than is asked for, the gap is to be that of a plane, and not of one that is hardly another.
+        let normal = if answer.lower > -limits.depth { axis } else { answer.normal };
         Instant {
             time,
             normal,
@@ -203,6 +203,10 @@ where
         let margin = measure * Scalar::from_f64(32.0) * Scalar::EPSILON + lost_to_underflow(measure);
         // NaN is not apart.
         if between.norm() > reach + margin { between.unit() } else { None }
+    }
+
+    fn stay_in_contact(&self, from: &Instant<A::Vector>, to: &Instant<A::Vector>, depth: ScalarOf<A>) -> bool {
+        self.keep_in_contact(from, to, depth)
     }
 
     fn speed_at(&self, there: &Instant<A::Vector>) -> ScalarOf<A> {

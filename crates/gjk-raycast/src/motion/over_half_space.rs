@@ -192,6 +192,11 @@ where
         (height - way > margin).then_some(self.plane.unit)
     }
 
+    /// As of [two bodies](super::in_contact), of which only the one direction counts.
+    fn stay_in_contact(&self, from: &Instant<S::Vector>, to: &Instant<S::Vector>, depth: ScalarOf<S>) -> bool {
+        self.body.strays(self.plane.unit, [from.time, to.time]) <= depth * Scalar::from_f64(4.0)
+    }
+
     fn speed_at(&self, there: &Instant<S::Vector>) -> ScalarOf<S> {
         length_bound(self.body.velocity(there.time, there.point))
     }

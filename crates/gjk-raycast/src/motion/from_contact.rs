@@ -1,0 +1,192 @@
+//! Searches that begin in contact, and ask when the bodies get deeper than they began, or touch again.
+//!
+//! They are the same search with distances measured from another [level](Base::level), since a [free interval](super::free_interval) proves as well
+//! that the bodies come no deeper than to a level as that they stay apart. At first the level is a slack below where they began, as they
+//! are then above it by that. It rises when they are proved to be higher: to where they began, so that when they are there again is
+//! known as well as any contact, and to 0 when they are apart.
+//!
+//! Bodies that overlap at two times may have been apart in between, and have met again. So while they overlap by more than the slack, an interval
+//! is taken only if they are proved to [stay in contact](super::in_contact) in it. The ends of such intervals come to where the bodies
+//! part as near as rounding lets them. There, and where they only touch at the start, a level just below contact does as well: bodies that
+//! part and meet again come below it, unless they meet by no more than the slack.
+
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use super::approach::Approach;
+use super::first_contact::{End, Search};
+use super::instant::Instant;
+use super::result::MotionIterate;
+use crate::Status;
+
+/// How much deeper than they began counts as deeper: so many ε of the bodies' sizes, and so many times what their places are rounded by at the
+/// time.
+const SLACK: f64 = 16.0;
+const ROUNDED: f64 = 6.0;
+
+/// Bodies that sink by a power of time no higher than this have sunk from the start on, as far as can be told.
+const POWER: f64 = 4.0;
+
+/// How much of the way out of an overlap is asked for at once.
+const OUT: f64 = 0.9;
+
+/// From where distances are measured.
+#[derive(Clone, Copy)]
+pub(super) struct Base<S> {
+    /// The signed distance that counts as contact, but for how the bodies' places are [rounded](Self::loose).
+    pub(super) level: S,
+    pub(super) stage: Stage,
+    /// The signed distance at the start, and what it certainly is not more than.
+    start: S,
+    highest: S,
+    slack: S,
+    /// When the bodies came to the surface.
+    since: S,
+}
+
+/// What the bodies have done so far.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Stage {
+    /// They have been apart, or a contact counts whatever was before.
+    Apart,
+    /// They have touched from the start on, to rounding.
+    Touching,
+    /// They have overlapped from the start on, and have not been less deep.
+    Deep,
+    /// They overlap, less deep than they began.
+    Risen,
+    /// They overlapped, and touch, to rounding: they may have been apart, or not.
+    Surfaced,
+}
+
+impl<S: Scalar> Base<S> {
+    /// Where contact is what counts.
+    pub(super) const CONTACT: Self = {
+        let zero = S::ZERO;
+        Self { level: zero, stage: Stage::Apart, start: zero, highest: zero, slack: zero, since: zero }
+    };
+
+    /// How much lower the level is, in units of what the places of the bodies are rounded by at the time.
+    pub(super) fn loose(&self) -> S {
+        let is_exact = matches!(self.stage, Stage::Apart | Stage::Risen);
+        if is_exact { S::ZERO } else { S::from_f64(ROUNDED) }
+    }
+
+    /// Whether the bodies are to stay in contact until they are seen to part.
+    fn overlaps(&self) -> bool {
+        matches!(self.stage, Stage::Deep | Stage::Risen)
+    }
+}
+
+impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> {
+    /// What to answer where the bodies are not certainly apart at the start, and only what comes after it counts.
+    pub(super) fn from_contact(&mut self) -> End<V> {
+        let number = V::Scalar::from_f64;
+        let Instant { gap, distance, upper, error, .. } = self.near;
+        let slack = self.bodies.size() * V::Scalar::EPSILON * number(SLACK) + error * number(2.0);
+        if !(slack.is_finite() && distance <= error) {
+            // Neither is known, such as of a support map that returns NaN.
+            return End::Undecided(Status::Stalled);
+        }
+        let stage = if upper < -slack { Stage::Deep } else { Stage::Touching };
+        self.base = Base { start: distance, highest: upper, slack, ..Base::CONTACT };
+        self.raise(stage, gap - slack);
+        match self.advance() {
+            // They may have parted before, and touched again.
+            End::Contact if self.base.stage == Stage::Surfaced => {
+                self.upper = V::Scalar::infinity();
+                End::Undecided(Status::Stalled)
+            }
+            end => end,
+        }
+    }
+
+    /// Measures from the highest level that the bodies are certainly above.
+    pub(super) fn rise(&mut self) {
+        let Base { stage, highest, slack, .. } = self.base;
+        let Instant { gap, upper, .. } = self.near.above(-self.level_of(&self.near));
+        if gap > V::Scalar::ZERO {
+            self.raise(Stage::Apart, V::Scalar::ZERO);
+        } else if self.base.overlaps() && !(upper < -slack) {
+            self.base.since = self.near.time;
+            self.raise(Stage::Surfaced, gap - slack);
+        } else if stage == Stage::Deep && gap > highest + slack {
+            self.raise(Stage::Risen, highest);
+        }
+    }
+
+    fn raise(&mut self, stage: Stage, level: V::Scalar) {
+        let known = [Some(self.near), self.beyond, self.farther];
+        let [near, beyond, farther] = known.map(|there| there.map(|there| there.above(-self.level_of(&there))));
+        (self.base.stage, self.base.level) = (stage, level);
+        let [near, beyond, farther] = [near, beyond, farther].map(|there| there.map(|there| self.from_level(there)));
+        (self.near, self.beyond, self.farther) = (near.unwrap_or(self.near), beyond, farther);
+    }
+
+    /// The level at a time.
+    fn level_of(&self, there: &Instant<V>) -> V::Scalar {
+        let loose = self.base.loose();
+        if loose == V::Scalar::ZERO {
+            return self.base.level;
+        }
+        let (_, rounded) = self.bodies.level(there.time, there.normal);
+        self.base.level - loose * rounded
+    }
+
+    /// What is seen at a time, measured from the level.
+    pub(super) fn from_level(&self, there: Instant<V>) -> Instant<V> {
+        there.above(self.level_of(&there))
+    }
+
+    /// Whether bodies that overlap do so until a later time, so that they cannot have met again before.
+    pub(super) fn stay_in_contact(&self, there: &Instant<V>) -> bool {
+        if !self.base.overlaps() {
+            return true;
+        }
+        let deepest = |there: &Instant<V>| there.upper + self.level_of(there);
+        let upper = deepest(&self.near).max(deepest(there));
+        upper < V::Scalar::ZERO && self.bodies.stay_in_contact(&self.near, there, -upper)
+    }
+
+    /// Where to look at most, of bodies that overlap: not much farther than the last step went, nor beyond where they part.
+    pub(super) fn within(&self, next: V::Scalar) -> V::Scalar {
+        if !self.base.overlaps() {
+            return next;
+        }
+        let Instant { time, upper, closing, .. } = self.near;
+        let out = (upper + self.level_of(&self.near)) / closing * V::Scalar::from_f64(OUT);
+        let step = self.step + self.step;
+        let step = if closing < V::Scalar::ZERO && out < step { out } else { step };
+        // Of no step at all, the next number.
+        if next > time + step && time + step > time { time + step } else { next }
+    }
+
+    /// Up to when nothing that counts has happened: the bodies may have sunk by less than the slack from the start on.
+    pub(super) fn lower(&self) -> V::Scalar {
+        match self.base.stage {
+            Stage::Apart | Stage::Risen => self.near.time,
+            Stage::Touching | Stage::Deep => V::Scalar::ZERO,
+            Stage::Surfaced => self.base.since,
+        }
+    }
+
+    /// When the bodies touch, or get deeper than they began, which they are about to do.
+    pub(super) fn time_of_contact(&self) -> V::Scalar {
+        let Instant { time, gap, distance, error, closing, .. } = self.near;
+        let zero = V::Scalar::ZERO;
+        if matches!(self.base.stage, Stage::Touching | Stage::Deep) {
+            // Since they were as deep as at the start.
+            let sunk = self.base.start - (distance + self.level_of(&self.near)) + error * V::Scalar::from_f64(2.0);
+            let since = sunk / closing;
+            return if !(closing > zero) || time > since * V::Scalar::from_f64(POWER) {
+                time - if closing > zero { since } else { zero }
+            } else {
+                zero
+            };
+        }
+        let step = distance / closing;
+        // Where they touch at the start, that is when they do.
+        let step = if step > zero && gap > zero { step } else { zero };
+        time + step
+    }
+}
