@@ -35,6 +35,12 @@ impl<V: Vector> MotionGradient<V> {
         Self { translation, rotation: V::AngularVelocity::default(), point }
     }
 
+    /// The same by the motion of the other body, which the force reacts upon.
+    pub fn reversed(self) -> Self {
+        let rotation = V::AngularVelocity::from_coordinates(|i| -self.rotation.coordinate(i));
+        Self { translation: -self.translation, rotation, ..self }
+    }
+
     /// The change per turn of the body about the point `pivot`, in world axes.
     #[must_use]
     pub fn rotation_about(&self, pivot: V) -> V::AngularVelocity {
@@ -75,16 +81,23 @@ const MAX: usize = 6;
 #[cfg_attr(feature = "serde", serde(bound(deserialize = "V::Scalar: serde::Deserialize<'de>")))]
 pub struct MotionHessian<V: Vector> {
     rows: [[V::Scalar; MAX]; MAX],
+    is_unique: bool,
 }
 
 impl<V: Vector> MotionHessian<V> {
     /// The number of rows and columns: 6 in 3D, 3 in 2D.
     pub const SIZE: usize = V::DIM * (V::DIM + 1) / 2;
 
-    /// The matrix with the upper left part of these rows, translations first.
+    /// The matrix with the upper left part of these rows, translations first, and whether it is the [only one](Self::is_unique).
     #[inline]
-    pub fn from_rows(rows: [[V::Scalar; MAX]; MAX]) -> Self {
-        Self { rows }
+    pub fn from_rows(rows: [[V::Scalar; MAX]; MAX], is_unique: bool) -> Self {
+        Self { rows, is_unique }
+    }
+
+    /// Whether these are the only second derivatives. If not, they jump here, and are those on one side.
+    #[must_use]
+    pub fn is_unique(&self) -> bool {
+        self.is_unique
     }
 
     /// The entry in a row and a column, translations first.

@@ -143,6 +143,7 @@ mod symmetric;
 mod unit;
 
 pub use convex_support;
+pub use convex_support::{MotionGradient, MotionHessian};
 
 pub use certificate::{
     Certificate, WeightedSupport, distance_certificate, intersection_certificate, linear_cast_certificate,
@@ -152,8 +153,8 @@ pub use contact::{
     Contact, ContactPoint, SignedDistance, SignedDistanceOptions, contact, signed_distance, signed_distance_with,
 };
 pub use derivative::{
-    ClosestFeatures, ClosestVelocities, LinearCastGradient, MotionCastGradient, MotionGradient, MotionHessian,
-    PairGradient, PairHessian, RayCastGradient, RigidMotionGradient, Smoothness,
+    ClosestFeatures, ClosestVelocities, LinearCastGradient, MotionCastGradient, PairGradient, PairHessian,
+    RayCastGradient, RigidMotionGradient, Smoothness,
 };
 pub use distance::{distance, distance_with};
 pub use distances::map_distances_into;

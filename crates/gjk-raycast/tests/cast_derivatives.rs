@@ -67,7 +67,7 @@ fn compare_linear<V: Space>(a: &Body<V>, b: &Body<V>, random: &mut Random, all: 
     assert!((rough.velocity_a - gradient.velocity_a).length() < 1e-6 * size * size, "{what}: {rough:?}, {gradient:?}");
 
     let rate = hit.rate((&rounded, change_a), (&b.shape, change_b), motion).expect("one normal");
-    let by_pose = gradient.pose_a.along(change_a) + gradient.pose_b.along(change_b);
+    let by_pose = change_a.rate_of(gradient.pose_a) + change_b.rate_of(gradient.pose_b);
     assert!((rate - by_pose).abs() < 1e-10 * size * size, "{what}: {rate} and {by_pose}");
     let by_velocity = gradient.velocity_a.dot(faster_a) + gradient.velocity_b.dot(faster_b);
     for (k, ours) in [by_pose, by_velocity, gradient.radius].into_iter().enumerate() {
@@ -110,7 +110,7 @@ fn compare_motion<V: Space>(a: &Body<V>, b: &Body<V>, random: &mut Random, all: 
     };
     assert_eq!(features.smoothness(), Smoothness::Smooth, "{what}: {features:?}");
     let Some(gradient) = hit.refined(&features).gradient(motion_a, motion_b) else { return };
-    let by_pose = gradient.pose_a.along(poses[0]) + gradient.pose_b.along(poses[1]);
+    let by_pose = poses[0].rate_of(gradient.pose_a) + poses[1].rate_of(gradient.pose_b);
     let rate = hit.rate((&rounded, motion_a, poses[0]), (&b.shape, motion_b, poses[1])).expect("one normal");
     assert!((rate - by_pose).abs() < 1e-9 * (1.0 + rate * rate), "{what}: {rate} and {by_pose}");
     let [by_a, by_b] = [(motion_a, gradient.contact_a), (motion_b, gradient.contact_b)]
@@ -152,8 +152,12 @@ fn compare_ray<V: Space>(target: &Body<V>, from: &Body<V>, random: &mut Random, 
     };
     assert_eq!(features.smoothness(), Smoothness::Smooth, "{what}: {features:?}");
     let gradient = hit.refined(&features).gradient(ray).expect("it comes from outside");
-    let ours =
-        [gradient.target.along(pose), gradient.source.dot(source), gradient.direction.dot(direction), gradient.radius];
+    let ours = [
+        pose.rate_of(gradient.target),
+        gradient.source.dot(source),
+        gradient.direction.dot(direction),
+        gradient.radius,
+    ];
     for (k, ours) in ours.into_iter().enumerate() {
         let lambda = |t| cast([0, 1, 2, 3].map(|i| if i == k { t } else { 0.0 })).map_or(f64::NAN, |hit| hit.lambda);
         all[k].add(ours, central(lambda, 0.01), &|| format!("derivative {k} of {what}: {hit:?}, {gradient:?}"));

@@ -76,7 +76,7 @@ impl<V: Space> Moving<'_, V> {
 
         let hessian = features.hessian(ma.center, mb.center).expect("where there are velocities");
         let [pa, pb] = [ma, mb].map(|m| (m.velocity, m.angular_velocity));
-        let ours = hessian.a.along(pa, pa) + hessian.b.along(pb, pb) + 2.0 * hessian.mixed.along(pa, pb);
+        let ours = hessian.a.between(pa, pa) + hessian.b.between(pb, pb) + 2.0 * hessian.mixed.between(pa, pb);
         second.add(ours, central(|t| self.rate(t), 0.02), &|| say("the Hessian"));
         assert_eq!(features.hessian_of_a(ma.center), Some(hessian.a), "the same of {what}");
         assert_eq!(features.hessian_of_b(mb.center), Some(hessian.b), "the same of {what}");

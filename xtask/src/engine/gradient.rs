@@ -24,7 +24,7 @@ impl<V: Space> Gradient<V> {
         A: SupportMap<Vector = V> + ?Sized,
         B: SupportMap<Vector = V> + ?Sized,
     {
-        let none = MotionGradient { translation: V::ZERO, point: V::ZERO };
+        let none = MotionGradient::force(V::ZERO, V::ZERO);
         let depth = signed_distance(a, b, SignedDistanceOptions::default());
         Self { a: none, b: none, is_smooth: depth.upper < V::Scalar::ZERO }
     }

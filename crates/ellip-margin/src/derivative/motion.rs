@@ -22,7 +22,7 @@ pub(super) fn gradient<V: Vector, const N: usize>(
 
 /// The Hessian of a number that is a function of the value of a contact.
 pub(super) fn hessian<V: Vector, const N: usize>(contact: &Contact<N>, mover: Mover, form: Form) -> MotionHessian<V> {
-    MotionHessian::from_rows(contact.hessian(mover, form).map(|row| row.map(V::Scalar::from_f64)))
+    MotionHessian::from_rows(contact.hessian(mover, form).map(|row| row.map(V::Scalar::from_f64)), true)
 }
 
 /// No change, where the quantity is at its floor.
@@ -32,7 +32,7 @@ pub(super) fn no_gradient<V: Vector>(body: &Ellipsoid<V>) -> MotionGradient<V> {
 
 /// The same of second derivatives.
 pub(super) fn no_hessian<V: Vector>() -> MotionHessian<V> {
-    MotionHessian::from_rows([[V::Scalar::ZERO; 6]; 6])
+    MotionHessian::from_rows([[V::Scalar::ZERO; 6]; 6], true)
 }
 
 /// `factor`·Σ uᵢuⱼ(aᵢ/aⱼ − aⱼ/aᵢ) eᵢ∧eⱼ over the planes i < j of the axes of `body`.

@@ -1,6 +1,6 @@
 //! Second derivatives of the signed distance.
 
-use convex_support::{AngularVelocity, Scalar, Vector};
+use convex_support::{AngularVelocity, MotionHessian, Scalar, Vector};
 
 use super::ClosestFeatures;
 use super::velocities::{Shifted, Solver};
@@ -11,33 +11,12 @@ const MAX: usize = 6;
 
 type Rows<S> = [[S; MAX]; MAX];
 
-/// Second derivatives by the motion of one body, or by that of one and that of the other.
-///
-/// A motion is a translation `δ` and a rotation vector `ω` about a centre of the caller's, both in world axes:
-///
-/// > x ↦ c + δ + exp(\[ω\]×)·(x − c),   s ↦ s + gᵀθ + ½θᵀHθ + O(‖θ‖³) with θ = (δ, ω),
-///
-/// in 2D with the angle `ω`, counterclockwise. (A gradient taken anew in world axes at the moved body is
-/// `g + Hθ + ½(0, ω × ∂s/∂ω) + O(‖θ‖²)`, since rotations do not commute.)
+/// The second derivatives of the signed distance by the poses of both bodies: 12 by 12 numbers in space, 6 by 6 in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound(serialize = "V::Scalar: serde::Serialize")))]
 #[cfg_attr(feature = "serde", serde(bound(deserialize = "V::Scalar: serde::Deserialize<'de>")))]
-pub struct MotionHessian<V: Vector> {
-    rows: Rows<V::Scalar>,
-    is_unique: bool,
-}
-
-/// The second derivatives of the signed distance by the poses of both bodies: 12 by 12 numbers in space, 6 by 6 in the plane.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[must_use]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
-)]
 pub struct PairHessian<V: Vector> {
     /// By the pose of `a`; symmetric.
     pub a: MotionHessian<V>,
@@ -45,53 +24,6 @@ pub struct PairHessian<V: Vector> {
     pub b: MotionHessian<V>,
     /// By that of `a` (rows) and that of `b` (columns).
     pub mixed: MotionHessian<V>,
-}
-
-impl<V: Vector> MotionHessian<V> {
-    /// The number of rows and columns: 6 in 3D, 3 in 2D.
-    pub const SIZE: usize = V::DIM * (V::DIM + 1) / 2;
-
-    /// The entry in a row and a column, translations first.
-    ///
-    /// # Panics
-    /// If there is none.
-    #[must_use]
-    pub fn entry(&self, row: usize, column: usize) -> V::Scalar {
-        assert!(row < Self::SIZE && column < Self::SIZE, "a row and a column of the matrix");
-        self.rows[row][column]
-    }
-
-    /// The upper left part of the matrix, by rows: all of it with `N = 6` in 3D and `N = 3` in 2D, and with `N` the dimension the
-    /// second derivatives by translations.
-    ///
-    /// # Panics
-    /// If `N` is larger than the matrix.
-    #[must_use]
-    pub fn matrix<const N: usize>(&self) -> [[V::Scalar; N]; N] {
-        core::array::from_fn(|i| core::array::from_fn(|j| self.entry(i, j)))
-    }
-
-    /// Whether these are the only second derivatives. If not, they jump here, and are those on one side, as of
-    /// [`ClosestFeatures::is_hessian_unique`].
-    #[must_use]
-    pub fn is_unique(&self) -> bool {
-        self.is_unique
-    }
-
-    /// `θᵀHφ` for two motions `θ` and `φ`, each a translation and a rotation.
-    #[must_use]
-    pub fn along(&self, rows: (V, V::AngularVelocity), columns: (V, V::AngularVelocity)) -> V::Scalar {
-        let coordinate = |(translation, rotation): (V, V::AngularVelocity), i: usize| {
-            if i < V::DIM { translation.get(i) } else { rotation.coordinate(i - V::DIM) }
-        };
-        let mut sum = V::Scalar::ZERO;
-        for i in 0..Self::SIZE {
-            for j in 0..Self::SIZE {
-                sum += coordinate(rows, i) * coordinate(columns, j) * self.rows[i][j];
-            }
-        }
-        sum
-    }
 }
 
 impl<V: Vector> ClosestFeatures<V> {
@@ -134,7 +66,7 @@ impl<V: Vector> ClosestFeatures<V> {
         let [by_a, by_b] = [0, 1].map(|body| solver.responses(body));
         let is_unique = self.is_hessian_unique();
         let mixed = by_a.moved(&of_a, 1).along(&of_b).map(|row| row.map(|entry| -entry));
-        let of = |rows| MotionHessian { rows, is_unique };
+        let of = |rows| MotionHessian::from_rows(rows, is_unique);
         Some(PairHessian { a: of(by_a.hessian::<V>(&of_a, 0)), b: of(by_b.hessian::<V>(&of_b, 1)), mixed: of(mixed) })
     }
 
@@ -152,7 +84,7 @@ impl<V: Vector> ClosestFeatures<V> {
 
     fn hessian_of(&self, body: usize, center: V) -> Option<MotionHessian<V>> {
         let rows = self.solver()?.responses(body).hessian::<V>(&self.coordinates(body, center), body);
-        Some(MotionHessian { rows, is_unique: self.is_hessian_unique() })
+        Some(MotionHessian::from_rows(rows, self.is_hessian_unique()))
     }
 
     /// The coordinates of the pose of a body. Of a turn `ω` the part along a unit vector `e` is `e·(ω × arm) = ω·(arm × e)`, which is that of a

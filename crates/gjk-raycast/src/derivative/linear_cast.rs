@@ -1,15 +1,26 @@
 //! How the time of a hit changes: bodies that move without turning.
 
-use convex_support::Vector;
+use convex_support::{MotionGradient, Vector};
 
-use super::MotionGradient;
-use super::motion_gradient::at_contact;
+use super::at_contact::at_contact;
 use crate::{LinearHit, Motion};
 
 /// The derivatives of the time of a hit of two shapes that move without turning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "V: serde::Serialize, V::Scalar: serde::Serialize, V::AngularVelocity: serde::Serialize"
+    ))
+)]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>, V::AngularVelocity: serde::Deserialize<'de>"
+    ))
+)]
 pub struct LinearCastGradient<V: Vector> {
     /// By the pose of `a` at the start.
     pub pose_a: MotionGradient<V>,
@@ -39,7 +50,7 @@ impl<V: Vector> LinearHit<V> {
     /// [`closest_features`](Self::closest_features) tells which.
     ///
     /// ```
-    /// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};
+    /// use convex_support::{Ball, Cuboid, MotionGradient, Posed, glam::DVec3};
     /// use gjk_raycast::{LinearCastOptions, Motion, linear_cast};
     ///
     /// // A ball flies at a wall 9 m away, at 3 m/s and obliquely.

@@ -9,13 +9,13 @@
 //! the answer is needed for that. Whether the normal and the points are the only ones, and how they move, is asked of the shapes:
 //! [`ClosestFeatures`].
 
+mod at_contact;
 mod closest_features;
 mod features_of;
 mod hessian;
 mod linear_cast;
 mod look;
 mod motion_cast;
-mod motion_gradient;
 mod overlap;
 mod pair_gradient;
 mod rate;
@@ -26,10 +26,9 @@ mod span;
 mod velocities;
 
 pub use closest_features::ClosestFeatures;
-pub use hessian::{MotionHessian, PairHessian};
+pub use hessian::PairHessian;
 pub use linear_cast::LinearCastGradient;
 pub use motion_cast::{MotionCastGradient, RigidMotionGradient};
-pub use motion_gradient::MotionGradient;
 pub use pair_gradient::PairGradient;
 pub use ray_cast::RayCastGradient;
 pub use smoothness::Smoothness;

@@ -1,15 +1,26 @@
 //! How the time of a first contact changes: bodies that move and turn.
 
-use convex_support::{AngularVelocity, Matrix, Scalar, Vector};
+use convex_support::{AngularVelocity, Matrix, MotionGradient, Scalar, Vector};
 
-use super::MotionGradient;
-use super::motion_gradient::at_contact;
+use super::at_contact::at_contact;
 use crate::{MotionHit, RigidMotion, Trajectory};
 
 /// The derivatives of the time of first contact of two bodies that move and turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "V: serde::Serialize, V::Scalar: serde::Serialize, V::AngularVelocity: serde::Serialize"
+    ))
+)]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>, V::AngularVelocity: serde::Deserialize<'de>"
+    ))
+)]
 pub struct MotionCastGradient<V: Vector> {
     /// By the pose of `a` at the start. Its motion stays what it is, the centre included.
     pub pose_a: MotionGradient<V>,
@@ -98,10 +109,17 @@ fn at_start<M: Trajectory + ?Sized>(
     let displacement = motion.displacement(time);
     let back = |v| displacement.rotation().transpose_mul(v);
     let arm = force.point - displacement.pivot - displacement.shift;
-    MotionGradient { translation: back(force.translation), point: displacement.pivot + back(arm) }
+    MotionGradient::force(back(force.translation), displacement.pivot + back(arm))
 }
 
 impl<V: Vector> RigidMotion<V> {
+    /// The change per unit of time of a number with this derivative, as the body begins to move. If the motion is what a joint does per
+    /// radian, it is the change per radian of the joint.
+    #[must_use]
+    pub fn rate_of(&self, gradient: MotionGradient<V>) -> V::Scalar {
+        gradient.prismatic(self.velocity) + gradient.revolute(self.center, self.angular_velocity)
+    }
+
     /// The derivatives of a number by the parameters of this motion, given `force`, its derivative by the pose that the body has at `time`;
     /// such as [`MotionCastGradient::contact_a`] and the time of the hit.
     ///

@@ -1,14 +1,26 @@
 //! The derivatives of a distance by the motions and the radii of both bodies.
 
-use convex_support::{Scalar, Vector};
+use convex_support::{MotionGradient, Scalar, Vector};
 
-use super::{ClosestFeatures, MotionGradient};
+use super::ClosestFeatures;
 use crate::{Distance, RigidMotion, SignedDistance};
 
 /// The derivatives of a distance by the motion of either body and by their radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "V: serde::Serialize, V::Scalar: serde::Serialize, V::AngularVelocity: serde::Serialize"
+    ))
+)]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>, V::AngularVelocity: serde::Deserialize<'de>"
+    ))
+)]
 pub struct PairGradient<V: Vector> {
     /// By the motion of `a`: the normal, at the closest point of `a`.
     pub a: MotionGradient<V>,
@@ -21,8 +33,8 @@ pub struct PairGradient<V: Vector> {
 impl<V: Vector> PairGradient<V> {
     fn new(normal: V, point_a: V, point_b: V) -> Self {
         Self {
-            a: MotionGradient { translation: normal, point: point_a },
-            b: MotionGradient { translation: -normal, point: point_b },
+            a: MotionGradient::force(normal, point_a),
+            b: MotionGradient::force(-normal, point_b),
             radius: -V::Scalar::ONE,
         }
     }
@@ -30,7 +42,7 @@ impl<V: Vector> PairGradient<V> {
     /// The change per unit of time as both bodies begin to move.
     #[must_use]
     pub fn along(&self, motion_a: RigidMotion<V>, motion_b: RigidMotion<V>) -> V::Scalar {
-        self.a.along(motion_a) + self.b.along(motion_b)
+        motion_a.rate_of(self.a) + motion_b.rate_of(self.b)
     }
 }
 
@@ -67,8 +79,8 @@ impl<V: Vector> Distance<V> {
         match self.normal {
             Some(normal) => PairGradient::new(normal, self.point_a, self.point_b),
             None => PairGradient {
-                a: MotionGradient::zero(self.point_a),
-                b: MotionGradient::zero(self.point_b),
+                a: MotionGradient::force(V::ZERO, self.point_a),
+                b: MotionGradient::force(V::ZERO, self.point_b),
                 radius: V::Scalar::ZERO,
             },
         }

@@ -1,15 +1,26 @@
 //! How the parameter of a hit changes: rays.
 
-use convex_support::Vector;
+use convex_support::{MotionGradient, Vector};
 
-use super::MotionGradient;
-use super::motion_gradient::at_contact;
+use super::at_contact::at_contact;
 use crate::{Ray, RayHit};
 
 /// The derivatives of the parameter λ at which a ray enters a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "V: serde::Serialize, V::Scalar: serde::Serialize, V::AngularVelocity: serde::Serialize"
+    ))
+)]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>, V::AngularVelocity: serde::Deserialize<'de>"
+    ))
+)]
 pub struct RayCastGradient<V: Vector> {
     /// By the pose of the target.
     pub target: MotionGradient<V>,
@@ -29,7 +40,7 @@ impl<V: Vector> RayHit<V> {
     /// derivatives grow as `1/(n·d)` towards grazing rays. At an edge of the target they are one-sided.
     ///
     /// ```
-    /// use convex_support::{Ball, Posed, glam::DVec2};
+    /// use convex_support::{Ball, MotionGradient, Posed, glam::DVec2};
     /// use gjk_raycast::{Ray, RayCastOptions, ray_cast};
     ///
     /// let target = Posed::translated(Ball::new(2.0)?, DVec2::new(10.0, 0.0))?;

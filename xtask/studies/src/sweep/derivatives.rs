@@ -242,7 +242,10 @@ impl Case {
             let Some(hessian) = features.hessian(ma.center, mb.center) else { return f64::INFINITY };
             let [x, y] = [ma, mb].map(|m| (m.velocity, m.angular_velocity));
             let two = V::Scalar::from_f64(2.0);
-            off((hessian.a.along(x, x) + hessian.mixed.along(x, y) * two + hessian.b.along(y, y)).as_f64(), second)
+            off(
+                (hessian.a.between(x, x) + hessian.mixed.between(x, y) * two + hessian.b.between(y, y)).as_f64(),
+                second,
+            )
         });
         Judged::Compared { error, second }
     }
@@ -284,7 +287,7 @@ impl Case {
         let Some(features) = hit.closest_features(&target, ray) else { return Judged::Irregular };
         let Some(gradient) = hit.refined(&features).gradient(ray) else { return Judged::Irregular };
         let along = |by: V, rate: Vec3| dot(coordinates(by), rate);
-        let ours = gradient.target.along(self.changes[1].motion()).as_f64()
+        let ours = self.changes[1].motion().rate_of(gradient.target).as_f64()
             + along(gradient.source, shift.velocity)
             + along(gradient.direction, rates.velocity);
         Judged::of_hit::<V>(ours, time, slopes)
@@ -313,8 +316,8 @@ impl Case {
         let Some(hit) = cast.outcome.hit() else { return Judged::Irregular };
         let Some(features) = hit.closest_features(&a, &b, motion) else { return Judged::Irregular };
         let Some(gradient) = hit.refined(&features).gradient(motion) else { return Judged::Irregular };
-        let ours = gradient.pose_a.along(self.changes[0].motion()).as_f64()
-            + gradient.pose_b.along(self.changes[1].motion()).as_f64()
+        let ours = self.changes[0].motion().rate_of(gradient.pose_a).as_f64()
+            + self.changes[1].motion().rate_of(gradient.pose_b).as_f64()
             + dot(coordinates(gradient.velocity_a), rates[0].velocity)
             + dot(coordinates(gradient.velocity_b), rates[1].velocity);
         Judged::of_hit::<V>(ours, time, slopes)
@@ -341,8 +344,8 @@ impl Case {
         let Some(features) = hit.closest_features(&a, &ma, &b, &mb) else { return Judged::Irregular };
         let hit = hit.refined(&features);
         let Some(gradient) = hit.gradient(&ma, &mb) else { return Judged::Irregular };
-        let mut ours = gradient.pose_a.along(self.changes[0].motion()).as_f64()
-            + gradient.pose_b.along(self.changes[1].motion()).as_f64();
+        let mut ours = self.changes[0].motion().rate_of(gradient.pose_a).as_f64()
+            + self.changes[1].motion().rate_of(gradient.pose_b).as_f64();
         for (motion, contact, rate) in
             [(ma, gradient.contact_a, self.rates[0]), (mb, gradient.contact_b, self.rates[1])]
         {
