@@ -88,12 +88,13 @@ fn certain<S: SupportMap + ?Sized>(
 ) -> Option<RayCast<S::Vector>> {
     let (zero, infinity) = (ScalarOf::<S>::ZERO, ScalarOf::<S>::infinity());
     let is_plain = options.min_lambda <= zero && options.method == CastMethod::Portal && options.max_iterations > 0;
-    // One look for NaN in both, to be refused.
-    if !is_plain || (options.max_lambda + options.tolerance).is_nan() {
+    if !is_plain {
         return None;
     }
+    // Options of NaN are refused by the search.
     let missed = |axis| (Outcome::Miss(Miss { axis }), [infinity; 2]);
     let (outcome, [lower, upper]) = match target.certain_crossing(ray.source, ray.direction, zero, zero)? {
+        CertainCrossing::Misses(_) if (options.max_lambda + options.tolerance).is_nan() => return None,
         CertainCrossing::Misses(axis) => {
             // What is left of it along the ray would count far from here.
             let along = axis.dot(ray.direction) / ray.direction.length_squared();
@@ -101,10 +102,10 @@ fn certain<S: SupportMap + ?Sized>(
         }
         CertainCrossing::Enters { entry, bounds, normal } => {
             let [earliest, latest] = bounds;
-            let is_after_end = entry > options.max_lambda;
+            let is_after_end = !(entry <= options.max_lambda);
             // By rounding alone, the source may be in the target, or the end of the ray where it enters. NaN and infinity tell nothing.
             let begin = if is_after_end { options.max_lambda } else { zero };
-            if !(earliest > begin && latest < infinity) {
+            if !(earliest > begin && latest + options.tolerance < infinity) {
                 return None;
             }
             if is_after_end {
