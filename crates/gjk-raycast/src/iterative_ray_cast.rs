@@ -33,7 +33,8 @@ use crate::{Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, 
 /// own point closest to that one, so that a far source loses only its own digits.
 ///
 /// # Errors
-/// [`RayCastError`] if the direction is zero, a coordinate not finite, an option NaN, or a closest point not known.
+/// [`RayCastError`] if the direction is zero, a coordinate not finite, an end of the ray NaN, or a closest point not
+/// known.
 pub fn iterative_ray_cast<V: Vector>(
     closest_point: impl FnMut(V) -> Option<V>,
     ray: Ray<V>,

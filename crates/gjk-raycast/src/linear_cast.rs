@@ -20,9 +20,9 @@ const NEAR_OF_FAR: f64 = 4.0;
 
 /// The error of the limits of a cast of bodies that are none. Within an infinite target distance of one another are
 /// any two bodies at any time, but a body swept by that is none.
-pub(crate) fn check_limits<S: Scalar>([max_time, tolerance, target_distance]: [S; 3]) -> Result<(), RayCastError> {
+pub(crate) fn check_limits<S: Scalar>(max_time: S, target_distance: S) -> Result<(), RayCastError> {
     let target = if target_distance < S::infinity() { target_distance } else { S::nan() };
-    check_numbers([("max_time", max_time), ("tolerance", tolerance), ("target_distance", target)])
+    check_numbers([("max_time", max_time), ("target_distance", target)])
 }
 
 /// The velocities of two shapes, in units of length per unit of time.
@@ -40,7 +40,7 @@ impl<V: Vector> Motion<V> {
     pub(crate) fn check(&self, options: &LinearCastOptions<V>) -> Result<(), RayCastError> {
         check_finite("velocity_a", self.velocity_a)?;
         check_finite("velocity_b", self.velocity_b)?;
-        check_limits([options.max_time, options.tolerance, options.target_distance])
+        check_limits(options.max_time, options.target_distance)
     }
 }
 
@@ -88,8 +88,8 @@ impl<V: Vector> Motion<V> {
 /// certified in the same way.
 ///
 /// # Errors
-/// [`RayCastError::NonFinite`] if a velocity is not finite, the target distance is NaN or infinite, or another option
-/// NaN.
+/// [`RayCastError::NonFinite`] if a velocity is not finite, the target distance is NaN or infinite, or the end of the
+/// motion NaN.
 #[inline]
 pub fn linear_cast<A, B>(
     a: &A,

@@ -212,7 +212,7 @@ pub struct RayCastOptions<V: Vector> {
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub max_lambda: V::Scalar,
     /// How far along the ray the hit may stay uncertain, relative to the size of the target. A bracket at the level of
-    /// rounding always ends the iteration. Default: 0.
+    /// rounding always ends the iteration. A negative value and NaN are taken for zero. Default: 0.
     pub tolerance: V::Scalar,
     /// The iterations after which to give up. Default: 200.
     pub max_iterations: usize,
@@ -279,7 +279,7 @@ pub struct LinearCastOptions<V: Vector> {
     /// [`StartInContact::IfDeeper`]. Default: [`StartInContact::Report`].
     pub start_in_contact: StartInContact,
     /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
-    /// of rounding always ends the iteration. Default: 0.
+    /// of rounding always ends the iteration. A negative value and NaN are taken for zero. Default: 0.
     pub tolerance: V::Scalar,
     /// The iterations after which to give up. Default: 200.
     pub max_iterations: usize,

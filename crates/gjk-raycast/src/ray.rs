@@ -43,13 +43,12 @@ impl<V: Vector> Ray<V> {
         if self.direction == V::ZERO {
             return Err(RayCastError::ZeroDirection);
         }
-        let RayCastOptions { min_lambda, max_lambda, tolerance, .. } = *options;
-        check_numbers([("min_lambda", min_lambda), ("max_lambda", max_lambda), ("tolerance", tolerance)])
+        check_numbers([("min_lambda", options.min_lambda), ("max_lambda", options.max_lambda)])
     }
 }
 
 /// The error of options that are NaN, in which every comparison would be as false as its opposite.
-pub(crate) fn check_numbers<S: Scalar>(options: [(&'static str, S); 3]) -> Result<(), RayCastError> {
+pub(crate) fn check_numbers<S: Scalar>(options: [(&'static str, S); 2]) -> Result<(), RayCastError> {
     match options.iter().find(|(_, value)| value.is_nan()) {
         Some(&(parameter, _)) => Err(RayCastError::NonFinite { parameter, index: 0 }),
         None => Ok(()),

@@ -41,7 +41,7 @@ type ScalarOf<S> = <<S as SupportMap>::Vector as Vector>::Scalar;
 /// source.
 ///
 /// # Errors
-/// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
+/// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
 #[inline]
 pub fn ray_cast<S: SupportMap + ?Sized>(
     target: &S,
@@ -58,7 +58,7 @@ pub fn ray_cast<S: SupportMap + ?Sized>(
 /// [`ray_cast`], showing an observer every iterate.
 ///
 /// # Errors
-/// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
+/// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
 #[inline]
 pub fn ray_cast_with<S: SupportMap + ?Sized>(
     target: &S,
@@ -91,10 +91,10 @@ fn certain<S: SupportMap + ?Sized>(
     if !is_plain {
         return None;
     }
-    // Options of NaN are refused by the search.
     let missed = |axis| (Outcome::Miss(Miss { axis }), [infinity; 2]);
     let (outcome, [lower, upper]) = match target.certain_crossing(ray.source, ray.direction, zero, zero)? {
-        CertainCrossing::Misses(_) if (options.max_lambda + options.tolerance).is_nan() => return None,
+        // To be refused.
+        CertainCrossing::Misses(_) if options.max_lambda.is_nan() => return None,
         CertainCrossing::Misses(axis) => {
             // What is left of it along the ray would count far from here.
             let along = axis.dot(ray.direction) / ray.direction.length_squared();
@@ -105,7 +105,7 @@ fn certain<S: SupportMap + ?Sized>(
             let is_after_end = !(entry <= options.max_lambda);
             // By rounding alone, the source may be in the target, or the end of the ray where it enters. NaN and infinity tell nothing.
             let begin = if is_after_end { options.max_lambda } else { zero };
-            if !(earliest > begin && latest + options.tolerance < infinity) {
+            if !(earliest > begin && latest < infinity) {
                 return None;
             }
             if is_after_end {

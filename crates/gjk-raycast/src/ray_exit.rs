@@ -30,7 +30,7 @@ use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, S
 /// - The [`axis`](RayCastOptions::axis) of the options is a guess of the normal at the exit.
 ///
 /// # Errors
-/// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
+/// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
 pub fn ray_exit<S: SupportMap + ?Sized>(
     target: &S,
     ray: Ray<S::Vector>,

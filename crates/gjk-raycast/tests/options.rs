@@ -42,11 +42,7 @@ fn refused<T>(parameter: &'static str) -> Result<T, RayCastError> {
 #[test]
 fn casts_refuse_options_of_nan() {
     let with = RayCastOptions::new;
-    let rays = [
-        ("min_lambda", with().with_min_lambda(NAN)),
-        ("max_lambda", with().with_max_lambda(NAN)),
-        ("tolerance", with().with_tolerance(NAN)),
-    ];
+    let rays = [("min_lambda", with().with_min_lambda(NAN)), ("max_lambda", with().with_max_lambda(NAN))];
     for (parameter, options) in rays {
         for ray in [ALONG, BESIDE] {
             let ball = Ball::new(1.0).expect("valid");
@@ -66,7 +62,6 @@ fn casts_refuse_options_of_nan() {
     let with = LinearCastOptions::new;
     let straight = [
         ("max_time", with().with_max_time(NAN)),
-        ("tolerance", with().with_tolerance(NAN)),
         ("target_distance", with().with_target_distance(NAN)),
         ("target_distance", with().with_target_distance(f64::INFINITY)),
     ];
@@ -162,13 +157,23 @@ fn distances_do_not_depend_on_options_that_say_nothing() {
     }
 }
 
-/// A guess that is no direction is no guess in a cast either.
+/// A guess that is no direction is no guess in a cast either, and a tolerance below zero or of NaN is zero.
 #[test]
-fn casts_do_not_depend_on_axes_that_are_none() {
+fn casts_do_not_depend_on_axes_and_tolerances_that_are_none() {
+    let motion = Motion { velocity_a: DVec3::X, velocity_b: DVec3::ZERO };
+    for tolerance in [-1.0, NAN] {
+        for target in [block(5.0), block(0.0)] {
+            let cast = |options| ray_cast(&target, ALONG, options).expect("numbers");
+            let plain = cast(RayCastOptions::new());
+            assert_eq!(cast(RayCastOptions::new().with_tolerance(tolerance)), plain, "{tolerance}");
+            let cast = |options| linear_cast(&rounded(0.0), &target, motion, options).expect("numbers");
+            let plain = cast(LinearCastOptions::new());
+            assert_eq!(cast(LinearCastOptions::new().with_tolerance(tolerance)), plain, "{tolerance}");
+        }
+    }
     for axis in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY, DVec3::splat(1e-320), DVec3::splat(1e300)] {
         let ray = ray_cast(&block(5.0), ALONG, RayCastOptions::new().with_axis(axis)).expect("numbers");
         assert!(matches!(ray.outcome, Outcome::Hit(hit) if hit.lambda == 4.0), "{axis}: {ray:?}");
-        let motion = Motion { velocity_a: DVec3::X, velocity_b: DVec3::ZERO };
         let options = LinearCastOptions::new().with_axis(axis);
         let straight = linear_cast(&block(0.0), &block(5.0), motion, options).expect("numbers");
         assert!(matches!(straight.outcome, Outcome::Hit(hit) if hit.time == 3.0), "{axis}: {straight:?}");

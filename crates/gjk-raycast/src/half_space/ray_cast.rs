@@ -15,7 +15,7 @@ impl<V: Vector> HalfSpace<V> {
     /// themselves, and so is λ.
     ///
     /// # Errors
-    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
+    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
     pub fn ray_cast(&self, ray: Ray<V>, options: RayCastOptions<V>) -> Result<RayCast<V>, RayCastError> {
         ray.check(&options)?;
         let zero = V::Scalar::ZERO;

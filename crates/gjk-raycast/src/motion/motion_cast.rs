@@ -12,7 +12,7 @@ use super::rigid_motion::RigidMotion;
 use super::trajectory::Trajectory;
 use crate::error::RayCastError;
 use crate::linear_cast::check_limits;
-use crate::ray::check_finite;
+use crate::ray::{check_finite, check_numbers};
 use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, linear_cast};
 
 /// When two moving bodies first touch, and where.
@@ -137,7 +137,8 @@ pub(crate) fn of_linear_cast<V: Vector>(cast: LinearCast<V>, max_time: V::Scalar
 /// The options, if they are numbers, with what is below zero taken for zero.
 pub(crate) fn checked<V: Vector>(options: MotionCastOptions<V>) -> Result<MotionCastOptions<V>, RayCastError> {
     let MotionCastOptions { max_time, tolerance, target_distance, .. } = options;
-    check_limits([max_time, tolerance, target_distance])?;
+    check_numbers([("max_time", max_time), ("tolerance", tolerance)])?;
+    check_limits(max_time, target_distance)?;
     let zero = V::Scalar::ZERO;
     let (max_time, target_distance) = (max_time.max(zero), target_distance.max(zero));
     Ok(MotionCastOptions { max_time, target_distance, ..options })

@@ -18,7 +18,7 @@ impl<S: SupportMap> Scene<S> {
     /// The first body that the ray hits: the least λ of [`ray_cast`](crate::ray_cast) for each body.
     ///
     /// # Errors
-    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
+    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
     pub fn ray_cast(
         &self,
         ray: Ray<S::Vector>,
@@ -30,7 +30,7 @@ impl<S: SupportMap> Scene<S> {
     /// All bodies that the ray hits, in the order of λ and then of their indices, into `hits`, which is emptied first.
     ///
     /// # Errors
-    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
+    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
     pub fn ray_cast_all(
         &self,
         ray: Ray<S::Vector>,
@@ -43,7 +43,7 @@ impl<S: SupportMap> Scene<S> {
     /// Whether the ray hits any body: a shadow ray.
     ///
     /// # Errors
-    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
+    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
     pub fn any_hit(
         &self,
         ray: Ray<S::Vector>,
@@ -86,7 +86,7 @@ impl<S: SupportMap> Among<'_, S> {
     /// [`Scene::ray_cast`] among these bodies.
     ///
     /// # Errors
-    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
+    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
     pub fn ray_cast(
         &self,
         ray: Ray<S::Vector>,
@@ -99,7 +99,7 @@ impl<S: SupportMap> Among<'_, S> {
     /// [`Scene::ray_cast_all`] among these bodies.
     ///
     /// # Errors
-    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
+    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
     pub fn ray_cast_all(
         &self,
         ray: Ray<S::Vector>,
@@ -127,7 +127,7 @@ impl<S: SupportMap> Among<'_, S> {
     /// [`Scene::any_hit`] among these bodies.
     ///
     /// # Errors
-    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an option NaN.
+    /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
     pub fn any_hit(
         &self,
         ray: Ray<S::Vector>,
