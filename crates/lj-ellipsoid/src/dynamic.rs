@@ -108,7 +108,7 @@ impl EllipsoidDyn {
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EnclosingDyn {
-    /// The ellipsoid. It contains every input point as evaluated in `f64`.
+    /// The ellipsoid. It is proved to contain every input point, and does as evaluated in `f64`.
     pub ellipsoid: EllipsoidDyn,
     /// A certified bound on ln det X* − ln det X, rounding included; never negative.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::gap"))]

@@ -84,8 +84,8 @@ impl<const N: usize> Ellipsoid<N> {
     }
 
     /// max direction·x over the ellipsoid, = direction·c + |diag(a)·R·direction|: how far it reaches along `direction`,
-    /// which need not be of unit length. Its sums are in twice the precision, so that it is right to a few roundings however thin
-    /// the ellipsoid.
+    /// which need not be of unit length. Its sums are in twice the precision, so that it is right to a few roundings
+    /// however thin the ellipsoid.
     #[must_use]
     pub fn support_value(&self, direction: impl Into<[f64; N]>) -> f64 {
         support_value(&self.center, self.axes.as_flattened(), &self.semi_axes, &direction.into())
@@ -173,7 +173,8 @@ pub(crate) fn radius_at(center: &[f64], axes: &[f64], semi_axes: &[f64], x: &[f6
     square.sqrt()
 }
 
-/// No less than |diag(1/a)·R·(x − c)| over the semi-axes that are not zero, the sums taken exactly of the doubles as they are.
+/// No less than |diag(1/a)·R·(x − c)| over the semi-axes that are not zero, the sums taken exactly of the doubles as
+/// they are.
 ///
 /// As in [`reach_at_most`], with a quotient more.
 pub(crate) fn radius_at_most(center: &[f64], axes: &[f64], semi_axes: &[f64], x: &[f64]) -> f64 {
@@ -189,10 +190,11 @@ pub(crate) fn radius_at_most(center: &[f64], axes: &[f64], semi_axes: &[f64], x:
     square.sqrt() * (1.0 + (n as f64 + 6.0) * f64::EPSILON)
 }
 
-/// direction·c + |diag(a)·R·direction|. What is promised of half-spaces as evaluated in `f64` is promised of this very evaluation.
+/// direction·c + |diag(a)·R·direction|. What is promised of half-spaces as evaluated in `f64` is promised of this very
+/// evaluation.
 ///
-/// Of a thin turned ellipsoid a long axis along the direction and the direction along a long axis are differences of large products: a
-/// plain sum would lose 1e-16 of the length of the ellipsoid, and with it all of its thickness.
+/// Of a thin turned ellipsoid a long axis along the direction and the direction along a long axis are differences of
+/// large products: a plain sum would lose 1e-16 of the length of the ellipsoid, and with it all of its thickness.
 pub(crate) fn support_value(center: &[f64], axes: &[f64], semi_axes: &[f64], direction: &[f64]) -> f64 {
     let reach = square_of_reach(axes, semi_axes, direction, |(along, _)| along).sqrt();
     let to_center = direction.iter().copied().zip(center.iter().copied());
@@ -201,14 +203,16 @@ pub(crate) fn support_value(center: &[f64], axes: &[f64], semi_axes: &[f64], dir
 
 /// No less than |diag(a)·R·direction|, the sums taken exactly of the doubles as they are.
 ///
-/// Squares, their sum and the root lose less than n + 4 roundings, and a square that underflows less than the smallest number.
+/// Squares, their sum and the root lose less than n + 4 roundings, and a square that underflows less than the smallest
+/// number.
 pub(crate) fn reach_at_most(axes: &[f64], semi_axes: &[f64], direction: &[f64]) -> f64 {
     let n = direction.len() as f64;
     let square = square_of_reach(axes, semi_axes, direction, |(along, error)| along.abs() + error);
     (square + n * f64::from_bits(1)).sqrt() * (1.0 + (n + 4.0) * f64::EPSILON)
 }
 
-/// |diag(a)·R·direction|² of components in twice the precision, each as `component` makes it of the sum and the bound on its error.
+/// |diag(a)·R·direction|² of components in twice the precision, each as `component` makes it of the sum and the bound on
+/// its error.
 fn square_of_reach(axes: &[f64], semi_axes: &[f64], direction: &[f64], component: impl Fn((f64, f64)) -> f64) -> f64 {
     let along = |axis: &[f64]| twofold::dot_with_error(axis.iter().copied().zip(direction.iter().copied()));
     let components = axes.chunks_exact(direction.len()).zip(semi_axes).map(|(axis, a)| a * component(along(axis)));

@@ -70,14 +70,32 @@ pub enum InscribedError {
         /// Which half-space.
         index: usize,
     },
-    /// The normals do not positively span the space: the half-spaces have no bounded intersection. (It may be empty: that
-    /// is not looked into.)
+    /// The normals do not positively span the space: the half-spaces have no bounded intersection, which is certain.
+    /// (It may be empty: that is not looked into.)
     #[error("the intersection of the half-spaces is unbounded")]
     Unbounded,
-    /// The intersection has no interior point whose coordinates are doubles: it is empty, flat, or thinner than the spacing of
-    /// doubles where it lies (or, about the origin, than 1e-154).
-    #[error("the intersection of the half-spaces is empty, flat, or too thin to hold an ellipsoid in doubles")]
+    /// Doubles do not tell whether, or how far away, the half-spaces close: there is a direction along which the
+    /// normals have hardly anything of their length. Axes in doubles are turned by 1e-16 of their length, so that no
+    /// body is told that is 1e16 times as long as thick, unless it lies along the coordinates.
+    #[error(
+        "the intersection of the half-spaces is unbounded, or so long that doubles do not tell (a ratio of {ratio:e})"
+    )]
+    NearlyUnbounded {
+        /// What the normals have along that direction, over what they have along others; 0 where it is nothing but
+        /// rounding.
+        ratio: f64,
+    },
+    /// The intersection has no interior: it is empty, or flat.
+    #[error("the intersection of the half-spaces is empty or flat")]
     EmptyInterior,
+    /// No point with coordinates in doubles is known inside, or no ellipsoid with axes in doubles: the intersection is
+    /// empty or flat, or thinner than the spacing of doubles where it lies (about the origin, than 1e-16 of its length,
+    /// or 1e-154).
+    #[error("the intersection of the half-spaces is empty, or too thin for doubles (a ratio of {ratio:e})")]
+    NearlyEmpty {
+        /// How thin it is at least: the shortest over the longest axis of the last body known around it.
+        ratio: f64,
+    },
     /// All points lie in an affine subspace of `rank` dimensions, up to rounding: their hull has no interior.
     #[error("the points are flat: they span {rank} of {dimension} dimensions")]
     Flat {

@@ -89,8 +89,9 @@ fn assert_like_cold<const N: usize>(points: &mut MovingPoints<N>, options: Enclo
     rank(cold.ellipsoid.semi_axes())
 }
 
-/// The radius of a point in a flat ellipsoid is measured within the hull. A point far off the plane, above the middle of the disc, therefore
-/// counted as well inside, and the disc stayed: semi-axes 2.83, 1.41 and 0, converged, where 3.75, 3 and 1.5 are due.
+/// The radius of a point in a flat ellipsoid is measured within the hull. A point far off the plane, above the middle
+/// of the disc, therefore counted as well inside, and the disc stayed: semi-axes 2.83, 1.41 and 0, converged, where
+/// 3.75, 3 and 1.5 are due.
 #[test]
 fn a_point_across_a_flat_hull_is_seen() {
     let options = TIGHT.with_flat(FlatPolicy::AffineHull);
@@ -110,7 +111,8 @@ fn a_point_across_a_flat_hull_is_seen() {
     assert_eq!(assert_like_cold(&mut points, options), 3, "moved out of the plane");
 }
 
-/// Points on a small grid come, go and move in and out of hulls of every dimension; now and then all are put into one line or plane.
+/// Points on a small grid come, go and move in and out of hulls of every dimension; now and then all are put into one
+/// line or plane.
 fn in_and_out_of_hulls<const N: usize>(seed: u64) {
     let options = TIGHT.with_flat(FlatPolicy::AffineHull);
     let mut rng = Rng(seed);

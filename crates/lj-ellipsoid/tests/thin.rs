@@ -314,10 +314,11 @@ fn a_bounded_needle_is_not_called_unbounded() {
     }
 }
 
-/// {|kx + (k+1)y| ≤ 1, |(k−1)x + ky| ≤ 1} is the image of a square by an integer matrix of determinant one: of the largest ellipse in it
-/// ln det X* = 0, and of the least around it −2·ln 2. So a smaller or larger number is itself the proof that an ellipse sticks out, or leaves a corner
-/// outside. At k = 8e6 that was −0.0191 with a gap of 0.0 and `Converged`: containment was looked at in plain arithmetic, which loses 1e-16 of the length
-/// 2k of terms that cancel to the thickness 1/2k, and the bound on ln det X* that came out below what was returned was clamped to it.
+/// {|kx + (k+1)y| ≤ 1, |(k−1)x + ky| ≤ 1} is the image of a square by an integer matrix of determinant one: of the
+/// largest ellipse in it ln det X* = 0, and of the least around it −2·ln 2. So a smaller or larger number is itself the
+/// proof that an ellipse sticks out, or leaves a corner outside. At k = 8e6 that was −0.0191 with a gap of 0.0 and
+/// `Converged`: containment was looked at in plain arithmetic, which loses 1e-16 of the length 2k of terms that cancel
+/// to the thickness 1/2k, and the bound on ln det X* that came out below what was returned was clamped to it.
 #[test]
 fn what_is_inside_or_around_a_parallelogram_is_proved_to_be() {
     for k in [1.0, 2.0, 13.0, 110.0, 924.0, 5756.0, 85628.0, 3e6, 6365106.0, 8e6] {
@@ -338,4 +339,72 @@ fn what_is_inside_or_around_a_parallelogram_is_proved_to_be() {
         let (missing, gap) = (-4f64.ln() - outer.ellipsoid.log_det(), outer.log_det_gap);
         assert!((-U..=gap).contains(&missing), "k = {k}: ln det X falls short by {missing:e}, gap {gap:e}");
     }
+}
+
+/// Bounded bodies that were called unbounded: the columns of their normals depend on one another but for 1e-15 or less,
+/// so that what orthogonalisation left of the last was rounding. From coordinates stretched along it, products with the
+/// normals as given tell how far away the needle ends.
+#[test]
+fn needles_as_long_as_doubles_can_tell() {
+    for k in [1e7, 3e7, 1e8] {
+        let [a, b] = [[k, k + 1.0], [k - 1.0, k]];
+        let side = |normal: [f64; 2]| HalfSpace { normal, offset: 1.0 };
+        let sides = [side(a), side(a.map(|x| -x)), side(b), side(b.map(|x| -x))];
+        let answer = inscribed(&sides, InscribedOptions::new()).expect("a parallelogram");
+        let log_det = answer.ellipsoid.log_det();
+        assert!((0.0..=answer.log_det_gap).contains(&log_det), "{log_det:e}, gap {:e}", answer.log_det_gap);
+    }
+    // 1e15 times as long as thick, from whole numbers.
+    let corners = [[37219, 72491, -21881], [-32074, -88252, -82775], [57034, -11760, -74227], [57034, -11760, -74226]];
+    let sides: Vec<HalfSpace<3>> = (0..4)
+        .map(|apex| {
+            let [p, q, r] = std::array::from_fn(|i| corners[(apex + 1 + i) % 4].map(i64::from));
+            let (u, v): ([i64; 3], [i64; 3]) =
+                (std::array::from_fn(|i| q[i] - p[i]), std::array::from_fn(|i| r[i] - p[i]));
+            let along = |n: [i64; 3], x: [i64; 3]| -> i64 { n.iter().zip(x).map(|(n, x)| n * x).sum() };
+            let mut n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+            if along(n, corners[apex].map(i64::from)) > along(n, p) {
+                n = n.map(|x| -x);
+            }
+            HalfSpace { normal: n.map(|x| x as f64), offset: along(n, p) as f64 }
+        })
+        .collect();
+    let answer = inscribed(&sides, InscribedOptions::new()).expect("a simplex");
+    assert_within(&answer, &sides);
+}
+
+/// What is refused says how near to nothing it is, and is called unbounded or empty only where that is certain.
+#[test]
+fn refusals_name_the_number() {
+    let refused = |sides: &[HalfSpace<3>]| inscribed(sides, InscribedOptions::new()).unwrap_err();
+    let side = |normal: [f64; 3], offset: f64| HalfSpace { normal, offset };
+    // A prism along (1, 1, -3): whole numbers tell that it is open.
+    let sides = [[3.0, 0.0, 1.0], [0.0, 3.0, 1.0], [-3.0, -3.0, -2.0], [1.0, -1.0, 0.0]];
+    assert_eq!(refused(&sides.map(|normal| side(normal, 1.0))), InscribedError::Unbounded);
+    // Turned, its rounded normals may be open for certain, or close so far away that no ellipsoid in doubles tells.
+    let mut rng = Rng(8);
+    for _ in 0..20 {
+        let rotation = rng.rotation::<3>();
+        match inscribed(&sides.map(|normal| side(apply(&rotation, normal), 1.0)), InscribedOptions::new()) {
+            Err(InscribedError::NearlyUnbounded { ratio } | InscribedError::NearlyEmpty { ratio }) => {
+                assert!((0.0..1e-12).contains(&ratio), "{ratio:e}");
+            }
+            Err(other) => assert_eq!(other, InscribedError::Unbounded),
+            Ok(answer) => assert!(answer.ellipsoid.semi_axes()[0] > 1e14, "{:?}", answer.ellipsoid),
+        }
+    }
+    // A simplex shrunk to a point, and one turned inside out.
+    let simplex = |size: f64| {
+        [
+            side([-1.0, 0.0, 0.0], 0.0),
+            side([0.0, -1.0, 0.0], 0.0),
+            side([0.0, 0.0, -1.0], 0.0),
+            side([1.0, 1.0, 1.0], size),
+        ]
+    };
+    match refused(&simplex(0.0)) {
+        InscribedError::NearlyEmpty { ratio } => assert!((0.0..=1.0).contains(&ratio), "{ratio:e}"),
+        other => assert_eq!(other, InscribedError::EmptyInterior),
+    }
+    assert_eq!(refused(&simplex(-1.0)), InscribedError::EmptyInterior);
 }

@@ -69,8 +69,10 @@ fn problem(why: InscribedError) -> Problem {
     let kind = match why {
         InscribedError::Empty | InscribedError::ZeroNormal { .. } => Kind::InvalidShape,
         InscribedError::NonFinite { .. } | InscribedError::OutOfRange => Kind::NonFinite,
-        InscribedError::Unbounded => Kind::Unbounded,
-        InscribedError::EmptyInterior | InscribedError::Flat { .. } => Kind::DegeneratePoints,
+        InscribedError::Unbounded | InscribedError::NearlyUnbounded { .. } => Kind::Unbounded,
+        InscribedError::EmptyInterior | InscribedError::NearlyEmpty { .. } | InscribedError::Flat { .. } => {
+            Kind::DegeneratePoints
+        }
         InscribedError::HullDimension { .. } => Kind::DimensionMismatch,
         _ => Kind::NotConverged,
     };

@@ -32,7 +32,7 @@ use crate::weight::Weight;
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Enclosing<const N: usize> {
-    /// The ellipsoid. It contains every input point as evaluated in `f64`.
+    /// The ellipsoid. It is proved to contain every input point, and does as evaluated in `f64`.
     pub ellipsoid: Ellipsoid<N>,
     /// A certified bound: ln det X of the true optimum exceeds that of `ellipsoid` by at most this, rounding included.
     /// It is twice the bound on the excess of the log-volume, [`log_volume_gap`](Self::log_volume_gap). Never negative.

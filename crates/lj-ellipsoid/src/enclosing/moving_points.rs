@@ -18,8 +18,8 @@ use crate::points::PointSlice;
 /// starts from the old ellipsoid and its weights, which saves passes of a cold start.
 ///
 /// Whether the points are flat is decided as in [`enclosing()`](crate::enclosing()). An ellipsoid within an affine hull
-/// ([`FlatPolicy::AffineHull`](crate::FlatPolicy::AffineHull)), or one so thin that rounding might count for flatness, says nothing about points
-/// across it, so that after it every change is solved.
+/// ([`FlatPolicy::AffineHull`](crate::FlatPolicy::AffineHull)), or one so thin that rounding might count for flatness,
+/// says nothing about points across it, so that after it every change is solved.
 ///
 /// # Examples
 /// ```

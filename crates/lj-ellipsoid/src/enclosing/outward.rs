@@ -1,4 +1,5 @@
-//! Outward rounding: how far the points reach in an ellipsoid, and the growth that is proved to hold every one, and does as evaluated in `f64`.
+//! Outward rounding: how far the points reach in an ellipsoid, and the growth that is proved to hold every one, and
+//! does as evaluated in `f64`.
 
 use std::ops::Range;
 
@@ -69,8 +70,8 @@ struct Evaluation<'a, N: Dimension> {
 }
 
 impl<N: Dimension> Evaluation<'_, N> {
-    /// |T·e|, and a bound on the rounding of its evaluation: of a component n + 2 roundings (T and e are themselves rounded), and of
-    /// the length as many again.
+    /// |T·e|, and a bound on the rounding of its evaluation: of a component n + 2 roundings (T and e are themselves
+    /// rounded), and of the length as many again.
     fn radius(&self, e: &[f64]) -> (f64, f64) {
         let gamma = (2 * self.n + 5) as f64 * UNIT_ROUNDOFF;
         let (mut square, mut error) = (0.0, 0.0);
@@ -87,8 +88,8 @@ impl<N: Dimension> Evaluation<'_, N> {
         (square.sqrt(), error.sqrt())
     }
 
-    /// eᵀXe, and a bound on the rounding of its evaluation: n² terms, two roundings of the products, two of the factors e and one of X
-    /// when it is scaled.
+    /// eᵀXe, and a bound on the rounding of its evaluation: n² terms, two roundings of the products, two of the factors
+    /// e and one of X when it is scaled.
     fn level(&self, e: &[f64]) -> (f64, f64) {
         let (mut value, mut size) = (0.0, 0.0);
         for i in 0..self.n {
@@ -138,7 +139,8 @@ pub(crate) fn reach<P: Points>(points: &P, rank: P::Dim, shape: &Shape<P::Dim>, 
         (axes, matrix, proved) = (0.0, 0.0, 0.0);
         for &i in leaders {
             points.read(i, v.as_mut());
-            // Where terms of the sums do not cancel, a bound on their rounding is as good as sums in twice the precision.
+            // Where terms of the sums do not cancel, a bound on their rounding is as good as sums in twice the
+            // precision.
             let (center, axes_of, semi_axes) = (frame.origin.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());
             if error > SMALL {
                 proved = proved.max(radius_at_most(center, axes_of, semi_axes, v.as_ref()));
@@ -199,11 +201,11 @@ fn furthest<P: Points>(
     }
 }
 
-/// Scales the semi-axes so that the furthest point touches, and answers by how much: the least that is proved to hold every point, and
-/// holds it as evaluated by [`radius_at`].
+/// Scales the semi-axes so that the furthest point touches, and answers by how much: the least that is proved to hold
+/// every point, and holds it as evaluated by [`radius_at`].
 ///
-/// In a thin ellipsoid that evaluation may be larger than the truth: then once more. Where points are many, or rounding does not settle, the scaling is what
-/// holds them in any order of evaluation.
+/// In a thin ellipsoid that evaluation may be larger than the truth: then once more. Where points are many, or rounding
+/// does not settle, the scaling is what holds them in any order of evaluation.
 pub(crate) fn touch<P: Points>(points: &P, shape: &mut Shape<P::Dim>, reach: &Reach<P::Dim>) -> f64 {
     let mut v = points.dim().zero();
     // The products with the scale are rounded, by it or by the semi-axes.

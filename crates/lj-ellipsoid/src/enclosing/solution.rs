@@ -117,8 +117,8 @@ pub(crate) fn finish<P: Points>(
     // ln det X* − ln det X: the transformation into the frame cancels, and with it its size.
     let logarithms: f64 = semi_axes.iter().map(|a| a.ln().abs()).sum();
     let log_det_gap = certificate.log_det_bound + 2.0 * r as f64 * growth.ln() + 4.0 * UNIT_ROUNDOFF * logarithms;
-    // The points are proved to be inside, and the bound is one on all ellipsoids that hold them: a difference below zero, or none, would
-    // prove only that numbers left the range in which the errors are bounded.
+    // The points are proved to be inside, and the bound is one on all ellipsoids that hold them: a difference below
+    // zero, or none, would prove only that numbers left the range in which the errors are bounded.
     let log_det_gap = if log_det_gap >= 0.0 { log_det_gap } else { f64::INFINITY };
     let status = match ended {
         Status::IterationLimit if log_det_gap > epsilon => Status::IterationLimit,

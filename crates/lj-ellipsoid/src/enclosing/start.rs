@@ -196,8 +196,9 @@ pub(crate) fn start<P: Points>(points: &P, flat_tolerance: f64) -> Result<Start<
 
 /// Whether [`start`] finds the full rank of whatever points have weights that prove this ellipsoid nearly optimal.
 ///
-/// With weights of scatter S the points spread along any d by 2√(dᵀSd) at least, and the ellipsoid reaches √(κ·dᵀSd), κ ≈ N. The spread below
-/// which d is a normal is a sum Σ|dₖ|Wₖ ≤ |diag(a)·R·d|·ΣWₖ|diag(1/a)·R·eₖ|. So ΣWₖ|diag(1/a)·R·eₖ| < 2/√κ is enough; half of 2/N is asked for.
+/// With weights of scatter S the points spread along any d by 2√(dᵀSd) at least, and the ellipsoid reaches √(κ·dᵀSd), κ
+/// ≈ N. The spread below which d is a normal is a sum Σ|dₖ|Wₖ ≤ |diag(a)·R·d|·ΣWₖ|diag(1/a)·R·eₖ|. So
+/// ΣWₖ|diag(1/a)·R·eₖ| < 2/√κ is enough; half of 2/N is asked for.
 pub(crate) fn surely_spans<N: Dimension>(shape: &Shape<N>, flat_tolerance: f64) -> bool {
     let (center, axes, semi_axes) = (shape.center.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());
     let n = center.len();

@@ -1,95 +1,74 @@
 //! Is an intersection of half-spaces bounded?
 
-use crate::numerics::linalg::dot;
+use crate::inscribed::coordinates::Rows;
+use crate::numerics::dimension::Dimension;
+use crate::numerics::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
 
-/// Whether the rows, of unit length, which span the space, do so with non-negative combinations: then no direction z has aᵢ·z ≤ 0 for all.
-///
-/// By Stiemke's lemma this is so exactly if −g, g = Σaᵢ, is a non-negative combination of the rows. The residual of
-/// the non-negative least-squares problem (Lawson and Hanson) is otherwise such a direction.
-pub(crate) fn positively_spans(n: usize, rows: &[f64]) -> bool {
-    let m = rows.len() / n;
-    let unit = |i: usize| &rows[i * n..(i + 1) * n];
-    let mut target = vec![0.0; n];
-    for i in 0..m {
-        target.iter_mut().zip(unit(i)).for_each(|(t, x)| *t -= x);
-    }
-    let tolerance = 1e-12 * m as f64;
-    let mut passive: Vec<usize> = Vec::new();
-    let mut weights: Vec<f64> = Vec::new();
-    // Whether the weights are those of the least squares, all positive.
-    let mut is_solved = false;
-    for _ in 0..20 * (m + n) {
-        let mut residual = target.clone();
-        for (&i, w) in passive.iter().zip(&weights) {
-            residual.iter_mut().zip(unit(i)).for_each(|(r, x)| *r -= w * x);
-        }
-        let length = dot(&residual, &residual).sqrt();
-        if length <= tolerance {
-            return true;
-        }
-        let best = (0..m)
-            .filter(|i| !passive.contains(i))
-            .map(|i| (i, dot(unit(i), &residual)))
-            .fold((usize::MAX, 1e-13 * length), |best, now| if now.1 > best.1 { now } else { best });
-        if is_solved && passive.len() == n {
-            // Independent rows that span the space combine to anything: what is left is the rounding of large weights, as of a needle.
-            return true;
-        }
-        if best.0 == usize::MAX || passive.len() == n {
-            return false;
-        }
-        is_solved = false;
-        passive.push(best.0);
-        weights.push(0.0);
-        while let Some(solution) = least_squares(&passive.iter().map(|&i| unit(i)).collect::<Vec<_>>(), &target) {
-            // As far as no weight becomes negative; the one that stops the way leaves.
-            let limits = weights.iter().zip(&solution).enumerate().filter(|(_, (_, s))| **s <= 0.0);
-            let (blocking, alpha) = limits
-                .map(|(k, (w, s))| (k, w / (w - s)))
-                .fold((usize::MAX, 1.0), |least, now| if now.1 <= least.1 { now } else { least });
-            weights.iter_mut().zip(&solution).for_each(|(w, s)| *w += alpha * (s - *w));
-            if blocking == usize::MAX {
-                is_solved = true;
-                break;
-            }
-            passive.remove(blocking);
-            weights.remove(blocking);
-        }
-    }
-    false
+/// What is known of the directions in which half-spaces are open.
+pub(crate) enum Opening {
+    /// There is none.
+    None,
+    /// The caller knows one for certain.
+    Proved,
+    /// The rows come as near to one as rounding can tell: in some direction none of them grows by more than this share
+    /// of what the others fall.
+    Nearly { ratio: f64 },
 }
 
-/// The combination of `vectors` nearest to `target`, by orthogonalisation; `None` if they are dependent.
-fn least_squares(vectors: &[&[f64]], target: &[f64]) -> Option<Vec<f64>> {
-    let k = vectors.len();
-    if k == 0 {
-        return None;
-    }
-    let mut q: Vec<Vec<f64>> = Vec::with_capacity(k);
-    let mut r = vec![0.0; k * k];
-    for (j, v) in vectors.iter().enumerate() {
-        let mut v = v.to_vec();
-        for _ in 0..2 {
-            for (i, q) in q.iter().enumerate() {
-                let along = dot(q, &v);
-                r[i * k + j] += along;
-                v.iter_mut().zip(q).for_each(|(x, y)| *x -= along * y);
+/// The most Newton steps. Each may move the logarithm of a multiplier by one at least, so that their ratios may reach
+/// the range of `f64`.
+const MOST_STEPS: usize = 1000;
+
+/// An ascent of a row this small beside the descents of others is worth an exact look.
+const LITTLE: f64 = 1e-9;
+
+/// Looks for a direction z with aᵢ·z ≤ 0 for all rows, which span the space and are of unit length.
+///
+/// The least of g(z) = Σexp(aᵢ·z) exists exactly if there is none: there yᵢ = exp(aᵢ·z) has Σyᵢaᵢ = 0, so that the rows
+/// span the space with positive combinations (Stiemke's lemma). A Newton step Δ gives multipliers yᵢ(1 + aᵢ·Δ) for
+/// which that holds, and proves it where none of them is negative, whatever the ratios of the yᵢ, which are those of
+/// the faces of a needle or plate, down to zero. Otherwise Δ turns to where the rows are open, and `is_open` decides
+/// about it by the half-spaces themselves.
+pub(crate) fn opening<D: Dimension>(dim: D, rows: &Rows, is_open: &dyn Fn(&[f64]) -> bool) -> Opening {
+    let n = dim.get();
+    let mut exponents = vec![0.0; rows.s.len()];
+    let mut ratio = 0.0;
+    for _ in 0..MOST_STEPS {
+        let most = exponents.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let y: Vec<f64> = exponents.iter().map(|e| (e - most).exp()).collect();
+        let (mut step, mut hessian) = (dim.zero(), dim.zero_matrix());
+        let (step, hessian) = (&mut step.as_mut()[..n], &mut hessian.as_mut()[..n * n]);
+        for ((a, _), y) in rows.iter().zip(&y) {
+            for i in 0..n {
+                step[i] -= y * a[i];
+                for j in 0..=i {
+                    hessian[i * n + j] += y * a[i] * a[j];
+                }
             }
         }
-        let length = dot(&v, &v).sqrt();
-        if !(length > 1e-14) {
-            return None;
+        if !cholesky(dim, hessian) {
+            break;
         }
-        r[j * k + j] = length;
-        v.iter_mut().for_each(|x| *x /= length);
-        q.push(v);
-    }
-    let mut x: Vec<f64> = q.iter().map(|q| dot(q, target)).collect();
-    for i in (0..k).rev() {
-        for j in i + 1..k {
-            x[i] -= r[i * k + j] * x[j];
+        solve_lower(dim, hessian, step);
+        solve_lower_transpose(dim, hessian, step);
+        let changes: Vec<f64> = rows.iter().map(|(a, _)| dot(a, step)).collect();
+        if changes.iter().zip(&y).all(|(x, y)| *y == 0.0 || *x > -0.5) {
+            return Opening::None;
         }
-        x[i] /= r[i * k + i];
+        let highest = changes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let largest = changes.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        if highest <= LITTLE * largest && is_open(step) {
+            return Opening::Proved;
+        }
+        ratio = highest.max(0.0) / largest;
+        // A whole step, or else one that changes no exponent by more than one: g always descends along it.
+        let at = |length: f64| exponents.iter().zip(&changes).map(|(e, x)| (e + length * x - most).exp()).sum::<f64>();
+        let (now, slope) = (y.iter().sum::<f64>(), dot(&y, &changes));
+        let mut length = 1.0;
+        while length * largest > 1.0 && !(at(length) <= now + 0.1 * length * slope) {
+            length *= 0.5;
+        }
+        exponents.iter_mut().zip(&changes).for_each(|(e, x)| *e += length * x);
     }
-    Some(x)
+    Opening::Nearly { ratio }
 }

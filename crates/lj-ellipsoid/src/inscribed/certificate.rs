@@ -1,17 +1,21 @@
 //! What the multipliers of an iterate prove, with the rounding of the proof.
 //!
-//! The multipliers y ≥ 0, the vectors vᵢ and the computed pᵢ are taken to be exactly the doubles that stand for them. The body is
-//! { z : Pᵢ·z ≤ 1 + βᵢ } with |Pᵢ − pᵢ| ≤ εᵢ|pᵢ|, and it lies in the ball of radius R about zero. With S = Σyᵢ·sym(pᵢvᵢᵀ) every (B', d') in it has
+//! The multipliers y ≥ 0, the vectors vᵢ and the computed pᵢ are taken to be exactly the doubles that stand for them.
+//! The body is { z : Pᵢ·z ≤ 1 + βᵢ } with |Pᵢ − pᵢ| ≤ εᵢ|pᵢ|, and it lies in the ball of radius R about zero. With S =
+//! Σyᵢ·sym(pᵢvᵢᵀ) every (B', d') in it has
 //!
 //! > tr(B'S) = Σyᵢ vᵢᵀB'pᵢ ≤ max|vᵢ|·Σyᵢ|B'pᵢ| ≤ max|vᵢ|·(Σyᵢ(1 + βᵢ) + |Σyᵢpᵢ|R + Σyᵢεᵢ|pᵢ|R) = T,
 //!
-//! since |B'pᵢ| + pᵢ·d', the most that pᵢ·x is in the ellipsoid, is at most 1 + βᵢ + εᵢ|pᵢ|R. So ln det B' ≤ N·ln(T/N) − ln det S.
+//! since |B'pᵢ| + pᵢ·d', the most that pᵢ·x is in the ellipsoid, is at most 1 + βᵢ + εᵢ|pᵢ|R. So ln det B' ≤ N·ln(T/N)
+//! − ln det S.
 //!
-//! *R.* Let vᵢ = B·pᵢ/hᵢ be of unit length, z = Bζ a point of the body, and G = Σyᵢhᵢvᵢvᵢᵀ = B·S. From 1 − pᵢ·z ≥ 0 and vᵢ·ζ ≥ −|ζ| follows
+//! *R.* Let vᵢ = B·pᵢ/hᵢ be of unit length, z = Bζ a point of the body, and G = Σyᵢhᵢvᵢvᵢᵀ = B·S. From 1 − pᵢ·z ≥ 0 and
+//! vᵢ·ζ ≥ −|ζ| follows
 //!
 //! > 0 ≤ Σyᵢ(1 − pᵢ·z)(|ζ| + vᵢ·ζ) ≤ |ζ|(1 + |Σyᵢvᵢ|) − ζᵀGζ, so that |ζ| ≤ (1 + |Σyᵢvᵢ|)/λ_min(G)
 //!
-//! (at the optimum G = I/N, and where Σyᵢvᵢ = 0 this is John's N). A tenth more makes up for errors of the pᵢ and Σyᵢpᵢ that are small as below.
+//! (at the optimum G = I/N, and where Σyᵢvᵢ = 0 this is John's N). A tenth more makes up for errors of the pᵢ and Σyᵢpᵢ
+//! that are small as below.
 
 use crate::inscribed::primal_dual::Point;
 use crate::numerics::dimension::Dimension;
@@ -21,7 +25,8 @@ use crate::numerics::twofold::Sum;
 /// The largest share of one that errors may move the constraints with weight by, for the proof to be one.
 const SMALL: f64 = 0.01;
 
-/// ln det B' is at most this for every ellipsoid { d' + B'u : |u| ≤ 1 } in { z : Pᵢ·z ≤ 1 + βᵢ }; infinite where the multipliers prove nothing.
+/// ln det B' is at most this for every ellipsoid { d' + B'u : |u| ≤ 1 } in { z : Pᵢ·z ≤ 1 + βᵢ }; infinite where the
+/// multipliers prove nothing.
 ///
 /// `error` holds the εᵢ, and `beyond(i, yᵢ)` answers βᵢ ≥ 0.
 pub(crate) fn log_det_at_most<D: Dimension>(

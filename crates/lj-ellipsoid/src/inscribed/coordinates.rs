@@ -18,6 +18,9 @@ use crate::numerics::twofold;
 /// Terms this many times as large as their sum cancel: then twice the precision is worth its price.
 const CANCELLING: f64 = 8.0;
 
+/// Rounds of single moves to a point of doubles that is inside.
+const MOST_MOVES: usize = 16;
+
 /// The map x = o + Rᵀ·diag(a)·z.
 #[derive(Clone, Debug)]
 pub(crate) struct Coordinates {
@@ -71,7 +74,8 @@ impl Coordinates {
         let n = dim.get();
         let (columns, origin, a, p) = (&columns[..n * n], &self.origin[..n], &a[..n], &mut p[..n]);
         let plain = (n as f64 + 2.0) * UNIT_ROUNDOFF;
-        // The largest |pₖ|, and the largest Σᵢ|Mᵢₖaᵢ|: of |p| and of the error the one is the least and √n times the other the most.
+        // The largest |pₖ|, and the largest Σᵢ|Mᵢₖaᵢ|: of |p| and of the error the one is the least and √n times the
+        // other the most.
         let (mut largest, mut size): (f64, f64) = (0.0, 0.0);
         let (mut s, mut size_of_s) = (b, b.abs());
         for k in 0..n {
@@ -106,7 +110,8 @@ impl Coordinates {
 
     /// No less than ln|det M|, nor than −ln|det M⁻¹| where M⁻¹ = diag(1/a)·R is meant.
     ///
-    /// With R·Rᵀ = I + D, |D| ≤ δ the largest sum of a row, |det R| is within N·δ of one; so is that of R with entries rounded.
+    /// With R·Rᵀ = I + D, |D| ≤ δ the largest sum of a row, |det R| is within N·δ of one; so is that of R with entries
+    /// rounded.
     pub(crate) fn log_det_at_most(&self) -> f64 {
         let n = self.origin.len();
         let defect = |i: usize, j: usize| {
@@ -134,6 +139,64 @@ impl Coordinates {
         for (i, o) in self.origin.iter_mut().enumerate() {
             let terms = columns.iter().skip(i).step_by(n).copied().zip(z.iter().copied());
             *o = twofold::dot([(*o, 1.0)].into_iter().chain(terms));
+        }
+    }
+
+    /// The shortest length over the longest.
+    pub(crate) fn aspect(&self) -> f64 {
+        let least = self.lengths.iter().copied().fold(f64::INFINITY, f64::min);
+        least / self.lengths.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// M·z, to rounding.
+    pub(crate) fn image(&self, z: &[f64]) -> Vec<f64> {
+        let columns = self.columns();
+        let along = |i: usize| columns.iter().skip(i).step_by(z.len()).copied().zip(z.iter().copied());
+        (0..z.len()).map(|i| twofold::dot(along(i))).collect()
+    }
+
+    /// Moves the origin, from where it is or from `earlier`, by single spacings of its doubles to where the least slack
+    /// is the largest: a body may be so thin that it holds few points of doubles, and the one nearest to its centre
+    /// need not be one of them.
+    pub(crate) fn settle<D: Dimension>(&mut self, dim: D, polyhedron: &Polyhedron, earlier: &[f64]) {
+        let least = |coordinates: &Self| {
+            coordinates
+                .rows(dim, polyhedron)
+                .s
+                .into_iter()
+                .zip(polyhedron.rows())
+                .fold(f64::INFINITY, |m, (s, (a, _))| m.min(s / dot(a, a).sqrt()))
+        };
+        let mut best = least(self);
+        let mut consider = |this: &mut Self, origin: Vec<f64>| {
+            let before = std::mem::replace(&mut this.origin, origin);
+            let now = least(this);
+            let better = now > best;
+            if better {
+                best = now;
+            } else {
+                this.origin = before;
+            }
+            better
+        };
+        consider(self, earlier.to_vec());
+        let n = self.origin.len();
+        for _ in 0..MOST_MOVES {
+            let mut moved = false;
+            for (i, j) in (0..n).flat_map(|i| (i..n).map(move |j| (i, j))) {
+                for (up, other) in [(true, true), (true, false), (false, true), (false, false)] {
+                    let mut origin = self.origin.clone();
+                    let step = |x: f64, up: bool| if up { x.next_up() } else { x.next_down() };
+                    origin[i] = step(origin[i], up);
+                    if j != i {
+                        origin[j] = step(origin[j], other);
+                    }
+                    moved |= consider(self, origin);
+                }
+            }
+            if !moved {
+                break;
+            }
         }
     }
 
@@ -174,8 +237,9 @@ impl Coordinates {
         self.axes.copy_from_slice(&axes.as_ref()[..n * n]);
     }
 
-    /// The ellipsoid of this centre, these axes and semi-axes as seen by y = diag(1/a)·R·(x − o): its centre, and E with the ellipsoid being
-    /// { d + Eᵀ·u : |u| ≤ 1 }, both with bounds on their errors beyond three roundings of each number.
+    /// The ellipsoid of this centre, these axes and semi-axes as seen by y = diag(1/a)·R·(x − o): its centre, and E
+    /// with the ellipsoid being { d + Eᵀ·u : |u| ≤ 1 }, both with bounds on their errors beyond three roundings of each
+    /// number.
     #[expect(clippy::type_complexity, reason = "two arrays of numbers with errors")]
     pub(crate) fn seen(&self, center: &[f64], axes: &[f64], semi_axes: &[f64]) -> (Vec<(f64, f64)>, Vec<(f64, f64)>) {
         let n = center.len();

@@ -14,8 +14,8 @@ use robust::{Coord, Coord3D, orient2d, orient3d};
 pub(crate) struct Facets {
     pub(crate) normals: Vec<f64>,
     pub(crate) offsets: Vec<f64>,
-    /// The least n·x over the corners of what the facet stands for, to rounding. The edges or triangles of all facets are a closed surface, so
-    /// that whatever reaches from within below all of these planes stays within the hull.
+    /// The least n·x over the corners of what the facet stands for, to rounding. The edges or triangles of all facets
+    /// are a closed surface, so that whatever reaches from within below all of these planes stays within the hull.
     pub(crate) depths: Vec<f64>,
 }
 

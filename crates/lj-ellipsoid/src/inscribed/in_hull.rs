@@ -153,12 +153,14 @@ struct Hull<'a> {
     tolerance: f64,
 }
 
-/// Multipliers below this do not pay for a look at all points: what they multiply is as little as the tolerance of the hull.
+/// Multipliers below this do not pay for a look at all points: what they multiply is as little as the tolerance of the
+/// hull.
 const WEIGHTY: f64 = 1e-8;
 
 impl<D: Dimension> Body<D> for Hull<'_> {
-    /// The largest scale that is proved to keep the ellipsoid below the corners of every facet: the surface that these bound is closed and made
-    /// of points of the hull, so that the ellipsoid, the centre of which it surrounds, stays in the hull.
+    /// The largest scale that is proved to keep the ellipsoid below the corners of every facet: the surface that these
+    /// bound is closed and made of points of the hull, so that the ellipsoid, the centre of which it surrounds, stays
+    /// in the hull.
     fn touch(&self, shape: &mut Shape<D>) -> Option<()> {
         let n = self.rows.n;
         let (d, e) = self.coordinates.seen(shape.center.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());

@@ -2,68 +2,147 @@
 
 use crate::error::InscribedError;
 use crate::inscribed::analytic_center::center;
-use crate::inscribed::boundedness::positively_spans;
+use crate::inscribed::boundedness::{Opening, opening};
 use crate::inscribed::chebyshev::{Depth, depth};
 use crate::inscribed::coordinates::{Coordinates, Rows};
 use crate::inscribed::polyhedron::Polyhedron;
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{UNIT_ROUNDOFF, dot};
+use crate::numerics::twofold;
 
 /// How often coordinates are stretched before a body is called empty. Every time a thin one becomes a million times thicker
 /// in them, so that this covers the range of `f64`.
 const MOST_STRETCHES: usize = 120;
 
+/// How often the columns of the normals are made orthonormal: each time what rounding left of a column is computed
+/// afresh.
+const MOST_CONDITIONINGS: usize = 4;
+
+/// What rounding leaves of a column dependent on the others, relative to it.
+const DEPENDENT: f64 = 32.0 * f64::EPSILON;
+
 /// Coordinates about the analytic centre of the intersection in which it contains the unit ball and lies in a ball of
 /// radius m, and the half-spaces in them.
 ///
 /// In coordinates in which the normals have Σaᵢaᵢᵀ = I (their condition is then gone) they are seen to span the space
-/// positively. A linear program then finds an interior point. Where it finds the body thin, that is, cannot tell its thickness
-/// from rounding, the coordinates are stretched to make *relaxed* half-spaces round, pᵢ·z ≤ sᵢ + τ with τ a little more than
-/// that thickness, and the program is solved again.
+/// positively. A linear program then finds an interior point. Where it finds the body thin, that is, cannot tell its
+/// thickness from rounding, the coordinates are stretched to make *relaxed* half-spaces round, pᵢ·z ≤ sᵢ + τ with τ a
+/// little more than that thickness, and the program is solved again. Where that ends without a point inside, the origin
+/// is one if all slacks there, which are exact to a rounding, are positive.
 ///
 /// # Errors
-/// [`InscribedError::Unbounded`], [`InscribedError::EmptyInterior`].
+/// [`InscribedError::Unbounded`], [`InscribedError::NearlyUnbounded`], [`InscribedError::EmptyInterior`],
+/// [`InscribedError::NearlyEmpty`].
 pub(crate) fn round_coordinates<D: Dimension>(
     dim: D,
     polyhedron: &Polyhedron,
 ) -> Result<(Coordinates, Rows), InscribedError> {
     let n = polyhedron.n;
-    let mut coordinates = Coordinates::identity(n);
-    coordinates.stretch(dim, &orthonormal_columns(n, polyhedron.normals.clone())?);
-    let mut rows = coordinates.rows(dim, polyhedron);
+    let (mut coordinates, mut rows) = conditioned(dim, polyhedron)?;
     // The first coordinates know nothing of the size of the body.
     let mut reach = f64::INFINITY;
     let mut shortest = f64::INFINITY;
+    let mut stuck = false;
     for stretches in 0..MOST_STRETCHES {
         let unit = unit_rows(dim, &rows, reach);
-        if stretches == 0 && !positively_spans(n, &unit.p) {
-            return Err(InscribedError::Unbounded);
+        if stretches == 0 {
+            match opening(dim, &unit, &|z| is_open(polyhedron, &coordinates, z)) {
+                Opening::None => {}
+                Opening::Proved => return Err(InscribedError::Unbounded),
+                Opening::Nearly { ratio } => return Err(InscribedError::NearlyUnbounded { ratio }),
+            }
         }
         let (inside, relaxation) = match depth(&unit) {
             Depth::Inside(z) => (z, 0.0),
-            Depth::Thin { at, relaxation } => (at, relaxation),
+            Depth::Thin { .. } | Depth::Empty if stuck && is_interior(&rows) => (vec![0.0; n], 0.0),
+            Depth::Thin { at, relaxation } if !stuck => (at, relaxation),
+            Depth::Empty if is_interior(&rows) => (vec![0.0; n], 0.0),
             Depth::Empty => return Err(InscribedError::EmptyInterior),
+            Depth::Thin { .. } => break,
         };
-        let centered = center(dim, &unit, inside, relaxation).ok_or(InscribedError::EmptyInterior)?;
+        let Some(centered) = center(dim, &unit, inside, relaxation) else { break };
+        let before = coordinates.origin.clone();
         coordinates.shift(&centered.z);
         coordinates.stretch(dim, &centered.round);
         rows = coordinates.rows(dim, polyhedron);
         if relaxation == 0.0 && centered.near {
             // The centre was rounded to doubles.
-            let interior = rows.s.iter().all(|s| *s > 0.0);
-            return if interior { Ok((coordinates, rows)) } else { Err(InscribedError::EmptyInterior) };
+            if !is_interior(&rows) {
+                coordinates.settle(dim, polyhedron, &before);
+                rows = coordinates.rows(dim, polyhedron);
+            }
+            if is_interior(&rows) {
+                return Ok((coordinates, rows));
+            }
+            break;
         }
         // Axes that no longer shrink are at the rounding of their own directions.
         if relaxation > 0.0 && !(coordinates.lengths[n - 1] < 0.5 * shortest && resolved(&coordinates)) {
-            return Err(InscribedError::EmptyInterior);
+            stuck = true;
+            coordinates.settle(dim, polyhedron, &before);
+            rows = coordinates.rows(dim, polyhedron);
         }
         if reach < f64::INFINITY {
             shortest = coordinates.lengths[n - 1];
         }
         reach = polyhedron.len() as f64;
     }
-    Err(InscribedError::EmptyInterior)
+    Err(polyhedron.without_interior(&coordinates))
 }
+
+/// Whether the origin is inside all half-spaces.
+fn is_interior(rows: &Rows) -> bool {
+    rows.s.iter().all(|s| *s > 0.0)
+}
+
+/// Coordinates in which the columns of the normals are nearly orthonormal, and the half-spaces in them.
+///
+/// Of columns that depend on one another but for a rounding nothing is left but that, in a direction that is right to a
+/// rounding. The normals are then seen from coordinates stretched along it, where their products with it are exact, and
+/// once more made orthonormal.
+fn conditioned<D: Dimension>(dim: D, polyhedron: &Polyhedron) -> Result<(Coordinates, Rows), InscribedError> {
+    let n = polyhedron.n;
+    let mut coordinates = Coordinates::identity(n);
+    // Fewer leave a direction open.
+    if polyhedron.len() <= n {
+        return Err(InscribedError::Unbounded);
+    }
+    // What is left of a column along this coordinate is nothing but rounding: the half-spaces are open along it, or as
+    // good as that.
+    let nearly = |coordinates: &Coordinates, along: usize, ratio: f64| {
+        let axis: Vec<f64> = (0..n).map(|k| if k == along { 1.0 } else { 0.0 }).collect();
+        let proved = is_open(polyhedron, coordinates, &axis);
+        if proved { InscribedError::Unbounded } else { InscribedError::NearlyUnbounded { ratio } }
+    };
+    let mut normals = polyhedron.normals.clone();
+    let mut ratio = 0.0;
+    for _ in 0..MOST_CONDITIONINGS {
+        let map;
+        (map, ratio) = orthonormal_columns(n, normals).map_err(|zero| nearly(&coordinates, zero, 0.0))?;
+        coordinates.stretch(dim, &map);
+        let rows = coordinates.rows(dim, polyhedron);
+        if ratio > DEPENDENT {
+            return Ok((coordinates, rows));
+        }
+        normals = rows.p;
+    }
+    // The longest axis is the first.
+    Err(nearly(&coordinates, 0, ratio))
+}
+
+/// Whether the half-spaces are open along M·z, or a direction of whole numbers next to it, exactly.
+fn is_open(polyhedron: &Polyhedron, coordinates: &Coordinates, z: &[f64]) -> bool {
+    let direction = coordinates.image(z);
+    let largest = direction.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let is_out =
+        |d: &[f64]| polyhedron.rows().all(|(a, _)| twofold::is_at_most_zero(a.iter().copied().zip(d.iter().copied())));
+    let whole =
+        |parts: u32| -> Vec<f64> { direction.iter().map(|x| (x / largest * f64::from(parts)).round()).collect() };
+    largest.is_normal() && (is_out(&direction) || (1..=MOST_PARTS).any(|parts| is_out(&whole(parts))))
+}
+
+/// The largest number in a direction of whole numbers that is tried.
+const MOST_PARTS: u32 = 64;
 
 /// Whether the shortest axis is longer than what the origin loses along it by being rounded to doubles.
 fn resolved(coordinates: &Coordinates) -> bool {
@@ -85,8 +164,9 @@ fn unit_rows<D: Dimension>(dim: D, rows: &Rows, reach: f64) -> Rows {
     unit
 }
 
-/// The map M, stored by rows, that makes the columns of A·M orthonormal, A the rows `a` of n numbers.
-fn orthonormal_columns(n: usize, mut a: Vec<f64>) -> Result<Vec<f64>, InscribedError> {
+/// The map M, stored by rows, that makes the columns of A·M orthonormal, A the rows `a` of n numbers, and the least
+/// share of a column that was left of it beside the others; or the number of a column that is zero.
+fn orthonormal_columns(n: usize, mut a: Vec<f64>) -> Result<(Vec<f64>, f64), usize> {
     let a = &mut a[..];
     let mut map: Vec<f64> = (0..n * n).map(|at| if at % (n + 1) == 0 { 1.0 } else { 0.0 }).collect();
     let map = &mut map[..];
@@ -94,7 +174,7 @@ fn orthonormal_columns(n: usize, mut a: Vec<f64>) -> Result<Vec<f64>, InscribedE
     for k in 0..n {
         let size = a.chunks_exact(n).map(|row| row[k].abs()).fold(0.0, f64::max);
         if size == 0.0 {
-            return Err(InscribedError::Unbounded);
+            return Err(k);
         }
         a.chunks_exact_mut(n).for_each(|row| row[k] /= size);
         map[k * n + k] /= size;
@@ -102,16 +182,13 @@ fn orthonormal_columns(n: usize, mut a: Vec<f64>) -> Result<Vec<f64>, InscribedE
     let column = |a: &[f64], j: usize, k: usize| a.chunks_exact(n).map(|row| row[j] * row[k]).sum::<f64>();
     let original: Vec<f64> = (0..n).map(|k| column(a, k, k).sqrt()).collect();
     let mut done: Vec<usize> = Vec::with_capacity(n);
+    let mut least = f64::INFINITY;
     for _ in 0..n {
         let lengths: Vec<f64> = (0..n).map(|k| column(a, k, k).sqrt()).collect();
-        let pivot = (0..n)
-            .filter(|k| !done.contains(k))
-            .max_by(|&i, &j| lengths[i].total_cmp(&lengths[j]))
-            .ok_or(InscribedError::Unbounded)?;
-        // What rounding leaves of a column dependent on the others.
-        if !(lengths[pivot] > 32.0 * f64::EPSILON * original[pivot]) {
-            return Err(InscribedError::Unbounded);
-        }
+        let left = (0..n).filter(|k| !done.contains(k));
+        let pivot =
+            left.fold(usize::MAX, |best, k| if best == usize::MAX || lengths[k] > lengths[best] { k } else { best });
+        least = least.min(lengths[pivot] / original[pivot]);
         for pass in 0..2 {
             let subtract = |a: &mut [f64], map: &mut [f64], from: usize, factor: f64, of: usize| {
                 a.chunks_exact_mut(n).chain(map.chunks_exact_mut(n)).for_each(|row| row[from] -= factor * row[of]);
@@ -121,7 +198,7 @@ fn orthonormal_columns(n: usize, mut a: Vec<f64>) -> Result<Vec<f64>, InscribedE
                 let along = column(a, pivot, k);
                 subtract(a, map, pivot, along, k);
             }
-            let length = column(a, pivot, pivot).sqrt();
+            let length = column(a, pivot, pivot).sqrt().max(f64::EPSILON * f64::EPSILON * original[pivot]);
             a.chunks_exact_mut(n).chain(map.chunks_exact_mut(n)).for_each(|row| row[pivot] /= length);
             if pass == 1 {
                 for k in (0..n).filter(|k| !done.contains(k) && *k != pivot) {
@@ -132,5 +209,5 @@ fn orthonormal_columns(n: usize, mut a: Vec<f64>) -> Result<Vec<f64>, InscribedE
         }
         done.push(pivot);
     }
-    Ok(map.to_vec())
+    Ok((map.to_vec(), least))
 }

@@ -39,8 +39,8 @@ pub struct HalfSpace<const N: usize> {
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Inscribed<const N: usize> {
-    /// The ellipsoid. Its [`support_value`](Ellipsoid::support_value) along the normal of every given half-space, as evaluated
-    /// in `f64`, is at most the offset.
+    /// The ellipsoid: centre, axes and semi-axes as they are, it is proved to be inside. Its
+    /// [`support_value`](Ellipsoid::support_value) along the normal of every given half-space is at most the offset.
     pub ellipsoid: Ellipsoid<N>,
     /// A certified bound: ln det X of `ellipsoid` exceeds that of the true optimum by at most this. It is twice the bound on
     /// the lack of log-volume. Never negative.
@@ -92,6 +92,7 @@ pub struct InscribedIterate {
 ///
 /// # Errors
 /// [`InscribedError::Unbounded`] and [`InscribedError::EmptyInterior`] where there is no such ellipsoid;
+/// [`InscribedError::NearlyUnbounded`] and [`InscribedError::NearlyEmpty`] where doubles do not tell it;
 /// [`InscribedError::ZeroNormal`], [`InscribedError::NonFinite`] and [`InscribedError::Empty`] for bad input,
 /// [`InscribedError::InvalidEpsilon`] for a bad option.
 ///

@@ -2,6 +2,7 @@
 
 use crate::ellipsoid::{reach_at_most, support_value};
 use crate::error::InscribedError;
+use crate::inscribed::coordinates::Coordinates;
 use crate::inscribed::solution::Body;
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{UNIT_ROUNDOFF, power_of_two_inverse};
@@ -52,17 +53,41 @@ impl Polyhedron {
         self.offsets.len()
     }
 
+    /// Why there is no ellipsoid, where the search for an interior ended in `coordinates`: empty or flat if two
+    /// half-spaces say so by themselves, else too thin for it.
+    pub(crate) fn without_interior(&self, coordinates: &Coordinates) -> InscribedError {
+        let pairs = (0..self.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+        if pairs.take(MOST_PAIRS).any(|(i, j)| self.exclude_one_another(i, j)) {
+            return InscribedError::EmptyInterior;
+        }
+        InscribedError::NearlyEmpty { ratio: coordinates.aspect() }
+    }
+
+    /// Whether half-spaces i and j have opposite normals and no interior in common, exactly.
+    fn exclude_one_another(&self, i: usize, j: usize) -> bool {
+        let n = self.n;
+        let (a, b) = (&self.normals[i * n..(i + 1) * n], &self.normals[j * n..(j + 1) * n]);
+        let largest = (1..n).fold(0, |best, k| if a[k].abs() > a[best].abs() { k } else { best });
+        let (size, other) = (a[largest].abs(), b[largest].abs());
+        // a·|b_k| + b·|a_k| = 0 for the largest coordinate k of a.
+        let is_opposite =
+            |k: usize, sign: f64| twofold::is_at_most_zero([(sign * a[k], other), (sign * b[k], size)].into_iter());
+        other > 0.0
+            && (0..n).all(|k| is_opposite(k, 1.0) && is_opposite(k, -1.0))
+            && twofold::is_at_most_zero([(self.offsets[i], other), (self.offsets[j], size)].into_iter())
+    }
+
     pub(crate) fn rows(&self) -> impl Iterator<Item = (&[f64], f64)> {
         self.normals.chunks_exact(self.n).zip(self.offsets.iter().copied())
     }
 }
 
 impl<D: Dimension> Body<D> for Polyhedron {
-    /// The largest scale that is proved to keep the ellipsoid in all half-spaces: a·c + |diag(axes)·R·a| ≤ b of the doubles as they
-    /// are, by bounds on the rounding of both sides.
+    /// The largest scale that is proved to keep the ellipsoid in all half-spaces: a·c + |diag(axes)·R·a| ≤ b of the
+    /// doubles as they are, by bounds on the rounding of both sides.
     ///
-    /// [`support_value`] may then by its own rounding still be a rounding above b: the ellipsoid shrinks once more, twice as far
-    /// every time.
+    /// [`support_value`] may then by its own rounding still be a rounding above b: the ellipsoid shrinks once more,
+    /// twice as far every time.
     fn touch(&self, shape: &mut Shape<D>) -> Option<()> {
         let most = |(a, b): (&[f64], f64)| {
             let to_center = a.iter().copied().zip(shape.center.as_ref().iter().map(|c| -c));
@@ -95,6 +120,9 @@ impl<D: Dimension> Body<D> for Polyhedron {
         0.0
     }
 }
+
+/// Pairs of half-spaces looked at before a body is called empty.
+const MOST_PAIRS: usize = 1 << 22;
 
 /// Doubling shrinkages: the last is all of the size.
 const MOST_SHRINKS: usize = 54;

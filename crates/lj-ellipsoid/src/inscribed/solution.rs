@@ -23,11 +23,12 @@ pub(crate) struct InscribedSolution<D: Dimension> {
 
 /// The body itself, from which the rows in round coordinates were computed.
 pub(crate) trait Body<D: Dimension> {
-    /// Scales the semi-axes so that the ellipsoid touches the body, proved to be inside; `None` where nothing is left of it.
+    /// Scales the semi-axes so that the ellipsoid touches the body, proved to be inside; `None` where nothing is left
+    /// of it.
     fn touch(&self, shape: &mut Shape<D>) -> Option<()>;
 
-    /// How far the body reaches beyond row `i`, in units of the slack of the row at the origin, beside the errors of the row. How much depends
-    /// on it is the weight.
+    /// How far the body reaches beyond row `i`, in units of the slack of the row at the origin, beside the errors of
+    /// the row. How much depends on it is the weight.
     fn beyond(&self, i: usize, weight: f64) -> f64;
 }
 
@@ -45,7 +46,7 @@ pub(crate) fn solve<D: Dimension>(
     let mut p = rows.p.clone();
     for (p, s) in p.chunks_exact_mut(n).zip(&rows.s) {
         if !(*s > 0.0) {
-            return Err(InscribedError::EmptyInterior);
+            return Err(InscribedError::NearlyEmpty { ratio: coordinates.aspect() });
         }
         p.iter_mut().for_each(|x| *x /= s);
     }
@@ -70,15 +71,15 @@ pub(crate) fn solve<D: Dimension>(
     };
     let mut shape = shape_of(&coordinates.lengths, &coordinates.axes);
     shape.center = dim.point(coordinates.origin.iter().copied());
-    body.touch(&mut shape).ok_or(InscribedError::EmptyInterior)?;
+    body.touch(&mut shape).ok_or(InscribedError::NearlyEmpty { ratio: coordinates.aspect() })?;
     shape = Shape { center: shape.center, ..shape_of(shape.semi_axes.as_ref(), shape.axes.as_ref()) };
     if !(shape.log_det.is_finite() && shape.matrix.as_ref().iter().all(|x| x.is_finite())) {
         return Err(InscribedError::OutOfRange);
     }
     let logarithms: f64 = shape.semi_axes.as_ref().iter().map(|a| a.ln().abs()).sum();
     let log_det_gap = 2.0 * log_det_bound + shape.log_det + 4.0 * UNIT_ROUNDOFF * (logarithms + n as f64);
-    // The ellipsoid is proved to be inside and the bound is one on all that are: a difference below zero, or none, would prove only
-    // that numbers left the range in which the errors are bounded.
+    // The ellipsoid is proved to be inside and the bound is one on all that are: a difference below zero, or none,
+    // would prove only that numbers left the range in which the errors are bounded.
     let log_det_gap = if log_det_gap >= 0.0 { log_det_gap } else { f64::INFINITY };
     let status = match ended {
         _ if log_det_gap <= options.epsilon => Status::Converged,

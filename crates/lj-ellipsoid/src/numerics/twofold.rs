@@ -7,6 +7,8 @@
 //! T. J. Dekker, *A floating-point technique for extending the available precision*, Numer. Math. 18 (1971).
 //! T. Ogita, S. M. Rump, S. Oishi, *Accurate sum and dot product*, SIAM J. Sci. Comput. 26 (2005), algorithm Dot2.
 
+use std::ops::RangeInclusive;
+
 use crate::numerics::linalg::UNIT_ROUNDOFF;
 
 /// Σxᵢyᵢ with an error of at most u·|Σxᵢyᵢ| + (k·u)²·Σ|xᵢyᵢ| for k terms, where no product leaves the range of `f64`; there
@@ -17,8 +19,8 @@ pub(crate) fn dot(terms: impl IntoIterator<Item = (f64, f64)>) -> f64 {
     sum.total()
 }
 
-/// [`dot`] and a bound on its error that holds in all of the range of `f64`: products that underflow lose less than the smallest
-/// normal number each, and where the correction overflowed the bound is that of the plain sum.
+/// [`dot`] and a bound on its error that holds in all of the range of `f64`: products that underflow lose less than the
+/// smallest normal number each, and where the correction overflowed the bound is that of the plain sum.
 pub(crate) fn dot_with_error(terms: impl IntoIterator<Item = (f64, f64)>) -> (f64, f64) {
     let (mut sum, mut size, mut count) = (Sum::default(), 0.0, 0.0);
     for (x, y) in terms {
@@ -30,6 +32,32 @@ pub(crate) fn dot_with_error(terms: impl IntoIterator<Item = (f64, f64)>) -> (f6
     // Twice what is proved, which makes up for the rounding of the bound.
     let of_terms = if sum.is_corrected() { lost * lost } else { lost };
     (total, 2.0 * (UNIT_ROUNDOFF * total.abs() + of_terms * size + count * f64::MIN_POSITIVE))
+}
+
+/// Whether Σxᵢyᵢ ≤ 0, exactly: where the bound on the error does not tell, the products are summed without any. False
+/// also where a product leaves the range in which it has an error that is a number.
+pub(crate) fn is_at_most_zero(terms: impl Iterator<Item = (f64, f64)> + Clone) -> bool {
+    const EXACT: RangeInclusive<f64> = 1e-280..=1e280;
+    let (total, error) = dot_with_error(terms.clone());
+    if total.abs() > error {
+        return total < 0.0;
+    }
+    // Numbers of ascending size that do not overlap (Shewchuk's expansion): the last that is not zero has the sign of
+    // the sum.
+    let mut expansion: Vec<f64> = Vec::new();
+    for (x, y) in terms.filter(|(x, y)| *x != 0.0 && *y != 0.0) {
+        let (product, lost) = two_product(x, y);
+        if !(EXACT.contains(&product.abs()) && EXACT.contains(&x.abs()) && EXACT.contains(&y.abs())) {
+            return false;
+        }
+        for mut sum in [lost, product] {
+            for part in &mut expansion {
+                (sum, *part) = two_sum(sum, *part);
+            }
+            expansion.push(sum);
+        }
+    }
+    expansion.iter().rfind(|x| **x != 0.0).is_none_or(|x| *x < 0.0)
 }
 
 /// A sum in twice the precision: the rounded sum, and the sum of what its additions and products lost.
@@ -86,7 +114,7 @@ fn split(a: f64) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::dot;
+    use super::{dot, is_at_most_zero};
 
     #[test]
     fn cancellation_leaves_the_small_difference() {
@@ -94,6 +122,17 @@ mod tests {
         let a = 1.0 + 2f64.powi(-30);
         assert_eq!(dot([(a, a), (-1.0, 1.0), (-1.0, 2f64.powi(-29))]), 2f64.powi(-60));
         assert_eq!(a * a - 1.0 - 2f64.powi(-29), 0.0);
+    }
+
+    #[test]
+    fn signs_are_exact() {
+        // (1 + ε)(1 − ε) − 1 = −ε², and with 2ε² more it is ε².
+        let e = 2f64.powi(-52);
+        let square = [(1.0 + e, 1.0 - e), (-1.0, 1.0)];
+        assert!(is_at_most_zero(square.into_iter()));
+        assert!(!is_at_most_zero(square.into_iter().chain([(e, 2.0 * e)])));
+        assert!(is_at_most_zero(square.into_iter().chain([(e, e)])), "zero");
+        assert!(!is_at_most_zero([(f64::NAN, 1.0)].into_iter()));
     }
 
     #[test]
