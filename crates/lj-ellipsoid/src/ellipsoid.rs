@@ -49,9 +49,12 @@ impl<const N: usize> Ellipsoid<N> {
         self.semi_axes
     }
 
-    /// X, row by row, symmetric to the last bit, but beyond an aspect ratio of 1e8 perhaps not positive definite. For an ellipsoid within an affine hull it measures within the hull only
-    /// (it is zero along the normals). For an enclosing ellipsoid X is rounded outward by itself: it too holds every
-    /// point in (x − c)ᵀX(x − c) ≤ 1, evaluated in `f64` in any order.
+    /// X, row by row, symmetric to the last bit, but beyond an aspect ratio of 1e8 perhaps not positive definite. For
+    /// an ellipsoid within an affine hull it measures within the hull only (it is zero along the normals).
+    ///
+    /// It is rounded by itself. That of an enclosing ellipsoid is rounded outward: it too holds every point in (x −
+    /// c)ᵀX(x − c) ≤ 1, evaluated in `f64` in any order or exactly. That of an inscribed one is rounded inward, and
+    /// proved to be within the body too, as long as that takes less than half of it: up to an aspect ratio of some 1e7.
     #[must_use]
     pub const fn matrix(&self) -> [[f64; N]; N] {
         self.matrix

@@ -37,11 +37,11 @@
 //! dimension is known only at run time, points are slices of one length: [`enclosing_dyn`], [`inscribed_dyn`].
 //!
 //! # What every answer says
-//! The gap is *certified*: it is computed from the duality of the problem, not from the size of the last step, and the rounding
-//! of its own evaluation is added. [`Status`] tells whether it is as small as was asked for. Whatever the status, the
-//! enclosing ellipsoid contains every point and the inscribed one stays within every half-space or hull. Both are proved of the
-//! doubles that are returned, and hold as evaluated in `f64`.
-//! All tolerances are relative: scaling the input by a power of two changes no bit of any mantissa.
+//! The gap is *certified*: it is computed from the duality of the problem, not from the size of the last step, and the
+//! rounding of its own evaluation is added. [`Status`] tells whether it is as small as was asked for. Whatever the
+//! status, the enclosing ellipsoid contains every point and the inscribed one stays within every half-space or hull.
+//! Both are proved of the doubles that are returned, and hold as evaluated in `f64`. All tolerances are relative:
+//! scaling the input by a power of two changes no bit of any mantissa.
 //!
 //! # Features
 //! None is on by default.

@@ -1,7 +1,10 @@
 //! An ellipsoid by its axes: from a linear map to semi-axes, rotation and matrix.
 
 use crate::numerics::dimension::{Dimension, Dynamic};
-use crate::numerics::linalg::{dot, orthogonalize_rows, power_of_two_inverse, sum_of_logarithms, triangularize};
+use crate::numerics::linalg::{
+    UNIT_ROUNDOFF, dot, orthogonalize_rows, power_of_two_inverse, sum_of_logarithms, triangularize,
+};
+use crate::numerics::twofold;
 
 /// An ellipsoid of any dimension: what [`Ellipsoid`](crate::Ellipsoid) holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,6 +83,37 @@ pub(crate) fn shape_from_axes<N: Dimension>(
     complete_rotation(dim, r, rows);
     let log_det = -2.0 * sum_of_logarithms(a[..r].iter().copied());
     Shape { center: dim.zero(), axes, semi_axes, matrix, log_det }
+}
+
+/// Scales the matrix so that { x : (x − c)ᵀX(x − c) ≤ 1 } is proved to be within the ellipsoid of the axes, unless
+/// rounding leaves it without a meaning.
+///
+/// With D = diag(a) that is so exactly if D·R·X·Rᵀ·D = I + F is no less than I. Its entries are sums in twice the
+/// precision, and |F| ≤ f < 1, the rounding of the scaled entries of X included, bounds it below by 1 − f.
+pub(crate) fn round_inward<N: Dimension>(dim: N, shape: &mut Shape<N>) {
+    let n = dim.get();
+    let (axes, a) = (&shape.axes.as_ref()[..n * n], &shape.semi_axes.as_ref()[..n]);
+    let x = &mut shape.matrix.as_mut()[..n * n];
+    let pairs = |u: &[f64], v: &[f64]| u.iter().copied().zip(v.iter().copied()).collect::<Vec<_>>();
+    let (mut square, mut rounding) = (0.0, 0.0);
+    for (right, b) in axes.chunks_exact(n).zip(a) {
+        let image: Vec<f64> = x.chunks_exact(n).map(|row| twofold::dot(pairs(row, right)) * b).collect();
+        let size: Vec<f64> =
+            x.chunks_exact(n).map(|row| row.iter().zip(right).map(|(x, r)| (x * r).abs()).sum()).collect();
+        for (left, a) in axes.chunks_exact(n).zip(a) {
+            let unit = if std::ptr::eq(left, right) { -1.0 } else { 0.0 };
+            let scaled: Vec<f64> = left.iter().map(|r| a * r).collect();
+            let entry = twofold::dot(pairs(&scaled, &image).into_iter().chain([(unit, 1.0)]));
+            square += entry * entry;
+            // A rounding of the image, its factor, the row and the entries of X, which is symmetric, when they are
+            // scaled.
+            rounding += 8.0 * UNIT_ROUNDOFF * a * b * left.iter().zip(&size).map(|(r, s)| (r * s).abs()).sum::<f64>();
+        }
+    }
+    let left = 1.0 - (square.sqrt() + rounding) * (1.0 + 1e-12);
+    if left > 0.5 {
+        x.iter_mut().for_each(|x| *x /= left);
+    }
 }
 
 /// Replaces the rows from `r` on by ones that make all of them orthonormal, and the determinant +1.

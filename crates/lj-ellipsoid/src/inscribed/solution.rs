@@ -8,7 +8,7 @@ use crate::inscribed::primal_dual::{Dual, Maximum, maximize};
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::UNIT_ROUNDOFF;
 use crate::options::{InscribedOptions, Status};
-use crate::shape::{Shape, shape_from_axes};
+use crate::shape::{Shape, round_inward, shape_from_axes};
 use crate::weight::Weight;
 
 /// A solved inscribed problem of any dimension.
@@ -76,6 +76,7 @@ pub(crate) fn solve<D: Dimension>(
     if !(shape.log_det.is_finite() && shape.matrix.as_ref().iter().all(|x| x.is_finite())) {
         return Err(InscribedError::OutOfRange);
     }
+    round_inward(dim, &mut shape);
     let logarithms: f64 = shape.semi_axes.as_ref().iter().map(|a| a.ln().abs()).sum();
     let log_det_gap = 2.0 * log_det_bound + shape.log_det + 4.0 * UNIT_ROUNDOFF * (logarithms + n as f64);
     // The ellipsoid is proved to be inside and the bound is one on all that are: a difference below zero, or none,
