@@ -5,9 +5,9 @@
 
 use crate::enclosing;
 use crate::error::{EnclosingError, InscribedError};
+use crate::inscribed::body::Body;
 use crate::inscribed::coordinates::{Coordinates, Rows};
 use crate::inscribed::hull::{Facets, hull2, hull3};
-use crate::inscribed::solution::Body;
 use crate::inscribed::{Inscribed, InscribedIterate, InscribedSolution, Observer, solution};
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{UNIT_ROUNDOFF, dot};

@@ -87,7 +87,7 @@ pub(crate) fn round_coordinates<D: Dimension>(
         }
         reach = polyhedron.len() as f64;
     }
-    Err(polyhedron.without_interior(&coordinates))
+    Err(polyhedron.without_interior(coordinates.aspect()))
 }
 
 /// Whether the origin is inside all half-spaces.

@@ -1,6 +1,7 @@
 //! The maximum-volume ellipsoid inside an intersection of half-spaces.
 
 mod analytic_center;
+mod body;
 mod boundedness;
 mod certificate;
 mod chebyshev;

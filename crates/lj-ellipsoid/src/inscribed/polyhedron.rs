@@ -2,8 +2,7 @@
 
 use crate::ellipsoid::{reach_at_most, support_value};
 use crate::error::InscribedError;
-use crate::inscribed::coordinates::Coordinates;
-use crate::inscribed::solution::Body;
+use crate::inscribed::body::Body;
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{UNIT_ROUNDOFF, power_of_two_inverse};
 use crate::numerics::twofold;
@@ -53,14 +52,14 @@ impl Polyhedron {
         self.offsets.len()
     }
 
-    /// Why there is no ellipsoid, where the search for an interior ended in `coordinates`: empty or flat if two
-    /// half-spaces say so by themselves, else too thin for it.
-    pub(crate) fn without_interior(&self, coordinates: &Coordinates) -> InscribedError {
+    /// Why there is no ellipsoid, where the search for an interior ended at this ratio of the shortest to the longest axis:
+    /// empty or flat if two half-spaces say so by themselves, else too thin for it.
+    pub(crate) fn without_interior(&self, ratio: f64) -> InscribedError {
         let pairs = (0..self.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
         if pairs.take(MOST_PAIRS).any(|(i, j)| self.exclude_one_another(i, j)) {
             return InscribedError::EmptyInterior;
         }
-        InscribedError::NearlyEmpty { ratio: coordinates.aspect() }
+        InscribedError::NearlyEmpty { ratio }
     }
 
     /// Whether half-spaces i and j have opposite normals and no interior in common, exactly.

@@ -2,6 +2,7 @@
 
 use crate::error::InscribedError;
 use crate::inscribed::Observer;
+use crate::inscribed::body::Body;
 use crate::inscribed::certificate::log_det_at_most;
 use crate::inscribed::coordinates::{Coordinates, Rows};
 use crate::inscribed::primal_dual::{Dual, Maximum, maximize};
@@ -19,17 +20,6 @@ pub(crate) struct InscribedSolution<D: Dimension> {
     pub(crate) weights: Vec<Weight>,
     pub(crate) status: Status,
     pub(crate) iterations: usize,
-}
-
-/// The body itself, from which the rows in round coordinates were computed.
-pub(crate) trait Body<D: Dimension> {
-    /// Scales the semi-axes so that the ellipsoid touches the body, proved to be inside; `None` where nothing is left
-    /// of it.
-    fn touch(&self, shape: &mut Shape<D>) -> Option<()>;
-
-    /// How far the body reaches beyond row `i`, in units of the slack of the row at the origin, beside the errors of
-    /// the row. How much depends on it is the weight.
-    fn beyond(&self, i: usize, weight: f64) -> f64;
 }
 
 /// Solves for the body `rows` in `coordinates` about an interior point.
