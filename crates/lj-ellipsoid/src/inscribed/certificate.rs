@@ -17,7 +17,7 @@
 //! (at the optimum G = I/N, and where Σyᵢvᵢ = 0 this is John's N). A tenth more makes up for errors of the pᵢ and Σyᵢpᵢ
 //! that are small as below.
 
-use crate::inscribed::primal_dual::Point;
+use crate::inscribed::point::Point;
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{UNIT_ROUNDOFF, cholesky, cholesky_log_det, dot, solve_lower, solve_lower_transpose};
 use crate::numerics::twofold::Sum;

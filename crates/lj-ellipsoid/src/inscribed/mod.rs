@@ -10,6 +10,7 @@ mod hull;
 pub(crate) mod in_hull;
 mod interior;
 mod newton_system;
+mod point;
 mod polyhedron;
 mod primal_dual;
 mod solution;

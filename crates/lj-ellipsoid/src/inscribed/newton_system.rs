@@ -11,7 +11,7 @@
 //!
 //! Along Δ: ∇f = −tr(B⁻¹Δ), ∇²f = tr(B⁻¹ΔB⁻¹Δ), ∇hᵢ = vᵢᵀΔpᵢ, ∇²hᵢ = (|Δpᵢ|² − (vᵢᵀΔpᵢ)²)/hᵢ.
 
-use crate::inscribed::primal_dual::Point;
+use crate::inscribed::point::Point;
 use crate::numerics::dimension::{Const, Dimension, Dynamic, LANES};
 use crate::numerics::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
 
