@@ -2,11 +2,11 @@
 
 use crate::enclosing::iterate::Iterate;
 use crate::enclosing::newton::Workspace;
+use crate::enclosing::problem::{Observer, Problem};
 use crate::enclosing::solution::Solution;
 use crate::enclosing::start::Start;
 use crate::enclosing::violators::{Survivors, Violators, look};
 use crate::enclosing::working_set::WorkingSet;
-use crate::enclosing::{Observer, Problem};
 use crate::error::EnclosingError;
 use crate::numerics::dimension::Dimension;
 use crate::options::{EnclosingMethod, EnclosingOptions, Status};

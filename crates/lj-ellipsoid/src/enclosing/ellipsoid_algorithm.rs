@@ -17,10 +17,10 @@
 
 use crate::enclosing::frame::Frame;
 use crate::enclosing::iterate::Iterate;
+use crate::enclosing::problem::{EnclosingIterate, Observer, Problem};
 use crate::enclosing::solution::{Certificate, Ending, Solution, finish};
 use crate::enclosing::start::Start;
 use crate::enclosing::working_set::WorkingSet;
-use crate::enclosing::{EnclosingIterate, Observer, Problem};
 use crate::error::EnclosingError;
 use crate::numerics::dimension::{Dimension, Dynamic};
 use crate::numerics::linalg::{cholesky, cholesky_log_det, dot, solve_lower, solve_lower_transpose};

@@ -1,8 +1,8 @@
 //! Where a method stands: a frame, weighted points in it, and what follows from the weights.
 
-use crate::enclosing::EnclosingIterate;
 use crate::enclosing::frame::Frame;
 use crate::enclosing::moments::Moments;
+use crate::enclosing::problem::EnclosingIterate;
 use crate::enclosing::solution::{Certificate, Ending, Solution, finish};
 use crate::enclosing::working_set::WorkingSet;
 use crate::error::EnclosingError;

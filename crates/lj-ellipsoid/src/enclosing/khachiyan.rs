@@ -6,10 +6,10 @@
 //! Discrete Appl. Math. 155 (2007).
 
 use crate::enclosing::iterate::Iterate;
+use crate::enclosing::problem::{Observer, Problem};
 use crate::enclosing::solution::Solution;
 use crate::enclosing::start::Start;
 use crate::enclosing::working_set::WorkingSet;
-use crate::enclosing::{Observer, Problem};
 use crate::error::EnclosingError;
 use crate::numerics::dimension::{Const, Dimension, Dynamic};
 use crate::options::Status;

@@ -10,6 +10,7 @@ mod moments;
 mod moving_points;
 mod newton;
 mod outward;
+mod problem;
 mod scan;
 mod solution;
 mod start;
@@ -18,6 +19,8 @@ mod working_set;
 
 use self::active_set::Improve;
 pub use self::moving_points::MovingPoints;
+pub use self::problem::EnclosingIterate;
+use self::problem::{Observer, Problem};
 pub(crate) use self::solution::Solution;
 use self::start::{Start, start};
 use crate::ellipsoid::Ellipsoid;
@@ -71,21 +74,6 @@ impl<const N: usize> Enclosing<N> {
     }
 }
 
-/// What an observer of [`enclosing_with`] sees after every pass over the points.
-#[derive(Clone, Copy, Debug)]
-pub struct EnclosingIterate<'a> {
-    /// Iterations so far.
-    pub iteration: usize,
-    /// Passes over all points so far.
-    pub scans: usize,
-    /// The bound on ln det X* − ln det X of this iterate, before outward rounding.
-    pub log_det_gap: f64,
-    /// The points of the working set; for methods without one, all points.
-    pub indices: &'a [usize],
-    /// Their weights; empty for the ellipsoid algorithm.
-    pub weights: &'a [f64],
-}
-
 /// The ellipsoid of least volume that contains `points` (Löwner and John).
 ///
 /// Points are anything that converts into `[f64; N]`. The answer is affine equivariant: scale, aspect and offset of the
@@ -126,17 +114,6 @@ pub fn enclosing_with<P: Into<[f64; N]> + Copy + Sync, const N: usize>(
     mut observer: impl FnMut(EnclosingIterate<'_>),
 ) -> Result<Enclosing<N>, EnclosingError> {
     solve(&PointSlice(points), options, &mut observer).map(Enclosing::from_solution)
-}
-
-/// Who sees the iterates. The solvers are compiled once for all observers: a call costs little beside the step it reports.
-pub(crate) type Observer<'a> = dyn FnMut(EnclosingIterate<'_>) + 'a;
-
-/// What every method is given.
-pub(crate) struct Problem<'a, P: Points> {
-    pub(crate) points: &'a P,
-    /// The dimension of their affine hull.
-    pub(crate) rank: P::Dim,
-    pub(crate) options: EnclosingOptions,
 }
 
 /// The dimension-free body of [`enclosing`](enclosing()).

@@ -10,6 +10,7 @@ mod hull;
 pub(crate) mod in_hull;
 mod interior;
 mod newton_system;
+mod observer;
 mod point;
 mod polyhedron;
 mod primal_dual;
@@ -17,6 +18,8 @@ mod solution;
 
 pub use self::in_hull::{inscribed_in_hull, inscribed_in_hull_with};
 use self::interior::round_coordinates;
+pub use self::observer::InscribedIterate;
+use self::observer::Observer;
 use self::polyhedron::Polyhedron;
 pub(crate) use self::solution::InscribedSolution;
 use crate::ellipsoid::Ellipsoid;
@@ -75,17 +78,6 @@ impl<const N: usize> Inscribed<N> {
     }
 }
 
-/// What an observer of [`inscribed_with`] sees after every Newton step.
-#[derive(Clone, Copy, Debug)]
-pub struct InscribedIterate {
-    /// Newton steps so far.
-    pub iteration: usize,
-    /// The barrier parameter the step aimed at.
-    pub mu: f64,
-    /// The bound on ln det X − ln det X* of this iterate; infinite while the multipliers prove nothing.
-    pub log_det_gap: f64,
-}
-
 /// The ellipsoid of greatest volume inside the intersection of `halfspaces`.
 ///
 /// Normals of any length, redundant and repeated half-spaces are fine, and so are thin bodies, turned as they may be. What
@@ -133,9 +125,6 @@ pub fn inscribed_with<const N: usize>(
     let halfspaces = halfspaces.iter().map(|h| (&h.normal[..], h.offset));
     solve(Const::<N>, halfspaces, options, &mut observer).map(Inscribed::from_solution)
 }
-
-/// Who sees the iterates. The solver is compiled once for all observers.
-pub(crate) type Observer<'a> = dyn FnMut(InscribedIterate) + 'a;
 
 /// The dimension-free body of [`inscribed`](inscribed()).
 pub(crate) fn solve<'a, D: Dimension>(

@@ -17,8 +17,8 @@
 
 use crate::error::InscribedError;
 use crate::inscribed::newton_system::{Direction, System};
+use crate::inscribed::observer::{InscribedIterate, Observer};
 use crate::inscribed::point::Point;
-use crate::inscribed::{InscribedIterate, Observer};
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{cholesky, cholesky_log_det, dot, solve_lower, solve_lower_transpose};
 use crate::options::{InscribedOptions, Status};

@@ -1,10 +1,10 @@
 //! From a body in round coordinates to the ellipsoid that is returned, with its certified gap.
 
 use crate::error::InscribedError;
-use crate::inscribed::Observer;
 use crate::inscribed::body::Body;
 use crate::inscribed::certificate::log_det_at_most;
 use crate::inscribed::coordinates::{Coordinates, Rows};
+use crate::inscribed::observer::Observer;
 use crate::inscribed::primal_dual::{Dual, Maximum, maximize};
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::UNIT_ROUNDOFF;
