@@ -1,8 +1,10 @@
 //! Features of shapes: vertices, edges and faces within a slab.
 
 use convex_support::strategies::{AnyShape, direction, primitive_3d};
-use convex_support::{Cuboid, Cylinder, Feature, Hint, Polytope, Posed, Rounded, SupportMap, Vector, glam};
-use glam::{DQuat, DVec3};
+use convex_support::{
+    Affine, Ball, Cuboid, Cylinder, Feature, Hint, Polytope, Posed, Rounded, SupportMap, Vector, glam,
+};
+use glam::{DMat2, DMat3, DQuat, DVec2, DVec3};
 use proptest::prelude::*;
 
 fn feature<S: SupportMap>(shape: &S, direction: S::Vector, slab: f64) -> Feature<S::Vector>
@@ -116,4 +118,37 @@ fn a_hull_shows_what_its_points_do() {
         }
     }
     assert!(shown[1] > 100 && shown[3..].iter().sum::<usize>() > 1000, "no fair sample: {shown:?}");
+}
+
+/// A singular matrix makes a segment or a disc of a ball. Along a direction across it the support point is any of its
+/// points, and the feature is all of it; along others it is an end, or a point of the rim.
+#[test]
+fn a_flat_image_of_a_ball_shows_all_of_it() {
+    let image = |sizes: [f64; 3], direction: DVec3| {
+        let matrix = DMat3::from_diagonal(DVec3::from_array(sizes)) * DMat3::from_rotation_z(0.3);
+        let ball = Ball::<DVec3>::new(0.5).expect("positive");
+        feature(&Affine::new(ball, matrix, DVec3::Y).expect("finite"), direction, 1e-12)
+    };
+    let mut ends = image([4.0, 0.0, 0.0], DVec3::Y).points().to_vec();
+    ends.sort_by(|p, q| p.x.total_cmp(&q.x));
+    assert_eq!(ends.len(), 2, "{ends:?}");
+    assert!(ends[0].distance(DVec3::X * -2.0) < 1e-15 && ends[1].distance(DVec3::X * 2.0) < 1e-15, "{ends:?}");
+    // What is left of the second column without the first is rounding.
+    let steep = DMat2::from_cols(DVec2::ONE, DVec2::splat(2.0));
+    let steep = Affine::new(Ball::<DVec2>::new(0.5).expect("positive"), steep, DVec2::ZERO).expect("finite");
+    let ends = feature(&steep, DVec2::new(1.0, -1.0), 1e-12);
+    let end = DVec2::splat(0.5 * 5_f64.sqrt());
+    assert!(ends.points().len() == 2 && ends.points().iter().all(|p| p.abs().distance(end) < 1e-15), "{ends:?}");
+    let disc = image([4.0, 0.0, 2.0], DVec3::Y);
+    let rim = disc.rim().expect("a disc");
+    let is_on = |p: DVec3| ((p.x / 2.0).hypot(p.z) - 1.0).abs() < 1e-15 && p.y == 0.0;
+    assert!(disc.is_complete() && disc.points().len() == 8, "{disc:?}");
+    assert!(
+        rim.center == DVec3::ZERO && rim.ends.into_iter().chain(disc.points().iter().copied()).all(is_on),
+        "{disc:?}"
+    );
+    for direction in [DVec3::ONE, DVec3::X] {
+        assert_eq!(image([4.0, 0.0, 0.0], direction).points().len(), 1);
+        assert_eq!(image([4.0, 0.0, 2.0], direction).points().len(), 1);
+    }
 }

@@ -223,7 +223,11 @@ fn flat_image<M: Matrix>(matrix: &M) -> [M::Vector; 2] {
     let across = |j: usize| matrix.col(j) - e * matrix.col(j).dot(e);
     let x = columns(e);
     let length = x.norm();
-    let Some(f) = longest(&across).unit() else { return [e * length, M::Vector::ZERO] };
+    // Of a segment that is rounding, which may be along it.
+    let f = longest(&across).unit().map(|f| f - e * f.dot(e));
+    let Some(f) = f.filter(|f| f.norm() > Scalar::from_f64(0.5)).and_then(Vector::unit) else {
+        return [e * length, M::Vector::ZERO];
+    };
     let y = columns(f);
     let shared = y.dot(x / length);
     let rest = y - x * (shared / length);

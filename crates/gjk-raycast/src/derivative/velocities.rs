@@ -43,7 +43,8 @@ pub struct ClosestVelocities<V: Vector> {
 impl<V: Vector> ClosestFeatures<V> {
     /// How fast the signed distance, the normal and the closest points change as the bodies begin to move.
     ///
-    /// `None` at an [edge](crate::Smoothness::Edge); and where the curvature of the shapes is not known, which shows in support points
+    /// `None` where the normal or the closest points are not [the only ones](Self::are_points_unique); and where the
+    /// curvature of the shapes is not known, which shows in support points
     /// nearby that are not where [`SupportMap::core_support_hessian`](convex_support::SupportMap::core_support_hessian) predicts them.
     ///
     /// ```
