@@ -6,7 +6,8 @@ use num_traits::Float as _;
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
 use crate::contact::signed_distance_of_any;
 use crate::gjk::{
-    End, Frame, Gjk, GjkOptions, InOrder, NEAR, first_direction, gjk, is_near_contact, near_contact, rounding,
+    End, Frame, Gjk, GjkOptions, InOrder, NEAR, comes_first, first_direction, gjk, is_near_contact, near_contact,
+    rounding,
 };
 use crate::shape::{Shape, WithoutLines};
 use crate::{Distance, DistanceOptions, Iterate, SignedDistanceOptions, Status, SubAlgorithm};
@@ -191,6 +192,10 @@ where
 #[cold]
 #[inline(never)]
 fn closely<V: Vector>([a, b]: [Shape<'_, V>; 2], answer: Distance<V>, max_iterations: usize) -> Distance<V> {
+    // In order, so that the answer is that of the pair in the other order.
+    if comes_first(&b.core(), &a.core()) {
+        return closely([b, a], answer.reversed(), max_iterations).reversed();
+    }
     let zero = V::Scalar::ZERO;
     let left = max_iterations.saturating_sub(answer.iterations);
     let there = signed_distance_of_any(a, b, SignedDistanceOptions::new().with_max_iterations(left));

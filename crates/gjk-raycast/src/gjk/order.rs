@@ -10,7 +10,7 @@ use crate::symmetric::Symmetric;
 
 /// Whether a body is looked at before another: it is larger, or as large and elsewhere.
 #[inline(always)]
-pub(super) fn comes_first<V: Vector>(a: &Core<V>, b: &Core<V>) -> bool {
+pub(crate) fn comes_first<V: Vector>(a: &Core<V>, b: &Core<V>) -> bool {
     if a.extent != b.extent {
         return a.extent > b.extent;
     }
