@@ -317,7 +317,7 @@ fn points_of_searches_that_are_given_up_are_of_the_shapes() {
         let options = SignedDistanceOptions::default().with_max_iterations(most);
         let answer = signed_distance(&cone, &ellipsoid, options);
         answered_points_are_of_the_shapes(&cone, &ellipsoid, answer, 1e-14);
-        let deep = signed_distance(&cone, &ellipsoid, options.with_depth_limit(0.01 * f64::from(most)));
+        let deep = signed_distance(&cone, &ellipsoid, options.with_depth_limit(0.02));
         answered_points_are_of_the_shapes(&cone, &ellipsoid, deep, 1e-14);
     }
 }
