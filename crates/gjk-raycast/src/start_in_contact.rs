@@ -106,7 +106,7 @@ impl<V: Vector> Start<'_, V> {
             if there.upper < lower.min(self.target - slack) {
                 return Later::Deeper;
             }
-            if there.lower > upper.max(self.target - slack) {
+            if there.lower > upper {
                 return Later::Less(there.normal);
             }
             last = there.normal;

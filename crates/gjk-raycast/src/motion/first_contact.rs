@@ -137,13 +137,17 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
                 return End::Miss(axis);
             }
             let time = if self.near.distance <= self.closest() { None } else { self.next_time() };
-            let Some(time) = time.map(|time| self.within(time)) else {
+            let Some(time) = time else {
                 match self.close_in() {
                     Some(end) => return end,
                     None => continue,
                 }
             };
-            let there = self.glance(time);
+            let there = match self.base.stage {
+                Stage::Apart => self.glance(time),
+                _ if self.is_endless() => break,
+                _ => self.look(self.within(time), Limits { distance: zero, depth: zero }),
+            };
             if there.gap > zero {
                 self.advance_to(&there);
             } else {
@@ -193,12 +197,8 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
     /// How near to contact the bodies are to be brought before it is bracketed.
     pub(super) fn closest(&self) -> V::Scalar {
         let from_f64 = V::Scalar::from_f64;
-        let least = self.near.error * from_f64(2.0 * AIM);
-        // A start in contact is as near as the slack.
-        if self.base.stage != Stage::Apart {
-            return least;
-        }
-        least.max(self.bodies.size() * self.options.tolerance * from_f64(0.25))
+        let size = self.bodies.size() * self.options.tolerance * from_f64(0.25);
+        (self.near.error * from_f64(2.0 * AIM)).max(size)
     }
 
     /// Counts how often in a row the search for a contact has not come nearer by half.
@@ -218,7 +218,7 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
         let limits = Limits { distance: self.enough_at(time), depth: Scalar::ZERO };
         let Instant { distance, error, .. } = self.near;
         let is_near = distance * distance < error * self.bodies.size() * Scalar::from_f64(NEAR);
-        if is_near || self.slow > PATIENCE || self.base.stage != Stage::Apart {
+        if is_near || self.slow > PATIENCE {
             self.beyond = self.beyond.filter(|beyond| beyond.is_close);
             return self.look(time, limits);
         }

@@ -27,6 +27,9 @@ const ROUNDED: f64 = 6.0;
 /// Bodies that sink by a power of time no higher than this have sunk from the start on, as far as can be told.
 const POWER: f64 = 4.0;
 
+/// After how many looks at bodies as deep as they began it is foreseen how many are to come.
+const LONG: usize = 500;
+
 /// How much of the way out of an overlap is asked for at once.
 const OUT: f64 = 0.9;
 
@@ -36,12 +39,15 @@ pub(super) struct Base<S> {
     /// The signed distance that counts as contact, but for how the bodies' places are [rounded](Self::loose).
     pub(super) level: S,
     pub(super) stage: Stage,
-    /// The signed distance at the start, and what it certainly is not more than.
+    /// The signed distance at the start, what it certainly is not more than, and by how much that is more than what it certainly is not less than.
     start: S,
     highest: S,
+    width: S,
     slack: S,
     /// When the bodies came to the surface.
     since: S,
+    /// The tolerance that was asked for. A start in contact is as near as the slack, and that of what follows from it is none.
+    tolerance: S,
 }
 
 /// What the bodies have done so far.
@@ -63,7 +69,16 @@ impl<S: Scalar> Base<S> {
     /// Where contact is what counts.
     pub(super) const CONTACT: Self = {
         let zero = S::ZERO;
-        Self { level: zero, stage: Stage::Apart, start: zero, highest: zero, slack: zero, since: zero }
+        Self {
+            level: zero,
+            stage: Stage::Apart,
+            start: zero,
+            highest: zero,
+            width: zero,
+            slack: zero,
+            since: zero,
+            tolerance: zero,
+        }
     };
 
     /// How much lower the level is, in units of what the places of the bodies are rounded by at the time.
@@ -89,7 +104,9 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
             return End::Undecided(Status::Stalled);
         }
         let stage = if upper < -slack { Stage::Deep } else { Stage::Touching };
-        self.base = Base { start: distance, highest: upper, slack, ..Base::CONTACT };
+        let (width, tolerance) = (upper - gap, self.options.tolerance);
+        self.base = Base { start: distance, highest: upper, width, slack, tolerance, ..Base::CONTACT };
+        self.options.tolerance = V::Scalar::ZERO;
         self.raise(stage, gap - slack);
         match self.advance() {
             // They may have parted before, and touched again.
@@ -104,38 +121,44 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
     /// Measures from the highest level that the bodies are certainly above.
     pub(super) fn rise(&mut self) {
         let Base { stage, highest, slack, .. } = self.base;
-        let Instant { gap, upper, .. } = self.near.above(-self.level_of(&self.near));
+        let Instant { gap, upper, error, .. } = self.truly(self.near);
         if gap > V::Scalar::ZERO {
             self.raise(Stage::Apart, V::Scalar::ZERO);
+            self.options.tolerance = self.base.tolerance;
         } else if self.base.overlaps() && !(upper < -slack) {
             self.base.since = self.near.time;
             self.raise(Stage::Surfaced, gap - slack);
-        } else if stage == Stage::Deep && gap > highest + slack {
+        } else if stage == Stage::Deep && gap > highest + slack + error * V::Scalar::from_f64(ROUNDED) {
             self.raise(Stage::Risen, highest);
         }
     }
 
     fn raise(&mut self, stage: Stage, level: V::Scalar) {
         let known = [Some(self.near), self.beyond, self.farther];
-        let [near, beyond, farther] = known.map(|there| there.map(|there| there.above(-self.level_of(&there))));
+        let [near, beyond, farther] = known.map(|there| there.map(|there| self.truly(there)));
         (self.base.stage, self.base.level) = (stage, level);
         let [near, beyond, farther] = [near, beyond, farther].map(|there| there.map(|there| self.from_level(there)));
         (self.near, self.beyond, self.farther) = (near.unwrap_or(self.near), beyond, farther);
     }
 
-    /// The level at a time.
-    fn level_of(&self, there: &Instant<V>) -> V::Scalar {
-        let loose = self.base.loose();
-        if loose == V::Scalar::ZERO {
-            return self.base.level;
-        }
-        let (_, rounded) = self.bodies.level(there.time, there.normal);
-        self.base.level - loose * rounded
-    }
-
     /// What is seen at a time, measured from the level.
     pub(super) fn from_level(&self, there: Instant<V>) -> Instant<V> {
-        there.above(self.level_of(&there))
+        if self.base.stage == Stage::Apart { there } else { self.shifted(there, V::Scalar::ONE) }
+    }
+
+    /// What is measured from the level, as it was seen.
+    fn truly(&self, there: Instant<V>) -> Instant<V> {
+        self.shifted(there, -V::Scalar::ONE)
+    }
+
+    fn shifted(&self, there: Instant<V>, by: V::Scalar) -> Instant<V> {
+        let Base { level, stage, width, .. } = self.base;
+        let loose = self.base.loose();
+        let rounded = if loose > V::Scalar::ZERO { self.bodies.level(there.time, there.normal).1 } else { loose };
+        let there = there.above((level - loose * rounded) * by);
+        // To be certainly deeper than they began takes more than to be not certainly less deep.
+        let width = if stage == Stage::Risen { width } else { V::Scalar::ZERO };
+        Instant { upper: there.upper + width * by, ..there }
     }
 
     /// Whether bodies that overlap do so until a later time, so that they cannot have met again before.
@@ -143,8 +166,7 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
         if !self.base.overlaps() {
             return true;
         }
-        let deepest = |there: &Instant<V>| there.upper + self.level_of(there);
-        let upper = deepest(&self.near).max(deepest(there));
+        let upper = self.truly(self.near).upper.max(self.truly(*there).upper);
         upper < V::Scalar::ZERO && self.bodies.stay_in_contact(&self.near, there, -upper)
     }
 
@@ -153,12 +175,22 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
         if !self.base.overlaps() {
             return next;
         }
-        let Instant { time, upper, closing, .. } = self.near;
-        let out = (upper + self.level_of(&self.near)) / closing * V::Scalar::from_f64(OUT);
+        let Instant { time, upper, closing, .. } = self.truly(self.near);
+        let out = upper / closing * V::Scalar::from_f64(OUT);
         let step = self.step + self.step;
         let step = if closing < V::Scalar::ZERO && out < step { out } else { step };
         // Of no step at all, the next number.
         if next > time + step && time + step > time { time + step } else { next }
+    }
+
+    /// Whether bodies that are still as deep as they began would take more looks until the end than there are left. Every moment of what rolls may be
+    /// an edge, so that it comes on by steps that shrink with the slack.
+    pub(super) fn is_endless(&self) -> bool {
+        let rest = self.options.max_time - self.near.time;
+        let left = self.options.max_iterations.saturating_sub(self.looks);
+        self.looks > LONG
+            && matches!(self.base.stage, Stage::Touching | Stage::Deep)
+            && self.step * V::Scalar::from_f64(left as f64) < rest
     }
 
     /// Up to when nothing that counts has happened: the bodies may have sunk by less than the slack from the start on.
@@ -176,12 +208,12 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
         let zero = V::Scalar::ZERO;
         if matches!(self.base.stage, Stage::Touching | Stage::Deep) {
             // Since they were as deep as at the start.
-            let sunk = self.base.start - (distance + self.level_of(&self.near)) + error * V::Scalar::from_f64(2.0);
+            let sunk = self.base.start - self.truly(self.near).distance + error * V::Scalar::from_f64(2.0);
             let since = sunk / closing;
-            return if !(closing > zero) || time > since * V::Scalar::from_f64(POWER) {
-                time - if closing > zero { since } else { zero }
-            } else {
-                zero
+            return match time > since * V::Scalar::from_f64(POWER) {
+                _ if !(closing > zero) => time,
+                true => time - since,
+                false => zero,
             };
         }
         let step = distance / closing;
