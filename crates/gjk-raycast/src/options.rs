@@ -190,11 +190,12 @@ pub enum StartInContact {
     /// were apart. Sliding, rolling or turning at the same depth is no hit, nor is coming out. Bodies that move straight get deeper at once, a hit
     /// at time 0, or never: a miss.
     ///
-    /// Deeper is deeper by more than rounding: 16ε of the bodies' sizes, a few times what their places are rounded by, and what their
-    /// depth at the start is known to. As long as bodies that turn are at the depth at which they began, to this slack, nobody can tell when
-    /// they begin to sink, and the lower bound of a hit is 0; if they may have sunk from the start on, the time is 0 too. What comes to
-    /// the surface of an overlap, and goes back, touches or does not touch again within rounding, and is undecided; and so is what rolls on
-    /// edges or round faces, except for balls, of which every moment may be an edge.
+    /// Deeper is deeper by more than a slack: 16ε of the bodies' sizes, a few times what their places are rounded by, and what their
+    /// depth at the start is known to. As long as bodies that turn are as deep as they began, to this slack, nobody can tell when they begin to
+    /// sink. So the lower bound of their hit is 0, and if they may have sunk from the start on, its time is 0 too.
+    ///
+    /// Undecided is what comes up from an overlap until it only touches, to rounding, and goes down again. So is what rolls on its own
+    /// edge or its own round face, unless it is a ball, as its support points tell nothing of what is between them.
     IfDeeper,
 }
 

@@ -77,11 +77,12 @@ impl<V: Vector> Start<'_, V> {
         if !(closing > slides) {
             return Some(InContact { start, leaves_along: Some(start.normal) });
         }
-        let touches = start.upper >= self.target - slack;
+        // Where the depth is known to rounding, what nowhere shows slides.
+        let slides = start.upper >= self.target - slack || start.upper - start.lower <= slack;
         let leaves_along = match self.later(velocity, speed / closing, &start, slack) {
             Later::Deeper => None,
             Later::Less(normal) => Some(normal),
-            Later::Unknown(normal) => touches.then_some(normal),
+            Later::Unknown(normal) => slides.then_some(normal),
         };
         Some(InContact { start, leaves_along })
     }

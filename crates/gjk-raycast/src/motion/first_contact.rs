@@ -116,7 +116,7 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
         let end = match options.start_in_contact {
             _ if near.gap > zero => search.advance(),
             StartInContact::Report => search.start_in_contact(),
-            StartInContact::IfDeeper => search.from_contact(),
+            StartInContact::IfDeeper => search.begin_in_contact(),
         };
         search.answer(end)
     }
@@ -243,7 +243,7 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
         let there = self.bodies.closely(time, axis, limits);
         self.looks += 1;
         self.show(&there);
-        self.from_level(there)
+        self.measured(there)
     }
 
     fn show(&mut self, there: &Instant<V>) {

@@ -30,6 +30,9 @@ const POWER: f64 = 4.0;
 /// After how many looks at bodies as deep as they began it is foreseen how many are to come.
 const LONG: usize = 500;
 
+/// How deep bodies are, in units of the slack, that are known to overlap a moment later too, where their places are rounded by more.
+const DEEP: f64 = 4.0;
+
 /// How much of the way out of an overlap is asked for at once.
 const OUT: f64 = 0.9;
 
@@ -95,7 +98,7 @@ impl<S: Scalar> Base<S> {
 
 impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> {
     /// What to answer where the bodies are not certainly apart at the start, and only what comes after it counts.
-    pub(super) fn from_contact(&mut self) -> End<V> {
+    pub(super) fn begin_in_contact(&mut self) -> End<V> {
         let number = V::Scalar::from_f64;
         let Instant { gap, distance, upper, error, .. } = self.near;
         let slack = self.bodies.size() * V::Scalar::EPSILON * number(SLACK) + error * number(2.0);
@@ -103,7 +106,7 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
             // Neither is known, such as of a support map that returns NaN.
             return End::Undecided(Status::Stalled);
         }
-        let stage = if upper < -slack { Stage::Deep } else { Stage::Touching };
+        let stage = if upper < slack * number(-DEEP) { Stage::Deep } else { Stage::Touching };
         let (width, tolerance) = (upper - gap, self.options.tolerance);
         self.base = Base { start: distance, highest: upper, width, slack, tolerance, ..Base::CONTACT };
         self.options.tolerance = V::Scalar::ZERO;
@@ -127,7 +130,8 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
             self.options.tolerance = self.base.tolerance;
         } else if self.base.overlaps() && !(upper < -slack) {
             self.base.since = self.near.time;
-            self.raise(Stage::Surfaced, gap - slack);
+            // What comes after may be known no better.
+            self.raise(Stage::Surfaced, gap - slack - error * V::Scalar::from_f64(ROUNDED));
         } else if stage == Stage::Deep && gap > highest + slack + error * V::Scalar::from_f64(ROUNDED) {
             self.raise(Stage::Risen, highest);
         }
@@ -137,12 +141,12 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
         let known = [Some(self.near), self.beyond, self.farther];
         let [near, beyond, farther] = known.map(|there| there.map(|there| self.truly(there)));
         (self.base.stage, self.base.level) = (stage, level);
-        let [near, beyond, farther] = [near, beyond, farther].map(|there| there.map(|there| self.from_level(there)));
+        let [near, beyond, farther] = [near, beyond, farther].map(|there| there.map(|there| self.measured(there)));
         (self.near, self.beyond, self.farther) = (near.unwrap_or(self.near), beyond, farther);
     }
 
     /// What is seen at a time, measured from the level.
-    pub(super) fn from_level(&self, there: Instant<V>) -> Instant<V> {
+    pub(super) fn measured(&self, there: Instant<V>) -> Instant<V> {
         if self.base.stage == Stage::Apart { there } else { self.shifted(there, V::Scalar::ONE) }
     }
 
