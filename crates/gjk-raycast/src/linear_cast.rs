@@ -64,8 +64,8 @@ impl<V: Vector> Motion<V> {
 ///
 /// # Stepping a world
 /// If shapes are moved to their contact, the next cast starts with shapes that touch. By default it is a hit at time 0 again, whatever the
-/// motion. With [`StartInContact::IfDeeper`] it is a hit only if the shapes get deeper than they began. A motion that leaves the contact, or
-/// slides along it, is a miss, since shapes that move straight do not meet again:
+/// motion. With [`StartInContact::IfDeeper`] it is a hit only if the shapes get deeper than they began. A motion that
+/// leaves the contact, or slides along it, is a miss, since shapes that move straight do not meet again:
 ///
 /// ```
 /// use convex_support::{Ball, Cuboid, Posed, glam::DVec2};

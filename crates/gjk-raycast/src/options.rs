@@ -186,16 +186,18 @@ pub enum StartInContact {
     /// A hit at time 0, whatever the motion.
     #[default]
     Report,
-    /// A hit is the first time from which the bodies get deeper into one another than they began, or at which they touch again after they
-    /// were apart. Sliding, rolling or turning at the same depth is no hit, nor is coming out. Bodies that move straight get deeper at once, a hit
-    /// at time 0, or never: a miss.
+    /// A hit is the first time from which the bodies get deeper into one another than they began, or at which they
+    /// touch again after they were apart. Sliding, rolling or turning at the same depth is no hit, nor is coming out.
+    /// Bodies that move straight get deeper at once, a hit at time 0, or never: a miss.
     ///
-    /// Deeper is deeper by more than a slack: 16ε of the bodies' sizes, a few times what their places are rounded by, and what their
-    /// depth at the start is known to. As long as bodies that turn are as deep as they began, to this slack, nobody can tell when they begin to
-    /// sink. So the lower bound of their hit is 0, and if they may have sunk from the start on, its time is 0 too.
+    /// Deeper is deeper by more than a slack: 16ε of the bodies' sizes, a few times what their places are rounded by,
+    /// and what their depth at the start is known to. As long as bodies that turn are as deep as they began, to this
+    /// slack, nobody can tell when they begin to sink. So the lower bound of their hit is 0, and if they may have sunk
+    /// from the start on, its time is 0 too.
     ///
-    /// Undecided is what comes up from an overlap until it only touches, to rounding, and goes down again. So is what rolls on its own
-    /// edge or its own round face, unless it is a ball, as its support points tell nothing of what is between them.
+    /// Undecided is what comes up from an overlap until it only touches, to rounding, and goes down again. So is what
+    /// rolls on its own edge or its own round face, unless it is a ball, as its support points tell nothing of what is
+    /// between them.
     IfDeeper,
 }
 

@@ -12,8 +12,8 @@ use crate::{
 /// Closing speeds below this many ε of the speed are of rounding: a normal is known to a few.
 const SLIDES: f64 = 16.0;
 
-/// How far on shapes are looked at first, in units of what they are known to; how much farther each time; and how often at most, which is more
-/// than their sizes in any precision.
+/// How far on shapes are looked at first, in units of what they are known to; how much farther each time; and how often
+/// at most, which is more than their sizes in any precision.
 const FIRST: f64 = 64.0;
 const FARTHER: f64 = 8.0;
 const LOOKS: usize = 18;
@@ -54,11 +54,12 @@ impl<V: Vector> Start<'_, V> {
     /// The contact of shapes that touch or overlap at the start, to a slack that is the rounding of their places; `None` if they are
     /// certainly apart by more.
     ///
-    /// The depth of a point in a convex set is a concave function of the point: it is the least of the distances from the supporting planes.
-    /// So if it falls at first along a line, it falls along all of it; and if it is more anywhere along the line than at the start, it grows
-    /// from the start on. Where the depth is `−s`, along the normal `n`, it changes by `−n·w` with the relative velocity `w` of `a`; if several
-    /// ways out are equally short, or the shapes touch at corners, by the least of these. Then `n` is one of many normals, and the shapes may
-    /// part along another one although they close in along `n`. So it counts whether they are certainly deeper later.
+    /// The depth of a point in a convex set is a concave function of the point: it is the least of the distances from
+    /// the supporting planes. So if it falls at first along a line, it falls along all of it; and if it is more
+    /// anywhere along the line than at the start, it grows from the start on. Where the depth is `−s`, along the normal
+    /// `n`, it changes by `−n·w` with the relative velocity `w` of `a`; if several ways out are equally short, or the
+    /// shapes touch at corners, by the least of these. Then `n` is one of many normals, and the shapes may part along
+    /// another one although they close in along `n`. So it counts whether they are certainly deeper later.
     #[cold]
     #[inline(never)]
     pub(crate) fn of_motion(
@@ -87,8 +88,9 @@ impl<V: Vector> Start<'_, V> {
         Some(InContact { start, leaves_along })
     }
 
-    /// Whether the shapes get deeper than they start as they move along a velocity, so many times as far as they come nearer along the normal:
-    /// looked at from so far on that it shows, if the normal is the only one, to as far as their sizes.
+    /// Whether the shapes get deeper than they start as they move along a velocity, so many times as far as they come
+    /// nearer along the normal: looked at from so far on that it shows, if the normal is the only one, to as far as
+    /// their sizes.
     fn later(&self, velocity: V, per_depth: V::Scalar, start: &SignedDistance<V>, slack: V::Scalar) -> Later<V> {
         let SignedDistance { upper, lower, normal, .. } = *start;
         let size = |shape: &dyn SupportMap<Vector = V>| {

@@ -364,7 +364,8 @@ fn closest_points_begin_a_ray_alike() {
 const STILL: RigidMotion<DVec3> =
     RigidMotion { velocity: DVec3::ZERO, angular_velocity: DVec3::ZERO, center: DVec3::ZERO };
 
-/// The same motion of a body on the ground, which ends at a height, asked of a box, of a half-space, and of a chain of one joint.
+/// The same motion of a body on the ground, which ends at a height, asked of a box, of a half-space, and of a chain of
+/// one joint.
 fn on_the_ground<S: SupportMap<Vector = DVec3>>(
     body: &S,
     motion: RigidMotion<DVec3>,
@@ -382,9 +383,9 @@ fn on_the_ground<S: SupportMap<Vector = DVec3>>(
     ]
 }
 
-/// A ball that touches the floor and comes to rest for an instant, as it turns about an axis and falls at once, has gone 0.9989 into the floor by
-/// 1.33. What closes in with no speed but that of rounding was looked for after a time that is a quotient of roundings, so far ahead that it was
-/// out again.
+/// A ball that touches the floor and comes to rest for an instant, as it turns about an axis and falls at once, has
+/// gone 0.9989 into the floor by 1.33. What closes in with no speed but that of rounding was looked for after a time
+/// that is a quotient of roundings, so far ahead that it was out again.
 #[test]
 fn a_touching_ball_does_not_fall_through_the_floor() {
     let ball = at(Ball::<DVec3>::new(0.5).expect("positive"), [1.0, 1.5, 1.0]);
@@ -399,8 +400,8 @@ fn a_touching_ball_does_not_fall_through_the_floor() {
     }
 }
 
-/// About an axis below, what touches from above swings in from rest: it sinks with the square of time, and is deeper from the start on,
-/// though no look at the start can tell.
+/// About an axis below, what touches from above swings in from rest: it sinks with the square of time, and is deeper
+/// from the start on, though no look at the start can tell.
 #[test]
 fn what_swings_in_from_rest_gets_deeper_at_once() {
     for i in 0..40 {
@@ -419,8 +420,8 @@ fn what_swings_in_from_rest_gets_deeper_at_once() {
     }
 }
 
-/// A ball on a circle begins in the floor, comes out and touches it again. Between two looks at an overlap it may have been out: whole turns
-/// were skipped, since the ball was seen apart after some, and nobody had asked what was before.
+/// A ball on a circle begins in the floor, comes out and touches it again. Between two looks at an overlap it may have
+/// been out: whole turns were skipped, since the ball was seen apart after some, and nobody had asked what was before.
 #[test]
 fn no_contact_after_leaving_is_skipped() {
     let (radius, circle) = (0.5, 0.2);
@@ -440,8 +441,9 @@ fn no_contact_after_leaving_is_skipped() {
     }
 }
 
-/// Turning in place, rolling and sliding is no hit, whether the body touches or has sunk in. Of a box that turns about the normal of the
-/// floor one plane proves that it gets no deeper in any time; that it stays in contact is proved step by step.
+/// Turning in place, rolling and sliding is no hit, whether the body touches or has sunk in. Of a box that turns about
+/// the normal of the floor one plane proves that it gets no deeper in any time; that it stays in contact is proved step
+/// by step.
 #[test]
 fn what_stays_as_deep_as_it_began_is_no_hit() {
     for sunk in [0.0, 0.25, 1e-3] {
@@ -455,7 +457,8 @@ fn what_stays_as_deep_as_it_began_is_no_hit() {
             on_the_ground(&ball, rolling(about_the_normal, DVec3::ZERO), 0.0, 2.0),
         ];
         let round = [on_the_ground(&ball, rolling(DVec3::new(3.0, 1.0, -2.0), DVec3::new(1.0, 0.0, -1.0)), 0.0, 2.0)];
-        // How a chain moves its bodies is bounded alike in all directions, so that it does not know what moves along the floor.
+        // How a chain moves its bodies is bounded alike in all directions, so that it does not know what moves along
+        // the floor.
         for cast in still.iter().chain(&round).flat_map(|casts| &casts[..2]) {
             assert!(cast.outcome.is_miss() && cast.lower == 2.0, "{sunk}: {cast:?}");
         }
@@ -465,8 +468,9 @@ fn what_stays_as_deep_as_it_began_is_no_hit() {
     }
 }
 
-/// A rod 0.01 below the top of a block turns about the vertical, leaves the block, and its other end runs into the block's edge after three
-/// eighths of a turn. It is never deeper than 0.01, and one plane proves that: but it was out, and met the block again.
+/// A rod 0.01 below the top of a block turns about the vertical, leaves the block, and its other end runs into the
+/// block's edge after three eighths of a turn. It is never deeper than 0.01, and one plane proves that: but it was out,
+/// and met the block again.
 #[test]
 fn what_left_by_the_side_meets_again() {
     let rod = Segment::new([DVec3::new(-1.0, -0.01, 0.0), DVec3::new(1.0, -0.01, 0.0)]).expect("finite");
@@ -479,8 +483,8 @@ fn what_left_by_the_side_meets_again() {
     assert!((hit.time - 0.75 * PI).abs() < 1e-12, "{cast:?}");
 }
 
-/// Where two ways out of an overlap are equally short, it gets deeper only if both get longer. By the one normal that the signed distance
-/// names, half of these motions were hits at 0.
+/// Where two ways out of an overlap are equally short, it gets deeper only if both get longer. By the one normal that
+/// the signed distance names, half of these motions were hits at 0.
 #[test]
 fn of_two_equal_ways_out_the_shorter_one_counts() {
     let unit = cuboid::<DVec3>([1.0; 3]);

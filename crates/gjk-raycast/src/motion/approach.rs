@@ -33,7 +33,8 @@ pub(super) trait Approach<V: Vector> {
     /// then the direction from `b` to `a` where they are closest.
     fn stays_far_apart(&self, interval: [V::Scalar; 2]) -> Option<V>;
 
-    /// Whether the bodies, which overlap by `depth` at least at two times, certainly have a point in common at all times between.
+    /// Whether the bodies, which overlap by `depth` at least at two times, certainly have a point in common at all
+    /// times between.
     fn stay_in_contact(&self, from: &Instant<V>, to: &Instant<V>, depth: V::Scalar) -> bool;
 
     /// The speed of the closest points against one another, where they are.

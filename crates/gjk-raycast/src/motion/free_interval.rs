@@ -20,10 +20,10 @@
 //! easily as any other, where steps that trust a speed come to a transversal contact by ever smaller steps; and bodies that do not
 //! turn have `M = 0` along a plane that does not, which proves any interval.
 //!
-//! That the bodies come no deeper into one another than to a signed distance `ℓ < 0` is proved alike, with gaps measured from that level: at the
-//! ends `φ ≥ ρ + ℓ + g`, and in between it is to be at least `(ρ + ℓ)·|n(t)|`. Where `ρ + ℓ` is negative the normal's being shorter than one
-//! counts against the proof. Since `|n(t)|² = 1 − σ·(1 − σ)·|n₁ − n₀|²`, it is shorter by `σ·(1 − σ)·|n₁ − n₀|²` at most, as if
-//! `M` were larger by `2·|ℓ|·|r|²`.
+//! That the bodies come no deeper into one another than to a signed distance `ℓ < 0` is proved alike, with gaps
+//! measured from that level: at the ends `φ ≥ ρ + ℓ + g`, and in between it is to be at least `(ρ + ℓ)·|n(t)|`. Where
+//! `ρ + ℓ` is negative the normal's being shorter than one counts against the proof. Since `|n(t)|² = 1 − σ·(1 − σ)·|n₁
+//! − n₀|²`, it is shorter by `σ·(1 − σ)·|n₁ − n₀|²` at most, as if `M` were larger by `2·|ℓ|·|r|²`.
 //!
 //! Any two planes will do that separate the bodies at the two times. Where the normals of the closest points turn far, so that `M` is
 //! large, one of them may do at both times.
@@ -38,9 +38,9 @@ use super::trajectory::TurningPlane;
 /// What may be lost to rounding where both sides of the condition are computed.
 const ROUNDING: f64 = 64.0;
 
-/// Whether the bodies are certainly above a level throughout the interval between two times at which they are, by gaps that are measured from it:
-/// at level 0, whether they are apart. If so, the bound `M` along the plane that turns from the one normal to the other, whichever plane
-/// proves it.
+/// Whether the bodies are certainly above a level throughout the interval between two times at which they are, by gaps
+/// that are measured from it: at level 0, whether they are apart. If so, the bound `M` along the plane that turns from
+/// the one normal to the other, whichever plane proves it.
 pub(super) fn acceleration_if_free<V: Vector>(
     bodies: &impl Approach<V>,
     from: &Instant<V>,

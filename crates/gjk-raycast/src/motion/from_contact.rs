@@ -1,14 +1,16 @@
 //! Searches that begin in contact, and ask when the bodies get deeper than they began, or touch again.
 //!
-//! They are the same search with distances measured from another [level](Base::level), since a [free interval](super::free_interval) proves as well
-//! that the bodies come no deeper than to a level as that they stay apart. At first the level is a slack below where they began, as they
-//! are then above it by that. It rises when they are proved to be higher: to where they began, so that when they are there again is
-//! known as well as any contact, and to 0 when they are apart.
+//! They are the same search with distances measured from another [level](Base::level), since a [free
+//! interval](super::free_interval) proves as well that the bodies come no deeper than to a level as that they stay
+//! apart. At first the level is a slack below where they began, as they are then above it by that. It rises when they
+//! are proved to be higher: to where they began, so that when they are there again is known as well as any contact, and
+//! to 0 when they are apart.
 //!
-//! Bodies that overlap at two times may have been apart in between, and have met again. So while they overlap by more than the slack, an interval
-//! is taken only if they are proved to [stay in contact](super::in_contact) in it. The ends of such intervals come to where the bodies
-//! part as near as rounding lets them. There, and where they only touch at the start, a level just below contact does as well: bodies that
-//! part and meet again come below it, unless they meet by no more than the slack.
+//! Bodies that overlap at two times may have been apart in between, and have met again. So while they overlap by more
+//! than the slack, an interval is taken only if they are proved to [stay in contact](super::in_contact) in it. The ends
+//! of such intervals come to where the bodies part as near as rounding lets them. There, and where they only touch at
+//! the start, a level just below contact does as well: bodies that part and meet again come below it, unless they meet
+//! by no more than the slack.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -19,8 +21,8 @@ use super::instant::Instant;
 use super::result::MotionIterate;
 use crate::Status;
 
-/// How much deeper than they began counts as deeper: so many ε of the bodies' sizes, and so many times what their places are rounded by at the
-/// time.
+/// How much deeper than they began counts as deeper: so many ε of the bodies' sizes, and so many times what their
+/// places are rounded by at the time.
 const SLACK: f64 = 16.0;
 const ROUNDED: f64 = 6.0;
 
@@ -30,7 +32,8 @@ const POWER: f64 = 4.0;
 /// After how many looks at bodies as deep as they began it is foreseen how many are to come.
 const LONG: usize = 500;
 
-/// How deep bodies are, in units of the slack, that are known to overlap a moment later too, where their places are rounded by more.
+/// How deep bodies are, in units of the slack, that are known to overlap a moment later too, where their places are
+/// rounded by more.
 const DEEP: f64 = 4.0;
 
 /// How much of the way out of an overlap is asked for at once.
@@ -42,14 +45,16 @@ pub(super) struct Base<S> {
     /// The signed distance that counts as contact, but for how the bodies' places are [rounded](Self::loose).
     pub(super) level: S,
     pub(super) stage: Stage,
-    /// The signed distance at the start, what it certainly is not more than, and by how much that is more than what it certainly is not less than.
+    /// The signed distance at the start, what it certainly is not more than, and by how much that is more than what it
+    /// certainly is not less than.
     start: S,
     highest: S,
     width: S,
     slack: S,
     /// When the bodies came to the surface.
     since: S,
-    /// The tolerance that was asked for. A start in contact is as near as the slack, and that of what follows from it is none.
+    /// The tolerance that was asked for. A start in contact is as near as the slack, and that of what follows from it
+    /// is none.
     tolerance: S,
 }
 
@@ -174,7 +179,8 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
         upper < V::Scalar::ZERO && self.bodies.stay_in_contact(&self.near, there, -upper)
     }
 
-    /// Where to look at most, of bodies that overlap: not much farther than the last step went, nor beyond where they part.
+    /// Where to look at most, of bodies that overlap: not much farther than the last step went, nor beyond where they
+    /// part.
     pub(super) fn within(&self, next: V::Scalar) -> V::Scalar {
         if !self.base.overlaps() {
             return next;
@@ -187,8 +193,8 @@ impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> 
         if next > time + step && time + step > time { time + step } else { next }
     }
 
-    /// Whether bodies that are still as deep as they began would take more looks until the end than there are left. Every moment of what rolls may be
-    /// an edge, so that it comes on by steps that shrink with the slack.
+    /// Whether bodies that are still as deep as they began would take more looks until the end than there are left.
+    /// Every moment of what rolls may be an edge, so that it comes on by steps that shrink with the slack.
     pub(super) fn is_endless(&self) -> bool {
         let rest = self.options.max_time - self.near.time;
         let left = self.options.max_iterations.saturating_sub(self.looks);

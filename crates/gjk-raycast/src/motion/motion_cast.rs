@@ -41,8 +41,9 @@ use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, linear_ca
 /// have met. A miss is proved for the whole motion. Where the bodies graze one another, so that rounding decides, the answer is
 /// [`Outcome::Undecided`], and `lower` is the time of the graze.
 ///
-/// A start in contact is a hit at time 0, whatever the motion. With [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper) it is none, but
-/// that the bodies get deeper than they began, or touch again after they were apart: to step a world from contact to contact.
+/// A start in contact is a hit at time 0, whatever the motion. With
+/// [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper) it is none, but that the bodies get deeper than they
+/// began, or touch again after they were apart: to step a world from contact to contact.
 ///
 /// Where neither body turns, the answer is that of [`linear_cast`].
 ///

@@ -117,9 +117,9 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'
         }
     }
 
-    /// How far a point of the core may be, throughout an interval, from where it would be if the body went from its first place to its last by a
-    /// constant change of all coordinates, and from another point of the core, in either direction along a unit vector; see
-    /// [`in_contact`](super::in_contact).
+    /// How far a point of the core may be, throughout an interval, from where it would be if the body went from its
+    /// first place to its last by a constant change of all coordinates, and from another point of the core, in either
+    /// direction along a unit vector; see [`in_contact`](super::in_contact).
     pub(super) fn strays(&self, n: S::Vector, [from, to]: [ScalarOf<S>; 2]) -> ScalarOf<S> {
         let extent = self.core.extent;
         let [before, after] =

@@ -100,7 +100,8 @@ where
         self.count(answer.iterations);
         let (point_a, point) = (answer.point_a + *place, answer.point_b + *place);
         let distance = answer.signed_distance;
-        // Of bodies that are apart, or no deeper than is asked for, the gap is to be that of a plane, and not of one that is hardly another.
+        // Of bodies that are apart, or no deeper than is asked for, the gap is to be that of a plane, and not of one
+        // that is hardly another.
         let normal = if answer.lower > -limits.depth { axis } else { answer.normal };
         Instant {
             time,
