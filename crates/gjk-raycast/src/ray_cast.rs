@@ -30,7 +30,9 @@ type ScalarOf<S> = <<S as SupportMap>::Vector as Vector>::Scalar;
 /// - If the source is in the target, or no farther from it than its own error, the answer is a hit at λ = 0 with no normal, whatever the
 ///   direction.
 /// - If the source is outside, by however little, a ray that leaves or slides past the target is a miss.
-/// - A ray that grazes the target within rounding may be a hit or a miss. A hit is certain where [`upper`](RayCast::upper) is finite.
+/// - A ray that grazes the target within rounding may be a hit or a miss. A hit is certain where
+///   [`upper`](RayCast::upper) is finite ([`is_certain`](RayCast::is_certain)); elsewhere the status is
+///   [`Status::Stalled`].
 /// - The end of the ray, [`max_lambda`](RayCastOptions::max_lambda), belongs to the ray.
 /// - A ray can begin beyond its source, at [`min_lambda`](RayCastOptions::min_lambda), which belongs to the ray: a shadow ray leaves the
 ///   surface that it starts on in this way. If it begins in the target, the answer is a hit there, with no normal.
@@ -182,8 +184,9 @@ fn late<S: SupportMap + ?Sized>(
             let upper =
                 if early.upper <= zero && behind.upper <= zero { begin } else { begin + slack + behind.upper + error };
             let hit = RayHit { lambda: begin, point: ray.at(begin), normal: None };
-            let iterations = early.iterations + behind.iterations;
-            RayCast { outcome: Outcome::Hit(hit), lower: begin, upper, iterations, ..early }
+            let (outcome, iterations) = (Outcome::Hit(hit), early.iterations + behind.iterations);
+            let status = Status::Converged.of(&outcome, upper < ScalarOf::<S>::infinity());
+            RayCast { outcome, lower: begin, upper, status, iterations }
         }
         _ => of_whole_ray(early, ray, options, [begin - slack, error]),
     }
@@ -200,7 +203,8 @@ fn answer<V: Vector>(cast: Cast<V, ()>, ray: Ray<V>) -> RayCast<V> {
         Outcome::Miss(miss) => Outcome::Miss(miss),
         Outcome::Undecided => Outcome::Undecided,
     };
-    RayCast { outcome, lower: cast.lower, upper: cast.upper, status: cast.status, iterations: cast.iterations }
+    let status = cast.status.of(&outcome, cast.upper < V::Scalar::infinity());
+    RayCast { outcome, lower: cast.lower, upper: cast.upper, status, iterations: cast.iterations }
 }
 
 /// The answer in the parameters of the whole ray, for a part of it that begins at a parameter which is known to within an `error`.

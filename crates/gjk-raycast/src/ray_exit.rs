@@ -50,17 +50,19 @@ pub fn ray_exit<S: SupportMap + ?Sized>(
         // The line leaves the shape after the ray has ended, which is in the shape if it meets it at all.
         let entry = ray_cast(target, ray, RayCastOptions { axis: None, ..options })?;
         exit.iterations += entry.iterations;
-        exit.status = entry.status;
         return Ok(match entry.outcome {
             Outcome::Hit(_) => {
                 let outcome = Outcome::Hit(RayHit { lambda: end, point: ray.at(end), normal: None });
                 // It is in the shape from where it enters for certain to where it leaves at the earliest.
                 let is_known = entry.upper <= end || exit.lower <= end;
                 let lower = if is_known { end.min(exit.lower) } else { -infinity };
-                RayExit { outcome, lower, upper: end, ..exit }.on_ray(begin)
+                RayExit { outcome, lower, upper: end, status: Status::Converged, ..exit }.on_ray(begin)
             }
-            Outcome::Miss(miss) => RayExit { outcome: Outcome::Miss(miss), ..exit }.missed(),
-            Outcome::Undecided => RayExit { outcome: Outcome::Undecided, lower: -infinity, upper: end, ..exit },
+            Outcome::Miss(miss) => RayExit { outcome: Outcome::Miss(miss), status: entry.status, ..exit }.missed(),
+            Outcome::Undecided => {
+                let (outcome, status) = (Outcome::Undecided, entry.status);
+                RayExit { outcome, lower: -infinity, upper: end, status, ..exit }
+            }
         });
     }
     let lambda = hit.lambda.max(begin);
@@ -100,7 +102,9 @@ fn exit_of_line<S: SupportMap + ?Sized>(
 impl<V: Vector> RayExit<V> {
     /// Of a ray that begins at a parameter of the line: what is in the shape before that is not of the ray.
     fn on_ray(self, begin: V::Scalar) -> Self {
-        if self.lower >= begin { self } else { Self { lower: -V::Scalar::infinity(), ..self } }
+        let is_bounded = self.lower >= begin;
+        let lower = if is_bounded { self.lower } else { -V::Scalar::infinity() };
+        Self { lower, status: self.status.of(&self.outcome, is_bounded), ..self }
     }
 
     /// With the bounds of a miss.

@@ -1,6 +1,7 @@
 //! The answers of queries.
 
 use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
 
 use crate::simplex::MAX_POINTS;
 
@@ -8,13 +9,21 @@ use crate::simplex::MAX_POINTS;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Status {
-    /// The bracket is as narrow as was asked for, or as narrow as rounding allows.
+    /// The bracket is as narrow as was asked for, or as narrow as rounding allows; of a hit it has an upper bound, too.
     Converged,
     /// The allowed iterations were used up before the bracket was that narrow.
     IterationLimit,
-    /// No further progress was possible in floating point before the bracket was that narrow; or a support map
-    /// returned numbers that are not finite.
+    /// No further progress was possible in floating point before the bracket was that narrow, as of a hit that may be
+    /// a miss; or a support map returned numbers that are not finite.
     Stalled,
+}
+
+impl Status {
+    /// What has converged to a hit without a bound has stalled.
+    pub(crate) fn of<H, V>(self, outcome: &Outcome<H, V>, is_bounded: bool) -> Self {
+        let is_open = outcome.is_hit() && !is_bounded;
+        if is_open && self == Self::Converged { Self::Stalled } else { self }
+    }
 }
 
 /// The answer of [`distance`](crate::distance).
@@ -85,7 +94,8 @@ impl<V: Vector> Intersection<V> {
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Outcome<H, V> {
-    /// A hit. It is certain where the upper bound of the answer is finite.
+    /// A hit. It is certain where the upper bound of the answer is finite; elsewhere the status is not
+    /// [`Status::Converged`].
     Hit(H),
     /// A miss, which is certain: a plane proves it.
     Miss(Miss<V>),
@@ -108,6 +118,15 @@ impl<H, V> Outcome<H, V> {
     #[must_use]
     pub const fn is_hit(&self) -> bool {
         matches!(self, Self::Hit(_))
+    }
+
+    /// Whether it is certain, as a hit with a bound and every miss is.
+    pub(crate) const fn is_certain(&self, is_bounded: bool) -> bool {
+        match self {
+            Self::Hit(_) => is_bounded,
+            Self::Miss(_) => true,
+            Self::Undecided => false,
+        }
     }
 
     /// Whether neither a hit nor a miss is certain.
@@ -161,6 +180,14 @@ pub struct RayCast<V: Vector> {
     pub iterations: usize,
 }
 
+impl<V: Vector> RayCast<V> {
+    /// Whether the outcome is certain: a hit is where the upper bound is finite, and a miss always.
+    #[must_use]
+    pub fn is_certain(&self) -> bool {
+        self.outcome.is_certain(self.upper < V::Scalar::infinity())
+    }
+}
+
 /// Where a ray enters a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -197,6 +224,14 @@ pub struct RayExit<V: Vector> {
     pub iterations: usize,
 }
 
+impl<V: Vector> RayExit<V> {
+    /// Whether the outcome is certain: a hit is where the lower bound is finite, and a miss always.
+    #[must_use]
+    pub fn is_certain(&self) -> bool {
+        self.outcome.is_certain(self.lower > -V::Scalar::infinity())
+    }
+}
+
 /// The answer of [`linear_cast`](crate::linear_cast).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
@@ -222,6 +257,14 @@ pub struct LinearCast<V: Vector> {
     /// The number of support points computed of each shape; where they overlap at the start, those of
     /// [`distance`](crate::distance) and [`signed_distance`](crate::signed_distance) as well.
     pub iterations: usize,
+}
+
+impl<V: Vector> LinearCast<V> {
+    /// Whether the outcome is certain: a hit is where the upper bound is finite, and a miss always.
+    #[must_use]
+    pub fn is_certain(&self) -> bool {
+        self.outcome.is_certain(self.upper < V::Scalar::infinity())
+    }
 }
 
 /// The first contact of two moving shapes.

@@ -108,8 +108,12 @@ pub(super) fn answer<V: Space, H>(
                 .with("normal", Field::maybe_vector(normal))
                 .with_finite("lower", lower)
                 .with_finite("upper", upper)
+                .with_certain([lower, upper])
         }
-        Outcome::Miss(miss) => Answer::default().with("hit", Field::Flag(false)).with("axis", Field::vector(miss.axis)),
+        Outcome::Miss(miss) => Answer::default()
+            .with("hit", Field::Flag(false))
+            .with("axis", Field::vector(miss.axis))
+            .with("certain", Field::Flag(true)),
         Outcome::Undecided => return Err(undecided(name, [lower, upper], status, iterations)),
     };
     Ok(answer.with("status", shown(status)).with("iterations", Field::Count(iterations)))

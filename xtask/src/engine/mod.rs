@@ -461,6 +461,19 @@ mod tests {
     }
 
     #[test]
+    fn a_hit_that_may_be_a_miss_says_so() {
+        let cast = |y: f64| {
+            let target = r#"{"type":"ellipsoid","center":[0,0,0],"semi_axes":[2,1,0.5]}"#;
+            answered(&format!(r#"{{"query":"ray_cast","target":{target},"source":[-5,{y},0],"direction":[1,0,0]}}"#))
+        };
+        let told =
+            |answer: serde_json::Value| (answer["hit"].clone(), answer["certain"].clone(), answer["status"].clone());
+        assert_eq!(told(cast(0.5)), (true.into(), true.into(), "converged".into()));
+        assert_eq!(told(cast(1.0)), (true.into(), false.into(), "stalled".into()), "it grazes");
+        assert_eq!(told(cast(1.5)), (false.into(), true.into(), "converged".into()));
+    }
+
+    #[test]
     fn a_contact_is_null_beyond_its_distance() {
         let contact = |within: f64| {
             let b = r#"{"type":"posed","translation":[0,2.5],"of":{"type":"cuboid","half_extents":[2,1]}}"#;
@@ -495,10 +508,10 @@ mod tests {
         let scene = answered(&format!(r#"{{"query":"scene","bodies":[{bodies_in}],"asks":[{asks}]}}"#));
         let answers = &scene["answers"];
         assert_eq!((&answers[0]["body"], &answers[0]["lambda"]), (&0.into(), &1.5.into()), "{answers}");
-        assert_eq!(answers[1], serde_json::json!({"hit": false}));
+        assert_eq!(answers[1], serde_json::json!({"hit": false, "certain": true}));
         assert_eq!((&answers[2]["body"], &answers[2]["distance"]), (&0.into(), &2.5.into()), "{answers}");
         assert_eq!(answers[3], serde_json::json!({"body": null, "distance": null}));
-        assert_eq!(answers[4], serde_json::json!({"hit": false}), "it comes to within 0.5");
+        assert_eq!(answers[4], serde_json::json!({"hit": false, "certain": true}), "it comes to within 0.5");
         let single = answered(&format!(
             r#"{{"query":"motion_cast","a":{ball},"b":{},"motion_a":{turning},"max_time":9}}"#,
             bodies[2]
@@ -530,7 +543,7 @@ mod tests {
         assert!(
             landed["upper"].as_f64().zip(landed["lower"].as_f64()).is_some_and(|(upper, lower)| upper - lower < 1e-13)
         );
-        assert_eq!(ask(3.0, 2.5), serde_json::json!({"hit": false}), "not yet");
+        assert_eq!(ask(3.0, 2.5), serde_json::json!({"hit": false, "certain": true}), "not yet");
 
         let flat = refused(r#"{"query":"scene","bodies":[{"type":"half_space","normal":[0,0],"offset":1}],"asks":[]}"#);
         assert_eq!(flat.kind, Kind::InvalidShape, "{}", flat.message);

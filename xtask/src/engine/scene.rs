@@ -206,20 +206,21 @@ fn first<H, S: Scalar>(
     Ok(hit(name, cast.first.as_ref().map(|first| (first.body, scalar(&first.hit), [first.lower, first.upper]))))
 }
 
-/// The first hit, if there is one.
+/// The first hit, if there is one, and whether that is certain.
 fn hit<S: Scalar>(name: &'static str, first: Option<(usize, S, [S; 2])>) -> Answer {
     let answer = Answer::default().with("hit", Field::Flag(first.is_some()));
-    let Some((body, scalar, bracket)) = first else { return answer };
+    let Some((body, scalar, bracket)) = first else { return answer.with("certain", Field::Flag(true)) };
     hit_of(answer, body, (name, scalar), bracket)
 }
 
-/// With the body that is hit, the λ or time of it, and its bracket.
+/// With the body that is hit, the λ or time of it, its bracket, and whether it is certain.
 fn hit_of<S: Scalar>(answer: Answer, body: usize, (name, scalar): (&'static str, S), [lower, upper]: [S; 2]) -> Answer {
     answer
         .with("body", Field::Count(body))
         .with(name, Field::number(scalar))
         .with_finite("lower", lower)
         .with_finite("upper", upper)
+        .with_certain([lower, upper])
 }
 
 /// All hits of a ray, in its order.

@@ -113,6 +113,11 @@ impl Answer {
         if value.is_finite() { self.with(name, Field::number(value)) } else { self }
     }
 
+    /// Whether a hit with these bounds is certain: one of them is infinite where it may be a miss.
+    pub fn with_certain<S: Scalar>(self, [lower, upper]: [S; 2]) -> Self {
+        self.with("certain", Field::Flag(lower.is_finite() && upper.is_finite()))
+    }
+
     /// The first field that JSON cannot hold.
     pub fn non_finite(&self) -> Option<&'static str> {
         self.fields.iter().find(|(_, field)| !field.is_finite()).map(|(name, _)| *name)

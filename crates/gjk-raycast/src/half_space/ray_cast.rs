@@ -91,7 +91,8 @@ impl<V: Vector> Plane<V> {
         };
         if !(height.least() > zero) {
             let upper = if height.most() <= zero { zero } else { latest(height.most()) };
-            return Crossing { outcome: Outcome::Hit(zero), lower: zero, upper, status: Status::Converged };
+            let outcome = Outcome::Hit(zero);
+            return Crossing { status: Status::Converged.of(&outcome, upper < infinity), outcome, lower: zero, upper };
         }
         if !(sinking.most() > zero) {
             return miss;
@@ -109,6 +110,7 @@ impl<V: Vector> Plane<V> {
         if !(time <= end) {
             return Crossing { lower, ..miss };
         }
-        Crossing { outcome: Outcome::Hit(time), lower, upper: latest(height.most()), status: Status::Converged }
+        let (outcome, upper) = (Outcome::Hit(time), latest(height.most()));
+        Crossing { status: Status::Converged.of(&outcome, upper < infinity), outcome, lower, upper }
     }
 }

@@ -274,6 +274,8 @@ impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P,
                 (Outcome::Hit(MotionHit { time, point, normal }), Status::Converged)
             }
         };
-        MotionCast { outcome, lower, upper: self.upper, status, iterations: self.bodies.iterations() }
+        let (upper, iterations) = (self.upper, self.bodies.iterations());
+        let status = status.of(&outcome, upper < V::Scalar::infinity());
+        MotionCast { outcome, lower, upper, status, iterations }
     }
 }

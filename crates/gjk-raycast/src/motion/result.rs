@@ -1,6 +1,7 @@
 //! What a motion cast answers.
 
 use convex_support::Vector;
+use num_traits::Float as _;
 
 use crate::{Outcome, Status};
 
@@ -30,6 +31,14 @@ pub struct MotionCast<V: Vector> {
     pub status: Status,
     /// The number of support points computed of each shape, for all times that were looked at.
     pub iterations: usize,
+}
+
+impl<V: Vector> MotionCast<V> {
+    /// Whether the outcome is certain: a hit is where the upper bound is finite, and a miss always.
+    #[must_use]
+    pub fn is_certain(&self) -> bool {
+        self.outcome.is_certain(self.upper < V::Scalar::infinity())
+    }
 }
 
 /// The first contact of two moving bodies.

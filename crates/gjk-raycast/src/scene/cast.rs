@@ -134,16 +134,17 @@ impl<S: SupportMap> Among<'_, S> {
         options: RayCastOptions<S::Vector>,
     ) -> Result<SceneAnyHit, RayCastError> {
         ray.check(&options)?;
-        let (mut hit, mut undecided) = (false, None);
+        let (mut hit, mut is_certain, mut undecided) = (false, false, None);
         let work = self.each(&swept_point(ray), options.max_lambda, |index, body| {
-            let single = Single::from(body.ray_cast(ray, options)?);
-            hit = single.hit.is_some();
-            if single.is_undecided {
+            let cast = body.ray_cast(ray, options)?;
+            hit |= cast.outcome.is_hit();
+            is_certain = cast.outcome.is_hit() && cast.is_certain();
+            if !cast.is_certain() {
                 undecided = Some(undecided.map_or(index, |lowest: usize| lowest.min(index)));
             }
-            Ok(if hit { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+            Ok(if is_certain { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
         })?;
-        Ok(SceneAnyHit { hit, undecided: undecided.filter(|_| !hit), work })
+        Ok(SceneAnyHit { hit, undecided: undecided.filter(|_| !is_certain), work })
     }
 
     /// [`Scene::linear_cast`] among these bodies.

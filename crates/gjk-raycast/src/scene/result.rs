@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use convex_support::Vector;
+use num_traits::Float;
 
 use crate::{Contact, Distance, LinearHit, MotionHit, RayHit, Status};
 
@@ -46,6 +47,15 @@ pub struct SceneCast<H, S> {
     pub work: Work,
 }
 
+impl<H, S: Float> SceneCast<H, S> {
+    /// Whether the outcome is certain: a hit is where its upper bound is finite and no body before it is undecided,
+    /// and a miss where no body is.
+    #[must_use]
+    pub fn is_certain(&self) -> bool {
+        self.undecided.is_none() && !self.work.cancelled && self.first.as_ref().is_none_or(BodyHit::is_certain)
+    }
+}
+
 /// The answer of [`Scene::ray_cast`](crate::Scene::ray_cast).
 pub type SceneRayCast<V> = SceneCast<RayHit<V>, <V as Vector>::Scalar>;
 
@@ -58,6 +68,11 @@ pub type SceneMotionCast<V> = SceneCast<MotionHit<V>, <V as Vector>::Scalar>;
 /// Which body is hit, and what the single query for it answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "H: serde::Serialize, S: num_traits::Float + serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "H: serde::Deserialize<'de>, S: num_traits::Float + serde::Deserialize<'de>"))
+)]
 pub struct BodyHit<H, S> {
     /// The index of the body.
     pub body: usize,
@@ -65,10 +80,19 @@ pub struct BodyHit<H, S> {
     pub hit: H,
     /// The lower end of its bracket.
     pub lower: S,
-    /// The upper end of its bracket.
+    /// The upper end of its bracket; infinite for a hit that may be a miss.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: S,
     /// How the iteration ended.
     pub status: Status,
+}
+
+impl<H, S: Float> BodyHit<H, S> {
+    /// Whether the hit is certain: whether its upper bound is finite.
+    #[must_use]
+    pub fn is_certain(&self) -> bool {
+        self.upper < S::infinity()
+    }
 }
 
 /// The answer of [`Scene::ray_cast_all`](crate::Scene::ray_cast_all).
@@ -89,10 +113,18 @@ pub struct SceneHits {
 pub struct SceneAnyHit {
     /// Whether a body is hit.
     pub hit: bool,
-    /// Where none is, the lowest index of a body whose cast was undecided.
+    /// Where none is for certain, the lowest index of a body whose cast was undecided, or whose hit may be a miss.
     pub undecided: Option<usize>,
     /// What was done and what was left out. It depends on which of several bodies was met first.
     pub work: Work,
+}
+
+impl SceneAnyHit {
+    /// Whether the answer is certain: a hit is where that of one body is, and a miss where that of every body is.
+    #[must_use]
+    pub const fn is_certain(&self) -> bool {
+        self.undecided.is_none() && !self.work.cancelled
+    }
 }
 
 /// The answer of [`Scene::nearest`](crate::Scene::nearest).
