@@ -7,6 +7,10 @@ use crate::cast::LocalRay;
 use crate::unit::power_of_two_near;
 use crate::{Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, Status};
 
+/// How often it is looked for where the ray is in the set for certain, each time four times as far behind the last
+/// plane.
+const LOOKS: usize = 8;
+
 /// The first point of a ray in a convex set that is given by its closest points: `closest_point(x)` is the point of
 /// the set closest to `x`, or `x` itself within the set, or `None` if it is not known.
 ///
@@ -31,6 +35,10 @@ use crate::{Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, 
 /// λ is as accurate as that of [`ray_cast`](crate::ray_cast), if the closest point is right to rounding of
 /// the coordinates of `x` and of the set. The point closest to the source tells where the set is. The ray is based at its
 /// own point closest to that one, so that a far source loses only its own digits.
+///
+/// A closest point proves a plane, and so a lower bound. That the ray is in the set is proved by points around it:
+/// [`upper`](RayCast::upper) is where all of them are in the set by more than rounding, and infinite where no such
+/// place is found, as for a graze or a flat set.
 ///
 /// # Errors
 /// [`RayCastError`] if the direction is zero, a coordinate not finite, an end of the ray NaN, or a closest point not
@@ -79,8 +87,19 @@ pub fn iterative_ray_cast_with<V: Vector>(
             Step::Advances if iterations < options.max_iterations => iterations += 1,
             Step::Advances => return Ok(undecided(way.lower(), Status::IterationLimit, iterations)),
             Step::Stalls => return Ok(undecided(way.lower(), Status::Stalled, iterations)),
-            Step::Ends(Answer { outcome, lower, upper }) => {
-                return Ok(RayCast { outcome, lower, upper, status: Status::Converged, iterations });
+            Step::Misses(outcome) => {
+                let infinity = Float::infinity();
+                return Ok(RayCast {
+                    outcome,
+                    lower: infinity,
+                    upper: infinity,
+                    status: Status::Converged,
+                    iterations,
+                });
+            }
+            Step::Arrives { noise } => {
+                let upper = way.latest_entry(noise, &mut closest_point, &mut iterations)?;
+                return Ok(way.hit(upper, iterations));
             }
         }
     }
@@ -108,22 +127,19 @@ struct Way<'o, V: Vector> {
     crossing: V::Scalar,
     /// The ray does not enter the set before this, even if rounding turned the planes as well.
     proved: V::Scalar,
-    /// The unit normal of the plane, and what that may be turned by.
+    /// The unit normal of the plane.
     normal: Option<V>,
-    tilt: V::Scalar,
 }
 
 enum Step<V: Vector> {
     Advances,
     /// The next plane is no farther along the ray than the last one.
     Stalls,
-    Ends(Answer<V>),
-}
-
-struct Answer<V: Vector> {
-    outcome: Outcome<RayHit<V>, V>,
-    lower: V::Scalar,
-    upper: V::Scalar,
+    /// The point of the ray is in the set, to what its place is wrong by.
+    Arrives {
+        noise: V::Scalar,
+    },
+    Misses(Outcome<RayHit<V>, V>),
 }
 
 impl<'o, V: Vector> Way<'o, V> {
@@ -145,7 +161,6 @@ impl<'o, V: Vector> Way<'o, V> {
             crossing: begin,
             proved: begin,
             normal: None,
-            tilt: zero,
         }
     }
 
@@ -166,13 +181,18 @@ impl<'o, V: Vector> Way<'o, V> {
         (self.local.lambda(self.proved) - self.local.error(self.proved, V::Scalar::ZERO)).max(self.least)
     }
 
+    /// What a point and its closest point are wrong by, in the unit: they are only known to the rounding of their
+    /// coordinates.
+    fn noise(&self, x: V, c: V) -> V::Scalar {
+        V::Scalar::from_f64(8.0) * V::Scalar::EPSILON * (x.norm() + c.norm()) / self.scale
+    }
+
     /// Goes on to the plane through the closest point `c`, with `v` the vector from there in the unit.
     fn step(&mut self, x: V, c: V, v: V) -> Step<V> {
         let length = v.norm();
-        // x is only known to the rounding of its coordinates, and so is its distance.
-        let noise = V::Scalar::from_f64(8.0) * V::Scalar::EPSILON * (x.norm() + c.norm()) / self.scale;
+        let noise = self.noise(x, c);
         if length <= noise + noise {
-            return Step::Ends(self.hit(noise));
+            return Step::Arrives { noise };
         }
         let n = v / length;
         let slope = n.dot(self.local.line.direction);
@@ -180,48 +200,92 @@ impl<'o, V: Vector> Way<'o, V> {
         // The set is behind the plane, and so it is of all of the ray before x.
         let tilt = noise / length;
         self.proved = self.proved.max(self.mu - (length - noise) / (slope - tilt));
-        if slope >= V::Scalar::ZERO || self.lower() > self.options.max_lambda {
-            return Step::Ends(self.miss(n));
+        if slope >= tilt || self.lower() > self.options.max_lambda {
+            return Step::Misses(self.miss(n));
         }
-        let next = self.mu - (length - noise) / slope;
+        let approaches = slope < V::Scalar::ZERO;
+        // A plane along the ray, as far as it is known, may be crossed at the end of what it proves.
+        let next = if approaches { self.mu - (length - noise) / slope } else { self.proved };
         if !(next > self.mu) {
             return Step::Stalls;
         }
-        (self.crossing, self.mu) = (self.mu - length / slope, next);
-        (self.normal, self.tilt) = (Some(n), tilt);
+        self.crossing = if approaches { self.mu - length / slope } else { next };
+        self.mu = next;
+        self.normal = self.normal.filter(|_| !approaches).or(Some(n));
         Step::Advances
     }
 
-    /// The answer where x is in the set, to noise.
-    fn hit(&self, noise: V::Scalar) -> Answer<V> {
-        let (zero, from_f64) = (V::Scalar::ZERO, V::Scalar::from_f64);
-        let (lower, least) = (self.lower(), self.least);
-        let (lambda, upper) = if self.mu <= self.begin {
-            (least, least)
-        } else {
-            // Where the set is entered, its surface may be flatter to the ray by what the last normal was turned by rounding.
-            let slope = self.normal.map_or(V::Scalar::ONE, |n| -n.dot(self.local.line.direction));
-            let slope = (slope - self.tilt).max(slope / from_f64(8.0));
-            let lambda = self.local.lambda(self.crossing).max(least);
-            (lambda, lambda + self.local.error(self.crossing, noise * from_f64(4.0) / slope))
-        };
-        let outcome = if lambda > self.options.max_lambda {
-            Outcome::Miss(Miss { axis: self.normal.unwrap_or(-self.local.line.direction) })
-        } else {
-            let point = if lambda > zero { self.at(self.crossing) } else { self.ray.source };
-            Outcome::Hit(RayHit { lambda, point, normal: self.normal })
-        };
-        Answer { outcome, lower, upper }
+    /// Where the ray is in the set at the latest, looked for from where it is in it to noise; infinite where no place
+    /// is found.
+    ///
+    /// At a place `x` of the ray, the points `x ± ρ·eᵢ` along the `n` axes are asked. If each is in the set to two
+    /// noises `ν`, and wrong by one, then points of the set are no farther than `3ν` from them, and their hull has a
+    /// ball about `x` of radius `ρ/√n − 3ν`: for `ρ = 8ν` more than the `ν` that `x` is off the ray.
+    fn latest_entry(
+        &self,
+        noise: V::Scalar,
+        closest_point: &mut impl FnMut(V) -> Result<V, RayCastError>,
+        iterations: &mut usize,
+    ) -> Result<V::Scalar, RayCastError> {
+        let number = V::Scalar::from_f64;
+        let slope = self.normal.map(|n| -n.dot(self.local.line.direction)).filter(|&slope| slope > V::Scalar::ZERO);
+        let slope = slope.unwrap_or(V::Scalar::ONE);
+        // At once for a ray that begins in the set; from a plane on, where it is as far behind that as the points are
+        // around it.
+        let mut step = if self.normal.is_some() { noise * number(8.0) / slope } else { V::Scalar::ZERO };
+        for _ in 0..LOOKS {
+            let mu = self.crossing + step;
+            let x = if mu <= self.local.start { self.ray.source } else { self.at(mu) };
+            let noise = noise.max(self.noise(x, x));
+            let around = noise * number(8.0);
+            let mut is_around = true;
+            for i in 0..2 * V::DIM {
+                if *iterations >= self.options.max_iterations {
+                    return Ok(Float::infinity());
+                }
+                *iterations += 1;
+                let side = if i < V::DIM { around } else { -around };
+                let y = x + V::axis(i % V::DIM) * (side * self.scale);
+                // NaN is not in the set.
+                is_around = (y - closest_point(y)?).norm() / self.scale <= noise + noise;
+                if !is_around {
+                    break;
+                }
+            }
+            if is_around {
+                let latest = self.local.lambda(mu) + self.local.error(mu, V::Scalar::ZERO);
+                return Ok(if mu <= self.begin { self.least } else { latest.max(self.least) });
+            }
+            step = (step * number(4.0)).max(around);
+        }
+        Ok(Float::infinity())
+    }
+
+    /// The answer where x is in the set, to noise, and the ray at `upper` for certain.
+    fn hit(&self, upper: V::Scalar, iterations: usize) -> RayCast<V> {
+        let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+        let (lower, is_at_start) = (self.lower(), self.mu <= self.begin);
+        let lambda = if is_at_start { self.least } else { self.local.lambda(self.crossing).max(self.least) };
+        if lambda > self.options.max_lambda {
+            let outcome = Outcome::Miss(Miss { axis: self.normal.unwrap_or(-self.local.line.direction) });
+            return RayCast { outcome, lower, upper: infinity, status: Status::Converged, iterations };
+        }
+        let point = if lambda > zero { self.at(self.crossing) } else { self.ray.source };
+        let outcome = Outcome::Hit(RayHit { lambda, point, normal: self.normal });
+        let (lower, upper) = (lower.min(lambda), upper.max(lambda));
+        let is_exhausted = iterations >= self.options.max_iterations;
+        let status = if is_exhausted { Status::IterationLimit } else { Status::Stalled };
+        let status = if upper < infinity { Status::Converged } else { status };
+        RayCast { outcome, lower, upper, status, iterations }
     }
 
     /// The answer where the plane across `n` through x's closest point has all of the ray before it that the last plane has left.
-    fn miss(&self, n: V) -> Answer<V> {
+    fn miss(&self, n: V) -> Outcome<RayHit<V>, V> {
         // Together with the plane before x, the axis has the whole ray before it: across the ray, both count.
         let direction = self.local.line.direction;
         let slope = n.dot(direction);
         let last = self.normal.filter(|_| slope > V::Scalar::ZERO);
         let axis = last.and_then(|m| (m * slope - n * m.dot(direction)).unit()).unwrap_or(n);
-        let infinity = V::Scalar::infinity();
-        Answer { outcome: Outcome::Miss(Miss { axis }), lower: infinity, upper: infinity }
+        Outcome::Miss(Miss { axis })
     }
 }
