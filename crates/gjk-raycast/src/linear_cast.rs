@@ -157,9 +157,14 @@ where
         }
         Outcome::Hit(_) => {
             // The cast knows where the motion enters, which is behind the start or, sliding, ahead of it.
-            let at_start = start.distance(&options);
-            let (normal, iterations) = start.touching_normal(&options);
-            answer.iterations += at_start.iterations + iterations;
+            let left = |taken: usize| LinearCastOptions {
+                max_iterations: options.max_iterations.saturating_sub(taken),
+                ..options
+            };
+            let at_start = start.distance(&left(answer.iterations));
+            answer.iterations += at_start.iterations;
+            let (normal, iterations) = start.touching_normal(&left(answer.iterations));
+            answer.iterations += iterations;
             if normal.is_none() {
                 // They are certainly deeper than touching, whatever the motion.
                 answer.upper = zero;
@@ -177,6 +182,7 @@ where
         let slack = sizes * units(NEAR) + far * units(NEAR_OF_FAR);
         only_if_deeper(&mut answer, &start, motion, &options, slack);
     }
+    answer.status = answer.status.of(&answer.outcome, answer.is_certain());
     Ok(answer)
 }
 

@@ -217,7 +217,7 @@ pub struct RayCastOptions<V: Vector> {
     /// How far along the ray the hit may stay uncertain, relative to the size of the target. A bracket at the level of
     /// rounding always ends the iteration. A negative value and NaN are taken for zero. Default: 0.
     pub tolerance: V::Scalar,
-    /// The iterations after which to give up. Default: 200.
+    /// The iterations after which to give up, those of second looks included. Default: 200.
     pub max_iterations: usize,
     /// A first guess of the outward normal or of a separating axis, such as the last answer's. Default: none.
     pub axis: Option<V>,
@@ -284,7 +284,7 @@ pub struct LinearCastOptions<V: Vector> {
     /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
     /// of rounding always ends the iteration. A negative value and NaN are taken for zero. Default: 0.
     pub tolerance: V::Scalar,
-    /// The iterations after which to give up. Default: 200.
+    /// The iterations after which to give up, those of second looks included. Default: 200.
     pub max_iterations: usize,
     /// A first guess of the direction from `b` to `a` at contact, such as the last answer's normal. Default: none.
     pub axis: Option<V>,

@@ -47,6 +47,7 @@ impl<V: Vector> Start<'_, V> {
     /// The signed distance at the start; the search stops as soon as the depth is certain to exceed a limit.
     fn signed_distance(&self, options: &LinearCastOptions<V>, depth_limit: V::Scalar) -> SignedDistance<V> {
         let mut wanted = SignedDistanceOptions::new().with_depth_limit(depth_limit);
+        wanted.max_iterations = wanted.max_iterations.min(options.max_iterations);
         wanted.axis = options.axis;
         signed_distance_of_any(self.a, self.b, wanted)
     }

@@ -38,20 +38,22 @@ pub(crate) fn settle_start<A, B, W>(
         Outcome::Miss(_) => false,
     };
     let is_to_be_settled = is_at_start && cast.upper > zero;
+    let left = options.max_iterations.saturating_sub(cast.iterations);
     if (is_to_be_settled || cast.is_open)
+        && left > 0
         && let Some(b) = b()
         && let Ok(a) = Rounded::new(a, skin)
     {
         let (a, b) = (WithoutLines(&a), WithoutLines(&b));
         if !is_to_be_settled {
             if let Outcome::Hit(CastHit { lambda, .. }) = cast.outcome {
-                let after = after_hit(&a, &b, direction, lambda, options.max_iterations);
+                let after = after_hit(&a, &b, direction, lambda, left);
                 cast.iterations += after.iterations;
                 cast.upper = cast.upper.min(after.latest);
             }
             return;
         }
-        let start = start(&a, &b, direction, options.max_iterations);
+        let start = start(&a, &b, direction, left);
         cast.iterations += start.iterations;
         match start.way {
             Way::Touches { within } => cast.touch(within, start.spot),
@@ -108,10 +110,10 @@ fn start<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iteratio
     // The bodies are apart by `gap − λ·n·d` along the normal: the sign of the product is exact.
     let axis = -near.normal;
     let closing = dot_minus((0..V::DIM).map(|i| (near.normal.get(i), direction.get(i))), zero);
-    let mut iterations = near.iterations;
+    let mut looks = Looks { iterations: near.iterations, max_iterations };
     let way = if !near.is_separated() {
         if near.overlap().is_some() {
-            Way::Touches { within: latest_entry([a, b], direction, closing, &near, &mut iterations) }
+            Way::Touches { within: latest_entry([a, b], direction, closing, &near, &mut looks) }
         } else {
             Way::Unknown
         }
@@ -122,11 +124,11 @@ fn start<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iteratio
         // What the quotient loses.
         let lower = at(near.lower);
         let lower = lower - roundings(8.0, lower);
-        let entry = entry([a, b], direction, closing, [near.upper * near.frame.scale, zero], &mut iterations);
+        let entry = entry([a, b], direction, closing, [near.upper * near.frame.scale, zero], &mut looks);
         Way::Enters { lambda: at(near.gap), axis, lower, entry }
     };
     let spot = Spot { source: -near.frame.offset, points: near.points, scale: near.frame.scale };
-    Start { way, spot, iterations }
+    Start { way, spot, iterations: looks.iterations }
 }
 
 /// A bound on the λ at which the ray is in the target first, where the source is not known to be apart from it; infinite where it may
@@ -136,7 +138,7 @@ fn latest_entry<V: Vector>(
     direction: V,
     closing: V::Scalar,
     near: &NearContact<V>,
-    iterations: &mut usize,
+    looks: &mut Looks,
 ) -> V::Scalar {
     let zero = V::Scalar::ZERO;
     if near.overlaps_certainly || near.upper <= zero {
@@ -147,7 +149,7 @@ fn latest_entry<V: Vector>(
     let (gap, speed) = (near.upper * near.frame.scale, direction.norm());
     let slides = speed * V::Scalar::EPSILON * V::Scalar::from_f64(SLIDES);
     let speed = if is_at_plane && closing > slides { closing } else { speed };
-    entry(shapes, direction, speed, [gap, zero], iterations).certain()
+    entry(shapes, direction, speed, [gap, zero], looks).certain()
 }
 
 /// Closing speeds below this many ε of the speed are of rounding: a normal is known to a few.
@@ -168,66 +170,98 @@ impl<S: Scalar> Entry<S> {
     }
 }
 
-/// How often a ray is looked at, each time so many times as far from the source as before; the last time it is more than the size of the
-/// bodies away, whatever the precision.
-const LOOKS: usize = 18;
-const FARTHER: f64 = 8.0;
+/// How many support points a depth takes after its last look at how many it has taken.
+const MORE: usize = 8;
 
-/// How many gaps away it is looked at first, along the normal: one that it may be outside by, one that this may be wrong by, and one that
-/// it is to be inside by. And how many are deep.
-const FIRST: f64 = 3.0;
-const DEEP: f64 = 16.0;
+/// The support points that looks take, of those that may be taken.
+struct Looks {
+    iterations: usize,
+    max_iterations: usize,
+}
+
+impl Looks {
+    /// As many as are left for a depth, which may take a few more than it is to; `None` where none are.
+    fn left(&self) -> Option<usize> {
+        self.max_iterations.checked_sub(self.iterations + MORE).filter(|&left| left > 0)
+    }
+}
+
+/// How often a ray is looked at, each time at most half as far from the source as before.
+const LOOKS: usize = 12;
+
+/// How often in a row it is looked at where that told nothing. Of a convex function that is zero to an error at the
+/// source and at two more places, the middle one halfway, the rest in between is no less than three errors below
+/// zero.
+const PATIENCE: usize = 2;
+
+/// How deep the ray is to be found at least, as a part of how deep it is going by its speed.
+const DEEP: f64 = 0.25;
+
+/// How narrow a depth has to be known, as a part of that.
+const ROUGH: f64 = 1.0 / 16.0;
 
 /// Where a ray enters whose source is no more than a `gap` from the target, and which closes in with a `speed`. The source is looked at no
 /// farther than `astray` from where it is.
 ///
 /// The signed distance from a convex set is a convex function of the point. So where it is at most `g` at the source and at most `−ρ`
-/// after λ, it is not positive any more after `λ·g/(g + ρ)`; and where it is more than `g` after λ, it grows from there on.
+/// after λ, it is not positive any more after `λ·g/(g + ρ)`; and where it is more than `g` after λ, it grows from
+/// there on. In the middle between the entry and the exit it is at least half as deep as anywhere on the ray: each
+/// look that finds the ray outside bounds the exit, and the next one is halfway there.
 fn entry<V: Vector>(
     [a, b]: [Shape<'_, V>; 2],
     direction: V,
     speed: V::Scalar,
     [gap, astray]: [V::Scalar; 2],
-    iterations: &mut usize,
+    looks: &mut Looks,
 ) -> Entry<V::Scalar> {
-    let number = V::Scalar::from_f64;
+    let (zero, number) = (V::Scalar::ZERO, V::Scalar::from_f64);
     let [core_a, core_b] = [a.core(), b.core()];
     let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
-    let deep = gap * number(DEEP);
-    let wanted = SignedDistanceOptions::new().with_depth_limit(deep).with_limit(deep);
-    // As narrow as rounding lets it be: what is looked at is a few errors wide.
-    let wanted = wanted.with_tolerance(V::Scalar::EPSILON * number(8.0));
     // Bodies that touch have their origins no farther apart than their sizes.
     let past = (size + size + gap) / direction.norm();
     let mut best = Entry { at: past + roundings(16.0, past), is_certain: false };
-    let mut lambda = gap * number(FIRST) / speed;
+    let (mut lambda, mut dull) = (past * number(0.125), 0);
     for _ in 0..LOOKS {
         let step = direction * lambda;
         let length = step.norm();
+        let Some(left) = looks.left() else { break };
         // NaN ends this too.
         let Ok(moved) = Posed::translated(b, step) else { break };
         let moved = WithoutLines(&moved);
-        let there = signed_distance_of_any(a, &moved, wanted);
-        *iterations += there.iterations;
+        let deep = (lambda * speed * number(DEEP)).max(gap);
+        let rough = (deep * number(ROUGH) / size).max(V::Scalar::EPSILON * number(8.0));
+        let wanted = SignedDistanceOptions::new().with_depth_limit(deep).with_limit(gap + deep);
+        let there = signed_distance_of_any(a, &moved, wanted.with_tolerance(rough).with_max_iterations(left));
+        looks.iterations += there.iterations;
         // The step is rounded, coordinate by coordinate.
         let rounded = roundings(4.0, length) + astray;
         let depth = -there.upper - rounded;
-        if depth > V::Scalar::ZERO {
+        if depth > zero {
             let at = lambda * (gap / (gap + depth));
-            best = Entry { at: best.at.min(at + roundings(16.0, at)), is_certain: true };
-        } else if there.lower - rounded > gap {
+            let at = at + roundings(16.0, at);
+            // Nearer to the source it is deeper for how far it has gone, but not by much where it already is.
+            let is_enough = depth + depth >= deep || at + at > best.at;
+            best = Entry { at: best.at.min(at), is_certain: true };
+            if is_enough && depth >= gap {
+                break;
+            }
+        }
+        lambda = if there.lower - rounded > gap {
             // A plane that tells so was crossed earlier.
             // The product is right to a few roundings.
             let leaving = -there.normal.dot(direction) + roundings(8.0, direction.norm());
             let since = (gap_along(a, &moved, there.normal) - rounded) / leaving;
-            let at = if leaving > V::Scalar::ZERO { lambda - (since - roundings(16.0, lambda)) } else { lambda };
-            best.at = best.at.min(at.max(V::Scalar::ZERO));
+            let at = if leaving > zero { lambda - (since - roundings(16.0, lambda)) } else { lambda };
+            best.at = best.at.min(at.max(zero));
+            dull = 0;
+            lambda.min(best.at) * number(0.5)
+        } else {
+            dull += 1;
+            lambda * number(0.5)
+        };
+        if dull >= PATIENCE || !(lambda * speed > gap) {
             break;
         }
-        if depth >= gap || !(length <= size) {
-            break;
-        }
-        lambda *= number(FARTHER);
     }
     best
 }
@@ -255,14 +289,14 @@ fn after_hit<V: Vector>(
     let Ok(there) = Posed::translated(b, step) else { return unknown };
     let there = WithoutLines(&there);
     let Some(near) = near_contact([a, &there], [a.core(), there.core()], None, max_iterations) else { return unknown };
-    let mut iterations = near.iterations;
+    let mut looks = Looks { iterations: near.iterations, max_iterations };
     // The step and the direction are rounded, coordinate by coordinate.
     let astray = roundings(8.0, step.norm());
     let gap = near.upper.max(V::Scalar::ZERO) * near.frame.scale + astray;
     let closing = near.normal.dot(direction);
     let speed = if closing > V::Scalar::ZERO { closing } else { direction.norm() };
-    let latest = lambda + entry([a, &there], direction, speed, [gap, astray], &mut iterations).certain();
-    AfterHit { latest: latest + roundings(4.0, latest), iterations }
+    let latest = lambda + entry([a, &there], direction, speed, [gap, astray], &mut looks).certain();
+    AfterHit { latest: latest + roundings(4.0, latest), iterations: looks.iterations }
 }
 
 /// Compiled into the cast, so that what it found need not be in memory for the rare case that it is changed.
