@@ -86,6 +86,8 @@ pub(super) struct Bracket<'a, B: Body, O> {
     /// Where the ray is in the body, at the latest.
     high: Bound<ScalarOf<B>>,
     entry: Entry,
+    /// Where the line enters the hull of known points of the body.
+    hull: ScalarOf<B>,
     /// Three points of the body that are seen around the line, two in the plane, where a search found them.
     pub(super) around: Option<[B::Vector; 3]>,
 }
@@ -149,6 +151,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
             normal: None,
             high: Bound::exact(ScalarOf::<B>::infinity()),
             entry: Entry::BySlope,
+            hull: ScalarOf::<B>::infinity(),
             around: None,
         }
     }
@@ -374,7 +377,13 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
             return Err(Stop::InDoubt);
         }
         self.high = Bound { at: high.max(self.low()), spread: self.spread_or_one(), more: Scalar::ZERO };
-        Ok(Contact { mu: self.low(), normal: self.normal, witness })
+        Ok(Contact { mu: self.low_or_at(high), normal: self.normal, witness })
+    }
+
+    /// Where the last plane is crossed, or at the body's point at `mu`, if that is before the crossing by no more
+    /// than rounding may have moved it: a plane nearly along the line is crossed far from where it touches the body.
+    fn low_or_at(&self, mu: ScalarOf<B>) -> ScalarOf<B> {
+        self.low().min(mu.max(self.earliest()).max(self.ray.start))
     }
 
     /// The contact at the source of the ray, where points of the body are known on both sides of it, by more than rounding.
@@ -412,9 +421,10 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         if !(v.norm() - self.radius <= within) {
             return None;
         }
-        let mu = point.dot(self.ray.line.direction).max(self.low());
+        let mu = point.dot(self.ray.line.direction);
+        let mu = mu.max(self.low_or_at(mu));
         // What the line passes within an error it may as well miss.
-        self.high = Bound { more: within, ..Bound::exact(mu) };
+        self.high = Bound { more: within, ..Bound::exact(mu.max(self.low())) };
         self.doubt_entry();
         // Where the ray grazes what is round, the shortest vector is the normal, and the last plane is of elsewhere. Without a
         // radius it has no digits.
@@ -428,6 +438,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         // A point of the facet may be outside of the body by rounding, and is in it where the ray is that far behind the
         // plane that is crossed less steeply.
         self.high = Bound { at: mu.max(self.low()), spread: self.spread_at(slope), more: error };
+        self.hull = mu;
     }
 
     /// How far a crossing moves where the surface is met at the cosine `slope` and the last plane perhaps less steeply; infinitely far, of
@@ -450,7 +461,8 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         wanted: ScalarOf<B>,
         witness: impl FnOnce() -> B::Witness,
     ) -> Option<Contact<B>> {
-        (self.gap_to_hull(slope) <= wanted).then(|| Contact { mu: self.low(), normal: self.normal, witness: witness() })
+        let mu = self.low_or_at(self.hull);
+        (self.gap_to_hull(slope) <= wanted).then(|| Contact { mu, normal: self.normal, witness: witness() })
     }
 
     /// The contact where the last plane is crossed, where the line has points of the body on both sides of it, to within
@@ -474,7 +486,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
             return None;
         }
         self.high = Bound { at: mu.max(self.low()), spread: self.spread_or_one(), more: Scalar::ZERO };
-        Some(Contact { mu: self.low(), normal: self.normal, witness })
+        Some(Contact { mu: self.low_or_at(mu), normal: self.normal, witness })
     }
 
     /// How much later the upper bound may be. The surface may be met less steeply than the plane, by what noise leaves open.
