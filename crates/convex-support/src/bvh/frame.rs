@@ -9,8 +9,10 @@ use crate::{Aabb, Scalar, Vector};
 /// small enough that squares of what is far beyond do not overflow.
 const REACH: f64 = (1_u64 << 40) as f64;
 
-/// How many times as far as the boxes that a frame was chosen for others may lie, before another should be.
-const BEYOND: f64 = 4.0;
+/// How many times as far as the boxes that a frame was chosen for others may lie, before another should be: squares
+/// of what is as far as that do not overflow, and boxes that come ever farther away, each twice as far as the last
+/// one, do not have the tree built anew for each.
+const BEYOND: f64 = (1_u64 << 16) as f64;
 
 /// Where the nodes of a tree are seen from: a coordinate `x` is `(x − origin)·2ᵏ` in single precision, rounded *outwards*.
 ///
