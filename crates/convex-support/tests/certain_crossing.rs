@@ -161,3 +161,45 @@ fn what_is_too_small_to_be_squared_is_not_certain() {
     let crossing = line_crossing(&exact, source.as_dvec2(), direction.as_dvec2());
     assert!(matches!(crossing, LineCrossing::Crosses(_)), "{crossing:?}");
 }
+
+/// Bounds that allow for a displacement of the line by roundings of the size are long along a line that is nearly along a
+/// side, or grazes it, and none where it may pass. In twice the precision the crossing of the numbers as they are given is
+/// known to its own roundings: a line that is one last bit inside enters for certain.
+#[test]
+fn a_line_nearly_along_a_side_is_looked_at_closely() {
+    const TILT: f64 = 1.0 / 1_073_741_824.0;
+    let [beside, outside] = [3.0, 9.0].map(|tilts| DVec3::new(1.0 + tilts * TILT, -2.0, 0.0));
+    let along = DVec3::new(-TILT, 1.0, 0.0);
+    let (cylinder, capsule) = (Cylinder::<DVec3>::new(4.0, 1.0).unwrap(), Capsule::<DVec3>::new(4.0, 1.0).unwrap());
+    let prism = Rounded::new(Cuboid::new(DVec3::new(0.5, 4.0, 2.0)).unwrap(), 0.5).unwrap();
+    for shape in [&cylinder as &dyn SupportMap<Vector = DVec3>, &capsule, &prism] {
+        let known = shape.certain_crossing(beside, along, 0.0, 0.0);
+        let Some(CertainCrossing::Enters { bounds: [earliest, latest], normal, .. }) = known else {
+            panic!("{known:?}")
+        };
+        assert!(earliest <= 3.0 && 3.0 <= latest && latest - earliest <= 32.0 * f64::EPSILON, "{known:?}");
+        assert!((normal - DVec3::X).length() < 1e-9, "{known:?}");
+        // It comes to the height of the end first, where a capsule bends away.
+        let known = shape.certain_crossing(outside, along, 0.0, 0.0);
+        assert!(matches!(known, Some(CertainCrossing::Misses(_))), "{known:?}");
+        // What the line may be displaced by counts as before.
+        let known = shape.certain_crossing(beside, along, 0.0, 1e-12);
+        let Some(CertainCrossing::Enters { bounds: [earliest, latest], .. }) = known else { panic!("{known:?}") };
+        assert!(earliest <= 3.0 - 1e-12 / TILT && 3.0 + 1e-12 / TILT <= latest, "{known:?}");
+        assert!(latest - earliest <= 1e-11 / TILT, "{known:?}");
+    }
+    // One last bit inside and outside.
+    let up = |x: f64| DVec3::new(x, -2.0, 0.0);
+    for ball in [&cylinder as &dyn SupportMap<Vector = DVec3>, &Ball::<DVec3>::new(1.0).unwrap()] {
+        let known =
+            [1.0 - f64::EPSILON, 1.0 + f64::EPSILON].map(|x| ball.certain_crossing(up(x), DVec3::Y * 2.0, 0.0, 0.0));
+        assert!(matches!(known[0], Some(CertainCrossing::Enters { .. })), "{known:?}");
+        assert!(!matches!(known[1], Some(CertainCrossing::Enters { .. })), "{known:?}");
+    }
+    // The generator x = (1 − y)/2, beside which the leading coefficient of the quadratic cancels.
+    let cone = Cone::<DVec3>::new(1.0, 1.0).unwrap();
+    let known =
+        cone.certain_crossing(DVec3::new(0.25 + 1.25 * TILT, 0.5, 0.0), DVec3::new(0.5 - TILT, -1.0, 0.0), 0.0, 0.0);
+    let Some(CertainCrossing::Enters { bounds: [earliest, latest], .. }) = known else { panic!("{known:?}") };
+    assert!(earliest <= 1.25 && 1.25 <= latest && latest - earliest <= 32.0 * f64::EPSILON, "{known:?}");
+}

@@ -4,12 +4,12 @@
 use crate::common::{Quaternion, at, cast, cuboid, directions, lambda, off, s, turned, ulps, v};
 use convex_support::glam::{DQuat, DVec3, Vec3A};
 use convex_support::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Hull, MinkowskiSum, Point, Polytope, Posed, Scalar, Segment, SupportMap,
-    closest_point,
+    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Hull, MinkowskiSum, Point, Polytope, Posed, Rounded, Scalar,
+    Segment, SupportMap, closest_point,
 };
 use gjk_raycast::{
-    CastMethod, DistanceOptions, Outcome, Ray, RayCastOptions, Status, SubAlgorithm, distance, iterative_ray_cast,
-    ray_cast,
+    CastMethod, DistanceOptions, HalfSpace, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions, Scene, Status,
+    SubAlgorithm, distance, iterative_ray_cast, linear_cast, ray_cast, ray_exit,
 };
 
 /// Runs a test in both precisions.
@@ -210,7 +210,7 @@ fn r14_no_answer_is_infinite_or_nan() {
         for tilt in [0.0, 1e-45, 1e-38, 1e-30, 1e-20, 1e-12, 1e-7, 1e-3] {
             for height in [1.0, 1.0 + 1e-6, 1.5] {
                 let answer = cast(&target, [-5.0, height, 0.3], [1.0, -tilt, 0.0]);
-                assert_eq!(answer.status, Status::Converged, "{tilt} {height}");
+                assert!(!answer.outcome.is_undecided(), "{tilt} {height}: {answer:?}");
                 if let Outcome::Hit(hit) = answer.outcome {
                     assert!(hit.point.is_finite() && hit.normal.is_some_and(V::is_finite), "{hit:?}");
                     assert!((4.0 - 1e-5..=6.0 + 1e-5).contains(&hit.lambda.as_f64()), "{hit:?}");
@@ -364,7 +364,7 @@ fn a_ray_past_an_edge_by_rounding_is_decided() {
         direction: Vec3A::new(4.260_442_3, -4.685_431, 5.435_914),
     };
     let answer = ray_cast(&hull, ray, RayCastOptions::default()).expect("a finite ray");
-    assert_eq!(answer.status, Status::Converged, "{answer:?}");
+    assert!(!answer.outcome.is_undecided(), "{answer:?}");
     // Whether it hits is decided by rounding, and where along the edge; that the body is there is not.
     if let Outcome::Hit(hit) = answer.outcome {
         let spot = Point::new(hit.point).expect("a finite point");
@@ -420,4 +420,147 @@ fn rays_at_the_smallest_bodies_do_not_miss_what_they_hit() {
         }
     }
     both(|| run::<Vec3A>(-149..-100), || run::<DVec3>(-1074..-1000));
+}
+
+/// Algorithm 1 took a source within the rounding of a closest point for one in the set, and said [0, 0]: in single
+/// precision 3,854 of 4,000 rays that began less than a few roundings outside of a hull. That a closest point is near
+/// proves nothing about where the ray is in the set; points all around a place of the ray, all of them in the set,
+/// do.
+#[test]
+fn an_upper_bound_of_algorithm_1_is_where_points_of_the_set_are_all_around() {
+    let hull = Polytope::new([
+        Vec3A::new(754.194_46, 20_428.152, 92_705.945),
+        Vec3A::new(19_193.492, -19_829.129, 40_356.645),
+        Vec3A::new(-9_963.287, -9_902.605, -20_320.426),
+        Vec3A::new(47_673.38, -18_537.86, 69_152.41),
+        Vec3A::new(-14_745.286, -9_539.908, 30_139.287),
+        Vec3A::new(9_442.201, 16_187.031, 25_943.803),
+    ])
+    .expect("finite points");
+    let closest = |x: Vec3A| {
+        let d = distance(&hull, &Point::new(x).ok()?, DistanceOptions::default());
+        Some(d.normal.map_or(d.point_a, |normal| x + normal * d.distance))
+    };
+    let (source, direction) =
+        (Vec3A::new(1_203.451_5, -14_372.225, 34_803.996), Vec3A::new(-0.337_026_06, 0.525_427_5, -0.674_298));
+    let cast = iterative_ray_cast(closest, Ray { source, direction }, RayCastOptions::default()).expect("finite");
+    // By exact rationals.
+    let truth = 0.001_013_645;
+    assert!(cast.is_certain() && cast.lower <= truth && truth <= cast.upper, "{cast:?}");
+
+    // A flat set has no points around any place of the ray.
+    let plate = Polytope::new([[1.0, 0.0], [-1.0, 1.0], [-1.0, -1.0]].map(|[x, y]| DVec3::new(x, y, 0.0)));
+    let plate = plate.expect("finite points");
+    let closest = |x: DVec3| {
+        let d = distance(&plate, &Point::new(x).ok()?, DistanceOptions::default());
+        Some(d.point_a)
+    };
+    let ray = Ray { source: DVec3::new(0.0, 0.125, 4.0), direction: DVec3::NEG_Z };
+    let cast = iterative_ray_cast(closest, ray, RayCastOptions::default()).expect("finite");
+    assert_eq!((cast.outcome.is_hit(), cast.is_certain(), cast.status), (true, false, Status::Stalled), "{cast:?}");
+}
+
+/// Where a ray grazes within rounding, the answer was a hit that had `Converged`, and only an infinite bound told
+/// that it may as well be a miss: 30 of 100 rays nearly along a surface. Whoever reads the outcome and the status
+/// alone is told now, by whatever was cast.
+#[test]
+fn a_hit_that_may_be_a_miss_has_not_converged() {
+    fn run<V: Quaternion>() {
+        let pebble = Ellipsoid::<V>::new(V::ZERO, v([2.0, 1.0, 0.5]), V::Rotation::default()).expect("positive");
+        let graze = Ray { source: v::<V>([-5.0, 1.0, 0.0]), direction: v([1.0, 0.0, 0.0]) };
+        let stalled = |is_certain: bool, status: Status| !is_certain && status == Status::Stalled;
+        let cast = ray_cast(&pebble, graze, RayCastOptions::default()).expect("finite");
+        assert!(cast.outcome.is_hit() && stalled(cast.is_certain(), cast.status), "{cast:?}");
+        let exit = ray_exit(&pebble, graze, RayCastOptions::default()).expect("finite");
+        assert!(exit.outcome.is_hit() && stalled(exit.is_certain(), exit.status), "{exit:?}");
+        let late = ray_cast(&pebble, graze, RayCastOptions::new().with_min_lambda(s::<V>(5.0))).expect("finite");
+        assert!(!late.outcome.is_hit() || stalled(late.is_certain(), late.status), "{late:?}");
+
+        // Edge to edge, and a ray along a plane.
+        let [a, b] = [0.0, 2.0].map(|y| at(cuboid::<V>([1.0; 3]), [2.5 * y, y, 0.0]));
+        let motion = Motion { velocity_a: v::<V>([1.0, 0.0, 0.0]), velocity_b: V::ZERO };
+        let cast = linear_cast(&a, &b, motion, LinearCastOptions::default()).expect("finite");
+        assert!(cast.outcome.is_hit() && stalled(cast.is_certain(), cast.status), "{cast:?}");
+        let floor = HalfSpace::new(v::<V>([0.0, 1.0, 0.1]), s::<V>(1.0)).expect("a plane");
+        let ray = Ray { source: v::<V>([0.0, 1.0, 0.0]), direction: v([1.0, 0.1, -1.0]) };
+        let cast = floor.ray_cast(ray, RayCastOptions::default()).expect("finite");
+        assert!(cast.is_certain() || cast.status == Status::Stalled, "{cast:?}");
+
+        let scene = Scene::new([pebble]).expect("finite");
+        let first = scene.ray_cast(graze, RayCastOptions::default()).expect("finite");
+        let hit = first.first.as_ref().expect("as alone");
+        assert!(stalled(hit.is_certain(), hit.status) && !first.is_certain(), "{first:?}");
+        let any = scene.any_hit(graze, RayCastOptions::default()).expect("finite");
+        assert_eq!((any.hit, any.undecided, any.is_certain()), (true, Some(0), false), "{any:?}");
+    }
+    both(run::<Vec3A>, run::<DVec3>);
+}
+
+/// A ray 1e-9 off the direction of a cylinder's side was known to 1e-5 of the size, and one that grazes it to all of
+/// it: the bounds allowed for a displacement of the line by roundings of the *size*, which so small an angle makes
+/// long. Of a shape and a line as they are given nothing is rounded, and in twice the precision the crossing is known
+/// to roundings of its own.
+#[test]
+fn rays_nearly_along_a_side_are_as_narrow_as_their_numbers() {
+    fn run<V: Quaternion>(tilt: f64) {
+        type Shape<V> = Box<dyn SupportMap<Vector = V>>;
+        let (four, half, one) = (s::<V>(4.0), s::<V>(0.5), s::<V>(1.0));
+        let upright: [Shape<V>; 3] = [
+            Box::new(Cylinder::<V>::new(four, one).expect("positive")),
+            Box::new(Capsule::<V>::new(four, one).expect("positive")),
+            Box::new(Rounded::new(cuboid::<V>([0.5, 4.0, 2.0]), half).expect("positive")),
+        ];
+        // It comes nearer to x = 1 by the tilt in every unit, and begins 3 tilts beyond.
+        let beside = Ray { source: v::<V>([1.0 + 3.0 * tilt, -2.0, 0.0]), direction: v([-tilt, 1.0, 0.0]) };
+        let mut cases: Vec<(Shape<V>, Ray<V>, f64)> = upright.into_iter().map(|shape| (shape, beside, 3.0)).collect();
+        // The slant is x = (1 − y)/2.
+        let slant = Ray { source: v::<V>([0.25 + 1.25 * tilt, 0.5, 0.0]), direction: v([0.5 - tilt, -1.0, 0.0]) };
+        cases.push((Box::new(Cone::<V>::new(one, one).expect("positive")), slant, 1.25));
+        // The chord is half as long as the root of 2·16ε.
+        let depth = 16.0 * V::Scalar::EPSILON.as_f64();
+        let chord = (2.0 * depth - depth * depth).sqrt();
+        let graze = Ray { source: v::<V>([1.0 - depth, -2.0, 0.0]), direction: v([0.0, 1.0, 0.0]) };
+        cases.push((Box::new(Ball::<V>::new(one).expect("positive")), graze, 2.0 - chord));
+        for (shape, ray, truth) in cases {
+            let cast = ray_cast(&*shape, ray, RayCastOptions::default()).expect("finite");
+            let (lower, upper) = (cast.lower.as_f64(), cast.upper.as_f64());
+            assert!(cast.is_certain() && lower <= truth && truth <= upper, "{truth}: {cast:?}");
+            assert!(upper - lower <= ulps::<V>(16.0), "{:e} wide: {cast:?}", upper - lower);
+        }
+    }
+    both(|| run::<Vec3A>(1.0 / 65536.0), || run::<DVec3>(1.0 / 1_073_741_824.0));
+}
+
+/// A ray along a cone's generator took 2,647 support points though 200 were allowed, and one that begins on a box's
+/// face up to 220 to answer 0: after a cast that left the start in doubt, whole depths were computed at up to 18
+/// places from a few roundings on, and none counted. The ray is deepest about the middle of what is in the body, and
+/// one look there is mostly enough.
+#[test]
+fn second_looks_are_few_and_count() {
+    fn run<V: Quaternion>() {
+        let turned =
+            |shape: Box<dyn SupportMap<Vector = V>>, place| turned(shape, V::quaternion([0.3, -0.5, 0.7, 0.4]), place);
+        let cone = turned(Box::new(Cone::<V>::new(s::<V>(1.0), s::<V>(1.0)).expect("positive")), [0.0; 3]);
+        let cube = turned(Box::new(cuboid::<V>([1.0, 0.5, 0.25])), [0.25, 0.5, -1.0]);
+        let mut most = [0; 2];
+        for i in 0..40 {
+            let angle = 0.1 * f64::from(i);
+            let (rim, apex) = ([angle.cos(), -1.0, angle.sin()], [0.0, 1.0, 0.0]);
+            let on_face = [0.9 * angle.cos(), 0.5, 0.2 * angle.sin()];
+            let place = |shape: &Posed<Box<dyn SupportMap<Vector = V>>>, p: [f64; 3]| {
+                shape.rotation() * v::<V>(p) + shape.translation()
+            };
+            let (from, to) = (place(&cone, [0, 1, 2].map(|k| 2.0 * apex[k] - rim[k])), place(&cone, rim));
+            let generator = Ray { source: from, direction: to - from };
+            let begins =
+                Ray { source: place(&cube, on_face), direction: V::ZERO - place(&cube, [angle.sin(), 1.0, 0.3]) };
+            let [along, start] = [
+                ray_cast(&cone, generator, RayCastOptions::default()).expect("finite"),
+                ray_cast(&cube, begins, RayCastOptions::default()).expect("finite"),
+            ];
+            most = [most[0].max(along.iterations), most[1].max(start.iterations)];
+        }
+        assert!(most[0] <= 200 && most[1] <= 60, "{most:?}");
+    }
+    both(run::<Vec3A>, run::<DVec3>);
 }

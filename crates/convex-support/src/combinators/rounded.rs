@@ -6,7 +6,9 @@ use num_traits::Float as _;
 use crate::numerics::bound::roundings;
 use crate::numerics::twofold::two_sum;
 use crate::support::{ScalarOf, support_of_parts};
-use crate::{CertainCrossing, Core, Feature, Hint, LineCrossing, Parallelotope, Rounding, SupportMap, Vector};
+use crate::{
+    CertainCrossing, Core, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar as _, SupportMap, Vector,
+};
 
 /// The Minkowski sum of a shape and a ball: the shape grown by a radius, its edges and corners rounded.
 ///
@@ -90,7 +92,7 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
         self.shape.core_line_crossing(source, direction, radius)
     }
 
-    /// As of the shape; the sum of the radii is rounded.
+    /// As of the shape; the sum of the radii is rounded, unless one is zero.
     #[inline(always)]
     fn certain_crossing(
         &self,
@@ -100,7 +102,8 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
         error: ScalarOf<S>,
     ) -> Option<CertainCrossing<S::Vector>> {
         let sum = self.radius + radius;
-        self.shape.certain_crossing(source, direction, sum, error + roundings(1.0, sum))
+        let rounding = if radius == ScalarOf::<S>::ZERO { radius } else { roundings(1.0, sum) };
+        self.shape.certain_crossing(source, direction, sum, error + rounding)
     }
 
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {

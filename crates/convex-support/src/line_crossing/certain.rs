@@ -8,9 +8,11 @@
 
 use num_traits::Float as _;
 
+use super::close::{CloseLine, Known, Solid};
 use super::{Chord, Crossed, Crossing, Spine, across_two_axes, axis_of, past_rim, rebased};
 use crate::numerics::bound::roundings;
-use crate::numerics::range::{is_comfortable, is_moderate};
+use crate::numerics::bounded::Bounded;
+use crate::numerics::range::{is_comfortable, is_moderate, power_of_two_below};
 use crate::numerics::twofold::foot_from;
 use crate::shapes::across;
 use crate::{Cone, Matrix, Scalar, Vector, Vector3};
@@ -63,6 +65,13 @@ const OF_TURN: f64 = 11.0;
 /// what is along the axis and counts squared. Where a line hits, its foot and the way from there to the hit are no longer than the size. In all `26u`.
 const OF_SPLIT: f64 = 16.0;
 
+/// How many errors long a bracket is at most along a line that is then looked at [more closely](NearLine::closely).
+const WIDE: f64 = 1024.0;
+
+/// The square of the sine of the angle with a cylinder's side below which a line is nearly along it, and looked at
+/// more closely.
+const ALONG: f64 = 1.0 / (WIDE * WIDE);
+
 /// A line that is near a shape: as it is seen from the shape's origin, from a point at most [`NEAR`] sizes away.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NearLine<V: Vector> {
@@ -74,6 +83,8 @@ pub(crate) struct NearLine<V: Vector> {
     size: V::Scalar,
     /// A bound on the error of the line's crossing, as a displacement of the line.
     pub(super) error: V::Scalar,
+    /// The line's source and the shape's origin as they were given, and the error that came with them.
+    given: (V, V, V::Scalar),
 }
 
 impl<V: Vector> NearLine<V> {
@@ -84,7 +95,7 @@ impl<V: Vector> NearLine<V> {
         let number = V::Scalar::from_f64;
         // NaN and zero are not moderate.
         let is_moderate = is_moderate(size) & is_moderate(direction.abs().max_element());
-        let (seen, near) = (source - origin, size * number(NEAR));
+        let (seen, near, given) = (source - origin, size * number(NEAR), (source, origin, error));
         let squared = seen.length_squared();
         let rounding =
             |distance: V::Scalar| V::Scalar::EPSILON * (size * number(OF_SIZE) + distance * number(OF_DISTANCE));
@@ -92,11 +103,11 @@ impl<V: Vector> NearLine<V> {
             None
         } else if squared <= near * near {
             let error = error + rounding(sum_of_coordinates(seen));
-            Some(Self { base: V::Scalar::ZERO, source: seen, direction, size, error })
+            Some(Self { base: V::Scalar::ZERO, source: seen, direction, size, error, given })
         } else {
             let (base, foot) = foot_from(origin, source, direction);
             let error = error + rounding(sum_of_coordinates(foot));
-            (foot.length_squared() <= near * near).then_some(Self { base, source: foot, direction, size, error })
+            (foot.length_squared() <= near * near).then_some(Self { base, source: foot, direction, size, error, given })
         }
     }
 
@@ -135,17 +146,100 @@ impl<V: Vector> NearLine<V> {
         CertainCrossing::Enters { entry, bounds: [earliest - rounding, latest + rounding], normal }
     }
 
+    /// The same in twice the precision, where only the error that came with the line counts. `outward` is the unit normal
+    /// at a point of the surface. Of a line that misses, the closed form tells an axis, along which the core reaches so far
+    /// and the radius; it counts for what it is measured to be, and a line that misses by rounding is left to a search.
+    #[cold]
+    #[inline(never)]
+    fn closely(
+        &self,
+        solid: impl FnOnce(&dyn Fn(V::Scalar) -> f64) -> Solid,
+        outward: impl FnOnce(V) -> V,
+        crossed: impl FnOnce(V, V) -> Crossed<V>,
+        reach: impl FnOnce(V) -> [V::Scalar; 2],
+    ) -> Option<CertainCrossing<V>> {
+        let (source, origin, error) = self.given;
+        let length = power_of_two_below(self.size).as_f64();
+        let speed = power_of_two_below(self.direction.abs().max_element()).as_f64();
+        let in_units = |x: V::Scalar| x.as_f64() / length;
+        let coordinate = |v: V, i: usize| if i < V::DIM { v.get(i) } else { V::Scalar::ZERO };
+        let line = CloseLine {
+            source: core::array::from_fn(|i| {
+                Bounded::sum(in_units(coordinate(source, i)), -in_units(coordinate(origin, i)))
+            }),
+            direction: core::array::from_fn(|i| coordinate(self.direction, i).as_f64() / speed),
+        };
+        match line.crossing(solid(&in_units), in_units(error))? {
+            Known::Misses => {
+                let axis = crossed(self.source, self.direction).err()?;
+                let [support_value, radius] = reach(axis);
+                self.passes(axis, support_value, radius)
+            }
+            Known::Enters(bounds) => {
+                let [earliest, latest] = bounds.map(|at| at * (length / speed));
+                let entry = V::Scalar::from_f64(earliest + (latest - earliest) * 0.5);
+                let bounds = [earliest, latest].map(V::Scalar::from_f64);
+                let line = Self { base: V::Scalar::ZERO, ..*self };
+                let normal = outward(self.source + self.direction * (entry - self.base));
+                Some(line.enters([bounds[0], entry, bounds[1]], normal))
+            }
+        }
+    }
+
     /// A ball about zero.
     #[inline(always)]
     pub(crate) fn ball(&self, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+        self.ball_plainly(radius).or_else(|| self.capsule_closely(V::Scalar::ZERO, radius))
+    }
+
+    #[inline(always)]
+    fn ball_plainly(&self, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let recip = self.direction.length_squared().recip();
         let chord = super::ball::chord(radius, self.source, self.direction, recip);
         if chord.is_past(radius, self.error) {
             return Some(CertainCrossing::Misses(chord.nearest));
         }
-        let slack = chord.slack(radius, self.error, recip)?;
+        let slack = chord.slack(radius, self.error, recip, least_chord::<V::Scalar>())?;
         let entry = chord.ends().0;
         Some(self.enters([entry - slack, entry, entry + slack], chord.normal(radius, self.direction, recip)))
+    }
+
+    /// A segment along the second axis, swept by a ball, or a ball.
+    #[cold]
+    #[inline(never)]
+    fn capsule_closely(&self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+        let end = V::axis(1) * half_height;
+        let outward = |at: V| (at - at.max(-end).min(end)).unit().unwrap_or(-self.direction);
+        let crossed = |source, direction| Spine::upright(half_height).crossing(radius, source, direction);
+        let reach = |axis: V| [half_height * axis.get(1).abs(), radius];
+        self.closely(|f| Solid::Capsule { half_height: f(half_height), radius: f(radius) }, outward, crossed, reach)
+    }
+
+    /// A box, swept by a ball or not.
+    #[cold]
+    #[inline(never)]
+    fn box_closely(&self, half_extents: V, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+        let outward = |at: V| {
+            let beyond = at.abs() - half_extents;
+            let face = axis_of(beyond, beyond.max_element()) * V::ONE.copysign(at);
+            let excess = if radius > V::Scalar::ZERO { at - at.max(-half_extents).min(half_extents) } else { face };
+            excess.unit().unwrap_or(face)
+        };
+        let half = |f: &dyn Fn(V::Scalar) -> f64, i: usize| {
+            if i < V::DIM { f(half_extents.get(i)) } else { f64::INFINITY }
+        };
+        let solid = |f: &dyn Fn(V::Scalar) -> f64| Solid::RoundedBox {
+            half_extents: core::array::from_fn(|i| half(f, i)),
+            radius: f(radius),
+        };
+        let crossed = |source, direction| {
+            if radius > V::Scalar::ZERO {
+                super::rounded_cuboid(half_extents, radius, source, direction)
+            } else {
+                super::cuboid(half_extents, source, direction)
+            }
+        };
+        self.closely(solid, outward, crossed, |axis| [axis.abs().dot(half_extents), radius])
     }
 
     /// A box about zero: the line is in all of its slabs, each smaller and larger by the error.
@@ -155,6 +249,11 @@ impl<V: Vector> NearLine<V> {
     /// not known to miss it.
     #[inline(always)]
     pub(crate) fn cuboid(&self, half_extents: V) -> Option<CertainCrossing<V>> {
+        self.cuboid_plainly(half_extents).or_else(|| self.box_closely(half_extents, V::Scalar::ZERO))
+    }
+
+    #[inline(always)]
+    fn cuboid_plainly(&self, half_extents: V) -> Option<CertainCrossing<V>> {
         let Self { source, direction, error, .. } = *self;
         let per_unit = V::ONE / direction;
         let near = half_extents.copysign(-direction);
@@ -224,7 +323,25 @@ impl<V: Vector> NearLine<V> {
         let closest = |x: V| spine.axis * spine.split(x).0.max(-half_height).min(half_height);
         let support_value = |d: V| spine.split(d).0.abs() * half_height;
         let crossed = Spine { middle: V::ZERO, ..*spine }.crossing(radius, line.source, line.direction);
-        line.swept(radius, closest, support_value, crossed)
+        // The axis of another segment is rounded, and a closer look is none.
+        if spine.is_upright {
+            let known = line.swept(radius, closest, support_value, crossed, self.longest_slack());
+            return known.or_else(|| self.capsule_closely(half_height, radius));
+        }
+        line.swept(radius, closest, support_value, crossed, V::Scalar::infinity())
+    }
+
+    /// A box swept by a ball, given the crossing.
+    #[inline(always)]
+    pub(crate) fn rounded_cuboid(&self, h: V, radius: V::Scalar, crossed: Crossed<V>) -> Option<CertainCrossing<V>> {
+        self.swept(radius, |x| x.max(-h).min(h), |d| d.abs().dot(h), crossed, self.longest_slack())
+            .or_else(|| self.box_closely(h, radius))
+    }
+
+    /// How far the bounds may be apart along the line.
+    #[inline(always)]
+    fn longest_slack(&self) -> V::Scalar {
+        self.error * V::Scalar::from_f64(WIDE) / self.direction.abs().max_element()
     }
 
     /// The line as it is seen from the middle of a segment.
@@ -250,8 +367,12 @@ impl<V: Vector> NearLine<V> {
         let (base, source) = rebased(self.source, direction, recip);
         let ((along, out), (rise, radial)) = (spine.split(source), spine.split(direction));
         let slope = radial.length_squared();
-        // Along the axis to rounding.
-        if !(slope * recip > V::Scalar::EPSILON * V::Scalar::EPSILON) {
+        let (least_slope, least_chord) = if spine.is_upright {
+            (V::Scalar::from_f64(ALONG), least_chord::<V::Scalar>())
+        } else {
+            (V::Scalar::EPSILON * V::Scalar::EPSILON, V::Scalar::from_f64(LEAST_CHORD))
+        };
+        if !(slope * recip > least_slope) {
             return None;
         }
         let per_slope = slope.recip();
@@ -260,7 +381,7 @@ impl<V: Vector> NearLine<V> {
         if side.is_past(radius, error) {
             return Some(CertainCrossing::Misses(side.nearest));
         }
-        let slack = side.slack(radius, error, per_slope)?;
+        let slack = side.slack(radius, error, per_slope, least_chord)?;
         let entry = side.ends().0;
         let height_at = |at: V::Scalar| along + rise * at;
         if height_at(entry + slack).abs() <= half_height - error {
@@ -270,7 +391,7 @@ impl<V: Vector> NearLine<V> {
         let side_of_end = V::Scalar::ONE.copysign(height_at(entry));
         let end = spine.axis * (half_height * side_of_end);
         let cap = super::ball::chord(radius, self.source - end, direction, recip);
-        let slack = cap.slack(radius, error, recip)?;
+        let slack = cap.slack(radius, error, recip, least_chord)?;
         let entry = cap.ends().0;
         let height = height_at(entry - base - slack) * side_of_end;
         (height >= half_height + error)
@@ -279,14 +400,16 @@ impl<V: Vector> NearLine<V> {
 
     /// A set about zero, swept by a ball, whose crossing has a closed form and whose closest points and support values are known.
     ///
-    /// The points at `1.5e` before and behind the surface, along the normal at the entry, are measured against the set.
+    /// The points at `1.5e` before and behind the surface, along the normal at the entry, are measured against the
+    /// set, if that is no more than `longest` along the line.
     #[inline(always)]
-    pub(crate) fn swept(
+    fn swept(
         &self,
         radius: V::Scalar,
         closest: impl Fn(V) -> V,
         support_value: impl Fn(V) -> V::Scalar,
         crossed: Crossed<V>,
+        longest: V::Scalar,
     ) -> Option<CertainCrossing<V>> {
         let Self { source, direction, error, .. } = *self;
         let Crossing { entry, normal, .. } = match crossed {
@@ -302,6 +425,7 @@ impl<V: Vector> NearLine<V> {
         let (inner, outer) = (radius - error, radius + error);
         let is_certain = (inner > V::Scalar::ZERO)
             & (slack >= V::Scalar::ZERO)
+            & (slack <= longest)
             & (from_core(entry + slack).length_squared() <= inner * inner)
             & (from_core(entry - slack).length_squared() >= outer * outer);
         is_certain.then(|| self.enters([entry - slack, entry, entry + slack], normal))
@@ -330,13 +454,35 @@ impl<V: Vector3> NearLine<V> {
     /// As of a [swept set](Self::swept), two points of the line tell.
     #[inline(always)]
     pub(crate) fn cone(&self, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
+        self.cone_plainly(shape).or_else(|| self.cone_closely(shape))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn cone_closely(&self, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
+        let (half_height, radius, (cosine, sine)) = (shape.half_height(), shape.disc_radius(), shape.slant());
+        // Of a disc and a segment the opening is none.
+        if !(half_height.min(radius) > V::Scalar::ZERO) {
+            return None;
+        }
+        let outward = |at: V| {
+            let beyond_slant = across(at).length() * cosine - (half_height - at.get(1)) * sine;
+            let out = across(at).unit().unwrap_or_else(|| across(-self.direction).unit().unwrap_or(V::ZERO));
+            if -half_height - at.get(1) > beyond_slant { -V::axis(1) } else { out * cosine + V::axis(1) * sine }
+        };
+        let crossed = |source, direction| super::cone(shape, source, direction);
+        let reach = |axis: V| [cone_reach(shape, axis), V::Scalar::ZERO];
+        self.closely(|f| Solid::Cone { half_height: f(half_height), radius: f(radius) }, outward, crossed, reach)
+    }
+
+    #[inline(always)]
+    fn cone_plainly(&self, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
         let Self { source, direction, error, .. } = *self;
         let (h, (cosine, sine)) = (shape.half_height(), shape.slant());
         let Crossing { entry, normal, .. } = match super::cone(shape, source, direction) {
             Ok(crossing) => crossing,
             Err(axis) => {
-                let (apex, middle) = (h * axis.get(1), shape.disc_radius() * across(axis).length());
-                return self.passes(axis, apex.max(middle - apex), V::Scalar::ZERO);
+                return self.passes(axis, cone_reach(shape, axis), V::Scalar::ZERO);
             }
         };
         let at = source + direction * entry;
@@ -355,20 +501,37 @@ impl<V: Vector3> NearLine<V> {
             let (out, room) = slant(outer, error);
             (room < V::Scalar::ZERO) | (out.length_squared() >= room * room) | (outer.get(1) <= -error - h)
         };
-        ((slack >= V::Scalar::ZERO) & is_in & is_out)
+        ((slack >= V::Scalar::ZERO) & (slack <= self.longest_slack()) & is_in & is_out)
             .then(|| self.enters([entry - slack, entry, entry + slack], normal))
     }
 
     /// A cylinder about the second axis: the line is in the disc, as it is seen along the axis, and in the slab.
     #[inline(always)]
     pub(crate) fn cylinder(&self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+        self.cylinder_plainly(half_height, radius).or_else(|| self.cylinder_closely(half_height, radius))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn cylinder_closely(&self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+        let outward = |at: V| {
+            let is_beyond_lid = at.get(1).abs() - half_height > across(at).length() - radius;
+            let lid = V::axis(1) * V::Scalar::ONE.copysign(at.get(1));
+            across(at).unit().filter(|_| !is_beyond_lid).unwrap_or(lid)
+        };
+        let crossed = |source, direction| super::cylinder(half_height, radius, source, direction);
+        let reach = |axis: V| [half_height * axis.get(1).abs() + radius * across(axis).length(), V::Scalar::ZERO];
+        self.closely(|f| Solid::Cylinder { half_height: f(half_height), radius: f(radius) }, outward, crossed, reach)
+    }
+
+    #[inline(always)]
+    fn cylinder_plainly(&self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let Self { source, direction, error, .. } = *self;
         let dd = direction.length_squared();
         let (base, source) = rebased(source, direction, dd.recip());
         let (out, radial) = (across(source), across(direction));
         let slope = radial.length_squared();
-        // Along the axis to rounding.
-        if !(slope > dd * (V::Scalar::EPSILON * V::Scalar::EPSILON)) {
+        if !(slope > dd * V::Scalar::from_f64(ALONG)) {
             return None;
         }
         let recip = slope.recip();
@@ -377,7 +540,7 @@ impl<V: Vector3> NearLine<V> {
         if side.is_past(radius, error) {
             return Some(CertainCrossing::Misses(side.nearest));
         }
-        let slack = side.slack(radius, error, recip)?;
+        let slack = side.slack(radius, error, recip, least_chord::<V::Scalar>())?;
         let (enters, leaves) = side.ends();
         let (y, rise) = (source.get(1), direction.get(1));
         let per_rise = rise.recip();
@@ -401,15 +564,16 @@ impl<V: Vector3> NearLine<V> {
 
 impl<V: Vector> Chord<V> {
     /// A bound on the error of the ends of the chord that a ball cuts out of the line, if the line is displaced by up to `error`;
-    /// `None` if the line may miss the ball. `recip` is `1/|direction|²`.
+    /// `None` if the line may miss the ball, or if the squared half of the chord is less than `least·er`. `recip` is
+    /// `1/|direction|²`.
     ///
     /// With the half `m`, `F = |x|² − r²` is `|d|²·σ·(σ ∓ 2m)` at `σ` within or before an end. With `σ = 1.25·e·r/(m|d|²)`, which is less
     /// than `m/8` if `m²|d|² > 10er`, `F` is less than `−2.3er` at the one and more than `2.5er` at the other: one point is deeper than
     /// `e`, and the other farther out.
     #[inline(always)]
-    fn slack(&self, radius: V::Scalar, error: V::Scalar, recip: V::Scalar) -> Option<V::Scalar> {
-        let number = V::Scalar::from_f64;
-        (self.inside >= radius * error * number(10.0)).then(|| radius * recip / self.half * (error * number(1.25)))
+    fn slack(&self, radius: V::Scalar, error: V::Scalar, recip: V::Scalar, least: V::Scalar) -> Option<V::Scalar> {
+        let to_end = radius * recip / self.half;
+        (self.inside >= radius * error * least).then(|| to_end * (error * V::Scalar::from_f64(1.25)))
     }
 
     /// Whether the line passes the ball by more than an error: `|x| ≥ r + e` for its point nearest the middle.
@@ -417,6 +581,24 @@ impl<V: Vector> Chord<V> {
     fn is_past(&self, radius: V::Scalar, error: V::Scalar) -> bool {
         -self.inside >= (radius + error) * error * V::Scalar::from_f64(3.0)
     }
+}
+
+/// What the squared half of a chord is to be at least for its [slack](Chord::slack), in units of the error times the
+/// radius.
+const LEAST_CHORD: f64 = 10.0;
+
+/// The same where a line that grazes can be looked at more closely: the slack is then less than a part in some
+/// thousands of the radius.
+#[inline(always)]
+fn least_chord<S: Scalar>() -> S {
+    S::from_f64(if size_of::<S>() == size_of::<f64>() { 1e7 } else { 1e2 })
+}
+
+/// How far a cone reaches along an axis: its apex, or its base.
+#[inline(always)]
+fn cone_reach<V: Vector3>(shape: &Cone<V>, axis: V) -> V::Scalar {
+    let (apex, middle) = (shape.half_height() * axis.get(1), shape.disc_radius() * across(axis).length());
+    apex.max(middle - apex)
 }
 
 /// The sum of the magnitudes of the coordinates, which a length is no more than.

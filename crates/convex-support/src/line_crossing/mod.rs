@@ -9,6 +9,7 @@
 mod ball;
 mod capsule;
 mod certain;
+mod close;
 mod cone;
 mod cuboid;
 mod cylinder;

@@ -1,6 +1,7 @@
 //! Arithmetic that the crates of this workspace share. It is no part of the interface: it may change with any version.
 
 pub mod bound;
+pub mod bounded;
 pub mod jacobi;
 pub mod range;
 pub mod twofold;

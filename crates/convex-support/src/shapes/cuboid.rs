@@ -56,7 +56,7 @@ impl<V: Vector> Cuboid<V> {
         let h = self.half_extents;
         let line = NearLine::new(source, direction, V::ZERO, self.extent + radius, error)?;
         let crossed = rounded_cuboid(h, radius, line.source, line.direction);
-        line.swept(radius, |x| x.max(-h).min(h), |d| d.abs().dot(h), crossed)
+        line.rounded_cuboid(h, radius, crossed)
     }
 }
 

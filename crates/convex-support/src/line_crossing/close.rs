@@ -1,0 +1,268 @@
+//! Where a line certainly enters a shape, in twice the precision.
+//!
+//! A line nearly along a surface, or one that grazes it, crosses it where errors as small as roundings of the shape's
+//! size move the crossing far. But the numbers of shape and line are exact as they are given: with all of them in
+//! twice the precision, only the error that comes with the shape is left. A shape is a union of pieces, each the
+//! intersection of slabs and quadrics, and the line is in each for a stretch with bounds on both ends. For every line
+//! that passes within the error, the shape is once made larger and once smaller by it.
+//!
+//! The arithmetic is that of `f64` whatever the precision of the shape, and is compiled once.
+
+use crate::numerics::bounded::Bounded;
+
+/// A shape about zero, in units of about its size; upright ones are about the second axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Solid {
+    Capsule {
+        half_height: f64,
+        radius: f64,
+    },
+    Cylinder {
+        half_height: f64,
+        radius: f64,
+    },
+    Cone {
+        half_height: f64,
+        radius: f64,
+    },
+    /// The half extents beyond the dimension are infinite.
+    RoundedBox {
+        half_extents: [f64; 3],
+        radius: f64,
+    },
+}
+
+/// A line: its source as it is seen from the shape's origin, exactly, and its direction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CloseLine {
+    pub(super) source: [Bounded; 3],
+    pub(super) direction: [f64; 3],
+}
+
+/// What is certain of a line and a shape.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Known {
+    Misses,
+    /// It enters between these parameters.
+    Enters([f64; 2]),
+}
+
+impl CloseLine {
+    /// What is certain of every line that passes within `error` near the shape.
+    pub(super) fn crossing(&self, solid: Solid, error: f64) -> Option<Known> {
+        let larger = self.union(solid, error);
+        let smaller = if error > 0.0 { self.union(solid, -error) } else { larger };
+        if larger.earliest == f64::INFINITY {
+            return Some(Known::Misses);
+        }
+        // NaN and infinity tell nothing.
+        let is_known = larger.earliest > f64::NEG_INFINITY && smaller.latest < f64::INFINITY;
+        is_known.then_some(Known::Enters([larger.earliest, smaller.latest]))
+    }
+
+    /// The first entry into the pieces of a shape that is made larger by `by`, or smaller if that is negative.
+    fn union(&self, solid: Solid, by: f64) -> First {
+        let mut first = First { earliest: f64::INFINITY, latest: f64::INFINITY };
+        match solid {
+            Solid::Cylinder { half_height, radius } => {
+                let radius = Bounded::sum(radius, by);
+                first.take(self.slab(1, Bounded::sum(half_height, by)).and(self.disc(
+                    [true, false, true],
+                    [0.0; 3],
+                    radius,
+                )));
+            }
+            Solid::Capsule { half_height, radius } => {
+                let radius = Bounded::sum(radius, by);
+                first.take(self.slab(1, half_height.into()).and(self.disc([true, false, true], [0.0; 3], radius)));
+                for end in [half_height, -half_height] {
+                    first.take(self.disc([true; 3], [0.0, end, 0.0], radius));
+                }
+            }
+            Solid::Cone { half_height, radius } => first.take(self.cone(half_height, radius, by)),
+            Solid::RoundedBox { half_extents, radius } => self.rounded_box(half_extents, radius, by, &mut first),
+        }
+        first
+    }
+
+    /// Where `|x·eᵢ| ≤ half`.
+    fn slab(&self, axis: usize, half: Bounded) -> Stretch {
+        self.between(axis, -half, half)
+    }
+
+    /// Where the coordinate is between two numbers.
+    fn between(&self, axis: usize, low: Bounded, high: Bounded) -> Stretch {
+        let (at, speed) = (self.source[axis], self.direction[axis]);
+        let (below, above) = (at - low, high - at);
+        if speed == 0.0 {
+            return if below.is_negative() || above.is_negative() {
+                Stretch::NOWHERE
+            } else if below.is_positive() && above.is_positive() {
+                Stretch::EVERYWHERE
+            } else {
+                Stretch::UNKNOWN
+            };
+        }
+        let (enters, leaves) = if speed > 0.0 { (-below, above) } else { (above, -below) };
+        Stretch { enters: (enters / speed.into()).bounds(), leaves: (leaves / speed.into()).bounds() }
+    }
+
+    /// Where the coordinates that are meant are within a distance of a centre.
+    fn disc(&self, is_meant: [bool; 3], centre: [f64; 3], radius: Bounded) -> Stretch {
+        if radius.is_negative() {
+            return Stretch::NOWHERE;
+        }
+        let zero = Bounded::from(0.0);
+        let [mut a, mut b, mut c] = [zero, zero, -radius.squared()];
+        for i in (0..3).filter(|&i| is_meant[i]) {
+            let (at, d) = (self.source[i] - centre[i].into(), Bounded::from(self.direction[i]));
+            (a, b, c) = (a + d.squared(), b + at * d, c + at.squared());
+        }
+        match quadric(a, b, c) {
+            Quadric::Within(stretch) => stretch,
+            Quadric::Outside { .. } => Stretch::UNKNOWN,
+        }
+    }
+
+    /// The cone is behind its base and below its apex, where `4h²·(x² + z²) ≤ r²·(h − y)²`. Each of its planes is
+    /// moved by `by`: the base by that, and the apex by `by/sinα`, with `α` half the opening angle.
+    fn cone(&self, half_height: f64, radius: f64, by: f64) -> Stretch {
+        let height = half_height + half_height;
+        let lift = if by == 0.0 { 0.0 } else { by * num_traits::Float::hypot(height / radius, 1.0) };
+        // The product and the length are wrong by a few roundings.
+        let lift = lift + lift * (8.0 * f64::EPSILON);
+        let (apex, base) = (Bounded::sum(half_height, lift), Bounded::sum(-half_height, -by));
+        let (along, fall) = (apex - self.source[1], -Bounded::from(self.direction[1]));
+        let (tall, wide) = (Bounded::from(height).squared(), Bounded::from(radius).squared());
+        let zero = Bounded::from(0.0);
+        let [mut a, mut b, mut c] = [zero; 3];
+        for i in [0, 2] {
+            let (at, d) = (self.source[i], Bounded::from(self.direction[i]));
+            (a, b, c) = (a + d.squared(), b + at * d, c + at.squared());
+        }
+        let a = a * tall - fall.squared() * wide;
+        let b = b * tall - along * fall * wide;
+        let c = c * tall - along.squared() * wide;
+        let slant = match quadric(a, b, c) {
+            Quadric::Within(stretch) => stretch,
+            // A line steeper than the slant is below the apex after both roots if it falls, and before both if it
+            // rises.
+            Quadric::Outside { high, .. } if self.direction[1] < 0.0 => {
+                Stretch { enters: high, leaves: [f64::INFINITY; 2] }
+            }
+            Quadric::Outside { low, .. } => Stretch { enters: [f64::NEG_INFINITY; 2], leaves: low },
+        };
+        slant.and(self.between(1, base, apex))
+    }
+
+    /// A box swept by a ball: the boxes that are longer by the radius along one axis, the edges swept by a ball, and
+    /// the balls about the corners. A box that is swept by none is made larger, or smaller, itself.
+    fn rounded_box(&self, half_extents: [f64; 3], radius: f64, by: f64, first: &mut First) {
+        let is_swept = radius > 0.0;
+        let radius = Bounded::sum(radius, by);
+        let axes = || (0..3).filter(|&i| half_extents[i] < f64::INFINITY);
+        for long in axes() {
+            let half = |i: usize| {
+                if !is_swept {
+                    Bounded::sum(half_extents[i], by)
+                } else if i == long {
+                    radius + half_extents[i].into()
+                } else {
+                    half_extents[i].into()
+                }
+            };
+            first.take(axes().fold(Stretch::EVERYWHERE, |all, i| all.and(self.slab(i, half(i)))));
+            if !is_swept {
+                return;
+            }
+        }
+        // Of each axis the lower end, the upper end, or what is between.
+        for place in 0..27_usize {
+            let sides = [place % 3, place / 3 % 3, place / 9].map(|side| [-1.0, 0.0, 1.0][side]);
+            let is_meant = core::array::from_fn(|i| sides[i] != 0.0);
+            let count = is_meant.iter().filter(|&&is_meant| is_meant).count();
+            if count < 2 || (0..3).any(|i| is_meant[i] && half_extents[i] == f64::INFINITY) {
+                continue;
+            }
+            let centre = core::array::from_fn(|i| if is_meant[i] { sides[i] * half_extents[i] } else { 0.0 });
+            let between = axes().filter(|&i| !is_meant[i]).map(|i| self.slab(i, half_extents[i].into()));
+            first.take(between.fold(self.disc(is_meant, centre, radius), Stretch::and));
+        }
+    }
+}
+
+/// Where a line is in a set, between bounds on both ends.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    enters: [f64; 2],
+    leaves: [f64; 2],
+}
+
+impl Stretch {
+    const EVERYWHERE: Self = Self { enters: [f64::NEG_INFINITY; 2], leaves: [f64::INFINITY; 2] };
+    const NOWHERE: Self = Self { enters: [f64::INFINITY; 2], leaves: [f64::NEG_INFINITY; 2] };
+    const UNKNOWN: Self =
+        Self { enters: [f64::NEG_INFINITY, f64::INFINITY], leaves: [f64::NEG_INFINITY, f64::INFINITY] };
+
+    /// Where it is in both.
+    fn and(self, other: Self) -> Self {
+        let (p, q) = (self, other);
+        Self {
+            enters: [p.enters[0].max(q.enters[0]), p.enters[1].max(q.enters[1])],
+            leaves: [p.leaves[0].min(q.leaves[0]), p.leaves[1].min(q.leaves[1])],
+        }
+    }
+}
+
+/// Bounds on the first entry into one of several pieces; infinite where none is known, or none may be.
+#[derive(Clone, Copy)]
+struct First {
+    earliest: f64,
+    latest: f64,
+}
+
+impl First {
+    fn take(&mut self, Stretch { enters, leaves }: Stretch) {
+        if enters[0] <= leaves[1] {
+            self.earliest = self.earliest.min(enters[0]);
+        }
+        if enters[1] <= leaves[0] {
+            self.latest = self.latest.min(enters[1]);
+        }
+    }
+}
+
+/// Where `aλ² + 2bλ + c ≤ 0`: between its roots, or, where `a` is negative, outside of them.
+enum Quadric {
+    Within(Stretch),
+    Outside { low: [f64; 2], high: [f64; 2] },
+}
+
+/// The larger root of two in magnitude is a sum without cancellation, and the other one is their product, `c/a`, over
+/// it.
+fn quadric(a: Bounded, b: Bounded, c: Bounded) -> Quadric {
+    if !(a.is_positive() || a.is_negative()) {
+        // A line along the axis: in the disc everywhere or nowhere.
+        let is_level = a.bounds() == [0.0; 2] && b.bounds() == [0.0; 2];
+        return Quadric::Within(match (is_level && c.is_negative(), is_level && c.is_positive()) {
+            (true, _) => Stretch::EVERYWHERE,
+            (_, true) => Stretch::NOWHERE,
+            _ => Stretch::UNKNOWN,
+        });
+    }
+    let discriminant = b.squared() - a * c;
+    if !discriminant.is_positive() {
+        let is_outside = discriminant.is_negative() && a.is_positive();
+        return Quadric::Within(if is_outside { Stretch::NOWHERE } else { Stretch::UNKNOWN });
+    }
+    let root = discriminant.sqrt();
+    let q = if b.is_positive() { -(b + root) } else { root - b };
+    let [one, other] = [(q / a).bounds(), (c / q).bounds()];
+    // With `a > 0` the first is the greater one just where `q` is positive.
+    let (low, high) = if a.is_positive() != b.is_positive() { (other, one) } else { (one, other) };
+    if a.is_positive() {
+        Quadric::Within(Stretch { enters: low, leaves: high })
+    } else {
+        Quadric::Outside { low, high }
+    }
+}
