@@ -203,18 +203,17 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
     #[inline(always)]
     pub(crate) fn vector_between(&self, PointPair { a, b }: PointPair<A::Vector>, offset: A::Vector) -> A::Vector {
         let v = a - b + offset;
-        // A point is a segment without length.
-        let segment = |core: &Core<A::Vector>| match core.kind {
-            CoreKind::Segment { middle, half } => Some((middle, half)),
-            CoreKind::Point(at) => Some((at, Vector::ZERO)),
-            _ => None,
+        let between = |[u, w]: [A::Vector; 2], [x, y]: [A::Vector; 2]| {
+            let [u, w, x, y] = [u, w, x, y].map(|v| v * self.per_unit);
+            segments::normal_between([u, w], [x, y], [a, b], v)
         };
-        let are_points = matches!((self.core_a.kind, self.core_b.kind), (CoreKind::Point(_), CoreKind::Point(_)));
-        match (segment(&self.core_a), segment(&self.core_b)) {
-            (Some((x, u)), Some((y, w))) if !are_points => {
-                let [u, w, x, y] = [u, w, x, y].map(|v| v * self.per_unit);
-                segments::normal_between([u, w], [x, y], [a, b], v)
+        match (self.core_a.kind, self.core_b.kind) {
+            (CoreKind::Segment { middle: x, half: u }, CoreKind::Segment { middle: y, half: w }) => {
+                between([u, w], [x, y])
             }
+            // A point is a segment without length.
+            (CoreKind::Segment { middle: x, half: u }, CoreKind::Point(y)) => between([u, Vector::ZERO], [x, y]),
+            (CoreKind::Point(x), CoreKind::Segment { middle: y, half: w }) => between([Vector::ZERO, w], [x, y]),
             _ => v,
         }
     }

@@ -174,16 +174,41 @@ where
         }
     }
     state.ensure_measured();
-    let points = state.simplex.weighted_witness();
-    let answer = if is_reversed {
-        apart([pair.core_b, pair.core_a], &in_order, &state, points.reversed(), end).reversed()
-    } else {
-        apart([pair.core_a, pair.core_b], &in_order, &state, points, end)
-    };
+    let cores = [pair.core_a, pair.core_b];
     if end == End::Stalled {
-        closely([&WithoutLines(a), &WithoutLines(b)], answer, options.max_iterations)
+        let answer = apart_as_given(cores, &in_order, &state, end, is_reversed);
+        return closely([&WithoutLines(a), &WithoutLines(b)], answer, options.max_iterations);
+    }
+    found(cores, &in_order, &state, end, is_reversed)
+}
+
+/// The same as [`found`], compiled once.
+#[cold]
+#[inline(never)]
+fn apart_as_given<V: Vector>(
+    cores: [Core<V>; 2],
+    in_order: &Frame<V>,
+    state: &Gjk<V, PointPair<V>>,
+    end: End,
+    is_reversed: bool,
+) -> Distance<V> {
+    found(cores, in_order, state, end, is_reversed)
+}
+
+/// The answer of a search of bodies in order, as they are given.
+#[inline(always)]
+fn found<V: Vector>(
+    [core_a, core_b]: [Core<V>; 2],
+    in_order: &Frame<V>,
+    state: &Gjk<V, PointPair<V>>,
+    end: End,
+    is_reversed: bool,
+) -> Distance<V> {
+    let points = state.simplex.weighted_witness();
+    if is_reversed {
+        apart([core_b, core_a], in_order, state, points.reversed(), end).reversed()
     } else {
-        answer
+        apart([core_a, core_b], in_order, state, points, end)
     }
 }
 

@@ -273,6 +273,11 @@ impl<V: Vector> Seen<V> {
         }
     }
 
+    /// Whether points are known much better along one axis than along another.
+    fn is_uneven(&self) -> bool {
+        self.error.min_element() * V::Scalar::from_f64(4.0) < self.error.max_element()
+    }
+
     /// What points of the difference are wrong by along a unit vector.
     fn error_along(&self, n: V) -> V::Scalar {
         raised(n.abs().dot(self.error)).min(self.error_length)
@@ -300,7 +305,7 @@ impl<V: Vector> Seen<V> {
         }
         let found = Found { end: End::Separated, iterations: 1, points, length: v.norm() };
         let mut best = plane;
-        if !best.is_beyond(self.radius) {
+        if self.is_uneven() && !best.is_beyond(self.radius) {
             // A point is a segment without length.
             let half = |core: Core<V>| if let CoreKind::Segment { half, .. } = core.kind { half } else { V::ZERO };
             let halves = [half(pair.core_a), half(pair.core_b)];
@@ -381,7 +386,10 @@ impl<V: Vector> Seen<V> {
         let normal = Some(state.normal).filter(|&n| n != state.axis);
         let (mut best, mut length): (Option<Plane<V>>, Option<V::Scalar>) = (None, None);
         let mut upper = V::Scalar::infinity();
-        let about = if let (3, &[p, q]) = (V::DIM, points) { Some(about_edge(p - q, state.axis)) } else { None };
+        let about = match *points {
+            [p, q] if V::DIM == 3 && self.is_uneven() => Some(about_edge(p - q, state.axis)),
+            _ => None,
+        };
         for n in faces.chain(normal).chain([state.axis]).chain(about.into_iter().flatten()) {
             let certain = best.as_ref().map_or(-V::Scalar::infinity(), Plane::certain);
             if self.may_be_beyond(n, points, certain)

@@ -63,9 +63,10 @@ impl<V: Vector> NextDirection<V> {
             return turned.map_or(v, |n| Direction { n, length: Scalar::ONE });
         }
         let levelled = if leaves_open(state) { in_range(level(state, v)) } else { None };
-        // A plane before zero is before all points that are known too. Deep in one another bodies have an axis opposite to the shortest
-        // vector, and would be looked at from where they were looked at before, over and over.
-        let levelled = levelled.filter(|direction| direction.n.dot(v.n) > Scalar::ZERO);
+        // Both directions may cancel. Deep in one another bodies have an axis opposite to the shortest vector, and what is between both is that
+        // axis again: the same support point would come back, over and over.
+        let levelled = levelled
+            .filter(|direction| direction.n.dot(v.n) > -(direction.length * v.length) * V::Scalar::from_f64(OPPOSITE));
         self.levelled = levelled.is_some();
         levelled.unwrap_or(v)
     }
@@ -77,6 +78,9 @@ const TRUSTED: f64 = 0.5;
 /// The weight of the lower bound's axis in a direction between it and the shortest vector. Of 1.5, 2 and 3 it takes the fewest
 /// support points on average of polytopes of 8 to 1024 vertices.
 const AXIS_WEIGHT: f64 = 2.0;
+
+/// The cosine of the angle to the opposite of the shortest vector, above which a direction between that and the axis is the axis again.
+const OPPOSITE: f64 = 0.6;
 
 /// Whether the simplex leaves open where to look next, and its shortest vector says little about that. A triangle leaves
 /// nothing open, and polygons in the plane need few steps anyway.
