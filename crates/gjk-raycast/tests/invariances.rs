@@ -383,8 +383,9 @@ proptest! {
     ) {
         prop_assume!(place.x.hypot(place.y) > 0.01 && velocity.x.hypot(velocity.y) > 0.01);
         let scene = Scene { kinds, sizes, turns, place, velocity, spin };
-        // Bodies of 1e-6 take a part of the exponents of single precision.
-        let near = if far.abs() > 3 { far / 12 } else { far };
+        // Bodies of 1e-6, which is 2⁻²⁰, take a part of the exponents.
+        let near = if far.abs() > 3 { (far / 12).max(-10) } else { far };
+        let far = far.max(-230);
         match space {
             0 => scaled::<DVec3>(&scene, far)?,
             1 => scaled::<DVec2>(&scene, far)?,
