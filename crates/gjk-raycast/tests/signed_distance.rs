@@ -281,10 +281,11 @@ fn about_one_center_the_points_are_of_the_way_out() {
     points_are_of_the_shapes(&ellipse, &cuboid::<Vec2>([7.8e-5, 0.46, 0.0]), 1e-5);
 }
 
-/// Nearly tied ways out of curved bodies: the facet nearest to zero is far from the end of the shortest way, and that end is between
-/// support points of which the polytope has few. Half of the vector from the facet's point to the end was added to one point and taken
-/// from the other, so that both were as far outside their bodies as that is long, up to 0.4 sizes; and where the way was only known to the
-/// root of rounding, so were the points. The end is looked for among weighted sums of support points now, which are in the bodies.
+/// Nearly tied ways out of curved bodies: the facet nearest to zero is far from the end of the shortest way, and that
+/// end is between support points of which the polytope has few. Half of the vector from the facet's point to the end
+/// was added to one point and taken from the other, so that both were as far outside their bodies as that is long, up
+/// to 0.4 sizes; and where the way was only known to the root of rounding, so were the points. The end is looked for
+/// among weighted sums of support points now, which are in the bodies.
 #[test]
 fn points_of_nearly_tied_ways_out_are_of_the_shapes() {
     let ellipsoid = |axes: [f64; 3]| Ellipsoid::new(DVec3::ZERO, DVec3::from(axes), DQuat::IDENTITY).expect(VALID);
@@ -306,8 +307,8 @@ fn points_of_nearly_tied_ways_out_are_of_the_shapes() {
     }
 }
 
-/// A search that is given up early knows no end of a shortest way. Its points are in the shapes all the same, and what is told of their
-/// distance and direction is of them.
+/// A search that is given up early knows no end of a shortest way. Its points are in the shapes all the same, and what
+/// is told of their distance and direction is of them.
 #[test]
 fn points_of_searches_that_are_given_up_are_of_the_shapes() {
     let cone = Cone::<DVec3>::new(1.0, 0.6).expect(VALID);

@@ -211,7 +211,8 @@ impl<V: Vector> Boundary<V> {
         usize::from(self.facets[index].across[corner])
     }
 
-    /// The facet that the ray from zero along a unit vector leaves through, where zero is within; the `nearest` facet is tried first.
+    /// The facet that the ray from zero along a unit vector leaves through, where zero is within; the `nearest` facet
+    /// is tried first.
     pub(super) fn pierced(&self, u: V, nearest: usize) -> usize {
         if self.facets[nearest].normal == u || !(self.inner[nearest] > V::Scalar::ZERO) {
             return nearest;

@@ -386,8 +386,8 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         end
     }
 
-    /// The point of the difference nearest to a `target`, as seen from there: that of the face with these corners, and where it is farther
-    /// than rounding, the one that GJK comes to from there.
+    /// The point of the difference nearest to a `target`, as seen from there: that of the face with these corners, and
+    /// where it is farther than rounding, the one that GJK comes to from there.
     pub(super) fn nearest_to(
         &mut self,
         target: A::Vector,

@@ -25,8 +25,8 @@ pub struct SignedDistanceOptions<V: Vector> {
     /// infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub depth_limit: V::Scalar,
-    /// The support points of each shape after which to give up. The points of both shapes at the ends of a depth that is not known better
-    /// may take a sixteenth more. Default: 500.
+    /// The support points of each shape after which to give up. The points of both shapes at the ends of a depth that
+    /// is not known better may take a sixteenth more. Default: 500.
     pub max_iterations: usize,
     /// A first guess of the direction from `b` to `a`, such as the normal of the last answer. Default: none.
     pub axis: Option<V>,

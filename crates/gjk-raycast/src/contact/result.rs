@@ -24,8 +24,8 @@ pub struct SignedDistance<V: Vector> {
     /// The unit vector from `b` to `a`. If `a` is moved along it by the depth, the shapes no longer overlap. Where several ways out are
     /// equally short, it is the direction of one of them.
     pub normal: V,
-    /// The point of `a` closest to `b`, or deepest in it. It is in `a` but for rounding, 8ε of the sizes of both shapes and their offset,
-    /// however the search ended: what is not known of the way out is in the bounds.
+    /// The point of `a` closest to `b`, or deepest in it. It is in `a` but for rounding, 8ε of the sizes of both shapes
+    /// and their offset, however the search ended: what is not known of the way out is in the bounds.
     pub point_a: V,
     /// The point of `b` such that `point_a − point_b` is the signed distance times the normal, in the same way.
     pub point_b: V,

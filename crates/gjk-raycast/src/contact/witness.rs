@@ -24,17 +24,19 @@ pub(super) struct Ends<V: Vector> {
 
 /// The points of both cores whose difference is the end `h·u` of the way out, which is corrected where it has none.
 ///
-/// Where `h` is least among directions near `u`, the ball of radius `h` about zero touches the plane across `u` at a point of the boundary,
-/// which is the end. If the boundary is smooth there, that is the support point. If it has a face or an edge, the end is a weighted sum of
-/// support points: of the corners of the facet that the way leads through, where these are of that face, and else of those that GJK comes
-/// to from there, which looks for the point of the difference nearest to the end. Weighted sums with no negative weight are in the cores
-/// whatever they come to, and what they miss the end by is split between both only where it is the rounding of the search.
+/// Where `h` is least among directions near `u`, the ball of radius `h` about zero touches the plane across `u` at a
+/// point of the boundary, which is the end. If the boundary is smooth there, that is the support point. If it has a
+/// face or an edge, the end is a weighted sum of support points: of the corners of the facet that the way leads
+/// through, where these are of that face, and else of those that GJK comes to from there, which looks for the point of
+/// the difference nearest to the end. Weighted sums with no negative weight are in the cores whatever they come to, and
+/// what they miss the end by is split between both only where it is the rounding of the search.
 ///
-/// If it is more, the way is not at the bottom of a basin yet, and its end is outside the difference by some `δ`. The plane through the
-/// point nearest to the end, across the unit vector `n` from there to it, supports the difference, and is nearer to zero by more than
-/// that: `h(n) = n·(h·u − δ·n) ≤ h − δ`. So it is the next way. Of an edge or a face the plane is known better than the short vector from
-/// it, by what is left of `u` across it. Where no lower way is found, as with no support points left, the way ends at the nearest point,
-/// whose distance from zero is between the bounds. `None` where that point is on no side of zero that the way leads to.
+/// If it is more, the way is not at the bottom of a basin yet, and its end is outside the difference by some `δ`. The
+/// plane through the point nearest to the end, across the unit vector `n` from there to it, supports the difference,
+/// and is nearer to zero by more than that: `h(n) = n·(h·u − δ·n) ≤ h − δ`. So it is the next way. Of an edge or a face
+/// the plane is known better than the short vector from it, by what is left of `u` across it. Where no lower way is
+/// found, as with no support points left, the way ends at the nearest point, whose distance from zero is between the
+/// bounds. `None` where that point is on no side of zero that the way leads to.
 pub(super) fn ends<A, B>(
     cores: &mut Cores<'_, A, B>,
     boundary: &Boundary<A::Vector>,
@@ -86,8 +88,8 @@ where
     }
 }
 
-/// The point of the difference nearest to a `target` outside it or on its boundary, as seen from there: by the facet beside it, and if
-/// that is farther than rounding, by GJK.
+/// The point of the difference nearest to a `target` outside it or on its boundary, as seen from there: by the facet
+/// beside it, and if that is farther than rounding, by GJK.
 pub(super) fn nearest_to<A, B>(
     cores: &mut Cores<'_, A, B>,
     boundary: &Boundary<A::Vector>,
@@ -103,8 +105,8 @@ where
     cores.nearest_to(target, &corners[..A::Vector::DIM], max_iterations)
 }
 
-/// The facet that a point is above, or that it is nearly above: that comes next across the ridges that the point's foot is beyond, as the
-/// coordinates of the foot say.
+/// The facet that a point is above, or that it is nearly above: that comes next across the ridges that the point's foot
+/// is beyond, as the coordinates of the foot say.
 fn beside<V: Vector>(boundary: &Boundary<V>, from: usize, point: V) -> usize {
     let mut facet = from;
     for _ in 0..MAX_WALK {
