@@ -8,7 +8,7 @@ use super::placement::{Placement, is_near, length_of_error, lost_in_origin};
 use crate::error::{InvalidShape, finite, orthonormal};
 use crate::line_crossing::{NearLine, skew};
 use crate::numerics::bound::roundings;
-use crate::numerics::twofold::lost_in_sum;
+use crate::numerics::twofold::{lost_in_sum, two_sum};
 use crate::support::ScalarOf;
 use crate::{
     CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, Matrix, Parallelotope, Rotation, Rounding, Scalar,
@@ -244,7 +244,9 @@ impl<S: SupportMap> SupportMap for Posed<S> {
         error: ScalarOf<S>,
     ) -> Option<CertainCrossing<S::Vector>> {
         let core = self.shape.core();
-        let (size, error) = (core.extent + core.radius + radius, error + self.error + self.skew);
+        // That the sum of the radii is rounded counts where the line is looked at closely.
+        let [swept, lost] = two_sum(core.radius, radius);
+        let (size, error) = (core.extent + swept, error + self.error + self.skew + lost.abs());
         if core.origin == S::Vector::ZERO {
             let line = NearLine::new(source, direction, self.translation, size, error)?;
             if core.kind == CoreKind::Point(S::Vector::ZERO) {

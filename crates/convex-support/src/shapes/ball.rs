@@ -1,7 +1,10 @@
 //! A ball about the origin.
 
+use num_traits::Float as _;
+
 use crate::error::{InvalidShape, non_negative};
 use crate::line_crossing::{NearLine, ball};
+use crate::numerics::twofold::two_sum;
 use crate::support::swept;
 use crate::{CertainCrossing, Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
 
@@ -86,8 +89,8 @@ impl<V: Vector> SupportMap for Ball<V> {
         radius: V::Scalar,
         error: V::Scalar,
     ) -> Option<CertainCrossing<V>> {
-        let radius = self.radius + radius;
-        NearLine::new(source, direction, V::ZERO, radius, error)?.ball(radius)
+        let [radius, lost] = two_sum(self.radius, radius);
+        NearLine::new(source, direction, V::ZERO, radius, error + lost.abs())?.ball(radius)
     }
 
     fn rounding(&self) -> Rounding<V> {

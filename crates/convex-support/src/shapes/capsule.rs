@@ -4,6 +4,7 @@ use num_traits::Float as _;
 
 use crate::error::{InvalidShape, non_negative};
 use crate::line_crossing::{NearLine, Spine};
+use crate::numerics::twofold::two_sum;
 use crate::support::support_of_parts;
 use crate::{
     CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector,
@@ -100,8 +101,8 @@ impl<V: Vector> SupportMap for Capsule<V> {
         radius: V::Scalar,
         error: V::Scalar,
     ) -> Option<CertainCrossing<V>> {
-        let radius = self.radius + radius;
-        let line = NearLine::new(source, direction, V::ZERO, self.half_height + radius, error)?;
+        let [radius, lost] = two_sum(self.radius, radius);
+        let line = NearLine::new(source, direction, V::ZERO, self.half_height + radius, error + lost.abs())?;
         line.segment(&Spine::upright(self.half_height), radius)
     }
 

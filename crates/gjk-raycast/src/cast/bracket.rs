@@ -19,6 +19,9 @@ use crate::{Iterate, Ray, RayCastOptions, Status};
 /// The largest tolerance, in sizes of the body.
 const LARGEST_TOLERANCE: f64 = 16.0;
 
+/// The cosine below which a plane counts as nearly along the line: its crossing is known to so many times fewer digits.
+const LEANS: f64 = 1.0 / 64.0;
+
 /// What rounding moves points by that a search compares, in units of ε times the size.
 pub(super) const NOISE: f64 = 8.0;
 
@@ -380,10 +383,11 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         Ok(Contact { mu: self.low_or_at(high), normal: self.normal, witness })
     }
 
-    /// Where the last plane is crossed, or at the body's point at `mu`, if that is before the crossing by no more
-    /// than rounding may have moved it: a plane nearly along the line is crossed far from where it touches the body.
+    /// Where the last plane is crossed; of one nearly along the line, at the body's point at `mu` if that is before the crossing by no
+    /// more than rounding may have moved it, since such a plane is crossed far from where it touches the body.
     fn low_or_at(&self, mu: ScalarOf<B>) -> ScalarOf<B> {
-        self.low().min(mu.max(self.earliest()).max(self.ray.start))
+        let leans = self.low.slope < ScalarOf::<B>::from_f64(LEANS);
+        if leans { self.low().min(mu.max(self.earliest()).max(self.ray.start)) } else { self.low() }
     }
 
     /// The contact at the source of the ray, where points of the body are known on both sides of it, by more than rounding.
