@@ -72,6 +72,17 @@ const WIDE: f64 = 1024.0;
 /// more closely.
 const ALONG: f64 = 1.0 / (WIDE * WIDE);
 
+/// The same, taken apart and put together: where a rare function leaves an answer in memory, the plain one beside it need not be there too.
+#[inline(always)]
+fn in_registers<V: Vector>(known: Option<CertainCrossing<V>>) -> Option<CertainCrossing<V>> {
+    match known? {
+        CertainCrossing::Misses(axis) => Some(CertainCrossing::Misses(axis)),
+        CertainCrossing::Enters { entry, bounds: [earliest, latest], normal } => {
+            Some(CertainCrossing::Enters { entry, bounds: [earliest, latest], normal })
+        }
+    }
+}
+
 /// A line that is near a shape: as it is seen from the shape's origin, from a point at most [`NEAR`] sizes away.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NearLine<V: Vector> {
@@ -152,7 +163,7 @@ impl<V: Vector> NearLine<V> {
     #[cold]
     #[inline(never)]
     fn closely(
-        &self,
+        self,
         solid: impl FnOnce(&dyn Fn(V::Scalar) -> f64) -> Solid,
         outward: impl FnOnce(V) -> V,
         crossed: impl FnOnce(V, V) -> Crossed<V>,
@@ -179,7 +190,7 @@ impl<V: Vector> NearLine<V> {
                 let [earliest, latest] = bounds.map(|at| at * (length / speed));
                 let entry = V::Scalar::from_f64(earliest + (latest - earliest) * 0.5);
                 let bounds = [earliest, latest].map(V::Scalar::from_f64);
-                let line = Self { base: V::Scalar::ZERO, ..*self };
+                let line = Self { base: V::Scalar::ZERO, ..self };
                 let normal = outward(self.source + self.direction * (entry - self.base));
                 Some(line.enters([bounds[0], entry, bounds[1]], normal))
             }
@@ -189,7 +200,7 @@ impl<V: Vector> NearLine<V> {
     /// A ball about zero.
     #[inline(always)]
     pub(crate) fn ball(&self, radius: V::Scalar) -> Option<CertainCrossing<V>> {
-        self.ball_plainly(radius).or_else(|| self.capsule_closely(V::Scalar::ZERO, radius))
+        self.ball_plainly(radius).or_else(|| in_registers(self.capsule_closely(V::Scalar::ZERO, radius)))
     }
 
     #[inline(always)]
@@ -207,7 +218,7 @@ impl<V: Vector> NearLine<V> {
     /// A segment along the second axis, swept by a ball, or a ball.
     #[cold]
     #[inline(never)]
-    fn capsule_closely(&self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+    fn capsule_closely(self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let end = V::axis(1) * half_height;
         let outward = |at: V| (at - at.max(-end).min(end)).unit().unwrap_or(-self.direction);
         let crossed = |source, direction| Spine::upright(half_height).crossing(radius, source, direction);
@@ -218,7 +229,7 @@ impl<V: Vector> NearLine<V> {
     /// A box, swept by a ball or not.
     #[cold]
     #[inline(never)]
-    fn box_closely(&self, half_extents: V, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+    fn box_closely(self, half_extents: V, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let outward = |at: V| {
             let beyond = at.abs() - half_extents;
             let face = axis_of(beyond, beyond.max_element()) * V::ONE.copysign(at);
@@ -249,7 +260,7 @@ impl<V: Vector> NearLine<V> {
     /// not known to miss it.
     #[inline(always)]
     pub(crate) fn cuboid(&self, half_extents: V) -> Option<CertainCrossing<V>> {
-        self.cuboid_plainly(half_extents).or_else(|| self.box_closely(half_extents, V::Scalar::ZERO))
+        self.cuboid_plainly(half_extents).or_else(|| in_registers(self.box_closely(half_extents, V::Scalar::ZERO)))
     }
 
     #[inline(always)]
@@ -326,7 +337,7 @@ impl<V: Vector> NearLine<V> {
         // The axis of another segment is rounded, and a closer look is none.
         if spine.is_upright {
             let known = line.swept(radius, closest, support_value, crossed, self.longest_slack());
-            return known.or_else(|| self.capsule_closely(half_height, radius));
+            return known.or_else(|| in_registers(self.capsule_closely(half_height, radius)));
         }
         line.swept(radius, closest, support_value, crossed, V::Scalar::infinity())
     }
@@ -335,7 +346,7 @@ impl<V: Vector> NearLine<V> {
     #[inline(always)]
     pub(crate) fn rounded_cuboid(&self, h: V, radius: V::Scalar, crossed: Crossed<V>) -> Option<CertainCrossing<V>> {
         self.swept(radius, |x| x.max(-h).min(h), |d| d.abs().dot(h), crossed, self.longest_slack())
-            .or_else(|| self.box_closely(h, radius))
+            .or_else(|| in_registers(self.box_closely(h, radius)))
     }
 
     /// How far the bounds may be apart along the line.
@@ -454,12 +465,12 @@ impl<V: Vector3> NearLine<V> {
     /// As of a [swept set](Self::swept), two points of the line tell.
     #[inline(always)]
     pub(crate) fn cone(&self, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
-        self.cone_plainly(shape).or_else(|| self.cone_closely(shape))
+        self.cone_plainly(shape).or_else(|| in_registers(self.cone_closely(shape)))
     }
 
     #[cold]
     #[inline(never)]
-    fn cone_closely(&self, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
+    fn cone_closely(self, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
         let (half_height, radius, (cosine, sine)) = (shape.half_height(), shape.disc_radius(), shape.slant());
         // Of a disc and a segment the opening is none.
         if !(half_height.min(radius) > V::Scalar::ZERO) {
@@ -508,12 +519,12 @@ impl<V: Vector3> NearLine<V> {
     /// A cylinder about the second axis: the line is in the disc, as it is seen along the axis, and in the slab.
     #[inline(always)]
     pub(crate) fn cylinder(&self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
-        self.cylinder_plainly(half_height, radius).or_else(|| self.cylinder_closely(half_height, radius))
+        self.cylinder_plainly(half_height, radius).or_else(|| in_registers(self.cylinder_closely(half_height, radius)))
     }
 
     #[cold]
     #[inline(never)]
-    fn cylinder_closely(&self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+    fn cylinder_closely(self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let outward = |at: V| {
             let is_beyond_lid = at.get(1).abs() - half_height > across(at).length() - radius;
             let lid = V::axis(1) * V::Scalar::ONE.copysign(at.get(1));

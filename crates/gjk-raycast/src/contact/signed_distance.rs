@@ -63,11 +63,12 @@ where
     let parts = [a.core(), b.core()];
     direct(a, b, parts, options.max_iterations, &mut observer).unwrap_or_else(|| {
         let mut cores = Cores::new(a, b, parts);
-        reach(&mut cores, options, observer).answer(&cores)
+        reach(&mut cores, options, true, observer).answer(&cores)
     })
 }
 
-/// [`signed_distance`], and the unit vector from `b` to `a` of the plane that proves its lower bound.
+/// [`signed_distance`], and the unit vector from `b` to `a` of the plane that proves its lower bound. Near contact it is known to what the
+/// search itself leaves, since a search in time looks again a moment later.
 #[inline]
 pub(crate) fn signed_distance_and_axis<A, B>(
     a: &A,
@@ -83,7 +84,7 @@ where
         return (answer, answer.normal);
     }
     let mut cores = Cores::new(a, b, parts);
-    let reached = reach(&mut cores, options, |_| {});
+    let reached = reach(&mut cores, options, false, |_| {});
     (reached.answer(&cores), reached.axis)
 }
 
@@ -98,11 +99,12 @@ pub(crate) fn signed_distance_of_any<V: Vector>(
     signed_distance(a, b, options)
 }
 
-/// What can be known of the cores.
+/// What can be known of the cores; near contact by a look of its own, if that is asked for.
 #[inline(always)]
 fn reach<A, B>(
     cores: &mut Cores<'_, A, B>,
     options: SignedDistanceOptions<A::Vector>,
+    looks_near: bool,
     mut observer: impl FnMut(Iterate<'_, A::Vector>),
 ) -> Reached<A::Vector>
 where
@@ -122,7 +124,7 @@ where
     let is_peeled = is_warm && cores.peel();
     let mut state = cores.first_state(&options);
     let end = cores.approach(&options, &mut state, &mut observer);
-    if let Some(known) = cores.look_near(&mut state, options.max_iterations) {
+    if looks_near && let Some(known) = cores.look_near(&mut state, options.max_iterations) {
         return Reached::of_near_contact(cores, &known);
     }
     if end == End::Separated && cores.is_well_apart(state.length) {
