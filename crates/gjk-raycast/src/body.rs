@@ -9,11 +9,9 @@ use crate::unit::{is_moderate, reciprocal_of_power};
 /// The support map of a core, whose points remember what they are made of: all that GJK asks of a body.
 pub(crate) trait TracedSupport {
     type Vector: Vector;
-    /// What a support point is made of: the points of both shapes for a difference.
-    type Witness: Witness<<Self::Vector as Vector>::Scalar>;
 
-    /// The support point, relative to the body's origin and in its unit.
-    fn support(&mut self, direction: Self::Vector) -> (Self::Vector, Self::Witness);
+    /// The support point, relative to the body's origin and in its unit, and the points of both shapes that it is the difference of.
+    fn support(&mut self, direction: Self::Vector) -> (Self::Vector, PointPair<Self::Vector>);
     /// The Hessian `H` of the support value, how fast the support point moves as the direction turns, as seen along two changes
     /// `u` and `w`: the entries `u·Hu`, `u·Hw` and `w·Hw`.
     fn hessian(
@@ -40,7 +38,7 @@ pub(crate) trait Body: TracedSupport {
         by: <Self::Vector as Vector>::Scalar,
     ) -> LineCrossing<Self::Vector>;
     /// What a point of the core is made of, where [`line_crossing`](Self::line_crossing) is known.
-    fn witness(&self, point: Self::Vector) -> Self::Witness;
+    fn witness(&self, point: Self::Vector) -> PointPair<Self::Vector>;
     /// What positions are relative to, in the world; for a difference, that of the first shape alone, since subtracting
     /// the other's would round.
     fn origin(&self) -> Self::Vector;
@@ -54,17 +52,6 @@ pub(crate) trait Body: TracedSupport {
     fn error(&self) -> <Self::Vector as Vector>::Scalar;
     /// Sets the unit to the given power of two.
     fn set_scale(&mut self, scale: <Self::Vector as Vector>::Scalar);
-}
-
-/// What a support point is made of.
-pub(crate) trait Witness<S>: Copy + Default {
-    /// The sum with a multiple of another.
-    fn plus(self, other: Self, weight: S) -> Self;
-}
-
-impl<S> Witness<S> for () {
-    #[inline]
-    fn plus(self, (): (), _weight: S) {}
 }
 
 /// One shape.
@@ -84,12 +71,12 @@ impl<'a, S: SupportMap + ?Sized> Single<'a, S> {
 
 impl<S: SupportMap + ?Sized> TracedSupport for Single<'_, S> {
     type Vector = S::Vector;
-    type Witness = ();
 
     #[inline(always)]
-    fn support(&mut self, direction: S::Vector) -> (S::Vector, ()) {
+    fn support(&mut self, direction: S::Vector) -> (S::Vector, PointPair<S::Vector>) {
         self.hint.rewind();
-        (self.shape.core_support(direction, &mut self.hint) * self.per_unit, ())
+        let a = self.shape.core_support(direction, &mut self.hint) * self.per_unit;
+        (a, self.witness(a))
     }
 
     #[inline(always)]
@@ -118,7 +105,9 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
     }
 
     #[inline(always)]
-    fn witness(&self, _point: S::Vector) {}
+    fn witness(&self, point: S::Vector) -> PointPair<S::Vector> {
+        PointPair { a: point, b: Vector::ZERO }
+    }
 
     fn origin(&self) -> S::Vector {
         self.core.origin
@@ -233,21 +222,16 @@ impl<V> PointPair<V> {
     }
 }
 
-/// One shape does not remember points.
-impl<V> From<PointPair<V>> for () {
-    fn from(_points: PointPair<V>) {}
-}
-
-impl<V: Vector> Witness<V::Scalar> for PointPair<V> {
+impl<V: Vector> PointPair<V> {
+    /// The sum with a multiple of another.
     #[inline]
-    fn plus(self, other: Self, weight: V::Scalar) -> Self {
+    pub(crate) fn plus(self, other: Self, weight: V::Scalar) -> Self {
         Self { a: self.a + other.a * weight, b: self.b + other.b * weight }
     }
 }
 
 impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> TracedSupport for Pair<'_, A, B> {
     type Vector = A::Vector;
-    type Witness = PointPair<A::Vector>;
 
     #[inline(always)]
     fn support(&mut self, direction: A::Vector) -> (A::Vector, PointPair<A::Vector>) {
@@ -328,29 +312,6 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
 
     fn set_scale(&mut self, scale: <A::Vector as Vector>::Scalar) {
         self.per_unit = reciprocal_of_power(scale);
-    }
-}
-
-/// A body whose support points are not asked where they come from.
-pub(crate) struct Untraced<'b, B>(pub(crate) &'b mut B);
-
-impl<B: TracedSupport> TracedSupport for Untraced<'_, B> {
-    type Vector = B::Vector;
-    type Witness = ();
-
-    #[inline(always)]
-    fn support(&mut self, direction: B::Vector) -> (B::Vector, ()) {
-        (self.0.support(direction).0, ())
-    }
-
-    #[inline(always)]
-    fn hessian(&self, direction: B::Vector, changes: [B::Vector; 2]) -> Symmetric<<B::Vector as Vector>::Scalar> {
-        self.0.hessian(direction, changes)
-    }
-
-    #[inline]
-    fn is_curved(&self) -> bool {
-        self.0.is_curved()
     }
 }
 

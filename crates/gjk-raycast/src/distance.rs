@@ -188,7 +188,7 @@ where
 fn apart_as_given<V: Vector>(
     cores: [Core<V>; 2],
     in_order: &Frame<V>,
-    state: &Gjk<V, PointPair<V>>,
+    state: &Gjk<V>,
     end: End,
     is_reversed: bool,
 ) -> Distance<V> {
@@ -200,7 +200,7 @@ fn apart_as_given<V: Vector>(
 fn found<V: Vector>(
     [core_a, core_b]: [Core<V>; 2],
     in_order: &Frame<V>,
-    state: &Gjk<V, PointPair<V>>,
+    state: &Gjk<V>,
     end: End,
     is_reversed: bool,
 ) -> Distance<V> {
@@ -251,7 +251,7 @@ fn closely<V: Vector>([a, b]: [Shape<'_, V>; 2], answer: Distance<V>, max_iterat
 fn apart<V: Vector>(
     cores: [Core<V>; 2],
     frame: &Frame<V>,
-    state: &Gjk<V, PointPair<V>>,
+    state: &Gjk<V>,
     core_points: PointPair<V>,
     end: End,
 ) -> Distance<V> {
@@ -303,7 +303,7 @@ fn apart<V: Vector>(
 fn touching<V: Vector>(
     shapes: [Shape<'_, V>; 2],
     cores: [Core<V>; 2],
-    begun: Option<&Gjk<V, PointPair<V>>>,
+    begun: Option<&Gjk<V>>,
     max_iterations: usize,
 ) -> Option<Distance<V>> {
     let near = near_contact(shapes, cores, begun, max_iterations)?;

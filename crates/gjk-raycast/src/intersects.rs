@@ -3,7 +3,7 @@
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float;
 
-use crate::body::{Body as _, Pair, TracedSupport as _, Untraced};
+use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
 use crate::distance::distance_with;
 use crate::gjk::{Boxes, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, is_near_contact, rounding};
 use crate::shape::{Shape, WithoutLines};
@@ -126,7 +126,8 @@ where
     let mut state = Gjk::new(first.direction);
     let meet = state.begin_at_closest(pair, &frame, size);
     // What begins elsewhere looks along another direction.
-    let known = if meet.is_none() { first.point.map(|point| (point * frame.per_unit, ())) } else { None };
+    let known =
+        if meet.is_none() { first.point.map(|point| (point * frame.per_unit, PointPair::default())) } else { None };
     let max_iterations = options.max_iterations;
     let options = GjkOptions {
         limit: frame.radius,
@@ -134,11 +135,7 @@ where
         sub_algorithm: options.sub_algorithm,
         ..GjkOptions::new(state.normal, max_iterations)
     };
-    let end = if meet == Some(true) {
-        End::Overlap
-    } else {
-        gjk(&mut state, &mut Untraced(pair), frame, options, known, observer)
-    };
+    let end = if meet == Some(true) { End::Overlap } else { gjk(&mut state, pair, frame, options, known, observer) };
     let (apart, near) = (state.lower > frame.radius + frame.error, is_near_contact(&mut state, &frame));
     let (overlap, axis) = match end {
         End::Separated if apart => (false, state.axis.unit()),

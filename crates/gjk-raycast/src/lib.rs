@@ -112,6 +112,7 @@ struct Readme;
 mod body;
 mod cast;
 mod certificate;
+mod compiled_once;
 mod contact;
 mod curvature;
 #[cfg(feature = "serde")]

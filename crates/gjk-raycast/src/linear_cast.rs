@@ -4,10 +4,11 @@ use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Pair, PointPair};
-use crate::cast::{CastHit, Part, cast, direct, settle_start};
+use crate::body::{Body, Pair, PointPair};
+use crate::cast::{Cast, CastHit, Part, cast, direct, settle_start};
+use crate::compiled_once::compiled_once;
 use crate::ray::{check_finite, check_numbers};
-use crate::shape::WithoutLines;
+use crate::shape::{Shape, WithoutLines};
 use crate::start_in_contact::Start;
 use crate::{
     Iterate, LinearCast, LinearCastOptions, LinearHit, Miss, Outcome, Ray, RayCastError, RayCastOptions,
@@ -121,17 +122,51 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     motion.check(&options)?;
-    let zero = <A::Vector as Vector>::Scalar::default();
-    let target = options.target_distance.max(zero);
+    let target = options.target_distance.max(<A::Vector as Vector>::Scalar::ZERO);
     let mut body = Pair::new(a, b);
     body.core_a = body.core_a.rounded(target);
-    let (core_a, core_b) = (body.core_a, body.core_b);
-    let (ray, direction_error, wanted) = ray_of(motion, [core_a.origin, core_b.origin], &options);
+    let shapes: [Shape<'_, _>; 2] = [&WithoutLines(a), &WithoutLines(b)];
     // Of no other pair is a crossing known.
-    let is_known = [core_a.kind, core_b.kind].iter().any(|kind| matches!(kind, CoreKind::Point(_)));
-    let known = if is_known { direct(&mut body, ray, direction_error, &wanted, &mut observer) } else { None };
+    let is_known = [body.core_a, body.core_b].iter().any(|core| matches!(core.kind, CoreKind::Point(_)));
+    let known = if is_known {
+        let (ray, direction_error, wanted) = ray_of(motion, [body.core_a.origin, body.core_b.origin], &options);
+        direct(&mut body, ray, direction_error, &wanted, &mut observer)
+    } else {
+        None
+    };
+    let cores = [body.core_a, body.core_b];
+    Ok(by_search(&mut body, shapes, cores, motion, &options, known, &mut observer))
+}
+
+compiled_once! {
+    /// The cast of a pair of shapes that have these cores, by a search where it is not known.
+    fn by_search<V>(
+        body: &mut dyn Body<Vector = V>,
+        shapes: [Shape<'_, V>; 2],
+        cores: [Core<V>; 2],
+        motion: Motion<V>,
+        options: &LinearCastOptions<V>,
+        known: Option<Cast<V>>,
+        observer: &mut dyn FnMut(Iterate<'_, V>),
+    ) -> LinearCast<V> {
+        searched
+    }
+}
+
+fn searched<V: Vector>(
+    body: &mut dyn Body<Vector = V>,
+    [a, b]: [Shape<'_, V>; 2],
+    [core_a, core_b]: [Core<V>; 2],
+    motion: Motion<V>,
+    &options: &LinearCastOptions<V>,
+    known: Option<Cast<V>>,
+    observer: &mut dyn FnMut(Iterate<'_, V>),
+) -> LinearCast<V> {
+    let zero = V::Scalar::ZERO;
+    let target = options.target_distance.max(zero);
     let cast = known.unwrap_or_else(|| {
-        let mut cast = cast(&mut body, ray, direction_error, Part::Whole, &wanted, observer);
+        let (ray, direction_error, wanted) = ray_of(motion, [core_a.origin, core_b.origin], &options);
+        let mut cast = cast(body, ray, direction_error, Part::Whole, &wanted, observer);
         settle_start(&mut cast, a, target, || Some(b), ray.direction, &wanted);
         cast
     });
@@ -144,9 +179,9 @@ where
     };
     if motion.velocity_a == motion.velocity_b && answer.upper > zero {
         // What rests does not come to where a ray from its start would be.
-        answer.upper = <A::Vector as Vector>::Scalar::infinity();
+        answer.upper = V::Scalar::infinity();
     }
-    let start = Start { a: &WithoutLines(a), b: &WithoutLines(b), target };
+    let start = Start { a, b, target };
     answer.outcome = match cast.outcome {
         Outcome::Hit(hit) if hit.normal.is_some() || hit.lambda != zero => {
             Outcome::Hit(hit_on_the_way(&hit, cast.scale, [core_a, core_b], motion.velocity_b))
@@ -178,12 +213,12 @@ where
         let sizes = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
         let far = core_a.origin.norm() + core_b.origin.norm();
         // By powers of two that are less than 1, so that nothing overflows.
-        let units = |number: f64| <A::Vector as Vector>::Scalar::EPSILON * Scalar::from_f64(number);
+        let units = |number: f64| V::Scalar::EPSILON * Scalar::from_f64(number);
         let slack = sizes * units(NEAR) + far * units(NEAR_OF_FAR);
         only_if_deeper(&mut answer, &start, motion, &options, slack);
     }
     answer.status = answer.status.of(&answer.outcome, answer.is_certain());
-    Ok(answer)
+    answer
 }
 
 /// The ray that `b` draws as it is seen from `a`, what its direction is wrong by as a part of its length, and what is asked of it.
@@ -221,7 +256,7 @@ fn ray_of<V: Vector>(
 /// The point that divides it as they do is on both shapes, however well the normal is known.
 #[inline(always)]
 fn hit_on_the_way<V: Vector>(
-    hit: &CastHit<V, PointPair<V>>,
+    hit: &CastHit<V>,
     scale: V::Scalar,
     [core_a, core_b]: [Core<V>; 2],
     velocity_b: V,

@@ -3,8 +3,10 @@
 use convex_support::{CertainCrossing, Point, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
-use crate::body::{Body as _, Single, TracedSupport as _};
+use crate::body::{Body, Single, TracedSupport as _};
 use crate::cast::{Cast, CastHit, LocalRay, Part, cast, direct, settle_start};
+use crate::compiled_once::compiled_once;
+use crate::shape::{Shape, WithoutLines};
 use crate::unit::power_of_two_near;
 use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, Status};
 
@@ -129,28 +131,39 @@ fn searched<S: SupportMap + ?Sized>(
     mut observer: impl FnMut(Iterate<'_, S::Vector>),
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     ray.check(&options)?;
-    if options.min_lambda > Scalar::ZERO {
-        return Ok(late(target, ray, options, &mut observer));
+    let mut body = Single::new(target);
+    let is_whole = !(options.min_lambda > Scalar::ZERO);
+    if is_whole && let Some(cast) = direct(&mut body, ray, Scalar::ZERO, &options, &mut observer) {
+        return Ok(answer(cast, ray));
     }
-    Ok(match direct(&mut Single::new(target), ray, Scalar::ZERO, &options, &mut observer) {
-        Some(cast) => answer(cast, ray),
-        None => cast_part(target, ray, Part::Whole, &options, &mut observer),
-    })
+    Ok(by_search(&mut body, &WithoutLines(target), ray, &options, &mut observer))
 }
 
-/// The cast of a part of the ray; compiled once for whole and for late rays.
-#[inline(never)]
-fn cast_part<S: SupportMap + ?Sized>(
-    target: &S,
-    ray: Ray<S::Vector>,
-    part: Part<<S::Vector as Vector>::Scalar>,
-    options: &RayCastOptions<S::Vector>,
-    observer: &mut impl FnMut(Iterate<'_, S::Vector>),
-) -> RayCast<S::Vector> {
-    let mut cast = cast(&mut Single::new(target), ray, Scalar::ZERO, part, options, observer);
-    if matches!(part, Part::Whole) {
-        settle_start(&mut cast, target, Scalar::ZERO, || Point::new(ray.source).ok(), ray.direction, options);
+compiled_once! {
+    /// The cast by a search, of a body that is the shape.
+    fn by_search<V>(
+        body: &mut dyn Body<Vector = V>,
+        shape: Shape<'_, V>,
+        ray: Ray<V>,
+        options: &RayCastOptions<V>,
+        observer: &mut dyn FnMut(Iterate<'_, V>),
+    ) -> RayCast<V> {
+        whole_or_late
     }
+}
+
+fn whole_or_late<V: Vector>(
+    body: &mut dyn Body<Vector = V>,
+    shape: Shape<'_, V>,
+    ray: Ray<V>,
+    options: &RayCastOptions<V>,
+    observer: &mut dyn FnMut(Iterate<'_, V>),
+) -> RayCast<V> {
+    if options.min_lambda > Scalar::ZERO {
+        return late(body, ray, *options, observer);
+    }
+    let mut cast = cast(body, ray, Scalar::ZERO, Part::Whole, options, observer);
+    settle_start(&mut cast, shape, Scalar::ZERO, || Point::new(ray.source).ok(), ray.direction, options);
     answer(cast, ray)
 }
 
@@ -161,21 +174,20 @@ fn cast_part<S: SupportMap + ?Sized>(
 /// slack behind it hits.
 #[cold]
 #[inline(never)]
-fn late<S: SupportMap + ?Sized>(
-    target: &S,
-    ray: Ray<S::Vector>,
-    options: RayCastOptions<S::Vector>,
-    observer: &mut impl FnMut(Iterate<'_, S::Vector>),
-) -> RayCast<S::Vector> {
-    let (zero, begin) = (<S::Vector as Vector>::Scalar::ZERO, options.min_lambda);
-    let body = Single::new(target);
+fn late<V: Vector>(
+    body: &mut dyn Body<Vector = V>,
+    ray: Ray<V>,
+    options: RayCastOptions<V>,
+    observer: &mut dyn FnMut(Iterate<'_, V>),
+) -> RayCast<V> {
+    let (zero, begin) = (V::Scalar::ZERO, options.min_lambda);
     let (origin, size) = (body.origin(), body.extent() + body.radius());
     let whole = LocalRay::new(ray, origin, power_of_two_near(size.max((ray.source - origin).norm())));
     let error = whole.error(whole.mu(begin), zero);
     let slack = if begin <= options.max_lambda { error + error } else { zero };
     let mut from = |begin| {
         let wanted = options.with_max_lambda(options.max_lambda - begin);
-        cast_part(target, ray, Part::From(begin), &wanted, observer)
+        answer(cast(body, ray, Scalar::ZERO, Part::From(begin), &wanted, observer), ray)
     };
     let early = from(begin - slack);
     match early.outcome {
@@ -185,7 +197,7 @@ fn late<S: SupportMap + ?Sized>(
                 if early.upper <= zero && behind.upper <= zero { begin } else { begin + slack + behind.upper + error };
             let hit = RayHit { lambda: begin, point: ray.at(begin), normal: None };
             let (outcome, iterations) = (Outcome::Hit(hit), early.iterations + behind.iterations);
-            let status = Status::Converged.of(&outcome, upper < ScalarOf::<S>::infinity());
+            let status = Status::Converged.of(&outcome, upper < V::Scalar::infinity());
             RayCast { outcome, lower: begin, upper, status, iterations }
         }
         _ => of_whole_ray(early, ray, options, [begin - slack, error]),
@@ -194,7 +206,7 @@ fn late<S: SupportMap + ?Sized>(
 
 /// What a cast says of a ray.
 #[inline(always)]
-fn answer<V: Vector>(cast: Cast<V, ()>, ray: Ray<V>) -> RayCast<V> {
+fn answer<V: Vector>(cast: Cast<V>, ray: Ray<V>) -> RayCast<V> {
     let outcome = match cast.outcome {
         Outcome::Hit(CastHit { lambda, normal, .. }) => {
             let point = if lambda > Scalar::ZERO { ray.at(lambda) } else { ray.source };

@@ -3,8 +3,9 @@
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Body as _, Single};
+use crate::body::{Body, Single};
 use crate::cast::{CastHit, LocalRay, Part, cast};
+use crate::compiled_once::compiled_once;
 use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, Status, ray_cast};
 
 /// The last point of a ray in a shape, with the normal there.
@@ -37,7 +38,7 @@ pub fn ray_exit<S: SupportMap + ?Sized>(
     options: RayCastOptions<S::Vector>,
 ) -> Result<RayExit<S::Vector>, RayCastError> {
     ray.check(&options)?;
-    let mut exit = exit_of_line(target, ray, options);
+    let mut exit = exit_of_line(&mut Single::new(target), ray, &options);
     let (begin, end) = (options.min_lambda.max(Scalar::ZERO), options.max_lambda);
     let infinity = <S::Vector as Vector>::Scalar::infinity();
     let Outcome::Hit(hit) = exit.outcome else { return Ok(exit) };
@@ -70,20 +71,21 @@ pub fn ray_exit<S: SupportMap + ?Sized>(
     Ok(exit.on_ray(begin))
 }
 
-/// Where the whole line of the ray leaves a shape.
-fn exit_of_line<S: SupportMap + ?Sized>(
-    target: &S,
-    ray: Ray<S::Vector>,
-    options: RayCastOptions<S::Vector>,
-) -> RayExit<S::Vector> {
-    let infinity = <S::Vector as Vector>::Scalar::infinity();
+compiled_once! {
+    /// Where the whole line of the ray leaves a body.
+    fn exit_of_line<V>(body: &mut dyn Body<Vector = V>, ray: Ray<V>, options: &RayCastOptions<V>) -> RayExit<V> {
+        searched
+    }
+}
+
+fn searched<V: Vector>(body: &mut dyn Body<Vector = V>, ray: Ray<V>, &options: &RayCastOptions<V>) -> RayExit<V> {
+    let infinity = V::Scalar::infinity();
     let wanted = RayCastOptions { min_lambda: Scalar::ZERO, max_lambda: infinity, ..options };
-    let mut body = Single::new(target);
     if !(body.extent() + body.radius()).is_finite() {
         let (outcome, status) = (Outcome::Undecided, Status::Stalled);
         return RayExit { outcome, lower: -infinity, upper: infinity, status, iterations: 0 };
     }
-    let cast = cast(&mut body, ray, Scalar::ZERO, Part::Reversed, &wanted, |_| {});
+    let cast = cast(body, ray, Scalar::ZERO, Part::Reversed, &wanted, &mut |_| {});
     let forward = LocalRay::new(ray, body.origin(), cast.scale);
     let (reverse, error) = (|lambda| forward.reverse(lambda), forward.error_of_reverse());
     let (lower, upper) = (reverse(cast.upper) - error, reverse(cast.lower) + error);

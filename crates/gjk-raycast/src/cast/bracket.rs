@@ -11,7 +11,7 @@ use num_traits::Float;
 
 use super::line::{Line, LocalRay, Part};
 use super::{Contact, Stop};
-use crate::body::{Body, TracedSupport};
+use crate::body::{Body, PointPair};
 use crate::simplex::MAX_POINTS;
 use crate::unit::{is_moderate, lost_to_underflow, power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Ray, RayCastOptions, Status};
@@ -29,10 +29,8 @@ pub(super) const NOISE: f64 = 8.0;
 /// certain.
 pub(super) const DEEP: f64 = 64.0;
 
-pub(super) type ScalarOf<B> = <<B as TracedSupport>::Vector as Vector>::Scalar;
-
 /// A support point of the core, and what it is made of.
-pub(super) type SupportPoint<B> = (<B as TracedSupport>::Vector, <B as TracedSupport>::Witness);
+pub(super) type SupportPoint<V> = (V, PointPair<V>);
 
 /// A parameter of the line, and how it moves with what it is the crossing of.
 #[derive(Clone, Copy, Debug)]
@@ -59,40 +57,40 @@ struct Crossing<S> {
 }
 
 /// The part of a ray that its first point in a body may be on.
-pub(super) struct Bracket<'a, B: Body, O> {
-    pub(super) body: &'a mut B,
-    pub(super) ray: LocalRay<B::Vector>,
-    pub(super) options: &'a RayCastOptions<B::Vector>,
-    pub(super) radius: ScalarOf<B>,
+pub(super) struct Bracket<'a, V: Vector> {
+    pub(super) body: &'a mut dyn Body<Vector = V>,
+    pub(super) ray: LocalRay<V>,
+    pub(super) options: &'a RayCastOptions<V>,
+    pub(super) radius: V::Scalar,
     /// What rounding moves the points by that the searches compare; they look no closer.
-    pub(super) noise: ScalarOf<B>,
+    pub(super) noise: V::Scalar,
     /// What a plane or a point is wrong by at most.
     ///
     /// With `u = ε/2`, a point of the line loses `8u` of the size, `n·(x − p) − r` another `8u`, and the quotient by the slope `6u`
     /// of at most twice the size divided by the slope: with the support points' own error, one and a half times the noise.
-    pub(super) error: ScalarOf<B>,
+    pub(super) error: V::Scalar,
     /// Whether the core is a single point.
     pub(super) is_point: bool,
     /// The unit of length.
-    pub(super) scale: ScalarOf<B>,
+    pub(super) scale: V::Scalar,
     /// Whether lengths in the world's unit can be squared.
     pub(super) is_moderate: bool,
-    observer: O,
+    observer: &'a mut dyn FnMut(Iterate<'_, V>),
     iterations: usize,
     /// The body lies in a ball about its origin: the squared half of the chord that it cuts out of the line, negative where
     /// the line misses it, and the half, which is then zero.
-    chord: (ScalarOf<B>, ScalarOf<B>),
+    chord: (V::Scalar, V::Scalar),
     /// Where the last plane is crossed.
-    low: Crossing<ScalarOf<B>>,
+    low: Crossing<V::Scalar>,
     /// The unit normal of that plane; `None` as long as no plane was crossed.
-    normal: Option<B::Vector>,
+    normal: Option<V>,
     /// Where the ray is in the body, at the latest.
-    high: Bound<ScalarOf<B>>,
+    high: Bound<V::Scalar>,
     entry: Entry,
     /// Where the line enters the hull of known points of the body.
-    hull: ScalarOf<B>,
+    hull: V::Scalar,
     /// Three points of the body that are seen around the line, two in the plane, where a search found them.
-    pub(super) around: Option<[B::Vector; 3]>,
+    pub(super) around: Option<[V; 3]>,
 }
 
 /// How far the upper bound is to be trusted.
@@ -108,19 +106,19 @@ enum Entry {
     AtOutline,
 }
 
-impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
+impl<'a, V: Vector> Bracket<'a, V> {
     /// A part of the ray, as far as it is in the ball about the body. The direction may be wrong by some part of its length.
     #[inline(always)]
     pub(super) fn new(
-        body: &'a mut B,
-        ray: Ray<B::Vector>,
-        direction_error: ScalarOf<B>,
-        part: Part<ScalarOf<B>>,
-        options: &'a RayCastOptions<B::Vector>,
-        observer: O,
+        body: &'a mut dyn Body<Vector = V>,
+        ray: Ray<V>,
+        direction_error: V::Scalar,
+        part: Part<V::Scalar>,
+        options: &'a RayCastOptions<V>,
+        observer: &'a mut dyn FnMut(Iterate<'_, V>),
     ) -> Self {
-        let number = ScalarOf::<B>::from_f64;
-        let zero = ScalarOf::<B>::ZERO;
+        let number = V::Scalar::from_f64;
+        let zero = V::Scalar::ZERO;
         let (origin, extent) = (body.origin(), body.extent());
         let size = extent + body.radius();
         let measure = if size > zero { size } else { (ray.source - origin).norm() };
@@ -130,7 +128,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
         let (radius, size) = (body.radius() * per_unit, size * per_unit);
         let body_error = body.error() * per_unit + lost_to_underflow(scale);
         let ray = LocalRay::new(ray, origin, scale).part(part);
-        let noise = if size > zero { number(NOISE) * ScalarOf::<B>::EPSILON * size } else { body_error };
+        let noise = if size > zero { number(NOISE) * V::Scalar::EPSILON * size } else { body_error };
         let turned = if direction_error > zero { direction_error * (ray.start.abs() + size + size) } else { zero };
         let error = number(1.5) * noise + body_error + turned;
         let reach = size + error + error;
@@ -152,40 +150,40 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
             chord: (squared, half_chord),
             low: Crossing { bound: Bound::exact(ray.start.max(-half_chord)), slope: zero },
             normal: None,
-            high: Bound::exact(ScalarOf::<B>::infinity()),
+            high: Bound::exact(V::Scalar::infinity()),
             entry: Entry::BySlope,
-            hull: ScalarOf::<B>::infinity(),
+            hull: V::Scalar::infinity(),
             around: None,
         }
     }
 
-    pub(super) fn line(&self) -> Line<B::Vector> {
+    pub(super) fn line(&self) -> Line<V> {
         self.ray.line
     }
 
     /// Where on the line the lower bound is.
-    pub(super) fn low(&self) -> ScalarOf<B> {
+    pub(super) fn low(&self) -> V::Scalar {
         self.low.bound.at
     }
 
     /// The same, if rounding moved it as far back as it may have.
-    pub(super) fn earliest(&self) -> ScalarOf<B> {
+    pub(super) fn earliest(&self) -> V::Scalar {
         self.low.bound.at - self.noise * self.low.bound.spread
     }
 
     /// The point of the line there (the paper's x).
-    pub(super) fn x(&self) -> B::Vector {
+    pub(super) fn x(&self) -> V {
         self.ray.line.at(self.low())
     }
 
     /// The cosine at which the last plane is crossed; or 1 where none was, as by a ray within the plane of a face: then the
     /// bracket begins where the ray does.
-    fn slope_or_one(&self) -> ScalarOf<B> {
+    fn slope_or_one(&self) -> V::Scalar {
         if self.low.slope > Scalar::ZERO { self.low.slope } else { Scalar::ONE }
     }
 
     /// The reciprocal of that.
-    fn spread_or_one(&self) -> ScalarOf<B> {
+    fn spread_or_one(&self) -> V::Scalar {
         if self.low.slope > Scalar::ZERO { self.low.bound.spread } else { Scalar::ONE }
     }
 
@@ -206,7 +204,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     fn enters_ball(&self) -> bool {
         let Bound { spread, more, .. } = self.high;
         let radius = self.body.rolling_radius() / self.scale;
-        spread == Scalar::ZERO || radius > (self.error + more) * spread * spread * ScalarOf::<B>::from_f64(DEEP)
+        spread == Scalar::ZERO || radius > (self.error + more) * spread * spread * V::Scalar::from_f64(DEEP)
     }
 
     /// Takes note that an edge, or a graze, may be within an error of where the ray enters.
@@ -225,19 +223,19 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     }
 
     /// Moves the upper bound to where the ray is in the body whatever the errors.
-    pub(super) fn enter_for_certain(&mut self, mu: ScalarOf<B>) {
+    pub(super) fn enter_for_certain(&mut self, mu: V::Scalar) {
         (self.high, self.entry) = (Bound::exact(mu.max(self.low())), Entry::Certain);
     }
 
     /// Moves the upper bound to where the ray pierces a triangle of points of the body that is seen around it by more than an error; with
     /// its slope, and so the length of a normal that is 1 against the ray, that is known to an error across it.
-    pub(super) fn pierce(&mut self, mu: ScalarOf<B>, length: ScalarOf<B>) {
+    pub(super) fn pierce(&mut self, mu: V::Scalar, length: V::Scalar) {
         (self.high, self.entry) =
             (Bound { at: mu.max(self.low()), spread: length, more: Scalar::ZERO }, Entry::Certain);
     }
 
     /// Where on the line the body has a point, of a contact, and how far that may be from there.
-    pub(super) fn point_near_line(&self) -> (ScalarOf<B>, ScalarOf<B>) {
+    pub(super) fn point_near_line(&self) -> (V::Scalar, V::Scalar) {
         (self.high.at, self.error + self.noise + self.high.more)
     }
 
@@ -248,18 +246,18 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
 
     /// How far the bounds may stay apart, across the last plane: at most some sizes of the body, so that a bound that is infinite since nothing is
     /// known is never near enough.
-    pub(super) fn tolerance(&self) -> ScalarOf<B> {
+    pub(super) fn tolerance(&self) -> V::Scalar {
         self.noise.max(self.options.tolerance).min(Scalar::from_f64(LARGEST_TOLERANCE))
     }
 
     /// Where on the line the ray ends, or leaves the ball about the body.
-    pub(super) fn end(&self) -> ScalarOf<B> {
+    pub(super) fn end(&self) -> V::Scalar {
         self.chord.1.min(self.ray.mu(self.options.max_lambda))
     }
 
     /// A ray that misses the ball about the body misses the body: it begins behind the ball, ends before it, or passes it.
     #[inline(always)]
-    pub(super) fn enter_ball(&self) -> Result<(), Stop<B::Vector>> {
+    pub(super) fn enter_ball(&self) -> Result<(), Stop<V>> {
         let LocalRay { line, start, .. } = self.ray;
         // The plane through the ray's point closest to the ball is before all of it.
         if start > self.chord.1 {
@@ -278,19 +276,14 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     ///
     /// An observer sees it beside `v`, the vector that led to `n`, and the points of the simplex that `v` is of.
     #[inline(always)]
-    pub(super) fn support(
-        &mut self,
-        n: B::Vector,
-        v: B::Vector,
-        simplex: &[B::Vector],
-    ) -> Result<SupportPoint<B>, Stop<B::Vector>> {
+    pub(super) fn support(&mut self, n: V, v: V, simplex: &[V]) -> Result<SupportPoint<V>, Stop<V>> {
         if self.iterations >= self.options.max_iterations {
             return Err(Stop::Exhausted(Status::IterationLimit));
         }
         let (point, witness) = self.body.support(n);
         self.iterations += 1;
         let x = self.x();
-        let mut seen = [B::Vector::ZERO; MAX_POINTS];
+        let mut seen = [V::ZERO; MAX_POINTS];
         for (s, p) in seen.iter_mut().zip(simplex) {
             *s = x - *p;
         }
@@ -302,19 +295,19 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     }
 
     /// How far rounding has moved a parameter of the line at most.
-    fn certain(&self, Bound { spread, more, .. }: Bound<ScalarOf<B>>) -> ScalarOf<B> {
+    fn certain(&self, Bound { spread, more, .. }: Bound<V::Scalar>) -> V::Scalar {
         (self.error + more) * spread
     }
 
     /// Whether the ray ends before a parameter of the line, even if that is wrong by its error.
-    fn is_past_end(&self, bound: Bound<ScalarOf<B>>) -> bool {
+    fn is_past_end(&self, bound: Bound<V::Scalar>) -> bool {
         self.ray.lambda(bound.at) - self.ray.error(bound.at, self.certain(bound)) > self.options.max_lambda
     }
 
     /// Moves the lower bound up to the plane across the unit vector `n` that supports the core at `point`, if it leaves
     /// anything of the ray.
     #[inline(always)]
-    pub(super) fn advance(&mut self, n: B::Vector, point: B::Vector) -> Result<(), Stop<B::Vector>> {
+    pub(super) fn advance(&mut self, n: V, point: V) -> Result<(), Stop<V>> {
         if let Some(crossing) = self.crossing(n, point)?
             && crossing.bound.at - self.noise * crossing.bound.spread >= self.earliest()
         {
@@ -328,7 +321,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     /// longer one does.
     #[cold]
     #[inline(never)]
-    pub(super) fn separate(&self, n: B::Vector, point: B::Vector) -> Result<(), Stop<B::Vector>> {
+    pub(super) fn separate(&self, n: V, point: V) -> Result<(), Stop<V>> {
         match n.unit() {
             Some(n) => self.crossing(n, point).map(drop),
             None => Ok(()),
@@ -341,8 +334,8 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     /// The body is behind the plane `n·y = n·p + r`. A point `x` of the ray is before it by `n·(x − p) − r`, and if that
     /// is positive and the ray approaches, it crosses the plane after `(n·(x − p) − r)/(−n·d)`, and not before.
     #[inline(always)]
-    fn crossing(&self, n: B::Vector, point: B::Vector) -> Result<Option<Crossing<ScalarOf<B>>>, Stop<B::Vector>> {
-        let zero = ScalarOf::<B>::ZERO;
+    fn crossing(&self, n: V, point: V) -> Result<Option<Crossing<V::Scalar>>, Stop<V>> {
+        let zero = V::Scalar::ZERO;
         let ahead = n.dot(self.x() - point) - self.radius;
         let slope = n.dot(self.ray.line.direction);
         if ahead > zero && slope < zero {
@@ -366,12 +359,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     /// The contact where the last plane is crossed, if a point of the core, made of `witness`, is no farther than the radius
     /// from the line at `high`, and that is no farther behind the plane than was asked for.
     #[inline(always)]
-    pub(super) fn close(
-        &mut self,
-        point: B::Vector,
-        witness: B::Witness,
-        high: ScalarOf<B>,
-    ) -> Result<Contact<B>, Stop<B::Vector>> {
+    pub(super) fn close(&mut self, point: V, witness: PointPair<V>, high: V::Scalar) -> Result<Contact<V>, Stop<V>> {
         let aside = point - self.ray.line.at(high);
         let within = self.radius + self.noise;
         let gap = (high - self.low()) * self.slope_or_one();
@@ -385,13 +373,13 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
 
     /// Where the last plane is crossed; of one nearly along the line, at the body's point at `mu` if that is before the crossing by no
     /// more than rounding may have moved it, since such a plane is crossed far from where it touches the body.
-    fn low_or_at(&self, mu: ScalarOf<B>) -> ScalarOf<B> {
-        let leans = self.low.slope < ScalarOf::<B>::from_f64(LEANS);
+    fn low_or_at(&self, mu: V::Scalar) -> V::Scalar {
+        let leans = self.low.slope < V::Scalar::from_f64(LEANS);
         if leans { self.low().min(mu.max(self.earliest()).max(self.ray.start)) } else { self.low() }
     }
 
     /// The contact at the source of the ray, where points of the body are known on both sides of it, by more than rounding.
-    pub(super) fn close_inside(&mut self) -> Contact<B> {
+    pub(super) fn close_inside(&mut self) -> Contact<V> {
         let mu = self.ray.start;
         self.high = Bound::exact(mu);
         Contact { mu, normal: None, witness: self.body.witness(self.ray.line.at(mu)) }
@@ -399,7 +387,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
 
     /// The contact where the last plane is crossed, if `v`, the shortest vector there from a point of the core made of
     /// `witness`, is no longer than the radius.
-    pub(super) fn close_at_low(&mut self, v: B::Vector, witness: B::Witness) -> Option<Contact<B>> {
+    pub(super) fn close_at_low(&mut self, v: V, witness: PointPair<V>) -> Option<Contact<V>> {
         if !(v.norm() - self.radius <= self.noise) {
             return None;
         }
@@ -416,12 +404,12 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     /// and `within`; no plane need tell that. The normal is that of a plane along the line, where one is known.
     pub(super) fn close_beside(
         &mut self,
-        v: B::Vector,
-        within: ScalarOf<B>,
-        point: B::Vector,
-        witness: B::Witness,
-        normal: Option<B::Vector>,
-    ) -> Option<Contact<B>> {
+        v: V,
+        within: V::Scalar,
+        point: V,
+        witness: PointPair<V>,
+        normal: Option<V>,
+    ) -> Option<Contact<V>> {
         if !(v.norm() - self.radius <= within) {
             return None;
         }
@@ -438,7 +426,7 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
 
     /// Moves the upper bound to where the line enters the hull of known points of the body, at `mu` to within `error` across a
     /// surface that it meets at the cosine `slope`.
-    pub(super) fn enter_hull(&mut self, mu: ScalarOf<B>, error: ScalarOf<B>, slope: ScalarOf<B>) {
+    pub(super) fn enter_hull(&mut self, mu: V::Scalar, error: V::Scalar, slope: V::Scalar) {
         // A point of the facet may be outside of the body by rounding, and is in it where the ray is that far behind the
         // plane that is crossed less steeply.
         self.high = Bound { at: mu.max(self.low()), spread: self.spread_at(slope), more: error };
@@ -447,13 +435,13 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
 
     /// How far a crossing moves where the surface is met at the cosine `slope` and the last plane perhaps less steeply; infinitely far, of
     /// a surface that the ray does not enter.
-    fn spread_at(&self, slope: ScalarOf<B>) -> ScalarOf<B> {
+    fn spread_at(&self, slope: V::Scalar) -> V::Scalar {
         let least = if self.low.slope > Scalar::ZERO { slope.min(self.low.slope) } else { slope };
         if least > Scalar::ZERO { least.recip() } else { Float::infinity() }
     }
 
     /// How far the bounds are apart, across the last plane or across the surface that the line meets at the cosine `slope`.
-    pub(super) fn gap_to_hull(&self, slope: ScalarOf<B>) -> ScalarOf<B> {
+    pub(super) fn gap_to_hull(&self, slope: V::Scalar) -> V::Scalar {
         (self.high.at - self.low()) * slope.max(self.low.slope)
     }
 
@@ -461,17 +449,17 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     /// the surface that the line meets at the cosine `slope` behind it.
     pub(super) fn close_to_hull(
         &self,
-        slope: ScalarOf<B>,
-        wanted: ScalarOf<B>,
-        witness: impl FnOnce() -> B::Witness,
-    ) -> Option<Contact<B>> {
+        slope: V::Scalar,
+        wanted: V::Scalar,
+        witness: impl FnOnce() -> PointPair<V>,
+    ) -> Option<Contact<V>> {
         let mu = self.low_or_at(self.hull);
         (self.gap_to_hull(slope) <= wanted).then(|| Contact { mu, normal: self.normal, witness: witness() })
     }
 
     /// The contact where the last plane is crossed, where the line has points of the body on both sides of it, to within
     /// `error` across a surface that it meets at the cosine `slope`.
-    pub(super) fn close_between(&mut self, error: ScalarOf<B>, slope: ScalarOf<B>, witness: B::Witness) -> Contact<B> {
+    pub(super) fn close_between(&mut self, error: V::Scalar, slope: V::Scalar, witness: PointPair<V>) -> Contact<V> {
         let Bound { at, spread, .. } = self.low.bound;
         let is_crossed_here = error == Scalar::ZERO && spread > Scalar::ZERO;
         self.high = Bound { at, spread: if is_crossed_here { spread } else { self.spread_at(slope) }, more: error };
@@ -480,12 +468,12 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
 
     /// The contact where the last plane is crossed, if the core has a `point` on the line, made of `witness`, that is no
     /// farther behind the plane than rounding.
-    pub(super) fn close_at_point(&mut self, point: B::Vector, witness: B::Witness) -> Option<Contact<B>> {
+    pub(super) fn close_at_point(&mut self, point: V, witness: PointPair<V>) -> Option<Contact<V>> {
         let line = self.ray.line;
         let aside = line.across(point - line.foot).length();
         let mu = point.dot(line.direction);
         let slope = self.slope_or_one();
-        let near = aside <= self.noise * ScalarOf::<B>::from_f64(0.5);
+        let near = aside <= self.noise * V::Scalar::from_f64(0.5);
         if !(near && (mu - self.low()) * slope <= self.noise + self.noise) {
             return None;
         }
@@ -494,14 +482,14 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     }
 
     /// How much later the upper bound may be. The surface may be met less steeply than the plane, by what noise leaves open.
-    fn delay(&self) -> ScalarOf<B> {
+    fn delay(&self) -> V::Scalar {
         let certain = self.certain(self.high) + self.noise * self.high.spread;
         if self.entry == Entry::BySlope { certain * Scalar::from_f64(1.5) } else { certain }
     }
 
     /// Bounds on λ, for the λ of a contact if there is one, wider by what rounding moved them. The upper one is infinite where the ray
     /// is not known to be in the body anywhere, as where it grazes it.
-    pub(super) fn bounds(&self, contact: Option<ScalarOf<B>>) -> (ScalarOf<B>, ScalarOf<B>) {
+    pub(super) fn bounds(&self, contact: Option<V::Scalar>) -> (V::Scalar, V::Scalar) {
         let widened = |bound: Bound<_>| self.ray.error(bound.at, self.certain(bound));
         let lower = (self.ray.lambda(self.low()) - widened(self.low.bound)).max(Scalar::ZERO);
         let upper = self.ray.lambda(self.high.at) + self.ray.error(self.high.at, self.delay());
@@ -519,12 +507,12 @@ impl<'a, B: Body, O: FnMut(Iterate<'_, B::Vector>)> Bracket<'a, B, O> {
     ///
     /// A plane that comes nearer behind `x`, or crosses the ray ahead of it, leaves that to the last plane, or to the ball.
     /// Both together are before the whole line: with slopes of opposite sign, `n·|m·d| + m·|n·d|` has none.
-    pub(super) fn axis_of_miss(&self, n: B::Vector) -> B::Vector {
+    pub(super) fn axis_of_miss(&self, n: V) -> V {
         let LocalRay { line, start, .. } = self.ray;
         if self.iterations == 0 {
             return n;
         }
-        let zero = ScalarOf::<B>::ZERO;
+        let zero = V::Scalar::ZERO;
         let slope = n.dot(line.direction);
         let other = if slope > zero && self.low() > start {
             self.normal.or_else(|| self.x().unit())

@@ -9,14 +9,10 @@ use num_traits::Float as _;
 
 use super::bracket::Bracket;
 use super::{Contact, Stop};
-use crate::Iterate;
-use crate::body::Body;
 
 /// Closes the bracket between the plane at the entry and the entry, or finds a plane that the whole ray is before.
 #[inline(always)]
-pub(super) fn closed_form<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &mut Bracket<'_, B, O>,
-) -> Result<Contact<B>, Stop<B::Vector>> {
+pub(super) fn closed_form<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Contact<V>, Stop<V>> {
     let line = bracket.line();
     // Closed forms square lengths.
     if !bracket.is_moderate {
@@ -72,10 +68,7 @@ pub(super) fn closed_form<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
 
 /// Takes the plane across `n` that supports the body.
 #[inline(always)]
-fn support<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &mut Bracket<'_, B, O>,
-    n: B::Vector,
-) -> Result<(), Stop<B::Vector>> {
+fn support<V: Vector>(bracket: &mut Bracket<'_, V>, n: V) -> Result<(), Stop<V>> {
     let n = n.unit().ok_or(Stop::InDoubt)?;
     let (point, _) = bracket.support(n, n, &[])?;
     bracket.advance(n, point)

@@ -11,7 +11,7 @@ use convex_support::numerics::twofold::foot_from;
 use convex_support::{Crossing, LineCrossing, Scalar, Vector};
 use num_traits::Float;
 
-use super::bracket::{DEEP, NOISE, ScalarOf};
+use super::bracket::{DEEP, NOISE};
 use super::{Cast, CastHit};
 use crate::body::Body;
 use crate::unit::is_moderate;
@@ -41,10 +41,10 @@ const LEAST_SLOPE: f64 = 1.0 / 128.0;
 pub(crate) fn direct<B: Body>(
     body: &mut B,
     ray: Ray<B::Vector>,
-    direction_error: ScalarOf<B>,
+    direction_error: <B::Vector as Vector>::Scalar,
     options: &RayCastOptions<B::Vector>,
     observer: impl FnMut(Iterate<'_, B::Vector>),
-) -> Option<Cast<B::Vector, B::Witness>> {
+) -> Option<Cast<B::Vector>> {
     let size = body.extent() + body.radius();
     let longest = ray.direction.abs().max_element();
     // NaN and zero are not moderate.
@@ -52,11 +52,11 @@ pub(crate) fn direct<B: Body>(
     if !is_moderate || options.method != CastMethod::Portal || options.max_iterations == 0 {
         return None;
     }
-    let (origin, number) = (body.origin(), ScalarOf::<B>::from_f64);
+    let (origin, number) = (body.origin(), <B::Vector as Vector>::Scalar::from_f64);
     let (base, source) = match near(ray, origin, size) {
-        Some(source) => (ScalarOf::<B>::ZERO, source),
+        Some(source) => (<B::Vector as Vector>::Scalar::ZERO, source),
         // Far along a direction that is wrong, a line is anywhere.
-        None if direction_error > ScalarOf::<B>::ZERO => return None,
+        None if direction_error > <B::Vector as Vector>::Scalar::ZERO => return None,
         None => {
             let (base, foot) = foot_from(origin, ray.source, ray.direction);
             let near = size * number(0.5 * NEAR);
@@ -66,10 +66,10 @@ pub(crate) fn direct<B: Body>(
             (base, foot)
         }
     };
-    let turned = if direction_error > ScalarOf::<B>::ZERO {
-        direction_error * size * ScalarOf::<B>::from_f64(NEAR + 2.0)
+    let turned = if direction_error > <B::Vector as Vector>::Scalar::ZERO {
+        direction_error * size * <B::Vector as Vector>::Scalar::from_f64(NEAR + 2.0)
     } else {
-        ScalarOf::<B>::ZERO
+        <B::Vector as Vector>::Scalar::ZERO
     };
     let line = Line { base, source, direction: ray.direction, longest, size, error: body.error() + turned };
     match body.line_crossing(source, ray.direction) {
@@ -111,7 +111,7 @@ impl<V: Vector> Line<V> {
         body: &mut B,
         options: &RayCastOptions<V>,
         observer: impl FnMut(Iterate<'_, V>),
-    ) -> Option<Cast<V, B::Witness>> {
+    ) -> Option<Cast<V>> {
         let number = V::Scalar::from_f64;
         let (half, epsilon) = (number(0.5), V::Scalar::EPSILON);
         let (point, _) = body.support(normal);
@@ -191,7 +191,7 @@ impl<V: Vector> Line<V> {
         body: &mut B,
         options: &RayCastOptions<V>,
         observer: impl FnMut(Iterate<'_, V>),
-    ) -> Option<Cast<V, B::Witness>> {
+    ) -> Option<Cast<V>> {
         let number = V::Scalar::from_f64;
         let reach = self.size * number(NEAR + 1.0) / self.longest;
         // A ray that ends before the ball, or begins behind it, is apart by another plane: far from here this one is not known.
@@ -233,13 +233,13 @@ fn show<V: Vector>(mut observer: impl FnMut(Iterate<'_, V>), n: V, w: V) {
 
 /// A miss by a plane across a unit vector.
 #[inline(always)]
-fn missed<V: Vector, W>(axis: V) -> Cast<V, W> {
+fn missed<V: Vector>(axis: V) -> Cast<V> {
     Cast { outcome: Outcome::Miss(Miss { axis }), ..certain() }
 }
 
 /// What all such casts have in common: they take one support point, and leave nothing open.
 #[inline(always)]
-fn certain<V: Vector, W>() -> Cast<V, W> {
+fn certain<V: Vector>() -> Cast<V> {
     let infinity = V::Scalar::infinity();
     Cast {
         outcome: Outcome::Undecided,

@@ -11,13 +11,14 @@ mod outline;
 mod portal;
 mod start;
 
+use crate::body::PointPair;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::body::Body;
 use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCastOptions, Status};
 use algorithm_3::algorithm_3;
-use bracket::{Bracket, ScalarOf};
+use bracket::Bracket;
 use closed_form::closed_form;
 pub(crate) use direct::direct;
 pub(crate) use line::{LocalRay, Part};
@@ -27,18 +28,18 @@ pub(crate) use start::settle_start;
 
 /// Casts a part of a ray, given in the world, against a body. Parameters are counted from where that begins. The direction may be
 /// wrong by some part of its length.
-#[inline(always)]
-pub(crate) fn cast<B: Body>(
-    body: &mut B,
-    ray: Ray<B::Vector>,
-    direction_error: ScalarOf<B>,
-    part: Part<ScalarOf<B>>,
-    options: &RayCastOptions<B::Vector>,
-    observer: impl FnMut(Iterate<'_, B::Vector>),
-) -> Cast<B::Vector, B::Witness> {
+#[inline(never)]
+pub(crate) fn cast<V: Vector>(
+    body: &mut dyn Body<Vector = V>,
+    ray: Ray<V>,
+    direction_error: V::Scalar,
+    part: Part<V::Scalar>,
+    options: &RayCastOptions<V>,
+    observer: &mut dyn FnMut(Iterate<'_, V>),
+) -> Cast<V> {
     let mut bracket = Bracket::new(body, ray, direction_error, part, options, observer);
     let found = match bracket.enter_ball() {
-        Ok(()) if bracket.error < ScalarOf::<B>::infinity() => search(&mut bracket),
+        Ok(()) if bracket.error < V::Scalar::infinity() => search(&mut bracket),
         // Of numbers out of range nothing is known.
         Ok(()) => Err(Stop::Exhausted(Status::Stalled)),
         Err(stop) => Err(stop),
@@ -51,15 +52,13 @@ pub(crate) fn cast<B: Body>(
 
 /// What the shape knows first, then the quicker search, and Algorithm 3 where both are in doubt.
 #[inline(always)]
-fn search<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &mut Bracket<'_, B, O>,
-) -> Result<Contact<B>, Stop<B::Vector>> {
+fn search<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Contact<V>, Stop<V>> {
     if bracket.options.method == CastMethod::Portal {
         match closed_form(bracket) {
             Err(Stop::InDoubt) => {}
             found => return found,
         }
-        match if B::Vector::DIM == 3 { portal(bracket) } else { Err(Stop::InDoubt) } {
+        match if V::DIM == 3 { portal(bracket) } else { Err(Stop::InDoubt) } {
             Err(Stop::InDoubt | Stop::Touches(_)) => {}
             found => return found,
         }
@@ -70,13 +69,13 @@ fn search<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
 }
 
 /// Where the ray first meets the body, as a search finds it.
-pub(crate) struct Contact<B: Body> {
+pub(crate) struct Contact<V: Vector> {
     /// Where on the line.
-    mu: ScalarOf<B>,
+    mu: V::Scalar,
     /// The unit normal of a plane through that point, to rounding, that has the body behind it.
-    normal: Option<B::Vector>,
+    normal: Option<V>,
     /// What the core's point below it is made of.
-    witness: B::Witness,
+    witness: PointPair<V>,
 }
 
 /// Why a search ends without a contact.
@@ -93,8 +92,8 @@ pub(crate) enum Stop<V> {
 }
 
 /// What [`cast`] found; λ in units of the ray's direction.
-pub(crate) struct Cast<V: Vector, W> {
-    pub(crate) outcome: Outcome<CastHit<V, W>, V>,
+pub(crate) struct Cast<V: Vector> {
+    pub(crate) outcome: Outcome<CastHit<V>, V>,
     pub(crate) lower: V::Scalar,
     pub(crate) upper: V::Scalar,
     pub(crate) status: Status,
@@ -106,22 +105,19 @@ pub(crate) struct Cast<V: Vector, W> {
 }
 
 /// Where the ray enters the body.
-pub(crate) struct CastHit<V: Vector, W> {
+pub(crate) struct CastHit<V: Vector> {
     pub(crate) lambda: V::Scalar,
     pub(crate) normal: Option<V>,
     /// The hit spot, relative to the body's origin and in units of the scale.
     pub(crate) spot: V,
     /// What the core's point below it is made of.
-    pub(crate) witness: W,
+    pub(crate) witness: PointPair<V>,
 }
 
 /// The outcome and its bounds.
 #[inline(always)]
-fn conclude<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &Bracket<'_, B, O>,
-    found: Result<Contact<B>, Stop<B::Vector>>,
-) -> Cast<B::Vector, B::Witness> {
-    let (zero, infinity) = (ScalarOf::<B>::ZERO, ScalarOf::<B>::infinity());
+fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<Contact<V>, Stop<V>>) -> Cast<V> {
+    let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
     let ray = bracket.ray;
     let (outcome, (lower, upper), status) = match found {
         Ok(Contact { mu, normal, witness }) => {

@@ -16,10 +16,8 @@
 
 use convex_support::{Scalar, Vector};
 
-use super::bracket::{Bracket, ScalarOf};
+use super::bracket::Bracket;
 use super::line::Line;
-use crate::Iterate;
-use crate::body::Body;
 use crate::symmetric::{Across, cross, dot};
 
 /// As many corners as a polygon has at most.
@@ -35,10 +33,10 @@ const LATE: f64 = 32.0;
 /// the errors, if the body is seen around the line by more than those.
 #[cold]
 #[inline(never)]
-pub(super) fn bound_entry<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(bracket: &mut Bracket<'_, B, O>) {
+pub(super) fn bound_entry<V: Vector>(bracket: &mut Bracket<'_, V>) {
     let (mu, error) = bracket.point_near_line();
     let view = View { line: bracket.line(), axes: bracket.line().axes() };
-    let late = mu + error * ScalarOf::<B>::from_f64(LATE);
+    let late = mu + error * V::Scalar::from_f64(LATE);
     let known = bracket.around.map(|points| view.polygon(points));
     let is_near = |known: &Polygon<_>| known.latest_entry(mu, error).is_some_and(|latest| latest <= late);
     let Some(polygon) = known.filter(is_near).or_else(|| view.look_around(bracket, error)) else { return };
@@ -82,11 +80,7 @@ impl<V: Vector> View<V> {
 
     /// A wide polygon of support points across the line, or one with a side that the outline is known to be near at; `None` where no more
     /// points can be had.
-    fn look_around<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
-        &self,
-        bracket: &mut Bracket<'_, B, O>,
-        error: V::Scalar,
-    ) -> Option<Polygon<V::Scalar>> {
+    fn look_around(&self, bracket: &mut Bracket<'_, V>, error: V::Scalar) -> Option<Polygon<V::Scalar>> {
         let radius = bracket.radius;
         let mut support = |toward: Across<V::Scalar>| {
             let n = self.across(toward)?;

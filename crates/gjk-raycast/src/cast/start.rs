@@ -19,19 +19,15 @@ use crate::{Miss, Outcome, RayCastOptions, SignedDistanceOptions, Status};
 /// Decides about a hit that may be at the source, or about a search that stalled before it left it, of the ray that `b` draws as it
 /// moves along `direction` towards `a` swept by a ball, its skin.
 #[inline(always)]
-pub(crate) fn settle_start<A, B, W>(
-    cast: &mut Cast<A::Vector, W>,
-    a: &A,
-    skin: <A::Vector as Vector>::Scalar,
+pub(crate) fn settle_start<V: Vector, B: SupportMap<Vector = V>>(
+    cast: &mut Cast<V>,
+    a: Shape<'_, V>,
+    skin: V::Scalar,
     b: impl FnOnce() -> Option<B>,
-    direction: A::Vector,
-    options: &RayCastOptions<A::Vector>,
-) where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector>,
-    W: From<PointPair<A::Vector>>,
-{
-    let zero = <A::Vector as Vector>::Scalar::ZERO;
+    direction: V,
+    options: &RayCastOptions<V>,
+) {
+    let zero = V::Scalar::ZERO;
     let is_at_start = match &cast.outcome {
         Outcome::Hit(_) => cast.lower == zero,
         Outcome::Undecided => cast.status == Status::Stalled && cast.lower == zero,
@@ -300,7 +296,7 @@ fn after_hit<V: Vector>(
 }
 
 /// Compiled into the cast, so that what it found need not be in memory for the rare case that it is changed.
-impl<V: Vector, W> Cast<V, W> {
+impl<V: Vector> Cast<V> {
     #[inline(always)]
     fn miss(&mut self, axis: V) {
         (self.lower, self.upper) = (Float::infinity(), Float::infinity());
@@ -309,10 +305,7 @@ impl<V: Vector, W> Cast<V, W> {
 
     /// A hit at the source.
     #[inline(always)]
-    fn touch(&mut self, within: V::Scalar, spot: Spot<V>)
-    where
-        W: From<PointPair<V>>,
-    {
+    fn touch(&mut self, within: V::Scalar, spot: Spot<V>) {
         let zero = V::Scalar::ZERO;
         if matches!(self.outcome, Outcome::Undecided) {
             self.hit(zero, None, spot);
@@ -327,10 +320,7 @@ impl<V: Vector, W> Cast<V, W> {
     /// Turns a hit at the source, as far as it was known, into one at `lambda`, where a plane across `axis` leaves nothing to hit before
     /// `lower`.
     #[inline(always)]
-    fn enter(&mut self, lambda: V::Scalar, axis: V, lower: V::Scalar, entry: Entry<V::Scalar>, spot: Spot<V>)
-    where
-        W: From<PointPair<V>>,
-    {
+    fn enter(&mut self, lambda: V::Scalar, axis: V, lower: V::Scalar, entry: Entry<V::Scalar>, spot: Spot<V>) {
         self.lower = self.lower.max(lower);
         let upper = entry.certain().max(self.lower);
         let is_found = entry.is_certain || self.lower <= entry.at;
@@ -353,10 +343,7 @@ impl<V: Vector, W> Cast<V, W> {
 
     /// A hit that the search did not find, where the points closest to one another at the source are.
     #[inline(always)]
-    fn hit(&mut self, lambda: V::Scalar, normal: Option<V>, Spot { source, points, scale }: Spot<V>)
-    where
-        W: From<PointPair<V>>,
-    {
+    fn hit(&mut self, lambda: V::Scalar, normal: Option<V>, Spot { source, points, scale }: Spot<V>) {
         let hit = CastHit { lambda, normal, spot: source, witness: points.into() };
         (self.outcome, self.status, self.scale) = (Outcome::Hit(hit), Status::Converged, scale);
     }

@@ -201,7 +201,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     /// there is no more to know.
     pub(super) fn look_near(
         &mut self,
-        state: &mut Gjk<A::Vector, PointPair<A::Vector>>,
+        state: &mut Gjk<A::Vector>,
         max_iterations: usize,
     ) -> Option<NearContact<A::Vector>> {
         let frame = Frame { radius: self.radius() * self.frame.per_unit, ..self.frame };
@@ -267,10 +267,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     /// The plane by which GJK knows best how far the difference reaches beyond zero: how far at most, and the unit vector across it into
     /// the difference.
     #[inline]
-    pub(super) fn best_plane(
-        &self,
-        state: &Gjk<A::Vector, PointPair<A::Vector>>,
-    ) -> Option<(<A::Vector as Vector>::Scalar, A::Vector)> {
+    pub(super) fn best_plane(&self, state: &Gjk<A::Vector>) -> Option<(<A::Vector as Vector>::Scalar, A::Vector)> {
         state.axis.unit().map(|n| (self.error_along(n) - state.lower, n))
     }
 
@@ -355,10 +352,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
 
     /// GJK before its first step.
     #[inline(always)]
-    pub(super) fn first_state(
-        &self,
-        options: &SignedDistanceOptions<A::Vector>,
-    ) -> Gjk<A::Vector, PointPair<A::Vector>> {
+    pub(super) fn first_state(&self, options: &SignedDistanceOptions<A::Vector>) -> Gjk<A::Vector> {
         Gjk::new(first_direction(options.axis, self.frame.offset))
     }
 
@@ -368,7 +362,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     pub(super) fn approach(
         &mut self,
         options: &SignedDistanceOptions<A::Vector>,
-        state: &mut Gjk<A::Vector, PointPair<A::Vector>>,
+        state: &mut Gjk<A::Vector>,
         observer: impl FnMut(Iterate<'_, A::Vector>),
     ) -> End {
         let Frame { per_unit, scale, .. } = self.frame;
@@ -393,7 +387,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         target: A::Vector,
         corners: &[Vertex<A::Vector>],
         max_iterations: usize,
-    ) -> Gjk<A::Vector, PointPair<A::Vector>> {
+    ) -> Gjk<A::Vector> {
         let mut state = Gjk::new(target);
         for &Vertex { point, along, pair } in corners {
             state.simplex.push(point - target, along, pair);
@@ -414,7 +408,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
 #[cold]
 #[inline(never)]
 fn go_on<V: Vector>(
-    state: &mut Gjk<V, PointPair<V>>,
+    state: &mut Gjk<V>,
     [a, b]: [Shape<'_, V>; 2],
     parts: [Core<V>; 2],
     frame: Frame<V>,

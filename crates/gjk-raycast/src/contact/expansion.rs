@@ -8,7 +8,6 @@ use super::cores::{Cores, Vertex};
 use super::met::Met;
 use super::witness::{self, Ends};
 use super::{SignedDistanceOptions, basin, start};
-use crate::body::PointPair;
 use crate::gjk::Gjk;
 use crate::{Iterate, Status};
 
@@ -122,7 +121,7 @@ pub(super) struct Expanded<V: Vector> {
 /// way itself is found by Newton's method, in each basin that a facet leads to.
 pub(super) fn expand<A, B>(
     cores: &mut Cores<'_, A, B>,
-    state: &mut Gjk<A::Vector, PointPair<A::Vector>>,
+    state: &mut Gjk<A::Vector>,
     options: &SignedDistanceOptions<A::Vector>,
     mut observer: impl FnMut(Iterate<'_, A::Vector>),
 ) -> Option<Expanded<A::Vector>>
@@ -226,7 +225,7 @@ where
 #[inline(always)]
 fn settled<A, B>(
     cores: &mut Cores<'_, A, B>,
-    state: &mut Gjk<A::Vector, PointPair<A::Vector>>,
+    state: &mut Gjk<A::Vector>,
     boundary: &Boundary<A::Vector>,
     mut way: WayOut<A::Vector>,
     met: Option<Met<A::Vector>>,

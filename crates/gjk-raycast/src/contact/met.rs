@@ -4,7 +4,7 @@ use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::cores::Cores;
-use crate::body::{PointPair, Witness as _};
+use crate::body::PointPair;
 use crate::gjk::Gjk;
 
 /// The point of the difference next to zero of those that GJK knows. Where cores are well in one another nothing asks for it.
@@ -19,7 +19,7 @@ pub(super) struct Met<V: Vector> {
 
 impl<V: Vector> Met<V> {
     #[inline(always)]
-    pub(super) fn new<A, B>(cores: &Cores<'_, A, B>, state: &mut Gjk<V, PointPair<V>>) -> Self
+    pub(super) fn new<A, B>(cores: &Cores<'_, A, B>, state: &mut Gjk<V>) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,
         B: SupportMap<Vector = V> + ?Sized,

@@ -31,7 +31,6 @@ pub(super) fn without_ball<V: Vector>(
 
 impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> TracedSupport for Peeled<'_, '_, A, B> {
     type Vector = A::Vector;
-    type Witness = PointPair<A::Vector>;
 
     #[inline(always)]
     fn support(&mut self, direction: A::Vector) -> (A::Vector, PointPair<A::Vector>) {

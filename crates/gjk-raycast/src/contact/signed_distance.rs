@@ -138,7 +138,7 @@ where
 fn reach_closely<A, B>(
     cores: &mut Cores<'_, A, B>,
     options: SignedDistanceOptions<A::Vector>,
-    state: &mut Gjk<A::Vector, PointPair<A::Vector>>,
+    state: &mut Gjk<A::Vector>,
     mut end: End,
     is_peeled: bool,
     observer: &mut impl FnMut(Iterate<'_, A::Vector>),
@@ -192,7 +192,7 @@ struct Reached<V: Vector> {
 impl<V: Vector> Reached<V> {
     /// By GJK alone.
     #[inline(always)]
-    fn of_gjk<A, B>(cores: &Cores<'_, A, B>, state: &mut Gjk<V, PointPair<V>>, end: End) -> Self
+    fn of_gjk<A, B>(cores: &Cores<'_, A, B>, state: &mut Gjk<V>, end: End) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,
         B: SupportMap<Vector = V> + ?Sized,
@@ -251,12 +251,7 @@ impl<V: Vector> Reached<V> {
 
     /// By an expansion, after GJK had come to an end.
     #[inline]
-    fn of_expansion<A, B>(
-        cores: &Cores<'_, A, B>,
-        expanded: &Expanded<V>,
-        state: &mut Gjk<V, PointPair<V>>,
-        end: End,
-    ) -> Self
+    fn of_expansion<A, B>(cores: &Cores<'_, A, B>, expanded: &Expanded<V>, state: &mut Gjk<V>, end: End) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,
         B: SupportMap<Vector = V> + ?Sized,

@@ -6,7 +6,6 @@ use num_traits::Float as _;
 use super::boundary::Boundary;
 use super::cores::{Cores, Vertex};
 use super::expansion::WayOut;
-use crate::body::PointPair;
 use crate::gjk::Gjk;
 use crate::simplex::{MAX_POINTS, cross};
 
@@ -26,7 +25,7 @@ pub(super) enum Start<V: Vector> {
 #[inline]
 pub(super) fn start<A, B>(
     cores: &mut Cores<'_, A, B>,
-    state: &Gjk<A::Vector, PointPair<A::Vector>>,
+    state: &Gjk<A::Vector>,
     boundary: &mut Boundary<A::Vector>,
 ) -> Option<Start<A::Vector>>
 where

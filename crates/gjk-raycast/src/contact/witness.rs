@@ -96,7 +96,7 @@ pub(super) fn nearest_to<A, B>(
     from: usize,
     target: A::Vector,
     max_iterations: usize,
-) -> Gjk<A::Vector, PointPair<A::Vector>>
+) -> Gjk<A::Vector>
 where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,

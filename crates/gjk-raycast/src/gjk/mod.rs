@@ -13,7 +13,7 @@ mod state;
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Body as _, Pair, TracedSupport};
+use crate::body::{Body as _, Pair, PointPair, TracedSupport};
 use crate::unit::{lost_to_underflow, power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Status, SubAlgorithm};
 pub(crate) use boxes::{Boxes, boxes};
@@ -126,11 +126,11 @@ struct Direction<V: Vector> {
 /// [began](Gjk::begin_at_closest), or with corners of its own.
 #[inline]
 pub(crate) fn gjk<B: TracedSupport>(
-    state: &mut Gjk<B::Vector, B::Witness>,
+    state: &mut Gjk<B::Vector>,
     body: &mut B,
     frame: Frame<B::Vector>,
     options: GjkOptions<B::Vector>,
-    known: Option<(B::Vector, B::Witness)>,
+    known: Option<(B::Vector, PointPair<B::Vector>)>,
     observer: impl FnMut(Iterate<'_, B::Vector>),
 ) -> End {
     let end = descend(state, body, &frame, &options, known, observer);
@@ -150,11 +150,11 @@ pub(crate) fn gjk<B: TracedSupport>(
 
 #[inline(always)]
 fn descend<B: TracedSupport>(
-    state: &mut Gjk<B::Vector, B::Witness>,
+    state: &mut Gjk<B::Vector>,
     body: &mut B,
     frame: &Frame<B::Vector>,
     options: &GjkOptions<B::Vector>,
-    mut known: Option<(B::Vector, B::Witness)>,
+    mut known: Option<(B::Vector, PointPair<B::Vector>)>,
     mut observer: impl FnMut(Iterate<'_, B::Vector>),
 ) -> End {
     let mut nearing = Progress::new();

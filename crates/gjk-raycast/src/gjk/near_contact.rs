@@ -24,7 +24,7 @@ pub(crate) const NEAR: f64 = 16.0;
 
 /// Whether bodies may be nearer to contact than a few errors, as a search has left them.
 #[inline(always)]
-pub(crate) fn is_near_contact<V: Vector, W: Copy + Default>(state: &mut Gjk<V, W>, frame: &Frame<V>) -> bool {
+pub(crate) fn is_near_contact<V: Vector>(state: &mut Gjk<V>, frame: &Frame<V>) -> bool {
     if state.simplex.points().len() > V::DIM {
         // A simplex of full dimension has zero inside, perhaps by rounding.
         return !is_around_zero(state.simplex.points(), frame.error * V::Scalar::from_f64(2.0));
@@ -104,7 +104,7 @@ impl<V: Vector> NearContact<V> {
 pub(crate) fn near_contact<V: Vector>(
     [a, b]: [Shape<'_, V>; 2],
     [core_a, core_b]: [Core<V>; 2],
-    begun: Option<&Gjk<V, PointPair<V>>>,
+    begun: Option<&Gjk<V>>,
     max_iterations: usize,
 ) -> Option<NearContact<V>> {
     if comes_first(&core_b, &core_a) {
@@ -118,7 +118,7 @@ pub(crate) fn near_contact<V: Vector>(
 /// The same for bodies that are in order.
 fn look<V: Vector>(
     mut pair: PairOfAny<'_, V>,
-    begun: Option<&Gjk<V, PointPair<V>>>,
+    begun: Option<&Gjk<V>>,
     max_iterations: usize,
 ) -> Option<NearContact<V>> {
     let offset = pair.core_a.origin - pair.core_b.origin;
@@ -139,12 +139,7 @@ fn look<V: Vector>(
 }
 
 /// GJK from the closest points, where they are known in closed form, or from the offset of the origins to the noise.
-fn begin<V: Vector>(
-    pair: &PairOfAny<'_, V>,
-    frame: &Frame<V>,
-    size: V::Scalar,
-    max_iterations: usize,
-) -> Gjk<V, PointPair<V>> {
+fn begin<V: Vector>(pair: &PairOfAny<'_, V>, frame: &Frame<V>, size: V::Scalar, max_iterations: usize) -> Gjk<V> {
     let first = first_direction(None, frame.offset);
     let mut state = Gjk::new(first);
     if state.begin_at_closest(pair, frame, size) != Some(false) {
@@ -159,12 +154,7 @@ fn begin<V: Vector>(
 }
 
 /// Goes on with GJK to a sixteenth of the noise.
-fn go_on<V: Vector>(
-    state: &mut Gjk<V, PointPair<V>>,
-    pair: &mut PairOfAny<'_, V>,
-    frame: &Frame<V>,
-    max_iterations: usize,
-) -> End {
+fn go_on<V: Vector>(state: &mut Gjk<V>, pair: &mut PairOfAny<'_, V>, frame: &Frame<V>, max_iterations: usize) -> End {
     let frame = Frame { noise: frame.noise * Scalar::from_f64(0.0625), ..*frame };
     let end = run(state, pair, frame, state.normal, max_iterations);
     state.ensure_measured();
@@ -174,7 +164,7 @@ fn go_on<V: Vector>(
 /// GJK from a direction, compiled once.
 #[inline(never)]
 fn run<V: Vector>(
-    state: &mut Gjk<V, PointPair<V>>,
+    state: &mut Gjk<V>,
     pair: &mut PairOfAny<'_, V>,
     frame: Frame<V>,
     first: V,
@@ -230,7 +220,7 @@ impl<V: Vector> Found<V> {
 }
 
 /// The answer of a search that has ended at a simplex with zero inside for certain: no plane is between the bodies.
-fn overlapping<V: Vector>(state: &Gjk<V, PointPair<V>>, frame: &Frame<V>) -> NearContact<V> {
+fn overlapping<V: Vector>(state: &Gjk<V>, frame: &Frame<V>) -> NearContact<V> {
     let (zero, below) = (V::Scalar::ZERO, -V::Scalar::infinity());
     NearContact {
         frame: *frame,
@@ -322,7 +312,7 @@ impl<V: Vector> Seen<V> {
         &self,
         pair: &mut PairOfAny<'_, V>,
         frame: &Frame<V>,
-        begun: Option<&Gjk<V, PointPair<V>>>,
+        begun: Option<&Gjk<V>>,
         size: V::Scalar,
         max_iterations: usize,
     ) -> Option<NearContact<V>> {
@@ -364,7 +354,7 @@ impl<V: Vector> Seen<V> {
     /// What a search has come to, with the best plane and a bound on the length of the shortest vector.
     fn found(
         &self,
-        state: &Gjk<V, PointPair<V>>,
+        state: &Gjk<V>,
         end: End,
         frame: &Frame<V>,
         (plane, upper): (Plane<V>, V::Scalar),
@@ -376,7 +366,7 @@ impl<V: Vector> Seen<V> {
     /// The plane that is farthest from zero for certain, of those across the faces that a search has ended at, and across its last two
     /// directions; and a bound on the length of the shortest vector found. Where the line across a plane pierces the face that is as far,
     /// no other plane is looked at.
-    fn best_plane(&self, pair: &mut PairOfAny<'_, V>, state: &Gjk<V, PointPair<V>>) -> Option<(Plane<V>, V::Scalar)> {
+    fn best_plane(&self, pair: &mut PairOfAny<'_, V>, state: &Gjk<V>) -> Option<(Plane<V>, V::Scalar)> {
         let points = state.simplex.points();
         let mut pairs = [PointPair::default(); MAX_POINTS];
         for (corner, (_, found)) in pairs.iter_mut().zip(state.simplex.weighted()) {
@@ -433,7 +423,7 @@ impl<V: Vector> Seen<V> {
 
     /// A bound on the length of the shortest vector found, `Σ wᵢ·(aᵢ − bᵢ + offset) / Σ wᵢ`: whatever the weights, that is a vector of the
     /// difference. Its coordinates are added up in twice the precision.
-    fn length(&self, state: &Gjk<V, PointPair<V>>) -> V::Scalar {
+    fn length(&self, state: &Gjk<V>) -> V::Scalar {
         let mut sum = V::Scalar::ZERO;
         for (weight, _) in state.simplex.weighted() {
             sum += weight;
@@ -490,7 +480,7 @@ impl<V: Vector> Seen<V> {
     /// Along `n` the face is seen in the plane of two coordinates, the ones where `n` is shorter. There zero is within a triangle where
     /// the areas with its sides are all of one sign, by more than they may be wrong; in the plane, within a segment where its ends are
     /// on two sides.
-    fn length_at_pierced(&self, state: &Gjk<V, PointPair<V>>, n: V) -> V::Scalar {
+    fn length_at_pierced(&self, state: &Gjk<V>, n: V) -> V::Scalar {
         let number = V::Scalar::from_f64;
         let points = state.simplex.points();
         if points.len() != V::DIM {

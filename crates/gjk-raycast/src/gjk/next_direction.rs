@@ -36,7 +36,7 @@ impl<V: Vector> NextDirection<V> {
     pub(super) fn turn_again<B: TracedSupport<Vector = V>>(
         &mut self,
         body: &B,
-        state: &Gjk<V, B::Witness>,
+        state: &Gjk<V>,
         looked: Direction<V>,
         w: V,
         reach: V::Scalar,
@@ -52,7 +52,7 @@ impl<V: Vector> NextDirection<V> {
     pub(super) fn after<B: TracedSupport<Vector = V>>(
         &mut self,
         body: &B,
-        state: &Gjk<V, B::Witness>,
+        state: &Gjk<V>,
         looked: Direction<V>,
         w: V,
         reach: V::Scalar,
@@ -85,7 +85,7 @@ const OPPOSITE: f64 = 0.6;
 /// Whether the simplex leaves open where to look next, and its shortest vector says little about that. A triangle leaves
 /// nothing open, and polygons in the plane need few steps anyway.
 #[inline(always)]
-fn leaves_open<V: Vector, W: Copy + Default>(state: &Gjk<V, W>) -> bool {
+fn leaves_open<V: Vector>(state: &Gjk<V>) -> bool {
     let is_open = V::DIM == 3 && state.simplex.points().len() < V::DIM;
     is_open && state.lower < state.length * V::Scalar::from_f64(TRUSTED)
 }
@@ -98,7 +98,7 @@ fn leaves_open<V: Vector, W: Copy + Default>(state: &Gjk<V, W>) -> bool {
 /// methods (Lemaréchal, Nemirovskii, Nesterov, 1995), only part of the way to it is gone from the best direction known.
 /// Where an edge is closest, both its ends should stay equally far: the way is across the edge.
 #[inline(always)]
-fn level<V: Vector, W: Copy + Default>(state: &Gjk<V, W>, v: Direction<V>) -> V {
+fn level<V: Vector>(state: &Gjk<V>, v: Direction<V>) -> V {
     let mut axis = state.axis;
     if let &[p, q] = state.simplex.points() {
         let e = q - p;
@@ -162,7 +162,7 @@ impl<V: Vector> Newton<V> {
     fn next<B: TracedSupport<Vector = V>>(
         &mut self,
         body: &B,
-        state: &Gjk<V, B::Witness>,
+        state: &Gjk<V>,
         p: V,
         n: V,
         reach: V::Scalar,
@@ -195,7 +195,7 @@ impl<V: Vector> Newton<V> {
     fn turn<B: TracedSupport<Vector = V>>(
         &self,
         body: &B,
-        state: &Gjk<V, B::Witness>,
+        state: &Gjk<V>,
         last: Option<(V, V)>,
         piece: Piece<V>,
         model_error: V::Scalar,

@@ -69,7 +69,6 @@ impl<'p, 'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized>
 
 impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> TracedSupport for InOrder<'_, '_, A, B> {
     type Vector = A::Vector;
-    type Witness = PointPair<A::Vector>;
 
     #[inline(always)]
     fn support(&mut self, direction: A::Vector) -> (A::Vector, PointPair<A::Vector>) {

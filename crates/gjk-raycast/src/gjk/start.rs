@@ -5,7 +5,7 @@ use num_traits::Float as _;
 
 use super::{Frame, Gjk, GjkOptions};
 use crate::SubAlgorithm;
-use crate::body::{Pair, PointPair};
+use crate::body::Pair;
 use crate::unit::moderate;
 
 /// The direction to look along first: an axis that somebody knows, or from one origin to the other.
@@ -14,7 +14,7 @@ pub(crate) fn first_direction<V: Vector>(axis: Option<V>, offset: V) -> V {
     axis.and_then(moderate).or_else(|| moderate(offset)).unwrap_or_else(|| Vector::axis(0))
 }
 
-impl<V: Vector, W: Copy + Default + From<PointPair<V>>> Gjk<V, W> {
+impl<V: Vector> Gjk<V> {
     /// Begins at the closest points of the cores of a pair of the given size, where those are known in closed form: whether the bodies
     /// meet there, to rounding. `None` where they are not known, and the state is as it was.
     #[inline(always)]
@@ -29,7 +29,7 @@ impl<V: Vector, W: Copy + Default + From<PointPair<V>>> Gjk<V, W> {
         B: SupportMap<Vector = V> + ?Sized,
     {
         let points = pair.closest_points(frame.offset * frame.scale, size)?;
-        Some(self.begin_at(points.a - points.b + frame.offset, W::from(points), frame))
+        Some(self.begin_at(points.a - points.b + frame.offset, points, frame))
     }
 }
 

@@ -4,15 +4,16 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::{Direction, Frame, Progress};
+use crate::body::PointPair;
 use crate::simplex::{Closest, Face, MAX_POINTS, Simplex, nearest, nearest_face, project};
 use crate::{Iterate, SubAlgorithm};
 
 /// The simplex, the bounds on the distance of the cores, and the plane that proves the lower one; lengths in units of the
 /// frame.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Gjk<V: Vector, W> {
+pub(crate) struct Gjk<V: Vector> {
     /// The corners of the face closest to zero (the paper's W).
-    pub(crate) simplex: Simplex<V, W>,
+    pub(crate) simplex: Simplex<V>,
     /// A vector along the shortest one found from zero to the difference (the paper's v), of any length.
     pub(crate) normal: V,
     /// The length of the shortest one.
@@ -26,7 +27,7 @@ pub(crate) struct Gjk<V: Vector, W> {
     pub(crate) iterations: usize,
 }
 
-impl<V: Vector, W: Copy + Default> Gjk<V, W> {
+impl<V: Vector> Gjk<V> {
     /// The state before the first support point, which is to be along the given direction.
     #[inline(always)]
     pub(crate) fn new(first: V) -> Self {
@@ -45,7 +46,7 @@ impl<V: Vector, W: Copy + Default> Gjk<V, W> {
     /// Begins with a point of the difference, if that is finite, and with the vector to it for first direction. Whether the
     /// bodies meet there, to rounding.
     #[inline(always)]
-    pub(crate) fn begin_at(&mut self, point: V, witness: W, frame: &Frame<V>) -> bool {
+    pub(crate) fn begin_at(&mut self, point: V, witness: PointPair<V>, frame: &Frame<V>) -> bool {
         let mut weights = [V::Scalar::ZERO; MAX_POINTS];
         weights[0] = V::Scalar::ONE;
         self.simplex.push(point, -point, witness);
@@ -58,7 +59,11 @@ impl<V: Vector, W: Copy + Default> Gjk<V, W> {
 
     /// The state at a face of the difference, of which `v` is the point closest to zero and is made of its corners with these weights.
     #[inline]
-    pub(crate) fn at_face(corners: impl Iterator<Item = (V, W)>, weights: [V::Scalar; MAX_POINTS], v: V) -> Self {
+    pub(crate) fn at_face(
+        corners: impl Iterator<Item = (V, PointPair<V>)>,
+        weights: [V::Scalar; MAX_POINTS],
+        v: V,
+    ) -> Self {
         let mut state = Self::new(v);
         for (point, witness) in corners {
             state.simplex.push(point, -v, witness);

@@ -3,7 +3,7 @@
 use convex_support::{Scalar, SupportMap, Vector};
 
 use super::placed::Placed;
-use crate::body::{PointPair, Witness as _};
+use crate::body::PointPair;
 use crate::simplex::{MAX_POINTS, project};
 
 /// Corners of both cores, each relative to its body's origin and turned back to time 0.

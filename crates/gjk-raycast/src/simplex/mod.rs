@@ -12,7 +12,7 @@ mod sub_algorithm;
 
 use convex_support::{Scalar, Vector};
 
-use crate::body::Witness;
+use crate::body::PointPair;
 pub(crate) use affine_hull::{AffineHull, project};
 pub(crate) use closest::{Closest, closest_in_face, nearest_face};
 pub(crate) use regions::{cross, nearest};
@@ -23,21 +23,21 @@ pub(crate) const MAX_POINTS: usize = 4;
 
 /// Points of a convex set and what they came from, the newest last.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Simplex<V: Vector, W> {
+pub(crate) struct Simplex<V: Vector> {
     points: [V; MAX_POINTS],
     /// The directions along which they are support points.
     along: [V; MAX_POINTS],
-    witnesses: [W; MAX_POINTS],
+    witnesses: [PointPair<V>; MAX_POINTS],
     weights: [V::Scalar; MAX_POINTS],
     len: usize,
 }
 
-impl<V: Vector, W: Copy + Default> Simplex<V, W> {
+impl<V: Vector> Simplex<V> {
     pub(crate) fn new() -> Self {
         Self {
             points: [V::ZERO; MAX_POINTS],
             along: [V::ZERO; MAX_POINTS],
-            witnesses: [W::default(); MAX_POINTS],
+            witnesses: [PointPair::default(); MAX_POINTS],
             weights: [V::Scalar::ZERO; MAX_POINTS],
             len: 0,
         }
@@ -52,7 +52,7 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
     ///
     /// # Panics
     /// If there are four already.
-    pub(crate) fn push(&mut self, point: V, along: V, witness: W) {
+    pub(crate) fn push(&mut self, point: V, along: V, witness: PointPair<V>) {
         debug_assert!(self.len < MAX_POINTS, "a simplex has at most four points");
         self.points[self.len] = point;
         self.along[self.len] = along;
@@ -111,7 +111,7 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
     }
 
     /// The same, made of something else.
-    pub(crate) fn made_of(self, changed: impl Fn(W) -> W) -> Self {
+    pub(crate) fn made_of(self, changed: impl Fn(PointPair<V>) -> PointPair<V>) -> Self {
         Self { witnesses: self.witnesses.map(changed), ..self }
     }
 
@@ -125,11 +125,8 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
     }
 
     /// What the weighted sum of the points is made of.
-    pub(crate) fn weighted_witness(&self) -> W
-    where
-        W: Witness<V::Scalar>,
-    {
-        self.weighted().fold(W::default(), |sum, (weight, witness)| sum.plus(witness, weight))
+    pub(crate) fn weighted_witness(&self) -> PointPair<V> {
+        self.weighted().fold(PointPair::default(), |sum, (weight, witness)| sum.plus(witness, weight))
     }
 
     /// The mean of the points.
@@ -147,12 +144,12 @@ impl<V: Vector, W: Copy + Default> Simplex<V, W> {
     }
 
     /// What the points are made of.
-    pub(crate) fn witnesses(&self) -> &[W] {
+    pub(crate) fn witnesses(&self) -> &[PointPair<V>] {
         &self.witnesses[..self.len]
     }
 
     /// The weights and witnesses.
-    pub(crate) fn weighted(&self) -> impl Iterator<Item = (V::Scalar, W)> + '_ {
+    pub(crate) fn weighted(&self) -> impl Iterator<Item = (V::Scalar, PointPair<V>)> + '_ {
         (0..self.len).map(|i| (self.weights[i], self.witnesses[i]))
     }
 }

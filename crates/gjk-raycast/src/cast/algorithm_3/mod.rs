@@ -16,16 +16,12 @@ mod swept_simplex;
 
 use convex_support::{Scalar, Vector};
 
-use super::bracket::{Bracket, ScalarOf};
+use super::bracket::Bracket;
 use super::{Contact, Stop};
-use crate::Iterate;
-use crate::body::{Body, TracedSupport};
 use crate::gjk::Progress;
 use crate::simplex::{Closest, MAX_POINTS, Simplex, project};
 use refine::refine;
 use swept_simplex::{Entry, entry};
-
-type SimplexOf<B> = Simplex<<B as TracedSupport>::Vector, <B as TracedSupport>::Witness>;
 
 /// Slopes of planes, as cosines of the angle between normal and ray, below which steps along the ray gain little.
 const GRAZING: f64 = 0.1;
@@ -33,9 +29,7 @@ const GRAZING: f64 = 0.1;
 /// Closes the bracket, or finds a plane that the whole ray is before.
 #[cold]
 #[inline(never)]
-pub(super) fn algorithm_3<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &mut Bracket<'_, B, O>,
-) -> Result<Contact<B>, Stop<B::Vector>> {
+pub(super) fn algorithm_3<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Contact<V>, Stop<V>> {
     let mut simplex = Simplex::new();
     match approach(bracket, &mut simplex)? {
         Approach::Touches(contact) => Ok(contact),
@@ -44,18 +38,15 @@ pub(super) fn algorithm_3<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
 }
 
 /// How the approach ends.
-enum Approach<B: Body> {
+enum Approach<V: Vector> {
     /// At a point of the body.
-    Touches(Contact<B>),
+    Touches(Contact<V>),
     /// The ray enters the swept simplex.
-    Pierces(Entry<B::Vector>),
+    Pierces(Entry<V>),
 }
 
 /// GJK steps until the ray enters the simplex of support points, or touches the body.
-fn approach<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &mut Bracket<'_, B, O>,
-    simplex: &mut SimplexOf<B>,
-) -> Result<Approach<B>, Stop<B::Vector>> {
+fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -> Result<Approach<V>, Stop<V>> {
     let line = bracket.line();
     // The paper's v.
     let mut v = bracket.x();
@@ -75,7 +66,7 @@ fn approach<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         }
         if !simplex.points().contains(&point) {
             // All points of a simplex are kept where x is in it and yet far from it, which only the points of a shape that is none tell.
-            if simplex.points().len() > B::Vector::DIM {
+            if simplex.points().len() > V::DIM {
                 return Err(Stop::InDoubt);
             }
             simplex.push(point, n, witness);
@@ -86,7 +77,7 @@ fn approach<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         }
         // The paper's step: the point of {x} − P closest to zero.
         let x = bracket.x();
-        let Closest { v: to_x, face, weights } = closest(bracket, simplex, |p| x - p, B::Vector::DIM)?;
+        let Closest { v: to_x, face, weights } = closest(bracket, simplex, |p| x - p, V::DIM)?;
         let length = to_x.norm();
         if length - bracket.radius <= bracket.noise {
             // x is in the body, or no farther from it than rounding.
@@ -96,7 +87,7 @@ fn approach<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         }
         let slope = to_x.dot(line.direction) / length;
         let progress = nearing.goes_on(length);
-        let grazes = slope < Scalar::ZERO && (!progress || slope > -ScalarOf::<B>::from_f64(GRAZING));
+        let grazes = slope < Scalar::ZERO && (!progress || slope > -V::Scalar::from_f64(GRAZING));
         across |= grazes;
         if progress && (!across || slope >= Scalar::ZERO) {
             simplex.retain(face, weights);
@@ -105,7 +96,7 @@ fn approach<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         }
         // The same across the ray, with the whole line for x.
         let Closest { v: aside, face, weights } =
-            closest(bracket, simplex, |p| line.across(line.foot - p), B::Vector::DIM - 1)?;
+            closest(bracket, simplex, |p| line.across(line.foot - p), V::DIM - 1)?;
         // A short vector that long ones cancelled to leans along the ray by their rounding, and a plane that leans
         // does not stay before the whole ray.
         v = line.across(aside);
@@ -129,13 +120,13 @@ fn approach<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
 }
 
 /// The contact where the line comes within rounding of the simplex without entering it ahead of x.
-fn touch_beside<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &mut Bracket<'_, B, O>,
-    simplex: &SimplexOf<B>,
-    v: B::Vector,
-    within: ScalarOf<B>,
-    normal: Option<B::Vector>,
-) -> Option<Contact<B>> {
+fn touch_beside<V: Vector>(
+    bracket: &mut Bracket<'_, V>,
+    simplex: &Simplex<V>,
+    v: V,
+    within: V::Scalar,
+    normal: Option<V>,
+) -> Option<Contact<V>> {
     let (point, witness) = (simplex.weighted_point(), simplex.weighted_witness());
     let mut contact = bracket.close_beside(v, within, point, witness, normal)?;
     // Where no plane was crossed, the ray meets the face of the simplex head-on.
@@ -146,13 +137,13 @@ fn touch_beside<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
 }
 
 /// The point closest to zero of the simplex seen through `map`, in a space of `dimension` dimensions.
-fn closest<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &Bracket<'_, B, O>,
-    simplex: &SimplexOf<B>,
-    map: impl Fn(B::Vector) -> B::Vector,
+fn closest<V: Vector>(
+    bracket: &Bracket<'_, V>,
+    simplex: &Simplex<V>,
+    map: impl Fn(V) -> V,
     dimension: usize,
-) -> Result<Closest<B::Vector>, Stop<B::Vector>> {
-    let mut seen = [B::Vector::ZERO; MAX_POINTS];
+) -> Result<Closest<V>, Stop<V>> {
+    let mut seen = [V::ZERO; MAX_POINTS];
     for (s, p) in seen.iter_mut().zip(simplex.points()) {
         *s = map(*p);
     }

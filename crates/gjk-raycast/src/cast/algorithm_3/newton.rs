@@ -1,26 +1,24 @@
 //! Newton's method on the plane for Algorithm 3, where the body is curved ([`curvature`](crate::curvature)).
 
+use crate::body::PointPair;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::SimplexOf;
-use crate::Iterate;
-use crate::body::Body;
-use crate::cast::bracket::{Bracket, ScalarOf};
+use crate::cast::bracket::Bracket;
 use crate::curvature::{between, is_stiff_across, share_of_second, swept, turned};
 use crate::simplex::{MAX_POINTS, Simplex};
 use crate::symmetric::{Across, Symmetric, dot};
 
 /// Points of the swept body, each with the unit vector along which it is the support point; the newest last.
-pub(super) struct Recent<V: Vector, W>(Simplex<V, W>);
+pub(super) struct Recent<V: Vector>(Simplex<V>);
 
-impl<V: Vector, W: Copy + Default> Recent<V, W> {
+impl<V: Vector> Recent<V> {
     pub(super) fn new() -> Self {
         Self(Simplex::new())
     }
 
     /// Adds one; another at the same point, or the oldest of three, makes place.
-    pub(super) fn push(&mut self, point: V, along: V, witness: W) {
+    pub(super) fn push(&mut self, point: V, along: V, witness: PointPair<V>) {
         let known = self.0.points().iter().position(|&p| p == point);
         if let Some(out) = known.or((self.0.points().len() == 3).then_some(0)) {
             self.0.remove(out);
@@ -28,7 +26,7 @@ impl<V: Vector, W: Copy + Default> Recent<V, W> {
         self.0.push(point, along, witness);
     }
 
-    pub(super) fn simplex(&self) -> &Simplex<V, W> {
+    pub(super) fn simplex(&self) -> &Simplex<V> {
         &self.0
     }
 }
@@ -41,17 +39,17 @@ const LARGEST: f64 = 0.5;
 
 /// The normal of the plane that should be crossed last, and the tangent of the angle to it, by the points found so far.
 /// `None` where curvature says nothing: at a vertex, or where three points of different pieces span a facet.
-pub(super) fn newton<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &Bracket<'_, B, O>,
-    simplex: &SimplexOf<B>,
-    recent: &Recent<B::Vector, B::Witness>,
-    model_error: ScalarOf<B>,
-) -> Option<(B::Vector, ScalarOf<B>)> {
+pub(super) fn newton<V: Vector>(
+    bracket: &Bracket<'_, V>,
+    simplex: &Simplex<V>,
+    recent: &Recent<V>,
+    model_error: V::Scalar,
+) -> Option<(V, V::Scalar)> {
     if !bracket.body.is_curved() {
         return None;
     }
     let seen = SeenAlongRay { bracket, axes: bracket.line().axes() };
-    let mut found = [(B::Vector::ZERO, B::Vector::ZERO); 2 * MAX_POINTS];
+    let mut found = [(V::ZERO, V::ZERO); 2 * MAX_POINTS];
     let mut len = 0;
     // The corners of the simplex first, since what was found last was found nearest the answer.
     let corners = simplex.points().iter().zip(simplex.along()).map(|(&p, &n)| (p + n * bracket.radius, n));
@@ -69,7 +67,7 @@ pub(super) fn newton<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     }
     let d = match seen.second_piece(&first, others, n) {
         (None, alone) => alone?,
-        (Some(_), _) if B::Vector::DIM == 2 => return None,
+        (Some(_), _) if V::DIM == 2 => return None,
         (Some(second), _) => {
             let e = first.edge_to(&second);
             let hessian = first.hessian.blend(second.hessian, share_of_second(first.p, e));
@@ -83,7 +81,7 @@ pub(super) fn newton<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     };
     let angle = dot(d, d).sqrt() / n.length();
     // NaN fails this too.
-    if !(angle <= ScalarOf::<B>::from_f64(LARGEST)) {
+    if !(angle <= V::Scalar::from_f64(LARGEST)) {
         return None;
     }
     (n + seen.axes[0] * d.0 + seen.axes[1] * d.1).unit().map(|to| (to, angle))
@@ -111,25 +109,25 @@ impl<S: Scalar> Piece<S> {
 type SecondPiece<S> = (Option<Piece<S>>, Option<Across<S>>);
 
 /// Points and planes as they are seen along the ray; normals have length one against it.
-struct SeenAlongRay<'k, 'b, B: Body, O> {
-    bracket: &'k Bracket<'b, B, O>,
-    axes: [B::Vector; 2],
+struct SeenAlongRay<'k, 'b, V: Vector> {
+    bracket: &'k Bracket<'b, V>,
+    axes: [V; 2],
 }
 
-impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> SeenAlongRay<'_, '_, B, O> {
-    fn across(&self, v: B::Vector) -> Across<ScalarOf<B>> {
+impl<V: Vector> SeenAlongRay<'_, '_, V> {
+    fn across(&self, v: V) -> Across<V::Scalar> {
         (v.dot(self.axes[0]), v.dot(self.axes[1]))
     }
 
     /// A normal, if the ray crosses the plane.
-    fn normal(&self, n: B::Vector) -> Option<B::Vector> {
+    fn normal(&self, n: V) -> Option<V> {
         let facing = -n.dot(self.bracket.line().direction);
         let n = n / facing;
         (facing > Scalar::ZERO && n.is_finite()).then_some(n)
     }
 
     /// The piece of a point that was found along `n`, turned to another normal.
-    fn piece(&self, point: B::Vector, n: B::Vector, to: B::Vector) -> Piece<ScalarOf<B>> {
+    fn piece(&self, point: V, n: V, to: V) -> Piece<V::Scalar> {
         let found = self.across(point - self.bracket.line().foot);
         let mut hessian = self.bracket.body.hessian(n, self.axes);
         let is_vertex = hessian.is_zero();
@@ -137,7 +135,7 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> SeenAlongRay<'_, '_, B, O> {
         if !is_vertex {
             hessian = swept(hessian, self.bracket.radius, self.across(n), n.length_squared());
         }
-        if B::Vector::DIM == 2 {
+        if V::DIM == 2 {
             // There is no second axis to move along.
             hessian.d = Scalar::ONE;
         }
@@ -148,28 +146,23 @@ impl<B: Body, O: FnMut(Iterate<'_, B::Vector>)> SeenAlongRay<'_, '_, B, O> {
 
     /// Of the other pieces the one that would reach farthest beyond the first at the normal that suits the first alone; or
     /// where the first alone suits none, the one across from which the line lies. And the change to that normal.
-    fn second_piece(
-        &self,
-        first: &Piece<ScalarOf<B>>,
-        others: &[(B::Vector, B::Vector)],
-        n: B::Vector,
-    ) -> SecondPiece<ScalarOf<B>> {
+    fn second_piece(&self, first: &Piece<V::Scalar>, others: &[(V, V)], n: V) -> SecondPiece<V::Scalar> {
         let noise = self.bracket.noise;
         let p = first.p;
         let alone = first.hessian.is_regular().then(|| first.hessian.solve((-p.0, -p.1)));
         let mut second = None;
-        let mut best = if alone.is_some() { noise } else { -ScalarOf::<B>::infinity() };
+        let mut best = if alone.is_some() { noise } else { -V::Scalar::infinity() };
         for &(point, along) in others {
             let other = self.piece(point, along, n);
             let e = first.edge_to(&other);
             // Points no farther apart than rounding are one.
             let apart = (other.found.0 - p.0, other.found.1 - p.1);
-            let foretold = ScalarOf::<B>::from_f64(SAME_PIECE * SAME_PIECE) * dot(apart, apart);
+            let foretold = V::Scalar::from_f64(SAME_PIECE * SAME_PIECE) * dot(apart, apart);
             if dot(e, e) <= foretold.max(noise * noise) {
                 continue;
             }
             let score = match alone {
-                Some(d) => (other.reach - first.reach) + dot(e, d) + dot(p, d) * ScalarOf::<B>::from_f64(0.5),
+                Some(d) => (other.reach - first.reach) + dot(e, d) + dot(p, d) * V::Scalar::from_f64(0.5),
                 None => {
                     let share = share_of_second(p, e);
                     let nearest = (p.0 + e.0 * share, p.1 + e.1 * share);

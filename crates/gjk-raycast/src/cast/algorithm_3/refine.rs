@@ -1,13 +1,11 @@
 //! The exchange of points that closes the bracket once the ray pierces the simplex.
 
+use crate::simplex::Simplex;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::SimplexOf;
 use super::newton::{Recent, newton};
 use super::swept_simplex::{Entry, entry};
-use crate::Iterate;
-use crate::body::Body;
 use crate::cast::bracket::Bracket;
 use crate::cast::line::Line;
 use crate::cast::{Contact, Stop};
@@ -23,11 +21,11 @@ const MAX_MOVES: usize = 6;
 /// Closes the bracket between the last plane and the entry into the simplex: the next plane is taken along the
 /// normal at the entry, and the support point found there replaces one of the simplex such that the ray still
 /// enters it, and earlier.
-pub(super) fn refine<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &mut Bracket<'_, B, O>,
-    mut simplex: SimplexOf<B>,
-    mut at: Entry<B::Vector>,
-) -> Result<Contact<B>, Stop<B::Vector>> {
+pub(super) fn refine<V: Vector>(
+    bracket: &mut Bracket<'_, V>,
+    mut simplex: Simplex<V>,
+    mut at: Entry<V>,
+) -> Result<Contact<V>, Stop<V>> {
     let mut pierced = Pierced { line: bracket.line(), moved: Scalar::ZERO, failures: 0 };
     let mut steps = Steps::new(bracket.noise);
     let mut recent = Recent::new();
@@ -36,7 +34,7 @@ pub(super) fn refine<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         let slope = -at.n.dot(bracket.line().direction);
         bracket.enter_hull(at.mu, pierced.moved, slope);
         if let &[p, q] = simplex.points()
-            && B::Vector::DIM == 2
+            && V::DIM == 2
         {
             bracket.around = Some([p, q, q]);
         }
@@ -99,13 +97,13 @@ struct Pierced<V: Vector> {
 impl<V: Vector> Pierced<V> {
     /// The entry into the simplex; of a line that is moved towards the middle of the last facet where there is none, or too
     /// many exchanges gained nothing.
-    fn keep_pierced<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+    fn keep_pierced(
         &mut self,
-        bracket: &Bracket<'_, B, O>,
+        bracket: &Bracket<'_, V>,
         mut next: Option<Entry<V>>,
         gains: bool,
-        facet: &SimplexOf<B>,
-        simplex: &SimplexOf<B>,
+        facet: &Simplex<V>,
+        simplex: &Simplex<V>,
     ) -> Option<Entry<V>> {
         self.failures += usize::from(!gains);
         let mut step = V::Scalar::from_f64(8.0) * bracket.noise;
@@ -162,20 +160,17 @@ impl<S: Scalar> Steps<S> {
 
 /// The contact where the ray runs through one of some points of the body, or through a segment or triangle of them, if that
 /// also is where it crosses the last plane.
-fn touch<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &mut Bracket<'_, B, O>,
-    points: &SimplexOf<B>,
-) -> Option<Contact<B>> {
+fn touch<V: Vector>(bracket: &mut Bracket<'_, V>, points: &Simplex<V>) -> Option<Contact<V>> {
     let line = bracket.line();
-    let mut seen = [B::Vector::ZERO; MAX_POINTS];
+    let mut seen = [V::ZERO; MAX_POINTS];
     for (s, &point) in seen.iter_mut().zip(points.points()) {
         *s = line.across(point - line.foot);
     }
     let seen = &seen[..points.points().len()];
     // Points first and triangles last, since the coordinates in a sliver are nothing but rounding.
-    for corners in 1..=B::Vector::DIM {
+    for corners in 1..=V::DIM {
         for face in faces(seen.len(), corners).filter(|face| face.len() == corners) {
-            let Some(nearest) = closest_in_face(seen, face, B::Vector::DIM - 1) else { continue };
+            let Some(nearest) = closest_in_face(seen, face, V::DIM - 1) else { continue };
             let mut touching = *points;
             touching.retain(face, nearest.weights);
             // Measured again, for the same reason.

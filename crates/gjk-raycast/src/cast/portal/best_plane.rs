@@ -21,8 +21,8 @@ use crate::symmetric::{Across, cross, dot};
 ///
 /// The newest piece is the lowest where it was looked at, and mostly one of those. So those without it are tried only where none
 /// with it will do.
-pub(super) fn best_plane<V: Vector, W: Copy>(
-    pieces: &[Piece<V, W>],
+pub(super) fn best_plane<V: Vector>(
+    pieces: &[Piece<V>],
     alpha: Alpha<V::Scalar>,
     noise: V::Scalar,
     error_weight: V::Scalar,
@@ -59,12 +59,7 @@ struct Models<S> {
 
 impl<S: Scalar> Models<S> {
     #[inline(always)]
-    fn new<V: Vector<Scalar = S>, W: Copy>(
-        pieces: &[Piece<V, W>],
-        alpha: Alpha<S>,
-        noise: S,
-        error_weight: S,
-    ) -> Option<Self> {
+    fn new<V: Vector<Scalar = S>>(pieces: &[Piece<V>], alpha: Alpha<S>, noise: S, error_weight: S) -> Option<Self> {
         let (last, others) = pieces.split_last()?;
         let last = last.at(alpha, -S::infinity(), S::ZERO);
         let mut turned = [last; MAX_PIECES];

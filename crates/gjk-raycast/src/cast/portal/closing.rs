@@ -4,8 +4,7 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::ray_frame::{Alpha, RayFrame, RayPoint};
-use crate::Iterate;
-use crate::body::{Body, Witness};
+use crate::body::PointPair;
 use crate::cast::bracket::Bracket;
 use crate::cast::{Contact, Stop};
 
@@ -32,18 +31,18 @@ impl<V: Vector> BestPlane<V> {
     }
 
     #[inline(always)]
-    pub(super) fn set<W>(&mut self, tau: V::Scalar, alpha: Alpha<V::Scalar>, p: &RayPoint<V, W>) {
+    pub(super) fn set(&mut self, tau: V::Scalar, alpha: Alpha<V::Scalar>, p: &RayPoint<V>) {
         (self.tau, self.alpha, self.point) = (tau, alpha, p.point);
     }
 
     /// Begins with the plane across `n`, if the ray does not run too nearly along it.
     #[inline(always)]
-    pub(super) fn begin<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+    pub(super) fn begin(
         &mut self,
-        bracket: &Bracket<'_, B, O>,
+        bracket: &Bracket<'_, V>,
         frame: &RayFrame<V>,
         n: V,
-        p: &mut RayPoint<V, B::Witness>,
+        p: &mut RayPoint<V>,
         radius: V::Scalar,
     ) -> Result<(), Stop<V>> {
         let (across, facing) = frame.split(n);
@@ -60,12 +59,12 @@ impl<V: Vector> BestPlane<V> {
     /// Takes the plane of a support point, if it is crossed later, and ends the search if nothing of the ray is left behind it.
     /// Whether it is crossed later.
     #[inline(always)]
-    pub(super) fn improve<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+    pub(super) fn improve(
         &mut self,
-        bracket: &Bracket<'_, B, O>,
+        bracket: &Bracket<'_, V>,
         frame: &RayFrame<V>,
         alpha: Alpha<V::Scalar>,
-        p: &RayPoint<V, B::Witness>,
+        p: &RayPoint<V>,
         radius: V::Scalar,
     ) -> Result<bool, Stop<V>> {
         let tau = alpha.tau(p) - swept(radius, alpha);
@@ -81,30 +80,30 @@ impl<V: Vector> BestPlane<V> {
 
     /// Closes the bracket between this plane and a point of the body.
     #[inline(always)]
-    pub(super) fn close_at<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+    pub(super) fn close_at(
         &self,
-        bracket: &mut Bracket<'_, B, O>,
+        bracket: &mut Bracket<'_, V>,
         frame: &RayFrame<V>,
-        below: &OnLine<V, B::Witness>,
-    ) -> Result<Contact<B>, Stop<V>> {
+        below: &OnLine<V>,
+    ) -> Result<Contact<V>, Stop<V>> {
         self.close(bracket, frame, below.corners(), below.weights(), below.high)
     }
 
     /// Closes the bracket between this plane and the weighted sum of the corners, which is on the line at `high`.
     #[inline(always)]
-    pub(super) fn close<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+    pub(super) fn close(
         &self,
-        bracket: &mut Bracket<'_, B, O>,
+        bracket: &mut Bracket<'_, V>,
         frame: &RayFrame<V>,
-        corners: &[RayPoint<V, B::Witness>],
+        corners: &[RayPoint<V>],
         weights: &[V::Scalar],
         high: V::Scalar,
-    ) -> Result<Contact<B>, Stop<V>> {
+    ) -> Result<Contact<V>, Stop<V>> {
         // A combination is a point of the body only if no weight is negative by more than rounding.
         if weights.iter().any(|&weight| weight < -bracket.noise) {
             return Err(Stop::InDoubt);
         }
-        let (mut point, mut witness) = (V::ZERO, B::Witness::default());
+        let (mut point, mut witness) = (V::ZERO, PointPair::default());
         for (p, &weight) in corners.iter().zip(weights) {
             point += p.point * weight;
             witness = witness.plus(p.witness, weight);
@@ -123,16 +122,16 @@ fn swept<S: Scalar>(radius: S, alpha: Alpha<S>) -> S {
 
 /// Up to three points of the body, and a combination of them that is on the ray.
 #[derive(Clone, Copy)]
-pub(super) struct OnLine<V: Vector, W> {
-    pub(super) corners: [RayPoint<V, W>; 3],
+pub(super) struct OnLine<V: Vector> {
+    pub(super) corners: [RayPoint<V>; 3],
     pub(super) weights: [V::Scalar; 3],
     pub(super) len: usize,
     /// Where on the ray it is.
     pub(super) high: V::Scalar,
 }
 
-impl<V: Vector, W> OnLine<V, W> {
-    pub(super) fn corners(&self) -> &[RayPoint<V, W>] {
+impl<V: Vector> OnLine<V> {
+    pub(super) fn corners(&self) -> &[RayPoint<V>] {
         &self.corners[..self.len]
     }
 

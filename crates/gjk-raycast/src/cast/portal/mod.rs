@@ -15,10 +15,8 @@ mod triangle;
 
 use convex_support::{Scalar, Vector};
 
-use super::bracket::{Bracket, ScalarOf};
+use super::bracket::Bracket;
 use super::{Contact, Stop};
-use crate::Iterate;
-use crate::body::Body;
 use ray_frame::RayFrame;
 use rounded::rounded;
 use smooth::smooth;
@@ -26,14 +24,12 @@ use triangle::triangle;
 
 /// Closes the bracket, or finds a plane that the whole ray is before.
 #[inline(always)]
-pub(super) fn portal<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &mut Bracket<'_, B, O>,
-) -> Result<Contact<B>, Stop<B::Vector>> {
+pub(super) fn portal<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Contact<V>, Stop<V>> {
     // The first plane: the one given, or the tangent plane of the ball about the body where the ray enters it; and how
     // far the next one is tilted.
     let (first, tilt) = match bracket.options.axis.and_then(Vector::unit) {
-        Some(axis) => (axis, ScalarOf::<B>::from_f64(0.03)),
-        None => (bracket.x(), ScalarOf::<B>::ONE),
+        Some(axis) => (axis, V::Scalar::from_f64(0.03)),
+        None => (bracket.x(), V::Scalar::ONE),
     };
     let frame = RayFrame::new(bracket.line(), Scalar::ZERO);
     let curved = frame.is_curved(bracket.body, first);

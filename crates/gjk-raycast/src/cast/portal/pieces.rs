@@ -10,8 +10,8 @@ use crate::symmetric::{Across, Symmetric, dot};
 
 /// A support point, the plane it was found on, and how it moves from there.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Piece<V: Vector, W> {
-    pub(super) p: RayPoint<V, W>,
+pub(super) struct Piece<V: Vector> {
+    pub(super) p: RayPoint<V>,
     pub(super) alpha: Alpha<V::Scalar>,
     pub(super) hessian: Symmetric<V::Scalar>,
 }
@@ -31,7 +31,7 @@ impl<S: Scalar> QuadraticModel<S> {
     }
 }
 
-impl<V: Vector, W: Copy> Piece<V, W> {
+impl<V: Vector> Piece<V> {
     /// The piece [turned](turned) to another plane, where nothing is crossed before `least`.
     ///
     /// The plane through the point alone is never crossed before the body, and the body's own plane earlier. How wrong the
@@ -90,7 +90,7 @@ const SAME_PIECE: f64 = 0.5;
 /// Whether zero is within a triangle, farther than `by` from its sides: twice the area that it spans with one is the length of that times
 /// its distance.
 #[inline(always)]
-pub(super) fn is_surrounded<V: Vector, W>([p, q, s]: [&RayPoint<V, W>; 3], by: V::Scalar) -> bool {
+pub(super) fn is_surrounded<V: Vector>([p, q, s]: [&RayPoint<V>; 3], by: V::Scalar) -> bool {
     let weights = weights_of_zero([p.across(), q.across(), s.across()]);
     let sides = [q.edge_to(s).0, s.edge_to(p).0, p.edge_to(q).0];
     let is_beyond = |i: usize| weights[i] * weights[i] > by * by * dot(sides[i], sides[i]);
@@ -98,23 +98,23 @@ pub(super) fn is_surrounded<V: Vector, W>([p, q, s]: [&RayPoint<V, W>; 3], by: V
 }
 
 /// The last pieces, the newest last.
-pub(super) struct Pieces<V: Vector, W> {
-    kept: [Piece<V, W>; MAX_PIECES],
+pub(super) struct Pieces<V: Vector> {
+    kept: [Piece<V>; MAX_PIECES],
     len: usize,
 }
 
-impl<V: Vector, W: Copy + Default> Pieces<V, W> {
+impl<V: Vector> Pieces<V> {
     pub(super) fn new() -> Self {
         Self { kept: [Piece::default(); MAX_PIECES], len: 0 }
     }
 
-    pub(super) fn all(&self) -> &[Piece<V, W>] {
+    pub(super) fn all(&self) -> &[Piece<V>] {
         &self.kept[..self.len]
     }
 
     /// Adds a piece in place of those that are the same, or else of the one that is the farthest from being active. Tells
     /// whether it is the same as the last.
-    pub(super) fn push(&mut self, piece: Piece<V, W>, noise: V::Scalar) -> bool {
+    pub(super) fn push(&mut self, piece: Piece<V>, noise: V::Scalar) -> bool {
         let again = self.all().last().is_some_and(|last| last.is_same_as(&piece, noise));
         let mut len = 0;
         for i in 0..self.len {
@@ -142,7 +142,7 @@ impl<V: Vector, W: Copy + Default> Pieces<V, W> {
     }
 
     /// Adds a piece, in place of the oldest where there are as many as are kept.
-    pub(super) fn follow(&mut self, piece: Piece<V, W>) {
+    pub(super) fn follow(&mut self, piece: Piece<V>) {
         if self.len == MAX_PIECES {
             self.kept.rotate_left(1);
         } else {
@@ -152,7 +152,7 @@ impl<V: Vector, W: Copy + Default> Pieces<V, W> {
     }
 
     /// The point, segment or triangle of pieces, the newest among them, that the line passes within `noise`.
-    pub(super) fn passed(&self, noise: V::Scalar) -> Option<OnLine<V, W>> {
+    pub(super) fn passed(&self, noise: V::Scalar) -> Option<OnLine<V>> {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
         let newest = self.len.checked_sub(1)?;
         let p = self.kept[newest].p.across();
@@ -181,7 +181,7 @@ impl<V: Vector, W: Copy + Default> Pieces<V, W> {
         None
     }
 
-    fn on_line(&self, corners: [usize; 3], weights: [V::Scalar; 3], len: usize) -> OnLine<V, W> {
+    fn on_line(&self, corners: [usize; 3], weights: [V::Scalar; 3], len: usize) -> OnLine<V> {
         let corners = corners.map(|i| self.kept[i].p);
         let mut high = V::Scalar::ZERO;
         for (p, &weight) in corners[..len].iter().zip(&weights) {

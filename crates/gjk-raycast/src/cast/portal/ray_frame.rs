@@ -10,8 +10,7 @@
 
 use convex_support::{Scalar, Vector};
 
-use crate::Iterate;
-use crate::body::{Body, TracedSupport};
+use crate::body::{Body, PointPair};
 use crate::cast::Stop;
 use crate::cast::bracket::Bracket;
 use crate::cast::line::Line;
@@ -20,20 +19,18 @@ use crate::symmetric::{Across, Symmetric, cross};
 
 /// A support point as it is seen along the ray.
 #[derive(Clone, Copy, Default)]
-pub(super) struct RayPoint<V: Vector, W> {
+pub(super) struct RayPoint<V: Vector> {
     pub(super) u: V::Scalar,
     pub(super) v: V::Scalar,
     pub(super) t: V::Scalar,
     /// The point of the core, and what it is made of.
     pub(super) point: V,
-    pub(super) witness: W,
+    pub(super) witness: PointPair<V>,
     /// The plane it was found on, if the ray crosses it and the body is curved.
     pub(super) alpha: Option<Alpha<V::Scalar>>,
 }
 
-pub(super) type RayPointOf<B> = RayPoint<<B as TracedSupport>::Vector, <B as TracedSupport>::Witness>;
-
-impl<V: Vector, W> RayPoint<V, W> {
+impl<V: Vector> RayPoint<V> {
     pub(super) fn across(&self) -> Across<V::Scalar> {
         (self.u, self.v)
     }
@@ -65,7 +62,7 @@ impl<S: Scalar> Alpha<S> {
     pub(super) const ZERO: Self = Self { a: S::ZERO, b: S::ZERO };
 
     /// The `τ` of the plane through a point.
-    pub(super) fn tau<V: Vector<Scalar = S>, W>(self, p: &RayPoint<V, W>) -> S {
+    pub(super) fn tau<V: Vector<Scalar = S>>(self, p: &RayPoint<V>) -> S {
         p.t - self.a * p.u - self.b * p.v
     }
 
@@ -112,7 +109,7 @@ impl<S: Scalar> Plane<S> {
     }
 
     /// The plane through three points.
-    pub(super) fn through<V: Vector<Scalar = S>, W>([p, q, s]: [&RayPoint<V, W>; 3]) -> Self {
+    pub(super) fn through<V: Vector<Scalar = S>>([p, q, s]: [&RayPoint<V>; 3]) -> Self {
         Self::rising(p.edge_to(q), p.edge_to(s))
     }
 
@@ -175,11 +172,7 @@ impl<V: Vector> RayFrame<V> {
 
     /// The support point along any vector.
     #[inline(always)]
-    pub(super) fn support<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
-        &self,
-        bracket: &mut Bracket<'_, B, O>,
-        n: V,
-    ) -> Result<RayPointOf<B>, Stop<V>> {
+    pub(super) fn support(&self, bracket: &mut Bracket<'_, V>, n: V) -> Result<RayPoint<V>, Stop<V>> {
         let (point, witness) = bracket.support(n, n, &[])?;
         let swept = if self.radius > Scalar::ZERO { point + n * (self.radius / n.norm()) } else { point };
         let aside = swept - self.foot;
@@ -189,11 +182,11 @@ impl<V: Vector> RayFrame<V> {
 
     /// The support point of a plane.
     #[inline(always)]
-    pub(super) fn support_of<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+    pub(super) fn support_of(
         &self,
-        bracket: &mut Bracket<'_, B, O>,
+        bracket: &mut Bracket<'_, V>,
         plane: Plane<V::Scalar>,
-    ) -> Result<RayPointOf<B>, Stop<V>> {
+    ) -> Result<RayPoint<V>, Stop<V>> {
         let mut seen = self.support(bracket, self.normal(plane))?;
         // No polytope is asked where it was looked at along.
         seen.alpha = bracket.body.is_curved().then(|| plane.alpha());
@@ -201,13 +194,13 @@ impl<V: Vector> RayFrame<V> {
     }
 
     /// Whether the core's support point moves as a plane turns.
-    pub(super) fn is_curved<B: Body<Vector = V>>(&self, body: &B, n: V) -> bool {
+    pub(super) fn is_curved(&self, body: &dyn Body<Vector = V>, n: V) -> bool {
         body.is_curved() && !body.hessian(n, [self.e1, self.e2]).is_zero()
     }
 
     /// The derivative of `(u, v)` at `n`: that of the core's support point, and of the radius that it is moved by.
     #[inline(always)]
-    pub(super) fn hessian<B: Body<Vector = V>>(&self, body: &B, n: V) -> Symmetric<V::Scalar> {
+    pub(super) fn hessian(&self, body: &dyn Body<Vector = V>, n: V) -> Symmetric<V::Scalar> {
         let core = body.hessian(n, [self.e1, self.e2]);
         if self.radius > Scalar::ZERO {
             curvature::swept(core, self.radius, self.split(n).0, n.length_squared())
@@ -219,7 +212,7 @@ impl<V: Vector> RayFrame<V> {
     /// The part across the ray, and the one against it, of the derivative of the support point at `n` as that turns against
     /// the ray.
     #[inline(always)]
-    pub(super) fn hessian_against<B: Body<Vector = V>>(&self, body: &B, n: V) -> (Across<V::Scalar>, V::Scalar) {
+    pub(super) fn hessian_against(&self, body: &dyn Body<Vector = V>, n: V) -> (Across<V::Scalar>, V::Scalar) {
         let against = -self.d;
         let (first, second) = (body.hessian(n, [self.e1, against]), body.hessian(n, [self.e2, against]));
         let (mut across, mut along) = ((first.b, second.b), first.d);

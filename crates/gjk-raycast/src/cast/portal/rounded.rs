@@ -15,11 +15,9 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::closing::BestPlane;
-use super::ray_frame::{Alpha, Plane, RayFrame, RayPoint, RayPointOf};
+use super::ray_frame::{Alpha, Plane, RayFrame, RayPoint};
 use super::triangle::MAX_EXCHANGES;
-use crate::Iterate;
-use crate::body::{Body, Witness};
-use crate::cast::bracket::{Bracket, ScalarOf};
+use crate::cast::bracket::Bracket;
 use crate::cast::{Contact, Stop};
 use crate::symmetric::{Across, cross, dot};
 
@@ -40,12 +38,12 @@ const MAX_STEPS: usize = 32;
 /// Closes the bracket, or finds a plane that the whole ray is before; beginning across `first`, and with planes tilted
 /// by `tilt` until the line enters the swept points.
 #[inline(never)]
-pub(super) fn rounded<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &mut Bracket<'_, B, O>,
-    frame: &RayFrame<B::Vector>,
-    first: B::Vector,
-    tilt: ScalarOf<B>,
-) -> Result<Contact<B>, Stop<B::Vector>> {
+pub(super) fn rounded<V: Vector>(
+    bracket: &mut Bracket<'_, V>,
+    frame: &RayFrame<V>,
+    first: V,
+    tilt: V::Scalar,
+) -> Result<Contact<V>, Stop<V>> {
     let (radius, noise) = (bracket.radius, bracket.noise);
     let tolerance = bracket.tolerance();
     let mut p = frame.support(bracket, first)?;
@@ -54,7 +52,7 @@ pub(super) fn rounded<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         best.begin(bracket, frame, first, &mut p, radius)?;
     }
     let mut alpha = best.alpha;
-    let (mut last, mut exchanges) = (ScalarOf::<B>::infinity(), MAX_EXCHANGES);
+    let (mut last, mut exchanges) = (V::Scalar::infinity(), MAX_EXCHANGES);
     let mut kept = Kept { points: [p; 4], len: 1 };
     for _ in 0..MAX_STEPS {
         let Some(at) = enter(kept.points(), radius, noise) else {
@@ -93,19 +91,19 @@ pub(super) fn rounded<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
 }
 
 /// The points that are kept, the newest last.
-struct Kept<V: Vector, W> {
-    points: [RayPoint<V, W>; 4],
+struct Kept<V: Vector> {
+    points: [RayPoint<V>; 4],
     len: usize,
 }
 
-impl<V: Vector, W: Witness<V::Scalar>> Kept<V, W> {
+impl<V: Vector> Kept<V> {
     #[inline(always)]
-    fn points(&self) -> &[RayPoint<V, W>] {
+    fn points(&self) -> &[RayPoint<V>] {
         &self.points[..self.len]
     }
 
     #[inline(always)]
-    fn push(&mut self, p: RayPoint<V, W>) {
+    fn push(&mut self, p: RayPoint<V>) {
         self.points[self.len] = p;
         self.len += 1;
     }
@@ -119,9 +117,9 @@ impl<V: Vector, W: Witness<V::Scalar>> Kept<V, W> {
 
     /// The line passes all of them: a point is added on its side of the nearest edge or corner.
     #[inline(always)]
-    fn approach<B: Body<Vector = V, Witness = W>, O: FnMut(Iterate<'_, V>)>(
+    fn approach(
         &mut self,
-        bracket: &mut Bracket<'_, B, O>,
+        bracket: &mut Bracket<'_, V>,
         frame: &RayFrame<V>,
         best: &mut BestPlane<V>,
         alpha: &mut Alpha<V::Scalar>,
@@ -134,7 +132,7 @@ impl<V: Vector, W: Witness<V::Scalar>> Kept<V, W> {
         self.keep([i, j, j], len);
         let across = frame.vector(toward);
         let radius = bracket.radius;
-        let beyond = |p: &RayPointOf<B>| dot(toward, p.across()) + radius > Scalar::ZERO;
+        let beyond = |p: &RayPoint<V>| dot(toward, p.across()) + radius > Scalar::ZERO;
         if bracket.is_point {
             if let Some(across) = across.unit() {
                 bracket.advance(across, self.points[0].point)?;
@@ -169,11 +167,7 @@ impl<V: Vector, W: Witness<V::Scalar>> Kept<V, W> {
 
 /// The first entry of the line into the swept hull of the points through a corner, an edge or a triangle that has the last
 /// one for a corner.
-fn enter<V: Vector, W: Copy>(
-    points: &[RayPoint<V, W>],
-    radius: V::Scalar,
-    noise: V::Scalar,
-) -> Option<Entry<V::Scalar>> {
+fn enter<V: Vector>(points: &[RayPoint<V>], radius: V::Scalar, noise: V::Scalar) -> Option<Entry<V::Scalar>> {
     let newest = points.len() - 1;
     let mut best = about_corner(&points[newest], newest, radius);
     let mut offer = |entry: Option<Entry<V::Scalar>>| {
@@ -193,7 +187,7 @@ fn enter<V: Vector, W: Copy>(
 }
 
 /// The entry into the sphere about a corner: `τ = t − √(ρ² − u² − v²)`, with `α = −(u, v)/√…`.
-fn about_corner<V: Vector, W>(p: &RayPoint<V, W>, index: usize, radius: V::Scalar) -> Option<Entry<V::Scalar>> {
+fn about_corner<V: Vector>(p: &RayPoint<V>, index: usize, radius: V::Scalar) -> Option<Entry<V::Scalar>> {
     let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
     let rest = radius * radius - (p.u * p.u + p.v * p.v);
     if !(rest > zero) {
@@ -215,8 +209,8 @@ fn about_corner<V: Vector, W>(p: &RayPoint<V, W>, index: usize, radius: V::Scala
 /// ```
 ///
 /// and touches the cylinder above the edge's point at `b − dt·σ/(|w|·√(w² + dt²))`.
-fn about_edge<V: Vector, W>(
-    points: &[RayPoint<V, W>],
+fn about_edge<V: Vector>(
+    points: &[RayPoint<V>],
     [i, j]: [usize; 2],
     radius: V::Scalar,
     noise: V::Scalar,
@@ -251,8 +245,8 @@ fn about_edge<V: Vector, W>(
 
 /// The crossing of the plane at distance `ρ` from a triangle, `τ = Σ wᵢ·tᵢ − ρ·√(1 + α²)` with the weights `w` of zero, if the
 /// core's point below, seen at `−ρ·α/√(1 + α²)`, is in the triangle.
-fn above_triangle<V: Vector, W>(
-    points: &[RayPoint<V, W>],
+fn above_triangle<V: Vector>(
+    points: &[RayPoint<V>],
     corners: [usize; 3],
     radius: V::Scalar,
     noise: V::Scalar,
@@ -284,7 +278,7 @@ struct Nearest<S> {
 }
 
 /// The nearest of the last point and the edges that it is a corner of.
-fn nearest<V: Vector, W>(points: &[RayPoint<V, W>]) -> Nearest<V::Scalar> {
+fn nearest<V: Vector>(points: &[RayPoint<V>]) -> Nearest<V::Scalar> {
     let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
     let newest = points.len() - 1;
     let p = &points[newest];

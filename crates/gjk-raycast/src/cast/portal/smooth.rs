@@ -10,10 +10,8 @@ use num_traits::Float as _;
 
 use super::closing::BestPlane;
 use super::pieces::{Piece, Pieces};
-use super::ray_frame::{Alpha, RayFrame, RayPointOf};
-use crate::Iterate;
-use crate::body::Body;
-use crate::cast::bracket::{Bracket, ScalarOf};
+use super::ray_frame::{Alpha, RayFrame, RayPoint};
+use crate::cast::bracket::Bracket;
 use crate::cast::{Contact, Stop};
 use crate::symmetric::{Symmetric, dot};
 
@@ -24,16 +22,16 @@ const MAX_STEPS: usize = 12;
 const MAX_MISSES: usize = 2;
 
 /// Replaces the body by the ellipsoid that osculates it, takes the plane where the ray enters that, and so on.
-pub(super) fn smooth<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &mut Bracket<'_, B, O>,
-    frame: &RayFrame<B::Vector>,
-    first: B::Vector,
-) -> Result<Contact<B>, Stop<B::Vector>> {
+pub(super) fn smooth<V: Vector>(
+    bracket: &mut Bracket<'_, V>,
+    frame: &RayFrame<V>,
+    first: V,
+) -> Result<Contact<V>, Stop<V>> {
     let tolerance = bracket.tolerance();
     let mut next = Next { n: first, alpha: None };
     let mut best = BestPlane::none(bracket.end());
     let mut pieces = Pieces::new();
-    let (mut last, mut misses) = (ScalarOf::<B>::infinity(), 0);
+    let (mut last, mut misses) = (V::Scalar::infinity(), 0);
     for _ in 0..MAX_STEPS {
         let Next { n, alpha } = next;
         let hessian = frame.hessian(bracket.body, n);
@@ -57,11 +55,11 @@ pub(super) fn smooth<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
             // Near the end, Newton's step H·δ = −(u, v) is the same, and does not cancel.
             let (x, y) = hessian.solve(p.across());
             let gain = dot((x, y), p.across());
-            if !(gain <= last * ScalarOf::<B>::from_f64(0.5)) {
+            if !(gain <= last * V::Scalar::from_f64(0.5)) {
                 return Err(Stop::InDoubt);
             }
             last = gain;
-            let small = alpha.length() * ScalarOf::<B>::from_f64(0.05);
+            let small = alpha.length() * V::Scalar::from_f64(0.05);
             if x * x + y * y <= small * small {
                 next = Next::crossed(frame, Alpha { a: alpha.a - x, b: alpha.b - y });
                 continue;
@@ -103,20 +101,20 @@ impl<V: Vector> Next<V> {
 /// α = A⁻¹(s·φ − b),   s² = (c − b·A⁻¹b)/(1 − φ·A⁻¹φ).
 /// ```
 #[inline(always)]
-fn enter_ellipsoid<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &Bracket<'_, B, O>,
-    frame: &RayFrame<B::Vector>,
-    n: B::Vector,
-    p: &RayPointOf<B>,
-    hessian: Symmetric<ScalarOf<B>>,
-) -> Result<Next<B::Vector>, Stop<B::Vector>> {
-    let zero = ScalarOf::<B>::ZERO;
+fn enter_ellipsoid<V: Vector>(
+    bracket: &Bracket<'_, V>,
+    frame: &RayFrame<V>,
+    n: V,
+    p: &RayPoint<V>,
+    hessian: Symmetric<V::Scalar>,
+) -> Result<Next<V>, Stop<V>> {
+    let zero = V::Scalar::ZERO;
     let foot = frame.split(frame.foot()).0;
     let point = ((p.u + foot.0, p.v + foot.1), -p.t);
     let (across, facing) = frame.split(n);
     let h = dot(across, point.0) + facing * point.1;
     // The last column of H, from H·n = 0 unless the plane is nearly along the ray.
-    let column = if facing * facing > n.length_squared() * ScalarOf::<B>::from_f64(0.01) {
+    let column = if facing * facing > n.length_squared() * V::Scalar::from_f64(0.01) {
         let (x, y) = hessian.times(across);
         let beside = (-x / facing, -y / facing);
         (beside, -dot(across, beside) / facing)
@@ -131,7 +129,7 @@ fn enter_ellipsoid<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
     let b = (h * column.0.0 + point.0.0 * point.1, h * column.0.1 + point.0.1 * point.1);
     let c = h * column.1 + point.1 * point.1;
     let (away, tilted) = (a.solve(foot), a.solve(b));
-    let rest = ScalarOf::<B>::ONE - dot(foot, away);
+    let rest = V::Scalar::ONE - dot(foot, away);
     if !(h > zero) {
         Err(Stop::InDoubt)
     } else if rest > zero {

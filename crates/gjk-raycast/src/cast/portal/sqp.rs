@@ -15,10 +15,8 @@ use num_traits::Float as _;
 use super::best_plane::best_plane;
 use super::closing::{BestPlane, OnLine};
 use super::pieces::{Piece, Pieces};
-use super::ray_frame::{Alpha, Plane, RayFrame, RayPoint, RayPointOf, weights_of_zero};
-use crate::Iterate;
-use crate::body::Body;
-use crate::cast::bracket::{Bracket, ScalarOf};
+use super::ray_frame::{Alpha, Plane, RayFrame, RayPoint, weights_of_zero};
+use crate::cast::bracket::Bracket;
 use crate::cast::{Contact, Stop};
 use crate::symmetric::Symmetric;
 
@@ -30,19 +28,19 @@ const MAX_FAILURES: i32 = 3;
 
 /// Brings a portal nearer, by planes that the curvature of the body suggests as long as they close the bracket fast,
 /// and by the portal's own.
-pub(super) fn sqp<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &mut Bracket<'_, B, O>,
-    frame: &RayFrame<B::Vector>,
-    mut portal: Portal<B::Vector, B::Witness>,
-    mut best: BestPlane<B::Vector>,
-) -> Result<Contact<B>, Stop<B::Vector>> {
+pub(super) fn sqp<V: Vector>(
+    bracket: &mut Bracket<'_, V>,
+    frame: &RayFrame<V>,
+    mut portal: Portal<V>,
+    mut best: BestPlane<V>,
+) -> Result<Contact<V>, Stop<V>> {
     let mut alpha = if portal.high.is_finite() { portal.alpha() } else { best.alpha };
     let mut pieces = Pieces::new();
     for p in &portal.corners {
         pieces.push(piece(bracket, frame, *p, alpha), bracket.noise);
     }
     let start = bracket.low();
-    let mut steps = Steps { gap: ScalarOf::<B>::infinity(), failures: 0, error_weight: ScalarOf::<B>::ONE };
+    let mut steps = Steps { gap: V::Scalar::infinity(), failures: 0, error_weight: V::Scalar::ONE };
     let mut coarse = None;
     for _ in 0..MAX_STEPS {
         let p = match frame.support_of(bracket, alpha.plane()) {
@@ -57,7 +55,7 @@ pub(super) fn sqp<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
         portal.exchange(&p, floor);
         if portal.high < floor {
             // Nothing of the body is before the plane: zero was in the triangle by rounding alone.
-            portal.high = ScalarOf::<B>::infinity();
+            portal.high = V::Scalar::infinity();
         } else if portal.high < start {
             break;
         }
@@ -76,12 +74,12 @@ pub(super) fn sqp<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
 
 /// A point's piece at the plane it was found on. A point found on a plane along the ray counts for itself alone.
 #[inline(always)]
-fn piece<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &Bracket<'_, B, O>,
-    frame: &RayFrame<B::Vector>,
-    p: RayPointOf<B>,
-    alpha: Alpha<ScalarOf<B>>,
-) -> Piece<B::Vector, B::Witness> {
+fn piece<V: Vector>(
+    bracket: &Bracket<'_, V>,
+    frame: &RayFrame<V>,
+    p: RayPoint<V>,
+    alpha: Alpha<V::Scalar>,
+) -> Piece<V> {
     match p.alpha {
         Some(alpha) => Piece { p, alpha, hessian: frame.hessian(bracket.body, frame.normal(alpha.plane())) },
         None => Piece { p, alpha, hessian: Symmetric::ZERO },
@@ -93,15 +91,15 @@ fn piece<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
 /// At a small slope, what closes the bracket to rounding of the planes is long along the ray, and there one more plane
 /// mostly shortens it by all of the rest: `λ` is where the last plane is crossed. Meanwhile `coarse` is what closes it.
 #[inline(always)]
-fn close<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &mut Bracket<'_, B, O>,
-    frame: &RayFrame<B::Vector>,
-    best: &BestPlane<B::Vector>,
-    pieces: &Pieces<B::Vector, B::Witness>,
-    portal: &Portal<B::Vector, B::Witness>,
-    start: ScalarOf<B>,
-    coarse: &mut Option<OnLine<B::Vector, B::Witness>>,
-) -> Result<Contact<B>, Stop<B::Vector>> {
+fn close<V: Vector>(
+    bracket: &mut Bracket<'_, V>,
+    frame: &RayFrame<V>,
+    best: &BestPlane<V>,
+    pieces: &Pieces<V>,
+    portal: &Portal<V>,
+    start: V::Scalar,
+    coarse: &mut Option<OnLine<V>>,
+) -> Result<Contact<V>, Stop<V>> {
     let within = bracket.tolerance() * best.alpha.length();
     let fine = (bracket.noise + bracket.noise).max(bracket.tolerance());
     // A segment first, since the weights in a flat triangle may be nothing but rounding.
@@ -148,12 +146,12 @@ impl<S: Scalar> Steps<S> {
 
     /// The next plane, if there is one.
     #[inline(always)]
-    fn next<B: Body<Vector: Vector<Scalar = S>>, O: FnMut(Iterate<'_, B::Vector>)>(
+    fn next<V: Vector<Scalar = S>>(
         &mut self,
-        bracket: &Bracket<'_, B, O>,
-        pieces: &Pieces<B::Vector, B::Witness>,
-        portal: &Portal<B::Vector, B::Witness>,
-        best: &BestPlane<B::Vector>,
+        bracket: &Bracket<'_, V>,
+        pieces: &Pieces<V>,
+        portal: &Portal<V>,
+        best: &BestPlane<V>,
         alpha: Alpha<S>,
     ) -> Option<Alpha<S>> {
         let suggested = if self.failures < MAX_FAILURES || portal.high.is_infinite() {
@@ -179,17 +177,17 @@ impl<S: Scalar> Steps<S> {
 /// Three points of the body, in anticlockwise order, whose triangle the line runs through; or where none is known, any, and
 /// `high` infinite.
 #[derive(Clone, Copy)]
-pub(super) struct Portal<V: Vector, W> {
-    pub(super) corners: [RayPoint<V, W>; 3],
+pub(super) struct Portal<V: Vector> {
+    pub(super) corners: [RayPoint<V>; 3],
     /// The weights of the point where the line runs through, with sum 1.
     pub(super) weights: [V::Scalar; 3],
     /// Where the line runs through.
     pub(super) high: V::Scalar,
 }
 
-impl<V: Vector, W: Copy> Portal<V, W> {
+impl<V: Vector> Portal<V> {
     /// No portal, but points of the body.
-    pub(super) fn unknown(corners: [RayPoint<V, W>; 3]) -> Self {
+    pub(super) fn unknown(corners: [RayPoint<V>; 3]) -> Self {
         Self { corners, weights: [V::Scalar::ZERO; 3], high: V::Scalar::infinity() }
     }
 
@@ -201,7 +199,7 @@ impl<V: Vector, W: Copy> Portal<V, W> {
 
     /// Puts a point in the place of one corner, if the line still runs through, and earlier; but no earlier than `floor`,
     /// before which nothing of the body is: a triangle that is as flat as rounding may not contain zero.
-    fn exchange(&mut self, r: &RayPoint<V, W>, floor: V::Scalar) {
+    fn exchange(&mut self, r: &RayPoint<V>, floor: V::Scalar) {
         let zero = V::Scalar::ZERO;
         for i in 0..3 {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
@@ -223,8 +221,8 @@ impl<V: Vector, W: Copy> Portal<V, W> {
     }
 }
 
-impl<V: Vector, W> From<Portal<V, W>> for OnLine<V, W> {
-    fn from(portal: Portal<V, W>) -> Self {
+impl<V: Vector> From<Portal<V>> for OnLine<V> {
+    fn from(portal: Portal<V>) -> Self {
         Self { corners: portal.corners, weights: portal.weights, len: 3, high: portal.high }
     }
 }

@@ -13,11 +13,9 @@ use num_traits::Float as _;
 
 use super::closing::BestPlane;
 use super::pieces::is_surrounded;
-use super::ray_frame::{Alpha, Plane, RayFrame, RayPoint, RayPointOf};
+use super::ray_frame::{Alpha, Plane, RayFrame, RayPoint};
 use super::sqp::{Portal, sqp};
-use crate::Iterate;
-use crate::body::Body;
-use crate::cast::bracket::{Bracket, ScalarOf};
+use crate::cast::bracket::Bracket;
 use crate::cast::{Contact, Stop};
 use crate::symmetric::dot;
 
@@ -29,12 +27,12 @@ pub(super) const MAX_EXCHANGES: usize = 12;
 
 /// Closes the bracket, beginning with a plane across `first`, and with planes tilted by `tilt` until a portal is found.
 #[inline(always)]
-pub(super) fn triangle<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &mut Bracket<'_, B, O>,
-    frame: &RayFrame<B::Vector>,
-    first: B::Vector,
-    tilt: ScalarOf<B>,
-) -> Result<Contact<B>, Stop<B::Vector>> {
+pub(super) fn triangle<V: Vector>(
+    bracket: &mut Bracket<'_, V>,
+    frame: &RayFrame<V>,
+    first: V,
+    tilt: V::Scalar,
+) -> Result<Contact<V>, Stop<V>> {
     let mut p = frame.support(bracket, first)?;
     let mut best = BestPlane::none(bracket.end());
     best.begin(bracket, frame, first, &mut p, Scalar::ZERO)?;
@@ -69,22 +67,18 @@ struct Planes<'f, V: Vector> {
 }
 
 /// Three points of the body whose triangle contains zero as seen along the ray.
-struct Triangle<B: Body> {
-    corners: [RayPointOf<B>; 3],
+struct Triangle<V: Vector> {
+    corners: [RayPoint<V>; 3],
     /// Zero's weights, up to their sum.
-    weights: [ScalarOf<B>; 3],
+    weights: [V::Scalar; 3],
     /// Whether the corners go round anticlockwise, 1, or clockwise, −1: cheaper to keep than to put them in order.
-    turn: ScalarOf<B>,
+    turn: V::Scalar,
 }
 
 impl<V: Vector> Planes<'_, V> {
     /// The support point of a plane, which is the last one then.
     #[inline(always)]
-    fn support<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
-        &mut self,
-        bracket: &mut Bracket<'_, B, O>,
-        plane: Plane<V::Scalar>,
-    ) -> Result<RayPointOf<B>, Stop<V>> {
+    fn support(&mut self, bracket: &mut Bracket<'_, V>, plane: Plane<V::Scalar>) -> Result<RayPoint<V>, Stop<V>> {
         let p = self.frame.support_of(bracket, plane)?;
         self.alpha = plane.alpha();
         self.best.improve(bracket, self.frame, self.alpha, &p, Scalar::ZERO)?;
@@ -94,12 +88,12 @@ impl<V: Vector> Planes<'_, V> {
     /// The support point of a plane that is tilted towards `toward`; or, if that is not on that side of the line, the one
     /// along `toward` itself.
     #[inline(always)]
-    fn support_toward<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+    fn support_toward(
         &mut self,
-        bracket: &mut Bracket<'_, B, O>,
+        bracket: &mut Bracket<'_, V>,
         plane: Plane<V::Scalar>,
         toward: (V::Scalar, V::Scalar),
-    ) -> Result<RayPointOf<B>, Stop<V>> {
+    ) -> Result<RayPoint<V>, Stop<V>> {
         let p = self.support(bracket, plane)?;
         if toward.0 * p.u + toward.1 * p.v > V::Scalar::ZERO {
             return Ok(p);
@@ -110,11 +104,7 @@ impl<V: Vector> Planes<'_, V> {
 
     /// A second point on the other side of the line, of a plane that is tilted towards it.
     #[inline(always)]
-    fn opposite<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
-        &mut self,
-        bracket: &mut Bracket<'_, B, O>,
-        p: &RayPointOf<B>,
-    ) -> Result<RayPointOf<B>, Stop<V>> {
+    fn opposite(&mut self, bracket: &mut Bracket<'_, V>, p: &RayPoint<V>) -> Result<RayPoint<V>, Stop<V>> {
         let squared = p.u * p.u + p.v * p.v;
         let toward = (-p.u, -p.v);
         let rise = self.tilt * (self.alpha.length_squared() * squared).sqrt();
@@ -125,12 +115,12 @@ impl<V: Vector> Planes<'_, V> {
 
     /// A third point such that the triangle contains zero. `None` where there are too many that do not.
     #[inline(always)]
-    fn enclose<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
+    fn enclose(
         &mut self,
-        bracket: &mut Bracket<'_, B, O>,
-        p: &mut RayPointOf<B>,
-        q: &mut RayPointOf<B>,
-    ) -> Result<Option<Triangle<B>>, Stop<V>> {
+        bracket: &mut Bracket<'_, V>,
+        p: &mut RayPoint<V>,
+        q: &mut RayPoint<V>,
+    ) -> Result<Option<Triangle<V>>, Stop<V>> {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
         let most = if bracket.body.is_curved() { MAX_OUTSIDE / 2 } else { MAX_OUTSIDE };
         for _ in 0..most {
@@ -156,11 +146,7 @@ impl<V: Vector> Planes<'_, V> {
 
     /// Brings the portal nearer until the bracket closes between the best plane, at its own cosine, and the portal.
     #[inline(always)]
-    fn shrink<B: Body<Vector = V>, O: FnMut(Iterate<'_, V>)>(
-        &mut self,
-        bracket: &mut Bracket<'_, B, O>,
-        mut portal: Triangle<B>,
-    ) -> Result<Contact<B>, Stop<V>> {
+    fn shrink(&mut self, bracket: &mut Bracket<'_, V>, mut portal: Triangle<V>) -> Result<Contact<V>, Stop<V>> {
         let tolerance = bracket.tolerance();
         bracket.around = Some(portal.corners.map(|p| p.point));
         let mut last = V::Scalar::infinity();
@@ -208,10 +194,10 @@ impl<V: Vector> Planes<'_, V> {
     }
 }
 
-impl<B: Body> Triangle<B> {
+impl<V: Vector> Triangle<V> {
     /// Its plane, where the sum of the weights is known.
     #[inline(always)]
-    fn plane(&self, sum: ScalarOf<B>) -> Plane<ScalarOf<B>> {
+    fn plane(&self, sum: V::Scalar) -> Plane<V::Scalar> {
         let [p, q, s] = &self.corners;
         let Plane { a, b, .. } = Plane::through([p, q, s]);
         Plane { a: a * self.turn, b: b * self.turn, c: sum }
@@ -219,8 +205,8 @@ impl<B: Body> Triangle<B> {
 
     /// Puts a point before its plane in the place of the corner that leaves zero inside.
     #[inline(always)]
-    fn exchange(&mut self, r: RayPointOf<B>) -> Result<(), Stop<B::Vector>> {
-        let zero = ScalarOf::<B>::ZERO;
+    fn exchange(&mut self, r: RayPoint<V>) -> Result<(), Stop<V>> {
+        let zero = V::Scalar::ZERO;
         let [p, q, s] = &mut self.corners;
         let [wp, wq, ws] = self.weights;
         let turn = self.turn;
@@ -239,12 +225,7 @@ impl<B: Body> Triangle<B> {
 
     /// Bounds the entry by its plane, where the line runs through it by more than an error.
     #[inline(always)]
-    fn bound_entry<O: FnMut(Iterate<'_, B::Vector>)>(
-        &self,
-        bracket: &mut Bracket<'_, B, O>,
-        Plane { a, b, c }: Plane<ScalarOf<B>>,
-        high: ScalarOf<B>,
-    ) {
+    fn bound_entry(&self, bracket: &mut Bracket<'_, V>, Plane { a, b, c }: Plane<V::Scalar>, high: V::Scalar) {
         if is_surrounded(self.corners.each_ref(), bracket.error + bracket.noise) {
             bracket.pierce(high, (a * a + b * b + c * c).sqrt() / c);
         } else {
@@ -252,7 +233,7 @@ impl<B: Body> Triangle<B> {
         }
     }
 
-    fn anticlockwise(&self, [wp, wq, ws]: [ScalarOf<B>; 3], high: ScalarOf<B>) -> Portal<B::Vector, B::Witness> {
+    fn anticlockwise(&self, [wp, wq, ws]: [V::Scalar; 3], high: V::Scalar) -> Portal<V> {
         let [p, q, s] = self.corners;
         let (corners, weights) =
             if self.turn > Scalar::ZERO { ([p, q, s], [wp, wq, ws]) } else { ([q, p, s], [wq, wp, ws]) };
@@ -264,19 +245,19 @@ impl<B: Body> Triangle<B> {
 /// Where the line touches the body there, to rounding, it is to pass a little farther inside.
 #[cold]
 #[inline(never)]
-fn support_across<B: Body, O: FnMut(Iterate<'_, B::Vector>)>(
-    bracket: &mut Bracket<'_, B, O>,
-    frame: &RayFrame<B::Vector>,
-    toward: (ScalarOf<B>, ScalarOf<B>),
-) -> Result<RayPointOf<B>, Stop<B::Vector>> {
+fn support_across<V: Vector>(
+    bracket: &mut Bracket<'_, V>,
+    frame: &RayFrame<V>,
+    toward: (V::Scalar, V::Scalar),
+) -> Result<RayPoint<V>, Stop<V>> {
     let across = frame.vector(toward).unit().ok_or(Stop::InDoubt)?;
-    let p: RayPoint<_, _> = frame.support(bracket, across)?;
+    let p: RayPoint<_> = frame.support(bracket, across)?;
     bracket.advance(across, p.point)?;
     let beyond = (p.point - frame.foot()).dot(across) + frame.radius();
     if beyond > Scalar::ZERO {
         return Ok(p);
     }
-    let inward = bracket.noise * ScalarOf::<B>::from_f64(0.5);
+    let inward = bracket.noise * V::Scalar::from_f64(0.5);
     if bracket.radius == Scalar::ZERO && frame.foot() == bracket.line().foot && beyond > -inward {
         return Err(Stop::Touches(-across * inward));
     }
