@@ -4,6 +4,7 @@ use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
+use crate::compiled_once::compiled_once;
 use crate::contact::signed_distance_of_any;
 use crate::gjk::{
     End, Frame, Gjk, GjkOptions, InOrder, NEAR, comes_first, first_direction, gjk, is_near_contact, near_contact,
@@ -55,7 +56,19 @@ where
 {
     let cores = [a.core(), b.core()];
     direct(a, b, cores, options.max_iterations, &mut observer)
-        .unwrap_or_else(|| searched(a, b, cores, options, observer))
+        .unwrap_or_else(|| by_search([&WithoutLines(a), &WithoutLines(b)], cores, options, &mut observer))
+}
+
+compiled_once! {
+    /// The distance by a search.
+    fn by_search<V>(
+        shapes: [Shape<'_, V>; 2],
+        cores: [Core<V>; 2],
+        options: DistanceOptions<V>,
+        observer: &mut dyn FnMut(Iterate<'_, V>),
+    ) -> Distance<V> {
+        searched
+    }
 }
 
 /// The plain case: bodies that are apart by more than a few errors, of which the closest points are known in closed form. There is
@@ -84,7 +97,7 @@ where
     let error = noise + pair.error();
     let near = error * number(NEAR);
     if (length - radius).abs() < near {
-        return touching([&WithoutLines(a), &WithoutLines(b)], [pair.core_a, pair.core_b], None, max_iterations);
+        return nearly_touching([&WithoutLines(a), &WithoutLines(b)], [pair.core_a, pair.core_b], max_iterations);
     }
     // NaN is left to the search, and so is what is deep.
     if !(length - radius >= near) || max_iterations == 0 {
@@ -116,19 +129,12 @@ where
     })
 }
 
-/// The distance by a search.
-#[inline(always)]
-fn searched<A, B>(
-    a: &A,
-    b: &B,
-    cores: [Core<A::Vector>; 2],
-    options: DistanceOptions<A::Vector>,
-    mut observer: impl FnMut(Iterate<'_, A::Vector>),
-) -> Distance<A::Vector>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+fn searched<V: Vector>(
+    [a, b]: [Shape<'_, V>; 2],
+    cores: [Core<V>; 2],
+    options: DistanceOptions<V>,
+    observer: &mut dyn FnMut(Iterate<'_, V>),
+) -> Distance<V> {
     let mut pair = Pair::of_cores(a, b, cores);
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
@@ -154,8 +160,8 @@ where
     let end = if start == Some(true) {
         End::Overlap
     } else {
-        let as_given = |iterate: Iterate<'_, A::Vector>| {
-            if is_reversed { iterate.reversed(&mut observer) } else { observer(iterate) }
+        let as_given = |iterate: Iterate<'_, V>| {
+            if is_reversed { iterate.reversed(&mut *observer) } else { observer(iterate) }
         };
         gjk(&mut state, &mut bodies, in_order, search, None, as_given)
     };
@@ -167,9 +173,7 @@ where
             && !(options.tolerance > Scalar::ZERO)
             && !(state.lower > search.limit + frame.error);
         let (begun, before) = if is_plain { (Some(&state), 0) } else { (None, state.iterations) };
-        if let Some(answer) =
-            touching([&WithoutLines(a), &WithoutLines(b)], [pair.core_a, pair.core_b], begun, options.max_iterations)
-        {
+        if let Some(answer) = touching([a, b], [pair.core_a, pair.core_b], begun, options.max_iterations) {
             return Distance { iterations: before + answer.iterations, ..answer };
         }
     }
@@ -177,7 +181,7 @@ where
     let cores = [pair.core_a, pair.core_b];
     if end == End::Stalled {
         let answer = apart_as_given(cores, &in_order, &state, end, is_reversed);
-        return closely([&WithoutLines(a), &WithoutLines(b)], answer, options.max_iterations);
+        return closely([a, b], answer, options.max_iterations);
     }
     found(cores, &in_order, &state, end, is_reversed)
 }
@@ -295,6 +299,21 @@ fn apart<V: Vector>(
     } else {
         Distance { lower: zero, upper: V::Scalar::infinity(), status: Status::Stalled, ..answer }
     }
+}
+
+compiled_once! {
+    /// The answer of bodies near contact.
+    fn nearly_touching<V>(shapes: [Shape<'_, V>; 2], cores: [Core<V>; 2], max_iterations: usize) -> Option<Distance<V>> {
+        touching_plainly
+    }
+}
+
+fn touching_plainly<V: Vector>(
+    shapes: [Shape<'_, V>; 2],
+    cores: [Core<V>; 2],
+    max_iterations: usize,
+) -> Option<Distance<V>> {
+    touching(shapes, cores, None, max_iterations)
 }
 
 /// The answer of bodies near contact, perhaps after a search that can be gone on with.

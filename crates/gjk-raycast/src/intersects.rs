@@ -1,9 +1,10 @@
 //! Whether two shapes meet.
 
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{Core, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
+use crate::compiled_once::compiled_once;
 use crate::distance::distance_with;
 use crate::gjk::{Boxes, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, is_near_contact, rounding};
 use crate::shape::{Shape, WithoutLines};
@@ -84,7 +85,22 @@ where
         }
         known = Some(point);
     }
-    search(&mut pair, &options, &First { offset, direction: first, point: known }, observer)
+    let cores = [pair.core_a, pair.core_b];
+    let first = First { offset, direction: first, point: known };
+    by_search([&WithoutLines(a), &WithoutLines(b)], cores, &options, &first, &mut observer)
+}
+
+compiled_once! {
+    /// [`intersects_with`] where the first direction does not separate the shapes.
+    fn by_search<V>(
+        shapes: [Shape<'_, V>; 2],
+        cores: [Core<V>; 2],
+        options: &IntersectOptions<V>,
+        first: &First<V>,
+        observer: &mut dyn FnMut(Iterate<'_, V>),
+    ) -> Intersection<V> {
+        searched
+    }
 }
 
 /// What was found about the first direction.
@@ -96,19 +112,14 @@ struct First<V> {
     point: Option<V>,
 }
 
-/// [`intersects_with`] where the first direction does not separate the shapes. Apart from it, so that a query whose first
-/// direction does is short enough to be compiled into its caller.
-#[inline(never)]
-fn search<A, B>(
-    pair: &mut Pair<'_, A, B>,
-    options: &IntersectOptions<A::Vector>,
-    first: &First<A::Vector>,
-    mut observer: impl FnMut(Iterate<'_, A::Vector>),
-) -> Intersection<A::Vector>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+fn searched<V: Vector>(
+    [a, b]: [Shape<'_, V>; 2],
+    cores: [Core<V>; 2],
+    options: &IntersectOptions<V>,
+    first: &First<V>,
+    observer: &mut dyn FnMut(Iterate<'_, V>),
+) -> Intersection<V> {
+    let pair = &mut Pair::of_cores(a, b, cores);
     let size = pair.size(first.offset);
     let frame = Frame::new(pair, first.offset, size);
     if let Some(point) = first.point
@@ -142,7 +153,7 @@ where
         End::Overlap if !near => (true, None),
         _ => {
             let left = max_iterations.saturating_sub(state.iterations);
-            let closely = closely([&WithoutLines(pair.a), &WithoutLines(pair.b)], left);
+            let closely = closely([a, b], left);
             return Intersection { iterations: state.iterations + closely.iterations, ..closely };
         }
     };

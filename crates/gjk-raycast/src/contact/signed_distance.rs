@@ -1,7 +1,7 @@
 //! The signed distance of two shapes: how far apart, or how deep in one another.
 
 use convex_support::numerics::bound::least;
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{Core, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::cores::{ClosedForm, Cores, slack};
@@ -11,8 +11,9 @@ use super::met::Met;
 use super::witness::Ends;
 use super::{SignedDistance, SignedDistanceOptions};
 use crate::body::{Pair, PointPair};
+use crate::compiled_once::compiled_once;
 use crate::gjk::{End, Gjk, NearContact};
-use crate::shape::Shape;
+use crate::shape::{Shape, WithoutLines};
 use crate::{Iterate, Status};
 
 /// How far apart two shapes are, or how deep in one another, and which way out is the shortest.
@@ -61,24 +62,40 @@ where
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let parts = [a.core(), b.core()];
-    direct(a, b, parts, options.max_iterations, &mut observer).unwrap_or_else(|| {
-        let mut cores = Cores::new(a, b, parts);
-        reach(&mut cores, options, true, observer).answer(&cores)
-    })
+    direct(a, b, parts, options.max_iterations, &mut observer)
+        .unwrap_or_else(|| by_search([&WithoutLines(a), &WithoutLines(b)], parts, options, &mut observer))
+}
+
+compiled_once! {
+    /// The signed distance by a search.
+    fn by_search<V>(
+        shapes: [Shape<'_, V>; 2],
+        parts: [Core<V>; 2],
+        options: SignedDistanceOptions<V>,
+        observer: &mut dyn FnMut(Iterate<'_, V>),
+    ) -> SignedDistance<V> {
+        searched
+    }
+}
+
+fn searched<V: Vector>(
+    [a, b]: [Shape<'_, V>; 2],
+    parts: [Core<V>; 2],
+    options: SignedDistanceOptions<V>,
+    observer: &mut dyn FnMut(Iterate<'_, V>),
+) -> SignedDistance<V> {
+    let mut cores = Cores::new(a, b, parts);
+    reach(&mut cores, options, true, observer).answer(&cores)
 }
 
 /// [`signed_distance`], and the unit vector from `b` to `a` of the plane that proves its lower bound. Near contact it is known to what the
 /// search itself leaves, since a search in time looks again a moment later.
 #[inline]
-pub(crate) fn signed_distance_and_axis<A, B>(
-    a: &A,
-    b: &B,
-    options: SignedDistanceOptions<A::Vector>,
-) -> (SignedDistance<A::Vector>, A::Vector)
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+pub(crate) fn signed_distance_and_axis<V: Vector>(
+    a: Shape<'_, V>,
+    b: Shape<'_, V>,
+    options: SignedDistanceOptions<V>,
+) -> (SignedDistance<V>, V) {
     let parts = [a.core(), b.core()];
     if let Some(answer) = direct(a, b, parts, options.max_iterations, |_| {}) {
         return (answer, answer.normal);

@@ -1,12 +1,14 @@
 //! The features that answers are about.
 
-use convex_support::{Core, Matrix, Point, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Core, Matrix, Point, Scalar, SupportMap, Vector};
 
 use num_traits::Float as _;
 
 use super::ClosestFeatures;
 use super::closest_features::{Closest, rounding};
+use crate::compiled_once::compiled_once;
 use crate::motion::Moved;
+use crate::shape::Shape;
 use crate::{
     Distance, LinearHit, Motion, MotionHit, Ray, RayHit, RigidMotion, SignedDistance, SignedDistanceOptions,
     Trajectory, signed_distance,
@@ -92,7 +94,7 @@ impl<V: Vector> SignedDistance<V> {
         let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
         let push = little(size);
         let pushed = Core { origin: core_a.origin - self.normal * push, ..core_a };
-        let moved = Moved::new(a, pushed, None, Scalar::ZERO);
+        let moved = Moved::new(&a, pushed, None, Scalar::ZERO);
         let least = V::Scalar::EPSILON * V::Scalar::from_f64(8.0);
         let other = signed_distance(&moved, b, SignedDistanceOptions::default().with_tolerance(least));
         let cosine = other.normal.dot(self.normal);
@@ -114,7 +116,7 @@ impl<V: Vector> LinearHit<V> {
         B: SupportMap<Vector = V> + ?Sized,
     {
         let [motion_a, motion_b] = [motion.velocity_a, motion.velocity_b].map(RigidMotion::translation);
-        touching(self.normal?, self.point, self.time, (a, &motion_a), (b, &motion_b))
+        touching(self.normal?, self.point, self.time, (&a, &motion_a), (&b, &motion_b))
     }
 
     /// The hit with the normal and the point of its [features](Self::closest_features), which are known to rounding, and so its
@@ -160,7 +162,7 @@ impl<V: Vector> MotionHit<V> {
         MA: Trajectory<Vector = V> + ?Sized,
         MB: Trajectory<Vector = V> + ?Sized,
     {
-        touching(self.normal?, self.point, self.time, (a, motion_a), (b, motion_b))
+        touching(self.normal?, self.point, self.time, (&a, &motion_a), (&b, &motion_b))
     }
 
     /// The hit with the normal and the point of its [features](Self::closest_features), which are known to rounding, and so its
@@ -197,7 +199,7 @@ impl<V: Vector> RayHit<V> {
     {
         let tip = Point::new(ray.source).ok()?;
         let motion = RigidMotion::translation(ray.direction);
-        touching(self.normal?, self.point, self.lambda, (&tip, &motion), (target, &RigidMotion::default()))
+        touching(self.normal?, self.point, self.lambda, (&tip, &motion), (&target, &RigidMotion::default()))
     }
 
     /// The hit with the normal of its [feature](Self::closest_features), which is known to rounding, and so its
@@ -208,21 +210,26 @@ impl<V: Vector> RayHit<V> {
     }
 }
 
-/// The features of two bodies that touch at a time.
-fn touching<V, A, MA, B, MB>(
+compiled_once! {
+    /// The features of two bodies that touch at a time.
+    fn touching<V>(
+        normal: V,
+        point: V,
+        time: V::Scalar,
+        a: (Shape<'_, V>, &dyn Trajectory<Vector = V>),
+        b: (Shape<'_, V>, &dyn Trajectory<Vector = V>),
+    ) -> Option<ClosestFeatures<V>> {
+        features_at
+    }
+}
+
+fn features_at<V: Vector>(
     normal: V,
     point: V,
     time: V::Scalar,
-    (a, motion_a): (&A, &MA),
-    (b, motion_b): (&B, &MB),
-) -> Option<ClosestFeatures<V>>
-where
-    V: Vector,
-    A: SupportMap<Vector = V> + ?Sized,
-    B: SupportMap<Vector = V> + ?Sized,
-    MA: Trajectory<Vector = V> + ?Sized,
-    MB: Trajectory<Vector = V> + ?Sized,
-{
+    (a, motion_a): (Shape<'_, V>, &dyn Trajectory<Vector = V>),
+    (b, motion_b): (Shape<'_, V>, &dyn Trajectory<Vector = V>),
+) -> Option<ClosestFeatures<V>> {
     let closing = normal.dot(motion_b.velocity(time, point) - motion_a.velocity(time, point));
     let (a, b) = (at_time(a, motion_a, time), at_time(b, motion_b, time));
     let zero = V::Scalar::ZERO;
@@ -240,11 +247,7 @@ where
 }
 
 /// A body where it is at a time.
-fn at_time<'s, S, M>(shape: &'s S, motion: &M, time: ScalarOf<S>) -> Moved<'s, S>
-where
-    S: SupportMap + ?Sized,
-    M: Trajectory<Vector = S::Vector> + ?Sized,
-{
+fn at_time<'s, V: Vector>(shape: Shape<'s, V>, motion: &dyn Trajectory<Vector = V>, time: V::Scalar) -> Moved<'s, V> {
     let displacement = motion.displacement(time);
     let core = shape.core();
     let core = Core { origin: displacement.of(core.origin), ..core };

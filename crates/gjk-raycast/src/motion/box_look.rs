@@ -4,14 +4,13 @@
 //! its normal tells its level as well as that can be known. Where the boxes overlap by more than the level may be wrong by, the line through
 //! zero along the normal proves it: on one side of zero it goes through the facet, and on the other side it is within the difference.
 
-use convex_support::{Hint, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Hint, Scalar, SupportMap as _, Vector};
 use num_traits::Float;
 
 use super::boxes::{Block, Boxes, Facet, vector};
 use super::instant::{Instant, Limits, NEAR};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
-use super::trajectory::Trajectory;
 use crate::contact::Uncertainty;
 use crate::double::array;
 use crate::gjk::rounding;
@@ -27,13 +26,7 @@ const LEVEL: f64 = 2.0;
 /// The same of a level from near, roughly.
 const FROM_NEAR: f64 = 0.5;
 
-impl<A, MA, B, MB> MovingPair<'_, A, MA, B, MB>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-    MA: Trajectory<Vector = A::Vector>,
-    MB: Trajectory<Vector = A::Vector>,
-{
+impl<V: Vector> MovingPair<'_, V> {
     /// Two boxes at a time, from near if that is asked or they are nearly in contact; `None` where it is not certain which facet is the
     /// highest, or that proves nothing.
     ///
@@ -41,12 +34,12 @@ where
     #[inline(never)]
     pub(super) fn by_boxes(
         &self,
-        time: ScalarOf<A>,
-        blocks: &[Block<A::Vector>; 2],
-        axis: A::Vector,
-        limits: Limits<ScalarOf<A>>,
+        time: V::Scalar,
+        blocks: &[Block<V>; 2],
+        axis: V,
+        limits: Limits<V::Scalar>,
         is_close: bool,
-    ) -> Option<Instant<A::Vector>> {
+    ) -> Option<Instant<V>> {
         let placed = self.placed_here(time);
         let [core_a, core_b] = [placed.a.core(), placed.b.core()];
         let size = core_a.extent + core_b.extent + placed.offset.norm();
@@ -66,7 +59,7 @@ where
         self.facet.set((facet.room > 0.0).then_some(facet.span));
         let (lost, errors) = (rounding(size), core_a.error + core_b.error);
         let [error, from_near] = [LEVEL, FROM_NEAR].map(|factor| lost * Scalar::from_f64(factor) + errors);
-        let distance = ScalarOf::<A>::from_f64(facet.level);
+        let distance = V::Scalar::from_f64(facet.level);
         let there = if !is_close && Float::abs(distance) > error * Scalar::from_f64(NEAR) {
             Instant {
                 time,
@@ -94,13 +87,13 @@ where
     #[inline(always)]
     fn near_facet(
         &self,
-        time: ScalarOf<A>,
-        Placed { a, b, offset, .. }: &Placed<'_, A, B>,
+        time: V::Scalar,
+        Placed { a, b, offset, .. }: &Placed<'_, V>,
         boxes: &Boxes,
         facet: &Facet,
-        axis: A::Vector,
-    ) -> Option<Instant<A::Vector>> {
-        let normal = vector::<A::Vector>(facet.normal);
+        axis: V,
+    ) -> Option<Instant<V>> {
+        let normal = vector::<V>(facet.normal);
         // Not where they have passed through one another.
         if !(facet.room > 0.0 && normal.dot(axis) > Scalar::ZERO) {
             return None;
@@ -112,12 +105,12 @@ where
         let errors = shapes.map(|shape| shape.error_length.as_f64());
         let uncertainty = Uncertainty::of_exact_offset(shapes, *offset);
         // As in an answer: the unit vector and the sums.
-        let slack = ScalarOf::<A>::EPSILON * Scalar::from_f64(3.0) * Float::abs(distance);
+        let slack = V::Scalar::EPSILON * Scalar::from_f64(3.0) * Float::abs(distance);
         let error = uncertainty.along(normal) + slack;
-        let mut upper = ScalarOf::<A>::infinity();
+        let mut upper = V::Scalar::infinity();
         // NaN proves nothing.
         if !(distance > error) {
-            let epsilon = ScalarOf::<A>::EPSILON.as_f64();
+            let epsilon = V::Scalar::EPSILON.as_f64();
             let leaning = boxes.leaning(facet, array(normal), errors, epsilon);
             upper = distance + error + Scalar::from_f64(leaning);
             if !(upper < Scalar::ZERO && boxes.is_pierced(facet, -distance.as_f64(), uncertainty.length().as_f64())) {

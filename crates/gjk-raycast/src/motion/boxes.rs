@@ -14,11 +14,12 @@
 //! The highest facet mostly stays the highest, and as long as it does, its level is as smooth as the motion, also where the boxes begin to
 //! overlap.
 
-use convex_support::{Core, CoreKind, Parallelotope, Scalar, SupportMap, Vector};
+use convex_support::{Core, CoreKind, Parallelotope, Scalar, Vector};
 use num_traits::Float;
 
 use super::moved::Moved;
 use crate::double::{LEAST, Vec3, array, cross, dot};
+use crate::shape::Shape;
 
 /// Edges of two boxes.
 const EDGES: usize = 6;
@@ -80,7 +81,7 @@ pub(super) struct Facet {
 
 impl<V: Vector> Block<V> {
     /// The core of a shape, if it is a box without a radius. In space it may be flat.
-    pub(super) fn of<S: SupportMap<Vector = V> + ?Sized>(shape: &S, core: &Core<V>) -> Option<Self> {
+    pub(super) fn of(shape: Shape<'_, V>, core: &Core<V>) -> Option<Self> {
         if !matches!(core.kind, CoreKind::Polytope) || core.radius > Scalar::ZERO {
             return None;
         }
@@ -104,17 +105,13 @@ impl<V: Vector> Block<V> {
 impl Boxes {
     /// The boxes of two bodies, together of the given size, whose origins differ by `offset`.
     #[inline(always)]
-    pub(super) fn new<A, B>(
-        [first, second]: &[Block<A::Vector>; 2],
-        (a, b): (&Moved<'_, A>, &Moved<'_, B>),
-        offset: A::Vector,
+    pub(super) fn new<V: Vector>(
+        [first, second]: &[Block<V>; 2],
+        (a, b): (&Moved<'_, V>, &Moved<'_, V>),
+        offset: V,
         size: f64,
-    ) -> Self
-    where
-        A: SupportMap + ?Sized,
-        B: SupportMap<Vector = A::Vector> + ?Sized,
-    {
-        let is_across = |k: usize| A::Vector::DIM == 2 && k % 3 == 2;
+    ) -> Self {
+        let is_across = |k: usize| V::DIM == 2 && k % 3 == 2;
         let units: [Vec3; EDGES] = core::array::from_fn(|k| match k {
             _ if is_across(k) => [0.0, 0.0, 1.0],
             0..3 => array(a.turned(first.units[k])),
@@ -126,8 +123,8 @@ impl Boxes {
             _ => second.halves[k - 3],
         });
         // Mostly both are zero.
-        let (from, center) = if [first.center, second.center] == [A::Vector::ZERO; 2] {
-            (A::Vector::ZERO, offset)
+        let (from, center) = if [first.center, second.center] == [V::ZERO; 2] {
+            (V::ZERO, offset)
         } else {
             let from = b.turned(second.center);
             (from, offset + (a.turned(first.center) - from))

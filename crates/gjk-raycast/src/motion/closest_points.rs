@@ -3,12 +3,11 @@
 //! One support point proves that a plane between the points keeps the bodies apart. Far from contact that is all. Near contact the same
 //! point tells the distance as well as it can be known; and where the bodies overlap but their cores do not, the points prove that.
 
-use convex_support::{Rounding, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Rounding, Scalar, SupportMap as _, Vector};
 use num_traits::Float;
 
 use super::instant::{IN_PLANE, Instant, LONG, NEAR};
 use super::moving_pair::MovingPair;
-use super::trajectory::Trajectory;
 use crate::body::{Body as _, Pair, TracedSupport as _};
 use crate::contact::Uncertainty;
 use crate::gjk::rounding;
@@ -39,24 +38,13 @@ struct Between<V: Vector> {
     offset: V,
 }
 
-impl<A, MA, B, MB> MovingPair<'_, A, MA, B, MB>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-    MA: Trajectory<Vector = A::Vector>,
-    MB: Trajectory<Vector = A::Vector>,
-{
+impl<V: Vector> MovingPair<'_, V> {
     /// The pair at a time by the closest points of its cores; `None` where they do not tell as much as is wanted. What is seen closely is to
     /// be on the side of `axis`.
     ///
     /// All is compiled into one function, so that what is known of the bodies at the time need not be written to memory and read again.
     #[inline(never)]
-    pub(super) fn by_closest_points(
-        &self,
-        time: ScalarOf<A>,
-        axis: A::Vector,
-        look: Look,
-    ) -> Option<Instant<A::Vector>> {
+    pub(super) fn by_closest_points(&self, time: V::Scalar, axis: V, look: Look) -> Option<Instant<V>> {
         let placed = self.placed_here(time);
         let mut pair = Pair::new(&placed.a, &placed.b);
         let offset = placed.offset;

@@ -3,11 +3,9 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::approach::Approach;
 use super::first_contact::{End, Search};
 use super::from_contact::Stage;
 use super::instant::{Instant, Limits};
-use super::result::MotionIterate;
 use crate::Status;
 
 /// How much deeper than touching an overlap is looked for, in units of what the distance may be wrong by.
@@ -17,7 +15,7 @@ const DEPTH: f64 = 2.0;
 /// through one another takes some errors to show.
 const GRAZE: f64 = 16.0;
 
-impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> {
+impl<V: Vector> Search<'_, V> {
     /// Where the contact is as near as can be told: looks for a time just after it at which the bodies overlap. `None` where they are
     /// proved apart there, and the search goes on.
     pub(super) fn close_in(&mut self) -> Option<End<V>> {

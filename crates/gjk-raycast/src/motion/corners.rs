@@ -1,6 +1,6 @@
 //! The corners that were closest at the last look, which mostly are so still.
 
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 
 use super::placed::Placed;
 use crate::body::PointPair;
@@ -30,14 +30,7 @@ impl<V: Vector> Corners<V> {
     }
 
     /// Takes the given corners, where the bodies are at a time, instead.
-    pub(super) fn keep<A, B>(
-        &mut self,
-        corners: impl Iterator<Item = PointPair<V>>,
-        Placed { a, b, .. }: &Placed<'_, A, B>,
-    ) where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    pub(super) fn keep(&mut self, corners: impl Iterator<Item = PointPair<V>>, Placed { a, b, .. }: &Placed<'_, V>) {
         self.len = 0;
         for (to, corner) in self.pairs.iter_mut().zip(corners) {
             *to = PointPair { a: a.before(corner.a), b: b.before(corner.b) };
@@ -46,11 +39,7 @@ impl<V: Vector> Corners<V> {
     }
 
     /// The corners of the difference, where the bodies are at a time; zero beyond the last.
-    pub(super) fn differences<A, B>(&self, Placed { a, b, offset, .. }: &Placed<'_, A, B>) -> [V; MAX_POINTS]
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    pub(super) fn differences(&self, Placed { a, b, offset, .. }: &Placed<'_, V>) -> [V; MAX_POINTS] {
         let mut points = [V::ZERO; MAX_POINTS];
         for (point, kept) in points.iter_mut().zip(&self.pairs[..self.len.min(MAX_POINTS)]) {
             *point = a.turned(kept.a) - b.turned(kept.b) + *offset;
@@ -61,11 +50,7 @@ impl<V: Vector> Corners<V> {
     /// The face closest to zero, where the bodies are at a time. Corners that leave the point closest to zero of their hull outside are
     /// dropped, which finds a face that is near if not the nearest; `None` where no face is found.
     #[inline(always)]
-    pub(super) fn closest_face<A, B>(&self, Placed { a, b, offset, .. }: &Placed<'_, A, B>) -> Option<Face<V>>
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    pub(super) fn closest_face(&self, Placed { a, b, offset, .. }: &Placed<'_, V>) -> Option<Face<V>> {
         let mut len = self.len.min(MAX_POINTS);
         let zero = PointPair { a: V::ZERO, b: V::ZERO };
         let (mut pairs, mut points) = ([zero; MAX_POINTS], [V::ZERO; MAX_POINTS]);

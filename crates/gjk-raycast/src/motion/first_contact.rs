@@ -25,10 +25,10 @@ pub(super) const AIM: f64 = 1.5;
 const FAR: f64 = 0.25;
 
 /// The search, which has come to [`near`](Self::near).
-pub(super) struct Search<'p, V: Vector, P, F> {
-    pub(super) bodies: &'p P,
+pub(super) struct Search<'p, V: Vector> {
+    pub(super) bodies: &'p dyn Approach<V>,
     pub(super) options: MotionCastOptions<V>,
-    observer: F,
+    observer: &'p mut dyn FnMut(MotionIterate<V>),
     /// From where the distances of all instants are measured.
     pub(super) base: Base<V::Scalar>,
     /// The last time up to which the bodies are proved apart.
@@ -71,9 +71,13 @@ pub(super) enum End<V> {
     Undecided(Status),
 }
 
-impl<'p, V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'p, V, P, F> {
+impl<'p, V: Vector> Search<'p, V> {
     /// The first contact of two bodies up to the end of the motion.
-    pub(super) fn run(bodies: &'p P, options: MotionCastOptions<V>, observer: F) -> MotionCast<V> {
+    pub(super) fn run(
+        bodies: &'p dyn Approach<V>,
+        options: MotionCastOptions<V>,
+        observer: &'p mut dyn FnMut(MotionIterate<V>),
+    ) -> MotionCast<V> {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
         if let Some(axis) = bodies.stays_far_apart([zero, options.max_time]) {
             let (outcome, lower) = (Outcome::Miss(Miss { axis }), options.max_time);

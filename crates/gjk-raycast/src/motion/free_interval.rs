@@ -42,7 +42,7 @@ const ROUNDING: f64 = 64.0;
 /// that are measured from it: at level 0, whether they are apart. If so, the bound `M` along the plane that turns from
 /// the one normal to the other, whichever plane proves it.
 pub(super) fn acceleration_if_free<V: Vector>(
-    bodies: &impl Approach<V>,
+    bodies: &dyn Approach<V>,
     from: &Instant<V>,
     to: &Instant<V>,
     base: &Base<V::Scalar>,

@@ -15,10 +15,8 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::approach::Approach;
 use super::first_contact::{End, Search};
 use super::instant::Instant;
-use super::result::MotionIterate;
 use crate::Status;
 
 /// How much deeper than they began counts as deeper: so many ε of the bodies' sizes, and so many times what their
@@ -101,7 +99,7 @@ impl<S: Scalar> Base<S> {
     }
 }
 
-impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> {
+impl<V: Vector> Search<'_, V> {
     /// What to answer where the bodies are not certainly apart at the start, and only what comes after it counts.
     pub(super) fn begin_in_contact(&mut self) -> End<V> {
         let number = V::Scalar::from_f64;

@@ -19,37 +19,25 @@
 //! If these are in `C`, which is whether the bodies overlap with one of them shifted, it is enough that `E(n) ≤ 2d`,
 //! and that `E ≤ √2·L` across, since the larger of `d` and `L·|m·e|` is more than their mean.
 
-use convex_support::{Posed, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Posed, Scalar, Vector};
 
 use super::instant::Instant;
 use super::moving_pair::MovingPair;
-use super::trajectory::Trajectory;
 use crate::SignedDistanceOptions;
 use crate::contact::{across, signed_distance_of_any};
 use crate::shape::WithoutLines;
 
-impl<A, MA, B, MB> MovingPair<'_, A, MA, B, MB>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-    MA: Trajectory<Vector = A::Vector>,
-    MB: Trajectory<Vector = A::Vector>,
-{
+impl<V: Vector> MovingPair<'_, V> {
     /// Whether the bodies, which overlap by `depth` at least at two times, certainly have a point in common at all
     /// times between.
     #[cold]
     #[inline(never)]
-    pub(super) fn keep_in_contact(
-        &self,
-        from: &Instant<A::Vector>,
-        to: &Instant<A::Vector>,
-        depth: ScalarOf<A>,
-    ) -> bool {
+    pub(super) fn keep_in_contact(&self, from: &Instant<V>, to: &Instant<V>, depth: V::Scalar) -> bool {
         let times = [from.time, to.time];
         let strays = |m| self.a.strays(m, times) + self.b.strays(m, times);
-        let axes = (0..A::Vector::DIM).map(A::Vector::axis);
-        let farthest = axes.fold(ScalarOf::<A>::ZERO, |sum, axis| sum + strays(axis));
-        let two = ScalarOf::<A>::from_f64(2.0);
+        let axes = (0..V::DIM).map(V::axis);
+        let farthest = axes.fold(V::Scalar::ZERO, |sum, axis| sum + strays(axis));
+        let two = V::Scalar::from_f64(2.0);
         if farthest <= depth * (two + two) {
             return true;
         }
@@ -58,16 +46,13 @@ where
             return false;
         }
         let aside = across(from.normal);
-        let mut shifts = aside
-            .into_iter()
-            .take(A::Vector::DIM - 1)
-            .flat_map(|e| [e, -e])
-            .map(|e| e * (farthest * Scalar::from_f64(0.7072)));
+        let mut shifts =
+            aside.into_iter().take(V::DIM - 1).flat_map(|e| [e, -e]).map(|e| e * (farthest * Scalar::from_f64(0.7072)));
         shifts.all(|shift| times.iter().all(|&time| self.overlap_shifted(time, shift)))
     }
 
     /// Whether the bodies certainly overlap at a time if one of them is shifted.
-    fn overlap_shifted(&self, time: ScalarOf<A>, shift: A::Vector) -> bool {
+    fn overlap_shifted(&self, time: V::Scalar, shift: V) -> bool {
         let placed = self.placed(time);
         let Ok(a) = Posed::translated(&placed.a, shift) else { return false };
         let options = SignedDistanceOptions::new().with_depth_limit(Scalar::ZERO);

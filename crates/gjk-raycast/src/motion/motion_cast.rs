@@ -10,9 +10,11 @@ use super::options::MotionCastOptions;
 use super::result::{MotionCast, MotionHit, MotionIterate};
 use super::rigid_motion::RigidMotion;
 use super::trajectory::Trajectory;
+use crate::compiled_once::compiled_once;
 use crate::error::RayCastError;
 use crate::linear_cast::check_limits;
 use crate::ray::{check_finite, check_numbers};
+use crate::shape::{Shape, WithoutLines};
 use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, linear_cast};
 
 /// When two moving bodies first touch, and where.
@@ -74,14 +76,13 @@ pub fn motion_cast_with<A, B>(
     b: &B,
     motion_b: impl Trajectory<Vector = A::Vector>,
     options: MotionCastOptions<A::Vector>,
-    observer: impl FnMut(MotionIterate<A::Vector>),
+    mut observer: impl FnMut(MotionIterate<A::Vector>),
 ) -> Result<MotionCast<A::Vector>, RayCastError>
 where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
     let options = checked(options)?;
-    let margin = options.target_distance;
     check("motion_a", &motion_a)?;
     check("motion_b", &motion_b)?;
     if let (Some(rigid_a), Some(rigid_b)) = (motion_a.as_rigid_motion(), motion_b.as_rigid_motion()) {
@@ -93,8 +94,31 @@ where
             return without_turning(a, b, motion, options);
         }
     }
-    let pair = MovingPair::new(MovingBody::new(a, motion_a, margin), MovingBody::new(b, motion_b, Scalar::ZERO));
-    Ok(Search::run(&pair, options, observer))
+    let shapes: [Shape<'_, _>; 2] = [&WithoutLines(a), &WithoutLines(b)];
+    Ok(first_contact(shapes, [&motion_a, &motion_b], options, &mut observer))
+}
+
+compiled_once! {
+    /// The first contact of bodies that turn.
+    fn first_contact<V>(
+        shapes: [Shape<'_, V>; 2],
+        motions: [&dyn Trajectory<Vector = V>; 2],
+        options: MotionCastOptions<V>,
+        observer: &mut dyn FnMut(MotionIterate<V>),
+    ) -> MotionCast<V> {
+        searched
+    }
+}
+
+fn searched<V: Vector>(
+    [a, b]: [Shape<'_, V>; 2],
+    [motion_a, motion_b]: [&dyn Trajectory<Vector = V>; 2],
+    options: MotionCastOptions<V>,
+    observer: &mut dyn FnMut(MotionIterate<V>),
+) -> MotionCast<V> {
+    let a = MovingBody::new(a, motion_a, options.target_distance);
+    let b = MovingBody::new(b, motion_b, Scalar::ZERO);
+    Search::run(&MovingPair::new(a, b), options, observer)
 }
 
 /// The cast of bodies that do not turn.

@@ -2,20 +2,21 @@
 
 use core::cell::Cell;
 
-use convex_support::{AngularVelocity, BoundingSphere, Core, Hint, Matrix, Scalar, ScalarOf, Spin, SupportMap, Vector};
+use convex_support::{AngularVelocity, BoundingSphere, Core, Hint, Matrix, Scalar, Spin, Vector};
 use num_traits::Float;
 
 use super::moved::Moved;
 use super::rigid_motion::{RigidMotion, SpinOf, turn_error};
 use super::trajectory::{MovingBall, Trajectory, TurningPlane};
+use crate::shape::Shape;
 
 /// A body and its motion.
-pub(super) struct MovingBody<'s, S: SupportMap + ?Sized, M> {
-    pub(super) shape: &'s S,
-    motion: M,
-    course: Course<S::Vector>,
+pub(super) struct MovingBody<'s, V: Vector> {
+    pub(super) shape: Shape<'s, V>,
+    motion: &'s dyn Trajectory<Vector = V>,
+    course: Course<V>,
     /// What the shape is split into at time 0, with its radius grown by the target distance.
-    pub(super) core: Core<S::Vector>,
+    pub(super) core: Core<V>,
     /// What was found at the last time, which is mostly found again.
     hint: Cell<Hint>,
 }
@@ -58,9 +59,9 @@ pub(super) struct Place<V: Vector> {
     pub(super) error: V::Scalar,
 }
 
-impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'s, S, M> {
+impl<'s, V: Vector> MovingBody<'s, V> {
     #[inline(always)]
-    pub(super) fn new(shape: &'s S, motion: M, margin: ScalarOf<S>) -> Self {
+    pub(super) fn new(shape: Shape<'s, V>, motion: &'s dyn Trajectory<Vector = V>, margin: V::Scalar) -> Self {
         let core = shape.core();
         let course = match motion.as_rigid_motion() {
             None => Course::Other,
@@ -73,7 +74,7 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'
 
     /// Where the body is at a time.
     #[inline(always)]
-    pub(super) fn place(&self, time: ScalarOf<S>) -> Place<S::Vector> {
+    pub(super) fn place(&self, time: V::Scalar) -> Place<V> {
         match &self.course {
             Course::Rest => Place::START,
             Course::Rigid(rigid) if time > Scalar::ZERO => rigid.place(time, self.core.extent),
@@ -83,12 +84,12 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'
     }
 
     #[inline(never)]
-    fn place_on_trajectory(&self, time: ScalarOf<S>) -> Place<S::Vector> {
+    fn place_on_trajectory(&self, time: V::Scalar) -> Place<V> {
         let displacement = self.motion.displacement(time);
         let (origin, extent) = (self.core.origin, self.core.extent);
         let lever = length_bound(origin - displacement.pivot) + extent;
         let rotation = Some(displacement.rotation()).filter(|&rotation| rotation != Matrix::IDENTITY);
-        let turning = displacement.turn_error * lever + ScalarOf::<S>::EPSILON * extent;
+        let turning = displacement.turn_error * lever + V::Scalar::EPSILON * extent;
         Place {
             shift: displacement.shift,
             swing: displacement.turned(origin),
@@ -100,13 +101,13 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'
 
     /// The shape at a place, with its origin put at the given point, which is wrong by `error` at most.
     #[inline(always)]
-    pub(super) fn moved(&self, place: &Place<S::Vector>, origin: S::Vector, error: ScalarOf<S>) -> Moved<'_, S> {
+    pub(super) fn moved(&self, place: &Place<V>, origin: V, error: V::Scalar) -> Moved<'_, V> {
         Moved::new(self.shape, Core { origin, ..self.core }, place.rotation, error).with_hint(&self.hint)
     }
 
     /// A bound on the acceleration of points of the core, as of [`Trajectory::acceleration_along`].
     #[inline(always)]
-    pub(super) fn acceleration_along(&self, plane: TurningPlane<S::Vector>, interval: [ScalarOf<S>; 2]) -> ScalarOf<S> {
+    pub(super) fn acceleration_along(&self, plane: TurningPlane<V>, interval: [V::Scalar; 2]) -> V::Scalar {
         match &self.course {
             Course::Rest => Scalar::ZERO,
             Course::Rigid(Rigid { motion, turning, .. }) => {
@@ -120,11 +121,11 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'
     /// How far a point of the core may be, throughout an interval, from where it would be if the body went from its
     /// first place to its last by a constant change of all coordinates, and from another point of the core, in either
     /// direction along a unit vector; see [`in_contact`](super::in_contact).
-    pub(super) fn strays(&self, n: S::Vector, [from, to]: [ScalarOf<S>; 2]) -> ScalarOf<S> {
+    pub(super) fn strays(&self, n: V, [from, to]: [V::Scalar; 2]) -> V::Scalar {
         let extent = self.core.extent;
         let [before, after] =
             [from, to].map(|time| self.place(time).rotation.map_or(n, |rotation| rotation.transpose_mul(n)));
-        let rounding = ScalarOf::<S>::EPSILON * Scalar::from_f64(8.0);
+        let rounding = V::Scalar::EPSILON * Scalar::from_f64(8.0);
         let turned = ((after - before).norm() + rounding) * (extent + extent);
         let most = |n| self.acceleration_along(TurningPlane { from: n, to: n }, [from, to]);
         let bent = Float::max(Float::max(most(n), most(-n)), Scalar::ZERO);
@@ -133,7 +134,7 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'
 
     /// The velocity, at a time, of the body's point that is at `point` then.
     #[inline(always)]
-    pub(super) fn velocity(&self, time: ScalarOf<S>, point: S::Vector) -> S::Vector {
+    pub(super) fn velocity(&self, time: V::Scalar, point: V) -> V {
         match &self.course {
             Course::Rest => Vector::ZERO,
             _ => self.motion.velocity(time, point),
@@ -141,7 +142,7 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'
     }
 
     /// A ball that moves at constant velocity and contains the core throughout the interval, as of [`Trajectory::moving_ball`].
-    pub(super) fn moving_ball(&self, interval: [ScalarOf<S>; 2]) -> MovingBall<S::Vector> {
+    pub(super) fn moving_ball(&self, interval: [V::Scalar; 2]) -> MovingBall<V> {
         let ball = self.ball();
         match &self.course {
             Course::Rest => MovingBall { start: ball.center, velocity: Vector::ZERO, radius: ball.radius },
@@ -150,7 +151,7 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> MovingBody<'
     }
 
     /// A ball around the core at time 0.
-    fn ball(&self) -> BoundingSphere<S::Vector> {
+    fn ball(&self) -> BoundingSphere<V> {
         BoundingSphere { center: self.core.origin, radius: self.core.extent }
     }
 }

@@ -3,7 +3,7 @@
 use core::cell::{Cell, RefCell};
 
 use convex_support::numerics::range::is_comfortable;
-use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 use num_traits::Float;
 
 use super::approach::Approach;
@@ -13,7 +13,7 @@ use super::corners::Corners;
 use super::instant::{Instant, Limits};
 use super::moving_body::{MovingBody, length_bound};
 use super::placed::Placed;
-use super::trajectory::{Trajectory, TurningPlane};
+use super::trajectory::TurningPlane;
 use crate::SignedDistanceOptions;
 use crate::body::{Body as _, Pair, TracedSupport as _};
 use crate::contact::signed_distance_and_axis;
@@ -21,30 +21,24 @@ use crate::gjk::rounding;
 use crate::unit::{is_moderate, lost_to_underflow};
 
 /// Two bodies and their motions.
-pub(super) struct MovingPair<'s, A: SupportMap + ?Sized, MA, B: SupportMap + ?Sized, MB> {
-    pub(super) a: MovingBody<'s, A, MA>,
-    pub(super) b: MovingBody<'s, B, MB>,
+pub(super) struct MovingPair<'s, V: Vector> {
+    pub(super) a: MovingBody<'s, V>,
+    pub(super) b: MovingBody<'s, V>,
     /// Whether the closest points of the cores were known in closed form at the start.
     knows_points: bool,
     /// Both cores as they start, if they are boxes.
-    boxes: Option<[Block<A::Vector>; 2]>,
+    boxes: Option<[Block<V>; 2]>,
     /// What spans the facet that they were seen by at the last look, if zero's foot was within it.
     pub(super) facet: Cell<Option<Span>>,
     /// The corners of the faces that were closest at the last look.
-    pub(super) closest: RefCell<Corners<A::Vector>>,
+    pub(super) closest: RefCell<Corners<V>>,
     /// The support points computed of each shape.
     iterations: Cell<usize>,
 }
 
-impl<'s, A, MA, B, MB> MovingPair<'s, A, MA, B, MB>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-    MA: Trajectory<Vector = A::Vector>,
-    MB: Trajectory<Vector = A::Vector>,
-{
+impl<'s, V: Vector> MovingPair<'s, V> {
     #[inline(always)]
-    pub(super) fn new(a: MovingBody<'s, A, MA>, b: MovingBody<'s, B, MB>) -> Self {
+    pub(super) fn new(a: MovingBody<'s, V>, b: MovingBody<'s, V>) -> Self {
         let offset = a.core.origin - b.core.origin;
         let pair = Pair::of_cores(a.shape, b.shape, [a.core, b.core]);
         let knows_points = pair.closest_points(offset, pair.size(offset)).is_some();
@@ -61,7 +55,7 @@ where
 
     /// The bodies at a time, whose closest points are not known in closed form.
     #[inline(never)]
-    fn by_search(&self, time: ScalarOf<A>, axis: A::Vector, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
+    fn by_search(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>) -> Instant<V> {
         if let Some(boxes) = &self.boxes
             && let Some(known) = self.by_boxes(time, boxes, axis, limits, false)
         {
@@ -75,11 +69,11 @@ where
     /// The bodies where they are at a time, by what was closest at the last look, or by their signed distance.
     fn closely_placed(
         &self,
-        time: ScalarOf<A>,
-        placed: &Placed<'_, A, B>,
-        axis: A::Vector,
-        limits: Limits<ScalarOf<A>>,
-    ) -> Instant<A::Vector> {
+        time: V::Scalar,
+        placed: &Placed<'_, V>,
+        axis: V,
+        limits: Limits<V::Scalar>,
+    ) -> Instant<V> {
         let is_depth_asked = limits.depth > Scalar::ZERO;
         let known = if is_depth_asked { None } else { self.near_look(time, placed, axis) };
         known.unwrap_or_else(|| self.by_signed_distance(time, placed, axis, limits))
@@ -89,11 +83,11 @@ where
     #[inline(never)]
     fn by_signed_distance(
         &self,
-        time: ScalarOf<A>,
-        Placed { a, b, place, .. }: &Placed<'_, A, B>,
-        axis: A::Vector,
-        limits: Limits<ScalarOf<A>>,
-    ) -> Instant<A::Vector> {
+        time: V::Scalar,
+        Placed { a, b, place, .. }: &Placed<'_, V>,
+        axis: V,
+        limits: Limits<V::Scalar>,
+    ) -> Instant<V> {
         let wanted =
             SignedDistanceOptions::new().with_axis(axis).with_limit(limits.distance).with_depth_limit(limits.depth);
         let (answer, axis) = signed_distance_and_axis(a, b, wanted);
@@ -118,24 +112,13 @@ where
 
     /// How fast points of both bodies come nearer to one another along a normal.
     #[inline(always)]
-    pub(super) fn closing(
-        &self,
-        time: ScalarOf<A>,
-        normal: A::Vector,
-        [point_a, point_b]: [A::Vector; 2],
-    ) -> ScalarOf<A> {
+    pub(super) fn closing(&self, time: V::Scalar, normal: V, [point_a, point_b]: [V; 2]) -> V::Scalar {
         normal.dot(self.b.velocity(time, point_b) - self.a.velocity(time, point_a))
     }
 }
 
-impl<A, MA, B, MB> Approach<A::Vector> for MovingPair<'_, A, MA, B, MB>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-    MA: Trajectory<Vector = A::Vector>,
-    MB: Trajectory<Vector = A::Vector>,
-{
-    fn size(&self) -> ScalarOf<A> {
+impl<V: Vector> Approach<V> for MovingPair<'_, V> {
+    fn size(&self) -> V::Scalar {
         self.a.core.extent + self.a.core.radius + self.b.core.extent + self.b.core.radius
     }
 
@@ -143,12 +126,12 @@ where
         self.iterations.get()
     }
 
-    fn between(&self) -> A::Vector {
+    fn between(&self) -> V {
         self.a.core.origin - self.b.core.origin
     }
 
     #[inline(always)]
-    fn at(&self, time: ScalarOf<A>, axis: A::Vector, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
+    fn at(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>) -> Instant<V> {
         if !self.knows_points {
             return self.by_search(time, axis, limits);
         }
@@ -157,7 +140,7 @@ where
         there.unwrap_or_else(|| self.by_signed_distance(time, &self.placed(time), axis, limits))
     }
 
-    fn closely(&self, time: ScalarOf<A>, axis: A::Vector, limits: Limits<ScalarOf<A>>) -> Instant<A::Vector> {
+    fn closely(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>) -> Instant<V> {
         let known = match &self.boxes {
             _ if limits.depth > Scalar::ZERO => None,
             Some(boxes) => self.by_boxes(time, boxes, axis, limits, true),
@@ -167,25 +150,25 @@ where
         known.unwrap_or_else(|| self.closely_placed(time, &self.placed(time), axis, limits))
     }
 
-    fn level(&self, time: ScalarOf<A>, normal: A::Vector) -> (ScalarOf<A>, ScalarOf<A>) {
+    fn level(&self, time: V::Scalar, normal: V) -> (V::Scalar, V::Scalar) {
         let Placed { a, b, offset, .. } = &self.placed(time);
         let mut pair = Pair::new(a, b);
         let size = pair.size(*offset);
         // Of numbers out of range nothing is known.
         if !is_moderate(size) {
-            return (ScalarOf::<A>::nan(), Float::infinity());
+            return (V::Scalar::nan(), Float::infinity());
         }
         let (point, _) = pair.support(-normal);
         self.count(1);
         (normal.dot(point + *offset) - pair.radius(), rounding(size) + pair.error())
     }
 
-    fn acceleration_along(&self, plane: TurningPlane<A::Vector>, interval: [ScalarOf<A>; 2]) -> ScalarOf<A> {
+    fn acceleration_along(&self, plane: TurningPlane<V>, interval: [V::Scalar; 2]) -> V::Scalar {
         let opposite = TurningPlane { from: -plane.from, to: -plane.to };
         self.a.acceleration_along(plane, interval) + self.b.acceleration_along(opposite, interval)
     }
 
-    fn stays_far_apart(&self, interval: [ScalarOf<A>; 2]) -> Option<A::Vector> {
+    fn stays_far_apart(&self, interval: [V::Scalar; 2]) -> Option<V> {
         let a = self.a.moving_ball(interval);
         let b = self.b.moving_ball(interval);
         let (start, velocity) = (a.start - b.start, a.velocity - b.velocity);
@@ -193,7 +176,7 @@ where
         // The time at which start + t·velocity is shortest.
         let (slope, squared) = (start.dot(velocity), velocity.length_squared());
         // Of velocities whose squares are out of range, that time is not known.
-        if !(is_comfortable(squared) && slope.is_finite() || velocity == A::Vector::ZERO) {
+        if !(is_comfortable(squared) && slope.is_finite() || velocity == V::ZERO) {
             return None;
         }
         let nearest = if slope < Scalar::ZERO { (-slope / squared).min(duration) } else { Scalar::ZERO };
@@ -206,20 +189,20 @@ where
         if between.norm() > reach + margin { between.unit() } else { None }
     }
 
-    fn stay_in_contact(&self, from: &Instant<A::Vector>, to: &Instant<A::Vector>, depth: ScalarOf<A>) -> bool {
+    fn stay_in_contact(&self, from: &Instant<V>, to: &Instant<V>, depth: V::Scalar) -> bool {
         self.keep_in_contact(from, to, depth)
     }
 
-    fn speed_at(&self, there: &Instant<A::Vector>) -> ScalarOf<A> {
+    fn speed_at(&self, there: &Instant<V>) -> V::Scalar {
         let Instant { time, point, .. } = *there;
         length_bound(self.a.velocity(time, point)) + length_bound(self.b.velocity(time, point))
     }
 
-    fn pass_through(&self, near: &Instant<A::Vector>, time: ScalarOf<A>) -> bool {
+    fn pass_through(&self, near: &Instant<V>, time: V::Scalar) -> bool {
         self.have_met(near, time)
     }
 
-    fn velocity_of_b(&self, time: ScalarOf<A>, point: A::Vector) -> A::Vector {
+    fn velocity_of_b(&self, time: V::Scalar, point: V) -> V {
         self.b.velocity(time, point)
     }
 }

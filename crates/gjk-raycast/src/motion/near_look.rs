@@ -4,7 +4,7 @@
 //! it separates the bodies. Where they overlap, the closest points of their cores prove that if they are nearer than the radii; and
 //! of cores that overlap themselves, a simplex of the corners and the point of the difference farthest from them has zero inside.
 
-use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::corners::Face;
@@ -12,7 +12,6 @@ use super::instant::{IN_PLANE, Instant, LONG};
 use super::moved::Moved;
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
-use super::trajectory::Trajectory;
 use crate::body::{Pair, PointPair};
 use crate::contact::Cores;
 use crate::simplex::{MAX_POINTS, cross, project};
@@ -27,21 +26,10 @@ struct Closest<V: Vector> {
     unit: V,
 }
 
-impl<A, MA, B, MB> MovingPair<'_, A, MA, B, MB>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-    MA: Trajectory<Vector = A::Vector>,
-    MB: Trajectory<Vector = A::Vector>,
-{
+impl<V: Vector> MovingPair<'_, V> {
     /// The bodies at a time as well as it can be known, if what was closest at the last look is so still, and proves that they are apart
     /// or overlap.
-    pub(super) fn near_look(
-        &self,
-        time: ScalarOf<A>,
-        placed: &Placed<'_, A, B>,
-        axis: A::Vector,
-    ) -> Option<Instant<A::Vector>> {
+    pub(super) fn near_look(&self, time: V::Scalar, placed: &Placed<'_, V>, axis: V) -> Option<Instant<V>> {
         let pair = Pair::new(&placed.a, &placed.b);
         let size = pair.size(placed.offset);
         if !is_moderate(size) {
@@ -58,13 +46,13 @@ where
         cores.sharpen();
         let (scale, radius) = (cores.scale(), cores.radius());
         // As in an answer: the unit vector, the radii and the sums.
-        let slack = |length: ScalarOf<A>| ScalarOf::<A>::EPSILON * Scalar::from_f64(3.0) * (length + radius);
+        let slack = |length: V::Scalar| V::Scalar::EPSILON * Scalar::from_f64(3.0) * (length + radius);
         let lower = unit.dot(cores.support(-unit)?.point) * scale;
         let error = cores.error_along(unit) * scale + slack(lower.abs());
         // NaN is not in the plane.
         let is_closest = unit.dot(v) - lower <= error * Scalar::from_f64(IN_PLANE);
         let distance = lower - radius;
-        let mut upper = ScalarOf::<A>::infinity();
+        let mut upper = V::Scalar::infinity();
         if is_closest && !(distance > error) {
             upper = self.overlap_of_corners(&mut cores, &face, unit)?;
         }
@@ -85,19 +73,19 @@ where
     /// point.
     fn overlap_of_corners(
         &self,
-        cores: &mut Cores<'_, Moved<'_, A>, Moved<'_, B>>,
-        face: &Face<A::Vector>,
-        unit: A::Vector,
-    ) -> Option<ScalarOf<A>> {
-        let (zero, infinity) = (ScalarOf::<A>::ZERO, ScalarOf::<A>::infinity());
-        let (scale, radius, dimension) = (cores.scale(), cores.radius(), A::Vector::DIM);
+        cores: &mut Cores<'_, Moved<'_, V>, Moved<'_, V>>,
+        face: &Face<V>,
+        unit: V,
+    ) -> Option<V::Scalar> {
+        let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+        let (scale, radius, dimension) = (cores.scale(), cores.radius(), V::DIM);
         let (corners, len) = face.points();
-        let mut points = [A::Vector::ZERO; MAX_POINTS];
+        let mut points = [V::ZERO; MAX_POINTS];
         for (i, point) in points[..len].iter_mut().enumerate() {
             let mut direction = -unit;
             for j in (0..len).filter(|&j| j != i) {
                 let edge = corners[i] - corners[j];
-                direction += edge * (ScalarOf::<A>::EPSILON.sqrt() / edge.length());
+                direction += edge * (V::Scalar::EPSILON.sqrt() / edge.length());
             }
             *point = cores.support(direction)?.point;
         }
@@ -106,13 +94,13 @@ where
             if !weights[..len].iter().all(|&weight| weight > zero) {
                 return Some(infinity);
             }
-            let (mut closest, mut sum) = (A::Vector::ZERO, zero);
+            let (mut closest, mut sum) = (V::ZERO, zero);
             for (&point, &weight) in points[..len].iter().zip(&weights) {
                 closest += point * weight;
                 sum += weight;
             }
             let length = cores.greatest_length(closest / sum) * scale;
-            return Some(length - radius + ScalarOf::<A>::EPSILON * Scalar::from_f64(3.0) * (length + radius));
+            return Some(length - radius + V::Scalar::EPSILON * Scalar::from_f64(3.0) * (length + radius));
         }
         if len != dimension {
             return Some(infinity);

@@ -3,10 +3,8 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::approach::Approach;
 use super::first_contact::{AIM, Search};
 use super::instant::Instant;
-use super::result::MotionIterate;
 use super::trajectory::TurningPlane;
 
 /// How much of the farthest end that can be expected to be proved is asked for.
@@ -18,7 +16,7 @@ const STEPS: usize = 2;
 /// How often in a row the search for a contact may come nearer by less than half before it halves the interval.
 pub(super) const PATIENCE: u8 = 2;
 
-impl<V: Vector, P: Approach<V>, F: FnMut(MotionIterate<V>)> Search<'_, V, P, F> {
+impl<V: Vector> Search<'_, V> {
     /// Where to look next; `None` where no time lies between those known.
     ///
     /// With the gap `g` and the speed `w` at which it closes, it is expected to be `g − w·s` after the time `s`. So

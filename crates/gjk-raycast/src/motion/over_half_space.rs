@@ -2,7 +2,7 @@
 
 use core::cell::Cell;
 
-use convex_support::{Hint, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Hint, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use super::approach::Approach;
@@ -13,7 +13,9 @@ use super::moving_body::{MovingBody, length_bound};
 use super::options::MotionCastOptions;
 use super::result::{MotionCast, MotionIterate};
 use super::trajectory::{Trajectory, TurningPlane};
+use crate::compiled_once::compiled_once;
 use crate::half_space::{Level, Plane};
+use crate::shape::{Shape, WithoutLines};
 use crate::unit::lost_to_underflow;
 use crate::{HalfSpace, Motion, RayCastError};
 
@@ -64,7 +66,7 @@ impl<V: Vector> HalfSpace<V> {
         shape: &A,
         motion: impl Trajectory<Vector = V>,
         options: MotionCastOptions<V>,
-        observer: impl FnMut(MotionIterate<V>),
+        mut observer: impl FnMut(MotionIterate<V>),
     ) -> Result<MotionCast<V>, RayCastError> {
         check("motion_a", &motion)?;
         let options = checked(options)?;
@@ -74,16 +76,39 @@ impl<V: Vector> HalfSpace<V> {
             let cast = self.linear_cast(shape, motion, linear_options(&options))?;
             return Ok(of_linear_cast(cast, options.max_time));
         }
-        Ok(Search::run(&OverHalfSpace::new(shape, motion, self, options.target_distance), options, observer))
+        Ok(first_contact(&WithoutLines(shape), &motion, self, options, &mut observer))
     }
 }
 
+compiled_once! {
+    /// The first contact of a body that turns.
+    fn first_contact<V>(
+        shape: Shape<'_, V>,
+        motion: &dyn Trajectory<Vector = V>,
+        half_space: &HalfSpace<V>,
+        options: MotionCastOptions<V>,
+        observer: &mut dyn FnMut(MotionIterate<V>),
+    ) -> MotionCast<V> {
+        searched
+    }
+}
+
+fn searched<V: Vector>(
+    shape: Shape<'_, V>,
+    motion: &dyn Trajectory<Vector = V>,
+    half_space: &HalfSpace<V>,
+    options: MotionCastOptions<V>,
+    observer: &mut dyn FnMut(MotionIterate<V>),
+) -> MotionCast<V> {
+    Search::run(&OverHalfSpace::new(shape, motion, half_space, options.target_distance), options, observer)
+}
+
 /// A moving body, `a`, over a half-space at rest, `b`.
-struct OverHalfSpace<'s, S: SupportMap + ?Sized, M> {
-    body: MovingBody<'s, S, M>,
+struct OverHalfSpace<'s, V: Vector> {
+    body: MovingBody<'s, V>,
     /// The target distance, by which the body's radius is grown.
-    margin: ScalarOf<S>,
-    plane: Plane<S::Vector>,
+    margin: V::Scalar,
+    plane: Plane<V>,
     /// The support points computed.
     iterations: Cell<usize>,
 }
@@ -96,8 +121,13 @@ struct Lowest<V: Vector> {
     core_point: V,
 }
 
-impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> OverHalfSpace<'s, S, M> {
-    fn new(shape: &'s S, motion: M, half_space: &HalfSpace<S::Vector>, margin: ScalarOf<S>) -> Self {
+impl<'s, V: Vector> OverHalfSpace<'s, V> {
+    fn new(
+        shape: Shape<'s, V>,
+        motion: &'s dyn Trajectory<Vector = V>,
+        half_space: &HalfSpace<V>,
+        margin: V::Scalar,
+    ) -> Self {
         Self {
             body: MovingBody::new(shape, motion, margin),
             margin,
@@ -110,7 +140,7 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> OverHalfSpac
     ///
     /// Its height is that of the sum of the origin, what the motion adds to that, and the support point, so that a body far along the
     /// plane is known as well as any other.
-    fn lowest(&self, time: ScalarOf<S>) -> Lowest<S::Vector> {
+    fn lowest(&self, time: V::Scalar) -> Lowest<V> {
         let (origin, radius) = (self.body.core.origin, self.body.core.radius);
         let place = self.body.place(time);
         let (shift, turned) = (place.shift, place.swing);
@@ -124,12 +154,8 @@ impl<'s, S: SupportMap + ?Sized, M: Trajectory<Vector = S::Vector>> OverHalfSpac
     }
 }
 
-impl<S, M> Approach<S::Vector> for OverHalfSpace<'_, S, M>
-where
-    S: SupportMap + ?Sized,
-    M: Trajectory<Vector = S::Vector>,
-{
-    fn size(&self) -> ScalarOf<S> {
+impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
+    fn size(&self) -> V::Scalar {
         self.body.core.extent + self.body.core.radius
     }
 
@@ -137,15 +163,15 @@ where
         self.iterations.get()
     }
 
-    fn between(&self) -> S::Vector {
+    fn between(&self) -> V {
         self.plane.unit
     }
 
-    fn at(&self, time: ScalarOf<S>, axis: S::Vector, limits: Limits<ScalarOf<S>>) -> Instant<S::Vector> {
+    fn at(&self, time: V::Scalar, axis: V, limits: Limits<V::Scalar>) -> Instant<V> {
         self.closely(time, axis, limits)
     }
 
-    fn closely(&self, time: ScalarOf<S>, _axis: S::Vector, _limits: Limits<ScalarOf<S>>) -> Instant<S::Vector> {
+    fn closely(&self, time: V::Scalar, _axis: V, _limits: Limits<V::Scalar>) -> Instant<V> {
         let Lowest { height, core_point } = self.lowest(time);
         let unit = self.plane.unit;
         let point_a = core_point - unit * self.body.core.radius;
@@ -165,20 +191,20 @@ where
     }
 
     /// The normal is that of the plane, whichever is asked for.
-    fn level(&self, time: ScalarOf<S>, _normal: S::Vector) -> (ScalarOf<S>, ScalarOf<S>) {
+    fn level(&self, time: V::Scalar, _normal: V) -> (V::Scalar, V::Scalar) {
         let Level { value, error } = self.lowest(time).height;
         (value, error)
     }
 
     /// The plane does not turn, whatever rounding has made of a normal.
-    fn acceleration_along(&self, _plane: TurningPlane<S::Vector>, interval: [ScalarOf<S>; 2]) -> ScalarOf<S> {
+    fn acceleration_along(&self, _plane: TurningPlane<V>, interval: [V::Scalar; 2]) -> V::Scalar {
         let normal = self.plane.normal();
         self.plane.per_length(self.body.acceleration_along(TurningPlane { from: normal, to: normal }, interval))
     }
 
     /// The ball is lowest at one of the ends.
-    fn stays_far_apart(&self, interval: [ScalarOf<S>; 2]) -> Option<S::Vector> {
-        let zero = ScalarOf::<S>::ZERO;
+    fn stays_far_apart(&self, interval: [V::Scalar; 2]) -> Option<V> {
+        let zero = V::Scalar::ZERO;
         let ball = self.body.moving_ball(interval);
         let reach = ball.radius + self.body.core.radius;
         let height = self.plane.height([ball.start], zero, reach).least();
@@ -187,26 +213,26 @@ where
         let way = if sinking <= zero { zero } else { sinking * (interval[1] - interval[0]) };
         // What the ball itself is rounded by.
         let measure = reach + length_bound(ball.start) + way;
-        let margin = measure * ScalarOf::<S>::from_f64(32.0) * ScalarOf::<S>::EPSILON + lost_to_underflow(measure);
+        let margin = measure * V::Scalar::from_f64(32.0) * V::Scalar::EPSILON + lost_to_underflow(measure);
         // NaN is not apart.
         (height - way > margin).then_some(self.plane.unit)
     }
 
     /// As of [two bodies](super::in_contact), of which only the one direction counts.
-    fn stay_in_contact(&self, from: &Instant<S::Vector>, to: &Instant<S::Vector>, depth: ScalarOf<S>) -> bool {
+    fn stay_in_contact(&self, from: &Instant<V>, to: &Instant<V>, depth: V::Scalar) -> bool {
         self.body.strays(self.plane.unit, [from.time, to.time]) <= depth * Scalar::from_f64(4.0)
     }
 
-    fn speed_at(&self, there: &Instant<S::Vector>) -> ScalarOf<S> {
+    fn speed_at(&self, there: &Instant<V>) -> V::Scalar {
         length_bound(self.body.velocity(there.time, there.point))
     }
 
     /// A half-space has an inside.
-    fn pass_through(&self, _: &Instant<S::Vector>, _: ScalarOf<S>) -> bool {
+    fn pass_through(&self, _: &Instant<V>, _: V::Scalar) -> bool {
         false
     }
 
-    fn velocity_of_b(&self, _time: ScalarOf<S>, _point: S::Vector) -> S::Vector {
-        S::Vector::ZERO
+    fn velocity_of_b(&self, _time: V::Scalar, _point: V) -> V {
+        V::ZERO
     }
 }

@@ -10,7 +10,7 @@
 //! How the corners are seen in between is known by how far they move at most. A component of their path whose second derivative is
 //! at most `m` in amount is off its chord by at most `m·τ²/8`, with `τ` the duration.
 
-use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::corners::Corners;
@@ -18,7 +18,7 @@ use super::instant::Instant;
 use super::moving_body::length_bound;
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
-use super::trajectory::{Trajectory, TurningPlane};
+use super::trajectory::TurningPlane;
 use crate::SignedDistanceOptions;
 use crate::body::{Body as _, Pair, PointPair};
 use crate::contact::across;
@@ -36,22 +36,16 @@ struct Seen<S> {
     heights: [S; MAX_POINTS],
 }
 
-impl<A, MA, B, MB> MovingPair<'_, A, MA, B, MB>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-    MA: Trajectory<Vector = A::Vector>,
-    MB: Trajectory<Vector = A::Vector>,
-{
+impl<V: Vector> MovingPair<'_, V> {
     /// Whether the bodies, which a plane separates at the time of `near`, certainly have a point in common at some time until the given
     /// one, because they have passed through one another.
     #[cold]
     #[inline(never)]
-    pub(super) fn have_met(&self, near: &Instant<A::Vector>, time: ScalarOf<A>) -> bool {
+    pub(super) fn have_met(&self, near: &Instant<V>, time: V::Scalar) -> bool {
         let (from, to) = (self.placed(near.time), self.placed(time));
         let Some(corners) = self.closest_corners(&from, near.normal) else { return false };
         let (before, after) = (corners.differences(&from), corners.differences(&to));
-        let dimension = A::Vector::DIM;
+        let dimension = V::DIM;
         if !before[..dimension].iter().chain(&after[..dimension]).all(|corner| corner.is_finite()) {
             return false;
         }
@@ -63,14 +57,14 @@ where
         let seen_before = Seen::along(near.normal, &before);
         let seen_after = Seen::along(near.normal, &after);
         // Wherever the corners are in between, each is seen no farther than this from where it was.
-        let is_seen_within = seen_before.room::<A::Vector>() > moved;
-        let (height, lost) = seen_after.height_at_zero::<A::Vector>();
+        let is_seen_within = seen_before.room::<V>() > moved;
+        let (height, lost) = seen_after.height_at_zero::<V>();
         // NaN is no proof.
         is_seen_within && near.gap > Scalar::ZERO && height < -(error + lost)
     }
 
     /// Corners of the difference whose face is nearest to zero, as many as there are dimensions.
-    fn closest_corners(&self, placed: &Placed<'_, A, B>, axis: A::Vector) -> Option<Corners<A::Vector>> {
+    fn closest_corners(&self, placed: &Placed<'_, V>, axis: V) -> Option<Corners<V>> {
         let mut pair = Pair::new(&placed.a, &placed.b);
         let size = pair.size(placed.offset);
         // What has a radius has an inside.
@@ -79,25 +73,25 @@ where
         }
         let frame = Frame::new(&mut pair, placed.offset, size);
         let mut state = Gjk::new(axis);
-        let options = GjkOptions::new(axis, SignedDistanceOptions::<A::Vector>::new().max_iterations);
+        let options = GjkOptions::new(axis, SignedDistanceOptions::<V>::new().max_iterations);
         let _ = gjk(&mut state, &mut pair, frame, options, None, |_| {});
         self.count(state.iterations);
         state.ensure_measured();
-        let in_world = |pair: PointPair<A::Vector>| PointPair { a: pair.a * frame.scale, b: pair.b * frame.scale };
+        let in_world = |pair: PointPair<V>| PointPair { a: pair.a * frame.scale, b: pair.b * frame.scale };
         let mut corners = Corners::none();
         corners.keep(state.simplex.weighted().map(|(_, corner)| in_world(corner)), placed);
-        (state.simplex.points().len() == A::Vector::DIM).then_some(corners)
+        (state.simplex.points().len() == V::DIM).then_some(corners)
     }
 
     /// How far a point of the difference may be off the chord of its path: the amount of each coordinate's second derivative is bounded
     /// along both directions of its axis.
-    fn off_chord(&self, [from, to]: [ScalarOf<A>; 2]) -> ScalarOf<A> {
-        let most = |n: A::Vector| {
-            let plane = |n: A::Vector| TurningPlane { from: n, to: n };
+    fn off_chord(&self, [from, to]: [V::Scalar; 2]) -> V::Scalar {
+        let most = |n: V| {
+            let plane = |n: V| TurningPlane { from: n, to: n };
             self.a.acceleration_along(plane(n), [from, to]) + self.b.acceleration_along(plane(-n), [from, to])
         };
-        let mut m = ScalarOf::<A>::ZERO;
-        for axis in (0..A::Vector::DIM).map(A::Vector::axis) {
+        let mut m = V::Scalar::ZERO;
+        for axis in (0..V::DIM).map(V::axis) {
             // One of them may be negative.
             m += most(axis).abs() + most(-axis).abs();
         }
@@ -107,11 +101,7 @@ where
 }
 
 /// What a point of the difference is wrong by.
-fn error_of<A, B>(placed: &Placed<'_, A, B>) -> ScalarOf<A>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+fn error_of<V: Vector>(placed: &Placed<'_, V>) -> V::Scalar {
     let pair = Pair::new(&placed.a, &placed.b);
     rounding(pair.size(placed.offset)) + pair.error()
 }

@@ -1,37 +1,30 @@
 //! Two moving bodies where they are at a time.
 
-use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 
 use super::moved::Moved;
 use super::moving_body::length_bound;
 use super::moving_pair::MovingPair;
-use super::trajectory::Trajectory;
 
 /// Two bodies at one time; `b` has its origin at zero, which is `place` in the world.
-pub(super) struct Placed<'s, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
-    pub(super) a: Moved<'s, A>,
-    pub(super) b: Moved<'s, B>,
+pub(super) struct Placed<'s, V: Vector> {
+    pub(super) a: Moved<'s, V>,
+    pub(super) b: Moved<'s, V>,
     /// The origin of `a` as seen from that of `b`.
-    pub(super) offset: A::Vector,
-    pub(super) place: A::Vector,
+    pub(super) offset: V,
+    pub(super) place: V,
 }
 
-impl<A, MA, B, MB> MovingPair<'_, A, MA, B, MB>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-    MA: Trajectory<Vector = A::Vector>,
-    MB: Trajectory<Vector = A::Vector>,
-{
+impl<V: Vector> MovingPair<'_, V> {
     /// The bodies where they are at a time.
     #[inline(never)]
-    pub(super) fn placed(&self, time: ScalarOf<A>) -> Placed<'_, A, B> {
+    pub(super) fn placed(&self, time: V::Scalar) -> Placed<'_, V> {
         self.placed_here(time)
     }
 
     /// The same, compiled into its caller.
     #[inline(always)]
-    pub(super) fn placed_here(&self, time: ScalarOf<A>) -> Placed<'_, A, B> {
+    pub(super) fn placed_here(&self, time: V::Scalar) -> Placed<'_, V> {
         let (a, b) = (self.a.place(time), self.b.place(time));
         // What lies between is of the order of the bodies, however far from the world's origin they are.
         let between = self.a.core.origin - self.b.core.origin;
@@ -40,10 +33,10 @@ where
 
         // A rounding for each difference and sum.
         let magnitude = length_bound(between.abs() + shifts.abs() + swings.abs());
-        let rounding = ScalarOf::<A>::from_f64(1.5) * ScalarOf::<A>::EPSILON * magnitude;
+        let rounding = V::Scalar::from_f64(1.5) * V::Scalar::EPSILON * magnitude;
         Placed {
             a: self.a.moved(&a, offset, rounding + (a.error + b.error)),
-            b: self.b.moved(&b, A::Vector::ZERO, Scalar::ZERO),
+            b: self.b.moved(&b, V::ZERO, Scalar::ZERO),
             offset,
             place: self.b.core.origin + b.shift + b.swing,
         }

@@ -1,6 +1,6 @@
 //! A look at two moving bodies that are well apart, of which the search needs to know their distance only roughly.
 
-use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 use num_traits::Float;
 
 use super::corners::Face;
@@ -8,7 +8,6 @@ use super::instant::{Instant, NEAR};
 use super::moved::Moved;
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
-use super::trajectory::Trajectory;
 use crate::SignedDistanceOptions;
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
 use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk, rounding};
@@ -48,24 +47,18 @@ fn in_world<V: Vector>(points: PointPair<V>, scale: V::Scalar) -> PointPair<V> {
     PointPair { a: points.a * scale, b: points.b * scale }
 }
 
-impl<A, MA, B, MB> MovingPair<'_, A, MA, B, MB>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-    MA: Trajectory<Vector = A::Vector>,
-    MB: Trajectory<Vector = A::Vector>,
-{
+impl<V: Vector> MovingPair<'_, V> {
     /// The pair at a time; `None` where the bodies are nearly in contact, or overlap and nobody can tell by how much.
     ///
     /// Where the corners that were closest at the last time are so still, one support point proves it. Otherwise GJK goes on from there. Where
     /// the bodies overlap by more than rounding, the best plane known tells about how much, which is all that the search needs.
     pub(super) fn roughly(
         &self,
-        time: ScalarOf<A>,
-        placed: &Placed<'_, A, B>,
-        axis: A::Vector,
-        limit: ScalarOf<A>,
-    ) -> Option<Instant<A::Vector>> {
+        time: V::Scalar,
+        placed: &Placed<'_, V>,
+        axis: V,
+        limit: V::Scalar,
+    ) -> Option<Instant<V>> {
         let mut pair = Pair::new(&placed.a, &placed.b);
         let size = pair.size(placed.offset);
         let face = if is_moderate(size) { self.closest.borrow().closest_face(placed) } else { None };
@@ -78,17 +71,17 @@ where
     /// The same by the face that was closest at the last time, or if it is no longer, by GJK.
     fn at_face(
         &self,
-        time: ScalarOf<A>,
-        placed: &Placed<'_, A, B>,
-        pair: &mut Pair<'_, Moved<'_, A>, Moved<'_, B>>,
-        face: &Face<A::Vector>,
-        axis: A::Vector,
-        limit: ScalarOf<A>,
-    ) -> Option<Instant<A::Vector>> {
-        let (zero, radius, length) = (ScalarOf::<A>::ZERO, pair.radius(), face.v.length());
+        time: V::Scalar,
+        placed: &Placed<'_, V>,
+        pair: &mut Pair<'_, Moved<'_, V>, Moved<'_, V>>,
+        face: &Face<V>,
+        axis: V,
+        limit: V::Scalar,
+    ) -> Option<Instant<V>> {
+        let (zero, radius, length) = (V::Scalar::ZERO, pair.radius(), face.v.length());
         let error = rounding(pair.size(placed.offset)) + pair.error();
         // NaN is not.
-        let is_well_off = |distance: ScalarOf<A>| distance.abs() > error * Scalar::from_f64(NEAR);
+        let is_well_off = |distance: V::Scalar| distance.abs() > error * Scalar::from_f64(NEAR);
         // Where the cores have passed through one another, its plane is the other way round.
         let (v, signed) = if face.v.dot(axis) > zero { (face.v, length) } else { (-face.v, -length) };
         // They are no farther apart than that.
@@ -114,16 +107,16 @@ where
     /// The same by GJK, which begins with a face and the support point across the vector to it, or along an axis.
     fn searched(
         &self,
-        time: ScalarOf<A>,
-        placed: &Placed<'_, A, B>,
-        pair: &mut Pair<'_, Moved<'_, A>, Moved<'_, B>>,
-        begin: Begin<'_, A::Vector>,
-        limit: ScalarOf<A>,
-    ) -> Option<Instant<A::Vector>> {
+        time: V::Scalar,
+        placed: &Placed<'_, V>,
+        pair: &mut Pair<'_, Moved<'_, V>, Moved<'_, V>>,
+        begin: Begin<'_, V>,
+        limit: V::Scalar,
+    ) -> Option<Instant<V>> {
         let size = pair.size(placed.offset);
         let frame = Frame::new(pair, placed.offset, size);
         let Frame { scale, per_unit, radius, error, .. } = frame;
-        let in_unit = |points: PointPair<A::Vector>| PointPair { a: points.a * per_unit, b: points.b * per_unit };
+        let in_unit = |points: PointPair<V>| PointPair { a: points.a * per_unit, b: points.b * per_unit };
         let (mut state, known) = match begin {
             Begin::Along(axis) => (Gjk::new(axis), None),
             Begin::At(face, (point, witness)) => {
@@ -135,7 +128,7 @@ where
         let options = GjkOptions {
             limit: limit * per_unit + radius,
             tolerance: Scalar::from_f64(ROUGH),
-            ..GjkOptions::new(state.normal, SignedDistanceOptions::<A::Vector>::new().max_iterations)
+            ..GjkOptions::new(state.normal, SignedDistanceOptions::<V>::new().max_iterations)
         };
         let end = gjk(&mut state, pair, frame, options, known, |_| {});
         self.count(state.iterations);
@@ -165,10 +158,10 @@ where
     #[inline(always)]
     fn instant(
         &self,
-        time: ScalarOf<A>,
-        placed: &Placed<'_, A, B>,
-        &Seen { unit, lower, error, points }: &Seen<A::Vector>,
-    ) -> Instant<A::Vector> {
+        time: V::Scalar,
+        placed: &Placed<'_, V>,
+        &Seen { unit, lower, error, points }: &Seen<V>,
+    ) -> Instant<V> {
         let (radius_a, radius_b) = (self.a.core.radius, self.b.core.radius);
         let point_a = placed.place + placed.offset + points.a - unit * radius_a;
         let point = placed.place + points.b + unit * radius_b;
