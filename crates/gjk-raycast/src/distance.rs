@@ -10,6 +10,7 @@ use crate::gjk::{
     End, Frame, Gjk, GjkOptions, InOrder, NEAR, comes_first, first_direction, gjk, is_near_contact, near_contact,
     rounding,
 };
+use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
 use crate::{Distance, DistanceOptions, Iterate, SignedDistanceOptions, Status, SubAlgorithm};
 
@@ -39,7 +40,7 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    distance_with(a, b, options, |_| {})
+    watched(a, b, options, &mut Observer::none())
 }
 
 /// [`distance`], showing an observer every iterate.
@@ -54,9 +55,23 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
+    watched(a, b, options, &mut Observer::new(&mut observer))
+}
+
+#[inline(always)]
+fn watched<A, B>(
+    a: &A,
+    b: &B,
+    options: DistanceOptions<A::Vector>,
+    observer: &mut Observer<'_, A::Vector>,
+) -> Distance<A::Vector>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
     let cores = [a.core(), b.core()];
-    direct(a, b, cores, options.max_iterations, &mut observer)
-        .unwrap_or_else(|| by_search([&WithoutLines(a), &WithoutLines(b)], cores, options, &mut observer))
+    direct(a, b, cores, options.max_iterations, observer)
+        .unwrap_or_else(|| by_search([&WithoutLines(a), &WithoutLines(b)], cores, options, observer))
 }
 
 compiled_once! {
@@ -65,7 +80,7 @@ compiled_once! {
         shapes: [Shape<'_, V>; 2],
         cores: [Core<V>; 2],
         options: DistanceOptions<V>,
-        observer: &mut dyn FnMut(Iterate<'_, V>),
+        observer: &mut Observer<'_, V>,
     ) -> Distance<V> {
         searched
     }
@@ -81,7 +96,7 @@ fn direct<A, B>(
     b: &B,
     cores: [Core<A::Vector>; 2],
     max_iterations: usize,
-    observer: impl FnOnce(Iterate<'_, A::Vector>),
+    observer: &mut Observer<'_, A::Vector>,
 ) -> Option<Distance<A::Vector>>
 where
     A: SupportMap + ?Sized,
@@ -114,7 +129,8 @@ where
         return None;
     }
     let (scale, upper) = (number(1.0), length);
-    observer(Iterate { iteration: 0, simplex: &[v], v, w, scale, lower, upper });
+    let simplex = [v];
+    observer.show(|| Iterate { iteration: 0, simplex: &simplex, v, w, scale, lower, upper });
     let n = v / length;
     Some(Distance {
         distance: length - radius,
@@ -133,7 +149,7 @@ fn searched<V: Vector>(
     [a, b]: [Shape<'_, V>; 2],
     cores: [Core<V>; 2],
     options: DistanceOptions<V>,
-    observer: &mut dyn FnMut(Iterate<'_, V>),
+    observer: &mut Observer<'_, V>,
 ) -> Distance<V> {
     let mut pair = Pair::of_cores(a, b, cores);
     let offset = pair.core_a.origin - pair.core_b.origin;
@@ -160,10 +176,9 @@ fn searched<V: Vector>(
     let end = if start == Some(true) {
         End::Overlap
     } else {
-        let as_given = |iterate: Iterate<'_, V>| {
-            if is_reversed { iterate.reversed(&mut *observer) } else { observer(iterate) }
-        };
-        gjk(&mut state, &mut bodies, in_order, search, None, as_given)
+        let mut turned = |iterate: Iterate<'_, V>| iterate.reversed(|iterate| observer.show(|| iterate));
+        let mut as_given = if is_reversed { Observer::new(&mut turned) } else { observer.by_ref() };
+        gjk(&mut state, &mut bodies, in_order, search, None, &mut as_given)
     };
     if is_near_contact(&mut state, &frame) {
         // Whether it is the search that any query would have made.

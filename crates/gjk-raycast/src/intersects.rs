@@ -5,8 +5,9 @@ use num_traits::Float;
 
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
 use crate::compiled_once::compiled_once;
-use crate::distance::distance_with;
+use crate::distance::distance;
 use crate::gjk::{Boxes, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, is_near_contact, rounding};
+use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
 use crate::unit::is_moderate;
 use crate::{DistanceOptions, IntersectOptions, Intersection, Iterate, Status};
@@ -37,7 +38,7 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    intersects_with(a, b, options, |_| {})
+    watched(a, b, options, &mut Observer::none())
 }
 
 /// [`intersects`], showing an observer every iterate.
@@ -47,6 +48,20 @@ pub fn intersects_with<A, B>(
     b: &B,
     options: IntersectOptions<A::Vector>,
     mut observer: impl FnMut(Iterate<'_, A::Vector>),
+) -> Intersection<A::Vector>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    watched(a, b, options, &mut Observer::new(&mut observer))
+}
+
+#[inline(always)]
+fn watched<A, B>(
+    a: &A,
+    b: &B,
+    options: IntersectOptions<A::Vector>,
+    observer: &mut Observer<'_, A::Vector>,
 ) -> Intersection<A::Vector>
 where
     A: SupportMap + ?Sized,
@@ -75,7 +90,7 @@ where
         if reach.is_finite() && reach > (pair.radius() + rounding(size) + pair.error()) * length {
             let lower = reach / length;
             let upper = Float::infinity();
-            observer(Iterate { iteration: 0, simplex: &[], v: first, w, scale: Scalar::ONE, lower, upper });
+            observer.show(|| Iterate { iteration: 0, simplex: &[], v: first, w, scale: Scalar::ONE, lower, upper });
             return Intersection {
                 overlap: false,
                 axis: Some(first / length),
@@ -87,7 +102,7 @@ where
     }
     let cores = [pair.core_a, pair.core_b];
     let first = First { offset, direction: first, point: known };
-    by_search([&WithoutLines(a), &WithoutLines(b)], cores, &options, &first, &mut observer)
+    by_search([&WithoutLines(a), &WithoutLines(b)], cores, &options, &first, observer)
 }
 
 compiled_once! {
@@ -97,7 +112,7 @@ compiled_once! {
         cores: [Core<V>; 2],
         options: &IntersectOptions<V>,
         first: &First<V>,
-        observer: &mut dyn FnMut(Iterate<'_, V>),
+        observer: &mut Observer<'_, V>,
     ) -> Intersection<V> {
         searched
     }
@@ -117,7 +132,7 @@ fn searched<V: Vector>(
     cores: [Core<V>; 2],
     options: &IntersectOptions<V>,
     first: &First<V>,
-    observer: &mut dyn FnMut(Iterate<'_, V>),
+    observer: &mut Observer<'_, V>,
 ) -> Intersection<V> {
     let pair = &mut Pair::of_cores(a, b, cores);
     let size = pair.size(first.offset);
@@ -127,7 +142,7 @@ fn searched<V: Vector>(
     {
         let (zero, upper) = (Scalar::ZERO, Float::infinity());
         let (v, w) = (first.direction, point + first.offset);
-        observer(Iterate { iteration: 0, simplex: &[], v, w, scale: Scalar::ONE, lower: zero, upper });
+        observer.show(|| Iterate { iteration: 0, simplex: &[], v, w, scale: Scalar::ONE, lower: zero, upper });
         let (overlap, axis) = match boxes {
             Boxes::Meet => (true, None),
             Boxes::Apart(axis) => (false, Some(axis)),
@@ -165,7 +180,7 @@ fn searched<V: Vector>(
 #[cold]
 #[inline(never)]
 fn closely<V: Vector>([a, b]: [Shape<'_, V>; 2], max_iterations: usize) -> Intersection<V> {
-    let there = distance_with(a, b, DistanceOptions::new().with_max_iterations(max_iterations), |_| {});
+    let there = distance(a, b, DistanceOptions::new().with_max_iterations(max_iterations));
     Intersection {
         overlap: there.overlap,
         axis: there.normal.filter(|_| !there.overlap),

@@ -129,6 +129,7 @@ mod intersects;
 mod iterative_ray_cast;
 mod linear_cast;
 mod motion;
+mod observer;
 mod options;
 mod ray;
 mod ray_cast;

@@ -7,6 +7,7 @@ use num_traits::Float as _;
 use crate::body::{Body, Pair, PointPair};
 use crate::cast::{Cast, CastHit, Part, cast, direct, settle_start};
 use crate::compiled_once::compiled_once;
+use crate::observer::Observer;
 use crate::ray::{check_finite, check_numbers};
 use crate::shape::{Shape, WithoutLines};
 use crate::start_in_contact::Start;
@@ -102,7 +103,7 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    linear_cast_with(a, b, motion, options, |_| {})
+    watched(a, b, motion, options, &mut Observer::none())
 }
 
 /// [`linear_cast`], showing an observer every iterate.
@@ -121,6 +122,21 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
+    watched(a, b, motion, options, &mut Observer::new(&mut observer))
+}
+
+#[inline(always)]
+fn watched<A, B>(
+    a: &A,
+    b: &B,
+    motion: Motion<A::Vector>,
+    options: LinearCastOptions<A::Vector>,
+    observer: &mut Observer<'_, A::Vector>,
+) -> Result<LinearCast<A::Vector>, RayCastError>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
     motion.check(&options)?;
     let target = options.target_distance.max(<A::Vector as Vector>::Scalar::ZERO);
     let mut body = Pair::new(a, b);
@@ -130,12 +146,12 @@ where
     let is_known = [body.core_a, body.core_b].iter().any(|core| matches!(core.kind, CoreKind::Point(_)));
     let known = if is_known {
         let (ray, direction_error, wanted) = ray_of(motion, [body.core_a.origin, body.core_b.origin], &options);
-        direct(&mut body, ray, direction_error, &wanted, &mut observer)
+        direct(&mut body, ray, direction_error, &wanted, observer)
     } else {
         None
     };
     let cores = [body.core_a, body.core_b];
-    Ok(by_search(&mut body, shapes, cores, motion, &options, known, &mut observer))
+    Ok(by_search(&mut body, shapes, cores, motion, &options, known, observer))
 }
 
 compiled_once! {
@@ -147,7 +163,7 @@ compiled_once! {
         motion: Motion<V>,
         options: &LinearCastOptions<V>,
         known: Option<Cast<V>>,
-        observer: &mut dyn FnMut(Iterate<'_, V>),
+        observer: &mut Observer<'_, V>,
     ) -> LinearCast<V> {
         searched
     }
@@ -160,7 +176,7 @@ fn searched<V: Vector>(
     motion: Motion<V>,
     &options: &LinearCastOptions<V>,
     known: Option<Cast<V>>,
-    observer: &mut dyn FnMut(Iterate<'_, V>),
+    observer: &mut Observer<'_, V>,
 ) -> LinearCast<V> {
     let zero = V::Scalar::ZERO;
     let target = options.target_distance.max(zero);

@@ -6,6 +6,7 @@ use num_traits::Float;
 use crate::body::{Body, Single, TracedSupport as _};
 use crate::cast::{Cast, CastHit, LocalRay, Part, cast, direct, settle_start};
 use crate::compiled_once::compiled_once;
+use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
 use crate::unit::power_of_two_near;
 use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, Status};
@@ -55,7 +56,7 @@ pub fn ray_cast<S: SupportMap + ?Sized>(
     let ray = ray.by_coordinates();
     match certain(target, ray, &options) {
         Some(answer) => Ok(answer),
-        None => searched(target, ray, options, |_| {}),
+        None => searched(target, ray, options, &mut Observer::none()),
     }
 }
 
@@ -70,7 +71,8 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
     options: RayCastOptions<S::Vector>,
     mut observer: impl FnMut(Iterate<'_, S::Vector>),
 ) -> Result<RayCast<S::Vector>, RayCastError> {
-    let Some(answer) = certain(target, ray, &options) else { return searched(target, ray, options, observer) };
+    let mut observer = Observer::new(&mut observer);
+    let Some(answer) = certain(target, ray, &options) else { return searched(target, ray, options, &mut observer) };
     let (at, axis) = match answer.outcome {
         Outcome::Hit(RayHit { point, normal: Some(normal), .. }) => (point, normal),
         Outcome::Miss(Miss { axis }) => (ray.source, axis),
@@ -79,7 +81,7 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
     let mut body = Single::new(target);
     let w = at - body.origin() - body.support(axis).0;
     let (lower, upper) = (Scalar::ZERO, Float::infinity());
-    observer(Iterate { iteration: 0, simplex: &[], v: axis, w, scale: Scalar::ONE, lower, upper });
+    observer.show(|| Iterate { iteration: 0, simplex: &[], v: axis, w, scale: Scalar::ONE, lower, upper });
     Ok(answer)
 }
 
@@ -128,15 +130,15 @@ fn searched<S: SupportMap + ?Sized>(
     target: &S,
     ray: Ray<S::Vector>,
     options: RayCastOptions<S::Vector>,
-    mut observer: impl FnMut(Iterate<'_, S::Vector>),
+    observer: &mut Observer<'_, S::Vector>,
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     ray.check(&options)?;
     let mut body = Single::new(target);
     let is_whole = !(options.min_lambda > Scalar::ZERO);
-    if is_whole && let Some(cast) = direct(&mut body, ray, Scalar::ZERO, &options, &mut observer) {
+    if is_whole && let Some(cast) = direct(&mut body, ray, Scalar::ZERO, &options, observer) {
         return Ok(answer(cast, ray));
     }
-    Ok(by_search(&mut body, &WithoutLines(target), ray, &options, &mut observer))
+    Ok(by_search(&mut body, &WithoutLines(target), ray, &options, observer))
 }
 
 compiled_once! {
@@ -146,7 +148,7 @@ compiled_once! {
         shape: Shape<'_, V>,
         ray: Ray<V>,
         options: &RayCastOptions<V>,
-        observer: &mut dyn FnMut(Iterate<'_, V>),
+        observer: &mut Observer<'_, V>,
     ) -> RayCast<V> {
         whole_or_late
     }
@@ -157,7 +159,7 @@ fn whole_or_late<V: Vector>(
     shape: Shape<'_, V>,
     ray: Ray<V>,
     options: &RayCastOptions<V>,
-    observer: &mut dyn FnMut(Iterate<'_, V>),
+    observer: &mut Observer<'_, V>,
 ) -> RayCast<V> {
     if options.min_lambda > Scalar::ZERO {
         return late(body, ray, *options, observer);
@@ -178,7 +180,7 @@ fn late<V: Vector>(
     body: &mut dyn Body<Vector = V>,
     ray: Ray<V>,
     options: RayCastOptions<V>,
-    observer: &mut dyn FnMut(Iterate<'_, V>),
+    observer: &mut Observer<'_, V>,
 ) -> RayCast<V> {
     let (zero, begin) = (V::Scalar::ZERO, options.min_lambda);
     let (origin, size) = (body.origin(), body.extent() + body.radius());

@@ -6,6 +6,7 @@ use num_traits::Float as _;
 use crate::body::{Body, Single};
 use crate::cast::{CastHit, LocalRay, Part, cast};
 use crate::compiled_once::compiled_once;
+use crate::observer::Observer;
 use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, Status, ray_cast};
 
 /// The last point of a ray in a shape, with the normal there.
@@ -85,7 +86,7 @@ fn searched<V: Vector>(body: &mut dyn Body<Vector = V>, ray: Ray<V>, &options: &
         let (outcome, status) = (Outcome::Undecided, Status::Stalled);
         return RayExit { outcome, lower: -infinity, upper: infinity, status, iterations: 0 };
     }
-    let cast = cast(body, ray, Scalar::ZERO, Part::Reversed, &wanted, &mut |_| {});
+    let cast = cast(body, ray, Scalar::ZERO, Part::Reversed, &wanted, &mut Observer::none());
     let forward = LocalRay::new(ray, body.origin(), cast.scale);
     let (reverse, error) = (|lambda| forward.reverse(lambda), forward.error_of_reverse());
     let (lower, upper) = (reverse(cast.upper) - error, reverse(cast.lower) + error);

@@ -5,9 +5,7 @@ use num_traits::Float as _;
 
 use crate::contact::signed_distance_of_any;
 use crate::shape::{Shape, WithoutLines};
-use crate::{
-    Distance, DistanceOptions, LinearCastOptions, Motion, SignedDistance, SignedDistanceOptions, distance_with,
-};
+use crate::{Distance, DistanceOptions, LinearCastOptions, Motion, SignedDistance, SignedDistanceOptions, distance};
 
 /// Closing speeds below this many ε of the speed are of rounding: a normal is known to a few.
 const SLIDES: f64 = 16.0;
@@ -32,7 +30,7 @@ impl<V: Vector> Start<'_, V> {
     #[inline(never)]
     pub(crate) fn distance(&self, options: &LinearCastOptions<V>) -> Distance<V> {
         let wanted = DistanceOptions::new().with_max_iterations(options.max_iterations);
-        distance_with(self.a, self.b, wanted.with_sub_algorithm(options.sub_algorithm), |_| {})
+        distance(self.a, self.b, wanted.with_sub_algorithm(options.sub_algorithm))
     }
 
     /// The normal of contact if the shapes only touch, and `None` if they certainly overlap by more than that; with the number of support

@@ -12,6 +12,7 @@ use num_traits::Float;
 use super::line::{Line, LocalRay, Part};
 use super::{Contact, Stop};
 use crate::body::{Body, PointPair};
+use crate::observer::Observer;
 use crate::simplex::MAX_POINTS;
 use crate::unit::{is_moderate, lost_to_underflow, power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Ray, RayCastOptions, Status};
@@ -75,7 +76,7 @@ pub(super) struct Bracket<'a, V: Vector> {
     pub(super) scale: V::Scalar,
     /// Whether lengths in the world's unit can be squared.
     pub(super) is_moderate: bool,
-    observer: &'a mut dyn FnMut(Iterate<'_, V>),
+    observer: Observer<'a, V>,
     iterations: usize,
     /// The body lies in a ball about its origin: the squared half of the chord that it cuts out of the line, negative where
     /// the line misses it, and the half, which is then zero.
@@ -115,7 +116,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
         direction_error: V::Scalar,
         part: Part<V::Scalar>,
         options: &'a RayCastOptions<V>,
-        observer: &'a mut dyn FnMut(Iterate<'_, V>),
+        observer: &'a mut Observer<'_, V>,
     ) -> Self {
         let number = V::Scalar::from_f64;
         let zero = V::Scalar::ZERO;
@@ -145,7 +146,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
             is_point: extent == zero,
             scale,
             is_moderate: is_moderate(measure),
-            observer,
+            observer: observer.by_ref(),
             iterations: 0,
             chord: (squared, half_chord),
             low: Crossing { bound: Bound::exact(ray.start.max(-half_chord)), slope: zero },
@@ -284,13 +285,15 @@ impl<'a, V: Vector> Bracket<'a, V> {
         self.iterations += 1;
         let x = self.x();
         let mut seen = [V::ZERO; MAX_POINTS];
-        for (s, p) in seen.iter_mut().zip(simplex) {
-            *s = x - *p;
-        }
-        let (lower, upper) = (self.ray.lambda(self.low()), self.ray.lambda(self.high.at));
-        let simplex = &seen[..simplex.len().min(MAX_POINTS)];
-        let (iteration, scale) = (self.iterations - 1, self.scale);
-        (self.observer)(Iterate { iteration, simplex, v, w: x - point, scale, lower, upper });
+        let (low, high) = (self.low(), self.high.at);
+        self.observer.show(|| {
+            for (s, p) in seen.iter_mut().zip(simplex) {
+                *s = x - *p;
+            }
+            let (lower, upper) = (self.ray.lambda(low), self.ray.lambda(high));
+            let simplex = &seen[..simplex.len().min(MAX_POINTS)];
+            Iterate { iteration: self.iterations - 1, simplex, v, w: x - point, scale: self.scale, lower, upper }
+        });
         if point.is_finite() { Ok((point, witness)) } else { Err(Stop::Exhausted(Status::Stalled)) }
     }
 

@@ -14,6 +14,7 @@ use num_traits::Float;
 use super::bracket::{DEEP, NOISE};
 use super::{Cast, CastHit};
 use crate::body::Body;
+use crate::observer::Observer;
 use crate::unit::is_moderate;
 use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCastOptions, Status};
 
@@ -43,7 +44,7 @@ pub(crate) fn direct<B: Body>(
     ray: Ray<B::Vector>,
     direction_error: <B::Vector as Vector>::Scalar,
     options: &RayCastOptions<B::Vector>,
-    observer: impl FnMut(Iterate<'_, B::Vector>),
+    observer: &mut Observer<'_, B::Vector>,
 ) -> Option<Cast<B::Vector>> {
     let size = body.extent() + body.radius();
     let longest = ray.direction.abs().max_element();
@@ -110,7 +111,7 @@ impl<V: Vector> Line<V> {
         Crossing { entry, normal, .. }: Crossing<V>,
         body: &mut B,
         options: &RayCastOptions<V>,
-        observer: impl FnMut(Iterate<'_, V>),
+        observer: &mut Observer<'_, V>,
     ) -> Option<Cast<V>> {
         let number = V::Scalar::from_f64;
         let (half, epsilon) = (number(0.5), V::Scalar::EPSILON);
@@ -190,7 +191,7 @@ impl<V: Vector> Line<V> {
         axis: V,
         body: &mut B,
         options: &RayCastOptions<V>,
-        observer: impl FnMut(Iterate<'_, V>),
+        observer: &mut Observer<'_, V>,
     ) -> Option<Cast<V>> {
         let number = V::Scalar::from_f64;
         let reach = self.size * number(NEAR + 1.0) / self.longest;
@@ -226,9 +227,9 @@ impl<V: Vector> Line<V> {
 }
 
 #[inline(always)]
-fn show<V: Vector>(mut observer: impl FnMut(Iterate<'_, V>), n: V, w: V) {
+fn show<V: Vector>(observer: &mut Observer<'_, V>, n: V, w: V) {
     let (lower, upper) = (V::Scalar::ZERO, V::Scalar::infinity());
-    observer(Iterate { iteration: 0, simplex: &[], v: n, w, scale: V::Scalar::ONE, lower, upper });
+    observer.show(|| Iterate { iteration: 0, simplex: &[], v: n, w, scale: V::Scalar::ONE, lower, upper });
 }
 
 /// A miss by a plane across a unit vector.

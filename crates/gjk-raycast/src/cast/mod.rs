@@ -12,11 +12,12 @@ mod portal;
 mod start;
 
 use crate::body::PointPair;
+use crate::observer::Observer;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::body::Body;
-use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCastOptions, Status};
+use crate::{CastMethod, Miss, Outcome, Ray, RayCastOptions, Status};
 use algorithm_3::algorithm_3;
 use bracket::Bracket;
 use closed_form::closed_form;
@@ -35,7 +36,7 @@ pub(crate) fn cast<V: Vector>(
     direction_error: V::Scalar,
     part: Part<V::Scalar>,
     options: &RayCastOptions<V>,
-    observer: &mut dyn FnMut(Iterate<'_, V>),
+    observer: &mut Observer<'_, V>,
 ) -> Cast<V> {
     let mut bracket = Bracket::new(body, ray, direction_error, part, options, observer);
     let found = match bracket.enter_ball() {

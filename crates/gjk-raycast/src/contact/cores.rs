@@ -7,9 +7,9 @@ use num_traits::Float as _;
 use super::SignedDistanceOptions;
 use super::peeled::{Peeled, without_ball};
 use super::zonotope::{Zonotope, parallelotope};
-use crate::Iterate;
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, NearContact, first_direction, gjk, is_near_contact, near_contact};
+use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
 use crate::symmetric::Symmetric;
 use crate::unit::lost_to_underflow;
@@ -363,7 +363,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         &mut self,
         options: &SignedDistanceOptions<A::Vector>,
         state: &mut Gjk<A::Vector>,
-        observer: impl FnMut(Iterate<'_, A::Vector>),
+        observer: &mut Observer<'_, A::Vector>,
     ) -> End {
         let Frame { per_unit, scale, .. } = self.frame;
         let is_whole = self.peeled == [Scalar::ZERO; 2];
@@ -419,6 +419,6 @@ fn go_on<V: Vector>(
     pair.set_scale(frame.scale);
     let frame = Frame { noise: frame.noise * Scalar::from_f64(0.0625), ..frame };
     let options = GjkOptions::new(state.normal, max_iterations);
-    let _ = gjk(state, &mut Peeled { pair: &mut pair, radii }, frame, options, None, |_| {});
+    let _ = gjk(state, &mut Peeled { pair: &mut pair, radii }, frame, options, None, &mut Observer::none());
     state.ensure_measured();
 }

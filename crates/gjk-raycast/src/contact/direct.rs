@@ -7,6 +7,7 @@ use super::SignedDistance;
 use super::cores::{error_of_points, slack};
 use crate::body::{Body as _, Pair, TracedSupport as _};
 use crate::gjk::{NEAR, rounding};
+use crate::observer::Observer;
 use crate::{Iterate, Status};
 
 /// The signed distance of shapes whose cores are apart by more than a few errors, and whose closest points are known in closed form, as of
@@ -20,7 +21,7 @@ pub(super) fn direct<A, B>(
     b: &B,
     cores: [Core<A::Vector>; 2],
     max_iterations: usize,
-    observer: impl FnOnce(Iterate<'_, A::Vector>),
+    observer: &mut Observer<'_, A::Vector>,
 ) -> Option<SignedDistance<A::Vector>>
 where
     A: SupportMap + ?Sized,
@@ -44,7 +45,8 @@ where
         return None;
     }
     let (scale, upper) = (Scalar::ONE, length);
-    observer(Iterate { iteration: 0, simplex: &[v], v, w, scale, lower, upper });
+    let simplex = [v];
+    observer.show(|| Iterate { iteration: 0, simplex: &simplex, v, w, scale, lower, upper });
     let normal = v / length;
     let signed_distance = length - radius;
     // What a vector is wrong by across adds no more to its length than that squared, by twice the length.

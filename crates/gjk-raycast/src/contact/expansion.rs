@@ -9,6 +9,7 @@ use super::met::Met;
 use super::witness::{self, Ends};
 use super::{SignedDistanceOptions, basin, start};
 use crate::gjk::Gjk;
+use crate::observer::Observer;
 use crate::{Iterate, Status};
 
 /// Where the boundary is smooth, a way ends at the support point but for the square root of this part of its length.
@@ -123,7 +124,7 @@ pub(super) fn expand<A, B>(
     cores: &mut Cores<'_, A, B>,
     state: &mut Gjk<A::Vector>,
     options: &SignedDistanceOptions<A::Vector>,
-    mut observer: impl FnMut(Iterate<'_, A::Vector>),
+    observer: &mut Observer<'_, A::Vector>,
 ) -> Option<Expanded<A::Vector>>
 where
     A: SupportMap + ?Sized,
@@ -182,14 +183,13 @@ where
             way = seen;
             enough = enough_of(cores, &way);
         }
-        observer(Iterate {
-            iteration: cores.iterations - 1,
-            simplex: &boundary.corner_points(nearest)[..A::Vector::DIM],
-            v: normal * inner,
-            w: vertex.point,
-            scale: cores.scale(),
-            lower: -way.h * cores.scale(),
-            upper: -inner * cores.scale(),
+        let mut facet = [A::Vector::ZERO; 3];
+        observer.show(|| {
+            facet = boundary.corner_points(nearest);
+            let (iteration, scale) = (cores.iterations - 1, cores.scale());
+            let (lower, upper) = (-way.h * scale, -inner * scale);
+            let (simplex, v, w) = (&facet[..A::Vector::DIM], normal * inner, vertex.point);
+            Iterate { iteration, simplex, v, w, scale, lower, upper }
         });
         // NaN fails this too.
         if closed.is_none() && !(way.h - inner > enough) {

@@ -13,6 +13,7 @@ use super::{SignedDistance, SignedDistanceOptions};
 use crate::body::{Pair, PointPair};
 use crate::compiled_once::compiled_once;
 use crate::gjk::{End, Gjk, NearContact};
+use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
 use crate::{Iterate, Status};
 
@@ -44,7 +45,7 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    signed_distance_with(a, b, options, |_| {})
+    watched(a, b, options, &mut Observer::none())
 }
 
 /// [`signed_distance`], showing an observer every iterate: those of [`distance`](crate::distance) as long as the cores may be
@@ -61,9 +62,23 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
+    watched(a, b, options, &mut Observer::new(&mut observer))
+}
+
+#[inline(always)]
+fn watched<A, B>(
+    a: &A,
+    b: &B,
+    options: SignedDistanceOptions<A::Vector>,
+    observer: &mut Observer<'_, A::Vector>,
+) -> SignedDistance<A::Vector>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
     let parts = [a.core(), b.core()];
-    direct(a, b, parts, options.max_iterations, &mut observer)
-        .unwrap_or_else(|| by_search([&WithoutLines(a), &WithoutLines(b)], parts, options, &mut observer))
+    direct(a, b, parts, options.max_iterations, observer)
+        .unwrap_or_else(|| by_search([&WithoutLines(a), &WithoutLines(b)], parts, options, observer))
 }
 
 compiled_once! {
@@ -72,7 +87,7 @@ compiled_once! {
         shapes: [Shape<'_, V>; 2],
         parts: [Core<V>; 2],
         options: SignedDistanceOptions<V>,
-        observer: &mut dyn FnMut(Iterate<'_, V>),
+        observer: &mut Observer<'_, V>,
     ) -> SignedDistance<V> {
         searched
     }
@@ -82,7 +97,7 @@ fn searched<V: Vector>(
     [a, b]: [Shape<'_, V>; 2],
     parts: [Core<V>; 2],
     options: SignedDistanceOptions<V>,
-    observer: &mut dyn FnMut(Iterate<'_, V>),
+    observer: &mut Observer<'_, V>,
 ) -> SignedDistance<V> {
     let mut cores = Cores::new(a, b, parts);
     reach(&mut cores, options, true, observer).answer(&cores)
@@ -97,11 +112,11 @@ pub(crate) fn signed_distance_and_axis<V: Vector>(
     options: SignedDistanceOptions<V>,
 ) -> (SignedDistance<V>, V) {
     let parts = [a.core(), b.core()];
-    if let Some(answer) = direct(a, b, parts, options.max_iterations, |_| {}) {
+    if let Some(answer) = direct(a, b, parts, options.max_iterations, &mut Observer::none()) {
         return (answer, answer.normal);
     }
     let mut cores = Cores::new(a, b, parts);
-    let reached = reach(&mut cores, options, false, |_| {});
+    let reached = reach(&mut cores, options, false, &mut Observer::none());
     (reached.answer(&cores), reached.axis)
 }
 
@@ -122,7 +137,7 @@ fn reach<A, B>(
     cores: &mut Cores<'_, A, B>,
     options: SignedDistanceOptions<A::Vector>,
     looks_near: bool,
-    mut observer: impl FnMut(Iterate<'_, A::Vector>),
+    observer: &mut Observer<'_, A::Vector>,
 ) -> Reached<A::Vector>
 where
     A: SupportMap + ?Sized,
@@ -140,14 +155,14 @@ where
     let is_warm = options.axis.and_then(|axis| axis.unit()).is_some_and(|axis| cores.reaches_beyond(-axis));
     let is_peeled = is_warm && cores.peel();
     let mut state = cores.first_state(&options);
-    let end = cores.approach(&options, &mut state, &mut observer);
+    let end = cores.approach(&options, &mut state, observer);
     if looks_near && let Some(known) = cores.look_near(&mut state, options.max_iterations) {
         return Reached::of_near_contact(cores, &known);
     }
     if end == End::Separated && cores.is_well_apart(state.length) {
         return Reached::of_gjk(cores, &mut state, end);
     }
-    reach_closely(cores, options, &mut state, end, is_peeled, &mut observer)
+    reach_closely(cores, options, &mut state, end, is_peeled, observer)
 }
 
 /// What can be known of cores that overlap or nearly touch, after a search for the points that are closest.
@@ -158,7 +173,7 @@ fn reach_closely<A, B>(
     state: &mut Gjk<A::Vector>,
     mut end: End,
     is_peeled: bool,
-    observer: &mut impl FnMut(Iterate<'_, A::Vector>),
+    observer: &mut Observer<'_, A::Vector>,
 ) -> Reached<A::Vector>
 where
     A: SupportMap + ?Sized,
@@ -175,7 +190,7 @@ where
     let may_repeat = end == End::Overlap && state.length.is_finite() && 2 * state.iterations < options.max_iterations;
     if may_repeat && !is_peeled && cores.peel() {
         *state = cores.first_state(&options);
-        end = cores.approach(&options, state, &mut *observer);
+        end = cores.approach(&options, state, observer);
     }
     if !cores.is_well_apart(state.length) {
         cores.sharpen();

@@ -14,8 +14,9 @@ use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use crate::body::{Body as _, Pair, PointPair, TracedSupport};
+use crate::observer::Observer;
 use crate::unit::{lost_to_underflow, power_of_two_near, reciprocal_of_power};
-use crate::{Iterate, Status, SubAlgorithm};
+use crate::{Status, SubAlgorithm};
 pub(crate) use boxes::{Boxes, boxes};
 pub(crate) use near_contact::{NEAR, NearContact, is_near_contact, near_contact};
 use next_direction::NextDirection;
@@ -131,7 +132,7 @@ pub(crate) fn gjk<B: TracedSupport>(
     frame: Frame<B::Vector>,
     options: GjkOptions<B::Vector>,
     known: Option<(B::Vector, PointPair<B::Vector>)>,
-    observer: impl FnMut(Iterate<'_, B::Vector>),
+    observer: &mut Observer<'_, B::Vector>,
 ) -> End {
     let end = descend(state, body, &frame, &options, known, observer);
     // Of numbers out of range nothing is known.
@@ -155,7 +156,7 @@ fn descend<B: TracedSupport>(
     frame: &Frame<B::Vector>,
     options: &GjkOptions<B::Vector>,
     mut known: Option<(B::Vector, PointPair<B::Vector>)>,
-    mut observer: impl FnMut(Iterate<'_, B::Vector>),
+    observer: &mut Observer<'_, B::Vector>,
 ) -> End {
     let mut nearing = Progress::new();
     let mut looked = Direction { n: options.first, length: options.first.length() };
@@ -164,7 +165,7 @@ fn descend<B: TracedSupport>(
         let (point, witness) = known.take().unwrap_or_else(|| body.support(-looked.n));
         let w = point + frame.offset;
         let Some(reach) = state.advance(looked, w) else { return End::Stalled };
-        observer(state.iterate(w, frame.scale));
+        observer.show(|| state.iterate(w, frame.scale));
         if state.lower > options.limit + frame.error {
             // The first support points are a bound from above, if nothing better is known.
             if options.closest_points && state.simplex.points().is_empty() {

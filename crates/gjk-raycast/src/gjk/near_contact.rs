@@ -16,6 +16,7 @@ use super::faces::{about_edge, across_faces, is_around_zero};
 use super::order::comes_first;
 use super::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
+use crate::observer::Observer;
 use crate::shape::Shape;
 use crate::simplex::MAX_POINTS;
 
@@ -170,7 +171,7 @@ fn run<V: Vector>(
     first: V,
     max_iterations: usize,
 ) -> End {
-    gjk(state, pair, frame, GjkOptions::new(first, max_iterations), None, |_| {})
+    gjk(state, pair, frame, GjkOptions::new(first, max_iterations), None, &mut Observer::none())
 }
 
 /// A plane that the difference of the cores lies beyond, across a unit vector.

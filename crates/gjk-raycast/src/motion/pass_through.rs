@@ -23,6 +23,7 @@ use crate::SignedDistanceOptions;
 use crate::body::{Body as _, Pair, PointPair};
 use crate::contact::across;
 use crate::gjk::{Frame, Gjk, GjkOptions, gjk, rounding};
+use crate::observer::Observer;
 use crate::simplex::MAX_POINTS;
 use crate::symmetric::{Across, cross, dot};
 use crate::unit::is_moderate;
@@ -74,7 +75,7 @@ impl<V: Vector> MovingPair<'_, V> {
         let frame = Frame::new(&mut pair, placed.offset, size);
         let mut state = Gjk::new(axis);
         let options = GjkOptions::new(axis, SignedDistanceOptions::<V>::new().max_iterations);
-        let _ = gjk(&mut state, &mut pair, frame, options, None, |_| {});
+        let _ = gjk(&mut state, &mut pair, frame, options, None, &mut Observer::none());
         self.count(state.iterations);
         state.ensure_measured();
         let in_world = |pair: PointPair<V>| PointPair { a: pair.a * frame.scale, b: pair.b * frame.scale };

@@ -11,6 +11,7 @@ use super::placed::Placed;
 use crate::SignedDistanceOptions;
 use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
 use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk, rounding};
+use crate::observer::Observer;
 use crate::unit::is_moderate;
 
 /// How wide a bracket on the distance of bodies that are well apart may stay, relative to it: where they are looked at next hardly
@@ -130,7 +131,7 @@ impl<V: Vector> MovingPair<'_, V> {
             tolerance: Scalar::from_f64(ROUGH),
             ..GjkOptions::new(state.normal, SignedDistanceOptions::<V>::new().max_iterations)
         };
-        let end = gjk(&mut state, pair, frame, options, known, |_| {});
+        let end = gjk(&mut state, pair, frame, options, known, &mut Observer::none());
         self.count(state.iterations);
         let (distance, near) = (state.lower - radius, error * Scalar::from_f64(NEAR));
         let unit = state.axis.unit()?;

@@ -1,0 +1,36 @@
+//! Who watches a search, if anybody does.
+
+use convex_support::Vector;
+
+use crate::Iterate;
+
+/// Whoever is shown the iterates of a search. The searches are compiled once, so that it is known behind a pointer; and what nobody watches
+/// is not computed.
+pub(crate) struct Observer<'o, V: Vector>(Option<&'o mut dyn FnMut(Iterate<'_, V>)>);
+
+impl<'o, V: Vector> Observer<'o, V> {
+    /// Nobody.
+    #[inline(always)]
+    pub(crate) fn none() -> Self {
+        Self(None)
+    }
+
+    #[inline(always)]
+    pub(crate) fn new(observer: &'o mut dyn FnMut(Iterate<'_, V>)) -> Self {
+        Self(Some(observer))
+    }
+
+    /// Shows an iterate.
+    #[inline(always)]
+    pub(crate) fn show<'i>(&mut self, iterate: impl FnOnce() -> Iterate<'i, V>) {
+        if let Some(observer) = &mut self.0 {
+            observer(iterate());
+        }
+    }
+
+    /// The same observer, lent.
+    #[inline(always)]
+    pub(crate) fn by_ref(&mut self) -> Observer<'_, V> {
+        Observer(self.0.as_mut().map(|observer| &mut **observer as _))
+    }
+}
