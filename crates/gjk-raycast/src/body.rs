@@ -3,6 +3,7 @@
 use convex_support::{Core, CoreKind, Crossing, Hint, LineCrossing, Scalar, SupportMap, Vector};
 
 use crate::segments;
+use crate::shape::{Shape, WithoutLines};
 use crate::symmetric::Symmetric;
 use crate::unit::{is_moderate, reciprocal_of_power};
 
@@ -134,34 +135,188 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
     }
 }
 
-/// The difference of two shapes, whose support points remember both shapes' points.
-pub(crate) struct Pair<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
-    pub(crate) a: &'a A,
-    pub(crate) b: &'a B,
-    pub(crate) core_a: Core<A::Vector>,
-    pub(crate) core_b: Core<A::Vector>,
-    hint_a: Hint,
-    hint_b: Hint,
-    per_unit: <A::Vector as Vector>::Scalar,
+/// One of two shapes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Of {
+    A,
+    B,
 }
 
-impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'a, A, B> {
-    #[inline]
+impl Of {
+    fn other(self) -> Self {
+        match self {
+            Self::A => Self::B,
+            Self::B => Self::A,
+        }
+    }
+}
+
+/// Two shapes as a search sees them: behind one pointer, so that it is compiled once for all shapes, and a support point of their difference
+/// is one call.
+pub(crate) trait Shapes {
+    type Vector: Vector;
+
+    /// Both cores.
+    fn cores(&self) -> [Core<Self::Vector>; 2];
+    /// The support points of both cores, each along a direction of its own.
+    fn support_points(&self, along: [Self::Vector; 2], hints: &mut [Hint; 2]) -> [Self::Vector; 2];
+    /// As [`SupportMap::core_support_hessian`] of one of them.
+    fn support_hessian(
+        &self,
+        of: Of,
+        direction: Self::Vector,
+        changes: [Self::Vector; 2],
+    ) -> [<Self::Vector as Vector>::Scalar; 3];
+    /// As [`SupportMap::core_closest_point`] of one of them.
+    fn closest_point(&self, of: Of, x: Self::Vector) -> Option<Self::Vector>;
+    /// As [`SupportMap::core_line_crossing`] of one of them.
+    fn line_crossing(
+        &self,
+        of: Of,
+        source: Self::Vector,
+        direction: Self::Vector,
+        radius: <Self::Vector as Vector>::Scalar,
+    ) -> LineCrossing<Self::Vector>;
+    /// Each of them, for what is rarely asked.
+    fn each(&self) -> [Shape<'_, Self::Vector>; 2];
+}
+
+/// Two shapes of known types, which may tell where a line crosses them. The closed forms of line crossings are as much code as the whole
+/// search for a distance, so that they are left out where nobody asks for them.
+pub(crate) struct Both<'a, A: ?Sized, B: ?Sized, const LINES: bool = false> {
+    a: WithoutLines<'a, A>,
+    b: WithoutLines<'a, B>,
+}
+
+impl<'a, A: ?Sized, B: ?Sized, const LINES: bool> Both<'a, A, B, LINES> {
+    #[inline(always)]
     pub(crate) fn new(a: &'a A, b: &'a B) -> Self {
-        Self::of_cores(a, b, [a.core(), b.core()])
+        Self { a: WithoutLines(a), b: WithoutLines(b) }
+    }
+}
+
+impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const LINES: bool> Shapes
+    for Both<'_, A, B, LINES>
+{
+    type Vector = A::Vector;
+
+    #[inline(always)]
+    fn cores(&self) -> [Core<A::Vector>; 2] {
+        [self.a.core(), self.b.core()]
+    }
+
+    #[inline(always)]
+    fn support_points(&self, [along_a, along_b]: [A::Vector; 2], [hint_a, hint_b]: &mut [Hint; 2]) -> [A::Vector; 2] {
+        [self.a.0.core_support(along_a, hint_a), self.b.0.core_support(along_b, hint_b)]
+    }
+
+    #[inline(always)]
+    fn support_hessian(
+        &self,
+        of: Of,
+        direction: A::Vector,
+        changes: [A::Vector; 2],
+    ) -> [<A::Vector as Vector>::Scalar; 3] {
+        match of {
+            Of::A => self.a.0.core_support_hessian(direction, changes),
+            Of::B => self.b.0.core_support_hessian(direction, changes),
+        }
+    }
+
+    #[inline(always)]
+    fn closest_point(&self, of: Of, x: A::Vector) -> Option<A::Vector> {
+        match of {
+            Of::A => self.a.0.core_closest_point(x),
+            Of::B => self.b.0.core_closest_point(x),
+        }
+    }
+
+    #[inline(always)]
+    fn line_crossing(
+        &self,
+        of: Of,
+        source: A::Vector,
+        direction: A::Vector,
+        radius: <A::Vector as Vector>::Scalar,
+    ) -> LineCrossing<A::Vector> {
+        match of {
+            _ if !LINES => LineCrossing::Unknown,
+            Of::A => self.a.0.core_line_crossing(source, direction, radius),
+            Of::B => self.b.0.core_line_crossing(source, direction, radius),
+        }
+    }
+
+    #[inline(always)]
+    fn each(&self) -> [Shape<'_, A::Vector>; 2] {
+        [&self.a, &self.b]
+    }
+}
+
+/// Two shapes in the other order.
+pub(crate) struct Swapped<'a, V>(pub(crate) &'a dyn Shapes<Vector = V>);
+
+impl<V: Vector> Shapes for Swapped<'_, V> {
+    type Vector = V;
+
+    fn cores(&self) -> [Core<V>; 2] {
+        let [a, b] = self.0.cores();
+        [b, a]
+    }
+
+    fn support_points(&self, [along_a, along_b]: [V; 2], hints: &mut [Hint; 2]) -> [V; 2] {
+        hints.swap(0, 1);
+        let [b, a] = self.0.support_points([along_b, along_a], hints);
+        hints.swap(0, 1);
+        [a, b]
+    }
+
+    fn support_hessian(&self, of: Of, direction: V, changes: [V; 2]) -> [V::Scalar; 3] {
+        self.0.support_hessian(of.other(), direction, changes)
+    }
+
+    fn closest_point(&self, of: Of, x: V) -> Option<V> {
+        self.0.closest_point(of.other(), x)
+    }
+
+    fn line_crossing(&self, of: Of, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        self.0.line_crossing(of.other(), source, direction, radius)
+    }
+
+    fn each(&self) -> [Shape<'_, V>; 2] {
+        let [a, b] = self.0.each();
+        [b, a]
+    }
+}
+
+/// The difference of two shapes, whose support points remember both shapes' points.
+pub(crate) struct Pair<'a, T: Shapes + ?Sized> {
+    pub(crate) shapes: &'a T,
+    pub(crate) core_a: Core<T::Vector>,
+    pub(crate) core_b: Core<T::Vector>,
+    hints: [Hint; 2],
+    per_unit: <T::Vector as Vector>::Scalar,
+}
+
+/// The difference of any two shapes.
+pub(crate) type AnyPair<'a, V> = Pair<'a, dyn Shapes<Vector = V> + 'a>;
+
+impl<'a, T: Shapes + ?Sized> Pair<'a, T> {
+    #[inline]
+    pub(crate) fn new(shapes: &'a T) -> Self {
+        Self::of_cores(shapes, shapes.cores())
     }
 
     /// The same of shapes that have been asked for their cores.
     #[inline(always)]
-    pub(crate) fn of_cores(a: &'a A, b: &'a B, [core_a, core_b]: [Core<A::Vector>; 2]) -> Self {
-        Self { a, b, core_a, core_b, hint_a: Hint::new(), hint_b: Hint::new(), per_unit: Scalar::ONE }
+    pub(crate) fn of_cores(shapes: &'a T, [core_a, core_b]: [Core<T::Vector>; 2]) -> Self {
+        Self { shapes, core_a, core_b, hints: [Hint::new(), Hint::new()], per_unit: Scalar::ONE }
     }
 }
 
-impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_, A, B> {
+impl<T: Shapes + ?Sized> Pair<'_, T> {
     /// A bound on all lengths that rounding errors are relative to, for bodies whose origins differ by `offset`.
     #[inline]
-    pub(crate) fn size(&self, offset: A::Vector) -> <A::Vector as Vector>::Scalar {
+    pub(crate) fn size(&self, offset: T::Vector) -> <T::Vector as Vector>::Scalar {
         self.extent() + self.radius() + offset.norm()
     }
 
@@ -170,13 +325,13 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
     #[inline(always)]
     pub(crate) fn closest_points(
         &self,
-        offset: A::Vector,
-        size: <A::Vector as Vector>::Scalar,
-    ) -> Option<PointPair<A::Vector>> {
+        offset: T::Vector,
+        size: <T::Vector as Vector>::Scalar,
+    ) -> Option<PointPair<T::Vector>> {
         let (a, b) = match (self.core_a.kind, self.core_b.kind) {
             (CoreKind::Point(a), CoreKind::Point(b)) => (a, b),
-            (CoreKind::Point(a), _) => (a, self.b.core_closest_point(a + offset)?),
-            (_, CoreKind::Point(b)) => (self.a.core_closest_point(b - offset)?, b),
+            (CoreKind::Point(a), _) => (a, self.shapes.closest_point(Of::B, a + offset)?),
+            (_, CoreKind::Point(b)) => (self.shapes.closest_point(Of::A, b - offset)?, b),
             (CoreKind::Segment { middle: a, half: u }, CoreKind::Segment { middle: b, half: w }) => {
                 let (x, y) = segments::closest_points(u, w, offset - (b - a));
                 (a + x, b + y)
@@ -190,9 +345,9 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Pair<'_
     /// The vector between the [closest points](Self::closest_points) of bodies whose origins differ by `offset` in the unit, which is along the
     /// normal of the plane between them.
     #[inline(always)]
-    pub(crate) fn vector_between(&self, PointPair { a, b }: PointPair<A::Vector>, offset: A::Vector) -> A::Vector {
+    pub(crate) fn vector_between(&self, PointPair { a, b }: PointPair<T::Vector>, offset: T::Vector) -> T::Vector {
         let v = a - b + offset;
-        let between = |[u, w]: [A::Vector; 2], [x, y]: [A::Vector; 2]| {
+        let between = |[u, w]: [T::Vector; 2], [x, y]: [T::Vector; 2]| {
             let [u, w, x, y] = [u, w, x, y].map(|v| v * self.per_unit);
             segments::normal_between([u, w], [x, y], [a, b], v)
         };
@@ -230,22 +385,23 @@ impl<V: Vector> PointPair<V> {
     }
 }
 
-impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> TracedSupport for Pair<'_, A, B> {
-    type Vector = A::Vector;
+impl<T: Shapes + ?Sized> TracedSupport for Pair<'_, T> {
+    type Vector = T::Vector;
 
     #[inline(always)]
-    fn support(&mut self, direction: A::Vector) -> (A::Vector, PointPair<A::Vector>) {
-        self.hint_a.rewind();
-        self.hint_b.rewind();
-        let a = self.a.core_support(direction, &mut self.hint_a) * self.per_unit;
-        let b = self.b.core_support(-direction, &mut self.hint_b) * self.per_unit;
+    fn support(&mut self, direction: T::Vector) -> (T::Vector, PointPair<T::Vector>) {
+        for hint in &mut self.hints {
+            hint.rewind();
+        }
+        let points = self.shapes.support_points([direction, -direction], &mut self.hints);
+        let [a, b] = points.map(|point| point * self.per_unit);
         (a - b, PointPair { a, b })
     }
 
     #[inline(always)]
-    fn hessian(&self, direction: A::Vector, changes: [A::Vector; 2]) -> Symmetric<<A::Vector as Vector>::Scalar> {
-        let a = self.a.core_support_hessian(direction, changes);
-        let b = self.b.core_support_hessian(-direction, changes);
+    fn hessian(&self, direction: T::Vector, changes: [T::Vector; 2]) -> Symmetric<<T::Vector as Vector>::Scalar> {
+        let a = self.shapes.support_hessian(Of::A, direction, changes);
+        let b = self.shapes.support_hessian(Of::B, -direction, changes);
         let sum = |i: usize| (a[i] + b[i]) * self.per_unit;
         Symmetric { a: sum(0), b: sum(1), d: sum(2) }
     }
@@ -256,20 +412,20 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> TracedS
     }
 }
 
-impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body for Pair<'_, A, B> {
+impl<T: Shapes + ?Sized> Body for Pair<'_, T> {
     /// Known where one of the cores is a point, and the difference is the other body moved, or turned round and moved.
     #[inline(always)]
     fn eroded_line_crossing(
         &self,
-        source: A::Vector,
-        direction: A::Vector,
-        by: <A::Vector as Vector>::Scalar,
-    ) -> LineCrossing<A::Vector> {
+        source: T::Vector,
+        direction: T::Vector,
+        by: <T::Vector as Vector>::Scalar,
+    ) -> LineCrossing<T::Vector> {
         let to_world = reciprocal_of_power(self.per_unit);
         let (source, radius) = (source * to_world, self.radius() - by * to_world);
         let crossing = match (self.core_a.kind, self.core_b.kind) {
-            (_, CoreKind::Point(b)) => self.a.core_line_crossing(source + b, direction, radius),
-            (CoreKind::Point(a), _) => match self.b.core_line_crossing(a - source, -direction, radius) {
+            (_, CoreKind::Point(b)) => self.shapes.line_crossing(Of::A, source + b, direction, radius),
+            (CoreKind::Point(a), _) => match self.shapes.line_crossing(Of::B, a - source, -direction, radius) {
                 LineCrossing::Crosses(at) => LineCrossing::Crosses(Crossing { normal: -at.normal, ..at }),
                 other => other,
             },
@@ -279,7 +435,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
     }
 
     #[inline(always)]
-    fn witness(&self, point: A::Vector) -> PointPair<A::Vector> {
+    fn witness(&self, point: T::Vector) -> PointPair<T::Vector> {
         match (self.core_a.kind, self.core_b.kind) {
             (_, CoreKind::Point(b)) => PointPair { a: point + b * self.per_unit, b: b * self.per_unit },
             (CoreKind::Point(a), _) => PointPair { a: a * self.per_unit, b: a * self.per_unit - point },
@@ -287,30 +443,30 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Body fo
         }
     }
 
-    fn origin(&self) -> A::Vector {
+    fn origin(&self) -> T::Vector {
         self.core_a.origin
     }
 
     #[inline]
-    fn radius(&self) -> <A::Vector as Vector>::Scalar {
+    fn radius(&self) -> <T::Vector as Vector>::Scalar {
         self.core_a.radius + self.core_b.radius
     }
 
     #[inline]
-    fn extent(&self) -> <A::Vector as Vector>::Scalar {
+    fn extent(&self) -> <T::Vector as Vector>::Scalar {
         self.core_a.extent + self.core_b.extent
     }
 
-    fn rolling_radius(&self) -> <A::Vector as Vector>::Scalar {
+    fn rolling_radius(&self) -> <T::Vector as Vector>::Scalar {
         self.radius() + (self.core_a.rolling_radius + self.core_b.rolling_radius)
     }
 
     #[inline]
-    fn error(&self) -> <A::Vector as Vector>::Scalar {
+    fn error(&self) -> <T::Vector as Vector>::Scalar {
         self.core_a.error + self.core_b.error
     }
 
-    fn set_scale(&mut self, scale: <A::Vector as Vector>::Scalar) {
+    fn set_scale(&mut self, scale: <T::Vector as Vector>::Scalar) {
         self.per_unit = reciprocal_of_power(scale);
     }
 }

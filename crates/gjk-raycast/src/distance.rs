@@ -3,7 +3,7 @@
 use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
+use crate::body::{Body as _, Both, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::compiled_once::compiled_once;
 use crate::contact::signed_distance_of_any;
 use crate::gjk::{
@@ -11,7 +11,7 @@ use crate::gjk::{
     rounding,
 };
 use crate::observer::Observer;
-use crate::shape::{Shape, WithoutLines};
+use crate::shape::Shape;
 use crate::{Distance, DistanceOptions, Iterate, SignedDistanceOptions, Status, SubAlgorithm};
 
 /// The distance of two shapes, and where they are closest.
@@ -69,15 +69,16 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let cores = [a.core(), b.core()];
-    direct(a, b, cores, options.max_iterations, observer)
-        .unwrap_or_else(|| by_search([&WithoutLines(a), &WithoutLines(b)], cores, options, observer))
+    let shapes = Both::<_, _>::new(a, b);
+    let cores = shapes.cores();
+    direct(&shapes, cores, options.max_iterations, observer)
+        .unwrap_or_else(|| by_search(&shapes, cores, options, observer))
 }
 
 compiled_once! {
     /// The distance by a search.
     fn by_search<V>(
-        shapes: [Shape<'_, V>; 2],
+        shapes: &dyn Shapes<Vector = V>,
         cores: [Core<V>; 2],
         options: DistanceOptions<V>,
         observer: &mut Observer<'_, V>,
@@ -91,19 +92,14 @@ compiled_once! {
 ///
 /// The plane of the support point across the vector between those points is as far as they are, to rounding, or it is left to the search.
 #[inline(always)]
-fn direct<A, B>(
-    a: &A,
-    b: &B,
-    cores: [Core<A::Vector>; 2],
+fn direct<T: Shapes>(
+    shapes: &T,
+    cores: [Core<T::Vector>; 2],
     max_iterations: usize,
-    observer: &mut Observer<'_, A::Vector>,
-) -> Option<Distance<A::Vector>>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
-    let number = <A::Vector as Vector>::Scalar::from_f64;
-    let mut pair = Pair::of_cores(a, b, cores);
+    observer: &mut Observer<'_, T::Vector>,
+) -> Option<Distance<T::Vector>> {
+    let number = <T::Vector as Vector>::Scalar::from_f64;
+    let mut pair = Pair::of_cores(shapes, cores);
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let points = pair.closest_points(offset, size)?;
@@ -112,7 +108,7 @@ where
     let error = noise + pair.error();
     let near = error * number(NEAR);
     if (length - radius).abs() < near {
-        return nearly_touching([&WithoutLines(a), &WithoutLines(b)], [pair.core_a, pair.core_b], max_iterations);
+        return nearly_touching(shapes, [pair.core_a, pair.core_b], max_iterations);
     }
     // NaN is left to the search, and so is what is deep.
     if !(length - radius >= near) || max_iterations == 0 {
@@ -146,12 +142,12 @@ where
 }
 
 fn searched<V: Vector>(
-    [a, b]: [Shape<'_, V>; 2],
+    shapes: &dyn Shapes<Vector = V>,
     cores: [Core<V>; 2],
     options: DistanceOptions<V>,
     observer: &mut Observer<'_, V>,
 ) -> Distance<V> {
-    let mut pair = Pair::of_cores(a, b, cores);
+    let mut pair = Pair::of_cores(shapes, cores);
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
@@ -188,7 +184,7 @@ fn searched<V: Vector>(
             && !(options.tolerance > Scalar::ZERO)
             && !(state.lower > search.limit + frame.error);
         let (begun, before) = if is_plain { (Some(&state), 0) } else { (None, state.iterations) };
-        if let Some(answer) = touching([a, b], [pair.core_a, pair.core_b], begun, options.max_iterations) {
+        if let Some(answer) = touching(shapes, [pair.core_a, pair.core_b], begun, options.max_iterations) {
             return Distance { iterations: before + answer.iterations, ..answer };
         }
     }
@@ -196,7 +192,7 @@ fn searched<V: Vector>(
     let cores = [pair.core_a, pair.core_b];
     if end == End::Stalled {
         let answer = apart_as_given(cores, &in_order, &state, end, is_reversed);
-        return closely([a, b], answer, options.max_iterations);
+        return closely(shapes.each(), answer, options.max_iterations);
     }
     found(cores, &in_order, &state, end, is_reversed)
 }
@@ -318,13 +314,13 @@ fn apart<V: Vector>(
 
 compiled_once! {
     /// The answer of bodies near contact.
-    fn nearly_touching<V>(shapes: [Shape<'_, V>; 2], cores: [Core<V>; 2], max_iterations: usize) -> Option<Distance<V>> {
+    fn nearly_touching<V>(shapes: &dyn Shapes<Vector = V>, cores: [Core<V>; 2], max_iterations: usize) -> Option<Distance<V>> {
         touching_plainly
     }
 }
 
 fn touching_plainly<V: Vector>(
-    shapes: [Shape<'_, V>; 2],
+    shapes: &dyn Shapes<Vector = V>,
     cores: [Core<V>; 2],
     max_iterations: usize,
 ) -> Option<Distance<V>> {
@@ -335,7 +331,7 @@ fn touching_plainly<V: Vector>(
 #[cold]
 #[inline(never)]
 fn touching<V: Vector>(
-    shapes: [Shape<'_, V>; 2],
+    shapes: &dyn Shapes<Vector = V>,
     cores: [Core<V>; 2],
     begun: Option<&Gjk<V>>,
     max_iterations: usize,
@@ -361,7 +357,7 @@ fn touching<V: Vector>(
         status: if near.is_settled() { Status::Converged } else { Status::Stalled },
         iterations: near.iterations,
     };
-    Some(if near.is_settled() { answer } else { closely(shapes, answer, max_iterations) })
+    Some(if near.is_settled() { answer } else { closely(shapes.each(), answer, max_iterations) })
 }
 
 /// The points of both bodies beside points of their cores, in the world: along the unit vector from `b` to `a`, or where none is given

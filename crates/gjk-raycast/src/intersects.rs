@@ -3,12 +3,12 @@
 use convex_support::{Core, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
-use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
+use crate::body::{Body as _, Both, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::compiled_once::compiled_once;
 use crate::distance::distance;
 use crate::gjk::{Boxes, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, is_near_contact, rounding};
 use crate::observer::Observer;
-use crate::shape::{Shape, WithoutLines};
+use crate::shape::Shape;
 use crate::unit::is_moderate;
 use crate::{DistanceOptions, IntersectOptions, Intersection, Iterate, Status};
 
@@ -67,8 +67,9 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let mut pair = Pair::new(a, b);
-    let offset = a.core().origin - b.core().origin;
+    let shapes = Both::<_, _>::new(a, b);
+    let mut pair = Pair::new(&shapes);
+    let offset = pair.core_a.origin - pair.core_b.origin;
     // The first axis is tried in the world's unit, before anything else is set up; the sum of the coordinates bounds the
     // length of the offset without a root.
     let size = pair.extent() + pair.radius() + offset.abs().dot(Vector::ONE);
@@ -102,13 +103,13 @@ where
     }
     let cores = [pair.core_a, pair.core_b];
     let first = First { offset, direction: first, point: known };
-    by_search([&WithoutLines(a), &WithoutLines(b)], cores, &options, &first, observer)
+    by_search(&shapes, cores, &options, &first, observer)
 }
 
 compiled_once! {
     /// [`intersects_with`] where the first direction does not separate the shapes.
     fn by_search<V>(
-        shapes: [Shape<'_, V>; 2],
+        shapes: &dyn Shapes<Vector = V>,
         cores: [Core<V>; 2],
         options: &IntersectOptions<V>,
         first: &First<V>,
@@ -128,13 +129,13 @@ struct First<V> {
 }
 
 fn searched<V: Vector>(
-    [a, b]: [Shape<'_, V>; 2],
+    shapes: &dyn Shapes<Vector = V>,
     cores: [Core<V>; 2],
     options: &IntersectOptions<V>,
     first: &First<V>,
     observer: &mut Observer<'_, V>,
 ) -> Intersection<V> {
-    let pair = &mut Pair::of_cores(a, b, cores);
+    let pair = &mut Pair::of_cores(shapes, cores);
     let size = pair.size(first.offset);
     let frame = Frame::new(pair, first.offset, size);
     if let Some(point) = first.point
@@ -168,7 +169,7 @@ fn searched<V: Vector>(
         End::Overlap if !near => (true, None),
         _ => {
             let left = max_iterations.saturating_sub(state.iterations);
-            let closely = closely([a, b], left);
+            let closely = closely(shapes.each(), left);
             return Intersection { iterations: state.iterations + closely.iterations, ..closely };
         }
     };

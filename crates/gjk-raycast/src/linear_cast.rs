@@ -4,12 +4,12 @@ use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Body, Pair, PointPair};
+use crate::body::{Body, Both, Pair, PointPair, Shapes as _};
 use crate::cast::{Cast, CastHit, Part, cast, direct, settle_start};
 use crate::compiled_once::compiled_once;
 use crate::observer::Observer;
 use crate::ray::{check_finite, check_numbers};
-use crate::shape::{Shape, WithoutLines};
+use crate::shape::Shape;
 use crate::start_in_contact::Start;
 use crate::{
     Iterate, LinearCast, LinearCastOptions, LinearHit, Miss, Outcome, Ray, RayCastError, RayCastOptions,
@@ -139,9 +139,9 @@ where
 {
     motion.check(&options)?;
     let target = options.target_distance.max(<A::Vector as Vector>::Scalar::ZERO);
-    let mut body = Pair::new(a, b);
+    let shapes = Both::<_, _, true>::new(a, b);
+    let mut body = Pair::new(&shapes);
     body.core_a = body.core_a.rounded(target);
-    let shapes: [Shape<'_, _>; 2] = [&WithoutLines(a), &WithoutLines(b)];
     // Of no other pair is a crossing known.
     let is_known = [body.core_a, body.core_b].iter().any(|core| matches!(core.kind, CoreKind::Point(_)));
     let known = if is_known {
@@ -151,7 +151,7 @@ where
         None
     };
     let cores = [body.core_a, body.core_b];
-    Ok(by_search(&mut body, shapes, cores, motion, &options, known, observer))
+    Ok(by_search(&mut body, shapes.each(), cores, motion, &options, known, observer))
 }
 
 compiled_once! {

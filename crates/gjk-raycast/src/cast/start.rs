@@ -10,7 +10,7 @@ use convex_support::{Posed, Rounded, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use super::{Cast, CastHit};
-use crate::body::PointPair;
+use crate::body::{Both, PointPair};
 use crate::contact::{gap_along, signed_distance_of_any};
 use crate::gjk::{NearContact, near_contact};
 use crate::shape::{Shape, WithoutLines};
@@ -99,7 +99,7 @@ enum Way<V: Vector> {
 #[inline(never)]
 fn start<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iterations: usize) -> Start<V> {
     let zero = V::Scalar::ZERO;
-    let Some(near) = near_contact([a, b], [a.core(), b.core()], None, max_iterations) else {
+    let Some(near) = near_contact(&Both::<_, _>::new(a, b), [a.core(), b.core()], None, max_iterations) else {
         let spot = Spot { source: V::ZERO, points: PointPair::default(), scale: V::Scalar::ONE };
         return Start { way: Way::Unknown, spot, iterations: 0 };
     };
@@ -284,7 +284,9 @@ fn after_hit<V: Vector>(
     let step = direction * lambda;
     let Ok(there) = Posed::translated(b, step) else { return unknown };
     let there = WithoutLines(&there);
-    let Some(near) = near_contact([a, &there], [a.core(), there.core()], None, max_iterations) else { return unknown };
+    let Some(near) = near_contact(&Both::<_, _>::new(a, &there), [a.core(), there.core()], None, max_iterations) else {
+        return unknown;
+    };
     let mut looks = Looks { iterations: near.iterations, max_iterations };
     // The step and the direction are rounded, coordinate by coordinate.
     let astray = roundings(8.0, step.norm());

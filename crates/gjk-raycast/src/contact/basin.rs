@@ -1,6 +1,6 @@
 //! The bottom of a basin of the support value among unit vectors.
 
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::SignedDistanceOptions;
@@ -19,18 +19,14 @@ const PATIENCE: usize = 2;
 /// `others` are support points near by, one of which may be of the second piece. The bottom, and what was not
 /// foretold on the way there, make the polytope larger as well. A `last` look goes to edges, too, where pieces without a bottom of their
 /// own meet others, which the polytope comes to by itself if it goes on. `None` where a support point is not finite.
-pub(super) fn descend<A, B>(
-    cores: &mut Cores<'_, A, B>,
-    boundary: &mut Boundary<A::Vector>,
-    mut way: WayOut<A::Vector>,
-    others: &[Vertex<A::Vector>],
-    options: &SignedDistanceOptions<A::Vector>,
+pub(super) fn descend<V: Vector>(
+    cores: &mut Cores<'_, V>,
+    boundary: &mut Boundary<V>,
+    mut way: WayOut<V>,
+    others: &[Vertex<V>],
+    options: &SignedDistanceOptions<V>,
     last: bool,
-) -> Option<WayOut<A::Vector>>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+) -> Option<WayOut<V>> {
     let mut first = Piece::new(cores, &way.vertex);
     let mut second = None;
     let other = contradiction(&first, others);

@@ -7,10 +7,9 @@ use num_traits::Float as _;
 use super::SignedDistanceOptions;
 use super::peeled::{Peeled, without_ball};
 use super::zonotope::{Zonotope, parallelotope};
-use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
+use crate::body::{AnyPair, Body as _, Both, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, NearContact, first_direction, gjk, is_near_contact, near_contact};
 use crate::observer::Observer;
-use crate::shape::{Shape, WithoutLines};
 use crate::symmetric::Symmetric;
 use crate::unit::lost_to_underflow;
 
@@ -31,23 +30,23 @@ pub(crate) struct Vertex<V> {
 }
 
 /// The difference `K = K_A − K_B` of two cores as seen from zero, in units of a power of two near its size.
-pub(crate) struct Cores<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
-    pub(super) pair: Pair<'a, A, B>,
+pub(crate) struct Cores<'a, V: Vector> {
+    pub(super) pair: AnyPair<'a, V>,
     /// What both shapes are split into, in the world's unit.
-    pub(super) parts: [Core<A::Vector>; 2],
-    frame: Frame<A::Vector>,
+    pub(super) parts: [Core<V>; 2],
+    frame: Frame<V>,
     /// The radii of balls that the cores are without, in the unit.
-    peeled: [<A::Vector as Vector>::Scalar; 2],
+    peeled: [V::Scalar; 2],
     /// The sizes of both cores, their radii and their offset, in the unit.
-    pub(super) size: <A::Vector as Vector>::Scalar,
+    pub(super) size: V::Scalar,
     /// What taking the balls out of the cores loses.
-    peeled_error: <A::Vector as Vector>::Scalar,
+    peeled_error: V::Scalar,
     /// How far points of the difference may be from those they stand for, as a length, in the unit.
-    error: <A::Vector as Vector>::Scalar,
+    error: V::Scalar,
     /// The same coordinate by coordinate; `None` as long as the length will do.
-    uncertainty: Option<Uncertainty<A::Vector>>,
+    uncertainty: Option<Uncertainty<V>>,
     /// What a look near contact tells of both bodies.
-    pub(super) near: Option<NearContact<A::Vector>>,
+    pub(super) near: Option<NearContact<V>>,
     /// The support points computed.
     pub(crate) iterations: usize,
 }
@@ -104,17 +103,13 @@ impl<V: Vector> Uncertainty<V> {
 /// How far points of the difference of two cores may be from those they stand for, as a length, in the world's unit; the same as of
 /// [`Uncertainty`], since no sum of products of coordinates is more than the product of the lengths.
 #[inline(always)]
-pub(super) fn error_of_points<A, B>(pair: &Pair<'_, A, B>) -> <A::Vector as Vector>::Scalar
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
-    let epsilon: <A::Vector as Vector>::Scalar = Scalar::EPSILON;
+pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(pair: &Pair<'_, T>) -> V::Scalar {
+    let epsilon: V::Scalar = Scalar::EPSILON;
     let [from, to] = [pair.core_a.origin, pair.core_b.origin];
     let of_sum = pair.extent() * (epsilon * Scalar::from_f64(SUM));
     let lost = lost_in_sum(from, -to);
     // Nothing is lost where an origin is at zero; the length of tiny vectors takes longer.
-    let lost = if lost == A::Vector::ZERO { Scalar::ZERO } else { lost.norm() };
+    let lost = if lost == V::ZERO { Scalar::ZERO } else { lost.norm() };
     let of_offset = (from - to).norm() * (epsilon * Scalar::from_f64(OFFSET)) + lost;
     pair.error() + of_sum + of_offset
 }
@@ -135,7 +130,8 @@ pub(super) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
 
 /// How far apart shapes are along a unit vector from `b` to `a`, at least.
 pub(crate) fn gap_along<V: Vector>(a: &dyn SupportMap<Vector = V>, b: &dyn SupportMap<Vector = V>, n: V) -> V::Scalar {
-    let mut cores = Cores::new(a, b, [a.core(), b.core()]);
+    let shapes = Both::<_, _>::new(a, b);
+    let mut cores = Cores::new(&shapes, shapes.cores());
     cores.sharpen();
     let Some(vertex) = cores.support(-n) else { return -V::Scalar::infinity() };
     let gap = (n.dot(vertex.point) - cores.error_along(n)) * cores.scale() - cores.radius();
@@ -153,10 +149,10 @@ pub(super) struct ClosedForm<V: Vector> {
     pub(super) points: PointPair<V>,
 }
 
-impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cores<'a, A, B> {
+impl<'a, V: Vector> Cores<'a, V> {
     #[inline]
-    pub(crate) fn new(a: &'a A, b: &'a B, parts: [Core<A::Vector>; 2]) -> Self {
-        let mut pair = Pair::of_cores(a, b, parts);
+    pub(crate) fn new(shapes: &'a (dyn Shapes<Vector = V> + 'a), parts: [Core<V>; 2]) -> Self {
+        let mut pair = Pair::of_cores(shapes, parts);
         let [from, to] = [parts[0].origin, parts[1].origin];
         let offset = from - to;
         let size = pair.size(offset);
@@ -187,39 +183,34 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
             return;
         }
         let Frame { offset, per_unit, .. } = self.frame;
-        let in_unit = |r: Rounding<A::Vector>| Rounding {
+        let in_unit = |r: Rounding<V>| Rounding {
             extent: r.extent * per_unit,
             error: r.error * per_unit,
             error_length: r.error_length * per_unit,
         };
-        let shapes = [in_unit(self.pair.a.rounding()), in_unit(self.pair.b.rounding())];
+        let shapes = self.pair.shapes.each().map(|shape| in_unit(shape.rounding()));
         let [from, to] = [self.parts[0].origin, self.parts[1].origin];
         self.uncertainty = Some(Uncertainty::new(shapes, offset, lost_in_sum(from, -to) * per_unit));
     }
 
     /// Looks at the bodies once more if a search has left them nearer to contact than a few errors, as their distance does. What it tells, if
     /// there is no more to know.
-    pub(super) fn look_near(
-        &mut self,
-        state: &mut Gjk<A::Vector>,
-        max_iterations: usize,
-    ) -> Option<NearContact<A::Vector>> {
+    pub(super) fn look_near(&mut self, state: &mut Gjk<V>, max_iterations: usize) -> Option<NearContact<V>> {
         let frame = Frame { radius: self.radius() * self.frame.per_unit, ..self.frame };
         let left = max_iterations.saturating_sub(self.iterations);
         // Rounded bodies whose cores overlap are deep in one another.
-        let are_deep = frame.radius > Scalar::ZERO && state.simplex.points().len() > A::Vector::DIM;
+        let are_deep = frame.radius > Scalar::ZERO && state.simplex.points().len() > V::DIM;
         if are_deep || left == 0 || !is_near_contact(state, &frame) {
             return None;
         }
-        let shapes: [Shape<'_, A::Vector>; 2] = [&WithoutLines(self.pair.a), &WithoutLines(self.pair.b)];
-        self.near = near_contact(shapes, [self.pair.core_a, self.pair.core_b], None, left);
+        self.near = near_contact(self.pair.shapes, [self.pair.core_a, self.pair.core_b], None, left);
         self.iterations += self.near.as_ref().map_or(0, |near| near.iterations);
         self.near.filter(NearContact::is_closed)
     }
 
     /// Whether the error at hand will do for cores that are so far apart: it is little beside that, and beside what is left of it
     /// without the radii.
-    pub(super) fn is_well_apart(&self, length: <A::Vector as Vector>::Scalar) -> bool {
+    pub(super) fn is_well_apart(&self, length: V::Scalar) -> bool {
         let gap = (length - self.radius() * self.frame.per_unit).abs();
         length.min(gap) > self.greatest_error() * Scalar::from_f64(NEAR)
     }
@@ -240,24 +231,24 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         self.peeled = radii.map(|radius| radius * self.frame.per_unit);
         // The unit vector is right to 6 roundings and the product to one; a sum of radii loses one more.
         let [a, b] = &self.parts;
-        let four: <A::Vector as Vector>::Scalar = Scalar::from_f64(4.0);
+        let four: V::Scalar = Scalar::from_f64(4.0);
         self.peeled_error = four * Scalar::EPSILON * (a.radius + b.radius) * self.frame.per_unit;
         true
     }
 
     /// What lengths in the unit are to be multiplied by.
-    pub(crate) fn scale(&self) -> <A::Vector as Vector>::Scalar {
+    pub(crate) fn scale(&self) -> V::Scalar {
         self.frame.scale
     }
 
     /// The radii of both, in the world's unit.
-    pub(crate) fn radius(&self) -> <A::Vector as Vector>::Scalar {
+    pub(crate) fn radius(&self) -> V::Scalar {
         self.parts[0].radius + self.parts[1].radius
     }
 
     /// The support point along a direction; `None` where it is not finite.
     #[inline]
-    pub(crate) fn support(&mut self, direction: A::Vector) -> Option<Vertex<A::Vector>> {
+    pub(crate) fn support(&mut self, direction: V) -> Option<Vertex<V>> {
         self.iterations += 1;
         let (point, pair) = Peeled { pair: &mut self.pair, radii: self.peeled }.support(direction);
         let point = point + self.frame.offset;
@@ -267,21 +258,17 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     /// The plane by which GJK knows best how far the difference reaches beyond zero: how far at most, and the unit vector across it into
     /// the difference.
     #[inline]
-    pub(super) fn best_plane(&self, state: &Gjk<A::Vector>) -> Option<(<A::Vector as Vector>::Scalar, A::Vector)> {
+    pub(super) fn best_plane(&self, state: &Gjk<V>) -> Option<(V::Scalar, V)> {
         state.axis.unit().map(|n| (self.error_along(n) - state.lower, n))
     }
 
     /// Whether the difference reaches beyond zero along a direction.
-    pub(super) fn reaches_beyond(&mut self, direction: A::Vector) -> bool {
+    pub(super) fn reaches_beyond(&mut self, direction: V) -> bool {
         self.is_curved() && self.support(direction).is_some_and(|vertex| direction.dot(vertex.point) > Scalar::ZERO)
     }
 
     /// The entries `u·Hu`, `u·Hw`, `w·Hw` of the Hessian of the support value at a direction.
-    pub(super) fn hessian(
-        &self,
-        direction: A::Vector,
-        changes: [A::Vector; 2],
-    ) -> Symmetric<<A::Vector as Vector>::Scalar> {
+    pub(super) fn hessian(&self, direction: V, changes: [V; 2]) -> Symmetric<V::Scalar> {
         without_ball(self.pair.hessian(direction, changes), self.peeled[0] + self.peeled[1], direction, changes)
     }
 
@@ -293,57 +280,58 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     /// How far `n·p` may be from its true value, for a unit vector `n` and a point `p` of the difference; and by how much a
     /// support point along `n` may fall short of the support value.
     #[inline]
-    pub(crate) fn error_along(&self, n: A::Vector) -> <A::Vector as Vector>::Scalar {
+    pub(crate) fn error_along(&self, n: V) -> V::Scalar {
         self.uncertainty.as_ref().map_or(self.error, |known| known.along(n)) + self.peeled_error
     }
 
     /// A bound on [`error_along`](Self::error_along) in any direction.
-    pub(crate) fn greatest_error(&self) -> <A::Vector as Vector>::Scalar {
+    pub(crate) fn greatest_error(&self) -> V::Scalar {
         self.uncertainty.as_ref().map_or(self.error, Uncertainty::length) + self.peeled_error
     }
 
     /// A bound on the length of what a point `p` of the difference stands for. Along `p` it is as wrong as along any unit vector,
     /// and what it is wrong by across hardly adds to the length.
     #[inline(always)]
-    pub(crate) fn greatest_length(&self, p: A::Vector) -> <A::Vector as Vector>::Scalar {
+    pub(crate) fn greatest_length(&self, p: V) -> V::Scalar {
         let error = self.greatest_error();
         let along = if self.uncertainty.is_some() { p.unit().map_or(error, |n| self.error_along(n)) } else { error };
         greatest_length(p.norm() + along, error)
     }
 
     /// What GJK moves points by as it compares them.
-    pub(super) fn noise(&self) -> <A::Vector as Vector>::Scalar {
+    pub(super) fn noise(&self) -> V::Scalar {
         self.frame.noise
     }
 
     /// How wide a bracket on the depth along `n` rounding leaves.
     #[inline]
-    pub(super) fn rounding_along(&self, n: A::Vector) -> <A::Vector as Vector>::Scalar {
+    pub(super) fn rounding_along(&self, n: V) -> V::Scalar {
         self.error_along(n) * Scalar::from_f64(2.0)
     }
 
     /// The way out of two parallelotopes that certainly overlap; a plane across `axis`, or across their offset, may tell them apart
     /// at once.
     #[inline(always)]
-    pub(super) fn closed_form(&mut self, axis: Option<A::Vector>) -> Option<ClosedForm<A::Vector>> {
-        let Pair { a, b, core_a, core_b, .. } = &self.pair;
+    pub(super) fn closed_form(&mut self, axis: Option<V>) -> Option<ClosedForm<V>> {
+        let Pair { shapes, core_a, core_b, .. } = &self.pair;
         let reach = self.pair.extent() * self.frame.per_unit;
         if self.frame.offset.length_squared() > reach * reach {
             // Balls about the cores are apart.
             return None;
         }
-        let parts = [parallelotope(*a, core_a)?, parallelotope(*b, core_b)?];
+        let [a, b] = shapes.each();
+        let parts = [parallelotope(a, core_a)?, parallelotope(b, core_b)?];
         let Frame { offset, per_unit, .. } = self.frame;
         let zonotope = Zonotope::new(&parts, offset, per_unit);
         if zonotope.is_beyond(axis.unwrap_or(offset)) {
             return None;
         }
-        let nearest = zonotope.nearest_facet::<A::Vector>()?;
+        let nearest = zonotope.nearest_facet::<V>()?;
         // Computed in double precision, of edges and an offset that are wrong by what the shapes say.
         self.sharpen();
         let Uncertainty { shapes, lost_in_offset, .. } = self.uncertainty.as_ref()?;
         let error = shapes.iter().fold(*lost_in_offset, |sum, s| sum + s.error_length);
-        let half_ulp = <A::Vector as Vector>::Scalar::EPSILON * Scalar::from_f64(0.5 * nearest.depth);
+        let half_ulp = V::Scalar::EPSILON * Scalar::from_f64(0.5 * nearest.depth);
         let [depth, inner, outer] = [nearest.depth, nearest.inner, nearest.outer].map(Scalar::from_f64);
         let error = error + half_ulp;
         let points = nearest.points(&parts, offset, per_unit);
@@ -352,7 +340,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
 
     /// GJK before its first step.
     #[inline(always)]
-    pub(super) fn first_state(&self, options: &SignedDistanceOptions<A::Vector>) -> Gjk<A::Vector> {
+    pub(super) fn first_state(&self, options: &SignedDistanceOptions<V>) -> Gjk<V> {
         Gjk::new(first_direction(options.axis, self.frame.offset))
     }
 
@@ -361,9 +349,9 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
     #[inline]
     pub(super) fn approach(
         &mut self,
-        options: &SignedDistanceOptions<A::Vector>,
-        state: &mut Gjk<A::Vector>,
-        observer: &mut Observer<'_, A::Vector>,
+        options: &SignedDistanceOptions<V>,
+        state: &mut Gjk<V>,
+        observer: &mut Observer<'_, V>,
     ) -> End {
         let Frame { per_unit, scale, .. } = self.frame;
         let is_whole = self.peeled == [Scalar::ZERO; 2];
@@ -373,7 +361,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         let options = GjkOptions { limit, ..GjkOptions::new(state.normal, max_iterations) };
         let mut cores = Peeled { pair: &mut self.pair, radii: self.peeled };
         let end = if meet { End::Overlap } else { gjk(state, &mut cores, self.frame, options, None, observer) };
-        if end != End::Overlap || state.simplex.points().len() <= A::Vector::DIM {
+        if end != End::Overlap || state.simplex.points().len() <= V::DIM {
             state.ensure_measured();
         }
         self.iterations += state.iterations;
@@ -382,12 +370,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
 
     /// The point of the difference nearest to a `target`, as seen from there: that of the face with these corners, and
     /// where it is farther than rounding, the one that GJK comes to from there.
-    pub(super) fn nearest_to(
-        &mut self,
-        target: A::Vector,
-        corners: &[Vertex<A::Vector>],
-        max_iterations: usize,
-    ) -> Gjk<A::Vector> {
+    pub(super) fn nearest_to(&mut self, target: V, corners: &[Vertex<V>], max_iterations: usize) -> Gjk<V> {
         let mut state = Gjk::new(target);
         for &Vertex { point, along, pair } in corners {
             state.simplex.push(point - target, along, pair);
@@ -396,8 +379,7 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
         let max_iterations = max_iterations.saturating_sub(self.iterations);
         if state.length > self.frame.noise && max_iterations > 0 {
             let frame = Frame { offset: self.frame.offset - target, ..self.frame };
-            let shapes: [Shape<'_, A::Vector>; 2] = [&WithoutLines(self.pair.a), &WithoutLines(self.pair.b)];
-            go_on(&mut state, shapes, self.parts, frame, self.peeled, max_iterations);
+            go_on(&mut state, self.pair.shapes, self.parts, frame, self.peeled, max_iterations);
             self.iterations += state.iterations;
         }
         state
@@ -409,13 +391,13 @@ impl<'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> Cor
 #[inline(never)]
 fn go_on<V: Vector>(
     state: &mut Gjk<V>,
-    [a, b]: [Shape<'_, V>; 2],
+    shapes: &dyn Shapes<Vector = V>,
     parts: [Core<V>; 2],
     frame: Frame<V>,
     radii: [V::Scalar; 2],
     max_iterations: usize,
 ) {
-    let mut pair = Pair::of_cores(a, b, parts);
+    let mut pair = Pair::of_cores(shapes, parts);
     pair.set_scale(frame.scale);
     let frame = Frame { noise: frame.noise * Scalar::from_f64(0.0625), ..frame };
     let options = GjkOptions::new(state.normal, max_iterations);

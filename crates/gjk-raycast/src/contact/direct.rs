@@ -1,11 +1,11 @@
 //! The plain case: shapes of which the closest points are known in closed form.
 
-use convex_support::{Core, Scalar, SupportMap, Vector};
+use convex_support::{Core, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::SignedDistance;
 use super::cores::{error_of_points, slack};
-use crate::body::{Body as _, Pair, TracedSupport as _};
+use crate::body::{Body as _, Pair, Shapes, TracedSupport as _};
 use crate::gjk::{NEAR, rounding};
 use crate::observer::Observer;
 use crate::{Iterate, Status};
@@ -16,18 +16,13 @@ use crate::{Iterate, Status};
 ///
 /// The plane of the support point across the vector between those points is as far as they are, to rounding, or it is left to the search.
 #[inline(always)]
-pub(super) fn direct<A, B>(
-    a: &A,
-    b: &B,
-    cores: [Core<A::Vector>; 2],
+pub(super) fn direct<T: Shapes + ?Sized>(
+    shapes: &T,
+    cores: [Core<T::Vector>; 2],
     max_iterations: usize,
-    observer: &mut Observer<'_, A::Vector>,
-) -> Option<SignedDistance<A::Vector>>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
-    let mut pair = Pair::of_cores(a, b, cores);
+    observer: &mut Observer<'_, T::Vector>,
+) -> Option<SignedDistance<T::Vector>> {
+    let mut pair = Pair::of_cores(shapes, cores);
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let points = pair.closest_points(offset, size)?;

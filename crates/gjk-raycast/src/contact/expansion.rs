@@ -1,6 +1,6 @@
 //! The expanding polytope: the shortest way out of the difference of two cores.
 
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::boundary::Boundary;
@@ -120,16 +120,12 @@ pub(super) struct Expanded<V: Vector> {
 ///
 /// Where `K` is smooth its facets never are of the boundary, and the polytope is only to show that there is no shorter way; the
 /// way itself is found by Newton's method, in each basin that a facet leads to.
-pub(super) fn expand<A, B>(
-    cores: &mut Cores<'_, A, B>,
-    state: &mut Gjk<A::Vector>,
-    options: &SignedDistanceOptions<A::Vector>,
-    observer: &mut Observer<'_, A::Vector>,
-) -> Option<Expanded<A::Vector>>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+pub(super) fn expand<V: Vector>(
+    cores: &mut Cores<'_, V>,
+    state: &mut Gjk<V>,
+    options: &SignedDistanceOptions<V>,
+    observer: &mut Observer<'_, V>,
+) -> Option<Expanded<V>> {
     let is_curved = cores.is_curved();
     let relative = if is_curved { options.tolerance } else { Scalar::ZERO };
     let tolerance = relative * cores.size;
@@ -140,7 +136,7 @@ where
         start::Start::Full(way) => way,
     };
     let depth_limit = (options.depth_limit - cores.radius()) / cores.scale();
-    let enough_of = |cores: &Cores<'_, A, B>, way: &WayOut<A::Vector>| tolerance.max(cores.rounding_along(way.u()));
+    let enough_of = |cores: &Cores<'_, V>, way: &WayOut<V>| tolerance.max(cores.rounding_along(way.u()));
     let mut enough = enough_of(cores, &way);
     let mut met = None;
     let mut is_deep = false;
@@ -163,7 +159,7 @@ where
             if is_first {
                 // Perhaps no step was taken towards the bottom yet.
                 let corners = boundary.corners(nearest);
-                way = basin::descend(cores, &mut boundary, way, &corners[..A::Vector::DIM], options, true)?;
+                way = basin::descend(cores, &mut boundary, way, &corners[..V::DIM], options, true)?;
                 enough = enough_of(cores, &way);
                 continue;
             }
@@ -175,20 +171,19 @@ where
         if cores.iterations >= options.max_iterations {
             break Status::IterationLimit;
         }
-        let direction =
-            if may_lean { way.leaned(normal, &boundary.corner_points(nearest)[..A::Vector::DIM]) } else { normal };
+        let direction = if may_lean { way.leaned(normal, &boundary.corner_points(nearest)[..V::DIM]) } else { normal };
         let Some(vertex) = cores.support(direction) else { break Status::Stalled };
         let seen = WayOut::new(vertex);
         if seen.h < way.h {
             way = seen;
             enough = enough_of(cores, &way);
         }
-        let mut facet = [A::Vector::ZERO; 3];
+        let mut facet = [V::ZERO; 3];
         observer.show(|| {
             facet = boundary.corner_points(nearest);
             let (iteration, scale) = (cores.iterations - 1, cores.scale());
             let (lower, upper) = (-way.h * scale, -inner * scale);
-            let (simplex, v, w) = (&facet[..A::Vector::DIM], normal * inner, vertex.point);
+            let (simplex, v, w) = (&facet[..V::DIM], normal * inner, vertex.point);
             Iterate { iteration, simplex, v, w, scale, lower, upper }
         });
         // NaN fails this too.
@@ -211,7 +206,7 @@ where
         }
         may_lean = is_curved;
         if let Some(corners) = corners {
-            way = basin::descend(cores, &mut boundary, way, &corners[..A::Vector::DIM], options, closed.is_some())?;
+            way = basin::descend(cores, &mut boundary, way, &corners[..V::DIM], options, closed.is_some())?;
             enough = enough_of(cores, &way);
         }
     };
@@ -223,19 +218,15 @@ where
 
 /// What an expansion knows where it has ended.
 #[inline(always)]
-fn settled<A, B>(
-    cores: &mut Cores<'_, A, B>,
-    state: &mut Gjk<A::Vector>,
-    boundary: &Boundary<A::Vector>,
-    mut way: WayOut<A::Vector>,
-    met: Option<Met<A::Vector>>,
+fn settled<V: Vector>(
+    cores: &mut Cores<'_, V>,
+    state: &mut Gjk<V>,
+    boundary: &Boundary<V>,
+    mut way: WayOut<V>,
+    met: Option<Met<V>>,
     status: Status,
     for_ends: usize,
-) -> Expanded<A::Vector>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+) -> Expanded<V> {
     let (nearest, _) = boundary.nearest();
     let certain = boundary.certain_inner(|n| cores.error_along(n), cores.greatest_error());
     let is_inside = certain > Scalar::ZERO;
@@ -247,7 +238,7 @@ where
             let foot = Met::new(cores, &mut foot);
             let known = if is_inside { foot } else { met.unwrap_or_else(|| Met::new(cores, state)) };
             let Met { point, points, reached } = if foot.reached < known.reached { foot } else { known };
-            let one = <A::Vector as Vector>::Scalar::ONE;
+            let one = V::Scalar::ONE;
             let (sign, inner) = if is_inside { (one, certain) } else { (-one, -reached) };
             let u = point.unit().map_or(way.u(), |n| n * sign);
             (ends.unwrap_or(Ends { u, depth: point.norm() * sign, points }), inner)

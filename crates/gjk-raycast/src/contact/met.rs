@@ -1,6 +1,6 @@
 //! The point of the difference of two cores that GJK ended with.
 
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::cores::Cores;
@@ -19,11 +19,7 @@ pub(super) struct Met<V: Vector> {
 
 impl<V: Vector> Met<V> {
     #[inline(always)]
-    pub(super) fn new<A, B>(cores: &Cores<'_, A, B>, state: &mut Gjk<V>) -> Self
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    pub(super) fn new(cores: &Cores<'_, V>, state: &mut Gjk<V>) -> Self {
         state.ensure_measured();
         let (mut point, mut points, mut sum) = (V::ZERO, PointPair::default(), V::Scalar::ZERO);
         for (&corner, (weight, pair)) in state.simplex.points().iter().zip(state.simplex.weighted()) {

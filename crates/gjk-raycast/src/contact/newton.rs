@@ -1,6 +1,6 @@
 //! Steps towards a local minimum of the support value among unit vectors, by curvature.
 
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::cores::{Cores, Vertex};
@@ -41,22 +41,14 @@ struct Seen<S> {
 }
 
 impl<V: Vector> Piece<V> {
-    pub(super) fn new<A, B>(cores: &Cores<'_, A, B>, vertex: &Vertex<V>) -> Self
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    pub(super) fn new(cores: &Cores<'_, V>, vertex: &Vertex<V>) -> Self {
         let across = across(vertex.along);
         Self { n: vertex.along, point: vertex.point, across, hessian: cores.hessian(vertex.along, across) }
     }
 
     /// The piece of a support point as seen from this one. Of a point that was not found along any direction, such as one that coincides
     /// with zero, no more is known than that it is a corner.
-    pub(super) fn beside<A, B>(&self, cores: &Cores<'_, A, B>, vertex: &Vertex<V>) -> Self
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    pub(super) fn beside(&self, cores: &Cores<'_, V>, vertex: &Vertex<V>) -> Self {
         if vertex.along == V::ZERO {
             return Self { point: vertex.point, hessian: Symmetric::ZERO, ..*self };
         }

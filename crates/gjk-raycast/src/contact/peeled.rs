@@ -1,17 +1,17 @@
 //! Two cores without the balls that roll within them.
 
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 
-use crate::body::{Pair, PointPair, TracedSupport};
+use crate::body::{AnyPair, PointPair, TracedSupport};
 use crate::symmetric::Symmetric;
 
 /// A pair of shapes whose cores are smaller by the radii of two balls that would sweep them to what they are, in units of the scale.
 ///
 /// The support point of such a core along a unit vector `u` is that of the whole less `r·u`, and the Hessian of its support value less
 /// that of a ball. Where no radius is positive it is the pair.
-pub(super) struct Peeled<'p, 'a, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
-    pub(super) pair: &'p mut Pair<'a, A, B>,
-    pub(super) radii: [<A::Vector as Vector>::Scalar; 2],
+pub(super) struct Peeled<'p, 'a, V: Vector> {
+    pub(super) pair: &'p mut AnyPair<'a, V>,
+    pub(super) radii: [V::Scalar; 2],
 }
 
 /// The Hessian without that of a ball of the given radius, at a direction and along two changes of it.
@@ -29,11 +29,11 @@ pub(super) fn without_ball<V: Vector>(
     Symmetric { a: a - bend * u.dot(u), b: b - bend * u.dot(w), d: d - bend * w.dot(w) }
 }
 
-impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> TracedSupport for Peeled<'_, '_, A, B> {
-    type Vector = A::Vector;
+impl<V: Vector> TracedSupport for Peeled<'_, '_, V> {
+    type Vector = V;
 
     #[inline(always)]
-    fn support(&mut self, direction: A::Vector) -> (A::Vector, PointPair<A::Vector>) {
+    fn support(&mut self, direction: V) -> (V, PointPair<V>) {
         let (point, pair) = self.pair.support(direction);
         let [a, b] = self.radii;
         if !(a + b > Scalar::ZERO) {
@@ -45,7 +45,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> TracedS
     }
 
     #[inline(always)]
-    fn hessian(&self, direction: A::Vector, changes: [A::Vector; 2]) -> Symmetric<<A::Vector as Vector>::Scalar> {
+    fn hessian(&self, direction: V, changes: [V; 2]) -> Symmetric<V::Scalar> {
         let whole = self.pair.hessian(direction, changes);
         without_ball(whole, self.radii[0] + self.radii[1], direction, changes)
     }

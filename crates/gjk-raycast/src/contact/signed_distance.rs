@@ -10,11 +10,11 @@ use super::expansion::{Expanded, expand};
 use super::met::Met;
 use super::witness::Ends;
 use super::{SignedDistance, SignedDistanceOptions};
-use crate::body::{Pair, PointPair};
+use crate::body::{Both, Pair, PointPair, Shapes};
 use crate::compiled_once::compiled_once;
 use crate::gjk::{End, Gjk, NearContact};
 use crate::observer::Observer;
-use crate::shape::{Shape, WithoutLines};
+use crate::shape::Shape;
 use crate::{Iterate, Status};
 
 /// How far apart two shapes are, or how deep in one another, and which way out is the shortest.
@@ -76,15 +76,16 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let parts = [a.core(), b.core()];
-    direct(a, b, parts, options.max_iterations, observer)
-        .unwrap_or_else(|| by_search([&WithoutLines(a), &WithoutLines(b)], parts, options, observer))
+    let shapes = Both::<_, _>::new(a, b);
+    let parts = shapes.cores();
+    direct(&shapes, parts, options.max_iterations, observer)
+        .unwrap_or_else(|| by_search(&shapes, parts, options, observer))
 }
 
 compiled_once! {
     /// The signed distance by a search.
     fn by_search<V>(
-        shapes: [Shape<'_, V>; 2],
+        shapes: &dyn Shapes<Vector = V>,
         parts: [Core<V>; 2],
         options: SignedDistanceOptions<V>,
         observer: &mut Observer<'_, V>,
@@ -94,12 +95,12 @@ compiled_once! {
 }
 
 fn searched<V: Vector>(
-    [a, b]: [Shape<'_, V>; 2],
+    shapes: &dyn Shapes<Vector = V>,
     parts: [Core<V>; 2],
     options: SignedDistanceOptions<V>,
     observer: &mut Observer<'_, V>,
 ) -> SignedDistance<V> {
-    let mut cores = Cores::new(a, b, parts);
+    let mut cores = Cores::new(shapes, parts);
     reach(&mut cores, options, true, observer).answer(&cores)
 }
 
@@ -107,15 +108,14 @@ fn searched<V: Vector>(
 /// search itself leaves, since a search in time looks again a moment later.
 #[inline]
 pub(crate) fn signed_distance_and_axis<V: Vector>(
-    a: Shape<'_, V>,
-    b: Shape<'_, V>,
+    shapes: &dyn Shapes<Vector = V>,
     options: SignedDistanceOptions<V>,
 ) -> (SignedDistance<V>, V) {
-    let parts = [a.core(), b.core()];
-    if let Some(answer) = direct(a, b, parts, options.max_iterations, &mut Observer::none()) {
+    let parts = shapes.cores();
+    if let Some(answer) = direct(shapes, parts, options.max_iterations, &mut Observer::none()) {
         return (answer, answer.normal);
     }
-    let mut cores = Cores::new(a, b, parts);
+    let mut cores = Cores::new(shapes, parts);
     let reached = reach(&mut cores, options, false, &mut Observer::none());
     (reached.answer(&cores), reached.axis)
 }
@@ -133,16 +133,12 @@ pub(crate) fn signed_distance_of_any<V: Vector>(
 
 /// What can be known of the cores; near contact by a look of its own, if that is asked for.
 #[inline(always)]
-fn reach<A, B>(
-    cores: &mut Cores<'_, A, B>,
-    options: SignedDistanceOptions<A::Vector>,
+fn reach<V: Vector>(
+    cores: &mut Cores<'_, V>,
+    options: SignedDistanceOptions<V>,
     looks_near: bool,
-    observer: &mut Observer<'_, A::Vector>,
-) -> Reached<A::Vector>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+    observer: &mut Observer<'_, V>,
+) -> Reached<V> {
     // Rounded cores are mostly apart, which takes a search to know.
     let is_rounded = cores.radius() > Scalar::ZERO;
     if !is_rounded
@@ -167,18 +163,14 @@ where
 
 /// What can be known of cores that overlap or nearly touch, after a search for the points that are closest.
 #[inline(never)]
-fn reach_closely<A, B>(
-    cores: &mut Cores<'_, A, B>,
-    options: SignedDistanceOptions<A::Vector>,
-    state: &mut Gjk<A::Vector>,
+fn reach_closely<V: Vector>(
+    cores: &mut Cores<'_, V>,
+    options: SignedDistanceOptions<V>,
+    state: &mut Gjk<V>,
     mut end: End,
     is_peeled: bool,
-    observer: &mut Observer<'_, A::Vector>,
-) -> Reached<A::Vector>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+    observer: &mut Observer<'_, V>,
+) -> Reached<V> {
     let is_rounded = !is_peeled && cores.radius() > Scalar::ZERO;
     if is_rounded
         && end == End::Overlap
@@ -224,11 +216,7 @@ struct Reached<V: Vector> {
 impl<V: Vector> Reached<V> {
     /// By GJK alone.
     #[inline(always)]
-    fn of_gjk<A, B>(cores: &Cores<'_, A, B>, state: &mut Gjk<V>, end: End) -> Self
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    fn of_gjk(cores: &Cores<'_, V>, state: &mut Gjk<V>, end: End) -> Self {
         let Met { points, reached, .. } = Met::new(cores, state);
         // Across the face that the closest points are on; where rounding may have made that up, across the best plane.
         let direction = if state.length > cores.noise() { state.normal } else { state.axis };
@@ -249,11 +237,7 @@ impl<V: Vector> Reached<V> {
     /// By a look near contact. The points of the surfaces are between those of the cores, from which the plane may lean by the root of the
     /// rounding.
     #[cold]
-    fn of_near_contact<A, B>(cores: &Cores<'_, A, B>, near: &NearContact<V>) -> Self
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    fn of_near_contact(cores: &Cores<'_, V>, near: &NearContact<V>) -> Self {
         let &NearContact { ref frame, points, normal, gap, lower, upper, .. } = near;
         let between = (points.a - points.b + frame.offset).unit().unwrap_or(normal);
         // Both cores may be without balls, which are in their radii then.
@@ -283,11 +267,7 @@ impl<V: Vector> Reached<V> {
 
     /// By an expansion, after GJK had come to an end.
     #[inline]
-    fn of_expansion<A, B>(cores: &Cores<'_, A, B>, expanded: &Expanded<V>, state: &mut Gjk<V>, end: End) -> Self
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    fn of_expansion(cores: &Cores<'_, V>, expanded: &Expanded<V>, state: &mut Gjk<V>, end: End) -> Self {
         let &Expanded { way, ends, inner, status, unexpanded } = expanded;
         let by_way = way.h + cores.error_along(way.u());
         // NaN is no bound.
@@ -303,11 +283,7 @@ impl<V: Vector> Reached<V> {
 
     /// The answer in the world's unit, with the radii.
     #[inline]
-    fn answer<A, B>(&self, cores: &Cores<'_, A, B>) -> SignedDistance<V>
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    fn answer(&self, cores: &Cores<'_, V>) -> SignedDistance<V> {
         let scale = cores.scale();
         let [a, b] = &cores.parts;
         let radius = cores.radius();

@@ -1,6 +1,6 @@
 //! The first polytope of an expansion.
 
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::boundary::Boundary;
@@ -23,15 +23,11 @@ pub(super) enum Start<V: Vector> {
 /// Cores that are well in one another have led to a simplex that is thicker than rounding. As long as points span no volume, those
 /// farthest both ways across them are looked for, and the farther one is added.
 #[inline]
-pub(super) fn start<A, B>(
-    cores: &mut Cores<'_, A, B>,
-    state: &Gjk<A::Vector>,
-    boundary: &mut Boundary<A::Vector>,
-) -> Option<Start<A::Vector>>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+pub(super) fn start<V: Vector>(
+    cores: &mut Cores<'_, V>,
+    state: &Gjk<V>,
+    boundary: &mut Boundary<V>,
+) -> Option<Start<V>> {
     let known = state.simplex.points().len();
     let is_curved = cores.is_curved();
     let vertex = |i: usize| {
@@ -46,7 +42,7 @@ where
         .unit()
         .filter(|_| known > 0 && state.lower.is_finite())
         .map(|n| WayOut { h: -state.lower, vertex: Vertex { along: -n, ..vertex(0) } });
-    if known > A::Vector::DIM
+    if known > V::DIM
         && let Some(best) = best
     {
         let corners: [_; MAX_POINTS] = core::array::from_fn(|i| vertex(i.min(known - 1)));
@@ -59,7 +55,7 @@ where
     for i in 0..known {
         let _ = span.add(vertex(i), |u| cores.rounding_along(u));
     }
-    while span.len < A::Vector::DIM + 1 {
+    while span.len < V::DIM + 1 {
         let u = span.across();
         let ways = [WayOut::new(cores.support(u)?), WayOut::new(cores.support(-u)?)];
         let least = if ways[1].h < ways[0].h { ways[1] } else { ways[0] };
@@ -69,7 +65,7 @@ where
         if span.len == 0 {
             let _ = span.add(ways[0].vertex, |u| cores.rounding_along(u));
         }
-        let height = |way: &WayOut<A::Vector>| way.h - way.u().dot(span.points[0].point);
+        let height = |way: &WayOut<V>| way.h - way.u().dot(span.points[0].point);
         let farther = if height(&ways[1]) > height(&ways[0]) { ways[1] } else { ways[0] };
         if !span.add(farther.vertex, |u| cores.rounding_along(u)) {
             return Some(Start::Flat(least));

@@ -1,6 +1,6 @@
 //! The points of two cores between which the shortest way out leads.
 
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 
 use super::boundary::Boundary;
 use super::cores::Cores;
@@ -37,20 +37,16 @@ pub(super) struct Ends<V: Vector> {
 /// the plane is known better than the short vector from it, by what is left of `u` across it. Where no lower way is
 /// found, as with no support points left, the way ends at the nearest point, whose distance from zero is between the
 /// bounds. `None` where that point is on no side of zero that the way leads to.
-pub(super) fn ends<A, B>(
-    cores: &mut Cores<'_, A, B>,
-    boundary: &Boundary<A::Vector>,
+pub(super) fn ends<V: Vector>(
+    cores: &mut Cores<'_, V>,
+    boundary: &Boundary<V>,
     nearest: usize,
-    way: &mut WayOut<A::Vector>,
+    way: &mut WayOut<V>,
     max_iterations: usize,
-) -> Option<Ends<A::Vector>>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+) -> Option<Ends<V>> {
     let noise = cores.noise();
-    let ends = |points: PointPair<A::Vector>, u, depth, rest: A::Vector| {
-        let half = rest * <A::Vector as Vector>::Scalar::from_f64(0.5);
+    let ends = |points: PointPair<V>, u, depth, rest: V| {
+        let half = rest * V::Scalar::from_f64(0.5);
         Ends { u, depth, points: PointPair { a: points.a + half, b: points.b - half } }
     };
     loop {
@@ -90,19 +86,15 @@ where
 
 /// The point of the difference nearest to a `target` outside it or on its boundary, as seen from there: by the facet
 /// beside it, and if that is farther than rounding, by GJK.
-pub(super) fn nearest_to<A, B>(
-    cores: &mut Cores<'_, A, B>,
-    boundary: &Boundary<A::Vector>,
+pub(super) fn nearest_to<V: Vector>(
+    cores: &mut Cores<'_, V>,
+    boundary: &Boundary<V>,
     from: usize,
-    target: A::Vector,
+    target: V,
     max_iterations: usize,
-) -> Gjk<A::Vector>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+) -> Gjk<V> {
     let corners = boundary.corners(beside(boundary, from, target));
-    cores.nearest_to(target, &corners[..A::Vector::DIM], max_iterations)
+    cores.nearest_to(target, &corners[..V::DIM], max_iterations)
 }
 
 /// The facet that a point is above, or that it is nearly above: that comes next across the ridges that the point's foot

@@ -14,11 +14,11 @@
 //! a multiple of `uᵢ`. With that multiple in its place the difference reaches less far by `ρ` at most; its facets are those of the other
 //! edges, and they are seen, with `fₖ` as it is, to another `ρ`. Gaps of `−(e + 2ρ)·|n|` along all those are proof enough.
 
-use convex_support::{CoreKind, Parallelotope, Scalar, SupportMap, Vector};
+use convex_support::{CoreKind, Parallelotope, Scalar, Vector};
 use num_traits::Float;
 
 use super::Frame;
-use crate::body::Pair;
+use crate::body::AnyPair;
 use crate::double::{Vec3, array, cross, dot};
 
 /// What rounding loses here, in ε of the bound on all lengths: coordinates `4ε` each, products of two `12ε`, sums of seven `6ε`, of both sides.
@@ -43,16 +43,13 @@ pub(crate) enum Boxes<V> {
 
 /// Whether two boxes without a radius meet; `None` where they are no boxes, flat, or so near to contact that it is in doubt.
 #[inline]
-pub(crate) fn boxes<A, B>(pair: &Pair<'_, A, B>, frame: &Frame<A::Vector>) -> Option<Boxes<A::Vector>>
-where
-    A: SupportMap + ?Sized,
-    B: SupportMap<Vector = A::Vector> + ?Sized,
-{
+pub(crate) fn boxes<V: Vector>(pair: &AnyPair<'_, V>, frame: &Frame<V>) -> Option<Boxes<V>> {
     let are_polytopes = [pair.core_a.kind, pair.core_b.kind].iter().all(|kind| matches!(kind, CoreKind::Polytope));
     if !are_polytopes || frame.radius > Scalar::ZERO {
         return None;
     }
-    let (a, b) = (pair.a.core_parallelotope()?, pair.b.core_parallelotope()?);
+    let [a, b] = pair.shapes.each().map(|shape| shape.core_parallelotope());
+    let (a, b) = (a?, b?);
     Seen::new(&a, &b, frame)?.boxes()
 }
 

@@ -10,10 +10,10 @@ mod progress;
 mod start;
 mod state;
 
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Body as _, Pair, PointPair, TracedSupport};
+use crate::body::{Body as _, Pair, PointPair, Shapes, TracedSupport};
 use crate::observer::Observer;
 use crate::unit::{lost_to_underflow, power_of_two_near, reciprocal_of_power};
 use crate::{Status, SubAlgorithm};
@@ -43,11 +43,7 @@ pub(crate) struct Frame<V: Vector> {
 impl<V: Vector> Frame<V> {
     /// The frame of a pair whose origins and sizes are these, which is set to the frame's unit.
     #[inline]
-    pub(crate) fn new<A, B>(pair: &mut Pair<'_, A, B>, offset: V, size: V::Scalar) -> Self
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    pub(crate) fn new<T: Shapes<Vector = V> + ?Sized>(pair: &mut Pair<'_, T>, offset: V, size: V::Scalar) -> Self {
         let scale = power_of_two_near(size);
         let per_unit = reciprocal_of_power(scale);
         pair.set_scale(scale);

@@ -9,15 +9,14 @@
 
 use convex_support::numerics::bound::{raised, raised_vector, roundings, roundings_of};
 use convex_support::numerics::twofold::{dot_minus, lost_in_sum};
-use convex_support::{Core, CoreKind, Rounding, Scalar, SupportMap, Vector};
+use convex_support::{Core, CoreKind, Rounding, Scalar, Vector};
 use num_traits::Float;
 
 use super::faces::{about_edge, across_faces, is_around_zero};
 use super::order::comes_first;
 use super::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
-use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
+use crate::body::{AnyPair, Body as _, Pair, PointPair, Shapes, Swapped, TracedSupport as _};
 use crate::observer::Observer;
-use crate::shape::Shape;
 use crate::simplex::MAX_POINTS;
 
 /// How many errors apart, or in one another, bodies are looked at once more.
@@ -33,8 +32,6 @@ pub(crate) fn is_near_contact<V: Vector>(state: &mut Gjk<V>, frame: &Frame<V>) -
     state.ensure_measured();
     (state.length - frame.radius).abs() < frame.error * V::Scalar::from_f64(NEAR)
 }
-
-type PairOfAny<'s, V> = Pair<'s, dyn SupportMap<Vector = V> + 's, dyn SupportMap<Vector = V> + 's>;
 
 /// What is known of bodies near contact; lengths in units of the frame, from body to body.
 #[derive(Clone, Copy)]
@@ -103,25 +100,22 @@ impl<V: Vector> NearContact<V> {
 #[cold]
 #[inline(never)]
 pub(crate) fn near_contact<V: Vector>(
-    [a, b]: [Shape<'_, V>; 2],
+    shapes: &dyn Shapes<Vector = V>,
     [core_a, core_b]: [Core<V>; 2],
     begun: Option<&Gjk<V>>,
     max_iterations: usize,
 ) -> Option<NearContact<V>> {
     if comes_first(&core_b, &core_a) {
         let begun = begun.map(|&begun| Gjk { simplex: begun.simplex.made_of(PointPair::reversed), ..begun });
-        look(Pair::of_cores(b, a, [core_b, core_a]), begun.as_ref(), max_iterations).map(NearContact::reversed)
+        look(Pair::of_cores(&Swapped(shapes), [core_b, core_a]), begun.as_ref(), max_iterations)
+            .map(NearContact::reversed)
     } else {
-        look(Pair::of_cores(a, b, [core_a, core_b]), begun, max_iterations)
+        look(Pair::of_cores(shapes, [core_a, core_b]), begun, max_iterations)
     }
 }
 
 /// The same for bodies that are in order.
-fn look<V: Vector>(
-    mut pair: PairOfAny<'_, V>,
-    begun: Option<&Gjk<V>>,
-    max_iterations: usize,
-) -> Option<NearContact<V>> {
+fn look<V: Vector>(mut pair: AnyPair<'_, V>, begun: Option<&Gjk<V>>, max_iterations: usize) -> Option<NearContact<V>> {
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
@@ -140,14 +134,14 @@ fn look<V: Vector>(
 }
 
 /// GJK from the closest points, where they are known in closed form, or from the offset of the origins to the noise.
-fn begin<V: Vector>(pair: &PairOfAny<'_, V>, frame: &Frame<V>, size: V::Scalar, max_iterations: usize) -> Gjk<V> {
+fn begin<V: Vector>(pair: &AnyPair<'_, V>, frame: &Frame<V>, size: V::Scalar, max_iterations: usize) -> Gjk<V> {
     let first = first_direction(None, frame.offset);
     let mut state = Gjk::new(first);
     if state.begin_at_closest(pair, frame, size) != Some(false) {
         // Where they meet, the vector from one to the other is no direction to look along.
         state = Gjk::new(first);
         // Searches of its own, as of a query that begins here.
-        let mut pair = Pair::of_cores(pair.a, pair.b, [pair.core_a, pair.core_b]);
+        let mut pair = Pair::of_cores(pair.shapes, [pair.core_a, pair.core_b]);
         pair.set_scale(frame.scale);
         run(&mut state, &mut pair, *frame, first, max_iterations);
     }
@@ -155,7 +149,7 @@ fn begin<V: Vector>(pair: &PairOfAny<'_, V>, frame: &Frame<V>, size: V::Scalar, 
 }
 
 /// Goes on with GJK to a sixteenth of the noise.
-fn go_on<V: Vector>(state: &mut Gjk<V>, pair: &mut PairOfAny<'_, V>, frame: &Frame<V>, max_iterations: usize) -> End {
+fn go_on<V: Vector>(state: &mut Gjk<V>, pair: &mut AnyPair<'_, V>, frame: &Frame<V>, max_iterations: usize) -> End {
     let frame = Frame { noise: frame.noise * Scalar::from_f64(0.0625), ..*frame };
     let end = run(state, pair, frame, state.normal, max_iterations);
     state.ensure_measured();
@@ -166,7 +160,7 @@ fn go_on<V: Vector>(state: &mut Gjk<V>, pair: &mut PairOfAny<'_, V>, frame: &Fra
 #[inline(never)]
 fn run<V: Vector>(
     state: &mut Gjk<V>,
-    pair: &mut PairOfAny<'_, V>,
+    pair: &mut AnyPair<'_, V>,
     frame: Frame<V>,
     first: V,
     max_iterations: usize,
@@ -251,9 +245,9 @@ struct Seen<V: Vector> {
 }
 
 impl<V: Vector> Seen<V> {
-    fn new(pair: &PairOfAny<'_, V>, frame: &Frame<V>) -> Self {
+    fn new(pair: &AnyPair<'_, V>, frame: &Frame<V>) -> Self {
         let per_unit = frame.per_unit;
-        let (a, b): (Rounding<V>, Rounding<V>) = (pair.a.rounding(), pair.b.rounding());
+        let [a, b]: [Rounding<V>; 2] = pair.shapes.each().map(|shape| shape.rounding());
         Self {
             offset: frame.offset,
             lost: lost_in_sum(pair.core_a.origin, -pair.core_b.origin) * per_unit,
@@ -284,7 +278,7 @@ impl<V: Vector> Seen<V> {
     /// both are wrong by and is beyond the radii: then there is nothing to search.
     fn between_closest(
         &self,
-        pair: &mut PairOfAny<'_, V>,
+        pair: &mut AnyPair<'_, V>,
         frame: &Frame<V>,
         points: PointPair<V>,
     ) -> Option<NearContact<V>> {
@@ -311,7 +305,7 @@ impl<V: Vector> Seen<V> {
     /// What GJK comes to, as it was begun or from where all queries begin.
     fn search(
         &self,
-        pair: &mut PairOfAny<'_, V>,
+        pair: &mut AnyPair<'_, V>,
         frame: &Frame<V>,
         begun: Option<&Gjk<V>>,
         size: V::Scalar,
@@ -367,7 +361,7 @@ impl<V: Vector> Seen<V> {
     /// The plane that is farthest from zero for certain, of those across the faces that a search has ended at, and across its last two
     /// directions; and a bound on the length of the shortest vector found. Where the line across a plane pierces the face that is as far,
     /// no other plane is looked at.
-    fn best_plane(&self, pair: &mut PairOfAny<'_, V>, state: &Gjk<V>) -> Option<(Plane<V>, V::Scalar)> {
+    fn best_plane(&self, pair: &mut AnyPair<'_, V>, state: &Gjk<V>) -> Option<(Plane<V>, V::Scalar)> {
         let points = state.simplex.points();
         let mut pairs = [PointPair::default(); MAX_POINTS];
         for (corner, (_, found)) in pairs.iter_mut().zip(state.simplex.weighted()) {
@@ -412,7 +406,7 @@ impl<V: Vector> Seen<V> {
     }
 
     /// The plane across `n` that supports the difference.
-    fn plane(&self, pair: &mut PairOfAny<'_, V>, n: V) -> Option<Plane<V>> {
+    fn plane(&self, pair: &mut AnyPair<'_, V>, n: V) -> Option<Plane<V>> {
         let n = n.unit()?;
         let level = self.level(n, pair.support(-n).1);
         // The unit vector's length is right to 6 roundings; the sum of the products is rounded once, and is right to 1024ε² of what

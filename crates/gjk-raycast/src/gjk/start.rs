@@ -1,11 +1,11 @@
 //! How a search begins.
 
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::{Frame, Gjk, GjkOptions};
 use crate::SubAlgorithm;
-use crate::body::Pair;
+use crate::body::AnyPair;
 use crate::unit::moderate;
 
 /// The direction to look along first: an axis that somebody knows, or from one origin to the other.
@@ -18,16 +18,12 @@ impl<V: Vector> Gjk<V> {
     /// Begins at the closest points of the cores of a pair of the given size, where those are known in closed form: whether the bodies
     /// meet there, to rounding. `None` where they are not known, and the state is as it was.
     #[inline(always)]
-    pub(crate) fn begin_at_closest<A, B>(
+    pub(crate) fn begin_at_closest(
         &mut self,
-        pair: &Pair<'_, A, B>,
+        pair: &AnyPair<'_, V>,
         frame: &Frame<V>,
         size: V::Scalar,
-    ) -> Option<bool>
-    where
-        A: SupportMap<Vector = V> + ?Sized,
-        B: SupportMap<Vector = V> + ?Sized,
-    {
+    ) -> Option<bool> {
         let points = pair.closest_points(frame.offset * frame.scale, size)?;
         Some(self.begin_at(points.a - points.b + frame.offset, points, frame))
     }

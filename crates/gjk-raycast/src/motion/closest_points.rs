@@ -46,7 +46,7 @@ impl<V: Vector> MovingPair<'_, V> {
     #[inline(never)]
     pub(super) fn by_closest_points(&self, time: V::Scalar, axis: V, look: Look) -> Option<Instant<V>> {
         let placed = self.placed_here(time);
-        let mut pair = Pair::new(&placed.a, &placed.b);
+        let mut pair = Pair::new(&placed);
         let offset = placed.offset;
         let size = pair.size(offset);
         let points = pair.closest_points(offset, size)?;

@@ -4,17 +4,16 @@ use convex_support::{AngularVelocity, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::first_contact::Search;
-use super::moving_body::MovingBody;
 use super::moving_pair::MovingPair;
 use super::options::MotionCastOptions;
 use super::result::{MotionCast, MotionHit, MotionIterate};
 use super::rigid_motion::RigidMotion;
 use super::trajectory::Trajectory;
+use crate::body::{Both, Shapes};
 use crate::compiled_once::compiled_once;
 use crate::error::RayCastError;
 use crate::linear_cast::check_limits;
 use crate::ray::{check_finite, check_numbers};
-use crate::shape::{Shape, WithoutLines};
 use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, linear_cast};
 
 /// When two moving bodies first touch, and where.
@@ -94,14 +93,13 @@ where
             return without_turning(a, b, motion, options);
         }
     }
-    let shapes: [Shape<'_, _>; 2] = [&WithoutLines(a), &WithoutLines(b)];
-    Ok(first_contact(shapes, [&motion_a, &motion_b], options, &mut observer))
+    Ok(first_contact(&Both::<_, _>::new(a, b), [&motion_a, &motion_b], options, &mut observer))
 }
 
 compiled_once! {
     /// The first contact of bodies that turn.
     fn first_contact<V>(
-        shapes: [Shape<'_, V>; 2],
+        shapes: &dyn Shapes<Vector = V>,
         motions: [&dyn Trajectory<Vector = V>; 2],
         options: MotionCastOptions<V>,
         observer: &mut dyn FnMut(MotionIterate<V>),
@@ -111,14 +109,12 @@ compiled_once! {
 }
 
 fn searched<V: Vector>(
-    [a, b]: [Shape<'_, V>; 2],
-    [motion_a, motion_b]: [&dyn Trajectory<Vector = V>; 2],
+    shapes: &dyn Shapes<Vector = V>,
+    motions: [&dyn Trajectory<Vector = V>; 2],
     options: MotionCastOptions<V>,
     observer: &mut dyn FnMut(MotionIterate<V>),
 ) -> MotionCast<V> {
-    let a = MovingBody::new(a, motion_a, options.target_distance);
-    let b = MovingBody::new(b, motion_b, Scalar::ZERO);
-    Search::run(&MovingPair::new(a, b), options, observer)
+    Search::run(&MovingPair::new(shapes, motions, options.target_distance), options, observer)
 }
 
 /// The cast of bodies that do not turn.

@@ -1,7 +1,5 @@
 //! A shape somewhere on its way.
 
-use core::cell::Cell;
-
 use crate::shape::Shape;
 use convex_support::{Core, CoreKind, Feature, Hint, Matrix, Parallelotope, Rounding, Scalar, SupportMap, Vector};
 
@@ -13,8 +11,6 @@ pub(crate) struct Moved<'s, V: Vector> {
     core: Core<V>,
     /// What moving the shape may have added to the error of its points, as a length.
     error: V::Scalar,
-    /// Where what one query found is kept for the next.
-    hint: Option<&'s Cell<Hint>>,
 }
 
 impl<'s, V: Vector> Moved<'s, V> {
@@ -24,7 +20,7 @@ impl<'s, V: Vector> Moved<'s, V> {
     pub(crate) fn new(shape: Shape<'s, V>, core: Core<V>, rotation: Option<V::Matrix>, error: V::Scalar) -> Self {
         let Some(matrix) = rotation else {
             let core = Core { error: core.error + error, ..core };
-            return Self { shape, rotation, core, error, hint: None };
+            return Self { shape, rotation, core, error };
         };
         let kind = match core.kind {
             CoreKind::Point(at) => CoreKind::Point(matrix * at),
@@ -34,7 +30,7 @@ impl<'s, V: Vector> Moved<'s, V> {
         // The length of an error stays. The product with the matrix is wrong by at most three ε of the extent, and so may be the
         // support value along a direction that is turned.
         let error = error + V::Scalar::from_f64(6.0) * Scalar::EPSILON * core.extent;
-        Self { shape, rotation, core: Core { kind, error: core.error + error, ..core }, error, hint: None }
+        Self { shape, rotation, core: Core { kind, error: core.error + error, ..core }, error }
     }
 
     /// A vector of the shape as it is turned.
@@ -47,11 +43,6 @@ impl<'s, V: Vector> Moved<'s, V> {
     #[inline(always)]
     pub(super) fn before(&self, vector: V) -> V {
         self.rotation.map_or(vector, |rotation| rotation.transpose_mul(vector))
-    }
-
-    /// The same, which begins its searches where the last ones ended, whoever made them.
-    pub(super) fn with_hint(self, hint: &'s Cell<Hint>) -> Self {
-        Self { hint: Some(hint), ..self }
     }
 }
 
@@ -70,13 +61,7 @@ impl<V: Vector> SupportMap for Moved<'_, V> {
 
     #[inline(always)]
     fn core_support(&self, direction: V, hint: &mut Hint) -> V {
-        let local = self.before(direction);
-        let Some(kept) = self.hint else { return self.turned(self.shape.core_support(local, hint)) };
-        let mut hint = kept.get();
-        hint.rewind();
-        let point = self.shape.core_support(local, &mut hint);
-        kept.set(hint);
-        self.turned(point)
+        self.turned(self.shape.core_support(self.before(direction), hint))
     }
 
     #[inline(always)]

@@ -1,8 +1,6 @@
 //! A body and its motion.
 
-use core::cell::Cell;
-
-use convex_support::{AngularVelocity, BoundingSphere, Core, Hint, Matrix, Scalar, Spin, Vector};
+use convex_support::{AngularVelocity, BoundingSphere, Core, Matrix, Scalar, Spin, Vector};
 use num_traits::Float;
 
 use super::moved::Moved;
@@ -17,8 +15,6 @@ pub(super) struct MovingBody<'s, V: Vector> {
     course: Course<V>,
     /// What the shape is split into at time 0, with its radius grown by the target distance.
     pub(super) core: Core<V>,
-    /// What was found at the last time, which is mostly found again.
-    hint: Cell<Hint>,
 }
 
 /// What of a motion does not depend on time.
@@ -69,7 +65,7 @@ impl<'s, V: Vector> MovingBody<'s, V> {
             Some(motion) => Course::Rigid(Rigid::new(motion, &core)),
         };
         let core = Core { radius: core.radius + margin, ..core };
-        Self { shape, motion, course, core, hint: Cell::new(Hint::new()) }
+        Self { shape, motion, course, core }
     }
 
     /// Where the body is at a time.
@@ -102,7 +98,7 @@ impl<'s, V: Vector> MovingBody<'s, V> {
     /// The shape at a place, with its origin put at the given point, which is wrong by `error` at most.
     #[inline(always)]
     pub(super) fn moved(&self, place: &Place<V>, origin: V, error: V::Scalar) -> Moved<'_, V> {
-        Moved::new(self.shape, Core { origin, ..self.core }, place.rotation, error).with_hint(&self.hint)
+        Moved::new(self.shape, Core { origin, ..self.core }, place.rotation, error)
     }
 
     /// A bound on the acceleration of points of the core, as of [`Trajectory::acceleration_along`].

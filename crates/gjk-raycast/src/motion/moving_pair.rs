@@ -3,7 +3,7 @@
 use core::cell::{Cell, RefCell};
 
 use convex_support::numerics::range::is_comfortable;
-use convex_support::{Scalar, Vector};
+use convex_support::{Hint, Scalar, Vector};
 use num_traits::Float;
 
 use super::approach::Approach;
@@ -13,15 +13,18 @@ use super::corners::Corners;
 use super::instant::{Instant, Limits};
 use super::moving_body::{MovingBody, length_bound};
 use super::placed::Placed;
-use super::trajectory::TurningPlane;
+use super::trajectory::{Trajectory, TurningPlane};
 use crate::SignedDistanceOptions;
-use crate::body::{Body as _, Pair, TracedSupport as _};
+use crate::body::{Body as _, Pair, Shapes, TracedSupport as _};
 use crate::contact::signed_distance_and_axis;
 use crate::gjk::rounding;
 use crate::unit::{is_moderate, lost_to_underflow};
 
 /// Two bodies and their motions.
 pub(super) struct MovingPair<'s, V: Vector> {
+    pub(super) shapes: &'s dyn Shapes<Vector = V>,
+    /// What was found of the shapes at the last time, which is mostly found again.
+    pub(super) hints: Cell<[Hint; 2]>,
     pub(super) a: MovingBody<'s, V>,
     pub(super) b: MovingBody<'s, V>,
     /// Whether the closest points of the cores were known in closed form at the start.
@@ -38,14 +41,23 @@ pub(super) struct MovingPair<'s, V: Vector> {
 
 impl<'s, V: Vector> MovingPair<'s, V> {
     #[inline(always)]
-    pub(super) fn new(a: MovingBody<'s, V>, b: MovingBody<'s, V>) -> Self {
+    pub(super) fn new(
+        shapes: &'s dyn Shapes<Vector = V>,
+        motions: [&'s dyn Trajectory<Vector = V>; 2],
+        target_distance: V::Scalar,
+    ) -> Self {
+        let [a, b] = shapes.each();
+        let a = MovingBody::new(a, motions[0], target_distance);
+        let b = MovingBody::new(b, motions[1], Scalar::ZERO);
         let offset = a.core.origin - b.core.origin;
-        let pair = Pair::of_cores(a.shape, b.shape, [a.core, b.core]);
+        let pair = Pair::of_cores(shapes, [a.core, b.core]);
         let knows_points = pair.closest_points(offset, pair.size(offset)).is_some();
         let blocks = || Some([Block::of(a.shape, &a.core)?, Block::of(b.shape, &b.core)?]);
         let boxes = if knows_points { None } else { blocks() };
         let facet = Cell::new(None);
-        Self { a, b, knows_points, boxes, facet, closest: RefCell::new(Corners::none()), iterations: Cell::new(0) }
+        let (closest, iterations) = (RefCell::new(Corners::none()), Cell::new(0));
+        let hints = Cell::new([Hint::new(), Hint::new()]);
+        Self { shapes, hints, a, b, knows_points, boxes, facet, closest, iterations }
     }
 
     /// Counts support points.
@@ -84,15 +96,15 @@ impl<'s, V: Vector> MovingPair<'s, V> {
     fn by_signed_distance(
         &self,
         time: V::Scalar,
-        Placed { a, b, place, .. }: &Placed<'_, V>,
+        placed: &Placed<'_, V>,
         axis: V,
         limits: Limits<V::Scalar>,
     ) -> Instant<V> {
         let wanted =
             SignedDistanceOptions::new().with_axis(axis).with_limit(limits.distance).with_depth_limit(limits.depth);
-        let (answer, axis) = signed_distance_and_axis(a, b, wanted);
+        let (answer, axis) = signed_distance_and_axis(placed, wanted);
         self.count(answer.iterations);
-        let (point_a, point) = (answer.point_a + *place, answer.point_b + *place);
+        let (point_a, point) = (answer.point_a + placed.place, answer.point_b + placed.place);
         let distance = answer.signed_distance;
         // Of bodies that are apart, or no deeper than is asked for, the gap is to be that of a plane, and not of one
         // that is hardly another.
@@ -151,16 +163,16 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
     }
 
     fn level(&self, time: V::Scalar, normal: V) -> (V::Scalar, V::Scalar) {
-        let Placed { a, b, offset, .. } = &self.placed(time);
-        let mut pair = Pair::new(a, b);
-        let size = pair.size(*offset);
+        let placed = &self.placed(time);
+        let mut pair = Pair::new(placed);
+        let size = pair.size(placed.offset);
         // Of numbers out of range nothing is known.
         if !is_moderate(size) {
             return (V::Scalar::nan(), Float::infinity());
         }
         let (point, _) = pair.support(-normal);
         self.count(1);
-        (normal.dot(point + *offset) - pair.radius(), rounding(size) + pair.error())
+        (normal.dot(point + placed.offset) - pair.radius(), rounding(size) + pair.error())
     }
 
     fn acceleration_along(&self, plane: TurningPlane<V>, interval: [V::Scalar; 2]) -> V::Scalar {

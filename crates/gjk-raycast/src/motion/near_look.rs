@@ -9,7 +9,6 @@ use num_traits::Float as _;
 
 use super::corners::Face;
 use super::instant::{IN_PLANE, Instant, LONG};
-use super::moved::Moved;
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use crate::body::{Pair, PointPair};
@@ -30,7 +29,7 @@ impl<V: Vector> MovingPair<'_, V> {
     /// The bodies at a time as well as it can be known, if what was closest at the last look is so still, and proves that they are apart
     /// or overlap.
     pub(super) fn near_look(&self, time: V::Scalar, placed: &Placed<'_, V>, axis: V) -> Option<Instant<V>> {
-        let pair = Pair::new(&placed.a, &placed.b);
+        let pair = Pair::new(placed);
         let size = pair.size(placed.offset);
         if !is_moderate(size) {
             return None;
@@ -42,7 +41,7 @@ impl<V: Vector> MovingPair<'_, V> {
         if !(unit.dot(axis) > Scalar::ZERO) {
             return None;
         }
-        let mut cores = Cores::new(&placed.a, &placed.b, [pair.core_a, pair.core_b]);
+        let mut cores = Cores::new(placed, [pair.core_a, pair.core_b]);
         cores.sharpen();
         let (scale, radius) = (cores.scale(), cores.radius());
         // As in an answer: the unit vector, the radii and the sums.
@@ -71,12 +70,7 @@ impl<V: Vector> MovingPair<'_, V> {
     ///
     /// Each is looked for anew, along a direction that leans away from the others: as it was kept, it is not known as well as a support
     /// point.
-    fn overlap_of_corners(
-        &self,
-        cores: &mut Cores<'_, Moved<'_, V>, Moved<'_, V>>,
-        face: &Face<V>,
-        unit: V,
-    ) -> Option<V::Scalar> {
+    fn overlap_of_corners(&self, cores: &mut Cores<'_, V>, face: &Face<V>, unit: V) -> Option<V::Scalar> {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
         let (scale, radius, dimension) = (cores.scale(), cores.radius(), V::DIM);
         let (corners, len) = face.points();

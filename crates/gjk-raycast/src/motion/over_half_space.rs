@@ -111,6 +111,8 @@ struct OverHalfSpace<'s, V: Vector> {
     plane: Plane<V>,
     /// The support points computed.
     iterations: Cell<usize>,
+    /// What was found at the last time, which is mostly found again.
+    hint: Cell<Hint>,
 }
 
 /// The body's lowest point at one time.
@@ -133,6 +135,7 @@ impl<'s, V: Vector> OverHalfSpace<'s, V> {
             margin,
             plane: half_space.plane(),
             iterations: Cell::new(0),
+            hint: Cell::new(Hint::new()),
         }
     }
 
@@ -146,7 +149,10 @@ impl<'s, V: Vector> OverHalfSpace<'s, V> {
         let (shift, turned) = (place.shift, place.swing);
         let moved_origin = origin + shift + turned;
         let moved = self.body.moved(&place, moved_origin, place.error);
-        let point = moved.core_support(-self.plane.normal(), &mut Hint::new());
+        let mut hint = self.hint.get();
+        hint.rewind();
+        let point = moved.core_support(-self.plane.normal(), &mut hint);
+        self.hint.set(hint);
         self.iterations.set(self.iterations.get() + 1);
         let error = self.plane.error_along(&moved.rounding());
         let height = self.plane.height([origin, shift, turned, point], error, radius);

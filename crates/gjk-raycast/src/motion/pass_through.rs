@@ -66,7 +66,7 @@ impl<V: Vector> MovingPair<'_, V> {
 
     /// Corners of the difference whose face is nearest to zero, as many as there are dimensions.
     fn closest_corners(&self, placed: &Placed<'_, V>, axis: V) -> Option<Corners<V>> {
-        let mut pair = Pair::new(&placed.a, &placed.b);
+        let mut pair = Pair::new(placed);
         let size = pair.size(placed.offset);
         // What has a radius has an inside.
         if pair.radius() > Scalar::ZERO || !is_moderate(size) {
@@ -103,7 +103,7 @@ impl<V: Vector> MovingPair<'_, V> {
 
 /// What a point of the difference is wrong by.
 fn error_of<V: Vector>(placed: &Placed<'_, V>) -> V::Scalar {
-    let pair = Pair::new(&placed.a, &placed.b);
+    let pair = Pair::new(placed);
     rounding(pair.size(placed.offset)) + pair.error()
 }
 

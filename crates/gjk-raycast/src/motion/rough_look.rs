@@ -5,7 +5,6 @@ use num_traits::Float;
 
 use super::corners::Face;
 use super::instant::{Instant, NEAR};
-use super::moved::Moved;
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use crate::SignedDistanceOptions;
@@ -60,7 +59,7 @@ impl<V: Vector> MovingPair<'_, V> {
         axis: V,
         limit: V::Scalar,
     ) -> Option<Instant<V>> {
-        let mut pair = Pair::new(&placed.a, &placed.b);
+        let mut pair = Pair::new(placed);
         let size = pair.size(placed.offset);
         let face = if is_moderate(size) { self.closest.borrow().closest_face(placed) } else { None };
         match face {
@@ -74,7 +73,7 @@ impl<V: Vector> MovingPair<'_, V> {
         &self,
         time: V::Scalar,
         placed: &Placed<'_, V>,
-        pair: &mut Pair<'_, Moved<'_, V>, Moved<'_, V>>,
+        pair: &mut Pair<'_, Placed<'_, V>>,
         face: &Face<V>,
         axis: V,
         limit: V::Scalar,
@@ -110,7 +109,7 @@ impl<V: Vector> MovingPair<'_, V> {
         &self,
         time: V::Scalar,
         placed: &Placed<'_, V>,
-        pair: &mut Pair<'_, Moved<'_, V>, Moved<'_, V>>,
+        pair: &mut Pair<'_, Placed<'_, V>>,
         begin: Begin<'_, V>,
         limit: V::Scalar,
     ) -> Option<Instant<V>> {
