@@ -40,19 +40,26 @@ pub(crate) trait Body: TracedSupport {
     ) -> LineCrossing<Self::Vector>;
     /// What a point of the core is made of, where [`line_crossing`](Self::line_crossing) is known.
     fn witness(&self, point: Self::Vector) -> PointPair<Self::Vector>;
-    /// What positions are relative to, in the world; for a difference, that of the first shape alone, since subtracting
-    /// the other's would round.
-    fn origin(&self) -> Self::Vector;
-    /// The radius around the core, in the world's unit.
-    fn radius(&self) -> <Self::Vector as Vector>::Scalar;
-    /// A bound on the length of all vectors that support points of the core are computed from, in the world's unit.
-    fn extent(&self) -> <Self::Vector as Vector>::Scalar;
-    /// The radius of a ball that rolls within all of the body, in the world's unit.
-    fn rolling_radius(&self) -> <Self::Vector as Vector>::Scalar;
-    /// A bound on what rounding has moved the support points of the core by, in the world's unit.
-    fn error(&self) -> <Self::Vector as Vector>::Scalar;
+    /// What the body is split into, in the world's unit. For a difference all is the sum, but for the origin, which is that of the first shape
+    /// alone, since subtracting the other's would round.
+    fn measures(&self) -> Measures<Self::Vector>;
     /// Sets the unit to the given power of two.
     fn set_scale(&mut self, scale: <Self::Vector as Vector>::Scalar);
+}
+
+/// The lengths that all errors of a body are relative to, in the world's unit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Measures<V: Vector> {
+    /// What positions are relative to.
+    pub(crate) origin: V,
+    /// The radius around the core.
+    pub(crate) radius: V::Scalar,
+    /// A bound on the length of all vectors that support points of the core are computed from.
+    pub(crate) extent: V::Scalar,
+    /// The radius of a ball that rolls within all of the body.
+    pub(crate) rolling_radius: V::Scalar,
+    /// A bound on what rounding has moved the support points of the core by.
+    pub(crate) error: V::Scalar,
 }
 
 /// One shape.
@@ -110,24 +117,10 @@ impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
         PointPair { a: point, b: Vector::ZERO }
     }
 
-    fn origin(&self) -> S::Vector {
-        self.core.origin
-    }
-
-    fn radius(&self) -> <S::Vector as Vector>::Scalar {
-        self.core.radius
-    }
-
-    fn extent(&self) -> <S::Vector as Vector>::Scalar {
-        self.core.extent
-    }
-
-    fn rolling_radius(&self) -> <S::Vector as Vector>::Scalar {
-        self.core.radius + self.core.rolling_radius
-    }
-
-    fn error(&self) -> <S::Vector as Vector>::Scalar {
-        self.core.error
+    #[inline(always)]
+    fn measures(&self) -> Measures<S::Vector> {
+        let Core { origin, radius, extent, error, rolling_radius, .. } = self.core;
+        Measures { origin, radius, extent, rolling_radius: radius + rolling_radius, error }
     }
 
     fn set_scale(&mut self, scale: <S::Vector as Vector>::Scalar) {
@@ -314,6 +307,24 @@ impl<'a, T: Shapes + ?Sized> Pair<'a, T> {
 }
 
 impl<T: Shapes + ?Sized> Pair<'_, T> {
+    /// The sum of the radii.
+    #[inline(always)]
+    pub(crate) fn radius(&self) -> <T::Vector as Vector>::Scalar {
+        self.core_a.radius + self.core_b.radius
+    }
+
+    /// The sum of the extents.
+    #[inline(always)]
+    pub(crate) fn extent(&self) -> <T::Vector as Vector>::Scalar {
+        self.core_a.extent + self.core_b.extent
+    }
+
+    /// The sum of what rounding has moved the support points by.
+    #[inline(always)]
+    pub(crate) fn error(&self) -> <T::Vector as Vector>::Scalar {
+        self.core_a.error + self.core_b.error
+    }
+
     /// A bound on all lengths that rounding errors are relative to, for bodies whose origins differ by `offset`.
     #[inline]
     pub(crate) fn size(&self, offset: T::Vector) -> <T::Vector as Vector>::Scalar {
@@ -443,27 +454,11 @@ impl<T: Shapes + ?Sized> Body for Pair<'_, T> {
         }
     }
 
-    fn origin(&self) -> T::Vector {
-        self.core_a.origin
-    }
-
-    #[inline]
-    fn radius(&self) -> <T::Vector as Vector>::Scalar {
-        self.core_a.radius + self.core_b.radius
-    }
-
-    #[inline]
-    fn extent(&self) -> <T::Vector as Vector>::Scalar {
-        self.core_a.extent + self.core_b.extent
-    }
-
-    fn rolling_radius(&self) -> <T::Vector as Vector>::Scalar {
-        self.radius() + (self.core_a.rolling_radius + self.core_b.rolling_radius)
-    }
-
-    #[inline]
-    fn error(&self) -> <T::Vector as Vector>::Scalar {
-        self.core_a.error + self.core_b.error
+    #[inline(always)]
+    fn measures(&self) -> Measures<T::Vector> {
+        let [radius, extent, error] = [self.radius(), self.extent(), self.error()];
+        let rolling_radius = radius + (self.core_a.rolling_radius + self.core_b.rolling_radius);
+        Measures { origin: self.core_a.origin, radius, extent, rolling_radius, error }
     }
 
     fn set_scale(&mut self, scale: <T::Vector as Vector>::Scalar) {

@@ -3,7 +3,7 @@
 use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Body as _, Both, Pair, PointPair, Shapes, TracedSupport as _};
+use crate::body::{Both, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::compiled_once::compiled_once;
 use crate::contact::signed_distance_of_any;
 use crate::gjk::{
@@ -172,8 +172,9 @@ fn searched<V: Vector>(
     let end = if start == Some(true) {
         End::Overlap
     } else {
+        let is_watched_reversed = is_reversed && !observer.is_none();
         let mut turned = |iterate: Iterate<'_, V>| iterate.reversed(|iterate| observer.show(|| iterate));
-        let mut as_given = if is_reversed { Observer::new(&mut turned) } else { observer.by_ref() };
+        let mut as_given = if is_watched_reversed { Observer::new(&mut turned) } else { observer.by_ref() };
         gjk(&mut state, &mut bodies, in_order, search, None, &mut as_given)
     };
     if is_near_contact(&mut state, &frame) {

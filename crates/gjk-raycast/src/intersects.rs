@@ -3,7 +3,7 @@
 use convex_support::{Core, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
-use crate::body::{Body as _, Both, Pair, PointPair, Shapes, TracedSupport as _};
+use crate::body::{Both, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::compiled_once::compiled_once;
 use crate::distance::distance;
 use crate::gjk::{Boxes, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, is_near_contact, rounding};

@@ -144,25 +144,24 @@ where
     body.core_a = body.core_a.rounded(target);
     // Of no other pair is a crossing known.
     let is_known = [body.core_a, body.core_b].iter().any(|core| matches!(core.kind, CoreKind::Point(_)));
-    let known = if is_known {
-        let (ray, direction_error, wanted) = ray_of(motion, [body.core_a.origin, body.core_b.origin], &options);
-        direct(&mut body, ray, direction_error, &wanted, observer)
-    } else {
-        None
-    };
     let cores = [body.core_a, body.core_b];
-    Ok(by_search(&mut body, shapes.each(), cores, motion, &options, known, observer))
+    if is_known {
+        let (ray, direction_error, wanted) = ray_of(motion, [body.core_a.origin, body.core_b.origin], &options);
+        if let Some(cast) = direct(&mut body, ray, direction_error, &wanted, observer) {
+            return Ok(known(&cast, shapes.each(), cores, motion, &options));
+        }
+    }
+    Ok(by_search(&mut body, shapes.each(), cores, motion, &options, observer))
 }
 
 compiled_once! {
-    /// The cast of a pair of shapes that have these cores, by a search where it is not known.
+    /// The cast of a pair of shapes that have these cores, by a search.
     fn by_search<V>(
         body: &mut dyn Body<Vector = V>,
         shapes: [Shape<'_, V>; 2],
         cores: [Core<V>; 2],
         motion: Motion<V>,
         options: &LinearCastOptions<V>,
-        known: Option<Cast<V>>,
         observer: &mut Observer<'_, V>,
     ) -> LinearCast<V> {
         searched
@@ -172,20 +171,40 @@ compiled_once! {
 fn searched<V: Vector>(
     body: &mut dyn Body<Vector = V>,
     [a, b]: [Shape<'_, V>; 2],
+    cores: [Core<V>; 2],
+    motion: Motion<V>,
+    options: &LinearCastOptions<V>,
+    observer: &mut Observer<'_, V>,
+) -> LinearCast<V> {
+    let (ray, direction_error, wanted) = ray_of(motion, cores.map(|core| core.origin), options);
+    let mut cast = cast(body, ray, direction_error, Part::Whole, &wanted, observer);
+    settle_start(&mut cast, a, options.target_distance.max(Scalar::ZERO), || Some(b), ray.direction, &wanted);
+    answer(&cast, [a, b], cores, motion, options)
+}
+
+compiled_once! {
+    /// What a cast in closed form says of two shapes.
+    fn known<V>(
+        cast: &Cast<V>,
+        shapes: [Shape<'_, V>; 2],
+        cores: [Core<V>; 2],
+        motion: Motion<V>,
+        options: &LinearCastOptions<V>,
+    ) -> LinearCast<V> {
+        answer
+    }
+}
+
+/// What a cast says of two shapes.
+fn answer<V: Vector>(
+    cast: &Cast<V>,
+    [a, b]: [Shape<'_, V>; 2],
     [core_a, core_b]: [Core<V>; 2],
     motion: Motion<V>,
-    &options: &LinearCastOptions<V>,
-    known: Option<Cast<V>>,
-    observer: &mut Observer<'_, V>,
+    options: &LinearCastOptions<V>,
 ) -> LinearCast<V> {
     let zero = V::Scalar::ZERO;
     let target = options.target_distance.max(zero);
-    let cast = known.unwrap_or_else(|| {
-        let (ray, direction_error, wanted) = ray_of(motion, [core_a.origin, core_b.origin], &options);
-        let mut cast = cast(body, ray, direction_error, Part::Whole, &wanted, observer);
-        settle_start(&mut cast, a, target, || Some(b), ray.direction, &wanted);
-        cast
-    });
     let mut answer = LinearCast {
         outcome: Outcome::Undecided,
         lower: cast.lower,
@@ -198,9 +217,9 @@ fn searched<V: Vector>(
         answer.upper = V::Scalar::infinity();
     }
     let start = Start { a, b, target };
-    answer.outcome = match cast.outcome {
+    answer.outcome = match &cast.outcome {
         Outcome::Hit(hit) if hit.normal.is_some() || hit.lambda != zero => {
-            Outcome::Hit(hit_on_the_way(&hit, cast.scale, [core_a, core_b], motion.velocity_b))
+            Outcome::Hit(hit_on_the_way(hit, cast.scale, [core_a, core_b], motion.velocity_b))
         }
         // Where only deeper motions count, what is replaced below.
         Outcome::Hit(_) if options.start_in_contact == StartInContact::IfDeeper => {
@@ -210,7 +229,7 @@ fn searched<V: Vector>(
             // The cast knows where the motion enters, which is behind the start or, sliding, ahead of it.
             let left = |taken: usize| LinearCastOptions {
                 max_iterations: options.max_iterations.saturating_sub(taken),
-                ..options
+                ..*options
             };
             let at_start = start.distance(&left(answer.iterations));
             answer.iterations += at_start.iterations;
@@ -231,7 +250,7 @@ fn searched<V: Vector>(
         // By powers of two that are less than 1, so that nothing overflows.
         let units = |number: f64| V::Scalar::EPSILON * Scalar::from_f64(number);
         let slack = sizes * units(NEAR) + far * units(NEAR_OF_FAR);
-        only_if_deeper(&mut answer, &start, motion, &options, slack);
+        only_if_deeper(&mut answer, &start, motion, options, slack);
     }
     answer.status = answer.status.of(&answer.outcome, answer.is_certain());
     answer

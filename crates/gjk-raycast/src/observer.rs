@@ -28,6 +28,11 @@ impl<'o, V: Vector> Observer<'o, V> {
         }
     }
 
+    #[inline(always)]
+    pub(crate) fn is_none(&self) -> bool {
+        self.0.is_none()
+    }
+
     /// The same observer, lent.
     #[inline(always)]
     pub(crate) fn by_ref(&mut self) -> Observer<'_, V> {

@@ -3,7 +3,7 @@
 use convex_support::{CertainCrossing, Point, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
-use crate::body::{Body, Single, TracedSupport as _};
+use crate::body::{Body, Measures, Single, TracedSupport as _};
 use crate::cast::{Cast, CastHit, LocalRay, Part, cast, direct, settle_start};
 use crate::compiled_once::compiled_once;
 use crate::observer::Observer;
@@ -79,7 +79,7 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
         Outcome::Hit(_) | Outcome::Undecided => return Ok(answer),
     };
     let mut body = Single::new(target);
-    let w = at - body.origin() - body.support(axis).0;
+    let w = at - body.measures().origin - body.support(axis).0;
     let (lower, upper) = (Scalar::ZERO, Float::infinity());
     observer.show(|| Iterate { iteration: 0, simplex: &[], v: axis, w, scale: Scalar::ONE, lower, upper });
     Ok(answer)
@@ -183,7 +183,8 @@ fn late<V: Vector>(
     observer: &mut Observer<'_, V>,
 ) -> RayCast<V> {
     let (zero, begin) = (V::Scalar::ZERO, options.min_lambda);
-    let (origin, size) = (body.origin(), body.extent() + body.radius());
+    let Measures { origin, radius, extent, .. } = body.measures();
+    let size = extent + radius;
     let whole = LocalRay::new(ray, origin, power_of_two_near(size.max((ray.source - origin).norm())));
     let error = whole.error(whole.mu(begin), zero);
     let slack = if begin <= options.max_lambda { error + error } else { zero };

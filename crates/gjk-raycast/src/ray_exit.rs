@@ -3,7 +3,7 @@
 use convex_support::{Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Body, Single};
+use crate::body::{Body, Measures, Single};
 use crate::cast::{CastHit, LocalRay, Part, cast};
 use crate::compiled_once::compiled_once;
 use crate::observer::Observer;
@@ -82,12 +82,13 @@ compiled_once! {
 fn searched<V: Vector>(body: &mut dyn Body<Vector = V>, ray: Ray<V>, &options: &RayCastOptions<V>) -> RayExit<V> {
     let infinity = V::Scalar::infinity();
     let wanted = RayCastOptions { min_lambda: Scalar::ZERO, max_lambda: infinity, ..options };
-    if !(body.extent() + body.radius()).is_finite() {
+    let Measures { origin, radius, extent, .. } = body.measures();
+    if !(extent + radius).is_finite() {
         let (outcome, status) = (Outcome::Undecided, Status::Stalled);
         return RayExit { outcome, lower: -infinity, upper: infinity, status, iterations: 0 };
     }
     let cast = cast(body, ray, Scalar::ZERO, Part::Reversed, &wanted, &mut Observer::none());
-    let forward = LocalRay::new(ray, body.origin(), cast.scale);
+    let forward = LocalRay::new(ray, origin, cast.scale);
     let (reverse, error) = (|lambda| forward.reverse(lambda), forward.error_of_reverse());
     let (lower, upper) = (reverse(cast.upper) - error, reverse(cast.lower) + error);
     let answer =

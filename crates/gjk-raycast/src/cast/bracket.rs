@@ -11,7 +11,7 @@ use num_traits::Float;
 
 use super::line::{Line, LocalRay, Part};
 use super::{Contact, Stop};
-use crate::body::{Body, PointPair};
+use crate::body::{Body, Measures, PointPair};
 use crate::observer::Observer;
 use crate::simplex::MAX_POINTS;
 use crate::unit::{is_moderate, lost_to_underflow, power_of_two_near, reciprocal_of_power};
@@ -63,6 +63,8 @@ pub(super) struct Bracket<'a, V: Vector> {
     pub(super) ray: LocalRay<V>,
     pub(super) options: &'a RayCastOptions<V>,
     pub(super) radius: V::Scalar,
+    /// The radius of a ball that rolls within all of the body.
+    rolling_radius: V::Scalar,
     /// What rounding moves the points by that the searches compare; they look no closer.
     pub(super) noise: V::Scalar,
     /// What a plane or a point is wrong by at most.
@@ -120,14 +122,14 @@ impl<'a, V: Vector> Bracket<'a, V> {
     ) -> Self {
         let number = V::Scalar::from_f64;
         let zero = V::Scalar::ZERO;
-        let (origin, extent) = (body.origin(), body.extent());
-        let size = extent + body.radius();
+        let Measures { origin, radius, extent, rolling_radius, error: body_error } = body.measures();
+        let size = extent + radius;
         let measure = if size > zero { size } else { (ray.source - origin).norm() };
         let scale = power_of_two_near(measure);
         body.set_scale(scale);
         let per_unit = reciprocal_of_power(scale);
-        let (radius, size) = (body.radius() * per_unit, size * per_unit);
-        let body_error = body.error() * per_unit + lost_to_underflow(scale);
+        let (radius, size) = (radius * per_unit, size * per_unit);
+        let body_error = body_error * per_unit + lost_to_underflow(scale);
         let ray = LocalRay::new(ray, origin, scale).part(part);
         let noise = if size > zero { number(NOISE) * V::Scalar::EPSILON * size } else { body_error };
         let turned = if direction_error > zero { direction_error * (ray.start.abs() + size + size) } else { zero };
@@ -141,6 +143,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
             ray,
             options,
             radius,
+            rolling_radius: rolling_radius * per_unit,
             noise,
             error,
             is_point: extent == zero,
@@ -204,7 +207,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
     /// the point at that slope, and may be as far outside of the ball, is in it after `3e/2s`.
     fn enters_ball(&self) -> bool {
         let Bound { spread, more, .. } = self.high;
-        let radius = self.body.rolling_radius() / self.scale;
+        let radius = self.rolling_radius;
         spread == Scalar::ZERO || radius > (self.error + more) * spread * spread * V::Scalar::from_f64(DEEP)
     }
 

@@ -13,7 +13,7 @@ use num_traits::Float;
 
 use super::bracket::{DEEP, NOISE};
 use super::{Cast, CastHit};
-use crate::body::Body;
+use crate::body::{Body, Measures};
 use crate::observer::Observer;
 use crate::unit::is_moderate;
 use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCastOptions, Status};
@@ -46,14 +46,15 @@ pub(crate) fn direct<B: Body>(
     options: &RayCastOptions<B::Vector>,
     observer: &mut Observer<'_, B::Vector>,
 ) -> Option<Cast<B::Vector>> {
-    let size = body.extent() + body.radius();
+    let Measures { origin, radius, extent, error, .. } = body.measures();
+    let size = extent + radius;
     let longest = ray.direction.abs().max_element();
     // NaN and zero are not moderate.
     let is_moderate = is_moderate(size) & is_moderate(longest);
     if !is_moderate || options.method != CastMethod::Portal || options.max_iterations == 0 {
         return None;
     }
-    let (origin, number) = (body.origin(), <B::Vector as Vector>::Scalar::from_f64);
+    let number = <B::Vector as Vector>::Scalar::from_f64;
     let (base, source) = match near(ray, origin, size) {
         Some(source) => (<B::Vector as Vector>::Scalar::ZERO, source),
         // Far along a direction that is wrong, a line is anywhere.
@@ -72,7 +73,7 @@ pub(crate) fn direct<B: Body>(
     } else {
         <B::Vector as Vector>::Scalar::ZERO
     };
-    let line = Line { base, source, direction: ray.direction, longest, size, error: body.error() + turned };
+    let line = Line { base, source, direction: ray.direction, longest, size, error: error + turned };
     match body.line_crossing(source, ray.direction) {
         LineCrossing::Unknown => None,
         LineCrossing::Crosses(crossing) => line.hit(crossing, body, options, observer),
@@ -120,7 +121,7 @@ impl<V: Vector> Line<V> {
         let w = x - point;
         // The normal is nearly a unit vector, and |n| is 1 + excess/2 to the square of that.
         let excess = normal.length_squared() - V::Scalar::ONE;
-        let ahead = normal.dot(w) - (body.radius() + body.radius() * (excess * half));
+        let ahead = normal.dot(w) - (body.measures().radius + body.measures().radius * (excess * half));
         let slope = -normal.dot(self.direction);
         let (noise, error) = (self.size * (epsilon * number(NOISE)), self.plane_error());
         let lambda = self.base + entry;
@@ -147,7 +148,7 @@ impl<V: Vector> Line<V> {
         show(observer, n, w);
         let latest = self.base + within;
         let upper = if latest > lambda { latest } else { lambda } + rounding;
-        let witness = body.witness(x - n * body.radius());
+        let witness = body.witness(x - n * body.measures().radius);
         Some(Cast {
             outcome: Outcome::Hit(CastHit { lambda, normal: Some(n), spot: x, witness }),
             lower,
@@ -171,7 +172,7 @@ impl<V: Vector> Line<V> {
         let number = V::Scalar::from_f64;
         // The length of the direction squared is no more than the dimension times this.
         let squared = self.longest * self.longest;
-        let radius = body.rolling_radius();
+        let radius = body.measures().rolling_radius;
         if radius > V::Scalar::ZERO && slope * slope * radius > error * (squared * number(3.0 * DEEP)) {
             return Some(entry + error * number(1.5) / slope);
         }
@@ -212,7 +213,7 @@ impl<V: Vector> Line<V> {
         let nearer = n.dot(self.direction).abs() * reach;
         let error = self.size * (V::Scalar::EPSILON * number(AXIS_ERROR)) + self.error;
         // NaN is no miss.
-        if !(n.dot(self.source) - n.dot(point) - nearer > body.radius() + error) {
+        if !(n.dot(self.source) - n.dot(point) - nearer > body.measures().radius + error) {
             return None;
         }
         show(observer, n, self.source - point);

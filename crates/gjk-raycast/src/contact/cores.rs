@@ -150,7 +150,7 @@ pub(super) struct ClosedForm<V: Vector> {
 }
 
 impl<'a, V: Vector> Cores<'a, V> {
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(shapes: &'a (dyn Shapes<Vector = V> + 'a), parts: [Core<V>; 2]) -> Self {
         let mut pair = Pair::of_cores(shapes, parts);
         let [from, to] = [parts[0].origin, parts[1].origin];

@@ -5,7 +5,7 @@ use num_traits::Float as _;
 
 use super::SignedDistance;
 use super::cores::{error_of_points, slack};
-use crate::body::{Body as _, Pair, Shapes, TracedSupport as _};
+use crate::body::{Pair, Shapes, TracedSupport as _};
 use crate::gjk::{NEAR, rounding};
 use crate::observer::Observer;
 use crate::{Iterate, Status};

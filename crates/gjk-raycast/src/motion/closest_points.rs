@@ -8,7 +8,7 @@ use num_traits::Float;
 
 use super::instant::{IN_PLANE, Instant, LONG, NEAR};
 use super::moving_pair::MovingPair;
-use crate::body::{Body as _, Pair, TracedSupport as _};
+use crate::body::{Pair, TracedSupport as _};
 use crate::contact::Uncertainty;
 use crate::gjk::rounding;
 

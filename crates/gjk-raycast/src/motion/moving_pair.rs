@@ -15,7 +15,7 @@ use super::moving_body::{MovingBody, length_bound};
 use super::placed::Placed;
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::SignedDistanceOptions;
-use crate::body::{Body as _, Pair, Shapes, TracedSupport as _};
+use crate::body::{Pair, Shapes, TracedSupport as _};
 use crate::contact::signed_distance_and_axis;
 use crate::gjk::rounding;
 use crate::unit::{is_moderate, lost_to_underflow};

@@ -20,7 +20,7 @@ use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use super::trajectory::TurningPlane;
 use crate::SignedDistanceOptions;
-use crate::body::{Body as _, Pair, PointPair};
+use crate::body::{Pair, PointPair};
 use crate::contact::across;
 use crate::gjk::{Frame, Gjk, GjkOptions, gjk, rounding};
 use crate::observer::Observer;

@@ -8,7 +8,7 @@ use super::instant::{Instant, NEAR};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use crate::SignedDistanceOptions;
-use crate::body::{Body as _, Pair, PointPair, TracedSupport as _};
+use crate::body::{Pair, PointPair, TracedSupport as _};
 use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk, rounding};
 use crate::observer::Observer;
 use crate::unit::is_moderate;
