@@ -133,7 +133,8 @@ impl<'s, V: Vector> MovingBody<'s, V> {
     pub(super) fn velocity(&self, time: V::Scalar, point: V) -> V {
         match &self.course {
             Course::Rest => Vector::ZERO,
-            _ => self.motion.velocity(time, point),
+            Course::Rigid(rigid) => rigid.motion.velocity(time, point),
+            Course::Other => self.motion.velocity(time, point),
         }
     }
 
