@@ -62,15 +62,9 @@ macro_rules! forward {
             }
 
             #[inline(always)]
-            fn certain_crossing(
-                &self,
-                source: $V,
-                direction: $V,
-                radius: <$V as $crate::Vector>::Scalar,
-                error: <$V as $crate::Vector>::Scalar,
-            ) -> Option<$crate::CertainCrossing<$V>> {
+            fn certain_crossing(&self, line: $crate::LineQuery<$V>) -> Option<$crate::CertainCrossing<$V>> {
                 let $this = self;
-                $inner.certain_crossing(source, direction, radius, error)
+                $inner.certain_crossing(line)
             }
 
             #[inline]

@@ -4,7 +4,9 @@ use num_traits::Float as _;
 
 use crate::numerics::bound::roundings;
 use crate::numerics::range::is_comfortable;
-use crate::{CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, Vector};
+use crate::{
+    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar, Vector,
+};
 
 /// A nonempty, closed, bounded convex set, known by its support mapping.
 ///
@@ -144,21 +146,15 @@ pub trait SupportMap {
         LineCrossing::Unknown
     }
 
-    /// Where the line through `source` along `direction` enters the whole set, swept by a further ball of the given `radius`: an answer in
-    /// closed form that is certain. It must hold whatever rounding has done to the shape and to this computation, and for every line that
-    /// passes within `error` of the given one near the shape. `None`, as the provided method returns, if nothing is certain.
+    /// Where a line enters the whole set, swept by a further ball: an answer in closed form that is certain. It must hold whatever rounding
+    /// has done to the shape and to this computation, and for every line that passes within the [error](LineQuery::error) of the given one
+    /// near the shape. `None`, as the provided method returns, if nothing is certain.
     ///
-    /// Algorithms trust it without a check. Where it is `None`, they certify a [crossing of the core](Self::core_line_crossing) by a
+    /// Algorithms trust it without a check. They ask in plain numbers, and where that is `None` [closely](LineQuery::is_close); then they certify a [crossing of the core](Self::core_line_crossing) by a
     /// support point.
     #[inline]
-    fn certain_crossing(
-        &self,
-        source: Self::Vector,
-        direction: Self::Vector,
-        radius: ScalarOf<Self>,
-        error: ScalarOf<Self>,
-    ) -> Option<CertainCrossing<Self::Vector>> {
-        let _ = (source, direction, radius, error);
+    fn certain_crossing(&self, line: LineQuery<Self::Vector>) -> Option<CertainCrossing<Self::Vector>> {
+        let _ = line;
         None
     }
 

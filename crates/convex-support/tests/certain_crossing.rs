@@ -4,13 +4,18 @@ use std::cell::Cell;
 
 use convex_support::glam::{DVec3, Vec2, Vec3A};
 use convex_support::{
-    Ball, Capsule, CertainCrossing, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, LineCrossing, Point, Posed,
+    Ball, Capsule, CertainCrossing, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, LineCrossing, LineQuery, Point, Posed,
     Rotation as _, Rounded, Scalar, Segment, SupportMap, Vector3, line_crossing,
 };
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
 type AnyShape<V> = Box<dyn SupportMap<Vector = V>>;
+
+/// What a shape knows of a line, in plain numbers or else closely.
+fn known_of<S: SupportMap + ?Sized>(shape: &S, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
+    shape.certain_crossing(line).or_else(|| shape.certain_crossing(LineQuery { is_close: true, ..line }))
+}
 
 /// How many kinds of shapes [`shape`] makes.
 const KINDS: usize = 10;
@@ -123,7 +128,7 @@ fn what_is_certain_in_single_precision_is_so_in_double() {
                     (size + origin.length() + double(source).length(), normal.dot(double(direction)).abs());
                 reach * (1e-12 / double(direction).length()).max(16.0 * f64::EPSILON / steep)
             };
-            match here.certain_crossing(source, direction, 0.0, 0.0) {
+            match known_of(&here, LineQuery::new(source, direction)) {
                 None => {}
                 Some(CertainCrossing::Misses(axis)) => {
                     certain.set([certain.get()[0] + 1, certain.get()[1]]);
@@ -162,7 +167,7 @@ fn what_is_too_small_to_be_squared_is_not_certain() {
     let ends = [Vec2::new(-1.049_297_6e-5, 2.778_323e-6), Vec2::new(-2.156_398_5e-6, 3.496_756_5e-5)];
     let (source, direction) = (Vec2::new(-4.804_958_4e-5, -1.422_354_7e-4), Vec2::new(0.243_745_95, 0.941_153_3));
     let segment = Segment::new(ends).unwrap();
-    assert_eq!(segment.certain_crossing(source, direction, 0.0, 0.0), None);
+    assert_eq!(known_of(&segment, LineQuery::new(source, direction)), None);
     let exact = Segment::new(ends.map(Vec2::as_dvec2)).unwrap();
     let crossing = line_crossing(&exact, source.as_dvec2(), direction.as_dvec2());
     assert!(matches!(crossing, LineCrossing::Crosses(_)), "{crossing:?}");
@@ -179,17 +184,18 @@ fn a_line_nearly_along_a_side_is_looked_at_closely() {
     let (cylinder, capsule) = (Cylinder::<DVec3>::new(4.0, 1.0).unwrap(), Capsule::<DVec3>::new(4.0, 1.0).unwrap());
     let prism = Rounded::new(Cuboid::new(DVec3::new(0.5, 4.0, 2.0)).unwrap(), 0.5).unwrap();
     for shape in [&cylinder as &dyn SupportMap<Vector = DVec3>, &capsule, &prism] {
-        let known = shape.certain_crossing(beside, along, 0.0, 0.0);
+        let line = LineQuery::new(beside, along);
+        let known = known_of(shape, line);
         let Some(CertainCrossing::Enters { bounds: [earliest, latest], normal, .. }) = known else {
             panic!("{known:?}")
         };
         assert!(earliest <= 3.0 && 3.0 <= latest && latest - earliest <= 32.0 * f64::EPSILON, "{known:?}");
         assert!((normal - DVec3::X).length() < 1e-9, "{known:?}");
         // It comes to the height of the end first, where a capsule bends away.
-        let known = shape.certain_crossing(outside, along, 0.0, 0.0);
+        let known = known_of(shape, LineQuery::new(outside, along));
         assert!(matches!(known, Some(CertainCrossing::Misses(_))), "{known:?}");
         // What the line may be displaced by counts as before.
-        let known = shape.certain_crossing(beside, along, 0.0, 1e-12);
+        let known = known_of(shape, LineQuery { error: 1e-12, ..line });
         let Some(CertainCrossing::Enters { bounds: [earliest, latest], .. }) = known else { panic!("{known:?}") };
         assert!(earliest <= 3.0 - 1e-12 / TILT && 3.0 + 1e-12 / TILT <= latest, "{known:?}");
         assert!(latest - earliest <= 1e-11 / TILT, "{known:?}");
@@ -198,14 +204,14 @@ fn a_line_nearly_along_a_side_is_looked_at_closely() {
     let up = |x: f64| DVec3::new(x, -2.0, 0.0);
     for ball in [&cylinder as &dyn SupportMap<Vector = DVec3>, &Ball::<DVec3>::new(1.0).unwrap()] {
         let known =
-            [1.0 - f64::EPSILON, 1.0 + f64::EPSILON].map(|x| ball.certain_crossing(up(x), DVec3::Y * 2.0, 0.0, 0.0));
+            [1.0 - f64::EPSILON, 1.0 + f64::EPSILON].map(|x| known_of(ball, LineQuery::new(up(x), DVec3::Y * 2.0)));
         assert!(matches!(known[0], Some(CertainCrossing::Enters { .. })), "{known:?}");
         assert!(!matches!(known[1], Some(CertainCrossing::Enters { .. })), "{known:?}");
     }
     // The generator x = (1 − y)/2, beside which the leading coefficient of the quadratic cancels.
     let cone = Cone::<DVec3>::new(1.0, 1.0).unwrap();
-    let known =
-        cone.certain_crossing(DVec3::new(0.25 + 1.25 * TILT, 0.5, 0.0), DVec3::new(0.5 - TILT, -1.0, 0.0), 0.0, 0.0);
+    let line = LineQuery::new(DVec3::new(0.25 + 1.25 * TILT, 0.5, 0.0), DVec3::new(0.5 - TILT, -1.0, 0.0));
+    let known = known_of(&cone, line);
     let Some(CertainCrossing::Enters { bounds: [earliest, latest], .. }) = known else { panic!("{known:?}") };
     assert!(earliest <= 1.25 && 1.25 <= latest && latest - earliest <= 32.0 * f64::EPSILON, "{known:?}");
 }

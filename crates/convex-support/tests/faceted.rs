@@ -3,7 +3,7 @@
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::strategies as any;
 use convex_support::{
-    CertainCrossing, Crossing, Cuboid, Faceted, LineCrossing, Posed, Scalar, SupportMap, Triangle, Vector,
+    CertainCrossing, Crossing, Cuboid, Faceted, LineCrossing, LineQuery, Posed, Scalar, SupportMap, Triangle, Vector,
     line_crossing,
 };
 use num_traits::Float;
@@ -177,7 +177,7 @@ fn rays_at_facets_are_certain_without_a_search() {
     let hull = Faceted::hull_of(corners).unwrap();
     let (source, direction) = (DVec3::splat(0.2) - DVec3::Z * 3.0, DVec3::Z);
     let bounds_of = |shape: &dyn SupportMap<Vector = DVec3>, source: DVec3| match shape
-        .certain_crossing(source, direction, 0.0, 0.0)
+        .certain_crossing(LineQuery::new(source, direction))
     {
         Some(CertainCrossing::Enters { bounds, .. }) => Some(bounds),
         _ => None,

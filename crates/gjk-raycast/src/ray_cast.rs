@@ -1,6 +1,6 @@
 //! Where a ray enters a shape: the paper's question, answered by a closed form, by a portal or by its Algorithm 3.
 
-use convex_support::{CertainCrossing, Point, Scalar, SupportMap, Vector};
+use convex_support::{CertainCrossing, LineQuery, Point, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use crate::body::{Body, Measures, Single, TracedSupport as _};
@@ -54,7 +54,7 @@ pub fn ray_cast<S: SupportMap + ?Sized>(
     options: RayCastOptions<S::Vector>,
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     let ray = ray.by_coordinates();
-    match certain(target, ray, &options) {
+    match certain(target, ray, &options, false) {
         Some(answer) => Ok(answer),
         None => searched(target, ray, options, &mut Observer::none()),
     }
@@ -72,33 +72,53 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
     mut observer: impl FnMut(Iterate<'_, S::Vector>),
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     let mut observer = Observer::new(&mut observer);
-    let Some(answer) = certain(target, ray, &options) else { return searched(target, ray, options, &mut observer) };
+    match certain(target, ray, &options, false) {
+        Some(answer) => Ok(shown(answer, target, ray, &mut observer)),
+        None => searched(target, ray, options, &mut observer),
+    }
+}
+
+/// The answer that a shape knows for certain, after an observer has seen the plane that tells it.
+fn shown<S: SupportMap + ?Sized>(
+    answer: RayCast<S::Vector>,
+    target: &S,
+    ray: Ray<S::Vector>,
+    observer: &mut Observer<'_, S::Vector>,
+) -> RayCast<S::Vector> {
+    if observer.is_none() {
+        return answer;
+    }
     let (at, axis) = match answer.outcome {
         Outcome::Hit(RayHit { point, normal: Some(normal), .. }) => (point, normal),
         Outcome::Miss(Miss { axis }) => (ray.source, axis),
-        Outcome::Hit(_) | Outcome::Undecided => return Ok(answer),
+        Outcome::Hit(_) | Outcome::Undecided => return answer,
     };
     let mut body = Single::new(target);
     let w = at - body.measures().origin - body.support(axis).0;
     let (lower, upper) = (Scalar::ZERO, Float::infinity());
     observer.show(|| Iterate { iteration: 0, simplex: &[], v: axis, w, scale: Scalar::ONE, lower, upper });
-    Ok(answer)
+    answer
 }
 
-/// The cast where the shape knows for certain where the ray enters it, or that its line misses.
+/// The cast where the shape knows for certain where the ray enters it, or that its line misses, by a close look or not.
+///
+/// That look is left to [`searched`]: beside the plain one it made the answer go through memory, and rays at balls and boxes
+/// took 15 to 30 % more instructions.
 #[inline(always)]
 fn certain<S: SupportMap + ?Sized>(
     target: &S,
     ray: Ray<S::Vector>,
     options: &RayCastOptions<S::Vector>,
+    is_close: bool,
 ) -> Option<RayCast<S::Vector>> {
     let (zero, infinity) = (ScalarOf::<S>::ZERO, ScalarOf::<S>::infinity());
     let is_plain = options.min_lambda <= zero && options.method == CastMethod::Portal && options.max_iterations > 0;
     if !is_plain {
         return None;
     }
+    let line = LineQuery { is_close, ..LineQuery::new(ray.source, ray.direction) };
     let missed = |axis| (Outcome::Miss(Miss { axis }), [infinity; 2]);
-    let (outcome, [lower, upper]) = match target.certain_crossing(ray.source, ray.direction, zero, zero)? {
+    let (outcome, [lower, upper]) = match target.certain_crossing(line)? {
         // To be refused.
         CertainCrossing::Misses(_) if options.max_lambda.is_nan() => return None,
         CertainCrossing::Misses(axis) => {
@@ -124,7 +144,7 @@ fn certain<S: SupportMap + ?Sized>(
     Some(RayCast { outcome, lower, upper, status: Status::Converged, iterations: 1 })
 }
 
-/// The cast where that is not so.
+/// The cast where that is not so in plain numbers.
 #[inline(never)]
 fn searched<S: SupportMap + ?Sized>(
     target: &S,
@@ -135,6 +155,14 @@ fn searched<S: SupportMap + ?Sized>(
     ray.check(&options)?;
     let mut body = Single::new(target);
     let is_whole = !(options.min_lambda > Scalar::ZERO);
+    // Of a ray that begins inside, plain numbers tell where its line enters, and a closer look takes longer than the search.
+    let is_unknown = target.certain_crossing(LineQuery::new(ray.source, ray.direction)).is_none();
+    if is_whole
+        && is_unknown
+        && let Some(answer) = certain(target, ray, &options, true)
+    {
+        return Ok(shown(answer, target, ray, observer));
+    }
     if is_whole && let Some(cast) = direct(&mut body, ray, Scalar::ZERO, &options, observer) {
         return Ok(answer(cast, ray));
     }

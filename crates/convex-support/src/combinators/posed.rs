@@ -6,13 +6,13 @@ use num_traits::Float as _;
 
 use super::placement::{Placement, is_near, length_of_error, lost_in_origin};
 use crate::error::{InvalidShape, finite, orthonormal};
-use crate::line_crossing::{NearLine, skew};
+use crate::line_crossing::{NearLine, closely, skew};
 use crate::numerics::bound::roundings;
-use crate::numerics::twofold::{lost_in_sum, two_sum};
+use crate::numerics::twofold::lost_in_sum;
 use crate::support::ScalarOf;
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, Matrix, Parallelotope, Rotation, Rounding, Scalar,
-    SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Matrix, Parallelotope, Rotation, Rounding,
+    Scalar, SupportMap, Vector,
 };
 
 /// The image `R·C + t` of a shape under a rotation and then a translation.
@@ -236,33 +236,29 @@ impl<S: SupportMap> SupportMap for Posed<S> {
     /// origin `c` has lost is taken off and `c` is put on. What was lost is turned, of which is lost `3u`; where it is larger than the size,
     /// no line is near the shape to rounding.
     #[inline(always)]
-    fn certain_crossing(
-        &self,
-        source: S::Vector,
-        direction: S::Vector,
-        radius: ScalarOf<S>,
-        error: ScalarOf<S>,
-    ) -> Option<CertainCrossing<S::Vector>> {
+    fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
         let core = self.shape.core();
-        // That the sum of the radii is rounded counts where the line is looked at closely.
-        let [swept, lost] = two_sum(core.radius, radius);
-        let (size, error) = (core.extent + swept, error + self.error + self.skew + lost.abs());
+        let line = line.within(self.error + self.skew);
+        let size = core.extent + core.radius + line.radius;
         if core.origin == S::Vector::ZERO {
-            let line = NearLine::new(source, direction, self.translation, size, error)?;
             if core.kind == CoreKind::Point(S::Vector::ZERO) {
                 // A ball, whichever way it is turned.
-                return line.ball(size);
+                let line = line.sweeping(core.radius);
+                if line.is_close {
+                    return closely::capsule(line, self.translation, ScalarOf::<S>::ZERO);
+                }
+                return NearLine::new(line, self.translation, size)?.ball(line.radius);
             }
-            return line.turned(&self.rotation, |source, direction, error| {
-                self.shape.certain_crossing(source, direction, radius, error)
-            });
+            let near = NearLine::new(line, self.translation, size)?.at_foot();
+            let known = self.shape.certain_crossing(near.before(&self.rotation, line))?;
+            return Some(near.after(&self.rotation, known));
         }
-        let origin = self.rotation * core.origin + self.translation;
-        NearLine::new(source, direction, origin, size, error)?.turned(&self.rotation, |source, direction, error| {
-            let source = source - self.rotation.transpose_mul(self.lost) + core.origin;
-            let rounding = roundings(8.0, size) + roundings(2.0, core.origin.norm() + self.lost.norm());
-            self.shape.certain_crossing(source, direction, radius, error + rounding)
-        })
+        let near = NearLine::new(line, self.rotation * core.origin + self.translation, size)?.at_foot();
+        let before = near.before(&self.rotation, line);
+        let source = before.source - self.rotation.transpose_mul(self.lost) + core.origin;
+        let rounding = roundings(8.0, size) + roundings(2.0, core.origin.norm() + self.lost.norm());
+        let known = self.shape.certain_crossing(LineQuery { source, ..before.within(rounding) })?;
+        Some(near.after(&self.rotation, known))
     }
 
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {

@@ -3,11 +3,10 @@
 use crate::error::{InvalidShape, non_negative};
 use num_traits::Float as _;
 
-use crate::numerics::bound::roundings;
 use crate::numerics::twofold::two_sum;
 use crate::support::{ScalarOf, support_of_parts};
 use crate::{
-    CertainCrossing, Core, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar as _, SupportMap, Vector,
+    CertainCrossing, Core, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, SupportMap, Vector,
 };
 
 /// The Minkowski sum of a shape and a ball: the shape grown by a radius, its edges and corners rounded.
@@ -94,16 +93,8 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
 
     /// As of the shape; the sum of the radii is rounded, unless one is zero.
     #[inline(always)]
-    fn certain_crossing(
-        &self,
-        source: S::Vector,
-        direction: S::Vector,
-        radius: ScalarOf<S>,
-        error: ScalarOf<S>,
-    ) -> Option<CertainCrossing<S::Vector>> {
-        let sum = self.radius + radius;
-        let rounding = if radius == ScalarOf::<S>::ZERO { radius } else { roundings(1.0, sum) };
-        self.shape.certain_crossing(source, direction, sum, error + rounding)
+    fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
+        self.shape.certain_crossing(line.sweeping(self.radius))
     }
 
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {

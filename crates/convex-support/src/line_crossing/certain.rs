@@ -8,14 +8,54 @@
 
 use num_traits::Float as _;
 
-use super::close::{CloseLine, Known, Solid};
 use super::{Chord, Crossed, Crossing, Spine, across_two_axes, axis_of, past_rim, rebased};
 use crate::numerics::bound::roundings;
-use crate::numerics::bounded::Bounded;
-use crate::numerics::range::{is_comfortable, is_moderate, power_of_two_below};
-use crate::numerics::twofold::foot_from;
+use crate::numerics::range::{is_comfortable, is_moderate};
+use crate::numerics::twofold::{foot_from, two_sum};
 use crate::shapes::across;
 use crate::{Cone, Matrix, Scalar, Vector, Vector3};
+
+/// A line, of which a shape is asked where it [certainly enters](crate::SupportMap::certain_crossing).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineQuery<V: Vector> {
+    /// A point of the line.
+    pub source: V,
+    /// Its direction, of any length.
+    pub direction: V,
+    /// The radius of a further ball that the shape is swept by.
+    pub radius: V::Scalar,
+    /// The answer is to hold for every line that passes within this distance of the line near the shape.
+    pub error: V::Scalar,
+    /// Whether to compute in twice the precision: for the few lines of which the closed form in plain numbers is certain of
+    /// nothing.
+    pub is_close: bool,
+}
+
+impl<V: Vector> LineQuery<V> {
+    /// A line without error, asked of a shape as it is, in plain numbers.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(source: V, direction: V) -> Self {
+        Self { source, direction, radius: V::Scalar::ZERO, error: V::Scalar::ZERO, is_close: false }
+    }
+
+    /// The line known a further `error` less exactly.
+    #[inline(always)]
+    pub(crate) fn within(self, error: V::Scalar) -> Self {
+        Self { error: self.error + error, ..self }
+    }
+
+    /// The same of the core of a shape that is swept by a ball itself.
+    #[inline(always)]
+    pub(crate) fn sweeping(self, radius: V::Scalar) -> Self {
+        // Nothing is lost, and nothing to be computed where that is known beforehand, as it mostly is.
+        if self.radius == V::Scalar::ZERO {
+            return Self { radius, ..self };
+        }
+        let [radius, lost] = two_sum(radius, self.radius);
+        Self { radius, ..self.within(lost.abs()) }
+    }
+}
 
 /// Where a line enters a convex set, as far as that is certain.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,48 +105,36 @@ const OF_TURN: f64 = 11.0;
 /// what is along the axis and counts squared. Where a line hits, its foot and the way from there to the hit are no longer than the size. In all `26u`.
 const OF_SPLIT: f64 = 16.0;
 
-/// How many errors long a bracket is at most along a line that is then looked at [more closely](NearLine::closely).
+/// How many errors long a bracket is at most along a line; one that would be longer is looked at [more closely](super::closely).
 const WIDE: f64 = 1024.0;
 
 /// The square of the sine of the angle with a cylinder's side below which a line is nearly along it, and looked at
 /// more closely.
 const ALONG: f64 = 1.0 / (WIDE * WIDE);
 
-/// The same, taken apart and put together: where a rare function leaves an answer in memory, the plain one beside it need not be there too.
-#[inline(always)]
-fn in_registers<V: Vector>(known: Option<CertainCrossing<V>>) -> Option<CertainCrossing<V>> {
-    match known? {
-        CertainCrossing::Misses(axis) => Some(CertainCrossing::Misses(axis)),
-        CertainCrossing::Enters { entry, bounds: [earliest, latest], normal } => {
-            Some(CertainCrossing::Enters { entry, bounds: [earliest, latest], normal })
-        }
-    }
-}
-
 /// A line that is near a shape: as it is seen from the shape's origin, from a point at most [`NEAR`] sizes away.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NearLine<V: Vector> {
     /// The parameter of that point.
-    base: V::Scalar,
-    pub(crate) source: V,
-    pub(crate) direction: V,
+    pub(super) base: V::Scalar,
+    pub(super) source: V,
+    pub(super) direction: V,
     /// The size of the shape.
-    size: V::Scalar,
+    pub(super) size: V::Scalar,
     /// A bound on the error of the line's crossing, as a displacement of the line.
     pub(super) error: V::Scalar,
-    /// The line's source and the shape's origin as they were given, and the error that came with them.
-    given: (V, V, V::Scalar),
 }
 
 impl<V: Vector> NearLine<V> {
-    /// The line through `source` along `direction`, and a shape of a `size` about an `origin` that is known to within `error`. `None`
-    /// where it passes far from there, or where numbers are too small or large to be squared.
+    /// The line, and a shape of a `size` about an `origin`. `None` where it passes far from there, or where numbers are too
+    /// small or large to be squared.
     #[inline(always)]
-    pub(crate) fn new(source: V, direction: V, origin: V, size: V::Scalar, error: V::Scalar) -> Option<Self> {
+    pub(crate) fn new(line: LineQuery<V>, origin: V, size: V::Scalar) -> Option<Self> {
+        let LineQuery { source, direction, error, .. } = line;
         let number = V::Scalar::from_f64;
         // NaN and zero are not moderate.
         let is_moderate = is_moderate(size) & is_moderate(direction.abs().max_element());
-        let (seen, near, given) = (source - origin, size * number(NEAR), (source, origin, error));
+        let (seen, near) = (source - origin, size * number(NEAR));
         let squared = seen.length_squared();
         let rounding =
             |distance: V::Scalar| V::Scalar::EPSILON * (size * number(OF_SIZE) + distance * number(OF_DISTANCE));
@@ -114,37 +142,37 @@ impl<V: Vector> NearLine<V> {
             None
         } else if squared <= near * near {
             let error = error + rounding(sum_of_coordinates(seen));
-            Some(Self { base: V::Scalar::ZERO, source: seen, direction, size, error, given })
+            Some(Self { base: V::Scalar::ZERO, source: seen, direction, size, error })
         } else {
             let (base, foot) = foot_from(origin, source, direction);
             let error = error + rounding(sum_of_coordinates(foot));
-            (foot.length_squared() <= near * near).then_some(Self { base, source: foot, direction, size, error, given })
+            (foot.length_squared() <= near * near).then_some(Self { base, source: foot, direction, size, error })
         }
     }
 
     /// The same line from where it is closest to the origin, to be turned.
     #[inline(always)]
-    pub(super) fn at_foot(&self) -> Self {
+    pub(crate) fn at_foot(&self) -> Self {
         let Self { source, direction, size, .. } = *self;
         let (base, source) = rebased(source, direction, direction.length_squared().recip());
         let error = self.error + size * (V::Scalar::EPSILON * V::Scalar::from_f64(OF_TURN));
         Self { base: self.base + base, source, error, ..*self }
     }
 
-    /// The crossing of a turned shape: `shape` finds the crossing of the set about zero that was turned, given the source, the direction
-    /// and the error of the line in its frame.
+    /// The line from its foot, as it is seen in the frame of a shape that was turned about the origin.
     #[inline(always)]
-    pub(crate) fn turned(
-        &self,
-        rotation: &V::Matrix,
-        shape: impl FnOnce(V, V, V::Scalar) -> Option<CertainCrossing<V>>,
-    ) -> Option<CertainCrossing<V>> {
-        let line = self.at_foot();
-        let source = rotation.transpose_mul(line.source);
-        match shape(source, rotation.transpose_mul(line.direction), line.error)? {
-            CertainCrossing::Misses(axis) => Some(CertainCrossing::Misses(*rotation * axis)),
+    pub(crate) fn before(&self, rotation: &V::Matrix, asked: LineQuery<V>) -> LineQuery<V> {
+        let (source, direction) = (rotation.transpose_mul(self.source), rotation.transpose_mul(self.direction));
+        LineQuery { source, direction, error: self.error, ..asked }
+    }
+
+    /// What is known there, of the turned shape and this line.
+    #[inline(always)]
+    pub(crate) fn after(&self, rotation: &V::Matrix, known: CertainCrossing<V>) -> CertainCrossing<V> {
+        match known {
+            CertainCrossing::Misses(axis) => CertainCrossing::Misses(*rotation * axis),
             CertainCrossing::Enters { entry, bounds: [earliest, latest], normal } => {
-                Some(line.enters([earliest, entry, latest], *rotation * normal))
+                self.enters([earliest, entry, latest], *rotation * normal)
             }
         }
     }
@@ -157,54 +185,9 @@ impl<V: Vector> NearLine<V> {
         CertainCrossing::Enters { entry, bounds: [earliest - rounding, latest + rounding], normal }
     }
 
-    /// The same in twice the precision, where only the error that came with the line counts. `outward` is the unit normal
-    /// at a point of the surface. Of a line that misses, the closed form tells an axis, along which the core reaches so far
-    /// and the radius; it counts for what it is measured to be, and a line that misses by rounding is left to a search.
-    #[cold]
-    #[inline(never)]
-    fn closely(
-        self,
-        solid: impl FnOnce(&dyn Fn(V::Scalar) -> f64) -> Solid,
-        outward: impl FnOnce(V) -> V,
-        crossed: impl FnOnce(V, V) -> Crossed<V>,
-        reach: impl FnOnce(V) -> [V::Scalar; 2],
-    ) -> Option<CertainCrossing<V>> {
-        let (source, origin, error) = self.given;
-        let length = power_of_two_below(self.size).as_f64();
-        let speed = power_of_two_below(self.direction.abs().max_element()).as_f64();
-        let in_units = |x: V::Scalar| x.as_f64() / length;
-        let coordinate = |v: V, i: usize| if i < V::DIM { v.get(i) } else { V::Scalar::ZERO };
-        let line = CloseLine {
-            source: core::array::from_fn(|i| {
-                Bounded::sum(in_units(coordinate(source, i)), -in_units(coordinate(origin, i)))
-            }),
-            direction: core::array::from_fn(|i| coordinate(self.direction, i).as_f64() / speed),
-        };
-        match line.crossing(solid(&in_units), in_units(error))? {
-            Known::Misses => {
-                let axis = crossed(self.source, self.direction).err()?;
-                let [support_value, radius] = reach(axis);
-                self.passes(axis, support_value, radius)
-            }
-            Known::Enters(bounds) => {
-                let [earliest, latest] = bounds.map(|at| at * (length / speed));
-                let entry = V::Scalar::from_f64(earliest + (latest - earliest) * 0.5);
-                let bounds = [earliest, latest].map(V::Scalar::from_f64);
-                let line = Self { base: V::Scalar::ZERO, ..self };
-                let normal = outward(self.source + self.direction * (entry - self.base));
-                Some(line.enters([bounds[0], entry, bounds[1]], normal))
-            }
-        }
-    }
-
     /// A ball about zero.
     #[inline(always)]
     pub(crate) fn ball(&self, radius: V::Scalar) -> Option<CertainCrossing<V>> {
-        self.ball_plainly(radius).or_else(|| in_registers(self.capsule_closely(V::Scalar::ZERO, radius)))
-    }
-
-    #[inline(always)]
-    fn ball_plainly(&self, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let recip = self.direction.length_squared().recip();
         let chord = super::ball::chord(radius, self.source, self.direction, recip);
         if chord.is_past(radius, self.error) {
@@ -215,44 +198,6 @@ impl<V: Vector> NearLine<V> {
         Some(self.enters([entry - slack, entry, entry + slack], chord.normal(radius, self.direction, recip)))
     }
 
-    /// A segment along the second axis, swept by a ball, or a ball.
-    #[cold]
-    #[inline(never)]
-    fn capsule_closely(self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
-        let end = V::axis(1) * half_height;
-        let outward = |at: V| (at - at.max(-end).min(end)).unit().unwrap_or(-self.direction);
-        let crossed = |source, direction| Spine::upright(half_height).crossing(radius, source, direction);
-        let reach = |axis: V| [half_height * axis.get(1).abs(), radius];
-        self.closely(|f| Solid::Capsule { half_height: f(half_height), radius: f(radius) }, outward, crossed, reach)
-    }
-
-    /// A box, swept by a ball or not.
-    #[cold]
-    #[inline(never)]
-    fn box_closely(self, half_extents: V, radius: V::Scalar) -> Option<CertainCrossing<V>> {
-        let outward = |at: V| {
-            let beyond = at.abs() - half_extents;
-            let face = axis_of(beyond, beyond.max_element()) * V::ONE.copysign(at);
-            let excess = if radius > V::Scalar::ZERO { at - at.max(-half_extents).min(half_extents) } else { face };
-            excess.unit().unwrap_or(face)
-        };
-        let half = |f: &dyn Fn(V::Scalar) -> f64, i: usize| {
-            if i < V::DIM { f(half_extents.get(i)) } else { f64::INFINITY }
-        };
-        let solid = |f: &dyn Fn(V::Scalar) -> f64| Solid::RoundedBox {
-            half_extents: core::array::from_fn(|i| half(f, i)),
-            radius: f(radius),
-        };
-        let crossed = |source, direction| {
-            if radius > V::Scalar::ZERO {
-                super::rounded_cuboid(half_extents, radius, source, direction)
-            } else {
-                super::cuboid(half_extents, source, direction)
-            }
-        };
-        self.closely(solid, outward, crossed, |axis| [axis.abs().dot(half_extents), radius])
-    }
-
     /// A box about zero: the line is in all of its slabs, each smaller and larger by the error.
     ///
     /// For a line that is parallel to a slab this divides by zero, and the line is in the slab from `−∞` to `∞` or nowhere. If it lies in the
@@ -260,11 +205,6 @@ impl<V: Vector> NearLine<V> {
     /// not known to miss it.
     #[inline(always)]
     pub(crate) fn cuboid(&self, half_extents: V) -> Option<CertainCrossing<V>> {
-        self.cuboid_plainly(half_extents).or_else(|| in_registers(self.box_closely(half_extents, V::Scalar::ZERO)))
-    }
-
-    #[inline(always)]
-    fn cuboid_plainly(&self, half_extents: V) -> Option<CertainCrossing<V>> {
         let Self { source, direction, error, .. } = *self;
         let per_unit = V::ONE / direction;
         let near = half_extents.copysign(-direction);
@@ -334,19 +274,15 @@ impl<V: Vector> NearLine<V> {
         let closest = |x: V| spine.axis * spine.split(x).0.max(-half_height).min(half_height);
         let support_value = |d: V| spine.split(d).0.abs() * half_height;
         let crossed = Spine { middle: V::ZERO, ..*spine }.crossing(radius, line.source, line.direction);
-        // The axis of another segment is rounded, and a closer look is none.
-        if spine.is_upright {
-            let known = line.swept(radius, closest, support_value, crossed, self.longest_slack());
-            return known.or_else(|| in_registers(self.capsule_closely(half_height, radius)));
-        }
-        line.swept(radius, closest, support_value, crossed, V::Scalar::infinity())
+        let longest = if spine.is_upright { self.longest_slack() } else { V::Scalar::infinity() };
+        line.swept(radius, closest, support_value, crossed, longest)
     }
 
-    /// A box swept by a ball, given the crossing.
+    /// A box swept by a ball.
     #[inline(always)]
-    pub(crate) fn rounded_cuboid(&self, h: V, radius: V::Scalar, crossed: Crossed<V>) -> Option<CertainCrossing<V>> {
+    pub(crate) fn rounded_cuboid(&self, h: V, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+        let crossed = super::rounded_cuboid(h, radius, self.source, self.direction);
         self.swept(radius, |x| x.max(-h).min(h), |d| d.abs().dot(h), crossed, self.longest_slack())
-            .or_else(|| in_registers(self.box_closely(h, radius)))
     }
 
     /// How far the bounds may be apart along the line.
@@ -447,7 +383,7 @@ impl<V: Vector> NearLine<V> {
     /// Only the part of the line near the set counts, at most `NEAR + 1` sizes from the source. There it comes nearer by at most that length
     /// times `|n·d|/|d|`. This product loses `3u`, which is `27u` of the size, and `n·x` another `24u`: more than one error, and less than two.
     #[inline(always)]
-    fn passes(&self, axis: V, support_value: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+    pub(super) fn passes(&self, axis: V, support_value: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let reach = self.size * V::Scalar::from_f64(NEAR + 1.0) / self.direction.abs().max_element();
         let ahead = axis.dot(self.source) - support_value - axis.dot(self.direction).abs() * reach;
         let (squared, apart) = (axis.length_squared(), radius + self.error + self.error);
@@ -465,29 +401,6 @@ impl<V: Vector3> NearLine<V> {
     /// As of a [swept set](Self::swept), two points of the line tell.
     #[inline(always)]
     pub(crate) fn cone(&self, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
-        self.cone_plainly(shape).or_else(|| in_registers(self.cone_closely(shape)))
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn cone_closely(self, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
-        let (half_height, radius, (cosine, sine)) = (shape.half_height(), shape.disc_radius(), shape.slant());
-        // Of a disc and a segment the opening is none.
-        if !(half_height.min(radius) > V::Scalar::ZERO) {
-            return None;
-        }
-        let outward = |at: V| {
-            let beyond_slant = across(at).length() * cosine - (half_height - at.get(1)) * sine;
-            let out = across(at).unit().unwrap_or_else(|| across(-self.direction).unit().unwrap_or(V::ZERO));
-            if -half_height - at.get(1) > beyond_slant { -V::axis(1) } else { out * cosine + V::axis(1) * sine }
-        };
-        let crossed = |source, direction| super::cone(shape, source, direction);
-        let reach = |axis: V| [cone_reach(shape, axis), V::Scalar::ZERO];
-        self.closely(|f| Solid::Cone { half_height: f(half_height), radius: f(radius) }, outward, crossed, reach)
-    }
-
-    #[inline(always)]
-    fn cone_plainly(&self, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
         let Self { source, direction, error, .. } = *self;
         let (h, (cosine, sine)) = (shape.half_height(), shape.slant());
         let Crossing { entry, normal, .. } = match super::cone(shape, source, direction) {
@@ -519,24 +432,6 @@ impl<V: Vector3> NearLine<V> {
     /// A cylinder about the second axis: the line is in the disc, as it is seen along the axis, and in the slab.
     #[inline(always)]
     pub(crate) fn cylinder(&self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
-        self.cylinder_plainly(half_height, radius).or_else(|| in_registers(self.cylinder_closely(half_height, radius)))
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn cylinder_closely(self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
-        let outward = |at: V| {
-            let is_beyond_lid = at.get(1).abs() - half_height > across(at).length() - radius;
-            let lid = V::axis(1) * V::Scalar::ONE.copysign(at.get(1));
-            across(at).unit().filter(|_| !is_beyond_lid).unwrap_or(lid)
-        };
-        let crossed = |source, direction| super::cylinder(half_height, radius, source, direction);
-        let reach = |axis: V| [half_height * axis.get(1).abs() + radius * across(axis).length(), V::Scalar::ZERO];
-        self.closely(|f| Solid::Cylinder { half_height: f(half_height), radius: f(radius) }, outward, crossed, reach)
-    }
-
-    #[inline(always)]
-    fn cylinder_plainly(&self, half_height: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let Self { source, direction, error, .. } = *self;
         let dd = direction.length_squared();
         let (base, source) = rebased(source, direction, dd.recip());
@@ -607,7 +502,7 @@ fn least_chord<S: Scalar>() -> S {
 
 /// How far a cone reaches along an axis: its apex, or its base.
 #[inline(always)]
-fn cone_reach<V: Vector3>(shape: &Cone<V>, axis: V) -> V::Scalar {
+pub(super) fn cone_reach<V: Vector3>(shape: &Cone<V>, axis: V) -> V::Scalar {
     let (apex, middle) = (shape.half_height() * axis.get(1), shape.disc_radius() * across(axis).length());
     apex.max(middle - apex)
 }

@@ -9,7 +9,7 @@
 mod ball;
 mod capsule;
 mod certain;
-mod close;
+pub(crate) mod closely;
 mod cone;
 mod cuboid;
 mod cylinder;
@@ -23,7 +23,7 @@ use num_traits::Float as _;
 
 pub(crate) use ball::ball;
 pub(crate) use capsule::Spine;
-pub use certain::CertainCrossing;
+pub use certain::{CertainCrossing, LineQuery};
 pub(crate) use certain::{NearLine, skew};
 pub(crate) use cone::cone;
 pub(crate) use cuboid::cuboid;

@@ -1,12 +1,9 @@
 //! A ball about the origin.
 
-use num_traits::Float as _;
-
 use crate::error::{InvalidShape, non_negative};
-use crate::line_crossing::{NearLine, ball};
-use crate::numerics::twofold::two_sum;
+use crate::line_crossing::{NearLine, ball, closely};
 use crate::support::swept;
-use crate::{CertainCrossing, Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
+use crate::{CertainCrossing, Core, CoreKind, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector};
 
 /// The ball `|x| ≤ radius`; a disc in 2D. Its core is a point.
 ///
@@ -82,15 +79,12 @@ impl<V: Vector> SupportMap for Ball<V> {
     }
 
     #[inline(always)]
-    fn certain_crossing(
-        &self,
-        source: V,
-        direction: V,
-        radius: V::Scalar,
-        error: V::Scalar,
-    ) -> Option<CertainCrossing<V>> {
-        let [radius, lost] = two_sum(self.radius, radius);
-        NearLine::new(source, direction, V::ZERO, radius, error + lost.abs())?.ball(radius)
+    fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
+        let line = line.sweeping(self.radius);
+        if line.is_close {
+            return closely::capsule(line, V::ZERO, V::Scalar::ZERO);
+        }
+        NearLine::new(line, V::ZERO, line.radius)?.ball(line.radius)
     }
 
     fn rounding(&self) -> Rounding<V> {

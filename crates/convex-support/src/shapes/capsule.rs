@@ -3,11 +3,11 @@
 use num_traits::Float as _;
 
 use crate::error::{InvalidShape, non_negative};
-use crate::line_crossing::{NearLine, Spine};
-use crate::numerics::twofold::two_sum;
+use crate::line_crossing::{NearLine, Spine, closely};
 use crate::support::support_of_parts;
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar,
+    SupportMap, Vector,
 };
 
 /// The segment from `(0, −half_height)` to `(0, half_height)` along the second axis, swept by a ball. Its core is the
@@ -94,16 +94,13 @@ impl<V: Vector> SupportMap for Capsule<V> {
     }
 
     #[inline(always)]
-    fn certain_crossing(
-        &self,
-        source: V,
-        direction: V,
-        radius: V::Scalar,
-        error: V::Scalar,
-    ) -> Option<CertainCrossing<V>> {
-        let [radius, lost] = two_sum(self.radius, radius);
-        let line = NearLine::new(source, direction, V::ZERO, self.half_height + radius, error + lost.abs())?;
-        line.segment(&Spine::upright(self.half_height), radius)
+    fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
+        let line = line.sweeping(self.radius);
+        if line.is_close {
+            return closely::capsule(line, V::ZERO, self.half_height);
+        }
+        let spine = Spine::upright(self.half_height);
+        NearLine::new(line, V::ZERO, self.half_height + line.radius)?.segment(&spine, line.radius)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

@@ -3,10 +3,10 @@
 use super::cylinder::{across, disc_hessian};
 use crate::closest_point::closest_of_cone;
 use crate::error::{InvalidShape, measurable, non_negative};
-use crate::line_crossing::{NearLine, cone, times_within};
+use crate::line_crossing::{NearLine, closely, cone, times_within};
 use crate::numerics::bound::roundings;
 use crate::support::swept;
-use crate::{CertainCrossing, Core, CoreKind, Feature, LineCrossing, Rounding, Scalar, SupportMap, Vector3};
+use crate::{CertainCrossing, Core, CoreKind, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector3};
 use num_traits::Float as _;
 
 /// The cone with its apex at `(0, half_height, 0)` and its base disc at `y = −half_height`.
@@ -125,17 +125,14 @@ impl<V: Vector3> SupportMap for Cone<V> {
     }
 
     #[inline(always)]
-    fn certain_crossing(
-        &self,
-        source: V,
-        direction: V,
-        radius: V::Scalar,
-        error: V::Scalar,
-    ) -> Option<CertainCrossing<V>> {
-        if radius > V::Scalar::ZERO {
+    fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
+        if line.radius > V::Scalar::ZERO {
             return None;
         }
-        NearLine::new(source, direction, V::ZERO, self.extent, error)?.cone(self)
+        if line.is_close {
+            return closely::cone(line, self);
+        }
+        NearLine::new(line, V::ZERO, self.extent)?.cone(self)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

@@ -1,9 +1,10 @@
 //! A box about the origin, along the axes.
 
 use crate::error::{InvalidShape, finite, measurable};
-use crate::line_crossing::{NearLine, cuboid, rounded_cuboid};
+use crate::line_crossing::{NearLine, closely, cuboid, rounded_cuboid};
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, Feature, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar, SupportMap,
+    Vector,
 };
 
 /// The box `|xᵢ| ≤ half_extentsᵢ`; a rectangle in 2D.
@@ -46,17 +47,8 @@ impl<V: Vector> Cuboid<V> {
 
     /// Where a line certainly enters the box swept by a ball.
     #[inline(never)]
-    fn certain_crossing_swept(
-        &self,
-        source: V,
-        direction: V,
-        radius: V::Scalar,
-        error: V::Scalar,
-    ) -> Option<CertainCrossing<V>> {
-        let h = self.half_extents;
-        let line = NearLine::new(source, direction, V::ZERO, self.extent + radius, error)?;
-        let crossed = rounded_cuboid(h, radius, line.source, line.direction);
-        line.rounded_cuboid(h, radius, crossed)
+    fn certain_crossing_swept(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
+        NearLine::new(line, V::ZERO, self.extent + line.radius)?.rounded_cuboid(self.half_extents, line.radius)
     }
 }
 
@@ -103,17 +95,14 @@ impl<V: Vector> SupportMap for Cuboid<V> {
     }
 
     #[inline(always)]
-    fn certain_crossing(
-        &self,
-        source: V,
-        direction: V,
-        radius: V::Scalar,
-        error: V::Scalar,
-    ) -> Option<CertainCrossing<V>> {
-        if radius > V::Scalar::ZERO {
-            return self.certain_crossing_swept(source, direction, radius, error);
+    fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
+        if line.is_close {
+            return closely::cuboid(line, self.half_extents);
         }
-        NearLine::new(source, direction, V::ZERO, self.extent + radius, error)?.cuboid(self.half_extents)
+        if line.radius > V::Scalar::ZERO {
+            return self.certain_crossing_swept(line);
+        }
+        NearLine::new(line, V::ZERO, self.extent)?.cuboid(self.half_extents)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

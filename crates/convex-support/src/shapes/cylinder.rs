@@ -4,11 +4,11 @@ use num_traits::Float as _;
 
 use crate::closest_point::closest_of_ball;
 use crate::error::{InvalidShape, measurable, non_negative};
-use crate::line_crossing::{NearLine, cylinder};
+use crate::line_crossing::{NearLine, closely, cylinder};
 use crate::numerics::bound::roundings;
 use crate::numerics::range::is_comfortable;
 use crate::support::{swept, swept_hessian};
-use crate::{CertainCrossing, Core, CoreKind, Feature, LineCrossing, Rounding, Scalar, SupportMap, Vector3};
+use crate::{CertainCrossing, Core, CoreKind, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector3};
 
 /// The cylinder `x² + z² ≤ radius²`, `|y| ≤ half_height`.
 ///
@@ -117,17 +117,14 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
     }
 
     #[inline(always)]
-    fn certain_crossing(
-        &self,
-        source: V,
-        direction: V,
-        radius: V::Scalar,
-        error: V::Scalar,
-    ) -> Option<CertainCrossing<V>> {
-        if radius > V::Scalar::ZERO {
+    fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
+        if line.radius > V::Scalar::ZERO {
             return None;
         }
-        NearLine::new(source, direction, V::ZERO, self.extent, error)?.cylinder(self.half_height, self.radius)
+        if line.is_close {
+            return closely::cylinder(line, self.half_height, self.radius);
+        }
+        NearLine::new(line, V::ZERO, self.extent)?.cylinder(self.half_height, self.radius)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

@@ -10,7 +10,8 @@ use crate::numerics::jacobi;
 use crate::numerics::range::power_of_two_below;
 use crate::support::swept_hessian;
 use crate::{
-    CertainCrossing, Core, CoreKind, Hint, LineCrossing, Matrix, Rotation, Rounding, Scalar, SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, Hint, LineCrossing, LineQuery, Matrix, Rotation, Rounding, Scalar, SupportMap,
+    Vector,
 };
 
 /// The ellipsoid `{ c + R·diag(a)·u : |u| ≤ 1 }`; an ellipse in 2D.
@@ -245,17 +246,11 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
     }
 
     #[inline(always)]
-    fn certain_crossing(
-        &self,
-        source: V,
-        direction: V,
-        radius: V::Scalar,
-        error: V::Scalar,
-    ) -> Option<CertainCrossing<V>> {
-        if radius > V::Scalar::ZERO {
+    fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
+        if line.radius > V::Scalar::ZERO || line.is_close {
             return None;
         }
-        NearLine::new(source, direction, self.center, self.semi_axes.max_element(), error + self.skew)?
+        NearLine::new(line.within(self.skew), self.center, self.semi_axes.max_element())?
             .ellipsoid(&self.axes, self.inverse_semi_axes)
     }
 

@@ -1,8 +1,8 @@
 //! A single point.
 
 use crate::error::{InvalidShape, finite};
-use crate::line_crossing::{NearLine, ball};
-use crate::{CertainCrossing, Core, CoreKind, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
+use crate::line_crossing::{NearLine, ball, closely};
+use crate::{CertainCrossing, Core, CoreKind, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector};
 
 /// The set of one point.
 ///
@@ -74,14 +74,11 @@ impl<V: Vector> SupportMap for Point<V> {
     }
 
     #[inline(always)]
-    fn certain_crossing(
-        &self,
-        source: V,
-        direction: V,
-        radius: V::Scalar,
-        error: V::Scalar,
-    ) -> Option<CertainCrossing<V>> {
-        NearLine::new(source, direction, self.at, radius, error)?.ball(radius)
+    fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
+        if line.is_close {
+            return closely::capsule(line, self.at, V::Scalar::ZERO);
+        }
+        NearLine::new(line, self.at, line.radius)?.ball(line.radius)
     }
 
     fn rounding(&self) -> Rounding<V> {

@@ -7,7 +7,8 @@ use crate::error::{InvalidShape, finite, measurable};
 use crate::line_crossing::{NearLine, Spine};
 use crate::numerics::bound::{roundings, roundings_of};
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar,
+    SupportMap, Vector,
 };
 
 /// The segment between two points, which may coincide.
@@ -110,16 +111,14 @@ impl<V: Vector> SupportMap for Segment<V> {
     }
 
     #[inline(always)]
-    fn certain_crossing(
-        &self,
-        source: V,
-        direction: V,
-        radius: V::Scalar,
-        error: V::Scalar,
-    ) -> Option<CertainCrossing<V>> {
+    fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
+        // The axis is rounded, and a closer look is none.
+        if line.is_close {
+            return None;
+        }
         let ends = relative(self.points);
-        let size = ends[0].length().max(ends[1].length()) + radius;
-        NearLine::new(source, direction, middle(self.points), size, error)?.segment(&Spine::between(ends), radius)
+        let size = ends[0].length().max(ends[1].length()) + line.radius;
+        NearLine::new(line, middle(self.points), size)?.segment(&Spine::between(ends), line.radius)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

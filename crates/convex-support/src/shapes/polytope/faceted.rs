@@ -14,7 +14,7 @@ use super::lanes::{WIDTH, coordinate, side_by_side};
 use crate::error::InvalidShape;
 use crate::line_crossing::{NearLine, faceted};
 use crate::numerics::bound::roundings;
-use crate::{CertainCrossing, Core, Feature, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
+use crate::{CertainCrossing, Core, Feature, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector};
 
 /// [`WIDTH`] planes, each a unit outward normal by coordinates and how far the polytope reaches along it from the middle.
 pub(crate) type Planes<S> = [[S; WIDTH]; 4];
@@ -243,18 +243,12 @@ impl<V: Vector> SupportMap for Faceted<V> {
     }
 
     #[inline]
-    fn certain_crossing(
-        &self,
-        source: V,
-        direction: V,
-        radius: V::Scalar,
-        error: V::Scalar,
-    ) -> Option<CertainCrossing<V>> {
-        let Core { origin, extent, error: of_core, .. } = self.core();
-        if radius != V::Scalar::ZERO || self.uncut == V::Scalar::infinity() {
+    fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
+        let Core { origin, extent, error, .. } = self.core();
+        if line.radius != V::Scalar::ZERO || line.is_close || self.uncut == V::Scalar::infinity() {
             return None;
         }
-        NearLine::new(source, direction, origin, extent, error + of_core + self.uncut)?.faceted(self)
+        NearLine::new(line.within(error + self.uncut), origin, extent)?.faceted(self)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

@@ -8,7 +8,129 @@
 //!
 //! The arithmetic is that of `f64` whatever the precision of the shape, and is compiled once.
 
+use num_traits::Float as _;
+
+use super::certain::cone_reach;
+use super::{CertainCrossing, Crossed, LineQuery, NearLine, Spine, axis_of};
 use crate::numerics::bounded::Bounded;
+use crate::numerics::range::power_of_two_below;
+use crate::shapes::across;
+use crate::{Cone, Scalar, SupportMap as _, Vector, Vector3};
+
+/// A segment about an origin along the second axis, swept by a ball, or a ball.
+#[cold]
+#[inline(never)]
+pub(crate) fn capsule<V: Vector>(line: LineQuery<V>, origin: V, half_height: V::Scalar) -> Option<CertainCrossing<V>> {
+    let (end, radius) = (V::axis(1) * half_height, line.radius);
+    let outward = |at: V| (at - at.max(-end).min(end)).unit().unwrap_or(-line.direction);
+    let crossed = |source, direction| Spine::upright(half_height).crossing(radius, source, direction);
+    let reach = |axis: V| half_height * axis.get(1).abs();
+    let solid = |f: InUnits<'_, V>| Solid::Capsule { half_height: f(half_height), radius: f(radius) };
+    closely(line, origin, half_height + radius, solid, outward, crossed, reach)
+}
+
+/// A box about zero, swept by a ball or not.
+#[cold]
+#[inline(never)]
+pub(crate) fn cuboid<V: Vector>(line: LineQuery<V>, half_extents: V) -> Option<CertainCrossing<V>> {
+    let radius = line.radius;
+    let is_swept = radius > V::Scalar::ZERO;
+    let outward = |at: V| {
+        let beyond = at.abs() - half_extents;
+        let face = axis_of(beyond, beyond.max_element()) * V::ONE.copysign(at);
+        let excess = if is_swept { at - at.max(-half_extents).min(half_extents) } else { face };
+        excess.unit().unwrap_or(face)
+    };
+    let solid = |f: InUnits<'_, V>| Solid::RoundedBox {
+        half_extents: core::array::from_fn(|i| if i < V::DIM { f(half_extents.get(i)) } else { f64::INFINITY }),
+        radius: f(radius),
+    };
+    let crossed = |source, direction| {
+        if is_swept {
+            super::rounded_cuboid(half_extents, radius, source, direction)
+        } else {
+            super::cuboid(half_extents, source, direction)
+        }
+    };
+    let reach = |axis: V| axis.abs().dot(half_extents);
+    closely(line, V::ZERO, half_extents.norm() + radius, solid, outward, crossed, reach)
+}
+
+/// A cone about the second axis.
+#[cold]
+#[inline(never)]
+pub(crate) fn cone<V: Vector3>(line: LineQuery<V>, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
+    let (half_height, radius, (cosine, sine)) = (shape.half_height(), shape.disc_radius(), shape.slant());
+    // Of a disc and a segment the opening is none.
+    if !(half_height.min(radius) > V::Scalar::ZERO) {
+        return None;
+    }
+    let outward = |at: V| {
+        let beyond_slant = across(at).length() * cosine - (half_height - at.get(1)) * sine;
+        let out = across(at).unit().unwrap_or_else(|| across(-line.direction).unit().unwrap_or(V::ZERO));
+        if -half_height - at.get(1) > beyond_slant { -V::axis(1) } else { out * cosine + V::axis(1) * sine }
+    };
+    let crossed = |source, direction| super::cone(shape, source, direction);
+    let solid = |f: InUnits<'_, V>| Solid::Cone { half_height: f(half_height), radius: f(radius) };
+    closely(line, V::ZERO, shape.core().extent, solid, outward, crossed, |axis| cone_reach(shape, axis))
+}
+
+/// A cylinder about the second axis.
+#[cold]
+#[inline(never)]
+pub(crate) fn cylinder<V: Vector3>(
+    line: LineQuery<V>,
+    half_height: V::Scalar,
+    radius: V::Scalar,
+) -> Option<CertainCrossing<V>> {
+    let outward = |at: V| {
+        let is_beyond_lid = at.get(1).abs() - half_height > across(at).length() - radius;
+        let lid = V::axis(1) * V::Scalar::ONE.copysign(at.get(1));
+        across(at).unit().filter(|_| !is_beyond_lid).unwrap_or(lid)
+    };
+    let crossed = |source, direction| super::cylinder(half_height, radius, source, direction);
+    let reach = |axis: V| half_height * axis.get(1).abs() + radius * across(axis).length();
+    let solid = |f: InUnits<'_, V>| Solid::Cylinder { half_height: f(half_height), radius: f(radius) };
+    closely(line, V::ZERO, half_height.hypot(radius), solid, outward, crossed, reach)
+}
+
+/// What a length is in units of a power of two.
+type InUnits<'a, V> = &'a dyn Fn(<V as Vector>::Scalar) -> f64;
+
+/// Only the error that came with the line counts. `outward` is the unit normal at a point of the surface. Of a line that
+/// misses, the closed form tells an axis, along which the core `reaches` so far; it counts for what it is measured to be,
+/// and a line that misses by rounding is left to a search.
+fn closely<V: Vector>(
+    line: LineQuery<V>,
+    origin: V,
+    size: V::Scalar,
+    solid: impl FnOnce(InUnits<'_, V>) -> Solid,
+    outward: impl FnOnce(V) -> V,
+    crossed: impl FnOnce(V, V) -> Crossed<V>,
+    reaches: impl FnOnce(V) -> V::Scalar,
+) -> Option<CertainCrossing<V>> {
+    let near = NearLine::new(line, origin, size)?;
+    let length = power_of_two_below(size).as_f64();
+    let speed = power_of_two_below(line.direction.abs().max_element()).as_f64();
+    let in_units = |x: V::Scalar| x.as_f64() / length;
+    let coordinate = |v: V, i: usize| if i < V::DIM { v.get(i) } else { V::Scalar::ZERO };
+    let seen = |i| Bounded::sum(in_units(coordinate(line.source, i)), -in_units(coordinate(origin, i)));
+    let direction = core::array::from_fn(|i| coordinate(line.direction, i).as_f64() / speed);
+    let close = CloseLine { source: core::array::from_fn(seen), direction };
+    match close.crossing(solid(&in_units), in_units(line.error))? {
+        Known::Misses => {
+            let axis = crossed(near.source, near.direction).err()?;
+            near.passes(axis, reaches(axis), line.radius)
+        }
+        Known::Enters(bounds) => {
+            let [earliest, latest] = bounds.map(|at| at * (length / speed));
+            let entry = V::Scalar::from_f64(earliest + (latest - earliest) * 0.5);
+            let bounds = [earliest, latest].map(V::Scalar::from_f64);
+            let normal = outward(near.source + near.direction * (entry - near.base));
+            Some(NearLine { base: V::Scalar::ZERO, ..near }.enters([bounds[0], entry, bounds[1]], normal))
+        }
+    }
+}
 
 /// A shape about zero, in units of about its size; upright ones are about the second axis.
 #[derive(Clone, Copy, Debug)]
