@@ -3,12 +3,11 @@
 use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Both, Pair, PointPair, Shapes, TracedSupport as _};
+use crate::body::{Both, Pair, PointPair, Shapes, Swapped, TracedSupport as _};
 use crate::compiled_once::compiled_once;
 use crate::contact::signed_distance_of_any;
 use crate::gjk::{
-    End, Frame, Gjk, GjkOptions, InOrder, NEAR, comes_first, first_direction, gjk, is_near_contact, near_contact,
-    rounding,
+    End, Frame, Gjk, GjkOptions, NEAR, comes_first, first_direction, gjk, is_near_contact, near_contact, rounding,
 };
 use crate::observer::Observer;
 use crate::shape::Shape;
@@ -141,7 +140,24 @@ fn direct<T: Shapes>(
     })
 }
 
+/// In order, so that the search can be gone on with if the bodies nearly touch.
 fn searched<V: Vector>(
+    shapes: &dyn Shapes<Vector = V>,
+    [core_a, core_b]: [Core<V>; 2],
+    options: DistanceOptions<V>,
+    observer: &mut Observer<'_, V>,
+) -> Distance<V> {
+    if !comes_first(&core_b, &core_a) {
+        return searched_in_order(shapes, [core_a, core_b], options, observer);
+    }
+    let options = DistanceOptions { axis: options.axis.map(|axis| -axis), ..options };
+    let is_watched = !observer.is_none();
+    let mut reversed = |iterate: Iterate<'_, V>| iterate.reversed(|iterate| observer.show(|| iterate));
+    let mut observer = if is_watched { Observer::new(&mut reversed) } else { Observer::none() };
+    searched_in_order(&Swapped(shapes), [core_b, core_a], options, &mut observer).reversed()
+}
+
+fn searched_in_order<V: Vector>(
     shapes: &dyn Shapes<Vector = V>,
     cores: [Core<V>; 2],
     options: DistanceOptions<V>,
@@ -151,32 +167,16 @@ fn searched<V: Vector>(
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);
-    // In order, so that the search can be gone on with if the bodies nearly touch.
-    let mut bodies = InOrder::new(&mut pair);
-    let offset = bodies.difference(cores[0].origin, cores[1].origin) * frame.per_unit;
-    let first = first_direction(options.axis.map(|axis| bodies.in_order(axis)), offset);
-    let mut state = Gjk::new(first);
-    let start = state.begin_at_closest(bodies.as_given(), &frame, size);
-    if start.is_some() {
-        // From there the search is short.
-        bodies.set_as_given();
-    }
-    let (is_reversed, in_order) =
-        (bodies.is_reversed(), if start.is_none() { Frame { offset, ..frame } } else { frame });
+    let mut state = Gjk::new(first_direction(options.axis, frame.offset));
+    let start = state.begin_at_closest(&pair, &frame, size);
     let search = GjkOptions {
         limit: options.limit * frame.per_unit + frame.radius,
         tolerance: options.tolerance,
         sub_algorithm: options.sub_algorithm,
         ..GjkOptions::new(state.normal, options.max_iterations)
     };
-    let end = if start == Some(true) {
-        End::Overlap
-    } else {
-        let is_watched_reversed = is_reversed && !observer.is_none();
-        let mut turned = |iterate: Iterate<'_, V>| iterate.reversed(|iterate| observer.show(|| iterate));
-        let mut as_given = if is_watched_reversed { Observer::new(&mut turned) } else { observer.by_ref() };
-        gjk(&mut state, &mut bodies, in_order, search, None, &mut as_given)
-    };
+    let end =
+        if start == Some(true) { End::Overlap } else { gjk(&mut state, &mut pair, frame, search, None, observer) };
     if is_near_contact(&mut state, &frame) {
         // Whether it is the search that any query would have made.
         let is_plain = start.is_none()
@@ -185,47 +185,13 @@ fn searched<V: Vector>(
             && !(options.tolerance > Scalar::ZERO)
             && !(state.lower > search.limit + frame.error);
         let (begun, before) = if is_plain { (Some(&state), 0) } else { (None, state.iterations) };
-        if let Some(answer) = touching(shapes, [pair.core_a, pair.core_b], begun, options.max_iterations) {
+        if let Some(answer) = touching(shapes, cores, begun, options.max_iterations) {
             return Distance { iterations: before + answer.iterations, ..answer };
         }
     }
     state.ensure_measured();
-    let cores = [pair.core_a, pair.core_b];
-    if end == End::Stalled {
-        let answer = apart_as_given(cores, &in_order, &state, end, is_reversed);
-        return closely(shapes.each(), answer, options.max_iterations);
-    }
-    found(cores, &in_order, &state, end, is_reversed)
-}
-
-/// The same as [`found`], compiled once.
-#[cold]
-#[inline(never)]
-fn apart_as_given<V: Vector>(
-    cores: [Core<V>; 2],
-    in_order: &Frame<V>,
-    state: &Gjk<V>,
-    end: End,
-    is_reversed: bool,
-) -> Distance<V> {
-    found(cores, in_order, state, end, is_reversed)
-}
-
-/// The answer of a search of bodies in order, as they are given.
-#[inline(always)]
-fn found<V: Vector>(
-    [core_a, core_b]: [Core<V>; 2],
-    in_order: &Frame<V>,
-    state: &Gjk<V>,
-    end: End,
-    is_reversed: bool,
-) -> Distance<V> {
-    let points = state.simplex.weighted_witness();
-    if is_reversed {
-        apart([core_b, core_a], in_order, state, points.reversed(), end).reversed()
-    } else {
-        apart([core_a, core_b], in_order, state, points, end)
-    }
+    let answer = apart(cores, &frame, &state, state.simplex.weighted_witness(), end);
+    if end == End::Stalled { closely(shapes.each(), answer, options.max_iterations) } else { answer }
 }
 
 /// The answer that a search leaves in doubt, with what the signed distance knows: the planes of facets of the difference too, and how deep

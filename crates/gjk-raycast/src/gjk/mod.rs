@@ -20,7 +20,7 @@ use crate::{Status, SubAlgorithm};
 pub(crate) use boxes::{Boxes, boxes};
 pub(crate) use near_contact::{NEAR, NearContact, is_near_contact, near_contact};
 use next_direction::NextDirection;
-pub(crate) use order::{InOrder, comes_first};
+pub(crate) use order::comes_first;
 pub(crate) use progress::Progress;
 pub(crate) use start::first_direction;
 pub(crate) use state::Gjk;

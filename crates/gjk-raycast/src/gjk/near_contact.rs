@@ -93,7 +93,7 @@ impl<V: Vector> NearContact<V> {
 
 /// Looks at bodies near contact once more; `None` where no plane can be found, or numbers are out of range.
 ///
-/// A search that is over may have begun where all do: with the bodies [in order](super::InOrder), without an axis of its own, and to
+/// A search that is over may have begun where all do: with the bodies [in order](super::comes_first), without an axis of its own, and to
 /// no tolerance but the noise. Then what it came to is gone on with, and else it is made once more.
 ///
 /// The bodies are asked behind pointers, so that what is rarely needed is compiled once.
