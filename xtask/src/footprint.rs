@@ -82,7 +82,7 @@ const GJK_RAYCAST: Option<(&str, &str)> = Some(("gjk-raycast", "\"std\", \"f64\"
 const PROGRAMS: &[Program] = &[
     Program { name: "nothing", import: None, body: &["println!(\"{:?}\", input());"] },
     Program { name: "convex-support", import: Some(("convex-support", "\"std\", \"f64\"")), body: &[SUPPORT] },
-    Program { name: "convex-support, libm", import: Some(("convex-support", "\"libm\", \"f64\"")), body: &[SUPPORT] },
+    Program { name: "convex-support, no `std`", import: Some(("convex-support", "\"f64\"")), body: &[SUPPORT] },
     Program {
         name: "convex-support, hull",
         import: Some(("convex-support", "\"std\", \"f64\", \"hull\"")),
@@ -105,8 +105,8 @@ const PROGRAMS: &[Program] = &[
     Program { name: "gjk-raycast, `linear_cast`", import: GJK_RAYCAST, body: &[BOXES, LINEAR] },
     Program { name: "gjk-raycast, `motion_cast`", import: GJK_RAYCAST, body: &[BOXES, TURNING] },
     Program {
-        name: "gjk-raycast, libm, `distance`",
-        import: Some(("gjk-raycast", "\"libm\", \"f64\"")),
+        name: "gjk-raycast, no `std`, `distance`",
+        import: Some(("gjk-raycast", "\"f64\"")),
         body: &[BOXES, DISTANCE],
     },
     Program {
@@ -123,7 +123,7 @@ const PROGRAMS: &[Program] = &[
     },
     Program { name: "lj-ellipsoid, serde", import: Some(("lj-ellipsoid", "\"serde\"")), body: &[ENCLOSING] },
     Program { name: "ellip-margin", import: Some(("ellip-margin", "\"std\", \"f64\"")), body: &[MARGIN] },
-    Program { name: "ellip-margin, libm", import: Some(("ellip-margin", "\"libm\", \"f64\"")), body: &[MARGIN] },
+    Program { name: "ellip-margin, no `std`", import: Some(("ellip-margin", "\"f64\"")), body: &[MARGIN] },
     Program {
         name: "ellip-margin, paper",
         import: Some(("ellip-margin", "\"std\", \"f64\", \"paper\"")),

@@ -6,7 +6,9 @@
     reason = "a field of this unpublished package is told by its name, where nothing more is to say"
 )]
 
+pub mod bits;
 pub mod docs;
+mod draw;
 pub mod engine;
 pub mod footprint;
 pub mod fuzz;

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
 use clap::{Args, Parser, Subcommand};
-use xtask::{docs, footprint, fuzz, prove, query, validate};
+use xtask::{bits, docs, footprint, fuzz, prove, query, validate};
 
 /// Answers query files, validates the crates against true answers, and draws what they do.
 #[derive(Debug, Parser)]
@@ -43,6 +43,10 @@ enum Task {
     ///
     /// Exit status: 0 if nothing failed, 1 if something did, 2 if the suite could not be read.
     Fuzz(fuzz::Scope),
+    /// Answer questions from fixed seeds, and compare the hashes of the answers with those that every machine is to have.
+    ///
+    /// Exit status: 0 if every hash is equal, 1 if some are not, 2 if the file of hashes could not be read or written.
+    Bits(bits::Choice),
     /// Build the API documentation of the libraries as docs.rs does, and check that no link leads nowhere.
     ///
     /// Exit status: 0, or 1 if a note or page has a link that leads nowhere, or 2 if the documentation does not build.
@@ -87,6 +91,7 @@ fn main() -> ExitCode {
         Task::Validate(scope) => validate::run(&scope, &validate::QUICK),
         Task::Prove(choice) => prove::run(&choice),
         Task::Fuzz(scope) => fuzz::run(&scope),
+        Task::Bits(choice) => bits::run(&choice),
         Task::Docs => docs::run(),
         Task::Footprint { output } => footprint::run(&output),
         Task::Judge(_) | Task::Growth(_) => study("peers"),

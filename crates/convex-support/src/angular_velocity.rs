@@ -5,6 +5,7 @@ use core::marker::PhantomData;
 
 use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, Mat2, Mat3, Mat3A, Quat, Vec2, Vec3, Vec3A};
 
+use crate::numerics::elementary::{atan2, sin_cos};
 use crate::numerics::range::comfortable_unit_of_length;
 use crate::numerics::twofold::{dot_minus, two_product};
 use crate::{Scalar, Vector};
@@ -157,7 +158,7 @@ macro_rules! number {
         impl Spin<$V> for $S {
             #[inline]
             fn turn(&self, time: $S) -> $M {
-                let [sin, cos] = sin_cos(two_product(0.5 * self.as_f64(), time.as_f64()));
+                let [sin, cos] = sin_cos_of_sum(two_product(0.5 * self.as_f64(), time.as_f64()));
                 let (x, y) = (-2.0 * sin * sin, 2.0 * sin * cos);
                 $rounded(DMat2::from_cols(DVec2::new(x, y), DVec2::new(-y, x)))
             }
@@ -274,7 +275,7 @@ impl<V> SpinInSpace<V> {
         }
         let half = 0.5 * unit * time;
         let [angle, rest] = two_product(rate, half);
-        let [sin, cos] = sin_cos([angle, rest + lost * half]);
+        let [sin, cos] = sin_cos_of_sum([angle, rest + lost * half]);
         let (c, s) = (a * (2.0 * sin * cos), 2.0 * sin * sin);
         let v = a * s;
         // [a]×² = a·aᵀ − 1, whose diagonal is minus the sum of two squares.
@@ -295,20 +296,20 @@ fn turn_between(from: DQuat, to: DQuat) -> DVec3 {
     let turn = if turn.w < 0.0 { -turn } else { turn };
     let half = turn.xyz().length();
     // The sine and cosine of half the angle; where it is small, twice the sine is the angle to rounding.
-    let per_sine = if half > 0.0 { 2.0 * num_traits::Float::atan2(half, turn.w) / half } else { 2.0 };
+    let per_sine = if half > 0.0 { 2.0 * atan2(half, turn.w) / half } else { 2.0 };
     turn.xyz() * per_sine
 }
 
 /// Sine and cosine of an angle in two parts, of which the second is below the rounding of the first. NaNs beyond
 /// [`LARGEST_ANGLE`].
 #[inline]
-fn sin_cos([angle, rest]: [f64; 2]) -> [f64; 2] {
+fn sin_cos_of_sum([angle, rest]: [f64; 2]) -> [f64; 2] {
     if angle.is_nan() || angle.abs() > LARGEST_ANGLE {
         return [f64::NAN; 2];
     }
-    let (sin, cos) = num_traits::Float::sin_cos(angle);
+    let (sin, cos) = sin_cos(angle);
     // 1 − cos(rest) is below rounding where the angle is below 2²⁶, as most are.
-    let (s, c) = if rest.abs() < 7e-9 { (rest, 1.0) } else { num_traits::Float::sin_cos(rest) };
+    let (s, c) = if rest.abs() < 7e-9 { (rest, 1.0) } else { sin_cos(rest) };
     [sin * c + cos * s, cos * c - sin * s]
 }
 
@@ -323,7 +324,7 @@ mod tests {
     fn a_turn_is_right_after_many_turns() {
         // |ω| = 13 exactly.
         let w = DVec3::new(3.0, 4.0, 12.0);
-        let (sin, cos) = num_traits::Float::sin_cos(13.0 * 7_777_777.0);
+        let (sin, cos) = sin_cos(13.0 * 7_777_777.0);
         let v = DVec3::new(4.0, -3.0, 0.0);
         let expected = v * cos + w.cross(v) / 13.0 * sin;
         let turned = v + w.turn(7_777_777.0) * v;

@@ -33,8 +33,8 @@
 //! Constructors check their numbers and return [`InvalidShape`] if one is wrong; after that, support mappings never fail.
 //!
 //! # Features
-//! - `std` (default): floating-point functions from the standard library.
-//! - `libm`: the same from the libm crate, for `no_std` targets; `alloc` is needed in any case.
+//! - `std` (default): square roots and the like by the processor's instructions; without it by the libm crate, for `no_std` targets with
+//!   `alloc`, to the same bits.
 //! - `f64` (default): asks glam for double precision; with glam 0.32, which has no such feature, turn on `glam-032`
 //!   instead.
 //! - `hull`: `Polytope::hull_of`, the exact convex hull of raw points, for polytopes of thousands of vertices; and `Faceted`, a
@@ -47,9 +47,7 @@
 //!   generates shapes and poses of wild aspect and scale.
 
 #![no_std]
-
-#[cfg(not(any(feature = "std", feature = "libm")))]
-compile_error!("convex-support needs floating-point functions: enable the feature `std` or `libm`");
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 #[cfg(not(any(feature = "f64", feature = "glam-032")))]
 compile_error!(

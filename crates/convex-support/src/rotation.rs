@@ -6,6 +6,7 @@ use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, DVec4, Mat2, Mat3, Mat3A, Quat, Ve
 
 use crate::Vector;
 use crate::error::InvalidShape;
+use crate::numerics::elementary::{atan2, sin_cos};
 use crate::numerics::range::is_comfortable;
 
 /// A rotation of the space of `V`: an angle in radians in 2D, a quaternion of any length in 3D.
@@ -41,7 +42,7 @@ mod sealed {
     impl Sealed for glam::DQuat {}
 }
 
-/// Rotations of the plane. Sines and cosines of the standard library and of libm are right to less than an ulp.
+/// Rotations of the plane, whose sines and cosines are right to less than an ulp.
 macro_rules! angle {
     ($S:ident rotates $V:ident by $M:ident) => {
         impl Rotation<$V> for $S {
@@ -50,12 +51,13 @@ macro_rules! angle {
 
             #[inline]
             fn from_xyzw([_, _, z, w]: [$S; 4]) -> Self {
-                2.0 * num_traits::Float::atan2(z, w)
+                2.0 * atan2(z, w)
             }
 
             #[inline(always)]
             fn matrix(self) -> $M {
-                $M::from_angle(self)
+                let (sin, cos) = sin_cos(self);
+                $M::from_cols($V::new(cos, sin), $V::new(-sin, cos))
             }
 
             #[inline]

@@ -2,6 +2,7 @@
 
 use num_traits::Float as _;
 
+use crate::numerics::elementary::sin_cos;
 use crate::support::swept;
 use crate::{Scalar, Vector, Vector3};
 
@@ -129,7 +130,7 @@ impl<V: Vector> Feature<V> {
         };
         for (&center, &id) in points.iter().zip(&ids).take(len) {
             for i in 0..around {
-                let (sine, cosine) = (core::f64::consts::TAU * f64::from(i) / f64::from(around)).sin_cos();
+                let (sine, cosine) = sin_cos(core::f64::consts::TAU * f64::from(i) / f64::from(around));
                 let sine = if around > 2 { sine } else { 0.0 };
                 let point = center + p * V::Scalar::from_f64(cosine) + q * V::Scalar::from_f64(sine);
                 self.push(point, id.wrapping_mul(RIM).wrapping_add(i));
@@ -202,7 +203,7 @@ impl<V: Vector> Feature<V> {
         });
         let angle = V::Scalar::from_f64(1.0 / 32.0);
         for i in 0..PROBES {
-            let (sine, cosine) = (core::f64::consts::TAU * f64::from(i) / f64::from(PROBES)).sin_cos();
+            let (sine, cosine) = sin_cos(core::f64::consts::TAU * f64::from(i) / f64::from(PROBES));
             let aside = e * V::Scalar::from_f64(cosine) + f * V::Scalar::from_f64(sine);
             let half = n + aside * (angle * V::Scalar::from_f64(0.5));
             let vertex = support(n + aside * angle);
@@ -231,7 +232,7 @@ impl<V: Vector> Feature<V> {
             if lowest >= highest - slab && radius > V::Scalar::ZERO {
                 self.set_rim(Rim { center, ends: [V::axis(0) * radius + center, V::axis(2) * radius + center] });
                 for i in 0..RIM {
-                    let (sine, cosine) = (core::f64::consts::TAU * f64::from(i) / f64::from(RIM)).sin_cos();
+                    let (sine, cosine) = sin_cos(core::f64::consts::TAU * f64::from(i) / f64::from(RIM));
                     let at =
                         [radius * V::Scalar::from_f64(cosine), V::Scalar::ZERO, radius * V::Scalar::from_f64(sine)];
                     self.push(center + V::from_fn(|i| at[i]), k * (RIM + 1) + i);

@@ -37,8 +37,8 @@
 //! - With the feature `paper`: `paper::free_margin_eigen`, `paper::InverseIterationTracker`, `paper::eigenvalue_gradient`.
 //!
 //! # Features
-//! - `std` (default): floating-point functions from the standard library; `libm`: the same from the libm crate, for `no_std`
-//!   targets. `alloc` is needed in any case.
+//! - `std` (default): square roots and the like by the processor's instructions; without it by the libm crate, for `no_std` targets with
+//!   `alloc`, to the same bits.
 //! - `f64` (default): asks glam for double precision; with glam 0.32, which has no such feature, turn on `glam-032`
 //!   instead.
 //! - `hull`, `mint`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: those of [`convex_support`], for
@@ -51,11 +51,9 @@
 //! - `simd`: batches take the widest vector instructions of the processor, found at run time by pulp. The answers are the same.
 
 #![no_std]
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![allow(clippy::needless_range_loop, reason = "the formulas of this crate index several small arrays at once")]
 #![allow(clippy::doc_markdown, reason = "formulas are not code")]
-
-#[cfg(not(any(feature = "std", feature = "libm")))]
-compile_error!("ellip-margin needs floating-point functions: enable the feature `std` or `libm`");
 
 extern crate alloc;
 #[cfg(any(feature = "std", test))]

@@ -10,6 +10,7 @@
 //! The left side changes sign once, between the least and the greatest σᵢ; ln(‖ŵ‖/‖x̂‖) grows with ln ν, at a rate
 //! between 0 and 2, and Newton's method on it, kept within the bracket, ends in a few steps.
 
+use convex_support::numerics::elementary::{exp, ln};
 use convex_support::{Ellipsoid, Scalar, Vector};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
@@ -136,7 +137,7 @@ fn root<const N: usize>(sigma: Vec<N>, ball: Vec<N>, options: MarginOptions) -> 
             slope_x += x[i] * x[i] * (k / denominator);
             slope_w += w * w / denominator;
         }
-        let difference = 0.5 * (ww / xx).ln();
+        let difference = 0.5 * ln(ww / xx);
         if status == Status::Converged || iterations == options.max_iterations {
             return Root { nu, x, status, iterations };
         }
@@ -147,7 +148,7 @@ fn root<const N: usize>(sigma: Vec<N>, ball: Vec<N>, options: MarginOptions) -> 
         } else {
             high = nu;
         }
-        let newton = nu * (-difference / (slope_w / ww + slope_x / xx)).exp();
+        let newton = nu * exp(-difference / (slope_w / ww + slope_x / xx));
         let next = if newton >= low && newton <= high { newton } else { low.sqrt() * high.sqrt() };
         let next = if next.is_finite() { next } else { nu };
         let change = ((next - nu) / next).abs();

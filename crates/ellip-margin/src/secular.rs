@@ -9,6 +9,7 @@
 //! 1/φ is concave in τ, so that Newton's method for 1/φ(τ) = 1 (Hebden 1973; Moré and Sorensen 1983) rises to the root from
 //! any τ below it, and comes back below in one step from above.
 
+use convex_support::numerics::elementary::hypot;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -164,7 +165,7 @@ fn refined_margin<const N: usize>(pair: &Pair<N>, basis: &Svd<N>, y: Vec<N>, nu:
     let mut excess = 0.0;
     for i in 0..N {
         let sigma = basis.sigma[i];
-        let root = sigma.hypot(nu.sqrt());
+        let root = hypot(sigma, nu.sqrt());
         let part = (sigma / root) * dot(basis.u[i], w) + (nu / root) * dot(basis.v[i], y);
         excess += part * part;
     }

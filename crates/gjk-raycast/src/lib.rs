@@ -56,8 +56,8 @@
 //! Detection*, 2004, referred to as the paper.
 //!
 //! # Features
-//! - `std` (default): floating-point functions from the standard library.
-//! - `libm`: the same from the libm crate, for `no_std` targets.
+//! - `std` (default): square roots and the like by the processor's instructions; without it by the libm crate, for `no_std` targets with
+//!   `alloc`, to the same bits.
 //! - `f64` (default): asks glam for double precision; with glam 0.32, which has no such feature, turn on `glam-032`
 //!   instead.
 //! - `rayon`: `par_ray_casts`, `Scene::par_ray_casts`, `Among::par_pairs_within` and `Among::par_contacts_within`, which use all threads.
@@ -99,6 +99,7 @@
 //!   and its shapes; and [`Scene`], which can be built again from its bodies.
 
 #![no_std]
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "comparisons are written so that NaN ends the loop they are in")]
 
 extern crate alloc;

@@ -1,6 +1,7 @@
 //! Symmetric matrices and vectors across an axis.
 
 use convex_support::Scalar;
+use convex_support::numerics::elementary::hypot;
 
 /// A symmetric matrix `(a b; b d)`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -59,10 +60,10 @@ impl<S: Scalar> Symmetric<S> {
     pub(crate) fn greatest_eigen(self) -> Option<(S, Across<S>)> {
         let half = S::from_f64(0.5);
         let (mean, difference) = ((self.a + self.d) * half, (self.a - self.d) * half);
-        let greatest = mean + difference.hypot(self.b);
+        let greatest = mean + hypot(difference, self.b);
         // (H − λ)·x = 0: of both rows the one that cancels less.
         let x = if difference > S::ZERO { (greatest - self.d, self.b) } else { (self.b, greatest - self.a) };
-        let length = x.0.hypot(x.1);
+        let length = hypot(x.0, x.1);
         (length > S::ZERO).then(|| (greatest, (x.0 / length, x.1 / length)))
     }
 

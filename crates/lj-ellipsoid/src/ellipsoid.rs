@@ -98,7 +98,7 @@ impl<const N: usize> Ellipsoid<N> {
     /// ellipsoid of one body a number in [1/N, 1], which tells how nearly the body is an ellipsoid.
     #[must_use]
     pub fn tightness(&self, outer: &Self) -> f64 {
-        (0.5 * (outer.log_det - self.log_det) / N as f64).exp()
+        libm::exp(0.5 * (outer.log_det - self.log_det) / N as f64)
     }
 }
 
@@ -107,7 +107,7 @@ impl Ellipsoid<2> {
     /// longest semi-axis is (cos, sin) of it.
     #[must_use]
     pub fn rotation(&self) -> f64 {
-        self.axes[0][1].atan2(self.axes[0][0])
+        libm::atan2(self.axes[0][1], self.axes[0][0])
     }
 }
 

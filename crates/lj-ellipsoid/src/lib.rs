@@ -67,6 +67,7 @@
 //! # }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![allow(
     clippy::needless_range_loop,
     reason = "formulas index several arrays at once; the loops read as the sums they compute"

@@ -182,10 +182,10 @@ fn determinant_sign<N: Dimension>(dim: N, matrix: &[f64]) -> f64 {
 
 /// ln of the volume of the unit ball in n dimensions: V₀ = 1, V₁ = 2, Vₙ = Vₙ₋₂·2π/n.
 pub(crate) fn log_unit_ball_volume(n: usize) -> f64 {
-    let mut volume = if n.is_multiple_of(2) { 1.0f64 } else { 2.0 }.ln();
+    let mut volume = libm::log(if n.is_multiple_of(2) { 1.0 } else { 2.0 });
     let mut k = if n.is_multiple_of(2) { 2 } else { 3 };
     while k <= n {
-        volume += (std::f64::consts::TAU / k as f64).ln();
+        volume += libm::log(std::f64::consts::TAU / k as f64);
         k += 2;
     }
     volume

@@ -22,8 +22,11 @@ mod track;
 
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{Scalar as _, Vector};
+#[cfg(not(target_family = "wasm"))]
 use cpu_time::ThreadTime;
 use gjk_raycast::Certificate;
+#[cfg(target_family = "wasm")]
+use std::time::Instant as ThreadTime;
 
 use self::clearance::Clearance;
 use self::contact::Contact;

@@ -13,6 +13,7 @@ use num_traits::Float as _;
 use super::certain::cone_reach;
 use super::{CertainCrossing, Crossed, LineQuery, NearLine, Spine, axis_of};
 use crate::numerics::bounded::Bounded;
+use crate::numerics::elementary::hypot;
 use crate::numerics::range::power_of_two_below;
 use crate::shapes::across;
 use crate::{Cone, Scalar, SupportMap as _, Vector, Vector3};
@@ -91,7 +92,7 @@ pub(crate) fn cylinder<V: Vector3>(
     let crossed = |source, direction| super::cylinder(half_height, radius, source, direction);
     let reach = |axis: V| half_height * axis.get(1).abs() + radius * across(axis).length();
     let solid = |f: InUnits<'_, V>| Solid::Cylinder { half_height: f(half_height), radius: f(radius) };
-    closely(line, V::ZERO, half_height.hypot(radius), solid, outward, crossed, reach)
+    closely(line, V::ZERO, hypot(half_height, radius), solid, outward, crossed, reach)
 }
 
 /// What a length is in units of a power of two.
@@ -250,7 +251,7 @@ impl CloseLine {
     /// moved by `by`: the base by that, and the apex by `by/sinα`, with `α` half the opening angle.
     fn cone(&self, half_height: f64, radius: f64, by: f64) -> Stretch {
         let height = half_height + half_height;
-        let lift = if by == 0.0 { 0.0 } else { by * num_traits::Float::hypot(height / radius, 1.0) };
+        let lift = if by == 0.0 { 0.0 } else { by * hypot(height / radius, 1.0) };
         // The product and the length are wrong by a few roundings.
         let lift = lift + lift * (8.0 * f64::EPSILON);
         let (apex, base) = (Bounded::sum(half_height, lift), Bounded::sum(-half_height, -by));

@@ -3,6 +3,7 @@
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use super::elementary::hypot;
 use super::range::power_of_two_below;
 use crate::InvalidShape;
 
@@ -95,8 +96,8 @@ fn orthogonalise(g: &mut [[f64; 3]; 3], i: usize, j: usize) -> bool {
     }
     // tan 2θ = 2c/(b − a); t is the smaller of the two tangents of θ.
     let zeta = (b - a) / (2.0 * c);
-    let t = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
-    let cosine = 1.0 / t.hypot(1.0);
+    let t = zeta.signum() / (zeta.abs() + hypot(zeta, 1.0));
+    let cosine = 1.0 / hypot(t, 1.0);
     let sine = cosine * t;
     let (p, q) = (g[i], g[j]);
     g[i] = core::array::from_fn(|k| cosine * p[k] - sine * q[k]);

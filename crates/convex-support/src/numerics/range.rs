@@ -1,5 +1,6 @@
 //! Lengths whose squares would over- or underflow, measured in units of a power of two.
 
+use super::elementary::power_of_two;
 use crate::{Scalar, Vector};
 
 /// Whether a squared length carries full relative precision: it did not overflow, and a coordinate whose square
@@ -33,9 +34,8 @@ pub fn power_of_two_below<S: Scalar>(value: S) -> S {
     let (_, exponent, _) = num_traits::Float::integer_decode(value);
     // The mantissa is an integer of as many bits as EPSILON says, of which some of a subnormal number are zero. Two
     // factors, since the reciprocal of the least power is none.
-    let power = |exponent| num_traits::Float::powi(S::from_f64(2.0), exponent);
     let half = i32::from(exponent) / 2;
-    power(half) / S::EPSILON * power(i32::from(exponent) - half)
+    power_of_two::<S>(half) / S::EPSILON * power_of_two(i32::from(exponent) - half)
 }
 
 /// `v` divided by a power of two near its largest magnitude, and that power as two factors; `None` for zero and NaN.
@@ -59,7 +59,7 @@ fn scaled_coordinates<V: Vector>(x: V::Scalar, y: V::Scalar, z: V::Scalar) -> Op
     }
     // Two factors, since those of subnormal numbers are below the smallest number, and their reciprocals not finite.
     let (_, exponent, _) = num_traits::Float::integer_decode(largest);
-    let half = num_traits::Float::powi(V::Scalar::from_f64(2.0), i32::from(exponent) / 2);
-    let rest = num_traits::Float::powi(V::Scalar::from_f64(2.0), i32::from(exponent) - i32::from(exponent) / 2);
+    let half = power_of_two(i32::from(exponent) / 2);
+    let rest = power_of_two(i32::from(exponent) - i32::from(exponent) / 2);
     (largest > V::Scalar::ZERO).then(|| (v / half / rest, [half, rest]))
 }

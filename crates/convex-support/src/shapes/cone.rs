@@ -5,6 +5,7 @@ use crate::closest_point::closest_of_cone;
 use crate::error::{InvalidShape, measurable, non_negative};
 use crate::line_crossing::{NearLine, closely, cone, times_within};
 use crate::numerics::bound::roundings;
+use crate::numerics::elementary::hypot;
 use crate::support::swept;
 use crate::{CertainCrossing, Core, CoreKind, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector3};
 use num_traits::Float as _;
@@ -38,13 +39,13 @@ impl<V: Vector3> Cone<V> {
         let radius = non_negative("radius", radius)?;
         // The slant reaches from the rim up to the apex; of a point it is upright.
         let half_radius = radius * V::Scalar::from_f64(0.5);
-        let half_length = half_height.hypot(half_radius);
+        let half_length = hypot(half_height, half_radius);
         let slant = if half_length > V::Scalar::ZERO {
             (half_height / half_length, half_radius / half_length)
         } else {
             (V::Scalar::ONE, V::Scalar::ZERO)
         };
-        let extent = measurable("half_height", radius.hypot(half_height))?;
+        let extent = measurable("half_height", hypot(radius, half_height))?;
         Ok(Self { half_height, radius, extent, slant })
     }
 

@@ -6,6 +6,7 @@ use crate::closest_point::closest_of_ball;
 use crate::error::{InvalidShape, measurable, non_negative};
 use crate::line_crossing::{NearLine, closely, cylinder};
 use crate::numerics::bound::roundings;
+use crate::numerics::elementary::hypot;
 use crate::numerics::range::is_comfortable;
 use crate::support::{swept, swept_hessian};
 use crate::{CertainCrossing, Core, CoreKind, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector3};
@@ -34,7 +35,7 @@ impl<V: Vector3> Cylinder<V> {
     pub fn new(half_height: V::Scalar, radius: V::Scalar) -> Result<Self, InvalidShape> {
         let half_height = non_negative("half_height", half_height)?;
         let radius = non_negative("radius", radius)?;
-        let extent = measurable("half_height", radius.hypot(half_height))?;
+        let extent = measurable("half_height", hypot(radius, half_height))?;
         Ok(Self { half_height, radius, extent })
     }
 

@@ -24,6 +24,7 @@
 //! A ball has t = 0 and b = 0 to the last bit. Of A only the root is formed, A = MᵀM: xᵀHₖx = ‖e∧diag(a)Rₖᵀx‖²/h, so that the
 //! rows of M are these products, and the triangle of M = QR has the aspect for its condition and not the square of that.
 
+use convex_support::numerics::elementary::hypot;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -169,7 +170,7 @@ impl<const N: usize> Contact<N> {
 
     fn slope(&self) -> f64 {
         let [x, y] = self.residual();
-        x.hypot(y)
+        hypot(x, y)
     }
 
     /// The part of `x` in the tangent plane.

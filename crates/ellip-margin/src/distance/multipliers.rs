@@ -18,6 +18,7 @@
 //!
 //! which is slower, since it at most half as much again as β, but always descends.
 
+use convex_support::numerics::elementary::{exp, ln};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -57,7 +58,7 @@ pub(super) fn closest<const N: usize>(
         let h2 = [dot(q[0], d), dot(q[1], d)];
         let squared_ratio: [f64; 2] = core::array::from_fn(|k| h2[k] / (beta[k] * beta[k]));
         let swift = iterations <= SWIFT;
-        let rest = squared_ratio.map(|s| if swift { 0.5 * s.ln() } else { 0.5 - 0.5 / s });
+        let rest = squared_ratio.map(|s| if swift { 0.5 * ln(s) } else { 0.5 - 0.5 / s });
         let largest = rest[0].abs().max(rest[1].abs());
         if !largest.is_finite() {
             return None;
@@ -75,7 +76,7 @@ pub(super) fn closest<const N: usize>(
         for k in 0..2 {
             beta[k] *= match (is_step, swift) {
                 (false, _) => squared_ratio[k].sqrt(),
-                (true, true) => newton[k].clamp(-TRUST, TRUST).exp(),
+                (true, true) => exp(newton[k].clamp(-TRUST, TRUST)),
                 // 1 + x to first order, and positive.
                 (true, false) if newton[k] < 0.0 => 1.0 / (1.0 - newton[k]),
                 (true, false) => 1.0 + newton[k],

@@ -14,6 +14,7 @@
 //! that lies below n′·r − h₁(n′) − h₂(n′) − f‖n′‖²/2 and meets it at n. With the tangent θ of the angle between n and p₂ − p₁
 //! the bracket's relative width is θ²/2: it closes with twice the digits of n.
 
+use convex_support::numerics::elementary::hypot;
 use convex_support::{Scalar, Vector};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
@@ -189,7 +190,7 @@ impl<const N: usize> Slab<N> {
         let slack = if self.is_wide(pair) { self.rounding(pair) } else { 8.0 * f64::EPSILON * width.abs() };
         // The lengths along and across n, so that the width's digits are not lost.
         let t = sub(self.across, self.n.map(|x| x * self.width));
-        let upper = width.hypot(dot(t, t).sqrt());
+        let upper = hypot(width, dot(t, t).sqrt());
         // Rounding to an `f32` must not close the bracket either.
         let coarse = V::Scalar::EPSILON;
         DistanceBracket {

@@ -7,8 +7,8 @@
 use alloc::vec::Vec;
 
 use convex_support::glam::DVec3;
+use convex_support::numerics::elementary::sin_cos;
 use convex_support::{Scalar, Vector};
-use num_traits::Float;
 
 use super::WeightedSupport;
 use crate::simplex::{MAX_POINTS, nearest_face};
@@ -223,7 +223,7 @@ impl<V: Vector> Search<'_, '_, V> {
         for k in 0..count {
             // Turned by any angle, so that nothing is met by accident.
             let angle = 0.7 + core::f64::consts::TAU * k as f64 / count as f64;
-            let (sine, cosine) = if V::DIM == 3 { Float::sin_cos(angle) } else { (0.0, 1.0 - 2.0 * k as f64) };
+            let (sine, cosine) = if V::DIM == 3 { sin_cos(angle) } else { (0.0, 1.0 - 2.0 * k as f64) };
             let found = self.look(around + (u * cosine + w * sine) * self.turn, Care::Little);
             self.simplex.found.push(found);
         }

@@ -1,5 +1,6 @@
 //! How the time of a first contact changes: bodies that move and turn.
 
+use convex_support::numerics::elementary::sin_cos;
 use convex_support::{AngularVelocity, Matrix, MotionGradient, Scalar, Vector};
 
 use super::at_contact::at_contact;
@@ -164,10 +165,10 @@ fn pulled_back<V: Vector>(
 /// `(1 − cos x)/x² = ½·(sin(x/2)/(x/2))²` and `(x − sin x)/x³`, which is summed where the difference would cancel.
 fn jacobian_coefficients<S: Scalar>(x: S) -> [S; 2] {
     let (half, one) = (S::from_f64(0.5), S::ONE);
-    let sinc = if x > S::ZERO { (x * half).sin() / (x * half) } else { one };
+    let sinc = if x > S::ZERO { sin_cos(x * half).0 / (x * half) } else { one };
     let first = half * sinc * sinc;
     if x > one {
-        return [first, (x - x.sin()) / (x * x * x)];
+        return [first, (x - sin_cos(x).0) / (x * x * x)];
     }
     // Σ (−x²)ᵏ/(2k + 3)!, of which the first term left out is 1/17!.
     let mut sum = S::ZERO;

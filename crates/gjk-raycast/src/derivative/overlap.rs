@@ -4,6 +4,7 @@
 //! in common, and boxes across a corner only the corners. Therefore a corner within rounding of a line counts as being on both sides of it.
 
 use convex_support::Scalar;
+use convex_support::numerics::elementary::hypot;
 use smallvec::SmallVec;
 
 use crate::contact::{Corner, Ellipse, Outline};
@@ -130,7 +131,7 @@ fn axes<S: Scalar>([a, b]: &[Outline<S>; 2]) -> SmallVec<[Across<S>; 16]> {
 /// The least and the greatest coordinate along a unit vector.
 fn range<S: Scalar>(outline: &Outline<S>, u: Across<S>) -> [S; 2] {
     if let Some(Ellipse { center, radii: [p, q] }) = outline.rim {
-        let (middle, reach) = (dot(center, u), dot(p, u).hypot(dot(q, u)));
+        let (middle, reach) = (dot(center, u), hypot(dot(p, u), dot(q, u)));
         return [middle - reach, middle + reach];
     }
     let along = |corner: &Corner<S>| dot(corner.at, u);

@@ -1,5 +1,6 @@
 //! Whether an answer changes smoothly.
 
+use convex_support::numerics::elementary::hypot;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
@@ -104,7 +105,7 @@ enum Free<S> {
 fn least_eigenvalue<S: Scalar>(matrix: Symmetric<S>) -> S {
     let half = S::from_f64(0.5);
     let (mean, difference) = ((matrix.a + matrix.d) * half, (matrix.a - matrix.d) * half);
-    let greatest = mean + difference.hypot(matrix.b);
+    let greatest = mean + hypot(difference, matrix.b);
     // The product of both is the determinant.
-    if greatest > S::ZERO { matrix.determinant() / greatest } else { mean - difference.hypot(matrix.b) }
+    if greatest > S::ZERO { matrix.determinant() / greatest } else { mean - hypot(difference, matrix.b) }
 }

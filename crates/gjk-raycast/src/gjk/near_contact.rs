@@ -8,6 +8,7 @@
 //! So all queries about one pair decide alike.
 
 use convex_support::numerics::bound::{raised, raised_vector, roundings, roundings_of};
+use convex_support::numerics::elementary::hypot;
 use convex_support::numerics::twofold::{dot_minus, lost_in_sum};
 use convex_support::{Core, CoreKind, Rounding, Scalar, Vector};
 use num_traits::Float;
@@ -459,7 +460,7 @@ impl<V: Vector> Seen<V> {
         // The length itself is right to 3 roundings, and the sum to one: what is beside it is raised alone.
         let norm = x.norm();
         let ahead = norm + along;
-        let beside = (across * across / (ahead + ahead.hypot(across))).min(across);
+        let beside = (across * across / (ahead + hypot(ahead, across))).min(across);
         let length = norm + (raised(along + beside) + roundings(8.0, norm));
         if length.is_finite() { length } else { Float::infinity() }
     }

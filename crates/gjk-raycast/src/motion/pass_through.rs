@@ -10,6 +10,7 @@
 //! How the corners are seen in between is known by how far they move at most. A component of their path whose second derivative is
 //! at most `m` in amount is off its chord by at most `m·τ²/8`, with `τ` the duration.
 
+use convex_support::numerics::elementary::hypot;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
@@ -125,7 +126,7 @@ impl<S: Scalar> Seen<S> {
         }
         let height = |i: usize, j: usize| {
             let edge = (at[j].0 - at[i].0, at[j].1 - at[i].1);
-            cross(at[i], at[j]) / edge.0.hypot(edge.1)
+            cross(at[i], at[j]) / hypot(edge.0, edge.1)
         };
         let heights = [height(0, 1), height(1, 2), height(2, 0)];
         let most = heights.into_iter().fold(S::neg_infinity(), S::max);

@@ -1,6 +1,7 @@
 //! Motion at constant linear and angular velocity.
 
 use convex_support::numerics::bound::least;
+use convex_support::numerics::elementary::tan;
 use convex_support::{AngularVelocity, BoundingSphere, Matrix, Scalar, Vector};
 use num_traits::Float as _;
 
@@ -104,7 +105,7 @@ impl<V: Vector> RigidMotion<V> {
         // cot(θ/2)·(a × p)/2, and what is left of the way is along the axis.
         let (half, axis) = (V::Scalar::from_f64(0.5), w * moved / angle);
         let across = -(w * axis) / angle;
-        let center = from.translation + (across + axis * (angle * half).tan().recip()) * half;
+        let center = from.translation + (across + axis * tan(angle * half).recip()) * half;
         Self { velocity: (moved - across) / duration, center, ..straight }
     }
 

@@ -164,7 +164,7 @@ impl<'a, P: Points> Search<'a, P> {
     /// The unit ball of the frame grown to κ against the bound of the weights: r·ln κ + (−ln det S − r·ln r).
     fn gap(&self, violators: &Violators) -> f64 {
         let r = self.at.rank.get() as f64;
-        r * (violators.furthest / r).ln() - self.at.moments.log_det_scatter
+        r * libm::log(violators.furthest / r) - self.at.moments.log_det_scatter
     }
 
     /// Below what the rounding of the coordinates does to the gap there is nothing to gain.

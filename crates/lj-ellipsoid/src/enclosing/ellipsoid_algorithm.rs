@@ -126,9 +126,9 @@ impl Forms {
             return (rank_one(n, &v, -1.0), None);
         }
         let (worst, level) = furthest(n - 1, y, &matrix);
-        let log_det: f64 = (0..n).map(|i| 2.0 * factor[i * n + i].ln()).sum();
+        let log_det: f64 = (0..n).map(|i| 2.0 * libm::log(factor[i * n + i])).sum();
         // X/level is feasible and no worse than X where level ≤ 1; where level > 1 it is a candidate all the same.
-        let value = -log_det + n as f64 * level.ln();
+        let value = -log_det + n as f64 * libm::log(level);
         if value < self.least {
             self.least = value;
             self.best = matrix.iter().map(|x| x / level).collect();
@@ -178,7 +178,8 @@ fn slice(
     solve_lower_transpose(rank, &p11, &mut center);
     // det X*₍N₎ follows from min f = n·ln n + ln det S* and ln det X*₍N₎ = −ln det S* − N·ln N.
     let r_float = r as f64;
-    let bound = -lower_bound + n as f64 * (n as f64).ln() - r_float * r_float.ln() + 4.0 * r_float * coordinate_error;
+    let bound =
+        -lower_bound + n as f64 * libm::log(n as f64) - r_float * libm::log(r_float) + 4.0 * r_float * coordinate_error;
     let certificate = Certificate { log_det_bound: bound - log_det, weights: Vec::new() };
     // As Σuᵢyᵢyᵢᵀ = I and Σuᵢyᵢ = 0 on the starting set, c = Σuᵢ(yᵢᵀc)yᵢ: its preimage is the same combination of points.
     for (u, y) in at.set.u.iter_mut().zip(at.set.y.chunks_exact(r)) {

@@ -75,7 +75,7 @@ pub(crate) fn solve(
             }
             let away = n - omega[minus] > omega[plus] - n;
             // The bound of the weights is r·ln((ω₊ − 1)/r); rounding makes it negative at an optimum.
-            if r as f64 * ((omega[plus] - 1.0) / r as f64).ln() <= 0.25 * options.epsilon {
+            if r as f64 * libm::log((omega[plus] - 1.0) / r as f64) <= 0.25 * options.epsilon {
                 break;
             }
             let j = if away { minus } else { plus };

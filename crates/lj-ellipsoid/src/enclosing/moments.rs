@@ -127,7 +127,7 @@ impl<D: Dimension> Moments<D> {
     /// those of the working set. Below zero only by rounding.
     pub(crate) fn log_det_gap(&self) -> f64 {
         let r = self.rank.get() as f64;
-        r * (self.furthest().1 / r).ln()
+        r * libm::log(self.furthest().1 / r)
     }
 }
 

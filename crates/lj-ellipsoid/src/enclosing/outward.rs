@@ -119,7 +119,7 @@ pub(crate) fn reach<P: Points>(points: &P, rank: P::Dim, shape: &Shape<P::Dim>, 
     let evaluation = Evaluation { frame: &frame, matrix: &shape.matrix.as_ref()[..n * n], n };
     // The half-extents of the ellipsoid along the coordinates bound |x − c| of every point in it.
     let extent =
-        dim.point((0..n).map(|k| (0..r).map(|j| (semi_axes[j] * axes[j * n + k]).powi(2)).sum::<f64>().sqrt()));
+        dim.point((0..n).map(|k| (0..r).map(|j| semi_axes[j] * axes[j * n + k]).map(|x| x * x).sum::<f64>().sqrt()));
     let (error, error_matrix) = (evaluation.radius(extent.as_ref()).1, evaluation.level(extent.as_ref()).1);
     let largest_error = 2.0 * error + 2.0 * error_matrix;
     let near = 1.0 - (2.0 * largest_error).max(4.0 * tolerance);

@@ -78,7 +78,7 @@ impl Certificate {
         let weighted = set.index.iter().zip(&set.u).filter(|(_, u)| **u > 0.0);
         let mut weights = Vec::with_capacity(set.len());
         weights.extend(weighted.map(|(&index, &weight)| Weight { index, weight }));
-        Self { log_det_bound: -moments.log_det_scatter - r * r.ln() + rounding, weights }
+        Self { log_det_bound: -moments.log_det_scatter - r * libm::log(r) + rounding, weights }
     }
 }
 
@@ -104,7 +104,7 @@ pub(crate) fn finish<P: Points>(
     let mut shape = principal_axes(dim, r, dim.matrix(frame.map().iter().copied()));
     shape.center.clone_from(&frame.origin);
     // A point with weight lies within the gap of the surface.
-    let tolerance = (certificate.log_det_bound + r as f64 * (r as f64).ln()).max(1e-9);
+    let tolerance = (certificate.log_det_bound + r as f64 * libm::log(r as f64)).max(1e-9);
     let reach = reach(points, rank, &shape, tolerance);
     let growth = touch(points, &mut shape, &reach);
     let shrink = (1.0 - 4.0 * UNIT_ROUNDOFF) / reach.matrix.max(growth * growth);
@@ -115,8 +115,8 @@ pub(crate) fn finish<P: Points>(
         return Err(EnclosingError::OutOfRange);
     }
     // ln det X* − ln det X: the transformation into the frame cancels, and with it its size.
-    let logarithms: f64 = semi_axes.iter().map(|a| a.ln().abs()).sum();
-    let log_det_gap = certificate.log_det_bound + 2.0 * r as f64 * growth.ln() + 4.0 * UNIT_ROUNDOFF * logarithms;
+    let logarithms: f64 = semi_axes.iter().map(|a| libm::log(*a).abs()).sum();
+    let log_det_gap = certificate.log_det_bound + 2.0 * r as f64 * libm::log(growth) + 4.0 * UNIT_ROUNDOFF * logarithms;
     // The points are proved to be inside, and the bound is one on all ellipsoids that hold them: a difference below
     // zero, or none, would prove only that numbers left the range in which the errors are bounded.
     let log_det_gap = if log_det_gap >= 0.0 { log_det_gap } else { f64::INFINITY };

@@ -203,7 +203,7 @@ pub(crate) fn surely_spans<N: Dimension>(shape: &Shape<N>, flat_tolerance: f64) 
     let (center, axes, semi_axes) = (shape.center.as_ref(), shape.axes.as_ref(), shape.semi_axes.as_ref());
     let n = center.len();
     let column = |k: usize, of: &dyn Fn(f64, f64) -> f64| {
-        axes.chunks_exact(n).zip(semi_axes).map(|(axis, a)| of(axis[k], *a).powi(2)).sum::<f64>().sqrt()
+        axes.chunks_exact(n).zip(semi_axes).map(|(axis, a)| of(axis[k], *a)).map(|x| x * x).sum::<f64>().sqrt()
     };
     let share = |k: usize| {
         let half_extent = column(k, &|x, a| x * a);

@@ -97,9 +97,8 @@ impl WorkingSet {
             let error: f64 = frame
                 .map()
                 .chunks_exact(n)
-                .map(|row| {
-                    (0..n).map(|k| row[k].abs() * (v.as_ref()[k] - frame.origin.as_ref()[k]).abs()).sum::<f64>().powi(2)
-                })
+                .map(|row| (0..n).map(|k| row[k].abs() * (v.as_ref()[k] - frame.origin.as_ref()[k]).abs()).sum::<f64>())
+                .map(|x| x * x)
                 .sum();
             worst = worst.max(error);
         }

@@ -35,7 +35,7 @@ pub(crate) fn opening<D: Dimension>(dim: D, rows: &Rows, is_open: &dyn Fn(&[f64]
     let mut ratio = 0.0;
     for _ in 0..MOST_STEPS {
         let most = exponents.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let y: Vec<f64> = exponents.iter().map(|e| (e - most).exp()).collect();
+        let y: Vec<f64> = exponents.iter().map(|e| libm::exp(e - most)).collect();
         let (mut step, mut hessian) = (dim.zero(), dim.zero_matrix());
         let (step, hessian) = (&mut step.as_mut()[..n], &mut hessian.as_mut()[..n * n]);
         for ((a, _), y) in rows.iter().zip(&y) {
@@ -62,7 +62,8 @@ pub(crate) fn opening<D: Dimension>(dim: D, rows: &Rows, is_open: &dyn Fn(&[f64]
         }
         ratio = highest.max(0.0) / largest;
         // A whole step, or else one that changes no exponent by more than one: g always descends along it.
-        let at = |length: f64| exponents.iter().zip(&changes).map(|(e, x)| (e + length * x - most).exp()).sum::<f64>();
+        let at =
+            |length: f64| exponents.iter().zip(&changes).map(|(e, x)| libm::exp(e + length * x - most)).sum::<f64>();
         let (now, slope) = (y.iter().sum::<f64>(), dot(&y, &changes));
         let mut length = 1.0;
         while length * largest > 1.0 && !(at(length) <= now + 0.1 * length * slope) {

@@ -67,7 +67,7 @@ pub(crate) fn log_det_at_most<D: Dimension>(
     let Some(log_det) = cholesky_log_det(dim, s) else { return f64::INFINITY };
     let mean = dot(mean.as_ref(), mean.as_ref()).sqrt();
     let radius = 1.1 * (1.0 + mean) * dot(&point.b, &point.b).sqrt() * norm_of_inverse(dim, gram);
-    let residual = residual.iter().map(|r| r.total().powi(2)).sum::<f64>().sqrt();
+    let residual = residual.iter().map(|r| r.total()).map(|r| r * r).sum::<f64>().sqrt();
     let unit = n as f64 * UNIT_ROUNDOFF;
     // What rounding leaves of Σyᵢpᵢ = 0 is at least that of its own evaluation.
     let bent = (residual + moved + UNIT_ROUNDOFF * size) * radius;
@@ -77,7 +77,7 @@ pub(crate) fn log_det_at_most<D: Dimension>(
         return f64::INFINITY;
     }
     let trace = (total.total() + bent) * (1.0 + 2.0 * unit + 8.0 * UNIT_ROUNDOFF);
-    n as f64 * (trace / n as f64).ln() - log_det + 1.1 * loosened + 4.0 * (unit + UNIT_ROUNDOFF)
+    n as f64 * libm::log(trace / n as f64) - log_det + 1.1 * loosened + 4.0 * (unit + UNIT_ROUNDOFF)
 }
 
 /// |(L·Lᵀ)⁻¹|, by the sum of the squares of its entries: no less than its largest eigenvalue.

@@ -121,7 +121,7 @@ impl Coordinates {
         };
         let delta = (0..n).map(|i| (0..n).map(|j| defect(i, j)).sum::<f64>()).fold(0.0, f64::max);
         let lengths = self.lengths.iter().copied();
-        let logarithms: f64 = lengths.clone().map(|a| a.ln().abs()).sum();
+        let logarithms: f64 = lengths.clone().map(|a| libm::log(a).abs()).sum();
         let rounding = (n * n) as f64 * UNIT_ROUNDOFF + 2.0 * UNIT_ROUNDOFF * (logarithms + n as f64);
         sum_of_logarithms(lengths) + n as f64 * delta + rounding
     }

@@ -45,7 +45,7 @@ pub(crate) fn hull2(points: &[[f64; 2]]) -> Facets {
         Facets { normals: Vec::with_capacity(2 * m), offsets: Vec::with_capacity(m), depths: Vec::with_capacity(m) };
     for k in 0..ring.len() {
         let (a, b) = (points[ring[k]], points[ring[(k + 1) % ring.len()]]);
-        let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+        let length = libm::hypot(b[0] - a[0], b[1] - a[1]);
         let normal = [(b[1] - a[1]) / length, (a[0] - b[0]) / length];
         let next = points[ring[(k + 2) % ring.len()]];
         let previous = points[ring[(k + ring.len() - 1) % ring.len()]];

@@ -70,7 +70,7 @@ fn dual_bound<D: Dimension>(dim: D, p: &[f64], v: &[f64], y: &[f64], passes: usi
         }
     }
     let log_det = cholesky_log_det(dim, s)?;
-    Some(Dual { log_det_bound: -(n as f64) * (n as f64).ln() - log_det, y })
+    Some(Dual { log_det_bound: -(n as f64) * libm::log(n as f64) - log_det, y })
 }
 
 /// The complementarity below which the dual bound is evaluated.
@@ -172,7 +172,7 @@ impl<'a, D: Dimension> Iterate<'a, D> {
         let passes = if complementarity < NEAR { 2 } else { 1 };
         let Some(dual) = dual_bound(*dim, p, &point.v, y, passes) else { return (f64::INFINITY, None) };
         let growth = point.h.iter().zip(&point.c).fold(f64::INFINITY, |g: f64, (h, c)| g.min((h + c) / h));
-        (2.0 * (dual.log_det_bound - point.log_det - n * growth.ln()), Some(dual))
+        (2.0 * (dual.log_det_bound - point.log_det - n * libm::log(growth)), Some(dual))
     }
 
     /// One Newton step that aims at the products cᵢyᵢ = μ and leaves the share `boundary` of the way to the boundary. Answers the

@@ -67,7 +67,7 @@ pub(crate) fn solve<D: Dimension>(
         return Err(InscribedError::OutOfRange);
     }
     round_inward(dim, &mut shape);
-    let logarithms: f64 = shape.semi_axes.as_ref().iter().map(|a| a.ln().abs()).sum();
+    let logarithms: f64 = shape.semi_axes.as_ref().iter().map(|a| libm::log(*a).abs()).sum();
     let log_det_gap = 2.0 * log_det_bound + shape.log_det + 4.0 * UNIT_ROUNDOFF * (logarithms + n as f64);
     // The ellipsoid is proved to be inside and the bound is one on all that are: a difference below zero, or none,
     // would prove only that numbers left the range in which the errors are bounded.

@@ -28,16 +28,16 @@ pub(crate) fn sum_of_logarithms(numbers: impl Iterator<Item = f64>) -> f64 {
     let mut product = 1.0;
     for x in numbers {
         if !(1e-150..=1e150).contains(&x) {
-            sum += x.ln();
+            sum += libm::log(x);
             continue;
         }
         product *= x;
         if !(1e-150..=1e150).contains(&product) {
-            sum += product.ln();
+            sum += libm::log(product);
             product = 1.0;
         }
     }
-    sum + product.ln()
+    sum + libm::log(product)
 }
 
 /// x − a·b.

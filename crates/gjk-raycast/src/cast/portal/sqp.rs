@@ -9,6 +9,7 @@
 //! have to be looked at in turn, though only the one that reaches farther shows itself; so the plane is laid by a little more
 //! than the error of the older model on its side.
 
+use convex_support::numerics::elementary::power_of_two;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
@@ -141,7 +142,7 @@ impl<S: Scalar> Steps<S> {
     #[inline(always)]
     fn weigh_error(&mut self, same_piece: bool) {
         self.error_weight =
-            if same_piece { self.error_weight * S::from_f64(8.0) } else { S::from_f64(0.5).powi(self.failures) };
+            if same_piece { self.error_weight * S::from_f64(8.0) } else { power_of_two(-self.failures) };
     }
 
     /// The next plane, if there is one.

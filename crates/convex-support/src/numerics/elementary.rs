@@ -1,0 +1,80 @@
+//! Functions that every platform's mathematical library rounds in its own way, by one implementation for all: that of the libm crate,
+//! which adds, multiplies, divides and takes roots in a fixed order, so that its results are the same bits on every machine.
+//!
+//! It is a translation of musl's functions, most of them FreeBSD's and before that Sun's, whose sources derive for each of those used here
+//! that it is wrong by less than one unit in the last place. In single precision they are computed in double and rounded once.
+//! `clippy.toml` keeps those of the standard library and of num-traits out of the libraries.
+
+use crate::Scalar;
+
+/// Sine and cosine.
+#[inline]
+pub fn sin_cos<S: Scalar>(angle: S) -> (S, S) {
+    let (sin, cos) = libm::sincos(angle.as_f64());
+    (S::from_f64(sin), S::from_f64(cos))
+}
+
+/// Tangent.
+#[inline]
+pub fn tan<S: Scalar>(angle: S) -> S {
+    S::from_f64(libm::tan(angle.as_f64()))
+}
+
+/// The angle of the vector `(x, y)` from the axis of `x`.
+#[inline]
+pub fn atan2<S: Scalar>(y: S, x: S) -> S {
+    S::from_f64(libm::atan2(y.as_f64(), x.as_f64()))
+}
+
+/// `√(x² + y²)`, whose squares neither over- nor underflow.
+#[inline]
+pub fn hypot<S: Scalar>(x: S, y: S) -> S {
+    S::from_f64(libm::hypot(x.as_f64(), y.as_f64()))
+}
+
+/// The natural logarithm.
+#[inline]
+pub fn ln(x: f64) -> f64 {
+    libm::log(x)
+}
+
+/// The exponential.
+#[inline]
+pub fn exp(x: f64) -> f64 {
+    libm::exp(x)
+}
+
+/// `2ⁿ`, exactly where a number of this type is that.
+#[inline]
+pub fn power_of_two<S: Scalar>(n: i32) -> S {
+    S::from_f64(libm::ldexp(1.0, n))
+}
+
+#[cfg(all(test, feature = "std"))]
+mod tests {
+    use super::*;
+
+    /// Of functions that are right to less than a unit in the last place, two differ by no more than two; a wrong one does by many.
+    #[test]
+    fn the_standard_library_says_the_same_but_for_rounding() {
+        let mut x: f64 = 1e-3;
+        while x < 700.0 {
+            let (sin, cos) = sin_cos(x);
+            let pairs = [
+                (sin, x.sin()),
+                (cos, x.cos()),
+                (tan(x), x.tan()),
+                (atan2(x, 3.0), x.atan2(3.0)),
+                (hypot(x, -3.0), x.hypot(-3.0)),
+                (ln(x), x.ln()),
+                (exp(-x), (-x).exp()),
+            ];
+            for (i, (ours, theirs)) in pairs.into_iter().enumerate() {
+                assert!((ours - theirs).abs() <= 2.0 * f64::EPSILON * theirs.abs(), "{i} of {x}: {ours} and {theirs}");
+            }
+            x *= 1.01;
+        }
+        assert_eq!(power_of_two::<f64>(-1074), f64::from_bits(1), "the least number");
+        assert_eq!((power_of_two::<f32>(127), power_of_two::<f32>(128)), (2.0f32.powi(127), f32::INFINITY));
+    }
+}
