@@ -8,7 +8,7 @@ use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, Mat2, Mat3, Mat3A, Quat, Vec2, Vec
 use crate::numerics::elementary::{atan2, sin_cos};
 use crate::numerics::range::comfortable_unit_of_length;
 use crate::numerics::twofold::{dot_minus, two_product};
-use crate::{Scalar, Vector};
+use crate::{Scalar, Vector, Vector3};
 
 /// An angular velocity `ω` in the space of `V`, in radians per unit of time: a number in 2D, counterclockwise; in 3D a vector
 /// along the axis, after the right-hand rule.
@@ -205,7 +205,7 @@ macro_rules! vector {
 
             #[inline]
             fn moment(arm: $V, force: $V) -> Self {
-                arm.cross(force)
+                Vector3::cross(arm, force)
             }
 
             #[inline]

@@ -1,6 +1,7 @@
-//! The vectors and matrices of glam, each of which forwards to its own methods.
+//! The vectors and matrices of glam, each of which forwards to its own methods, but where those do not compute the same bits on every
+//! machine: products are fused in `Vec3A::cross` on some processors, and the minors of glam sum determinants in different orders.
 
-use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, Mat2, Mat3, Mat3A, Quat, Vec2, Vec3, Vec3A};
+use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, Mat2, Mat3, Mat3A, Quat, Vec2, Vec3, Vec3A, Vec3Swizzles as _};
 
 use super::{Matrix, Vector, Vector3, sealed};
 
@@ -11,7 +12,7 @@ macro_rules! glam_vector {
         coordinates: [$($i:literal),+],
         rotation: $R:ident,
         angular_velocity: $W:ident,
-        matrix: $M:ident $(,)?
+        matrix: $M:ident of $space:ident $(,)?
     }) => {
         impl sealed::Sealed for $V {}
         impl sealed::Sealed for $M {}
@@ -70,18 +71,55 @@ macro_rules! glam_vector {
             #[inline]
             fn transpose_mul(&self, rhs: $V) -> $V { $V::new($(self.col($i).dot(rhs)),+) }
             #[inline]
-            fn determinant(&self) -> $S { self.determinant() }
+            fn determinant(&self) -> $S { $space::determinant(self) }
             #[inline]
-            fn inverse(&self) -> Self { self.inverse() }
+            fn inverse(&self) -> Self { $space::inverse(self) }
         }
     };
 }
 
-glam_vector!(Vec2 { scalar: f32, coordinates: [0, 1], rotation: f32, angular_velocity: f32, matrix: Mat2 });
-glam_vector!(DVec2 { scalar: f64, coordinates: [0, 1], rotation: f64, angular_velocity: f64, matrix: DMat2 });
-glam_vector!(Vec3 { scalar: f32, coordinates: [0, 1, 2], rotation: Quat, angular_velocity: Vec3, matrix: Mat3 });
-glam_vector!(Vec3A { scalar: f32, coordinates: [0, 1, 2], rotation: Quat, angular_velocity: Vec3A, matrix: Mat3A });
-glam_vector!(DVec3 { scalar: f64, coordinates: [0, 1, 2], rotation: DQuat, angular_velocity: DVec3, matrix: DMat3 });
+/// Matrices of the plane.
+mod plane {
+    use crate::{Matrix, Scalar as _, Vector};
+
+    #[inline]
+    pub(super) fn determinant<M: Matrix>(matrix: &M) -> <M::Vector as Vector>::Scalar {
+        let (x, y) = (matrix.col(0), matrix.col(1));
+        x.get(0) * y.get(1) - x.get(1) * y.get(0)
+    }
+
+    #[inline]
+    pub(super) fn inverse<M: Matrix>(matrix: &M) -> M {
+        let (x, y) = (matrix.col(0), matrix.col(1));
+        let per = <M::Vector as Vector>::Scalar::ONE / determinant(matrix);
+        let entries = [[y.get(1) * per, -x.get(1) * per], [-y.get(0) * per, x.get(0) * per]];
+        M::from_cols_fn(|j| M::Vector::from_fn(|i| entries[j][i]))
+    }
+}
+
+/// Matrices of space.
+mod space {
+    use crate::{Matrix, Scalar as _, Vector, Vector3};
+
+    #[inline]
+    pub(super) fn determinant<M: Matrix<Vector: Vector3>>(matrix: &M) -> <M::Vector as Vector>::Scalar {
+        matrix.col(0).dot(matrix.col(1).cross(matrix.col(2)))
+    }
+
+    #[inline]
+    pub(super) fn inverse<M: Matrix<Vector: Vector3>>(matrix: &M) -> M {
+        let [x, y, z] = [0, 1, 2].map(|j| matrix.col(j));
+        let rows = [y.cross(z), z.cross(x), x.cross(y)];
+        let per = <M::Vector as Vector>::Scalar::ONE / x.dot(rows[0]);
+        M::from_cols_fn(|j| rows[j] * per).transpose()
+    }
+}
+
+glam_vector!(Vec2 { scalar: f32, coordinates: [0, 1], rotation: f32, angular_velocity: f32, matrix: Mat2 of plane });
+glam_vector!(DVec2 { scalar: f64, coordinates: [0, 1], rotation: f64, angular_velocity: f64, matrix: DMat2 of plane });
+glam_vector!(Vec3 { scalar: f32, coordinates: [0, 1, 2], rotation: Quat, angular_velocity: Vec3, matrix: Mat3 of space });
+glam_vector!(Vec3A { scalar: f32, coordinates: [0, 1, 2], rotation: Quat, angular_velocity: Vec3A, matrix: Mat3A of space });
+glam_vector!(DVec3 { scalar: f64, coordinates: [0, 1, 2], rotation: DQuat, angular_velocity: DVec3, matrix: DMat3 of space });
 
 impl Vector3 for Vec3 {
     #[inline]
@@ -93,7 +131,7 @@ impl Vector3 for Vec3 {
 impl Vector3 for Vec3A {
     #[inline]
     fn cross(self, rhs: Self) -> Self {
-        self.cross(rhs)
+        (self.zxy() * rhs - self * rhs.zxy()).zxy()
     }
 }
 
