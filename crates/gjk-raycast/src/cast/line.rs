@@ -1,5 +1,6 @@
 //! A ray in the frame of a body.
 
+use convex_support::numerics::elementary::mul_add;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
@@ -92,7 +93,7 @@ impl<V: Vector> LocalRay<V> {
             let (a, b, sum) = (from.get(i), -to.get(i), s.get(i));
             let b_seen = sum - a;
             let lost = (a - (sum - b_seen)) + (b - b_seen);
-            t.mul_add(exact.get(i), sum) + lost
+            mul_add(t, exact.get(i), sum) + lost
         });
         let rest = foot.dot(direction);
         let foot = foot - direction * rest;
