@@ -173,6 +173,26 @@ mod tests {
         assert_eq!(Vector::unit(DVec2::new(f64::INFINITY, 1.0)), None, "an infinite vector has no direction");
     }
 
+    /// Where processors have an instruction for it, glam's own `Vec3A::cross` fuses a product and a difference: of a vector with itself it then
+    /// leaves what a product's rounding loses, and not zero. Registers must compute what three numbers do.
+    #[test]
+    fn vectors_in_registers_compute_the_bits_of_three_numbers() {
+        use ::glam::{Mat3, Mat3A, Vec3};
+
+        let coordinate = |k: u8| (f32::from(k) * 0.7 + 0.1).sqrt() - 1.5;
+        for k in 0..40 {
+            let [a, b, c] = [k, k + 50, 2 * k + 100].map(|k| Vec3::from_fn(|i| coordinate(k + 3 * i as u8)));
+            let crossed = Vector3::cross(Vec3A::from(a), Vec3A::from(b));
+            assert_eq!(crossed.to_array(), Vector3::cross(a, b).to_array(), "{a} × {b}");
+            assert_eq!(Vector3::cross(Vec3A::from(a), Vec3A::from(a)), Vec3A::ZERO, "{a} × {a}");
+            let m = Mat3::from_cols(a, b, c);
+            let registers = Mat3A::from(m);
+            assert_eq!(Matrix::determinant(&registers), Matrix::determinant(&m), "the determinant of {m}");
+            assert_eq!(Mat3::from(Matrix::inverse(&registers)), Matrix::inverse(&m), "the inverse of {m}");
+            assert_eq!(registers * Vec3A::from(c), Vec3A::from(m * c), "{m} times {c}");
+        }
+    }
+
     #[test]
     fn norms_at_every_magnitude() {
         for s in [1e-300, 1e-160, 1.0, 1e160, 1e300] {
