@@ -44,21 +44,6 @@ pub fn exp(x: f64) -> f64 {
     libm::exp(x)
 }
 
-/// `a·b + c`, rounded once: by the processor's instruction where the target has it, else by libm, which uses it where the processor has
-/// it. C libraries, on which the standard library relies, do not all round it once.
-#[inline]
-#[allow(clippy::disallowed_methods, reason = "it is an instruction here")]
-pub fn mul_add<S: Scalar>(a: S, b: S, c: S) -> S {
-    if cfg!(any(target_feature = "fma", target_arch = "aarch64")) {
-        a.mul_add(b, c)
-    } else if size_of::<S>() == size_of::<f32>() {
-        let [a, b, c] = [a, b, c].map(|x| f32::from_f64(x.as_f64()));
-        S::from_f64(f64::from(libm::fmaf(a, b, c)))
-    } else {
-        S::from_f64(libm::fma(a.as_f64(), b.as_f64(), c.as_f64()))
-    }
-}
-
 /// `2ⁿ`, exactly where a number of this type is that.
 #[inline]
 pub fn power_of_two<S: Scalar>(n: i32) -> S {
@@ -89,9 +74,6 @@ mod tests {
             }
             x *= 1.01;
         }
-        let (e, f) = (f64::EPSILON, f32::EPSILON);
-        assert_eq!(mul_add(1.0 + e, 1.0 - e, -1.0), -e * e, "rounded once");
-        assert_eq!(mul_add(1.0 + f, 1.0 - f, -1.0), -f * f, "rounded once");
         assert_eq!(power_of_two::<f64>(-1074), f64::from_bits(1), "the least number");
         assert_eq!((power_of_two::<f32>(127), power_of_two::<f32>(128)), (2.0f32.powi(127), f32::INFINITY));
     }

@@ -1,6 +1,7 @@
 //! Sums and products without rounding: as the nearest number and what it loses.
 
-use super::elementary::mul_add;
+use num_traits::Float as _;
+
 use crate::{Scalar, Vector};
 
 /// What the rounding of `a + b` loses (Knuth's two-sum), exactly.
@@ -17,7 +18,7 @@ pub fn lost_in_sum<V: Vector>(a: V, b: V) -> V {
 pub fn foot_from<V: Vector>(origin: V, source: V, direction: V) -> (V::Scalar, V) {
     let seen = source - origin;
     let base = -seen.dot(direction) / direction.length_squared();
-    let moved = V::from_fn(|i| mul_add(base, direction.get(i), seen.get(i)));
+    let moved = V::from_fn(|i| base.mul_add(direction.get(i), seen.get(i)));
     (base, moved + lost_in_sum(source, -origin))
 }
 
@@ -33,7 +34,7 @@ pub fn two_sum<S: Scalar>(a: S, b: S) -> [S; 2] {
 #[inline]
 pub fn two_product<S: Scalar>(a: S, b: S) -> [S; 2] {
     let product = a * b;
-    [product, mul_add(a, b, -product)]
+    [product, a.mul_add(b, -product)]
 }
 
 /// `Σ aᵢ·bᵢ − subtracted`, as if computed in twice the precision and rounded once (Ogita, Rump and Oishi, *Accurate sum and dot

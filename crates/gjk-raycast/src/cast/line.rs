@@ -1,6 +1,5 @@
 //! A ray in the frame of a body.
 
-use convex_support::numerics::elementary::mul_add;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
@@ -93,7 +92,7 @@ impl<V: Vector> LocalRay<V> {
             let (a, b, sum) = (from.get(i), -to.get(i), s.get(i));
             let b_seen = sum - a;
             let lost = (a - (sum - b_seen)) + (b - b_seen);
-            mul_add(t, exact.get(i), sum) + lost
+            t.mul_add(exact.get(i), sum) + lost
         });
         let rest = foot.dot(direction);
         let foot = foot - direction * rest;
