@@ -8,7 +8,6 @@ use crate::numerics::bound::roundings;
 use crate::numerics::elementary::hypot;
 use crate::support::swept;
 use crate::{CertainCrossing, Core, CoreKind, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector3};
-use num_traits::Float as _;
 
 /// The cone with its apex at `(0, half_height, 0)` and its base disc at `y = −half_height`.
 ///
