@@ -3,7 +3,9 @@
 use crate::common::{close, ellipsoid2, ellipsoid3, rotation, within};
 use convex_support::glam::{DMat3, DVec3, Vec3, Vec3A};
 use convex_support::{Ellipsoid, Matrix, Scalar, Vector};
-use ellip_margin::{EllipsoidPair, MarginOptions, distance, free_margin, scaling};
+use ellip_margin::{
+    Clearance, EllipsoidPair, MarginOptions, MarginTracker, distance, distance_bracket, free_margin, scaling,
+};
 use proptest::prelude::*;
 
 /// All lengths times `s`.
@@ -20,8 +22,36 @@ fn assert_scale_free<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, s: f64) {
     assert_eq!(a.distance * k, b.distance, "scaled by {s}");
     assert_eq!(a.bracket.lower * k, b.bracket.lower, "scaled by {s}");
     assert_eq!(a.bracket.upper * k, b.bracket.upper, "scaled by {s}");
+    assert_eq!((a.bracket.normal, a.status, a.iterations), (b.bracket.normal, b.status, b.iterations), "scaled by {s}");
+    let (a, b) = (distance_bracket(e1, e2, o), distance_bracket(&scaled(e1, k), &scaled(e2, k), o));
+    assert_eq!((a.lower * k, a.upper * k, a.normal), (b.lower, b.upper, b.normal), "scaled by {s}");
     let (a, b) = (scaling(e1, e2, o), scaling(&scaled(e1, k), &scaled(e2, k), o));
     assert_eq!((a.scale, a.normal, a.separation * k), (b.scale, b.normal, b.separation), "scaled by {s}");
+    assert_eq!((a.point * k, a.status, a.iterations), (b.point, b.status, b.iterations), "scaled by {s}");
+    let all = |k| [*e1, *e2, between(e1, e2)].map(|e| scaled(&e, k));
+    let tracked = |[e1, e2, e3]: [Ellipsoid<V>; 3]| {
+        let mut track = MarginTracker::default();
+        [track.step(&e1, &e2), track.step(&e3, &e2), track.step(&e3, &e1)]
+    };
+    let stepped = |[e1, e2, e3]: [Ellipsoid<V>; 3]| {
+        let mut scene = Clearance::new(&[e2, e3], o).expect("two");
+        [[e1], [e3], [e2]].map(|link| scene.step(&link).expect("one"))
+    };
+    for (a, b) in tracked(all(V::Scalar::ONE)).into_iter().zip(tracked(all(k))) {
+        assert_eq!((a.margin, a.nu, a.point * k, a.iterations), (b.margin, b.nu, b.point, b.iterations), "by {s}");
+    }
+    for (a, b) in stepped(all(V::Scalar::ONE)).into_iter().zip(stepped(all(k))) {
+        assert_eq!((a.margin.margin, a.margin.point * k), (b.margin.margin, b.margin.point), "scaled by {s}");
+        // Squares that are no numbers leave a pair out by another of the means, or none.
+        let in_range = s.log2().abs() <= 250.0;
+        assert!(a.obstacle == b.obstacle && (!in_range || a.left_out == b.left_out), "scaled by {s}");
+    }
+}
+
+/// The first body halfway to the second.
+fn between<V: Vector>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>) -> Ellipsoid<V> {
+    let center = (e1.center() + e2.center()) * V::Scalar::from_f64(0.5);
+    Ellipsoid::from_axes(center, e1.semi_axes(), e1.axes()).expect("in range")
 }
 
 /// The same body in single precision.
@@ -55,6 +85,24 @@ proptest! {
         let ((m, d, a), (n, e, b)) = (gradients(&e1, &e2), gradients(&t1, &t2));
         prop_assert_eq!((m.rotation, d.rotation * s, a.rotation), (n.rotation, e.rotation, b.rotation));
         prop_assert_eq!((m.translation, d.translation, a.translation), (n.translation * s, e.translation, b.translation * s));
+    }
+
+    /// Second derivatives are a number, or a length for the distance, per length for each translation.
+    #[test]
+    fn powers_of_two_of_second_derivatives(e1 in ellipsoid3(3.0, 2.0), e2 in ellipsoid3(3.0, 2.0), k in -200i32..200) {
+        let s = 2f64.powi(k);
+        let all = |e1: &Ellipsoid<DVec3>, e2: &Ellipsoid<DVec3>| {
+            let pair = EllipsoidPair::new(e1, e2, MarginOptions::default());
+            ([pair.margin().hessian(), pair.scaling().hessian(), pair.distance().hessian()], pair.margin().shape_gradient())
+        };
+        let ((a, shape), (b, scaled_shape)) = (all(&e1, &e2), all(&scaled(&e1, s), &scaled(&e2, s)));
+        for (n, (a, b)) in a.iter().zip(&b).enumerate() {
+            for (i, j) in (0..36).map(|place| (place / 6, place % 6)) {
+                let lengths = i32::from(n == 2) - i32::from(i < 3) - i32::from(j < 3);
+                prop_assert_eq!(a.entry(i, j) * s.powi(lengths), b.entry(i, j), "{} {} {}", n, i, j);
+            }
+        }
+        prop_assert_eq!((shape.semi_axes1, shape.semi_axes2), (scaled_shape.semi_axes1 * s, scaled_shape.semi_axes2 * s));
     }
 
     #[test]

@@ -41,7 +41,8 @@
 //! rounding of its own evaluation is added. [`Status`] tells whether it is as small as was asked for. Whatever the
 //! status, the enclosing ellipsoid contains every point and the inscribed one stays within every half-space or hull.
 //! Both are proved of the doubles that are returned, and hold as evaluated in `f64`. All tolerances are relative:
-//! scaling the input by a power of two changes no bit of any mantissa.
+//! scaling the input by a power of two changes no bit of any mantissa but that of
+//! [`log_det`](Ellipsoid::log_det), as long as lengths are from 2⁻⁴⁵⁰ to 2⁴⁵⁰.
 //!
 //! # Features
 //! None is on by default.

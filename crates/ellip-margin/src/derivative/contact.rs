@@ -300,8 +300,9 @@ impl Rates {
     fn hessian(mut self, dimension: usize, Form { slope, curvature, units }: Form) -> [[f64; 6]; 6] {
         // The unit of length is a power of two.
         let inverse = 1.0 / units.length;
-        let (slope, curvature) = (slope * units.value, 0.5 * (curvature * units.value));
+        // And so may that of the value be, whose root would have other digits: of the slope alone it is taken.
         let root = slope.sqrt();
+        let (slope, curvature) = (slope * units.value, 0.5 * (curvature * units.value));
         let mut offset = [0.0; 6];
         for i in 0..6 {
             let per = if i < dimension { inverse } else { 1.0 };
@@ -315,7 +316,8 @@ impl Rates {
         let mut hessian = [[0.0; 6]; 6];
         for i in 0..6 {
             for j in 0..6 {
-                hessian[i][j] = (x[i] * x[j] + y[i] * y[j]) - (s[i] * offset[j] + s[j] * offset[i]);
+                let seen = (x[i] * x[j] + y[i] * y[j]) * units.value;
+                hessian[i][j] = seen - (s[i] * offset[j] + s[j] * offset[i]);
             }
         }
         hessian

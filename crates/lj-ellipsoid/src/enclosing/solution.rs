@@ -6,7 +6,7 @@ use crate::enclosing::outward::{SOME, beyond_radius, reach, touch};
 use crate::enclosing::working_set::WorkingSet;
 use crate::error::EnclosingError;
 use crate::numerics::dimension::{Dimension, Dynamic};
-use crate::numerics::linalg::{UNIT_ROUNDOFF, dot, sum_of_logarithms};
+use crate::numerics::linalg::{UNIT_ROUNDOFF, dot, logarithms, power_of_two_inverse, sum_of_logarithms};
 use crate::options::Status;
 use crate::points::Points;
 use crate::shape::{Shape, principal_axes, shape_from_axes};
@@ -115,7 +115,7 @@ pub(crate) fn finish<P: Points>(
         return Err(EnclosingError::OutOfRange);
     }
     // ln det X* − ln det X: the transformation into the frame cancels, and with it its size.
-    let logarithms: f64 = semi_axes.iter().map(|a| libm::log(*a).abs()).sum();
+    let [_, logarithms] = logarithms(semi_axes, power_of_two_inverse(semi_axes.first().copied().unwrap_or(1.0)));
     let log_det_gap = certificate.log_det_bound + 2.0 * r as f64 * libm::log(growth) + 4.0 * UNIT_ROUNDOFF * logarithms;
     // The points are proved to be inside, and the bound is one on all ellipsoids that hold them: a difference below
     // zero, or none, would prove only that numbers left the range in which the errors are bounded.

@@ -8,7 +8,7 @@
 
 use crate::inscribed::coordinates::Rows;
 use crate::numerics::dimension::Dynamic;
-use crate::numerics::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
+use crate::numerics::linalg::{cholesky, dot, power_of_two_inverse, solve_lower, solve_lower_transpose};
 
 /// Depths below this share of the largest offset are too little for the program to tell.
 const THIN: f64 = 1e-6;
@@ -40,7 +40,20 @@ struct Iterate {
 }
 
 /// How deep the intersection is; rows of unit length.
+///
+/// The systems are of numbers per length, and Cholesky takes their roots: the digits of the root of a length are others in another unit, and
+/// so all is measured in a power of two near the largest offset.
 pub(crate) fn depth(rows: &Rows) -> Depth {
+    let per_unit = power_of_two_inverse(rows.s.iter().fold(0.0, |s: f64, b| s.max(b.abs())));
+    let back = |z: Vec<f64>| z.into_iter().map(|x| x / per_unit).collect();
+    match depth_in_unit(&Rows { s: rows.s.iter().map(|b| b * per_unit).collect(), ..rows.clone() }) {
+        Depth::Inside(z) => Depth::Inside(back(z)),
+        Depth::Thin { at, relaxation } => Depth::Thin { at: back(at), relaxation: relaxation / per_unit },
+        Depth::Empty => Depth::Empty,
+    }
+}
+
+fn depth_in_unit(rows: &Rows) -> Depth {
     let n = rows.n;
     let m = rows.s.len();
     let scale = rows.s.iter().fold(0.0, |s: f64, b| s.max(b.abs()));

@@ -11,7 +11,7 @@
 use crate::inscribed::polyhedron::Polyhedron;
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{
-    UNIT_ROUNDOFF, dot, orthogonalize_rows, power_of_two_inverse, sum_of_logarithms, triangularize,
+    UNIT_ROUNDOFF, dot, logarithms, orthogonalize_rows, power_of_two_inverse, triangularize,
 };
 use crate::numerics::twofold;
 
@@ -108,11 +108,11 @@ impl Coordinates {
         (s, error * (n as f64).sqrt() * (size / largest) + error_of_s * (size_of_s / s.abs()))
     }
 
-    /// No less than ln|det M|, nor than −ln|det M⁻¹| where M⁻¹ = diag(1/a)·R is meant.
+    /// No less than ln|det M|, nor than −ln|det M⁻¹| where M⁻¹ = diag(1/a)·R is meant, with the lengths a in a unit.
     ///
     /// With R·Rᵀ = I + D, |D| ≤ δ the largest sum of a row, |det R| is within N·δ of one; so is that of R with entries
     /// rounded.
-    pub(crate) fn log_det_at_most(&self) -> f64 {
+    pub(crate) fn log_det_at_most(&self, per_unit: f64) -> f64 {
         let n = self.origin.len();
         let defect = |i: usize, j: usize| {
             let (a, b) = (&self.axes[i * n..(i + 1) * n], &self.axes[j * n..(j + 1) * n]);
@@ -120,10 +120,8 @@ impl Coordinates {
             twofold::dot(product.chain([(if i == j { -1.0 } else { 0.0 }, 1.0)])).abs()
         };
         let delta = (0..n).map(|i| (0..n).map(|j| defect(i, j)).sum::<f64>()).fold(0.0, f64::max);
-        let lengths = self.lengths.iter().copied();
-        let logarithms: f64 = lengths.clone().map(|a| libm::log(a).abs()).sum();
-        let rounding = (n * n) as f64 * UNIT_ROUNDOFF + 2.0 * UNIT_ROUNDOFF * (logarithms + n as f64);
-        sum_of_logarithms(lengths) + n as f64 * delta + rounding
+        let [sum, size] = logarithms(&self.lengths, per_unit);
+        sum + n as f64 * delta + (n * n) as f64 * UNIT_ROUNDOFF + 2.0 * UNIT_ROUNDOFF * (size + n as f64)
     }
 
     /// The columns aₖ·rₖ of M, one after the other.
