@@ -1,7 +1,8 @@
 //! Symmetric matrices and vectors across an axis.
 
-use convex_support::Scalar;
 use convex_support::numerics::elementary::hypot;
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
 
 /// A symmetric matrix `(a b; b d)`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -82,4 +83,22 @@ pub(crate) fn dot<S: Scalar>(a: Across<S>, b: Across<S>) -> S {
 
 pub(crate) fn cross<S: Scalar>(a: Across<S>, b: Across<S>) -> S {
     a.0 * b.1 - a.1 * b.0
+}
+
+/// Unit vectors across a unit vector and one another, after Duff et al., *Building an orthonormal basis, revisited* (2017); the second is zero in
+/// the plane.
+#[inline(always)]
+pub(crate) fn axes_across<V: Vector>(u: V) -> [V; 2] {
+    let one = V::Scalar::ONE;
+    let (x, y) = (u.get(0), u.get(1));
+    if V::DIM == 2 {
+        return [V::from_fn(|i| [-y, x][i]), V::ZERO];
+    }
+    let z = u.get(2);
+    let sign = one.copysign(z);
+    let a = -(sign + z).recip();
+    let b = x * y * a;
+    let e1 = [one + sign * x * x * a, sign * b, -sign * x];
+    let e2 = [b, sign + y * y * a, -y];
+    [V::from_fn(|i| e1[i]), V::from_fn(|i| e2[i])]
 }

@@ -18,24 +18,6 @@ impl<V: Vector> Line<V> {
         self.foot + self.direction * mu
     }
 
-    /// Unit vectors across the line and one another, after Duff et al., *Building an orthonormal basis, revisited* (2017);
-    /// the second is zero in the plane.
-    #[inline(always)]
-    pub(crate) fn axes(&self) -> [V; 2] {
-        let one = V::Scalar::ONE;
-        let (x, y) = (self.direction.get(0), self.direction.get(1));
-        if V::DIM == 2 {
-            return [V::from_fn(|i| [-y, x][i]), V::ZERO];
-        }
-        let z = self.direction.get(2);
-        let sign = one.copysign(z);
-        let a = -(sign + z).recip();
-        let b = x * y * a;
-        let e1 = [one + sign * x * x * a, sign * b, -sign * x];
-        let e2 = [b, sign + y * y * a, -y];
-        [V::from_fn(|i| e1[i]), V::from_fn(|i| e2[i])]
-    }
-
     /// The part of `v` across the line.
     pub(crate) fn across(&self, v: V) -> V {
         v - self.direction * v.dot(self.direction)

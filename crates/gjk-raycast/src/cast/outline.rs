@@ -18,7 +18,7 @@ use convex_support::{Scalar, Vector};
 
 use super::bracket::Bracket;
 use super::line::Line;
-use crate::symmetric::{Across, cross, dot};
+use crate::symmetric::{Across, axes_across, cross, dot};
 
 /// As many corners as a polygon has at most.
 const MAX_CORNERS: usize = 8;
@@ -35,7 +35,7 @@ const LATE: f64 = 32.0;
 #[inline(never)]
 pub(super) fn bound_entry<V: Vector>(bracket: &mut Bracket<'_, V>) {
     let (mu, error) = bracket.point_near_line();
-    let view = View { line: bracket.line(), axes: bracket.line().axes() };
+    let view = View { line: bracket.line(), axes: axes_across(bracket.line().direction) };
     let late = mu + error * V::Scalar::from_f64(LATE);
     let known = bracket.around.map(|points| view.polygon(points));
     let is_near = |known: &Polygon<_>| known.latest_entry(mu, error).is_some_and(|latest| latest <= late);

@@ -1,23 +1,22 @@
 //! Where a cast begins in contact, or within a few errors of it: whether that is a hit.
 //!
-//! What a cast knows of its start is known to the errors of the largest number in it. Looked at
-//! [once more](crate::gjk::near_contact()), a source may turn out to be apart from the target: then a ray that leaves or slides by
-//! misses, and one that approaches hits a little later.
+//! What a cast knows of its start is known to the errors of the largest number in it. Looked at [once
+//! more](crate::gjk::near_contact()), a source may turn out to be apart from the target: then a ray that leaves or
+//! slides by misses, and one that approaches hits a little later.
 
-use convex_support::numerics::bound::roundings;
+use convex_support::numerics::bound::{raised, roundings};
 use convex_support::numerics::twofold::dot_minus;
 use convex_support::{Posed, Rounded, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use super::{Cast, CastHit};
 use crate::body::{Both, PointPair};
-use crate::contact::{gap_along, signed_distance_of_any};
-use crate::gjk::{NearContact, near_contact};
+use crate::gjk::{Frame, FromContact, NearContact, look_after, near_contact};
 use crate::shape::{Shape, WithoutLines};
-use crate::{Miss, Outcome, RayCastOptions, SignedDistanceOptions, Status};
+use crate::{Miss, Outcome, RayCastOptions, Status};
 
-/// Decides about a hit that may be at the source, or about a search that stalled before it left it, of the ray that `b` draws as it
-/// moves along `direction` towards `a` swept by a ball, its skin.
+/// Decides about a hit that may be at the source, or about a search that stalled before it left it, of the ray that `b`
+/// draws as it moves along `direction` towards `a` swept by a ball, its skin.
 #[inline(always)]
 pub(crate) fn settle_start<V: Vector, B: SupportMap<Vector = V>>(
     cast: &mut Cast<V>,
@@ -74,7 +73,8 @@ struct Start<V: Vector> {
     iterations: usize,
 }
 
-/// Where the source is, relative to the target's origin, the points of both closest to one another, and the unit of these lengths.
+/// Where the source is, relative to the target's origin, the points of both closest to one another, and the unit of
+/// these lengths.
 #[derive(Clone, Copy)]
 struct Spot<V: Vector> {
     source: V,
@@ -82,10 +82,11 @@ struct Spot<V: Vector> {
     scale: V::Scalar,
 }
 
-/// How a ray goes on from a source near the target. The axis is a unit vector from the target to the source, along which they are
-/// apart.
+/// How a ray goes on from a source near the target. The axis is a unit vector from the target to the source, along
+/// which they are apart.
 enum Way<V: Vector> {
-    /// The source is in the target, to the error it is known to; and the ray is in it for certain at this λ at the latest.
+    /// The source is in the target, to the error it is known to; and the ray is in it for certain at this λ at the
+    /// latest.
     Touches { within: V::Scalar },
     /// Neither that nor a plane between them is found.
     Unknown,
@@ -120,15 +121,15 @@ fn start<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iteratio
         // What the quotient loses.
         let lower = at(near.lower);
         let lower = lower - roundings(8.0, lower);
-        let entry = entry([a, b], direction, closing, [near.upper * near.frame.scale, zero], &mut looks);
+        let entry = entry([a, b], direction, closing, (&from_contact(&near, zero), zero), &mut looks);
         Way::Enters { lambda: at(near.gap), axis, lower, entry }
     };
     let spot = Spot { source: -near.frame.offset, points: near.points, scale: near.frame.scale };
     Start { way, spot, iterations: looks.iterations }
 }
 
-/// A bound on the λ at which the ray is in the target first, where the source is not known to be apart from it; infinite where it may
-/// miss.
+/// A bound on the λ at which the ray is in the target first, where the source is not known to be apart from it;
+/// infinite where it may miss.
 fn latest_entry<V: Vector>(
     shapes: [Shape<'_, V>; 2],
     direction: V,
@@ -142,10 +143,21 @@ fn latest_entry<V: Vector>(
     }
     // Of a point found deep inside, no plane is one of contact.
     let is_at_plane = near.gap.abs() <= near.upper;
-    let (gap, speed) = (near.upper * near.frame.scale, direction.norm());
+    let speed = direction.norm();
     let slides = speed * V::Scalar::EPSILON * V::Scalar::from_f64(SLIDES);
     let speed = if is_at_plane && closing > slides { closing } else { speed };
-    entry(shapes, direction, speed, [gap, zero], looks).certain()
+    entry(shapes, direction, speed, (&from_contact(near, zero), zero), looks).certain()
+}
+
+/// The vector from a point of the target to the source, in the world's unit, where either may be moved by `astray`.
+fn from_contact<V: Vector>(near: &NearContact<V>, astray: V::Scalar) -> FromContact<V> {
+    let &NearContact { normal: n, lower, upper, frame: Frame { scale, .. }, .. } = near;
+    let upper = upper.max(V::Scalar::ZERO);
+    // Of a vector no longer than `upper`, this is left across a unit vector along which it is at least `lower`.
+    let across = if near.is_separated() { raised(((upper - lower) * (upper + lower)).sqrt()) } else { upper };
+    let along = if near.is_separated() { upper } else { V::Scalar::ZERO };
+    let in_world = |length: V::Scalar| length * scale + astray;
+    FromContact { n, along: in_world(along), across: in_world(across), length: in_world(upper) }
 }
 
 /// Closing speeds below this many ε of the speed are of rounding: a normal is known to a few.
@@ -193,66 +205,69 @@ const PATIENCE: usize = 2;
 /// How deep the ray is to be found at least, as a part of how deep it is going by its speed.
 const DEEP: f64 = 0.25;
 
-/// How narrow a depth has to be known, as a part of that.
-const ROUGH: f64 = 1.0 / 16.0;
+/// How far aside the points are by which it is found, in units of that: far enough for little of a depth under a plane
+/// to be lost; and beside an edge or a rim, where that told nothing, near enough for the corners not to cut the ray
+/// off.
+const ASIDE: f64 = 4.0;
+const AT_EDGE: f64 = 1.0;
 
-/// Where a ray enters whose source is no more than a `gap` from the target, and which closes in with a `speed`. The source is looked at no
-/// farther than `astray` from where it is.
+/// Where a ray enters whose source is near the target, and which closes in with a `speed`. The source and what is seen
+/// from there may be moved by `astray`.
 ///
-/// The signed distance from a convex set is a convex function of the point. So where it is at most `g` at the source and at most `−ρ`
-/// after λ, it is not positive any more after `λ·g/(g + ρ)`; and where it is more than `g` after λ, it grows from
-/// there on. In the middle between the entry and the exit it is at least half as deep as anywhere on the ray: each
-/// look that finds the ray outside bounds the exit, and the next one is halfway there.
+/// Let `e` be the vector from a point of the target to the source, and the target contain, about the ray after `λ`,
+/// that vector `k` times: a point of the target is opposite to the first one, and the segment between both crosses the
+/// ray after `λ/(1 + k)`, since the target is convex. For the same reason, where the source is no farther from it than
+/// `g`, and the ray is after `λ`, the distance grows from there on. In the middle between the entry and the exit the
+/// ray is at least half as deep as anywhere: each look that finds it outside bounds the exit, and the next one is
+/// halfway there.
 fn entry<V: Vector>(
     [a, b]: [Shape<'_, V>; 2],
     direction: V,
     speed: V::Scalar,
-    [gap, astray]: [V::Scalar; 2],
+    (from, astray): (&FromContact<V>, V::Scalar),
     looks: &mut Looks,
 ) -> Entry<V::Scalar> {
     let (zero, number) = (V::Scalar::ZERO, V::Scalar::from_f64);
     let [core_a, core_b] = [a.core(), b.core()];
     let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
+    let gap = from.length;
     // Bodies that touch have their origins no farther apart than their sizes.
     let past = (size + size + gap) / direction.norm();
     let mut best = Entry { at: past + roundings(16.0, past), is_certain: false };
     let (mut lambda, mut dull) = (past * number(0.125), 0);
     for _ in 0..LOOKS {
         let step = direction * lambda;
-        let length = step.norm();
         let Some(left) = looks.left() else { break };
         // NaN ends this too.
         let Ok(moved) = Posed::translated(b, step) else { break };
         let moved = WithoutLines(&moved);
-        let deep = (lambda * speed * number(DEEP)).max(gap);
-        let rough = (deep * number(ROUGH) / size).max(V::Scalar::EPSILON * number(8.0));
-        let wanted = SignedDistanceOptions::new().with_depth_limit(deep).with_limit(gap + deep);
-        let there = signed_distance_of_any(a, &moved, wanted.with_tolerance(rough).with_max_iterations(left));
-        looks.iterations += there.iterations;
+        let fall = lambda * speed;
+        let aside = number(if dull > 0 { AT_EDGE } else { ASIDE });
         // The step is rounded, coordinate by coordinate.
-        let rounded = roundings(4.0, length) + astray;
-        let depth = -there.upper - rounded;
-        if depth > zero {
-            let at = lambda * (gap / (gap + depth));
+        let rounded = roundings(4.0, step.norm()) + astray;
+        let there = look_after([a, &moved], from, [aside * fall, rounded], left);
+        looks.iterations += there.iterations;
+        if there.times > zero {
+            let at = lambda / (there.times + V::Scalar::ONE);
             let at = at + roundings(16.0, at);
             // Nearer to the source it is deeper for how far it has gone, but not by much where it already is.
-            let is_enough = depth + depth >= deep || at + at > best.at;
+            let is_enough = there.times * gap >= fall * number(DEEP) || at + at > best.at;
             best = Entry { at: best.at.min(at), is_certain: true };
-            if is_enough && depth >= gap {
+            if is_enough && there.times >= V::Scalar::ONE {
                 break;
             }
         }
-        lambda = if there.lower - rounded > gap {
+        lambda = if there.lower > gap {
             // A plane that tells so was crossed earlier.
             // The product is right to a few roundings.
-            let leaving = -there.normal.dot(direction) + roundings(8.0, direction.norm());
-            let since = (gap_along(a, &moved, there.normal) - rounded) / leaving;
+            let leaving = -there.axis.dot(direction) + roundings(8.0, direction.norm());
+            let since = there.lower / leaving;
             let at = if leaving > zero { lambda - (since - roundings(16.0, lambda)) } else { lambda };
             best.at = best.at.min(at.max(zero));
             dull = 0;
             lambda.min(best.at) * number(0.5)
         } else {
-            dull += 1;
+            dull += usize::from(!(there.times > zero));
             lambda * number(0.5)
         };
         if dull >= PATIENCE || !(lambda * speed > gap) {
@@ -269,8 +284,8 @@ struct AfterHit<S> {
     iterations: usize,
 }
 
-/// Bounds a hit away from the source from above by what is known of the bodies there, where that is less than the slope at which the ray
-/// meets one plane may tell: they are known to so large an error that the next edge may be within it.
+/// Bounds a hit away from the source from above by what is known of the bodies there, where that is less than the slope
+/// at which the ray meets one plane may tell: they are known to so large an error that the next edge may be within it.
 #[cold]
 #[inline(never)]
 fn after_hit<V: Vector>(
@@ -290,10 +305,10 @@ fn after_hit<V: Vector>(
     let mut looks = Looks { iterations: near.iterations, max_iterations };
     // The step and the direction are rounded, coordinate by coordinate.
     let astray = roundings(8.0, step.norm());
-    let gap = near.upper.max(V::Scalar::ZERO) * near.frame.scale + astray;
     let closing = near.normal.dot(direction);
     let speed = if closing > V::Scalar::ZERO { closing } else { direction.norm() };
-    let latest = lambda + entry([a, &there], direction, speed, [gap, astray], &mut looks).certain();
+    let latest =
+        lambda + entry([a, &there], direction, speed, (&from_contact(&near, astray), astray), &mut looks).certain();
     AfterHit { latest: latest + roundings(4.0, latest), iterations: looks.iterations }
 }
 
@@ -319,8 +334,8 @@ impl<V: Vector> Cast<V> {
         (self.lower, self.upper) = (zero, within.max(lambda));
     }
 
-    /// Turns a hit at the source, as far as it was known, into one at `lambda`, where a plane across `axis` leaves nothing to hit before
-    /// `lower`.
+    /// Turns a hit at the source, as far as it was known, into one at `lambda`, where a plane across `axis` leaves
+    /// nothing to hit before `lower`.
     #[inline(always)]
     fn enter(&mut self, lambda: V::Scalar, axis: V, lower: V::Scalar, entry: Entry<V::Scalar>, spot: Spot<V>) {
         self.lower = self.lower.max(lower);

@@ -1,13 +1,13 @@
 //! The difference of two cores: its support points, how well they are known, and how far GJK comes.
 
 use convex_support::numerics::twofold::lost_in_sum;
-use convex_support::{Core, Rounding, Scalar, SupportMap, Vector};
+use convex_support::{Core, Rounding, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::SignedDistanceOptions;
 use super::peeled::{Peeled, without_ball};
 use super::zonotope::{Zonotope, parallelotope};
-use crate::body::{AnyPair, Body as _, Both, Pair, PointPair, Shapes, TracedSupport as _};
+use crate::body::{AnyPair, Body as _, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, NearContact, first_direction, gjk, is_near_contact, near_contact};
 use crate::observer::Observer;
 use crate::symmetric::Symmetric;
@@ -126,16 +126,6 @@ fn greatest_length<S: Scalar>(length: S, error: S) -> S {
 #[inline(always)]
 pub(super) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
     S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
-}
-
-/// How far apart shapes are along a unit vector from `b` to `a`, at least.
-pub(crate) fn gap_along<V: Vector>(a: &dyn SupportMap<Vector = V>, b: &dyn SupportMap<Vector = V>, n: V) -> V::Scalar {
-    let shapes = Both::<_, _>::new(a, b);
-    let mut cores = Cores::new(&shapes, shapes.cores());
-    cores.sharpen();
-    let Some(vertex) = cores.support(-n) else { return -V::Scalar::infinity() };
-    let gap = (n.dot(vertex.point) - cores.error_along(n)) * cores.scale() - cores.radius();
-    gap - slack(gap, cores.radius())
 }
 
 /// How deep cores are in one another, or minus how far they are apart, in closed form, in the unit.

@@ -5,10 +5,9 @@ use num_traits::Float as _;
 use smallvec::SmallVec;
 
 use super::clip::{Overlap, clip};
-use super::newton::across;
 use super::outline::{ContactPlane, Outline, Part};
 use super::{ContactPoint, SignedDistance};
-use crate::symmetric::{Across, cross, dot};
+use crate::symmetric::{Across, axes_across, cross, dot};
 
 /// As many points as a manifold has.
 pub(super) const MAX_POINTS: usize = 4;
@@ -29,7 +28,7 @@ where
     let normal = answer.normal;
     let half: ScalarOf<A> = Scalar::from_f64(0.5);
     let origin = answer.point_a * half + answer.point_b * half;
-    let plane = ContactPlane { normal, across: across(normal), origin };
+    let plane = ContactPlane { normal, across: axes_across(normal), origin };
     let (core_a, core_b) = (a.core(), b.core());
     let smaller = (core_a.extent + core_a.radius).min(core_b.extent + core_b.radius);
     let near = smaller * ScalarOf::<A>::from_f64(SLAB);
@@ -58,7 +57,7 @@ where
     A: SupportMap + ?Sized,
 {
     let normal = answer.normal;
-    let plane = ContactPlane { normal, across: across(normal), origin: answer.point_b };
+    let plane = ContactPlane { normal, across: axes_across(normal), origin: answer.point_b };
     let core = a.core();
     let near = (core.extent + core.radius) * ScalarOf::<A>::from_f64(SLAB);
     let slab = near + within.max(Scalar::ZERO).min(near);

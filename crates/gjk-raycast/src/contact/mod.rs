@@ -22,9 +22,8 @@ mod witness;
 mod zonotope;
 
 pub use contact::contact;
-pub(crate) use cores::{Cores, Uncertainty, gap_along};
+pub(crate) use cores::{Cores, Uncertainty};
 pub(crate) use manifold::manifold_over_plane;
-pub(crate) use newton::across;
 pub use options::SignedDistanceOptions;
 pub(crate) use outline::{ContactPlane, Corner, Ellipse, Outline};
 pub use result::{Contact, ContactPoint, SignedDistance};

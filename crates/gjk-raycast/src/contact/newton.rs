@@ -4,8 +4,7 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::cores::{Cores, Vertex};
-use crate::simplex::cross;
-use crate::symmetric::{Across, Symmetric, dot};
+use crate::symmetric::{Across, Symmetric, axes_across, dot};
 
 /// The largest tangent of an angle to turn by.
 const LARGEST: f64 = 0.5;
@@ -42,7 +41,7 @@ struct Seen<S> {
 
 impl<V: Vector> Piece<V> {
     pub(super) fn new(cores: &Cores<'_, V>, vertex: &Vertex<V>) -> Self {
-        let across = across(vertex.along);
+        let across = axes_across(vertex.along);
         Self { n: vertex.along, point: vertex.point, across, hessian: cores.hessian(vertex.along, across) }
     }
 
@@ -216,16 +215,4 @@ fn turned<V: Vector>(n: V, [e, f]: [V; 2], step: Across<V::Scalar>) -> Option<V>
     }
     let part = (V::Scalar::from_f64(LARGEST) / size).min(Scalar::ONE);
     (n + (e * step.0 + f * step.1) * part).unit()
-}
-
-/// Unit vectors that span what is across a unit vector; in 2D one, and zero.
-pub(crate) fn across<V: Vector>(u: V) -> [V; 2] {
-    if V::DIM == 2 {
-        let turned = [-u.get(1), u.get(0)];
-        return [V::from_fn(|i| turned[i]), V::ZERO];
-    }
-    let a = u.abs();
-    let least = (1..3).fold(0, |least, i| if a.get(i) < a.get(least) { i } else { least });
-    let e = cross(u, V::axis(least)).unit().unwrap_or(V::ZERO);
-    [e, cross(u, e)]
 }

@@ -5,8 +5,8 @@ use num_traits::Float as _;
 
 use super::closest_features::{Closest, ClosestFeatures};
 use super::span::Span;
-use crate::contact::{ContactPlane, Outline, across};
-use crate::symmetric::{Across, Symmetric, dot};
+use crate::contact::{ContactPlane, Outline};
+use crate::symmetric::{Across, Symmetric, axes_across, dot};
 use crate::unit::reciprocal_of_power;
 
 /// How far a direction is turned to see which curve an edge between two of them belongs to, and where a support point goes, in units
@@ -64,7 +64,7 @@ where
         let Closest { normal, points, signed_distance, .. } = closest;
         let (unit, half) = (self.unit, ScalarOf::<A>::from_f64(0.5));
         // In the unit; zero is the middle of the closest points, which is on both sides of the plane that outlines are seen in.
-        let plane = ContactPlane { normal, across: across(normal), origin: A::Vector::ZERO };
+        let plane = ContactPlane { normal, across: axes_across(normal), origin: A::Vector::ZERO };
         let middle = points[0] * half + points[1] * half;
         (features.normal, features.across, features.points, features.middle) = (normal, plane.across, points, middle);
         (features.signed_distance, features.tilt) = (signed_distance / unit, tilt);

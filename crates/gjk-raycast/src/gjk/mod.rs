@@ -7,6 +7,7 @@ mod near_contact;
 mod next_direction;
 mod order;
 mod progress;
+mod room;
 mod start;
 mod state;
 
@@ -22,6 +23,7 @@ pub(crate) use near_contact::{NEAR, NearContact, is_near_contact, near_contact};
 use next_direction::NextDirection;
 pub(crate) use order::comes_first;
 pub(crate) use progress::Progress;
+pub(crate) use room::{FromContact, across_corners, faces_of_simplex, look_after, room_around_zero};
 pub(crate) use start::first_direction;
 pub(crate) use state::Gjk;
 

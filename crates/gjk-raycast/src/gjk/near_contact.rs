@@ -135,7 +135,12 @@ fn look<V: Vector>(mut pair: AnyPair<'_, V>, begun: Option<&Gjk<V>>, max_iterati
 }
 
 /// GJK from the closest points, where they are known in closed form, or from the offset of the origins to the noise.
-fn begin<V: Vector>(pair: &AnyPair<'_, V>, frame: &Frame<V>, size: V::Scalar, max_iterations: usize) -> Gjk<V> {
+pub(super) fn begin<V: Vector>(
+    pair: &AnyPair<'_, V>,
+    frame: &Frame<V>,
+    size: V::Scalar,
+    max_iterations: usize,
+) -> Gjk<V> {
     let first = first_direction(None, frame.offset);
     let mut state = Gjk::new(first);
     if state.begin_at_closest(pair, frame, size) != Some(false) {
@@ -150,7 +155,12 @@ fn begin<V: Vector>(pair: &AnyPair<'_, V>, frame: &Frame<V>, size: V::Scalar, ma
 }
 
 /// Goes on with GJK to a sixteenth of the noise.
-fn go_on<V: Vector>(state: &mut Gjk<V>, pair: &mut AnyPair<'_, V>, frame: &Frame<V>, max_iterations: usize) -> End {
+pub(super) fn go_on<V: Vector>(
+    state: &mut Gjk<V>,
+    pair: &mut AnyPair<'_, V>,
+    frame: &Frame<V>,
+    max_iterations: usize,
+) -> End {
     let frame = Frame { noise: frame.noise * Scalar::from_f64(0.0625), ..*frame };
     let end = run(state, pair, frame, state.normal, max_iterations);
     state.ensure_measured();

@@ -24,8 +24,9 @@ use convex_support::{Posed, Scalar, Vector};
 use super::instant::Instant;
 use super::moving_pair::MovingPair;
 use crate::SignedDistanceOptions;
-use crate::contact::{across, signed_distance_of_any};
+use crate::contact::signed_distance_of_any;
 use crate::shape::WithoutLines;
+use crate::symmetric::axes_across;
 
 impl<V: Vector> MovingPair<'_, V> {
     /// Whether the bodies, which overlap by `depth` at least at two times, certainly have a point in common at all
@@ -45,7 +46,7 @@ impl<V: Vector> MovingPair<'_, V> {
         if !(strays(from.normal) <= depth * two) {
             return false;
         }
-        let aside = across(from.normal);
+        let aside = axes_across(from.normal);
         let mut shifts =
             aside.into_iter().take(V::DIM - 1).flat_map(|e| [e, -e]).map(|e| e * (farthest * Scalar::from_f64(0.7072)));
         shifts.all(|shift| times.iter().all(|&time| self.overlap_shifted(time, shift)))

@@ -13,7 +13,8 @@ use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use crate::body::{Pair, PointPair};
 use crate::contact::Cores;
-use crate::simplex::{MAX_POINTS, cross, project};
+use crate::gjk::{across_corners, faces_of_simplex, room_around_zero};
+use crate::simplex::{MAX_POINTS, project};
 use crate::unit::is_moderate;
 
 /// What may have been closest, lengths in the world's unit.
@@ -100,7 +101,8 @@ impl<V: Vector> MovingPair<'_, V> {
             return Some(infinity);
         }
         points[len] = cores.support(unit)?.point;
-        Some((cores.greatest_error() - room_around_zero(&points)) * scale)
+        let one = |_| Scalar::ONE;
+        Some(-room_around_zero(faces_of_simplex(&points), |_| cores.greatest_error(), one) * scale)
     }
 }
 
@@ -115,50 +117,9 @@ impl<V: Vector> Closest<V> {
     /// The closest points of a face that spans a plane.
     fn in_plane(face: &Face<V>, axis: V) -> Option<Self> {
         let (corners, len) = face.points();
-        let (normal, _) = if len == V::DIM { normal(&corners) } else { return None };
+        let (normal, _) = if len == V::DIM { across_corners(&corners) } else { return None };
         let unit = normal.unit()?;
         let unit = if unit.dot(axis) < V::Scalar::ZERO { -unit } else { unit };
         Some(Self { points: face.closest_points(), v: face.v, unit })
     }
-}
-
-/// The radius of a ball about zero that is within the simplex of one more point than there are dimensions; not positive where there is
-/// none.
-///
-/// If all points are wrong by less, zero is still inside: else they would lie beyond a plane through zero, and before they were wrong
-/// all of their simplex less than that before it.
-fn room_around_zero<V: Vector>(points: &[V; MAX_POINTS]) -> V::Scalar {
-    let mut room = V::Scalar::infinity();
-    for (i, &opposite) in points.iter().enumerate().take(V::DIM + 1) {
-        let mut others = *points;
-        others.swap(i, V::DIM);
-        let (normal, wrong) = normal(&others);
-        let edge = opposite - others[0];
-        let (level, side) = (normal.dot(others[0]), normal.dot(edge));
-        let height = if side > V::Scalar::ZERO { -level } else { level } - wrong * others[0].length();
-        // Zero is no farther from the face than the corner opposite, of which this tells on which side it is.
-        let most = side.abs() - wrong * edge.length();
-        let height = (if height < most { height } else { most }) / normal.length();
-        if height.is_nan() {
-            return V::Scalar::ZERO;
-        }
-        room = if height < room { height } else { room };
-    }
-    room
-}
-
-/// A vector across the first points, as many as there are dimensions; and what its product with another is wrong by, relative to the
-/// other's length.
-///
-/// In space, with `u = ε/2`, both edges are wrong by `u`, and a coordinate of their product is a difference of products: `4u·√3` of the
-/// product of the lengths. The scalar product loses `3u`.
-fn normal<V: Vector>(points: &[V; MAX_POINTS]) -> (V, V::Scalar) {
-    let edge = points[1] - points[0];
-    if V::DIM == 2 {
-        let across = V::from_fn(|i| if i == 0 { edge.get(1) } else { -edge.get(0) });
-        return (across, V::Scalar::EPSILON * V::Scalar::from_f64(2.0) * edge.length());
-    }
-    let other = points[2] - points[0];
-    let lengths = edge.length() * other.length();
-    (cross(edge, other), V::Scalar::EPSILON * V::Scalar::from_f64(5.5) * lengths)
 }

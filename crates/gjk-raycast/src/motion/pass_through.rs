@@ -22,11 +22,10 @@ use super::placed::Placed;
 use super::trajectory::TurningPlane;
 use crate::SignedDistanceOptions;
 use crate::body::{Pair, PointPair};
-use crate::contact::across;
 use crate::gjk::{Frame, Gjk, GjkOptions, gjk, rounding};
 use crate::observer::Observer;
 use crate::simplex::MAX_POINTS;
-use crate::symmetric::{Across, cross, dot};
+use crate::symmetric::{Across, axes_across, cross, dot};
 use crate::unit::is_moderate;
 
 /// What corners are wrong by, in units of what the pair says of its support points: they were turned back and forth beside that.
@@ -110,7 +109,7 @@ fn error_of<V: Vector>(placed: &Placed<'_, V>) -> V::Scalar {
 
 impl<S: Scalar> Seen<S> {
     fn along<V: Vector<Scalar = S>>(n: V, points: &[V; MAX_POINTS]) -> Self {
-        let [e, f] = across(n);
+        let [e, f] = axes_across(n);
         Self { at: points.map(|p| (e.dot(p), f.dot(p))), heights: points.map(|p| n.dot(p)) }
     }
 

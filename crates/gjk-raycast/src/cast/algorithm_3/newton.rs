@@ -7,7 +7,7 @@ use num_traits::Float as _;
 use crate::cast::bracket::Bracket;
 use crate::curvature::{between, is_stiff_across, share_of_second, swept, turned};
 use crate::simplex::{MAX_POINTS, Simplex};
-use crate::symmetric::{Across, Symmetric, dot};
+use crate::symmetric::{Across, Symmetric, axes_across, dot};
 
 /// Points of the swept body, each with the unit vector along which it is the support point; the newest last.
 pub(super) struct Recent<V: Vector>(Simplex<V>);
@@ -48,7 +48,7 @@ pub(super) fn newton<V: Vector>(
     if !bracket.body.is_curved() {
         return None;
     }
-    let seen = SeenAlongRay { bracket, axes: bracket.line().axes() };
+    let seen = SeenAlongRay { bracket, axes: axes_across(bracket.line().direction) };
     let mut found = [(V::ZERO, V::ZERO); 2 * MAX_POINTS];
     let mut len = 0;
     // The corners of the simplex first, since what was found last was found nearest the answer.

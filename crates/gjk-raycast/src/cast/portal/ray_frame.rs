@@ -15,7 +15,7 @@ use crate::cast::Stop;
 use crate::cast::bracket::Bracket;
 use crate::cast::line::Line;
 use crate::curvature;
-use crate::symmetric::{Across, Symmetric, cross};
+use crate::symmetric::{Across, Symmetric, axes_across, cross};
 
 /// A support point as it is seen along the ray.
 #[derive(Clone, Copy, Default)]
@@ -134,7 +134,7 @@ pub(super) struct RayFrame<V: Vector> {
 impl<V: Vector> RayFrame<V> {
     #[inline(always)]
     pub(super) fn new(line: Line<V>, radius: V::Scalar) -> Self {
-        let [e1, e2] = line.axes();
+        let [e1, e2] = axes_across(line.direction);
         Self { e1, e2, d: line.direction, foot: line.foot, radius }
     }
 

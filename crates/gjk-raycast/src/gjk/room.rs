@@ -1,0 +1,177 @@
+//! How deep bodies are in one another at least, without a look at all of the boundary: a ball about zero within a few
+//! points of their difference.
+
+use core::array;
+
+use convex_support::numerics::bound::{raised, raised_vector, roundings, roundings_of};
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use super::Frame;
+use super::near_contact::{begin, go_on};
+use crate::body::{AnyPair, Both, Pair, PointPair};
+use crate::shape::Shape;
+use crate::simplex::{MAX_POINTS, cross};
+use crate::symmetric::axes_across;
+
+/// The vector from a point of the difference to zero, which is near it.
+pub(crate) struct FromContact<V: Vector> {
+    /// The unit vector into the difference. Against it the vector is no longer than `along`, and not along it.
+    pub(crate) n: V,
+    pub(crate) along: V::Scalar,
+    /// How long the vector is at most across that, or what is left of it.
+    pub(crate) across: V::Scalar,
+    /// How long it is at most.
+    pub(crate) length: V::Scalar,
+}
+
+impl<V: Vector> FromContact<V> {
+    /// How far it reaches along a unit vector.
+    fn reach(&self, u: V) -> V::Scalar {
+        let part = self.along * (-self.n.dot(u)).max(V::Scalar::ZERO) + roundings(16.0, self.along) + self.across;
+        part.min(self.length)
+    }
+}
+
+/// What is known of two bodies, one of which has gone on from near contact; lengths in the world's unit.
+pub(crate) struct After<V: Vector> {
+    /// How far apart they are along an axis at least, a unit vector from the second body to the first.
+    pub(crate) lower: V::Scalar,
+    pub(crate) axis: V,
+    /// How many times the vector from contact is in the difference for certain; not positive where zero may not be.
+    pub(crate) times: V::Scalar,
+    pub(crate) iterations: usize,
+}
+
+/// Looks at bodies after contact, which are known where they are to `astray`. How deep they are is told by the points
+/// of the difference nearest to those at a distance `aside` from zero along the normal at contact and across it, both
+/// ways.
+///
+/// These are the corners of an octahedron, which is in the difference with all that is within. Under a plane across the
+/// normal its corner is at the plane; beside an edge or an apex, too, the corners that would be outside are on the
+/// boundary.
+#[cold]
+#[inline(never)]
+pub(crate) fn look_after<V: Vector>(
+    [a, b]: [Shape<'_, V>; 2],
+    from: &FromContact<V>,
+    [aside, astray]: [V::Scalar; 2],
+    max_iterations: usize,
+) -> After<V> {
+    let shapes = Both::<_, _>::new(a, b);
+    let mut pair: AnyPair<'_, V> = Pair::new(&shapes);
+    let offset = pair.core_a.origin - pair.core_b.origin;
+    let size = pair.size(offset) + aside;
+    let frame = Frame::new(&mut pair, offset, size);
+    let mut state = begin(&pair, &frame, size, max_iterations);
+    state.ensure_measured();
+    // Where the closest points are known at once, no plane is yet.
+    if state.length > frame.radius && !state.lower.is_finite() {
+        let _ = go_on(&mut state, &mut pair, &frame, max_iterations);
+    }
+    let mut iterations = state.iterations;
+    let lower = (state.lower - frame.radius - frame.error) * frame.scale - astray;
+    let mut times = V::Scalar::ZERO;
+    if lower <= V::Scalar::ZERO {
+        let [u, w] = axes_across(from.n);
+        let (mut corners, mut is_found) = ([[V::ZERO; 2]; 3], frame.error.is_finite());
+        for (ends, axis) in corners.iter_mut().zip([from.n, u, w]).take(V::DIM) {
+            *ends = [axis, -axis].map(|axis| {
+                let target = axis * (aside * frame.per_unit);
+                let seen = Frame { offset: frame.offset - target, ..frame };
+                let mut found = begin(&pair, &seen, size, max_iterations.saturating_sub(iterations));
+                found.ensure_measured();
+                iterations += found.iterations;
+                is_found &= !found.simplex.points().is_empty();
+                let PointPair { a, b } = found.simplex.weighted_witness();
+                let point = a - b + frame.offset;
+                let (outwards, length) = (target - point, (target - point).norm());
+                if length > frame.radius { point + outwards * (frame.radius / length) } else { target }
+            });
+        }
+        if is_found {
+            let [of_a, of_b] = [a.rounding(), b.rounding()];
+            // In units of `ε/2`, weighted sums lose 5, the weights' own sum 4, the difference and its sum with the
+            // offset one each; the offset loses 2, and the step to the surface 4.
+            let points = (of_a.extent + of_b.extent) * frame.per_unit;
+            let error = raised_vector((of_a.error + of_b.error) * frame.per_unit)
+                + roundings_of(12.0, points)
+                + roundings_of(4.0, frame.offset.abs() + V::splat(frame.radius));
+            let astray = astray * frame.per_unit;
+            let error = |u: V| raised(u.abs().dot(error)).min(frame.error + frame.noise) + astray;
+            times = room_around_zero(faces_of_octahedron(&corners), error, |u| from.reach(u)) * frame.scale;
+        }
+    }
+    After { lower, axis: state.axis.unit().unwrap_or(from.n), times, iterations }
+}
+
+/// The corners of each face of an octahedron, given both ends of its axes, or of a square: all in the order in which
+/// one sees them turn the same way from outside, where it is convex.
+fn faces_of_octahedron<V: Vector>(ends: &[[V; 2]; 3]) -> impl Iterator<Item = [V; MAX_POINTS]> {
+    (0..1_usize << V::DIM).map(|side| {
+        let mut corners: [V; MAX_POINTS] =
+            array::from_fn(|i| if i < V::DIM { ends[i][side >> i & 1] } else { V::ZERO });
+        if side.count_ones() % 2 == 1 {
+            corners.swap(0, 1);
+        }
+        corners
+    })
+}
+
+/// The same of the simplex with these corners, one more than there are dimensions.
+pub(crate) fn faces_of_simplex<V: Vector>(corners: &[V; MAX_POINTS]) -> impl Iterator<Item = [V; MAX_POINTS]> {
+    let faces: &[[usize; 3]] =
+        if V::DIM == 2 { &[[0, 1, 2], [1, 2, 0], [2, 0, 1]] } else { &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] };
+    faces.iter().map(|face| array::from_fn(|i| corners[face[i % 3]]))
+}
+
+/// How many times a set about zero is within a polytope which has these faces, if that is wrong along a unit vector by
+/// an error; not positive where zero may be outside. The set has a reach along a unit vector: one, where the radius of
+/// a ball is asked for.
+///
+/// Where zero is behind all faces, or before all of them, the cones from zero to the faces fill the space, and each is
+/// in the polytope as far as the plane of its face is away. If all corners are wrong by less than that, zero is still
+/// inside, and so is what is behind all planes.
+pub(crate) fn room_around_zero<V: Vector>(
+    faces: impl Iterator<Item = [V; MAX_POINTS]>,
+    error: impl Fn(V) -> V::Scalar,
+    reach: impl Fn(V) -> V::Scalar,
+) -> V::Scalar {
+    let (mut sides, mut is_solid) = ([V::Scalar::infinity(); 2], false);
+    for corners in faces {
+        let (normal, wrong) = across_corners(&corners);
+        // Of corners that are one the faces beside it are none.
+        if normal == V::ZERO {
+            continue;
+        }
+        is_solid = true;
+        let length = normal.length();
+        for (room, normal) in sides.iter_mut().zip([normal, -normal]) {
+            let height = (normal.dot(corners[0]) - wrong * corners[0].length()) / length;
+            let u = normal / length;
+            let times = (height - error(u)) / reach(u);
+            if times.is_nan() {
+                return V::Scalar::ZERO;
+            }
+            *room = room.min(times);
+        }
+    }
+    let room = sides[0].max(sides[1]);
+    if is_solid { room } else { V::Scalar::ZERO }
+}
+
+/// A vector across the first points, as many as there are dimensions; and what its product with another is wrong by,
+/// relative to the other's length.
+///
+/// In space, with `u = ε/2`, both edges are wrong by `u`, and a coordinate of their product is a difference of
+/// products: `4u·√3` of the product of the lengths. The scalar product loses `3u`.
+pub(crate) fn across_corners<V: Vector>(points: &[V; MAX_POINTS]) -> (V, V::Scalar) {
+    let edge = points[1] - points[0];
+    if V::DIM == 2 {
+        let across = V::from_fn(|i| if i == 0 { edge.get(1) } else { -edge.get(0) });
+        return (across, V::Scalar::EPSILON * V::Scalar::from_f64(2.0) * edge.length());
+    }
+    let other = points[2] - points[0];
+    let lengths = edge.length() * other.length();
+    (cross(edge, other), V::Scalar::EPSILON * V::Scalar::from_f64(5.5) * lengths)
+}
