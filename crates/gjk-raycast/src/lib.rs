@@ -165,13 +165,13 @@ pub use error::RayCastError;
 pub use half_space::HalfSpace;
 pub use intersects::{intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
-pub use linear_cast::{Motion, linear_cast, linear_cast_with};
+pub use linear_cast::{linear_cast, linear_cast_with};
 pub use motion::{
     ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionHit, MotionIterate, MovingBall, Pose, RigidMotion,
     Trajectory, TurningPlane, motion_cast, motion_cast_with,
 };
 pub use options::{CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, RayCastOptions, StartInContact};
-pub use ray::Ray;
+pub use ray::{Motion, Ray};
 pub use ray_cast::{ray_cast, ray_cast_with};
 #[cfg(feature = "rayon")]
 pub use ray_casts::par_ray_casts;

@@ -8,43 +8,16 @@ use crate::body::{Body, Both, Pair, PointPair, Shapes as _};
 use crate::cast::{Cast, CastHit, Part, cast, direct, settle_start};
 use crate::compiled_once::compiled_once;
 use crate::observer::Observer;
-use crate::ray::{check_finite, check_numbers};
 use crate::shape::Shape;
 use crate::start_in_contact::Start;
 use crate::{
-    Iterate, LinearCast, LinearCastOptions, LinearHit, Miss, Outcome, Ray, RayCastError, RayCastOptions,
+    Iterate, LinearCast, LinearCastOptions, LinearHit, Miss, Motion, Outcome, Ray, RayCastError, RayCastOptions,
     StartInContact, Status,
 };
 
 /// Shapes that are apart by so many ε of their sizes, and of how far away they are, may be in contact: they and their places are rounded.
 const NEAR: f64 = 16.0;
 const NEAR_OF_FAR: f64 = 4.0;
-
-/// The error of the limits of a cast of bodies that are none. Within an infinite target distance of one another are
-/// any two bodies at any time, but a body swept by that is none.
-pub(crate) fn check_limits<S: Scalar>(max_time: S, target_distance: S) -> Result<(), RayCastError> {
-    let target = if target_distance < S::infinity() { target_distance } else { S::nan() };
-    check_numbers([("max_time", max_time), ("target_distance", target)])
-}
-
-/// The velocities of two shapes, in units of length per unit of time.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Motion<V> {
-    /// The velocity of `a`.
-    pub velocity_a: V,
-    /// The velocity of `b`.
-    pub velocity_b: V,
-}
-
-impl<V: Vector> Motion<V> {
-    /// The error of a motion that is none, or cannot be cast with these options.
-    pub(crate) fn check(&self, options: &LinearCastOptions<V>) -> Result<(), RayCastError> {
-        check_finite("velocity_a", self.velocity_a)?;
-        check_finite("velocity_b", self.velocity_b)?;
-        check_limits(options.max_time, options.target_distance)
-    }
-}
 
 /// When and where two shapes that move at constant velocities, without turning, first touch.
 ///

@@ -1,9 +1,9 @@
-//! Rays.
+//! Rays, and the velocities that make rays of shapes that move.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::{RayCastError, RayCastOptions};
+use crate::{LinearCastOptions, RayCastError, RayCastOptions};
 
 /// The ray of the points `source + λ·direction`, λ ≥ 0. The direction need not be of unit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,5 +59,31 @@ pub(crate) fn check_finite<V: Vector>(parameter: &'static str, vector: V) -> Res
     match (0..V::DIM).find(|&i| !vector.get(i).is_finite()) {
         Some(index) => Err(RayCastError::NonFinite { parameter, index }),
         None => Ok(()),
+    }
+}
+
+/// The error of the limits of a cast of bodies that are none. Within an infinite target distance of one another are
+/// any two bodies at any time, but a body swept by that is none.
+pub(crate) fn check_limits<S: Scalar>(max_time: S, target_distance: S) -> Result<(), RayCastError> {
+    let target = if target_distance < S::infinity() { target_distance } else { S::nan() };
+    check_numbers([("max_time", max_time), ("target_distance", target)])
+}
+
+/// The velocities of two shapes, in units of length per unit of time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Motion<V> {
+    /// The velocity of `a`.
+    pub velocity_a: V,
+    /// The velocity of `b`.
+    pub velocity_b: V,
+}
+
+impl<V: Vector> Motion<V> {
+    /// The error of a motion that is none, or cannot be cast with these options.
+    pub(crate) fn check(&self, options: &LinearCastOptions<V>) -> Result<(), RayCastError> {
+        check_finite("velocity_a", self.velocity_a)?;
+        check_finite("velocity_b", self.velocity_b)?;
+        check_limits(options.max_time, options.target_distance)
     }
 }

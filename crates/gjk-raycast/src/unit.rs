@@ -64,3 +64,8 @@ fn made_moderate<V: Vector>(x: V::Scalar, y: V::Scalar, z: V::Scalar) -> Option<
     let near_one = v * power_of_two_near(v.abs().max_element()).recip();
     if is_moderate(near_one.length_squared()) { Some(near_one) } else { v.unit() }
 }
+
+/// A bound on the length of a vector that is no more than √3 too large.
+pub(crate) fn length_bound<V: Vector>(v: V) -> V::Scalar {
+    v.abs().max_element() * V::Scalar::from_f64(1.7321)
+}

@@ -5,8 +5,7 @@ use num_traits::Float as _;
 
 use super::SignedDistanceOptions;
 use super::boundary::Boundary;
-use super::cores::{Cores, Vertex};
-use super::expansion::WayOut;
+use super::cores::{Cores, Vertex, WayOut};
 use super::newton::{Piece, Side};
 
 /// Newton's steps from one direction.

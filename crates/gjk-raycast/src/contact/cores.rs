@@ -20,6 +20,16 @@ use crate::unit::lost_to_underflow;
 const SUM: f64 = 2.6;
 const OFFSET: f64 = 2.1;
 
+/// Where the boundary is smooth, a way ends at the support point but for the square root of this part of its length.
+const SMOOTH: f64 = 1e-3;
+
+/// The cosine of the angle between a facet's normal and the way out, below which the normal leans towards the way.
+const NEAR_BY: f64 = 0.9;
+
+/// The part of the way from a facet's normal to the way out that is leaned, of facets with a corner where the way ends. With the whole of
+/// it, or with some of it at others, ellipsoids take more support points.
+const LEAN: f64 = 0.8;
+
 /// A support point of the difference, and the points of both cores that it is made of.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vertex<V> {
@@ -27,6 +37,47 @@ pub(crate) struct Vertex<V> {
     /// The direction it was found along.
     pub(super) along: V,
     pub(super) pair: PointPair<V>,
+}
+
+/// A plane that supports the difference, by the support point, which knows the outward unit normal that it was found along.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WayOut<V: Vector> {
+    /// The support value along it, which is negative where its plane separates the cores.
+    pub(super) h: V::Scalar,
+    pub(super) vertex: Vertex<V>,
+}
+
+impl<V: Vector> WayOut<V> {
+    pub(super) fn new(vertex: Vertex<V>) -> Self {
+        Self { h: vertex.along.dot(vertex.point), vertex }
+    }
+
+    /// The unit vector out of the difference.
+    pub(super) fn u(&self) -> V {
+        self.vertex.along
+    }
+
+    /// From the support point to the end of the way, along the plane.
+    pub(super) fn rest(&self) -> V {
+        self.u() * self.h - self.vertex.point
+    }
+
+    /// The unit normal of a facet with these corners, leaned towards the way where that ends at one of them and at a smooth place.
+    ///
+    /// At a distance `x` from such a place, the ball of radius `h` about zero is `x²·(1/h − 1/R)/2` below the boundary of `K`, whose radius of
+    /// curvature is `R`, and a facet of size `s` at most `s²/8R`. So the facets that the proof needs may grow in proportion to `x`. The
+    /// support point along a facet's normal is above its middle, and halves it; one nearer to the way leaves a larger facet outside, so
+    /// that fewer lie between the way and the first facets. To second order a support point is beyond the facet if it is within the circle
+    /// through its corners, whose centre the normal leads to. Where the way ends at a corner, all of the way towards it is.
+    pub(super) fn leaned(&self, normal: V, corners: &[V]) -> V {
+        let (u, point) = (self.u(), self.vertex.point);
+        let aside = self.rest().length_squared();
+        let is_smooth = aside < self.h * self.h * V::Scalar::from_f64(SMOOTH);
+        if !(is_smooth && normal.dot(u) > V::Scalar::from_f64(NEAR_BY) && corners.contains(&point)) {
+            return normal;
+        }
+        (normal + (u - normal) * V::Scalar::from_f64(LEAN)).unit().unwrap_or(normal)
+    }
 }
 
 /// The difference `K = K_A − K_B` of two cores as seen from zero, in units of a power of two near its size.

@@ -6,11 +6,9 @@ use smallvec::SmallVec;
 
 use super::clip::{Overlap, clip};
 use super::outline::{ContactPlane, Outline, Part};
+use super::result::MAX_POINTS;
 use super::{ContactPoint, SignedDistance};
 use crate::symmetric::{Across, axes_across, cross, dot};
-
-/// As many points as a manifold has.
-pub(super) const MAX_POINTS: usize = 4;
 
 /// How deep behind its supporting plane a shape is taken for its feature, as a part of the smaller shape's size.
 const SLAB: f64 = 1.0 / 64.0;

@@ -2,8 +2,10 @@
 
 use convex_support::Vector;
 
-use super::manifold::MAX_POINTS;
 use crate::Status;
+
+/// As many points as a manifold has.
+pub(super) const MAX_POINTS: usize = 4;
 
 /// The answer of [`signed_distance`](crate::signed_distance).
 #[derive(Clone, Copy, Debug, PartialEq)]

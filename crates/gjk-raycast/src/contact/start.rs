@@ -4,8 +4,7 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::boundary::Boundary;
-use super::cores::{Cores, Vertex};
-use super::expansion::WayOut;
+use super::cores::{Cores, Vertex, WayOut};
 use crate::gjk::Gjk;
 use crate::simplex::{MAX_POINTS, cross};
 

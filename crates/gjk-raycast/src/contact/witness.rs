@@ -3,8 +3,7 @@
 use convex_support::{Scalar, Vector};
 
 use super::boundary::Boundary;
-use super::cores::Cores;
-use super::expansion::WayOut;
+use super::cores::{Cores, WayOut};
 use super::met::Met;
 use crate::body::PointPair;
 use crate::gjk::Gjk;

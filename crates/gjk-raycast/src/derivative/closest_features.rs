@@ -1,9 +1,8 @@
 //! The features of two bodies that face each other where they are closest.
 
-use convex_support::{CoreKind, Scalar, SupportMap, Vector};
+use convex_support::{Core, CoreKind, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
 
-use super::look::Bodies;
 use super::span::{Joint, Span};
 use crate::contact::Outline;
 use crate::symmetric::Symmetric;
@@ -56,6 +55,14 @@ pub struct ClosestFeatures<V: Vector> {
     pub(super) is_tied: bool,
     /// Whether the answer is zero and cannot fall, or is so to its error.
     pub(super) is_at_floor: bool,
+}
+
+/// Two bodies, and the unit of length.
+pub(super) struct Bodies<'s, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
+    pub(super) a: &'s A,
+    pub(super) b: &'s B,
+    pub(super) cores: [Core<A::Vector>; 2],
+    pub(super) unit: ScalarOf<A>,
 }
 
 /// Where two bodies are closest.

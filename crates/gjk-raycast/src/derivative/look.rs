@@ -3,7 +3,7 @@
 use convex_support::{Core, CoreKind, Feature, Hint, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
 
-use super::closest_features::{Closest, ClosestFeatures};
+use super::closest_features::{Bodies, Closest, ClosestFeatures};
 use super::span::Span;
 use crate::contact::{ContactPlane, Outline};
 use crate::symmetric::{Across, Symmetric, axes_across, dot};
@@ -18,14 +18,6 @@ const SURPRISE: f64 = 0.25;
 
 /// The curves at the ends of an edge are the same if they bend alike to this part of their sum.
 const ALIKE: f64 = 1.0 / 64.0;
-
-/// Two bodies, and the unit of length.
-pub(super) struct Bodies<'s, A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized> {
-    pub(super) a: &'s A,
-    pub(super) b: &'s B,
-    pub(super) cores: [Core<A::Vector>; 2],
-    pub(super) unit: ScalarOf<A>,
-}
 
 impl<A, B> Bodies<'_, A, B>
 where

@@ -3,8 +3,7 @@
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
 
-use super::closest_features::{Closest, ClosestFeatures, rounding};
-use super::look::Bodies;
+use super::closest_features::{Bodies, Closest, ClosestFeatures, rounding};
 use super::overlap::are_apart;
 use super::span::Span;
 

@@ -6,22 +6,11 @@
 use convex_support::{Rounding, Scalar, SupportMap as _, Vector};
 use num_traits::Float;
 
-use super::instant::{IN_PLANE, Instant, LONG, NEAR};
+use super::instant::{Closeness, IN_PLANE, Instant, LONG, NEAR};
 use super::moving_pair::MovingPair;
 use crate::body::{Pair, TracedSupport as _};
 use crate::contact::Uncertainty;
 use crate::gjk::rounding;
-
-/// How closely bodies are to be looked at.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Look {
-    /// Roughly, even where they are nearly in contact.
-    Rough,
-    /// Roughly, but closely where they are nearly in contact.
-    AsNear,
-    /// Closely.
-    Close,
-}
 
 /// A plane between the closest points of two cores, lengths in the world's unit.
 struct Between<V: Vector> {
@@ -44,7 +33,7 @@ impl<V: Vector> MovingPair<'_, V> {
     ///
     /// All is compiled into one function, so that what is known of the bodies at the time need not be written to memory and read again.
     #[inline(never)]
-    pub(super) fn by_closest_points(&self, time: V::Scalar, axis: V, look: Look) -> Option<Instant<V>> {
+    pub(super) fn by_closest_points(&self, time: V::Scalar, axis: V, closeness: Closeness) -> Option<Instant<V>> {
         let placed = self.placed_here(time);
         let mut pair = Pair::new(&placed);
         let offset = placed.offset;
@@ -62,13 +51,14 @@ impl<V: Vector> MovingPair<'_, V> {
         let (lower, radius) = (unit.dot(w + offset), pair.radius());
         let distance = lower - radius;
         let roughly = rounding(size) + pair.error();
-        let is_rough = look != Look::Close && distance > roughly * Scalar::from_f64(NEAR);
+        let is_rough = closeness != Closeness::Close && distance > roughly * Scalar::from_f64(NEAR);
         let (error, upper) = if is_rough {
             (roughly, Float::infinity())
         } else {
             // Not where they have passed through one another.
-            let is_known =
-                look != Look::Rough && length > size * Scalar::from_f64(LONG) && unit.dot(axis) > Scalar::ZERO;
+            let is_known = closeness != Closeness::Rough
+                && length > size * Scalar::from_f64(LONG)
+                && unit.dot(axis) > Scalar::ZERO;
             if !is_known {
                 return None;
             }

@@ -4,8 +4,7 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::first_contact::{End, Search};
-use super::from_contact::Stage;
-use super::instant::{Instant, Limits};
+use super::instant::{Instant, Limits, Stage};
 use crate::Status;
 
 /// How much deeper than touching an overlap is looked for, in units of what the distance may be wrong by.

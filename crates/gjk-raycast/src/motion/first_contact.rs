@@ -10,9 +10,7 @@ use num_traits::Float as _;
 
 use super::approach::Approach;
 use super::free_interval::acceleration_if_free;
-use super::from_contact::{Base, Stage};
-use super::instant::{Instant, Limits, NEAR};
-use super::next_time::PATIENCE;
+use super::instant::{Base, Instant, Limits, NEAR, Stage};
 use super::options::MotionCastOptions;
 use super::result::{MotionCast, MotionHit, MotionIterate};
 use super::trajectory::TurningPlane;
@@ -20,6 +18,8 @@ use crate::{Miss, Outcome, StartInContact, Status};
 
 /// Where to be when a contact is as near as can be told: its distance in units of what that may be wrong by.
 pub(super) const AIM: f64 = 1.5;
+/// How often in a row the search for a contact may come nearer by less than half before it halves the interval.
+pub(super) const PATIENCE: u8 = 2;
 
 /// The square of an angle, in radians, that is too far for a normal to have turned for a step to be like the one before.
 const FAR: f64 = 0.25;

@@ -31,8 +31,7 @@
 use convex_support::{Scalar, Vector};
 
 use super::approach::Approach;
-use super::from_contact::Base;
-use super::instant::Instant;
+use super::instant::{Base, Instant};
 use super::trajectory::TurningPlane;
 
 /// What may be lost to rounding where both sides of the condition are computed.

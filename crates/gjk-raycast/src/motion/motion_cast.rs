@@ -12,7 +12,7 @@ use super::trajectory::Trajectory;
 use crate::body::{Both, Shapes};
 use crate::compiled_once::compiled_once;
 use crate::error::RayCastError;
-use crate::linear_cast::check_limits;
+use crate::ray::check_limits;
 use crate::ray::{check_finite, check_numbers};
 use crate::{LinearCast, LinearCastOptions, LinearHit, Motion, Outcome, linear_cast};
 

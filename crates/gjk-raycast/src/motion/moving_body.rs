@@ -7,6 +7,7 @@ use super::moved::Moved;
 use super::rigid_motion::{RigidMotion, SpinOf, turn_error};
 use super::trajectory::{MovingBall, Trajectory, TurningPlane};
 use crate::shape::Shape;
+use crate::unit::length_bound;
 
 /// A body and its motion.
 pub(super) struct MovingBody<'s, V: Vector> {
@@ -188,9 +189,4 @@ impl<V: Vector> Rigid<V> {
 impl<V: Vector> Place<V> {
     /// Where a body starts.
     const START: Self = Self { shift: V::ZERO, swing: V::ZERO, rotation: None, error: V::Scalar::ZERO };
-}
-
-/// A bound on the length of a vector that is no more than √3 too large.
-pub(super) fn length_bound<V: Vector>(v: V) -> V::Scalar {
-    v.abs().max_element() * V::Scalar::from_f64(1.7321)
 }

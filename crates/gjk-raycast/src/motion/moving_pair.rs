@@ -8,17 +8,16 @@ use num_traits::Float;
 
 use super::approach::Approach;
 use super::boxes::{Block, Span};
-use super::closest_points::Look;
 use super::corners::Corners;
-use super::instant::{Instant, Limits};
-use super::moving_body::{MovingBody, length_bound};
+use super::instant::{Closeness, Instant, Limits};
+use super::moving_body::MovingBody;
 use super::placed::Placed;
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::SignedDistanceOptions;
 use crate::body::{Pair, Shapes, TracedSupport as _};
 use crate::contact::signed_distance_and_axis;
 use crate::gjk::rounding;
-use crate::unit::{is_moderate, lost_to_underflow};
+use crate::unit::{is_moderate, length_bound, lost_to_underflow};
 
 /// Two bodies and their motions.
 pub(super) struct MovingPair<'s, V: Vector> {
@@ -63,6 +62,34 @@ impl<'s, V: Vector> MovingPair<'s, V> {
     /// Counts support points.
     pub(super) fn count(&self, iterations: usize) {
         self.iterations.set(self.iterations.get() + iterations);
+    }
+
+    /// The bodies where they are at a time.
+    #[inline(never)]
+    pub(super) fn placed(&self, time: V::Scalar) -> Placed<'_, V> {
+        self.placed_here(time)
+    }
+
+    /// The same, compiled into its caller.
+    #[inline(always)]
+    pub(super) fn placed_here(&self, time: V::Scalar) -> Placed<'_, V> {
+        let (a, b) = (self.a.place(time), self.b.place(time));
+        // What lies between is of the order of the bodies, however far from the world's origin they are.
+        let between = self.a.core.origin - self.b.core.origin;
+        let (shifts, swings) = (a.shift - b.shift, a.swing - b.swing);
+        let offset = between + shifts + swings;
+
+        // A rounding for each difference and sum.
+        let magnitude = length_bound(between.abs() + shifts.abs() + swings.abs());
+        let rounding = V::Scalar::from_f64(1.5) * V::Scalar::EPSILON * magnitude;
+        Placed {
+            shapes: self.shapes,
+            hints: &self.hints,
+            a: self.a.moved(&a, offset, rounding + (a.error + b.error)),
+            b: self.b.moved(&b, V::ZERO, Scalar::ZERO),
+            offset,
+            place: self.b.core.origin + b.shift + b.swing,
+        }
     }
 
     /// The bodies at a time, whose closest points are not known in closed form.
@@ -147,8 +174,8 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
         if !self.knows_points {
             return self.by_search(time, axis, limits);
         }
-        let look = if limits.depth > Scalar::ZERO { Look::Rough } else { Look::AsNear };
-        let there = self.by_closest_points(time, axis, look);
+        let closeness = if limits.depth > Scalar::ZERO { Closeness::Rough } else { Closeness::AsNear };
+        let there = self.by_closest_points(time, axis, closeness);
         there.unwrap_or_else(|| self.by_signed_distance(time, &self.placed(time), axis, limits))
     }
 
@@ -156,7 +183,7 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
         let known = match &self.boxes {
             _ if limits.depth > Scalar::ZERO => None,
             Some(boxes) => self.by_boxes(time, boxes, axis, limits, true),
-            None if self.knows_points => self.by_closest_points(time, axis, Look::Close),
+            None if self.knows_points => self.by_closest_points(time, axis, Closeness::Close),
             None => None,
         };
         known.unwrap_or_else(|| self.closely_placed(time, &self.placed(time), axis, limits))

@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::first_contact::{AIM, Search};
+use super::first_contact::{AIM, PATIENCE, Search};
 use super::instant::Instant;
 use super::trajectory::TurningPlane;
 
@@ -13,8 +13,6 @@ const CAUTION: f64 = 0.9;
 const LEFT: f64 = 0.05;
 /// Steps of Newton's method from the root of a parabola to that of a cubic.
 const STEPS: usize = 2;
-/// How often in a row the search for a contact may come nearer by less than half before it halves the interval.
-pub(super) const PATIENCE: u8 = 2;
 
 impl<V: Vector> Search<'_, V> {
     /// Where to look next; `None` where no time lies between those known.

@@ -9,14 +9,14 @@ use super::approach::Approach;
 use super::first_contact::Search;
 use super::instant::{Instant, Limits};
 use super::motion_cast::{check, checked, linear_options, of_linear_cast};
-use super::moving_body::{MovingBody, length_bound};
+use super::moving_body::MovingBody;
 use super::options::MotionCastOptions;
 use super::result::{MotionCast, MotionIterate};
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::compiled_once::compiled_once;
 use crate::half_space::{Level, Plane};
 use crate::shape::{Shape, WithoutLines};
-use crate::unit::lost_to_underflow;
+use crate::unit::{length_bound, lost_to_underflow};
 use crate::{HalfSpace, Motion, RayCastError};
 
 impl<V: Vector> HalfSpace<V> {

@@ -16,7 +16,6 @@ use num_traits::Float as _;
 
 use super::corners::Corners;
 use super::instant::Instant;
-use super::moving_body::length_bound;
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use super::trajectory::TurningPlane;
@@ -26,7 +25,7 @@ use crate::gjk::{Frame, Gjk, GjkOptions, gjk, rounding};
 use crate::observer::Observer;
 use crate::simplex::MAX_POINTS;
 use crate::symmetric::{Across, axes_across, cross, dot};
-use crate::unit::is_moderate;
+use crate::unit::{is_moderate, length_bound};
 
 /// What corners are wrong by, in units of what the pair says of its support points: they were turned back and forth beside that.
 const ERRORS: f64 = 4.0;

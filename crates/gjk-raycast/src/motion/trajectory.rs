@@ -4,7 +4,7 @@ use convex_support::{BoundingSphere, Matrix, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::RigidMotion;
-use super::moving_body::length_bound;
+use crate::unit::length_bound;
 
 /// A rigid motion: where the body is at any time, and a bound on the acceleration of its points in between.
 ///
