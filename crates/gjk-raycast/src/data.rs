@@ -52,7 +52,7 @@ pub(crate) mod or_minus_infinity {
 /// A half-space, whose length of the normal is computed again.
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename = "HalfSpace", deny_unknown_fields)]
-struct Plane<V, S> {
+struct HalfSpaceData<V, S> {
     normal: V,
     offset: S,
 }
@@ -62,7 +62,7 @@ where
     V::Scalar: Serialize,
 {
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        Plane { normal: self.normal(), offset: self.offset() }.serialize(serializer)
+        HalfSpaceData { normal: self.normal(), offset: self.offset() }.serialize(serializer)
     }
 }
 
@@ -71,7 +71,7 @@ where
     V::Scalar: Deserialize<'de>,
 {
     fn deserialize<D: Deserializer<'de>>(data: D) -> Result<Self, D::Error> {
-        let Plane { normal, offset } = Plane::deserialize(data)?;
+        let HalfSpaceData { normal, offset } = HalfSpaceData::deserialize(data)?;
         Self::new(normal, offset).map_err(D::Error::custom)
     }
 }

@@ -6,7 +6,7 @@ use num_traits::Float;
 use crate::body::{Both, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::compiled_once::compiled_once;
 use crate::distance::distance;
-use crate::gjk::{Boxes, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, is_near_contact, rounding};
+use crate::gjk::{BoxesMeet, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, is_near_contact, rounding};
 use crate::observer::Observer;
 use crate::shape::Shape;
 use crate::unit::is_moderate;
@@ -102,7 +102,7 @@ where
         known = Some(point);
     }
     let cores = [pair.core_a, pair.core_b];
-    let first = First { offset, direction: first, point: known };
+    let first = FirstSupport { offset, direction: first, point: known };
     by_search(&shapes, cores, &options, &first, observer)
 }
 
@@ -112,7 +112,7 @@ compiled_once! {
         shapes: &dyn Shapes<Vector = V>,
         cores: [Core<V>; 2],
         options: &IntersectOptions<V>,
-        first: &First<V>,
+        first: &FirstSupport<V>,
         observer: &mut Observer<'_, V>,
     ) -> Intersection<V> {
         searched
@@ -120,7 +120,7 @@ compiled_once! {
 }
 
 /// What was found about the first direction.
-struct First<V> {
+struct FirstSupport<V> {
     /// The difference of the origins.
     offset: V,
     direction: V,
@@ -132,7 +132,7 @@ fn searched<V: Vector>(
     shapes: &dyn Shapes<Vector = V>,
     cores: [Core<V>; 2],
     options: &IntersectOptions<V>,
-    first: &First<V>,
+    first: &FirstSupport<V>,
     observer: &mut Observer<'_, V>,
 ) -> Intersection<V> {
     let pair = &mut Pair::of_cores(shapes, cores);
@@ -145,8 +145,8 @@ fn searched<V: Vector>(
         let (v, w) = (first.direction, point + first.offset);
         observer.show(|| Iterate { iteration: 0, simplex: &[], v, w, scale: Scalar::ONE, lower: zero, upper });
         let (overlap, axis) = match boxes {
-            Boxes::Meet => (true, None),
-            Boxes::Apart(axis) => (false, Some(axis)),
+            BoxesMeet::Meet => (true, None),
+            BoxesMeet::Apart(axis) => (false, Some(axis)),
         };
         return Intersection { overlap, axis, status: Status::Converged, iterations: 1 };
     }

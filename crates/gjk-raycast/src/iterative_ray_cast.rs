@@ -68,7 +68,7 @@ pub fn iterative_ray_cast_with<V: Vector>(
     if !origin.is_finite() {
         return Ok(undecided(V::Scalar::ZERO, Status::Stalled, 1));
     }
-    let mut way = Way::new(ray, origin, &options);
+    let mut way = Travelled::new(ray, origin, &options);
     let mut iterations = 1;
     loop {
         let x = way.x();
@@ -111,7 +111,7 @@ fn undecided<V: Vector>(lower: V::Scalar, status: Status, iterations: usize) -> 
 }
 
 /// How far a ray has come, and the last plane that it crosses on the way.
-struct Way<'o, V: Vector> {
+struct Travelled<'o, V: Vector> {
     ray: Ray<V>,
     options: &'o RayCastOptions<V>,
     /// The point that the line is relative to, and the unit of its lengths.
@@ -142,7 +142,7 @@ enum Step<V: Vector> {
     Misses(Outcome<RayHit<V>, V>),
 }
 
-impl<'o, V: Vector> Way<'o, V> {
+impl<'o, V: Vector> Travelled<'o, V> {
     fn new(ray: Ray<V>, origin: V, options: &'o RayCastOptions<V>) -> Self {
         let zero = V::Scalar::ZERO;
         let scale = power_of_two_near((ray.source - origin).norm());

@@ -9,7 +9,7 @@ use crate::cast::{Cast, CastHit, Part, cast, direct, settle_start};
 use crate::compiled_once::compiled_once;
 use crate::observer::Observer;
 use crate::shape::Shape;
-use crate::start_in_contact::Start;
+use crate::start_in_contact::StartingPair;
 use crate::{
     Iterate, LinearCast, LinearCastOptions, LinearHit, Miss, Motion, Outcome, Ray, RayCastError, RayCastOptions,
     StartInContact, Status,
@@ -189,7 +189,7 @@ fn answer<V: Vector>(
         // What rests does not come to where a ray from its start would be.
         answer.upper = V::Scalar::infinity();
     }
-    let start = Start { a, b, target };
+    let start = StartingPair { a, b, target };
     answer.outcome = match &cast.outcome {
         Outcome::Hit(hit) if hit.normal.is_some() || hit.lambda != zero => {
             Outcome::Hit(hit_on_the_way(hit, cast.scale, [core_a, core_b], motion.velocity_b))
@@ -283,7 +283,7 @@ fn hit_on_the_way<V: Vector>(
 #[inline(never)]
 fn only_if_deeper<V: Vector>(
     answer: &mut LinearCast<V>,
-    start: &Start<'_, V>,
+    start: &StartingPair<'_, V>,
     motion: Motion<V>,
     options: &LinearCastOptions<V>,
     slack: V::Scalar,

@@ -1,6 +1,6 @@
 //! Where a ray enters a shape: the paper's question, answered by a closed form, by a portal or by its Algorithm 3.
 
-use convex_support::{CertainCrossing, LineQuery, Point, Scalar, SupportMap, Vector};
+use convex_support::{CertainCrossing, LineQuery, Point, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
 use crate::body::{Body, Measures, Single, TracedSupport as _};
@@ -10,8 +10,6 @@ use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
 use crate::unit::power_of_two_near;
 use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, Status};
-
-type ScalarOf<S> = <<S as SupportMap>::Vector as Vector>::Scalar;
 
 /// The first point of a ray in a shape, with the normal there.
 ///

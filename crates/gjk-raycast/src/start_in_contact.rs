@@ -17,14 +17,14 @@ const FARTHER: f64 = 8.0;
 const LOOKS: usize = 18;
 
 /// Two shapes where a cast begins. They are asked behind pointers, so that what is rarely needed is compiled once.
-pub(crate) struct Start<'s, V: Vector> {
+pub(crate) struct StartingPair<'s, V: Vector> {
     pub(crate) a: Shape<'s, V>,
     pub(crate) b: Shape<'s, V>,
     /// How far apart they count as touching.
     pub(crate) target: V::Scalar,
 }
 
-impl<V: Vector> Start<'_, V> {
+impl<V: Vector> StartingPair<'_, V> {
     /// The distance at the start.
     #[cold]
     #[inline(never)]

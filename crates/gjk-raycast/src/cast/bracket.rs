@@ -10,7 +10,7 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float;
 
 use super::line::{Line, LocalRay, Part};
-use super::{Contact, Stop};
+use super::{RayContact, Stop};
 use crate::body::{Body, Measures, PointPair};
 use crate::observer::Observer;
 use crate::simplex::MAX_POINTS;
@@ -51,7 +51,7 @@ impl<S: Scalar> Bound<S> {
 
 /// Where the ray crosses a plane that the body is behind.
 #[derive(Clone, Copy, Debug)]
-struct Crossing<S> {
+struct PlaneCrossing<S> {
     bound: Bound<S>,
     /// The cosine at which it is crossed.
     slope: S,
@@ -84,12 +84,12 @@ pub(super) struct Bracket<'a, V: Vector> {
     /// the line misses it, and the half, which is then zero.
     chord: (V::Scalar, V::Scalar),
     /// Where the last plane is crossed.
-    low: Crossing<V::Scalar>,
+    low: PlaneCrossing<V::Scalar>,
     /// The unit normal of that plane; `None` as long as no plane was crossed.
     normal: Option<V>,
     /// Where the ray is in the body, at the latest.
     high: Bound<V::Scalar>,
-    entry: Entry,
+    entry: EntryProof,
     /// Where the line enters the hull of known points of the body.
     hull: V::Scalar,
     /// Three points of the body that are seen around the line, two in the plane, where a search found them.
@@ -98,7 +98,7 @@ pub(super) struct Bracket<'a, V: Vector> {
 
 /// How far the upper bound is to be trusted.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Entry {
+enum EntryProof {
     /// The ray is in the body there, whatever the errors.
     Certain,
     /// It is if the surface goes on as it was seen to, as far as an error reaches.
@@ -152,10 +152,10 @@ impl<'a, V: Vector> Bracket<'a, V> {
             observer: observer.by_ref(),
             iterations: 0,
             chord: (squared, half_chord),
-            low: Crossing { bound: Bound::exact(ray.start.max(-half_chord)), slope: zero },
+            low: PlaneCrossing { bound: Bound::exact(ray.start.max(-half_chord)), slope: zero },
             normal: None,
             high: Bound::exact(V::Scalar::infinity()),
-            entry: Entry::BySlope,
+            entry: EntryProof::BySlope,
             hull: V::Scalar::infinity(),
             around: None,
         }
@@ -194,9 +194,9 @@ impl<'a, V: Vector> Bracket<'a, V> {
     /// Whether the upper bound has to be found by other means, for the ray to be known to be in the body anywhere.
     pub(super) fn is_entry_open(&self) -> bool {
         match self.entry {
-            Entry::Certain => false,
-            Entry::BySlope => !self.enters_ball(),
-            Entry::InDoubt | Entry::AtOutline => true,
+            EntryProof::Certain => false,
+            EntryProof::BySlope => !self.enters_ball(),
+            EntryProof::InDoubt | EntryProof::AtOutline => true,
         }
     }
 
@@ -213,29 +213,29 @@ impl<'a, V: Vector> Bracket<'a, V> {
 
     /// Takes note that an edge, or a graze, may be within an error of where the ray enters.
     pub(super) fn doubt_entry(&mut self) {
-        self.entry = Entry::InDoubt;
+        self.entry = EntryProof::InDoubt;
     }
 
     /// Takes note that the outline of the body is within an error of the ray.
     pub(super) fn touch_outline(&mut self) {
-        self.entry = Entry::AtOutline;
+        self.entry = EntryProof::AtOutline;
     }
 
     /// Whether another look, at what is near the hit alone, may tell that the ray is in the body.
     pub(super) fn is_worth_another_look(&self) -> bool {
-        self.is_entry_open() && self.entry != Entry::AtOutline
+        self.is_entry_open() && self.entry != EntryProof::AtOutline
     }
 
     /// Moves the upper bound to where the ray is in the body whatever the errors.
     pub(super) fn enter_for_certain(&mut self, mu: V::Scalar) {
-        (self.high, self.entry) = (Bound::exact(mu.max(self.low())), Entry::Certain);
+        (self.high, self.entry) = (Bound::exact(mu.max(self.low())), EntryProof::Certain);
     }
 
     /// Moves the upper bound to where the ray pierces a triangle of points of the body that is seen around it by more than an error; with
     /// its slope, and so the length of a normal that is 1 against the ray, that is known to an error across it.
     pub(super) fn pierce(&mut self, mu: V::Scalar, length: V::Scalar) {
         (self.high, self.entry) =
-            (Bound { at: mu.max(self.low()), spread: length, more: Scalar::ZERO }, Entry::Certain);
+            (Bound { at: mu.max(self.low()), spread: length, more: Scalar::ZERO }, EntryProof::Certain);
     }
 
     /// Where on the line the body has a point, of a contact, and how far that may be from there.
@@ -340,7 +340,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
     /// The body is behind the plane `n·y = n·p + r`. A point `x` of the ray is before it by `n·(x − p) − r`, and if that
     /// is positive and the ray approaches, it crosses the plane after `(n·(x − p) − r)/(−n·d)`, and not before.
     #[inline(always)]
-    fn crossing(&self, n: V, point: V) -> Result<Option<Crossing<V::Scalar>>, Stop<V>> {
+    fn crossing(&self, n: V, point: V) -> Result<Option<PlaneCrossing<V::Scalar>>, Stop<V>> {
         let zero = V::Scalar::ZERO;
         let ahead = n.dot(self.x() - point) - self.radius;
         let slope = n.dot(self.ray.line.direction);
@@ -355,7 +355,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
             // A plane along the ray, to within its error, may be crossed anywhere. Beyond the ball nothing is to be found, and what is
             // lost of a point of the line there is no longer relative to the size.
             let at = if bound.at < self.chord.1 { bound.at } else { self.chord.1 };
-            return Ok(Some(Crossing { bound: Bound { at, ..bound }, slope: -slope }));
+            return Ok(Some(PlaneCrossing { bound: Bound { at, ..bound }, slope: -slope }));
         }
         // What is left of the ray may begin earlier, where it is less far before a plane that it leaves.
         let at_earliest = ahead - slope.max(zero) * self.certain(self.low.bound);
@@ -365,7 +365,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
     /// The contact where the last plane is crossed, if a point of the core, made of `witness`, is no farther than the radius
     /// from the line at `high`, and that is no farther behind the plane than was asked for.
     #[inline(always)]
-    pub(super) fn close(&mut self, point: V, witness: PointPair<V>, high: V::Scalar) -> Result<Contact<V>, Stop<V>> {
+    pub(super) fn close(&mut self, point: V, witness: PointPair<V>, high: V::Scalar) -> Result<RayContact<V>, Stop<V>> {
         let aside = point - self.ray.line.at(high);
         let within = self.radius + self.noise;
         let gap = (high - self.low()) * self.slope_or_one();
@@ -374,7 +374,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
             return Err(Stop::InDoubt);
         }
         self.high = Bound { at: high.max(self.low()), spread: self.spread_or_one(), more: Scalar::ZERO };
-        Ok(Contact { mu: self.low_or_at(high), normal: self.normal, witness })
+        Ok(RayContact { mu: self.low_or_at(high), normal: self.normal, witness })
     }
 
     /// Where the last plane is crossed; of one nearly along the line, at the body's point at `mu` if that is before the crossing by no
@@ -385,15 +385,15 @@ impl<'a, V: Vector> Bracket<'a, V> {
     }
 
     /// The contact at the source of the ray, where points of the body are known on both sides of it, by more than rounding.
-    pub(super) fn close_inside(&mut self) -> Contact<V> {
+    pub(super) fn close_inside(&mut self) -> RayContact<V> {
         let mu = self.ray.start;
         self.high = Bound::exact(mu);
-        Contact { mu, normal: None, witness: self.body.witness(self.ray.line.at(mu)) }
+        RayContact { mu, normal: None, witness: self.body.witness(self.ray.line.at(mu)) }
     }
 
     /// The contact where the last plane is crossed, if `v`, the shortest vector there from a point of the core made of
     /// `witness`, is no longer than the radius.
-    pub(super) fn close_at_low(&mut self, v: V, witness: PointPair<V>) -> Option<Contact<V>> {
+    pub(super) fn close_at_low(&mut self, v: V, witness: PointPair<V>) -> Option<RayContact<V>> {
         if !(v.norm() - self.radius <= self.noise) {
             return None;
         }
@@ -403,7 +403,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
             // Where the search began and no plane was crossed, that of the ball about the body is the one.
             normal = normal.or_else(|| self.x().unit()).or(Some(-self.ray.line.direction));
         }
-        Some(Contact { mu: self.low(), normal, witness })
+        Some(RayContact { mu: self.low(), normal, witness })
     }
 
     /// The contact where the line passes the core's `point` by the vector `v` across it, if that is no longer than the radius
@@ -415,7 +415,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
         point: V,
         witness: PointPair<V>,
         normal: Option<V>,
-    ) -> Option<Contact<V>> {
+    ) -> Option<RayContact<V>> {
         if !(v.norm() - self.radius <= within) {
             return None;
         }
@@ -427,7 +427,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
         // Where the ray grazes what is round, the shortest vector is the normal, and the last plane is of elsewhere. Without a
         // radius it has no digits.
         let normal = if self.radius > self.noise { v.unit() } else { normal.or(self.normal) };
-        Some(Contact { mu, normal, witness })
+        Some(RayContact { mu, normal, witness })
     }
 
     /// Moves the upper bound to where the line enters the hull of known points of the body, at `mu` to within `error` across a
@@ -458,23 +458,23 @@ impl<'a, V: Vector> Bracket<'a, V> {
         slope: V::Scalar,
         wanted: V::Scalar,
         witness: impl FnOnce() -> PointPair<V>,
-    ) -> Option<Contact<V>> {
+    ) -> Option<RayContact<V>> {
         let mu = self.low_or_at(self.hull);
-        (self.gap_to_hull(slope) <= wanted).then(|| Contact { mu, normal: self.normal, witness: witness() })
+        (self.gap_to_hull(slope) <= wanted).then(|| RayContact { mu, normal: self.normal, witness: witness() })
     }
 
     /// The contact where the last plane is crossed, where the line has points of the body on both sides of it, to within
     /// `error` across a surface that it meets at the cosine `slope`.
-    pub(super) fn close_between(&mut self, error: V::Scalar, slope: V::Scalar, witness: PointPair<V>) -> Contact<V> {
+    pub(super) fn close_between(&mut self, error: V::Scalar, slope: V::Scalar, witness: PointPair<V>) -> RayContact<V> {
         let Bound { at, spread, .. } = self.low.bound;
         let is_crossed_here = error == Scalar::ZERO && spread > Scalar::ZERO;
         self.high = Bound { at, spread: if is_crossed_here { spread } else { self.spread_at(slope) }, more: error };
-        Contact { mu: at, normal: self.normal, witness }
+        RayContact { mu: at, normal: self.normal, witness }
     }
 
     /// The contact where the last plane is crossed, if the core has a `point` on the line, made of `witness`, that is no
     /// farther behind the plane than rounding.
-    pub(super) fn close_at_point(&mut self, point: V, witness: PointPair<V>) -> Option<Contact<V>> {
+    pub(super) fn close_at_point(&mut self, point: V, witness: PointPair<V>) -> Option<RayContact<V>> {
         let line = self.ray.line;
         let aside = line.across(point - line.foot).length();
         let mu = point.dot(line.direction);
@@ -484,13 +484,13 @@ impl<'a, V: Vector> Bracket<'a, V> {
             return None;
         }
         self.high = Bound { at: mu.max(self.low()), spread: self.spread_or_one(), more: Scalar::ZERO };
-        Some(Contact { mu: self.low_or_at(mu), normal: self.normal, witness })
+        Some(RayContact { mu: self.low_or_at(mu), normal: self.normal, witness })
     }
 
     /// How much later the upper bound may be. The surface may be met less steeply than the plane, by what noise leaves open.
     fn delay(&self) -> V::Scalar {
         let certain = self.certain(self.high) + self.noise * self.high.spread;
-        if self.entry == Entry::BySlope { certain * Scalar::from_f64(1.5) } else { certain }
+        if self.entry == EntryProof::BySlope { certain * Scalar::from_f64(1.5) } else { certain }
     }
 
     /// Bounds on λ, for the λ of a contact if there is one, wider by what rounding moved them. The upper one is infinite where the ray

@@ -8,11 +8,11 @@ use convex_support::{Crossing, LineCrossing, Vector};
 use num_traits::Float as _;
 
 use super::bracket::Bracket;
-use super::{Contact, Stop};
+use super::{RayContact, Stop};
 
 /// Closes the bracket between the plane at the entry and the entry, or finds a plane that the whole ray is before.
 #[inline(always)]
-pub(super) fn closed_form<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Contact<V>, Stop<V>> {
+pub(super) fn closed_form<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
     let line = bracket.line();
     // Closed forms square lengths.
     if !bracket.is_moderate {

@@ -73,7 +73,7 @@ pub(crate) fn direct<B: Body>(
     } else {
         <B::Vector as Vector>::Scalar::ZERO
     };
-    let line = Line { base, source, direction: ray.direction, longest, size, error: error + turned };
+    let line = BasedLine { base, source, direction: ray.direction, longest, size, error: error + turned };
     match body.line_crossing(source, ray.direction) {
         LineCrossing::Unknown => None,
         LineCrossing::Crosses(crossing) => line.hit(crossing, body, options, observer),
@@ -90,7 +90,7 @@ fn near<V: Vector>(ray: Ray<V>, origin: V, size: V::Scalar) -> Option<V> {
 }
 
 /// The line of a ray, in the frame of a body of a `size`, that passes near it at its parameter `base`.
-struct Line<V: Vector> {
+struct BasedLine<V: Vector> {
     base: V::Scalar,
     /// The point there.
     source: V,
@@ -102,7 +102,7 @@ struct Line<V: Vector> {
     error: V::Scalar,
 }
 
-impl<V: Vector> Line<V> {
+impl<V: Vector> BasedLine<V> {
     /// The hit at the entry of a crossing, or the miss of a ray that ends before it.
     ///
     /// The body is behind the plane `n·y = n·p + r|n|`, and a point `x` of the line that is before it by `a` crosses it after `a/(−n·d)`.

@@ -53,7 +53,7 @@ pub(crate) fn cast<V: Vector>(
 
 /// What the shape knows first, then the quicker search, and Algorithm 3 where both are in doubt.
 #[inline(always)]
-fn search<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Contact<V>, Stop<V>> {
+fn search<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
     if bracket.options.method == CastMethod::Portal {
         match closed_form(bracket) {
             Err(Stop::InDoubt) => {}
@@ -70,7 +70,7 @@ fn search<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Contact<V>, Stop<V>
 }
 
 /// Where the ray first meets the body, as a search finds it.
-pub(crate) struct Contact<V: Vector> {
+pub(crate) struct RayContact<V: Vector> {
     /// Where on the line.
     mu: V::Scalar,
     /// The unit normal of a plane through that point, to rounding, that has the body behind it.
@@ -117,11 +117,11 @@ pub(crate) struct CastHit<V: Vector> {
 
 /// The outcome and its bounds.
 #[inline(always)]
-fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<Contact<V>, Stop<V>>) -> Cast<V> {
+fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, Stop<V>>) -> Cast<V> {
     let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
     let ray = bracket.ray;
     let (outcome, (lower, upper), status) = match found {
-        Ok(Contact { mu, normal, witness }) => {
+        Ok(RayContact { mu, normal, witness }) => {
             let starts_inside = mu <= ray.start;
             let lambda = if starts_inside { zero } else { ray.lambda(mu).max(zero) };
             let (lower, upper) = bracket.bounds(Some(lambda));

@@ -59,9 +59,9 @@ impl<V: Vector> View<V> {
         (self.axes[0] * toward.0 + self.axes[1] * toward.1).unit()
     }
 
-    fn see(&self, p: V) -> Corner<V::Scalar> {
+    fn see(&self, p: V) -> ProjectedCorner<V::Scalar> {
         let p = p - self.line.foot;
-        Corner { across: (p.dot(self.axes[0]), p.dot(self.axes[1])), along: p.dot(self.line.direction) }
+        ProjectedCorner { across: (p.dot(self.axes[0]), p.dot(self.axes[1])), along: p.dot(self.line.direction) }
     }
 
     /// The polygon of points that are seen around the line, of which there are two in the plane.
@@ -101,7 +101,7 @@ impl<V: Vector> View<V> {
             }
             let wide = V::Scalar::from_f64(WIDE);
             let Some(i) = polygon.nearest_of(|side| !side.is_outermost && side.distance < wide) else { break };
-            let Side { distance, outward, .. } = polygon.sides[i];
+            let PolygonSide { distance, outward, .. } = polygon.sides[i];
             let corner = support(outward)?;
             // NaN is no farther.
             if dot(corner.across, outward) > distance + error {
@@ -116,12 +116,12 @@ impl<V: Vector> View<V> {
 
 /// A point of the body, across the line and along it.
 #[derive(Clone, Copy, Default)]
-struct Corner<S> {
+struct ProjectedCorner<S> {
     across: Across<S>,
     along: S,
 }
 
-impl<S: Scalar> Corner<S> {
+impl<S: Scalar> ProjectedCorner<S> {
     fn edge_to(&self, to: &Self) -> Across<S> {
         (to.across.0 - self.across.0, to.across.1 - self.across.1)
     }
@@ -129,8 +129,8 @@ impl<S: Scalar> Corner<S> {
 
 /// The side of a polygon from a corner to the next.
 #[derive(Clone, Copy, Default)]
-struct Side<S> {
-    corner: Corner<S>,
+struct PolygonSide<S> {
+    corner: ProjectedCorner<S>,
     /// The distance of zero from its line, negative where it is beyond.
     distance: S,
     /// The unit vector across it, away from the polygon.
@@ -139,8 +139,8 @@ struct Side<S> {
     is_outermost: bool,
 }
 
-impl<S: Scalar> Side<S> {
-    fn new(corner: Corner<S>, to: &Corner<S>) -> Self {
+impl<S: Scalar> PolygonSide<S> {
+    fn new(corner: ProjectedCorner<S>, to: &ProjectedCorner<S>) -> Self {
         let (du, dv) = corner.edge_to(to);
         let per_length = (du * du + dv * dv).sqrt().recip();
         Self {
@@ -155,42 +155,42 @@ impl<S: Scalar> Side<S> {
 
 /// A polygon of points of the body as they are seen along the line, anticlockwise. That of two corners has two sides.
 struct Polygon<S> {
-    sides: [Side<S>; MAX_CORNERS],
+    sides: [PolygonSide<S>; MAX_CORNERS],
     len: usize,
 }
 
 impl<S: Scalar> Polygon<S> {
     fn new() -> Self {
-        Self { sides: [Side::default(); MAX_CORNERS], len: 0 }
+        Self { sides: [PolygonSide::default(); MAX_CORNERS], len: 0 }
     }
 
     /// In the plane, a point stands for a side across it, beyond which there is nothing.
-    fn in_plane([right, left]: [Corner<S>; 2]) -> Self {
+    fn in_plane([right, left]: [ProjectedCorner<S>; 2]) -> Self {
         let mut polygon = Self::new();
         let one = S::ONE;
-        for (Corner { across, along }, v) in [(right, -one), (right, one), (left, one), (left, -one)] {
-            polygon.insert(polygon.len, Corner { across: (across.0, v), along });
+        for (ProjectedCorner { across, along }, v) in [(right, -one), (right, one), (left, one), (left, -one)] {
+            polygon.insert(polygon.len, ProjectedCorner { across: (across.0, v), along });
         }
         polygon.sides.iter_mut().for_each(|side| side.is_outermost = true);
         polygon
     }
 
-    fn sides(&self) -> &[Side<S>] {
+    fn sides(&self) -> &[PolygonSide<S>] {
         &self.sides[..self.len]
     }
 
-    fn insert(&mut self, at: usize, corner: Corner<S>) {
+    fn insert(&mut self, at: usize, corner: ProjectedCorner<S>) {
         self.sides[at..=self.len].rotate_right(1);
         self.len += 1;
         self.sides[at].corner = corner;
         for from in [at + self.len - 1, at].map(|i| i % self.len) {
             let to = self.sides[(from + 1) % self.len].corner;
-            self.sides[from] = Side::new(self.sides[from].corner, &to);
+            self.sides[from] = PolygonSide::new(self.sides[from].corner, &to);
         }
     }
 
     /// Of some sides, the one that zero is the nearest to, or the farthest beyond.
-    fn nearest_of(&self, is_meant: impl Fn(&Side<S>) -> bool) -> Option<usize> {
+    fn nearest_of(&self, is_meant: impl Fn(&PolygonSide<S>) -> bool) -> Option<usize> {
         let meant = (0..self.len).filter(|&i| is_meant(&self.sides[i]));
         meant.reduce(|i, j| if self.sides[j].distance < self.sides[i].distance { j } else { i })
     }

@@ -67,7 +67,7 @@ pub(crate) fn settle_start<V: Vector, B: SupportMap<Vector = V>>(
 }
 
 /// How the bodies are to one another where the cast begins.
-struct Start<V: Vector> {
+struct StartLook<V: Vector> {
     way: Way<V>,
     spot: Spot<V>,
     iterations: usize,
@@ -93,16 +93,16 @@ enum Way<V: Vector> {
     /// It is apart, and the ray comes no nearer along the axis.
     Leaves { axis: V },
     /// It is apart, and the ray crosses the plane between them at λ, and not before `lower`.
-    Enters { lambda: V::Scalar, axis: V, lower: V::Scalar, entry: Entry<V::Scalar> },
+    Enters { lambda: V::Scalar, axis: V, lower: V::Scalar, entry: LatestEntry<V::Scalar> },
 }
 
 #[cold]
 #[inline(never)]
-fn start<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iterations: usize) -> Start<V> {
+fn start<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iterations: usize) -> StartLook<V> {
     let zero = V::Scalar::ZERO;
     let Some(near) = near_contact(&Both::<_, _>::new(a, b), [a.core(), b.core()], None, max_iterations) else {
         let spot = Spot { source: V::ZERO, points: PointPair::default(), scale: V::Scalar::ONE };
-        return Start { way: Way::Unknown, spot, iterations: 0 };
+        return StartLook { way: Way::Unknown, spot, iterations: 0 };
     };
     // The bodies are apart by `gap − λ·n·d` along the normal: the sign of the product is exact.
     let axis = -near.normal;
@@ -125,7 +125,7 @@ fn start<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iteratio
         Way::Enters { lambda: at(near.gap), axis, lower, entry }
     };
     let spot = Spot { source: -near.frame.offset, points: near.points, scale: near.frame.scale };
-    Start { way, spot, iterations: looks.iterations }
+    StartLook { way, spot, iterations: looks.iterations }
 }
 
 /// A bound on the λ at which the ray is in the target first, where the source is not known to be apart from it;
@@ -165,13 +165,13 @@ const SLIDES: f64 = 16.0;
 
 /// A bound on the λ at which a ray is in the target first, if it ever is.
 #[derive(Clone, Copy)]
-struct Entry<S> {
+struct LatestEntry<S> {
     at: S,
     /// Whether it is in the target there, and not outside from there on.
     is_certain: bool,
 }
 
-impl<S: Scalar> Entry<S> {
+impl<S: Scalar> LatestEntry<S> {
     /// The same bound of a ray that is in the target for certain; infinite of others.
     fn certain(self) -> S {
         if self.is_certain { self.at } else { Float::infinity() }
@@ -226,14 +226,14 @@ fn entry<V: Vector>(
     speed: V::Scalar,
     (from, astray): (&FromContact<V>, V::Scalar),
     looks: &mut Looks,
-) -> Entry<V::Scalar> {
+) -> LatestEntry<V::Scalar> {
     let (zero, number) = (V::Scalar::ZERO, V::Scalar::from_f64);
     let [core_a, core_b] = [a.core(), b.core()];
     let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius;
     let gap = from.length;
     // Bodies that touch have their origins no farther apart than their sizes.
     let past = (size + size + gap) / direction.norm();
-    let mut best = Entry { at: past + roundings(16.0, past), is_certain: false };
+    let mut best = LatestEntry { at: past + roundings(16.0, past), is_certain: false };
     let (mut lambda, mut dull) = (past * number(0.125), 0);
     for _ in 0..LOOKS {
         let step = direction * lambda;
@@ -252,7 +252,7 @@ fn entry<V: Vector>(
             let at = at + roundings(16.0, at);
             // Nearer to the source it is deeper for how far it has gone, but not by much where it already is.
             let is_enough = there.times * gap >= fall * number(DEEP) || at + at > best.at;
-            best = Entry { at: best.at.min(at), is_certain: true };
+            best = LatestEntry { at: best.at.min(at), is_certain: true };
             if is_enough && there.times >= V::Scalar::ONE {
                 break;
             }
@@ -337,7 +337,7 @@ impl<V: Vector> Cast<V> {
     /// Turns a hit at the source, as far as it was known, into one at `lambda`, where a plane across `axis` leaves
     /// nothing to hit before `lower`.
     #[inline(always)]
-    fn enter(&mut self, lambda: V::Scalar, axis: V, lower: V::Scalar, entry: Entry<V::Scalar>, spot: Spot<V>) {
+    fn enter(&mut self, lambda: V::Scalar, axis: V, lower: V::Scalar, entry: LatestEntry<V::Scalar>, spot: Spot<V>) {
         self.lower = self.lower.max(lower);
         let upper = entry.certain().max(self.lower);
         let is_found = entry.is_certain || self.lower <= entry.at;

@@ -36,7 +36,7 @@ pub(super) struct Seen {
 
 /// A support point, and the direction it was found along.
 #[derive(Clone, Copy)]
-struct Found<V> {
+struct FoundPoint<V> {
     direction: V,
     point: DVec3,
 }
@@ -59,13 +59,13 @@ pub(super) fn points<V: Vector>(support: &mut Support<'_, V>, seen: &Seen) -> Ve
     let seen = Seen { radius: seen.radius / scale, size: seen.size / scale, ..*seen };
     let rounding = V::Scalar::EPSILON.as_f64() * seen.size;
     let normal = seen.normal.and_then(DVec3::try_normalize);
-    let mut best = Best { length: f64::INFINITY, left: f64::INFINITY, simplex: Simplex::default() };
+    let mut best = Best { length: f64::INFINITY, left: f64::INFINITY, simplex: WeightedPoints::default() };
     for turn in turns::<V::Scalar>() {
         // Where a surface is curved, the mean of the directions found is a better normal than rounding may have left.
         let better = best.simplex.mean_direction().and_then(DVec3::try_normalize);
         for (is_again, around) in [(false, normal), (true, better)] {
             let mut search =
-                Search::<V> { support, scale, turn, decimals: decimals(turn), simplex: Simplex::default() };
+                PointSearch::<V> { support, scale, turn, decimals: decimals(turn), simplex: WeightedPoints::default() };
             let left = match (is_again, around, normal) {
                 (_, Some(around), Some(normal)) => search.around(around, normal, &seen),
                 (false, None, None) => search.within(seen.radius),
@@ -95,7 +95,7 @@ pub(super) fn points<V: Vector>(support: &mut Support<'_, V>, seen: &Seen) -> Ve
 struct Best<V> {
     length: f64,
     left: f64,
-    simplex: Simplex<V>,
+    simplex: WeightedPoints<V>,
 }
 
 /// The power of ten that leaves two decimals of a turn.
@@ -108,24 +108,24 @@ fn decimals(turn: f64) -> f64 {
 }
 
 /// Support points with their weights.
-struct Simplex<V> {
-    found: Vec<Found<V>>,
+struct WeightedPoints<V> {
+    found: Vec<FoundPoint<V>>,
     weights: [f64; MAX_POINTS],
 }
 
-impl<V> Default for Simplex<V> {
+impl<V> Default for WeightedPoints<V> {
     fn default() -> Self {
         Self { found: Vec::new(), weights: [0.0; MAX_POINTS] }
     }
 }
 
-impl<V: Vector> Simplex<V> {
+impl<V: Vector> WeightedPoints<V> {
     fn mean(&self) -> DVec3 {
         self.found.iter().zip(self.weights).map(|(f, weight)| f.point * weight).sum()
     }
 
     fn mean_direction(&self) -> Option<DVec3> {
-        let sum = |sum: Option<DVec3>, (f, weight): (&Found<V>, f64)| {
+        let sum = |sum: Option<DVec3>, (f, weight): (&FoundPoint<V>, f64)| {
             Some(sum.unwrap_or(DVec3::ZERO) + wide(f.direction) * weight)
         };
         self.found.iter().zip(self.weights).fold(None, sum)
@@ -172,22 +172,22 @@ impl Care {
 }
 
 /// A search along directions that are turned by a small angle and have few decimals.
-struct Search<'a, 's, V> {
+struct PointSearch<'a, 's, V> {
     support: &'a mut Support<'s, V>,
     scale: f64,
     turn: f64,
     decimals: f64,
-    simplex: Simplex<V>,
+    simplex: WeightedPoints<V>,
 }
 
 /// No search takes more steps: those of a polytope end by themselves, and a curved core is near enough by then.
 const MOST_STEPS: usize = 64;
 
-impl<V: Vector> Search<'_, '_, V> {
+impl<V: Vector> PointSearch<'_, '_, V> {
     /// The support point along a direction. With little care the direction is turned a little further, so that it is not by accident the
     /// normal of a face, and rounded to few decimals, none of them zero. With much care, for thin bodies, it is hardly turned, one way or
     /// the other.
-    fn look(&mut self, direction: DVec3, care: Care) -> Found<V> {
+    fn look(&mut self, direction: DVec3, care: Care) -> FoundPoint<V> {
         let aside = if V::DIM == 3 { DVec3::new(0.62, -0.37, 0.69) } else { DVec3::new(0.62, -0.78, 0.0) };
         let turned = |by: f64| direction + aside * (self.turn * by);
         let hardly = (256.0 * V::Scalar::EPSILON.as_f64() / self.turn).max(1.5e-8);
@@ -202,7 +202,7 @@ impl<V: Vector> Search<'_, '_, V> {
             Care::MuchBackwards => turned(-hardly),
         };
         let direction = V::from_fn(|i| V::Scalar::from_f64(wanted[i]));
-        Found { direction, point: (self.support)(direction) / self.scale }
+        FoundPoint { direction, point: (self.support)(direction) / self.scale }
     }
 
     /// Looks for points around zero along directions near the unit vector `around`. It runs GJK on the projection of the core along the ray,

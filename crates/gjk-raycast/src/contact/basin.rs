@@ -6,7 +6,7 @@ use num_traits::Float as _;
 use super::SignedDistanceOptions;
 use super::boundary::Boundary;
 use super::cores::{Cores, Vertex, WayOut};
-use super::newton::{Piece, Side};
+use super::newton::{FoldSide, Piece};
 
 /// Newton's steps from one direction.
 const MAX_STEPS: usize = 12;
@@ -32,7 +32,7 @@ pub(super) fn descend<V: Vector>(
     if let Some(other) = other {
         second = Some(first.beside(cores, other));
     }
-    let (mut failures, mut stale, mut is_added) = (0, Side::Far, true);
+    let (mut failures, mut stale, mut is_added) = (0, FoldSide::Far, true);
     for _ in 0..MAX_STEPS {
         let u = match &second {
             Some(second) => first.step_along_fold(second, stale),
@@ -51,11 +51,11 @@ pub(super) fn descend<V: Vector>(
             let _ = boundary.insert_anywhere(&next.vertex);
         }
         if is_foretold {
-            (first, stale) = (piece, Side::Far);
+            (first, stale) = (piece, FoldSide::Far);
         } else if is_lower {
-            (second, stale) = (Some(core::mem::replace(&mut first, piece)), Side::Far);
+            (second, stale) = (Some(core::mem::replace(&mut first, piece)), FoldSide::Far);
         } else {
-            (second, stale) = (Some(piece), Side::Near);
+            (second, stale) = (Some(piece), FoldSide::Near);
         }
         if is_lower {
             (way, failures, is_added) = (next, 0, !is_foretold);

@@ -3,14 +3,14 @@
 use convex_support::Scalar;
 use smallvec::SmallVec;
 
-use super::outline::{Corner, Outline, Part};
+use super::outline::{ContactPart, Corner, Outline};
 use crate::symmetric::{Across, cross, dot};
 
 /// A corner of the overlap, and what it is of the outline that was clipped and of the other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clipped<S> {
     pub(crate) at: Across<S>,
-    pub(crate) parts: [Part; 2],
+    pub(crate) parts: [ContactPart; 2],
     /// The edge that begins here.
     edge: Edge,
 }
@@ -23,11 +23,11 @@ enum Edge {
 }
 
 /// The corners of an overlap.
-pub(crate) type Overlap<S> = SmallVec<[Clipped<S>; 32]>;
+pub(crate) type ClippedCorners<S> = SmallVec<[Clipped<S>; 32]>;
 
 /// The overlap of two outlines by Sutherland's and Hodgman's method: the first is cut along the edges of the second, one after the
 /// other. A segment is clipped by a polygon, and two segments by each other where they are parallel. Empty where there is none.
-pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> Overlap<S> {
+pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> ClippedCorners<S> {
     let mut overlap = corners_of(&own.corners);
     let count = other.corners.len();
     if count == 2 {
@@ -37,13 +37,13 @@ pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> Overlap<S
         if own.corners.len() > 2 || !are_parallel(e, across) {
             return SmallVec::new();
         }
-        overlap = cut(&overlap, 0, Part::Vertex(from.id), |at| dot(difference(at, from.at), e), other);
-        return cut(&overlap, 1, Part::Vertex(to.id), |at| dot(difference(to.at, at), e), other);
+        overlap = cut(&overlap, 0, ContactPart::Vertex(from.id), |at| dot(difference(at, from.at), e), other);
+        return cut(&overlap, 1, ContactPart::Vertex(to.id), |at| dot(difference(to.at, at), e), other);
     }
     for i in 0..count {
         let [from, to] = [other.corners[i], other.corners[(i + 1) % count]];
         let e = difference(to.at, from.at);
-        overlap = cut(&overlap, i, Part::Edge(from.id, to.id), |at| cross(e, difference(at, from.at)), other);
+        overlap = cut(&overlap, i, ContactPart::Edge(from.id, to.id), |at| cross(e, difference(at, from.at)), other);
     }
     overlap
 }
@@ -58,11 +58,11 @@ fn are_parallel<S: Scalar>(a: Across<S>, b: Across<S>) -> bool {
     turn * turn <= S::from_f64(3e-4) * dot(a, a) * dot(b, b)
 }
 
-fn corners_of<S: Scalar>(corners: &[Corner<S>]) -> Overlap<S> {
+fn corners_of<S: Scalar>(corners: &[Corner<S>]) -> ClippedCorners<S> {
     let next = |i: usize| corners[(i + 1) % corners.len()].id;
     let corner = |(i, c): (usize, &Corner<S>)| Clipped {
         at: c.at,
-        parts: [Part::Vertex(c.id), Part::Face],
+        parts: [ContactPart::Vertex(c.id), ContactPart::Face],
         edge: Edge::Own(c.id, next(i)),
     };
     corners.iter().enumerate().map(corner).collect()
@@ -73,11 +73,11 @@ fn corners_of<S: Scalar>(corners: &[Corner<S>]) -> Overlap<S> {
 fn cut<S: Scalar>(
     polygon: &[Clipped<S>],
     index: usize,
-    along: Part,
+    along: ContactPart,
     inside: impl Fn(Across<S>) -> S,
     other: &Outline<S>,
-) -> Overlap<S> {
-    let mut kept = Overlap::new();
+) -> ClippedCorners<S> {
+    let mut kept = ClippedCorners::new();
     let is_segment = polygon.len() == 2;
     for (i, from) in polygon.iter().enumerate() {
         let to = &polygon[(i + 1) % polygon.len()];
@@ -90,8 +90,8 @@ fn cut<S: Scalar>(
             let share = d / (d - e);
             let at = (from.at.0 + (to.at.0 - from.at.0) * share, from.at.1 + (to.at.1 - from.at.1) * share);
             let parts = match from.edge {
-                Edge::Own(p, q) => [Part::Edge(p, q), along],
-                Edge::Other(before) => [Part::Face, Part::Vertex(shared_corner(before, index, other))],
+                Edge::Own(p, q) => [ContactPart::Edge(p, q), along],
+                Edge::Other(before) => [ContactPart::Face, ContactPart::Vertex(shared_corner(before, index, other))],
             };
             let edge = if d >= S::ZERO { Edge::Other(index) } else { from.edge };
             kept.push(Clipped { at, parts, edge });

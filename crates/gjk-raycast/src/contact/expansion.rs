@@ -81,8 +81,8 @@ pub(super) fn expand<V: Vector>(
     // In its place from the beginning: it is a large object to move.
     let mut boundary = Boundary::new(relative.max(Scalar::EPSILON).as_f64());
     let mut way = match start::start(cores, state, &mut boundary)? {
-        start::Start::Flat(way) => return Some(flat(way, Met::new(cores, state))),
-        start::Start::Full(way) => way,
+        start::FirstPolytope::Flat(way) => return Some(flat(way, Met::new(cores, state))),
+        start::FirstPolytope::Full(way) => way,
     };
     let depth_limit = (options.depth_limit - cores.radius()) / cores.scale();
     let enough_of = |cores: &Cores<'_, V>, way: &WayOut<V>| tolerance.max(cores.rounding_along(way.u()));

@@ -4,8 +4,8 @@ use convex_support::{Feature, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
-use super::clip::{Overlap, clip};
-use super::outline::{ContactPlane, Outline, Part};
+use super::clip::{ClippedCorners, clip};
+use super::outline::{ContactPart, ContactPlane, Outline};
 use super::result::MAX_POINTS;
 use super::{ContactPoint, SignedDistance};
 use crate::symmetric::{Across, axes_across, cross, dot};
@@ -69,7 +69,7 @@ where
         .map(|corner| Candidate {
             at: corner.at,
             heights: [corner.height.max(answer.lower), Scalar::ZERO],
-            parts: [Part::Vertex(corner.id), Part::Face],
+            parts: [ContactPart::Vertex(corner.id), ContactPart::Face],
         })
         .collect();
     if candidates.len() < 2 {
@@ -93,7 +93,7 @@ struct Facing<V: Vector> {
 struct Candidate<S> {
     at: Across<S>,
     heights: [S; 2],
-    parts: [Part; 2],
+    parts: [ContactPart; 2],
 }
 
 impl<S: Scalar> Candidate<S> {
@@ -124,7 +124,7 @@ impl<V: Vector> Facing<V> {
         }
         // A segment is clipped by a polygon.
         let is_swapped = of_a.corners.len() > of_b.corners.len();
-        let overlap: Overlap<V::Scalar> = if is_swapped { clip(of_b, of_a) } else { clip(of_a, of_b) };
+        let overlap: ClippedCorners<V::Scalar> = if is_swapped { clip(of_b, of_a) } else { clip(of_a, of_b) };
         for corner in &overlap {
             let [own, other] = corner.parts;
             let parts = if is_swapped { [other, own] } else { [own, other] };
@@ -164,9 +164,9 @@ impl<V: Vector> Facing<V> {
             return;
         }
         let part = |outline: &Outline<V::Scalar>| match outline.corners.as_slice() {
-            [corner] => Part::Vertex(corner.id),
-            [from, to] => Part::Edge(from.id, to.id),
-            _ => Part::Face,
+            [corner] => ContactPart::Vertex(corner.id),
+            [from, to] => ContactPart::Edge(from.id, to.id),
+            _ => ContactPart::Face,
         };
         let parts = [part(&self.of_a), part(&self.of_b)];
         candidates.push(Candidate { at, heights, parts });
@@ -180,23 +180,23 @@ impl<V: Vector> Facing<V> {
 
     /// What a point is of both shapes: a corner of a feature that it is near to, or else what clipping says. Where corners of both lie
     /// on one another, as of boxes stacked, it would change from frame to frame which of them is within the other's outline.
-    fn settled(&self, at: Across<V::Scalar>, parts: [Part; 2], near: V::Scalar) -> [Part; 2] {
+    fn settled(&self, at: Across<V::Scalar>, parts: [ContactPart; 2], near: V::Scalar) -> [ContactPart; 2] {
         let corner = |outline: &Outline<V::Scalar>| {
             let is_near = |from: Across<V::Scalar>| {
                 let e = (at.0 - from.0, at.1 - from.1);
                 dot(e, e) <= near * near
             };
-            outline.corners.iter().find(|corner| is_near(corner.at)).map(|corner| Part::Vertex(corner.id))
+            outline.corners.iter().find(|corner| is_near(corner.at)).map(|corner| ContactPart::Vertex(corner.id))
         };
         match (corner(&self.of_a), corner(&self.of_b)) {
-            (Some(vertex), _) => [vertex, Part::Face],
-            (None, Some(vertex)) => [Part::Face, vertex],
+            (Some(vertex), _) => [vertex, ContactPart::Face],
+            (None, Some(vertex)) => [ContactPart::Face, vertex],
             (None, None) => parts,
         }
     }
 
     fn point(&self, candidate: &Candidate<V::Scalar>) -> ContactPoint<V> {
-        let [feature_a, feature_b] = candidate.parts.map(Part::code);
+        let [feature_a, feature_b] = candidate.parts.map(ContactPart::code);
         ContactPoint {
             point_a: self.plane.point(candidate.at, candidate.heights[0]),
             point_b: self.plane.point(candidate.at, candidate.heights[1]),

@@ -17,7 +17,7 @@ const LEAD: f64 = 0.1;
 
 /// A side of a fold: that of the piece that a step begins on, or the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum FoldSide {
     Near,
     Far,
 }
@@ -33,7 +33,7 @@ pub(super) struct Piece<V: Vector> {
 }
 
 /// The same piece as seen along another unit vector `u`: its support point across `u`, its support value, and its Hessian.
-struct Seen<S> {
+struct SeenAlong<S> {
     slope: Across<S>,
     value: S,
     hessian: Symmetric<S>,
@@ -63,7 +63,7 @@ impl<V: Vector> Piece<V> {
 
     /// With `u/(u·n) = n + c`, the support value is `u·n` times that along `n + c`, whose expansion is `(n + c)·p + c·Hc/2`, its
     /// gradient `p + Hc`.
-    fn seen(&self, u: V, [e, f]: [V; 2]) -> Seen<V::Scalar> {
+    fn seen(&self, u: V, [e, f]: [V; 2]) -> SeenAlong<V::Scalar> {
         let cosine = u.dot(self.n);
         let c = u / cosine - self.n;
         let shift = self.shift(c);
@@ -72,7 +72,7 @@ impl<V: Vector> Piece<V> {
         let (along_e, along_f) = (self.shift(e), self.shift(f));
         let per = cosine.recip();
         let hessian = Symmetric { a: e.dot(along_e) * per, b: e.dot(along_f) * per, d: f.dot(along_f) * per };
-        Seen { slope: (e.dot(point), f.dot(point)), value, hessian }
+        SeenAlong { slope: (e.dot(point), f.dot(point)), value, hessian }
     }
 
     /// How far a support point is from what this piece foretells along its direction, as a part of its distance from the piece's
@@ -134,12 +134,12 @@ impl<V: Vector> Piece<V> {
     ///
     /// What is foretold of a piece is off by the cube of the angle to where it was seen. So the step leads past the fold by a part of
     /// the angle's square, onto the piece that is to be `seen` again.
-    pub(super) fn step_along_fold(&self, other: &Self, seen: Side) -> Option<V> {
+    pub(super) fn step_along_fold(&self, other: &Self, seen: FoldSide) -> Option<V> {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
         let value = self.n.dot(self.point);
         let [e, f] = self.across;
         let p = (e.dot(self.point), f.dot(self.point));
-        let Seen { slope: q, value: other_value, hessian } = other.seen(self.n, self.across);
+        let SeenAlong { slope: q, value: other_value, hessian } = other.seen(self.n, self.across);
         let e = (q.0 - p.0, q.1 - p.1);
         let squared = dot(e, e);
         let share = -dot(e, p) / squared;
@@ -150,10 +150,10 @@ impl<V: Vector> Piece<V> {
         let bend = self.hessian.blend(hessian, share).plus(-value);
         let lead = V::Scalar::from_f64(LEAD) * (self.n - other.n).length_squared() * squared.sqrt();
         let lead = match seen {
-            Side::Near if !self.hessian.is_zero() => -lead,
-            Side::Far if !other.hessian.is_zero() => lead,
+            FoldSide::Near if !self.hessian.is_zero() => -lead,
+            FoldSide::Far if !other.hessian.is_zero() => lead,
             // A vertex is known as well as it ever will be.
-            Side::Near | Side::Far => zero,
+            FoldSide::Near | FoldSide::Far => zero,
         };
         let along = (value - other_value + lead) / squared;
         let mut step = (e.0 * along, e.1 * along);
@@ -177,7 +177,7 @@ impl<V: Vector> Piece<V> {
         let [e, f] = self.across;
         let slope = (e.dot(self.point), f.dot(self.point));
         let Some(other) = other else { return turned(self.n, self.across, self.step_along_curvature(slope)?) };
-        let Seen { slope: of_other, value, .. } = other.seen(self.n, self.across);
+        let SeenAlong { slope: of_other, value, .. } = other.seen(self.n, self.across);
         let e = (of_other.0 - slope.0, of_other.1 - slope.1);
         let along = (self.n.dot(self.point) - value) / dot(e, e);
         turned(self.n, self.across, (e.0 * along, e.1 * along))

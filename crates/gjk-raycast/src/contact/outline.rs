@@ -7,13 +7,13 @@ use crate::symmetric::{Across, cross, dot};
 
 /// What a point of contact is of one shape: a corner of its feature, a point of an edge, or one of the face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Part {
+pub(crate) enum ContactPart {
     Vertex(u32),
     Edge(u32, u32),
     Face,
 }
 
-impl Part {
+impl ContactPart {
     /// A number that is the same as long as the part is. The upper two bits tell the kind.
     pub(crate) fn code(self) -> u32 {
         const PAYLOAD: u32 = u32::MAX >> 2;

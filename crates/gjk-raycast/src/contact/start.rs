@@ -10,7 +10,7 @@ use crate::simplex::{MAX_POINTS, cross};
 
 /// Where an expansion begins, with the best way out that was met on the way there.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Start<V: Vector> {
+pub(super) enum FirstPolytope<V: Vector> {
     /// The boundary of a simplex.
     Full(WayOut<V>),
     /// The difference is no thicker than rounding along this direction.
@@ -26,7 +26,7 @@ pub(super) fn start<V: Vector>(
     cores: &mut Cores<'_, V>,
     state: &Gjk<V>,
     boundary: &mut Boundary<V>,
-) -> Option<Start<V>> {
+) -> Option<FirstPolytope<V>> {
     let known = state.simplex.points().len();
     let is_curved = cores.is_curved();
     let vertex = |i: usize| {
@@ -47,10 +47,10 @@ pub(super) fn start<V: Vector>(
         let corners: [_; MAX_POINTS] = core::array::from_fn(|i| vertex(i.min(known - 1)));
         let thickness = cores.greatest_error() * Scalar::from_f64(2.0);
         if boundary.begin(&corners[..known], thickness) {
-            return Some(Start::Full(best));
+            return Some(FirstPolytope::Full(best));
         }
     }
-    let mut span = Span::new();
+    let mut span = AffineSpan::new();
     for i in 0..known {
         let _ = span.add(vertex(i), |u| cores.rounding_along(u));
     }
@@ -67,7 +67,7 @@ pub(super) fn start<V: Vector>(
         let height = |way: &WayOut<V>| way.h - way.u().dot(span.points[0].point);
         let farther = if height(&ways[1]) > height(&ways[0]) { ways[1] } else { ways[0] };
         if !span.add(farther.vertex, |u| cores.rounding_along(u)) {
-            return Some(Start::Flat(least));
+            return Some(FirstPolytope::Flat(least));
         }
     }
     if !boundary.begin(&span.points[..span.len], Scalar::ZERO) {
@@ -81,18 +81,18 @@ pub(super) fn start<V: Vector>(
             WayOut::new(cores.support(u)?)
         }
     };
-    Some(Start::Full(best))
+    Some(FirstPolytope::Full(best))
 }
 
 /// Affinely independent points.
-struct Span<V: Vector> {
+struct AffineSpan<V: Vector> {
     points: [Vertex<V>; MAX_POINTS],
     len: usize,
     /// Orthogonal unit vectors along the edges from the first point.
     basis: [V; MAX_POINTS],
 }
 
-impl<V: Vector> Span<V> {
+impl<V: Vector> AffineSpan<V> {
     fn new() -> Self {
         let none = Vertex { point: V::ZERO, along: V::ZERO, pair: Default::default() };
         Self { points: [none; MAX_POINTS], len: 0, basis: [V::ZERO; MAX_POINTS] }

@@ -84,7 +84,7 @@ pub(super) struct Zonotope {
 }
 
 /// The facet of a zonotope that is nearest to zero.
-pub(super) struct Nearest {
+pub(super) struct NearestFacet {
     /// The outward unit normal.
     pub(super) normal: Vec3,
     /// How far it is from zero, and bounds on how far that and all others are.
@@ -97,16 +97,16 @@ pub(super) struct Nearest {
 
 /// A facet by the two edges that span it, and its distance from zero.
 #[derive(Clone, Copy)]
-struct Facet {
+struct ZonotopeFacet {
     edges: [usize; 2],
     normal: Vec3,
     depth: f64,
 }
 
 /// What two edges span.
-enum Span {
+enum EdgeSpan {
     /// A facet, and its unit normal.
-    Facet(Vec3),
+    ZonotopeFacet(Vec3),
     /// None: by so much one of them would have to be changed for there to be none.
     Parallel(f64),
 }
@@ -143,15 +143,15 @@ impl Zonotope {
     }
 
     /// The facet nearest to zero; `None` where zero is not certain to be within.
-    pub(super) fn nearest_facet<V: Vector>(&self) -> Option<Nearest> {
+    pub(super) fn nearest_facet<V: Vector>(&self) -> Option<NearestFacet> {
         let spans: &[[usize; 2]] = if V::DIM == 2 { &SPANS_OF_PLANE } else { &SPANS };
         let mut depths = [f64::INFINITY; SPANS.len()];
         let tie = TIE * f64::EPSILON * self.size;
         let (mut least, mut parallel) = (f64::INFINITY, 0.0);
         for (depth, &spanned) in depths.iter_mut().zip(spans) {
             match self.span::<V>(spanned) {
-                Span::Parallel(change) => parallel += 2.0 * change,
-                Span::Facet(normal) => {
+                EdgeSpan::Parallel(change) => parallel += 2.0 * change,
+                EdgeSpan::ZonotopeFacet(normal) => {
                     *depth = self.depth(normal, spanned);
                     // NaN ends here too.
                     if !(*depth > tie) {
@@ -182,12 +182,12 @@ impl Zonotope {
                 }
             }
         }
-        Some(Nearest { normal, depth: nearest.depth, inner, outer, weights: weights.map(|t| t.clamp(-1.0, 1.0)) })
+        Some(NearestFacet { normal, depth: nearest.depth, inner, outer, weights: weights.map(|t| t.clamp(-1.0, 1.0)) })
     }
 
     /// What two edges of the zonotope span, or one in the plane.
     #[inline(always)]
-    fn span<V: Vector>(&self, [i, j]: [usize; 2]) -> Span {
+    fn span<V: Vector>(&self, [i, j]: [usize; 2]) -> EdgeSpan {
         let (edges, squared) = (&self.edges, &self.squared);
         if V::DIM == 2 { span_of_one(edges[i]) } else { span(&edges[i], &edges[j], squared[i], squared[j]) }
     }
@@ -202,17 +202,17 @@ impl Zonotope {
     }
 
     /// The nearer of the two facets that are spanned by the given edges.
-    fn facet<V: Vector>(&self, depth: f64, spanned: [usize; 2]) -> Option<Facet> {
-        let Span::Facet(normal) = self.span::<V>(spanned) else { return None };
+    fn facet<V: Vector>(&self, depth: f64, spanned: [usize; 2]) -> Option<ZonotopeFacet> {
+        let EdgeSpan::ZonotopeFacet(normal) = self.span::<V>(spanned) else { return None };
         let normal = if dot(normal, self.center) > 0.0 { normal.map(|x| -x) } else { normal };
-        Some(Facet { edges: spanned, normal, depth })
+        Some(ZonotopeFacet { edges: spanned, normal, depth })
     }
 
     /// What the distance of a facet may be wrong by.
     ///
     /// Let `n` be its normal and `z` a point in the middle of it. Along the true normal `n + δ` the zonotope reaches at least as far as `z` does, and
     /// that is `n·z + δ·z`, in which only the part of `z` across `n` counts: both are unit vectors.
-    fn error(&self, facet: &Facet) -> f64 {
+    fn error(&self, facet: &ZonotopeFacet) -> f64 {
         let n = facet.normal;
         let magnitude = |v: Vec3| (n[0] * v[0]).abs() + (n[1] * v[1]).abs() + (n[2] * v[2]).abs();
         let (mut middle, mut total) = (self.center, magnitude(self.center));
@@ -241,7 +241,7 @@ impl Zonotope {
     /// Lifted to heights `wₖ`, its lower side becomes a roof of parallelograms: that of the edges `p`, `q` is below `φ·x`, with
     /// `φ·e_p = w_p` and `φ·e_q = w_q`, and there every other edge leads to where it is lower, the sign of `φ·eₖ − wₖ`. One of them has
     /// the foot.
-    fn foot<V: Vector>(&self, facet: &Facet) -> ([f64; EDGES], f64) {
+    fn foot<V: Vector>(&self, facet: &ZonotopeFacet) -> ([f64; EDGES], f64) {
         let n = facet.normal;
         let flat = self.flat();
         let mut weights = [0.0; EDGES];
@@ -307,7 +307,7 @@ impl Zonotope {
     }
 }
 
-impl Nearest {
+impl NearestFacet {
     /// The points of both parallelotopes at zero's foot, in the unit, and halfway to one another what rounding leaves between them.
     pub(super) fn points<V: Vector>(
         &self,
@@ -334,10 +334,10 @@ impl Nearest {
 
 /// What two edges of the given squared lengths span in space.
 #[inline(always)]
-fn span(e: &Vec3, f: &Vec3, le: f64, lf: f64) -> Span {
+fn span(e: &Vec3, f: &Vec3, le: f64, lf: f64) -> EdgeSpan {
     let product = le * lf;
     if product < LEAST {
-        return Span::Parallel(Float::sqrt(le.min(lf)));
+        return EdgeSpan::Parallel(Float::sqrt(le.min(lf)));
     }
     let mut m = cross(e, f);
     let mut area = dot(m, m);
@@ -346,21 +346,21 @@ fn span(e: &Vec3, f: &Vec3, le: f64, lf: f64) -> Span {
         area = dot(m, m);
         let parallel = PARALLEL * f64::EPSILON;
         if area <= parallel * parallel * product {
-            return Span::Parallel(Float::sqrt(area / le.max(lf)));
+            return EdgeSpan::Parallel(Float::sqrt(area / le.max(lf)));
         }
     }
     let per = Float::sqrt(area).recip();
-    Span::Facet(m.map(|x| x * per))
+    EdgeSpan::ZonotopeFacet(m.map(|x| x * per))
 }
 
 /// What an edge spans in the plane.
-fn span_of_one(e: Vec3) -> Span {
+fn span_of_one(e: Vec3) -> EdgeSpan {
     let squared = dot(e, e);
     if squared < LEAST {
-        return Span::Parallel(Float::sqrt(squared));
+        return EdgeSpan::Parallel(Float::sqrt(squared));
     }
     let per = Float::sqrt(squared).recip();
-    Span::Facet([e[1] * per, -e[0] * per, 0.0])
+    EdgeSpan::ZonotopeFacet([e[1] * per, -e[0] * per, 0.0])
 }
 
 #[inline(always)]

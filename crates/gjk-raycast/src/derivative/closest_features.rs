@@ -67,7 +67,7 @@ pub(super) struct Bodies<'s, A: SupportMap + ?Sized, B: SupportMap<Vector = A::V
 
 /// Where two bodies are closest.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Closest<V: Vector> {
+pub(super) struct ClosestPoints<V: Vector> {
     pub(super) normal: V,
     pub(super) points: [V; 2],
     pub(super) signed_distance: V::Scalar,
@@ -80,7 +80,7 @@ pub(super) struct Closest<V: Vector> {
 impl<V: Vector> ClosestFeatures<V> {
     /// The features at the normal and the points of an answer. For curved shapes these are known only to about half their digits, since the
     /// distance is stationary in them; Newton's method finds the rest.
-    pub(super) fn new<A, B>(a: &A, b: &B, closest: Closest<V>) -> Self
+    pub(super) fn new<A, B>(a: &A, b: &B, closest: ClosestPoints<V>) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,
         B: SupportMap<Vector = V> + ?Sized,

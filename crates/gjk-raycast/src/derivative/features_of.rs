@@ -5,7 +5,7 @@ use convex_support::{Core, Matrix, Point, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::ClosestFeatures;
-use super::closest_features::{Closest, rounding};
+use super::closest_features::{ClosestPoints, rounding};
 use crate::compiled_once::compiled_once;
 use crate::motion::Moved;
 use crate::shape::Shape;
@@ -39,7 +39,7 @@ impl<V: Vector> Distance<V> {
     {
         let error = self.upper - self.lower;
         let (points, signed_distance) = ([self.point_a, self.point_b], self.distance);
-        let closest = Closest { normal: self.normal?, points, signed_distance, error, is_near: false };
+        let closest = ClosestPoints { normal: self.normal?, points, signed_distance, error, is_near: false };
         // NaN is not above it.
         let is_at_floor = !(self.lower > Scalar::ZERO);
         Some(ClosestFeatures { is_at_floor, ..ClosestFeatures::new(a, b, closest) })
@@ -66,7 +66,7 @@ impl<V: Vector> SignedDistance<V> {
     {
         let &Self { normal, signed_distance, point_a, point_b, lower, upper, .. } = self;
         let closest =
-            Closest { normal, points: [point_a, point_b], signed_distance, error: upper - lower, is_near: false };
+            ClosestPoints { normal, points: [point_a, point_b], signed_distance, error: upper - lower, is_near: false };
         let mut features = ClosestFeatures::new(a, b, closest);
         let (core_a, core_b) = (a.core(), b.core());
         // By the lower bound, since cores that touch may seem a rounding apart.
@@ -240,7 +240,7 @@ fn features_at<V: Vector>(
     // What is not on purpose is what the time or the normal are wrong by.
     let [apart, error] = if gap > little(size) { [gap, zero] } else { [zero, gap.abs()] };
     let points = [point + normal * apart, point];
-    let closest = Closest { normal, points, signed_distance: apart, error, is_near: true };
+    let closest = ClosestPoints { normal, points, signed_distance: apart, error, is_near: true };
     // At the start they were as far from contact as they have come nearer since.
     let is_at_floor = !(closing * time > size * rounding());
     Some(ClosestFeatures { is_at_floor, ..ClosestFeatures::new(&a, &b, closest) })

@@ -123,7 +123,7 @@ struct Responses<S> {
 
 /// What the coordinates of a pose do, along either unit vector across the normal: how they turn the normal, and by what the point of a body moves
 /// more than the centre of that.
-struct Moved<S> {
+struct MovedCoordinates<S> {
     normal: [[S; MAX]; 2],
     shift: [[S; MAX]; 2],
 }
@@ -144,7 +144,7 @@ impl<V: Vector> Solver<'_, V> {
 impl<S: Scalar> Responses<S> {
     /// What the coordinates of the pose of the body do, with the point of the body of that index.
     #[inline]
-    fn moved(&self, coordinates: &Coordinates<S>, index: usize) -> Moved<S> {
+    fn moved(&self, coordinates: &Coordinates<S>, index: usize) -> MovedCoordinates<S> {
         let Coordinates { velocity: [v, w], turn: [t, u] } = coordinates;
         let [[p, q], [r, s]] = [&self.velocities, &self.turns];
         let sum = |p: S, q: S, r: S, s: S| {
@@ -156,14 +156,14 @@ impl<S: Scalar> Responses<S> {
         };
         let both = |[p, q, r, s]: [Across<S>; 4]| [sum(p.0, q.0, r.0, s.0), sum(p.1, q.1, r.1, s.1)];
         let all = [p, q, r, s];
-        Moved { normal: both(all.map(|of| of.normal)), shift: both(all.map(|of| of.shifts[index])) }
+        MovedCoordinates { normal: both(all.map(|of| of.normal)), shift: both(all.map(|of| of.shifts[index])) }
     }
 
     /// The Hessian by the pose of the body. Of two rotations it is the symmetric part of `Q`; what a rotation does along a translation, which
     /// turns nothing, is `n′·v`.
     #[inline]
     fn hessian<V: Vector<Scalar = S>>(&self, coordinates: &Coordinates<S>, body: usize) -> Rows<S> {
-        let Moved { normal: [n, m], shift: [a, b] } = self.moved(coordinates, body);
+        let MovedCoordinates { normal: [n, m], shift: [a, b] } = self.moved(coordinates, body);
         let Coordinates { velocity: [v, w], turn: [t, u] } = coordinates;
         let (half, sign) = (S::from_f64(0.5), if body == 0 { S::ONE } else { -S::ONE });
         let mut rows = [[S::ZERO; MAX]; MAX];
@@ -186,7 +186,7 @@ impl<S: Scalar> Responses<S> {
     }
 }
 
-impl<S: Scalar> Moved<S> {
+impl<S: Scalar> MovedCoordinates<S> {
     /// `Q(θ)·φ` for a force along the normal, by coordinates `φ` of the pose of its body.
     #[inline]
     fn along(&self, coordinates: &Coordinates<S>) -> Rows<S> {

@@ -3,7 +3,7 @@
 use convex_support::{Core, CoreKind, Feature, Hint, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
 
-use super::closest_features::{Bodies, Closest, ClosestFeatures};
+use super::closest_features::{Bodies, ClosestFeatures, ClosestPoints};
 use super::span::Span;
 use crate::contact::{ContactPlane, Outline};
 use crate::symmetric::{Across, Symmetric, axes_across, dot};
@@ -50,10 +50,10 @@ where
     pub(super) fn look(
         &self,
         features: &mut ClosestFeatures<A::Vector>,
-        closest: Closest<A::Vector>,
+        closest: ClosestPoints<A::Vector>,
         tilt: ScalarOf<A>,
     ) {
-        let Closest { normal, points, signed_distance, .. } = closest;
+        let ClosestPoints { normal, points, signed_distance, .. } = closest;
         let (unit, half) = (self.unit, ScalarOf::<A>::from_f64(0.5));
         // In the unit; zero is the middle of the closest points, which is on both sides of the plane that outlines are seen in.
         let plane = ContactPlane { normal, across: axes_across(normal), origin: A::Vector::ZERO };

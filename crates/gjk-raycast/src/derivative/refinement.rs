@@ -3,7 +3,7 @@
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
 
-use super::closest_features::{Bodies, Closest, ClosestFeatures, rounding};
+use super::closest_features::{Bodies, ClosestFeatures, ClosestPoints, rounding};
 use super::overlap::are_apart;
 use super::span::Span;
 
@@ -28,7 +28,7 @@ where
     pub(super) fn settle(
         &self,
         features: &mut ClosestFeatures<A::Vector>,
-        closest: Closest<A::Vector>,
+        closest: ClosestPoints<A::Vector>,
         tilt: ScalarOf<A>,
         reach: ScalarOf<A>,
     ) -> bool {
@@ -53,7 +53,12 @@ where
     }
 
     /// Turns the normal to be exactly across the features seen. Returns whether there is such a normal along which the features overlap.
-    fn hold(&self, seen: &mut ClosestFeatures<A::Vector>, closest: Closest<A::Vector>, reach: ScalarOf<A>) -> bool {
+    fn hold(
+        &self,
+        seen: &mut ClosestFeatures<A::Vector>,
+        closest: ClosestPoints<A::Vector>,
+        reach: ScalarOf<A>,
+    ) -> bool {
         let radii = self.cores.map(|core| core.radius);
         // Whether the features along another normal are of these kinds, where that is asked, and overlap.
         let is_kept = |seen: &mut ClosestFeatures<A::Vector>, normal: A::Vector, tilt, kinds: [Option<usize>; 2]| {
@@ -61,7 +66,7 @@ where
             if !((normal - closest.normal).length() <= reach + reach) {
                 return false;
             }
-            self.look(seen, Closest { normal, ..closest }, tilt);
+            self.look(seen, ClosestPoints { normal, ..closest }, tilt);
             seen.spans.iter().zip(kinds).all(|(span, kind)| kind.is_none_or(|kind| span.kind() == kind))
                 && !are_apart(&seen.outlines, seen.slack() + tilt)
         };
@@ -91,7 +96,7 @@ where
 
     /// Takes steps of Newton's method for the normal and the points, as long as they become shorter. Returns whether they lead to points
     /// that are opposite to each other, along the same features.
-    pub(super) fn refine(&self, best: &mut ClosestFeatures<A::Vector>, closest: Closest<A::Vector>) -> bool {
+    pub(super) fn refine(&self, best: &mut ClosestFeatures<A::Vector>, closest: ClosestPoints<A::Vector>) -> bool {
         let mut length = ScalarOf::<A>::from_f64(LONGEST_STEP);
         let radii = self.cores.map(|core| core.radius);
         for _ in 0..MAX_STEPS {
@@ -120,7 +125,7 @@ where
             }
             let signed_distance = best.signed_distance * self.unit;
             let kinds = best.spans.map(Span::kind);
-            self.look(best, Closest { normal, points: step.points, signed_distance, ..closest }, rounding());
+            self.look(best, ClosestPoints { normal, points: step.points, signed_distance, ..closest }, rounding());
             if best.spans.map(Span::kind) != kinds {
                 return false;
             }

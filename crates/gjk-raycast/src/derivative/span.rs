@@ -61,16 +61,16 @@ pub(super) enum Joint<S> {
     /// Two vertices.
     None,
     /// An edge of `a`, or of `b`, and a vertex.
-    Edge(Side, Across<S>),
+    Edge(WhichBody, Across<S>),
     /// A face of `a`, or of `b`, and a vertex.
-    Face(Side),
+    Face(WhichBody),
     /// Two edges that cross.
     Crossed([Across<S>; 2]),
 }
 
 /// One of the bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum WhichBody {
     A,
     B,
 }
@@ -80,10 +80,10 @@ impl<S: Scalar> Joint<S> {
     pub(super) fn of(spans: [Span<S>; 2], parallel: S) -> Option<Self> {
         match spans {
             [Span::Vertex, Span::Vertex] => Some(Self::None),
-            [Span::Edge(e), Span::Vertex] => Some(Self::Edge(Side::A, e)),
-            [Span::Vertex, Span::Edge(e)] => Some(Self::Edge(Side::B, e)),
-            [Span::Face, Span::Vertex] => Some(Self::Face(Side::A)),
-            [Span::Vertex, Span::Face] => Some(Self::Face(Side::B)),
+            [Span::Edge(e), Span::Vertex] => Some(Self::Edge(WhichBody::A, e)),
+            [Span::Vertex, Span::Edge(e)] => Some(Self::Edge(WhichBody::B, e)),
+            [Span::Face, Span::Vertex] => Some(Self::Face(WhichBody::A)),
+            [Span::Vertex, Span::Face] => Some(Self::Face(WhichBody::B)),
             [Span::Edge(e), Span::Edge(f)] if cross(e, f).abs() > parallel => Some(Self::Crossed([e, f])),
             _ => None,
         }

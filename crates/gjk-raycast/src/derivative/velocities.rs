@@ -20,7 +20,7 @@ use convex_support::{AngularVelocity as _, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::ClosestFeatures;
-use super::span::{Joint, Side};
+use super::span::{Joint, WhichBody};
 use crate::symmetric::{Across, Symmetric, cross, dot};
 use crate::unit::reciprocal_of_power;
 use crate::{RigidMotion, Trajectory};
@@ -158,7 +158,7 @@ impl<V: Vector> Motions<V> {
 
 /// How everything moves.
 #[derive(Clone, Copy, Debug)]
-struct Moved<V: Vector> {
+struct MovedFeatures<V: Vector> {
     signed_distance: V::Scalar,
     normal: V,
     points: [V; 2],
@@ -172,12 +172,12 @@ pub(super) struct Shifted<S> {
 }
 
 impl<V: Vector> Solver<'_, V> {
-    fn moved(&self, motions: Motions<V>) -> Moved<V> {
+    fn moved(&self, motions: Motions<V>) -> MovedFeatures<V> {
         let at = self.at;
         let apart = motions.velocities[0] - motions.velocities[1];
         let turns = motions.turns.map(|turn| at.in_plane(turn));
         let Shifted { normal, shifts } = self.shifted(at.in_plane(apart), turns);
-        Moved {
+        MovedFeatures {
             signed_distance: at.normal.dot(apart),
             normal: at.out_of_plane(normal),
             points: [0, 1].map(|i| motions.velocities[i] + at.out_of_plane(shifts[i])),
@@ -263,7 +263,7 @@ impl<V: Vector> Solver<'_, V> {
 /// The change of the normal, and the slides of both points.
 type Solved<S> = (Across<S>, [Across<S>; 2]);
 
-impl Side {
+impl WhichBody {
     /// The slides of both points, of which only this side's slides: by `g`, or for `b` by `−g`.
     fn slides<S: Scalar>(self, g: Across<S>) -> [Across<S>; 2] {
         let zero = (S::ZERO, S::ZERO);

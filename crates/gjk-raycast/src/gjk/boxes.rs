@@ -35,7 +35,7 @@ const LARGEST_SKEW: f64 = 1.0 / 1024.0;
 const LENGTHS: f64 = 5.0;
 
 /// How two boxes are to one another.
-pub(crate) enum Boxes<V> {
+pub(crate) enum BoxesMeet<V> {
     /// A plane across this unit vector from the second to the first separates them.
     Apart(V),
     Meet,
@@ -43,18 +43,18 @@ pub(crate) enum Boxes<V> {
 
 /// Whether two boxes without a radius meet; `None` where they are no boxes, flat, or so near to contact that it is in doubt.
 #[inline]
-pub(crate) fn boxes<V: Vector>(pair: &AnyPair<'_, V>, frame: &Frame<V>) -> Option<Boxes<V>> {
+pub(crate) fn boxes<V: Vector>(pair: &AnyPair<'_, V>, frame: &Frame<V>) -> Option<BoxesMeet<V>> {
     let are_polytopes = [pair.core_a.kind, pair.core_b.kind].iter().all(|kind| matches!(kind, CoreKind::Polytope));
     if !are_polytopes || frame.radius > Scalar::ZERO {
         return None;
     }
     let [a, b] = pair.shapes.each().map(|shape| shape.core_parallelotope());
     let (a, b) = (a?, b?);
-    Seen::new(&a, &b, frame)?.boxes()
+    SeenFromFirst::new(&a, &b, frame)?.boxes()
 }
 
 /// The difference as the first box sees it.
-struct Seen {
+struct SeenFromFirst {
     /// The directions of the first box, in the world, and half the lengths of its edges.
     u: [Vec3; 3],
     h: Vec3,
@@ -65,7 +65,7 @@ struct Seen {
     error: f64,
 }
 
-impl Seen {
+impl SeenFromFirst {
     #[inline(always)]
     fn new<V: Vector>(a: &Parallelotope<V>, b: &Parallelotope<V>, frame: &Frame<V>) -> Option<Self> {
         let in_unit = |v: V| array(v * frame.per_unit);
@@ -90,7 +90,7 @@ impl Seen {
     }
 
     #[inline(always)]
-    fn boxes<V: Vector>(&self) -> Option<Boxes<V>> {
+    fn boxes<V: Vector>(&self) -> Option<BoxesMeet<V>> {
         let Self { h, c, f, error, .. } = self;
         let lengths = f.map(|f| Float::sqrt(dot(f, f)));
         // Nearly along a direction of the first box, or of no length.
@@ -139,15 +139,15 @@ impl Seen {
                 all_meet &= off[k].is_some() | (-gap > deep * lengths[k]);
             }
         }
-        all_meet.then_some(Boxes::Meet)
+        all_meet.then_some(BoxesMeet::Meet)
     }
 
     /// Apart along a vector in coordinates of the first box.
     #[cold]
-    fn apart<V: Vector>(&self, n: Vec3) -> Boxes<V> {
+    fn apart<V: Vector>(&self, n: Vec3) -> BoxesMeet<V> {
         let world = |i: usize| self.u[0][i] * n[0] + self.u[1][i] * n[1] + self.u[2][i] * n[2];
         let along = [world(0), world(1), world(2)];
         let length = Float::sqrt(dot(along, along));
-        Boxes::Apart(V::from_fn(|i| V::Scalar::from_f64(along[i] / length)))
+        BoxesMeet::Apart(V::from_fn(|i| V::Scalar::from_f64(along[i] / length)))
     }
 }

@@ -18,7 +18,7 @@ use crate::body::{Body as _, Pair, PointPair, Shapes, TracedSupport};
 use crate::observer::Observer;
 use crate::unit::{lost_to_underflow, power_of_two_near, reciprocal_of_power};
 use crate::{Status, SubAlgorithm};
-pub(crate) use boxes::{Boxes, boxes};
+pub(crate) use boxes::{BoxesMeet, boxes};
 pub(crate) use near_contact::{NEAR, NearContact, is_near_contact, near_contact};
 use next_direction::NextDirection;
 pub(crate) use order::comes_first;

@@ -123,7 +123,7 @@ fn look<V: Vector>(mut pair: AnyPair<'_, V>, begun: Option<&Gjk<V>>, max_iterati
     if !frame.error.is_finite() {
         return None;
     }
-    let seen = Seen::new(&pair, &frame);
+    let seen = Known::new(&pair, &frame);
     if begun.is_none()
         && max_iterations > 0
         && let Some(points) = pair.closest_points(offset, size)
@@ -181,14 +181,14 @@ fn run<V: Vector>(
 
 /// A plane that the difference of the cores lies beyond, across a unit vector.
 #[derive(Clone, Copy)]
-struct Plane<V: Vector> {
+struct SupportPlane<V: Vector> {
     n: V,
     /// How far it is from zero, and what that is wrong by at most.
     level: V::Scalar,
     error: V::Scalar,
 }
 
-impl<V: Vector> Plane<V> {
+impl<V: Vector> SupportPlane<V> {
     /// It is certainly as far as this.
     fn certain(&self) -> V::Scalar {
         self.level - self.error
@@ -215,7 +215,12 @@ struct Found<V: Vector> {
 
 impl<V: Vector> Found<V> {
     /// The answer by a plane, and a bound on how far from one another the closest points of the cores are.
-    fn near_contact(self, frame: &Frame<V>, &Plane { n, level, error }: &Plane<V>, upper: V::Scalar) -> NearContact<V> {
+    fn near_contact(
+        self,
+        frame: &Frame<V>,
+        &SupportPlane { n, level, error }: &SupportPlane<V>,
+        upper: V::Scalar,
+    ) -> NearContact<V> {
         let Self { end, iterations, points, length } = self;
         let gap = level - frame.radius;
         let lower = gap - error;
@@ -243,7 +248,7 @@ fn overlapping<V: Vector>(state: &Gjk<V>, frame: &Frame<V>) -> NearContact<V> {
 }
 
 /// What positions are computed from, coordinate by coordinate, in units of the frame.
-struct Seen<V: Vector> {
+struct Known<V: Vector> {
     offset: V,
     /// What the offset lost.
     lost: V,
@@ -255,7 +260,7 @@ struct Seen<V: Vector> {
     error_length: V::Scalar,
 }
 
-impl<V: Vector> Seen<V> {
+impl<V: Vector> Known<V> {
     fn new(pair: &AnyPair<'_, V>, frame: &Frame<V>) -> Self {
         let per_unit = frame.per_unit;
         let [a, b]: [Rounding<V>; 2] = pair.shapes.each().map(|shape| shape.rounding());
@@ -331,7 +336,8 @@ impl<V: Vector> Seen<V> {
             return Some(overlapping(&state, frame));
         }
         let before = self.best_plane(pair, &state);
-        let is_settled = |(plane, upper): &(Plane<V>, V::Scalar)| plane.meets(*upper) && plane.level > self.radius;
+        let is_settled =
+            |(plane, upper): &(SupportPlane<V>, V::Scalar)| plane.meets(*upper) && plane.level > self.radius;
         if before.as_ref().is_some_and(is_settled) {
             return before.map(|found| self.found(&state, End::Separated, frame, found));
         }
@@ -347,9 +353,9 @@ impl<V: Vector> Seen<V> {
         let mut best = self.best_plane(pair, &state);
         // Within rounding a search may go astray, and end around zero, or where no plane is as far as its points.
         let is_doubtful =
-            |(best, _): &(Plane<V>, _)| best.level <= frame.radius || best.level + best.error < state.length;
+            |(best, _): &(SupportPlane<V>, _)| best.level <= frame.radius || best.level + best.error < state.length;
         if best.as_ref().is_none_or(is_doubtful) {
-            let certain = |(best, _): &(Plane<V>, _)| best.certain();
+            let certain = |(best, _): &(SupportPlane<V>, _)| best.certain();
             if before.as_ref().map(certain) > best.as_ref().map(certain) {
                 (state, best) = (Gjk { iterations: state.iterations, ..begun }, before);
             }
@@ -363,7 +369,7 @@ impl<V: Vector> Seen<V> {
         state: &Gjk<V>,
         end: End,
         frame: &Frame<V>,
-        (plane, upper): (Plane<V>, V::Scalar),
+        (plane, upper): (SupportPlane<V>, V::Scalar),
     ) -> NearContact<V> {
         let points = state.simplex.weighted_witness();
         Found { end, iterations: state.iterations, points, length: state.length }.near_contact(frame, &plane, upper)
@@ -372,7 +378,7 @@ impl<V: Vector> Seen<V> {
     /// The plane that is farthest from zero for certain, of those across the faces that a search has ended at, and across its last two
     /// directions; and a bound on the length of the shortest vector found. Where the line across a plane pierces the face that is as far,
     /// no other plane is looked at.
-    fn best_plane(&self, pair: &mut AnyPair<'_, V>, state: &Gjk<V>) -> Option<(Plane<V>, V::Scalar)> {
+    fn best_plane(&self, pair: &mut AnyPair<'_, V>, state: &Gjk<V>) -> Option<(SupportPlane<V>, V::Scalar)> {
         let points = state.simplex.points();
         let mut pairs = [PointPair::default(); MAX_POINTS];
         for (corner, (_, found)) in pairs.iter_mut().zip(state.simplex.weighted()) {
@@ -380,14 +386,14 @@ impl<V: Vector> Seen<V> {
         }
         let faces = across_faces(&pairs[..points.len()], state.axis);
         let normal = Some(state.normal).filter(|&n| n != state.axis);
-        let (mut best, mut length): (Option<Plane<V>>, Option<V::Scalar>) = (None, None);
+        let (mut best, mut length): (Option<SupportPlane<V>>, Option<V::Scalar>) = (None, None);
         let mut upper = V::Scalar::infinity();
         let about = match *points {
             [p, q] if V::DIM == 3 && self.is_uneven() => Some(about_edge(p - q, state.axis)),
             _ => None,
         };
         for n in faces.chain(normal).chain([state.axis]).chain(about.into_iter().flatten()) {
-            let certain = best.as_ref().map_or(-V::Scalar::infinity(), Plane::certain);
+            let certain = best.as_ref().map_or(-V::Scalar::infinity(), SupportPlane::certain);
             if self.may_be_beyond(n, points, certain)
                 && let Some(plane) = self.plane(pair, n)
                 && (best.is_none() || plane.certain() > certain)
@@ -417,14 +423,14 @@ impl<V: Vector> Seen<V> {
     }
 
     /// The plane across `n` that supports the difference.
-    fn plane(&self, pair: &mut AnyPair<'_, V>, n: V) -> Option<Plane<V>> {
+    fn plane(&self, pair: &mut AnyPair<'_, V>, n: V) -> Option<SupportPlane<V>> {
         let n = n.unit()?;
         let level = self.level(n, pair.support(-n).1);
         // The unit vector's length is right to 6 roundings; the sum of the products is rounded once, and is right to 1024ε² of what
         // is added up.
         let squared = V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(1024.0);
         let rounded = roundings(8.0, level.abs()) + roundings(4.0, self.radius) + squared * n.abs().dot(self.extent);
-        level.is_finite().then(|| Plane { n, level, error: raised(self.error_along(n) + rounded) })
+        level.is_finite().then(|| SupportPlane { n, level, error: raised(self.error_along(n) + rounded) })
     }
 
     /// A bound on the length of the shortest vector found, `Σ wᵢ·(aᵢ − bᵢ + offset) / Σ wᵢ`: whatever the weights, that is a vector of the

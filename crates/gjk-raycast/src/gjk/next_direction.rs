@@ -185,7 +185,7 @@ impl<V: Vector> Newton<V> {
             return None;
         }
         let model_error = self.noise + gap * V::Scalar::from_f64(MODEL_ERROR[self.failures]);
-        let to = self.turn(body, state, last, Piece::new(body, p, -n, reach)?, model_error)?;
+        let to = self.turn(body, state, last, LastPiece::new(body, p, -n, reach)?, model_error)?;
         self.before = Some(gap);
         Some(-to)
     }
@@ -197,7 +197,7 @@ impl<V: Vector> Newton<V> {
         body: &B,
         state: &Gjk<V>,
         last: Option<(V, V)>,
-        piece: Piece<V>,
+        piece: LastPiece<V>,
         model_error: V::Scalar,
     ) -> Option<V> {
         // One piece: (H + ρ)·δ = −P, no farther than is sensible, and the gain of f foretold.
@@ -235,7 +235,7 @@ impl<V: Vector> Newton<V> {
     fn turn_between<B: TracedSupport<Vector = V>>(
         &self,
         body: &B,
-        piece: &Piece<V>,
+        piece: &LastPiece<V>,
         point: V,
         from: V,
         distance: V::Scalar,
@@ -271,7 +271,7 @@ impl<V: Vector> Newton<V> {
 }
 
 /// The piece of the surface that was looked at last.
-struct Piece<V: Vector> {
+struct LastPiece<V: Vector> {
     point: V,
     /// The unit vector it was found along, and how far zero is from its plane.
     along: V,
@@ -282,7 +282,7 @@ struct Piece<V: Vector> {
     hessian: Symmetric<V::Scalar>,
 }
 
-impl<V: Vector> Piece<V> {
+impl<V: Vector> LastPiece<V> {
     /// `None` where the surface is not curved there.
     #[inline(always)]
     fn new<B: TracedSupport<Vector = V>>(body: &B, point: V, along: V, reach: V::Scalar) -> Option<Self> {

@@ -5,7 +5,7 @@ use num_traits::Float as _;
 
 use super::HalfSpace;
 use super::plane::Lowest;
-use super::ray_cast::Crossing;
+use super::ray_cast::Landing;
 use crate::{LinearCast, LinearCastOptions, LinearHit, Miss, Motion, Outcome, RayCastError, StartInContact, Status};
 
 impl<V: Vector> HalfSpace<V> {
@@ -30,7 +30,7 @@ impl<V: Vector> HalfSpace<V> {
             let (lower, upper, status) = (infinity, infinity, Status::Converged);
             return Ok(LinearCast { outcome, lower, upper, status, iterations: 1 });
         }
-        let Crossing { outcome, lower, upper, status } = plane.crossing(height, sinking, options.max_time);
+        let Landing { outcome, lower, upper, status } = plane.crossing(height, sinking, options.max_time);
         let has_normal = height.most() >= zero || goes_deeper;
         let outcome = match outcome {
             Outcome::Hit(time) => Outcome::Hit(LinearHit {

@@ -29,7 +29,7 @@ impl<V: Vector> HalfSpace<V> {
         } else {
             (plane.height([ray.source], zero, zero), plane.sinking([ray.direction]))
         };
-        let Crossing { outcome, lower, upper, status } = plane.crossing(height, sinking, options.max_lambda - begin);
+        let Landing { outcome, lower, upper, status } = plane.crossing(height, sinking, options.max_lambda - begin);
         // What the sums lose.
         let from_source = |lambda, count| begin + lambda + roundings(count, begin + lambda);
         let is_at_once = begin <= zero;
@@ -57,7 +57,7 @@ impl<V: Vector> HalfSpace<V> {
 }
 
 /// When what sinks comes to the plane: its time, and bounds on it, of what begins at zero.
-pub(super) struct Crossing<V: Vector> {
+pub(super) struct Landing<V: Vector> {
     pub(super) outcome: Outcome<V::Scalar, V>,
     pub(super) lower: V::Scalar,
     pub(super) upper: V::Scalar,
@@ -67,16 +67,16 @@ pub(super) struct Crossing<V: Vector> {
 impl<V: Vector> Plane<V> {
     /// When something at a height, which sinks at a speed, comes to the plane, if it does so until `end`. If it may be in the half-space
     /// already, the answer is a hit at once. That hit is certain if it is inside by more than its error, or certainly sinks.
-    pub(super) fn crossing(&self, height: Level<V::Scalar>, sinking: Level<V::Scalar>, end: V::Scalar) -> Crossing<V> {
+    pub(super) fn crossing(&self, height: Level<V::Scalar>, sinking: Level<V::Scalar>, end: V::Scalar) -> Landing<V> {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
-        let miss = Crossing {
+        let miss = Landing {
             outcome: Outcome::Miss(Miss { axis: self.unit }),
             lower: infinity,
             upper: infinity,
             status: Status::Converged,
         };
         let undecided =
-            |lower| Crossing { outcome: Outcome::Undecided, lower, upper: infinity, status: Status::Stalled };
+            |lower| Landing { outcome: Outcome::Undecided, lower, upper: infinity, status: Status::Stalled };
         let is_known = height.value.is_finite() && height.error.is_finite() && !sinking.value.is_nan();
         if !is_known {
             return undecided(zero);
@@ -92,7 +92,7 @@ impl<V: Vector> Plane<V> {
         if !(height.least() > zero) {
             let upper = if height.most() <= zero { zero } else { latest(height.most()) };
             let outcome = Outcome::Hit(zero);
-            return Crossing { status: Status::Converged.of(&outcome, upper < infinity), outcome, lower: zero, upper };
+            return Landing { status: Status::Converged.of(&outcome, upper < infinity), outcome, lower: zero, upper };
         }
         if !(sinking.most() > zero) {
             return miss;
@@ -108,9 +108,9 @@ impl<V: Vector> Plane<V> {
         // Whether a hit at the very end counts is decided by the time as it is returned.
         let time = height.value / sinking.value;
         if !(time <= end) {
-            return Crossing { lower, ..miss };
+            return Landing { lower, ..miss };
         }
         let (outcome, upper) = (Outcome::Hit(time), latest(height.most()));
-        Crossing { status: Status::Converged.of(&outcome, upper < infinity), outcome, lower, upper }
+        Landing { status: Status::Converged.of(&outcome, upper < infinity), outcome, lower, upper }
     }
 }

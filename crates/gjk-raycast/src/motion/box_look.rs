@@ -7,7 +7,7 @@
 use convex_support::{Hint, Scalar, SupportMap as _, Vector};
 use num_traits::Float;
 
-use super::boxes::{Block, Boxes, Facet, vector};
+use super::boxes::{Block, BoxFacet, Boxes, vector};
 use super::instant::{Instant, Limits, NEAR};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
@@ -90,7 +90,7 @@ impl<V: Vector> MovingPair<'_, V> {
         time: V::Scalar,
         Placed { a, b, offset, .. }: &Placed<'_, V>,
         boxes: &Boxes,
-        facet: &Facet,
+        facet: &BoxFacet,
         axis: V,
     ) -> Option<Instant<V>> {
         let normal = vector::<V>(facet.normal);

@@ -64,11 +64,11 @@ pub(super) struct Boxes {
 }
 
 /// The two edges that span a facet.
-pub(super) type Span = [usize; 2];
+pub(super) type FacetEdges = [usize; 2];
 
 /// A facet of the difference of two boxes.
-pub(super) struct Facet {
-    pub(super) span: Span,
+pub(super) struct BoxFacet {
+    pub(super) span: FacetEdges,
     /// The unit vector across it, from the second box to the first.
     pub(super) normal: Vec3,
     /// How far zero is beyond it.
@@ -142,7 +142,7 @@ impl Boxes {
 
     /// What spans the highest facet; `None` where edges are so nearly parallel that it may be one of theirs.
     #[inline(always)]
-    pub(super) fn highest(&self) -> Option<Span> {
+    pub(super) fn highest(&self) -> Option<FacetEdges> {
         let (u, w) = ([self.unit(0), self.unit(1), self.unit(2)], [self.unit(3), self.unit(4), self.unit(5)]);
         let (h, k) = (&self.halves[..3], &self.halves[3..]);
         // In coordinates along the edges of the first.
@@ -189,7 +189,7 @@ impl Boxes {
 
     /// The facet that is spanned by two edges, on the side of zero.
     #[inline(always)]
-    pub(super) fn facet(&self, span: Span) -> Facet {
+    pub(super) fn facet(&self, span: FacetEdges) -> BoxFacet {
         let [i, j] = span;
         let Self { from, center, units: [x, y, z], halves } = self;
         let (first, second) = (self.unit(i), self.unit(j));
@@ -212,7 +212,7 @@ impl Boxes {
         let within = |k: usize, way: f64| way.max(sides[k] - halves[k]).min(sides[k] + halves[k]);
         let [p, q] = [(i, way[0]), (j, way[1])].map(|(k, way)| if k < 3 { 0.0 } else { within(k, way) });
         let point = core::array::from_fn(|x| from[x] + (of_second[x] - first[x] * p - second[x] * q));
-        Facet { span, normal: n, level, room, point }
+        BoxFacet { span, normal: n, level, room, point }
     }
 
     /// Whether the line through zero along the normal certainly goes through the facet, and on within the difference to the other side of
@@ -221,7 +221,7 @@ impl Boxes {
     /// Zero is `depth` behind the facet, and points of the difference are wrong by `error`, which is less. The other edges lead from the facet
     /// to the opposite one, `2H` behind it and aside of it by `2R` at most. So `s` behind it there is the same parallelogram, aside by
     /// `s·R/H` at most. Here `s` is eight times the depth.
-    pub(super) fn is_pierced(&self, facet: &Facet, depth: f64, error: f64) -> bool {
+    pub(super) fn is_pierced(&self, facet: &BoxFacet, depth: f64, error: f64) -> bool {
         let [i, j] = facet.span;
         let (mut behind, mut aside) = (0.0, 0.0);
         for k in (0..EDGES).filter(|&k| k != i && k != j) {
@@ -237,7 +237,7 @@ impl Boxes {
 
     /// How much higher than its lowest corner a facet may be along a unit vector near its normal: its edges lean, and are wrong by what a turn
     /// loses, or by no more than the points of their box.
-    pub(super) fn leaning(&self, facet: &Facet, n: Vec3, errors: [f64; 2], epsilon: f64) -> f64 {
+    pub(super) fn leaning(&self, facet: &BoxFacet, n: Vec3, errors: [f64; 2], epsilon: f64) -> f64 {
         let turned = TURNED * epsilon;
         let mut leaning = 0.0;
         for k in 0..EDGES {

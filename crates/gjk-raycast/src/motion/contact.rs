@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::first_contact::{End, Search};
+use super::first_contact::{MotionEnd, Search};
 use super::instant::{Instant, Limits, Stage};
 use crate::Status;
 
@@ -17,7 +17,7 @@ const GRAZE: f64 = 16.0;
 impl<V: Vector> Search<'_, V> {
     /// Where the contact is as near as can be told: looks for a time just after it at which the bodies overlap. `None` where they are
     /// proved apart there, and the search goes on.
-    pub(super) fn close_in(&mut self) -> Option<End<V>> {
+    pub(super) fn close_in(&mut self) -> Option<MotionEnd<V>> {
         let (zero, two) = (V::Scalar::ZERO, V::Scalar::from_f64(2.0));
         let end = self.options.max_time.min(self.upper);
         let Instant { time, distance, upper, error, closing, .. } = self.near;
@@ -31,15 +31,15 @@ impl<V: Vector> Search<'_, V> {
         while self.looks < self.options.max_iterations {
             let next = (time + step).max(next_after(time)).min(end);
             if !(next > time) {
-                return Some(End::Undecided(Status::Stalled));
+                return Some(MotionEnd::Undecided(Status::Stalled));
             }
             if next >= self.upper {
-                return Some(End::Contact);
+                return Some(MotionEnd::Contact);
             }
             let there = self.look(next, Limits { distance: V::Scalar::infinity(), depth: zero });
             if there.overlaps() {
                 self.upper = there.time;
-                return Some(End::Contact);
+                return Some(MotionEnd::Contact);
             }
             if there.gap > zero {
                 if self.advance_to(&there) {
@@ -48,32 +48,32 @@ impl<V: Vector> Search<'_, V> {
                 }
                 if self.base.stage == Stage::Apart && self.bodies.pass_through(&self.near, there.time) {
                     self.upper = there.time;
-                    return Some(End::Contact);
+                    return Some(MotionEnd::Contact);
                 }
                 // They are apart again after a graze that nobody can tell from a contact.
                 if there.gap > self.closest() * V::Scalar::from_f64(GRAZE) && there.closing <= zero {
-                    return Some(End::Undecided(Status::Stalled));
+                    return Some(MotionEnd::Undecided(Status::Stalled));
                 }
             }
             if next >= end {
                 // The end belongs to the motion.
                 let touches = there.distance <= zero && end == self.options.max_time;
-                return Some(if touches { End::Contact } else { End::Undecided(Status::Stalled) });
+                return Some(if touches { MotionEnd::Contact } else { MotionEnd::Undecided(Status::Stalled) });
             }
             step *= two;
         }
-        Some(End::Undecided(Status::IterationLimit))
+        Some(MotionEnd::Undecided(Status::IterationLimit))
     }
 
     /// What to answer where the bodies are not certainly apart at the start.
-    pub(super) fn start_in_contact(&mut self) -> End<V> {
+    pub(super) fn start_in_contact(&mut self) -> MotionEnd<V> {
         let zero = V::Scalar::ZERO;
         if self.near.overlaps() {
             self.upper = zero;
         }
         if !self.near.overlaps() && !(self.near.distance <= self.near.error) {
             // Neither is known, such as of a support map that returns NaN.
-            return End::Undecided(Status::Stalled);
+            return MotionEnd::Undecided(Status::Stalled);
         }
         if !self.near.overlaps() && self.near.closing > zero {
             // They touch to rounding: when do they overlap?
@@ -81,7 +81,7 @@ impl<V: Vector> Search<'_, V> {
             let _ = self.close_in();
             self.near = touching;
         }
-        End::Contact
+        MotionEnd::Contact
     }
 }
 

@@ -14,7 +14,7 @@ pub(super) struct Corners<V> {
 }
 
 /// The face of some corners of the difference that has their point closest to zero, where the bodies are at a time.
-pub(super) struct Face<V: Vector> {
+pub(super) struct CornerFace<V: Vector> {
     points: [V; MAX_POINTS],
     pairs: [PointPair<V>; MAX_POINTS],
     pub(super) weights: [V::Scalar; MAX_POINTS],
@@ -50,7 +50,7 @@ impl<V: Vector> Corners<V> {
     /// The face closest to zero, where the bodies are at a time. Corners that leave the point closest to zero of their hull outside are
     /// dropped, which finds a face that is near if not the nearest; `None` where no face is found.
     #[inline(always)]
-    pub(super) fn closest_face(&self, Placed { a, b, offset, .. }: &Placed<'_, V>) -> Option<Face<V>> {
+    pub(super) fn closest_face(&self, Placed { a, b, offset, .. }: &Placed<'_, V>) -> Option<CornerFace<V>> {
         let mut len = self.len.min(MAX_POINTS);
         let zero = PointPair { a: V::ZERO, b: V::ZERO };
         let (mut pairs, mut points) = ([zero; MAX_POINTS], [V::ZERO; MAX_POINTS]);
@@ -63,7 +63,7 @@ impl<V: Vector> Corners<V> {
             let weights = foot.coordinates;
             let is_inside = |i: usize| weights[i] > V::Scalar::ZERO;
             if (0..len).all(is_inside) {
-                return Some(Face { points, pairs, weights, len, v: -foot.across });
+                return Some(CornerFace { points, pairs, weights, len, v: -foot.across });
             }
             // One weight at least is not positive, or NaN.
             let before = len;
@@ -77,7 +77,7 @@ impl<V: Vector> Corners<V> {
     }
 }
 
-impl<V: Vector> Face<V> {
+impl<V: Vector> CornerFace<V> {
     /// The points of both cores that its closest point is made of.
     #[inline(always)]
     pub(super) fn closest_points(&self) -> PointPair<V> {

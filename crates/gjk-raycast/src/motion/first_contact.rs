@@ -65,7 +65,7 @@ fn is_in_range<S: Scalar>(measure: S) -> bool {
 }
 
 /// How a search ended.
-pub(super) enum End<V> {
+pub(super) enum MotionEnd<V> {
     Miss(V),
     Contact,
     Undecided(Status),
@@ -126,19 +126,19 @@ impl<'p, V: Vector> Search<'p, V> {
     }
 
     /// From a time at which the bodies are apart to the end of the motion or to contact.
-    pub(super) fn advance(&mut self) -> End<V> {
+    pub(super) fn advance(&mut self) -> MotionEnd<V> {
         let zero = V::Scalar::ZERO;
         while self.looks < self.options.max_iterations {
             let rest = [self.near.time, self.options.max_time];
             if !(rest[0] < rest[1]) {
-                return End::Miss(self.near.normal);
+                return MotionEnd::Miss(self.near.normal);
             }
             if self.near.closing <= zero
                 && self.upper == V::Scalar::infinity()
                 && let Some(axis) = self.bodies.stays_far_apart(rest)
             {
                 self.near.time = rest[1];
-                return End::Miss(axis);
+                return MotionEnd::Miss(axis);
             }
             let time = if self.near.distance <= self.closest() { None } else { self.next_time() };
             let Some(time) = time else {
@@ -159,7 +159,7 @@ impl<'p, V: Vector> Search<'p, V> {
             }
             self.watch_progress();
         }
-        End::Undecided(Status::IterationLimit)
+        MotionEnd::Undecided(Status::IterationLimit)
     }
 
     /// Goes on to a time at which the bodies are apart, if they are proved to be so until then; if not, that is remembered.
@@ -262,16 +262,16 @@ impl<'p, V: Vector> Search<'p, V> {
         });
     }
 
-    fn answer(&self, end: End<V>) -> MotionCast<V> {
+    fn answer(&self, end: MotionEnd<V>) -> MotionCast<V> {
         let Instant { time: near, point, normal, .. } = self.near;
         let mut lower = self.lower();
         let (outcome, status) = match end {
-            End::Miss(axis) => {
+            MotionEnd::Miss(axis) => {
                 lower = near;
                 (Outcome::Miss(Miss { axis }), Status::Converged)
             }
-            End::Undecided(status) => (Outcome::Undecided, status),
-            End::Contact => {
+            MotionEnd::Undecided(status) => (Outcome::Undecided, status),
+            MotionEnd::Contact => {
                 let time = self.time_of_contact().min(self.upper).min(self.options.max_time);
                 let point = point + self.bodies.velocity_of_b(near, point) * (time - near);
                 let normal = if self.near.overlaps() { None } else { Some(normal) };

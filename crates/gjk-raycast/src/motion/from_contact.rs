@@ -15,7 +15,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::first_contact::{End, Search};
+use super::first_contact::{MotionEnd, Search};
 use super::instant::{Base, Instant, ROUNDED, Stage};
 use crate::Status;
 
@@ -38,13 +38,13 @@ const OUT: f64 = 0.9;
 
 impl<V: Vector> Search<'_, V> {
     /// What to answer where the bodies are not certainly apart at the start, and only what comes after it counts.
-    pub(super) fn begin_in_contact(&mut self) -> End<V> {
+    pub(super) fn begin_in_contact(&mut self) -> MotionEnd<V> {
         let number = V::Scalar::from_f64;
         let Instant { gap, distance, upper, error, .. } = self.near;
         let slack = self.bodies.size() * V::Scalar::EPSILON * number(SLACK) + error * number(2.0);
         if !(slack.is_finite() && distance <= error) {
             // Neither is known, such as of a support map that returns NaN.
-            return End::Undecided(Status::Stalled);
+            return MotionEnd::Undecided(Status::Stalled);
         }
         let stage = if upper < slack * number(-DEEP) { Stage::Deep } else { Stage::Touching };
         let (width, tolerance) = (upper - gap, self.options.tolerance);
@@ -53,9 +53,9 @@ impl<V: Vector> Search<'_, V> {
         self.raise(stage, gap - slack);
         match self.advance() {
             // They may have parted before, and touched again.
-            End::Contact if self.base.stage == Stage::Surfaced => {
+            MotionEnd::Contact if self.base.stage == Stage::Surfaced => {
                 self.upper = V::Scalar::infinity();
-                End::Undecided(Status::Stalled)
+                MotionEnd::Undecided(Status::Stalled)
             }
             end => end,
         }

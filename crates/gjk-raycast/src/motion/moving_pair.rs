@@ -7,7 +7,7 @@ use convex_support::{Hint, Scalar, Vector};
 use num_traits::Float;
 
 use super::approach::Approach;
-use super::boxes::{Block, Span};
+use super::boxes::{Block, FacetEdges};
 use super::corners::Corners;
 use super::instant::{Closeness, Instant, Limits};
 use super::moving_body::MovingBody;
@@ -31,7 +31,7 @@ pub(super) struct MovingPair<'s, V: Vector> {
     /// Both cores as they start, if they are boxes.
     boxes: Option<[Block<V>; 2]>,
     /// What spans the facet that they were seen by at the last look, if zero's foot was within it.
-    pub(super) facet: Cell<Option<Span>>,
+    pub(super) facet: Cell<Option<FacetEdges>>,
     /// The corners of the faces that were closest at the last look.
     pub(super) closest: RefCell<Corners<V>>,
     /// The support points computed of each shape.

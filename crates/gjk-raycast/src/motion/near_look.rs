@@ -7,7 +7,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::corners::Face;
+use super::corners::CornerFace;
 use super::instant::{IN_PLANE, Instant, LONG};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
@@ -18,7 +18,7 @@ use crate::simplex::{MAX_POINTS, project};
 use crate::unit::is_moderate;
 
 /// What may have been closest, lengths in the world's unit.
-struct Closest<V: Vector> {
+struct PlaneBetween<V: Vector> {
     /// Points of the cores, each relative to its body's origin, and the vector between them.
     points: PointPair<V>,
     v: V,
@@ -36,8 +36,8 @@ impl<V: Vector> MovingPair<'_, V> {
             return None;
         }
         let face = self.closest.borrow().closest_face(placed)?;
-        let closest = Closest::new(face.closest_points(), face.v, size);
-        let Closest { points, v, unit } = closest.or_else(|| Closest::in_plane(&face, axis))?;
+        let closest = PlaneBetween::new(face.closest_points(), face.v, size);
+        let PlaneBetween { points, v, unit } = closest.or_else(|| PlaneBetween::in_plane(&face, axis))?;
         // Not where they have passed through one another.
         if !(unit.dot(axis) > Scalar::ZERO) {
             return None;
@@ -71,7 +71,7 @@ impl<V: Vector> MovingPair<'_, V> {
     ///
     /// Each is looked for anew, along a direction that leans away from the others: as it was kept, it is not known as well as a support
     /// point.
-    fn overlap_of_corners(&self, cores: &mut Cores<'_, V>, face: &Face<V>, unit: V) -> Option<V::Scalar> {
+    fn overlap_of_corners(&self, cores: &mut Cores<'_, V>, face: &CornerFace<V>, unit: V) -> Option<V::Scalar> {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
         let (scale, radius, dimension) = (cores.scale(), cores.radius(), V::DIM);
         let (corners, len) = face.points();
@@ -106,7 +106,7 @@ impl<V: Vector> MovingPair<'_, V> {
     }
 }
 
-impl<V: Vector> Closest<V> {
+impl<V: Vector> PlaneBetween<V> {
     /// Points that are apart by `v`, for bodies of the given size; `None` where that is too short to have a direction.
     #[inline(always)]
     fn new(points: PointPair<V>, v: V, size: V::Scalar) -> Option<Self> {
@@ -115,7 +115,7 @@ impl<V: Vector> Closest<V> {
     }
 
     /// The closest points of a face that spans a plane.
-    fn in_plane(face: &Face<V>, axis: V) -> Option<Self> {
+    fn in_plane(face: &CornerFace<V>, axis: V) -> Option<Self> {
         let (corners, len) = face.points();
         let (normal, _) = if len == V::DIM { across_corners(&corners) } else { return None };
         let unit = normal.unit()?;

@@ -116,7 +116,7 @@ struct OverHalfSpace<'s, V: Vector> {
 }
 
 /// The body's lowest point at one time.
-struct Lowest<V: Vector> {
+struct LowestPoint<V: Vector> {
     /// Its height over the half-space, less the target distance.
     height: Level<V::Scalar>,
     /// The point of its core, in the world.
@@ -143,7 +143,7 @@ impl<'s, V: Vector> OverHalfSpace<'s, V> {
     ///
     /// Its height is that of the sum of the origin, what the motion adds to that, and the support point, so that a body far along the
     /// plane is known as well as any other.
-    fn lowest(&self, time: V::Scalar) -> Lowest<V> {
+    fn lowest(&self, time: V::Scalar) -> LowestPoint<V> {
         let (origin, radius) = (self.body.core.origin, self.body.core.radius);
         let place = self.body.place(time);
         let (shift, turned) = (place.shift, place.swing);
@@ -156,7 +156,7 @@ impl<'s, V: Vector> OverHalfSpace<'s, V> {
         self.iterations.set(self.iterations.get() + 1);
         let error = self.plane.error_along(&moved.rounding());
         let height = self.plane.height([origin, shift, turned, point], error, radius);
-        Lowest { height, core_point: moved_origin + point }
+        LowestPoint { height, core_point: moved_origin + point }
     }
 }
 
@@ -178,7 +178,7 @@ impl<V: Vector> Approach<V> for OverHalfSpace<'_, V> {
     }
 
     fn closely(&self, time: V::Scalar, _axis: V, _limits: Limits<V::Scalar>) -> Instant<V> {
-        let Lowest { height, core_point } = self.lowest(time);
+        let LowestPoint { height, core_point } = self.lowest(time);
         let unit = self.plane.unit;
         let point_a = core_point - unit * self.body.core.radius;
         // The point below, or of a body that is in the half-space its own lowest point.

@@ -31,7 +31,7 @@ use crate::unit::{is_moderate, length_bound};
 const ERRORS: f64 = 4.0;
 
 /// Corners as seen along a unit vector: across it, and how high they are.
-struct Seen<S> {
+struct SeenCorners<S> {
     at: [Across<S>; MAX_POINTS],
     heights: [S; MAX_POINTS],
 }
@@ -54,8 +54,8 @@ impl<V: Vector> MovingPair<'_, V> {
         for (&before, &after) in before.iter().zip(&after).take(dimension) {
             moved += length_bound(after - before);
         }
-        let seen_before = Seen::along(near.normal, &before);
-        let seen_after = Seen::along(near.normal, &after);
+        let seen_before = SeenCorners::along(near.normal, &before);
+        let seen_after = SeenCorners::along(near.normal, &after);
         // Wherever the corners are in between, each is seen no farther than this from where it was.
         let is_seen_within = seen_before.room::<V>() > moved;
         let (height, lost) = seen_after.height_at_zero::<V>();
@@ -106,7 +106,7 @@ fn error_of<V: Vector>(placed: &Placed<'_, V>) -> V::Scalar {
     rounding(pair.size(placed.offset)) + pair.error()
 }
 
-impl<S: Scalar> Seen<S> {
+impl<S: Scalar> SeenCorners<S> {
     fn along<V: Vector<Scalar = S>>(n: V, points: &[V; MAX_POINTS]) -> Self {
         let [e, f] = axes_across(n);
         Self { at: points.map(|p| (e.dot(p), f.dot(p))), heights: points.map(|p| n.dot(p)) }

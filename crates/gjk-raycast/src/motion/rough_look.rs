@@ -3,7 +3,7 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float;
 
-use super::corners::Face;
+use super::corners::CornerFace;
 use super::instant::{Instant, NEAR};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
@@ -19,14 +19,14 @@ const ROUGH: f64 = 0.2;
 
 /// What was seen of two cores: how far apart the plane across a unit vector keeps them, what that may be wrong by, and points of them that
 /// are nearly the closest, each relative to its body's origin.
-struct Seen<V: Vector> {
+struct SeenCores<V: Vector> {
     unit: V,
     lower: V::Scalar,
     error: V::Scalar,
     points: PointPair<V>,
 }
 
-impl<V: Vector> Seen<V> {
+impl<V: Vector> SeenCores<V> {
     /// The points whose difference is `v`, and the plane through the support point `w` across that.
     #[inline(always)]
     fn new(v: V, length: V::Scalar, w: V, points: PointPair<V>, error: V::Scalar) -> Self {
@@ -39,7 +39,7 @@ enum Begin<'f, V: Vector> {
     /// Along an axis.
     Along(V),
     /// At a face, with the support point across the vector to it and what that is made of.
-    At(&'f Face<V>, (V, PointPair<V>)),
+    At(&'f CornerFace<V>, (V, PointPair<V>)),
 }
 
 /// Points in units of the scale, in the world's unit.
@@ -74,7 +74,7 @@ impl<V: Vector> MovingPair<'_, V> {
         time: V::Scalar,
         placed: &Placed<'_, V>,
         pair: &mut Pair<'_, Placed<'_, V>>,
-        face: &Face<V>,
+        face: &CornerFace<V>,
         axis: V,
         limit: V::Scalar,
     ) -> Option<Instant<V>> {
@@ -89,7 +89,7 @@ impl<V: Vector> MovingPair<'_, V> {
             return None;
         }
         let known = pair.support(-v);
-        let seen = Seen::new(v, length, known.0 + placed.offset, face.closest_points(), error);
+        let seen = SeenCores::new(v, length, known.0 + placed.offset, face.closest_points(), error);
         let distance = seen.lower - radius;
         if is_well_off(distance) {
             let is_closest = signed - seen.lower <= distance.abs() * Scalar::from_f64(ROUGH);
@@ -135,7 +135,8 @@ impl<V: Vector> MovingPair<'_, V> {
         let (distance, near) = (state.lower - radius, error * Scalar::from_f64(NEAR));
         let unit = state.axis.unit()?;
         let lower = state.lower;
-        let seen = |points| Seen { unit, lower: lower * scale, error: error * scale, points: in_world(points, scale) };
+        let seen =
+            |points| SeenCores { unit, lower: lower * scale, error: error * scale, points: in_world(points, scale) };
         // NaN is neither.
         if end == gjk::End::Separated && distance > near {
             state.ensure_measured();
@@ -160,7 +161,7 @@ impl<V: Vector> MovingPair<'_, V> {
         &self,
         time: V::Scalar,
         placed: &Placed<'_, V>,
-        &Seen { unit, lower, error, points }: &Seen<V>,
+        &SeenCores { unit, lower, error, points }: &SeenCores<V>,
     ) -> Instant<V> {
         let (radius_a, radius_b) = (self.a.core.radius, self.b.core.radius);
         let point_a = placed.place + placed.offset + points.a - unit * radius_a;

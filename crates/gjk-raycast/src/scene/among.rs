@@ -30,7 +30,7 @@ pub struct Among<'s, S: SupportMap> {
     pub(super) scene: &'s Scene<S>,
     bodies: Option<&'s Picks<'s>>,
     without_pairs: Option<&'s Pairs<'s>>,
-    until: Option<&'s Stop<'s>>,
+    until: Option<&'s StopFlag<'s>>,
 }
 
 /// Tells by its index whether a body is asked about.
@@ -38,7 +38,7 @@ type Picks<'f> = dyn Fn(usize) -> bool + Sync + 'f;
 /// Tells by their indices whether two bodies are not asked about.
 type Pairs<'f> = dyn Fn(usize, usize) -> bool + Sync + 'f;
 /// Tells whether to stop.
-type Stop<'f> = dyn Fn() -> bool + Sync + 'f;
+type StopFlag<'f> = dyn Fn() -> bool + Sync + 'f;
 
 impl<S: SupportMap> Clone for Among<'_, S> {
     fn clone(&self) -> Self {

@@ -7,7 +7,7 @@ use convex_support::{Aabb, Bound, Scalar, SupportMap, SweptBox, Vector, outer_bo
 use num_traits::Float;
 
 use super::result::{SceneAnyHit, SceneCast, SceneHits, SceneLinearCast, SceneRayCast, Work, reuse};
-use super::single::Single;
+use super::single::SingleAnswer;
 use super::{Among, Body, BodyHit, Scene};
 use crate::{LinearCastOptions, Motion, Ray, RayCastError, RayCastOptions, RayHit};
 
@@ -110,7 +110,7 @@ impl<S: SupportMap> Among<'_, S> {
         let hits = reuse(hits);
         let mut undecided = None;
         let work = self.each(&swept_point(ray), options.max_lambda, |index, body| {
-            let single = Single::from(body.ray_cast(ray, options)?);
+            let single = SingleAnswer::from(body.ray_cast(ray, options)?);
             if single.is_undecided {
                 undecided = Some(undecided.map_or(index, |lowest: usize| lowest.min(index)));
             }
@@ -168,9 +168,9 @@ impl<S: SupportMap> Among<'_, S> {
         &self,
         bound: &B,
         end: Number<S>,
-        mut ask: impl FnMut(&Body<S>) -> Result<Single<H, Number<S>>, RayCastError>,
+        mut ask: impl FnMut(&Body<S>) -> Result<SingleAnswer<H, Number<S>>, RayCastError>,
     ) -> Result<SceneCast<H, Number<S>>, RayCastError> {
-        let mut first = First { hit: None, open: None, lower: Number::<S>::infinity() };
+        let mut first = FirstHit { hit: None, open: None, lower: Number::<S>::infinity() };
         let (mut work, mut error) = (Work::default(), None);
         let mut look = |index: usize, from: Number<S>, body: &Body<S>, work: &mut Work| {
             if self.stops(work) {
@@ -212,7 +212,7 @@ impl<S: SupportMap> Among<'_, S> {
         if let Some(error) = error {
             return Err(error);
         }
-        let First { hit, open, lower } = first;
+        let FirstHit { hit, open, lower } = first;
         let undecided = open.filter(|&open| hit.is_none_or(|(key, hit)| open < (key, hit.body))).map(|(_, body)| body);
         let lower = if work.cancelled { Number::<S>::ZERO } else { lower };
         Ok(SceneCast { first: hit.map(|(_, hit)| hit), lower, undecided, work })
@@ -260,7 +260,7 @@ type Number<S> = convex_support::ScalarOf<S>;
 /// A body counts from its *key*: the λ of its hit, or where its box begins if that is later, as it cannot be where the
 /// hit's bracket is closed. Keys, and all that is kept here, are minima over bodies, in which one that was left out by its
 /// box takes no part: so the order in which bodies are met does not matter, nor which others were met.
-struct First<H, S> {
+struct FirstHit<H, S> {
     /// The least key, with the hit.
     hit: Option<(S, BodyHit<H, S>)>,
     /// Where an undecided body may be hit at the earliest, and which.
@@ -269,9 +269,9 @@ struct First<H, S> {
     lower: S,
 }
 
-impl<H: Copy, S: Scalar> First<H, S> {
+impl<H: Copy, S: Scalar> FirstHit<H, S> {
     /// Takes the cast of a body whose box begins at `from`.
-    fn take(&mut self, body: usize, from: S, single: Single<H, S>) {
+    fn take(&mut self, body: usize, from: S, single: SingleAnswer<H, S>) {
         let start = Float::max(single.lower, from);
         if single.is_undecided {
             self.lower = Float::min(self.lower, start);

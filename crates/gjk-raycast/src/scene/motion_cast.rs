@@ -7,7 +7,7 @@ use convex_support::{
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
-use super::pieces::{MAX_PIECES, Piece, Pieces};
+use super::pieces::{MAX_PIECES, MotionPiece, MotionPieces};
 use super::result::SceneMotionCast;
 use super::{Among, Scene};
 use crate::motion::{check, checked};
@@ -60,7 +60,7 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> Result<SceneMotionCast<S::Vector>, RayCastError> {
         check("motion", &motion)?;
         let options = checked(options)?;
-        let bound = MovingBalls(Pieces::new(shape, &motion, &options).map(MovingBox::new).collect());
+        let bound = MovingBalls(MotionPieces::new(shape, &motion, &options).map(MovingBox::new).collect());
         self.first(&bound, options.max_time, |body| Ok(body.motion_cast(shape, &motion, options)?.into()))
     }
 }
@@ -77,10 +77,10 @@ struct MovingBox<V: Vector> {
 
 impl<V: Vector> MovingBox<V> {
     /// With room for the rounding of where the ball is.
-    fn new(piece: Piece<V>) -> Self {
+    fn new(piece: MotionPiece<V>) -> Self {
         let number = V::Scalar::from_f64;
         let reach = piece.reach();
-        let Piece { start, duration, ball } = piece;
+        let MotionPiece { start, duration, ball } = piece;
         // What moves for ever is as far as it is asked about.
         let reach = if reach.is_finite() { reach } else { ball.start.abs() + V::splat(ball.radius) };
         let room = number(64.0) * V::Scalar::EPSILON * reach.max_element();

@@ -44,7 +44,7 @@ impl<S: SupportMap> Among<'_, S> {
         shape: &A,
         options: DistanceOptions<S::Vector>,
     ) -> SceneDistance<S::Vector> {
-        let mut nearest = Nearest { body: None, end: options.limit, best: usize::MAX, lower: options.limit };
+        let mut nearest = NearestBody { body: None, end: options.limit, best: usize::MAX, lower: options.limit };
         let mut work = Work::default();
         let mut look = |index: usize, from: ScalarOf<S>, body: &Body<S>, work: &mut Work| {
             // Of equals the lowest index counts, and this body is as far as its box at least.
@@ -84,7 +84,7 @@ impl<S: SupportMap> Among<'_, S> {
 
 /// The nearest body so far. As for casts, a body counts from its distance or from where its box begins, whichever is
 /// farther.
-struct Nearest<V: convex_support::Vector> {
+struct NearestBody<V: convex_support::Vector> {
     body: Option<BodyDistance<V>>,
     /// What it counts from, or the limit.
     end: V::Scalar,
@@ -93,7 +93,7 @@ struct Nearest<V: convex_support::Vector> {
     lower: V::Scalar,
 }
 
-impl<V: convex_support::Vector> Nearest<V> {
+impl<V: convex_support::Vector> NearestBody<V> {
     fn take(&mut self, body: usize, from: V::Scalar, distance: Distance<V>) {
         self.lower = Float::min(self.lower, Float::max(distance.lower, from));
         let key = Float::max(distance.distance, from);

@@ -13,13 +13,13 @@ const GROWTH: f64 = 1.5;
 
 /// A part of a motion, and a ball that moves at constant velocity. Throughout the part, the ball contains the shape, and everything no
 /// farther from it than the target distance.
-pub(super) struct Piece<V: Vector> {
+pub(super) struct MotionPiece<V: Vector> {
     pub(super) start: V::Scalar,
     pub(super) duration: V::Scalar,
     pub(super) ball: MovingBall<V>,
 }
 
-impl<V: Vector> Piece<V> {
+impl<V: Vector> MotionPiece<V> {
     /// A bound on the coordinates of the ball's points throughout the part; infinite if it moves for ever.
     pub(super) fn reach(&self) -> V {
         let MovingBall { start, velocity, radius } = self.ball;
@@ -32,7 +32,7 @@ impl<V: Vector> Piece<V> {
 }
 
 /// A motion in as few pieces as make their balls hardly larger than that of the shape. A motion without an end is one piece.
-pub(super) struct Pieces<'m, M: Trajectory> {
+pub(super) struct MotionPieces<'m, M: Trajectory> {
     motion: &'m M,
     ball: BoundingSphere<M::Vector>,
     end: <M::Vector as Vector>::Scalar,
@@ -40,7 +40,7 @@ pub(super) struct Pieces<'m, M: Trajectory> {
     next: usize,
 }
 
-impl<'m, M: Trajectory> Pieces<'m, M> {
+impl<'m, M: Trajectory> MotionPieces<'m, M> {
     /// Of a shape as it moves; the options are checked.
     pub(super) fn new<A: SupportMap<Vector = M::Vector> + ?Sized>(
         shape: &A,
@@ -61,7 +61,7 @@ impl<'m, M: Trajectory> Pieces<'m, M> {
         pieces
     }
 
-    fn piece(&self, index: usize) -> Piece<M::Vector> {
+    fn piece(&self, index: usize) -> MotionPiece<M::Vector> {
         let at = |index: usize| {
             let part = <M::Vector as Vector>::Scalar::from_f64(index as f64 / self.count as f64);
             if index == 0 {
@@ -73,14 +73,14 @@ impl<'m, M: Trajectory> Pieces<'m, M> {
             }
         };
         let (start, end) = (at(index), at(index + 1));
-        Piece { start, duration: end - start, ball: self.motion.moving_ball(self.ball, [start, end]) }
+        MotionPiece { start, duration: end - start, ball: self.motion.moving_ball(self.ball, [start, end]) }
     }
 }
 
-impl<M: Trajectory> Iterator for Pieces<'_, M> {
-    type Item = Piece<M::Vector>;
+impl<M: Trajectory> Iterator for MotionPieces<'_, M> {
+    type Item = MotionPiece<M::Vector>;
 
-    fn next(&mut self) -> Option<Piece<M::Vector>> {
+    fn next(&mut self) -> Option<MotionPiece<M::Vector>> {
         let index = self.next;
         (index < self.count).then(|| {
             self.next += 1;

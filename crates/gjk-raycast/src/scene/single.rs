@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// The answer of one cast: `H` is a hit, `S` its λ or time.
-pub(super) struct Single<H, S> {
+pub(super) struct SingleAnswer<H, S> {
     /// The hit, with its λ or time.
     pub(super) hit: Option<(S, H)>,
     pub(super) is_undecided: bool,
@@ -19,7 +19,7 @@ pub(super) struct Single<H, S> {
     pub(super) status: Status,
 }
 
-impl<H, S> Single<H, S> {
+impl<H, S> SingleAnswer<H, S> {
     /// The hit as that of a body.
     pub(super) fn of(self, body: usize) -> Option<BodyHit<H, S>> {
         let Self { hit, lower, upper, status, .. } = self;
@@ -27,21 +27,21 @@ impl<H, S> Single<H, S> {
     }
 }
 
-impl<V: Vector> From<RayCast<V>> for Single<RayHit<V>, V::Scalar> {
+impl<V: Vector> From<RayCast<V>> for SingleAnswer<RayHit<V>, V::Scalar> {
     fn from(RayCast { outcome, lower, upper, status, .. }: RayCast<V>) -> Self {
         let is_undecided = matches!(outcome, Outcome::Undecided);
         Self { hit: outcome.hit().map(|hit| (hit.lambda, hit)), is_undecided, lower, upper, status }
     }
 }
 
-impl<V: Vector> From<LinearCast<V>> for Single<LinearHit<V>, V::Scalar> {
+impl<V: Vector> From<LinearCast<V>> for SingleAnswer<LinearHit<V>, V::Scalar> {
     fn from(LinearCast { outcome, lower, upper, status, .. }: LinearCast<V>) -> Self {
         let is_undecided = matches!(outcome, Outcome::Undecided);
         Self { hit: outcome.hit().map(|hit| (hit.time, hit)), is_undecided, lower, upper, status }
     }
 }
 
-impl<V: Vector> From<MotionCast<V>> for Single<MotionHit<V>, V::Scalar> {
+impl<V: Vector> From<MotionCast<V>> for SingleAnswer<MotionHit<V>, V::Scalar> {
     fn from(MotionCast { outcome, lower, upper, status, .. }: MotionCast<V>) -> Self {
         let is_undecided = matches!(outcome, Outcome::Undecided);
         Self { hit: outcome.hit().map(|hit| (hit.time, hit)), is_undecided, lower, upper, status }

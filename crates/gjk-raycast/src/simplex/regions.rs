@@ -7,7 +7,7 @@ use crate::simplex::{Face, MAX_POINTS};
 
 /// The face of a simplex that is closest to zero.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Nearest<V> {
+pub(crate) struct NearestFace<V> {
     pub(crate) face: Face,
     /// A vector along the shortest one from zero to the face, of any length; zero where the simplex has full dimension
     /// and contains zero for certain.
@@ -37,7 +37,7 @@ const FLAT: f64 = 64.0;
 /// A wrong sign costs no more than a step: whatever face is found, the points of its plane are no farther than the
 /// caller measures them to be. Only that zero is within needs proof here. `None` where no region fits.
 #[inline(always)]
-pub(crate) fn nearest<V: Vector>(points: &[V; MAX_POINTS], newest: usize, y: V) -> Option<Nearest<V>> {
+pub(crate) fn nearest<V: Vector>(points: &[V; MAX_POINTS], newest: usize, y: V) -> Option<NearestFace<V>> {
     match newest {
         0 => Some(vertex(0, y)),
         1 => of_segment(y, points[0] - y),
@@ -47,21 +47,21 @@ pub(crate) fn nearest<V: Vector>(points: &[V; MAX_POINTS], newest: usize, y: V) 
 }
 
 #[inline(always)]
-fn vertex<V: Vector>(newest: usize, y: V) -> Nearest<V> {
-    Nearest { face: Face::of_corners(&[newest]), normal: y }
+fn vertex<V: Vector>(newest: usize, y: V) -> NearestFace<V> {
+    NearestFace { face: Face::of_corners(&[newest]), normal: y }
 }
 
 /// The edge along `e` from the newest point to point `i`.
 #[inline(always)]
-fn edge<V: Vector>(newest: usize, i: usize, y: V, e: V, squared: V::Scalar) -> Nearest<V> {
+fn edge<V: Vector>(newest: usize, i: usize, y: V, e: V, squared: V::Scalar) -> NearestFace<V> {
     let per_square = squared.recip();
     let across = |v: V| v - e * (v.dot(e) * per_square);
     // Twice, since the first projection leaves rounding errors of the length of y along e.
-    Nearest { face: Face::of_corners(&[newest, i]), normal: across(across(y)) }
+    NearestFace { face: Face::of_corners(&[newest, i]), normal: across(across(y)) }
 }
 
 #[inline(always)]
-fn of_segment<V: Vector>(y: V, e: V) -> Option<Nearest<V>> {
+fn of_segment<V: Vector>(y: V, e: V) -> Option<NearestFace<V>> {
     let (squared, g) = (e.length_squared(), -y.dot(e));
     if g >= squared {
         return None;
@@ -70,7 +70,7 @@ fn of_segment<V: Vector>(y: V, e: V) -> Option<Nearest<V>> {
 }
 
 #[inline(always)]
-fn of_triangle<V: Vector>(y: V, e: [V; 2]) -> Option<Nearest<V>> {
+fn of_triangle<V: Vector>(y: V, e: [V; 2]) -> Option<NearestFace<V>> {
     let zero = V::Scalar::ZERO;
     let (g00, g01, g11) = (e[0].length_squared(), e[0].dot(e[1]), e[1].length_squared());
     let (g0, g1) = (-y.dot(e[0]), -y.dot(e[1]));
@@ -85,10 +85,10 @@ fn of_triangle<V: Vector>(y: V, e: [V; 2]) -> Option<Nearest<V>> {
             // In the plane the triangle is all there is; its r are areas squared.
             let doubt = flatness::<V>() * y.length_squared() * g00 * g11;
             let inside = determinant > flat && r0 * r0 > doubt * g11 && r1 * r1 > doubt * g00;
-            return inside.then_some(Nearest { face: Face::of_corners(&[0, 1, 2]), normal: V::ZERO });
+            return inside.then_some(NearestFace { face: Face::of_corners(&[0, 1, 2]), normal: V::ZERO });
         }
         let normal = towards(cross(e[0], e[1]), y);
-        return (normal.length_squared() > flat).then_some(Nearest { face: Face::of_corners(&[0, 1, 2]), normal });
+        return (normal.length_squared() > flat).then_some(NearestFace { face: Face::of_corners(&[0, 1, 2]), normal });
     }
     if g0 > zero && r1 <= zero {
         (g0 < g00).then(|| edge(2, 0, y, e[0], g00))
@@ -100,7 +100,7 @@ fn of_triangle<V: Vector>(y: V, e: [V; 2]) -> Option<Nearest<V>> {
 }
 
 #[inline(always)]
-fn of_tetrahedron<V: Vector>(y: V, e: [V; 3]) -> Option<Nearest<V>> {
+fn of_tetrahedron<V: Vector>(y: V, e: [V; 3]) -> Option<NearestFace<V>> {
     let zero = V::Scalar::ZERO;
     let squared = [e[0].length_squared(), e[1].length_squared(), e[2].length_squared()];
     let (g01, g12, g20) = (e[0].dot(e[1]), e[1].dot(e[2]), e[2].dot(e[0]));
@@ -117,7 +117,7 @@ fn of_tetrahedron<V: Vector>(y: V, e: [V; 3]) -> Option<Nearest<V>> {
             && s[1] * s[1] > doubt * squared[2] * squared[0]
             && s[2] * s[2] > doubt * squared[0] * squared[1]
             && s[0] + s[1] + s[2] < det.abs();
-        return inside.then_some(Nearest { face: Face::of_corners(&[0, 1, 2, 3]), normal: V::ZERO });
+        return inside.then_some(NearestFace { face: Face::of_corners(&[0, 1, 2, 3]), normal: V::ZERO });
     }
     // r[i][j] for the facets in the order of n: what edge i leaves for the corner of edge j.
     let (r01, r10) = (g[1] * squared[0] - g[0] * g01, g[0] * squared[1] - g[1] * g01);
@@ -127,7 +127,7 @@ fn of_tetrahedron<V: Vector>(y: V, e: [V; 3]) -> Option<Nearest<V>> {
     let facet = |k: usize, i: usize, j: usize, r: V::Scalar| {
         let area = n[k].length_squared();
         (r < area && area > flatness::<V>() * squared[i] * squared[j])
-            .then(|| Nearest { face: Face::of_corners(&[i, j, 3]), normal: n[k] * sign })
+            .then(|| NearestFace { face: Face::of_corners(&[i, j, 3]), normal: n[k] * sign })
     };
     if s[0] <= zero && r12 > zero && r21 > zero {
         return facet(0, 1, 2, r12 + r21);

@@ -17,7 +17,7 @@ mod swept_simplex;
 use convex_support::{Scalar, Vector};
 
 use super::bracket::Bracket;
-use super::{Contact, Stop};
+use super::{RayContact, Stop};
 use crate::gjk::Progress;
 use crate::simplex::{Closest, MAX_POINTS, Simplex, project};
 use refine::refine;
@@ -29,24 +29,24 @@ const GRAZING: f64 = 0.1;
 /// Closes the bracket, or finds a plane that the whole ray is before.
 #[cold]
 #[inline(never)]
-pub(super) fn algorithm_3<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Contact<V>, Stop<V>> {
+pub(super) fn algorithm_3<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
     let mut simplex = Simplex::new();
     match approach(bracket, &mut simplex)? {
-        Approach::Touches(contact) => Ok(contact),
-        Approach::Pierces(entry) => refine(bracket, simplex, entry),
+        Approached::Touches(contact) => Ok(contact),
+        Approached::Pierces(entry) => refine(bracket, simplex, entry),
     }
 }
 
 /// How the approach ends.
-enum Approach<V: Vector> {
+enum Approached<V: Vector> {
     /// At a point of the body.
-    Touches(Contact<V>),
+    Touches(RayContact<V>),
     /// The ray enters the swept simplex.
     Pierces(Entry<V>),
 }
 
 /// GJK steps until the ray enters the simplex of support points, or touches the body.
-fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -> Result<Approach<V>, Stop<V>> {
+fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -> Result<Approached<V>, Stop<V>> {
     let line = bracket.line();
     // The paper's v.
     let mut v = bracket.x();
@@ -72,7 +72,7 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
             simplex.push(point, n, witness);
             let found = entry(simplex.points(), line, bracket.radius, bracket.noise);
             if let Some(found) = found.filter(|e| e.mu >= bracket.earliest() - bracket.noise) {
-                return Ok(Approach::Pierces(found));
+                return Ok(Approached::Pierces(found));
             }
         }
         // The paper's step: the point of {x} − P closest to zero.
@@ -83,7 +83,7 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
             // x is in the body, or no farther from it than rounding.
             simplex.retain(face, weights);
             let contact = bracket.close_at_low(to_x, simplex.weighted_witness());
-            return contact.map(Approach::Touches).ok_or(Stop::InDoubt);
+            return contact.map(Approached::Touches).ok_or(Stop::InDoubt);
         }
         let slope = to_x.dot(line.direction) / length;
         let progress = nearing.goes_on(length);
@@ -108,7 +108,7 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
         if length - bracket.radius <= within {
             // With the slope of a plane ahead the ray may be past the simplex.
             let contact = if slope < Scalar::ZERO { touch_beside(bracket, simplex, v, within, beside) } else { None };
-            return contact.map(Approach::Touches).ok_or(Stop::InDoubt);
+            return contact.map(Approached::Touches).ok_or(Stop::InDoubt);
         }
         if !progress {
             return Err(Stop::InDoubt);
@@ -126,7 +126,7 @@ fn touch_beside<V: Vector>(
     v: V,
     within: V::Scalar,
     normal: Option<V>,
-) -> Option<Contact<V>> {
+) -> Option<RayContact<V>> {
     let (point, witness) = (simplex.weighted_point(), simplex.weighted_witness());
     let mut contact = bracket.close_beside(v, within, point, witness, normal)?;
     // Where no plane was crossed, the ray meets the face of the simplex head-on.

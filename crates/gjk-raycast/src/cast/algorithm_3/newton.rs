@@ -89,7 +89,7 @@ pub(super) fn newton<V: Vector>(
 
 /// A smooth piece at a plane that the ray crosses: how far it reaches along the normal, its point as seen from the line, and
 /// its Hessian.
-struct Piece<S> {
+struct PieceAlongRay<S> {
     reach: S,
     p: Across<S>,
     hessian: Symmetric<S>,
@@ -99,14 +99,14 @@ struct Piece<S> {
     found: Across<S>,
 }
 
-impl<S: Scalar> Piece<S> {
+impl<S: Scalar> PieceAlongRay<S> {
     fn edge_to(&self, other: &Self) -> Across<S> {
         (other.p.0 - self.p.0, other.p.1 - self.p.1)
     }
 }
 
 /// The piece to go between, if there is one, and the change to the normal that suits the first alone, if one does.
-type SecondPiece<S> = (Option<Piece<S>>, Option<Across<S>>);
+type SecondPiece<S> = (Option<PieceAlongRay<S>>, Option<Across<S>>);
 
 /// Points and planes as they are seen along the ray; normals have length one against it.
 struct SeenAlongRay<'k, 'b, V: Vector> {
@@ -127,7 +127,7 @@ impl<V: Vector> SeenAlongRay<'_, '_, V> {
     }
 
     /// The piece of a point that was found along `n`, turned to another normal.
-    fn piece(&self, point: V, n: V, to: V) -> Piece<V::Scalar> {
+    fn piece(&self, point: V, n: V, to: V) -> PieceAlongRay<V::Scalar> {
         let found = self.across(point - self.bracket.line().foot);
         let mut hessian = self.bracket.body.hessian(n, self.axes);
         let is_vertex = hessian.is_zero();
@@ -141,12 +141,12 @@ impl<V: Vector> SeenAlongRay<'_, '_, V> {
         }
         let turned = turned(hessian, self.across(n), self.across(to - n));
         let p = (found.0 + turned.shift.0, found.1 + turned.shift.1);
-        Piece { reach: to.dot(point) + turned.rise, p, hessian: turned.hessian, is_vertex, found }
+        PieceAlongRay { reach: to.dot(point) + turned.rise, p, hessian: turned.hessian, is_vertex, found }
     }
 
     /// Of the other pieces the one that would reach farthest beyond the first at the normal that suits the first alone; or
     /// where the first alone suits none, the one across from which the line lies. And the change to that normal.
-    fn second_piece(&self, first: &Piece<V::Scalar>, others: &[(V, V)], n: V) -> SecondPiece<V::Scalar> {
+    fn second_piece(&self, first: &PieceAlongRay<V::Scalar>, others: &[(V, V)], n: V) -> SecondPiece<V::Scalar> {
         let noise = self.bracket.noise;
         let p = first.p;
         let alone = first.hessian.is_regular().then(|| first.hessian.solve((-p.0, -p.1)));

@@ -8,7 +8,7 @@ use super::newton::{Recent, newton};
 use super::swept_simplex::{Entry, entry};
 use crate::cast::bracket::Bracket;
 use crate::cast::line::Line;
-use crate::cast::{Contact, Stop};
+use crate::cast::{RayContact, Stop};
 use crate::simplex::{MAX_POINTS, closest_in_face, faces};
 
 /// Exchanges of a point that gain nothing before the line is moved into the facet, and steps by curvature before the facet's
@@ -25,9 +25,9 @@ pub(super) fn refine<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     mut simplex: Simplex<V>,
     mut at: Entry<V>,
-) -> Result<Contact<V>, Stop<V>> {
+) -> Result<RayContact<V>, Stop<V>> {
     let mut pierced = Pierced { line: bracket.line(), moved: Scalar::ZERO, failures: 0 };
-    let mut steps = Steps::new(bracket.noise);
+    let mut steps = CurvatureSteps::new(bracket.noise);
     let mut recent = Recent::new();
     simplex.retain(at.face, at.weights);
     loop {
@@ -124,7 +124,7 @@ impl<V: Vector> Pierced<V> {
 
 /// Whether steps by curvature are taken: while they shrink, and the facet's normal after one that did not; between two
 /// pieces, every other step only goes back and forth.
-struct Steps<S> {
+struct CurvatureSteps<S> {
     last_gap: S,
     failures: usize,
     /// The tangents of the angles of the last two steps.
@@ -133,7 +133,7 @@ struct Steps<S> {
     model_error: S,
 }
 
-impl<S: Scalar> Steps<S> {
+impl<S: Scalar> CurvatureSteps<S> {
     fn new(noise: S) -> Self {
         Self { last_gap: S::infinity(), failures: 0, angles: [S::infinity(); 2], model_error: noise }
     }
@@ -160,7 +160,7 @@ impl<S: Scalar> Steps<S> {
 
 /// The contact where the ray runs through one of some points of the body, or through a segment or triangle of them, if that
 /// also is where it crosses the last plane.
-fn touch<V: Vector>(bracket: &mut Bracket<'_, V>, points: &Simplex<V>) -> Option<Contact<V>> {
+fn touch<V: Vector>(bracket: &mut Bracket<'_, V>, points: &Simplex<V>) -> Option<RayContact<V>> {
     let line = bracket.line();
     let mut seen = [V::ZERO; MAX_POINTS];
     for (s, &point) in seen.iter_mut().zip(points.points()) {

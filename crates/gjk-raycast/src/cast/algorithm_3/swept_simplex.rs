@@ -49,7 +49,7 @@ pub(super) fn entry<V: Vector>(points: &[V], line: Line<V>, radius: V::Scalar, n
     best
 }
 
-type Found<V> = Option<(<V as Vector>::Scalar, V, [<V as Vector>::Scalar; MAX_POINTS])>;
+type FoundEntry<V> = Option<(<V as Vector>::Scalar, V, [<V as Vector>::Scalar; MAX_POINTS])>;
 
 /// The line crosses the plane at distance `radius` from a facet, on the side it comes from.
 ///
@@ -60,7 +60,7 @@ fn enter_facet<V: Vector, const EDGES: usize>(
     line: Line<V>,
     radius: V::Scalar,
     noise: V::Scalar,
-) -> Found<V> {
+) -> FoundEntry<V> {
     let d = AffineHull::<V, EDGES>::new(corners).project(|_| line.direction).across;
     let slope = -d.length();
     // A facet along the line has nothing but rounding for d.
@@ -120,7 +120,7 @@ fn enter_edge<V: Vector, const EDGES: usize>(
     line: Line<V>,
     radius: V::Scalar,
     noise: V::Scalar,
-) -> Found<V> {
+) -> FoundEntry<V> {
     // Beyond the end of an edge is the sphere about its corner, which is no other place if its radius is rounding.
     let (radius, slack) = if radius > noise { (radius, V::Scalar::ZERO) } else { (noise, noise) };
     let d = flat.project(|_| line.direction).across;

@@ -2,8 +2,8 @@
 
 use convex_support::{Scalar, Vector};
 
-use super::pieces::{MAX_PIECES, Piece, QuadraticModel};
-use super::ray_frame::{Alpha, Plane, weights_of_zero};
+use super::pieces::{MAX_PIECES, QuadraticModel, RayPiece};
+use super::ray_frame::{Alpha, RayPlane, weights_of_zero};
 use crate::curvature::{between, is_stiff_across, share_of_second};
 use crate::symmetric::{Across, cross, dot};
 
@@ -22,7 +22,7 @@ use crate::symmetric::{Across, cross, dot};
 /// The newest piece is the lowest where it was looked at, and mostly one of those. So those without it are tried only where none
 /// with it will do.
 pub(super) fn best_plane<V: Vector>(
-    pieces: &[Piece<V>],
+    pieces: &[RayPiece<V>],
     alpha: Alpha<V::Scalar>,
     noise: V::Scalar,
     error_weight: V::Scalar,
@@ -59,7 +59,7 @@ struct Models<S> {
 
 impl<S: Scalar> Models<S> {
     #[inline(always)]
-    fn new<V: Vector<Scalar = S>>(pieces: &[Piece<V>], alpha: Alpha<S>, noise: S, error_weight: S) -> Option<Self> {
+    fn new<V: Vector<Scalar = S>>(pieces: &[RayPiece<V>], alpha: Alpha<S>, noise: S, error_weight: S) -> Option<Self> {
         let (last, others) = pieces.split_last()?;
         let last = last.at(alpha, -S::infinity(), S::ZERO);
         let mut turned = [last; MAX_PIECES];
@@ -134,7 +134,7 @@ impl<S: Scalar> Models<S> {
     fn offer_three(&mut self, i: usize, j: usize, k: usize) {
         let (t, s, r) = (self.turned[i].p, self.turned[j].p, self.turned[k].p);
         let (e, f) = ((s.0 - t.0, s.1 - t.1), (r.0 - t.0, r.1 - t.1));
-        let plane = Plane::rising((e, self.tau[j] - self.tau[i]), (f, self.tau[k] - self.tau[i]));
+        let plane = RayPlane::rising((e, self.tau[j] - self.tau[i]), (f, self.tau[k] - self.tau[i]));
         let turn = S::ONE.copysign(plane.c);
         // NaN fails this too.
         if weights_of_zero([t, s, r]).iter().all(|&w| w * turn >= S::ZERO) {

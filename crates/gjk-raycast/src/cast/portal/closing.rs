@@ -6,7 +6,7 @@ use num_traits::Float as _;
 use super::ray_frame::{Alpha, RayFrame, RayPoint};
 use crate::body::PointPair;
 use crate::cast::bracket::Bracket;
-use crate::cast::{Contact, Stop};
+use crate::cast::{RayContact, Stop};
 
 /// The plane that is crossed last, of those known.
 #[derive(Clone, Copy)]
@@ -85,7 +85,7 @@ impl<V: Vector> BestPlane<V> {
         bracket: &mut Bracket<'_, V>,
         frame: &RayFrame<V>,
         below: &OnLine<V>,
-    ) -> Result<Contact<V>, Stop<V>> {
+    ) -> Result<RayContact<V>, Stop<V>> {
         self.close(bracket, frame, below.corners(), below.weights(), below.high)
     }
 
@@ -98,7 +98,7 @@ impl<V: Vector> BestPlane<V> {
         corners: &[RayPoint<V>],
         weights: &[V::Scalar],
         high: V::Scalar,
-    ) -> Result<Contact<V>, Stop<V>> {
+    ) -> Result<RayContact<V>, Stop<V>> {
         // A combination is a point of the body only if no weight is negative by more than rounding.
         if weights.iter().any(|&weight| weight < -bracket.noise) {
             return Err(Stop::InDoubt);

@@ -16,7 +16,7 @@ mod triangle;
 use convex_support::{Scalar, Vector};
 
 use super::bracket::Bracket;
-use super::{Contact, Stop};
+use super::{RayContact, Stop};
 use ray_frame::RayFrame;
 use rounded::rounded;
 use smooth::smooth;
@@ -24,7 +24,7 @@ use triangle::triangle;
 
 /// Closes the bracket, or finds a plane that the whole ray is before.
 #[inline(always)]
-pub(super) fn portal<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Contact<V>, Stop<V>> {
+pub(super) fn portal<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
     // The first plane: the one given, or the tangent plane of the ball about the body where the ray enters it; and how
     // far the next one is tilted.
     let (first, tilt) = match bracket.options.axis.and_then(Vector::unit) {

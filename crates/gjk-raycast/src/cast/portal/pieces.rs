@@ -10,7 +10,7 @@ use crate::symmetric::{Across, Symmetric, dot};
 
 /// A support point, the plane it was found on, and how it moves from there.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Piece<V: Vector> {
+pub(super) struct RayPiece<V: Vector> {
     pub(super) p: RayPoint<V>,
     pub(super) alpha: Alpha<V::Scalar>,
     pub(super) hessian: Symmetric<V::Scalar>,
@@ -31,7 +31,7 @@ impl<S: Scalar> QuadraticModel<S> {
     }
 }
 
-impl<V: Vector> Piece<V> {
+impl<V: Vector> RayPiece<V> {
     /// The piece [turned](turned) to another plane, where nothing is crossed before `least`.
     ///
     /// The plane through the point alone is never crossed before the body, and the body's own plane earlier. How wrong the
@@ -98,23 +98,23 @@ pub(super) fn is_surrounded<V: Vector>([p, q, s]: [&RayPoint<V>; 3], by: V::Scal
 }
 
 /// The last pieces, the newest last.
-pub(super) struct Pieces<V: Vector> {
-    kept: [Piece<V>; MAX_PIECES],
+pub(super) struct RayPieces<V: Vector> {
+    kept: [RayPiece<V>; MAX_PIECES],
     len: usize,
 }
 
-impl<V: Vector> Pieces<V> {
+impl<V: Vector> RayPieces<V> {
     pub(super) fn new() -> Self {
-        Self { kept: [Piece::default(); MAX_PIECES], len: 0 }
+        Self { kept: [RayPiece::default(); MAX_PIECES], len: 0 }
     }
 
-    pub(super) fn all(&self) -> &[Piece<V>] {
+    pub(super) fn all(&self) -> &[RayPiece<V>] {
         &self.kept[..self.len]
     }
 
     /// Adds a piece in place of those that are the same, or else of the one that is the farthest from being active. Tells
     /// whether it is the same as the last.
-    pub(super) fn push(&mut self, piece: Piece<V>, noise: V::Scalar) -> bool {
+    pub(super) fn push(&mut self, piece: RayPiece<V>, noise: V::Scalar) -> bool {
         let again = self.all().last().is_some_and(|last| last.is_same_as(&piece, noise));
         let mut len = 0;
         for i in 0..self.len {
@@ -142,7 +142,7 @@ impl<V: Vector> Pieces<V> {
     }
 
     /// Adds a piece, in place of the oldest where there are as many as are kept.
-    pub(super) fn follow(&mut self, piece: Piece<V>) {
+    pub(super) fn follow(&mut self, piece: RayPiece<V>) {
         if self.len == MAX_PIECES {
             self.kept.rotate_left(1);
         } else {

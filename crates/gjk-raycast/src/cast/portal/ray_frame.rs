@@ -88,20 +88,20 @@ impl<S: Scalar> Alpha<S> {
         gap * gap.abs() <= distance * distance * self.length_squared()
     }
 
-    pub(super) fn plane(self) -> Plane<S> {
-        Plane { a: self.a, b: self.b, c: S::ONE }
+    pub(super) fn plane(self) -> RayPlane<S> {
+        RayPlane { a: self.a, b: self.b, c: S::ONE }
     }
 }
 
 /// The same plane by a multiple of its normal, `a·e₁ + b·e₂ − c·d`. A support point does not wait for the division by `c`.
 #[derive(Clone, Copy)]
-pub(super) struct Plane<S> {
+pub(super) struct RayPlane<S> {
     pub(super) a: S,
     pub(super) b: S,
     pub(super) c: S,
 }
 
-impl<S: Scalar> Plane<S> {
+impl<S: Scalar> RayPlane<S> {
     /// The plane that rises by `g` along `e` and by `h` along `f`: `e·α = g`, `f·α = h`; `c = e×f` is twice the area of the
     /// triangle.
     pub(super) fn rising((e, g): (Across<S>, S), (f, h): (Across<S>, S)) -> Self {
@@ -166,7 +166,7 @@ impl<V: Vector> RayFrame<V> {
 
     /// A normal of a plane.
     #[inline(always)]
-    pub(super) fn normal(&self, plane: Plane<V::Scalar>) -> V {
+    pub(super) fn normal(&self, plane: RayPlane<V::Scalar>) -> V {
         self.e1 * plane.a + self.e2 * plane.b - self.d * plane.c
     }
 
@@ -185,7 +185,7 @@ impl<V: Vector> RayFrame<V> {
     pub(super) fn support_of(
         &self,
         bracket: &mut Bracket<'_, V>,
-        plane: Plane<V::Scalar>,
+        plane: RayPlane<V::Scalar>,
     ) -> Result<RayPoint<V>, Stop<V>> {
         let mut seen = self.support(bracket, self.normal(plane))?;
         // No polytope is asked where it was looked at along.

@@ -15,15 +15,15 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::closing::BestPlane;
-use super::ray_frame::{Alpha, Plane, RayFrame, RayPoint};
+use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
 use super::triangle::MAX_EXCHANGES;
 use crate::cast::bracket::Bracket;
-use crate::cast::{Contact, Stop};
+use crate::cast::{RayContact, Stop};
 use crate::symmetric::{Across, cross, dot};
 
 /// Where the line enters the swept hull of some points.
 #[derive(Clone, Copy)]
-struct Entry<S> {
+struct RoundedEntry<S> {
     tau: S,
     alpha: Alpha<S>,
     /// The points, and the weights of the core's point below.
@@ -43,7 +43,7 @@ pub(super) fn rounded<V: Vector>(
     frame: &RayFrame<V>,
     first: V,
     tilt: V::Scalar,
-) -> Result<Contact<V>, Stop<V>> {
+) -> Result<RayContact<V>, Stop<V>> {
     let (radius, noise) = (bracket.radius, bracket.noise);
     let tolerance = bracket.tolerance();
     let mut p = frame.support(bracket, first)?;
@@ -125,7 +125,7 @@ impl<V: Vector> Kept<V> {
         alpha: &mut Alpha<V::Scalar>,
         tilt: V::Scalar,
     ) -> Result<(), Stop<V>> {
-        let Nearest { distance, toward, corners: [i, j], len } = nearest(self.points());
+        let NearestFeature { distance, toward, corners: [i, j], len } = nearest(self.points());
         if !(distance > bracket.noise) {
             return Err(Stop::InDoubt);
         }
@@ -167,10 +167,10 @@ impl<V: Vector> Kept<V> {
 
 /// The first entry of the line into the swept hull of the points through a corner, an edge or a triangle that has the last
 /// one for a corner.
-fn enter<V: Vector>(points: &[RayPoint<V>], radius: V::Scalar, noise: V::Scalar) -> Option<Entry<V::Scalar>> {
+fn enter<V: Vector>(points: &[RayPoint<V>], radius: V::Scalar, noise: V::Scalar) -> Option<RoundedEntry<V::Scalar>> {
     let newest = points.len() - 1;
     let mut best = about_corner(&points[newest], newest, radius);
-    let mut offer = |entry: Option<Entry<V::Scalar>>| {
+    let mut offer = |entry: Option<RoundedEntry<V::Scalar>>| {
         if let Some(entry) = entry
             && best.is_none_or(|best| entry.tau < best.tau)
         {
@@ -187,7 +187,7 @@ fn enter<V: Vector>(points: &[RayPoint<V>], radius: V::Scalar, noise: V::Scalar)
 }
 
 /// The entry into the sphere about a corner: `τ = t − √(ρ² − u² − v²)`, with `α = −(u, v)/√…`.
-fn about_corner<V: Vector>(p: &RayPoint<V>, index: usize, radius: V::Scalar) -> Option<Entry<V::Scalar>> {
+fn about_corner<V: Vector>(p: &RayPoint<V>, index: usize, radius: V::Scalar) -> Option<RoundedEntry<V::Scalar>> {
     let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
     let rest = radius * radius - (p.u * p.u + p.v * p.v);
     if !(rest > zero) {
@@ -195,7 +195,7 @@ fn about_corner<V: Vector>(p: &RayPoint<V>, index: usize, radius: V::Scalar) -> 
     }
     let half = rest.sqrt();
     let alpha = Alpha { a: -p.u / half, b: -p.v / half };
-    Some(Entry { tau: p.t - half, alpha, corners: [index; 3], weights: [one, zero, zero], len: 1 })
+    Some(RoundedEntry { tau: p.t - half, alpha, corners: [index; 3], weights: [one, zero, zero], len: 1 })
 }
 
 /// The entry into the cylinder about an edge, if the core's point below is on the edge.
@@ -214,7 +214,7 @@ fn about_edge<V: Vector>(
     [i, j]: [usize; 2],
     radius: V::Scalar,
     noise: V::Scalar,
-) -> Option<Entry<V::Scalar>> {
+) -> Option<RoundedEntry<V::Scalar>> {
     let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
     let (p, q) = (&points[i], &points[j]);
     let (du, dv, dt) = (q.u - p.u, q.v - p.v, q.t - p.t);
@@ -240,7 +240,7 @@ fn about_edge<V: Vector>(
     let (along, aside) = (dt * inverse, rise * root / rest);
     let alpha = Alpha { a: du * along + ku * aside, b: dv * along + kv * aside };
     let tau = p.t + b * dt - rise * root;
-    Some(Entry { tau, alpha, corners: [i, j, j], weights: [one - weight, weight, zero], len: 2 })
+    Some(RoundedEntry { tau, alpha, corners: [i, j, j], weights: [one - weight, weight, zero], len: 2 })
 }
 
 /// The crossing of the plane at distance `ρ` from a triangle, `τ = Σ wᵢ·tᵢ − ρ·√(1 + α²)` with the weights `w` of zero, if the
@@ -250,10 +250,10 @@ fn above_triangle<V: Vector>(
     corners: [usize; 3],
     radius: V::Scalar,
     noise: V::Scalar,
-) -> Option<Entry<V::Scalar>> {
+) -> Option<RoundedEntry<V::Scalar>> {
     let [p, q, s] = corners.map(|i| &points[i]);
     let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
-    let plane = Plane::through([p, q, s]);
+    let plane = RayPlane::through([p, q, s]);
     let (alpha, inverse) = (plane.alpha(), plane.c.recip());
     let length = alpha.length();
     let below = -radius / length;
@@ -265,11 +265,11 @@ fn above_triangle<V: Vector>(
         return None;
     }
     let tau = alpha.tau(p) - radius * length;
-    Some(Entry { tau, alpha, corners, weights: [wp.max(zero), wq.max(zero), ws.max(zero)], len: 3 })
+    Some(RoundedEntry { tau, alpha, corners, weights: [wp.max(zero), wq.max(zero), ws.max(zero)], len: 3 })
 }
 
 /// The corner or edge nearest to the line.
-struct Nearest<S> {
+struct NearestFeature<S> {
     distance: S,
     /// The unit vector from there to the line.
     toward: Across<S>,
@@ -278,7 +278,7 @@ struct Nearest<S> {
 }
 
 /// The nearest of the last point and the edges that it is a corner of.
-fn nearest<V: Vector>(points: &[RayPoint<V>]) -> Nearest<V::Scalar> {
+fn nearest<V: Vector>(points: &[RayPoint<V>]) -> NearestFeature<V::Scalar> {
     let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
     let newest = points.len() - 1;
     let p = &points[newest];
@@ -297,5 +297,5 @@ fn nearest<V: Vector>(points: &[RayPoint<V>]) -> Nearest<V::Scalar> {
     }
     let (squared, u, v, corners, len) = best;
     let distance = squared.sqrt();
-    Nearest { distance, toward: (-u / distance, -v / distance), corners, len }
+    NearestFeature { distance, toward: (-u / distance, -v / distance), corners, len }
 }

@@ -9,10 +9,10 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::closing::BestPlane;
-use super::pieces::{Piece, Pieces};
+use super::pieces::{RayPiece, RayPieces};
 use super::ray_frame::{Alpha, RayFrame, RayPoint};
 use crate::cast::bracket::Bracket;
-use crate::cast::{Contact, Stop};
+use crate::cast::{RayContact, Stop};
 use crate::symmetric::{Symmetric, dot};
 
 /// Support points of the search.
@@ -26,11 +26,11 @@ pub(super) fn smooth<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     frame: &RayFrame<V>,
     first: V,
-) -> Result<Contact<V>, Stop<V>> {
+) -> Result<RayContact<V>, Stop<V>> {
     let tolerance = bracket.tolerance();
     let mut next = Next { n: first, alpha: None };
     let mut best = BestPlane::none(bracket.end());
-    let mut pieces = Pieces::new();
+    let mut pieces = RayPieces::new();
     let (mut last, mut misses) = (V::Scalar::infinity(), 0);
     for _ in 0..MAX_STEPS {
         let Next { n, alpha } = next;
@@ -43,7 +43,7 @@ pub(super) fn smooth<V: Vector>(
         p.alpha = alpha;
         if let Some(alpha) = alpha {
             best.improve(bracket, frame, alpha, &p, Scalar::ZERO)?;
-            pieces.follow(Piece { p, alpha, hessian });
+            pieces.follow(RayPiece { p, alpha, hessian });
             if let Some(below) = pieces.passed(bracket.noise) {
                 if below.high < bracket.low() {
                     return Err(Stop::InDoubt);

@@ -15,10 +15,10 @@ use num_traits::Float as _;
 
 use super::best_plane::best_plane;
 use super::closing::{BestPlane, OnLine};
-use super::pieces::{Piece, Pieces};
-use super::ray_frame::{Alpha, Plane, RayFrame, RayPoint, weights_of_zero};
+use super::pieces::{RayPiece, RayPieces};
+use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint, weights_of_zero};
 use crate::cast::bracket::Bracket;
-use crate::cast::{Contact, Stop};
+use crate::cast::{RayContact, Stop};
 use crate::symmetric::Symmetric;
 
 /// Support points of the search.
@@ -34,9 +34,9 @@ pub(super) fn sqp<V: Vector>(
     frame: &RayFrame<V>,
     mut portal: Portal<V>,
     mut best: BestPlane<V>,
-) -> Result<Contact<V>, Stop<V>> {
+) -> Result<RayContact<V>, Stop<V>> {
     let mut alpha = if portal.high.is_finite() { portal.alpha() } else { best.alpha };
-    let mut pieces = Pieces::new();
+    let mut pieces = RayPieces::new();
     for p in &portal.corners {
         pieces.push(piece(bracket, frame, *p, alpha), bracket.noise);
     }
@@ -80,10 +80,10 @@ fn piece<V: Vector>(
     frame: &RayFrame<V>,
     p: RayPoint<V>,
     alpha: Alpha<V::Scalar>,
-) -> Piece<V> {
+) -> RayPiece<V> {
     match p.alpha {
-        Some(alpha) => Piece { p, alpha, hessian: frame.hessian(bracket.body, frame.normal(alpha.plane())) },
-        None => Piece { p, alpha, hessian: Symmetric::ZERO },
+        Some(alpha) => RayPiece { p, alpha, hessian: frame.hessian(bracket.body, frame.normal(alpha.plane())) },
+        None => RayPiece { p, alpha, hessian: Symmetric::ZERO },
     }
 }
 
@@ -96,11 +96,11 @@ fn close<V: Vector>(
     bracket: &mut Bracket<'_, V>,
     frame: &RayFrame<V>,
     best: &BestPlane<V>,
-    pieces: &Pieces<V>,
+    pieces: &RayPieces<V>,
     portal: &Portal<V>,
     start: V::Scalar,
     coarse: &mut Option<OnLine<V>>,
-) -> Result<Contact<V>, Stop<V>> {
+) -> Result<RayContact<V>, Stop<V>> {
     let within = bracket.tolerance() * best.alpha.length();
     let fine = (bracket.noise + bracket.noise).max(bracket.tolerance());
     // A segment first, since the weights in a flat triangle may be nothing but rounding.
@@ -150,7 +150,7 @@ impl<S: Scalar> Steps<S> {
     fn next<V: Vector<Scalar = S>>(
         &mut self,
         bracket: &Bracket<'_, V>,
-        pieces: &Pieces<V>,
+        pieces: &RayPieces<V>,
         portal: &Portal<V>,
         best: &BestPlane<V>,
         alpha: Alpha<S>,
@@ -195,7 +195,7 @@ impl<V: Vector> Portal<V> {
     /// Its plane.
     fn alpha(&self) -> Alpha<V::Scalar> {
         let [p, q, s] = &self.corners;
-        Plane::through([p, q, s]).alpha()
+        RayPlane::through([p, q, s]).alpha()
     }
 
     /// Puts a point in the place of one corner, if the line still runs through, and earlier; but no earlier than `floor`,

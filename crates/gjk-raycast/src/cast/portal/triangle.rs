@@ -13,10 +13,10 @@ use num_traits::Float as _;
 
 use super::closing::BestPlane;
 use super::pieces::is_surrounded;
-use super::ray_frame::{Alpha, Plane, RayFrame, RayPoint};
+use super::ray_frame::{Alpha, RayFrame, RayPlane, RayPoint};
 use super::sqp::{Portal, sqp};
 use crate::cast::bracket::Bracket;
-use crate::cast::{Contact, Stop};
+use crate::cast::{RayContact, Stop};
 use crate::symmetric::dot;
 
 /// Support points until the portal has to be found; half as many where curvature may tell more.
@@ -32,7 +32,7 @@ pub(super) fn triangle<V: Vector>(
     frame: &RayFrame<V>,
     first: V,
     tilt: V::Scalar,
-) -> Result<Contact<V>, Stop<V>> {
+) -> Result<RayContact<V>, Stop<V>> {
     let mut p = frame.support(bracket, first)?;
     let mut best = BestPlane::none(bracket.end());
     best.begin(bracket, frame, first, &mut p, Scalar::ZERO)?;
@@ -78,7 +78,7 @@ struct Triangle<V: Vector> {
 impl<V: Vector> Planes<'_, V> {
     /// The support point of a plane, which is the last one then.
     #[inline(always)]
-    fn support(&mut self, bracket: &mut Bracket<'_, V>, plane: Plane<V::Scalar>) -> Result<RayPoint<V>, Stop<V>> {
+    fn support(&mut self, bracket: &mut Bracket<'_, V>, plane: RayPlane<V::Scalar>) -> Result<RayPoint<V>, Stop<V>> {
         let p = self.frame.support_of(bracket, plane)?;
         self.alpha = plane.alpha();
         self.best.improve(bracket, self.frame, self.alpha, &p, Scalar::ZERO)?;
@@ -91,7 +91,7 @@ impl<V: Vector> Planes<'_, V> {
     fn support_toward(
         &mut self,
         bracket: &mut Bracket<'_, V>,
-        plane: Plane<V::Scalar>,
+        plane: RayPlane<V::Scalar>,
         toward: (V::Scalar, V::Scalar),
     ) -> Result<RayPoint<V>, Stop<V>> {
         let p = self.support(bracket, plane)?;
@@ -109,7 +109,7 @@ impl<V: Vector> Planes<'_, V> {
         let toward = (-p.u, -p.v);
         let rise = self.tilt * (self.alpha.length_squared() * squared).sqrt();
         let Alpha { a, b } = self.alpha;
-        let plane = Plane { a: a * squared + toward.0 * rise, b: b * squared + toward.1 * rise, c: squared };
+        let plane = RayPlane { a: a * squared + toward.0 * rise, b: b * squared + toward.1 * rise, c: squared };
         self.support_toward(bracket, plane, toward)
     }
 
@@ -133,7 +133,7 @@ impl<V: Vector> Planes<'_, V> {
             let toward = (-dv * turn, du * turn);
             let along = dot(self.alpha.across(), toward);
             let k = along + self.tilt * (squared + along * along).sqrt();
-            let plane = Plane { a: du * dt + toward.0 * k, b: dv * dt + toward.1 * k, c: squared };
+            let plane = RayPlane { a: du * dt + toward.0 * k, b: dv * dt + toward.1 * k, c: squared };
             let s = self.support_toward(bracket, plane, toward)?;
             let weights = [q.cross(&s) * turn, s.cross(p) * turn, area.abs()];
             if weights[0] >= zero && weights[1] >= zero {
@@ -146,7 +146,7 @@ impl<V: Vector> Planes<'_, V> {
 
     /// Brings the portal nearer until the bracket closes between the best plane, at its own cosine, and the portal.
     #[inline(always)]
-    fn shrink(&mut self, bracket: &mut Bracket<'_, V>, mut portal: Triangle<V>) -> Result<Contact<V>, Stop<V>> {
+    fn shrink(&mut self, bracket: &mut Bracket<'_, V>, mut portal: Triangle<V>) -> Result<RayContact<V>, Stop<V>> {
         let tolerance = bracket.tolerance();
         bracket.around = Some(portal.corners.map(|p| p.point));
         let mut last = V::Scalar::infinity();
@@ -197,10 +197,10 @@ impl<V: Vector> Planes<'_, V> {
 impl<V: Vector> Triangle<V> {
     /// Its plane, where the sum of the weights is known.
     #[inline(always)]
-    fn plane(&self, sum: V::Scalar) -> Plane<V::Scalar> {
+    fn plane(&self, sum: V::Scalar) -> RayPlane<V::Scalar> {
         let [p, q, s] = &self.corners;
-        let Plane { a, b, .. } = Plane::through([p, q, s]);
-        Plane { a: a * self.turn, b: b * self.turn, c: sum }
+        let RayPlane { a, b, .. } = RayPlane::through([p, q, s]);
+        RayPlane { a: a * self.turn, b: b * self.turn, c: sum }
     }
 
     /// Puts a point before its plane in the place of the corner that leaves zero inside.
@@ -225,7 +225,7 @@ impl<V: Vector> Triangle<V> {
 
     /// Bounds the entry by its plane, where the line runs through it by more than an error.
     #[inline(always)]
-    fn bound_entry(&self, bracket: &mut Bracket<'_, V>, Plane { a, b, c }: Plane<V::Scalar>, high: V::Scalar) {
+    fn bound_entry(&self, bracket: &mut Bracket<'_, V>, RayPlane { a, b, c }: RayPlane<V::Scalar>, high: V::Scalar) {
         if is_surrounded(self.corners.each_ref(), bracket.error + bracket.noise) {
             bracket.pierce(high, (a * a + b * b + c * c).sqrt() / c);
         } else {
