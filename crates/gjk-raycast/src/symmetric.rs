@@ -85,8 +85,8 @@ pub(crate) fn cross<S: Scalar>(a: Across<S>, b: Across<S>) -> S {
     a.0 * b.1 - a.1 * b.0
 }
 
-/// Unit vectors across a unit vector and one another, after Duff et al., *Building an orthonormal basis, revisited* (2017); the second is zero in
-/// the plane.
+/// Unit vectors across a unit vector and one another, after Duff et al., *Building an orthonormal basis, revisited*
+/// (2017); the second is zero in the plane.
 #[inline(always)]
 pub(crate) fn axes_across<V: Vector>(u: V) -> [V; 2] {
     let one = V::Scalar::ONE;

@@ -13,6 +13,9 @@
 //! little matters but that it is wide, so that its corners may be support points across the line.
 //!
 //! Where the outline itself is within an error of the line, the ray may miss.
+//!
+//! Left to a second look at the bodies after the hit, these bounds would take 33 support points in place of 7 in the
+//! plane, and more hits would have none.
 
 use convex_support::{Scalar, Vector};
 

@@ -10,6 +10,9 @@ use crate::simplex::{MAX_POINTS, cross};
 /// It is where it has the same orientation with each face as the corner opposite. That is the sign of a determinant, of which an error `e`
 /// of each corner changes no more than `e·Σ(|q| + e)(|r| + e)` over the pairs of corners of the face; in the plane `e·Σ(|q| + e)`. As it
 /// is computed, it loses no more than as much again.
+///
+/// By how much is told by [`room_around_zero`](super::room_around_zero()), in more than twice the operations, which
+/// every query whose bodies overlap would pay.
 pub(super) fn is_around_zero<V: Vector>(points: &[V], error: V::Scalar) -> bool {
     let length = |p: V| p.length() + error;
     let twice = error * V::Scalar::from_f64(2.0);

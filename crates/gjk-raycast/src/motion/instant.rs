@@ -15,7 +15,8 @@ pub(super) const IN_PLANE: f64 = 4.0;
 /// The direction of closest points that are apart by this part of the size of both bodies is known to rounding.
 pub(super) const LONG: f64 = 1.0 / 16.0;
 
-/// How much lower than contact a level may be where bodies touch, in units of what their places are rounded by at the time.
+/// How much lower than contact a level may be where bodies touch, in units of what their places are rounded by at the
+/// time.
 pub(super) const ROUNDED: f64 = 6.0;
 
 /// What is known of the pair at one time.
