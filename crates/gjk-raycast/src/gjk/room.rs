@@ -86,7 +86,8 @@ pub(crate) fn look_after<V: Vector>(
                 let PointPair { a, b } = found.simplex.weighted_witness();
                 let point = a - b + frame.offset;
                 let (outwards, length) = (target - point, (target - point).norm());
-                if length > frame.radius { point + outwards * (frame.radius / length) } else { target }
+                // NaN is no corner.
+                if length <= frame.radius { target } else { point + outwards * (frame.radius / length) }
             });
         }
         if is_found {
