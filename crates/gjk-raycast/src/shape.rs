@@ -1,6 +1,6 @@
 //! A shape behind a pointer, for what is rarely needed and so is compiled once.
 
-use convex_support::{Core, Hint, Parallelotope, Rounding, ScalarOf, SupportMap, Vector};
+use convex_support::{Core, Hint, Parallelotope, Rounding, ScalarOf, SupportMap};
 
 /// A shape [without line crossings](WithoutLines), behind a pointer.
 pub(crate) type Shape<'s, V> = &'s dyn SupportMap<Vector = V>;
