@@ -210,7 +210,8 @@ fn closely<V: Vector>([a, b]: [Shape<'_, V>; 2], answer: Distance<V>, max_iterat
     let iterations = answer.iterations + there.iterations;
     // What is no number, or contradicts itself, is of a support map that is none.
     if !(lower <= upper) || !there.signed_distance.is_finite() {
-        return Distance { iterations, ..answer };
+        let status = if there.status == Status::IterationLimit { there.status } else { answer.status };
+        return Distance { status, iterations, ..answer };
     }
     let overlap = !(lower > zero) && (there.overlap || there.status == Status::Converged);
     let is_nearer = there.upper < answer.upper && there.upper >= zero;
@@ -304,7 +305,7 @@ fn touching<V: Vector>(
     max_iterations: usize,
 ) -> Option<Distance<V>> {
     let near = near_contact(shapes, cores, begun, max_iterations)?;
-    let (zero, scale) = (V::Scalar::ZERO, near.frame.scale);
+    let (zero, scale, is_settled) = (V::Scalar::ZERO, near.frame.scale, near.is_settled(max_iterations));
     let overlap = near.overlap();
     // What is in one another by more than an error has a point in common that is nearer to both cores. Of others the points of the surfaces
     // are between those of the cores, which the plane may lean to by the root of the rounding.
@@ -321,10 +322,10 @@ fn touching<V: Vector>(
         point_b,
         // Of a point found deep inside, no plane is one of contact.
         normal: Some(near.normal).filter(|_| near.gap >= -near.upper),
-        status: if near.is_settled() { Status::Converged } else { Status::Stalled },
+        status: if is_settled { Status::Converged } else { Status::Stalled },
         iterations: near.iterations,
     };
-    Some(if near.is_settled() { answer } else { closely(shapes.each(), answer, max_iterations) })
+    Some(if is_settled { answer } else { closely(shapes.each(), answer, max_iterations) })
 }
 
 /// The points of both bodies beside points of their cores, in the world: along the unit vector from `b` to `a`, or where none is given

@@ -41,12 +41,16 @@ pub struct Distance<V: Vector> {
     /// Whether the shapes have a point in common. Shapes touch, and count as overlapping, if no plane certainly separates them and their
     /// closest points are no farther apart than the error of these points.
     pub overlap: bool,
-    /// The point of `a` closest to `b`, in the world; where the shapes overlap, a point in or near both.
+    /// The point of `a` closest to `b`, in the world; where the shapes overlap, a point in both, but for rounding.
     pub point_a: V,
-    /// The point of `b` closest to `a`, in the world; where the shapes overlap, a point in or near both.
+    /// The point of `b` closest to `a`, in the world; where the shapes overlap, a point in both, but for rounding.
     pub point_b: V,
-    /// The unit vector from `b` to `a`, along which `point_a` lies before `point_b`. It is there also where the shapes touch, and `None`
-    /// where they overlap by more than rounding.
+    /// The unit vector from `b` to `a`, across which a plane separates the shapes by [`lower`](Self::lower). It is there also where the shapes
+    /// touch, and `None` where they overlap by more than rounding.
+    ///
+    /// It is the plane's and not the direction of `point_a − point_b`, which near contact has fewer digits: that difference is the distance
+    /// times the normal to within √(2·`upper`·(`upper` − `lower`)), which is how far it may lean, and 64ε of the sizes of both shapes and their
+    /// offset.
     pub normal: Option<V>,
     /// How the iteration ended.
     pub status: Status,
@@ -274,7 +278,7 @@ pub struct LinearHit<V: Vector> {
     /// The time of first contact; 0 where the shapes touch or overlap at the start.
     pub time: V::Scalar,
     /// A point of contact, in the world, at that time. With a [target distance](crate::LinearCastOptions::target_distance) it is a point of
-    /// `b`. Where the shapes overlap at the start, it is a point in or near both, as of [`distance`](crate::distance).
+    /// `b`. Where the shapes overlap at the start, it is a point in both but for rounding, as of [`distance`](crate::distance).
     pub point: V,
     /// The unit normal of contact, out of `b` towards `a`. Where the shapes overlap at the start by more than rounding, it is `None`; with
     /// [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper), it is the shortest way out.

@@ -24,6 +24,7 @@ mod differences;
 mod edges;
 mod exact;
 mod exact_oracle;
+mod given_up;
 mod half_space;
 mod half_space_motion;
 mod hit_derivatives;

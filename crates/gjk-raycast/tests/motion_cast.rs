@@ -2,14 +2,15 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, TAU};
 
-use crate::common::behind_pointers::{linear_cast, motion_cast};
+use crate::common::Random;
+use crate::common::behind_pointers::{distance, linear_cast, motion_cast};
 use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3A};
 use convex_support::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Posed, Rounded, Scalar as _, Segment, SupportMap,
+    Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Posed, Rounded, Scalar as _, Segment, SupportMap,
 };
 use gjk_raycast::{
-    LinearCastOptions, Motion, MotionCast, MotionCastOptions, Outcome, Pose, RayCastError, RigidMotion, StartInContact,
-    Status, Trajectory,
+    DistanceOptions, LinearCastOptions, Motion, MotionCast, MotionCastOptions, Outcome, Pose, RayCastError,
+    RigidMotion, StartInContact, Status, Trajectory,
 };
 
 const REST: RigidMotion<DVec2> = RigidMotion { velocity: DVec2::ZERO, angular_velocity: 0.0, center: DVec2::ZERO };
@@ -406,4 +407,42 @@ fn rods_pass_through_one_another() {
         let beside = motion_cast(&rod, swing, &at(tilted, DVec3::Z * 0.01), STILL, until(4.0)).expect("finite");
         assert!(beside.outcome.is_miss(), "a hundredth above: {beside:?}");
     }
+}
+
+/// The way out of an overlap leads from the deepest point of one body to that of the other, and neither need be in both: of a small body
+/// deep in a large one, the other's is on the far surface. A hit at the start once told one of them, up to 0.17 sizes outside.
+#[test]
+fn the_point_of_an_overlap_at_the_start_is_in_both_bodies() {
+    let mut random = Random(0x0070_1234_5678);
+    let mut vector = |size: f64| DVec3::from_array([0; 3].map(|_| random.number(-size, size)));
+    let mut asked = 0;
+    for i in 0..120 {
+        let sizes = vector(1.0).abs() + 0.05;
+        let solids: [Box<dyn SupportMap<Vector = DVec3>>; 2] =
+            [sizes, DVec3::new(sizes.z, sizes.x, sizes.y)].map(|size| {
+                let [radius, half_height, half_width] = size.to_array();
+                let solid: Box<dyn SupportMap<Vector = DVec3>> = match i % 3 {
+                    0 => Box::new(Cone::<DVec3>::new(half_height, radius).expect("positive")),
+                    1 => Box::new(Cylinder::<DVec3>::new(half_height, radius).expect("positive")),
+                    _ => Box::new(
+                        Rounded::new(Cuboid::<DVec3>::new(size).expect("positive"), half_width).expect("positive"),
+                    ),
+                };
+                solid
+            });
+        let [turn_a, turn_b] = [vector(1.0), vector(1.0)].map(|v| DQuat::from_xyzw(v.x, v.y, v.z, 0.3).normalize());
+        let [a, b] = solids;
+        let a = Posed::new(a, turn_a, vector(0.6)).expect("finite");
+        let b = Posed::new(b, turn_b, DVec3::ZERO).expect("finite");
+        let turning = RigidMotion { velocity: vector(1.0), angular_velocity: vector(1.0), center: DVec3::ZERO };
+        let cast = motion_cast(&a, turning, &b, STILL, until(1.0)).expect("finite");
+        let Some(hit) = cast.outcome.hit().filter(|hit| hit.time == 0.0 && hit.normal.is_none()) else { continue };
+        asked += 1;
+        let point = Point::new(hit.point).expect("finite");
+        for body in [&a, &b] {
+            let off = distance(&point, body, DistanceOptions::new());
+            assert!(off.distance <= 1e-14, "{i}: {:?} is {} outside", hit.point, off.distance);
+        }
+    }
+    assert!(asked > 60, "{asked} overlap at the start");
 }

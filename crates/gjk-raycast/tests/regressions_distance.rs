@@ -706,3 +706,36 @@ fn a_point_beside_a_needle_is_apart_from_it() -> Result<(), InvalidShape> {
     }
     Ok(())
 }
+
+/// The normal is that of the plane that proves the distance, and closest points differ along another direction by what is not known of them. With
+/// `u` their difference, no longer than `upper` = U, and `n·u` no less than `lower` = L, `|u − s·n|² ≤ U² − 2sL + s²` is at most `2U(U − L)` for an `s`
+/// between L and U. Near contact that is far more than rounding: here up to 1e-9 sizes.
+#[test]
+fn closest_points_lean_from_the_normal_no_more_than_the_bracket_says() {
+    let (cone, egg) = (
+        Cone::<DVec3>::new(1.0, 0.6).expect("positive"),
+        Ellipsoid::<DVec3>::new(DVec3::ZERO, DVec3::new(0.9, 0.5, 0.3), DQuat::IDENTITY).expect("positive"),
+    );
+    let mut farthest: f64 = 0.0;
+    for (i, direction) in directions(24).enumerate() {
+        let turn = DQuat::from_xyzw(0.3, direction[0], direction[1], 0.5 + direction[2]).normalize();
+        let along = v::<DVec3>(direction);
+        let b = turned(egg, turn, [0.0; 3]);
+        // Brought into contact along a direction, and back by a gap.
+        let start = at(cone, (along * 4.0).to_array());
+        let cast = crate::common::sweep(&start, &b, (-along).to_array());
+        let Some(hit) = cast.outcome.hit() else { continue };
+        for exponent in 1..16 {
+            let gap = 10.0_f64.powi(-exponent);
+            let a = at(cone, (along * (4.0 - hit.time + gap)).to_array());
+            let answer = distance(&a, &b, DistanceOptions::new());
+            let Some(normal) = answer.normal else { continue };
+            let off = (answer.point_a - answer.point_b - normal * answer.distance).length();
+            let leans = (2.0 * answer.upper * (answer.upper - answer.lower)).sqrt();
+            let offset = a.core().origin.length() + cone.core().extent + egg.core().extent;
+            assert!(off <= leans + 64.0 * f64::EPSILON * offset, "{i} at {gap:e}: {off:e} of {leans:e}, {answer:?}");
+            farthest = farthest.max(off);
+        }
+    }
+    assert!(farthest > 1e-12, "rounding alone: {farthest:e}");
+}

@@ -41,7 +41,7 @@ fn cloud<const N: usize>() -> impl Strategy<Value = Vec<[f64; N]>> {
 }
 
 /// The dual bound computed afresh from the weights, in plain arithmetic: ln det X* ≤ −ln det S − N·ln N.
-fn dual_bound<const N: usize>(points: &[[f64; N]], answer: &lj_ellipsoid::Enclosing<N>) -> f64 {
+fn dual_bound<const N: usize>(points: &[[f64; N]], answer: &Enclosing<N>) -> f64 {
     let e = &answer.ellipsoid;
     // In the coordinates of the axes, so that thin clouds lose nothing more.
     let image = |i: usize| -> [f64; N] {

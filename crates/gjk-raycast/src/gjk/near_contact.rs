@@ -72,9 +72,10 @@ impl<V: Vector> NearContact<V> {
     }
 
     /// Whether a look behind it would tell no more: it is [closed](Self::is_closed), or the bodies have a point in common far beyond any plane
-    /// that was found.
-    pub(crate) fn is_settled(&self) -> bool {
-        let is_deep = self.gap < -self.frame.error * V::Scalar::from_f64(NEAR);
+    /// that was found, by a search that was not given up.
+    pub(crate) fn is_settled(&self, max_iterations: usize) -> bool {
+        let is_over = self.overlaps_certainly || self.iterations < max_iterations;
+        let is_deep = is_over && self.gap < -self.frame.error * V::Scalar::from_f64(NEAR);
         self.is_closed() || is_deep && self.length - self.frame.radius <= self.frame.error
     }
 

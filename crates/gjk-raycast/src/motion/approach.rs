@@ -44,6 +44,11 @@ pub(super) trait Approach<V: Vector> {
     /// because they have no inside and have passed through one another.
     fn pass_through(&self, near: &Instant<V>, time: V::Scalar) -> bool;
 
+    /// A point in both bodies, which overlap at a time.
+    fn common_point(&self, there: &Instant<V>) -> V {
+        there.point
+    }
+
     /// The velocity, at a time, of the point of `b` that is at `point` then.
     fn velocity_of_b(&self, time: V::Scalar, point: V) -> V;
 }

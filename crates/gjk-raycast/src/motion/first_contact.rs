@@ -273,8 +273,13 @@ impl<'p, V: Vector> Search<'p, V> {
             MotionEnd::Undecided(status) => (Outcome::Undecided, status),
             MotionEnd::Contact => {
                 let time = self.time_of_contact().min(self.upper).min(self.options.max_time);
-                let point = point + self.bodies.velocity_of_b(near, point) * (time - near);
-                let normal = if self.near.overlaps() { None } else { Some(normal) };
+                let (point, normal) = if !self.near.overlaps() {
+                    (point + self.bodies.velocity_of_b(near, point) * (time - near), Some(normal))
+                } else if self.options.start_in_contact == StartInContact::Report {
+                    (self.bodies.common_point(&self.near), None)
+                } else {
+                    (point, None)
+                };
                 (Outcome::Hit(MotionHit { time, point, normal }), Status::Converged)
             }
         };

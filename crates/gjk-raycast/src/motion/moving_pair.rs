@@ -13,11 +13,11 @@ use super::instant::{Closeness, Instant, Limits};
 use super::moving_body::MovingBody;
 use super::placed::Placed;
 use super::trajectory::{Trajectory, TurningPlane};
-use crate::SignedDistanceOptions;
 use crate::body::{Pair, Shapes, TracedSupport as _};
 use crate::contact::signed_distance_and_axis;
 use crate::gjk::rounding;
 use crate::unit::{is_moderate, length_bound, lost_to_underflow};
+use crate::{DistanceOptions, SignedDistanceOptions, distance};
 
 /// Two bodies and their motions.
 pub(super) struct MovingPair<'s, V: Vector> {
@@ -239,6 +239,16 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
 
     fn pass_through(&self, near: &Instant<V>, time: V::Scalar) -> bool {
         self.have_met(near, time)
+    }
+
+    /// Not the point that is deepest in `a`: where the way out of a small body is through a large one, it is far behind it.
+    #[cold]
+    #[inline(never)]
+    fn common_point(&self, there: &Instant<V>) -> V {
+        let placed = self.placed(there.time);
+        let answer = distance(&placed.a, &placed.b, DistanceOptions::new());
+        self.count(answer.iterations);
+        answer.point_b + placed.place
     }
 
     fn velocity_of_b(&self, time: V::Scalar, point: V) -> V {

@@ -49,7 +49,7 @@ pub struct MotionHit<V: Vector> {
     /// [goes deeper](crate::StartInContact::IfDeeper) counts.
     pub time: V::Scalar,
     /// A point of contact, in the world, at that time: a point of `b`, if a target distance was asked for; where the bodies overlap
-    /// at the start, a point in or near both, as of [`distance`](crate::distance).
+    /// at the start, a point in both but for rounding, as of [`distance`](crate::distance).
     pub point: V,
     /// The unit normal of contact, out of `b` towards `a`; `None` where the bodies overlap at the start. With
     /// [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper), it is the shortest way out.
