@@ -15,7 +15,7 @@ use crate::{Scalar, Vector, Vector3};
 ///
 /// The trait is sealed; [`Vector::AngularVelocity`] says which type turns which vectors.
 pub trait AngularVelocity<V: Vector>:
-    Copy + Debug + Default + PartialEq + Send + Sync + 'static + sealed::Sealed
+    Copy + Debug + Default + PartialEq + Send + Sync + 'static + sealed::Sealed + sealed::Data
 {
     /// A bound on the error of [`turn`](Self::turn) as an operator, relative to the square root of the sum of its squared entries
     /// and in units of the scalar's epsilon.
@@ -99,6 +99,16 @@ mod sealed {
     impl Sealed for glam::Vec3A {}
     impl Sealed for glam::DVec3 {}
     impl<V> Sealed for super::SpinInSpace<V> {}
+
+    /// What can be written and read where there is serde, so that no type that holds an angular velocity has to say so.
+    #[cfg(feature = "serde")]
+    pub trait Data: serde::Serialize + serde::de::DeserializeOwned {}
+    #[cfg(feature = "serde")]
+    impl<T: serde::Serialize + serde::de::DeserializeOwned> Data for T {}
+    #[cfg(not(feature = "serde"))]
+    pub trait Data {}
+    #[cfg(not(feature = "serde"))]
+    impl<T> Data for T {}
 }
 
 /// Angular velocities of the plane, where with `h` half the angle `R − 1 = 2·sin h·(−sin h, −cos h; cos h, −sin h)`.

@@ -146,11 +146,13 @@ pub trait SupportMap {
         LineCrossing::Unknown
     }
 
-    /// Where a line enters the whole set, swept by a further ball: an answer in closed form that is certain. It must hold whatever rounding
-    /// has done to the shape and to this computation, and for every line that passes within the [error](LineQuery::error) of the given one
-    /// near the shape. `None`, as the provided method returns, if nothing is certain.
+    /// Where a line enters the whole set, swept by a further ball: an answer in closed form that is certain. It must
+    /// hold whatever rounding has done to the shape and to this computation, and for every line that passes within
+    /// the [error](LineQuery::error) of the given one near the shape. `None`, as the provided method returns, if
+    /// nothing is certain.
     ///
-    /// Algorithms trust it without a check. They ask in plain numbers, and where that is `None` [closely](LineQuery::is_close); then they certify a [crossing of the core](Self::core_line_crossing) by a
+    /// Algorithms trust it without a check. They ask in plain numbers, and where that is `None`
+    /// [closely](LineQuery::is_close); then they certify a [crossing of the core](Self::core_line_crossing) by a
     /// support point.
     #[inline]
     fn certain_crossing(&self, line: LineQuery<Self::Vector>) -> Option<CertainCrossing<Self::Vector>> {

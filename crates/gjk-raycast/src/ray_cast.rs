@@ -100,8 +100,8 @@ fn shown<S: SupportMap + ?Sized>(
 
 /// The cast where the shape knows for certain where the ray enters it, or that its line misses, by a close look or not.
 ///
-/// That look is left to [`searched`]: beside the plain one it made the answer go through memory, and rays at balls and boxes
-/// took 15 to 30 % more instructions.
+/// That look is left to [`searched`]: beside the plain one it made the answer go through memory, and rays at balls
+/// and boxes took 15 to 30 % more instructions.
 #[inline(always)]
 fn certain<S: SupportMap + ?Sized>(
     target: &S,

@@ -45,12 +45,12 @@ pub struct Distance<V: Vector> {
     pub point_a: V,
     /// The point of `b` closest to `a`, in the world; where the shapes overlap, a point in both, but for rounding.
     pub point_b: V,
-    /// The unit vector from `b` to `a`, across which a plane separates the shapes by [`lower`](Self::lower). It is there also where the shapes
-    /// touch, and `None` where they overlap by more than rounding.
+    /// The unit vector from `b` to `a`, across which a plane separates the shapes by [`lower`](Self::lower). It is
+    /// there also where the shapes touch, and `None` where they overlap by more than rounding.
     ///
-    /// It is the plane's and not the direction of `point_a − point_b`, which near contact has fewer digits: that difference is the distance
-    /// times the normal to within √(2·`upper`·(`upper` − `lower`)), which is how far it may lean, and 64ε of the sizes of both shapes and their
-    /// offset.
+    /// It is the plane's and not the direction of `point_a − point_b`, which near contact has fewer digits: that
+    /// difference is the distance times the normal to within √(2·`upper`·(`upper` − `lower`)), which is how far it
+    /// may lean, and 64ε of the sizes of both shapes and their offset.
     pub normal: Option<V>,
     /// How the iteration ended.
     pub status: Status,
@@ -277,8 +277,9 @@ impl<V: Vector> LinearCast<V> {
 pub struct LinearHit<V: Vector> {
     /// The time of first contact; 0 where the shapes touch or overlap at the start.
     pub time: V::Scalar,
-    /// A point of contact, in the world, at that time. With a [target distance](crate::LinearCastOptions::target_distance) it is a point of
-    /// `b`. Where the shapes overlap at the start, it is a point in both but for rounding, as of [`distance`](crate::distance).
+    /// A point of contact, in the world, at that time. With a [target
+    /// distance](crate::LinearCastOptions::target_distance) it is a point of `b`. Where the shapes overlap at the
+    /// start, it is a point in both but for rounding, as of [`distance`](crate::distance).
     pub point: V,
     /// The unit normal of contact, out of `b` towards `a`. Where the shapes overlap at the start by more than rounding, it is `None`; with
     /// [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper), it is the shortest way out.

@@ -1,4 +1,5 @@
-//! Searches that are given up after few support points: what they have proved by then is true, and they say that they were given up.
+//! Searches that are given up after few support points: what they have proved by then is true, and they say that they
+//! were given up.
 
 use crate::common::behind_pointers::{
     distance, intersects, linear_cast, motion_cast, ray_cast, ray_exit, signed_distance,
@@ -125,9 +126,10 @@ impl Case {
     }
 }
 
-/// A cap on the iterations costs width, and no truth: brackets hold what a search to the end finds, an answer lies in its own, all of it is
-/// numbers, and whoever has given up does not say that it has converged. `distance` once called that bodies *overlap* and *converged* if it
-/// was allowed no search for a plane between them, and *stalled* where it had been given up.
+/// A cap on the iterations costs width, and no truth: brackets hold what a search to the end finds, an answer lies in
+/// its own, all of it is numbers, and whoever has given up does not say that it has converged. `distance` once called
+/// that bodies *overlap* and *converged* if it was allowed no search for a plane between them, and *stalled* where it
+/// had been given up.
 #[test]
 fn what_was_proved_before_a_search_is_given_up_is_true() {
     let mut random = Random(0x1234_5678_9abc);
@@ -159,8 +161,9 @@ fn what_was_proved_before_a_search_is_given_up_is_true() {
     }
 }
 
-/// Two crooked segments that pass one another by 3e-15: to overlap needs a proof as much as to be apart. With no search for a plane allowed,
-/// `intersects` called the best plane it had, which was none, too deep to look behind, and the overlap certain.
+/// Two crooked segments that pass one another by 3e-15: to overlap needs a proof as much as to be apart. With no
+/// search for a plane allowed, `intersects` called the best plane it had, which was none, too deep to look behind,
+/// and the overlap certain.
 #[test]
 fn bodies_between_which_no_plane_was_looked_for_do_not_overlap_for_certain() {
     let turn = DQuat::from_xyzw(0.3, -0.4, 0.5, 0.7).normalize();

@@ -409,8 +409,9 @@ fn rods_pass_through_one_another() {
     }
 }
 
-/// The way out of an overlap leads from the deepest point of one body to that of the other, and neither need be in both: of a small body
-/// deep in a large one, the other's is on the far surface. A hit at the start once told one of them, up to 0.17 sizes outside.
+/// The way out of an overlap leads from the deepest point of one body to that of the other, and neither need be in
+/// both: of a small body deep in a large one, the other's is on the far surface. A hit at the start once told one of
+/// them, up to 0.17 sizes outside.
 #[test]
 fn the_point_of_an_overlap_at_the_start_is_in_both_bodies() {
     let mut random = Random(0x0070_1234_5678);

@@ -707,9 +707,10 @@ fn a_point_beside_a_needle_is_apart_from_it() -> Result<(), InvalidShape> {
     Ok(())
 }
 
-/// The normal is that of the plane that proves the distance, and closest points differ along another direction by what is not known of them. With
-/// `u` their difference, no longer than `upper` = U, and `n·u` no less than `lower` = L, `|u − s·n|² ≤ U² − 2sL + s²` is at most `2U(U − L)` for an `s`
-/// between L and U. Near contact that is far more than rounding: here up to 1e-9 sizes.
+/// The normal is that of the plane that proves the distance, and closest points differ along another direction by
+/// what is not known of them. With `u` their difference, no longer than `upper` = U, and `n·u` no less than `lower` =
+/// L, `|u − s·n|² ≤ U² − 2sL + s²` is at most `2U(U − L)` for an `s` between L and U. Near contact that is far more
+/// than rounding: here up to 1e-9 sizes.
 #[test]
 fn closest_points_lean_from_the_normal_no_more_than_the_bracket_says() {
     let (cone, egg) = (

@@ -160,7 +160,10 @@ proptest! {
         };
         alike_inscribed(&hull(1.0), &hull(scale), scale)?;
         let room = |scale: f64| {
-            let behind = |p: &[f64; 3]| HalfSpace { normal: [p[0] - points[0][0], p[1] - points[0][1], p[2]], offset: scale };
+            let behind = |&[x, y, z]: &[f64; 3]| {
+                let normal = [x - points[0][0], y - points[0][1], z];
+                HalfSpace { normal, offset: scale }
+            };
             let axes = (0..6).map(|k| HalfSpace {
                 normal: std::array::from_fn(|i| if i == k / 2 { [1.0, -1.0][k % 2] } else { 0.0 }),
                 offset: scale * 1e3,

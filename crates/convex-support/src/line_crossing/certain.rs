@@ -26,8 +26,8 @@ pub struct LineQuery<V: Vector> {
     pub radius: V::Scalar,
     /// The answer is to hold for every line that passes within this distance of the line near the shape.
     pub error: V::Scalar,
-    /// Whether to compute in twice the precision: for the few lines of which the closed form in plain numbers is certain of
-    /// nothing.
+    /// Whether to compute in twice the precision: for the few lines of which the closed form in plain numbers is
+    /// certain of nothing.
     pub is_close: bool,
 }
 
@@ -105,7 +105,8 @@ const OF_TURN: f64 = 11.0;
 /// what is along the axis and counts squared. Where a line hits, its foot and the way from there to the hit are no longer than the size. In all `26u`.
 const OF_SPLIT: f64 = 16.0;
 
-/// How many errors long a bracket is at most along a line; one that would be longer is looked at [more closely](super::closely).
+/// How many errors long a bracket is at most along a line; one that would be longer is looked at [more
+/// closely](super::closely).
 const WIDE: f64 = 1024.0;
 
 /// The square of the sine of the angle with a cylinder's side below which a line is nearly along it, and looked at
@@ -126,8 +127,8 @@ pub(crate) struct NearLine<V: Vector> {
 }
 
 impl<V: Vector> NearLine<V> {
-    /// The line, and a shape of a `size` about an `origin`. `None` where it passes far from there, or where numbers are too
-    /// small or large to be squared.
+    /// The line, and a shape of a `size` about an `origin`. `None` where it passes far from there, or where numbers
+    /// are too small or large to be squared.
     #[inline(always)]
     pub(crate) fn new(line: LineQuery<V>, origin: V, size: V::Scalar) -> Option<Self> {
         let LineQuery { source, direction, error, .. } = line;

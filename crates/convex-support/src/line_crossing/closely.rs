@@ -98,9 +98,9 @@ pub(crate) fn cylinder<V: Vector3>(
 /// What a length is in units of a power of two.
 type InUnits<'a, V> = &'a dyn Fn(<V as Vector>::Scalar) -> f64;
 
-/// Only the error that came with the line counts. `outward` is the unit normal at a point of the surface. Of a line that
-/// misses, the closed form tells an axis, along which the core `reaches` so far; it counts for what it is measured to be,
-/// and a line that misses by rounding is left to a search.
+/// Only the error that came with the line counts. `outward` is the unit normal at a point of the surface. Of a line
+/// that misses, the closed form tells an axis, along which the core `reaches` so far; it counts for what it is
+/// measured to be, and a line that misses by rounding is left to a search.
 fn closely<V: Vector>(
     line: LineQuery<V>,
     origin: V,

@@ -241,7 +241,8 @@ impl<V: Vector> Approach<V> for MovingPair<'_, V> {
         self.have_met(near, time)
     }
 
-    /// Not the point that is deepest in `a`: where the way out of a small body is through a large one, it is far behind it.
+    /// Not the point that is deepest in `a`: where the way out of a small body is through a large one, it is far
+    /// behind it.
     #[cold]
     #[inline(never)]
     fn common_point(&self, there: &Instant<V>) -> V {

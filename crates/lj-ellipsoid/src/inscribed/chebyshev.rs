@@ -41,8 +41,8 @@ struct Iterate {
 
 /// How deep the intersection is; rows of unit length.
 ///
-/// The systems are of numbers per length, and Cholesky takes their roots: the digits of the root of a length are others in another unit, and
-/// so all is measured in a power of two near the largest offset.
+/// The systems are of numbers per length, and Cholesky takes their roots: the digits of the root of a length are
+/// others in another unit, and so all is measured in a power of two near the largest offset.
 pub(crate) fn depth(rows: &Rows) -> Depth {
     let per_unit = power_of_two_inverse(rows.s.iter().fold(0.0, |s: f64, b| s.max(b.abs())));
     let back = |z: Vec<f64>| z.into_iter().map(|x| x / per_unit).collect();

@@ -41,7 +41,8 @@ pub(crate) fn solve<D: Dimension>(
         p.iter_mut().for_each(|x| *x /= s);
     }
     let Maximum { point, dual, ended, iterations } = maximize(dim, &p, options, observer)?;
-    // Both logarithms of determinants are of lengths in one unit, so that it does not count which one they were given in.
+    // Both logarithms of determinants are of lengths in one unit, so that it does not count which one they were given
+    // in.
     let per_unit = power_of_two_inverse(coordinates.lengths.iter().copied().fold(0.0, f64::max));
     let y = dual.as_ref().map_or(&[][..], |dual| &dual.y);
     let log_det_bound = match &dual {

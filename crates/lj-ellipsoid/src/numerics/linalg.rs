@@ -40,7 +40,8 @@ pub(crate) fn sum_of_logarithms(numbers: impl Iterator<Item = f64>) -> f64 {
     sum + libm::log(product)
 }
 
-/// Σ ln xᵢ, and Σ |ln xᵢ|, of which its rounding is a part, of lengths in a unit: the same bits whatever unit they were in before.
+/// Σ ln xᵢ, and Σ |ln xᵢ|, of which its rounding is a part, of lengths in a unit: the same bits whatever unit they
+/// were in before.
 pub(crate) fn logarithms(lengths: &[f64], per_unit: f64) -> [f64; 2] {
     let numbers = lengths.iter().map(|a| a * per_unit);
     [sum_of_logarithms(numbers.clone()), numbers.map(|a| libm::log(a).abs()).sum()]
