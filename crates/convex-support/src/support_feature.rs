@@ -6,7 +6,7 @@ use crate::numerics::elementary::sin_cos;
 use crate::support::swept;
 use crate::{Scalar, Vector, Vector3};
 
-/// As many points as a feature may have. Of a face with more corners every second, third, … is taken.
+/// As many points as a feature may have. Of a face with more corners some that span it are taken.
 const MAX_POINTS: usize = 16;
 
 /// Points of a rim that stand for a disc.
@@ -178,11 +178,31 @@ impl<V: Vector> Feature<V> {
             near[..len].iter().for_each(|&(i, _)| self.push(point(i), i as u32));
             return;
         }
-        // There may be too many: then every second, third, ….
-        let is_near = |&i: &usize| level(i) >= highest - slab;
-        let stride = numbers.clone().filter(is_near).count().div_ceil(MAX_POINTS);
-        self.is_complete &= stride <= 1;
-        numbers.filter(is_near).step_by(stride).for_each(|i| self.push(point(i), i as u32));
+        // There may be too many: then those that are farthest along directions across, turned all around. None of these is along an edge of a
+        // face whose corners are evenly spaced, where rounding would tell which of its ends is farther.
+        let [e, f] = across(direction);
+        let turned = |k: usize| sin_cos(core::f64::consts::TAU * (k as f64 + 0.3) / MAX_POINTS as f64);
+        let aside = core::array::from_fn::<_, MAX_POINTS, _>(turned)
+            .map(|(sine, cosine)| (V::Scalar::from_f64(cosine), V::Scalar::from_f64(sine)));
+        let mut farthest = [(0, -V::Scalar::infinity()); MAX_POINTS];
+        let mut count = 0;
+        for i in numbers.filter(|&i| level(i) >= highest - slab) {
+            count += 1;
+            let (x, y) = (e.dot(point(i)), f.dot(point(i)));
+            for (known, (along_e, along_f)) in farthest.iter_mut().zip(aside) {
+                let reach = along_e * x + along_f * y;
+                if reach > known.1 {
+                    *known = (i, reach);
+                }
+            }
+        }
+        self.is_complete &= count <= MAX_POINTS;
+        farthest.sort_unstable_by_key(|&(i, _)| i);
+        for (k, &(i, _)) in farthest.iter().enumerate() {
+            if k == 0 || farthest[k - 1].0 != i {
+                self.push(point(i), i as u32);
+            }
+        }
     }
 
     /// Of a shape that is known by its support points alone, the vertices around the one along a direction and no farther than `slab`
@@ -193,14 +213,7 @@ impl<V: Vector> Feature<V> {
         let point = support(direction);
         self.push(point, hash(point));
         let Some(n) = direction.unit() else { return };
-        let a = n.abs();
-        let least = (1..V::DIM).fold(0, |least, i| if a.get(i) < a.get(least) { i } else { least });
-        let Some(e) = (V::axis(least) - n * n.get(least)).unit() else { return };
-        // In the plane there are two ways to turn.
-        let f = V::from_fn(|i| {
-            let at = |v: V, i: usize| v.get(i % V::DIM);
-            if V::DIM == 2 { V::Scalar::ZERO } else { at(n, i + 1) * at(e, i + 2) - at(n, i + 2) * at(e, i + 1) }
-        });
+        let [e, f] = across(n);
         let angle = V::Scalar::from_f64(1.0 / 32.0);
         for i in 0..PROBES {
             let (sine, cosine) = sin_cos(core::f64::consts::TAU * f64::from(i) / f64::from(PROBES));
@@ -216,8 +229,8 @@ impl<V: Vector> Feature<V> {
         self.is_complete &= self.len < 3;
     }
 
-    /// The same of discs across the second axis, by height and radius: of each the support point, and points all around where the
-    /// disc is flat against the plane.
+    /// The same of discs across the second axis, by height and radius: of each the support point, or points all around where the
+    /// disc is flat against the plane, or the support point and some around where it nearly is.
     pub(crate) fn collect_discs(&mut self, direction: V, slab: V::Scalar, discs: [(V::Scalar, V::Scalar); 2])
     where
         V: Vector3,
@@ -226,22 +239,45 @@ impl<V: Vector> Feature<V> {
         let slope = across.norm();
         let level = |(height, radius): (V::Scalar, V::Scalar)| direction.get(1) * height + slope * radius;
         let highest = level(discs[0]).max(level(discs[1]));
+        let on_rim = |i: u32| {
+            let (sine, cosine) = sin_cos(core::f64::consts::TAU * f64::from(i) / f64::from(RIM));
+            V::from_fn(|i| V::Scalar::from_f64([cosine, 0.0, sine][i]))
+        };
         for (k, &(height, radius)) in (0..).zip(&discs) {
             let center = V::axis(1) * height;
             let lowest = level((height, -radius));
             if lowest >= highest - slab && radius > V::Scalar::ZERO {
                 self.set_rim(Rim { center, ends: [V::axis(0) * radius + center, V::axis(2) * radius + center] });
                 for i in 0..RIM {
-                    let (sine, cosine) = sin_cos(core::f64::consts::TAU * f64::from(i) / f64::from(RIM));
-                    let at =
-                        [radius * V::Scalar::from_f64(cosine), V::Scalar::ZERO, radius * V::Scalar::from_f64(sine)];
-                    self.push(center + V::from_fn(|i| at[i]), k * (RIM + 1) + i);
+                    self.push(center + on_rim(i) * radius, k * (RIM + 1) + i);
                 }
             } else if level((height, radius)) >= highest - slab {
                 self.push(center + swept(radius, across), k * (RIM + 1) + RIM);
+                // Of a disc that leans the part in the slab, if that is more than a sliver.
+                if level((height, radius * V::Scalar::from_f64(0.5))) >= highest - slab && radius > V::Scalar::ZERO {
+                    for i in 0..RIM {
+                        let point = center + on_rim(i) * radius;
+                        if direction.dot(point) >= highest - slab {
+                            self.push(point, k * (RIM + 1) + i);
+                        }
+                    }
+                }
             }
         }
     }
+}
+
+/// Unit vectors that span what is across a direction; in the plane one, and zero.
+fn across<V: Vector>(direction: V) -> [V; 2] {
+    let n = direction.unit().unwrap_or(V::ZERO);
+    let a = n.abs();
+    let least = (1..V::DIM).fold(0, |least, i| if a.get(i) < a.get(least) { i } else { least });
+    let e = (V::axis(least) - n * n.get(least)).unit().unwrap_or(V::ZERO);
+    let f = V::from_fn(|i| {
+        let at = |v: V, i: usize| v.get(i % V::DIM);
+        if V::DIM == 2 { V::Scalar::ZERO } else { at(n, i + 1) * at(e, i + 2) - at(n, i + 2) * at(e, i + 1) }
+    });
+    [e, f]
 }
 
 /// Moves the entries that are kept to the front, in their order, and says how many they are.

@@ -153,7 +153,8 @@ pub use certificate::{
     ray_cast_certificate,
 };
 pub use contact::{
-    Contact, ContactPoint, SignedDistance, SignedDistanceOptions, contact, signed_distance, signed_distance_with,
+    Contact, ContactPoint, SignedDistance, SignedDistanceOptions, contact, contact_after, signed_distance,
+    signed_distance_with,
 };
 pub use derivative::{
     ClosestFeatures, ClosestVelocities, LinearCastGradient, MotionCastGradient, PairGradient, PairHessian,

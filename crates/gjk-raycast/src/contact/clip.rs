@@ -26,7 +26,8 @@ enum Edge {
 pub(crate) type ClippedCorners<S> = SmallVec<[Clipped<S>; 32]>;
 
 /// The overlap of two outlines by Sutherland's and Hodgman's method: the first is cut along the edges of the second, one after the
-/// other. A segment is clipped by a polygon, and two segments by each other where they are parallel. Empty where there is none.
+/// other. A segment is clipped by a polygon, and two segments by each other where they are parallel. Empty where there is none. An outline
+/// without corners is the whole plane.
 pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> ClippedCorners<S> {
     let mut overlap = corners_of(&own.corners);
     let count = other.corners.len();

@@ -3,7 +3,7 @@
 use convex_support::{SupportMap, Vector};
 
 use super::manifold::manifold;
-use super::{Contact, SignedDistanceOptions, signed_distance};
+use super::{Contact, ContactPoint, SignedDistanceOptions, signed_distance};
 use num_traits::Float as _;
 
 /// The contact of two shapes; `None` if they are farther apart than `within`. The options are those of the signed
@@ -28,8 +28,10 @@ use num_traits::Float as _;
 /// ```
 ///
 /// The features of both shapes that face each other, each a vertex, an edge or a face
-/// ([`core_support_feature`](SupportMap::core_support_feature)), are clipped against each other in the plane of contact. Of the
-/// corners of their overlap at most four are kept, in 2D two: the deepest, and others that span the overlap well.
+/// ([`core_support_feature`](SupportMap::core_support_feature)), are clipped against each other in the plane of contact. A corner of their
+/// overlap belongs to the contact if the surfaces overlap there or are within what is asked for, but for a thousandth of the smaller shape's
+/// size. At most four are kept, in 2D two: those that span the overlap well, and one as deep as the shapes are, but for a thousandth of the
+/// size.
 pub fn contact<A, B>(
     a: &A,
     b: &B,
@@ -40,10 +42,44 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
+    contact_of(a, b, within, options, &[])
+}
+
+/// [`contact`] of shapes that were in contact before: of the points of the `last` contact those are kept that still hold.
+///
+/// A point is recognised by the numbers of its features. It is kept while the shapes are apart there by no more than twice the thousandth of
+/// their size that other points have, and while another one does not span the overlap much better. The last normal is the first
+/// [`axis`](SignedDistanceOptions::axis), if the options have none.
+pub fn contact_after<A, B>(
+    last: &Contact<A::Vector>,
+    a: &A,
+    b: &B,
+    within: <A::Vector as Vector>::Scalar,
+    options: SignedDistanceOptions<A::Vector>,
+) -> Option<Contact<A::Vector>>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
+    let axis = options.axis.or(Some(last.normal));
+    contact_of(a, b, within, SignedDistanceOptions { axis, ..options }, last.points())
+}
+
+fn contact_of<A, B>(
+    a: &A,
+    b: &B,
+    within: <A::Vector as Vector>::Scalar,
+    options: SignedDistanceOptions<A::Vector>,
+    last: &[ContactPoint<A::Vector>],
+) -> Option<Contact<A::Vector>>
+where
+    A: SupportMap + ?Sized,
+    B: SupportMap<Vector = A::Vector> + ?Sized,
+{
     let answer = signed_distance(a, b, SignedDistanceOptions { limit: options.limit.min(within), ..options });
     // NaN is farther than anything, and so is what nothing is known of.
     if !(answer.signed_distance <= within && answer.signed_distance.is_finite()) {
         return None;
     }
-    Some(Contact::new(answer.normal, answer, &manifold(a, b, &answer, within)))
+    Some(Contact::new(answer.normal, answer, &manifold(a, b, &answer, within, last)))
 }

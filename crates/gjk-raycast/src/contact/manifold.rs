@@ -1,48 +1,53 @@
 //! The points in which two shapes in contact carry each other.
 
-use convex_support::{Feature, Scalar, SupportMap, Vector};
+use convex_support::{CoreKind, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
 use super::clip::{ClippedCorners, clip};
 use super::outline::{ContactPart, ContactPlane, Outline};
+use super::reduction::reduced;
 use super::result::MAX_POINTS;
+use super::surface::{Side, Surface};
 use super::{ContactPoint, SignedDistance};
 use crate::symmetric::{Across, axes_across, cross, dot};
 
-/// How deep behind its supporting plane a shape is taken for its feature, as a part of the smaller shape's size.
-const SLAB: f64 = 1.0 / 64.0;
+/// As a part of the smaller shape's size: how near a corner of one shape's feature a point is that counts as the corner.
+const NEAR: f64 = 1.0 / 64.0;
+
+/// As a part of the smaller shape's size: how much farther apart than asked for the shapes may be at a point, and how much less deep than the
+/// deepest all points may be. While shapes move by less than half of that, the manifold keeps its corners.
+const SLACK: f64 = 1.0 / 1024.0;
+
+/// The sine of the angle from which on segments cross in one point.
+const CROSSES: f64 = 0.25;
 
 /// The points of a manifold.
 pub(super) type Points<V> = SmallVec<[ContactPoint<V>; MAX_POINTS]>;
 
-/// The points where the features of both shapes that face each other overlap, at most four, and the closest points, if those are not among
-/// them; they are alone where one of the features is a vertex, or where edges cross.
-pub(super) fn manifold<A, B>(a: &A, b: &B, answer: &SignedDistance<A::Vector>, within: ScalarOf<A>) -> Points<A::Vector>
+/// The points where the features of both shapes that face each other overlap, at most four, and the closest points, if those are deeper; they
+/// are alone where one of the features is a vertex, or where edges cross. Of `last`, the points of the last manifold, those are preferred that
+/// still hold.
+pub(super) fn manifold<A, B>(
+    a: &A,
+    b: &B,
+    answer: &SignedDistance<A::Vector>,
+    within: ScalarOf<A>,
+    last: &[ContactPoint<A::Vector>],
+) -> Points<A::Vector>
 where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let normal = answer.normal;
-    let half: ScalarOf<A> = Scalar::from_f64(0.5);
-    let origin = answer.point_a * half + answer.point_b * half;
-    let plane = ContactPlane { normal, across: axes_across(normal), origin };
-    let (core_a, core_b) = (a.core(), b.core());
-    let smaller = (core_a.extent + core_a.radius).min(core_b.extent + core_b.radius);
-    let near = smaller * ScalarOf::<A>::from_f64(SLAB);
-    // Of shapes that are apart their faces may lean by as much more, but not farther than they are nearly flat.
-    let slab = near + within.max(Scalar::ZERO).min(near);
-    let outline = |shape: &dyn Fn(&mut Feature<A::Vector>), origin| {
-        let mut feature = Feature::new();
-        shape(&mut feature);
-        Outline::new(&feature, origin, &plane)
+    let is_single = match (a.core().kind, b.core().kind) {
+        (CoreKind::Point(_), _) | (_, CoreKind::Point(_)) => true,
+        (CoreKind::Segment { half: u, .. }, CoreKind::Segment { half: w, .. }) => {
+            let (uu, uw, ww) = (u.dot(u), u.dot(w), w.dot(w));
+            uw * uw < uu * ww * Scalar::from_f64(1.0 - CROSSES * CROSSES)
+        }
+        _ => false,
     };
-    let of_a =
-        outline(&|feature| a.core_support_feature(-normal, slab, feature), core_a.origin - normal * core_a.radius);
-    let of_b =
-        outline(&|feature| b.core_support_feature(normal, slab, feature), core_b.origin + normal * core_b.radius);
-    let facing = Facing { plane, of_a, of_b };
-    facing.points(answer, within + near, near)
+    if is_single { single(answer) } else { between([&a, &b], answer, within, last) }
 }
 
 /// The same of a shape over a plane, `b`, without an end: the corners of the feature that faces it.
@@ -50,182 +55,250 @@ pub(crate) fn manifold_over_plane<A>(
     a: &A,
     answer: &SignedDistance<A::Vector>,
     within: ScalarOf<A>,
+    last: &[ContactPoint<A::Vector>],
 ) -> Points<A::Vector>
 where
     A: SupportMap + ?Sized,
 {
-    let normal = answer.normal;
-    let plane = ContactPlane { normal, across: axes_across(normal), origin: answer.point_b };
-    let core = a.core();
-    let near = (core.extent + core.radius) * ScalarOf::<A>::from_f64(SLAB);
-    let slab = near + within.max(Scalar::ZERO).min(near);
-    let mut feature = Feature::new();
-    a.core_support_feature(-normal, slab, &mut feature);
-    let of_a = Outline::new(&feature, core.origin - normal * core.radius, &plane);
-    let of_b = Outline { corners: SmallVec::new(), rim: None, is_complete: true };
-    let facing = Facing { plane, of_a, of_b };
-    let corners = facing.of_a.corners.iter().filter(|corner| corner.height <= within + near);
-    let mut candidates: Candidates<_> = corners
-        .map(|corner| Candidate {
-            at: corner.at,
-            heights: [corner.height.max(answer.lower), Scalar::ZERO],
-            parts: [ContactPart::Vertex(corner.id), ContactPart::Face],
-        })
-        .collect();
-    if candidates.len() < 2 {
-        candidates.clear();
-    }
-    facing.with_closest(&mut candidates, answer, [answer.signed_distance, Scalar::ZERO], near);
-    facing.reduced(&candidates)
+    if let CoreKind::Point(_) = a.core().kind { single(answer) } else { over_plane(&a, answer, within, last) }
 }
 
 type ScalarOf<A> = <<A as SupportMap>::Vector as Vector>::Scalar;
 
-/// The outlines of both features in the plane of contact.
-struct Facing<V: Vector> {
-    plane: ContactPlane<V>,
-    of_a: Outline<V::Scalar>,
-    of_b: Outline<V::Scalar>,
+/// The closest points alone, of what is round or of segments that cross.
+fn single<V: Vector>(answer: &SignedDistance<V>) -> Points<V> {
+    let &SignedDistance { point_a, point_b, signed_distance, lower, upper, .. } = answer;
+    let error = (upper - signed_distance).max(signed_distance - lower);
+    let face = ContactPart::Face.code();
+    Points::from_slice(&[ContactPoint { point_a, point_b, signed_distance, error, feature_a: face, feature_b: face }])
 }
 
-/// A point of contact in the plane: where it is, how high the features of both shapes are there, and what it is of each.
+/// [`manifold`] behind pointers. It is computed for the shapes in the order in which the normal points to one side of space, so that it is the
+/// same, to the last bit, whichever is named first.
+fn between<V: Vector>(
+    [a, b]: [&dyn Surface<V>; 2],
+    answer: &SignedDistance<V>,
+    within: V::Scalar,
+    last: &[ContactPoint<V>],
+) -> Points<V> {
+    // Along no axis and no diagonal.
+    let aside = V::from_fn(|i| V::Scalar::from_f64([1.0, 0.7549, 0.5698][i]));
+    if answer.normal.dot(aside) < V::Scalar::ZERO {
+        let last: Points<V> = last.iter().map(|point| point.reversed()).collect();
+        let points = between([b, a], &answer.reversed(), within, &last);
+        return points.iter().map(|point| point.reversed()).collect();
+    }
+    let normal = answer.normal;
+    let half: V::Scalar = Scalar::from_f64(0.5);
+    let origin = answer.point_a * half + answer.point_b * half;
+    let across = axes_across(normal);
+    let (core_a, core_b) = (a.parts(), b.parts());
+    let size = (core_a.extent + core_a.radius).min(core_b.extent + core_b.radius);
+    let reach = Reach::new(answer, within, size);
+    let level = answer.signed_distance * -half;
+    let levels = [level, level + (answer.signed_distance - answer.lower)];
+    let side =
+        |surface, core, normal| Side::new(surface, core, ContactPlane { normal, across, origin }, reach.slab, levels);
+    let sides = [side(a, &core_a, -normal), side(b, &core_b, normal)];
+    Facing { sides, reach, last }.points(answer, [level, level])
+}
+
+/// [`manifold_over_plane`] behind a pointer.
+fn over_plane<V: Vector>(
+    a: &dyn Surface<V>,
+    answer: &SignedDistance<V>,
+    within: V::Scalar,
+    last: &[ContactPoint<V>],
+) -> Points<V> {
+    let (normal, origin) = (answer.normal, answer.point_b);
+    let across = axes_across(normal);
+    let plane = |normal| ContactPlane { normal, across, origin };
+    let core = a.parts();
+    let reach = Reach::new(answer, within, core.extent + core.radius);
+    let sides = [
+        Side::new(a, &core, plane(-normal), reach.slab, [-answer.signed_distance, -answer.lower]),
+        Side::flat(plane(normal)),
+    ];
+    let levels = [-answer.signed_distance, V::Scalar::ZERO];
+    Facing { sides, reach, last }.points(answer, levels)
+}
+
+/// What is taken for a corner.
+struct Reach<S> {
+    within: S,
+    /// How far behind its supporting plane a shape may be met by the other one.
+    slab: S,
+    near: S,
+    slack: S,
+}
+
+impl<S: Scalar> Reach<S> {
+    /// A point of a shape that is in the other one, or within what was asked for, is no farther behind the supporting plane than the depth and
+    /// that.
+    fn new<V: Vector<Scalar = S>>(answer: &SignedDistance<V>, within: S, size: S) -> Self {
+        let slack = size * S::from_f64(SLACK);
+        let slab = (within - answer.lower).max(S::ZERO) + slack;
+        Self { within, slab, near: size * S::from_f64(NEAR), slack }
+    }
+}
+
+/// A point of contact in the plane: where it is, how far both shapes reach there, and what it is of each.
 #[derive(Clone, Copy)]
-struct Candidate<S> {
-    at: Across<S>,
-    heights: [S; 2],
-    parts: [ContactPart; 2],
+pub(super) struct Candidate<S> {
+    pub(super) at: Across<S>,
+    pub(super) levels: [S; 2],
+    pub(super) error: S,
+    pub(super) parts: [ContactPart; 2],
 }
 
 impl<S: Scalar> Candidate<S> {
-    fn gap(&self) -> S {
-        self.heights[0] - self.heights[1]
+    pub(super) fn gap(&self) -> S {
+        -(self.levels[0] + self.levels[1])
+    }
+
+    pub(super) fn codes(&self) -> [u32; 2] {
+        self.parts.map(ContactPart::code)
     }
 }
 
 /// Points that a manifold may have.
-type Candidates<S> = SmallVec<[Candidate<S>; 32]>;
+type Candidates<S> = SmallVec<[Candidate<S>; 16]>;
 
-impl<V: Vector> Facing<V> {
-    /// The corners of the overlap where the features are no farther apart than `within`, and the closest points, reduced to four. Those
-    /// `near` the same corner of a feature are one.
-    fn points(&self, answer: &SignedDistance<V>, within: V::Scalar, near: V::Scalar) -> Points<V> {
-        let mut candidates = self.corners_of_overlap(within, near, answer.lower);
-        let half = answer.signed_distance * Scalar::from_f64(0.5);
-        self.with_closest(&mut candidates, answer, [half, -half], near);
-        self.reduced(&candidates)
+/// Both shapes, as they are seen from one another.
+struct Facing<'s, V: Vector> {
+    sides: [Side<'s, V>; 2],
+    reach: Reach<V::Scalar>,
+    last: &'s [ContactPoint<V>],
+}
+
+impl<V: Vector> Facing<'_, V> {
+    /// The corners of the overlap where the shapes are no farther apart than asked for, and the closest points, which reach to these levels;
+    /// reduced to four, in the plane to two.
+    fn points(&mut self, answer: &SignedDistance<V>, levels: [V::Scalar; 2]) -> Points<V> {
+        let mut candidates = self.corners(answer.lower);
+        let corners = candidates.len();
+        self.add_closest(&mut candidates, answer, levels);
+        let most = if V::DIM == 2 { 2 } else { MAX_POINTS };
+        let kept = reduced(&candidates, corners, most, self.reach.slack, |c| self.is_known(c), !self.last.is_empty());
+        kept.iter().map(|candidate| self.point(candidate)).collect()
     }
 
-    /// The same without the closest points. None is deeper than the `deepest`.
-    fn corners_of_overlap(&self, within: V::Scalar, near: V::Scalar, deepest: V::Scalar) -> Candidates<V::Scalar> {
-        let (of_a, of_b) = (&self.of_a, &self.of_b);
+    /// Whether the last manifold had this point.
+    fn is_known(&self, candidate: &Candidate<V::Scalar>) -> bool {
+        let codes = candidate.codes();
+        self.last.iter().any(|point| [point.feature_a, point.feature_b] == codes)
+    }
+
+    /// The corners of the overlap. None is deeper than the `deepest`.
+    fn corners(&mut self, deepest: V::Scalar) -> Candidates<V::Scalar> {
         let mut candidates = Candidates::new();
-        if of_a.corners.len() < 2 || of_b.corners.len() < 2 {
+        let [a, b] = [0, 1].map(|i| self.sides[i].outline.corners.len());
+        // A plane without an end has no corners.
+        if a < 2 || b == 1 {
             return candidates;
         }
+        self.sides.iter_mut().for_each(Side::flatten);
+        let [of_a, of_b] = &self.sides;
         // A segment is clipped by a polygon.
-        let is_swapped = of_a.corners.len() > of_b.corners.len();
-        let overlap: ClippedCorners<V::Scalar> = if is_swapped { clip(of_b, of_a) } else { clip(of_a, of_b) };
-        for corner in &overlap {
+        let is_swapped = a > b && b > 0;
+        let [own, other] = if is_swapped { [of_b, of_a] } else { [of_a, of_b] };
+        let overlap: ClippedCorners<V::Scalar> = clip(&own.outline, &other.outline);
+        for (i, corner) in overlap.iter().enumerate() {
             let [own, other] = corner.parts;
-            let parts = if is_swapped { [other, own] } else { [own, other] };
-            // Seen nearly from its end a feature is as steep as one likes, and where the corner is on it is rounding; but no points of
-            // the shapes are deeper in one another than the shapes are.
-            let heights = [of_a.height(corner.at), of_b.height(corner.at)];
-            let lack = (deepest - (heights[0] - heights[1])).max(V::Scalar::ZERO) * Scalar::from_f64(0.5);
-            let heights = [heights[0] + lack, heights[1] - lack];
-            let candidate = Candidate { at: corner.at, heights, parts: self.settled(corner.at, parts, near) };
-            if candidate.gap() <= within && candidates.iter().all(|known| known.parts != candidate.parts) {
+            let parts = self.settled(corner.at, if is_swapped { [other, own] } else { [own, other] });
+            let is_crossing = matches!(parts, [ContactPart::Edge(..), ContactPart::Edge(..)]);
+            if is_crossing && self.is_on_a_line(&overlap, i) || candidates.iter().any(|known| known.parts == parts) {
+                continue;
+            }
+            let (Some(of_a), Some(of_b)) = (of_a.level(corner.at), of_b.level(corner.at)) else { continue };
+            let levels = [of_a, of_b];
+            let error = levels[0].error + levels[1].error;
+            // No end was found where a side is along the normal, as at a vertex that is behind what shows.
+            if !(error <= self.reach.slack) {
+                continue;
+            }
+            // Seen nearly from its end an edge is as steep as one likes, and where a corner is on it is rounding; but no points of the shapes
+            // are deeper in one another than the shapes are.
+            let lack = (deepest + levels[0].value + levels[1].value).max(V::Scalar::ZERO) * Scalar::from_f64(0.5);
+            let levels = levels.map(|level| level.value - lack);
+            let candidate = Candidate { at: corner.at, levels, error: error + lack, parts };
+            let slack = self.reach.slack * Scalar::from_f64(if self.is_known(&candidate) { 2.0 } else { 1.0 });
+            if candidate.gap() <= self.reach.within + slack {
                 candidates.push(candidate);
             }
         }
         candidates
     }
 
-    /// Adds the closest points, whose heights above the plane are given, if none of the candidates is as deep: features that are not quite
-    /// flat are closest in their midst, and those of vertices, or of edges that cross, have no corners in common. A candidate `near` them is
-    /// the same point, and moves there: beside it, they would only take the place of another corner.
-    fn with_closest(
-        &self,
-        candidates: &mut Candidates<V::Scalar>,
-        answer: &SignedDistance<V>,
-        heights: [V::Scalar; 2],
-        near: V::Scalar,
-    ) {
-        let known_to = answer.upper - answer.lower + near * V::Scalar::EPSILON.sqrt();
-        let deepest = answer.signed_distance + known_to;
+    /// Whether a corner of the overlap, where two edges cross, is on a line with its neighbours but for the slack: of edges that lie on one
+    /// another, rounding tells where they cross.
+    fn is_on_a_line(&self, overlap: &ClippedCorners<V::Scalar>, i: usize) -> bool {
+        let n = overlap.len();
+        let at = |i: usize| overlap[i % n].at;
+        let from = |a: Across<V::Scalar>, b: Across<V::Scalar>| (b.0 - a.0, b.1 - a.1);
+        let base = from(at(i + n - 1), at(i + 1));
+        let turn = cross(from(at(i + n - 1), at(i)), base);
+        n > 2 && turn * turn <= dot(base, base) * (self.reach.slack * self.reach.slack)
+    }
+
+    /// Adds the closest points if none of the candidates is as deep: features that are not quite flat are closest in their midst, and those of
+    /// vertices, or of edges that cross, have no corners in common. A candidate near them is the same point, and moves there: beside it, they
+    /// would only take the place of another corner.
+    fn add_closest(&self, candidates: &mut Candidates<V::Scalar>, answer: &SignedDistance<V>, levels: [V::Scalar; 2]) {
+        let deepest = answer.upper + self.reach.slack;
         // NaN is as deep as anything.
         if candidates.iter().any(|candidate| !(candidate.gap() > deepest)) {
             return;
         }
+        let near = self.reach.near;
         let is_near = |candidate: &&mut Candidate<V::Scalar>| dot(candidate.at, candidate.at) <= near * near;
         let at = (V::Scalar::ZERO, V::Scalar::ZERO);
+        let error = answer.upper - answer.lower;
         if let Some(candidate) = candidates.iter_mut().find(is_near) {
-            (candidate.at, candidate.heights) = (at, heights);
+            *candidate = Candidate { at, levels, error, ..*candidate };
             return;
         }
-        let part = |outline: &Outline<V::Scalar>| match outline.corners.as_slice() {
+        let part = |side: &Side<'_, V>| match side.outline.corners.as_slice() {
             [corner] => ContactPart::Vertex(corner.id),
             [from, to] => ContactPart::Edge(from.id, to.id),
             _ => ContactPart::Face,
         };
-        let parts = [part(&self.of_a), part(&self.of_b)];
-        candidates.push(Candidate { at, heights, parts });
-    }
-
-    /// At most four of the candidates, in the plane two.
-    fn reduced(&self, candidates: &[Candidate<V::Scalar>]) -> Points<V> {
-        let most = if V::DIM == 2 { 2 } else { MAX_POINTS };
-        reduced(candidates, most).iter().map(|candidate| self.point(candidate)).collect()
+        let [a, b] = &self.sides;
+        candidates.push(Candidate { at, levels, error, parts: [part(a), part(b)] });
     }
 
     /// What a point is of both shapes: a corner of a feature that it is near to, or else what clipping says. Where corners of both lie
     /// on one another, as of boxes stacked, it would change from frame to frame which of them is within the other's outline.
-    fn settled(&self, at: Across<V::Scalar>, parts: [ContactPart; 2], near: V::Scalar) -> [ContactPart; 2] {
+    fn settled(&self, at: Across<V::Scalar>, parts: [ContactPart; 2]) -> [ContactPart; 2] {
+        let near = self.reach.near;
         let corner = |outline: &Outline<V::Scalar>| {
-            let is_near = |from: Across<V::Scalar>| {
-                let e = (at.0 - from.0, at.1 - from.1);
-                dot(e, e) <= near * near
-            };
-            outline.corners.iter().find(|corner| is_near(corner.at)).map(|corner| ContactPart::Vertex(corner.id))
+            let mut nearest = (near * near, None);
+            for corner in &outline.corners {
+                let e = (at.0 - corner.at.0, at.1 - corner.at.1);
+                if dot(e, e) <= nearest.0 {
+                    nearest = (dot(e, e), Some(ContactPart::Vertex(corner.id)));
+                }
+            }
+            nearest.1
         };
-        match (corner(&self.of_a), corner(&self.of_b)) {
-            (Some(vertex), _) => [vertex, ContactPart::Face],
-            (None, Some(vertex)) => [ContactPart::Face, vertex],
-            (None, None) => parts,
+        let [a, b] = [0, 1].map(|i| corner(&self.sides[i].outline));
+        if a.is_none() && b.is_none() {
+            parts
+        } else {
+            [a.unwrap_or(ContactPart::Face), b.unwrap_or(ContactPart::Face)]
         }
     }
 
     fn point(&self, candidate: &Candidate<V::Scalar>) -> ContactPoint<V> {
-        let [feature_a, feature_b] = candidate.parts.map(ContactPart::code);
+        let [feature_a, feature_b] = candidate.codes();
+        let [point_a, point_b] = [0, 1].map(|i| self.sides[i].plane.point(candidate.at, candidate.levels[i]));
         ContactPoint {
-            point_a: self.plane.point(candidate.at, candidate.heights[0]),
-            point_b: self.plane.point(candidate.at, candidate.heights[1]),
+            point_a,
+            point_b,
             signed_distance: candidate.gap(),
+            error: candidate.error,
             feature_a,
             feature_b,
         }
     }
-}
-
-/// At most so many of the candidates: the deepest, the farthest from it, and those that make most area with the two on either side.
-fn reduced<S: Scalar>(candidates: &[Candidate<S>], most: usize) -> SmallVec<[Candidate<S>; MAX_POINTS]> {
-    if candidates.len() <= most {
-        return SmallVec::from_slice(candidates);
-    }
-    let best = |value: &dyn Fn(&Candidate<S>) -> S| {
-        candidates.iter().fold(&candidates[0], |best, c| if value(c) > value(best) { c } else { best })
-    };
-    let between = |a: &Candidate<S>, b: &Candidate<S>| (b.at.0 - a.at.0, b.at.1 - a.at.1);
-    let first = best(&|c| -c.gap());
-    let second = best(&|c| dot(between(first, c), between(first, c)));
-    let side = |c: &Candidate<S>| cross(between(first, second), between(first, c));
-    let (left, right) = (best(&side), best(&|c| -side(c)));
-    let mut chosen = SmallVec::from_slice(&[*first, *second]);
-    if side(left) > S::ZERO {
-        chosen.push(*left);
-    }
-    if side(right) < S::ZERO {
-        chosen.push(*right);
-    }
-    chosen
 }

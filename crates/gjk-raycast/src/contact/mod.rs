@@ -15,13 +15,15 @@ mod options;
 mod orientation;
 mod outline;
 mod peeled;
+mod reduction;
 mod result;
 mod signed_distance;
 mod start;
+mod surface;
 mod witness;
 mod zonotope;
 
-pub use contact::contact;
+pub use contact::{contact, contact_after};
 pub(crate) use cores::{Cores, Uncertainty};
 pub(crate) use manifold::manifold_over_plane;
 pub use options::SignedDistanceOptions;

@@ -42,6 +42,12 @@ impl<V: Vector> ContactPlane<V> {
     pub(crate) fn point(&self, (x, y): Across<V::Scalar>, height: V::Scalar) -> V {
         self.origin + self.across[0] * x + self.across[1] * y + self.normal * height
     }
+
+    /// A point relative to the origin, as a corner.
+    pub(crate) fn corner(&self, point: V, id: u32) -> Corner<V::Scalar> {
+        let [e, f] = self.across;
+        Corner { at: (e.dot(point), f.dot(point)), height: self.normal.dot(point), id }
+    }
 }
 
 /// A corner of an outline.
@@ -75,21 +81,11 @@ impl<S: Scalar> Outline<S> {
         Self { corners: SmallVec::new(), rim: None, is_complete: true }
     }
 
-    /// The outline of a feature whose points are relative to `origin`.
-    pub(crate) fn new<V: Vector<Scalar = S>>(feature: &Feature<V>, origin: V, plane: &ContactPlane<V>) -> Self {
-        let mut outline = Self::empty();
-        outline.draw(feature, origin, plane);
-        outline
-    }
-
     /// Becomes that of a feature. An outline is long, and so better drawn where it stays than moved there.
     pub(crate) fn draw<V: Vector<Scalar = S>>(&mut self, feature: &Feature<V>, origin: V, plane: &ContactPlane<V>) {
         let from = origin - plane.origin;
         let [e, f] = plane.across;
-        let seen = |(&point, &id): (&V, &u32)| {
-            let p = from + point;
-            Corner { at: (e.dot(p), f.dot(p)), height: plane.normal.dot(p), id }
-        };
+        let seen = |(&point, &id): (&V, &u32)| plane.corner(from + point, id);
         self.corners.clear();
         (self.rim, self.is_complete) = (None, feature.is_complete());
         // Of what is curved, and of a vertex, there is nothing to wrap and nothing to copy.
@@ -134,7 +130,7 @@ impl<S: Scalar> Outline<S> {
 
 /// The convex hull of points in the plane, counterclockwise, by wrapping: from each corner the next is the one that has no point to
 /// its right. Points within rounding of an edge are none of the corners.
-fn wrap<S: Scalar>(points: &[Corner<S>], corners: &mut SmallVec<[Corner<S>; 16]>) {
+pub(super) fn wrap<S: Scalar>(points: &[Corner<S>], corners: &mut SmallVec<[Corner<S>; 16]>) {
     let is_before = |a: &Corner<S>, b: &Corner<S>| a.at.0 < b.at.0 || (a.at.0 == b.at.0 && a.at.1 < b.at.1);
     let Some(first) = points.iter().reduce(|a, b| if is_before(b, a) { b } else { a }) else { return };
     let edge = |a: &Corner<S>, b: &Corner<S>| (b.at.0 - a.at.0, b.at.1 - a.at.1);

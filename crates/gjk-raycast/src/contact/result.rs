@@ -77,13 +77,7 @@ impl<V: Vector> Contact<V> {
 
     /// The same of the shapes in the other order: of `b` with `a`.
     pub fn reversed(self) -> Self {
-        let points = self.points.map(|point| ContactPoint {
-            point_a: point.point_b,
-            point_b: point.point_a,
-            feature_a: point.feature_b,
-            feature_b: point.feature_a,
-            ..point
-        });
+        let points = self.points.map(ContactPoint::reversed);
         Self { normal: -self.normal, distance: self.distance.reversed(), points, len: self.len }
     }
 
@@ -94,7 +88,7 @@ impl<V: Vector> Contact<V> {
     }
 }
 
-/// A point of a contact manifold.
+/// A point of a contact manifold. Its points are on the surfaces of both shapes, on a line along the normal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactPoint<V: Vector> {
@@ -104,9 +98,26 @@ pub struct ContactPoint<V: Vector> {
     pub point_b: V,
     /// How far `point_a` is before `point_b` along the normal; negative where the shapes overlap.
     pub signed_distance: V::Scalar,
+    /// What that is wrong by at most: the surfaces are not nearer to one another along this line than the signed distance less this, and the
+    /// points are of the shapes to rounding. Of polytopes it is rounding.
+    pub error: V::Scalar,
     /// The vertex, edge or face of `a` that the point is on, as a number. It stays the same from frame to frame as long as the point is on
     /// the same feature, so that a solver can find its impulses of the last frame again.
     pub feature_a: u32,
     /// The vertex, edge or face of `b` that the point is on, in the same way.
     pub feature_b: u32,
+}
+
+impl<V: Vector> ContactPoint<V> {
+    /// The same of the shapes in the other order.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        Self {
+            point_a: self.point_b,
+            point_b: self.point_a,
+            feature_a: self.feature_b,
+            feature_b: self.feature_a,
+            ..self
+        }
+    }
 }

@@ -1,0 +1,305 @@
+//! How high the surface of a shape is over a place in the plane of contact.
+
+use convex_support::{Core, Feature, Hint, Scalar, SupportMap, Vector};
+use num_traits::Float as _;
+use smallvec::SmallVec;
+
+use super::outline::{ContactPlane, Corner, Outline, wrap};
+use crate::symmetric::{Across, cross, dot};
+
+/// Support points after which a height is given up. A polytope takes a few; on what is curved each takes three quarters of the error away.
+const MAX_POINTS: usize = 32;
+
+/// How steep a side of a shape is, as a slope, beyond which nothing is shown.
+const STEEP: f64 = 4.0;
+
+/// What a manifold asks of a shape. Behind a pointer, so that the rest is compiled once.
+pub(crate) trait Surface<V: Vector> {
+    fn parts(&self) -> Core<V>;
+    fn feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>);
+    /// The point of the core farthest along a direction.
+    fn farthest(&self, direction: V) -> V;
+}
+
+impl<S: SupportMap + ?Sized> Surface<S::Vector> for &S {
+    fn parts(&self) -> Core<S::Vector> {
+        self.core()
+    }
+
+    fn feature(&self, direction: S::Vector, slab: <S::Vector as Vector>::Scalar, feature: &mut Feature<S::Vector>) {
+        self.core_support_feature(direction, slab, feature);
+    }
+
+    fn farthest(&self, direction: S::Vector) -> S::Vector {
+        self.core_support(direction, &mut Hint::new())
+    }
+}
+
+/// How far a shape reaches along the normal that it shows to the other one, its *level*, and by how much that may be too little.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Level<S> {
+    pub(super) value: S,
+    pub(super) error: S,
+}
+
+/// A plane over the plane of contact.
+#[derive(Clone, Copy, Debug)]
+struct Tangent<S> {
+    at: Across<S>,
+    level: S,
+    /// How fast it rises.
+    gradient: Across<S>,
+}
+
+impl<S: Scalar> Tangent<S> {
+    /// Through three corners; through two, level across the line between them.
+    fn through(corners: &[Corner<S>]) -> Self {
+        let first = corners[0];
+        let edge = |i: usize| {
+            let corner: Corner<S> = corners[i];
+            (difference(first.at, corner.at), corner.height - first.height)
+        };
+        let (p, rise) = edge(1);
+        let gradient = if corners.len() == 2 {
+            let steep = rise / dot(p, p);
+            (p.0 * steep, p.1 * steep)
+        } else {
+            let (q, other) = edge(2);
+            let area = cross(p, q);
+            ((rise * q.1 - other * p.1) / area, (other * p.0 - rise * q.0) / area)
+        };
+        Self { at: first.at, level: first.height, gradient }
+    }
+
+    fn level(&self, at: Across<S>) -> S {
+        self.level + dot(self.gradient, difference(self.at, at))
+    }
+}
+
+/// A shape as it is seen from the other one.
+pub(super) struct Side<'s, V: Vector> {
+    surface: Option<&'s dyn Surface<V>>,
+    /// The plane of contact, with the normal out of this shape. Heights over it are levels.
+    pub(super) plane: ContactPlane<V>,
+    /// Where the shape's origin is from that of the plane.
+    from: V,
+    radius: V::Scalar,
+    pub(super) outline: Outline<V::Scalar>,
+    /// How far the shape reaches, as it is known and at most.
+    reach: V::Scalar,
+    top: V::Scalar,
+    /// The face, or a plane along the edge, that all corners are in and no point of the shape is beyond.
+    flat: Option<Tangent<V::Scalar>>,
+    /// What the coordinates of points lose by rounding.
+    noise: V::Scalar,
+}
+
+impl<'s, V: Vector> Side<'s, V> {
+    /// Of a shape, by its points in a slab. Those beyond a side of it that is nearly along the normal are no part of what it shows: of a thin
+    /// plate both faces are in the slab.
+    pub(super) fn new(
+        surface: &'s dyn Surface<V>,
+        core: &Core<V>,
+        plane: ContactPlane<V>,
+        slab: V::Scalar,
+        [reach, top]: [V::Scalar; 2],
+    ) -> Self {
+        let mut feature = Feature::new();
+        surface.feature(plane.normal, slab, &mut feature);
+        let from = core.origin - plane.origin;
+        let swept = from + plane.normal * core.radius;
+        let noise = (from.norm() + core.extent + core.radius) * (V::Scalar::EPSILON * V::Scalar::from_f64(16.0));
+        let seen = |(&point, &id): (&V, &u32)| plane.corner(swept + point, id);
+        let points: SmallVec<[_; 16]> = feature.points().iter().zip(feature.ids()).map(seen).collect();
+        let mut shown = points.clone();
+        shown.retain(|low| !points.iter().any(|high| is_hidden(low, high, noise)));
+        let mut outline = Outline::empty();
+        wrap(&shown, &mut outline.corners);
+        Self { surface: Some(surface), plane, from, radius: core.radius, outline, reach, top, flat: None, noise }
+    }
+
+    /// Of a half-space that the plane ends.
+    pub(super) fn flat(plane: ContactPlane<V>) -> Self {
+        let zero = V::Scalar::ZERO;
+        let at = (zero, zero);
+        Self {
+            surface: None,
+            plane,
+            from: V::ZERO,
+            radius: zero,
+            outline: Outline::empty(),
+            reach: zero,
+            top: zero,
+            flat: Some(Tangent { at, level: zero, gradient: at }),
+            noise: zero,
+        }
+    }
+
+    /// Looks whether the outline is that of a face or an edge, as it mostly is: one support point then tells the levels of all places.
+    pub(super) fn flatten(&mut self) {
+        let corners = &self.outline.corners;
+        let n = corners.len();
+        let tangent = match n {
+            0 | 1 => return,
+            2 => Tangent::through(corners),
+            _ => Tangent::through(&[corners[0], corners[n / 3], corners[2 * n / 3]]),
+        };
+        let allowed = self.rounding(&tangent);
+        let is_in = |corner: &Corner<V::Scalar>| (corner.height - tangent.level(corner.at)).abs() <= allowed;
+        if corners.iter().all(is_in) && self.beyond(&tangent).is_some_and(|(_, by)| by <= allowed) {
+            self.flat = Some(tangent);
+        }
+    }
+
+    /// What a level of a plane loses by rounding.
+    fn rounding(&self, Tangent { gradient: (x, y), .. }: &Tangent<V::Scalar>) -> V::Scalar {
+        self.noise * (V::Scalar::ONE + x.abs() + y.abs())
+    }
+
+    /// The point of the shape that is farthest beyond a plane, and how far along the normal of contact.
+    fn beyond(&self, tangent: &Tangent<V::Scalar>) -> Option<(Corner<V::Scalar>, V::Scalar)> {
+        let ContactPlane { normal, across: [e, f], .. } = self.plane;
+        let direction = normal - e * tangent.gradient.0 - f * tangent.gradient.1;
+        let corner = self.farthest(direction)?;
+        Some((corner, corner.height - tangent.level(corner.at)))
+    }
+
+    fn farthest(&self, direction: V) -> Option<Corner<V::Scalar>> {
+        let mut point = self.from + self.surface?.farthest(direction);
+        if self.radius > V::Scalar::ZERO {
+            point += direction.unit()? * self.radius;
+        }
+        Some(self.plane.corner(point, 0))
+    }
+
+    /// The level of the surface at a place within the outline.
+    ///
+    /// Points of the shape around the place, first those of the outline, are in the shape with all between them. The plane through them is
+    /// moved out until it supports the shape: the surface is between the two. If they are not the same, the point that supports takes the place
+    /// of one of the others, so that the place is still among them. At a face of a polytope this ends with the face. `None` where the shape is
+    /// not over the place.
+    pub(super) fn level(&self, at: Across<V::Scalar>) -> Option<Level<V::Scalar>> {
+        let is_aside = self.is_aside(at);
+        if let (Some(tangent), false) = (&self.flat, is_aside) {
+            return Some(Level { value: tangent.level(at), error: self.rounding(tangent) });
+        }
+        let mut around = if is_aside { self.beside(at)? } else { self.around(at) };
+        let mut level = Level { value: around[0].height, error: self.top - around[0].height };
+        for _ in 0..MAX_POINTS {
+            let tangent = Tangent::through(&around);
+            let heights = || around.iter().map(|corner| corner.height);
+            let least = heights().fold(self.top, V::Scalar::min);
+            let most = heights().fold(least, V::Scalar::max);
+            let value = tangent.level(at).max(least).min(most);
+            let allowed = self.rounding(&tangent);
+            // NaN, of points in a row, ends this too.
+            if !allowed.is_finite() {
+                break;
+            }
+            level = Level { value, error: (self.top - value).max(V::Scalar::ZERO) + allowed };
+            if value + self.noise >= self.reach {
+                break;
+            }
+            let Some((next, by)) = self.beyond(&tangent) else { break };
+            level.error = level.error.min(by.max(V::Scalar::ZERO) + allowed);
+            if !(by > allowed) || !enclose(&mut around, next, at) {
+                break;
+            }
+        }
+        Some(level)
+    }
+
+    /// Whether a place is beside an outline that is a segment, as it may be where that is nearly parallel to the other shape's.
+    fn is_aside(&self, at: Across<V::Scalar>) -> bool {
+        let [p, q] = self.outline.corners[..] else { return false };
+        let e = difference(p.at, q.at);
+        let turn = cross(e, difference(p.at, at));
+        turn * turn > dot(e, e) * (self.noise * self.noise)
+    }
+
+    /// The corners of a triangle of the outline around a place; the ends of an outline that is a segment.
+    fn around(&self, at: Across<V::Scalar>) -> Corners<V::Scalar> {
+        let corners = &self.outline.corners;
+        if corners.len() < 3 {
+            return SmallVec::from_slice(corners);
+        }
+        let first = corners[0];
+        let edge = |to: Across<V::Scalar>| difference(first.at, to);
+        let is_behind = |i: &usize| cross(edge(corners[*i].at), edge(at)) <= V::Scalar::ZERO;
+        let next = (2..corners.len()).find(is_behind).unwrap_or(corners.len() - 1);
+        SmallVec::from_slice(&[first, corners[next - 1], corners[next]])
+    }
+
+    /// Points of the shape around a place beside its outline: its ends, and then farthest points along the plane, each on the other side of an
+    /// edge that the place is beyond. `None` where the shape is not over the place.
+    fn beside(&self, at: Across<V::Scalar>) -> Option<Corners<V::Scalar>> {
+        let [e, f] = self.plane.across;
+        let [p, q] = self.outline.corners[..] else { return None };
+        let mut around: Corners<V::Scalar> = SmallVec::from_slice(&[p, q]);
+        for _ in 0..MAX_POINTS {
+            let n = around.len();
+            let outward = |i: usize| {
+                let (x, y) = difference(around[i].at, around[(i + 1) % n].at);
+                (y, -x)
+            };
+            let is_beyond = |i: &usize| dot(outward(*i), difference(around[*i].at, at)) > V::Scalar::ZERO;
+            let Some(i) = (0..n).find(is_beyond) else { return Some(around) };
+            let (x, y) = outward(i);
+            let next = self.farthest(e * x + f * y)?;
+            if !(dot((x, y), difference(at, next.at)) >= V::Scalar::ZERO) {
+                return None;
+            }
+            // Counterclockwise, as the place is between these.
+            around = SmallVec::from_slice(&[around[(i + 1) % n], around[i], next]);
+        }
+        None
+    }
+}
+
+type Corners<S> = SmallVec<[Corner<S>; 3]>;
+
+fn difference<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
+    (b.0 - a.0, b.1 - a.1)
+}
+
+/// Whether a point is behind another one, beyond a side of the shape that is so steep.
+fn is_hidden<S: Scalar>(low: &Corner<S>, high: &Corner<S>, noise: S) -> bool {
+    let (e, rise) = (difference(low.at, high.at), high.height - low.height);
+    rise > noise && rise * rise > dot(e, e) * S::from_f64(STEEP * STEEP)
+}
+
+/// Replaces one of the corners around a place, or joins the two ends of a segment, so that the place is still between them.
+fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>) -> bool {
+    let from = difference;
+    if let [p, q] = around[..] {
+        let e = from(p.at, q.at);
+        let turn = cross(e, from(p.at, next.at));
+        if turn.abs() > dot(e, e) * (S::EPSILON * S::from_f64(64.0)) {
+            // Counterclockwise.
+            if turn < S::ZERO {
+                around.swap(0, 1);
+            }
+            around.push(next);
+        } else {
+            let is_beyond = dot(e, from(at, next.at)) > S::ZERO;
+            around[usize::from(is_beyond)] = next;
+        }
+        return true;
+    }
+    let side = |corner: &Corner<S>| cross(from(next.at, corner.at), from(next.at, at));
+    let mut best: Option<(S, Corners<S>)> = None;
+    for i in 0..3 {
+        let (p, q) = (around[i], around[(i + 1) % 3]);
+        if side(&p) >= S::ZERO && side(&q) <= S::ZERO {
+            let corners = SmallVec::from_buf([p, q, next]);
+            let level = Tangent::through(&corners).level(at);
+            // Where the place is at a corner there are two, and the one that leaves that corner out is higher.
+            if best.as_ref().is_none_or(|(known, _)| level > *known) {
+                best = Some((level, corners));
+            }
+        }
+    }
+    let Some((_, corners)) = best else { return false };
+    *around = corners;
+    true
+}
