@@ -13,6 +13,7 @@ mod nearest;
 mod pairs;
 mod pieces;
 mod result;
+mod seams;
 mod single;
 
 use alloc::vec::Vec;

@@ -3,11 +3,11 @@
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use convex_support::glam::{DVec2, DVec3};
-use convex_support::{Ball, Capsule, Cuboid, Point, Posed, SupportMap};
+use convex_support::glam::{DQuat, DVec2, DVec3};
+use convex_support::{Ball, Capsule, Cuboid, Point, Posed, SupportMap, Triangle};
 use gjk_raycast::{
-    DistanceOptions, HalfSpace, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastError, RayCastOptions,
-    RigidMotion, Scene, SceneError, distance,
+    BodyContact, DistanceOptions, HalfSpace, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastError,
+    RayCastOptions, RigidMotion, Scene, SceneError, distance,
 };
 
 fn ball(x: f64) -> Posed<Ball<DVec3>> {
@@ -213,4 +213,45 @@ fn a_filter_is_asked_for_bodies_near_only() {
     assert!(asked.get() < 10, "{near:?}");
     let alone = distance(&ball(1500.0), scene.get(500).unwrap().convex().unwrap(), DistanceOptions::default());
     assert_eq!(near.nearest.unwrap().distance, alone, "the single query");
+}
+
+/// A ball, a sled and a capsule slide over a hundred tiles and over as many pairs of triangles. Where two of these lie on one another, their edges
+/// and sides push back: with seams left out, all that is left pushes up. The edge at the end of the floor still pushes outward.
+#[test]
+fn what_slides_over_a_floor_of_pieces_is_not_caught_at_seams() {
+    type Shape = Box<dyn SupportMap<Vector = DVec3>>;
+    let tile = |i: u32| {
+        let tile = Cuboid::new(DVec3::new(0.5, 0.5, 1.0)).unwrap();
+        Posed::translated(tile, DVec3::new(f64::from(i) + 0.5, -0.5, 0.0)).unwrap()
+    };
+    let tiles = Scene::new((0..100).map(|i| Box::new(tile(i)) as Shape)).unwrap();
+    let corner = |i: u32, z: f64| DVec3::new(f64::from(i), 0.0, z);
+    let halves = |i: u32| {
+        let [a, b, c, d] = [corner(i, -1.0), corner(i + 1, -1.0), corner(i + 1, 1.0), corner(i, 1.0)];
+        [[a, b, c], [a, c, d]].map(|corners| Box::new(Triangle::new(corners).unwrap()) as Shape)
+    };
+    let mesh = Scene::new((0..100).flat_map(halves)).unwrap();
+    let lying = DQuat::from_rotation_z(core::f64::consts::FRAC_PI_2);
+    let ball: Shape = Box::new(Ball::new(0.5).unwrap());
+    let sled: Shape = Box::new(Cuboid::new(DVec3::new(0.5, 0.5, 0.3)).unwrap());
+    let capsule: Shape = Box::new(Posed::new(Capsule::new(0.4, 0.5).unwrap(), lying, DVec3::ZERO).unwrap());
+    let (mut caught, mut left_out, mut contacts) = (0, 0, Vec::new());
+    for floor in [&tiles, &mesh] {
+        for shape in [&ball, &sled, &capsule] {
+            for step in 0..300 {
+                let x = 1.5 + 0.3217 * f64::from(step);
+                let body = Posed::translated(shape, DVec3::new(x, 0.498, 0.11)).unwrap();
+                floor.contacts_of(&body, 0.001, Default::default(), &mut contacts);
+                let pushes_back = |found: &BodyContact<DVec3>| found.contact.normal.y.abs() < 1.0 - 1e-9;
+                caught += contacts.iter().filter(|found| pushes_back(found)).count();
+                left_out += floor.leave_out_seams(&mut contacts);
+                assert!(!contacts.is_empty() && !contacts.iter().any(pushes_back), "{x}: {contacts:?}");
+            }
+        }
+    }
+    assert!(caught > 100 && left_out == caught, "{caught} {left_out}");
+    let over_the_end = Posed::translated(&ball, DVec3::new(100.2, 0.4, 0.0)).unwrap();
+    tiles.contacts_of(&over_the_end, 0.0, Default::default(), &mut contacts);
+    tiles.leave_out_seams(&mut contacts);
+    assert!(contacts.iter().any(|found| found.contact.normal.x > 0.3), "{contacts:?}");
 }

@@ -1,0 +1,62 @@
+//! Contacts at seams, where bodies of a scene meet that are one surface together.
+
+use alloc::vec::Vec;
+
+use convex_support::{Point, Scalar as _, SupportMap, Vector as _};
+use num_traits::Float as _;
+
+use super::Scene;
+use super::result::BodyContact;
+use crate::{SignedDistanceOptions, signed_distance};
+
+impl<S: SupportMap> Scene<S> {
+    /// Leaves out of the [contacts of a shape](Self::contacts_of) those at seams, and says how many these were: where a floor is made of boxes or
+    /// triangles, a body that slides over it meets the edges and sides at which they lie on one another, and would be stopped or thrown up by
+    /// them.
+    ///
+    /// A point of a contact is at a seam if it is a point of another body too, which reaches beyond it along the normal: no surface of the two
+    /// together faces that way. If all points of a contact are at seams with bodies whose contacts are in the list, it is left out. The edges
+    /// that stand out, at the end of a floor or of a step, are at none.
+    ///
+    /// ```
+    /// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};
+    /// use gjk_raycast::{Scene, SignedDistanceOptions};
+    ///
+    /// // A floor of tiles two units wide, and a ball that has sunk into it beside a seam.
+    /// let tile = |x| Posed::translated(Cuboid::new(DVec3::ONE)?, DVec3::new(x, -1.0, 0.0));
+    /// let floor = Scene::new([tile(-1.0)?, tile(1.0)?])?;
+    /// let ball = Posed::translated(Ball::new(0.5)?, DVec3::new(-0.05, 0.49, 0.0))?;
+    ///
+    /// let mut contacts = Vec::new();
+    /// floor.contacts_of(&ball, 0.0, SignedDistanceOptions::default(), &mut contacts);
+    /// assert!(contacts[1].contact.normal.x < -0.09, "the edge of the next tile pushes back");
+    /// assert_eq!(floor.leave_out_seams(&mut contacts), 1);
+    /// assert_eq!((contacts.len(), contacts[0].contact.normal), (1, DVec3::Y));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn leave_out_seams(&self, contacts: &mut Vec<BodyContact<S::Vector>>) -> usize {
+        let before = contacts.len();
+        let mut i = 0;
+        while let Some(&BodyContact { body, contact }) = contacts.get(i) {
+            let covers = |other: usize, p| other != body && self.reaches_beyond(other, p, contact.normal);
+            let is_at_seam = |p| contacts.iter().any(|found| covers(found.body, p));
+            if contact.points().iter().all(|point| is_at_seam(point.point_b)) {
+                contacts.remove(i);
+            } else {
+                i += 1;
+            }
+        }
+        before - contacts.len()
+    }
+
+    /// Whether a point is one of a convex body, but for the root of rounding, and the body reaches beyond it along a unit vector.
+    fn reaches_beyond(&self, body: usize, point: S::Vector, normal: S::Vector) -> bool {
+        let Some(body) = self.get(body).and_then(|body| body.convex()) else { return false };
+        let core = body.core();
+        let rounding = (core.extent + core.radius) * convex_support::ScalarOf::<S>::EPSILON.sqrt();
+        let Ok(at) = Point::new(point) else { return false };
+        normal.dot(body.support(normal) - point) > rounding
+            && signed_distance(&at, body, SignedDistanceOptions::default().with_limit(rounding)).signed_distance
+                <= rounding
+    }
+}
