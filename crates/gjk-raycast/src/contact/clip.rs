@@ -30,6 +30,7 @@ pub(crate) type ClippedCorners<S> = SmallVec<[Clipped<S>; 32]>;
 /// without corners is the whole plane.
 pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> ClippedCorners<S> {
     let mut overlap = corners_of(&own.corners);
+    let mut rest = ClippedCorners::new();
     let count = other.corners.len();
     if count == 2 {
         let [from, to] = [other.corners[0], other.corners[1]];
@@ -38,13 +39,15 @@ pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> ClippedCo
         if own.corners.len() > 2 || !are_parallel(e, across) {
             return SmallVec::new();
         }
-        overlap = cut(&overlap, 0, ContactPart::Vertex(from.id), |at| dot(difference(at, from.at), e), other);
-        return cut(&overlap, 1, ContactPart::Vertex(to.id), |at| dot(difference(to.at, at), e), other);
+        cut(&mut overlap, &mut rest, 0, ContactPart::Vertex(from.id), |at| dot(difference(at, from.at), e), other);
+        cut(&mut overlap, &mut rest, 1, ContactPart::Vertex(to.id), |at| dot(difference(to.at, at), e), other);
+        return overlap;
     }
     for i in 0..count {
         let [from, to] = [other.corners[i], other.corners[(i + 1) % count]];
         let e = difference(to.at, from.at);
-        overlap = cut(&overlap, i, ContactPart::Edge(from.id, to.id), |at| cross(e, difference(at, from.at)), other);
+        let part = ContactPart::Edge(from.id, to.id);
+        cut(&mut overlap, &mut rest, i, part, |at| cross(e, difference(at, from.at)), other);
     }
     overlap
 }
@@ -69,16 +72,21 @@ fn corners_of<S: Scalar>(corners: &[Corner<S>]) -> ClippedCorners<S> {
     corners.iter().enumerate().map(corner).collect()
 }
 
-/// What of a polygon or a segment is where `inside` is not negative. The cut is along the part `along` of the other outline, which
-/// is its edge of index `index`.
+/// Leaves of a polygon or a segment what is where `inside` is not negative. The cut is along the part `along` of the other outline, which is
+/// its edge of index `index`.
 fn cut<S: Scalar>(
-    polygon: &[Clipped<S>],
+    polygon: &mut ClippedCorners<S>,
+    kept: &mut ClippedCorners<S>,
     index: usize,
     along: ContactPart,
     inside: impl Fn(Across<S>) -> S,
     other: &Outline<S>,
-) -> ClippedCorners<S> {
-    let mut kept = ClippedCorners::new();
+) {
+    // Most edges of a large face cut nothing.
+    if polygon.iter().all(|corner| inside(corner.at) >= S::ZERO) {
+        return;
+    }
+    kept.clear();
     let is_segment = polygon.len() == 2;
     for (i, from) in polygon.iter().enumerate() {
         let to = &polygon[(i + 1) % polygon.len()];
@@ -98,7 +106,8 @@ fn cut<S: Scalar>(
             kept.push(Clipped { at, parts, edge });
         }
     }
-    kept
+    polygon.clear();
+    polygon.extend_from_slice(kept);
 }
 
 /// The number of the corner between two edges of an outline.

@@ -81,5 +81,5 @@ where
     if !(answer.signed_distance <= within && answer.signed_distance.is_finite()) {
         return None;
     }
-    Some(Contact::new(answer.normal, answer, &manifold(a, b, &answer, within, last)))
+    Some(manifold(a, b, &answer, within, last))
 }

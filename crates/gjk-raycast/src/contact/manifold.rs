@@ -6,10 +6,10 @@ use smallvec::SmallVec;
 
 use super::clip::{ClippedCorners, clip};
 use super::outline::{ContactPart, ContactPlane, Outline};
-use super::reduction::reduced;
+use super::reduction::{Rank, WORTHWHILE, reduced};
 use super::result::MAX_POINTS;
 use super::surface::{Side, Surface};
-use super::{ContactPoint, SignedDistance};
+use super::{Contact, ContactPoint, SignedDistance};
 use crate::symmetric::{Across, axes_across, cross, dot};
 
 /// As a part of the smaller shape's size: how near a corner of one shape's feature a point is that counts as the corner.
@@ -22,9 +22,6 @@ const SLACK: f64 = 1.0 / 1024.0;
 /// The sine of the angle from which on segments cross in one point.
 const CROSSES: f64 = 0.25;
 
-/// The points of a manifold.
-pub(super) type Points<V> = SmallVec<[ContactPoint<V>; MAX_POINTS]>;
-
 /// The points where the features of both shapes that face each other overlap, at most four, and the closest points, if those are deeper; they
 /// are alone where one of the features is a vertex, or where edges cross. Of `last`, the points of the last manifold, those are preferred that
 /// still hold.
@@ -34,7 +31,7 @@ pub(super) fn manifold<A, B>(
     answer: &SignedDistance<A::Vector>,
     within: ScalarOf<A>,
     last: &[ContactPoint<A::Vector>],
-) -> Points<A::Vector>
+) -> Contact<A::Vector>
 where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
@@ -56,7 +53,7 @@ pub(crate) fn manifold_over_plane<A>(
     answer: &SignedDistance<A::Vector>,
     within: ScalarOf<A>,
     last: &[ContactPoint<A::Vector>],
-) -> Points<A::Vector>
+) -> Contact<A::Vector>
 where
     A: SupportMap + ?Sized,
 {
@@ -66,11 +63,11 @@ where
 type ScalarOf<A> = <<A as SupportMap>::Vector as Vector>::Scalar;
 
 /// The closest points alone, of what is round or of segments that cross.
-fn single<V: Vector>(answer: &SignedDistance<V>) -> Points<V> {
+fn single<V: Vector>(answer: &SignedDistance<V>) -> Contact<V> {
     let &SignedDistance { point_a, point_b, signed_distance, lower, upper, .. } = answer;
-    let error = (upper - signed_distance).max(signed_distance - lower);
-    let face = ContactPart::Face.code();
-    Points::from_slice(&[ContactPoint { point_a, point_b, signed_distance, error, feature_a: face, feature_b: face }])
+    let (error, face) = (upper - lower, ContactPart::Face.code());
+    let point = ContactPoint { point_a, point_b, signed_distance, error, feature_a: face, feature_b: face };
+    Contact::new(answer.normal, *answer, &[point])
 }
 
 /// [`manifold`] behind pointers. It is computed for the shapes in the order in which the normal points to one side of space, so that it is the
@@ -80,13 +77,12 @@ fn between<V: Vector>(
     answer: &SignedDistance<V>,
     within: V::Scalar,
     last: &[ContactPoint<V>],
-) -> Points<V> {
+) -> Contact<V> {
     // Along no axis and no diagonal.
     let aside = V::from_fn(|i| V::Scalar::from_f64([1.0, 0.7549, 0.5698][i]));
     if answer.normal.dot(aside) < V::Scalar::ZERO {
-        let last: Points<V> = last.iter().map(|point| point.reversed()).collect();
-        let points = between([b, a], &answer.reversed(), within, &last);
-        return points.iter().map(|point| point.reversed()).collect();
+        let last: SmallVec<[_; MAX_POINTS]> = last.iter().map(|point| point.reversed()).collect();
+        return between([b, a], &answer.reversed(), within, &last).reversed();
     }
     let normal = answer.normal;
     let half: V::Scalar = Scalar::from_f64(0.5);
@@ -100,7 +96,7 @@ fn between<V: Vector>(
     let side =
         |surface, core, normal| Side::new(surface, core, ContactPlane { normal, across, origin }, reach.slab, levels);
     let sides = [side(a, &core_a, -normal), side(b, &core_b, normal)];
-    Facing { sides, reach, last }.points(answer, [level, level])
+    Facing { sides, reach, last }.contact(answer, [level, level])
 }
 
 /// [`manifold_over_plane`] behind a pointer.
@@ -109,7 +105,7 @@ fn over_plane<V: Vector>(
     answer: &SignedDistance<V>,
     within: V::Scalar,
     last: &[ContactPoint<V>],
-) -> Points<V> {
+) -> Contact<V> {
     let (normal, origin) = (answer.normal, answer.point_b);
     let across = axes_across(normal);
     let plane = |normal| ContactPlane { normal, across, origin };
@@ -120,7 +116,7 @@ fn over_plane<V: Vector>(
         Side::flat(plane(normal)),
     ];
     let levels = [-answer.signed_distance, V::Scalar::ZERO];
-    Facing { sides, reach, last }.points(answer, levels)
+    Facing { sides, reach, last }.contact(answer, levels)
 }
 
 /// What is taken for a corner.
@@ -137,7 +133,7 @@ impl<S: Scalar> Reach<S> {
     /// that.
     fn new<V: Vector<Scalar = S>>(answer: &SignedDistance<V>, within: S, size: S) -> Self {
         let slack = size * S::from_f64(SLACK);
-        let slab = (within - answer.lower).max(S::ZERO) + slack;
+        let slab = (within - answer.lower).max(S::ZERO) + slack + slack;
         Self { within, slab, near: size * S::from_f64(NEAR), slack }
     }
 }
@@ -164,6 +160,14 @@ impl<S: Scalar> Candidate<S> {
 /// Points that a manifold may have.
 type Candidates<S> = SmallVec<[Candidate<S>; 16]>;
 
+/// Points that it has.
+type Chosen<S> = SmallVec<[Candidate<S>; MAX_POINTS]>;
+
+/// As many points as span an overlap.
+fn most<V: Vector>() -> usize {
+    if V::DIM == 2 { 2 } else { MAX_POINTS }
+}
+
 /// Both shapes, as they are seen from one another.
 struct Facing<'s, V: Vector> {
     sides: [Side<'s, V>; 2],
@@ -172,15 +176,16 @@ struct Facing<'s, V: Vector> {
 }
 
 impl<V: Vector> Facing<'_, V> {
-    /// The corners of the overlap where the shapes are no farther apart than asked for, and the closest points, which reach to these levels;
-    /// reduced to four, in the plane to two.
-    fn points(&mut self, answer: &SignedDistance<V>, levels: [V::Scalar; 2]) -> Points<V> {
-        let mut candidates = self.corners(answer.lower);
-        let corners = candidates.len();
-        self.add_closest(&mut candidates, answer, levels);
-        let most = if V::DIM == 2 { 2 } else { MAX_POINTS };
-        let kept = reduced(&candidates, corners, most, self.reach.slack, |c| self.is_known(c), !self.last.is_empty());
-        kept.iter().map(|candidate| self.point(candidate)).collect()
+    /// The corners of the overlap where the shapes are no farther apart than asked for, reduced to four, in the plane to two; and the closest
+    /// points, which reach to these levels.
+    fn contact(&mut self, answer: &SignedDistance<V>, levels: [V::Scalar; 2]) -> Contact<V> {
+        let candidates = self.corners(answer.lower);
+        let rank = |i: usize| -> Rank { (!self.is_known(&candidates[i]), candidates[i].codes()) };
+        let chosen = reduced(&candidates, !self.last.is_empty(), rank);
+        let mut chosen: Chosen<_> = chosen.iter().filter_map(|&i| self.measured(candidates[i], answer.lower)).collect();
+        self.add_closest(&mut chosen, &candidates, answer, levels);
+        let points: SmallVec<[_; MAX_POINTS]> = chosen.iter().map(|candidate| self.point(candidate)).collect();
+        Contact::new(answer.normal, *answer, &points)
     }
 
     /// Whether the last manifold had this point.
@@ -210,24 +215,32 @@ impl<V: Vector> Facing<'_, V> {
             if is_crossing && self.is_on_a_line(&overlap, i) || candidates.iter().any(|known| known.parts == parts) {
                 continue;
             }
-            let (Some(of_a), Some(of_b)) = (of_a.level(corner.at), of_b.level(corner.at)) else { continue };
-            let levels = [of_a, of_b];
-            let error = levels[0].error + levels[1].error;
-            // No end was found where a side is along the normal, as at a vertex that is behind what shows.
-            if !(error <= self.reach.slack) {
-                continue;
-            }
-            // Seen nearly from its end an edge is as steep as one likes, and where a corner is on it is rounding; but no points of the shapes
-            // are deeper in one another than the shapes are.
-            let lack = (deepest + levels[0].value + levels[1].value).max(V::Scalar::ZERO) * Scalar::from_f64(0.5);
-            let levels = levels.map(|level| level.value - lack);
-            let candidate = Candidate { at: corner.at, levels, error: error + lack, parts };
+            let levels = [of_a.chord(corner.at), of_b.chord(corner.at)];
+            let candidate = Candidate { at: corner.at, levels, error: V::Scalar::ZERO, parts };
             let slack = self.reach.slack * Scalar::from_f64(if self.is_known(&candidate) { 2.0 } else { 1.0 });
-            if candidate.gap() <= self.reach.within + slack {
+            let is_in = |candidate: &Candidate<_>| candidate.gap() <= self.reach.within + slack;
+            // Between points of shapes that are apart the shapes may overlap.
+            if is_in(&candidate) || self.measured(candidate, deepest).is_some_and(|measured| is_in(&measured)) {
                 candidates.push(candidate);
             }
         }
         candidates
+    }
+
+    /// With the levels of the surfaces. `None` where these are not known, as at a vertex that is behind what a shape shows: a side is along the
+    /// normal there.
+    fn measured(&self, candidate: Candidate<V::Scalar>, deepest: V::Scalar) -> Option<Candidate<V::Scalar>> {
+        let [of_a, of_b] = &self.sides;
+        let [of_a, of_b] = [of_a.level(candidate.at)?, of_b.level(candidate.at)?];
+        // Seen nearly from its end an edge is as steep as one likes, and where a corner is on it is rounding; but no points of the shapes are
+        // deeper in one another than the shapes are.
+        let lack = (deepest + of_a.value + of_b.value).max(V::Scalar::ZERO) * Scalar::from_f64(0.5);
+        let error = of_a.error + of_b.error + lack;
+        (error <= self.reach.slack).then_some(Candidate {
+            levels: [of_a.value - lack, of_b.value - lack],
+            error,
+            ..candidate
+        })
     }
 
     /// Whether a corner of the overlap, where two edges cross, is on a line with its neighbours but for the slack: of edges that lie on one
@@ -241,30 +254,41 @@ impl<V: Vector> Facing<'_, V> {
         n > 2 && turn * turn <= dot(base, base) * (self.reach.slack * self.reach.slack)
     }
 
-    /// Adds the closest points if none of the candidates is as deep: features that are not quite flat are closest in their midst, and those of
-    /// vertices, or of edges that cross, have no corners in common. A candidate near them is the same point, and moves there: beside it, they
-    /// would only take the place of another corner.
-    fn add_closest(&self, candidates: &mut Candidates<V::Scalar>, answer: &SignedDistance<V>, levels: [V::Scalar; 2]) {
+    /// Adds the closest points if none of the chosen is as deep: features that are not quite flat are closest in their midst, and those of
+    /// vertices, or of edges that cross, have no corners in common. One near them is the same point, and moves there; where there is no room, the
+    /// nearest makes it.
+    fn add_closest(
+        &self,
+        chosen: &mut Chosen<V::Scalar>,
+        candidates: &[Candidate<V::Scalar>],
+        answer: &SignedDistance<V>,
+        levels: [V::Scalar; 2],
+    ) {
         let deepest = answer.upper + self.reach.slack;
         // NaN is as deep as anything.
-        if candidates.iter().any(|candidate| !(candidate.gap() > deepest)) {
+        if chosen.iter().any(|candidate| !(candidate.gap() > deepest)) {
             return;
         }
-        let near = self.reach.near;
-        let is_near = |candidate: &&mut Candidate<V::Scalar>| dot(candidate.at, candidate.at) <= near * near;
-        let at = (V::Scalar::ZERO, V::Scalar::ZERO);
-        let error = answer.upper - answer.lower;
-        if let Some(candidate) = candidates.iter_mut().find(is_near) {
-            *candidate = Candidate { at, levels, error, ..*candidate };
-            return;
-        }
+        let squared = |candidate: &Candidate<V::Scalar>| dot(candidate.at, candidate.at);
+        let near = self.reach.near * self.reach.near;
         let part = |side: &Side<'_, V>| match side.outline.corners.as_slice() {
             [corner] => ContactPart::Vertex(corner.id),
             [from, to] => ContactPart::Edge(from.id, to.id),
             _ => ContactPart::Face,
         };
         let [a, b] = &self.sides;
-        candidates.push(Candidate { at, levels, error, parts: [part(a), part(b)] });
+        let parts = candidates.iter().find(|c| squared(c) <= near).map_or([part(a), part(b)], |c| c.parts);
+        let zero = V::Scalar::ZERO;
+        let closest = Candidate { at: (zero, zero), levels, error: answer.upper - answer.lower, parts };
+        let nearest = chosen.iter().map(squared).fold(V::Scalar::infinity(), V::Scalar::min);
+        let limit = near.max(nearest * Scalar::from_f64(1.0 + WORTHWHILE));
+        let is_full = chosen.len() >= most::<V>();
+        let is_nearest =
+            |c: &&mut Candidate<V::Scalar>| c.parts == parts || squared(c) <= if is_full { limit } else { near };
+        match chosen.iter_mut().filter(is_nearest).min_by_key(|c| (c.parts != parts, c.codes())) {
+            Some(same) => *same = closest,
+            None => chosen.push(closest),
+        }
     }
 
     /// What a point is of both shapes: a corner of a feature that it is near to, or else what clipping says. Where corners of both lie

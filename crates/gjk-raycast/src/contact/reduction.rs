@@ -5,53 +5,28 @@ use smallvec::SmallVec;
 
 use super::manifold::Candidate;
 use super::result::MAX_POINTS;
-use crate::symmetric::{Across, cross, dot};
+use crate::symmetric::{Across, cross};
 
 /// The part of the area that may be lost, so that of corners that do as well the same are kept, whichever rounding prefers; four times as much to keep
 /// those of the last manifold.
-const WORTHWHILE: f64 = 1.0 / 64.0;
+pub(super) const WORTHWHILE: f64 = 1.0 / 64.0;
 
-/// Corners of an overlap are numbered in their order around it. The least of what they are of both shapes begins, which does not jitter; those
-/// that were `kept` before are less than others.
-type Rank = (bool, [u32; 2]);
+/// Of corners that do as well, those of the least rank are kept: those of the last manifold, and then the least by what they are of both shapes,
+/// which does not jitter.
+pub(super) type Rank = (bool, [u32; 2]);
 
-/// At most so many of the candidates: of the first `corners`, which are those of a convex polygon, some that span it well; and the deepest of
-/// all, if none of them is as deep but for `slack`.
+/// The indices of four of the candidates, which are the corners of a convex polygon, that span it well. In the plane there are no more than two.
 pub(super) fn reduced<S: Scalar>(
     candidates: &[Candidate<S>],
-    corners: usize,
-    most: usize,
-    slack: S,
-    kept: impl Fn(&Candidate<S>) -> bool,
-    has_kept: bool,
-) -> SmallVec<[Candidate<S>; MAX_POINTS]> {
-    if candidates.len() <= most {
-        return SmallVec::from_slice(candidates);
+    has_last: bool,
+    rank: impl Fn(usize) -> Rank,
+) -> SmallVec<[usize; MAX_POINTS]> {
+    let count = candidates.len();
+    if count <= MAX_POINTS {
+        return (0..count).collect();
     }
-    let rank = |i: usize| -> Rank { (!kept(&candidates[i]), candidates[i].codes()) };
-    let margin = if has_kept { WORTHWHILE * 4.0 } else { WORTHWHILE };
-    let mut chosen: SmallVec<[usize; MAX_POINTS]> = if corners <= most {
-        (0..corners).collect()
-    } else {
-        SmallVec::from_slice(&spanning(candidates, corners, margin, rank))
-    };
-    chosen.truncate(most);
-    let depth = |i: usize| -candidates[i].gap();
-    let deepest = (0..candidates.len()).fold(0, |best, i| if depth(i) > depth(best) { i } else { best });
-    if chosen.iter().all(|&i| depth(i) + slack < depth(deepest)) {
-        let at = candidates[deepest].at;
-        let squared = |i: usize| {
-            let e = from(candidates[i].at, at);
-            dot(e, e)
-        };
-        let nearest = chosen.iter().map(|&i| squared(i)).fold(S::infinity(), S::min);
-        let limit = nearest * S::from_f64(1.0 + WORTHWHILE);
-        let place = (0..chosen.len()).filter(|&k| squared(chosen[k]) <= limit).min_by_key(|&k| rank(chosen[k]));
-        if let Some(place) = place {
-            chosen[place] = deepest;
-        }
-    }
-    chosen.iter().map(|&i| candidates[i]).collect()
+    let margin = if has_last { WORTHWHILE * 4.0 } else { WORTHWHILE };
+    SmallVec::from_buf(spanning(candidates, margin, rank))
 }
 
 fn from<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
@@ -62,52 +37,55 @@ fn from<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
 /// ones of least rank.
 ///
 /// A diagonal and the corners farthest from it on either side make the most of it. As the diagonal turns, these go on around the polygon.
-fn spanning<S: Scalar>(
-    polygon: &[Candidate<S>],
-    count: usize,
-    margin: f64,
-    rank: impl Fn(usize) -> Rank,
-) -> [usize; 4] {
-    let at = |i: usize| polygon[i % count].at;
-    let twice = |i: usize, j: usize, k: usize| cross(from(at(i), at(j)), from(at(i), at(k)));
-    let diagonals = |visit: &mut dyn FnMut(usize, usize, [S; 2])| {
-        for i in 0..count - 2 {
-            let (mut j, mut l) = (i + 1, i + 3);
-            for k in i + 2..count.min(i + count - 1) {
-                while j + 1 < k && twice(i, j + 1, k) >= twice(i, j, k) {
-                    j += 1;
-                }
-                l = l.max(k + 1);
-                while l + 1 < i + count && twice(k, l + 1, i) >= twice(k, l, i) {
-                    l += 1;
-                }
-                visit(i, k, [twice(i, j, k), twice(k, l, i)]);
-            }
-        }
-    };
+fn spanning<S: Scalar>(polygon: &[Candidate<S>], margin: f64, rank: impl Fn(usize) -> Rank) -> [usize; 4] {
+    let count = polygon.len();
+    // Twice around.
+    let at: SmallVec<[Across<S>; 32]> = polygon.iter().chain(polygon).map(|corner| corner.at).collect();
+    let ranks: SmallVec<[Rank; 16]> = (0..count).map(rank).collect();
+    let twice = |i: usize, j: usize, k: usize| cross(from(at[i], at[j]), from(at[i], at[k]));
+    let mut diagonals: SmallVec<[_; 32]> = SmallVec::new();
     let mut most = S::ZERO;
-    diagonals(&mut |_, _, [right, left]| most = most.max(right + left));
+    for i in 0..count - 2 {
+        let (mut j, mut l) = (i + 1, i + 3);
+        for k in i + 2..count.min(i + count - 1) {
+            let mut right = twice(i, j, k);
+            while j + 1 < k && twice(i, j + 1, k) >= right {
+                j += 1;
+                right = twice(i, j, k);
+            }
+            l = l.max(k + 1);
+            let mut left = twice(k, l, i);
+            while l + 1 < i + count && twice(k, l + 1, i) >= left {
+                l += 1;
+                left = twice(k, l, i);
+            }
+            most = most.max(right + left);
+            diagonals.push((i, k, right, left));
+        }
+    }
     let lost = most * S::from_f64(margin);
     let mut best: Option<([Rank; 4], [usize; 4])> = None;
-    diagonals(&mut |i, k, [right, left]| {
+    for (i, k, right, left) in diagonals {
         if right + left < most - lost {
-            return;
+            continue;
         }
-        let j = (i + 1..k).filter(|&j| twice(i, j, k) >= right - lost).min_by_key(|&j| rank(j));
-        let l = (k + 1..i + count).filter(|&l| twice(k, l, i) >= left - lost).min_by_key(|&l| rank(l % count));
-        let (Some(j), Some(l)) = (j, l) else { return };
+        let j = (i + 1..k).filter(|&j| twice(i, j, k) >= right - lost).min_by_key(|&j| ranks[j]);
+        let l = (k + 1..i + count).filter(|&l| twice(k, l, i) >= left - lost).min_by_key(|&l| ranks[l % count]);
+        let (Some(j), Some(l)) = (j, l) else { continue };
         let corners = [i, k, j, l % count];
-        let mut ranks = corners.map(&rank);
-        ranks.sort_unstable();
-        if best.is_none_or(|(least, _)| ranks < least) {
-            best = Some((ranks, corners));
+        let mut least = corners.map(|i| ranks[i]);
+        least.sort_unstable();
+        if best.is_none_or(|(known, _)| least < known) {
+            best = Some((least, corners));
         }
-    });
+    }
     best.map_or([0, 2, 1, 3], |(_, corners)| corners)
 }
 
 #[cfg(test)]
 mod tests {
+    use alloc::vec::Vec;
+
     use super::*;
     use crate::contact::outline::ContactPart;
 
@@ -140,7 +118,7 @@ mod tests {
             angles.sort_by(f64::total_cmp);
             let flat = number();
             let polygon = polygon(angles.iter().map(|angle| (angle.cos(), flat * angle.sin())));
-            let [a, c, b, d] = spanning(&polygon, count, WORTHWHILE, |i| (false, polygon[i].codes()));
+            let [a, c, b, d] = spanning(&polygon, WORTHWHILE, |i| (false, polygon[i].codes()));
             let mut most = 0.0_f64;
             for i in 0..count {
                 for j in i + 1..count {
@@ -166,7 +144,7 @@ mod tests {
             };
             let chosen = |jitter: f64| {
                 let polygon = corners(jitter);
-                spanning(&polygon, polygon.len(), WORTHWHILE, |i| (false, polygon[i].codes()))
+                spanning(&polygon, WORTHWHILE, |i| (false, polygon[i].codes()))
             };
             let still = chosen(0.0);
             for jitter in [1e-16, -1e-15, 1e-9, -1e-6, 1e-4] {

@@ -100,6 +100,7 @@ pub struct ContactPoint<V: Vector> {
     pub signed_distance: V::Scalar,
     /// What that is wrong by at most: the surfaces are not nearer to one another along this line than the signed distance less this, and the
     /// points are of the shapes to rounding. Of polytopes it is rounding.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub error: V::Scalar,
     /// The vertex, edge or face of `a` that the point is on, as a number. It stays the same from frame to frame as long as the point is on
     /// the same feature, so that a solver can find its impulses of the last frame again.

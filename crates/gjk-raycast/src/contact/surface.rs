@@ -111,10 +111,14 @@ impl<'s, V: Vector> Side<'s, V> {
         let noise = (from.norm() + core.extent + core.radius) * (V::Scalar::EPSILON * V::Scalar::from_f64(16.0));
         let seen = |(&point, &id): (&V, &u32)| plane.corner(swept + point, id);
         let points: SmallVec<[_; 16]> = feature.points().iter().zip(feature.ids()).map(seen).collect();
-        let mut shown = points.clone();
-        shown.retain(|low| !points.iter().any(|high| is_hidden(low, high, noise)));
         let mut outline = Outline::empty();
-        wrap(&shown, &mut outline.corners);
+        if points.len() > 2 {
+            let is_shown = |low: &&Corner<_>| !points.iter().any(|high| is_hidden(low, high, noise));
+            let shown: SmallVec<[_; 16]> = points.iter().filter(is_shown).copied().collect();
+            wrap(&shown, &mut outline.corners);
+        } else {
+            wrap(&points, &mut outline.corners);
+        }
         Self { surface: Some(surface), plane, from, radius: core.radius, outline, reach, top, flat: None, noise }
     }
 
@@ -172,6 +176,11 @@ impl<'s, V: Vector> Side<'s, V> {
         Some(self.plane.corner(point, 0))
     }
 
+    /// A level at a place within the outline that points of the shape between its corners have.
+    pub(super) fn chord(&self, at: Across<V::Scalar>) -> V::Scalar {
+        self.flat.unwrap_or_else(|| Tangent::through(&self.around(at))).level(at)
+    }
+
     /// The level of the surface at a place within the outline.
     ///
     /// Points of the shape around the place, first those of the outline, are in the shape with all between them. The plane through them is
@@ -185,6 +194,7 @@ impl<'s, V: Vector> Side<'s, V> {
         }
         let mut around = if is_aside { self.beside(at)? } else { self.around(at) };
         let mut level = Level { value: around[0].height, error: self.top - around[0].height };
+        let mut lost = self.noise;
         for _ in 0..MAX_POINTS {
             let tangent = Tangent::through(&around);
             let heights = || around.iter().map(|corner| corner.height);
@@ -197,16 +207,18 @@ impl<'s, V: Vector> Side<'s, V> {
                 break;
             }
             level = Level { value, error: (self.top - value).max(V::Scalar::ZERO) + allowed };
+            lost = allowed;
             if value + self.noise >= self.reach {
                 break;
             }
             let Some((next, by)) = self.beyond(&tangent) else { break };
             level.error = level.error.min(by.max(V::Scalar::ZERO) + allowed);
-            if !(by > allowed) || !enclose(&mut around, next, at) {
+            if !(by > allowed) || !enclose(&mut around, next, at, self.noise) {
                 break;
             }
         }
-        Some(level)
+        // A side so steep is along the normal, but for rounding, and where it is is not known.
+        (lost * (V::Scalar::EPSILON.sqrt() * V::Scalar::from_f64(16.0)) <= self.noise).then_some(level)
     }
 
     /// Whether a place is beside an outline that is a segment, as it may be where that is nearly parallel to the other shape's.
@@ -269,7 +281,7 @@ fn is_hidden<S: Scalar>(low: &Corner<S>, high: &Corner<S>, noise: S) -> bool {
 }
 
 /// Replaces one of the corners around a place, or joins the two ends of a segment, so that the place is still between them.
-fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>) -> bool {
+fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, noise: S) -> bool {
     let from = difference;
     if let [p, q] = around[..] {
         let e = from(p.at, q.at);
@@ -286,11 +298,16 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>) -
         }
         return true;
     }
-    let side = |corner: &Corner<S>| cross(from(next.at, corner.at), from(next.at, at));
+    // The place may be that far on the other side.
+    let side = |corner: &Corner<S>| {
+        let e = from(next.at, corner.at);
+        (cross(e, from(next.at, at)), noise * (e.0.abs() + e.1.abs()))
+    };
     let mut best: Option<(S, Corners<S>)> = None;
     for i in 0..3 {
         let (p, q) = (around[i], around[(i + 1) % 3]);
-        if side(&p) >= S::ZERO && side(&q) <= S::ZERO {
+        let ((left, allowed), (right, as_well)) = (side(&p), side(&q));
+        if left >= -allowed && right <= as_well {
             let corners = SmallVec::from_buf([p, q, next]);
             let level = Tangent::through(&corners).level(at);
             // Where the place is at a corner there are two, and the one that leaves that corner out is higher.

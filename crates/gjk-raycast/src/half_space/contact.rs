@@ -31,6 +31,6 @@ impl<V: Vector> HalfSpace<V> {
         if !(answer.signed_distance <= within) {
             return None;
         }
-        Some(Contact::new(answer.normal, answer, &manifold_over_plane(shape, &answer, within, &[])))
+        Some(manifold_over_plane(shape, &answer, within, &[]))
     }
 }
