@@ -179,12 +179,26 @@ pub(crate) trait Shapes {
 pub(crate) struct Both<'a, A: ?Sized, B: ?Sized, const LINES: bool = false> {
     a: WithoutLines<'a, A>,
     b: WithoutLines<'a, B>,
+    /// Whether they are taken in the other order.
+    is_swapped: bool,
 }
 
 impl<'a, A: ?Sized, B: ?Sized, const LINES: bool> Both<'a, A, B, LINES> {
     #[inline(always)]
     pub(crate) fn new(a: &'a A, b: &'a B) -> Self {
-        Self { a: WithoutLines(a), b: WithoutLines(b) }
+        Self { a: WithoutLines(a), b: WithoutLines(b), is_swapped: false }
+    }
+
+    /// The same in the other order, or not. Unlike [`Swapped`], it is known to the shapes' own code.
+    #[inline(always)]
+    pub(crate) fn swapped(self, is_swapped: bool) -> Self {
+        Self { is_swapped, ..self }
+    }
+
+    /// Which of them one of the two is, as they were named.
+    #[inline(always)]
+    fn named(&self, of: Of) -> Of {
+        if self.is_swapped { of.other() } else { of }
     }
 }
 
@@ -195,12 +209,15 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
 
     #[inline(always)]
     fn cores(&self) -> [Core<A::Vector>; 2] {
-        [self.a.core(), self.b.core()]
+        let [a, b] = [self.a.core(), self.b.core()];
+        if self.is_swapped { [b, a] } else { [a, b] }
     }
 
     #[inline(always)]
     fn support_points(&self, [along_a, along_b]: [A::Vector; 2], [hint_a, hint_b]: &mut [Hint; 2]) -> [A::Vector; 2] {
-        [self.a.0.core_support(along_a, hint_a), self.b.0.core_support(along_b, hint_b)]
+        let (along_a, along_b) = if self.is_swapped { (along_b, along_a) } else { (along_a, along_b) };
+        let (a, b) = (self.a.0.core_support(along_a, hint_a), self.b.0.core_support(along_b, hint_b));
+        if self.is_swapped { [b, a] } else { [a, b] }
     }
 
     #[inline(always)]
@@ -210,7 +227,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
         direction: A::Vector,
         changes: [A::Vector; 2],
     ) -> [<A::Vector as Vector>::Scalar; 3] {
-        match of {
+        match self.named(of) {
             Of::A => self.a.0.core_support_hessian(direction, changes),
             Of::B => self.b.0.core_support_hessian(direction, changes),
         }
@@ -218,7 +235,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
 
     #[inline(always)]
     fn closest_point(&self, of: Of, x: A::Vector) -> Option<A::Vector> {
-        match of {
+        match self.named(of) {
             Of::A => self.a.0.core_closest_point(x),
             Of::B => self.b.0.core_closest_point(x),
         }
@@ -232,7 +249,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
         direction: A::Vector,
         radius: <A::Vector as Vector>::Scalar,
     ) -> LineCrossing<A::Vector> {
-        match of {
+        match self.named(of) {
             _ if !LINES => LineCrossing::Unknown,
             Of::A => self.a.0.core_line_crossing(source, direction, radius),
             Of::B => self.b.0.core_line_crossing(source, direction, radius),
@@ -241,7 +258,7 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
 
     #[inline(always)]
     fn each(&self) -> [Shape<'_, A::Vector>; 2] {
-        [&self.a, &self.b]
+        if self.is_swapped { [&self.b, &self.a] } else { [&self.a, &self.b] }
     }
 }
 

@@ -3,7 +3,7 @@
 use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Both, Pair, PointPair, Shapes, Swapped, TracedSupport as _};
+use crate::body::{Both, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::compiled_once::compiled_once;
 use crate::contact::signed_distance_of_any;
 use crate::gjk::{
@@ -70,15 +70,21 @@ where
 {
     let shapes = Both::<_, _>::new(a, b);
     let cores = shapes.cores();
-    direct(&shapes, cores, options.max_iterations, observer)
-        .unwrap_or_else(|| by_search(&shapes, cores, options, observer))
+    if let Some(answer) = direct(&shapes, cores, options.max_iterations, observer) {
+        return answer;
+    }
+    // In order, so that the search can be gone on with if the bodies nearly touch.
+    let is_swapped = comes_first(&cores[1], &cores[0]);
+    let cores = if is_swapped { [cores[1], cores[0]] } else { cores };
+    by_search(&shapes.swapped(is_swapped), cores, is_swapped, options, observer)
 }
 
 compiled_once! {
-    /// The distance by a search.
+    /// The distance by a search, of shapes that are swapped or not.
     fn by_search<V>(
         shapes: &dyn Shapes<Vector = V>,
         cores: [Core<V>; 2],
+        is_swapped: bool,
         options: DistanceOptions<V>,
         observer: &mut Observer<'_, V>,
     ) -> Distance<V> {
@@ -140,21 +146,21 @@ fn direct<T: Shapes>(
     })
 }
 
-/// In order, so that the search can be gone on with if the bodies nearly touch.
 fn searched<V: Vector>(
     shapes: &dyn Shapes<Vector = V>,
-    [core_a, core_b]: [Core<V>; 2],
+    cores: [Core<V>; 2],
+    is_swapped: bool,
     options: DistanceOptions<V>,
     observer: &mut Observer<'_, V>,
 ) -> Distance<V> {
-    if !comes_first(&core_b, &core_a) {
-        return searched_in_order(shapes, [core_a, core_b], options, observer);
+    if !is_swapped {
+        return searched_in_order(shapes, cores, options, observer);
     }
     let options = DistanceOptions { axis: options.axis.map(|axis| -axis), ..options };
     let is_watched = !observer.is_none();
     let mut reversed = |iterate: Iterate<'_, V>| iterate.reversed(|iterate| observer.show(|| iterate));
     let mut observer = if is_watched { Observer::new(&mut reversed) } else { Observer::none() };
-    searched_in_order(&Swapped(shapes), [core_b, core_a], options, &mut observer).reversed()
+    searched_in_order(shapes, cores, options, &mut observer).reversed()
 }
 
 fn searched_in_order<V: Vector>(

@@ -1,6 +1,6 @@
 //! The points in which two shapes in contact carry each other.
 
-use convex_support::{CoreKind, Scalar, SupportMap, Vector};
+use convex_support::{CoreKind, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
@@ -10,6 +10,7 @@ use super::reduction::{Rank, WORTHWHILE, reduced};
 use super::result::MAX_POINTS;
 use super::surface::{Side, Surface};
 use super::{Contact, ContactPoint, SignedDistance};
+use crate::compiled_once::compiled_once;
 use crate::symmetric::{Across, axes_across, cross, dot};
 
 /// As a part of the smaller shape's size: how near a corner of one shape's feature a point is that counts as the corner.
@@ -44,7 +45,7 @@ where
         }
         _ => false,
     };
-    if is_single { single(answer) } else { between([&a, &b], answer, within, last) }
+    if is_single { single(answer) } else { by_clipping([&a, &b], answer, within, last) }
 }
 
 /// The same of a shape over a plane, `b`, without an end: the corners of the feature that faces it.
@@ -57,10 +58,8 @@ pub(crate) fn manifold_over_plane<A>(
 where
     A: SupportMap + ?Sized,
 {
-    if let CoreKind::Point(_) = a.core().kind { single(answer) } else { over_plane(&a, answer, within, last) }
+    if let CoreKind::Point(_) = a.core().kind { single(answer) } else { by_plane(&a, answer, within, last) }
 }
-
-type ScalarOf<A> = <<A as SupportMap>::Vector as Vector>::Scalar;
 
 /// The closest points alone, of what is round or of segments that cross.
 fn single<V: Vector>(answer: &SignedDistance<V>) -> Contact<V> {
@@ -68,6 +67,17 @@ fn single<V: Vector>(answer: &SignedDistance<V>) -> Contact<V> {
     let (error, face) = (upper - lower, ContactPart::Face.code());
     let point = ContactPoint { point_a, point_b, signed_distance, error, feature_a: face, feature_b: face };
     Contact::new(answer.normal, *answer, &[point])
+}
+
+compiled_once! {
+    fn by_clipping<V>(
+        shapes: [&dyn Surface<V>; 2],
+        answer: &SignedDistance<V>,
+        within: V::Scalar,
+        last: &[ContactPoint<V>],
+    ) -> Contact<V> {
+        between
+    }
 }
 
 /// [`manifold`] behind pointers. It is computed for the shapes in the order in which the normal points to one side of space, so that it is the
@@ -97,6 +107,17 @@ fn between<V: Vector>(
         |surface, core, normal| Side::new(surface, core, ContactPlane { normal, across, origin }, reach.slab, levels);
     let sides = [side(a, &core_a, -normal), side(b, &core_b, normal)];
     Facing { sides, reach, last }.contact(answer, [level, level])
+}
+
+compiled_once! {
+    fn by_plane<V>(
+        shape: &dyn Surface<V>,
+        answer: &SignedDistance<V>,
+        within: V::Scalar,
+        last: &[ContactPoint<V>],
+    ) -> Contact<V> {
+        over_plane
+    }
 }
 
 /// [`manifold_over_plane`] behind a pointer.
