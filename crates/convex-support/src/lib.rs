@@ -84,6 +84,7 @@ mod rotation;
 mod scalar;
 mod shapes;
 #[cfg(feature = "proptest")]
+#[allow(clippy::disallowed_methods, reason = "random shapes need not be the same everywhere")]
 pub mod strategies;
 mod support;
 mod support_feature;

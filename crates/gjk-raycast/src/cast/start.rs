@@ -361,7 +361,7 @@ impl<V: Vector> Cast<V> {
     /// A hit that the search did not find, where the points closest to one another at the source are.
     #[inline(always)]
     fn hit(&mut self, lambda: V::Scalar, normal: Option<V>, Spot { source, points, scale }: Spot<V>) {
-        let hit = CastHit { lambda, normal, spot: source, witness: points.into() };
+        let hit = CastHit { lambda, normal, spot: source, witness: points };
         (self.outcome, self.status, self.scale) = (Outcome::Hit(hit), Status::Converged, scale);
     }
 }
