@@ -1,5 +1,5 @@
-//! How long does a step of a robot of 30 links among many obstacles take, and how does it grow with their number? And how long
-//! a whole trajectory at once, with gradients?
+//! How long does a step of a robot of 30 links among many obstacles take, and how does it grow with their number? And
+//! how long a whole trajectory at once, with gradients?
 
 use std::hint::black_box;
 
@@ -80,7 +80,8 @@ fn bench(c: &mut Criterion) {
     group.finish();
 }
 
-/// A whole trajectory at once, as an optimiser asks for it: 64 waypoints of 30 links among 1,000 obstacles, with gradients.
+/// A whole trajectory at once, as an optimiser asks for it: 64 waypoints of 30 links among 1,000 obstacles, with
+/// gradients.
 fn trajectory(c: &mut Criterion) {
     let waypoints: Vec<Vec<_>> = motion().into_iter().step_by(7).take(64).collect();
     let links: Vec<_> = waypoints.concat();

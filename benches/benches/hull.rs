@@ -1,7 +1,7 @@
 //! How long does the convex hull of a point set take, as a polytope to ask for support points?
 //!
-//! `ball` has most points inside, `sphere` all of them on the hull, `box` all of them in six planes, as CAD meshes have.
-//! Before timing, no point of a set may reach beyond its hull.
+//! `ball` has most points inside, `sphere` all of them on the hull, `box` all of them in six planes, as CAD meshes
+//! have. Before timing, no point of a set may reach beyond its hull.
 
 use std::hint::black_box;
 

@@ -32,8 +32,8 @@ fn pairs(seed: u64, shortest: f64) -> Vec<[Ellipsoid<DVec3>; 2]> {
     (0..PAIRS).map(|_| [ellipsoid(false), ellipsoid(true)]).collect()
 }
 
-/// The margin by the paper's matrix `[[C, −I], [−bbᵀ, C]]` and nalgebra's eigenvalues of it, the fastest general routine we
-/// know of for one of this size.
+/// The margin by the paper's matrix `[[C, −I], [−bbᵀ, C]]` and nalgebra's eigenvalues of it, the fastest general
+/// routine we know of for one of this size.
 fn margin_by_nalgebra(e1: &Ellipsoid<DVec3>, e2: &Ellipsoid<DVec3>) -> f64 {
     let p = e1.matrix();
     let root = e2.axes() * DMat3::from_diagonal(e2.semi_axes()) * e2.axes().transpose(); // Q^-½

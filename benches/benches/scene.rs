@@ -1,5 +1,5 @@
-//! How long do questions to a scene of many bodies take, and how does that grow with their number? parry's tree with its
-//! narrow phase beside ours, on the same bodies and questions, after the answers have been compared.
+//! How long do questions to a scene of many bodies take, and how does that grow with their number? parry's tree with
+//! its narrow phase beside ours, on the same bodies and questions, after the answers have been compared.
 
 use std::hint::black_box;
 

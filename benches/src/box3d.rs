@@ -1,9 +1,9 @@
 //! The workloads answered by `Box3D` in `f32`, through the safe functions of `boxddd`.
 //!
 //! Its tolerances are those for lengths in metres: casts aim for 5 mm short of contact, and bodies overlap from half a
-//! millimetre on. Its shapes are spheres, capsules and hulls of at most 128 edges; its queries between bodies also take up to 64
-//! points with a radius. What is measured includes what `boxddd` adds: checked arguments, and for casts and distances a copy
-//! of the points, which those functions take for themselves.
+//! millimetre on. Its shapes are spheres, capsules and hulls of at most 128 edges; its queries between bodies also take
+//! up to 64 points with a radius. What is measured includes what `boxddd` adds: checked arguments, and for casts and
+//! distances a copy of the points, which those functions take for themselves.
 
 use boxddd::collision::{
     self, CastOutput, DistanceInput, MAX_SHAPE_PROXY_POINTS, RayCastInput, ShapeCastPairInput, ShapeProxy,

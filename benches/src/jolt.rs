@@ -1,9 +1,9 @@
 //! The workloads answered by Jolt in `f32`, through the safe functions of `oxijolt`.
 //!
-//! Its tolerance is its own: to casts and collisions bodies touch from 0.1 mm on. It is asked as its users ask it: through a
-//! world, here of the one body that rests. What is measured includes the way to that body (broad phase, locks, filters)
-//! and what comes with an answer: the normal of a hit, and the depth of bodies that overlap, which Jolt finds wherever it says
-//! that they do. Convex radii are zero, so that shapes have sharp edges.
+//! Its tolerance is its own: to casts and collisions bodies touch from 0.1 mm on. It is asked as its users ask it:
+//! through a world, here of the one body that rests. What is measured includes the way to that body (broad phase,
+//! locks, filters) and what comes with an answer: the normal of a hit, and the depth of bodies that overlap, which Jolt
+//! finds wherever it says that they do. Convex radii are zero, so that shapes have sharp edges.
 
 use oxijolt::{
     BodySettings, CollideShape, PhysicsWorld, Quat, QueryError, QueryFilter, RVec3, RayCast, Shape as Body, ShapeCast,
@@ -36,8 +36,8 @@ pub fn ray_casts(shape: &Shape, rays: &[Ray]) -> Option<Solver> {
 
 /// Linear casts; `None` for shapes that it does not have.
 ///
-/// Back faces count. They are hits whose normal has the direction of the motion, which a body that starts apart cannot have:
-/// where contact is an edge on an edge, Jolt's normal may have the wrong sign, and the hit would be lost.
+/// Back faces count. They are hits whose normal has the direction of the motion, which a body that starts apart cannot
+/// have: where contact is an edge on an edge, Jolt's normal may have the wrong sign, and the hit would be lost.
 #[must_use]
 pub fn linear_casts(pair: &Pair, casts: &[Cast]) -> Option<Solver> {
     let (a, b) = (body(&pair.a)?, body(&pair.b)?);

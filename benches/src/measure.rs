@@ -48,11 +48,12 @@ impl Solver {
         }
     }
 
-    /// The time of one query in nanoseconds: the smallest over the passes of the median over blocks of 100 queries, without
-    /// what reading the clock takes.
+    /// The time of one query in nanoseconds: the smallest over the passes of the median over blocks of 100 queries,
+    /// without what reading the clock takes.
     ///
-    /// Both are the smallest of the same passes: what slows the machine for a while slows the clock by as much as ten of the
-    /// quickest queries. `range` selects queries, at least a block of them; at most `budget` is spent, but never less than three passes.
+    /// Both are the smallest of the same passes: what slows the machine for a while slows the clock by as much as ten
+    /// of the quickest queries. `range` selects queries, at least a block of them; at most `budget` is spent, but never
+    /// less than three passes.
     #[must_use]
     pub fn nanoseconds(&self, range: Range<usize>, budget: Duration) -> f64 {
         let begin = ThreadTime::now();
@@ -75,7 +76,8 @@ impl Solver {
     }
 }
 
-/// Reading the clock costs some 500 ns, as much as a hundred of the quickest queries, so it is read once per this many queries.
+/// Reading the clock costs some 500 ns, as much as a hundred of the quickest queries, so it is read once per this many
+/// queries.
 const BLOCK: usize = 100;
 
 /// The thread CPU time of what is run, reading the clock included.

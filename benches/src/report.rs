@@ -25,8 +25,8 @@ pub fn csv(rows: &[Row]) -> String {
     text
 }
 
-/// Everything but the title: where it was measured, the ratios to the peers and among our own methods, `profiles` (a section
-/// of its own, or nothing), and a table for each workload.
+/// Everything but the title: where it was measured, the ratios to the peers and among our own methods, `profiles` (a
+/// section of its own, or nothing), and a table for each workload.
 #[must_use]
 pub fn markdown(rows: &[Row], profiles: &str) -> String {
     let mut text = format!("{}\n\n{}{}{profiles}{CELLS}", provenance(), beside_peers(rows), beside_ourselves(rows));
@@ -118,8 +118,8 @@ fn beside_peers(rows: &[Row]) -> String {
     format!("{text}\n{BESIDE_PEERS}")
 }
 
-/// A line for some rows of ours, all of one precision, which ends with the names of those that are behind, if they are wanted.
-/// Empty for no rows.
+/// A line for some rows of ours, all of one precision, which ends with the names of those that are behind, if they are
+/// wanted. Empty for no rows.
 fn beside_peers_in(title: &str, rows: &[Row], ours: &[&Row], named: bool) -> String {
     let Some(precision) = ours.first().map(|row| row.method.precision()) else { return String::new() };
     let (precision, gjk) = match precision {
@@ -158,7 +158,8 @@ fn find<'a>(rows: &'a [Row], of: &Row, method: Method) -> Option<&'a Row> {
     rows.iter().find(|row| row.workload == of.workload && row.case == of.case && row.method == method)
 }
 
-/// The fastest of the other libraries that answer the workload and case of a row rightly, all of it and in its precision.
+/// The fastest of the other libraries that answer the workload and case of a row rightly, all of it and in its
+/// precision.
 fn best_right_peer<'a>(rows: &'a [Row], of: &Row) -> Option<&'a Row> {
     rows.iter()
         .filter(|row| row.workload == of.workload && row.case == of.case)
@@ -220,7 +221,8 @@ fn table(rows: &[Row], workload: Workload) -> String {
     text
 }
 
-/// The time, in bold that of the best right peer of its precision; the error where there is one; the wrong answers where there are any.
+/// The time, in bold that of the best right peer of its precision; the error where there is one; the wrong answers
+/// where there are any.
 fn cell(rows: &[Row], row: &Row) -> String {
     let best = best_right_peer(rows, row).is_some_and(|best| best.method == row.method);
     let time = format!("{:.*}", usize::from(row.ns < 9.95), row.ns);

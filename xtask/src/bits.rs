@@ -1,8 +1,9 @@
 //! `cargo xtask bits`: whether this machine answers as others do, to the last bit.
 //!
-//! Questions of every kind, dimension and precision are drawn from fixed seeds and answered; the answers, as the query format writes them,
-//! with iteration counts and certificates, are hashed. Numbers are written with the digits that tell them from their neighbours, so
-//! that one bit in one of them changes the hash. `bits.txt` keeps the hashes that every machine is to have.
+//! Questions of every kind, dimension and precision are drawn from fixed seeds and answered; the answers, as the query
+//! format writes them, with iteration counts and certificates, are hashed. Numbers are written with the digits that
+//! tell them from their neighbours, so that one bit in one of them changes the hash. `bits.txt` keeps the hashes that
+//! every machine is to have.
 
 use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write};
@@ -27,7 +28,8 @@ const COUNT: u64 = 500;
 /// How many questions, and what becomes of the hashes.
 #[derive(Clone, Debug, Args)]
 pub struct Choice {
-    /// Questions of each kind, dimension and precision; hashes of another count than the default are printed and compared with nothing.
+    /// Questions of each kind, dimension and precision; hashes of another count than the default are printed and
+    /// compared with nothing.
     #[arg(long, value_name = "N", default_value_t = COUNT)]
     count: u64,
     /// Write the hashes down as what every machine is to have.

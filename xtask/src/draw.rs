@@ -1,5 +1,5 @@
-//! Random queries of every kind: all shapes and combinators, nested, of both dimensions and precisions; some of them far away, some huge
-//! or tiny, some of needles and plates.
+//! Random queries of every kind: all shapes and combinators, nested, of both dimensions and precisions; some of them
+//! far away, some huge or tiny, some of needles and plates.
 //!
 //! Made with `+ − × ÷` and [`decades`] only, so that every machine draws the same bits.
 
@@ -182,7 +182,8 @@ impl Space {
         json!({"center": self.vector(rng, apart), "semi_axes": semi_axes, "rotation": self.rotation(rng)})
     }
 
-    /// A shape posed far away, turned about the origin, turned back and moved back, which leaves it where it was but for rounding.
+    /// A shape posed far away, turned about the origin, turned back and moved back, which leaves it where it was but
+    /// for rounding.
     fn round_trip(self, rng: &mut Rng, of: &Value) -> Value {
         let there = self.vector(rng, self.reach.max(1.0));
         let back: Vec<f64> = there.iter().map(|x| -x).collect();

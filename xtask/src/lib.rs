@@ -1,4 +1,5 @@
-//! The query format, the engine that answers it, and what is common to reports: `cargo xtask`, and the package `studies`.
+//! The query format, the engine that answers it, and what is common to reports: `cargo xtask`, and the package
+//! `studies`.
 //!
 //! Shapes are `dyn SupportMap` here, so that every algorithm is compiled for four vector types and no pair of shapes.
 #![allow(

@@ -1,7 +1,8 @@
 //! The workspace's tasks: `cargo xtask --help`.
 //!
-//! What is asked of every newcomer's machine is small: queries, cases, damaged lines, documentation. Studies, which compile the
-//! algorithms for hundreds of types or draw pictures, are a package of their own, built when one of them is asked for.
+//! What is asked of every newcomer's machine is small: queries, cases, damaged lines, documentation. Studies, which
+//! compile the algorithms for hundreds of types or draw pictures, are a package of their own, built when one of them is
+//! asked for.
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -23,8 +24,8 @@ struct Arguments {
 enum Task {
     /// Answer the queries in files: one JSON line is written for each line read.
     ///
-    /// The queries, shapes, and answers are described in `xtask/README.md`; try
-    /// `echo '{"query":"distance","a":{"type":"ball","radius":1},"b":{"type":"point","at":[3,0,0]}}' | cargo xtask query -`.
+    /// The queries, shapes, and answers are described in `xtask/README.md`; try `echo
+    /// '{"query":"distance","a":{"type":"ball","radius":1},"b":{"type":"point","at":[3,0,0]}}' | cargo xtask query -`.
     ///
     /// Exit status: 0 if every line was answered, 1 if the answer to some line is an error, 2 if a file
     /// could not be read or the arguments are wrong.
@@ -37,13 +38,15 @@ enum Task {
     ///
     /// `cargo xtask query --certify FILE | cargo xtask prove -`; `docs/certificates.md` says what is proved, and how.
     ///
-    /// Exit status: 0 if every line is proved, 1 if some line is not proved or is disproved, 2 if a file could not be read.
+    /// Exit status: 0 if every line is proved, 1 if some line is not proved or is disproved, 2 if a file could not be
+    /// read.
     Prove(prove::Choice),
     /// Try damaged query lines, and hulls of integers against an exact oracle, for a bounded time.
     ///
     /// Exit status: 0 if nothing failed, 1 if something did, 2 if the suite could not be read.
     Fuzz(fuzz::Scope),
-    /// Answer questions from fixed seeds, and compare the hashes of the answers with those that every machine is to have.
+    /// Answer questions from fixed seeds, and compare the hashes of the answers with those that every machine is to
+    /// have.
     ///
     /// Exit status: 0 if every hash is equal, 1 if some are not, 2 if the file of hashes could not be read or written.
     Bits(bits::Choice),

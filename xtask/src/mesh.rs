@@ -181,8 +181,8 @@ fn read(path: &Path, access: &Access) -> Result<Vec<DVec3>, Unread> {
 
 /// All of a regular file, if that is allowed and not too much. Links are followed.
 ///
-/// What it is, is asked before it is opened, as opening a pipe waits for somebody to write; and the size is counted while
-/// reading, as a file may grow, and those that the system makes up have none.
+/// What it is, is asked before it is opened, as opening a pipe waits for somebody to write; and the size is counted
+/// while reading, as a file may grow, and those that the system makes up have none.
 fn read_bytes(path: &Path, access: &Access) -> Result<Vec<u8>, Unread> {
     if *access == Access::Nowhere {
         return Err(Unread::Forbidden);
@@ -202,8 +202,8 @@ fn read_bytes(path: &Path, access: &Access) -> Result<Vec<u8>, Unread> {
 }
 
 fn read_obj(bytes: &[u8]) -> Result<Vec<DVec3>, String> {
-    // The reader returns the vertices of elements, one model after another. A last model with an element of one vertex for
-    // every vertex of the file makes it return all of them, whether a face uses them or not.
+    // The reader returns the vertices of elements, one model after another. A last model with an element of one vertex
+    // for every vertex of the file makes it return all of them, whether a face uses them or not.
     let count = bytes.split(|&b| b == b'\n').filter(|l| is_vertex(l)).count();
     if count == 0 {
         return Ok(Vec::new());

@@ -23,8 +23,8 @@ pub struct Choice {
     /// Query files; `-` is standard input.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// The folder that `mesh` queries may read from, links resolved, or `none`; without it they read any OBJ or STL file that
-    /// this program may.
+    /// The folder that `mesh` queries may read from, links resolved, or `none`; without it they read any OBJ or STL
+    /// file that this program may.
     #[arg(long, value_name = "FOLDER|none", value_parser = Access::parse, default_value = "", hide_default_value = true)]
     meshes: Access,
     /// The number of the first line of each file, where it is a part of a larger one: ids and errors count from it.
@@ -220,7 +220,8 @@ mod tests {
         output
     }
 
-    /// A file cut anywhere between lines, its parts numbered on, is answered as in one piece: good lines, bad ones, blank ones.
+    /// A file cut anywhere between lines, its parts numbered on, is answered as in one piece: good lines, bad ones,
+    /// blank ones.
     #[test]
     fn parts_of_a_file_are_answered_as_the_whole() {
         let lines: [&[u8]; 7] = [

@@ -1,5 +1,5 @@
-//! The ways to find the planes of a ray cast beside one another, on the rays of W1 in `f64`: nanoseconds per ray, as the table in
-//! `docs/ray-cast.md` has them.
+//! The ways to find the planes of a ray cast beside one another, on the rays of W1 in `f64`: nanoseconds per ray, as
+//! the table in `docs/ray-cast.md` has them.
 #![allow(clippy::print_stdout, reason = "printing is what it is for")]
 
 use std::time::Duration;

@@ -1,5 +1,5 @@
-//! Measures what `lj-ellipsoid` is to reach, all of it in one run: times beside their goals, passes over the points, memory
-//! beyond the input, and the ratio to Khachiyan's method with away steps on the same points.
+//! Measures what `lj-ellipsoid` is to reach, all of it in one run: times beside their goals, passes over the points,
+//! memory beyond the input, and the ratio to Khachiyan's method with away steps on the same points.
 //!
 //! `ellipsoids [DIRECTORY]…`: each directory holds the meshes of one robot (OBJ), whose links are enclosed one by one.
 //!
@@ -30,8 +30,9 @@ const BUDGET: Duration = Duration::from_millis(700);
 /// What is measured at once.
 const STRETCH: Duration = Duration::from_millis(3);
 
-/// The time of one call of `task`, in seconds: the smallest of many means over some milliseconds, within `budget` but of at
-/// least one call. Shorter stretches would measure the clock: it is off by a microsecond where a thread changes cores.
+/// The time of one call of `task`, in seconds: the smallest of many means over some milliseconds, within `budget` but
+/// of at least one call. Shorter stretches would measure the clock: it is off by a microsecond where a thread changes
+/// cores.
 fn seconds(budget: Duration, mut task: impl FnMut()) -> f64 {
     let begin = ThreadTime::now();
     let mut best = f64::INFINITY;

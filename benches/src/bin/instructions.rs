@@ -27,8 +27,8 @@ type Block = Cuboid<DVec3>;
 type Hull = Polytope<DVec3>;
 type RoundBox = Rounded<Cuboid<DVec3>>;
 
-/// Rows that stand for the rest: polytopes, smooth and rounded bodies, small and large, known and behind `dyn`, in space and
-/// in the plane, each kind of query. Only their shapes are compiled.
+/// Rows that stand for the rest: polytopes, smooth and rounded bodies, small and large, known and behind `dyn`, in
+/// space and in the plane, each kind of query. Only their shapes are compiled.
 const ROWS: [Row; 29] = [
     ("ray_cast/cuboid", || ray_cast::<Block>("cuboid")),
     ("ray_cast/hull1024", || ray_cast::<Hull>("hull1024")),

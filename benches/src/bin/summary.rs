@@ -1,5 +1,6 @@
 //! Measures every workload in one run and prints the page; `--write` puts it into `docs/performance.md` and
-//! `docs/performance.csv` of the workspace, `--csv` prints the rows alone. `--profiles` adds what the build profile does to our times.
+//! `docs/performance.csv` of the workspace, `--csv` prints the rows alone. `--profiles` adds what the build profile
+//! does to our times.
 //!
 //! `summary [--write | --csv] [--profiles] [--milliseconds PER_ROW] [W1] [W2] [W3far] [W3near] [W3b]`
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "printing is what it is for")]

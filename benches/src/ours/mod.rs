@@ -1,7 +1,9 @@
-//! The workloads answered by this workspace. What is asked of two shapes is a [task](tasks), and makes a solver of shapes of any types;
-//! the functions here do so for all shapes of the workloads in either precision, each compiled once: what calls them is not generic.
+//! The workloads answered by this workspace. What is asked of two shapes is a [task](tasks), and makes a solver of
+//! shapes of any types; the functions here do so for all shapes of the workloads in either precision, each compiled
+//! once: what calls them is not generic.
 //!
-//! They are `#[inline]`, here and in [`rows`](crate::rows), so that a program compiles those that it asks, and not all with the library.
+//! They are `#[inline]`, here and in [`rows`](crate::rows), so that a program compiles those that it asks, and not all
+//! with the library.
 
 pub mod shapes;
 pub mod tasks;
@@ -79,7 +81,8 @@ pub fn closed_form_ray_casts(precision: Precision, shape: &Shape, rays: &[Ray]) 
     }
 }
 
-/// The solver of a task for any shape; of hulls, if wanted, with their facets, by which alone a closed form is known of them.
+/// The solver of a task for any shape; of hulls, if wanted, with their facets, by which alone a closed form is known of
+/// them.
 fn with_facets<V: Space>(shape: &Shape, task: impl Task<V>, faceted: bool) -> Solver {
     if faceted && let Shape::Hull { .. } = shape { with::<Faceted<V>>(shape, task) } else { with_shape(shape, task) }
 }

@@ -203,7 +203,8 @@ impl<V: Space> PairTask<V> for Intersections<'_> {
     }
 }
 
-/// The axis that separates two bodies, if they are apart. Apart from the query that is timed, which is compiled into its loop.
+/// The axis that separates two bodies, if they are apart. Apart from the query that is timed, which is compiled into
+/// its loop.
 #[inline(never)]
 fn axis_of<V: Space>(
     a: &impl SupportMap<Vector = V>,

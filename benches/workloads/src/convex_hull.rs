@@ -15,8 +15,8 @@ pub(crate) struct Plane {
 /// The triangular facets of the hull of at least four points in general position, counter-clockwise from outside.
 ///
 /// The first four points make a tetrahedron. Each further point that sees some of the facets replaces them by the
-/// triangles between itself and the horizon, `[a, b, point]` for the horizon's edge `a → b`. What a point sees is computed
-/// in numbers of the type `R`.
+/// triangles between itself and the horizon, `[a, b, point]` for the horizon's edge `a → b`. What a point sees is
+/// computed in numbers of the type `R`.
 #[must_use]
 pub fn facets<R: Real>(points: &[Vec3]) -> Vec<[usize; 3]> {
     let sees = |facet: [usize; 3], p: Vec3| {

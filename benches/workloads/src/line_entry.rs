@@ -34,8 +34,8 @@ impl<'a> LineEntry<'a> {
     }
 }
 
-/// The smallest `λ` with `p + λ·d` in the shape scaled by `size`; `None` if the line misses it, and for hulls, whose planes are
-/// not part of them.
+/// The smallest `λ` with `p + λ·d` in the shape scaled by `size`; `None` if the line misses it, and for hulls, whose
+/// planes are not part of them.
 pub fn entry<R: Real>(shape: &Shape, p: Vec3<R>, d: Vec3<R>, size: f64) -> Option<R> {
     let g = |x: f64| R::from(x) * R::from(size);
     match *shape {
@@ -106,8 +106,8 @@ fn cylinder<R: Real>(p: Vec3<R>, d: Vec3<R>, axis: usize, half_height: R, radius
 
 /// The first of the points on the side and on the base.
 ///
-/// With `w` the depth below the apex and `k` the slope of the side, the double cone is `x² + z² = k²w²`; of its two roots
-/// only those between base and apex belong to the cone.
+/// With `w` the depth below the apex and `k` the slope of the side, the double cone is `x² + z² = k²w²`; of its two
+/// roots only those between base and apex belong to the cone.
 fn cone<R: Real>(p: Vec3<R>, d: Vec3<R>, half_height: R, radius: R) -> Option<R> {
     let slope = radius / (half_height + half_height);
     let (k2, w) = (slope * slope, half_height - p[1]);

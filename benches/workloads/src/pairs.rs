@@ -44,8 +44,8 @@ impl Pair {
         Self { index: index as u64, a: Shape::named(a), b: Shape::named(b) }
     }
 
-    /// The vector that moves `b` from `pose` until it touches `a` at the features that are closest there; `None` if they
-    /// overlap there, are too near to have a normal, or the reference is not sure to 1e-12.
+    /// The vector that moves `b` from `pose` until it touches `a` at the features that are closest there; `None` if
+    /// they overlap there, are too near to have a normal, or the reference is not sure to 1e-12.
     fn gap_vector(&self, pose: Pose) -> Option<Vec3> {
         match shortest_vector(&self.a, &self.b, pose) {
             Shortest::Outside { v, gap } if norm(v) >= 0.01 && gap <= 1e-12 => Some(v),

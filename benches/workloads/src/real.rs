@@ -1,8 +1,8 @@
 //! Numbers that truths are computed in: doubles, and unevaluated sums of two doubles.
 //!
 //! Sums and products are error-free transformations (Dekker, *A floating-point technique for extending the available
-//! precision*, 1971; Knuth's two-sum), so that a reference is right to some thirty digits and shares no rounding with what
-//! it is held against. Numbers are to be far from over- and underflow.
+//! precision*, 1971; Knuth's two-sum), so that a reference is right to some thirty digits and shares no rounding with
+//! what it is held against. Numbers are to be far from over- and underflow.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -177,7 +177,8 @@ mod tests {
         let two = DoubleDouble::from(2.0);
         let rest = (two.sqrt() * two.sqrt() - two).f64().abs();
         assert!(rest < 1e-30, "√2² − 2 = {rest:e}");
-        // (1 + 2⁻⁶⁰)² − 1 − 2⁻⁵⁹ = 2⁻¹²⁰, which doubles do not see, and double-doubles round off, but no more than that.
+        // (1 + 2⁻⁶⁰)² − 1 − 2⁻⁵⁹ = 2⁻¹²⁰, which doubles do not see, and double-doubles round off, but no more than
+        // that.
         let one = DoubleDouble::from(1.0) + DoubleDouble::from(2.0_f64.powi(-60));
         let rest = (one * one - DoubleDouble::from(1.0) - DoubleDouble::from(2.0_f64.powi(-59))).f64();
         assert!(rest.abs() <= 2.0_f64.powi(-104), "{rest:e}");

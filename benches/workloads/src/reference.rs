@@ -1,5 +1,5 @@
-//! The reference that finds where two bodies touch: the distance algorithm of Gilbert, Johnson and Keerthi in its plainest
-//! form, checked by its own bound.
+//! The reference that finds where two bodies touch: the distance algorithm of Gilbert, Johnson and Keerthi in its
+//! plainest form, checked by its own bound.
 
 use crate::shapes::Shape;
 use crate::vec3::{Quat, Vec3, add, conjugate, dot, neg, norm, rotate, scale, sub};
@@ -66,8 +66,8 @@ pub(crate) fn shortest_vector(a: &Shape, b: &Shape, pose: Pose) -> Shortest {
 
 /// The point of a simplex closest to zero, and the vertices of the face it lies in; `None` if a tetrahedron holds zero.
 ///
-/// Every face is tried: the closest point of its plane is a candidate if it lies in the face, and the closest of them all
-/// is the answer.
+/// Every face is tried: the closest point of its plane is a candidate if it lies in the face, and the closest of them
+/// all is the answer.
 fn closest_point(simplex: &[Vec3]) -> Option<(Vec3, Vec<Vec3>)> {
     let mut best: Option<(Vec3, Vec<Vec3>)> = None;
     for subset in 1_usize..1 << simplex.len() {

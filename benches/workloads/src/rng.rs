@@ -1,7 +1,8 @@
-//! The random numbers of every workload, and of the report's and the sweep's questions: splitmix64, and what is drawn from it.
+//! The random numbers of every workload, and of the report's and the sweep's questions: splitmix64, and what is drawn
+//! from it.
 //!
-//! Values are made with `+ − × ÷ √` only, in the order written here and without fused multiply-adds, so that any IEEE-754
-//! program that follows this text draws the same bits.
+//! Values are made with `+ − × ÷ √` only, in the order written here and without fused multiply-adds, so that any
+//! IEEE-754 program that follows this text draws the same bits.
 
 use crate::vec3::{Quat, Vec3};
 

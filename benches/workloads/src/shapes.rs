@@ -140,7 +140,8 @@ impl Shape {
         }
     }
 
-    /// The shape as one of `convex-support`, its numbers rounded to the precision of `V`. A hull scans all of its points.
+    /// The shape as one of `convex-support`, its numbers rounded to the precision of `V`. A hull scans all of its
+    /// points.
     ///
     /// # Panics
     /// If its numbers are out of the range of that precision.

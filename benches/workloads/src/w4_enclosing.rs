@@ -73,7 +73,8 @@ pub fn corners<const N: usize>(sides: [f64; N]) -> Vec<[f64; N]> {
     (0..1_usize << N).map(|i| std::array::from_fn(|k| if i >> k & 1 == 1 { sides[k] } else { 0.0 })).collect()
 }
 
-/// `count` half-spaces `normal·x ≤ offset` at 1 to 1.5 from the origin, so that all of them may matter: normal and offset.
+/// `count` half-spaces `normal·x ≤ offset` at 1 to 1.5 from the origin, so that all of them may matter: normal and
+/// offset.
 #[must_use]
 pub fn halfspaces<const N: usize>(count: usize) -> Vec<([f64; N], f64)> {
     let mut rng = Rng::new(70_000 + 10 * N as u64);

@@ -10,15 +10,15 @@ use crate::numerics::range::comfortable_unit_of_length;
 use crate::numerics::twofold::{dot_minus, two_product};
 use crate::{Scalar, Vector, Vector3};
 
-/// An angular velocity `ω` in the space of `V`, in radians per unit of time: a number in 2D, counterclockwise; in 3D a vector
-/// along the axis, after the right-hand rule.
+/// An angular velocity `ω` in the space of `V`, in radians per unit of time: a number in 2D, counterclockwise; in 3D a
+/// vector along the axis, after the right-hand rule.
 ///
 /// The trait is sealed; [`Vector::AngularVelocity`] says which type turns which vectors.
 pub trait AngularVelocity<V: Vector>:
     Copy + Debug + Default + PartialEq + Send + Sync + 'static + sealed::Sealed + sealed::Data
 {
-    /// A bound on the error of [`turn`](Self::turn) as an operator, relative to the square root of the sum of its squared entries
-    /// and in units of the scalar's epsilon.
+    /// A bound on the error of [`turn`](Self::turn) as an operator, relative to the square root of the sum of its
+    /// squared entries and in units of the scalar's epsilon.
     const TURN_ERROR: f64;
 
     /// The type of a rotation at this velocity.
@@ -30,18 +30,18 @@ pub trait AngularVelocity<V: Vector>:
     /// The rotation at this velocity, prepared for many times.
     fn spin(self) -> Self::Spin;
 
-    /// The matrix `R − 1` with `R` the rotation by `|ω|·time` about `ω`: what the rotation adds to a vector. It is small if the angle is
-    /// small, and its error is relative to its size.
+    /// The matrix `R − 1` with `R` the rotation by `|ω|·time` about `ω`: what the rotation adds to a vector. It is
+    /// small if the angle is small, and its error is relative to its size.
     ///
-    /// The angle may be many turns, since it is computed in twice the precision. Beyond 2⁵⁰ this is not enough, and the matrix consists
-    /// of NaNs.
+    /// The angle may be many turns, since it is computed in twice the precision. Beyond 2⁵⁰ this is not enough, and the
+    /// matrix consists of NaNs.
     #[inline]
     fn turn(self, time: V::Scalar) -> V::Matrix {
         self.spin().turn(time)
     }
 
-    /// The constant angular velocity that turns `from` into `to` within one unit of time, the short way round. Quaternions need
-    /// not be unit; of NaNs where one of them is no rotation.
+    /// The constant angular velocity that turns `from` into `to` within one unit of time, the short way round.
+    /// Quaternions need not be unit; of NaNs where one of them is no rotation.
     fn between(from: V::Rotation, to: V::Rotation) -> Self;
 
     /// The angular velocity `factor` times as fast.
@@ -74,7 +74,8 @@ pub trait AngularVelocity<V: Vector>:
     fn from_coordinates(f: impl FnMut(usize) -> V::Scalar) -> Self;
 }
 
-/// A rotation at a constant [angular velocity](AngularVelocity). Everything that does not depend on time is computed once.
+/// A rotation at a constant [angular velocity](AngularVelocity). Everything that does not depend on time is computed
+/// once.
 ///
 /// ```
 /// use convex_support::{AngularVelocity, Spin, glam::DVec3};
@@ -113,8 +114,8 @@ mod sealed {
 
 /// Angular velocities of the plane, where with `h` half the angle `R − 1 = 2·sin h·(−sin h, −cos h; cos h, −sin h)`.
 ///
-/// With `u = ε/2`, sine and cosine of an angle known to twice the digits are right to `3u`, so that each entry is to `7u` of `2·sin h`,
-/// which is the norm of a column. Those of `f32` are rounded once.
+/// With `u = ε/2`, sine and cosine of an angle known to twice the digits are right to `3u`, so that each entry is to
+/// `7u` of `2·sin h`, which is the norm of a column. Those of `f32` are rounded once.
 macro_rules! number {
     ($S:ident turns $V:ident by $M:ident, $error:literal, $rounded:expr) => {
         impl AngularVelocity<$V> for $S {
@@ -264,7 +265,8 @@ impl<V> SpinInSpace<V> {
         let unit = comfortable_unit_of_length(angular_velocity.abs().max_element());
         let w = angular_velocity / unit;
         let rate = w.length();
-        // What the square root loses of |w|: |w| = rate + (|w|² − rate²)/(2·rate), with the squares to twice the digits.
+        // What the square root loses of |w|: |w| = rate + (|w|² − rate²)/(2·rate), with the squares to twice the
+        // digits.
         let [square, rest] = two_product(rate, rate);
         let lost = (dot_minus(w.to_array().map(|c| (c, c)), square) - rest) / (2.0 * rate);
         Self { axis: w / rate, rate, lost, unit, space: PhantomData }
@@ -274,9 +276,9 @@ impl<V> SpinInSpace<V> {
     ///
     /// > R − 1 = sin 2h·[a]× + (1 − cos 2h)·[a]×² = 2·sin h·(cos h·[a]× + sin h·(a·aᵀ − 1)).
     ///
-    /// With `u = ε/2`, the axis is right to `3u`, sine and cosine to `3u`. So the first matrix in the parentheses is wrong by `7u`, the
-    /// second by `11u`, and they are rounded by `3u` more, where their norm is 1; that of the entries of the whole is `√2` times
-    /// larger.
+    /// With `u = ε/2`, the axis is right to `3u`, sine and cosine to `3u`. So the first matrix in the parentheses is
+    /// wrong by `7u`, the second by `11u`, and they are rounded by `3u` more, where their norm is 1; that of the
+    /// entries of the whole is `√2` times larger.
     fn after(&self, time: f64) -> DMat3 {
         let Self { axis: a, rate, lost, unit, .. } = *self;
         // Not even after an infinite time, whose product with zero is NaN.

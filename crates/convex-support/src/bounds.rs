@@ -44,8 +44,8 @@ impl<V: Vector> Aabb<V> {
     }
 }
 
-/// The smallest box along the axes that contains the shape. It consists of the support values along the axes, and so is as accurate as
-/// these: to a few ulps of the largest coordinate, which are not added.
+/// The smallest box along the axes that contains the shape. It consists of the support values along the axes, and so is
+/// as accurate as these: to a few ulps of the largest coordinate, which are not added.
 ///
 /// ```
 /// use convex_support::{Aabb, Cone, Posed, bounding_box, glam::DVec3};
@@ -93,8 +93,8 @@ impl<V: Vector> BoundingSphere<V> {
     }
 }
 
-/// A ball that contains the shape. It is exactly the smallest for balls, boxes, capsules, cylinders and ellipsoids, in any pose,
-/// and never larger than the ball around the [`bounding_box`]. A few ulps of rounding are not added.
+/// A ball that contains the shape. It is exactly the smallest for balls, boxes, capsules, cylinders and ellipsoids, in
+/// any pose, and never larger than the ball around the [`bounding_box`]. A few ulps of rounding are not added.
 ///
 /// ```
 /// use convex_support::{Capsule, Posed, bounding_sphere, glam::DVec3};

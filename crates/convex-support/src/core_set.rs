@@ -3,32 +3,36 @@
 use crate::numerics::bound::{raised, raised_vector, roundings, roundings_of};
 use crate::{Scalar, Vector};
 
-/// What a convex set `C = o + K ⊕ B(r)` is split into: an origin `o`, a core `K` near zero, and a ball of radius `r` that sweeps it.
+/// What a convex set `C = o + K ⊕ B(r)` is split into: an origin `o`, a core `K` near zero, and a ball of radius `r`
+/// that sweeps it.
 ///
-/// A ball, a capsule and every [rounded](crate::Rounded) shape is a smaller set, its *core*, swept by a ball. Iterative methods
-/// converge slowly on round surfaces and finish at once on a point or a segment, so they work on the core and add the radius at
-/// the end. They also work relative to the origin of the body, where coordinates are small and rounding is too.
+/// A ball, a capsule and every [rounded](crate::Rounded) shape is a smaller set, its *core*, swept by a ball. Iterative
+/// methods converge slowly on round surfaces and finish at once on a point or a segment, so they work on the core and
+/// add the radius at the end. They also work relative to the origin of the body, where coordinates are small and
+/// rounding is too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Core<V: Vector> {
     /// A point near the set, which the core is relative to.
     pub origin: V,
     /// The radius of the ball that sweeps the core.
     pub radius: V::Scalar,
-    /// The radius of a ball that rolls around within the core: the core is some smaller convex set swept by this ball. Any smaller radius
-    /// is right as well, and 0 always is.
+    /// The radius of a ball that rolls around within the core: the core is some smaller convex set swept by this ball.
+    /// Any smaller radius is right as well, and 0 always is.
     ///
-    /// A ball of radius `r` rolls within a smooth convex body if no radius of curvature is less than `r` (Blaschke's rolling theorem).
-    /// If two shapes overlap by less than the balls that roll within them, their penetration depth can be found as the distance of the
-    /// smaller sets.
+    /// A ball of radius `r` rolls within a smooth convex body if no radius of curvature is less than `r` (Blaschke's
+    /// rolling theorem). If two shapes overlap by less than the balls that roll within them, their penetration depth
+    /// can be found as the distance of the smaller sets.
     pub rolling_radius: V::Scalar,
-    /// An upper bound on the length of every vector that [`core_support`](crate::SupportMap::core_support) computes with. Its rounding
-    /// errors are proportional to this length.
+    /// An upper bound on the length of every vector that [`core_support`](crate::SupportMap::core_support) computes
+    /// with. Its rounding errors are proportional to this length.
     pub extent: V::Scalar,
     /// An upper bound on how far rounding has moved the core, as a length, with the origin as it was computed: every
-    /// [support point](crate::SupportMap::core_support) is at most so far from a point of the exact core, and the support value along a
-    /// unit direction falls short of the exact one by no more. The error of the radius is included.
+    /// [support point](crate::SupportMap::core_support) is at most so far from a point of the exact core, and the
+    /// support value along a unit direction falls short of the exact one by no more. The error of the radius is
+    /// included.
     ///
-    /// Every query has this bound at once; [`rounding`](crate::SupportMap::rounding) computes finer ones, coordinate by coordinate.
+    /// Every query has this bound at once; [`rounding`](crate::SupportMap::rounding) computes finer ones, coordinate by
+    /// coordinate.
     pub error: V::Scalar,
     /// What kind of set the core is.
     pub kind: CoreKind<V>,
@@ -50,7 +54,8 @@ impl<V: Vector> Core<V> {
 /// What kind of set a [core](Core) is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CoreKind<V> {
-    /// A single point, relative to the origin. Its distance from a shape that knows its closest points takes no iteration.
+    /// A single point, relative to the origin. Its distance from a shape that knows its closest points takes no
+    /// iteration.
     Point(V),
     /// A segment. The distance of two segments takes no iteration.
     Segment {
@@ -59,7 +64,8 @@ pub enum CoreKind<V> {
         /// The vector from there to one of the ends.
         half: V,
     },
-    /// A polytope, whose support point jumps from vertex to vertex and does not move in between: its Hessian is always zero.
+    /// A polytope, whose support point jumps from vertex to vertex and does not move in between: its Hessian is always
+    /// zero.
     Polytope,
     /// Anything else.
     Curved,
@@ -103,15 +109,17 @@ impl<V: Vector> CoreKind<V> {
 ///
 /// > |k(d) − x| ≤ error for a point x of K, and  max { d·y : y ∈ K } ≤ d·k(d) + |d|·error.
 ///
-/// The first makes an upper bound of a distance rigorous, and the second a lower bound. A rotation counts as the exactly normalised
-/// quaternion or the exact angle it is given by, a matrix as it is given, and points as they are given.
+/// The first makes an upper bound of a distance rigorous, and the second a lower bound. A rotation counts as the
+/// exactly normalised quaternion or the exact angle it is given by, a matrix as it is given, and points as they are
+/// given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounding<V: Vector> {
     /// A bound on the coordinates of all points of the core.
     pub extent: V,
     /// The bound on the error of each coordinate.
     pub error: V,
-    /// A bound on the length of the error. A rotation keeps it, whereas the bound on the coordinates grows by up to `√3`.
+    /// A bound on the length of the error. A rotation keeps it, whereas the bound on the coordinates grows by up to
+    /// `√3`.
     pub error_length: V::Scalar,
 }
 

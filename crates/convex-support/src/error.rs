@@ -52,8 +52,8 @@ pub enum InvalidShape {
     NotPositiveDefinite,
     /// A rotation is the zero quaternion.
     ZeroRotation,
-    /// The columns of a matrix that should be a rotation or a set of axes are not orthonormal, to half the digits of the
-    /// scalar.
+    /// The columns of a matrix that should be a rotation or a set of axes are not orthonormal, to half the digits of
+    /// the scalar.
     NotOrthonormal,
     /// The columns of a matrix that should be a rotation are orthonormal, but left-handed: it mirrors.
     Mirrors,
@@ -116,8 +116,8 @@ pub(crate) fn finite<V: crate::Vector>(parameter: &'static str, vector: V) -> Re
     Err(InvalidShape::NonFinite { parameter, index })
 }
 
-/// `matrix` if its columns are orthonormal to half the digits of the scalar: enough to find a blunder, and not so strict as
-/// to refuse a matrix that has drifted.
+/// `matrix` if its columns are orthonormal to half the digits of the scalar: enough to find a blunder, and not so
+/// strict as to refuse a matrix that has drifted.
 pub(crate) fn orthonormal<M: crate::Matrix>(parameter: &'static str, matrix: M) -> Result<M, InvalidShape> {
     use crate::{Scalar, Vector};
     use num_traits::Float as _;

@@ -19,7 +19,8 @@ struct At<T> {
     at: T,
 }
 
-/// Shapes given by points. A polytope is read back as its points, to be scanned; `Polytope::hull_of` finds the edges again.
+/// Shapes given by points. A polytope is read back as its points, to be scanned; `Polytope::hull_of` finds the edges
+/// again.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Points<T> {
@@ -91,8 +92,8 @@ struct Pair<A, B> {
     b: B,
 }
 
-/// Writes a shape as one of the structs above, each field by a getter, and reads it by giving the fields to a constructor:
-/// `[parameters] shape as struct { field: getter } by constructor, where these are data too`.
+/// Writes a shape as one of the structs above, each field by a getter, and reads it by giving the fields to a
+/// constructor: `[parameters] shape as struct { field: getter } by constructor, where these are data too`.
 macro_rules! as_data {
     ($(
         [$($parameters:tt)*] $shape:ty as $data:ident { $($field:ident: $getter:ident),* } by $constructor:expr,

@@ -19,8 +19,8 @@
 //! laws::hold((0.1..10.0).prop_map(Diamond));
 //! ```
 //!
-//! Every law holds to within the rounding that the shape itself states: sixteen times the [`error`](crate::Core::error) of its
-//! [`core`](SupportMap::core), and as many units in the last place of where it is.
+//! Every law holds to within the rounding that the shape itself states: sixteen times the [`error`](crate::Core::error)
+//! of its [`core`](SupportMap::core), and as many units in the last place of where it is.
 
 use std::fmt::Debug;
 use std::format;
@@ -31,7 +31,8 @@ use proptest::test_runner::TestRunner;
 
 use crate::{CoreKind, Hint, Scalar, SupportMap, Vector, bounding_box, bounding_sphere, strategies};
 
-/// How many times its own rounding a shape may be off: a law compares up to four support points, each placed and measured.
+/// How many times its own rounding a shape may be off: a law compares up to four support points, each placed and
+/// measured.
 const SLACK: f64 = 16.0;
 
 /// A shape of any type, so that the laws are compiled once for each vector type.

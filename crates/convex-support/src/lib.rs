@@ -2,9 +2,9 @@
 //! on [glam](https://docs.rs/glam)'s vectors.
 //!
 //! A convex shape is described by one function, its [support mapping](SupportMap): which of its points lies farthest
-//! along a given direction. That one function is enough for ray casts, distances and continuous collision detection. It also
-//! composes: the Minkowski sum, the difference (the configuration space obstacle), the hull, a pose, an affine map and
-//! rounding each take a few lines, given the support mappings of the shapes they are made of.
+//! along a given direction. That one function is enough for ray casts, distances and continuous collision detection. It
+//! also composes: the Minkowski sum, the difference (the configuration space obstacle), the hull, a pose, an affine map
+//! and rounding each take a few lines, given the support mappings of the shapes they are made of.
 //!
 //! ```
 //! use convex_support::{Ball, Cuboid, Difference, Posed, SupportMap, glam::DVec3};
@@ -22,29 +22,32 @@
 //! # What is here
 //! - Shapes in 2D and 3D: [`Point`], [`Segment`], [`Triangle`], [`Ball`], [`Cuboid`], [`Capsule`], [`Ellipsoid`],
 //!   [`Polytope`]; in 3D also [`Cylinder`] and [`Cone`].
-//! - Combinators, which make shapes of shapes: [`Posed`], [`Affine`], [`MinkowskiSum`], [`Difference`], [`Hull`], [`Rounded`]. They can be
-//!   nested, and take shapes by value, by reference, or boxed as `Box<dyn SupportMap<Vector = DVec3>>`.
-//! - Questions that every shape answers: [`bounding_box`], [`bounding_sphere`], [`outer_box`]; and questions that shapes with a closed
-//!   form answer: [`closest_point`], [`line_crossing`].
-//! - The traits: [`SupportMap`], to be implemented for shapes of your own; and [`Vector`], [`Rotation`] and [`Scalar`], which glam's types
-//!   implement.
+//! - Combinators, which make shapes of shapes: [`Posed`], [`Affine`], [`MinkowskiSum`], [`Difference`], [`Hull`],
+//!   [`Rounded`]. They can be nested, and take shapes by value, by reference, or boxed as `Box<dyn SupportMap<Vector =
+//!   DVec3>>`.
+//! - Questions that every shape answers: [`bounding_box`], [`bounding_sphere`], [`outer_box`]; and questions that
+//!   shapes with a closed form answer: [`closest_point`], [`line_crossing`].
+//! - The traits: [`SupportMap`], to be implemented for shapes of your own; and [`Vector`], [`Rotation`] and [`Scalar`],
+//!   which glam's types implement.
 //! - A tree of boxes, [`Bvh`], for questions about many shapes.
 //!
-//! Constructors check their numbers and return [`InvalidShape`] if one is wrong; after that, support mappings never fail.
+//! Constructors check their numbers and return [`InvalidShape`] if one is wrong; after that, support mappings never
+//! fail.
 //!
 //! # Features
-//! - `std` (default): square roots and the like by the processor's instructions; without it by the libm crate, for `no_std` targets with
-//!   `alloc`, to the same bits.
+//! - `std` (default): square roots and the like by the processor's instructions; without it by the libm crate, for
+//!   `no_std` targets with `alloc`, to the same bits.
 //! - `f64` (default): asks glam for double precision; with glam 0.32, which has no such feature, turn on `glam-032`
 //!   instead.
-//! - `hull`: `Polytope::hull_of`, the exact convex hull of raw points, for polytopes of thousands of vertices; and `Faceted`, a
-//!   hull with its half-spaces.
-//! - `serde`: shapes, boxes, spheres and crossings as data, checked as they are read. Errors can be written but not read.
-//! - `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`: conversions of parry's shapes to shapes of this crate and back, and of its
-//!   compounds and meshes to their convex pieces.
+//! - `hull`: `Polytope::hull_of`, the exact convex hull of raw points, for polytopes of thousands of vertices; and
+//!   `Faceted`, a hull with its half-spaces.
+//! - `serde`: shapes, boxes, spheres and crossings as data, checked as they are read. Errors can be written but not
+//!   read.
+//! - `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`: conversions of parry's shapes to shapes of this crate and
+//!   back, and of its compounds and meshes to their convex pieces.
 //! - `mint`: glam's conversions from and to mint's vectors.
-//! - `proptest`: for property tests, the module `laws`, to which a shape of your own can be held, and the module `strategies`, which
-//!   generates shapes and poses of wild aspect and scale.
+//! - `proptest`: for property tests, the module `laws`, to which a shape of your own can be held, and the module
+//!   `strategies`, which generates shapes and poses of wild aspect and scale.
 
 #![no_std]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

@@ -4,8 +4,8 @@ use crate::{AngularVelocity, Scalar, Vector};
 
 /// The derivative of a number by the motion of a body. It is like a force and a moment that act on the body at a point.
 ///
-/// A translation `δ` of the body changes the number by `translation·δ`, and a turn `ω` about [`point`](Self::point) by `rotation·ω`, in
-/// world axes and to first order.
+/// A translation `δ` of the body changes the number by `translation·δ`, and a turn `ω` about [`point`](Self::point) by
+/// `rotation·ω`, in world axes and to first order.
 ///
 /// ```
 /// use convex_support::{MotionGradient, glam::DVec3};
@@ -22,7 +22,8 @@ use crate::{AngularVelocity, Scalar, Vector};
 pub struct MotionGradient<V: Vector> {
     /// The change per translation of the body, in world axes: the force.
     pub translation: V,
-    /// The change per turn of the body about the point, in world axes: a vector in 3D, in 2D a number, counterclockwise.
+    /// The change per turn of the body about the point, in world axes: a vector in 3D, in 2D a number,
+    /// counterclockwise.
     pub rotation: V::AngularVelocity,
     /// The point, in the world.
     pub point: V,
@@ -48,8 +49,8 @@ impl<V: Vector> MotionGradient<V> {
         V::AngularVelocity::from_coordinates(|i| self.rotation.coordinate(i) + moment.coordinate(i))
     }
 
-    /// The change per radian of a revolute joint that carries the body, about the unit vector `axis` through `pivot` (in 2D an axis of 1
-    /// is counterclockwise): one entry of the gradient by the joint angles.
+    /// The change per radian of a revolute joint that carries the body, about the unit vector `axis` through `pivot`
+    /// (in 2D an axis of 1 is counterclockwise): one entry of the gradient by the joint angles.
     #[must_use]
     pub fn revolute(&self, pivot: V, axis: V::AngularVelocity) -> V::Scalar {
         let turn = (0..MotionHessian::<V>::SIZE - V::DIM).map(|i| self.rotation.coordinate(i) * axis.coordinate(i));
@@ -88,7 +89,8 @@ impl<V: Vector> MotionHessian<V> {
     /// The number of rows and columns: 6 in 3D, 3 in 2D.
     pub const SIZE: usize = V::DIM * (V::DIM + 1) / 2;
 
-    /// The matrix with the upper left part of these rows, translations first, and whether it is the [only one](Self::is_unique).
+    /// The matrix with the upper left part of these rows, translations first, and whether it is the [only
+    /// one](Self::is_unique).
     #[inline]
     pub fn from_rows(rows: [[V::Scalar; MAX]; MAX], is_unique: bool) -> Self {
         Self { rows, is_unique }
@@ -110,8 +112,8 @@ impl<V: Vector> MotionHessian<V> {
         self.rows[row][column]
     }
 
-    /// The upper left part of the matrix, by rows: all of it with `N = 6` in 3D and `N = 3` in 2D, and with `N` the dimension the
-    /// second derivatives by translations.
+    /// The upper left part of the matrix, by rows: all of it with `N = 6` in 3D and `N = 3` in 2D, and with `N` the
+    /// dimension the second derivatives by translations.
     ///
     /// # Panics
     /// If `N` is larger than the matrix.

@@ -2,11 +2,11 @@
 
 use crate::Vector;
 
-/// A parallelotope: the points `center + t₀·e₀ + t₁·e₁ + t₂·e₂` with all `|tᵢ| ≤ 1`. A box, whatever linear map it went through; a
-/// parallelogram or a segment, where edges are zero.
+/// A parallelotope: the points `center + t₀·e₀ + t₁·e₁ + t₂·e₂` with all `|tᵢ| ≤ 1`. A box, whatever linear map it went
+/// through; a parallelogram or a segment, where edges are zero.
 ///
-/// The difference of two is a zonotope, each of whose facets is spanned by two of the edges of both, in 2D by one: so its facets are
-/// known without a search.
+/// The difference of two is a zonotope, each of whose facets is spanned by two of the edges of both, in 2D by one: so
+/// its facets are known without a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parallelotope<V> {
     /// The centre.

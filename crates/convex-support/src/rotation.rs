@@ -20,7 +20,8 @@ pub trait Rotation<V: Vector>: Copy + Debug + Default + PartialEq + Send + Sync 
     /// A bound on how far the matrix moves a unit vector from where the rotation does, in the same units.
     const OPERATOR_ERROR: f64;
 
-    /// The rotation that the quaternion `x·i + y·j + z·k + w` stands for; in 2D by its angle about `z`, `2·atan2(z, w)`.
+    /// The rotation that the quaternion `x·i + y·j + z·k + w` stands for; in 2D by its angle about `z`, `2·atan2(z,
+    /// w)`.
     fn from_xyzw(quaternion: [V::Scalar; 4]) -> Self;
 
     /// The matrix; of NaNs where there is none.
@@ -29,7 +30,8 @@ pub trait Rotation<V: Vector>: Copy + Debug + Default + PartialEq + Send + Sync 
     /// The rotation if it has a matrix.
     ///
     /// # Errors
-    /// [`InvalidShape::NonFinite`] naming the number that is not finite, [`InvalidShape::ZeroRotation`] for the zero quaternion.
+    /// [`InvalidShape::NonFinite`] naming the number that is not finite, [`InvalidShape::ZeroRotation`] for the zero
+    /// quaternion.
     fn checked(self, parameter: &'static str) -> Result<Self, InvalidShape>;
 }
 
@@ -71,11 +73,12 @@ macro_rules! angle {
 angle!(f32 rotates Vec2 by Mat2);
 angle!(f64 rotates DVec2 by DMat2);
 
-/// With `u = ε/2`: the length is right to `3u`, and `1 − 2(y² + z²)`, with `2(y² + z²) ≤ 2`, loses `4·3u` of that, `4u` by the
-/// rounding of the quotients, and `5u` by its own operations; the other entries lose half as much.
+/// With `u = ε/2`: the length is right to `3u`, and `1 − 2(y² + z²)`, with `2(y² + z²) ≤ 2`, loses `4·3u` of that, `4u`
+/// by the rounding of the quotients, and `5u` by its own operations; the other entries lose half as much.
 ///
-/// As an operator, the matrix is `1` and what is linear in the squared length, at most `2` long, which loses `4·3u`; the rounding of
-/// the quotients turns by `4u`; and its own operations leave `8u`, the root of the sum of their squares, as `Σ 2(y² + z²) ≤ 4`.
+/// As an operator, the matrix is `1` and what is linear in the squared length, at most `2` long, which loses `4·3u`;
+/// the rounding of the quotients turns by `4u`; and its own operations leave `8u`, the root of the sum of their
+/// squares, as `Σ 2(y² + z²) ≤ 4`.
 impl Rotation<DVec3> for DQuat {
     const MATRIX_ERROR: f64 = 11.0;
     const OPERATOR_ERROR: f64 = 12.0;
@@ -141,7 +144,8 @@ fn unit(q: DQuat) -> DQuat {
     }
 }
 
-/// The same where squares could over- or underflow: dividing by a power of two near the largest magnitude keeps them in range.
+/// The same where squares could over- or underflow: dividing by a power of two near the largest magnitude keeps them in
+/// range.
 #[cold]
 #[inline(never)]
 fn unit_of_scaled(x: f64, y: f64, z: f64, w: f64) -> DQuat {

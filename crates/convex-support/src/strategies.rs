@@ -1,9 +1,9 @@
-//! Strategies for [proptest](https://docs.rs/proptest) that generate shapes, poses and directions which are adversarial on purpose: lengths a few
-//! ulps apart or six orders of magnitude apart, zero extents, duplicate, collinear and coplanar points, parallel faces,
-//! directions along an axis or one ulp off it.
+//! Strategies for [proptest](https://docs.rs/proptest) that generate shapes, poses and directions which are adversarial
+//! on purpose: lengths a few ulps apart or six orders of magnitude apart, zero extents, duplicate, collinear and
+//! coplanar points, parallel faces, directions along an axis or one ulp off it.
 //!
-//! Every strategy for a shape takes its `size`, so that a test chooses the scale, by [`size`] or otherwise, and knows it
-//! for its tolerance.
+//! Every strategy for a shape takes its `size`, so that a test chooses the scale, by [`size`] or otherwise, and knows
+//! it for its tolerance.
 
 use std::boxed::Box;
 use std::fmt::Debug;

@@ -55,12 +55,14 @@ use crate::{
 ///
 /// With the feature `proptest`, `laws::hold` tests a shape for them.
 ///
-/// Queries take a support point to be right to four units in the last place of the shape's extent. If yours is less accurate, say so in
-/// [`core`](Self::core) and [`rounding`](Self::rounding): the bounds of an answer are certain only if these are right.
+/// Queries take a support point to be right to four units in the last place of the shape's extent. If yours is less
+/// accurate, say so in [`core`](Self::core) and [`rounding`](Self::rounding): the bounds of an answer are certain only
+/// if these are right.
 ///
-/// The other methods are optional, and only make queries faster. They tell how the shape splits into a core and a radius
-/// ([`core`](Self::core)), how it curves, which of its points is closest, and where a line crosses it. They are about the core; to ask
-/// about a whole shape, use [`closest_point`](crate::closest_point) and [`line_crossing`](crate::line_crossing).
+/// The other methods are optional, and only make queries faster. They tell how the shape splits into a core and a
+/// radius ([`core`](Self::core)), how it curves, which of its points is closest, and where a line crosses it. They are
+/// about the core; to ask about a whole shape, use [`closest_point`](crate::closest_point) and
+/// [`line_crossing`](crate::line_crossing).
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a convex shape",
     note = "implement `SupportMap` for it: only `support` is required"
@@ -81,9 +83,9 @@ pub trait SupportMap {
 
     /// The parts of the set: an origin, a core and a radius. Algorithms call this once for each query.
     ///
-    /// The provided method takes the whole set for the core, with its origin at zero and a radius of 0, and its support points to be right to
-    /// four units in the last place of its extent. A shape with another origin or a radius implements this and
-    /// [`core_support`](Self::core_support).
+    /// The provided method takes the whole set for the core, with its origin at zero and a radius of 0, and its support
+    /// points to be right to four units in the last place of its extent. A shape with another origin or a radius
+    /// implements this and [`core_support`](Self::core_support).
     #[inline(always)]
     fn core(&self) -> Core<Self::Vector> {
         let extent = extent_along_axes(|d| self.support(d)).norm();
@@ -107,19 +109,19 @@ pub trait SupportMap {
         self.support(direction)
     }
 
-    /// How the core curves: the entries `u·Hu`, `u·Hw` and `w·Hw` of the Hessian `H` of its support value at `direction`, which is
-    /// how fast the support point moves as the direction turns.
+    /// How the core curves: the entries `u·Hu`, `u·Hw` and `w·Hw` of the Hessian `H` of its support value at
+    /// `direction`, which is how fast the support point moves as the direction turns.
     ///
-    /// The provided method returns zeros, which is right at the vertices of a polytope. If a curved shape implements it, iterative methods
-    /// double their digits with each step; otherwise they gain only a few.
+    /// The provided method returns zeros, which is right at the vertices of a polytope. If a curved shape implements
+    /// it, iterative methods double their digits with each step; otherwise they gain only a few.
     #[inline]
     fn core_support_hessian(&self, direction: Self::Vector, [u, w]: [Self::Vector; 2]) -> [ScalarOf<Self>; 3] {
         let _ = (direction, u, w);
         [Scalar::ZERO; 3]
     }
 
-    /// The point of the core closest to `x`, both relative to the [origin](Core::origin), or `x` itself if it is in the core. `None`, as the
-    /// provided method returns, if this would cost more than a few support points.
+    /// The point of the core closest to `x`, both relative to the [origin](Core::origin), or `x` itself if it is in the
+    /// core. `None`, as the provided method returns, if this would cost more than a few support points.
     ///
     /// It must be a point of the core. Algorithms check by a support point whether it is the closest one.
     #[inline]
@@ -128,13 +130,14 @@ pub trait SupportMap {
         None
     }
 
-    /// Where the line through `source` along `direction` is in the core swept by a ball of the given `radius`, in closed form;
-    /// `source` is relative to the [origin](Core::origin). The provided method answers [`LineCrossing::Unknown`].
+    /// Where the line through `source` along `direction` is in the core swept by a ball of the given `radius`, in
+    /// closed form; `source` is relative to the [origin](Core::origin). The provided method answers
+    /// [`LineCrossing::Unknown`].
     ///
-    /// A negative radius erodes the core: the answer may then be about any set that lies in the core even if it is swept by a ball of the
-    /// radius `−radius`. So a line that enters this set enters the core, even if rounding has moved the core by up to that length. A flat
-    /// core contains no such set; then both ends of the stretch are where the line has certainly crossed the core, even if rounding has moved
-    /// its points by up to that length.
+    /// A negative radius erodes the core: the answer may then be about any set that lies in the core even if it is
+    /// swept by a ball of the radius `−radius`. So a line that enters this set enters the core, even if rounding has
+    /// moved the core by up to that length. A flat core contains no such set; then both ends of the stretch are where
+    /// the line has certainly crossed the core, even if rounding has moved its points by up to that length.
     #[inline]
     fn core_line_crossing(
         &self,
@@ -161,9 +164,9 @@ pub trait SupportMap {
     }
 
     /// Adds to a feature the points of the core that lie within a slab behind its supporting plane, relative to the
-    /// [origin](Core::origin): those `p` of its vertices with `direction·p ≥ h(direction) − slab`. So a face against the plane, or
-    /// nearly so, shows its corners, and an edge its ends. The provided method adds the support point alone, as is right for a smooth
-    /// surface.
+    /// [origin](Core::origin): those `p` of its vertices with `direction·p ≥ h(direction) − slab`. So a face against
+    /// the plane, or nearly so, shows its corners, and an edge its ends. The provided method adds the support point
+    /// alone, as is right for a smooth surface.
     ///
     /// Where two shapes touch, the points of both features tell in which points they support each other.
     fn core_support_feature(&self, direction: Self::Vector, slab: ScalarOf<Self>, feature: &mut Feature<Self::Vector>) {
@@ -171,21 +174,21 @@ pub trait SupportMap {
         feature.push(self.core_support(direction, &mut Hint::new()), 0);
     }
 
-    /// The core as a parallelotope, relative to the [origin](Core::origin), if it is one and not a single point; `None`, as the provided
-    /// method returns, otherwise.
+    /// The core as a parallelotope, relative to the [origin](Core::origin), if it is one and not a single point;
+    /// `None`, as the provided method returns, otherwise.
     ///
-    /// Its points must be as near to those of the exact core as [`rounding`](Self::rounding) says of support points. If the cores of two
-    /// shapes that overlap are parallelotopes, the depth is found in closed form.
+    /// Its points must be as near to those of the exact core as [`rounding`](Self::rounding) says of support points. If
+    /// the cores of two shapes that overlap are parallelotopes, the depth is found in closed form.
     #[inline]
     fn core_parallelotope(&self) -> Option<Parallelotope<Self::Vector>> {
         None
     }
 
-    /// Bounds on the rounding errors of the core's support points. Algorithms call this once, at the end of a query, to prove what they
-    /// found.
+    /// Bounds on the rounding errors of the core's support points. Algorithms call this once, at the end of a query, to
+    /// prove what they found.
     ///
-    /// The provided method finds the size of the core by support points along the axes, and takes every support point to be right to four
-    /// units in the last place of that size.
+    /// The provided method finds the size of the core by support points along the axes, and takes every support point
+    /// to be right to four units in the last place of that size.
     fn rounding(&self) -> Rounding<Self::Vector> {
         Rounding::relative(extent_along_axes(|d| self.core_support(d, &mut Hint::new())), 4.0)
     }
@@ -221,8 +224,8 @@ pub(crate) fn swept<V: Vector>(radius: V::Scalar, direction: V) -> V {
     direction.unit().unwrap_or_else(|| V::axis(0)) * radius
 }
 
-/// The Hessian of the support value of a ball of the given radius about zero, as seen along two changes: with `e` the unit
-/// direction and `c` the length of the direction, `r/c·(u·w − (u·e)·(w·e))`.
+/// The Hessian of the support value of a ball of the given radius about zero, as seen along two changes: with `e` the
+/// unit direction and `c` the length of the direction, `r/c·(u·w − (u·e)·(w·e))`.
 #[inline(always)]
 pub(crate) fn swept_hessian<V: Vector>(radius: V::Scalar, direction: V, changes: [V; 2]) -> [V::Scalar; 3] {
     if radius == V::Scalar::ZERO {

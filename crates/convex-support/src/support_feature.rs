@@ -26,12 +26,13 @@ fn hash<V: Vector>(point: V) -> u32 {
     (mixed ^ (mixed >> 32)) as u32
 }
 
-/// The points of a shape that lie within a slab behind its supporting plane: a vertex, the ends of an edge, or the corners of a
-/// face, in no order, and perhaps with points in between. For a disc they are some points of the rim, and [`rim`](Self::rim) gives the
-/// disc. If a face has more corners than there is room for, they are [some of the corners](Self::is_complete).
+/// The points of a shape that lie within a slab behind its supporting plane: a vertex, the ends of an edge, or the
+/// corners of a face, in no order, and perhaps with points in between. For a disc they are some points of the rim, and
+/// [`rim`](Self::rim) gives the disc. If a face has more corners than there is room for, they are [some of the
+/// corners](Self::is_complete).
 ///
-/// Two shapes in contact touch where their features face each other. Each point has a number that stays the same as long as it is
-/// the same point of the shape, so that a contact can be recognised in the next frame.
+/// Two shapes in contact touch where their features face each other. Each point has a number that stays the same as
+/// long as it is the same point of the shape, so that a contact can be recognised in the next frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feature<V> {
     points: [V; MAX_POINTS],
@@ -96,8 +97,8 @@ impl<V: Vector> Feature<V> {
         self.rim = Some(rim);
     }
 
-    /// Whether the points and the rim are the whole feature. If a face has more than 16 corners, or a shape of another library is known
-    /// only by its support points, they span a part of it.
+    /// Whether the points and the rim are the whole feature. If a face has more than 16 corners, or a shape of another
+    /// library is known only by its support points, they span a part of it.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.is_complete
@@ -178,8 +179,9 @@ impl<V: Vector> Feature<V> {
             near[..len].iter().for_each(|&(i, _)| self.push(point(i), i as u32));
             return;
         }
-        // There may be too many: then those that are farthest along directions across, turned all around. None of these is along an edge of a
-        // face whose corners are evenly spaced, where rounding would tell which of its ends is farther.
+        // There may be too many: then those that are farthest along directions across, turned all around. None of these
+        // is along an edge of a face whose corners are evenly spaced, where rounding would tell which of its ends is
+        // farther.
         let [e, f] = across(direction);
         let turned = |k: usize| sin_cos(core::f64::consts::TAU * (k as f64 + 0.3) / MAX_POINTS as f64);
         let aside = core::array::from_fn::<_, MAX_POINTS, _>(turned)
@@ -205,9 +207,10 @@ impl<V: Vector> Feature<V> {
         }
     }
 
-    /// Of a shape that is known by its support points alone, the vertices around the one along a direction and no farther than `slab`
-    /// behind it: support points along directions turned all around by a small angle, as far as they stay where they are at half of it.
-    /// On what is curved they do not. Their numbers are made of their coordinates.
+    /// Of a shape that is known by its support points alone, the vertices around the one along a direction and no
+    /// farther than `slab` behind it: support points along directions turned all around by a small angle, as far as
+    /// they stay where they are at half of it. On what is curved they do not. Their numbers are made of their
+    /// coordinates.
     #[cfg(any(test, feature = "parry2d", feature = "parry2d-f64", feature = "parry3d", feature = "parry3d-f64"))]
     pub(crate) fn probe(&mut self, direction: V, slab: V::Scalar, support: impl Fn(V) -> V) {
         let point = support(direction);
@@ -229,8 +232,8 @@ impl<V: Vector> Feature<V> {
         self.is_complete &= self.len < 3;
     }
 
-    /// The same of discs across the second axis, by height and radius: of each the support point, or points all around where the
-    /// disc is flat against the plane, or the support point and some around where it nearly is.
+    /// The same of discs across the second axis, by height and radius: of each the support point, or points all around
+    /// where the disc is flat against the plane, or the support point and some around where it nearly is.
     pub(crate) fn collect_discs(&mut self, direction: V, slab: V::Scalar, discs: [(V::Scalar, V::Scalar); 2])
     where
         V: Vector3,

@@ -309,7 +309,8 @@ fn everything_is_shown_once() {
     }
 }
 
-/// A bound is a distance, less what it may be rounded by: of boxes that overlap or touch 0, and of tiny and huge gaps as well.
+/// A bound is a distance, less what it may be rounded by: of boxes that overlap or touch 0, and of tiny and huge gaps
+/// as well.
 #[test]
 fn bounds_of_boxes_at_every_magnitude() {
     fn check<V: Vector>(magnitudes: &[f64]) {

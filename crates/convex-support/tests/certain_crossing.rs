@@ -1,4 +1,5 @@
-//! What single precision is certain of about where lines enter shapes, against the closed forms of the same numbers in double precision.
+//! What single precision is certain of about where lines enter shapes, against the closed forms of the same numbers in
+//! double precision.
 
 use std::cell::Cell;
 
@@ -54,7 +55,8 @@ fn hull([a, b, c]: [f32; 3]) -> [[f32; 3]; 11] {
     })
 }
 
-/// The same swept by a ball of half a length, turned and moved, each if it is asked for. Of the shapes that cannot be swept none is.
+/// The same swept by a ball of half a length, turned and moved, each if it is asked for. Of the shapes that cannot be
+/// swept none is.
 fn changed<V: Vector3>(
     (kind, lengths, rotation): (usize, [f32; 3], [f32; 4]),
     [is_swept, is_posed]: [bool; 2],
@@ -122,7 +124,8 @@ fn what_is_certain_in_single_precision_is_so_in_double() {
             }
             asked.set(asked.get() + 1);
             let crossing = line_crossing(&truth, double(source), double(direction)).crossing();
-            // A few roundings of the closed form across the surface, which move the crossing the farther the less steep it is.
+            // A few roundings of the closed form across the surface, which move the crossing the farther the less steep
+            // it is.
             let lost = |normal: DVec3| {
                 let (reach, steep) =
                     (size + origin.length() + double(source).length(), normal.dot(double(direction)).abs());
@@ -160,8 +163,9 @@ fn what_is_certain_in_single_precision_is_so_in_double() {
     assert!(misses > asked.get() / 20 && hits > asked.get() / 3, "{misses} misses and {hits} hits of {}", asked.get());
 }
 
-/// The line is along the segment and crosses it, and rounding says that it passes it by a 1e-8th of its length. In single precision the square of
-/// that, times the square of the size, is zero, and zero is not less than zero: so it counted as a certain miss.
+/// The line is along the segment and crosses it, and rounding says that it passes it by a 1e-8th of its length. In
+/// single precision the square of that, times the square of the size, is zero, and zero is not less than zero: so it
+/// counted as a certain miss.
 #[test]
 fn what_is_too_small_to_be_squared_is_not_certain() {
     let ends = [Vec2::new(-1.049_297_6e-5, 2.778_323e-6), Vec2::new(-2.156_398_5e-6, 3.496_756_5e-5)];
@@ -173,9 +177,9 @@ fn what_is_too_small_to_be_squared_is_not_certain() {
     assert!(matches!(crossing, LineCrossing::Crosses(_)), "{crossing:?}");
 }
 
-/// Bounds that allow for a displacement of the line by roundings of the size are long along a line that is nearly along a
-/// side, or grazes it, and none where it may pass. In twice the precision the crossing of the numbers as they are given is
-/// known to its own roundings: a line that is one last bit inside enters for certain.
+/// Bounds that allow for a displacement of the line by roundings of the size are long along a line that is nearly along
+/// a side, or grazes it, and none where it may pass. In twice the precision the crossing of the numbers as they are
+/// given is known to its own roundings: a line that is one last bit inside enters for certain.
 #[test]
 fn a_line_nearly_along_a_side_is_looked_at_closely() {
     const TILT: f64 = 1.0 / 1_073_741_824.0;

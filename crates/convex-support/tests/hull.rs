@@ -6,7 +6,8 @@ use convex_support::{Core, Hint, Polytope, Scalar, SupportMap, Vector};
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 
-/// Both reach equally far along `d`, however the search begins, and the reduced one has no point that the other has not.
+/// Both reach equally far along `d`, however the search begins, and the reduced one has no point that the other has
+/// not.
 fn same_set<V: Vector>(points: &[V], directions: &[V]) -> Result<(), TestCaseError> {
     let all = Polytope::new(points.iter().copied()).expect("valid points");
     let hull = Polytope::hull_of(points.iter().copied()).expect("valid points");
@@ -115,8 +116,8 @@ fn first_farthest<V: Vector>(hull: &Polytope<V>, d: V) -> V {
 
 #[test]
 fn of_vertices_equally_far_the_first_is_found() {
-    // The middle is 0, so that both see the same numbers. Sizes differ, up to needles and flakes; directions along axes,
-    // edges and facets tie.
+    // The middle is 0, so that both see the same numbers. Sizes differ, up to needles and flakes; directions along
+    // axes, edges and facets tie.
     for (n, size) in [(40, DVec3::ONE), (300, DVec3::new(1.0, 0.5, 0.25)), (2000, DVec3::new(1e6, 1.0, 1e-3))] {
         let half: Vec<DVec3> = spiral(n).map(|p| p * size).collect();
         let hull = Polytope::hull_of(half.iter().copied().chain(half.iter().map(|&p| -p))).expect("valid points");

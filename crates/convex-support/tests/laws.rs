@@ -137,7 +137,8 @@ fn a_scaled_or_mirrored_ball_stays_a_ball() {
     assert_eq!(sheared.core().radius, 0.0, "an ellipsoid is its own core");
 }
 
-/// Sizes and directions whose products are out of range, in single precision: only the direction of the direction matters.
+/// Sizes and directions whose products are out of range, in single precision: only the direction of the direction
+/// matters.
 #[test]
 fn support_points_do_not_depend_on_the_length_of_the_direction() {
     use convex_support::glam::{Mat3A, Quat};
@@ -176,7 +177,8 @@ fn support_points_do_not_depend_on_the_length_of_the_direction() {
     }
 }
 
-/// Far from the world's origin the origin of a shape is rounded by much of the shape's size, and the core makes up for it.
+/// Far from the world's origin the origin of a shape is rounded by much of the shape's size, and the core makes up for
+/// it.
 #[test]
 fn a_shape_placed_far_away_loses_nothing_of_itself() {
     use convex_support::Polytope;

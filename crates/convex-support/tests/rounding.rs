@@ -1,4 +1,5 @@
-//! What shapes say of their rounding, against a hundred digits: the claimed error covers the true one, and not by much more than it must.
+//! What shapes say of their rounding, against a hundred digits: the claimed error covers the true one, and not by much
+//! more than it must.
 
 use crate::exact::{Fixed, Random, Space, Tree, dot, norm};
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
@@ -110,7 +111,8 @@ fn numbers_that_are_given_are_exact() {
     assert_eq!(two.rounding().error, DVec3::ZERO, "nothing was added");
 }
 
-/// A cuboid far away, turned back to where it came from: what its pose loses is known to a few ulps of its size and of the turn.
+/// A cuboid far away, turned back to where it came from: what its pose loses is known to a few ulps of its size and of
+/// the turn.
 #[test]
 fn what_a_far_origin_loses_stays_with_the_core() {
     let away = Posed::translated(Cuboid::new(DVec3::ONE).expect("a box"), DVec3::new(1e6, 1e5, -1e4)).expect("away");

@@ -1,4 +1,5 @@
-//! A part lies deep inside an obstacle. Which way out? Gradient descent on the common scale, where margin and distance are flat.
+//! A part lies deep inside an obstacle. Which way out? Gradient descent on the common scale, where margin and distance
+//! are flat.
 //!
 //! `cargo run -p ellip-margin --example out_of_overlap`
 

@@ -1,5 +1,5 @@
-//! The paper's experiment: an elliptic link walks at random past an elliptic obstacle on a grid of 128 × 128 cells, and the
-//! margin is tracked. How large may a step be?
+//! The paper's experiment: an elliptic link walks at random past an elliptic obstacle on a grid of 128 × 128 cells, and
+//! the margin is tracked. How large may a step be?
 //!
 //! Rimon and Boyd report seven inverse iterations a step at one degree and one cell, and no correct convergence beyond
 //! about five degrees and five cells.

@@ -1,9 +1,9 @@
 //! Many margins side by side: the same arithmetic as one margin, in lanes of vector registers.
 //!
-//! Pairs are taken eight at a time and turned into a structure of arrays. The loop over the lanes then has one body without
-//! branches, [`solve_straight`], which the compiler turns into vector instructions: those of the target, or with the
-//! feature `simd` the widest that the processor has, found at run time. Pairs near contact, near the boundary of E₂, of high
-//! aspect, or slow to converge are asked again one by one.
+//! Pairs are taken eight at a time and turned into a structure of arrays. The loop over the lanes then has one body
+//! without branches, [`solve_straight`], which the compiler turns into vector instructions: those of the target, or
+//! with the feature `simd` the widest that the processor has, found at run time. Pairs near contact, near the boundary
+//! of E₂, of high aspect, or slow to converge are asked again one by one.
 
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -18,12 +18,12 @@ use crate::{Answer, EllipsoidPair, InvalidQuery, Margin, MarginOptions, Method, 
 
 const LANES: usize = 8;
 
-/// The free margins of many pairs, of `e1[k]` about `e2[k]` for each k: the answers of [`free_margin`](crate::free_margin), in a
-/// fraction of the time.
+/// The free margins of many pairs, of `e1[k]` about `e2[k]` for each k: the answers of
+/// [`free_margin`](crate::free_margin), in a fraction of the time.
 ///
-/// The margins are the same to 1e-14 of 1 + m and the rounding of m, ν to 1e-12 of itself, the signs exactly; all are the same
-/// on every processor.
-/// `iterations` is 5, that of the batch, for a pair that did not have to be solved again by itself.
+/// The margins are the same to 1e-14 of 1 + m and the rounding of m, ν to 1e-12 of itself, the signs exactly; all are
+/// the same on every processor. `iterations` is 5, that of the batch, for a pair that did not have to be solved again
+/// by itself.
 ///
 /// If one list has a single ellipsoid, it is paired with every ellipsoid of the other list.
 ///
@@ -69,8 +69,8 @@ pub fn free_margins_into<V: Vector>(
     Ok(())
 }
 
-/// Calls `ask` with the margin of each pair and returns what it returns, such as gradients and Hessians. The margins are solved side by
-/// side as by [`free_margins`].
+/// Calls `ask` with the margin of each pair and returns what it returns, such as gradients and Hessians. The margins
+/// are solved side by side as by [`free_margins`].
 ///
 /// ```
 /// use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};
@@ -109,7 +109,8 @@ pub fn map_margins<'a, V: Vector, T: Send>(
 
 /// [`map_margins`] into a slice: `answers[k]` becomes what `ask` returns for pair k. Nothing is allocated.
 ///
-/// This is the function for columns of a data frame, if a single number of each answer is to go into an existing buffer.
+/// This is the function for columns of a data frame, if a single number of each answer is to go into an existing
+/// buffer.
 ///
 /// ```
 /// use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};
@@ -148,8 +149,8 @@ pub fn map_margins_into<'a, V: Vector, T: Send>(
     Ok(())
 }
 
-/// Calls `ask` with each pair and returns what it returns, such as distances, common scales, and their derivatives. With the feature
-/// `rayon` it uses all cores.
+/// Calls `ask` with each pair and returns what it returns, such as distances, common scales, and their derivatives.
+/// With the feature `rayon` it uses all cores.
 ///
 /// ```
 /// use ellip_margin::convex_support::{Ellipsoid, glam::DVec2};
@@ -457,7 +458,8 @@ fn solve_lanes<const N: usize>(pairs: &Pairs<N>, tolerance: f64, answers: &mut A
     loop_over_lanes(pairs, tolerance, answers);
 }
 
-/// The loop that becomes vector instructions: in a function of its own, so that nothing aliases and nothing else is in it.
+/// The loop that becomes vector instructions: in a function of its own, so that nothing aliases and nothing else is in
+/// it.
 #[inline(always)]
 fn loop_over_lanes<const N: usize>(pairs: &Pairs<N>, tolerance: f64, answers: &mut Answers<N>) {
     for lane in 0..LANES {

@@ -8,10 +8,11 @@ use crate::{
     Distance, DistanceBracket, Margin, MarginOptions, Scaling, distance, distance_bracket, free_margin, scaling,
 };
 
-/// Two ellipsoids, which can be asked for their margin, their distance and their common scale, with the derivatives of each.
+/// Two ellipsoids, which can be asked for their margin, their distance and their common scale, with the derivatives of
+/// each.
 ///
-/// Nothing is computed before it is asked for. An [`Answer`] refers to the same two ellipsoids, so that its derivatives cannot be
-/// those of others.
+/// Nothing is computed before it is asked for. An [`Answer`] refers to the same two ellipsoids, so that its derivatives
+/// cannot be those of others.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec3};
@@ -85,8 +86,8 @@ impl<'a, V: Vector> EllipsoidPair<'a, V> {
     }
 }
 
-/// An answer about a pair, together with the pair. It dereferences to the answer itself, and has the methods `gradient`,
-/// `gradient_of_second`, `hessian` and `hessian_of_second`.
+/// An answer about a pair, together with the pair. It dereferences to the answer itself, and has the methods
+/// `gradient`, `gradient_of_second`, `hessian` and `hessian_of_second`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Answer<'a, V: Vector, A> {

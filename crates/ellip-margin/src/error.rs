@@ -4,8 +4,8 @@ use core::fmt;
 
 /// Why a question cannot be answered.
 ///
-/// A single ellipsoid is checked when it is built ([`InvalidShape`](convex_support::InvalidShape)); what is left are options and
-/// lists.
+/// A single ellipsoid is checked when it is built ([`InvalidShape`](convex_support::InvalidShape)); what is left are
+/// options and lists.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]

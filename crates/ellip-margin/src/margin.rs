@@ -19,11 +19,12 @@ use crate::{MarginOptions, Method, Status};
     serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
 )]
 pub struct Margin<V: Vector> {
-    /// m = min (x − x₁)ᵀP(x − x₁) − 1 over x in E₂, in [−1, ∞): positive where the ellipsoids are disjoint, 0 where they
-    /// touch, negative where they overlap, −1 where x₁ lies in E₂. Grown by the factor √(1 + m), E₁ just touches E₂.
+    /// m = min (x − x₁)ᵀP(x − x₁) − 1 over x in E₂, in [−1, ∞): positive where the ellipsoids are disjoint, 0 where
+    /// they touch, negative where they overlap, −1 where x₁ lies in E₂. Grown by the factor √(1 + m), E₁ just touches
+    /// E₂.
     pub margin: V::Scalar,
-    /// The multiplier ν ≥ 0 of the constraint x ∈ E₂: 0 where x₁ lies in E₂, and else minus the minimal eigenvalue λ* of
-    /// the paper's 2N×2N matrix.
+    /// The multiplier ν ≥ 0 of the constraint x ∈ E₂: 0 where x₁ lies in E₂, and else minus the minimal eigenvalue λ*
+    /// of the paper's 2N×2N matrix.
     pub nu: V::Scalar,
     /// The minimiser x*: the point of E₂ where the grown E₁ touches it; x₁ where that lies in E₂.
     pub point: V,
@@ -39,15 +40,15 @@ pub struct Margin<V: Vector> {
 /// The free margin of `e1` about `e2` (Rimon and Boyd, Section 3): how far `e1` is from `e2`, measured in the norm in
 /// which `e1` is the unit ball.
 ///
-/// m = min { (x − x₁)ᵀP(x − x₁) : x ∈ E₂ } − 1. It is not symmetric, but its sign is: positive means disjoint, 0 touching,
-/// negative overlapping. As a function of the bodies it is continuously differentiable everywhere
-/// (see [`EllipsoidPair::margin`](crate::EllipsoidPair::margin)) and analytic except where x₁ crosses the boundary of E₂, where m reaches −1, its
-/// least value, with gradient zero.
+/// m = min { (x − x₁)ᵀP(x − x₁) : x ∈ E₂ } − 1. It is not symmetric, but its sign is: positive means disjoint, 0
+/// touching, negative overlapping. As a function of the bodies it is continuously differentiable everywhere (see
+/// [`EllipsoidPair::margin`](crate::EllipsoidPair::margin)) and analytic except where x₁ crosses the boundary of E₂,
+/// where m reaches −1, its least value, with gradient zero.
 ///
 /// The secular equation is solved from the semi-axes and axes; no matrix is formed whose condition is the square of an
-/// aspect ratio. The margin is that of the bodies as stored to about 12 digits and better, up to a condition of
-/// 1e14 (an aspect of 1e7 each) and at any scale; near contact too, so that its sign can be trusted down to the rounding
-/// of the bodies themselves.
+/// aspect ratio. The margin is that of the bodies as stored to about 12 digits and better, up to a condition of 1e14
+/// (an aspect of 1e7 each) and at any scale; near contact too, so that its sign can be trusted down to the rounding of
+/// the bodies themselves.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec3};
@@ -105,8 +106,8 @@ pub fn free_margin_with<V: Vector>(
     }
 }
 
-/// By the polynomial, refined where rounding could show in its margin, and where it would lose digits by the singular basis;
-/// from `start`, 0 for none known.
+/// By the polynomial, refined where rounding could show in its margin, and where it would lose digits by the singular
+/// basis; from `start`, 0 for none known.
 ///
 /// The seldom ways are given the pair by value, so that the pair of the common way can stay in registers.
 #[inline]

@@ -39,7 +39,8 @@ pub enum Method {
     #[default]
     Automatic,
     /// In the basis of singular vectors that makes both bodies round at once: full accuracy at any condition, at
-    /// several times the cost. `Automatic` agrees with it to 1e-14 of 1 + m, and in ν to 1e-12 as a rule, 1e-11 at worst.
+    /// several times the cost. `Automatic` agrees with it to 1e-14 of 1 + m, and in ν to 1e-12 as a rule, 1e-11 at
+    /// worst.
     SingularBasis,
 }
 
@@ -56,8 +57,8 @@ impl MarginOptions {
         Self { tolerance: 1e-15, max_iterations: 64, method: Method::Automatic }
     }
 
-    /// The relative error of ν to reach, as foreseen from the last step and the order of the method. The default, 1e-15,
-    /// leaves nothing but rounding; the margin's own error is about the square of this.
+    /// The relative error of ν to reach, as foreseen from the last step and the order of the method. The default,
+    /// 1e-15, leaves nothing but rounding; the margin's own error is about the square of this.
     #[must_use]
     pub const fn tolerance(&self) -> f64 {
         self.tolerance

@@ -1,9 +1,9 @@
 //! The common scale at which two ellipsoids touch: symmetric, smooth, and telling how deep they overlap.
 //!
-//! Perram and Wertheim (1985): grown or shrunk together about their own centres, E₁ and E₂ touch at the scale α with
-//! α² = max over t in [0, 1] of t(1 − t)·rᵀ[(1 − t)P⁻¹ + tQ⁻¹]⁻¹r. In the singular basis of the margin, with ν = (1 − t)/t,
-//! the point of contact has the coordinates x̂ᵢ = ĉᵢ/(1 + νsᵢ), sᵢ = 1/σᵢ², its distance from x₂ in the norm of E₂ is
-//! ‖x̂‖, from x₁ in the norm of E₁ ‖ŵ‖, ŵᵢ = νx̂ᵢ/σᵢ, and the derivative in t vanishes where the two agree:
+//! Perram and Wertheim (1985): grown or shrunk together about their own centres, E₁ and E₂ touch at the scale α with α²
+//! = max over t in [0, 1] of t(1 − t)·rᵀ[(1 − t)P⁻¹ + tQ⁻¹]⁻¹r. In the singular basis of the margin, with ν = (1 −
+//! t)/t, the point of contact has the coordinates x̂ᵢ = ĉᵢ/(1 + νsᵢ), sᵢ = 1/σᵢ², its distance from x₂ in the norm of
+//! E₂ is ‖x̂‖, from x₁ in the norm of E₁ ‖ŵ‖, ŵᵢ = νx̂ᵢ/σᵢ, and the derivative in t vanishes where the two agree:
 //!
 //! > Σ ĉᵢ²(ν²sᵢ − 1)/(1 + νsᵢ)² = 0.
 //!
@@ -25,30 +25,32 @@ use crate::{MarginOptions, Status};
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Scaling<V: Vector> {
-    /// The scale α ≥ 0: if both bodies are scaled by it about their centres, they just touch. If it is above 1 they are disjoint, below 1
-    /// they overlap, and it is 0 if they are concentric.
+    /// The scale α ≥ 0: if both bodies are scaled by it about their centres, they just touch. If it is above 1 they are
+    /// disjoint, below 1 they overlap, and it is 0 if they are concentric.
     pub scale: V::Scalar,
     /// Where they touch then.
     pub point: V,
-    /// The unit normal of the common tangent plane there, from E₁ to E₂. Zero for concentric bodies: it jumps where the centres meet.
+    /// The unit normal of the common tangent plane there, from E₁ to E₂. Zero for concentric bodies: it jumps where the
+    /// centres meet.
     pub normal: V,
-    /// (α − 1)(a₁ + a₂) with the least semi-axis of each: a length that is negative where the bodies overlap, continuous and as
-    /// smooth as α. It is exact for balls. For others its magnitude is a lower bound, where they are disjoint of their distance,
-    /// and where they overlap of the depth: no shorter translation of one separates them.
+    /// (α − 1)(a₁ + a₂) with the least semi-axis of each: a length that is negative where the bodies overlap,
+    /// continuous and as smooth as α. It is exact for balls. For others its magnitude is a lower bound, where they are
+    /// disjoint of their distance, and where they overlap of the depth: no shorter translation of one separates them.
     pub separation: V::Scalar,
     /// How the iteration ended.
     pub status: Status,
     /// The steps it took.
     pub iterations: usize,
-    /// Where they touch as each of them sees it, as unit vectors of the balls they are images of, that of E₂ with the opposite sign;
-    /// zero for concentric bodies. Kept because derivatives from `point` or `normal` would lose digits.
+    /// Where they touch as each of them sees it, as unit vectors of the balls they are images of, that of E₂ with the
+    /// opposite sign; zero for concentric bodies. Kept because derivatives from `point` or `normal` would lose digits.
     pub(crate) ball_points: [V; 2],
 }
 
 /// The scale α about their own centres at which `e1` and `e2` touch (Perram and Wertheim's contact function is α²).
 ///
-/// α − 1 has the sign of the margin and is symmetric in the two. It is smooth, and has a slope at any depth, also where the margin has
-/// reached its floor of −1. [`EllipsoidPair::scaling`](crate::EllipsoidPair::scaling) has its derivatives.
+/// α − 1 has the sign of the margin and is symmetric in the two. It is smooth, and has a slope at any depth, also where
+/// the margin has reached its floor of −1. [`EllipsoidPair::scaling`](crate::EllipsoidPair::scaling) has its
+/// derivatives.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec3};

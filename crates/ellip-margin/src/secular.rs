@@ -5,9 +5,9 @@
 //!
 //! > φ(τ)² = Σ ĉᵢ²/(1 + τrᵢ)² = 1.
 //!
-//! No term cancels, and nothing over- or underflows before the answer does.
-//! 1/φ is concave in τ, so that Newton's method for 1/φ(τ) = 1 (Hebden 1973; Moré and Sorensen 1983) rises to the root from
-//! any τ below it, and comes back below in one step from above.
+//! No term cancels, and nothing over- or underflows before the answer does. 1/φ is concave in τ, so that Newton's
+//! method for 1/φ(τ) = 1 (Hebden 1973; Moré and Sorensen 1983) rises to the root from any τ below it, and comes back
+//! below in one step from above.
 
 use convex_support::numerics::elementary::hypot;
 #[cfg(not(feature = "std"))]
@@ -104,8 +104,9 @@ pub(crate) fn solve<const N: usize>(
             break;
         }
         tau = next;
-        // Newton's method squares the error. From below it rises to the root, and only rounding takes it back: where φ is flat, no
-        // more digits of τ are to be had. (A start far above the root may take two steps back: ε of it is much.)
+        // Newton's method squares the error. From below it rises to the root, and only rounding takes it back: where φ
+        // is flat, no more digits of τ are to be had. (A start far above the root may take two steps back: ε of it is
+        // much.)
         if change * change <= options.tolerance() * (tau * tau) || (rises && step <= 0.0) {
             status = Status::Converged;
             break;
@@ -126,8 +127,8 @@ pub(crate) fn solve<const N: usize>(
     Solution { nu, y, margin, status, iterations }
 }
 
-/// m = ‖w‖² − 1 for the unit vector y, with w = diag(a₁)⁻¹R₁ᵀ(v − r), v = x* − x₂ = R₂·diag(a₂)y; by the compensated Lagrangian where
-/// rounding could show in that.
+/// m = ‖w‖² − 1 for the unit vector y, with w = diag(a₁)⁻¹R₁ᵀ(v − r), v = x* − x₂ = R₂·diag(a₂)y; by the compensated
+/// Lagrangian where rounding could show in that.
 #[cfg(feature = "paper")]
 #[inline]
 pub(crate) fn margin<const N: usize>(pair: &Pair<N>, y: Vec<N>, nu: f64) -> f64 {
@@ -136,8 +137,9 @@ pub(crate) fn margin<const N: usize>(pair: &Pair<N>, y: Vec<N>, nu: f64) -> f64 
 
 /// ‖w‖² − 1; `None` where rounding could show.
 ///
-/// Among the points of E₂ the nearest is stationary, so that the rounding errors of y enter squared, and those of ν not at all.
-/// What remains are errors of about ε(‖v‖ + ‖r‖) in the units of space, which E₁'s least semi-axis turns into errors of w.
+/// Among the points of E₂ the nearest is stationary, so that the rounding errors of y enter squared, and those of ν not
+/// at all. What remains are errors of about ε(‖v‖ + ‖r‖) in the units of space, which E₁'s least semi-axis turns into
+/// errors of w.
 #[inline]
 fn plain_margin<const N: usize>(pair: &Pair<N>, y: Vec<N>) -> Option<f64> {
     let (v, r) = (pair.out_of_ball(y), pair.r());
@@ -153,8 +155,8 @@ fn plain_margin<const N: usize>(pair: &Pair<N>, y: Vec<N>) -> Option<f64> {
 
 /// The compensated Lagrangian less what the rounding of y adds to it.
 ///
-/// Where E₁ is thinner than the rounding of E₂'s points, y cannot be told to E₁'s size: `‖B‖²ε²` is no longer little. But the
-/// Lagrangian is quadratic in y, so that with h = Bᵀw + νy, half its gradient, its least value for this ν is
+/// Where E₁ is thinner than the rounding of E₂'s points, y cannot be told to E₁'s size: `‖B‖²ε²` is no longer little.
+/// But the Lagrangian is quadratic in y, so that with h = Bᵀw + νy, half its gradient, its least value for this ν is
 ///
 /// > L(y) − hᵀ(C + ν)⁻¹h = L(y) − Σ (σᵢ·(uᵢ·w) + ν·(vᵢ·y))²/(σᵢ² + ν),
 ///

@@ -8,9 +8,9 @@ use crate::{Margin, MarginOptions};
 
 /// The margin of one pair along a trajectory, each step started from the last.
 ///
-/// Newton's method for the secular equation converges from any start, so that a step may be of any size. After a turn of
-/// 90 degrees, a jump, or even for another pair of bodies, the answer is that of [`free_margin`](crate::free_margin); it only takes
-/// a few more iterations.
+/// Newton's method for the secular equation converges from any start, so that a step may be of any size. After a turn
+/// of 90 degrees, a jump, or even for another pair of bodies, the answer is that of
+/// [`free_margin`](crate::free_margin); it only takes a few more iterations.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec2};
@@ -73,9 +73,9 @@ impl MarginTracker {
         self.iterations += iterations as u64;
     }
 
-    /// ν of the next step by the polynomial through the last k + 1 values, ν + ∇ν + … + ∇ᵏν, whose error at the last step was
-    /// ∇ᵏ⁺¹ν: that k is taken for which it was least. Where even that was more than a 256th of ν there is no path to follow, and
-    /// the bound that a cold start begins with is the better guess: 0.
+    /// ν of the next step by the polynomial through the last k + 1 values, ν + ∇ν + … + ∇ᵏν, whose error at the last
+    /// step was ∇ᵏ⁺¹ν: that k is taken for which it was least. Where even that was more than a 256th of ν there is no
+    /// path to follow, and the bound that a cold start begins with is the better guess: 0.
     fn forecast(&self) -> f64 {
         let (mut sum, mut best, mut least) = (0.0, 0.0, f64::INFINITY);
         for k in 0..DEPTH - 1 {

@@ -9,8 +9,8 @@ use ellip_margin::{
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 
-/// Margins to 1e-14 of 1 + m and the last two digits of m, ν to 1e-12: rounding, since both paths end at the root by other
-/// steps, and m is rounded where it is near −1.
+/// Margins to 1e-14 of 1 + m and the last two digits of m, ν to 1e-12: rounding, since both paths end at the root by
+/// other steps, and m is rounded where it is near −1.
 fn assert_same<V: Vector>(e1: &[Ellipsoid<V>], e2: &[Ellipsoid<V>], options: MarginOptions) {
     let margins = free_margins(e1, e2, options).expect("lists of one length");
     assert_eq!(margins.len(), e1.len().max(e2.len()), "one margin per pair");

@@ -1,5 +1,5 @@
-//! Gradients and Hessians against differences of 70-digit values, made by `data/derivatives.py`, and how they behave where the
-//! quantities reach their floors.
+//! Gradients and Hessians against differences of 70-digit values, made by `data/derivatives.py`, and how they behave
+//! where the quantities reach their floors.
 
 use crate::common::close;
 use convex_support::glam::{DMat3, DQuat, DVec2, DVec3};
@@ -34,8 +34,8 @@ fn cases<V: Vector<Scalar = f64>>(text: &str) -> Vec<Case<V>> {
         .collect()
 }
 
-/// The greatest errors of a gradient and a Hessian, relative to the greatest entry of their blocks: translations, both, and
-/// rotations have different units.
+/// The greatest errors of a gradient and a Hessian, relative to the greatest entry of their blocks: translations, both,
+/// and rotations have different units.
 fn errors<V: Vector<Scalar = f64>>(
     gradient: &MotionGradient<V>,
     hessian: &MotionHessian<V>,
@@ -91,8 +91,8 @@ fn against_many_digits() {
     check::<DVec3>();
 }
 
-/// What moves one body moves the other the opposite way, about a common pivot; and where a quantity is symmetric, the second
-/// derivatives by the second body are those by the first of the pair swapped.
+/// What moves one body moves the other the opposite way, about a common pivot; and where a quantity is symmetric, the
+/// second derivatives by the second body are those by the first of the pair swapped.
 #[test]
 fn of_the_second_body() {
     for Case { bodies: [e1, e2], .. } in cases::<DVec3>(include_str!("data/derivatives.csv")) {
@@ -173,9 +173,9 @@ fn batches() {
     assert!(map_pairs(&first[..2], &second[..3], o, |pair| pair.margin().margin).is_err(), "two and three");
 }
 
-/// Ellipses so far apart that the normal is the line of centres, which a turn does not move: the distance then changes as minus the height
-/// h = √(a²cos² + b²sin²) of the one that turns. The second derivative had been written as a difference of the distance of the centres and
-/// the like, of which 1e12 sizes left four digits.
+/// Ellipses so far apart that the normal is the line of centres, which a turn does not move: the distance then changes
+/// as minus the height h = √(a²cos² + b²sin²) of the one that turns. The second derivative had been written as a
+/// difference of the distance of the centres and the like, of which 1e12 sizes left four digits.
 #[test]
 fn turns_of_bodies_far_apart() {
     let o = MarginOptions::default();
@@ -192,8 +192,8 @@ fn turns_of_bodies_far_apart() {
     }
 }
 
-/// Where x₁ has just left E₂, ρ = √(1 + m) is next to nothing. It had been a difference, which was negative here, so that the root of the
-/// curvature was no number.
+/// Where x₁ has just left E₂, ρ = √(1 + m) is next to nothing. It had been a difference, which was negative here, so
+/// that the root of the curvature was no number.
 #[test]
 fn the_curvature_of_a_margin_next_to_its_floor() {
     let turn1 = DMat3::from_cols_array_2d(&[

@@ -99,8 +99,8 @@ fn projection_of_a_point() {
     assert!((d.distance - 2.0).abs() < 1e-11 && d.bracket.point2.abs_diff_eq(DVec2::Y, 1e-6), "{d:?}");
 }
 
-/// Whatever a margin may spend, and where its numbers leave the range, what is told about the distance holds: that bodies overlap is not
-/// taken from a margin that was cut short, which is too small.
+/// Whatever a margin may spend, and where its numbers leave the range, what is told about the distance holds: that
+/// bodies overlap is not taken from a margin that was cut short, which is too small.
 #[test]
 fn an_overlap_is_not_taken_from_a_margin_cut_short() {
     // A needle beside a plate, apart by a quarter of the needle's length; two steps of the margin say −0.02.

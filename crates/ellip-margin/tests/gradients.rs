@@ -21,8 +21,8 @@ fn turned(e: &Ellipsoid<DVec3>, by: DVec3, pivot: DVec3) -> Ellipsoid<DVec3> {
         .expect("finite")
 }
 
-/// Differences resolve a derivative only as far as the margin is smooth on their step, which is a part of the least semi-axis
-/// and of the way to the boundary of E₂.
+/// Differences resolve a derivative only as far as the margin is smooth on their step, which is a part of the least
+/// semi-axis and of the way to the boundary of E₂.
 fn smooth(m: &Margin<DVec3>) -> bool {
     m.status == Status::Converged && m.nu > 1e-2 && m.margin < 1e4
 }

@@ -71,7 +71,8 @@ proptest! {
         assert_scale_free(&single(&e1), &single(&e2), s);
     }
 
-    /// Squares of such lengths are no numbers any more. Aspects are moderate, so that nothing leaves the range that need not.
+    /// Squares of such lengths are no numbers any more. Aspects are moderate, so that nothing leaves the range that
+    /// need not.
     #[test]
     fn great_powers_of_two(e1 in ellipsoid3(3.0, 2.0), e2 in ellipsoid3(3.0, 2.0), f1 in ellipsoid2(3.0, 2.0), f2 in ellipsoid2(3.0, 2.0), k in 500i32..900, down: bool) {
         let s = 2f64.powi(if down { -k } else { k });

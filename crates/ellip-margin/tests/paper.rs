@@ -40,8 +40,8 @@ fn small_steps_do_not_fall_back() {
     assert!(ours.iterations() < 3 * 360 && ours.iterations() < paper.iterations(), "{ours:?} {paper:?}");
 }
 
-/// C has the condition 1e32 here and no digit right, nor has a residual in terms of it: of 300 margins, 15 were wrong, signs
-/// included, and called converged. What comes out now is right, by inverse iteration or by falling back.
+/// C has the condition 1e32 here and no digit right, nor has a residual in terms of it: of 300 margins, 15 were wrong,
+/// signs included, and called converged. What comes out now is right, by inverse iteration or by falling back.
 #[test]
 fn needles_of_an_aspect_of_1e8_fall_back() {
     let obstacle =

@@ -156,8 +156,8 @@ fn needle_and_plate() {
     assert!(close(margin(&needle, &other), 8.0, 1e-10, 0.0), "{}", margin(&needle, &other)); // (4 − 1)² − 1
 }
 
-/// The "hard case" of trust regions, b̄₁ = 0 with λ* at the least eigenvalue (Optim.jl#540, #1270; scipy#20244), needs x₁
-/// inside E₂; outside, b̄₁ = 0 is harmless.
+/// The "hard case" of trust regions, b̄₁ = 0 with λ* at the least eigenvalue (Optim.jl#540, #1270; scipy#20244), needs
+/// x₁ inside E₂; outside, b̄₁ = 0 is harmless.
 #[test]
 fn hard_case_of_trust_regions() {
     let e2 = aligned([0.0; 3], [1.0; 3]);
@@ -178,7 +178,8 @@ fn every_scale_in_single_precision() {
     }
 }
 
-/// Near pairs at small tolerance (coal#604), near contact without convergence (coal#37): the bracket holds the exact value.
+/// Near pairs at small tolerance (coal#604), near contact without convergence (coal#37): the bracket holds the exact
+/// value.
 #[test]
 fn distance_near_contact() {
     for gap in [1e-3, 1e-6, 1e-9, 1e-12] {
@@ -229,9 +230,9 @@ fn the_ends_of_the_range() {
     }
 }
 
-/// E₁ is a needle thinner than the rounding of E₂'s points: of the point where they touch, as rounded, E₁'s norm is off by a
-/// hundredth, and the margin was off by the square of that, 6.5e-5, though the Lagrangian was evaluated in twice the precision. The truth is
-/// of 60 digits.
+/// E₁ is a needle thinner than the rounding of E₂'s points: of the point where they touch, as rounded, E₁'s norm is off
+/// by a hundredth, and the margin was off by the square of that, 6.5e-5, though the Lagrangian was evaluated in twice
+/// the precision. The truth is of 60 digits.
 #[test]
 fn a_needle_thinner_than_rounding_has_all_digits_of_its_margin() {
     let rotation = DQuat::from_xyzw(0.7860294979486924, -0.8007517954872019, -0.6256291211727534, 0.4461618344665423);

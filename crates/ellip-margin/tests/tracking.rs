@@ -38,8 +38,9 @@ proptest! {
     }
 }
 
-/// A tracker that has seen a ν of 1e11 forecasts it again. Newton's first step back from there is wrong by that times the rounding of the
-/// axes, and the next one goes back once more: that had been taken for the sign that no digits were left, and the answer was −0.0078.
+/// A tracker that has seen a ν of 1e11 forecasts it again. Newton's first step back from there is wrong by that times
+/// the rounding of the axes, and the next one goes back once more: that had been taken for the sign that no digits were
+/// left, and the answer was −0.0078.
 #[test]
 fn a_forecast_far_above_the_root() {
     let axes1 = Mat3::from_cols(

@@ -1,5 +1,5 @@
-//! The way of a robot arm with six joints leads through two obstacles. Gradient descent on the signed distance pushes it out: the
-//! derivative of each distance by the pose of a link becomes that by the joints that carry the link.
+//! The way of a robot arm with six joints leads through two obstacles. Gradient descent on the signed distance pushes
+//! it out: the derivative of each distance by the pose of a link becomes that by the joints that carry the link.
 //!
 //! `cargo run --release -p gjk-raycast --example arm_out_of_collision`
 
@@ -17,8 +17,8 @@ type Obstacle = Box<dyn SupportMap<Vector = DVec3>>;
 const MARGIN: f64 = 0.02;
 const WAYPOINTS: usize = 25;
 
-/// The axes of the joints of an arm like the UR5, and a point of each, where all angles are zero (Lynch and Park, *Modern Robotics*,
-/// 2017, section 4.1).
+/// The axes of the joints of an arm like the UR5, and a point of each, where all angles are zero (Lynch and Park,
+/// *Modern Robotics*, 2017, section 4.1).
 const AXES: [(DVec3, DVec3); 6] = [
     (DVec3::Z, DVec3::ZERO),
     (DVec3::Y, DVec3::new(0.0, 0.0, 0.089)),

@@ -1,7 +1,7 @@
 //! A box slides down a slope and comes to rest after the distance that the laws of friction give.
 //!
-//! On a slope of angle θ with friction μ > tan θ it decelerates by g·(μ·cos θ − sin θ), so that from a speed v it slides
-//! v²/2g/(μ·cos θ − sin θ).
+//! On a slope of angle θ with friction μ > tan θ it decelerates by g·(μ·cos θ − sin θ), so that from a speed v it
+//! slides v²/2g/(μ·cos θ − sin θ).
 //!
 //! `cargo run --release -p gjk-raycast --example box_on_a_slope`
 

@@ -1,7 +1,7 @@
 //! A character in a game walks over a floor, against a wall, and slides along it.
 //!
-//! In each frame a capsule moves to its first contact, loses the part of its velocity that leads into the obstacle, and goes on with
-//! the rest. Afterwards the contacts tell what it stands on and leans against.
+//! In each frame a capsule moves to its first contact, loses the part of its velocity that leads into the obstacle, and
+//! goes on with the rest. Afterwards the contacts tell what it stands on and leans against.
 //!
 //! `cargo run -p gjk-raycast --example character_in_a_level`
 

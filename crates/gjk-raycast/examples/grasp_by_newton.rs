@@ -1,5 +1,6 @@
-//! Eight fingertips of a hand are to come as near as they can to a clearance of 5 mm from an object. Newton's method finds the pose of the
-//! hand, with the gradients and Hessians of the distances; without the Hessians (Gauss and Newton) it takes longer.
+//! Eight fingertips of a hand are to come as near as they can to a clearance of 5 mm from an object. Newton's method
+//! finds the pose of the hand, with the gradients and Hessians of the distances; without the Hessians (Gauss and
+//! Newton) it takes longer.
 //!
 //! `cargo run --release -p gjk-raycast --example grasp_by_newton`
 
@@ -30,8 +31,8 @@ struct Hand {
     translation: DVec3,
 }
 
-/// Half the sum of squares of what the distances miss the clearance by, its gradient by the motion of the hand, and its second
-/// derivatives: those that the gradients of the distances make up, and the rest, which is of their Hessians.
+/// Half the sum of squares of what the distances miss the clearance by, its gradient by the motion of the hand, and its
+/// second derivatives: those that the gradients of the distances make up, and the rest, which is of their Hessians.
 struct Objective {
     value: f64,
     gradient: [f64; 6],

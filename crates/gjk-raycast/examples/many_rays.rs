@@ -25,7 +25,8 @@ fn scene() -> Result<Vec<(Shape, Aabb<DVec3>)>, InvalidShape> {
         .collect()
 }
 
-/// Whether a ray meets a box before `end`: between the last of the planes where it enters, and the first where it leaves.
+/// Whether a ray meets a box before `end`: between the last of the planes where it enters, and the first where it
+/// leaves.
 fn may_hit(bounds: &Aabb<DVec3>, ray: &Ray<DVec3>, end: f64) -> bool {
     let (a, b) = ((bounds.min - ray.source) / ray.direction, (bounds.max - ray.source) / ray.direction);
     a.min(b).max_element().max(0.0) <= a.max(b).min_element().min(end)

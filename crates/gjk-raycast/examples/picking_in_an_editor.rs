@@ -1,5 +1,5 @@
-//! Which of a few things is under the mouse? The nearest hit so far ends every further ray. For more than some dozens of bodies, a `Scene`
-//! does this faster: see `picking_in_a_crowd`.
+//! Which of a few things is under the mouse? The nearest hit so far ends every further ray. For more than some dozens
+//! of bodies, a `Scene` does this faster: see `picking_in_a_crowd`.
 //!
 //! `cargo run -p gjk-raycast --example picking_in_an_editor`
 

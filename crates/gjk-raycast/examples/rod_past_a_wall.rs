@@ -9,7 +9,8 @@ use convex_support::glam::DVec2;
 use gjk_raycast::{HalfSpace, MotionCastOptions, Outcome, RigidMotion};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // The wall is all that is beyond y = 2, and the rod lies along x at first: it turns by two radians a second, for half a turn.
+    // The wall is all that is beyond y = 2, and the rod lies along x at first: it turns by two radians a second, for
+    // half a turn.
     let wall = HalfSpace::new(DVec2::NEG_Y, -2.0)?;
     let swing = RigidMotion::rotation(2.0, DVec2::ZERO);
     let options = MotionCastOptions::new().with_max_time(std::f64::consts::FRAC_PI_2);

@@ -1,4 +1,5 @@
-//! A ball comes up under a blade that turns forty times a second. Does the blade strike it? Sampling at the rate of a game would miss the stroke.
+//! A ball comes up under a blade that turns forty times a second. Does the blade strike it? Sampling at the rate of a
+//! game would miss the stroke.
 //!
 //! `cargo run -p gjk-raycast --example spinning_blade_over_a_ball`
 
@@ -27,7 +28,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     hit.time, hit.point, cast.lower, cast.upper
                 );
                 assert_eq!(radius, 0.8, "the blade does not reach {radius}");
-                // The ball reaches the lower side of the blade at 0.38 s, and the blade comes by every eightieth of a second.
+                // The ball reaches the lower side of the blade at 0.38 s, and the blade comes by every eightieth of a
+                // second.
                 assert!((0.38..0.38 + 1.0 / 80.0).contains(&hit.time), "struck at {}", hit.time);
                 let apart = |time: f64| {
                     let turned =

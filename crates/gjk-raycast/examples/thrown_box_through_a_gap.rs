@@ -1,5 +1,5 @@
-//! A box is thrown through a gap between two posts and tumbles on the way. It fits through lengthwise; whether it does depends on how
-//! fast it turns.
+//! A box is thrown through a gap between two posts and tumbles on the way. It fits through lengthwise; whether it does
+//! depends on how fast it turns.
 //!
 //! `cargo run -p gjk-raycast --example thrown_box_through_a_gap`
 
@@ -15,8 +15,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let posts = [-1.0, 1.0].map(|side| Posed::translated(post, DVec3::new(0.0, 1.45 * side, 0.0)));
     let options = MotionCastOptions::new().with_max_time(1.0);
 
-    // It is between the posts after half a second: lengthwise after half a turn, crosswise after a quarter or three. After a whole
-    // turn it is lengthwise too, but turns so fast that it is not for long enough.
+    // It is between the posts after half a second: lengthwise after half a turn, crosswise after a quarter or three.
+    // After a whole turn it is lengthwise too, but turns so fast that it is not for long enough.
     for (turns, fits) in [(0.0, true), (1.0, true), (0.5, false), (1.5, false), (2.0, false)] {
         let thrown = RigidMotion {
             velocity: DVec3::new(6.0, 0.0, 0.0),

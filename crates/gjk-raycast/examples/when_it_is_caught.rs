@@ -1,4 +1,5 @@
-//! A stick is thrown, spinning, at a plate that moves. How does the time of impact depend on the throw; and which throw hits just on time?
+//! A stick is thrown, spinning, at a plate that moves. How does the time of impact depend on the throw; and which throw
+//! hits just on time?
 //!
 //! `cargo run --release -p gjk-raycast --example when_it_is_caught`
 

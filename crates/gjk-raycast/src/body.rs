@@ -1,4 +1,5 @@
-//! Shapes as algorithms see them: a core and a radius, relative to the shape's origin and in [units](crate::unit) of its size.
+//! Shapes as algorithms see them: a core and a radius, relative to the shape's origin and in [units](crate::unit) of
+//! its size.
 
 use convex_support::{Core, CoreKind, Crossing, Hint, LineCrossing, Scalar, SupportMap, Vector};
 
@@ -11,10 +12,11 @@ use crate::unit::{is_moderate, reciprocal_of_power};
 pub(crate) trait TracedSupport {
     type Vector: Vector;
 
-    /// The support point, relative to the body's origin and in its unit, and the points of both shapes that it is the difference of.
+    /// The support point, relative to the body's origin and in its unit, and the points of both shapes that it is the
+    /// difference of.
     fn support(&mut self, direction: Self::Vector) -> (Self::Vector, PointPair<Self::Vector>);
-    /// The Hessian `H` of the support value, how fast the support point moves as the direction turns, as seen along two changes
-    /// `u` and `w`: the entries `u·Hu`, `u·Hw` and `w·Hw`.
+    /// The Hessian `H` of the support value, how fast the support point moves as the direction turns, as seen along two
+    /// changes `u` and `w`: the entries `u·Hu`, `u·Hw` and `w·Hw`.
     fn hessian(
         &self,
         direction: Self::Vector,
@@ -40,8 +42,8 @@ pub(crate) trait Body: TracedSupport {
     ) -> LineCrossing<Self::Vector>;
     /// What a point of the core is made of, where [`line_crossing`](Self::line_crossing) is known.
     fn witness(&self, point: Self::Vector) -> PointPair<Self::Vector>;
-    /// What the body is split into, in the world's unit. For a difference all is the sum, but for the origin, which is that of the first shape
-    /// alone, since subtracting the other's would round.
+    /// What the body is split into, in the world's unit. For a difference all is the sum, but for the origin, which is
+    /// that of the first shape alone, since subtracting the other's would round.
     fn measures(&self) -> Measures<Self::Vector>;
     /// Sets the unit to the given power of two.
     fn set_scale(&mut self, scale: <Self::Vector as Vector>::Scalar);
@@ -144,8 +146,8 @@ impl Of {
     }
 }
 
-/// Two shapes as a search sees them: behind one pointer, so that it is compiled once for all shapes, and a support point of their difference
-/// is one call.
+/// Two shapes as a search sees them: behind one pointer, so that it is compiled once for all shapes, and a support
+/// point of their difference is one call.
 pub(crate) trait Shapes {
     type Vector: Vector;
 
@@ -174,8 +176,8 @@ pub(crate) trait Shapes {
     fn each(&self) -> [Shape<'_, Self::Vector>; 2];
 }
 
-/// Two shapes of known types, which may tell where a line crosses them. The closed forms of line crossings are as much code as the whole
-/// search for a distance, so that they are left out where nobody asks for them.
+/// Two shapes of known types, which may tell where a line crosses them. The closed forms of line crossings are as much
+/// code as the whole search for a distance, so that they are left out where nobody asks for them.
 pub(crate) struct Both<'a, A: ?Sized, B: ?Sized, const LINES: bool = false> {
     a: WithoutLines<'a, A>,
     b: WithoutLines<'a, B>,
@@ -348,8 +350,9 @@ impl<T: Shapes + ?Sized> Pair<'_, T> {
         self.extent() + self.radius() + offset.norm()
     }
 
-    /// Points of the cores that are closest to one another, in units of the scale, where one core is a point and the other
-    /// says its closest one, or both are segments. For bodies of the given [size](Self::size) whose origins differ by `offset`, both in the world's unit.
+    /// Points of the cores that are closest to one another, in units of the scale, where one core is a point and the
+    /// other says its closest one, or both are segments. For bodies of the given [size](Self::size) whose origins
+    /// differ by `offset`, both in the world's unit.
     #[inline(always)]
     pub(crate) fn closest_points(
         &self,
@@ -370,8 +373,8 @@ impl<T: Shapes + ?Sized> Pair<'_, T> {
         is_moderate(size).then(|| PointPair { a: a * self.per_unit, b: b * self.per_unit })
     }
 
-    /// The vector between the [closest points](Self::closest_points) of bodies whose origins differ by `offset` in the unit, which is along the
-    /// normal of the plane between them.
+    /// The vector between the [closest points](Self::closest_points) of bodies whose origins differ by `offset` in the
+    /// unit, which is along the normal of the plane between them.
     #[inline(always)]
     pub(crate) fn vector_between(&self, PointPair { a, b }: PointPair<T::Vector>, offset: T::Vector) -> T::Vector {
         let v = a - b + offset;

@@ -1,9 +1,10 @@
 //! Functions that are compiled once, here, and not in every program that asks a question.
 //!
-//! The machine code of a generic function is made where its types become known, in the crate that calls it, at each of that crate's builds.
-//! The searches know their bodies only behind pointers, so that all they depend on is the type of the vectors, of which there are five
-//! ([`Vector`](convex_support::Vector) is sealed): their machine code is made with this crate. What is left to a caller's crate is short: the
-//! shapes' own methods, and the closed forms that are tried before a search.
+//! The machine code of a generic function is made where its types become known, in the crate that calls it, at each of
+//! that crate's builds. The searches know their bodies only behind pointers, so that all they depend on is the type of
+//! the vectors, of which there are five ([`Vector`](convex_support::Vector) is sealed): their machine code is made with
+//! this crate. What is left to a caller's crate is short: the shapes' own methods, and the closed forms that are tried
+//! before a search.
 
 /// Declares a function that finds the one compiled for its type of vector, of the generic function in braces.
 ///

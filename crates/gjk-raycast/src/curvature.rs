@@ -1,19 +1,20 @@
 //! Newton's method on the plane, where a support map tells how its support point moves.
 //!
-//! A distance is the largest `f(n)` over all unit vectors `n`, with `f` how far the plane across `n` that supports the body
-//! is from zero; the entry of a ray is the largest `τ(α)` over all planes that the ray approaches. Both are concave, and
-//! every plane is a bound. The unknown is the change `δ` of the normal `n` across an axis `a`, the normal itself or the
-//! ray: two numbers in space, by two unit vectors across the axis. With `P` the part of the support point across the axis,
-//! and `H` the Hessian of the support value, `P` moves to `P + H·δ`. It is to vanish, where the support point is to be on a
-//! ray along the axis; or to be `−ρ·δ`, where it is to point to zero, at the distance `ρ`, along the normal:
+//! A distance is the largest `f(n)` over all unit vectors `n`, with `f` how far the plane across `n` that supports the
+//! body is from zero; the entry of a ray is the largest `τ(α)` over all planes that the ray approaches. Both are
+//! concave, and every plane is a bound. The unknown is the change `δ` of the normal `n` across an axis `a`, the normal
+//! itself or the ray: two numbers in space, by two unit vectors across the axis. With `P` the part of the support point
+//! across the axis, and `H` the Hessian of the support value, `P` moves to `P + H·δ`. It is to vanish, where the
+//! support point is to be on a ray along the axis; or to be `−ρ·δ`, where it is to point to zero, at the distance `ρ`,
+//! along the normal:
 //!
 //! ```text
 //! (H + ρ)·δ = −P,   ρ = 0 for a ray.
 //! ```
 //!
-//! That is one smooth piece of the surface. Where the answer is between two, as on the side of a cylinder between its rims,
-//! both have to support one plane. With `Q` and `H_Q` those of the second piece at the same normal, `g` how much farther
-//! the first one reaches there, and `β` the weight of the second,
+//! That is one smooth piece of the surface. Where the answer is between two, as on the side of a cylinder between its
+//! rims, both have to support one plane. With `Q` and `H_Q` those of the second piece at the same normal, `g` how much
+//! farther the first one reaches there, and `β` the weight of the second,
 //!
 //! ```text
 //! (H_β + ρ)·δ + β·e = −P,   e·δ = g,   e = Q − P,   H_β = (1 − β)·H_P + β·H_Q.
@@ -68,12 +69,13 @@ pub(crate) struct Turned<S> {
     pub(crate) hessian: Symmetric<S>,
 }
 
-/// The piece whose Hessian is `H` at the normal `n₀`, turned to `n = n₀ + δ`. Both normals have length one along the axis,
-/// and `m` is the part of `n₀` across it.
+/// The piece whose Hessian is `H` at the normal `n₀`, turned to `n = n₀ + δ`. Both normals have length one along the
+/// axis, and `m` is the part of `n₀` across it.
 ///
-/// The support value `h` is homogeneous, so that `H·n₀ = 0`, and the part of `H` across the axis tells all of it. Scaled to
-/// `n/s` with `s = n·n₀/|n₀|²`, the normal differs from `n₀` by a vector across `n₀`; there `h` is quadratic to third order
-/// on a ball or a circle, and not only to second as in `n`. With `g = H·δ` and `p₀` the support point at `n₀`,
+/// The support value `h` is homogeneous, so that `H·n₀ = 0`, and the part of `H` across the axis tells all of it.
+/// Scaled to `n/s` with `s = n·n₀/|n₀|²`, the normal differs from `n₀` by a vector across `n₀`; there `h` is quadratic
+/// to third order on a ball or a circle, and not only to second as in `n`. With `g = H·δ` and `p₀` the support point at
+/// `n₀`,
 ///
 /// ```text
 /// h(n) = s·h(n/s) ≈ n·p₀ + δ·g/(2s).

@@ -1,7 +1,8 @@
 //! Options and answers as [serde] data: named fields as in the code, vectors and matrices as glam writes them.
 //!
-//! JSON has no infinity. A number that may be infinite, as the end of a ray or a bound that is not known, is an [`Option`] in data: it is
-//! none where it is infinite. Each such number can be infinite in one direction only, which the name of the module says.
+//! JSON has no infinity. A number that may be infinite, as the end of a ray or a bound that is not known, is an
+//! [`Option`] in data: it is none where it is infinite. Each such number can be infinite in one direction only, which
+//! the name of the module says.
 
 use alloc::vec::Vec;
 
@@ -12,8 +13,8 @@ use serde::ser::{Error as _, Serialize, Serializer};
 
 use crate::{Contact, ContactPoint, HalfSpace, SignedDistance};
 
-/// Writes `value` as none if it is `infinite`. Other numbers that are not finite are refused where the format may not have them: they
-/// would be read as infinite.
+/// Writes `value` as none if it is `infinite`. Other numbers that are not finite are refused where the format may not
+/// have them: they would be read as infinite.
 fn write<T: Float + Serialize, Z: Serializer>(value: T, infinite: T, serializer: Z) -> Result<Z::Ok, Z::Error> {
     if value != infinite && !value.is_finite() && serializer.is_human_readable() {
         return Err(Z::Error::custom(

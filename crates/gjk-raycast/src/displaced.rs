@@ -5,7 +5,8 @@ use convex_support::{InvalidShape, Posed, SupportMap, Vector};
 use crate::Displacement;
 
 impl<V: Vector> Displacement<V> {
-    /// A body where the motion has taken it: the same shape in another pose, for the next step of a simulation or for another query.
+    /// A body where the motion has taken it: the same shape in another pose, for the next step of a simulation or for
+    /// another query.
     ///
     /// ```
     /// use convex_support::{Cuboid, Posed, glam::{DQuat, DVec3}};

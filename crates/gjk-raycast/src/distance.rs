@@ -28,8 +28,8 @@ use crate::{Distance, DistanceOptions, Iterate, SignedDistanceOptions, Status, S
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 ///
-/// Two points of the shapes bound the distance from above, and a slab between the shapes bounds it from below. The iteration ends
-/// when these bounds meet. Where the shapes overlap, the distance is 0 and the depth is not known:
+/// Two points of the shapes bound the distance from above, and a slab between the shapes bounds it from below. The
+/// iteration ends when these bounds meet. Where the shapes overlap, the distance is 0 and the depth is not known:
 /// [`signed_distance`](crate::signed_distance) finds it.
 ///
 #[doc = include_str!("../doc/bracket.svg")]
@@ -92,10 +92,12 @@ compiled_once! {
     }
 }
 
-/// The plain case: bodies that are apart by more than a few errors, of which the closest points are known in closed form. There is
-/// nothing to search, and all is done in the world's unit. Nearer to contact they are looked at closely without a search before it.
+/// The plain case: bodies that are apart by more than a few errors, of which the closest points are known in closed
+/// form. There is nothing to search, and all is done in the world's unit. Nearer to contact they are looked at closely
+/// without a search before it.
 ///
-/// The plane of the support point across the vector between those points is as far as they are, to rounding, or it is left to the search.
+/// The plane of the support point across the vector between those points is as far as they are, to rounding, or it is
+/// left to the search.
 #[inline(always)]
 fn direct<T: Shapes>(
     shapes: &T,
@@ -200,8 +202,8 @@ fn searched_in_order<V: Vector>(
     if end == End::Stalled { closely(shapes.each(), answer, options.max_iterations) } else { answer }
 }
 
-/// The answer that a search leaves in doubt, with what the signed distance knows: the planes of facets of the difference too, and how deep
-/// bodies are in one another.
+/// The answer that a search leaves in doubt, with what the signed distance knows: the planes of facets of the
+/// difference too, and how deep bodies are in one another.
 #[cold]
 #[inline(never)]
 fn closely<V: Vector>([a, b]: [Shape<'_, V>; 2], answer: Distance<V>, max_iterations: usize) -> Distance<V> {
@@ -313,8 +315,8 @@ fn touching<V: Vector>(
     let near = near_contact(shapes, cores, begun, max_iterations)?;
     let (zero, scale, is_settled) = (V::Scalar::ZERO, near.frame.scale, near.is_settled(max_iterations));
     let overlap = near.overlap();
-    // What is in one another by more than an error has a point in common that is nearer to both cores. Of others the points of the surfaces
-    // are between those of the cores, which the plane may lean to by the root of the rounding.
+    // What is in one another by more than an error has a point in common that is nearer to both cores. Of others the
+    // points of the surfaces are between those of the cores, which the plane may lean to by the root of the rounding.
     let between = near.points.a - near.points.b + near.frame.offset;
     let along = if overlap == Some(true) { None } else { Some(between.unit().unwrap_or(near.normal)) };
     let [point_a, point_b] = surface_points(cores, &near.frame, near.points, along);
@@ -334,8 +336,9 @@ fn touching<V: Vector>(
     Some(if is_settled { answer } else { closely(shapes.each(), answer, max_iterations) })
 }
 
-/// The points of both bodies beside points of their cores, in the world: along the unit vector from `b` to `a`, or where none is given
-/// between the points of the cores, which are no farther apart than both radii: there a point in both bodies.
+/// The points of both bodies beside points of their cores, in the world: along the unit vector from `b` to `a`, or
+/// where none is given between the points of the cores, which are no farther apart than both radii: there a point in
+/// both bodies.
 #[inline(always)]
 fn surface_points<V: Vector>(
     [core_a, core_b]: [Core<V>; 2],

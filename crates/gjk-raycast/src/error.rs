@@ -18,8 +18,8 @@ pub enum RayCastError {
         /// Which coordinate, counted from 0.
         index: usize,
     },
-    /// The closest point of the set, which [`iterative_ray_cast`](crate::iterative_ray_cast) works with, is not known: the shape has no
-    /// closed form of it. [`ray_cast`](crate::ray_cast) needs only support points.
+    /// The closest point of the set, which [`iterative_ray_cast`](crate::iterative_ray_cast) works with, is not known:
+    /// the shape has no closed form of it. [`ray_cast`](crate::ray_cast) needs only support points.
     NoClosestPoint,
 }
 

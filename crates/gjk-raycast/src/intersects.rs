@@ -14,9 +14,9 @@ use crate::{DistanceOptions, IntersectOptions, Intersection, Iterate, Status};
 
 /// Whether two shapes have a point in common. Touching counts as meeting.
 ///
-/// This is the incremental separating axis variant of GJK. It ends at the first plane that separates the shapes. If it begins with the
-/// axis of a similar query, the first plane is usually one. For two boxes it tests the normals of their faces and the cross products of
-/// their edges instead, and searches only if the boxes are within rounding of contact.
+/// This is the incremental separating axis variant of GJK. It ends at the first plane that separates the shapes. If it
+/// begins with the axis of a similar query, the first plane is usually one. For two boxes it tests the normals of their
+/// faces and the cross products of their edges instead, and searches only if the boxes are within rounding of contact.
 ///
 /// ```
 /// use convex_support::{Cuboid, Posed, glam::DVec2};
@@ -70,12 +70,13 @@ where
     let shapes = Both::<_, _>::new(a, b);
     let mut pair = Pair::new(&shapes);
     let offset = pair.core_a.origin - pair.core_b.origin;
-    // The first axis is tried in the world's unit, before anything else is set up; the sum of the coordinates bounds the
-    // length of the offset without a root.
+    // The first axis is tried in the world's unit, before anything else is set up; the sum of the coordinates bounds
+    // the length of the offset without a root.
     let size = pair.extent() + pair.radius() + offset.abs().dot(Vector::ONE);
     let closest = if options.axis.is_none() { pair.closest_points(offset, size) } else { None };
     let shortest = closest.map(|points| pair.vector_between(points, offset));
-    // Points no farther apart than the radii, by more than they may be wrong by, meet; others are looked at more closely.
+    // Points no farther apart than the radii, by more than they may be wrong by, meet; others are looked at more
+    // closely.
     if shortest.is_some_and(|v| v.length() + (rounding(size) + pair.error()) <= pair.radius()) {
         return Intersection { overlap: true, axis: None, status: Status::Converged, iterations: 0 };
     }
@@ -176,8 +177,8 @@ fn searched<V: Vector>(
     Intersection { overlap, axis, status: Status::Converged, iterations: state.iterations }
 }
 
-/// The answer of the distance, which knows all that can be known of bodies near contact, and of curved ones goes on by their curvature
-/// where support points alone make no progress.
+/// The answer of the distance, which knows all that can be known of bodies near contact, and of curved ones goes on by
+/// their curvature where support points alone make no progress.
 #[cold]
 #[inline(never)]
 fn closely<V: Vector>([a, b]: [Shape<'_, V>; 2], max_iterations: usize) -> Intersection<V> {

@@ -15,8 +15,8 @@ const LOOKS: usize = 8;
 /// the set closest to `x`, or `x` itself within the set, or `None` if it is not known.
 ///
 /// Each step moves along the ray to the plane through the closest point. This is Newton's iteration for the distance
-/// along the ray: on a polytope it ends after finitely many steps, and on a curved surface the digits double with each step.
-/// The set is given by a function, so that it need not be a shape; for a shape, the function is
+/// along the ray: on a polytope it ends after finitely many steps, and on a curved surface the digits double with each
+/// step. The set is given by a function, so that it need not be a shape; for a shape, the function is
 /// [`closest_point`](convex_support::closest_point).
 ///
 /// ```
@@ -32,8 +32,8 @@ const LOOKS: usize = 8;
 /// ```
 ///
 /// # Accuracy
-/// λ is as accurate as that of [`ray_cast`](crate::ray_cast), if the closest point is right to rounding of
-/// the coordinates of `x` and of the set. The point closest to the source tells where the set is. The ray is based at its
+/// λ is as accurate as that of [`ray_cast`](crate::ray_cast), if the closest point is right to rounding of the
+/// coordinates of `x` and of the set. The point closest to the source tells where the set is. The ray is based at its
 /// own point closest to that one, so that a far source loses only its own digits.
 ///
 /// A closest point proves a plane, and so a lower bound. That the ray is in the set is proved by points around it:
@@ -196,8 +196,8 @@ impl<'o, V: Vector> Travelled<'o, V> {
         }
         let n = v / length;
         let slope = n.dot(self.local.line.direction);
-        // What v is wrong by turns n by `noise/length`, so that the plane may be as much steeper to the ray than it seems.
-        // The set is behind the plane, and so it is of all of the ray before x.
+        // What v is wrong by turns n by `noise/length`, so that the plane may be as much steeper to the ray than it
+        // seems. The set is behind the plane, and so it is of all of the ray before x.
         let tilt = noise / length;
         self.proved = self.proved.max(self.mu - (length - noise) / (slope - tilt));
         if slope >= tilt || self.lower() > self.options.max_lambda {
@@ -279,7 +279,8 @@ impl<'o, V: Vector> Travelled<'o, V> {
         RayCast { outcome, lower, upper, status, iterations }
     }
 
-    /// The answer where the plane across `n` through x's closest point has all of the ray before it that the last plane has left.
+    /// The answer where the plane across `n` through x's closest point has all of the ray before it that the last plane
+    /// has left.
     fn miss(&self, n: V) -> Outcome<RayHit<V>, V> {
         // Together with the plane before x, the axis has the whole ray before it: across the ray, both count.
         let direction = self.local.line.direction;

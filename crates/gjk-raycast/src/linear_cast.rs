@@ -15,14 +15,15 @@ use crate::{
     StartInContact, Status,
 };
 
-/// Shapes that are apart by so many ε of their sizes, and of how far away they are, may be in contact: they and their places are rounded.
+/// Shapes that are apart by so many ε of their sizes, and of how far away they are, may be in contact: they and their
+/// places are rounded.
 const NEAR: f64 = 16.0;
 const NEAR_OF_FAR: f64 = 4.0;
 
 /// When and where two shapes that move at constant velocities, without turning, first touch.
 ///
-/// A ray is cast against their configuration space obstacle: `A + t·v_A` and `B + t·v_B` have a point in common if and only
-/// if `t·(v_B − v_A)` is in `A − B`. If the velocities are equal, the answer is a hit only if the shapes overlap.
+/// A ray is cast against their configuration space obstacle: `A + t·v_A` and `B + t·v_B` have a point in common if and
+/// only if `t·(v_B − v_A)` is in `A − B`. If the velocities are equal, the answer is a hit only if the shapes overlap.
 ///
 /// ```
 /// use convex_support::{Ball, Posed, glam::DVec2};
@@ -38,9 +39,10 @@ const NEAR_OF_FAR: f64 = 4.0;
 /// ```
 ///
 /// # Stepping a world
-/// If shapes are moved to their contact, the next cast starts with shapes that touch. By default it is a hit at time 0 again, whatever the
-/// motion. With [`StartInContact::IfDeeper`] it is a hit only if the shapes get deeper than they began. A motion that
-/// leaves the contact, or slides along it, is a miss, since shapes that move straight do not meet again:
+/// If shapes are moved to their contact, the next cast starts with shapes that touch. By default it is a hit at time 0
+/// again, whatever the motion. With [`StartInContact::IfDeeper`] it is a hit only if the shapes get deeper than they
+/// began. A motion that leaves the contact, or slides along it, is a miss, since shapes that move straight do not meet
+/// again:
 ///
 /// ```
 /// use convex_support::{Ball, Cuboid, Posed, glam::DVec2};
@@ -59,8 +61,8 @@ const NEAR_OF_FAR: f64 = 4.0;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// A cast to a [`target_distance`](LinearCastOptions::target_distance) is that of `a` swept by a ball of that radius, and is
-/// certified in the same way.
+/// A cast to a [`target_distance`](LinearCastOptions::target_distance) is that of `a` swept by a ball of that radius,
+/// and is certified in the same way.
 ///
 /// # Errors
 /// [`RayCastError::NonFinite`] if a velocity is not finite, the target distance is NaN or infinite, or the end of the
@@ -229,7 +231,8 @@ fn answer<V: Vector>(
     answer
 }
 
-/// The ray that `b` draws as it is seen from `a`, what its direction is wrong by as a part of its length, and what is asked of it.
+/// The ray that `b` draws as it is seen from `a`, what its direction is wrong by as a part of its length, and what is
+/// asked of it.
 #[inline(always)]
 fn ray_of<V: Vector>(
     motion: Motion<V>,
@@ -260,8 +263,8 @@ fn ray_of<V: Vector>(
 
 /// A hit of bodies that are apart at the start.
 ///
-/// With `p` a point of a's core and `q` one of b's, `q − p + spot` is what lies between them at the time, and is as long as both radii.
-/// The point that divides it as they do is on both shapes, however well the normal is known.
+/// With `p` a point of a's core and `q` one of b's, `q − p + spot` is what lies between them at the time, and is as
+/// long as both radii. The point that divides it as they do is on both shapes, however well the normal is known.
 #[inline(always)]
 fn hit_on_the_way<V: Vector>(
     hit: &CastHit<V>,
@@ -277,8 +280,8 @@ fn hit_on_the_way<V: Vector>(
     LinearHit { time, point: at_start + velocity_b * time - between * share, normal: normal.map(|n| -n) }
 }
 
-/// What is to be answered where only a motion that goes deeper counts as a hit, of what is otherwise. Shapes that are apart by no more
-/// than a slack may be in contact.
+/// What is to be answered where only a motion that goes deeper counts as a hit, of what is otherwise. Shapes that are
+/// apart by no more than a slack may be in contact.
 #[cold]
 #[inline(never)]
 fn only_if_deeper<V: Vector>(

@@ -4,8 +4,8 @@ use convex_support::Vector;
 
 use crate::Iterate;
 
-/// Whoever is shown the iterates of a search. The searches are compiled once, so that it is known behind a pointer; and what nobody watches
-/// is not computed.
+/// Whoever is shown the iterates of a search. The searches are compiled once, so that it is known behind a pointer; and
+/// what nobody watches is not computed.
 pub(crate) struct Observer<'o, V: Vector>(Option<&'o mut Closure<'o, V>>);
 
 type Closure<'o, V> = dyn FnMut(Iterate<'_, V>) + 'o;

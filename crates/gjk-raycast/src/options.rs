@@ -98,8 +98,8 @@ pub struct DistanceOptions<V: Vector> {
     /// relative to the size of what is compared, always ends the iteration. A negative value and NaN are taken for
     /// zero. Default: 0.
     pub tolerance: V::Scalar,
-    /// Stop as soon as the distance is certain to exceed this limit; the bracket is then left as wide as it is at that moment.
-    /// NaN is no limit. Default: infinity.
+    /// Stop as soon as the distance is certain to exceed this limit; the bracket is then left as wide as it is at that
+    /// moment. NaN is no limit. Default: infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub limit: V::Scalar,
     /// The iterations after which to give up. Default: 200.
@@ -163,15 +163,16 @@ impl<V: Vector> Default for IntersectOptions<V> {
     }
 }
 
-/// How a cast finds the planes that bound its hit. The bounds are computed in the same way by every method, so that the choice changes
-/// only the time that a cast takes.
+/// How a cast finds the planes that bound its hit. The bounds are computed in the same way by every method, so that the
+/// choice changes only the time that a cast takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum CastMethod {
-    /// The fastest. First the [closed form](convex_support::SupportMap::core_line_crossing) is tried, if the shape has one. Then, in 3D,
-    /// a triangle of support points that the ray pierces (a portal) is moved towards the surface, by the simplex method of linear
-    /// programming. Where that is in doubt, and in 2D, this is the same as [`Gjk`](Self::Gjk).
+    /// The fastest. First the [closed form](convex_support::SupportMap::core_line_crossing) is tried, if the shape has
+    /// one. Then, in 3D, a triangle of support points that the ray pierces (a portal) is moved towards the surface, by
+    /// the simplex method of linear programming. Where that is in doubt, and in 2D, this is the same as
+    /// [`Gjk`](Self::Gjk).
     #[default]
     Portal,
     /// The paper's Algorithm 3: each plane is across the vector from the ray's point to the simplex of support points.
@@ -207,8 +208,8 @@ pub enum StartInContact {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct RayCastOptions<V: Vector> {
-    /// The beginning of the ray, in units of its direction; it belongs to the ray. Anything hit before it does not count, so that a
-    /// ray can start on a surface and leave it. A negative value is taken for zero. Default: 0.
+    /// The beginning of the ray, in units of its direction; it belongs to the ray. Anything hit before it does not
+    /// count, so that a ray can start on a surface and leave it. A negative value is taken for zero. Default: 0.
     pub min_lambda: V::Scalar,
     /// The end of the ray, in units of its direction; the end belongs to the ray. If it is before the beginning, the
     /// ray has no points, and the answer is a miss. Default: infinity.
@@ -275,8 +276,8 @@ pub struct LinearCastOptions<V: Vector> {
     /// miss. Default: infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub max_time: V::Scalar,
-    /// The distance at which the shapes count as touching: the cast stops that far from contact. A negative value is taken for zero.
-    /// Default: 0.
+    /// The distance at which the shapes count as touching: the cast stops that far from contact. A negative value is
+    /// taken for zero. Default: 0.
     pub target_distance: V::Scalar,
     /// What to answer where the shapes touch at the start. To step a world from contact to contact, take
     /// [`StartInContact::IfDeeper`]. Default: [`StartInContact::Report`].

@@ -24,9 +24,10 @@ impl<V: Vector> Ray<V> {
 
     /// The same ray, put together of its coordinates.
     ///
-    /// A ray that some call takes as a whole, in a rare case or behind `dyn`, is kept in memory as it came, written in pieces of two
-    /// numbers from its beginning. A direction read from there lies across two of them, and a processor waits until both are written,
-    /// longer than a closed form takes. Of coordinates, the compiler makes in memory what each call needs.
+    /// A ray that some call takes as a whole, in a rare case or behind `dyn`, is kept in memory as it came, written in
+    /// pieces of two numbers from its beginning. A direction read from there lies across two of them, and a processor
+    /// waits until both are written, longer than a closed form takes. Of coordinates, the compiler makes in memory what
+    /// each call needs.
     #[inline(always)]
     pub(crate) fn by_coordinates(self) -> Self {
         let copied = |v: V| V::from_fn(|i| v.get(i));

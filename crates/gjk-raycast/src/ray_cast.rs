@@ -28,20 +28,21 @@ use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayC
 #[doc = include_str!("../doc/ray.svg")]
 ///
 /// # How it begins and ends
-/// - If the source is in the target, or no farther from it than its own error, the answer is a hit at λ = 0 with no normal, whatever the
-///   direction.
+/// - If the source is in the target, or no farther from it than its own error, the answer is a hit at λ = 0 with no
+///   normal, whatever the direction.
 /// - If the source is outside, by however little, a ray that leaves or slides past the target is a miss.
 /// - A ray that grazes the target within rounding may be a hit or a miss. A hit is certain where
 ///   [`upper`](RayCast::upper) is finite ([`is_certain`](RayCast::is_certain)); elsewhere the status is
 ///   [`Status::Stalled`].
 /// - The end of the ray, [`max_lambda`](RayCastOptions::max_lambda), belongs to the ray.
-/// - A ray can begin beyond its source, at [`min_lambda`](RayCastOptions::min_lambda), which belongs to the ray: a shadow ray leaves the
-///   surface that it starts on in this way. If it begins in the target, the answer is a hit there, with no normal.
+/// - A ray can begin beyond its source, at [`min_lambda`](RayCastOptions::min_lambda), which belongs to the ray: a
+///   shadow ray leaves the surface that it starts on in this way. If it begins in the target, the answer is a hit
+///   there, with no normal.
 /// - [`ray_exit`](crate::ray_exit) tells where the ray leaves the target again.
 ///
 /// # Accuracy
-/// The error of λ is a few ulps of the target's size, divided by the cosine of the angle of incidence, and a few ulps of the distance of the
-/// source.
+/// The error of λ is a few ulps of the target's size, divided by the cosine of the angle of incidence, and a few ulps
+/// of the distance of the source.
 ///
 /// # Errors
 /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
@@ -127,7 +128,8 @@ fn certain<S: SupportMap + ?Sized>(
         CertainCrossing::Enters { entry, bounds, normal } => {
             let [earliest, latest] = bounds;
             let is_after_end = !(entry <= options.max_lambda);
-            // By rounding alone, the source may be in the target, or the end of the ray where it enters. NaN and infinity tell nothing.
+            // By rounding alone, the source may be in the target, or the end of the ray where it enters. NaN and
+            // infinity tell nothing.
             let begin = if is_after_end { options.max_lambda } else { zero };
             if !(earliest > begin && latest < infinity) {
                 return None;
@@ -153,7 +155,8 @@ fn searched<S: SupportMap + ?Sized>(
     ray.check(&options)?;
     let mut body = Single::new(target);
     let is_whole = !(options.min_lambda > Scalar::ZERO);
-    // Of a ray that begins inside, plain numbers tell where its line enters, and a closer look takes longer than the search.
+    // Of a ray that begins inside, plain numbers tell where its line enters, and a closer look takes longer than the
+    // search.
     let is_unknown = target.certain_crossing(LineQuery::new(ray.source, ray.direction)).is_none();
     if is_whole
         && is_unknown
@@ -197,9 +200,9 @@ fn whole_or_late<V: Vector>(
 
 /// The cast of a ray that begins at [`min_lambda`](RayCastOptions::min_lambda).
 ///
-/// The place of that beginning on the line is known only to within a slack. So the ray is cast from a slack before it. A hit later than a
-/// slack behind it is a hit like any other. A hit that is earlier is reported at the beginning; its upper bound is where a ray that begins a
-/// slack behind it hits.
+/// The place of that beginning on the line is known only to within a slack. So the ray is cast from a slack before it.
+/// A hit later than a slack behind it is a hit like any other. A hit that is earlier is reported at the beginning; its
+/// upper bound is where a ray that begins a slack behind it hits.
 #[cold]
 #[inline(never)]
 fn late<V: Vector>(
@@ -248,7 +251,8 @@ fn answer<V: Vector>(cast: Cast<V>, ray: Ray<V>) -> RayCast<V> {
     RayCast { outcome, lower: cast.lower, upper: cast.upper, status, iterations: cast.iterations }
 }
 
-/// The answer in the parameters of the whole ray, for a part of it that begins at a parameter which is known to within an `error`.
+/// The answer in the parameters of the whole ray, for a part of it that begins at a parameter which is known to within
+/// an `error`.
 fn of_whole_ray<V: Vector>(
     mut answer: RayCast<V>,
     ray: Ray<V>,

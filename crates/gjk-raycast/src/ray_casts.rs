@@ -7,14 +7,15 @@ use convex_support::SupportMap;
 
 use crate::{Outcome, Ray, RayCast, RayCastError, RayCastOptions, ray_cast};
 
-/// Rays after which a batch forgets the axis, so that its pieces can be cast on any number of threads and come out alike.
+/// Rays after which a batch forgets the axis, so that its pieces can be cast on any number of threads and come out
+/// alike.
 const RAYS_PER_PIECE: usize = 256;
 
 /// Casts many rays against one shape, in their order; each begins with the axis that the one before ended with.
 ///
-/// Rays that are near one another, such as those of a picture or a lidar, then take fewer support points each. The hits and misses are
-/// those of [`ray_cast`], within the same bounds; the last digits may differ from those of a cast that begins with another axis. Every
-/// 256 rays the axis of the options is taken again, so that batches can be cut there.
+/// Rays that are near one another, such as those of a picture or a lidar, then take fewer support points each. The hits
+/// and misses are those of [`ray_cast`], within the same bounds; the last digits may differ from those of a cast that
+/// begins with another axis. Every 256 rays the axis of the options is taken again, so that batches can be cut there.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec3};
@@ -52,7 +53,8 @@ pub fn ray_casts<S: SupportMap + ?Sized>(
     })
 }
 
-/// [`ray_casts`] on all threads of the current [rayon](https://docs.rs/rayon) pool, with the same answers to the last bit.
+/// [`ray_casts`] on all threads of the current [rayon](https://docs.rs/rayon) pool, with the same answers to the last
+/// bit.
 #[cfg(feature = "rayon")]
 pub fn par_ray_casts<S: SupportMap + Sync + ?Sized>(
     target: &S,

@@ -23,8 +23,8 @@ use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, S
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// The line of the ray is cast from beyond the shape back to the source, and certified as by [`ray_cast`]. Where that line first enters
-/// the shape, the ray leaves it.
+/// The line of the ray is cast from beyond the shape back to the source, and certified as by [`ray_cast`]. Where that
+/// line first enters the shape, the ray leaves it.
 ///
 /// - A ray that meets the shape nowhere between [`min_lambda`](RayCastOptions::min_lambda) and
 ///   [`max_lambda`](RayCastOptions::max_lambda) is a miss.

@@ -31,15 +31,15 @@ impl Status {
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Distance<V: Vector> {
-    /// The distance of the two shapes; 0 where they overlap. Where they touch, so that the measured distance is smaller than its own
-    /// error, it is the measured distance.
+    /// The distance of the two shapes; 0 where they overlap. Where they touch, so that the measured distance is smaller
+    /// than its own error, it is the measured distance.
     pub distance: V::Scalar,
     /// The distance is certainly not less: a plane separates the shapes by this much.
     pub lower: V::Scalar,
     /// The distance is certainly not more: two points of the shapes are this far apart.
     pub upper: V::Scalar,
-    /// Whether the shapes have a point in common. Shapes touch, and count as overlapping, if no plane certainly separates them and their
-    /// closest points are no farther apart than the error of these points.
+    /// Whether the shapes have a point in common. Shapes touch, and count as overlapping, if no plane certainly
+    /// separates them and their closest points are no farther apart than the error of these points.
     pub overlap: bool,
     /// The point of `a` closest to `b`, in the world; where the shapes overlap, a point in both, but for rounding.
     pub point_a: V,
@@ -71,13 +71,13 @@ impl<V: Vector> Distance<V> {
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Intersection<V: Vector> {
-    /// Whether the shapes have a point in common. This is certain if `status` is [`Status::Converged`], and otherwise only the better
-    /// guess; [`decided`](Self::decided) tells the two apart. It agrees with [`Distance::overlap`].
+    /// Whether the shapes have a point in common. This is certain if `status` is [`Status::Converged`], and otherwise
+    /// only the better guess; [`decided`](Self::decided) tells the two apart. It agrees with [`Distance::overlap`].
     pub overlap: bool,
     /// A unit vector along which a plane separates the shapes, pointing from `b` to `a`; `None` where they overlap.
     ///
-    /// Its components are rounded. So if the gap is as small as rounding, a few ε of the extent of both shapes, the slab that the rounded
-    /// axis leaves between the shapes may be negative, by an ulp of that extent.
+    /// Its components are rounded. So if the gap is as small as rounding, a few ε of the extent of both shapes, the
+    /// slab that the rounded axis leaves between the shapes may be negative, by an ulp of that extent.
     pub axis: Option<V>,
     /// How the iteration ended.
     pub status: Status,
@@ -103,8 +103,9 @@ pub enum Outcome<H, V> {
     Hit(H),
     /// A miss, which is certain: a plane proves it.
     Miss(Miss<V>),
-    /// The iteration ended, for the reason given by the status, before a hit or a miss was certain. Nothing is hit before the lower bound
-    /// of the answer, so that a program which has to choose is safe if it takes that for the hit.
+    /// The iteration ended, for the reason given by the status, before a hit or a miss was certain. Nothing is hit
+    /// before the lower bound of the answer, so that a program which has to choose is safe if it takes that for the
+    /// hit.
     Undecided,
 }
 
@@ -153,8 +154,8 @@ pub struct Miss<V> {
     /// A unit vector along which a plane separates the shape from the whole ray (up to its end, if it has one),
     /// pointing from the shape to the ray; a good [first axis](crate::RayCastOptions::axis) for a similar query.
     ///
-    /// Its components are rounded, so that at a distance `L` along the ray the plane is off by `L` times half an ulp. In `f32`, a point of
-    /// the ray that is a million sizes of the shape away may be on the wrong side of it.
+    /// Its components are rounded, so that at a distance `L` along the ray the plane is off by `L` times half an ulp.
+    /// In `f32`, a point of the ray that is a million sizes of the shape away may be on the wrong side of it.
     pub axis: V,
 }
 
@@ -170,12 +171,13 @@ pub struct Miss<V> {
 pub struct RayCast<V: Vector> {
     /// Hit, miss, or undecided.
     pub outcome: Outcome<RayHit<V>, V>,
-    /// No point of the ray before this parameter is in the target. For a miss it is infinite, unless only rounding decides whether the
-    /// ray ends before it would hit.
+    /// No point of the ray before this parameter is in the target. For a miss it is infinite, unless only rounding
+    /// decides whether the ray ends before it would hit.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
-    /// The point of the ray at this parameter is in the target. It is infinite where no such point is known: for a miss, and for a hit
-    /// that may be a miss, since the ray grazes the target, or touches it at its source, within rounding.
+    /// The point of the ray at this parameter is in the target. It is infinite where no such point is known: for a
+    /// miss, and for a hit that may be a miss, since the ray grazes the target, or touches it at its source, within
+    /// rounding.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
     /// How the iteration ended.
@@ -200,7 +202,8 @@ pub struct RayHit<V: Vector> {
     pub lambda: V::Scalar,
     /// The point that is hit, in the frame of the ray and the target: the source plus λ times the direction.
     pub point: V,
-    /// The unit outward normal there; at an edge or a vertex, one of the normals. `None` where the ray begins in the target.
+    /// The unit outward normal there; at an edge or a vertex, one of the normals. `None` where the ray begins in the
+    /// target.
     pub normal: Option<V>,
 }
 
@@ -214,7 +217,8 @@ pub struct RayHit<V: Vector> {
     serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
 )]
 pub struct RayExit<V: Vector> {
-    /// Where the ray leaves, with the outward normal there; a miss where no point of the ray is in the target; or undecided.
+    /// Where the ray leaves, with the outward normal there; a miss where no point of the ray is in the target; or
+    /// undecided.
     pub outcome: Outcome<RayHit<V>, V>,
     /// The point of the ray at this parameter is in the target; minus infinity where no such point is known.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
@@ -248,12 +252,13 @@ impl<V: Vector> RayExit<V> {
 pub struct LinearCast<V: Vector> {
     /// Hit, miss, or undecided. The axis of a miss points from `b` to `a`.
     pub outcome: Outcome<LinearHit<V>, V>,
-    /// The shapes have no point in common before this time. For a miss it is infinite, unless only rounding decides whether the motion ends
-    /// before they would meet. It does not count a contact at the start that the motion [leaves](crate::StartInContact::IfDeeper).
+    /// The shapes have no point in common before this time. For a miss it is infinite, unless only rounding decides
+    /// whether the motion ends before they would meet. It does not count a contact at the start that the motion
+    /// [leaves](crate::StartInContact::IfDeeper).
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
-    /// The shapes have a point in common at this time. It is infinite where no such time is known: for a miss, and for a hit that may be a
-    /// miss, since the shapes graze each other, or touch at the start, within rounding.
+    /// The shapes have a point in common at this time. It is infinite where no such time is known: for a miss, and for
+    /// a hit that may be a miss, since the shapes graze each other, or touch at the start, within rounding.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
     /// How the iteration ended.
@@ -281,8 +286,8 @@ pub struct LinearHit<V: Vector> {
     /// distance](crate::LinearCastOptions::target_distance) it is a point of `b`. Where the shapes overlap at the
     /// start, it is a point in both but for rounding, as of [`distance`](crate::distance).
     pub point: V,
-    /// The unit normal of contact, out of `b` towards `a`. Where the shapes overlap at the start by more than rounding, it is `None`; with
-    /// [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper), it is the shortest way out.
+    /// The unit normal of contact, out of `b` towards `a`. Where the shapes overlap at the start by more than rounding,
+    /// it is `None`; with [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper), it is the shortest way out.
     pub normal: Option<V>,
 }
 
@@ -293,16 +298,17 @@ pub struct LinearHit<V: Vector> {
 /// `{x} − C`, with the current point `x` of the ray. So in every case the iteration looks for zero.
 #[derive(Clone, Copy, Debug)]
 pub struct Iterate<'a, V: Vector> {
-    /// The number of the iterate, from 0. The first has an empty simplex and the first direction for its `v`; or, if a shape knows its
-    /// [closest point](convex_support::SupportMap::core_closest_point), that point for its simplex.
+    /// The number of the iterate, from 0. The first has an empty simplex and the first direction for its `v`; or, if a
+    /// shape knows its [closest point](convex_support::SupportMap::core_closest_point), that point for its simplex.
     pub iteration: usize,
-    /// The vertices of the simplex that `v` lies in (the paper's `W`, `S_k` in the book), relative to the query point, in units of
-    /// `scale`; none at first.
+    /// The vertices of the simplex that `v` lies in (the paper's `W`, `S_k` in the book), relative to the query point,
+    /// in units of `scale`; none at first.
     pub simplex: &'a [V],
-    /// The point of the simplex closest to zero (`V_k`), in units of `scale`; in the first iterate, the first direction.
+    /// The point of the simplex closest to zero (`V_k`), in units of `scale`; in the first iterate, the first
+    /// direction.
     pub v: V,
-    /// The support point found along `v` (`W_k`), in units of `scale`. In 3D the direction may have been turned from `v`, by
-    /// curvature or towards the best plane known.
+    /// The support point found along `v` (`W_k`), in units of `scale`. In 3D the direction may have been turned from
+    /// `v`, by curvature or towards the best plane known.
     pub w: V,
     /// The factor, a power of two, that turns the vectors above into lengths of the world.
     pub scale: V::Scalar,

@@ -1,18 +1,19 @@
-//! The closest points of two segments, as of the cores of capsules, in closed form. Not compiled into their callers, so that other pairs do
-//! not take longer.
+//! The closest points of two segments, as of the cores of capsules, in closed form. Not compiled into their callers, so
+//! that other pairs do not take longer.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-/// The points of the segments from `−u` to `u`, moved by `offset`, and from `−w` to `w` that are closest to one another, each relative to its
-/// segment's middle.
+/// The points of the segments from `−u` to `u`, moved by `offset`, and from `−w` to `w` that are closest to one
+/// another, each relative to its segment's middle.
 ///
 /// The length of `r + s·u − t·w`, with `r` the offset, is least where
 ///
 /// > s·u² − t·u·w = −u·r,   t·w² − s·u·w = w·r,
 ///
-/// if `s` and `t` are from −1 to 1. Else one of them is at an end: the first is cut there, and then each is told by the other. Points of
-/// parallel segments are as good as others. If `u` or `w` is zero, any number will do, and what is not one is cut to one.
+/// if `s` and `t` are from −1 to 1. Else one of them is at an end: the first is cut there, and then each is told by the
+/// other. Points of parallel segments are as good as others. If `u` or `w` is zero, any number will do, and what is not
+/// one is cut to one.
 ///
 /// Segments given the other way round have the same points, to the last bit.
 #[inline(never)]
@@ -25,7 +26,8 @@ pub(crate) fn closest_points<V: Vector>(u: V, w: V, offset: V) -> (V, V) {
     }
 }
 
-/// Whether segments are looked at as they are given: the longer one comes first, or of equal ones the one that is farther along the axes.
+/// Whether segments are looked at as they are given: the longer one comes first, or of equal ones the one that is
+/// farther along the axes.
 #[inline(always)]
 fn is_in_order<V: Vector>(u: V, w: V, from_second: V) -> bool {
     let (uu, ww, zero) = (u.length_squared(), w.length_squared(), V::Scalar::ZERO);
@@ -44,11 +46,12 @@ fn points_in_order<V: Vector>(u: V, w: V, offset: V) -> (V, V) {
     (u * s, w * t)
 }
 
-/// A vector along the normal of the plane between two segments, with the given halves and middles, at their closest points `a` and `b`,
-/// given the vector `v` from `b` to `a`.
+/// A vector along the normal of the plane between two segments, with the given halves and middles, at their closest
+/// points `a` and `b`, given the vector `v` from `b` to `a`.
 ///
-/// Where a point is within its segment, the normal is across that. Of points that are near one another rounding is much of the vector
-/// between them, and a step of Newton takes the part of it along the segments away, to what is rounded of the vector itself.
+/// Where a point is within its segment, the normal is across that. Of points that are near one another rounding is much
+/// of the vector between them, and a step of Newton takes the part of it along the segments away, to what is rounded of
+/// the vector itself.
 #[inline(never)]
 pub(crate) fn normal_between<V: Vector>([u, w]: [V; 2], [x, y]: [V; 2], [a, b]: [V; 2], v: V) -> V {
     if is_in_order(u, w, v) {
@@ -82,8 +85,8 @@ fn normal_in_order<V: Vector>([u, w]: [V; 2], middles: [V; 2], [a, b]: [V; 2], v
 /// How many ε a point may be wrong by, of the half length and of the middle.
 const AT_END: f64 = 8.0;
 
-/// Whether a point of a segment is certainly not one of its ends: a point that was added to the middle is not exactly where it was, and of a
-/// middle far from the origin that may be as much as the segment is long.
+/// Whether a point of a segment is certainly not one of its ends: a point that was added to the middle is not exactly
+/// where it was, and of a middle far from the origin that may be as much as the segment is long.
 #[inline(always)]
 fn is_within<V: Vector>(half: V, middle: V, point: V) -> bool {
     let squared = half.length_squared();

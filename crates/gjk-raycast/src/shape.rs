@@ -7,8 +7,8 @@ pub(crate) type Shape<'s, V> = &'s dyn SupportMap<Vector = V>;
 
 /// A shape as distances and depths see it: where a line crosses it, and which feature supports it, they do not ask.
 ///
-/// Of a shape behind a pointer all methods are compiled into a program, whether it asks them or not. The closed forms of line
-/// crossings are as much code as the whole search for a distance, so they are left out here.
+/// Of a shape behind a pointer all methods are compiled into a program, whether it asks them or not. The closed forms
+/// of line crossings are as much code as the whole search for a distance, so they are left out here.
 #[derive(Clone, Copy)]
 pub(crate) struct WithoutLines<'s, S: ?Sized>(pub(crate) &'s S);
 

@@ -33,8 +33,8 @@ impl<V: Vector> StartingPair<'_, V> {
         distance(self.a, self.b, wanted.with_sub_algorithm(options.sub_algorithm))
     }
 
-    /// The normal of contact if the shapes only touch, and `None` if they certainly overlap by more than that; with the number of support
-    /// points computed.
+    /// The normal of contact if the shapes only touch, and `None` if they certainly overlap by more than that; with the
+    /// number of support points computed.
     #[cold]
     #[inline(never)]
     pub(crate) fn touching_normal(&self, options: &LinearCastOptions<V>) -> (Option<V>, usize) {
@@ -50,8 +50,8 @@ impl<V: Vector> StartingPair<'_, V> {
         signed_distance_of_any(self.a, self.b, wanted)
     }
 
-    /// The contact of shapes that touch or overlap at the start, to a slack that is the rounding of their places; `None` if they are
-    /// certainly apart by more.
+    /// The contact of shapes that touch or overlap at the start, to a slack that is the rounding of their places;
+    /// `None` if they are certainly apart by more.
     ///
     /// The depth of a point in a convex set is a concave function of the point: it is the least of the distances from
     /// the supporting planes. So if it falls at first along a line, it falls along all of it; and if it is more

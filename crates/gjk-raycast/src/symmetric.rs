@@ -57,7 +57,8 @@ impl<S: Scalar> Symmetric<S> {
         (trace > S::ZERO && length > S::ZERO).then(|| (trace, (column.0 / length, column.1 / length)))
     }
 
-    /// The greatest eigenvalue of a matrix without negative ones, and its unit eigenvector; `None` where that is no number.
+    /// The greatest eigenvalue of a matrix without negative ones, and its unit eigenvector; `None` where that is no
+    /// number.
     pub(crate) fn greatest_eigen(self) -> Option<(S, Across<S>)> {
         let half = S::from_f64(0.5);
         let (mean, difference) = ((self.a + self.d) * half, (self.a - self.d) * half);

@@ -10,8 +10,8 @@ use num_traits::Float as _;
 /// A power of two near `size`, or the nearest that has a finite reciprocal; 1 where `size` is zero or not finite.
 #[inline]
 pub(crate) fn power_of_two_near<S: Scalar>(size: S) -> S {
-    // Positive numbers have the order of their bits. The reciprocal is to be finite, and not subnormal: half of the largest
-    // power is near enough to it.
+    // Positive numbers have the order of their bits. The reciprocal is to be finite, and not subnormal: half of the
+    // largest power is near enough to it.
     let least = S::max_value().recip().as_f64().to_bits();
     let largest = S::max_value().as_f64().to_bits() & EXPONENT;
     let power = size.as_f64().to_bits() & EXPONENT;
@@ -47,8 +47,8 @@ pub(crate) fn reciprocal_of_power<S: Scalar>(power: S) -> S {
 const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
 const EXPONENT_STEP: u64 = 0x0010_0000_0000_0000;
 
-/// The same direction at a length that is moderate, by a power of two and so without rounding. `None` for the zero vector
-/// and where a coordinate is not finite.
+/// The same direction at a length that is moderate, by a power of two and so without rounding. `None` for the zero
+/// vector and where a coordinate is not finite.
 #[inline(always)]
 pub(crate) fn moderate<V: Vector>(v: V) -> Option<V> {
     if is_moderate(v.length_squared()) {

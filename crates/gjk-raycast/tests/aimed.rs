@@ -1,5 +1,5 @@
-//! Casts that are aimed at edges, rims, apexes and along faces, or begin there: where single precision sees one face, the next may be
-//! within its error. What it says is held against double precision, asked of the same numbers.
+//! Casts that are aimed at edges, rims, apexes and along faces, or begin there: where single precision sees one face,
+//! the next may be within its error. What it says is held against double precision, asked of the same numbers.
 
 use crate::common::Random;
 use crate::common::behind_pointers::{linear_cast, ray_cast, signed_distance};
@@ -194,8 +194,8 @@ fn linear_casts_hold_what_double_precision_finds() {
     }
 }
 
-/// A cone comes along its base past an edge of a box, 6e-7 apart: the search counted a point beside the known ones, of a negative
-/// weight, for one of the bodies, and reported a hit 3e-6 apart.
+/// A cone comes along its base past an edge of a box, 6e-7 apart: the search counted a point beside the known ones, of
+/// a negative weight, for one of the bodies, and reported a hit 3e-6 apart.
 #[test]
 fn a_combination_with_a_negative_weight_is_no_point_of_the_bodies() {
     let [half_height, radius] = [1.037_221_1_f32, 0.535_111_07].map(f64::from);

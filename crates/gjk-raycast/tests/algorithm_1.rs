@@ -90,8 +90,9 @@ fn agree<V: Quaternion>(
             Ok(Some(true))
         }
         (Outcome::Miss(a), Outcome::Miss(_)) => {
-            // The axis separates, at least from the ray ahead of the source as far as it matters: but for the angle that v
-            // is turned by where its rounding, a few units in the last place of coordinates near one, is much of its length.
+            // The axis separates, at least from the ray ahead of the source as far as it matters: but for the angle
+            // that v is turned by where its rounding, a few units in the last place of coordinates near one, is much of
+            // its length.
             let turned = 4.0 * V::Scalar::EPSILON.as_f64() / nearest(&target, ray);
             let reach = target.support_value(a.axis);
             let before = (a.axis.dot(ray.at(s::<V>(1.0))) - reach).as_f64();
@@ -110,7 +111,8 @@ fn agree<V: Quaternion>(
 /// The least diameter of a ball around any of the shapes.
 const DIAMETER: f64 = 2.5;
 
-/// The distance of the ray from the shape up to twice its direction: it falls and then rises, so a third can be cut off.
+/// The distance of the ray from the shape up to twice its direction: it falls and then rises, so a third can be cut
+/// off.
 fn nearest<V: Quaternion>(target: &Posed<Shape<V>>, ray: Ray<V>) -> f64 {
     let distance = |lambda: f64| {
         let x = ray.at(s::<V>(lambda));

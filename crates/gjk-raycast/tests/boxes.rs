@@ -1,4 +1,5 @@
-//! Whether boxes meet, by the axes that may separate them, against the signed distance of shapes that do not say that they are boxes.
+//! Whether boxes meet, by the axes that may separate them, against the signed distance of shapes that do not say that
+//! they are boxes.
 
 use crate::common::behind_pointers::{intersects, signed_distance};
 use crate::common::{Plain, Random, s};

@@ -1,5 +1,5 @@
-//! Brackets that hold the truth, whatever became of a shape on its way: nested poses, far origins, floors a thousand times as wide as
-//! what stands on them, starts within an ulp of contact.
+//! Brackets that hold the truth, whatever became of a shape on its way: nested poses, far origins, floors a thousand
+//! times as wide as what stands on them, starts within an ulp of contact.
 //!
 //! The same numbers in double precision are the truth of single precision: their rounding is a billion times smaller.
 
@@ -109,15 +109,17 @@ fn composed(random: &mut Random, i: usize) -> Tree {
     tree.brought_back(random.coordinates(2.0))
 }
 
-/// Holds an answer in single precision against the truth, each of lower and upper bound and whether it is a miss: what is proved must be
-/// so. A miss is at infinity: where bodies graze within what is known of them, a hit may be said that has no upper bound.
+/// Holds an answer in single precision against the truth, each of lower and upper bound and whether it is a miss: what
+/// is proved must be so. A miss is at infinity: where bodies graze within what is known of them, a hit may be said that
+/// has no upper bound.
 fn holds(answer: ([f64; 2], bool), truth: ([f64; 2], bool), what: impl Fn() -> String) {
     let (([lower, upper], misses), ([least, most], must_miss)) = (answer, truth);
     assert!(must_miss || !misses, "a miss that is a hit: {}", what());
     assert!(lower <= most && least <= upper, "{lower:e} … {upper:e} is not {least:e} … {most:e}: {}", what());
 }
 
-/// Class A: of bodies that were posed far away, turned and moved back, the bracket in single precision holds what double precision says.
+/// Class A: of bodies that were posed far away, turned and moved back, the bracket in single precision holds what
+/// double precision says.
 #[test]
 fn composed_poses_keep_the_truth_in_the_bracket() {
     let mut random = Random(1);
@@ -327,8 +329,8 @@ fn turned_by<V: Vector3>(shape: Shape<V>, q: [f64; 4], t: [f64; 3]) -> Shape<V> 
 
 const NO_TURN: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
 
-/// A plane along the ray is crossed anywhere, within the error of a far origin. The line there, hundreds of sizes behind the body, is known
-/// to less than that error, and no miss was to be told from it.
+/// A plane along the ray is crossed anywhere, within the error of a far origin. The line there, hundreds of sizes
+/// behind the body, is known to less than that error, and no miss was to be told from it.
 #[test]
 fn a_hit_a_hair_inside_a_far_corner_is_no_miss() {
     fn ask<V: Vector3>() -> ([f64; 2], bool) {
@@ -355,7 +357,8 @@ fn a_hit_a_hair_inside_a_far_corner_is_no_miss() {
     holds(ask::<Vec3A>(), truth, || "a far corner".to_owned());
 }
 
-/// Pairs that `distance` and `intersects` told apart in one order and not in the other, or beginning at points closest to one another.
+/// Pairs that `distance` and `intersects` told apart in one order and not in the other, or beginning at points closest
+/// to one another.
 #[test]
 fn a_pair_is_one_pair_in_either_order() {
     fn agree<V: Vector3>(a: &Shape<V>, b: &Shape<V>) {
@@ -389,8 +392,8 @@ fn a_pair_is_one_pair_in_either_order() {
     agree(&corner, &Tree::Cuboid([10035.9873046875, 8021.44189453125, 11855.4189453125]).build());
 }
 
-/// Rays from sources within a few errors of a curved boundary: what single precision says holds what double precision does, whichever face the
-/// ray goes through in the end; and what leaves is a miss for certain.
+/// Rays from sources within a few errors of a curved boundary: what single precision says holds what double precision
+/// does, whichever face the ray goes through in the end; and what leaves is a miss for certain.
 #[test]
 fn rays_from_the_boundary_keep_the_truth_in_the_bracket() {
     let named = [

@@ -170,8 +170,8 @@ fn parameters_of_rays_change_as_differences_say() {
     all_pairs::<DVec2, 4>(16, 20, compare_ray);
 }
 
-/// A link that turns by 0.8 rad while it is cast. To take its point of contact for one that only moves, with the velocity of the
-/// centre, as some do, is wrong by a good part.
+/// A link that turns by 0.8 rad while it is cast. To take its point of contact for one that only moves, with the
+/// velocity of the centre, as some do, is wrong by a good part.
 #[test]
 fn a_turning_cast_is_derived_with_its_turn() {
     let bin = Posed::translated(Cuboid::new(DVec3::new(0.3, 0.2, 0.4)).expect(VALID), DVec3::new(0.9, 0.55, 0.1))

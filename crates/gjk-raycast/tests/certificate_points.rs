@@ -1,4 +1,5 @@
-//! Certificates prove what answers claim, as far as the shapes' own support maps tell; `cargo xtask prove` tells it without them.
+//! Certificates prove what answers claim, as far as the shapes' own support maps tell; `cargo xtask prove` tells it
+//! without them.
 
 use crate::common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
 use convex_support::glam::{DMat3, DVec2, DVec3, Vec3};

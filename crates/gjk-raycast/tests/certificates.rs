@@ -1,5 +1,5 @@
-//! What answers claim, held against the support maps themselves, on shapes and poses that are adversarial on purpose: ulps
-//! apart, from 1e-9 to 1e9, aspects of a million, flat and repeated vertices, parallel faces, grazing rays.
+//! What answers claim, held against the support maps themselves, on shapes and poses that are adversarial on purpose:
+//! ulps apart, from 1e-9 to 1e9, aspects of a million, flat and repeated vertices, parallel faces, grazing rays.
 
 use crate::common::behind_pointers::{distance, intersects, linear_cast, ray_cast};
 use crate::common::directions;

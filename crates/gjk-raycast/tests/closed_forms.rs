@@ -1,4 +1,5 @@
-//! Casts against shapes that know where a line crosses them: the closed form is asked first, and certified like a search.
+//! Casts against shapes that know where a line crosses them: the closed form is asked first, and certified like a
+//! search.
 
 use crate::common::{directions, v};
 use convex_support::glam::DVec3;

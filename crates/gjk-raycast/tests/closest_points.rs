@@ -1,4 +1,5 @@
-//! Where one core is a point and the other says its closest one, or both are segments, that is where a descent begins, and mostly ends.
+//! Where one core is a point and the other says its closest one, or both are segments, that is where a descent begins,
+//! and mostly ends.
 
 use crate::common::{Plain, Quaternion, at, cuboid, s, turned, ulps, v};
 use convex_support::glam::{DVec2, DVec3, Vec3A};
@@ -39,7 +40,8 @@ fn centres() -> impl Iterator<Item = [f64; 3]> {
     (0..216).map(move |n| [grid[n % 6], grid[n / 6 % 6], grid[n / 36]])
 }
 
-/// One support point certifies what the closed form says, apart from contact, and it is what the support points alone lead to.
+/// One support point certifies what the closed form says, apart from contact, and it is what the support points alone
+/// lead to.
 #[test]
 fn a_ball_needs_one_support_point() {
     fn run<V: Quaternion>() {
@@ -57,8 +59,8 @@ fn a_ball_needs_one_support_point() {
                 // Where they touch, to rounding, a plane between them is looked for.
                 let needed = if found.overlap && found.normal.is_some() { 4 } else { 1 };
                 assert!(found.iterations <= needed && back.iterations <= needed, "{what}");
-                // The bracket is 16ε of both sizes and the distance of the origins, which are 6 together at most, and 50ε of a size
-                // for a turn.
+                // The bracket is 16ε of both sizes and the distance of the origins, which are 6 together at most, and
+                // 50ε of a size for a turn.
                 let within = s::<V>(ulps::<V>(160.0));
                 assert!((found.distance - other.distance).abs() <= within, "{what}");
                 assert!((found.distance - back.distance).abs() <= within, "{what}");
@@ -76,8 +78,8 @@ fn a_ball_needs_one_support_point() {
     run::<Vec3A>();
 }
 
-/// Two capsules, posed all around one another, beside ones whose closed forms nobody knows: across, parallel, nearly parallel and as short
-/// as balls.
+/// Two capsules, posed all around one another, beside ones whose closed forms nobody knows: across, parallel, nearly
+/// parallel and as short as balls.
 #[test]
 fn two_capsules_need_one_too() {
     fn run<V: Quaternion>() {

@@ -128,8 +128,8 @@ fn numbers_of_features_stay_while_shapes_move_a_little() {
     }
 }
 
-/// Seen nearly from its end a segment is steep, and where it is in the plane of contact is rounding: its height there was one far beyond
-/// the capsule's end.
+/// Seen nearly from its end a segment is steep, and where it is in the plane of contact is rounding: its height there
+/// was one far beyond the capsule's end.
 #[test]
 fn a_capsule_seen_from_its_end_is_no_deeper_than_it_is() {
     let angle = 1.570_132_023_039_958_5;
@@ -144,8 +144,8 @@ fn a_capsule_seen_from_its_end_is_no_deeper_than_it_is() {
     assert!(contact.points().iter().all(|p| p.signed_distance >= contact.distance.lower - 1e-15), "{contact:?}");
 }
 
-/// What lies within the distance asked for is no feature if it is not nearly flat: from the silhouette of a whole shape, points were made
-/// that were on none of them, and the closest were not among these.
+/// What lies within the distance asked for is no feature if it is not nearly flat: from the silhouette of a whole
+/// shape, points were made that were on none of them, and the closest were not among these.
 #[test]
 fn the_closest_points_are_in_every_manifold() {
     let triangle = Triangle::new([DVec2::new(-1.44, 1.84), DVec2::new(0.17, -1.06), DVec2::new(1.18, -1.14)]);
@@ -181,16 +181,17 @@ fn the_closest_points_are_in_every_manifold() {
     }
 }
 
-/// How far a shape is from a point, along a ray to it from outside along the normal of a contact; negative where the point is inside.
+/// How far a shape is from a point, along a ray to it from outside along the normal of a contact; negative where the
+/// point is inside.
 fn above<S: SupportMap<Vector = DVec3> + ?Sized>(shape: &S, point: DVec3, normal: DVec3) -> f64 {
     let ray = Ray { source: point + normal * 8.0, direction: -normal };
     let hit = ray_cast(shape, ray, RayCastOptions::default()).expect("finite").outcome.hit();
     hit.map_or(f64::INFINITY, |hit| hit.lambda - 8.0)
 }
 
-/// A face that is slightly bent was taken for the plane through three of its corners: where the surface is at −0.0475 the manifold said −0.045.
-/// Of hulls one point in three was off by more than a thousandth of the size, and one in twelve was no point of its body. The heights of a
-/// point are asked of the bodies now.
+/// A face that is slightly bent was taken for the plane through three of its corners: where the surface is at −0.0475
+/// the manifold said −0.045. Of hulls one point in three was off by more than a thousandth of the size, and one in
+/// twelve was no point of its body. The heights of a point are asked of the bodies now.
 #[test]
 fn points_are_on_the_bodies_where_faces_are_bent() {
     let base = [[-2.0, -2.0], [-2.0, 2.0], [2.0, -2.0], [2.0, 2.0]];
@@ -238,8 +239,8 @@ fn points_are_on_the_bodies_where_faces_are_bent() {
     assert!(points > 200, "{points}");
 }
 
-/// A corner belongs to a contact if it overlaps, however the body leans. Corners farther than 1/64 of the size behind the deepest were none:
-/// a cube 0.3 deep in a floor had four points up to 0.012 rad, and two from 0.015 on.
+/// A corner belongs to a contact if it overlaps, however the body leans. Corners farther than 1/64 of the size behind
+/// the deepest were none: a cube 0.3 deep in a floor had four points up to 0.012 rad, and two from 0.015 on.
 #[test]
 fn what_leans_keeps_the_corners_that_overlap() {
     let count = |shape: &dyn SupportMap<Vector = DVec3>| touch(&shape, &floor()).points().len();
@@ -264,8 +265,9 @@ fn what_leans_keeps_the_corners_that_overlap() {
     }
 }
 
-/// The same points, by the numbers of their features, while bodies at rest jitter, and whichever body is named first. The reduction began at the
-/// deepest point, which rounding chooses among equals: a cylinder on a floor changed its points in half of the frames.
+/// The same points, by the numbers of their features, while bodies at rest jitter, and whichever body is named first.
+/// The reduction began at the deepest point, which rounding chooses among equals: a cylinder on a floor changed its
+/// points in half of the frames.
 #[test]
 fn bodies_at_rest_keep_their_points() {
     type Shape = Box<dyn SupportMap<Vector = DVec3>>;

@@ -107,8 +107,8 @@ fn the_point_of_contact_of_ellipsoids_is_on_both() {
     assert!(off < 1e-9, "{off:e}");
 }
 
-/// A cone that moves by `velocity` towards a cylinder and touches it at `time`: how many support points the search took. What is asked
-/// once more of an edge that is met within an error is not counted.
+/// A cone that moves by `velocity` towards a cylinder and touches it at `time`: how many support points the search
+/// took. What is asked once more of an edge that is met within an error is not counted.
 fn cylinder_and_cone(turn: [f64; 4], place: [f64; 3], velocity: [f64; 3], time: f64) -> usize {
     let cylinder = Cylinder::<DVec3>::new(0.75, 0.5).expect(VALID);
     let cone = Cone::<DVec3>::new(0.75, 0.625).expect(VALID);
@@ -126,9 +126,9 @@ fn cylinder_and_cone(turn: [f64; 4], place: [f64; 3], velocity: [f64; 3], time: 
     searched
 }
 
-/// An edge meets an edge, and leaves it again at once: seen along the ray, the line runs through the outline of the obstacle, where
-/// no triangle of points encloses it. The search of GJK that took over stalled at 0.542, before the contact. The edge is
-/// found by the curvature of the piece, which there is of rank one.
+/// An edge meets an edge, and leaves it again at once: seen along the ray, the line runs through the outline of the
+/// obstacle, where no triangle of points encloses it. The search of GJK that took over stalled at 0.542, before the
+/// contact. The edge is found by the curvature of the piece, which there is of rank one.
 #[test]
 fn an_edge_that_only_grazes_is_met_where_it_is() {
     cylinder_and_cone(
@@ -139,8 +139,8 @@ fn an_edge_that_only_grazes_is_met_where_it_is() {
     );
 }
 
-/// As before, where the line is enclosed. Newton's step for one piece was left out where its curvature is singular; the planes
-/// were then laid on the border to the next piece, and half of them only showed that: 40 support points in vain.
+/// As before, where the line is enclosed. Newton's step for one piece was left out where its curvature is singular; the
+/// planes were then laid on the border to the next piece, and half of them only showed that: 40 support points in vain.
 #[test]
 fn an_edge_is_found_by_its_one_curvature() {
     let iterations = cylinder_and_cone(
@@ -152,8 +152,9 @@ fn an_edge_is_found_by_its_one_curvature() {
     assert!(iterations < 24, "{iterations} support points");
 }
 
-/// The side of a cylinder on the side of a cone: four pieces share the plane. One that had not been looked at for long foretold
-/// less than was found there, and so forbade the plane of the other three: two of them were looked at in turns.
+/// The side of a cylinder on the side of a cone: four pieces share the plane. One that had not been looked at for long
+/// foretold less than was found there, and so forbade the plane of the other three: two of them were looked at in
+/// turns.
 #[test]
 fn a_stale_piece_does_not_forbid_the_plane_of_the_others() {
     let iterations = cylinder_and_cone(
@@ -165,8 +166,8 @@ fn a_stale_piece_does_not_forbid_the_plane_of_the_others() {
     assert!(iterations < 24, "{iterations} support points");
 }
 
-/// Two points of either of two rims make a triangle as flat as rounding; that the line runs through it was rounding too, and it
-/// was crossed before the contact. The search was given up one step before its end.
+/// Two points of either of two rims make a triangle as flat as rounding; that the line runs through it was rounding
+/// too, and it was crossed before the contact. The search was given up one step before its end.
 #[test]
 fn a_portal_before_the_plane_is_none() {
     let iterations = cylinder_and_cone(
@@ -178,8 +179,9 @@ fn a_portal_before_the_plane_is_none() {
     assert!(iterations < 24, "{iterations} support points");
 }
 
-/// A ray in `f32` that meets the slant of a cone at a cosine of 0.04. What rounding leaves of the planes closed the bracket while
-/// it was 25 times as long along the ray, and `λ` was short by 2e-5 sizes; one more plane comes to a tenth of that.
+/// A ray in `f32` that meets the slant of a cone at a cosine of 0.04. What rounding leaves of the planes closed the
+/// bracket while it was 25 times as long along the ray, and `λ` was short by 2e-5 sizes; one more plane comes to a
+/// tenth of that.
 #[test]
 fn one_more_plane_where_the_ray_grazes() {
     let (source, direction) = ([-1_645_990.9, -8_955_553.0, 4_133_859.0], [429_995.97, 2_527_059.8, -1_092_382.8]);

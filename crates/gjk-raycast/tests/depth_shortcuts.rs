@@ -1,4 +1,5 @@
-//! Depths in closed form, and of cores without their rolling balls, against the expanding polytope, which knows nothing of either.
+//! Depths in closed form, and of cores without their rolling balls, against the expanding polytope, which knows nothing
+//! of either.
 
 use crate::common::behind_pointers::signed_distance;
 use crate::common::{Plain, Random, s};
@@ -33,8 +34,8 @@ where
     signed_distance(a, b, SignedDistanceOptions::default())
 }
 
-/// Both answers' brackets hold a common number, the quicker one's is hardly wider than the other's, and its points
-/// are on their shapes, to the root of the bracket where the shapes are curved, and apart by the depth along the normal.
+/// Both answers' brackets hold a common number, the quicker one's is hardly wider than the other's, and its points are
+/// on their shapes, to the root of the bracket where the shapes are curved, and apart by the depth along the normal.
 fn agree<V, A, B>(a: &A, b: &B) -> SignedDistance<V>
 where
     V: Vector,

@@ -110,7 +110,8 @@ fn derivatives_are_those_of_differences_in_the_plane() {
     all_pairs::<DVec2>(8, 12);
 }
 
-/// The ellipsoids of a line of the reference, and its numbers of the distance: value, gradient and upper triangle of the Hessian.
+/// The ellipsoids of a line of the reference, and its numbers of the distance: value, gradient and upper triangle of
+/// the Hessian.
 fn reference<V: Vector<Scalar = f64>>(line: &str) -> (f64, [Ellipsoid<V>; 2], Vec<f64>) {
     let n = V::DIM;
     let numbers: Vec<f64> = line.split(',').map(|x| x.parse().expect("a number")).collect();
@@ -123,7 +124,8 @@ fn reference<V: Vector<Scalar = f64>>(line: &str) -> (f64, [Ellipsoid<V>; 2], Ve
     (numbers[1], [body(0), body(1)], numbers[2 + 2 * per_body..].to_vec())
 }
 
-/// The errors of the gradient and the Hessian, relative to the greatest entry of each block of translations and rotations.
+/// The errors of the gradient and the Hessian, relative to the greatest entry of each block of translations and
+/// rotations.
 fn errors<V: Vector<Scalar = f64>>(bodies: &[Ellipsoid<V>; 2], truth: &[f64]) -> Option<[f64; 2]> {
     let [a, b] = bodies;
     let features = apart(a, b).closest_features(a, b);
@@ -284,8 +286,9 @@ fn what_is_not_a_number_has_no_derivative() {
     assert_eq!(features.hessian_of_b(DVec3::ZERO), None);
 }
 
-/// Two ways out are as short where a ball is about the axis of a capsule, a circle about a segment, and a ball about the axis of an ellipse.
-/// Cores that touch seemed a rounding apart, curved ones were compared to a billionth, and the normal turns a little as they are pushed.
+/// Two ways out are as short where a ball is about the axis of a capsule, a circle about a segment, and a ball about
+/// the axis of an ellipse. Cores that touch seemed a rounding apart, curved ones were compared to a billionth, and the
+/// normal turns a little as they are pushed.
 #[test]
 fn ways_out_that_are_as_short_are_edges_of_curved_shapes_too() {
     fn is_tied<V: Vector>(a: &impl SupportMap<Vector = V>, b: &impl SupportMap<Vector = V>) {
@@ -304,8 +307,9 @@ fn ways_out_that_are_as_short_are_edges_of_curved_shapes_too() {
     is_tied(&at(Ball::new(1.0).expect(VALID), 0.5), &ellipse);
 }
 
-/// Two coordinates of the normal are equal and the least but for a rounding, which decides the basis that features are seen in. A last step of
-/// refinement had changed the basis and not the features, so that the edge of the triangle was mirrored and its Hessian was wrong by half.
+/// Two coordinates of the normal are equal and the least but for a rounding, which decides the basis that features are
+/// seen in. A last step of refinement had changed the basis and not the features, so that the edge of the triangle was
+/// mirrored and its Hessian was wrong by half.
 #[test]
 fn second_derivatives_along_a_normal_between_two_bases() {
     let turn = DMat3::from_rotation_y(std::f64::consts::FRAC_PI_4);

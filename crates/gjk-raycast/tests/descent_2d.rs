@@ -1,5 +1,6 @@
 //! The descent in the plane as Schneider and Eberly tell it (*Geometric Tools for Computer Graphics*, 2003, Section
-//! 6.10.1), through the observer: the simplex `S_k`, its point `V_k` closest to the origin, and the support point `W_k`.
+//! 6.10.1), through the observer: the simplex `S_k`, its point `V_k` closest to the origin, and the support point
+//! `W_k`.
 
 use convex_support::glam::DVec2;
 use convex_support::{Point, Polytope, SupportMap};
@@ -87,8 +88,8 @@ proptest! {
     }
 }
 
-/// The book's figures 6.25 to 6.29: a polygon seen from the left. `S_1 = {W_0}`, `S_2 = {W_0, W_1}` with `V_2` within the
-/// edge, and as soon as a new vertex brings another edge closer, the old vertex is discarded.
+/// The book's figures 6.25 to 6.29: a polygon seen from the left. `S_1 = {W_0}`, `S_2 = {W_0, W_1}` with `V_2` within
+/// the edge, and as soon as a new vertex brings another edge closer, the old vertex is discarded.
 #[test]
 fn the_old_vertex_is_discarded() {
     let corners = [[2.0, 4.0], [5.0, 5.0], [7.0, 1.0], [6.0, -3.0], [3.0, -4.0], [1.5, -1.0]].map(DVec2::from_array);

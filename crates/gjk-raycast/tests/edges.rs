@@ -19,7 +19,8 @@ fn placed(shape: Boxed, turn: DQuat, at: DVec3, world: (DQuat, DVec3)) -> Body<D
     Body { shape }
 }
 
-/// Two bodies of which `a` is above `b` by a gap, negative for a depth, with parallel faces or edges; the kinds count from 0.
+/// Two bodies of which `a` is above `b` by a gap, negative for a depth, with parallel faces or edges; the kinds count
+/// from 0.
 fn parallel(kind: usize, gap: f64, random: &mut Random) -> [Body<DVec3>; 2] {
     let world = (DVec3::rotation(random), random.vector::<DVec3>());
     let spin = DQuat::from_rotation_y(random.number(0.0, 6.0));
@@ -76,8 +77,8 @@ fn parallel_faces_and_edges_are_no_smooth_place() {
 
 #[test]
 fn faces_of_curved_bodies_are_no_smooth_place() {
-    // Discs and the sides of cylinders over discs: an answer knows the distance to a rounding, and the normal of a curved body to the
-    // root of that.
+    // Discs and the sides of cylinders over discs: an answer knows the distance to a rounding, and the normal of a
+    // curved body to the root of that.
     let mut random = Random(12);
     let upright = |kind: usize, [h, r]: [f64; 2]| -> (Boxed, f64) {
         let shape: Boxed = match kind {
@@ -124,7 +125,8 @@ fn a_lean_of_a_millionth_is_smooth() {
     for round in 0..4000 {
         let kind = round % PARALLEL_KINDS;
         let gap = [0.3, 0.01, 1e-4, -0.1][round / PARALLEL_KINDS % 4];
-        // Deep within one another, a curved body and a face are told apart by a search that knows the normal to half its digits.
+        // Deep within one another, a curved body and a face are told apart by a search that knows the normal to half
+        // its digits.
         let angle = if gap < 0.0 { 1e-3 } else { 1e-6 };
         let [a, b] = parallel(kind, gap, &mut random);
         // About an axis that is not along an edge or a capsule.
@@ -180,7 +182,8 @@ fn faces_that_have_an_edge_or_a_corner_in_common_have_one_sided_rates() {
         let world = (DVec3::rotation(&mut random), random.vector::<DVec3>());
         let cuboid = |s: DVec3| -> Boxed { std::rc::Rc::new(Cuboid::new(s).expect(VALID)) };
         let lying = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
-        // Beside one another, but for a gap above: seen from above they have an edge in common, a part of one, or a corner.
+        // Beside one another, but for a gap above: seen from above they have an edge in common, a part of one, or a
+        // corner.
         let sizes = [[0.5, 0.75, 1.0], [1.0, 0.5, 0.75]].map(DVec3::from_array);
         let along = [-0.25, 0.5, 1.75][round % 3];
         let (shape, turn, low): (Boxed, DQuat, f64) = match round / 3 % 3 {
@@ -333,8 +336,8 @@ fn within_one_another_a_distance_stays_zero() {
     assert_eq!(gradient.along(RigidMotion::translation(DVec3::X), RigidMotion::default()), 0.0);
 }
 
-/// The side of a cone turns with the normal, so that a normal across it and across an edge parallel to it is found to the root of rounding: the
-/// two were taken for lines that cross.
+/// The side of a cone turns with the normal, so that a normal across it and across an edge parallel to it is found to
+/// the root of rounding: the two were taken for lines that cross.
 #[test]
 fn an_edge_along_the_side_of_a_cone_is_no_smooth_place() {
     for (size, turn) in [(1.0, 0.0), (1e6, 0.0), (1e-6, 0.0), (1.0, 0.7), (1e6, 2.1), (1.0, -1.2)] {
@@ -354,7 +357,8 @@ fn an_edge_along_the_side_of_a_cone_is_no_smooth_place() {
     }
 }
 
-/// Rims that are nearly flat where they are the way out: as they are pushed on, the other way gains more than the square of the push.
+/// Rims that are nearly flat where they are the way out: as they are pushed on, the other way gains more than the
+/// square of the push.
 #[test]
 fn equal_ways_out_of_flat_curves_are_an_edge() {
     let skewed = DMat3::from_cols_array_2d(&[[1.0, 0.5, 0.0], [0.0, 1.0, 0.0], [0.25, 0.0, 2.0]]);

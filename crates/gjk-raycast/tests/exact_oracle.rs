@@ -30,9 +30,9 @@ fn a_ray_along_an_edge_misses() {
     ray_agrees::<Vec2>(&points, [27, -27, 0], [-9, 9, 0]).expect("in single precision");
 }
 
-/// The ray enters the hull at a vertex, of a facet that it meets at a slope of 1e-3 and sees as a sliver. Where in the sliver it
-/// enters is rounding; the vertex was known, but not looked at, and the bracket stayed open with the status `Stalled`.
-/// Found by the properties below.
+/// The ray enters the hull at a vertex, of a facet that it meets at a slope of 1e-3 and sees as a sliver. Where in the
+/// sliver it enters is rounding; the vertex was known, but not looked at, and the bracket stayed open with the status
+/// `Stalled`. Found by the properties below.
 #[test]
 fn a_ray_through_a_vertex_of_a_sliver_converges() {
     let points = [[-81, 234, -54], [0, -116, -22], [37, 212, -27], [154, 105, -39]];
@@ -40,8 +40,9 @@ fn a_ray_through_a_vertex_of_a_sliver_converges() {
     ray_agrees::<DVec3>(&points, [33, 228, -21], [2, -8, -3]).expect("in double precision");
 }
 
-/// A facet of the obstacle lies along the motion, and by rounding met it at a slope of 2e-15. The spot where it did closed the
-/// bracket, since it was weighed by that slope and not by that of the plane before it. Found by the properties below.
+/// A facet of the obstacle lies along the motion, and by rounding met it at a slope of 2e-15. The spot where it did
+/// closed the bracket, since it was weighed by that slope and not by that of the plane before it. Found by the
+/// properties below.
 #[test]
 fn a_facet_along_the_motion_is_not_entered() {
     let (a, b) = ([[3, 4, 6], [1, -9, -9]], [[-2, 0, -1], [0, 2, 1], [0, 1, 0]]);

@@ -1,4 +1,5 @@
-//! Motion casts against half-spaces: closed forms, what is proved against dense sampling, and what is answered at the edges.
+//! Motion casts against half-spaces: closed forms, what is proved against dense sampling, and what is answered at the
+//! edges.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2, TAU};
 
@@ -58,8 +59,8 @@ fn the_tip_of_a_rod_meets_the_floor() {
     holds(cast, 0.25_f64.asin() / 0.5);
 }
 
-/// The bound of what turns is a product of two angular velocities, whose square underflows of such as these. Taken for zero, it proves
-/// that what is above the floor at both ends is so all the way.
+/// The bound of what turns is a product of two angular velocities, whose square underflows of such as these. Taken for
+/// zero, it proves that what is above the floor at both ends is so all the way.
 #[test]
 fn turning_ever_so_slowly_is_turning() {
     for exponent in [-6, -12, -15, -18] {
@@ -172,7 +173,8 @@ fn starts_in_contact() {
             Posed::translated(Cuboid::new(DVec2::new(0.2, 1.0)).expect("positive"), DVec2::Y).expect("finite");
         floor(0.0).motion_cast(&upright, motion, until(9.0).with_start_in_contact(if_deeper)).expect("finite")
     };
-    // At 1 + 0.4·t − 0.2·|sin 1.5t| − |cos 1.5t| it is above the floor from the start on, where that grows by 0.4 − 0.3.
+    // At 1 + 0.4·t − 0.2·|sin 1.5t| − |cos 1.5t| it is above the floor from the start on, where that grows by 0.4 −
+    // 0.3.
     assert!(again.outcome.is_miss() && again.lower == 9.0, "{again:?}");
 }
 
@@ -310,7 +312,8 @@ struct Case {
 }
 
 impl Case {
-    /// How far the body's lowest point is above the half-space, less the target distance: in closed form for each kind of shape.
+    /// How far the body's lowest point is above the half-space, less the target distance: in closed form for each kind
+    /// of shape.
     fn height(&self, time: f64) -> f64 {
         let turn = DQuat::from_scaled_axis(self.spin * time);
         let middle = self.center + self.velocity * time + turn * (self.place - self.center);

@@ -11,7 +11,8 @@ use gjk_raycast::{
 
 const VALID: &str = "positive sizes and finite numbers";
 
-/// By how much normals and points are made worse. Both are found again to `MENDED`, which of needles is the condition times the rounding.
+/// By how much normals and points are made worse. Both are found again to `MENDED`, which of needles is the condition
+/// times the rounding.
 const WORSE: f64 = 1e-7;
 const MENDED: f64 = 1e-11;
 
@@ -57,7 +58,8 @@ impl<V: Space> Hit<V> for RayHit<V> {
     }
 }
 
-/// What is known of a hit is made worse, and mended by the features that are seen then: it is what it was. Whether it is at smooth features.
+/// What is known of a hit is made worse, and mended by the features that are seen then: it is what it was. Whether it
+/// is at smooth features.
 fn is_mended<V: Space, H: Hit<V>>(
     random: &mut Random,
     hit: H,
@@ -132,8 +134,9 @@ fn hits_that_are_known_badly_are_mended_in_the_plane() {
     all_hits_are_mended::<DVec2>(22, 6);
 }
 
-/// A box above another by a gap, negative for a depth, so that faces are parallel, in a world that is turned; and the direction up. Aside it stands by a
-/// part of the sizes of both: by all of them their faces have an edge or a corner in common.
+/// A box above another by a gap, negative for a depth, so that faces are parallel, in a world that is turned; and the
+/// direction up. Aside it stands by a part of the sizes of both: by all of them their faces have an edge or a corner in
+/// common.
 fn stacked<V: Space>(gap: f64, aside: f64, random: &mut Random) -> ([Body<V>; 2], V) {
     let (turn, world) = (V::rotation(random), random.vector::<V>());
     let size = |random: &mut Random| V::from_fn(|_| random.number(0.4, 1.0));
@@ -146,7 +149,8 @@ fn stacked<V: Space>(gap: f64, aside: f64, random: &mut Random) -> ([Body<V>; 2]
     ([body(sa, off), body(sb, V::ZERO)], turn.matrix() * V::from_fn(|i| f64::from(u8::from(i == 1))))
 }
 
-/// How many of `rounds` one-sided rates are those of differences to 1e-8; all are to what small steps tell, past which there may be another kink.
+/// How many of `rounds` one-sided rates are those of differences to 1e-8; all are to what small steps tell, past which
+/// there may be another kink.
 fn are_those_of_differences(rounds: usize, mut case: impl FnMut(usize) -> (f64, Box<dyn Fn(f64) -> f64>)) {
     let mut compared = 0;
     for round in 0..rounds {

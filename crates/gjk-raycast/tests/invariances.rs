@@ -1,4 +1,5 @@
-//! What an answer does not depend on: the unit of length, the order of the bodies, the direction the search begins with.
+//! What an answer does not depend on: the unit of length, the order of the bodies, the direction the search begins
+//! with.
 
 use crate::common::ulps;
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3A};
@@ -488,8 +489,8 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Moving both bodies by what their coordinates can hold changes no bit; by anything else, no more than the rounding of
-    /// the coordinates.
+    /// Moving both bodies by what their coordinates can hold changes no bit; by anything else, no more than the
+    /// rounding of the coordinates.
     #[test]
     fn a_common_translation_does_not_matter(
         (kind_a, kind_b) in (0_usize..7, 0_usize..8),
@@ -597,8 +598,8 @@ proptest! {
         prop_assert_eq!(meets.overlap, one.overlap);
     }
 
-    /// Swapping the bodies changes no bit where nothing is known in closed form, not even where they touch and rounding decides; and
-    /// all queries decide alike there, wherever they begin.
+    /// Swapping the bodies changes no bit where nothing is known in closed form, not even where they touch and rounding
+    /// decides; and all queries decide alike there, wherever they begin.
     #[test]
     fn order_changes_no_bit(
         (kind_a, kind_b) in (prop_oneof![Just(0_usize), 2_usize..8], prop_oneof![Just(0_usize), 2_usize..8]),

@@ -28,7 +28,8 @@ impl SupportMap for Liar {
     }
 }
 
-/// Distances told a lower bound above the upper one, which a `max` had made of NaN, and a cast put a fifth point into a simplex.
+/// Distances told a lower bound above the upper one, which a `max` had made of NaN, and a cast put a fifth point into a
+/// simplex.
 #[test]
 fn what_lies_now_and_then_proves_nothing() {
     let mut random = Random(5);
@@ -70,7 +71,8 @@ fn what_lies_now_and_then_proves_nothing() {
     }
 }
 
-/// A tolerance of infinity took a plane for near that was not known yet, and told that there was no contact before 0.66, which there is at 0.02.
+/// A tolerance of infinity took a plane for near that was not known yet, and told that there was no contact before
+/// 0.66, which there is at 0.02.
 #[test]
 fn a_tolerance_without_bounds_proves_nothing_false() {
     let (a, b) = (

@@ -1,4 +1,5 @@
-//! Motion casts whose answers are known in closed form, and what is answered at the edges: at the start, at the end, for bad input.
+//! Motion casts whose answers are known in closed form, and what is answered at the edges: at the start, at the end,
+//! for bad input.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, TAU};
 
@@ -284,7 +285,8 @@ fn single_precision() {
     assert!(cast.upper - cast.lower < 1e-5, "{cast:?}");
 }
 
-/// The square of the velocity overflows, and with it the time at which balls about the bodies are nearest. That is no proof of a miss.
+/// The square of the velocity overflows, and with it the time at which balls about the bodies are nearest. That is no
+/// proof of a miss.
 #[test]
 fn what_turns_and_moves_very_fast_is_not_proved_to_miss() {
     let cube = Cuboid::new(DVec3::ONE).expect("positive");
@@ -300,8 +302,8 @@ fn what_turns_and_moves_very_fast_is_not_proved_to_miss() {
     }
 }
 
-/// A ball that spins about its centre meets a box when it would without spinning, and is so small that polytopes within their difference
-/// are slivers: zero may be far from one and hardly beyond any facet's plane.
+/// A ball that spins about its centre meets a box when it would without spinning, and is so small that polytopes within
+/// their difference are slivers: zero may be far from one and hardly beyond any facet's plane.
 #[test]
 fn a_tiny_ball_that_spins_meets_a_box() {
     let (radius, half_extents) = (4.223_605e-5_f32, Vec3A::new(0.611_282_65, 0.855_645_1, 0.692_111_6));
@@ -322,8 +324,9 @@ fn a_tiny_ball_that_spins_meets_a_box() {
     assert!(f64::from(cast.lower) <= truth.upper && truth.lower <= f64::from(cast.upper), "{cast:?} {truth:?}");
 }
 
-/// A needle swings through a plate. A search for their depth that came to no end found a plane between them on the far side, and the gap
-/// of that was told of the plane on the near side, where they were in one another: so they were proved to be apart all the way.
+/// A needle swings through a plate. A search for their depth that came to no end found a plane between them on the far
+/// side, and the gap of that was told of the plane on the near side, where they were in one another: so they were
+/// proved to be apart all the way.
 #[test]
 fn a_needle_does_not_pass_through_a_plate() {
     let needle = Posed::new(
@@ -348,7 +351,8 @@ fn a_needle_does_not_pass_through_a_plate() {
     assert!(!cast.outcome.is_miss() && cast.lower <= 9.702_485e-6 && 9.702_484e-6 <= cast.upper, "{cast:?}");
 }
 
-/// Bodies without an inside: what has passed through another was never deeper in it than rounding, and yet they have met.
+/// Bodies without an inside: what has passed through another was never deeper in it than rounding, and yet they have
+/// met.
 fn pass_through<V: convex_support::Vector>(cast: MotionCast<V>, time: f64) {
     let hit = cast.outcome.hit().unwrap_or_else(|| panic!("{cast:?} is no hit"));
     let rounding = 64.0 * V::Scalar::EPSILON.as_f64();

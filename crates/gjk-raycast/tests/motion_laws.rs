@@ -1,5 +1,5 @@
-//! Laws that every motion cast obeys: what is proved agrees with distances at any number of times, and with itself when the question
-//! is put another way.
+//! Laws that every motion cast obeys: what is proved agrees with distances at any number of times, and with itself when
+//! the question is put another way.
 
 use crate::common::behind_pointers::{distance, linear_cast, motion_cast};
 use convex_support::glam::{DQuat, DVec3};
@@ -80,7 +80,8 @@ fn rotation() -> impl Strategy<Value = DQuat> {
         .prop_map(|(axis, angle)| DQuat::from_axis_angle(axis.normalize(), angle))
 }
 
-/// A body at a place along x, that moves to somewhere near zero within one unit of time and turns about a point near its own.
+/// A body at a place along x, that moves to somewhere near zero within one unit of time and turns about a point near
+/// its own.
 fn body(x: f64) -> impl Strategy<Value = Body> {
     let spin = prop_oneof![1 => Just(0.0), 3 => Just(2.0), 1 => Just(20.0)];
     (0..8_usize, sizes(), rotation(), vector(0.5), vector(1.5), vector(1.0), vector(1.0), spin).prop_map(

@@ -1,4 +1,5 @@
-//! Turning casts of boxes, by the facets of their difference, against those of shapes that do not say that they are boxes.
+//! Turning casts of boxes, by the facets of their difference, against those of shapes that do not say that they are
+//! boxes.
 
 use crate::common::behind_pointers::motion_cast;
 use crate::common::{Plain, Random, s};
@@ -112,8 +113,8 @@ fn off(point: DVec3, shape: &impl SupportMap<Vector = DVec3>) -> f64 {
     signed_distance(&point, shape, SignedDistanceOptions::default()).signed_distance
 }
 
-/// The point of a hit is of both boxes, where the normal is that of a facet of their difference as where it is not known by itself which
-/// points of two faces touch.
+/// The point of a hit is of both boxes, where the normal is that of a facet of their difference as where it is not
+/// known by itself which points of two faces touch.
 #[test]
 fn the_point_of_a_hit_is_of_both() {
     let mut random = Random(34);

@@ -1,5 +1,5 @@
-//! What the paper proves and claims, seen through the observer: van den Bergen, *Ray Casting against General Convex Objects
-//! with Application to Continuous Collision Detection*, 2004.
+//! What the paper proves and claims, seen through the observer: van den Bergen, *Ray Casting against General Convex
+//! Objects with Application to Continuous Collision Detection*, 2004.
 
 use std::cell::Cell;
 
@@ -137,8 +137,8 @@ impl<F: Fn(DVec3) -> DVec3> SupportMap for Bare<F> {
     }
 }
 
-/// "For a sphere, the average number of iterations is roughly proportional to −log ε": a sphere of which nothing is known but its
-/// support points, by the paper's own steps.
+/// "For a sphere, the average number of iterations is roughly proportional to −log ε": a sphere of which nothing is
+/// known but its support points, by the paper's own steps.
 #[test]
 fn iterations_on_a_sphere_grow_as_minus_log_epsilon() {
     let sphere = Bare(|direction: DVec3| direction.normalize());
@@ -160,8 +160,8 @@ fn iterations_on_a_sphere_grow_as_minus_log_epsilon() {
     }
 }
 
-/// "As soon as the lower bound λ becomes larger than the given maximum parameter, Algorithm 3 may terminate": the shorter a ray that
-/// misses is, the less it costs.
+/// "As soon as the lower bound λ becomes larger than the given maximum parameter, Algorithm 3 may terminate": the
+/// shorter a ray that misses is, the less it costs.
 #[test]
 fn short_rays_end_early() {
     let hull = Polytope::new(directions(100).map(|d| DVec3::new(d[0], 0.3 * d[1], 0.3 * d[2]))).expect("finite");
@@ -218,8 +218,8 @@ fn the_last_axis_saves_iterations() {
     assert!(tests[1] <= tests[0] && tests[1] <= 220, "cold and warm tests: {tests:?}");
 }
 
-/// Every sub-algorithm ends on the same vector: with `v·v* ≥ |v*|²` for the shortest `v*` of a convex set, any `v` of it
-/// within the bracket has `|v − v*|² ≤ |v|² − |v*|² ≤ upper² − lower²`.
+/// Every sub-algorithm ends on the same vector: with `v·v* ≥ |v*|²` for the shortest `v*` of a convex set, any `v` of
+/// it within the bracket has `|v − v*|² ≤ |v|² − |v*|² ≤ upper² − lower²`.
 #[test]
 fn the_end_does_not_depend_on_the_sub_algorithm() {
     let count = Cell::new(0);

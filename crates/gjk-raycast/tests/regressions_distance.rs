@@ -1,5 +1,5 @@
-//! Distances and overlaps that went wrong elsewhere. Each test is named after its report, tells what goes wrong there, and
-//! runs in both precisions where the coordinates allow it.
+//! Distances and overlaps that went wrong elsewhere. Each test is named after its report, tells what goes wrong there,
+//! and runs in both precisions where the coordinates allow it.
 
 use crate::common::behind_pointers::{distance, intersects, signed_distance};
 use crate::common::{Quaternion, apart, at, cuboid, directions, meets, s, turned, ulps, v};
@@ -25,8 +25,8 @@ fn hull<V: Vector>(seed: u32, count: u32, size: f64, center: [f64; 3]) -> Polyto
     Polytope::new(points).expect("finite points")
 }
 
-/// `MuJoCo` #3383. A hundred of 3,000 pairs of meshes were answered 0 although a plane separates them. The certificate of
-/// the report is the test: if any sampled direction separates, the distance is at least that.
+/// `MuJoCo` #3383. A hundred of 3,000 pairs of meshes were answered 0 although a plane separates them. The certificate
+/// of the report is the test: if any sampled direction separates, the distance is at least that.
 #[test]
 fn d1_no_zero_where_a_plane_separates() {
     fn run<V: Quaternion>() {
@@ -47,8 +47,8 @@ fn d1_no_zero_where_a_plane_separates() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// `mujoco_warp` #1546, `openGJK` #52. Supports were subtracted in world coordinates, so that moving both bodies changed the
-/// answer. Exact translations change nothing here.
+/// `mujoco_warp` #1546, `openGJK` #52. Supports were subtracted in world coordinates, so that moving both bodies
+/// changed the answer. Exact translations change nothing here.
 #[test]
 fn d2_d6_a_common_translation_changes_nothing() {
     fn run<V: Quaternion>(reaches: &[f64]) {
@@ -87,7 +87,8 @@ fn d3_d5_d26_contact_on_a_face_an_edge_or_a_corner_is_contact() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// `openGJK` #13, the random pairs: about 2 in 10,000 pairs of cubes that overlap deeply were tens of centimetres apart.
+/// `openGJK` #13, the random pairs: about 2 in 10,000 pairs of cubes that overlap deeply were tens of centimetres
+/// apart.
 #[test]
 fn d5_deep_overlap_is_overlap() {
     fn run<V: Quaternion>() {
@@ -121,8 +122,8 @@ fn d6_boxes_that_overlap_far_away_overlap() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// Jolt #1008, #419, #41. A cylinder at the edge of a triangle had a depth of 0.397, another 0.01 apart one of 0.499, and a
-/// triangle below a square millimetre was dropped as having no area.
+/// Jolt #1008, #419, #41. A cylinder at the edge of a triangle had a depth of 0.397, another 0.01 apart one of 0.499,
+/// and a triangle below a square millimetre was dropped as having no area.
 #[test]
 fn d22_a_cylinder_at_the_edge_of_a_triangle() {
     fn run<V: Quaternion>() {
@@ -243,8 +244,8 @@ fn d19_distance_and_overlap_never_contradict() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// Jolt #671, #1008, #419, coal #604. Boxes a millimetre apart and nearly parallel: the axis flipped with the orientation,
-/// and centimetres of depth came out.
+/// Jolt #671, #1008, #419, coal #604. Boxes a millimetre apart and nearly parallel: the axis flipped with the
+/// orientation, and centimetres of depth came out.
 #[test]
 fn d9_d21_d22_nearly_parallel_boxes_keep_their_axis() {
     fn run<V: Quaternion>() {
@@ -265,7 +266,8 @@ fn d9_d21_d22_nearly_parallel_boxes_keep_their_axis() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// sch-core #28, Flexible-GJK #8. Parallel closest faces and NaN made endless loops. A support map of NaN ends with a status.
+/// sch-core #28, Flexible-GJK #8. Parallel closest faces and NaN made endless loops. A support map of NaN ends with a
+/// status.
 #[test]
 fn d27_nothing_loops() {
     struct Broken<V>(V);
@@ -286,8 +288,8 @@ fn d27_nothing_loops() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// `EnhancedGJK` #30. In single precision the distance of a box and a hull of nine points was wrong, and the loop went on. It is
-/// that of double precision, to rounding, and found in a few steps.
+/// `EnhancedGJK` #30. In single precision the distance of a box and a hull of nine points was wrong, and the loop went
+/// on. It is that of double precision, to rounding, and found in a few steps.
 #[test]
 fn d18_a_box_and_nine_points_in_single_precision() {
     fn run<V: Quaternion>(seed: u32) -> (f64, usize) {
@@ -325,8 +327,8 @@ fn d28_a_cube_at_the_end_of_a_bar() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// distance3d #77. The closest points of two meshes of cylinders were 1e-10 farther apart than the distance. Both are computed
-/// from the same weights, and agree to rounding of the size.
+/// distance3d #77. The closest points of two meshes of cylinders were 1e-10 farther apart than the distance. Both are
+/// computed from the same weights, and agree to rounding of the size.
 #[test]
 fn d28_the_closest_points_of_two_meshes_are_as_far_apart_as_the_distance() {
     fn run<V: Quaternion>() {
@@ -358,10 +360,10 @@ fn s9_a_point_beyond_the_short_end_is_apart() {
     both(run::<Vec2>, run::<DVec2>);
 }
 
-/// A vertex on the slant of a cone, 1e-10 apart: the closest edge of the difference reaches from the apex, first found along
-/// a direction a right angle away, to the rim. Between the two, only the rim's curvature tells how the plane is turned about
-/// the edge, since the shortest vector is too short to have digits; steps by curvature refused a turn so large although a
-/// vertex stays where it is, and the bracket was left open by 2 % with the status `Stalled`.
+/// A vertex on the slant of a cone, 1e-10 apart: the closest edge of the difference reaches from the apex, first found
+/// along a direction a right angle away, to the rim. Between the two, only the rim's curvature tells how the plane is
+/// turned about the edge, since the shortest vector is too short to have digits; steps by curvature refused a turn so
+/// large although a vertex stays where it is, and the bracket was left open by 2 % with the status `Stalled`.
 #[test]
 fn a_vertex_just_off_the_slant_of_a_cone_converges() -> Result<(), InvalidShape> {
     let point = Point::new(DVec3::new(-0.31363, 0.8864, 0.64011))?;
@@ -378,10 +380,10 @@ fn a_vertex_just_off_the_slant_of_a_cone_converges() -> Result<(), InvalidShape>
     Ok(())
 }
 
-/// The difference touches zero with an edge of two near vertices, and has a third far away. That one's share of zero's foot
-/// is the square of the distance, 1e-8 in `f32`, and was computed as one less the shares of the others: rounding. Without
-/// it the plane did not turn, the same support point came again, and the descent ended `Stalled` with an open bracket: of
-/// this cylinder and cone by 1e-4, of the cylinder and cuboid by 1e-9.
+/// The difference touches zero with an edge of two near vertices, and has a third far away. That one's share of zero's
+/// foot is the square of the distance, 1e-8 in `f32`, and was computed as one less the shares of the others: rounding.
+/// Without it the plane did not turn, the same support point came again, and the descent ended `Stalled` with an open
+/// bracket: of this cylinder and cone by 1e-4, of the cylinder and cuboid by 1e-9.
 #[test]
 fn a_far_vertex_turns_the_plane_about_an_edge_that_touches() -> Result<(), InvalidShape> {
     let turn = [0.07825313, -0.6802188, -0.51086426, 0.51980436];
@@ -404,10 +406,10 @@ fn a_far_vertex_turns_the_plane_about_an_edge_that_touches() -> Result<(), Inval
     Ok(())
 }
 
-/// A cone 5e-10 off a cuboid. Two corners of the last triangle are 1e-7 apart and the third is far; the triangle's normal, a
-/// cross product of edges from the far one, leaned by 1e-11, and the support point along it was a corner already. The
-/// triangle was measured then, but the plane across the measured normal never looked along, and the bracket stayed open by
-/// a twentieth.
+/// A cone 5e-10 off a cuboid. Two corners of the last triangle are 1e-7 apart and the third is far; the triangle's
+/// normal, a cross product of edges from the far one, leaned by 1e-11, and the support point along it was a corner
+/// already. The triangle was measured then, but the plane across the measured normal never looked along, and the
+/// bracket stayed open by a twentieth.
 #[test]
 fn the_measured_normal_of_a_sliver_is_looked_along() -> Result<(), InvalidShape> {
     let turn = [-0.16494649648666382, 0.32249489426612854, -0.31852206587791443, 0.8759756684303284];
@@ -423,8 +425,8 @@ fn the_measured_normal_of_a_sliver_is_looked_along() -> Result<(), InvalidShape>
     Ok(())
 }
 
-/// Two steps took turns forever: a light one to a length that was the rounding of a sliver, below the lower bound, and its
-/// measurement.
+/// Two steps took turns forever: a light one to a length that was the rounding of a sliver, below the lower bound, and
+/// its measurement.
 #[test]
 fn a_length_below_the_lower_bound_is_no_progress() -> Result<(), InvalidShape> {
     let rotation = DQuat::from_xyzw(0.29901780630354674, -0.706012690101277, 0.013755585448192352, 0.6418295854807181);
@@ -438,8 +440,9 @@ fn a_length_below_the_lower_bound_is_no_progress() -> Result<(), InvalidShape> {
     Ok(())
 }
 
-/// What a pose loses of the origin far away was taken for exact where a row of the rotation has only one entry; and the error that
-/// queries have at hand counted the origin before the translation, though it is the sum of both that is rounded.
+/// What a pose loses of the origin far away was taken for exact where a row of the rotation has only one entry; and the
+/// error that queries have at hand counted the origin before the translation, though it is the sum of both that is
+/// rounded.
 #[test]
 fn what_a_far_pose_loses_of_a_point_is_in_the_bracket() -> Result<(), InvalidShape> {
     let point = |at: Vec3| Point::new(at);
@@ -460,8 +463,8 @@ fn what_a_far_pose_loses_of_a_point_is_in_the_bracket() -> Result<(), InvalidSha
     Ok(())
 }
 
-/// The line across the best plane pierced an edge that lies behind zero, 1.25e-18 from it, and the bound told how far the edge is before
-/// zero: nothing.
+/// The line across the best plane pierced an edge that lies behind zero, 1.25e-18 from it, and the bound told how far
+/// the edge is before zero: nothing.
 #[test]
 fn an_edge_behind_zero_is_as_far_as_it_is() -> Result<(), InvalidShape> {
     let corners = [
@@ -478,8 +481,9 @@ fn an_edge_behind_zero_is_as_far_as_it_is() -> Result<(), InvalidShape> {
     Ok(())
 }
 
-/// Directions between the shortest vector and the best plane were sums of both times both lengths, and each became the plane of the next:
-/// after a few their squares underflowed, and a plane across one was said to separate what overlaps by 2e-6.
+/// Directions between the shortest vector and the best plane were sums of both times both lengths, and each became the
+/// plane of the next: after a few their squares underflowed, and a plane across one was said to separate what overlaps
+/// by 2e-6.
 #[test]
 fn a_direction_that_grows_ever_shorter_separates_nothing() -> Result<(), InvalidShape> {
     let turn_a = Quat::from_xyzw(-0.651_411_4, 0.652_148_7, -0.347_488_7, -0.172_095_7);
@@ -493,8 +497,9 @@ fn a_direction_that_grows_ever_shorter_separates_nothing() -> Result<(), Invalid
     Ok(())
 }
 
-/// The fast step to an edge had a length of zero by rounding, and was taken for one to a simplex with zero inside, though the edge is
-/// 7e-12 away: bodies that are apart were said to overlap, where the search began along an axis of its own.
+/// The fast step to an edge had a length of zero by rounding, and was taken for one to a simplex with zero inside,
+/// though the edge is 7e-12 away: bodies that are apart were said to overlap, where the search began along an axis of
+/// its own.
 #[test]
 fn an_edge_of_length_zero_by_rounding_is_measured() -> Result<(), InvalidShape> {
     let needle = Cuboid::new(DVec3::new(1.023_901_012_537_984_2, 1e-6, 1e-6))?;
@@ -509,8 +514,9 @@ fn an_edge_of_length_zero_by_rounding_is_measured() -> Result<(), InvalidShape> 
     Ok(())
 }
 
-/// Edges that cross a millionth apart, along an axis of the box: the offset between them is of the order of their rounding, and a search that
-/// went on from there led astray, to "overlap". Gaps are those of the same numbers in double precision.
+/// Edges that cross a millionth apart, along an axis of the box: the offset between them is of the order of their
+/// rounding, and a search that went on from there led astray, to "overlap". Gaps are those of the same numbers in
+/// double precision.
 #[test]
 fn a_search_near_contact_that_goes_astray_loses_nothing() -> Result<(), InvalidShape> {
     let cuboid = Cuboid::new(Vec3A::new(1.0, 0.5, 0.25))?;
@@ -538,8 +544,9 @@ fn a_search_near_contact_that_goes_astray_loses_nothing() -> Result<(), InvalidS
     Ok(())
 }
 
-/// The plane between rounded bodies near contact leans to the vector between the points of their cores by the root of the rounding. The
-/// points of the surfaces were taken along the plane's normal, and in `f32` were a thousand times as far apart as the answer said.
+/// The plane between rounded bodies near contact leans to the vector between the points of their cores by the root of
+/// the rounding. The points of the surfaces were taken along the plane's normal, and in `f32` were a thousand times as
+/// far apart as the answer said.
 #[test]
 fn points_near_contact_are_as_far_apart_as_the_bodies() -> Result<(), InvalidShape> {
     let ball = Ball::<Vec2>::new(1_048_576.0)?;
@@ -556,7 +563,8 @@ fn points_near_contact_are_as_far_apart_as_the_bodies() -> Result<(), InvalidSha
     Ok(())
 }
 
-/// `intersects` goes by support points alone, and may come to a stand along an edge where `distance` goes on by the curvature.
+/// `intersects` goes by support points alone, and may come to a stand along an edge where `distance` goes on by the
+/// curvature.
 #[test]
 fn a_flat_triangle_before_the_base_of_a_cone_is_decided() -> Result<(), InvalidShape> {
     let corners = [
@@ -578,8 +586,9 @@ fn a_flat_triangle_before_the_base_of_a_cone_is_decided() -> Result<(), InvalidS
     Ok(())
 }
 
-/// Two segments touch end to end. Their closest points say that they meet, and the search that looks closer then began at nothing: where it came
-/// to no better plane than its first, the answer was the middles of the two, as points in both, and an infinite upper bound.
+/// Two segments touch end to end. Their closest points say that they meet, and the search that looks closer then began
+/// at nothing: where it came to no better plane than its first, the answer was the middles of the two, as points in
+/// both, and an infinite upper bound.
 #[test]
 fn segments_that_touch_end_to_end_have_a_point_in_common() -> Result<(), InvalidShape> {
     for i in 0..2000_u16 {
@@ -596,9 +605,9 @@ fn segments_that_touch_end_to_end_have_a_point_in_common() -> Result<(), Invalid
     Ok(())
 }
 
-/// Deep in one another bodies have a best plane that is opposite to the shortest vector known, and a direction between the two was the plane's own
-/// again: the same support point came back, moved by curvature alone, until the iterations were used up. Of 400 pairs of ellipsoids about one
-/// point 65 were undecided.
+/// Deep in one another bodies have a best plane that is opposite to the shortest vector known, and a direction between
+/// the two was the plane's own again: the same support point came back, moved by curvature alone, until the iterations
+/// were used up. Of 400 pairs of ellipsoids about one point 65 were undecided.
 #[test]
 fn bodies_about_one_point_are_decided_in_a_few_steps() -> Result<(), InvalidShape> {
     for i in 0..400_u16 {
@@ -614,9 +623,10 @@ fn bodies_about_one_point_are_decided_in_a_few_steps() -> Result<(), InvalidShap
     Ok(())
 }
 
-/// Wide plates 1e-7 and 1e-8 apart that lean by as little. The corner that turns the plane has a share of zero's foot that is the square of the
-/// distance, below all rounding, and of the wrong sign as it was computed: the triangle with it was left out, the same corner came again, and the
-/// distance ended `Stalled` four times too large, with a lower bound of nothing.
+/// Wide plates 1e-7 and 1e-8 apart that lean by as little. The corner that turns the plane has a share of zero's foot
+/// that is the square of the distance, below all rounding, and of the wrong sign as it was computed: the triangle with
+/// it was left out, the same corner came again, and the distance ended `Stalled` four times too large, with a lower
+/// bound of nothing.
 #[test]
 fn a_corner_without_a_share_turns_the_plane() -> Result<(), InvalidShape> {
     let wide = |half_height: f64, turn: [f64; 4], translation: [f64; 3]| {
@@ -641,9 +651,9 @@ fn a_corner_without_a_share_turns_the_plane() -> Result<(), InvalidShape> {
     Ok(())
 }
 
-/// Boxes with integer corners that touch, face to face, along an edge or at a corner. The expanding polytope is flat there and comes to no end:
-/// the signed distance of one in five such boxes was `Stalled`, with bounds sixteen times as wide as those of the distance. It asks the same look
-/// near contact now as that.
+/// Boxes with integer corners that touch, face to face, along an edge or at a corner. The expanding polytope is flat
+/// there and comes to no end: the signed distance of one in five such boxes was `Stalled`, with bounds sixteen times as
+/// wide as those of the distance. It asks the same look near contact now as that.
 #[test]
 fn boxes_that_touch_exactly_are_decided_by_all() -> Result<(), InvalidShape> {
     fn run<V: Quaternion>() {
@@ -673,9 +683,10 @@ fn boxes_that_touch_exactly_are_decided_by_all() -> Result<(), InvalidShape> {
     Ok(())
 }
 
-/// A needle of 5e7 and a point beside it, in `f32`. Of the vector between the closest points rounding is a large part, much of it along the
-/// needle, and the plane across it is not one between the bodies: `distance` called them overlapping, though a plane along the needle, across an
-/// axis in which its coordinates are small, is certainly between them.
+/// A needle of 5e7 and a point beside it, in `f32`. Of the vector between the closest points rounding is a large part,
+/// much of it along the needle, and the plane across it is not one between the bodies: `distance` called them
+/// overlapping, though a plane along the needle, across an axis in which its coordinates are small, is certainly
+/// between them.
 #[test]
 fn a_point_beside_a_needle_is_apart_from_it() -> Result<(), InvalidShape> {
     let cases = [

@@ -1,5 +1,5 @@
-//! Linear casts that went wrong elsewhere. Each test is named after its report, tells what goes wrong there, and runs in
-//! both precisions where the coordinates allow it.
+//! Linear casts that went wrong elsewhere. Each test is named after its report, tells what goes wrong there, and runs
+//! in both precisions where the coordinates allow it.
 
 use crate::common::behind_pointers::linear_cast;
 use crate::common::{Quaternion, at, cuboid, directions, off, s, sweep, time, turned, ulps, v};
@@ -12,8 +12,8 @@ fn both(single: impl FnOnce(), double: impl FnOnce()) {
     double();
 }
 
-/// parry #429. A ball falls on a box of 5, 50, 500, 5000 m: the time of impact was short by an amount that grew with the
-/// box, to half a metre, since the closest point of a long simplex lost its digits.
+/// parry #429. A ball falls on a box of 5, 50, 500, 5000 m: the time of impact was short by an amount that grew with
+/// the box, to half a metre, since the closest point of a long simplex lost its digits.
 #[test]
 fn s1_time_of_impact_does_not_depend_on_the_size_of_the_floor() {
     fn run<V: Quaternion>() {
@@ -42,8 +42,8 @@ fn s2_s23_every_start_over_the_floor_lands_at_one_height() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// rapier.js #258. In the plane, a long thin bar and a ball that crosses it within one step: the ray hit, the ball missed;
-/// later it hit, and stopped 1.4 % of its radius early.
+/// rapier.js #258. In the plane, a long thin bar and a ball that crosses it within one step: the ray hit, the ball
+/// missed; later it hit, and stopped 1.4 % of its radius early.
 #[test]
 fn s3_a_ball_does_not_tunnel_through_a_thin_bar() {
     fn run<V: Vector>() {
@@ -94,8 +94,8 @@ fn s7_the_normal_is_the_worlds_and_points_to_a() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// `Box2D`'s short edge. A thin plank and a point just beyond its short end: an absolute threshold on areas, cubic in the
-/// length, dropped the end from the simplex.
+/// `Box2D`'s short edge. A thin plank and a point just beyond its short end: an absolute threshold on areas, cubic in
+/// the length, dropped the end from the simplex.
 #[test]
 fn s9_the_short_end_of_a_thin_plank_is_there() {
     fn run<V: Vector>() {
@@ -110,8 +110,8 @@ fn s9_the_short_end_of_a_thin_plank_is_there() {
     both(run::<Vec2>, run::<DVec2>);
 }
 
-/// `Box2D` #625, `Box3D` #32. Starting within the tolerance, but apart: a hit at 0 in every direction, or an empty simplex.
-/// Receding and tangential starts miss, closing ones advance, however near.
+/// `Box2D` #625, `Box3D` #32. Starting within the tolerance, but apart: a hit at 0 in every direction, or an empty
+/// simplex. Receding and tangential starts miss, closing ones advance, however near.
 #[test]
 fn s10_s13_near_starts_are_not_contact() {
     fn run<V: Quaternion>() {
@@ -138,7 +138,8 @@ fn s11_a_point_hits_a_box() {
     both(run::<Vec2>, run::<DVec2>);
 }
 
-/// `Box2D` #115, #120, #50. Overlap at the start was reported at the end of the step. It is a hit at 0 without a normal.
+/// `Box2D` #115, #120, #50. Overlap at the start was reported at the end of the step. It is a hit at 0 without a
+/// normal.
 #[test]
 fn s12_overlap_at_the_start_is_a_hit_at_zero() {
     fn run<V: Vector>() {
@@ -152,8 +153,8 @@ fn s12_overlap_at_the_start_is_a_hit_at_zero() {
     both(run::<Vec2>, run::<DVec2>);
 }
 
-/// Jolt #2103. A capsule of 9 m and a cylinder of half a metre, 5 micrometres apart by the coordinates: a rejected support
-/// point stayed in the simplex, and 7.25 m of penetration came out.
+/// Jolt #2103. A capsule of 9 m and a cylinder of half a metre, 5 micrometres apart by the coordinates: a rejected
+/// support point stayed in the simplex, and 7.25 m of penetration came out.
 #[test]
 fn s14_nearly_touching_capsule_and_cylinder_stay_near_contact() {
     fn run<V: Quaternion>() {
@@ -230,8 +231,9 @@ fn s25_far_from_the_origin_is_like_near_it() {
     both(|| run::<Vec3A>(65_536.0), || run::<DVec3>(1e9));
 }
 
-/// Jolt #1786 and #1787. A cast that starts touching, or within, was no hit at all where the deepest point was asked for.
-/// It is a hit at 0 in every direction at a point in both, and the distance of the same pair is an overlap with a point in both.
+/// Jolt #1786 and #1787. A cast that starts touching, or within, was no hit at all where the deepest point was asked
+/// for. It is a hit at 0 in every direction at a point in both, and the distance of the same pair is an overlap with a
+/// point in both.
 #[test]
 fn s15_a_start_in_contact_is_a_hit_in_every_direction() {
     fn run<V: Quaternion>() {
@@ -276,8 +278,8 @@ fn s17_no_end_is_too_early_for_a_start_in_contact() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// `PhysX` #507. The contact was returned as the origin of the world, where the shapes were not. Far from it the contact is
-/// on both shapes, for casts and for distances.
+/// `PhysX` #507. The contact was returned as the origin of the world, where the shapes were not. Far from it the
+/// contact is on both shapes, for casts and for distances.
 #[test]
 fn s20_the_point_of_contact_is_on_the_shapes() {
     fn run<V: Quaternion>() {
@@ -303,9 +305,9 @@ fn s20_the_point_of_contact_is_on_the_shapes() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// `Box2D` #115. A long box turned by 2.95 and a square turned by 513 − 162π, which came in as 513: without taking whole
-/// turns off, the loop over the sweep did not end; with them, it said touching where there is a gap. The angles of both ends
-/// of the step, and the motion between them.
+/// `Box2D` #115. A long box turned by 2.95 and a square turned by 513 − 162π, which came in as 513: without taking
+/// whole turns off, the loop over the sweep did not end; with them, it said touching where there is a gap. The angles
+/// of both ends of the step, and the motion between them.
 #[test]
 fn s12_large_angles_are_angles() {
     fn run<V: Vector>(turn: impl Fn(f64) -> V::Rotation) {
@@ -353,9 +355,10 @@ fn equal_velocities_hit_only_what_overlaps() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// Found by the sweep: a capsule passes a ball by within rounding, which may be a hit, at the place where they are closest.
-/// The normal was that of the last plane on the way there, and the point of contact, found by it, was 0.3 sizes off one of
-/// them. The shortest vector from core to core is the normal, and the point between the cores is on both.
+/// Found by the sweep: a capsule passes a ball by within rounding, which may be a hit, at the place where they are
+/// closest. The normal was that of the last plane on the way there, and the point of contact, found by it, was 0.3
+/// sizes off one of them. The shortest vector from core to core is the normal, and the point between the cores is on
+/// both.
 #[test]
 fn a_graze_has_the_normal_of_where_it_is() {
     let rotation = Quat::from_xyzw(-0.461_624_9, 0.242_144_24, 0.495_764_43, 0.694_612_3);
@@ -382,8 +385,8 @@ fn a_graze_has_the_normal_of_where_it_is() {
     }
 }
 
-/// Where a line leaves the side of a segment swept by a ball, which it nearly runs along, is the difference of two numbers of 35,000. They
-/// were wrong by 2.7 together, and so a ball that starts 7e-7 apart was certain to be inside.
+/// Where a line leaves the side of a segment swept by a ball, which it nearly runs along, is the difference of two
+/// numbers of 35,000. They were wrong by 2.7 together, and so a ball that starts 7e-7 apart was certain to be inside.
 #[test]
 fn a_ball_that_slides_along_a_segment_is_not_inside() {
     let ball = Posed::translated(Ball::new(0.282_319_2).expect("positive"), Vec2::new(-0.831_259_55, -0.614_417_3));

@@ -76,8 +76,8 @@ fn r5_normal_turns_with_the_shape() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// `PhysX` #429. A flat cone far from the origin: the hit position was that of an earlier simplex, and did not lie at the
-/// hit distance along the ray.
+/// `PhysX` #429. A flat cone far from the origin: the hit position was that of an earlier simplex, and did not lie at
+/// the hit distance along the ray.
 #[test]
 fn r6_hit_point_is_at_the_hit_parameter() {
     fn run<V: Quaternion>() {
@@ -100,8 +100,8 @@ fn r6_hit_point_is_at_the_hit_parameter() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// edyn #155. A ray along an axis through the centre is parallel to four faces of the cube; the simplex is seen edge-on,
-/// and the hit was lost.
+/// edyn #155. A ray along an axis through the centre is parallel to four faces of the cube; the simplex is seen
+/// edge-on, and the hit was lost.
 #[test]
 fn r7_axis_rays_hit_the_cube() {
     fn run<V: Quaternion>() {
@@ -117,8 +117,8 @@ fn r7_axis_rays_hit_the_cube() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// parry #183, godot-jolt #652 and #653. From within, some shapes answered an outward normal, others an inward one. There
-/// is none: the ray starts in the shape.
+/// parry #183, godot-jolt #652 and #653. From within, some shapes answered an outward normal, others an inward one.
+/// There is none: the ray starts in the shape.
 #[test]
 fn r9_r10_a_ray_from_within_is_a_hit_at_zero_without_a_normal() {
     fn within<S: SupportMap>(shape: &S) {
@@ -141,8 +141,8 @@ fn r9_r10_a_ray_from_within_is_a_hit_at_zero_without_a_normal() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// Jolt #1554. Touched by the very end of the ray only: one overload asserted. The end belongs to the ray, two ulps less
-/// do not reach.
+/// Jolt #1554. Touched by the very end of the ray only: one overload asserted. The end belongs to the ray, two ulps
+/// less do not reach.
 #[test]
 fn r11_the_end_of_the_ray_belongs_to_it() {
     fn run<V: Quaternion>() {
@@ -221,8 +221,8 @@ fn r14_no_answer_is_infinite_or_nan() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// Measured: parry in single precision, Jolt. A thousand false hits in 20,000 rays on boxes below 10 cm, and errors of the
-/// size of the box, from tolerances in metres.
+/// Measured: parry in single precision, Jolt. A thousand false hits in 20,000 rays on boxes below 10 cm, and errors of
+/// the size of the box, from tolerances in metres.
 #[test]
 fn r15_r16_small_shapes_are_hit_as_well_as_large_ones() {
     fn run<V: Quaternion>() {
@@ -271,8 +271,8 @@ fn far_source_loses_only_its_own_digits() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// A ray that crosses a face at a cosine of 0.002, and a facet of support points behind it ten times as steeply: where the
-/// ray enters is known to rounding divided by the lesser cosine. The truth is from fifty digits.
+/// A ray that crosses a face at a cosine of 0.002, and a facet of support points behind it ten times as steeply: where
+/// the ray enters is known to rounding divided by the lesser cosine. The truth is from fifty digits.
 #[test]
 fn a_grazing_hit_is_bracketed_by_its_lesser_slope() {
     let cuboid = Cuboid::new(DVec3::new(157.15030592069337, 78.57515296034668, 39.28757648017334)).expect("positive");
@@ -290,9 +290,9 @@ fn a_grazing_hit_is_bracketed_by_its_lesser_slope() {
     assert!(cast.lower <= 308.198737809357 && 308.198737809357 <= cast.upper, "{cast:?}");
 }
 
-/// Found by the sweep: a polytope's middle is not its frame's origin, and the sum of both was rounded where it is posed: the
-/// shape was moved by up to half an ulp of its place, which at a million sizes in `f32` is a twentieth of its size, and the
-/// bounds did not hold the truth. Here half an ulp of the place is the shape.
+/// Found by the sweep: a polytope's middle is not its frame's origin, and the sum of both was rounded where it is
+/// posed: the shape was moved by up to half an ulp of its place, which at a million sizes in `f32` is a twentieth of
+/// its size, and the bounds did not hold the truth. Here half an ulp of the place is the shape.
 #[test]
 fn r30_a_posed_polytope_is_where_its_vertices_are() {
     fn run<V: Quaternion>(far: f64) {
@@ -312,8 +312,8 @@ fn r30_a_posed_polytope_is_where_its_vertices_are() {
     both(|| run::<Vec3A>(f64::from(1 << 20)), || run::<DVec3>(f64::from(1 << 30) * f64::from(1 << 19)));
 }
 
-/// A ray within the plane of a face, towards the face's edge: no plane is crossed, and a bracket that is scaled by the cosine
-/// of the last one was closed at once, at the source.
+/// A ray within the plane of a face, towards the face's edge: no plane is crossed, and a bracket that is scaled by the
+/// cosine of the last one was closed at once, at the source.
 #[test]
 fn a_ray_in_the_plane_of_a_face_meets_its_edge() {
     fn run<V: Quaternion>() {
@@ -325,8 +325,8 @@ fn a_ray_in_the_plane_of_a_face_meets_its_edge() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// Where the ray begins on its line has to belong to the foot that was rounded, or the errors of both add up: four ulps of the
-/// source's distance in place of two, which is all that the bracket allows for.
+/// Where the ray begins on its line has to belong to the foot that was rounded, or the errors of both add up: four ulps
+/// of the source's distance in place of two, which is all that the bracket allows for.
 #[test]
 fn a_far_source_costs_two_and_a_half_ulps_of_its_distance() {
     let ball = Ball::<Vec3A>::new(1.0).unwrap();
@@ -345,7 +345,8 @@ fn a_far_source_costs_two_and_a_half_ulps_of_its_distance() {
     }
 }
 
-/// The ray runs along an edge at 1.05e-6 from it, a little more than the noise, with nothing left to bring it nearer or to tell the two apart.
+/// The ray runs along an edge at 1.05e-6 from it, a little more than the noise, with nothing left to bring it nearer or
+/// to tell the two apart.
 #[test]
 fn a_ray_past_an_edge_by_rounding_is_decided() {
     let points = [
@@ -375,8 +376,8 @@ fn a_ray_past_an_edge_by_rounding_is_decided() {
     }
 }
 
-/// Found by comparing scenes: so short a direction that its λ overflows hit at infinity, at a point that was not a number, converged.
-/// There is no number for such a λ; but a ray with an end misses what is beyond it.
+/// Found by comparing scenes: so short a direction that its λ overflows hit at infinity, at a point that was not a
+/// number, converged. There is no number for such a λ; but a ray with an end misses what is beyond it.
 #[test]
 fn a_lambda_that_overflows_is_not_a_hit() {
     fn run<V: Quaternion>(short: f64) {

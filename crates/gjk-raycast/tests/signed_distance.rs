@@ -114,8 +114,8 @@ fn the_unit_of_length_does_not_matter() {
     }
 }
 
-/// The least support value of `A − B` along the normal of any plane that can be of a facet of it: of three points of one, or along an
-/// edge of each.
+/// The least support value of `A − B` along the normal of any plane that can be of a facet of it: of three points of
+/// one, or along an edge of each.
 fn least_of_all_facets(a: &[DVec3], b: &[DVec3]) -> f64 {
     let edges = |points: &[DVec3]| -> Vec<DVec3> {
         (0..points.len()).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| points[i] - points[j]).collect()
@@ -267,8 +267,8 @@ where
     assert!(off[0] <= error && off[1] <= error, "{point_a:?} and {point_b:?} are off by {off:?}");
 }
 
-/// Of several ways out that are as short, the best one and the nearest facet may be two. The points were half of the size away then, on
-/// neither shape.
+/// Of several ways out that are as short, the best one and the nearest facet may be two. The points were half of the
+/// size away then, on neither shape.
 #[test]
 fn about_one_center_the_points_are_of_the_way_out() {
     let cylinder = Cylinder::<DVec3>::new(2.0, 2.5).expect(VALID);
@@ -323,8 +323,8 @@ fn points_of_searches_that_are_given_up_are_of_the_shapes() {
     }
 }
 
-/// A point beside a face, at a distance that rounding leaves open. The nearest facet of the polytope is a sliver through zero, and no
-/// corner of it is near; GJK's closest points are.
+/// A point beside a face, at a distance that rounding leaves open. The nearest facet of the polytope is a sliver
+/// through zero, and no corner of it is near; GJK's closest points are.
 #[test]
 fn points_of_shapes_that_barely_touch_are_of_the_shapes() {
     let point = turned(
@@ -337,8 +337,9 @@ fn points_of_shapes_that_barely_touch_are_of_the_shapes() {
     points_are_of_the_shapes(&point, &bar, 1e-14);
 }
 
-/// A point that touches a rim or an apex, or is hardly deeper: a bracket as narrow as the tolerance of 1e-9 sizes says nothing about so
-/// short a way, and the search ended there, with any plane that GJK had left, before a step was taken towards the bottom.
+/// A point that touches a rim or an apex, or is hardly deeper: a bracket as narrow as the tolerance of 1e-9 sizes says
+/// nothing about so short a way, and the search ended there, with any plane that GJK had left, before a step was taken
+/// towards the bottom.
 #[test]
 fn points_on_rims_and_apexes_are_as_deep_as_they_are() {
     let cylinder = Cylinder::<DVec3>::new(0.5, 2.0).expect(VALID);

@@ -78,11 +78,11 @@ fn is_symmetric<V: Vector>(a: &Shape<V>, b: &Shape<V>) -> Result<(), TestCaseErr
     Ok(())
 }
 
-/// A translation by `t` along the normal adds `t`, through contact and beyond: exactly to the gap along that normal, and to the signed
-/// distance all but what the normal is wrong by.
+/// A translation by `t` along the normal adds `t`, through contact and beyond: exactly to the gap along that normal,
+/// and to the signed distance all but what the normal is wrong by.
 ///
-/// Of curved bodies a normal is known to an angle `δ` of some roots of the precision, of which `1 − cos δ` is lost. What is allowed here
-/// is `δ = 256√ε`.
+/// Of curved bodies a normal is known to an angle `δ` of some roots of the precision, of which `1 − cos δ` is lost.
+/// What is allowed here is `δ = 256√ε`.
 fn grows_along_the_normal<V: Vector>(a: &Shape<V>, b: &Shape<V>, part: f64) -> Result<(), TestCaseError> {
     let (answer, size) = (ask(a, b), size(a, b));
     let n = answer.normal;

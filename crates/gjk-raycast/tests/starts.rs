@@ -68,9 +68,9 @@ fn inside_and_touching_is_a_hit_at_zero() {
                     let answer = cast(&body, source, d, infinity::<V>());
                     let hit = answer.outcome.hit().unwrap_or_else(|| panic!("{name} {source:?} {d:?}: {answer:?}"));
                     assert_eq!((hit.lambda.as_f64(), hit.normal), (0.0, None), "{name} {source:?} {d:?}");
-                    // Where known points are on two sides of the source, or the ray goes in, that is certain to a few ulps across the
-                    // surface; at an apex or a corner, across any plane that supports it there. A ray that goes away from the
-                    // boundary may begin outside.
+                    // Where known points are on two sides of the source, or the ray goes in, that is certain to a few
+                    // ulps across the surface; at an apex or a corner, across any plane that supports it there. A ray
+                    // that goes away from the boundary may begin outside.
                     let across = match name {
                         "cone" => 1e5,
                         "octahedron" => 1e3,
@@ -320,8 +320,9 @@ fn a_point_is_missed_where_it_is_not() {
     both(run::<Vec3A>, run::<DVec3>);
 }
 
-/// A hit ahead has a normal, and one that supports the shape there: also of a point, of a needle met by its end, of a plate met
-/// by its rim, and of the vertex that reaches as far as the ball about the shape, where no plane is crossed on the way.
+/// A hit ahead has a normal, and one that supports the shape there: also of a point, of a needle met by its end, of a
+/// plate met by its rim, and of the vertex that reaches as far as the ball about the shape, where no plane is crossed
+/// on the way.
 #[test]
 fn a_hit_ahead_has_a_normal() {
     fn run<V: Vector>() {
@@ -360,7 +361,8 @@ fn a_hit_ahead_has_a_normal() {
     both(run::<Vec2>, run::<DVec2>);
 }
 
-/// Rounded boxes that are apart by less than single precision tells, and rest: no later time is known at which they have met.
+/// Rounded boxes that are apart by less than single precision tells, and rest: no later time is known at which they
+/// have met.
 #[test]
 fn what_rests_beside_another_has_no_time_of_contact() {
     let rounded = |sizes: [f64; 2], radius: f64| {

@@ -1,4 +1,5 @@
-//! Casts as those ask them who step a world: from contact on, to a distance from it, from a surface, and through a shape.
+//! Casts as those ask them who step a world: from contact on, to a distance from it, from a surface, and through a
+//! shape.
 
 use crate::common::behind_pointers::{
     distance, intersects, linear_cast, motion_cast, ray_cast, ray_exit, signed_distance,
@@ -139,7 +140,8 @@ fn boxes_that_touch_in_a_corner_part_along_another_normal() {
     }
 }
 
-/// Far from the origin a place is rounded, so that the boxes are in one another by two units in the last place, or as far apart.
+/// Far from the origin a place is rounded, so that the boxes are in one another by two units in the last place, or as
+/// far apart.
 #[test]
 fn so_do_boxes_far_away_whose_corners_touch_to_the_last_digits() {
     let unit = cuboid::<DVec3>([1.0; 3]);

@@ -65,9 +65,10 @@ fn all_converge_on_a_face_seen_at_an_angle() -> Result<(), InvalidShape> {
     Ok(())
 }
 
-/// On curved bodies the planes are turned by Newton's method, whose support points need not bring the simplex nearer. Only the
-/// default took steps between such turns; the others fell back to linear convergence, a hundred support points in place of
-/// ten, and Johnson's determinants, from products less products, took faces in single precision that were no nearer at all.
+/// On curved bodies the planes are turned by Newton's method, whose support points need not bring the simplex nearer.
+/// Only the default took steps between such turns; the others fell back to linear convergence, a hundred support points
+/// in place of ten, and Johnson's determinants, from products less products, took faces in single precision that were
+/// no nearer at all.
 #[test]
 fn curved_bodies_take_as_few_steps_by_each() {
     fn run<V: Quaternion>() {

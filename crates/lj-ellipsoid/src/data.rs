@@ -55,7 +55,8 @@ pub(crate) mod gap {
     }
 }
 
-/// An ellipsoid of any dimension. The matrix and its determinant follow from the rest only up to their outward rounding, and are kept.
+/// An ellipsoid of any dimension. The matrix and its determinant follow from the rest only up to their outward
+/// rounding, and are kept.
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename = "Ellipsoid", deny_unknown_fields)]
 struct Data<'a> {

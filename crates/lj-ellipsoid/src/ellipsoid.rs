@@ -6,10 +6,10 @@ use crate::shape::Shape;
 
 /// The ellipsoid E(c, X) = { x : (x − c)ᵀX(x − c) ≤ 1 } in N dimensions.
 ///
-/// It is kept by centre, orthonormal axes and semi-axes, which are accurate at any aspect ratio; [`matrix`](Self::matrix) is
-/// formed from them. The condition of X is the square of the aspect ratio, so beyond an aspect of 1e8 the doubles of X no longer
-/// tell the longest axis, and rounding may leave them without a Cholesky factor: use, store and print centre, semi-axes and axes
-/// (or the [rotation](Ellipsoid::<3>::rotation)) there.
+/// It is kept by centre, orthonormal axes and semi-axes, which are accurate at any aspect ratio;
+/// [`matrix`](Self::matrix) is formed from them. The condition of X is the square of the aspect ratio, so beyond an
+/// aspect of 1e8 the doubles of X no longer tell the longest axis, and rounding may leave them without a Cholesky
+/// factor: use, store and print centre, semi-axes and axes (or the [rotation](Ellipsoid::<3>::rotation)) there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipsoid<const N: usize> {
     center: [f64; N],
@@ -66,7 +66,8 @@ impl<const N: usize> Ellipsoid<N> {
         self.log_det
     }
 
-    /// The logarithm of the volume; of the length or area where the ellipsoid lies in an affine hull, and 0 for a point.
+    /// The logarithm of the volume; of the length or area where the ellipsoid lies in an affine hull, and 0 for a
+    /// point.
     #[must_use]
     pub fn log_volume(&self) -> f64 {
         let rank = self.semi_axes.iter().filter(|a| **a > 0.0).count();
@@ -103,8 +104,8 @@ impl<const N: usize> Ellipsoid<N> {
 }
 
 impl Ellipsoid<2> {
-    /// The angle in radians by which the frame of the ellipsoid is turned against the world, in (−π, π]: the direction of the
-    /// longest semi-axis is (cos, sin) of it.
+    /// The angle in radians by which the frame of the ellipsoid is turned against the world, in (−π, π]: the direction
+    /// of the longest semi-axis is (cos, sin) of it.
     #[must_use]
     pub fn rotation(&self) -> f64 {
         libm::atan2(self.axes[0][1], self.axes[0][0])
@@ -112,11 +113,11 @@ impl Ellipsoid<2> {
 }
 
 impl Ellipsoid<3> {
-    /// The unit quaternion [x, y, z, w], w ≥ 0, of the rotation from the frame of the ellipsoid into the world: it takes the
-    /// coordinate axis k to `axes()[k]`.
+    /// The unit quaternion [x, y, z, w], w ≥ 0, of the rotation from the frame of the ellipsoid into the world: it
+    /// takes the coordinate axis k to `axes()[k]`.
     ///
-    /// The largest of the four is found from the diagonal and the others from it, so nothing is lost near half a turn (S. W.
-    /// Shepperd, *Quaternion from rotation matrix*, J. Guid. Control 1, 1978).
+    /// The largest of the four is found from the diagonal and the others from it, so nothing is lost near half a turn
+    /// (S. W. Shepperd, *Quaternion from rotation matrix*, J. Guid. Control 1, 1978).
     ///
     /// # Examples
     /// ```

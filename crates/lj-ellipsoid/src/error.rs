@@ -54,7 +54,8 @@ pub enum InscribedError {
     /// There are no half-spaces or points, or they have no coordinates.
     #[error("no half-spaces or points to inscribe into")]
     Empty,
-    /// A coordinate of a point, or of a normal, is NaN or infinite, or an offset is (then `coordinate` is the dimension).
+    /// A coordinate of a point, or of a normal, is NaN or infinite, or an offset is (then `coordinate` is the
+    /// dimension).
     #[error("coordinate {coordinate} of half-space or point {index} is {value}")]
     NonFinite {
         /// Which half-space or point.

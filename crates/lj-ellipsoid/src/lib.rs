@@ -1,5 +1,5 @@
-//! The Löwner–John ellipsoids: the one of least volume around points, and the one of greatest volume inside a polytope. Each comes with
-//! a certified bound on how far its volume is from the optimum.
+//! The Löwner–John ellipsoids: the one of least volume around points, and the one of greatest volume inside a polytope.
+//! Each comes with a certified bound on how far its volume is from the optimum.
 //!
 #![doc = include_str!("../doc/pair.svg")]
 //!
@@ -27,11 +27,12 @@
 //! ```
 //!
 //! # What is here
-//! Around points: [`enclosing()`]; [`enclosing_with`] shows an observer every iterate, and [`MovingPoints`] keeps the answer while points
-//! are added, removed and moved. [`EnclosingMethod`] selects one of four algorithms. Points that span no volume are an error; with
-//! [`FlatPolicy::AffineHull`] their ellipsoid is a disc, a segment or a point.
+//! Around points: [`enclosing()`]; [`enclosing_with`] shows an observer every iterate, and [`MovingPoints`] keeps the
+//! answer while points are added, removed and moved. [`EnclosingMethod`] selects one of four algorithms. Points that
+//! span no volume are an error; with [`FlatPolicy::AffineHull`] their ellipsoid is a disc, a segment or a point.
 //!
-//! Inside a polytope: [`inscribed()`] for an intersection of half-spaces, [`inscribed_in_hull()`] for the hull of points in 2D and 3D.
+//! Inside a polytope: [`inscribed()`] for an intersection of half-spaces, [`inscribed_in_hull()`] for the hull of
+//! points in 2D and 3D.
 //!
 //! Points are anything that converts into `[f64; N]`: arrays, glam's `DVec2` and `DVec3`, or a type of your own. If the
 //! dimension is known only at run time, points are slices of one length: [`enclosing_dyn`], [`inscribed_dyn`].
@@ -49,11 +50,11 @@
 //!
 //! - `rayon`: passes over many points use all cores. The answer is the same to the last bit.
 //! - `convex-support`: conversions to that crate's `Ellipsoid`.
-//! - `serde`: options, half-spaces and answers as data, in any format of [serde](https://docs.rs/serde), read back to the last bit
-//!   (`serde_json` needs its feature `float_roundtrip` for that). An option that is left out has its default, and an unknown gap
-//!   is `null`. What is read is checked: options have to be in range, and an ellipsoid needs the right dimension, finite numbers, semi-axes
-//!   in order and orthonormal axes. Errors can be written but not read. What observers are shown is no data, nor is [`MovingPoints`], which
-//!   can be built again from its points.
+//! - `serde`: options, half-spaces and answers as data, in any format of [serde](https://docs.rs/serde), read back to
+//!   the last bit (`serde_json` needs its feature `float_roundtrip` for that). An option that is left out has its
+//!   default, and an unknown gap is `null`. What is read is checked: options have to be in range, and an ellipsoid
+//!   needs the right dimension, finite numbers, semi-axes in order and orthonormal axes. Errors can be written but not
+//!   read. What observers are shown is no data, nor is [`MovingPoints`], which can be built again from its points.
 //!
 //! ```
 //! # #[cfg(feature = "serde")] {

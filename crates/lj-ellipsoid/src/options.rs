@@ -10,7 +10,8 @@ pub enum Status {
     Converged,
     /// The iterations allowed were used up; the best ellipsoid found is returned with its gap.
     IterationLimit,
-    /// Rounding allows no smaller gap; the ellipsoid is as good as `f64` can make it, and the gap says how good that is.
+    /// Rounding allows no smaller gap; the ellipsoid is as good as `f64` can make it, and the gap says how good that
+    /// is.
     Stalled,
 }
 
@@ -52,14 +53,14 @@ pub enum FlatPolicy {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct EnclosingOptions {
-    /// The certified gap on ln det X to reach (twice the gap on the log-volume), a positive number. Default 1e-9; rounding
-    /// usually allows 1e-13.
+    /// The certified gap on ln det X to reach (twice the gap on the log-volume), a positive number. Default 1e-9;
+    /// rounding usually allows 1e-13.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::data::epsilon"))]
     pub epsilon: f64,
     /// The algorithm. Default [`EnclosingMethod::Newton`].
     pub method: EnclosingMethod,
-    /// The most iterations of the algorithm. Default `None`, a number that suits the method: 2,000 Newton steps, 1,000,000
-    /// moves of a weight, 200,000 cuts.
+    /// The most iterations of the algorithm. Default `None`, a number that suits the method: 2,000 Newton steps,
+    /// 1,000,000 moves of a weight, 200,000 cuts.
     pub max_iterations: Option<usize>,
     /// What to do with points that span no volume. Default: an error.
     pub flat: FlatPolicy,

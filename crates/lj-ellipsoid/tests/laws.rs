@@ -275,10 +275,11 @@ proptest! {
         }
     }
 
-    /// John: the enclosing ellipsoid shrunk by N about its centre lies in the hull; by √N where the points are symmetric.
+    /// John: the enclosing ellipsoid shrunk by N about its centre lies in the hull; by √N where the points are
+    /// symmetric.
     ///
-    /// It does where along the normal of every facet it reaches no further than the points. Every plane through three points
-    /// is tried: the facets are among them.
+    /// It does where along the normal of every facet it reaches no further than the points. Every plane through three
+    /// points is tried: the facets are among them.
     #[test]
     fn shrunk_it_lies_in_the_hull(points in cloud::<3>(), symmetric: bool) {
         // The last four are a simplex.

@@ -1,7 +1,8 @@
 //! Situations in which users of other minimum-volume ellipsoid programs got wrong answers, hangs or crashes.
 //!
-//! Each test names the situation and where it comes from; the answers are closed forms or certified here. Number 16 asks for
-//! other ellipsoids (around all but 5 % of the points, with two equal axes, axis-aligned), which this crate does not offer.
+//! Each test names the situation and where it comes from; the answers are closed forms or certified here. Number 16
+//! asks for other ellipsoids (around all but 5 % of the points, with two equal axes, axis-aligned), which this crate
+//! does not offer.
 #![allow(clippy::needless_range_loop, reason = "several arrays share an index")]
 
 use std::f64::consts::PI;
@@ -31,8 +32,8 @@ fn s01_collinear_points() {
     assert_eq!(enclosing(&plane, TIGHT).unwrap_err(), EnclosingError::Flat { rank: 1, dimension: 2 });
 }
 
-/// `OptimalDesign` stops on rcond, Drake throws below 1e-6: where flatness ends must be stated. Ours: within 32 units in the
-/// last place of the coordinates points are flat, above they are thin.
+/// `OptimalDesign` stops on rcond, Drake throws below 1e-6: where flatness ends must be stated. Ours: within 32 units
+/// in the last place of the coordinates points are flat, above they are thin.
 #[test]
 fn s02_coplanar_points_and_coplanar_up_to_noise() {
     let mut rng = Rng(2);
@@ -87,9 +88,9 @@ fn s04_duplicates() {
     }
 }
 
-/// CGAL #6626: this cube was reported to have zero volume, because the optimal start looked better than optimal.
-/// The first steps left weight on two points only, of whose line rounding made a plane. Of the first set the answer was 10²⁴ long, with a gap
-/// of zero; the second was called out of the range.
+/// CGAL #6626: this cube was reported to have zero volume, because the optimal start looked better than optimal. The
+/// first steps left weight on two points only, of whose line rounding made a plane. Of the first set the answer was
+/// 10²⁴ long, with a gap of zero; the second was called out of the range.
 #[test]
 fn s04_duplicates_of_corners_of_a_grid() {
     let first =
@@ -242,8 +243,8 @@ fn s11_far_offset_in_space() {
         let inner =
             inscribed_in_hull(&points, InscribedOptions::new().with_epsilon(1e-12)).expect("full rank").ellipsoid;
         let spread = 2.0 * base.semi_axes()[0];
-        // Doubles near 1e7 are 2^-29 apart. A centre rounded to them takes a thin ellipsoid away from its points by that
-        // share of its thickness, and to hold them all the same it grows as much.
+        // Doubles near 1e7 are 2^-29 apart. A centre rounded to them takes a thin ellipsoid away from its points by
+        // that share of its thickness, and to hold them all the same it grows as much.
         let rounding = 2f64.powi(-29) * 3f64.sqrt() / base.semi_axes()[2];
         let allowed = spread * rounding.max(1e-9);
         for offset in [[1e7, 0.0, 0.0], [1e7, -1e7, 1e7]] {

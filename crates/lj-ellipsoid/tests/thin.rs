@@ -27,8 +27,8 @@ fn plate(rng: &mut Rng, thickness: f64, center: [f64; 3]) -> Vec<HalfSpace<3>> {
     sides
 }
 
-/// What the rounding of a long axis to doubles takes away: it leaves the plate by some U, and the square of that over the square
-/// of the thickness is what the ellipsoid shrinks by.
+/// What the rounding of a long axis to doubles takes away: it leaves the plate by some U, and the square of that over
+/// the square of the thickness is what the ellipsoid shrinks by.
 fn lost_to_the_axes(thickness: f64) -> f64 {
     1e-12 + 20.0 * (U / thickness).powi(2)
 }
@@ -45,8 +45,8 @@ fn log_det_of_plate(thickness: f64) -> f64 {
     -2.0 * (WIDE[0].ln() + WIDE[1].ln() + thickness.ln())
 }
 
-/// Turned plates about the origin, the largest ball of which was called empty below a thickness of 1e-9: Cholesky's factor of
-/// a Hessian of condition 1e18 fails. The gap once grew like 3e-15/thickness.
+/// Turned plates about the origin, the largest ball of which was called empty below a thickness of 1e-9: Cholesky's
+/// factor of a Hessian of condition 1e18 fails. The gap once grew like 3e-15/thickness.
 #[test]
 fn turned_plates_of_any_thickness() {
     let mut rng = Rng(1);
@@ -71,8 +71,8 @@ fn turned_plates_of_any_thickness() {
     }
 }
 
-/// Sides whose normals are rounded one by one: opposite ones are not quite parallel, and the plate is a wedge. It is the wedge
-/// as given that is answered.
+/// Sides whose normals are rounded one by one: opposite ones are not quite parallel, and the plate is a wedge. It is
+/// the wedge as given that is answered.
 #[test]
 fn plates_of_normals_of_any_length() {
     let mut rng = Rng(2);
@@ -134,7 +134,8 @@ fn squashed_bodies() {
     squashed::<5>(23);
 }
 
-/// Away from the origin the centre is a double, and n·c is evaluated in doubles: U·|c| of the thickness is lost, and no more.
+/// Away from the origin the centre is a double, and n·c is evaluated in doubles: U·|c| of the thickness is lost, and no
+/// more.
 #[test]
 fn plates_away_from_the_origin() {
     let mut rng = Rng(3);
@@ -150,7 +151,8 @@ fn plates_away_from_the_origin() {
     }
 }
 
-/// Along the coordinates nothing is lost to rounding, down to where the inverse square of the thickness leaves the range.
+/// Along the coordinates nothing is lost to rounding, down to where the inverse square of the thickness leaves the
+/// range.
 #[test]
 fn aligned_plates() {
     for exponent in [10, 16, 20, 50, 100, 150] {
@@ -236,8 +238,8 @@ fn assert_rotation_is_that_of_the_axes(ellipsoid: &Ellipsoid<3>) {
     }
 }
 
-/// Flat clouds, turned: the doubles of X are then not even positive definite, but centre, semi-axes and rotation tell the
-/// ellipsoid to the last digits that the points determine.
+/// Flat clouds, turned: the doubles of X are then not even positive definite, but centre, semi-axes and rotation tell
+/// the ellipsoid to the last digits that the points determine.
 #[test]
 fn flat_clouds_by_their_axes() {
     let mut rng = Rng(6);
@@ -290,9 +292,9 @@ fn rotations_of_all_kinds() {
     assert!((angle - quarter).abs().min((angle + 3.0 * quarter).abs()) < 1e-11, "angle {angle}");
 }
 
-/// A triangle as long as 1e8 of its width, by its sides and by half-spaces beside them: −Σaᵢ is a combination of two rows with weights
-/// of 1e8, whose rounding was taken for a direction in which the triangle is open. The largest ellipse in it is the image of the circle
-/// in the regular triangle, of π/(3√3) of its area.
+/// A triangle as long as 1e8 of its width, by its sides and by half-spaces beside them: −Σaᵢ is a combination of two
+/// rows with weights of 1e8, whose rounding was taken for a direction in which the triangle is open. The largest
+/// ellipse in it is the image of the circle in the regular triangle, of π/(3√3) of its area.
 #[test]
 fn a_bounded_needle_is_not_called_unbounded() {
     let mut rng = Rng(7);

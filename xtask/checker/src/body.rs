@@ -1,7 +1,7 @@
 //! Sets of five kinds, and their support maps in intervals.
 //!
-//! Everything is points or the unit ball, mapped, summed, or joined to a hull. What a ball of a radius sweeps is told apart, as in the
-//! certificates.
+//! Everything is points or the unit ball, mapped, summed, or joined to a hull. What a ball of a radius sweeps is told
+//! apart, as in the certificates.
 
 use crate::interval::{Interval, Vector};
 
@@ -23,8 +23,8 @@ pub(crate) enum Set {
 }
 
 impl Set {
-    /// A point of the set, and how far the set reaches along `direction`. The point reaches as far where that is not a matter of
-    /// rounding, and is in the set in any case.
+    /// A point of the set, and how far the set reaches along `direction`. The point reaches as far where that is not a
+    /// matter of rounding, and is in the set in any case.
     pub(crate) fn support(&self, direction: &Vector) -> (Vector, Interval) {
         match self {
             Self::Points(points) => farthest(points.iter().map(|p| (p.clone(), p.dot(direction)))),
@@ -117,7 +117,8 @@ pub(crate) fn corners(half_extents: &Vector) -> Set {
     Set::Points((0..8).map(corner).collect())
 }
 
-/// By how much a map stretches, if it stretches everything alike, exactly: its rows are of one length, and across one another.
+/// By how much a map stretches, if it stretches everything alike, exactly: its rows are of one length, and across one
+/// another.
 pub(crate) fn scale_of(rows: &[Vector]) -> Option<Interval> {
     let squared = rows.first()?.squared();
     for (i, row) in rows.iter().enumerate() {

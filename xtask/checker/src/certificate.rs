@@ -1,8 +1,8 @@
 //! What a certificate proves of a query, and whether that is what the answer claims.
 //!
-//! All is about one set `C`, the target of a ray or `A − B`, and the points `x(λ) = source + λ·direction`, λ ≥ 0; for `distance` and
-//! `intersect`, whose `x` is zero, the direction is zero too. A plane across `n` has `C` behind it, `n·y ≤ h(n)`: that bounds
-//! distance, or the first λ with `x(λ)` in `C`, from below. Points of `C` bound it from above.
+//! All is about one set `C`, the target of a ray or `A − B`, and the points `x(λ) = source + λ·direction`, λ ≥ 0; for
+//! `distance` and `intersect`, whose `x` is zero, the direction is zero too. A plane across `n` has `C` behind it, `n·y
+//! ≤ h(n)`: that bounds distance, or the first λ with `x(λ)` in `C`, from below. Points of `C` bound it from above.
 
 use serde_json::Value;
 
@@ -21,7 +21,8 @@ pub enum Verdict {
     Disproved,
 }
 
-/// What is proved of a number that is not negative, a distance or a λ: it is neither less than `lower` nor more than `upper`.
+/// What is proved of a number that is not negative, a distance or a λ: it is neither less than `lower` nor more than
+/// `upper`.
 #[derive(Clone, Debug)]
 pub struct Bounds {
     /// What it is not less than.
@@ -57,7 +58,8 @@ struct Certificate {
     dimension: usize,
 }
 
-/// Solved weights may differ by this from those given, which are of a simplex as small as rounding lets it be; others are not meant.
+/// Solved weights may differ by this from those given, which are of a simplex as small as rounding lets it be; others
+/// are not meant.
 const MEANT: f64 = 0.125;
 
 /// What the certificate of a line proves, and what that says of the answer.
@@ -150,7 +152,8 @@ impl Question {
         Ok(Self { set, source: Vector::zero(), direction, end: end("max_time")?, is_pair: true })
     }
 
-    /// How far the source is before the plane of a certificate at least, times the length of its normal, and that normal.
+    /// How far the source is before the plane of a certificate at least, times the length of its normal, and that
+    /// normal.
     fn ahead(&self, certificate: &Certificate) -> Option<(Interval, Vector)> {
         let normal = certificate.plane.as_ref()?;
         let normal = if self.is_pair { normal.times(&Interval::from(-1.0)) } else { normal.clone() };
@@ -250,8 +253,8 @@ impl Certificate {
         Some(Vector(sum.0.each_ref().map(|x| x.over(&total))))
     }
 
-    /// The weights with which some of the points, and a further column with any factor, come to `at`, and that factor; if the
-    /// weights are certain not to be negative, and are those meant.
+    /// The weights with which some of the points, and a further column with any factor, come to `at`, and that factor;
+    /// if the weights are certain not to be negative, and are those meant.
     ///
     /// By Cramer's rule, so that what is zero comes out as zero where numbers are short.
     fn solve(&self, simplex: &[usize], column: Option<&Vector>, at: &Vector) -> Option<Vec<Interval>> {

@@ -1,5 +1,5 @@
-//! The shapes of a query, read from the query itself: a cylinder is the sum of a segment and a flat ball, a cone the hull of a flat ball
-//! and its apex.
+//! The shapes of a query, read from the query itself: a cylinder is the sum of a segment and a flat ball, a cone the
+//! hull of a flat ball and its apex.
 
 use std::fmt;
 
@@ -8,7 +8,8 @@ use serde_json::Value;
 use crate::body::{Body, Set, corners, diagonal, diagonal_of, difference, scale_of, sum};
 use crate::interval::{Interval, Vector};
 
-/// What a query's numbers mean: each is the nearest double to what is written, and in single precision the nearest `f32` to that.
+/// What a query's numbers mean: each is the nearest double to what is written, and in single precision the nearest
+/// `f32` to that.
 pub struct Reader<'m> {
     /// Whether the query is one in single precision.
     pub single: bool,
@@ -185,8 +186,8 @@ impl Reader<'_> {
 
     /// An ellipsoid: the unit ball, stretched by semi-axes and turned, or by the inverse of the matrix's factor.
     ///
-    /// With `X = L·Lᵀ`, `(x−c)ᵀX(x−c) ≤ 1` says `|Lᵀ(x−c)| ≤ 1`: the image of the ball under `L⁻ᵀ`. The matrix is not rounded to
-    /// single precision; the mean of it and its transpose counts.
+    /// With `X = L·Lᵀ`, `(x−c)ᵀX(x−c) ≤ 1` says `|Lᵀ(x−c)| ≤ 1`: the image of the ball under `L⁻ᵀ`. The matrix is not
+    /// rounded to single precision; the mean of it and its transpose counts.
     fn ellipsoid(&self, shape: &Value) -> Result<Set, Unread> {
         let center = self.vector_or_zero(shape, "center")?;
         if let Some(semi_axes) = shape.get("semi_axes") {

@@ -1,5 +1,5 @@
-//! `cargo xtask docs`: the API documentation of the four libraries as docs.rs builds it, with every feature and no warning
-//! let pass; and a check that what the pages and the notes refer to is there, without a network.
+//! `cargo xtask docs`: the API documentation of the four libraries as docs.rs builds it, with every feature and no
+//! warning let pass; and a check that what the pages and the notes refer to is there, without a network.
 
 mod names;
 

@@ -556,7 +556,8 @@ mod tests {
 
     #[test]
     fn algorithm_1_hits_an_edge_that_it_is_aimed_at() {
-        // The closest points of curved bodies are off along their plane by the root of rounding: by those, this ray passed by.
+        // The closest points of curved bodies are off along their plane by the root of rounding: by those, this ray
+        // passed by.
         let cylinder = r#"{"type":"cylinder","half_height":1.3741260878225547,"radius":1.3829551759415628}"#;
         let capsule = r#"{"type":"capsule","half_height":1.1848445257807128,"radius":0.5}"#;
         let target = format!(

@@ -58,8 +58,8 @@ impl<V: Space> Question for Cast<V> {
         match self.method {
             Method::Gjk => ray_cast(&self.target, self.ray, self.options),
             Method::Iterative => {
-                // Algorithm 1 goes by the plane through the closest point. That of the normal is proved to rounding, where the point itself
-                // may be off along it by the root of that.
+                // Algorithm 1 goes by the plane through the closest point. That of the normal is proved to rounding,
+                // where the point itself may be off along it by the root of that.
                 let to_point = |x: Point<V>| {
                     let d = distance(&self.target, &x, DistanceOptions::new());
                     d.normal.map_or(d.point_a, |normal| x.at() + normal * d.distance)

@@ -78,8 +78,8 @@ impl<V: Space> Question for Pair<V> {
 
 /// Refuses a signed distance that is no number, or that the search gave up on before it was on one side of `level`.
 ///
-/// One that is, is answered with its bracket, however wide, and with `status` to say so: ties, as of an ellipsoid of revolution
-/// around a ball, are known to all digits from below long before they are from above.
+/// One that is, is answered with its bracket, however wide, and with `status` to say so: ties, as of an ellipsoid of
+/// revolution around a ball, are known to all digits from below long before they are from above.
 pub(super) fn certain<V: Vector>(d: &gjk_raycast::SignedDistance<V>, level: V::Scalar) -> Result<(), Problem> {
     let decided = d.lower > level || d.upper <= level;
     if decided || d.status != Status::IterationLimit && d.signed_distance.as_f64().is_finite() {

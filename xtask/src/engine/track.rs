@@ -65,8 +65,8 @@ enum Tracker {
     Inverse(InverseIterationTracker),
 }
 
-/// The change of the unit eigenvector at which the inverse iteration ends, and the most steps: the eigenvalue's error is
-/// of second order in it.
+/// The change of the unit eigenvector at which the inverse iteration ends, and the most steps: the eigenvalue's error
+/// is of second order in it.
 #[cfg(feature = "paper")]
 const INVERSE: (f64, usize) = (1e-8, 40);
 

@@ -1,8 +1,8 @@
 //! What is proved of a question, by the brackets of this workspace, and the evidence that refutes a claim.
 //!
 //! Everything here is a bound from geometry: a plane shows how far bodies are apart at least, points how far at most, a
-//! translation how deep they are in one another at most, and planes how deep at least. None of it depends on the answer under
-//! judgement, nor is any answer of anybody believed.
+//! translation how deep they are in one another at most, and planes how deep at least. None of it depends on the answer
+//! under judgement, nor is any answer of anybody believed.
 
 use crate::engine;
 use crate::mesh::Meshes;
@@ -120,7 +120,8 @@ impl Bodies {
 
     /// How deep the bodies are in one another, at least, at some time from this one on; and that time.
     ///
-    /// The deepest of even steps, and then of ever shorter ones beside it: what is found holds, however much was missed.
+    /// The deepest of even steps, and then of ever shorter ones beside it: what is found holds, however much was
+    /// missed.
     pub fn deepest(&self, from: f64) -> (f64, f64) {
         const STEPS: usize = 48;
         // Bodies that meet have left one another after this at the latest, if they go straight.

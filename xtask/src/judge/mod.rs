@@ -1,4 +1,5 @@
-//! Answers of anybody held against what is proved: the judgement of `cargo xtask judge`, and the first figure of the report.
+//! Answers of anybody held against what is proved: the judgement of `cargo xtask judge`, and the first figure of the
+//! report.
 
 pub mod fact;
 pub mod figure;
@@ -71,8 +72,8 @@ fn reproduction(witness: &Witness, case: &Case, claim: Claim, verdict: &Verdict)
 
 /// How many truths are known otherwise, and the questions whose bracket does not hold theirs.
 ///
-/// Those of the workloads are known by construction, to some 1e-11 of a motion or of a length of one; those of the suite in
-/// ninety digits, rounded to a double.
+/// Those of the workloads are known by construction, to some 1e-11 of a motion or of a length of one; those of the
+/// suite in ninety digits, rounded to a double.
 #[must_use]
 pub fn violated(cases: &[Option<Case>]) -> (usize, Vec<String>) {
     let known: Vec<(&Case, f64)> =

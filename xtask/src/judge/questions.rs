@@ -89,7 +89,8 @@ fn ray_casts(case: &str, each: usize, questions: &mut Vec<Question>) {
     }));
 }
 
-/// Casts of straight motions; and half as many in which the body that moves turns about its middle, by 1 to 3 in the same time.
+/// Casts of straight motions; and half as many in which the body that moves turns about its middle, by 1 to 3 in the
+/// same time.
 fn linear_casts(case: &str, pair: &Pair, each: usize, questions: &mut Vec<Question>) {
     let (a, casts) = (written(&pair.a), w2_linear_cast::casts(pair));
     for (k, cast) in spread(&casts, each) {
@@ -131,7 +132,8 @@ fn overlaps(case: &str, pair: &Pair, each: usize, questions: &mut Vec<Question>)
     );
 }
 
-/// The cases of the suite in double precision that can be asked of everybody: neither methods and tolerances of ours, nor files.
+/// The cases of the suite in double precision that can be asked of everybody: neither methods and tolerances of ours,
+/// nor files.
 fn suite(questions: &mut Vec<Question>) {
     let Ok(folder) = fs::read_dir(EMBEDDED) else { return };
     let mut files: Vec<_> = folder.flatten().map(|entry| entry.path()).collect();

@@ -184,7 +184,8 @@ mod tests {
         assert_eq!(outcome(&miss, Some(true), Some(0.5)).0, Outcome::Disproved, "they are apart then");
     }
 
-    /// A corner that is met by a corner to rounding: whoever says a miss may be right, and a hit is at that time or none.
+    /// A corner that is met by a corner to rounding: whoever says a miss may be right, and a hit is at that time or
+    /// none.
     #[test]
     fn grazes_are_open_to_who_says_a_miss() {
         let query = r#"{"query":"linear_cast","a":{"type":"cuboid","half_extents":[1,0.5,0.25]},"b":{"type":"posed","of":{"type":"cuboid","half_extents":[1,0.5,0.25]},"rotation":[-0.2384743679799667,-0.8581547372714705,0.0696937552505257,0.4492696330647873],"translation":[-1.8676382472312878,5.955709892924724,1.220076103192911]},"velocity_b":[1.4539202451705933,-7.865894794464111,0.1175268366932869],"max_time":1}"#;

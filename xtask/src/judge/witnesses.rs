@@ -101,8 +101,9 @@ fn claim(question: &Object, answer: &Object) -> Claim {
 
 /// Answers out of a file: in its first line who answered, then one line for each question that was.
 ///
-/// `{"peer", "precision", "tolerance", "of_motion", "settings"}`, where either tolerance may be left out, and then `{"id", "ns", …}`
-/// with the fields of the query format, or with `"error"` in their place. A question without a line was not asked.
+/// `{"peer", "precision", "tolerance", "of_motion", "settings"}`, where either tolerance may be left out, and then
+/// `{"id", "ns", …}` with the fields of the query format, or with `"error"` in their place. A question without a line
+/// was not asked.
 ///
 /// # Errors
 /// What is wrong with the file, as a sentence.

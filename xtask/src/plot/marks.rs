@@ -149,8 +149,8 @@ impl Group {
     }
 }
 
-/// Where the names of these widths stand beside their marks. A name is moved while another place costs it less, a few times over,
-/// as where it is best depends on where the others are.
+/// Where the names of these widths stand beside their marks. A name is moved while another place costs it less, a few
+/// times over, as where it is best depends on where the others are.
 fn named(places: &[[f64; 2]], widths: &[f64], size: [f64; 2]) -> Vec<Area> {
     const ROUNDS: usize = 12;
     let marks: Vec<Area> = places.iter().map(|[x, y]| [x - 5.0, y - 5.0, x + 5.0, y + 5.0]).collect();

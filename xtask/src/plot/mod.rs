@@ -1,4 +1,5 @@
-//! Plots as SVG, by hand: points and lines that can be told apart by colour and by mark, on light and dark pages and on paper.
+//! Plots as SVG, by hand: points and lines that can be told apart by colour and by mark, on light and dark pages and on
+//! paper.
 
 mod marks;
 
@@ -51,9 +52,9 @@ const LEGEND_ROW: f64 = 20.0;
 /// About the width of a letter, to lay out the legend.
 const LETTER: f64 = 7.2;
 
-/// Colours after Okabe and Ito, made as dark as text has to be on white, with a contrast of 4.5 to 1; where two look alike to the
-/// colour-blind, the marks differ. A page may replace them by its custom properties `--c0` to `--c11`, such as brighter ones on a
-/// dark ground.
+/// Colours after Okabe and Ito, made as dark as text has to be on white, with a contrast of 4.5 to 1; where two look
+/// alike to the colour-blind, the marks differ. A page may replace them by its custom properties `--c0` to `--c11`,
+/// such as brighter ones on a dark ground.
 const COLOURS: [&str; 12] = [
     "#0072b2", "#c25400", "#17803d", "#b8508f", "#8a6a00", "#00798c", "#7a5195", "#6f6f6f", "#8b4513", "#b0123b",
     "#3d49b5", "#66760f",
@@ -136,7 +137,8 @@ struct Frame {
 }
 
 impl Frame {
-    /// Grid, ticks and titles of both axes. The vertical one is titled above its end, where it can be read without turning.
+    /// Grid, ticks and titles of both axes. The vertical one is titled above its end, where it can be read without
+    /// turning.
     fn axes(&self, svg: &mut String, titles: [&str; 2], floored: bool) {
         let [right, bottom] = [self.size[0] - RIGHT, self.size[1] - BOTTOM];
         let ticks = self.x.ticks();
@@ -429,7 +431,8 @@ mod tests {
         assert_eq!([100.0, 45.0, 20.0].map(|spacing| labelled(&ticks, spacing)), [1, 2, 3], "all, or some");
     }
 
-    /// The contrast of text by the Web Content Accessibility Guidelines: (L + 0.05) / (l + 0.05), of relative luminances.
+    /// The contrast of text by the Web Content Accessibility Guidelines: (L + 0.05) / (l + 0.05), of relative
+    /// luminances.
     #[test]
     fn names_in_colour_can_be_read_on_white() {
         let channel = |colour: &str, at: usize| {

@@ -90,7 +90,8 @@ fn proved_line(rng: &mut Rng) -> Value {
     }
 }
 
-/// The line with one thing changed such that it proves nothing any more, or claims what is false; none where it cannot be changed so.
+/// The line with one thing changed such that it proves nothing any more, or claims what is false; none where it cannot
+/// be changed so.
 fn mutated(mut line: Value, rng: &mut Rng) -> Option<Value> {
     let answer = line["answer"].clone();
     let [lower, upper] = ["lower", "upper"].map(|name| answer[name].as_f64().expect("a bracket"));

@@ -80,8 +80,8 @@ fn of_records(records: &[Record], query: &str, name: &str) -> Option<Point> {
     })
 }
 
-/// The error of a volume is relative already; that of a margin is one of 1 + m, the square of a ratio of sizes, as m itself
-/// passes through zero.
+/// The error of a volume is relative already; that of a margin is one of 1 + m, the square of a ratio of sizes, as m
+/// itself passes through zero.
 fn error(record: &Record) -> Option<f64> {
     let (error, relative) = (record.verdict.error?, record.verdict.relative?);
     let is_volume = record.query.ends_with("_ellipsoid");

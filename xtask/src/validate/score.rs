@@ -28,8 +28,8 @@ pub struct Verdict {
     pub soft: Vec<String>,
     /// Whether an error came where an answer was due.
     pub errored: bool,
-    /// The error of the scalar that is worst in units of what is allowed: absolute, and relative to the truth where that is not
-    /// zero. That of the logarithm of a volume is relative already: to the volume.
+    /// The error of the scalar that is worst in units of what is allowed: absolute, and relative to the truth where
+    /// that is not zero. That of the logarithm of a volume is relative already: to the volume.
     pub error: Option<f64>,
     pub relative: Option<f64>,
     /// The error over what is allowed.

@@ -1,4 +1,5 @@
-//! Error against difficulty: condition, thickness, scale, distance, gap to contact, as far as the tags of cases say them.
+//! Error against difficulty: condition, thickness, scale, distance, gap to contact, as far as the tags of cases say
+//! them.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -200,7 +201,8 @@ impl Ord for Ordered {
     }
 }
 
-/// The kind and value of a tag that ends in a positive number with a kind before it, such as `cond1e+06` or `scale2^-30`.
+/// The kind and value of a tag that ends in a positive number with a kind before it, such as `cond1e+06` or
+/// `scale2^-30`.
 #[must_use]
 pub fn difficulty(tag: &str) -> Option<(&str, f64)> {
     let at = tag.find(|c: char| c.is_ascii_digit())?;

@@ -11,8 +11,8 @@ const DEEPEST: usize = 128;
 /// The JSON object on a line.
 ///
 /// # Errors
-/// [`Kind::Parse`] where it is not JSON, not an object, or nested deeper than 128 levels; [`Kind::NonFinite`] where a number is too
-/// large for a double.
+/// [`Kind::Parse`] where it is not JSON, not an object, or nested deeper than 128 levels; [`Kind::NonFinite`] where a
+/// number is too large for a double.
 pub fn object(line: &[u8]) -> Result<Object, Problem> {
     if deepest(line) > DEEPEST {
         return Err(Problem::new(Kind::Parse, format!("lists and objects are nested deeper than {DEEPEST} levels")));

@@ -1,8 +1,8 @@
 //! `cargo xtask book2d`: the descent of GJK in the plane, step by step, as the book draws it.
 //!
-//! Schneider and Eberly, *Geometric Tools for Computer Graphics* (2003), Section 6.10.1, figures 6.25 to 6.29: the simplex
-//! `S_k`, the closest point `V_k` of it to the origin, and the support point `W_k` that joins it. The vertices that do not
-//! carry `V_k` have been discarded.
+//! Schneider and Eberly, *Geometric Tools for Computer Graphics* (2003), Section 6.10.1, figures 6.25 to 6.29: the
+//! simplex `S_k`, the closest point `V_k` of it to the origin, and the support point `W_k` that joins it. The vertices
+//! that do not carry `V_k` have been discarded.
 
 use std::fmt::Write as _;
 use std::fs;

@@ -40,8 +40,8 @@ enum Task {
     Sweep(sweep::Scope),
     /// Hold the answers of other libraries, and ours, against what is proved; one table and one figure.
     ///
-    /// Exit status: 0, or 1 if a bracket of ours does not hold the truth or a claim of ours is disproved, or 2 if a file
-    /// could not be read or written.
+    /// Exit status: 0, or 1 if a bracket of ours does not hold the truth or a claim of ours is disproved, or 2 if a
+    /// file could not be read or written.
     Judge(judge::Scope),
     /// Measure how the time of each question to a scene grows with the number of its bodies, and draw it.
     ///

@@ -12,10 +12,10 @@ use crate::{Aabb, Scalar, Vector};
 
 /// A question to a tree of boxes: a lower bound on a quantity, such as a distance, for everything that lies in a box.
 ///
-/// The bound of an item's own box decides whether the item is [shown](super::Bvh::search). Which nodes are looked into is
-/// decided by [rougher](RoughBound) bounds of their boxes, in single precision and for four boxes at once. An implementor must obey one
-/// law, whatever rounding does: *if the bound of a box is at most a limit, so is the rough bound of every box around it.* Then what a
-/// search leaves out depends on the items' boxes alone, not on the tree.
+/// The bound of an item's own box decides whether the item is [shown](super::Bvh::search). Which nodes are looked into
+/// is decided by [rougher](RoughBound) bounds of their boxes, in single precision and for four boxes at once. An
+/// implementor must obey one law, whatever rounding does: *if the bound of a box is at most a limit, so is the rough
+/// bound of every box around it.* Then what a search leaves out depends on the items' boxes alone, not on the tree.
 pub trait Bound<V: Vector> {
     /// The same question in single precision.
     type Rough: RoughBound;
@@ -29,8 +29,8 @@ pub trait Bound<V: Vector> {
 
 /// A question to four boxes in single precision.
 pub trait RoughBound {
-    /// Numbers, none of them negative or NaN, in the order of the bounds of four boxes, in any unit and on any scale; infinity where
-    /// nothing in a box concerns the question. Those of places without a child do not matter.
+    /// Numbers, none of them negative or NaN, in the order of the bounds of four boxes, in any unit and on any scale;
+    /// infinity where nothing in a box concerns the question. Those of places without a child do not matter.
     fn bounds(&self, boxes: &Boxes) -> Vec4;
 
     /// The finite number of that kind that bounds of boxes do not exceed if they are at most `limit`.
@@ -42,8 +42,8 @@ fn rounding<S: Scalar>() -> S {
     S::from_f64(8.0) * S::EPSILON
 }
 
-/// When a box that moves along a ray meets another: λ ≥ 0, from below, for the box with the given half extents whose centre
-/// is at `source + λ·direction`. With half extents of zero this is a ray cast.
+/// When a box that moves along a ray meets another: λ ≥ 0, from below, for the box with the given half extents whose
+/// centre is at `source + λ·direction`. With half extents of zero this is a ray cast.
 ///
 /// The moving box touches a box B where its centre is in B grown by the half extents, so that coordinate by coordinate
 ///
@@ -97,8 +97,8 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
         }
     }
 
-    /// Coordinates are rounded so that the box begins earlier and ends later, the end is put off by all that rounds, and the limit has
-    /// room for what rounds the beginning.
+    /// Coordinates are rounded so that the box begins earlier and ends later, the end is put off by all that rounds,
+    /// and the limit has room for what rounds the beginning.
     #[inline]
     fn rough(&self, frame: &Frame<V>) -> RoughSweptBox<V> {
         let mut rough = RoughSweptBox {
@@ -123,7 +123,8 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
     }
 }
 
-/// A [`SweptBox`] in the frame of a tree, with λ in a unit in which the largest coordinate of the direction is between 1 and 2.
+/// A [`SweptBox`] in the frame of a tree, with λ in a unit in which the largest coordinate of the direction is between
+/// 1 and 2.
 #[derive(Clone, Copy, Debug)]
 pub struct RoughSweptBox<V> {
     /// What the side of a box that is met first is compared with, and what the other.
@@ -165,7 +166,8 @@ impl<V: Vector> RoughBound for RoughSweptBox<V> {
 
 /// The distance from a box to a box, from below.
 ///
-/// Coordinate by coordinate the gap is what one begins after the other ends, or 0; the distance is the length of the gaps.
+/// Coordinate by coordinate the gap is what one begins after the other ends, or 0; the distance is the length of the
+/// gaps.
 #[derive(Clone, Copy, Debug)]
 pub struct BoxDistance<V: Vector> {
     of: Aabb<V>,
@@ -186,7 +188,8 @@ impl<V: Vector> Bound<V> for BoxDistance<V> {
     #[inline(always)]
     fn bound(&self, around: &Aabb<V>) -> V::Scalar {
         let gaps = (around.min - self.of.max).max(self.of.min - around.max).max(V::ZERO);
-        // Whether boxes overlap nobody can foretell, and so it is no branch: only a gap whose square leaves the range takes another way.
+        // Whether boxes overlap nobody can foretell, and so it is no branch: only a gap whose square leaves the range
+        // takes another way.
         let squared = gaps.length_squared();
         let is_plain = is_comfortable(squared) | (gaps.max_element() == V::Scalar::ZERO);
         let length = if is_plain { squared.sqrt() } else { gaps.norm() };

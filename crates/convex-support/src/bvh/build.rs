@@ -1,9 +1,9 @@
 //! Building by the surface area heuristic, in bins.
 //!
 //! A question meets a box about as often as its surface is large, so that a split into two parts costs about n₁·area₁ +
-//! n₂·area₂. Of the splits between 16 bins of the centres along the longest axis the cheapest is taken, and a node's range
-//! is split three times for its four children (I. Wald, *On fast construction of SAH-based bounding volume hierarchies*,
-//! 2007).
+//! n₂·area₂. Of the splits between 16 bins of the centres along the longest axis the cheapest is taken, and a node's
+//! range is split three times for its four children (I. Wald, *On fast construction of SAH-based bounding volume
+//! hierarchies*, 2007).
 
 use alloc::vec::Vec;
 
@@ -136,8 +136,8 @@ impl<V: Vector> Bvh<V> {
         }
     }
 
-    /// How much work a random question is expected to be: the area of all inner boxes by that of the whole. Not a number
-    /// where areas over- or underflow.
+    /// How much work a random question is expected to be: the area of all inner boxes by that of the whole. Not a
+    /// number where areas over- or underflow.
     pub(super) fn cost(&self) -> f64 {
         let of_nodes = |node: &Node| {
             let areas = areas::<V>(&node.boxes).to_array().into_iter().zip(node.children);
@@ -169,8 +169,8 @@ fn allowed_levels(count: usize) -> u32 {
 
 /// Up to four parts of the range, of which there is at least one unless it is empty.
 ///
-/// The part with the largest surface is split first. Where the levels that remain are only just enough, the largest part is
-/// split in halves instead: a quarter of the items needs a level less.
+/// The part with the largest surface is split first. Where the levels that remain are only just enough, the largest
+/// part is split in halves instead: a quarter of the items needs a level less.
 fn split_in_four<V: Vector>(entries: &mut [Entry], range: Range, levels: u32) -> ([Range; WIDTH], usize) {
     let mut parts = [range; WIDTH];
     if range.len() <= WIDTH {
@@ -243,8 +243,8 @@ impl Bins {
         (bin as usize).min(self.count - 1)
     }
 
-    /// The last bin of the first part of the cheapest split, and the extents of both parts; `None` where no split is cheaper than any
-    /// other.
+    /// The last bin of the first part of the cheapest split, and the extents of both parts; `None` where no split is
+    /// cheaper than any other.
     fn cheapest_split<V: Vector>(&self, entries: &[Entry]) -> Option<(usize, [Extent; 2])> {
         let (mut counts, mut extents) = ([0_u32; BINS], [Extent::EMPTY; BINS]);
         for entry in entries {
@@ -274,8 +274,8 @@ impl Bins {
     }
 }
 
-/// Brings the entries that `first` picks to the front, and returns their number. Every one is exchanged, which takes no branch: who is
-/// picked nobody can foretell.
+/// Brings the entries that `first` picks to the front, and returns their number. Every one is exchanged, which takes no
+/// branch: who is picked nobody can foretell.
 #[inline(always)]
 fn partition<T>(entries: &mut [T], first: impl Fn(&T) -> bool) -> usize {
     let mut picked = 0;

@@ -1,13 +1,13 @@
 //! Items that move, come and go.
 //!
-//! A new item goes down to the child whose box it enlarges least and takes the first free place, or shares an item's. That
-//! alone can grow a chain (items inserted in order do), so that the rule of scapegoat trees is added (Galperin and Rivest
-//! 1993): after an insertion `h` levels below a node with `n` items,
+//! A new item goes down to the child whose box it enlarges least and takes the first free place, or shares an item's.
+//! That alone can grow a chain (items inserted in order do), so that the rule of scapegoat trees is added (Galperin and
+//! Rivest 1993): after an insertion `h` levels below a node with `n` items,
 //!
 //! > h ≤ 2·⌈log₄ n⌉ + 4,
 //!
-//! or the lowest node for which it does not hold is built anew, with at most 1.5·⌈log₄ n⌉ + 2 levels. So the depth is at
-//! most 34 for the 2³⁰ items that a tree can hold, and rebuilding costs a constant number of levels' work for each
+//! or the lowest node for which it does not hold is built anew, with at most 1.5·⌈log₄ n⌉ + 2 levels. So the depth is
+//! at most 34 for the 2³⁰ items that a tree can hold, and rebuilding costs a constant number of levels' work for each
 //! insertion in the long run.
 
 use alloc::vec::Vec;
@@ -23,8 +23,8 @@ use crate::{Aabb, Vector};
 const WORSE: f64 = 1.5;
 
 impl<V: Vector> Bvh<V> {
-    /// Gives every item the box that `box_of` says, in time proportional to their number; where the boxes have moved so far
-    /// that the tree has become half as costly again as when it was built, it is built anew.
+    /// Gives every item the box that `box_of` says, in time proportional to their number; where the boxes have moved so
+    /// far that the tree has become half as costly again as when it was built, it is built anew.
     ///
     /// Items are asked for in the order of their numbers.
     pub fn refit(&mut self, mut box_of: impl FnMut(usize) -> Aabb<V>) {

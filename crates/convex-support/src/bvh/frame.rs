@@ -5,8 +5,8 @@ use num_traits::Float as _;
 use crate::glam::Vec3A;
 use crate::{Aabb, Scalar, Vector};
 
-/// The power of two that the farthest coordinate is seen as: large enough that squares of what is small beside it do not underflow, and
-/// small enough that squares of what is far beyond do not overflow.
+/// The power of two that the farthest coordinate is seen as: large enough that squares of what is small beside it do
+/// not underflow, and small enough that squares of what is far beyond do not overflow.
 const REACH: f64 = (1_u64 << 40) as f64;
 
 /// How many times as far as the boxes that a frame was chosen for others may lie, before another should be: squares
@@ -14,10 +14,12 @@ const REACH: f64 = (1_u64 << 40) as f64;
 /// one, do not have the tree built anew for each.
 const BEYOND: f64 = (1_u64 << 16) as f64;
 
-/// Where the nodes of a tree are seen from: a coordinate `x` is `(x − origin)·2ᵏ` in single precision, rounded *outwards*.
+/// Where the nodes of a tree are seen from: a coordinate `x` is `(x − origin)·2ᵏ` in single precision, rounded
+/// *outwards*.
 ///
-/// A box as it is seen so contains the box that it is of, and is larger by at most 2⁻²² of its distance from the origin on each side.
-/// The origin is in the midst of the boxes, half of which are on each side of it, so that a few that are far away do not matter.
+/// A box as it is seen so contains the box that it is of, and is larger by at most 2⁻²² of its distance from the origin
+/// on each side. The origin is in the midst of the boxes, half of which are on each side of it, so that a few that are
+/// far away do not matter.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<V: Vector> {
     origin: V,
@@ -108,7 +110,8 @@ impl<V: Vector> Frame<V> {
 
     /// The same box as this frame sees it, and not another.
     pub(super) fn outwards_from(&self, other: &Self, around: &Aabb<Vec3A>) -> Aabb<Vec3A> {
-        // What is computed in double precision is nothing to a step of single precision, of the other's coordinate or of this one.
+        // What is computed in double precision is nothing to a step of single precision, of the other's coordinate or
+        // of this one.
         let at = |axis: usize, c: f32| {
             let world = f64::from(c) / other.per_unit + other.origin.get(axis).as_f64();
             (world - self.origin.get(axis).as_f64()) * self.per_unit
@@ -146,8 +149,8 @@ fn below_infinity(x: f64) -> f32 {
     if nearest < f32::MAX { nearest } else { f32::MAX }
 }
 
-/// Of numbers of this size, one step at least, and at most two; of the smallest ones more. Rounding to the nearest moves `x` by half a step,
-/// and a difference by a whole number of steps not at all.
+/// Of numbers of this size, one step at least, and at most two; of the smallest ones more. Rounding to the nearest
+/// moves `x` by half a step, and a difference by a whole number of steps not at all.
 #[inline(always)]
 fn step<T: core::ops::Mul<f32, Output = T> + core::ops::Add<f32, Output = T>>(size: T) -> T {
     size * f32::EPSILON + f32::MIN_POSITIVE
@@ -159,8 +162,9 @@ fn up(x: f64) -> f32 {
     -down(-x)
 }
 
-/// The unit of [rough bounds](super::RoughBound), and what they may be wrong by: 64 ε of single precision, which is what rounds the few
-/// operations that they are made of and those of bounds that may be in single precision themselves; and a few of the smallest numbers.
+/// The unit of [rough bounds](super::RoughBound), and what they may be wrong by: 64 ε of single precision, which is
+/// what rounds the few operations that they are made of and those of bounds that may be in single precision themselves;
+/// and a few of the smallest numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct RoughUnit {
     per_unit: f64,
@@ -190,7 +194,8 @@ impl RoughUnit {
         down(x)
     }
 
-    /// What rough bounds do not exceed if they are right to [`ROUNDING`](Self::ROUNDING) and stand for bounds of at most `limit`.
+    /// What rough bounds do not exceed if they are right to [`ROUNDING`](Self::ROUNDING) and stand for bounds of at
+    /// most `limit`.
     #[inline]
     #[must_use]
     pub fn limit(&self, limit: f64) -> f32 {
@@ -215,8 +220,8 @@ fn finite_up(limit: f64) -> f32 {
     if limit < f64::from(f32::MAX) { up(limit).min(f32::MAX) } else { f32::MAX }
 }
 
-/// The largest power of two that is not above a positive number, or the nearest that is an ordinary number; 1 for what is
-/// not positive or not finite.
+/// The largest power of two that is not above a positive number, or the nearest that is an ordinary number; 1 for what
+/// is not positive or not finite.
 pub(super) fn power_of_two_near(x: f64) -> f64 {
     if !(x > 0.0 && x < f64::INFINITY) {
         return 1.0;

@@ -22,20 +22,20 @@ pub use self::pairs::PairSearch;
 
 /// A tree over the boxes of items, which the caller names by numbers from 0 to 2³⁰ − 1.
 ///
-/// The tree is [built](Self::new) by the surface area heuristic. Boxes may move ([`refit`](Self::refit), [`set`](Self::set)), and items
-/// may be added and removed ([`insert`](Self::insert), [`remove`](Self::remove)).
+/// The tree is [built](Self::new) by the surface area heuristic. Boxes may move ([`refit`](Self::refit),
+/// [`set`](Self::set)), and items may be added and removed ([`insert`](Self::insert), [`remove`](Self::remove)).
 ///
-/// [`search`](Self::search) finds the items that a question concerns, by a [`Bound`], nearest first; [`within`](Self::within) finds them
-/// in any order. [`pairs_within`](Self::pairs_within) and [`pairs_between`](Self::pairs_between) find pairs of boxes that are near each
-/// other.
+/// [`search`](Self::search) finds the items that a question concerns, by a [`Bound`], nearest first;
+/// [`within`](Self::within) finds them in any order. [`pairs_within`](Self::pairs_within) and
+/// [`pairs_between`](Self::pairs_between) find pairs of boxes that are near each other.
 ///
-/// A node holds the boxes of its four children side by side, in single precision and in the coordinates of a [`Frame`], so that one
-/// pass of arithmetic bounds all four. A child is a node or an item. Which items a question is shown depends only on the items' own
-/// boxes. The depth stays below 36 whatever the boxes and their order, since a part that has become lopsided is built anew. So a
-/// question needs only a stack of fixed size, and allocates nothing.
+/// A node holds the boxes of its four children side by side, in single precision and in the coordinates of a [`Frame`],
+/// so that one pass of arithmetic bounds all four. A child is a node or an item. Which items a question is shown
+/// depends only on the items' own boxes. The depth stays below 36 whatever the boxes and their order, since a part that
+/// has become lopsided is built anew. So a question needs only a stack of fixed size, and allocates nothing.
 ///
-/// Boxes must be finite, with `min ≤ max`. If a box is not, its own item may not be found, and others may be found more slowly; nothing
-/// panics.
+/// Boxes must be finite, with `min ≤ max`. If a box is not, its own item may not be found, and others may be found more
+/// slowly; nothing panics.
 ///
 /// ```
 /// use core::ops::ControlFlow;

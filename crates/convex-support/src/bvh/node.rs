@@ -6,8 +6,9 @@ use crate::glam::{Vec3A, Vec4};
 /// The number of children of a node.
 pub const WIDTH: usize = 4;
 
-/// The boxes of a node's children as the tree's [frame](super::Frame) sees them, coordinate by coordinate and side by side, so that the
-/// same arithmetic on all four is one vector instruction. A place without a child has `min = ∞` and `max = −∞`.
+/// The boxes of a node's children as the tree's [frame](super::Frame) sees them, coordinate by coordinate and side by
+/// side, so that the same arithmetic on all four is one vector instruction. A place without a child has `min = ∞` and
+/// `max = −∞`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Boxes {
     /// By coordinate, the smallest and the largest. Of boxes in the plane, the third is zero.

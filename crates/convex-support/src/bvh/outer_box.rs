@@ -10,8 +10,8 @@ use crate::{Aabb, Core, CoreKind, Scalar, ScalarOf, SupportMap, Vector};
 /// [error](Core::error) of its core. `None` if a number is not finite.
 ///
 /// The answer of a query is that of a shape which is off by rounding, a few ε of the origin, the core's extent and the
-/// radius. The box has room for that. So if the box of a body is farther away than some answer, the body is farther away also by its
-/// own query, not only in truth.
+/// radius. The box has room for that. So if the box of a body is farther away than some answer, the body is farther
+/// away also by its own query, not only in truth.
 #[inline]
 #[must_use]
 pub fn outer_box<S: SupportMap + ?Sized>(shape: &S) -> Option<Aabb<S::Vector>> {

@@ -14,8 +14,8 @@ use crate::{Aabb, Scalar as _, Vector};
 /// Two nodes leave at most 16 pairs of children behind, and a node and an item 4, one of which is looked into next.
 const STACK: usize = (WIDTH * WIDTH + WIDTH) * MAX_DEPTH;
 
-/// The pairs of items whose boxes are within a distance; asked by [`visit`](Self::visit), in [pieces](Self::split) if need
-/// be.
+/// The pairs of items whose boxes are within a distance; asked by [`visit`](Self::visit), in [pieces](Self::split) if
+/// need be.
 #[derive(Clone, Copy, Debug)]
 pub struct PairSearch<'t, V: Vector> {
     a: &'t Bvh<V>,
@@ -28,8 +28,8 @@ pub struct PairSearch<'t, V: Vector> {
     start: Pair,
 }
 
-/// How many pairs of items are found before their own boxes are looked at: one after the other and without a branch, so that those that
-/// are not in the caches are fetched together.
+/// How many pairs of items are found before their own boxes are looked at: one after the other and without a branch, so
+/// that those that are not in the caches are fetched together.
 const BATCH: usize = 4 * WIDTH * WIDTH;
 
 /// A child of the first tree and one of the second.
@@ -67,8 +67,8 @@ impl<V: Vector> Bvh<V> {
 }
 
 impl<'t, V: Vector> PairSearch<'t, V> {
-    /// Shows every pair, in no particular order, until `visit` breaks off. Returns the number of pairs of nodes, or of a node and an item,
-    /// that were looked into.
+    /// Shows every pair, in no particular order, until `visit` breaks off. Returns the number of pairs of nodes, or of
+    /// a node and an item, that were looked into.
     pub fn visit(self, mut visit: impl FnMut(usize, usize) -> ControlFlow<()>) -> usize {
         let mut looked = 0;
         let Some(distance) = finite(self.distance) else { return looked };
@@ -113,8 +113,8 @@ impl<'t, V: Vector> PairSearch<'t, V> {
         near.try_for_each(|((a, b), _)| visit(a.index(), b.index()))
     }
 
-    /// The same search in pieces, `at_least` so many if there are as many pairs, for as many threads. Which ones does not
-    /// depend on the number of threads.
+    /// The same search in pieces, `at_least` so many if there are as many pairs, for as many threads. Which ones does
+    /// not depend on the number of threads.
     #[must_use]
     pub fn split(self, at_least: usize) -> Vec<Self> {
         let mut pieces = VecDeque::from([self.start]);
@@ -166,8 +166,8 @@ impl<'t, V: Vector> PairSearch<'t, V> {
                     }
                 }
                 if is_one {
-                    // On top, so that each part is looked into on its own, in the order in which its nodes lie in memory, before parts are
-                    // compared.
+                    // On top, so that each part is looked into on its own, in the order in which its nodes lie in
+                    // memory, before parts are compared.
                     for link in first.children {
                         if let Child::Node(_) = link.child() {
                             push((link, link));
@@ -213,8 +213,8 @@ fn near_pairs<V: Vector>(a: &Boxes, b: &Boxes, room: f32) -> u32 {
     (0..WIDTH).fold(0, |near, lane| near | are_near::<V>(&min[lane], &max[lane], &b) << (WIDTH * lane))
 }
 
-/// Of four points, coordinate by coordinate, each in all places of a vector. It stays in registers: what is written to memory number by
-/// number and read as a vector makes the processor wait.
+/// Of four points, coordinate by coordinate, each in all places of a vector. It stays in registers: what is written to
+/// memory number by number and read as a vector makes the processor wait.
 #[inline(always)]
 fn by_lane(x: Vec4, y: Vec4, z: Vec4) -> [[Vec4; 3]; WIDTH] {
     [

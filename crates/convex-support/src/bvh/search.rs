@@ -12,22 +12,25 @@ use crate::{Scalar, Vector};
 /// The greatest number of nodes from the root to an item; `change.rs` says why.
 pub(super) const MAX_DEPTH: usize = 36;
 
-/// A level leaves at most three children behind while the fourth is looked into; and of the lowest all four are written, near or not.
+/// A level leaves at most three children behind while the fourth is looked into; and of the lowest all four are
+/// written, near or not.
 const STACK: usize = (WIDTH - 1) * (MAX_DEPTH + 1) + 1;
 
-/// The same where the next node is taken before the children of this one are put down. Then the children of a node end at most
-/// `2·WIDTH − 2` places above its own: they come after those of the node before it, one of which has been taken.
+/// The same where the next node is taken before the children of this one are put down. Then the children of a node end
+/// at most `2·WIDTH − 2` places above its own: they come after those of the node before it, one of which has been
+/// taken.
 const STACK_WITHIN: usize = 2 * (WIDTH - 1) * (MAX_DEPTH + 1) + 1;
 
 /// How many items are found before they are looked at.
 const BATCH: usize = 32;
 
 impl<V: Vector> Bvh<V> {
-    /// Calls `visit` for the items whose bound is at most `limit`, mostly the least bound first, and returns the number of nodes that
-    /// were looked into.
+    /// Calls `visit` for the items whose bound is at most `limit`, mostly the least bound first, and returns the number
+    /// of nodes that were looked into.
     ///
-    /// `visit` is given an item and its bound, and returns the limit from then on, or breaks off. If the bound of an item is at most the
-    /// limit that holds at the end, the item has been visited; other items may have been visited too.
+    /// `visit` is given an item and its bound, and returns the limit from then on, or breaks off. If the bound of an
+    /// item is at most the limit that holds at the end, the item has been visited; other items may have been visited
+    /// too.
     pub fn search<B: Bound<V>>(
         &self,
         question: &B,
@@ -37,8 +40,9 @@ impl<V: Vector> Bvh<V> {
         let Some(mut limit) = finite(limit) else { return 0 };
         let rough = question.rough(&self.frame);
         let mut end = rough_limit(&rough, limit);
-        // What remains to be looked at, the least bound on top, and what is looked at next: of a node the least of its children, for whose
-        // order it need not wait. Places that are not read before they are written are all bits zero, which is soon done.
+        // What remains to be looked at, the least bound on top, and what is looked at next: of a node the least of its
+        // children, for whose order it need not wait. Places that are not read before they are written are all bits
+        // zero, which is soon done.
         let mut pending = [0; STACK];
         let (mut next, mut top, mut nodes) = (Link::ROOT.after(0.0), 0, 0);
         loop {
@@ -78,11 +82,12 @@ impl<V: Vector> Bvh<V> {
         }
     }
 
-    /// Shows the items whose bound is at most `limit`, in no particular order, until `visit` breaks off. Returns the number of nodes that
-    /// were looked into.
+    /// Shows the items whose bound is at most `limit`, in no particular order, until `visit` breaks off. Returns the
+    /// number of nodes that were looked into.
     ///
-    /// Nodes do not wait for one another: which one is next is known before this one's children are, and it is fetched meanwhile; and no
-    /// branch depends on which children are near, or what they are. Each is put down as both a node and an item, and counts as one.
+    /// Nodes do not wait for one another: which one is next is known before this one's children are, and it is fetched
+    /// meanwhile; and no branch depends on which children are near, or what they are. Each is put down as both a node
+    /// and an item, and counts as one.
     pub fn within<B: Bound<V>>(
         &self,
         question: &B,
@@ -119,11 +124,12 @@ impl<V: Vector> Bvh<V> {
         nodes
     }
 
-    /// Loads something of the children of a node that are nodes, before it is known which of them will be looked into. In a tree that does
-    /// not fit into the caches, a search would else spend much of its time waiting for the next node.
+    /// Loads something of the children of a node that are nodes, before it is known which of them will be looked into.
+    /// In a tree that does not fit into the caches, a search would else spend much of its time waiting for the next
+    /// node.
     ///
-    /// Nobody needs the values: `black_box` keeps the loads, one from either line of the cache. In place of a child that is no node the
-    /// last node is loaded, since a branch on what the child is would often be foretold wrongly.
+    /// Nobody needs the values: `black_box` keeps the loads, one from either line of the cache. In place of a child
+    /// that is no node the last node is loaded, since a branch on what the child is would often be foretold wrongly.
     #[inline(always)]
     fn fetch(&self, node: &Node) {
         let last = self.nodes.len() - 1;
@@ -166,8 +172,8 @@ fn rough_limit<S: Scalar>(rough: &impl RoughBound, limit: S) -> f32 {
     rough.limit(if limit < S::max_value() { limit.as_f64() } else { f64::INFINITY })
 }
 
-/// The children with their bounds in descending order, of which those that the bits of `near` leave out come last; and the least of all,
-/// which is known before their order is.
+/// The children with their bounds in descending order, of which those that the bits of `near` leave out come last; and
+/// the least of all, which is known before their order is.
 ///
 /// A network of five exchanges, none of which branches: which of two is the lesser nobody can foretell.
 #[inline(always)]

@@ -5,8 +5,8 @@ use num_traits::Float as _;
 use crate::shapes::{across, clamp_to_segment};
 use crate::{Scalar, Vector3};
 
-/// In the half plane through the axis and `x`, with `ρ` the distance from the axis, the cone of half height `h` and radius `r` is the
-/// triangle `(0, h), (r, −h), (0, −h)`, and its slanted edge is `2h·ρ + r·(y − h) = 0`.
+/// In the half plane through the axis and `x`, with `ρ` the distance from the axis, the cone of half height `h` and
+/// radius `r` is the triangle `(0, h), (r, −h), (0, −h)`, and its slanted edge is `2h·ρ + r·(y − h) = 0`.
 pub(crate) fn closest_of_cone<V: Vector3>(h: V::Scalar, r: V::Scalar, x: V) -> V {
     let (out, y) = (across(x), x.get(1));
     let rho = out.norm();

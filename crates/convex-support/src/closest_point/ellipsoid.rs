@@ -11,11 +11,11 @@ const MAX_SECULAR_STEPS: usize = 100;
 
 /// The point of `{ z : Σ(zᵢ/aᵢ)² ≤ 1 }` nearest `y`; `None` where `y` is inside.
 ///
-/// Outside, `y − z` is a normal at `z`, so there is a `t > 0` with `yᵢ − zᵢ = t·zᵢ/aᵢ²`, that is
-/// `zᵢ/aᵢ = wᵢ(t) = aᵢyᵢ/(t + aᵢ²)` where `|w(t)| = 1`: the secular equation. As a function of `t`, `1/|w| − 1` is
-/// increasing, concave and, far out, a straight line, so that Newton's iterates from below the root increase towards it
-/// and never pass it (Reinsch; Moré and Sorensen, *Computing a trust region step*, 1983). Two lower bounds on the root to
-/// start from: `|wᵢ(t)| ≤ 1` for each `i`, and `|w(t)| ≥ |a∘y|/(t + a²ₘₐₓ)`.
+/// Outside, `y − z` is a normal at `z`, so there is a `t > 0` with `yᵢ − zᵢ = t·zᵢ/aᵢ²`, that is `zᵢ/aᵢ = wᵢ(t) =
+/// aᵢyᵢ/(t + aᵢ²)` where `|w(t)| = 1`: the secular equation. As a function of `t`, `1/|w| − 1` is increasing, concave
+/// and, far out, a straight line, so that Newton's iterates from below the root increase towards it and never pass it
+/// (Reinsch; Moré and Sorensen, *Computing a trust region step*, 1983). Two lower bounds on the root to start from:
+/// `|wᵢ(t)| ≤ 1` for each `i`, and `|w(t)| ≥ |a∘y|/(t + a²ₘₐₓ)`.
 pub(crate) fn closest_of_ellipsoid<V: Vector>(a: V, y: V) -> Option<V> {
     let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
     if V::from_fn(|i| y.get(i) / a.get(i)).norm() <= one {

@@ -58,8 +58,8 @@ impl<S: SupportMap> Affine<S> {
         let scale = uniform_scale(matrix);
         let zero = ScalarOf::<S>::ZERO;
         let swept = if scale.is_some() { zero } else { core.radius };
-        // The unit vector times the radius that becomes part of the core is right to 6 roundings. Where the matrix keeps lengths, all
-        // of them in one ratio, it does so to 16 roundings.
+        // The unit vector times the radius that becomes part of the core is right to 6 roundings. Where the matrix
+        // keeps lengths, all of them in one ratio, it does so to 16 roundings.
         let swept_core = Core {
             extent: core.extent + swept,
             radius: core.radius - swept,
@@ -146,8 +146,8 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         Some(self.matrix * closest + self.lost)
     }
 
-    /// Where a line is in a set is the same before and after an invertible map. A ball that sweeps the image is one before it only
-    /// where the map keeps angles. Where the matrix is singular the image is flat, and nothing is known.
+    /// Where a line is in a set is the same before and after an invertible map. A ball that sweeps the image is one
+    /// before it only where the map keeps angles. Where the matrix is singular the image is flat, and nothing is known.
     #[inline]
     fn core_line_crossing(
         &self,

@@ -111,8 +111,8 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for Hull<A, B>
             radius: a.radius.min(b.radius),
             rolling_radius: Scalar::ZERO,
             extent,
-            // The offset of a part, its sums and the radius that stays with it lose 10 roundings; 4 of the difference tell which part
-            // is farther.
+            // The offset of a part, its sums and the radius that stays with it lose 10 roundings; 4 of the difference
+            // tell which part is farther.
             error: a.error.max(b.error) + roundings(18.0, extent) + roundings(1.0, a.radius.max(b.radius)),
             kind: if is_polytope { CoreKind::Polytope } else { CoreKind::Curved },
         }

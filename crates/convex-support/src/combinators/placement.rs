@@ -9,8 +9,8 @@ use crate::numerics::bound::{image, raised, raised_vector, roundings, roundings_
 use crate::numerics::twofold::{dot_minus, lost_in_sum};
 use crate::{Core, Matrix, Rounding, Scalar, Vector};
 
-/// What the rounding of `matrix·origin + translation` loses, for a shape of the given size. If the shape is [near](is_near) zero, the
-/// roundings of the product are not included.
+/// What the rounding of `matrix·origin + translation` loses, for a shape of the given size. If the shape is
+/// [near](is_near) zero, the roundings of the product are not included.
 ///
 /// # Errors
 /// [`InvalidShape::TooLarge`] if that overflows.
@@ -36,7 +36,8 @@ pub(super) fn lost_in_origin<V: Vector>(
     }
 }
 
-/// Whether a shape of the given size is so near zero that the roundings of its origin are no more than those of its points.
+/// Whether a shape of the given size is so near zero that the roundings of its origin are no more than those of its
+/// points.
 #[inline(always)]
 pub(super) fn is_near<V: Vector>(origin: V, size: V::Scalar) -> bool {
     origin.abs().max_element() <= size
@@ -44,8 +45,9 @@ pub(super) fn is_near<V: Vector>(origin: V, size: V::Scalar) -> bool {
 
 /// A bound on how far rounding moves the image of a set.
 ///
-/// With `u = ε/2` and `n` dimensions, a product with a matrix of norm `scale` loses `n·√n·u·scale` of the length of the vector. The
-/// direction in the shape's frame loses as much, so that the point found along it is short of the farthest by twice that times the extent.
+/// With `u = ε/2` and `n` dimensions, a product with a matrix of norm `scale` loses `n·√n·u·scale` of the length of the
+/// vector. The direction in the shape's frame loses as much, so that the point found along it is short of the farthest
+/// by twice that times the extent.
 #[inline(always)]
 pub(super) fn length_of_error<V: Vector>(
     core: &Core<V>,
@@ -65,7 +67,8 @@ pub(super) fn length_of_error<V: Vector>(
     raised(turned + placed + roundings(2.0, operator_error * core.origin.norm()) + roundings(2.0, lost.norm()))
 }
 
-/// What rounding moves the image of an origin by that is not zero, of a set of some size about it, beside what the matrix is wrong by.
+/// What rounding moves the image of an origin by that is not zero, of a set of some size about it, beside what the
+/// matrix is wrong by.
 #[inline(never)]
 fn error_of_origin<V: Vector>(origin: V, size: V::Scalar, scale: V::Scalar, translation: V) -> V::Scalar {
     let moved = scale * origin.norm();
@@ -145,12 +148,13 @@ pub(super) struct Placement<'a, V: Vector> {
 }
 
 impl<V: Vector> Placement<'_, V> {
-    /// Bounds on the rounding of the image `matrix·k(matrixᵀd) + lost` of a core about `origin`, whose points are at most `length` long.
+    /// Bounds on the rounding of the image `matrix·k(matrixᵀd) + lost` of a core about `origin`, whose points are at
+    /// most `length` long.
     ///
     /// With `u = ε/2`, and with rows and columns `±eⱼ` exact, since a row has two exact zeros only if the rotation has:
     /// - the product of a row with `k` is wrong by `3u·Σ|mᵢⱼ|·extentⱼ`, and the sum with what was lost by `u`;
-    /// - the direction in the shape's frame is wrong by `3u·|matrixᵀ|·|d|`, so that a point found along it may be short of the
-    ///   farthest by that times twice the extent: `|d|·(6u·|matrix|·extent)`;
+    /// - the direction in the shape's frame is wrong by `3u·|matrixᵀ|·|d|`, so that a point found along it may be short
+    ///   of the farthest by that times twice the extent: `|d|·(6u·|matrix|·extent)`;
     /// - the error of the matrix itself moves the core and its origin;
     /// - what was lost is known to `u` of itself and to `16ε²` of the numbers that it was computed from.
     pub(super) fn image(&self, shape: Rounding<V>, origin: V, length: V::Scalar) -> Rounding<V> {

@@ -27,19 +27,21 @@ use crate::{
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 #[derive(Clone, Copy, PartialEq)]
-// In this order, the rotation, which is known last, lies behind the numbers of an error that `new` might return in its place. What shares room
-// with those is copied in pieces of other sizes than it was written in, for which a processor waits.
+// In this order, the rotation, which is known last, lies behind the numbers of an error that `new` might return in its
+// place. What shares room with those is copied in pieces of other sizes than it was written in, for which a processor
+// waits.
 #[repr(C)]
 pub struct Posed<S: SupportMap> {
     /// What the support points of the core are wrong by at most, as a length.
     error: ScalarOf<S>,
-    /// A further bound: how far points are from where they would be if the transpose of the rotation were exactly its inverse.
+    /// A further bound: how far points are from where they would be if the transpose of the rotation were exactly its
+    /// inverse.
     skew: ScalarOf<S>,
     /// What every entry of the rotation is wrong by at most, but for rows along a coordinate axis, in units of epsilon.
     rotation_error: ScalarOf<S>,
     shape: S,
-    /// What the origin `R·c + t` loses by its rounding. Far from the world's origin that is much of the shape's size, and it
-    /// stays with the core.
+    /// What the origin `R·c + t` loses by its rounding. Far from the world's origin that is much of the shape's size,
+    /// and it stays with the core.
     lost: S::Vector,
     translation: S::Vector,
     rotation: <S::Vector as Vector>::Matrix,
@@ -156,16 +158,17 @@ impl<S: SupportMap> Posed<S> {
         self.translation
     }
 
-    /// A vector of the shape as it is turned. Of zero, which is where most shapes have their origin and balls their core, the rotation need
-    /// not even be read.
+    /// A vector of the shape as it is turned. Of zero, which is where most shapes have their origin and balls their
+    /// core, the rotation need not even be read.
     #[inline(always)]
     fn turned(&self, v: S::Vector) -> S::Vector {
         if v == S::Vector::ZERO { v } else { self.rotation * v }
     }
 }
 
-/// What an entry of a [`polished`] matrix is away from the nearest rotation at most, in units of epsilon. With `RᵀR = 1 + E`, the step
-/// leaves `3/8·|E|²`, where the entries of `E` are at most `√ε`: 3.4; and its own operations leave as much again.
+/// What an entry of a [`polished`] matrix is away from the nearest rotation at most, in units of epsilon. With `RᵀR = 1
+/// + E`, the step leaves `3/8·|E|²`, where the entries of `E` are at most `√ε`: 3.4; and its own operations leave as
+/// much again.
 const POLISHED: Errors = Errors { entry: 8.0, operator: 14.0 };
 
 /// The nearest rotation to a matrix that is one to half its digits, by one step of Newton's method for the orthogonal
@@ -232,9 +235,9 @@ impl<S: SupportMap> SupportMap for Posed<S> {
 
     /// The line is seen from where the shape's origin is taken to.
     ///
-    /// Where that is not zero, the foot of the line, no more than 2 sizes `S` from there, loses `4uS` and `u|c|` as what the image of the
-    /// origin `c` has lost is taken off and `c` is put on. What was lost is turned, of which is lost `3u`; where it is larger than the size,
-    /// no line is near the shape to rounding.
+    /// Where that is not zero, the foot of the line, no more than 2 sizes `S` from there, loses `4uS` and `u|c|` as
+    /// what the image of the origin `c` has lost is taken off and `c` is put on. What was lost is turned, of which is
+    /// lost `3u`; where it is larger than the size, no line is near the shape to rounding.
     #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
         let core = self.shape.core();

@@ -1,8 +1,8 @@
 //! Bridges to parry, for code that moves from it or uses both.
 //!
 //! parry is one crate for each dimension and precision, with the same names in each. So is this bridge: `shapes.rs` is
-//! compiled for all of them, with `solid.rs` for 3D space or `planar.rs` for the plane, and `pieces.rs` for what is made of
-//! convex pieces.
+//! compiled for all of them, with `solid.rs` for 3D space or `planar.rs` for the plane, and `pieces.rs` for what is
+//! made of convex pieces.
 
 /// parry2d's shapes as shapes of this crate, and back; single precision.
 #[cfg(feature = "parry2d")]

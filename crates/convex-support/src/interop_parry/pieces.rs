@@ -75,11 +75,11 @@ impl core::error::Error for Unconvertible {
     }
 }
 
-/// The convex pieces of a shape of parry's of any kind: the shapes of a `Compound`, the triangles of a `TriMesh`, the segments of a
-/// `Polyline`, in parry's order; of a convex shape, itself. A scene of them is asked about the whole.
+/// The convex pieces of a shape of parry's of any kind: the shapes of a `Compound`, the triangles of a `TriMesh`, the
+/// segments of a `Polyline`, in parry's order; of a convex shape, itself. A scene of them is asked about the whole.
 ///
-/// A height field can be had as a mesh, by parry's `to_trimesh` in 3D and `to_polyline` in the plane. A half-space is unbounded: it is
-/// a body of a scene by itself. For a large mesh, [`triangles`] takes less memory.
+/// A height field can be had as a mesh, by parry's `to_trimesh` in 3D and `to_polyline` in the plane. A half-space is
+/// unbounded: it is a body of a scene by itself. For a large mesh, [`triangles`] takes less memory.
 ///
 /// # Errors
 /// [`Unconvertible`] for the first piece that is no shape here.
@@ -102,8 +102,8 @@ pub fn pieces(shape: &dyn Shape) -> Result<Vec<Piece>, Unconvertible> {
     }
 }
 
-/// The triangles of a mesh in its frame, in parry's order and with parry's orientation, whatever the mesh was scaled by or reversed:
-/// the bodies of a scene that knows the fronts of its triangles.
+/// The triangles of a mesh in its frame, in parry's order and with parry's orientation, whatever the mesh was scaled by
+/// or reversed: the bodies of a scene that knows the fronts of its triangles.
 ///
 /// In 3D they are a surface: the space that it encloses is not part of them.
 ///

@@ -17,7 +17,8 @@ fn parrys(v: V) -> ParryVector {
 /// The shape in a pose of parry's.
 ///
 /// # Errors
-/// [`InvalidShape`] if a number of the pose is not finite or its complex number is not of unit length to half its digits.
+/// [`InvalidShape`] if a number of the pose is not finite or its complex number is not of unit length to half its
+/// digits.
 pub fn posed<S: SupportMap<Vector = V>>(shape: S, pose: &Pose) -> Result<Posed<S>, InvalidShape> {
     let x_axis = V::new(pose.rotation.re, pose.rotation.im);
     let rotation = <V as Vector>::Matrix::from_cols_fn(|j| if j == 0 { x_axis } else { x_axis.perp() });

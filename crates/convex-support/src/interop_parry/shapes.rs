@@ -1,5 +1,5 @@
-// What the bridges to parry's crates share: `parry` is the crate, `V` glam's vector type of the same dimension and precision.
-// The two may use different versions of glam, so that vectors pass by their coordinates.
+// What the bridges to parry's crates share: `parry` is the crate, `V` glam's vector type of the same dimension and
+// precision. The two may use different versions of glam, so that vectors pass by their coordinates.
 
 use parry::math::Vector as ParryVector;
 use parry::shape as theirs;
@@ -8,9 +8,9 @@ use crate::{Ball, Cuboid, Feature, InvalidShape, Rounded, Segment, SupportMap, T
 
 /// A shape of parry's, in its own frame, as a shape of this crate: anything that has parry's support mapping.
 ///
-/// It is asked through parry's interface, and so has neither a radius nor a hint, and of a face it shows those vertices that are support
-/// points of directions nearby. Where the kind of shape is known, the
-/// conversions (`Ball::try_from(parry_ball)` …) make better shapes of it.
+/// It is asked through parry's interface, and so has neither a radius nor a hint, and of a face it shows those vertices
+/// that are support points of directions nearby. Where the kind of shape is known, the conversions
+/// (`Ball::try_from(parry_ball)` …) make better shapes of it.
 #[derive(Clone, Copy, Debug)]
 pub struct FromParry<S>(
     /// The shape.

@@ -44,8 +44,8 @@ impl<V: Vector> Spine<V> {
         }
         let along = v.dot(self.axis);
         let out = v - self.axis * along;
-        // Once more, since what is across may be small beside what was subtracted: of a line nearly along the axis, where it leaves the side
-        // is the difference of two large numbers.
+        // Once more, since what is across may be small beside what was subtracted: of a line nearly along the axis,
+        // where it leaves the side is the difference of two large numbers.
         (along, out - self.axis * out.dot(self.axis))
     }
 

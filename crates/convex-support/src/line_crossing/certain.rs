@@ -1,10 +1,11 @@
 //! Bounds on where a line enters a shape that are certain, from its closed form.
 //!
-//! A closed form computes the crossing of a slightly wrong line. Near the shape, that line is nowhere farther from the true one than an error
-//! `e`: a few roundings of the size and of the distance of the line's source, which is no more than [`NEAR`] sizes, and the rounding of
-//! the shape itself. So a line certainly misses if it passes at more than `e`. And it certainly enters between two of its parameters if the
-//! point at the first is more than `e` outside of the shape and the point at the second more than `e` inside: since the shape is convex, no
-//! point before the first is in it.
+//! A closed form computes the crossing of a slightly wrong line. Near the shape, that line is nowhere farther from the
+//! true one than an error `e`: a few roundings of the size and of the distance of the line's source, which is no more
+//! than [`NEAR`] sizes, and the rounding of the shape itself. So a line certainly misses if it passes at more than `e`.
+//! And it certainly enters between two of its parameters if the point at the first is more than `e` outside of the
+//! shape and the point at the second more than `e` inside: since the shape is convex, no point before the first is in
+//! it.
 
 use num_traits::Float as _;
 
@@ -61,8 +62,8 @@ impl<V: Vector> LineQuery<V> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub enum CertainCrossing<V: Vector> {
-    /// The line misses the set. The vector is across the line and of any length; a plane across it has the set behind it and the line
-    /// before it.
+    /// The line misses the set. The vector is across the line and of any length; a plane across it has the set behind
+    /// it and the line before it.
     Misses(V),
     /// The line meets the set.
     Enters {
@@ -78,31 +79,37 @@ pub enum CertainCrossing<V: Vector> {
 /// The greatest distance of a line's source, in sizes, that the bounds here are for.
 const NEAR: f64 = 8.0;
 
-/// The error of a closed form, as a displacement of the line near the shape, is at most the sum of these, in units of ε times the distance of
-/// the line's source and times the size.
+/// The error of a closed form, as a displacement of the line near the shape, is at most the sum of these, in units of ε
+/// times the distance of the line's source and times the size.
 ///
 /// With `u = ε/2`, a distance `D` and a size `S`, the difference from the origin loses `uD`. From there:
-/// - to a ball, the foot of the line loses `uD + uS` in the step and its sum; its square, the radius and the difference `2.5uS`. Along
-///   the line the sum of the two steps loses `uD`, that of the middle and the half `uD + uS`, and the half `2.5uS`: in all `4uD + 7uS`;
-/// - to a slab, the difference from the side, that with the error and the quotient lose `4u(D + S)`: in all `5uD + 4uS`;
-/// - to a cylinder, the foot loses `2uD + 2uS`, its disc and its slab from there `8uS`, and the sum with the foot's parameter `uD`;
-/// - to a capsule's side, `3uD + 10uS` as to that of a cylinder; to the ball at an end, whose centre is a size away, `5uD + 12uS`;
-/// - to a swept core or a cone, a point of the line, at a parameter that is a sum, loses `2uD + 3uS`, and its distance at most `6uS`.
+/// - to a ball, the foot of the line loses `uD + uS` in the step and its sum; its square, the radius and the difference
+///   `2.5uS`. Along the line the sum of the two steps loses `uD`, that of the middle and the half `uD + uS`, and the
+///   half `2.5uS`: in all `4uD + 7uS`;
+/// - to a slab, the difference from the side, that with the error and the quotient lose `4u(D + S)`: in all `5uD +
+///   4uS`;
+/// - to a cylinder, the foot loses `2uD + 2uS`, its disc and its slab from there `8uS`, and the sum with the foot's
+///   parameter `uD`;
+/// - to a capsule's side, `3uD + 10uS` as to that of a cylinder; to the ball at an end, whose centre is a size away,
+///   `5uD + 12uS`;
+/// - to a swept core or a cone, a point of the line, at a parameter that is a sum, loses `2uD + 3uS`, and its distance
+///   at most `6uS`.
 const OF_DISTANCE: f64 = 2.5;
 const OF_SIZE: f64 = 6.0;
 
 /// The further error of a line that is taken from its foot and then turned, in units of ε times the size.
 ///
-/// The foot loses `3uD + 2uS`. That is no more than 2 sizes from the origin where it matters, and one for a hit, which is within a
-/// size from there: the products with a rotation lose `3√3u` of both lengths, and those with the semi-axes of an ellipsoid `2u`, in all `15uS`;
-/// and to its ball `13uS`.
+/// The foot loses `3uD + 2uS`. That is no more than 2 sizes from the origin where it matters, and one for a hit, which
+/// is within a size from there: the products with a rotation lose `3√3u` of both lengths, and those with the semi-axes
+/// of an ellipsoid `2u`, in all `15uS`; and to its ball `13uS`.
 const OF_TURN: f64 = 11.0;
 
 /// The further error of a line that is split along the axis of a segment, in units of ε times the size.
 ///
-/// The ends are seen from the origin to `2u` of the size `S`, the middle and the line from there to `2uS`, half the length to `2uS`; the axis is wrong by
-/// `4u`, which is as if the segment were turned by so much. Of a vector the part along the axis loses `7u` of its length, and the part across `3u`, beside
-/// what is along the axis and counts squared. Where a line hits, its foot and the way from there to the hit are no longer than the size. In all `26u`.
+/// The ends are seen from the origin to `2u` of the size `S`, the middle and the line from there to `2uS`, half the
+/// length to `2uS`; the axis is wrong by `4u`, which is as if the segment were turned by so much. Of a vector the part
+/// along the axis loses `7u` of its length, and the part across `3u`, beside what is along the axis and counts squared.
+/// Where a line hits, its foot and the way from there to the hit are no longer than the size. In all `26u`.
 const OF_SPLIT: f64 = 16.0;
 
 /// How many errors long a bracket is at most along a line; one that would be longer is looked at [more
@@ -201,9 +208,9 @@ impl<V: Vector> NearLine<V> {
 
     /// A box about zero: the line is in all of its slabs, each smaller and larger by the error.
     ///
-    /// For a line that is parallel to a slab this divides by zero, and the line is in the slab from `−∞` to `∞` or nowhere. If it lies in the
-    /// plane of a side that was moved by the error, `0/0` compares false and changes nothing: the line counts as being in that slab, or as
-    /// not known to miss it.
+    /// For a line that is parallel to a slab this divides by zero, and the line is in the slab from `−∞` to `∞` or
+    /// nowhere. If it lies in the plane of a side that was moved by the error, `0/0` compares false and changes
+    /// nothing: the line counts as being in that slab, or as not known to miss it.
     #[inline(always)]
     pub(crate) fn cuboid(&self, half_extents: V) -> Option<CertainCrossing<V>> {
         let Self { source, direction, error, .. } = *self;
@@ -230,14 +237,15 @@ impl<V: Vector> NearLine<V> {
 impl<V: Vector> NearLine<V> {
     /// An ellipsoid about zero, by its axes and the reciprocals of its semi-axes.
     ///
-    /// With `A = diag(1/a)·Rᵀ`, the ellipsoid is `F(x) = |w|² − 1 ≤ 0` for `w = Ax`, and a displacement by `e` changes `F` by no more
-    /// than `2eg + e²k²`, with `g = |Aᵀw|` and the largest reciprocal `k` of a semi-axis. Along the line `F` is as of a ball, and at
-    /// `σ = 1.25·e·g/(m|Ad|²)` from the end of a chord `2m` it is less than `−2.34eg` or more than `2.5eg` (`Chord::slack`), while `g` has
-    /// changed by `σk|Ad|` at most. That is less than `g/20` if `m²|Ad|² > 625·e²k²`, and `e²k²` less than `eg/5` if `e·k²` is less than a fifth of
-    /// the least reciprocal; both, and that the slack is less than `m/8`, follow from `m²|Ad|² > 128·e·k`.
+    /// With `A = diag(1/a)·Rᵀ`, the ellipsoid is `F(x) = |w|² − 1 ≤ 0` for `w = Ax`, and a displacement by `e` changes
+    /// `F` by no more than `2eg + e²k²`, with `g = |Aᵀw|` and the largest reciprocal `k` of a semi-axis. Along the line
+    /// `F` is as of a ball, and at `σ = 1.25·e·g/(m|Ad|²)` from the end of a chord `2m` it is less than `−2.34eg` or
+    /// more than `2.5eg` (`Chord::slack`), while `g` has changed by `σk|Ad|` at most. That is less than `g/20` if
+    /// `m²|Ad|² > 625·e²k²`, and `e²k²` less than `eg/5` if `e·k²` is less than a fifth of the least reciprocal; both,
+    /// and that the slack is less than `m/8`, follow from `m²|Ad|² > 128·e·k`.
     ///
-    /// A line passes at more than `e` if `|w|(|w| − 1) > eg` for its nearest point; the left side is at least `(|w|² − 1)/2`, and `g` is at
-    /// most `k|w| ≤ k(1 + |w|²)/2`.
+    /// A line passes at more than `e` if `|w|(|w| − 1) > eg` for its nearest point; the left side is at least `(|w|² −
+    /// 1)/2`, and `g` is at most `k|w| ≤ k(1 + |w|²)/2`.
     #[inline(always)]
     pub(crate) fn ellipsoid(&self, axes: &V::Matrix, inverse_semi_axes: V) -> Option<CertainCrossing<V>> {
         let number = V::Scalar::from_f64;
@@ -304,10 +312,10 @@ impl<V: Vector> NearLine<V> {
 
     /// A segment about zero, swept by a ball. `None` too where the line passes near a rim, or past an end.
     ///
-    /// It is within the infinite cylinder, and contains the ball at each end. So where the line enters the side between the ends, the slack of the
-    /// side's chord is certain before the entry, and behind it as well if that point is between the ends by more than the error. Beyond an
-    /// end the closest point of the segment is that end: there the slack of the ball's chord is certain, if the point before the entry is
-    /// beyond the end by more than the error.
+    /// It is within the infinite cylinder, and contains the ball at each end. So where the line enters the side between
+    /// the ends, the slack of the side's chord is certain before the entry, and behind it as well if that point is
+    /// between the ends by more than the error. Beyond an end the closest point of the segment is that end: there the
+    /// slack of the ball's chord is certain, if the point before the entry is beyond the end by more than the error.
     #[inline(always)]
     fn capsule(&self, spine: &Spine<V>, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let (Self { direction, error, .. }, half_height) = (*self, spine.half_height);
@@ -346,7 +354,8 @@ impl<V: Vector> NearLine<V> {
             .then(|| self.enters([entry - slack, entry, entry + slack], cap.normal(radius, direction, recip)))
     }
 
-    /// A set about zero, swept by a ball, whose crossing has a closed form and whose closest points and support values are known.
+    /// A set about zero, swept by a ball, whose crossing has a closed form and whose closest points and support values
+    /// are known.
     ///
     /// The points at `1.5e` before and behind the surface, along the normal at the entry, are measured against the
     /// set, if that is no more than `longest` along the line.
@@ -379,10 +388,12 @@ impl<V: Vector> NearLine<V> {
         is_certain.then(|| self.enters([entry - slack, entry, entry + slack], normal))
     }
 
-    /// A miss, if along `axis` the line passes beyond the given support value of the set, and the radius of the ball, by more than the error.
+    /// A miss, if along `axis` the line passes beyond the given support value of the set, and the radius of the ball,
+    /// by more than the error.
     ///
-    /// Only the part of the line near the set counts, at most `NEAR + 1` sizes from the source. There it comes nearer by at most that length
-    /// times `|n·d|/|d|`. This product loses `3u`, which is `27u` of the size, and `n·x` another `24u`: more than one error, and less than two.
+    /// Only the part of the line near the set counts, at most `NEAR + 1` sizes from the source. There it comes nearer
+    /// by at most that length times `|n·d|/|d|`. This product loses `3u`, which is `27u` of the size, and `n·x` another
+    /// `24u`: more than one error, and less than two.
     #[inline(always)]
     pub(super) fn passes(&self, axis: V, support_value: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let reach = self.size * V::Scalar::from_f64(NEAR + 1.0) / self.direction.abs().max_element();
@@ -397,9 +408,10 @@ impl<V: Vector> NearLine<V> {
 impl<V: Vector3> NearLine<V> {
     /// A cone about the second axis.
     ///
-    /// It is behind the plane of its base and within its slant, `G(x) = cosα·ρ − sinα·(h − y) ≤ 0` at a distance `ρ` from the axis. `G` is how far
-    /// a point is before the plane along the slant there, and it is crossed at the speed `(cos²α·(ρ·d) + sin²α·(h − y)·d_y)/(sinα·(h − y))`.
-    /// As of a [swept set](Self::swept), two points of the line tell.
+    /// It is behind the plane of its base and within its slant, `G(x) = cosα·ρ − sinα·(h − y) ≤ 0` at a distance `ρ`
+    /// from the axis. `G` is how far a point is before the plane along the slant there, and it is crossed at the speed
+    /// `(cos²α·(ρ·d) + sin²α·(h − y)·d_y)/(sinα·(h − y))`. As of a [swept set](Self::swept), two points of the line
+    /// tell.
     #[inline(always)]
     pub(crate) fn cone(&self, shape: &Cone<V>) -> Option<CertainCrossing<V>> {
         let Self { source, direction, error, .. } = *self;
@@ -470,13 +482,13 @@ impl<V: Vector3> NearLine<V> {
 }
 
 impl<V: Vector> Chord<V> {
-    /// A bound on the error of the ends of the chord that a ball cuts out of the line, if the line is displaced by up to `error`;
-    /// `None` if the line may miss the ball, or if the squared half of the chord is less than `least·er`. `recip` is
-    /// `1/|direction|²`.
+    /// A bound on the error of the ends of the chord that a ball cuts out of the line, if the line is displaced by up
+    /// to `error`; `None` if the line may miss the ball, or if the squared half of the chord is less than `least·er`.
+    /// `recip` is `1/|direction|²`.
     ///
-    /// With the half `m`, `F = |x|² − r²` is `|d|²·σ·(σ ∓ 2m)` at `σ` within or before an end. With `σ = 1.25·e·r/(m|d|²)`, which is less
-    /// than `m/8` if `m²|d|² > 10er`, `F` is less than `−2.3er` at the one and more than `2.5er` at the other: one point is deeper than
-    /// `e`, and the other farther out.
+    /// With the half `m`, `F = |x|² − r²` is `|d|²·σ·(σ ∓ 2m)` at `σ` within or before an end. With `σ =
+    /// 1.25·e·r/(m|d|²)`, which is less than `m/8` if `m²|d|² > 10er`, `F` is less than `−2.3er` at the one and more
+    /// than `2.5er` at the other: one point is deeper than `e`, and the other farther out.
     #[inline(always)]
     fn slack(&self, radius: V::Scalar, error: V::Scalar, recip: V::Scalar, least: V::Scalar) -> Option<V::Scalar> {
         let to_end = radius * recip / self.half;
@@ -538,8 +550,8 @@ fn least<V: Vector>(v: V) -> V::Scalar {
     (0..V::DIM).fold(V::Scalar::infinity(), |least, i| sooner(least, v.get(i)))
 }
 
-/// How far a matrix `R` that is nearly orthogonal is at most from the inverse of its transpose, where it takes a unit vector:
-/// `R⁻ᵀ − R = R⁻ᵀ(1 − RᵀR)`. The products lose `3u`.
+/// How far a matrix `R` that is nearly orthogonal is at most from the inverse of its transpose, where it takes a unit
+/// vector: `R⁻ᵀ − R = R⁻ᵀ(1 − RᵀR)`. The products lose `3u`.
 pub(crate) fn skew<M: Matrix>(matrix: &M) -> <M::Vector as Vector>::Scalar {
     let gram = M::from_cols_fn(|j| matrix.transpose_mul(matrix.col(j)));
     let off = M::Vector::from_fn(|j| (gram.col(j) - M::Vector::axis(j)).length());

@@ -19,7 +19,8 @@ pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Cross
     }
     let (direction, dd, unit) = comfortable(direction);
     let recip = dd.recip();
-    // Seen from the apex: near it, and along the slant that runs through it, only what is left of the squares there tells where the line is.
+    // Seen from the apex: near it, and along the slant that runs through it, only what is left of the squares there
+    // tells where the line is.
     let (base, source) = rebased(source - V::axis(1) * h, direction, recip);
     // From here on near the cone, where a unit direction keeps the products of four lengths and directions in range.
     let per_length = recip.sqrt();
@@ -40,7 +41,8 @@ pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Cross
     // The larger of the two in magnitude first, so that B and the root do not cancel; the other from the product.
     let q = -(b + root.copysign(b));
     let far = if a == zero { infinity.copysign(-q) } else { q / a };
-    // With p from the apex and rounding u, the quotient C/q is wrong by u·p²/q, and what the root leaves of B, divided by A, by u·p/A².
+    // With p from the apex and rounding u, the quotient C/q is wrong by u·p²/q, and what the root leaves of B, divided
+    // by A, by u·p/A².
     let squared = a * a;
     let is_touched = q * q < source.length_squared() * (squared * squared);
     let near = if is_touched { (root.copysign(b) - b) / a } else { c / q };
@@ -83,9 +85,9 @@ pub(crate) fn cone<V: Vector3>(cone: &Cone<V>, source: V, direction: V) -> Cross
 
 /// A vector across the line along which it is apart from the cone; it crosses the plane of the base at `at`.
 ///
-/// Seen along the line, the cone is the hull of an ellipse, its base, and of the apex. Either the line is beyond the rim, or beyond one
-/// of the two planes along it that touch the slant all along: their normals `cosα·u + sinα·y`, with a unit vector `u` across the axis,
-/// are across the direction `d` if `u·d = −tanα·d_y`.
+/// Seen along the line, the cone is the hull of an ellipse, its base, and of the apex. Either the line is beyond the
+/// rim, or beyond one of the two planes along it that touch the slant all along: their normals `cosα·u + sinα·y`, with
+/// a unit vector `u` across the axis, are across the direction `d` if `u·d = −tanα·d_y`.
 #[inline(always)]
 fn beside<V: Vector3>(cone: &Cone<V>, source: V, direction: V, at: V::Scalar) -> V {
     let beyond_rim = past_rim(source, direction, at);

@@ -7,8 +7,8 @@ use crate::{Scalar, Vector};
 
 /// The line is in the box while it is in all of its slabs.
 ///
-/// A line that is parallel to a slab divides by zero: it is then in the slab from `−∞` to `∞`, or from `±∞` to `±∞`, which
-/// the other slabs tell apart; and `0/0`, in the plane of a face, compares false and leaves things as they are.
+/// A line that is parallel to a slab divides by zero: it is then in the slab from `−∞` to `∞`, or from `±∞` to `±∞`,
+/// which the other slabs tell apart; and `0/0`, in the plane of a face, compares false and leaves things as they are.
 #[inline(always)]
 pub(crate) fn cuboid<V: Vector>(half_extents: V, source: V, direction: V) -> Crossed<V> {
     let per_unit = V::ONE / direction;

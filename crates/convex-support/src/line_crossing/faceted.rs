@@ -6,8 +6,8 @@ use super::{CertainCrossing, Crossed, Crossing, NearLine, comfortable, rebased};
 use crate::shapes::{PLANES, Planes};
 use crate::{Faceted, Scalar, Vector};
 
-/// The line is in the hull while it is behind all facets. The exit and the entry are the least and the largest of the `λ` where
-/// it leaves, or enters, the half-space of a facet. A negative radius moves all facets inward.
+/// The line is in the hull while it is behind all facets. The exit and the entry are the least and the largest of the
+/// `λ` where it leaves, or enters, the half-space of a facet. A negative radius moves all facets inward.
 #[inline]
 pub(crate) fn faceted<V: Vector>(hull: &Faceted<V>, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, dd, unit) = comfortable(direction);
@@ -22,15 +22,16 @@ pub(crate) fn faceted<V: Vector>(hull: &Faceted<V>, radius: V::Scalar, source: V
 }
 
 impl<V: Vector> NearLine<V> {
-    /// A hull, seen from its middle, that is within the half-spaces of its facets, and has all points in it that are behind their planes by
-    /// more than the error.
+    /// A hull, seen from its middle, that is within the half-spaces of its facets, and has all points in it that are
+    /// behind their planes by more than the error.
     ///
-    /// The line enters the half-space of one facet last. Before it does so by the error, it is outside; where it is behind that plane by
-    /// twice the error, all planes are asked whether it is behind them by the error.
+    /// The line enters the half-space of one facet last. Before it does so by the error, it is outside; where it is
+    /// behind that plane by twice the error, all planes are asked whether it is behind them by the error.
     ///
-    /// From the foot of the line, no more than 2 sizes `S` from the middle where it matters, the product of a normal with it loses `6uS`, that
-    /// with the direction `9uS` of what is up to 3 sizes away, the two differences and the quotient `12uS`: with what the reach loses `30uS`,
-    /// less than what [`at_foot`](Self::at_foot) allows for. A point of the line loses `4uS`, and its product with a normal `3uS`.
+    /// From the foot of the line, no more than 2 sizes `S` from the middle where it matters, the product of a normal
+    /// with it loses `6uS`, that with the direction `9uS` of what is up to 3 sizes away, the two differences and the
+    /// quotient `12uS`: with what the reach loses `30uS`, less than what [`at_foot`](Self::at_foot) allows for. A point
+    /// of the line loses `4uS`, and its product with a normal `3uS`.
     #[inline(always)]
     pub(crate) fn faceted(&self, hull: &Faceted<V>) -> Option<CertainCrossing<V>> {
         let line = self.at_foot();
@@ -51,8 +52,8 @@ impl<V: Vector> NearLine<V> {
             let is_in = most_beyond(hull.planes(), coordinates(source + direction * latest)) <= -error;
             return is_in.then(|| line.enters([earliest, entry, latest], normal));
         }
-        // One half-space is left before the other is entered: a plane through both edges, along the line. What is parallel to the line has
-        // the line before it at any parameter.
+        // One half-space is left before the other is entered: a plane through both edges, along the line. What is
+        // parallel to the line has the line before it at any parameter.
         let (other, rises, behind_other) = plane(out_of);
         let is_missed = (rises >= V::Scalar::ZERO) & (behind / falls > behind_other / rises);
         is_missed.then(|| CertainCrossing::Misses(normal * rises - other * falls))
@@ -73,8 +74,9 @@ struct Clipped<S> {
 
 /// Clips the line through `near` along `direction` by planes that are moved by `radius`.
 ///
-/// A line along a plane divides by zero: it is then behind it from `−∞` to `∞` or nowhere; and `0/0`, in the plane itself, compares
-/// false and leaves things as they are. Adding zero makes a positive zero of a negative one, which is told from negative numbers.
+/// A line along a plane divides by zero: it is then behind it from `−∞` to `∞` or nowhere; and `0/0`, in the plane
+/// itself, compares false and leaves things as they are. Adding zero makes a positive zero of a negative one, which is
+/// told from negative numbers.
 #[inline(never)]
 fn clip<S: Scalar>(planes: &[Planes<S>], radius: S, [x, y, z]: [S; 3], [dx, dy, dz]: [S; 3]) -> Clipped<S> {
     let (below, width) = (-S::infinity(), S::from_f64(PLANES as f64));

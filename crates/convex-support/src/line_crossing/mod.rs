@@ -1,8 +1,8 @@
 //! The stretch of a line within a set, in closed form.
 //!
 //! These functions are short, and most rays want no normal and many no exit: they are inlined always, so that what a
-//! caller does not look at is not computed. Half of the rays miss, and a branch that cannot be foretold takes longer than
-//! the arithmetic it skips: so a miss is a `NaN` or an entry behind the exit, and is told from a hit at the end.
+//! caller does not look at is not computed. Half of the rays miss, and a branch that cannot be foretold takes longer
+//! than the arithmetic it skips: so a miss is a `NaN` or an entry behind the exit, and is told from a hit at the end.
 
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "comparisons are written so that NaN is a miss")]
 
@@ -41,8 +41,8 @@ use crate::{Core, Scalar, SupportMap, Vector, Vector3};
 /// The part of a line that lies in a convex set: `{ λ : source + λ·direction ∈ C }` is the interval from `entry` to
 /// `exit`, in units of the direction.
 ///
-/// It is about the whole line: for a ray, an `entry` below 0 means that the source is inside, and an `exit` below 0 that
-/// the set is behind it.
+/// It is about the whole line: for a ray, an `entry` below 0 means that the source is inside, and an `exit` below 0
+/// that the set is behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -73,7 +73,8 @@ impl<V: Vector> Crossing<V> {
     #[inline]
     #[must_use]
     pub fn first_hit(&self, max_lambda: V::Scalar) -> Option<V::Scalar> {
-        // Not `&&` and `max`: half of the rays miss, and a branch that cannot be foretold takes longer than all of this.
+        // Not `&&` and `max`: half of the rays miss, and a branch that cannot be foretold takes longer than all of
+        // this.
         let first = if self.entry > V::Scalar::ZERO { self.entry } else { V::Scalar::ZERO };
         ((self.exit >= V::Scalar::ZERO) & (self.entry <= max_lambda)).then_some(first)
     }
@@ -102,8 +103,8 @@ impl<V: Vector> Crossing<V> {
 pub enum LineCrossing<V: Vector> {
     /// The shape has no closed form, or none in this case.
     Unknown,
-    /// The line misses the set. The vector is across the line and of any length. If it is not zero, a plane across it has the set behind
-    /// it and the line before it; algorithms check that.
+    /// The line misses the set. The vector is across the line and of any length. If it is not zero, a plane across it
+    /// has the set behind it and the line before it; algorithms check that.
     Misses(V),
     /// The stretch of the line that is in the set.
     Crosses(Crossing<V>),
@@ -143,10 +144,10 @@ impl<V: Vector> From<Crossed<V>> for LineCrossing<V> {
 
 /// Where the line through `source` along `direction` is in a shape.
 ///
-/// This is for ray tracers, and it is an independent reference for ray casts that only use the support mapping. Points, segments,
-/// triangles, balls, boxes, capsules, cylinders, cones and ellipsoids have closed forms, and so have the first six of these swept by a
-/// ball. It also works through poses, invertible affine maps, roundings and sums with a point, and behind any pointer. For other
-/// shapes the answer is [`LineCrossing::Unknown`].
+/// This is for ray tracers, and it is an independent reference for ray casts that only use the support mapping. Points,
+/// segments, triangles, balls, boxes, capsules, cylinders, cones and ellipsoids have closed forms, and so have the
+/// first six of these swept by a ball. It also works through poses, invertible affine maps, roundings and sums with a
+/// point, and behind any pointer. For other shapes the answer is [`LineCrossing::Unknown`].
 ///
 /// ```
 /// use convex_support::{Cone, Cuboid, LineCrossing, Posed, Rounded, glam::DVec3, line_crossing};
@@ -181,9 +182,10 @@ pub fn line_crossing<S: SupportMap + ?Sized>(
     shape.core_line_crossing(source - origin, direction, radius)
 }
 
-/// How many times as large as a part `s` of itself a set is that has a ball of radius `inner` about zero, where that part is in the set when
-/// swept by a ball of radius `−radius`: with a ball of radius `(1 − s)·inner` it is, since `(1 − s)` times the set has that. A line crosses
-/// the part where the line that is as many times larger crosses the set. `None` where no part is left.
+/// How many times as large as a part `s` of itself a set is that has a ball of radius `inner` about zero, where that
+/// part is in the set when swept by a ball of radius `−radius`: with a ball of radius `(1 − s)·inner` it is, since `(1
+/// − s)` times the set has that. A line crosses the part where the line that is as many times larger crosses the set.
+/// `None` where no part is left.
 #[inline(always)]
 pub(crate) fn times_within<S: Scalar>(radius: S, inner: S) -> Option<S> {
     let part = S::ONE + radius / inner;
@@ -211,8 +213,8 @@ fn rebased<V: Vector>(source: V, direction: V, recip: V::Scalar) -> (V::Scalar, 
 }
 
 impl<V: Vector> Chord<V> {
-    /// The chord that the ball `|x|² ≤ radius²` cuts out of `nearest + (λ − middle)·direction`, where `nearest ⟂ direction`
-    /// and `recip` is `1/|direction|²`: `|nearest|² + μ²·|direction|² = radius²`.
+    /// The chord that the ball `|x|² ≤ radius²` cuts out of `nearest + (λ − middle)·direction`, where `nearest ⟂
+    /// direction` and `recip` is `1/|direction|²`: `|nearest|² + μ²·|direction|² = radius²`.
     #[inline(always)]
     fn about(middle: V::Scalar, nearest: V, recip: V::Scalar, radius: V::Scalar) -> Self {
         let inside = radius * radius - nearest.length_squared();
@@ -262,9 +264,10 @@ fn across_two_axes<V: Vector>([a, b]: [V; 2], source: V, direction: V) -> V {
     across * V::Scalar::ONE.copysign(across.dot(source))
 }
 
-/// The normal of the plane along a line that is parallel to the rim of a disc about the second axis, where the line crosses the plane
-/// of the disc at `at` and outside of it: with `ρ` the vector from the disc's middle to there, it is across `d` and across the
-/// tangent `y × ρ`, which makes it a multiple of `ρ·d_y − y·(ρ·d)`. A level line passes above or below.
+/// The normal of the plane along a line that is parallel to the rim of a disc about the second axis, where the line
+/// crosses the plane of the disc at `at` and outside of it: with `ρ` the vector from the disc's middle to there, it is
+/// across `d` and across the tangent `y × ρ`, which makes it a multiple of `ρ·d_y − y·(ρ·d)`. A level line passes above
+/// or below.
 #[inline(always)]
 fn past_rim<V: Vector3>(source: V, direction: V, at: V::Scalar) -> V {
     let rise = direction.get(1);

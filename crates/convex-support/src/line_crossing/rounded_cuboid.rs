@@ -6,9 +6,10 @@ use super::{Chord, Crossed, Crossing, across_two_axes, axis_of, comfortable, reb
 use crate::{Scalar, Vector};
 
 /// The squared distance from a box is `φ(λ) = Σ max(|xᵢ| − hᵢ, 0)²` along the line: convex, and one quadratic between
-/// any two neighbouring crossings of the planes `xᵢ = ±hᵢ`. The line enters the rounded box where `φ` falls to `radius²`,
-/// and not before it enters the box of half extents `hᵢ + radius`: from there, piece after piece is searched. Most lines
-/// enter through one of the flat sides, in the first piece. They leave where the reversed line enters.
+/// any two neighbouring crossings of the planes `xᵢ = ±hᵢ`. The line enters the rounded box where `φ` falls to
+/// `radius²`, and not before it enters the box of half extents `hᵢ + radius`: from there, piece after piece is
+/// searched. Most lines enter through one of the flat sides, in the first piece. They leave where the reversed line
+/// enters.
 #[inline]
 pub(crate) fn rounded_cuboid<V: Vector>(h: V, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, dd, unit) = comfortable(direction);
@@ -40,8 +41,8 @@ fn largest<V: Vector>(v: V) -> V::Scalar {
     (0..V::DIM).fold(-V::Scalar::infinity(), |most, i| if v.get(i) > most { v.get(i) } else { most })
 }
 
-/// A line, and where it crosses the sides of a box: the slab of coordinate `i` from the side at `nearᵢ`, at `entersᵢ`, to
-/// the side at `−nearᵢ`, at `leavesᵢ`.
+/// A line, and where it crosses the sides of a box: the slab of coordinate `i` from the side at `nearᵢ`, at `entersᵢ`,
+/// to the side at `−nearᵢ`, at `leavesᵢ`.
 struct Line<V: Vector> {
     source: V,
     direction: V,
@@ -51,7 +52,8 @@ struct Line<V: Vector> {
 }
 
 impl<V: Vector> Line<V> {
-    /// Where the line enters the rounded box, which is between `begin` and `end`; the shortest vector to it where it misses.
+    /// Where the line enters the rounded box, which is between `begin` and `end`; the shortest vector to it where it
+    /// misses.
     #[inline(always)]
     fn entry(&self, radius: V::Scalar, begin: V::Scalar, end: V::Scalar) -> Result<V::Scalar, V> {
         let (mut lambda, mut nearest) = (begin, None);

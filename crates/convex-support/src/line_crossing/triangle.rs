@@ -9,8 +9,9 @@ use crate::{Scalar, Triangle, Vector};
 /// The prism over the triangle, as thick as the ball, and the three edges swept by the ball: their union is convex, so
 /// the line is inside from the first entry to the last exit. In 2D the triangle itself stands for the prism.
 ///
-/// Without a ball, in 3D a line crosses the triangle at a point, where `entry` and `exit` agree. A triangle without area, a segment,
-/// has no side to cross it by: a miss. With a negative radius they are where the line has crossed it for certain.
+/// Without a ball, in 3D a line crosses the triangle at a point, where `entry` and `exit` agree. A triangle without
+/// area, a segment, has no side to cross it by: a miss. With a negative radius they are where the line has crossed it
+/// for certain.
 pub(crate) fn triangle<V: Vector>(triangle: &Triangle<V>, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, _, unit) = comfortable(direction);
     let mut union = if V::DIM == 2 {
@@ -70,10 +71,11 @@ impl<V: Vector> Triangle<V> {
 
     /// The crossing of the points within a distance `radius` of the triangle in 3D, across its plane.
     ///
-    /// Of a negative one, let the corners be moved by up to `e = −radius`. Seen along the line, no point of a side is moved by more, so
-    /// that the line crosses the triangle still if it is seen more than `e` inside of all sides. With the cosine `s` at which it
-    /// crosses the plane it is so where it crosses more than `e/s` inside of them; and a point of the moved triangle is no farther than
-    /// `e` from the plane, which the line leaves behind by as much after `e/s`.
+    /// Of a negative one, let the corners be moved by up to `e = −radius`. Seen along the line, no point of a side is
+    /// moved by more, so that the line crosses the triangle still if it is seen more than `e` inside of all sides. With
+    /// the cosine `s` at which it crosses the plane it is so where it crosses more than `e/s` inside of them; and a
+    /// point of the moved triangle is no farther than `e` from the plane, which the line leaves behind by as much after
+    /// `e/s`.
     fn prism_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
         let Frame { corners: [a, b, _], axes: [u, v], length, along, height } = self.frame()?;
         let (base, from_a) = rebased(source - a, direction, direction.length_squared().recip());

@@ -1,8 +1,8 @@
 //! Upper bounds on magnitudes, which rounding must not bring below what they bound.
 //!
-//! Bounds are sums of products of non-negative numbers. A dozen of such operations lose a dozen halves of `ε` at most, which
-//! [`raised`] makes up for once at the end, unless a product underflows, which [`product`] makes up for at once. What is exactly
-//! zero stays so.
+//! Bounds are sums of products of non-negative numbers. A dozen of such operations lose a dozen halves of `ε` at most,
+//! which [`raised`] makes up for once at the end, unless a product underflows, which [`product`] makes up for at once.
+//! What is exactly zero stays so.
 
 use crate::{Matrix, Scalar, Vector};
 
@@ -30,7 +30,8 @@ pub fn roundings_of<V: Vector>(count: f64, magnitudes: V) -> V {
     magnitudes * (V::Scalar::from_f64(0.5 * count) * V::Scalar::EPSILON) + least_of(magnitudes)
 }
 
-/// A bound on the coordinates of `matrix·x` for all `x` whose coordinates are at most as large as those of `magnitudes`.
+/// A bound on the coordinates of `matrix·x` for all `x` whose coordinates are at most as large as those of
+/// `magnitudes`.
 #[inline]
 pub fn image<M: Matrix>(matrix: &M, magnitudes: M::Vector) -> M::Vector {
     if magnitudes == M::Vector::ZERO {
@@ -55,7 +56,8 @@ pub fn raised_vector<V: Vector>(bounds: V) -> V {
     bounds + roundings_of(64.0, bounds)
 }
 
-/// The smallest positive number where a coordinate of `magnitudes` is not zero: no other number is less, so that it is their minimum.
+/// The smallest positive number where a coordinate of `magnitudes` is not zero: no other number is less, so that it is
+/// their minimum.
 #[inline]
 fn least_of<V: Vector>(magnitudes: V) -> V {
     magnitudes.min(V::splat(least()))

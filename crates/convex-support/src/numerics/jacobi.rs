@@ -7,8 +7,8 @@ use super::elementary::hypot;
 use super::range::power_of_two_below;
 use crate::InvalidShape;
 
-/// The eigenvectors (unit, one per row of `directions`, right-handed) of a symmetric positive definite matrix, and the roots of its
-/// eigenvalues.
+/// The eigenvectors (unit, one per row of `directions`, right-handed) of a symmetric positive definite matrix, and the
+/// roots of its eigenvalues.
 #[derive(Clone, Copy, Debug)]
 pub struct Axes {
     pub directions: [[f64; 3]; 3],
@@ -23,9 +23,10 @@ const MAX_SWEEPS: usize = 40;
 /// First `X = G·Gᵀ` by Cholesky's method, always pivoting on the largest remaining diagonal entry, so that column `k`
 /// of `G` is what is left of the pivot column over the root of the pivot. A thin ellipsoid turned out of the coordinate
 /// axes has its long axis in the last digits of the entries, where pivots cancel: they are kept to twice the digits, so
-/// that the matrix is taken at its word and is refused only if, as given, it is not positive definite. Then rotations of
-/// pairs of columns make them orthogonal, which leaves `G·Gᵀ` as it is; in the end the columns are `√λᵢ·vᵢ`. Unlike the QR
-/// method this finds small eigenvalues to high relative accuracy (Demmel and Veselić, *Jacobi's method is more accurate than QR*, 1992).
+/// that the matrix is taken at its word and is refused only if, as given, it is not positive definite. Then rotations
+/// of pairs of columns make them orthogonal, which leaves `G·Gᵀ` as it is; in the end the columns are `√λᵢ·vᵢ`. Unlike
+/// the QR method this finds small eigenvalues to high relative accuracy (Demmel and Veselić, *Jacobi's method is more
+/// accurate than QR*, 1992).
 pub fn axes(mut x: [[f64; 3]; 3], n: usize, epsilon: f64) -> Result<Axes, InvalidShape> {
     // In units of an even power of two near the largest entry, neither products nor roots leave the range of numbers.
     let root = power_of_two_below(x.iter().flatten().fold(0.0f64, |a, b| a.max(b.abs())).sqrt());

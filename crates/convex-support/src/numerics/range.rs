@@ -40,8 +40,8 @@ pub fn power_of_two_below<S: Scalar>(value: S) -> S {
 
 /// `v` divided by a power of two near its largest magnitude, and that power as two factors; `None` for zero and NaN.
 ///
-/// The coordinates are passed on one by one: a vector of `f64` would go through memory, and since compilers put it there
-/// before they branch, written in other pieces than it is read in, those who never come here would wait for it.
+/// The coordinates are passed on one by one: a vector of `f64` would go through memory, and since compilers put it
+/// there before they branch, written in other pieces than it is read in, those who never come here would wait for it.
 #[inline]
 pub fn scaled<V: Vector>(v: V) -> Option<(V, [V::Scalar; 2])> {
     let z = if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO };

@@ -12,8 +12,9 @@ pub fn lost_in_sum<V: Vector>(a: V, b: V) -> V {
     (a - (sum - seen)) + (b - seen)
 }
 
-/// The parameter of the point of a line that is closest to an origin, and the point as it is seen from there. However far the source, it is
-/// right to two roundings of its own length: what the difference from the origin loses is added to what a fused multiply-add rounds once.
+/// The parameter of the point of a line that is closest to an origin, and the point as it is seen from there. However
+/// far the source, it is right to two roundings of its own length: what the difference from the origin loses is added
+/// to what a fused multiply-add rounds once.
 #[inline(always)]
 pub fn foot_from<V: Vector>(origin: V, source: V, direction: V) -> (V::Scalar, V) {
     let seen = source - origin;
@@ -37,8 +38,9 @@ pub fn two_product<S: Scalar>(a: S, b: S) -> [S; 2] {
     [product, a.mul_add(b, -product)]
 }
 
-/// `Σ aᵢ·bᵢ − subtracted`, as if computed in twice the precision and rounded once (Ogita, Rump and Oishi, *Accurate sum and dot
-/// product*, 2005): the error is at most `ε/2` of the result and, of `n` pairs, `(n + 1)²·ε²/4` of `Σ |aᵢ·bᵢ| + |subtracted|`.
+/// `Σ aᵢ·bᵢ − subtracted`, as if computed in twice the precision and rounded once (Ogita, Rump and Oishi, *Accurate sum
+/// and dot product*, 2005): the error is at most `ε/2` of the result and, of `n` pairs, `(n + 1)²·ε²/4` of `Σ |aᵢ·bᵢ| +
+/// |subtracted|`.
 pub fn dot_minus<S: Scalar>(pairs: impl IntoIterator<Item = (S, S)>, subtracted: S) -> S {
     // Products of two `f32` are exact in `f64`, and the sums there lose less than that.
     if S::EPSILON.as_f64() * S::EPSILON.as_f64() > f64::EPSILON {

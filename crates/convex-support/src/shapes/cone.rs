@@ -32,7 +32,8 @@ impl<V: Vector3> Cone<V> {
     /// The cone of height `2·half_height`; either number may be 0.
     ///
     /// # Errors
-    /// [`InvalidShape`] naming the number that is negative or not finite, or if the cone is larger than the largest number.
+    /// [`InvalidShape`] naming the number that is negative or not finite, or if the cone is larger than the largest
+    /// number.
     pub fn new(half_height: V::Scalar, radius: V::Scalar) -> Result<Self, InvalidShape> {
         let half_height = non_negative("half_height", half_height)?;
         let radius = non_negative("radius", radius)?;
@@ -65,8 +66,8 @@ impl<V: Vector3> Cone<V> {
         self.radius
     }
 
-    /// The cone is the hull of its apex (support value `h·d_y`) and its base disc (`r·|d_xz| − h·d_y`): the apex is farther
-    /// where `2h·d_y > r·|d_xz|`, here in units of the slant's length, so that no product is out of range.
+    /// The cone is the hull of its apex (support value `h·d_y`) and its base disc (`r·|d_xz| − h·d_y`): the apex is
+    /// farther where `2h·d_y > r·|d_xz|`, here in units of the slant's length, so that no product is out of range.
     #[inline(always)]
     fn is_apex_farthest(&self, direction: V, across: V) -> bool {
         let (cosine, sine) = self.slant;
@@ -140,9 +141,10 @@ impl<V: Vector3> SupportMap for Cone<V> {
         feature.collect_discs(direction, slab, discs);
     }
 
-    /// The heights are exact, and the unit vector times the radius is right to 6 roundings. The slant's length divides both sides of the
-    /// comparison, one of 2 roundings then and the other of 4, so that the wrong one of apex and rim is taken only where what they
-    /// reach, `2h·d_y` and `r·|d_xz|`, agree to that; then it falls short by 6.5 roundings of `r·|d_xz|` at most.
+    /// The heights are exact, and the unit vector times the radius is right to 6 roundings. The slant's length divides
+    /// both sides of the comparison, one of 2 roundings then and the other of 4, so that the wrong one of apex and rim
+    /// is taken only where what they reach, `2h·d_y` and `r·|d_xz|`, agree to that; then it falls short by 6.5
+    /// roundings of `r·|d_xz|` at most.
     fn rounding(&self) -> Rounding<V> {
         let extent = V::from_fn(|i| if i == 1 { self.half_height } else { self.radius });
         Rounding::exact(extent).with_error(across(V::splat(roundings(12.5, self.radius))))

@@ -26,7 +26,8 @@ impl<V: Vector> Cuboid<V> {
     /// The box with the given half extents, any of which may be 0.
     ///
     /// # Errors
-    /// [`InvalidShape`] naming the half extent that is negative or not finite, or if the diagonal is longer than the largest number.
+    /// [`InvalidShape`] naming the half extent that is negative or not finite, or if the diagonal is longer than the
+    /// largest number.
     pub fn new(half_extents: V) -> Result<Self, InvalidShape> {
         let half_extents = finite("half_extents", half_extents)?;
         match (0..V::DIM).find(|&i| half_extents.get(i) < V::Scalar::ZERO) {

@@ -31,7 +31,8 @@ impl<V: Vector3> Cylinder<V> {
     /// The cylinder of height `2·half_height`; either number may be 0.
     ///
     /// # Errors
-    /// [`InvalidShape`] naming the number that is negative or not finite, or if the diagonal is longer than the largest number.
+    /// [`InvalidShape`] naming the number that is negative or not finite, or if the diagonal is longer than the largest
+    /// number.
     pub fn new(half_height: V::Scalar, radius: V::Scalar) -> Result<Self, InvalidShape> {
         let half_height = non_negative("half_height", half_height)?;
         let radius = non_negative("radius", radius)?;
@@ -58,8 +59,8 @@ pub(crate) fn across<V: Vector3>(direction: V) -> V {
     direction - V::axis(1) * direction.get(1)
 }
 
-/// The Hessian of the support value `r·|a|` of a disc across the y axis, with `a` the part of the direction across the axis, as
-/// seen along two changes. It is `r/|a|·t·tᵀ`, where the unit vector `t` is across the axis and `a`.
+/// The Hessian of the support value `r·|a|` of a disc across the y axis, with `a` the part of the direction across the
+/// axis, as seen along two changes. It is `r/|a|·t·tᵀ`, where the unit vector `t` is across the axis and `a`.
 #[inline(always)]
 pub(crate) fn disc_hessian<V: Vector3>(radius: V::Scalar, direction: V, [u, w]: [V; 2]) -> [V::Scalar; 3] {
     let (x, z) = (direction.get(0), direction.get(2));

@@ -40,7 +40,8 @@ pub struct Ellipsoid<V: Vector> {
     axes_error: V::Scalar,
     /// What the support points are wrong by at most, as a length.
     error: V::Scalar,
-    /// How far the points are at most from where they would be if the transpose of the axes were their inverse, and these were exact.
+    /// How far the points are at most from where they would be if the transpose of the axes were their inverse, and
+    /// these were exact.
     skew: V::Scalar,
     /// The radius of a ball that rolls around within.
     rolling_radius: V::Scalar,
@@ -66,8 +67,8 @@ impl<V: Vector> Ellipsoid<V> {
     /// The ellipsoid about `center` whose semi-axis `i` lies along column `i` of `axes`, which must be orthonormal.
     ///
     /// # Errors
-    /// [`InvalidShape`] if a number is not finite, a semi-axis is not positive, or the axes are not orthonormal, not even
-    /// to half of their digits.
+    /// [`InvalidShape`] if a number is not finite, a semi-axis is not positive, or the axes are not orthonormal, not
+    /// even to half of their digits.
     pub fn from_axes(center: V, semi_axes: V, axes: V::Matrix) -> Result<Self, InvalidShape> {
         let center = finite("center", center)?;
         let semi_axes = finite("semi_axes", semi_axes)?;
@@ -94,8 +95,9 @@ impl<V: Vector> Ellipsoid<V> {
 
     /// The ellipsoid `{ x : (x − center)ᵀ·matrix·(x − center) ≤ 1 }`.
     ///
-    /// The axes and semi-axes are found from a pivoted Cholesky factor by one-sided Jacobi rotations in `f64`: each semi-axis is
-    /// as accurate, relative to itself, as the matrix determines it. From then on the ellipsoid is the one that these describe.
+    /// The axes and semi-axes are found from a pivoted Cholesky factor by one-sided Jacobi rotations in `f64`: each
+    /// semi-axis is as accurate, relative to itself, as the matrix determines it. From then on the ellipsoid is the one
+    /// that these describe.
     ///
     /// # Errors
     /// [`InvalidShape`] if a number is not finite, or the matrix is not symmetric or not positive definite to rounding.
@@ -174,8 +176,9 @@ impl<V: Vector> Ellipsoid<V> {
 
 /// The radius of a ball that rolls around within an ellipsoid.
 ///
-/// The least radius of curvature is `c²/a`, of the least and the largest semi-axis. Axes that are orthonormal to half of their digits
-/// may change it by a part, which an eighth is more than unless the ellipsoid is thin; and then there is not much to gain.
+/// The least radius of curvature is `c²/a`, of the least and the largest semi-axis. Axes that are orthonormal to half
+/// of their digits may change it by a part, which an eighth is more than unless the ellipsoid is thin; and then there
+/// is not much to gain.
 fn rolling_radius<V: Vector>(semi_axes: V) -> V::Scalar {
     let (least, largest) = (semi_axes.min_element(), semi_axes.max_element());
     let ratio = least / largest;
@@ -183,8 +186,9 @@ fn rolling_radius<V: Vector>(semi_axes: V) -> V::Scalar {
     if is_thin { V::Scalar::ZERO } else { ratio * least * V::Scalar::from_f64(0.875) }
 }
 
-/// What a support point `R·(a∘u)` is wrong by, in roundings of the largest semi-axis: 8 for the unit vector and the products with the
-/// semi-axes, `3√3` for those with the axes; and twice the `3√3 + 1` that the direction loses in the ellipsoid's frame.
+/// What a support point `R·(a∘u)` is wrong by, in roundings of the largest semi-axis: 8 for the unit vector and the
+/// products with the semi-axes, `3√3` for those with the axes; and twice the `3√3 + 1` that the direction loses in the
+/// ellipsoid's frame.
 const SUPPORT_POINT_ERROR: f64 = 26.0;
 
 impl<V: Vector> SupportMap for Ellipsoid<V> {
@@ -254,9 +258,10 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
             .ellipsoid(&self.axes, self.inverse_semi_axes)
     }
 
-    /// The support point is `R·(a∘u)` with a unit vector `u` that is right to 7 roundings, whatever direction it is farthest along:
-    /// with three for the product, 11 roundings of the extent. That direction is `d` but for 4 roundings in the ellipsoid's frame, and
-    /// the point is short by that times twice the semi-axes at most. Where the axes are wrong, all of it is moved.
+    /// The support point is `R·(a∘u)` with a unit vector `u` that is right to 7 roundings, whatever direction it is
+    /// farthest along: with three for the product, 11 roundings of the extent. That direction is `d` but for 4
+    /// roundings in the ellipsoid's frame, and the point is short by that times twice the semi-axes at most. Where the
+    /// axes are wrong, all of it is moved.
     fn rounding(&self) -> Rounding<V> {
         let row = |i: usize| V::from_fn(|j| self.axes.col(j).get(i) * self.semi_axes.get(j));
         let extent = V::from_fn(|i| raised(row(i).norm()));

@@ -9,7 +9,8 @@ use convex_support::{
 
 use super::fixed::{Fixed, dot, norm};
 
-/// A shape by the numbers that its constructor is given; in the plane, of the first two coordinates and the first angle.
+/// A shape by the numbers that its constructor is given; in the plane, of the first two coordinates and the first
+/// angle.
 #[derive(Clone, Debug)]
 pub(crate) enum Tree {
     Points(Vec<[f64; 3]>),

@@ -60,8 +60,8 @@ impl Frame {
         self.tangent_distance(obstacle, n, g)
     }
 
-    /// The distance of the ball's centre from the tangent plane of the obstacle with the normal `n` of the ball, for the
-    /// obstacle's centre at `g`.
+    /// The distance of the ball's centre from the tangent plane of the obstacle with the normal `n` of the ball, for
+    /// the obstacle's centre at `g`.
     fn tangent_distance<V: Vector>(&self, obstacle: &Ellipsoid<V>, n: [f64; 3], g: [f64; 3]) -> f64 {
         let length = dot(n, n).sqrt();
         let n = n.map(|x| x / length);

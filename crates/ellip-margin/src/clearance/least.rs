@@ -55,7 +55,8 @@ pub(super) fn scale<V: Vector>(margin: Margin<V>) -> f64 {
 pub(super) struct Limit(pub(super) f64, pub(super) f64);
 
 impl Limit {
-    /// Whether √(1 + m) ≥ `scale` means a greater m, by more than rounding can have done. A negative bound or NaN never does.
+    /// Whether √(1 + m) ≥ `scale` means a greater m, by more than rounding can have done. A negative bound or NaN never
+    /// does.
     #[inline]
     pub(super) fn excludes(self, scale: f64) -> bool {
         let Self(margin, epsilon) = self;

@@ -11,8 +11,8 @@ use crate::hierarchy::{Hierarchy, Node};
 use crate::numerics::dot;
 use crate::{Margin, MarginOptions, free_margin};
 
-/// A link's boxes are searched to this multiple of the least √(1 + m), although farther ones than the least need not be: the
-/// bound so found lets the link be left out for some steps to come.
+/// A link's boxes are searched to this multiple of the least √(1 + m), although farther ones than the least need not
+/// be: the bound so found lets the link be left out for some steps to come.
 const REACH: f64 = 1.5;
 
 /// How many pairs were solved and left out.
@@ -107,7 +107,8 @@ impl<V: Vector> Search<V> {
 /// The count of a reason.
 type Reason = fn(&mut LeftOut) -> &mut usize;
 
-/// The unit normal from the link to the obstacle at x*, in space; zero where the centre of the link lies in the obstacle.
+/// The unit normal from the link to the obstacle at x*, in space; zero where the centre of the link lies in the
+/// obstacle.
 fn normal<V: Vector>(obstacle: &Ellipsoid<V>, margin: &Margin<V>) -> [f64; 3] {
     let (axes, a, y) = (columns(obstacle.axes()), padded(obstacle.semi_axes()), padded(margin.ball_point));
     let z: [f64; 3] = core::array::from_fn(|i| (0..V::DIM).map(|k| -axes[k][i] * (y[k] / a[k])).sum());

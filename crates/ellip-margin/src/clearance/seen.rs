@@ -23,8 +23,8 @@ pub(super) struct Seen<V: Vector> {
 impl<V: Vector> Seen<V> {
     /// A lower bound on √(1 + m) with the link at `now` and the obstacles drifted.
     ///
-    /// A point with the coordinates p = diag(a)⁻¹Rᵀ(x − x₁) in the old ball has p′ = Gp + δ in the new one, with
-    /// G = diag(a)⁻¹R′ᵀR·diag(a), δ = diag(a)⁻¹R′ᵀ(x₁ − x₁′): ‖p′‖ ≥ (1 − ‖G − I‖)‖p‖ − ‖δ‖. And an obstacle's point that
+    /// A point with the coordinates p = diag(a)⁻¹Rᵀ(x − x₁) in the old ball has p′ = Gp + δ in the new one, with G =
+    /// diag(a)⁻¹R′ᵀR·diag(a), δ = diag(a)⁻¹R′ᵀ(x₁ − x₁′): ‖p′‖ ≥ (1 − ‖G − I‖)‖p‖ − ‖δ‖. And an obstacle's point that
     /// moves by η moves by η/a_min in the ball at most.
     pub(super) fn bound_after(&self, now: &Ellipsoid<V>, drift: f64) -> f64 {
         let a: [f64; 3] = padded(self.link.semi_axes());

@@ -1,13 +1,13 @@
 //! First and second derivatives at the stationary normal of [`super`]'s L.
 //!
-//! *First.* Since L is stationary in N, s changes as L does with N held. A turn ω of body k is N ↦ exp(−[ω])N in hₖ. In the
-//! body's axes let W = Rₖᵀ[ω]Rₖ, and let e = diag(a)RₖᵀN/h be the point of the unit ball that touches. Then
+//! *First.* Since L is stationary in N, s changes as L does with N held. A turn ω of body k is N ↦ exp(−[ω])N in hₖ. In
+//! the body's axes let W = Rₖᵀ[ω]Rₖ, and let e = diag(a)RₖᵀN/h be the point of the unit ball that touches. Then
 //!
 //! > ∂s/∂δ = ∓N for E₁, E₂, and ∂h = −ht, t = Σᵢⱼ eᵢWᵢⱼeⱼaᵢ/aⱼ = Σ over i < j of eᵢeⱼWᵢⱼ(aᵢ/aⱼ − aⱼ/aᵢ), ∂s = kht.
 //!
-//! *Second.* N follows the motion, N′ being its rate, by L_NN·N′ + L_Nθ − s′∇γ = 0 and ∇γ·N′ + γ_θ = 0. On the tangent plane
-//! N^⊥ let A = −L_NN = k₀I/‖N‖ + k₁H₁ + k₂H₂, Hₖ = ∇²hₖ. Along N both sides vanish, by Euler's relation for homogeneous
-//! functions. Eliminating N′ leaves for two motions θ and φ
+//! *Second.* N follows the motion, N′ being its rate, by L_NN·N′ + L_Nθ − s′∇γ = 0 and ∇γ·N′ + γ_θ = 0. On the tangent
+//! plane N^⊥ let A = −L_NN = k₀I/‖N‖ + k₁H₁ + k₂H₂, Hₖ = ∇²hₖ. Along N both sides vanish, by Euler's relation for
+//! homogeneous functions. Eliminating N′ leaves for two motions θ and φ
 //!
 //! > s″ = L_θφ + q_θ·A⁻¹q_φ − s_θγ_φ − s_φγ_θ, q_θ = L_Nθ − s_θ∇γ on the tangent plane.
 //!
@@ -15,14 +15,16 @@
 //!
 //! > L_Nδ = ∓δ, L_Nω = −k(Rₖb + vt), L_δδ = L_δω = 0, L_ωω = k(½(m_θ·b_φ + m_φ·b_θ) + ht_θt_φ), γ_ω = −gₖht.
 //!
-//! *Stiff bodies.* N turns with a needle, and against one: a turn with N held is then answered by an N′ that takes nearly all of L_ωω
-//! back. So for the rotations of the body that is the stiffer of the two, and stiffer than the bodies are apart, N is taken as seen by that
-//! body. This is to turn all else by −ω, so that t, m and b are those of the other body for −ω, and of r ↦ exp(−[ω])(r ∓ δ) there remain
+//! *Stiff bodies.* N turns with a needle, and against one: a turn with N held is then answered by an N′ that takes
+//! nearly all of L_ωω back. So for the rotations of the body that is the stiffer of the two, and stiffer than the
+//! bodies are apart, N is taken as seen by that body. This is to turn all else by −ω, so that t, m and b are those of
+//! the other body for −ω, and of r ↦ exp(−[ω])(r ∓ δ) there remain
 //!
 //! > L_Nω: −ω × r, L_ωω: −½((ω × N)·(φ × r) + (φ × N)·(ω × r)), L_δω: ∓δ·(ω × N).
 //!
-//! A ball has t = 0 and b = 0 to the last bit. Of A only the root is formed, A = MᵀM: xᵀHₖx = ‖e∧diag(a)Rₖᵀx‖²/h, so that the
-//! rows of M are these products, and the triangle of M = QR has the aspect for its condition and not the square of that.
+//! A ball has t = 0 and b = 0 to the last bit. Of A only the root is formed, A = MᵀM: xᵀHₖx = ‖e∧diag(a)Rₖᵀx‖²/h, so
+//! that the rows of M are these products, and the triangle of M = QR has the aspect for its condition and not the
+//! square of that.
 
 use convex_support::numerics::elementary::hypot;
 #[cfg(not(feature = "std"))]
@@ -123,9 +125,9 @@ impl<const N: usize> Contact<N> {
         Self::at_points(pair, quantity, direction, e, None)
     }
 
-    /// The same where the points that touch, as unit vectors e of the two balls, are known better than from `direction`: turned
-    /// into the axes of a needle it has lost the digits of its small coordinates. So may be the value, of which next to nothing is left of
-    /// N·r near the floor of the margin.
+    /// The same where the points that touch, as unit vectors e of the two balls, are known better than from
+    /// `direction`: turned into the axes of a needle it has lost the digits of its small coordinates. So may be the
+    /// value, of which next to nothing is left of N·r near the floor of the margin.
     pub(super) fn at_points(
         pair: &Pair<N>,
         quantity: Quantity,
@@ -151,8 +153,8 @@ impl<const N: usize> Contact<N> {
         value.is_finite().then_some(Self { quantity, r, normal, sides, value, k, tangents, root })
     }
 
-    /// One step of Newton's method for N. An answer's value is stationary in N and may have been found with half its digits.
-    /// Kept if it brings L nearer to being stationary: else what was left was rounding.
+    /// One step of Newton's method for N. An answer's value is stationary in N and may have been found with half its
+    /// digits. Kept if it brings L nearer to being stationary: else what was left was rounding.
     pub(super) fn refined(self, pair: &Pair<N>) -> Self {
         let [x, y] = self.solved(self.whitened(self.residual()));
         let step: Vec<N> = core::array::from_fn(|i| x * self.tangents[0][i] + y * self.tangents[1][i]);
@@ -193,7 +195,8 @@ impl<const N: usize> Contact<N> {
         [(x[0] - r12 * second) / r11, second]
     }
 
-    /// ∂s/∂δ in world axes, and ∂s/∂ω of the plane eᵢ∧eⱼ as kh·eᵢeⱼ(…): the factor −kh and e, which the torque is made of.
+    /// ∂s/∂δ in world axes, and ∂s/∂ω of the plane eᵢ∧eⱼ as kh·eᵢeⱼ(…): the factor −kh and e, which the torque is made
+    /// of.
     pub(super) fn gradient(&self, mover: Mover) -> (Vec<N>, Vec<N>, f64) {
         let (side, k, sign) = self.of(mover);
         (self.normal.map(|x| -sign * x), side.e, -k * side.h)
@@ -204,8 +207,8 @@ impl<const N: usize> Contact<N> {
     pub(super) fn hessian(&self, mover: Mover, form: Form) -> [[f64; 6]; 6] {
         let (rotations, is_seen) = (N * (N - 1) / 2, self.is_stiffer(mover));
         let (side, k, sign) = self.of(mover);
-        // The body with which L_ωω is written, and the sense in which it turns: the other one, backwards, where N is as seen by the
-        // body that moves.
+        // The body with which L_ωω is written, and the sense in which it turns: the other one, backwards, where N is as
+        // seen by the body that moves.
         let written = if is_seen { mover.other() } else { mover };
         let (other, other_k, _) = self.of(written);
         let turns = other.turns();
@@ -248,8 +251,8 @@ impl<const N: usize> Contact<N> {
         hessian
     }
 
-    /// Adds `size` times what L_ωω and L_δω have besides where N is as seen by the body that moves: with (ω × N)·(φ × r) =
-    /// (ω·φ)(N·r) − (ω·r)(φ·N), in the plane N·r, and `sign` in the unit of length.
+    /// Adds `size` times what L_ωω and L_δω have besides where N is as seen by the body that moves: with (ω × N)·(φ ×
+    /// r) = (ω·φ)(N·r) − (ω·r)(φ·N), in the plane N·r, and `sign` in the unit of length.
     fn add_seen(&self, hessian: &mut [[f64; 6]; 6], size: f64, sign: f64) {
         let (n, r, along) = (&self.normal, &self.r, dot(self.normal, self.r));
         for p in 0..N * (N - 1) / 2 {
@@ -266,8 +269,9 @@ impl<const N: usize> Contact<N> {
         }
     }
 
-    /// Whether N is to be taken as seen by the body that moves, since the terms are smaller then: L_ωω of the body that moves is about
-    /// k·(a_max² − a_min²)‖N‖²/h, and what takes its place is that of the other and ‖N‖‖r‖, which is much where the bodies are far apart.
+    /// Whether N is to be taken as seen by the body that moves, since the terms are smaller then: L_ωω of the body that
+    /// moves is about k·(a_max² − a_min²)‖N‖²/h, and what takes its place is that of the other and ‖N‖‖r‖, which is
+    /// much where the bodies are far apart.
     fn is_stiffer(&self, mover: Mover) -> bool {
         let stiffness = |mover: Mover| {
             let (side, k, _) = self.of(mover);
@@ -295,7 +299,8 @@ impl Rates {
     }
 
     /// All but L_θφ: slope·(q_θ·A⁻¹q_φ − s_θγ_φ − s_φγ_θ) + curvature·s_θs_φ, which is w_θ·w_φ − (s_θg_φ + s_φg_θ) with
-    /// w = √slope·R⁻ᵀq and g = slope·γ − ½·curvature·s. Units are put into the factors, of which there are fewer than entries.
+    /// w = √slope·R⁻ᵀq and g = slope·γ − ½·curvature·s. Units are put into the factors, of which there are fewer than
+    /// entries.
     #[inline]
     fn hessian(mut self, dimension: usize, Form { slope, curvature, units }: Form) -> [[f64; 6]; 6] {
         // The unit of length is a power of two.
@@ -336,8 +341,8 @@ fn weighted(weights: [f64; 3], x: [f64; 3]) -> f64 {
     weights[0] * x[0] + weights[1] * x[1] + weights[2] * x[2]
 }
 
-/// An orthonormal basis of the plane across the unit vector `n`: in 2D n turned, in 3D the two columns of a reflection that takes a
-/// world axis to ±n.
+/// An orthonormal basis of the plane across the unit vector `n`: in 2D n turned, in 3D the two columns of a reflection
+/// that takes a world axis to ±n.
 fn tangents<const N: usize>(n: Vec<N>) -> [Vec<N>; 2] {
     if N == 2 {
         return [core::array::from_fn(|i| if i == 0 { -n[1] } else { n[0] }), [0.0; N]];

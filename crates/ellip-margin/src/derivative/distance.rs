@@ -9,8 +9,8 @@ use crate::pair::Pair;
 use crate::{Answer, Distance};
 
 impl<V: Vector> Answer<'_, V, Distance<V>> {
-    /// The gradient of the distance with respect to the motion of the first ellipsoid: minus the unit normal, as a force at its
-    /// closest point. Zero where the bodies overlap.
+    /// The gradient of the distance with respect to the motion of the first ellipsoid: minus the unit normal, as a
+    /// force at its closest point. Zero where the bodies overlap.
     ///
     /// ```
     /// use convex_support::{Ellipsoid, glam::DVec3};
@@ -35,7 +35,8 @@ impl<V: Vector> Answer<'_, V, Distance<V>> {
     }
 
     /// The second derivatives with respect to the motion of the first ellipsoid. The block of translations is positive
-    /// semidefinite, with the normal in its kernel. Zero where the bodies overlap; it grows without bound for bodies of no extent.
+    /// semidefinite, with the normal in its kernel. Zero where the bodies overlap; it grows without bound for bodies of
+    /// no extent.
     pub fn hessian(&self) -> MotionHessian<V> {
         hessian(self, Mover::First)
     }

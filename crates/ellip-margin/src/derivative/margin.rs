@@ -4,12 +4,15 @@
 //! only, the margin changes as (x* − x₁)ᵀP(x* − x₁) + ν((x* − x₂)ᵀQ(x* − x₂) − 1) does with x* and ν held:
 //!
 //! - ∂m/∂x₁ = −2Pw = 2νz =: F, ∂m/∂x₂ = −F;
-//! - a turn δω of E₁ about p moves E₁ under a fixed x*: ∂m/∂ω = (x* − p) ∧ F. F at x* is a wrench. For E₂, its opposite.
+//! - a turn δω of E₁ about p moves E₁ under a fixed x*: ∂m/∂ω = (x* − p) ∧ F. F at x* is a wrench. For E₂, its
+//!   opposite.
 //!
-//! In the code w and v are kept as each body sees them, w = R₁·diag(a₁)β and v = R₂·diag(a₂)y. Torques about the own centre are
-//! w ∧ F = Σ wᵢFⱼ eᵢ∧eⱼ with wᵢ = a₁ᵢβᵢ and Fⱼ = −2βⱼ/a₁ⱼ, hence −2βᵢβⱼ(a₁ᵢ/a₁ⱼ − a₁ⱼ/a₁ᵢ) for each plane i < j.
+//! In the code w and v are kept as each body sees them, w = R₁·diag(a₁)β and v = R₂·diag(a₂)y. Torques about the own
+//! centre are w ∧ F = Σ wᵢFⱼ eᵢ∧eⱼ with wᵢ = a₁ᵢβᵢ and Fⱼ = −2βⱼ/a₁ⱼ, hence −2βᵢβⱼ(a₁ᵢ/a₁ⱼ − a₁ⱼ/a₁ᵢ) for each plane i
+//! < j.
 //!
-//! The second derivatives are those of m = ρ² − 1: m″ = 2ρρ″ + 2ρ′ρ′ᵀ, a sum of positive semidefinite terms for translations.
+//! The second derivatives are those of m = ρ² − 1: m″ = 2ρρ″ + 2ρ′ρ′ᵀ, a sum of positive semidefinite terms for
+//! translations.
 
 use convex_support::{Ellipsoid, MotionGradient, MotionHessian, Scalar, Vector};
 #[cfg(not(feature = "std"))]

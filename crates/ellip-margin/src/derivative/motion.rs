@@ -37,8 +37,8 @@ pub(super) fn no_hessian<V: Vector>() -> MotionHessian<V> {
 
 /// `factor`·Σ uᵢuⱼ(aᵢ/aⱼ − aⱼ/aᵢ) eᵢ∧eⱼ over the planes i < j of the axes of `body`.
 ///
-/// Torques about the own centre are such sums in body axes, where nothing cancels: it is zero in a plane where the body is round,
-/// to the last bit.
+/// Torques about the own centre are such sums in body axes, where nothing cancels: it is zero in a plane where the body
+/// is round, to the last bit.
 #[inline]
 pub(super) fn torque<V: Vector, const N: usize>(body: &Ellipsoid<V>, u: Vec<N>, factor: f64) -> V::AngularVelocity {
     let (axes, a): ([Vec<N>; N], Vec<N>) = (load_columns(body.axes()), load(body.semi_axes()));

@@ -9,8 +9,8 @@ use crate::pair::Pair;
 use crate::{Answer, Scaling};
 
 impl<V: Vector> Answer<'_, V, Scaling<V>> {
-    /// The gradient of the scale α with respect to the motion of the first ellipsoid, at any depth: it tells the way out where the
-    /// margin has reached its floor. Zero where the bodies are concentric, which is the least α can be.
+    /// The gradient of the scale α with respect to the motion of the first ellipsoid, at any depth: it tells the way
+    /// out where the margin has reached its floor. Zero where the bodies are concentric, which is the least α can be.
     ///
     /// ```
     /// use convex_support::{Ellipsoid, glam::DVec3};
@@ -35,8 +35,9 @@ impl<V: Vector> Answer<'_, V, Scaling<V>> {
         gradient(self, Mover::Second)
     }
 
-    /// The second derivatives of the scale α with respect to the motion of the first ellipsoid. α is homogeneous in the line of centres:
-    /// its second derivatives grow as its inverse towards concentric bodies, where there are none and zero is the answer.
+    /// The second derivatives of the scale α with respect to the motion of the first ellipsoid. α is homogeneous in the
+    /// line of centres: its second derivatives grow as its inverse towards concentric bodies, where there are none and
+    /// zero is the answer.
     pub fn hessian(&self) -> MotionHessian<V> {
         hessian(self, Mover::First)
     }

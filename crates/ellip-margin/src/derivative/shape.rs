@@ -1,7 +1,7 @@
 //! How the margin changes with the sizes of both bodies.
 //!
-//! With w = x* − x₁ and v = x* − x₂: ∂m/∂P = wwᵀ, ∂m/∂Q = νvvᵀ; along semi-axis k, direction e: ∂m/∂a₁ₖ = −2(e·w)²/a₁ₖ³,
-//! ∂m/∂a₂ₖ = −2ν(e·v)²/a₂ₖ³.
+//! With w = x* − x₁ and v = x* − x₂: ∂m/∂P = wwᵀ, ∂m/∂Q = νvvᵀ; along semi-axis k, direction e: ∂m/∂a₁ₖ =
+//! −2(e·w)²/a₁ₖ³, ∂m/∂a₂ₖ = −2ν(e·v)²/a₂ₖ³.
 
 use convex_support::{Ellipsoid, Matrix, Scalar, Vector};
 

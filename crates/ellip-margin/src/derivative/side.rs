@@ -35,8 +35,8 @@ impl<const N: usize> Side<N> {
         self.tangents.map(|tangent| dot(tangent, point))
     }
 
-    /// The planes i, j of the body's axes, in space those across axis 0, 1 and 2, and what the unit rotations about the axes of the
-    /// world are in them: Wᵢⱼ of W = Rᵀ[ω]R.
+    /// The planes i, j of the body's axes, in space those across axis 0, 1 and 2, and what the unit rotations about the
+    /// axes of the world are in them: Wᵢⱼ of W = Rᵀ[ω]R.
     #[inline]
     fn planes(&self) -> [(usize, usize, [f64; 3]); 3] {
         let mut planes = [(0, 1, [0.0; 3]); 3];

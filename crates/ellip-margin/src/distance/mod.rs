@@ -9,9 +9,9 @@
 //!
 //! > f(n) ≤ distance ≤ ‖p₂ − p₁‖,
 //!
-//! with equality where p₂ − p₁ is along n. The margin's normal at x* gives a first bracket: f is `r(r − 1)/‖Pw‖` there, and
-//! p₂ = x*. It is closed in two stages: [`multipliers`] finds the direction of the distance by two numbers, however thin the
-//! bodies are, and [`Slab::ascend`] its last digits.
+//! with equality where p₂ − p₁ is along n. The margin's normal at x* gives a first bracket: f is `r(r − 1)/‖Pw‖` there,
+//! and p₂ = x*. It is closed in two stages: [`multipliers`] finds the direction of the distance by two numbers, however
+//! thin the bodies are, and [`Slab::ascend`] its last digits.
 
 mod multipliers;
 mod slab;
@@ -60,7 +60,8 @@ pub struct Distance<V: Vector> {
     pub iterations: usize,
 }
 
-/// Bounds on the Euclidean distance from the two margins, of `e1` about `e2` and the other way round: no further iteration.
+/// Bounds on the Euclidean distance from the two margins, of `e1` about `e2` and the other way round: no further
+/// iteration.
 ///
 /// The lower bound is the better of the two, and so is the upper, whose points are given. On ordinary shapes they are
 /// within a few per cent of the distance.
@@ -107,8 +108,8 @@ fn bracket_in<V: Vector, const N: usize>(
 /// The Euclidean distance between `e1` and `e2` with its closest points, certified: the bracket is the width of a
 /// separating slab and the distance of two points, and closes to about 1e-12 of the distance (1e-7 in `f32`).
 ///
-/// Where the bodies overlap, which the sign of the margin decides, it is 0; so it may be where they are apart by less than
-/// the rounding of their coordinates.
+/// Where the bodies overlap, which the sign of the margin decides, it is 0; so it may be where they are apart by less
+/// than the rounding of their coordinates.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec3};

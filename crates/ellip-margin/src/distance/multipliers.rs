@@ -9,9 +9,9 @@
 //!
 //! > (I − M)·Δ ln β = ln(h/β), Mᵢⱼ = qᵢᵀK⁻¹qⱼ/(hᵢ²βⱼ),
 //!
-//! where 0 ≤ Mₖₖ < 1 because K ⪰ Sₖ/βₖ. What is stiff in a thin body is inside K⁻¹ and solved exactly; the two
-//! numbers do not feel it. One pair of needles in ten thousand sends these steps round in a circle. Then the same matrix
-//! serves Newton's method on the convex
+//! where 0 ≤ Mₖₖ < 1 because K ⪰ Sₖ/βₖ. What is stiff in a thin body is inside K⁻¹ and solved exactly; the two numbers
+//! do not feel it. One pair of needles in ten thousand sends these steps round in a circle. Then the same matrix serves
+//! Newton's method on the convex
 //!
 //! > Φ(β) = ½(β₁ + β₂ − rᵀK⁻¹r) = min over d of ½‖d‖² + Σ(dᵀSₖd/βₖ + βₖ)/2 − r·d, ∂Φ/∂βₖ = ½(1 − hₖ²/βₖ²),
 //! > ∂²Φ/∂βᵢ∂βⱼ = hᵢ²/(βᵢ²βⱼ)·(I − M)ᵢⱼ, hence (I − M)·diag(β)⁻¹Δβ = ½(1 − β²/h²),
@@ -31,8 +31,8 @@ const TRUST: f64 = 2.0;
 /// The steps in ln β before those on Φ.
 const SWIFT: usize = 12;
 
-/// Below this residual of ln β the step is the last, and d follows it by its derivative: both leave an error of the residual's
-/// square, and the slab across d closes with the square of that.
+/// Below this residual of ln β the step is the last, and d follows it by its derivative: both leave an error of the
+/// residual's square, and the slab across d closes with the square of that.
 const SMALL: f64 = 1e-4;
 
 /// d up to a factor, from a first guess of its direction and length, and the number of steps it took; `None` where the

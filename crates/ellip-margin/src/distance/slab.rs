@@ -5,14 +5,14 @@
 //!
 //! > n⁺ ∝ (f·I + H)⁻¹(p₂ − p₁),
 //!
-//! always an ascent direction while f > 0. Across a thin body hₖ has almost a kink, which Newton's step leaps over; there
-//! the step of iterated reweighting is taken,
+//! always an ascent direction while f > 0. Across a thin body hₖ has almost a kink, which Newton's step leaps over;
+//! there the step of iterated reweighting is taken,
 //!
 //! > n⁺ ∝ (f·I + S₁/h₁ + S₂/h₂)⁻¹r,
 //!
 //! which never descends, whatever the shape: since h(n′) ≤ (n′ᵀSn′/h + h)/2 with equality at n, it maximises a function
-//! that lies below n′·r − h₁(n′) − h₂(n′) − f‖n′‖²/2 and meets it at n. With the tangent θ of the angle between n and p₂ − p₁
-//! the bracket's relative width is θ²/2: it closes with twice the digits of n.
+//! that lies below n′·r − h₁(n′) − h₂(n′) − f‖n′‖²/2 and meets it at n. With the tangent θ of the angle between n and
+//! p₂ − p₁ the bracket's relative width is θ²/2: it closes with twice the digits of n.
 
 use convex_support::numerics::elementary::hypot;
 use convex_support::{Scalar, Vector};
@@ -25,8 +25,8 @@ use crate::pair::Pair;
 use crate::secular::Solution;
 use crate::{MarginOptions, Status};
 
-/// Whether bodies whose margin is not positive have a common point: an iteration that was cut short has found less than their margin.
-/// Then E₂'s point along y has to lie in E₁.
+/// Whether bodies whose margin is not positive have a common point: an iteration that was cut short has found less than
+/// their margin. Then E₂'s point along y has to lie in E₁.
 fn is_proved<const N: usize>(pair: &Pair<N>, solution: &Solution<N>, options: MarginOptions) -> bool {
     if solution.status == Status::Converged && options.tolerance() <= MarginOptions::new().tolerance() {
         return true;
@@ -54,7 +54,8 @@ pub(super) struct Slab<const N: usize> {
 }
 
 impl<const N: usize> Slab<N> {
-    /// The slab across the margin's normal, across the line of centres where the margin has none; `None` where the bodies overlap.
+    /// The slab across the margin's normal, across the line of centres where the margin has none; `None` where the
+    /// bodies overlap.
     pub(super) fn of_margin(pair: &Pair<N>, solution: &Solution<N>, options: MarginOptions) -> Option<Self> {
         if solution.margin <= 0.0 && is_proved(pair, solution, options) {
             return None;
@@ -104,8 +105,8 @@ impl<const N: usize> Slab<N> {
 
     /// A wider slab; `None` where none is found.
     pub(super) fn ascend(&self, pair: &Pair<N>) -> Option<Self> {
-        // Newton's step, if it does a quarter of what it foresees, or brings p₂ − p₁ nearer to n where that is too little
-        // for the width to show.
+        // Newton's step, if it does a quarter of what it foresees, or brings p₂ − p₁ nearer to n where that is too
+        // little for the width to show.
         let tangent = sub(self.across, self.n.map(|x| x * self.width));
         let step = Factor::new(self.curvature(pair, true)).solve(tangent);
         let next = Self::new(pair, unit(add(self.n, step)));

@@ -1,7 +1,8 @@
 //! Sums and products with their rounding errors, for the few places where a difference of nearly equal numbers decides.
 //!
-//! A `DoubleDouble` is an unevaluated sum `high + low` with |low| ≤ ulp(high)/2: some 106 bits. Dekker, *A floating-point
-//! technique for extending the available precision*, 1971; Ogita, Rump, Oishi, *Accurate sum and dot product*, 2005.
+//! A `DoubleDouble` is an unevaluated sum `high + low` with |low| ≤ ulp(high)/2: some 106 bits. Dekker, *A
+//! floating-point technique for extending the available precision*, 1971; Ogita, Rump, Oishi, *Accurate sum and dot
+//! product*, 2005.
 
 use core::ops::{Add, Mul, Neg, Sub};
 

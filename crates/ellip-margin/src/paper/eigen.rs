@@ -1,10 +1,10 @@
 //! The paper's own route to the margin: the minimal eigenvalue of a 2N×2N matrix, found among all of them by the QR
 //! algorithm. For comparison and teaching; feature `eigen`.
 //!
-//! Rimon and Boyd, Theorem 2, with the misprint in the point corrected: (13) gives x* in the coordinates of the ball, and
-//! the point itself is x₂ + Q^-½[C − λ*I]⁻¹b. Entries of bbᵀ grow with the square of the condition of C, and the QR
-//! algorithm's errors are relative to the largest: digits of λ* are lost from a condition of 1e4 on, and all of
-//! them from 1e8. [`free_margin`](crate::free_margin) loses none and is faster by far.
+//! Rimon and Boyd, Theorem 2, with the misprint in the point corrected: (13) gives x* in the coordinates of the ball,
+//! and the point itself is x₂ + Q^-½[C − λ*I]⁻¹b. Entries of bbᵀ grow with the square of the condition of C, and the QR
+//! algorithm's errors are relative to the largest: digits of λ* are lost from a condition of 1e4 on, and all of them
+//! from 1e8. [`free_margin`](crate::free_margin) loses none and is faster by far.
 
 use convex_support::{Ellipsoid, Vector};
 use faer::Mat;

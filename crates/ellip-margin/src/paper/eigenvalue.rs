@@ -15,8 +15,9 @@ pub struct EigenvalueGradient<V: Vector> {
 
 /// Corollary 4.1 of Rimon and Boyd: how the minimal eigenvalue λ* changes with b̄ = Rᵀb and the eigenvalues λᵢ of C.
 ///
-/// The formula is right, but it is the gradient of λ*, not of the margin, and it lives in a basis that is undefined where
-/// two eigenvalues meet, as for spheroids. The gradient of [`EllipsoidPair::margin`](crate::EllipsoidPair::margin) has neither limit.
+/// The formula is right, but it is the gradient of λ*, not of the margin, and it lives in a basis that is undefined
+/// where two eigenvalues meet, as for spheroids. The gradient of
+/// [`EllipsoidPair::margin`](crate::EllipsoidPair::margin) has neither limit.
 ///
 /// ```
 /// use convex_support::glam::DVec2;

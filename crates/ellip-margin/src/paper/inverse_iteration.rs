@@ -1,9 +1,9 @@
 //! The paper's incremental method: inverse iteration for the minimal eigenvalue, from the pose before.
 //!
-//! Rimon and Boyd, Section 4. With A = [M − λ̂I]⁻¹ for M = [[C, −I], [−bbᵀ, C]], unit vectors x(k) along Ax(k − 1) converge
-//! to the eigenvector whose eigenvalue λ is nearest to λ̂. Corrected here (the printed last line normalises x(k) first and
-//! returns λ̂ ± 1, and the stop test never fires where λ̂ > λ*): μ = x(k − 1)ᵀAx(k − 1) is an eigenvalue of A, λ = λ̂ + 1/μ,
-//! and x(k) takes the sign that agrees with x(k − 1).
+//! Rimon and Boyd, Section 4. With A = [M − λ̂I]⁻¹ for M = [[C, −I], [−bbᵀ, C]], unit vectors x(k) along Ax(k − 1)
+//! converge to the eigenvector whose eigenvalue λ is nearest to λ̂. Corrected here (the printed last line normalises
+//! x(k) first and returns λ̂ ± 1, and the stop test never fires where λ̂ > λ*): μ = x(k − 1)ᵀAx(k − 1) is an eigenvalue
+//! of A, λ = λ̂ + 1/μ, and x(k) takes the sign that agrees with x(k − 1).
 //!
 //! With G = (C − λ̂I)⁻¹ the blocks (y, z) of Ax for x = (p, q) are, without a 2N×2N inverse,
 //!
@@ -23,13 +23,13 @@ use crate::{InvalidQuery, Margin, MarginOptions, Status};
 
 /// The paper's tracker of one pair along a trajectory, for comparison with [`MarginTracker`](crate::MarginTracker).
 ///
-/// Inverse iteration converges to the eigenvalue nearest to the last one, which is the minimal one only while steps
-/// are small: about five degrees. Like the paper's, it forms C, whose condition is the square of that of the bodies: at an aspect of
-/// 1e8 no digit of it is left, and a residual in terms of C is small for a wrong eigenvalue too. So what it finds is held against
-/// the bodies themselves. The point it leads to is a point of E₂, so that 1 + m is at most its squared distance from x₁ in the norm of E₁;
-/// the plane across the gradient there bounds 1 + m from below. A step where the two differ by more than the tolerance, relative to
-/// the lesser of m and 1 + m, or that ends at another eigenvalue or not at all, is solved by [`free_margin`](crate::free_margin)
-/// instead, and counted as a fallback.
+/// Inverse iteration converges to the eigenvalue nearest to the last one, which is the minimal one only while steps are
+/// small: about five degrees. Like the paper's, it forms C, whose condition is the square of that of the bodies: at an
+/// aspect of 1e8 no digit of it is left, and a residual in terms of C is small for a wrong eigenvalue too. So what it
+/// finds is held against the bodies themselves. The point it leads to is a point of E₂, so that 1 + m is at most its
+/// squared distance from x₁ in the norm of E₁; the plane across the gradient there bounds 1 + m from below. A step
+/// where the two differ by more than the tolerance, relative to the lesser of m and 1 + m, or that ends at another
+/// eigenvalue or not at all, is solved by [`free_margin`](crate::free_margin) instead, and counted as a fallback.
 ///
 /// ```
 /// use convex_support::{Ellipsoid, glam::DVec2};
@@ -133,10 +133,11 @@ impl InverseIterationTracker {
         solution
     }
 
-    /// Whether the point of E₂ with the coordinates `y` in its ball is that nearest to x₁ in the norm of E₁, to the tolerance.
+    /// Whether the point of E₂ with the coordinates `y` in its ball is that nearest to x₁ in the norm of E₁, to the
+    /// tolerance.
     ///
-    /// With w = x − x₁, β = diag(a₁)⁻¹R₁ᵀw and the normal N = −R₁·diag(a₁)⁻¹β towards x₁, h₁(N) = ‖β‖. Since all of E₂ lies on one side
-    /// of its tangent plane across N, ‖β‖² ≥ 1 + m ≥ ρ², ρ = (N·(x₁ − x₂) − h₂(N))/‖β‖.
+    /// With w = x − x₁, β = diag(a₁)⁻¹R₁ᵀw and the normal N = −R₁·diag(a₁)⁻¹β towards x₁, h₁(N) = ‖β‖. Since all of E₂
+    /// lies on one side of its tangent plane across N, ‖β‖² ≥ 1 + m ≥ ρ², ρ = (N·(x₁ − x₂) − h₂(N))/‖β‖.
     fn is_nearest<const N: usize>(&self, pair: &Pair<N>, y: Vec<N>) -> bool {
         let w = sub(pair.out_of_ball(y), pair.r());
         let beta: Vec<N> = core::array::from_fn(|i| dot(pair.axes1[i], w) / pair.a1[i]);

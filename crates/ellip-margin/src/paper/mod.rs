@@ -4,8 +4,8 @@
 //! - [`InverseIterationTracker`]: the same eigenvalue along a trajectory, from that of the pose before (Section 4).
 //! - [`eigenvalue_gradient`]: its gradient (Corollary 4.1).
 //!
-//! [`free_margin`](crate::free_margin) and [`EllipsoidPair`](crate::EllipsoidPair) are faster and keep their digits where
-//! these lose them; see `docs/free-margin.md` in the repository.
+//! [`free_margin`](crate::free_margin) and [`EllipsoidPair`](crate::EllipsoidPair) are faster and keep their digits
+//! where these lose them; see `docs/free-margin.md` in the repository.
 
 mod eigen;
 mod eigenvalue;

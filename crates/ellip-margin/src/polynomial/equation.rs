@@ -1,7 +1,7 @@
 //! F(ν) = D(ν)² − N(ν) in one number, and the steps towards its root.
 //!
-//! Far from the root it is approached by Newton's method for 1/φ = D/√N = 1 (Hebden), which is all but linear. Near it, F
-//! is inverted as a series: with u = −F₀/F₁, A = F₂/F₁, B = F₃/F₁ of its Taylor coefficients
+//! Far from the root it is approached by Newton's method for 1/φ = D/√N = 1 (Hebden), which is all but linear. Near it,
+//! F is inverted as a series: with u = −F₀/F₁, A = F₂/F₁, B = F₃/F₁ of its Taylor coefficients
 //!
 //! > δ = u − Au² + (2A² − B)u³ + O(u⁴),
 //!

@@ -30,8 +30,8 @@ pub(crate) struct Quick<const N: usize> {
     pub(crate) is_sure: bool,
 }
 
-/// Solves from `start` (0 for none known), reporting each iterate (ν, φ); `None` where digits would be lost or x₁ is near
-/// the boundary of E₂.
+/// Solves from `start` (0 for none known), reporting each iterate (ν, φ); `None` where digits would be lost or x₁ is
+/// near the boundary of E₂.
 #[inline]
 pub(crate) fn solve<const N: usize>(
     pair: &Pair<N>,
@@ -100,8 +100,8 @@ pub(crate) struct Straight<const N: usize> {
     pub(crate) margin: f64,
 }
 
-/// About the nearest point of E₂, as a point of its ball, at any aspect: to a few digits, or to none, which whoever takes it
-/// has to find out. `None` where x₁ lies in E₂ or near its boundary.
+/// About the nearest point of E₂, as a point of its ball, at any aspect: to a few digits, or to none, which whoever
+/// takes it has to find out. `None` where x₁ lies in E₂ or near its boundary.
 #[inline]
 pub(crate) fn rough<const N: usize>(pair: &Pair<N>) -> Option<Vec<N>> {
     let problem = Problem::new(pair);

@@ -7,8 +7,8 @@ use super::equation::{Equation, Taylor};
 use crate::numerics::{Vec, dot, size};
 use crate::pair::Pair;
 
-/// The largest factor by which a sum of the coefficients may cancel: the relative errors of ν and y are at most this times
-/// a few ε, some 1e-12. Beyond it the singular basis is worth its price.
+/// The largest factor by which a sum of the coefficients may cancel: the relative errors of ν and y are at most this
+/// times a few ε, some 1e-12. Beyond it the singular basis is worth its price.
 const MAX_LOSS: f64 = 2048.0;
 
 /// Sizes of ‖B‖² up to which sixth powers stay far from the range of `f64`.
@@ -120,8 +120,8 @@ impl<const N: usize> Problem<N> {
         // The Lagrangian ‖w‖² − 1 + ν(‖y‖² − 1) is stationary in y: what y has of errors enters squared.
         let squared = dot(w, w);
         let margin = (squared - 1.0) + nu * (dot(y, y) - 1.0);
-        // An error of x* − x₁ in space of ε(‖v‖ + ‖r‖) changes m by its product with ∂m/∂x₁ = 2R₁·diag(a₁)⁻¹w: not by 64ε·m?
-        // Lengths times their inverses, never squared: at any scale the answer is the same.
+        // An error of x* − x₁ in space of ε(‖v‖ + ‖r‖) changes m by its product with ∂m/∂x₁ = 2R₁·diag(a₁)⁻¹w: not by
+        // 64ε·m? Lengths times their inverses, never squared: at any scale the answer is the same.
         let v: Vec<N> = core::array::from_fn(|j| pair.a2[j] * y[j]);
         let pw: Vec<N> = core::array::from_fn(|i| self.i1[i] * w[i]);
         let is_sure = (size(v) + size(self.r)) * size(pw) < 64.0 * margin.abs();

@@ -1,5 +1,5 @@
-//! A small world of boxes: contacts from `gjk_raycast::Scene`, answered by sequential impulses (Catto, *Iterative dynamics with
-//! temporal coherence*, 2005). Mass is 1 for every box that moves.
+//! A small world of boxes: contacts from `gjk_raycast::Scene`, answered by sequential impulses (Catto, *Iterative
+//! dynamics with temporal coherence*, 2005). Mass is 1 for every box that moves.
 
 use std::collections::HashMap;
 use std::error::Error;
@@ -8,8 +8,8 @@ use gjk_raycast::convex_support::{Cuboid, InvalidShape, Matrix, Posed, Scalar, V
 use gjk_raycast::{PairContact, Scene, SignedDistanceOptions};
 use num_traits::Float as _;
 
-/// Rounds over all contacts in a step, there and back. With half as many, it depends on the order of the points of a manifold whether a stack
-/// of ten stays where it is.
+/// Rounds over all contacts in a step, there and back. With half as many, it depends on the order of the points of a
+/// manifold whether a stack of ten stays where it is.
 const ROUNDS: usize = 40;
 
 /// A box with its motion.
@@ -169,7 +169,8 @@ impl<V: Vector3> World<V> {
             let softness = a.softness(axis, touch.arms[0]) + b.softness(axis, touch.arms[1]);
             let before = touch.impulses[k];
             touch.impulses[k] = if k == 0 {
-                // A gap may close in this step. A fifth of what is deeper than a millimetre is undone, at no more than 1 m/s.
+                // A gap may close in this step. A fifth of what is deeper than a millimetre is undone, at no more than
+                // 1 m/s.
                 let slop = number(1e-3);
                 let excess = (touch.gap + slop).min(V::Scalar::ZERO);
                 let wanted = if touch.gap > V::Scalar::ZERO { -touch.gap / dt } else { -excess * number(0.2) / dt };

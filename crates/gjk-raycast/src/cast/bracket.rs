@@ -1,10 +1,10 @@
-//! What is certain about the first point of a ray in a body, of all that searches find: the only code that decides about a
-//! miss, a lower bound, or whether the two bounds have met, where the [plain case](super::direct()) of a closed form does
-//! not. Where the ray starts within rounding of the body, `start.rs` looks again at what was decided.
+//! What is certain about the first point of a ray in a body, of all that searches find: the only code that decides
+//! about a miss, a lower bound, or whether the two bounds have met, where the [plain case](super::direct()) of a closed
+//! form does not. Where the ray starts within rounding of the body, `start.rs` looks again at what was decided.
 //!
-//! A body lies behind each of its supporting planes, so that a ray is not in it before it has crossed the plane; and a ray
-//! is in it, at the latest, where it meets a point made of support points. The searches choose where to look, and may be as
-//! wrong as they like: what they find counts for what it is measured to be here.
+//! A body lies behind each of its supporting planes, so that a ray is not in it before it has crossed the plane; and a
+//! ray is in it, at the latest, where it meets a point made of support points. The searches choose where to look, and
+//! may be as wrong as they like: what they find counts for what it is measured to be here.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float;
@@ -26,8 +26,8 @@ const LEANS: f64 = 1.0 / 64.0;
 /// What rounding moves points by that a search compares, in units of ε times the size.
 pub(super) const NOISE: f64 = 8.0;
 
-/// How many errors deep a ray goes at least into a ball that rolls within the body, for its slope to tell where it is in the body for
-/// certain.
+/// How many errors deep a ray goes at least into a ball that rolls within the body, for its slope to tell where it is
+/// in the body for certain.
 pub(super) const DEEP: f64 = 64.0;
 
 /// A support point of the core, and what it is made of.
@@ -69,8 +69,9 @@ pub(super) struct Bracket<'a, V: Vector> {
     pub(super) noise: V::Scalar,
     /// What a plane or a point is wrong by at most.
     ///
-    /// With `u = ε/2`, a point of the line loses `8u` of the size, `n·(x − p) − r` another `8u`, and the quotient by the slope `6u`
-    /// of at most twice the size divided by the slope: with the support points' own error, one and a half times the noise.
+    /// With `u = ε/2`, a point of the line loses `8u` of the size, `n·(x − p) − r` another `8u`, and the quotient by
+    /// the slope `6u` of at most twice the size divided by the slope: with the support points' own error, one and a
+    /// half times the noise.
     pub(super) error: V::Scalar,
     /// Whether the core is a single point.
     pub(super) is_point: bool,
@@ -80,8 +81,8 @@ pub(super) struct Bracket<'a, V: Vector> {
     pub(super) is_moderate: bool,
     observer: Observer<'a, V>,
     iterations: usize,
-    /// The body lies in a ball about its origin: the squared half of the chord that it cuts out of the line, negative where
-    /// the line misses it, and the half, which is then zero.
+    /// The body lies in a ball about its origin: the squared half of the chord that it cuts out of the line, negative
+    /// where the line misses it, and the half, which is then zero.
     chord: (V::Scalar, V::Scalar),
     /// Where the last plane is crossed.
     low: PlaneCrossing<V::Scalar>,
@@ -110,7 +111,8 @@ enum EntryProof {
 }
 
 impl<'a, V: Vector> Bracket<'a, V> {
-    /// A part of the ray, as far as it is in the ball about the body. The direction may be wrong by some part of its length.
+    /// A part of the ray, as far as it is in the ball about the body. The direction may be wrong by some part of its
+    /// length.
     #[inline(always)]
     pub(super) fn new(
         body: &'a mut dyn Body<Vector = V>,
@@ -180,8 +182,8 @@ impl<'a, V: Vector> Bracket<'a, V> {
         self.ray.line.at(self.low())
     }
 
-    /// The cosine at which the last plane is crossed; or 1 where none was, as by a ray within the plane of a face: then the
-    /// bracket begins where the ray does.
+    /// The cosine at which the last plane is crossed; or 1 where none was, as by a ray within the plane of a face: then
+    /// the bracket begins where the ray does.
     fn slope_or_one(&self) -> V::Scalar {
         if self.low.slope > Scalar::ZERO { self.low.slope } else { Scalar::ONE }
     }
@@ -202,9 +204,10 @@ impl<'a, V: Vector> Bracket<'a, V> {
 
     /// Whether the ray enters so steeply that it is soon in a ball that rolls within the body, whatever the errors.
     ///
-    /// A point of the body no more than `3e` below a plane that supports it is in such a ball, of radius `ρ`, no more than `√(6ρe)` beside
-    /// its top, where the ball falls off at `√(6e/ρ)`: less than a third of a slope `s` with `s²ρ > 64e`. A ray that comes within `e` of
-    /// the point at that slope, and may be as far outside of the ball, is in it after `3e/2s`.
+    /// A point of the body no more than `3e` below a plane that supports it is in such a ball, of radius `ρ`, no more
+    /// than `√(6ρe)` beside its top, where the ball falls off at `√(6e/ρ)`: less than a third of a slope `s` with `s²ρ
+    /// > 64e`. A ray that comes within `e` of the point at that slope, and may be as far outside of the ball, is in it
+    /// after `3e/2s`.
     fn enters_ball(&self) -> bool {
         let Bound { spread, more, .. } = self.high;
         let radius = self.rolling_radius;
@@ -231,8 +234,9 @@ impl<'a, V: Vector> Bracket<'a, V> {
         (self.high, self.entry) = (Bound::exact(mu.max(self.low())), EntryProof::Certain);
     }
 
-    /// Moves the upper bound to where the ray pierces a triangle of points of the body that is seen around it by more than an error; with
-    /// its slope, and so the length of a normal that is 1 against the ray, that is known to an error across it.
+    /// Moves the upper bound to where the ray pierces a triangle of points of the body that is seen around it by more
+    /// than an error; with its slope, and so the length of a normal that is 1 against the ray, that is known to an
+    /// error across it.
     pub(super) fn pierce(&mut self, mu: V::Scalar, length: V::Scalar) {
         (self.high, self.entry) =
             (Bound { at: mu.max(self.low()), spread: length, more: Scalar::ZERO }, EntryProof::Certain);
@@ -248,8 +252,8 @@ impl<'a, V: Vector> Bracket<'a, V> {
         self.low() - self.certain(self.low.bound) > self.ray.start
     }
 
-    /// How far the bounds may stay apart, across the last plane: at most some sizes of the body, so that a bound that is infinite since nothing is
-    /// known is never near enough.
+    /// How far the bounds may stay apart, across the last plane: at most some sizes of the body, so that a bound that
+    /// is infinite since nothing is known is never near enough.
     pub(super) fn tolerance(&self) -> V::Scalar {
         self.noise.max(self.options.tolerance).min(Scalar::from_f64(LARGEST_TOLERANCE))
     }
@@ -259,7 +263,8 @@ impl<'a, V: Vector> Bracket<'a, V> {
         self.chord.1.min(self.ray.mu(self.options.max_lambda))
     }
 
-    /// A ray that misses the ball about the body misses the body: it begins behind the ball, ends before it, or passes it.
+    /// A ray that misses the ball about the body misses the body: it begins behind the ball, ends before it, or passes
+    /// it.
     #[inline(always)]
     pub(super) fn enter_ball(&self) -> Result<(), Stop<V>> {
         let LocalRay { line, start, .. } = self.ray;
@@ -322,9 +327,9 @@ impl<'a, V: Vector> Bracket<'a, V> {
         Ok(())
     }
 
-    /// The search ends if the plane across `n` that supports the core at `point` leaves nothing of the ray; otherwise nothing
-    /// changes. By rounding alone, the end of the ray may be where the hit is, and a ray that ends there finds the hit where a
-    /// longer one does.
+    /// The search ends if the plane across `n` that supports the core at `point` leaves nothing of the ray; otherwise
+    /// nothing changes. By rounding alone, the end of the ray may be where the hit is, and a ray that ends there finds
+    /// the hit where a longer one does.
     #[cold]
     #[inline(never)]
     pub(super) fn separate(&self, n: V, point: V) -> Result<(), Stop<V>> {
@@ -334,11 +339,11 @@ impl<'a, V: Vector> Bracket<'a, V> {
         }
     }
 
-    /// Where the ray crosses the plane across the unit vector `n` that supports the core at `point`, if that is ahead; or that
-    /// the plane leaves nothing of the ray.
+    /// Where the ray crosses the plane across the unit vector `n` that supports the core at `point`, if that is ahead;
+    /// or that the plane leaves nothing of the ray.
     ///
-    /// The body is behind the plane `n·y = n·p + r`. A point `x` of the ray is before it by `n·(x − p) − r`, and if that
-    /// is positive and the ray approaches, it crosses the plane after `(n·(x − p) − r)/(−n·d)`, and not before.
+    /// The body is behind the plane `n·y = n·p + r`. A point `x` of the ray is before it by `n·(x − p) − r`, and if
+    /// that is positive and the ray approaches, it crosses the plane after `(n·(x − p) − r)/(−n·d)`, and not before.
     #[inline(always)]
     fn crossing(&self, n: V, point: V) -> Result<Option<PlaneCrossing<V::Scalar>>, Stop<V>> {
         let zero = V::Scalar::ZERO;
@@ -352,8 +357,8 @@ impl<'a, V: Vector> Bracket<'a, V> {
             if leaves_first || self.is_past_end(bound) {
                 return Err(Stop::Miss(n));
             }
-            // A plane along the ray, to within its error, may be crossed anywhere. Beyond the ball nothing is to be found, and what is
-            // lost of a point of the line there is no longer relative to the size.
+            // A plane along the ray, to within its error, may be crossed anywhere. Beyond the ball nothing is to be
+            // found, and what is lost of a point of the line there is no longer relative to the size.
             let at = if bound.at < self.chord.1 { bound.at } else { self.chord.1 };
             return Ok(Some(PlaneCrossing { bound: Bound { at, ..bound }, slope: -slope }));
         }
@@ -362,8 +367,8 @@ impl<'a, V: Vector> Bracket<'a, V> {
         if at_earliest > self.error { Err(Stop::Miss(n)) } else { Ok(None) }
     }
 
-    /// The contact where the last plane is crossed, if a point of the core, made of `witness`, is no farther than the radius
-    /// from the line at `high`, and that is no farther behind the plane than was asked for.
+    /// The contact where the last plane is crossed, if a point of the core, made of `witness`, is no farther than the
+    /// radius from the line at `high`, and that is no farther behind the plane than was asked for.
     #[inline(always)]
     pub(super) fn close(&mut self, point: V, witness: PointPair<V>, high: V::Scalar) -> Result<RayContact<V>, Stop<V>> {
         let aside = point - self.ray.line.at(high);
@@ -377,14 +382,16 @@ impl<'a, V: Vector> Bracket<'a, V> {
         Ok(RayContact { mu: self.low_or_at(high), normal: self.normal, witness })
     }
 
-    /// Where the last plane is crossed; of one nearly along the line, at the body's point at `mu` if that is before the crossing by no
-    /// more than rounding may have moved it, since such a plane is crossed far from where it touches the body.
+    /// Where the last plane is crossed; of one nearly along the line, at the body's point at `mu` if that is before the
+    /// crossing by no more than rounding may have moved it, since such a plane is crossed far from where it touches the
+    /// body.
     fn low_or_at(&self, mu: V::Scalar) -> V::Scalar {
         let leans = self.low.slope < V::Scalar::from_f64(LEANS);
         if leans { self.low().min(mu.max(self.earliest()).max(self.ray.start)) } else { self.low() }
     }
 
-    /// The contact at the source of the ray, where points of the body are known on both sides of it, by more than rounding.
+    /// The contact at the source of the ray, where points of the body are known on both sides of it, by more than
+    /// rounding.
     pub(super) fn close_inside(&mut self) -> RayContact<V> {
         let mu = self.ray.start;
         self.high = Bound::exact(mu);
@@ -406,8 +413,8 @@ impl<'a, V: Vector> Bracket<'a, V> {
         Some(RayContact { mu: self.low(), normal, witness })
     }
 
-    /// The contact where the line passes the core's `point` by the vector `v` across it, if that is no longer than the radius
-    /// and `within`; no plane need tell that. The normal is that of a plane along the line, where one is known.
+    /// The contact where the line passes the core's `point` by the vector `v` across it, if that is no longer than the
+    /// radius and `within`; no plane need tell that. The normal is that of a plane along the line, where one is known.
     pub(super) fn close_beside(
         &mut self,
         v: V,
@@ -424,35 +431,36 @@ impl<'a, V: Vector> Bracket<'a, V> {
         // What the line passes within an error it may as well miss.
         self.high = Bound { more: within, ..Bound::exact(mu.max(self.low())) };
         self.doubt_entry();
-        // Where the ray grazes what is round, the shortest vector is the normal, and the last plane is of elsewhere. Without a
-        // radius it has no digits.
+        // Where the ray grazes what is round, the shortest vector is the normal, and the last plane is of elsewhere.
+        // Without a radius it has no digits.
         let normal = if self.radius > self.noise { v.unit() } else { normal.or(self.normal) };
         Some(RayContact { mu, normal, witness })
     }
 
-    /// Moves the upper bound to where the line enters the hull of known points of the body, at `mu` to within `error` across a
-    /// surface that it meets at the cosine `slope`.
+    /// Moves the upper bound to where the line enters the hull of known points of the body, at `mu` to within `error`
+    /// across a surface that it meets at the cosine `slope`.
     pub(super) fn enter_hull(&mut self, mu: V::Scalar, error: V::Scalar, slope: V::Scalar) {
-        // A point of the facet may be outside of the body by rounding, and is in it where the ray is that far behind the
-        // plane that is crossed less steeply.
+        // A point of the facet may be outside of the body by rounding, and is in it where the ray is that far behind
+        // the plane that is crossed less steeply.
         self.high = Bound { at: mu.max(self.low()), spread: self.spread_at(slope), more: error };
         self.hull = mu;
     }
 
-    /// How far a crossing moves where the surface is met at the cosine `slope` and the last plane perhaps less steeply; infinitely far, of
-    /// a surface that the ray does not enter.
+    /// How far a crossing moves where the surface is met at the cosine `slope` and the last plane perhaps less steeply;
+    /// infinitely far, of a surface that the ray does not enter.
     fn spread_at(&self, slope: V::Scalar) -> V::Scalar {
         let least = if self.low.slope > Scalar::ZERO { slope.min(self.low.slope) } else { slope };
         if least > Scalar::ZERO { least.recip() } else { Float::infinity() }
     }
 
-    /// How far the bounds are apart, across the last plane or across the surface that the line meets at the cosine `slope`.
+    /// How far the bounds are apart, across the last plane or across the surface that the line meets at the cosine
+    /// `slope`.
     pub(super) fn gap_to_hull(&self, slope: V::Scalar) -> V::Scalar {
         (self.high.at - self.low()) * slope.max(self.low.slope)
     }
 
-    /// The contact where the last plane is crossed, if the bounds are no farther apart than `wanted` across it or across
-    /// the surface that the line meets at the cosine `slope` behind it.
+    /// The contact where the last plane is crossed, if the bounds are no farther apart than `wanted` across it or
+    /// across the surface that the line meets at the cosine `slope` behind it.
     pub(super) fn close_to_hull(
         &self,
         slope: V::Scalar,
@@ -463,8 +471,8 @@ impl<'a, V: Vector> Bracket<'a, V> {
         (self.gap_to_hull(slope) <= wanted).then(|| RayContact { mu, normal: self.normal, witness: witness() })
     }
 
-    /// The contact where the last plane is crossed, where the line has points of the body on both sides of it, to within
-    /// `error` across a surface that it meets at the cosine `slope`.
+    /// The contact where the last plane is crossed, where the line has points of the body on both sides of it, to
+    /// within `error` across a surface that it meets at the cosine `slope`.
     pub(super) fn close_between(&mut self, error: V::Scalar, slope: V::Scalar, witness: PointPair<V>) -> RayContact<V> {
         let Bound { at, spread, .. } = self.low.bound;
         let is_crossed_here = error == Scalar::ZERO && spread > Scalar::ZERO;
@@ -472,8 +480,8 @@ impl<'a, V: Vector> Bracket<'a, V> {
         RayContact { mu: at, normal: self.normal, witness }
     }
 
-    /// The contact where the last plane is crossed, if the core has a `point` on the line, made of `witness`, that is no
-    /// farther behind the plane than rounding.
+    /// The contact where the last plane is crossed, if the core has a `point` on the line, made of `witness`, that is
+    /// no farther behind the plane than rounding.
     pub(super) fn close_at_point(&mut self, point: V, witness: PointPair<V>) -> Option<RayContact<V>> {
         let line = self.ray.line;
         let aside = line.across(point - line.foot).length();
@@ -487,14 +495,15 @@ impl<'a, V: Vector> Bracket<'a, V> {
         Some(RayContact { mu: self.low_or_at(mu), normal: self.normal, witness })
     }
 
-    /// How much later the upper bound may be. The surface may be met less steeply than the plane, by what noise leaves open.
+    /// How much later the upper bound may be. The surface may be met less steeply than the plane, by what noise leaves
+    /// open.
     fn delay(&self) -> V::Scalar {
         let certain = self.certain(self.high) + self.noise * self.high.spread;
         if self.entry == EntryProof::BySlope { certain * Scalar::from_f64(1.5) } else { certain }
     }
 
-    /// Bounds on λ, for the λ of a contact if there is one, wider by what rounding moved them. The upper one is infinite where the ray
-    /// is not known to be in the body anywhere, as where it grazes it.
+    /// Bounds on λ, for the λ of a contact if there is one, wider by what rounding moved them. The upper one is
+    /// infinite where the ray is not known to be in the body anywhere, as where it grazes it.
     pub(super) fn bounds(&self, contact: Option<V::Scalar>) -> (V::Scalar, V::Scalar) {
         let widened = |bound: Bound<_>| self.ray.error(bound.at, self.certain(bound));
         let lower = (self.ray.lambda(self.low()) - widened(self.low.bound)).max(Scalar::ZERO);
@@ -511,8 +520,8 @@ impl<'a, V: Vector> Bracket<'a, V> {
 
     /// The axis of a plane before the whole ray, given one that is before what the last plane has left of it.
     ///
-    /// A plane that comes nearer behind `x`, or crosses the ray ahead of it, leaves that to the last plane, or to the ball.
-    /// Both together are before the whole line: with slopes of opposite sign, `n·|m·d| + m·|n·d|` has none.
+    /// A plane that comes nearer behind `x`, or crosses the ray ahead of it, leaves that to the last plane, or to the
+    /// ball. Both together are before the whole line: with slopes of opposite sign, `n·|m·d| + m·|n·d|` has none.
     pub(super) fn axis_of_miss(&self, n: V) -> V {
         let LocalRay { line, start, .. } = self.ray;
         if self.iterations == 0 {

@@ -1,8 +1,8 @@
 //! The hit in closed form, where the shape knows the crossing of its core by a line.
 //!
-//! As with a search, what the shape says is where to look: the plane at the entry is that of a support point, and ends or
-//! begins the bracket. Points between entry and exit are taken for points of the body, as the shape promises; if they are not
-//! where the planes are, the answer is in doubt.
+//! As with a search, what the shape says is where to look: the plane at the entry is that of a support point, and ends
+//! or begins the bracket. Points between entry and exit are taken for points of the body, as the shape promises; if
+//! they are not where the planes are, the answer is in doubt.
 
 use convex_support::{Crossing, LineCrossing, Vector};
 use num_traits::Float as _;
@@ -29,7 +29,8 @@ pub(super) fn closed_form<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Ray
         }
         LineCrossing::Crosses(Crossing { entry, normal, .. }) => {
             let start = bracket.ray.start;
-            // What is in the body by two errors is so for certain: one moves the body, and one what is computed of the line.
+            // What is in the body by two errors is so for certain: one moves the body, and one what is computed of the
+            // line.
             let by = bracket.error + bracket.error;
             let eroded = bracket.body.eroded_line_crossing(line.foot, line.direction, by);
             match eroded {

@@ -1,10 +1,11 @@
-//! The plain case of a closed form of which the shape does not say how certain it is, and of linear casts: the ray comes from outside and
-//! crosses a plane at a definite angle, or passes the body by a definite distance.
+//! The plain case of a closed form of which the shape does not say how certain it is, and of linear casts: the ray
+//! comes from outside and crosses a plane at a definite angle, or passes the body by a definite distance.
 //!
-//! What is certain rests on the same as in a [`Bracket`](super::bracket::Bracket): a miss and a lower bound on the plane of one support
-//! point, an upper bound on a ball that rolls within the body, or on where the line enters what is left of it without two errors. But nothing is prepared for a search:
-//! lengths stay in the world's unit, the direction keeps its length, and a source near the body is the base of the line. Whatever is
-//! in doubt is left to the bracket. `docs/ray-cast.md` derives the bounds.
+//! What is certain rests on the same as in a [`Bracket`](super::bracket::Bracket): a miss and a lower bound on the
+//! plane of one support point, an upper bound on a ball that rolls within the body, or on where the line enters what is
+//! left of it without two errors. But nothing is prepared for a search: lengths stay in the world's unit, the direction
+//! keeps its length, and a source near the body is the base of the line. Whatever is in doubt is left to the bracket.
+//! `docs/ray-cast.md` derives the bounds.
 
 use convex_support::numerics::range::is_comfortable;
 use convex_support::numerics::twofold::foot_from;
@@ -21,17 +22,17 @@ use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCastOptions, Status};
 /// From how many sizes away a line is looked at, at most.
 const NEAR: f64 = 8.0;
 
-/// What a plane that supports the body is wrong by at most where the line meets the body, in units of ε times the size, beside the error
-/// of the support points.
+/// What a plane that supports the body is wrong by at most where the line meets the body, in units of ε times the size,
+/// beside the error of the support points.
 ///
-/// With `u = ε/2`, and a base at most 8 sizes away: the offset from the origin loses `8u` of the size, the step along the line `9u` and
-/// its sum `u`; the difference from a support point `2u`, its product with the normal `6u`; the length of that, times the radius, and
-/// the last difference `4u`. In all `30u`.
+/// With `u = ε/2`, and a base at most 8 sizes away: the offset from the origin loses `8u` of the size, the step along
+/// the line `9u` and its sum `u`; the difference from a support point `2u`, its product with the normal `6u`; the
+/// length of that, times the radius, and the last difference `4u`. In all `30u`.
 const PLANE_ERROR: f64 = 16.0;
 
-/// The same of a plane beside the line, where it is looked at from the base: the offset loses `8u`, the products of base and support
-/// point with the axis `27u`, their difference `9u`, the product of the axis and the direction, times how far the line is seen, `47u`,
-/// and sums, radius and squares `21u`. In all `112u`.
+/// The same of a plane beside the line, where it is looked at from the base: the offset loses `8u`, the products of
+/// base and support point with the axis `27u`, their difference `9u`, the product of the axis and the direction, times
+/// how far the line is seen, `47u`, and sums, radius and squares `21u`. In all `112u`.
 const AXIS_ERROR: f64 = 64.0;
 
 /// The least cosine at which a plane is crossed: what its product of two vectors loses is nothing beside it.
@@ -105,7 +106,8 @@ struct BasedLine<V: Vector> {
 impl<V: Vector> BasedLine<V> {
     /// The hit at the entry of a crossing, or the miss of a ray that ends before it.
     ///
-    /// The body is behind the plane `n·y = n·p + r|n|`, and a point `x` of the line that is before it by `a` crosses it after `a/(−n·d)`.
+    /// The body is behind the plane `n·y = n·p + r|n|`, and a point `x` of the line that is before it by `a` crosses it
+    /// after `a/(−n·d)`.
     #[inline(always)]
     fn hit<B: Body<Vector = V>>(
         &self,
@@ -157,11 +159,12 @@ impl<V: Vector> BasedLine<V> {
         })
     }
 
-    /// Where the line is in the body, at the latest, that enters it at `entry` through a plane that is wrong by an `error`, as it comes
-    /// nearer to it by `slope` with each unit of its parameter.
+    /// Where the line is in the body, at the latest, that enters it at `entry` through a plane that is wrong by an
+    /// `error`, as it comes nearer to it by `slope` with each unit of its parameter.
     ///
-    /// A ball that rolls within the body tells, where the line comes in so steeply that it [soon is in it](super::bracket::DEEP);
-    /// or else what is left of the body without two errors: one moves the body, and one what is computed of the line.
+    /// A ball that rolls within the body tells, where the line comes in so steeply that it [soon is in
+    /// it](super::bracket::DEEP); or else what is left of the body without two errors: one moves the body, and one what
+    /// is computed of the line.
     #[inline(always)]
     fn certain_entry<B: Body<Vector = V>>(
         &self,
@@ -184,8 +187,8 @@ impl<V: Vector> BasedLine<V> {
 
     /// The miss by a plane across an axis, which is across the line to rounding.
     ///
-    /// Of the line only what is in the ball about the body counts, and that is at most `NEAR + 1` sizes from the base: there it comes
-    /// no nearer to the plane than by that times `|n·d|/|d|`.
+    /// Of the line only what is in the ball about the body counts, and that is at most `NEAR + 1` sizes from the base:
+    /// there it comes no nearer to the plane than by that times `|n·d|/|d|`.
     #[inline(always)]
     fn miss<B: Body<Vector = V>>(
         &self,
@@ -196,7 +199,8 @@ impl<V: Vector> BasedLine<V> {
     ) -> Option<Cast<V>> {
         let number = V::Scalar::from_f64;
         let reach = self.size * number(NEAR + 1.0) / self.longest;
-        // A ray that ends before the ball, or begins behind it, is apart by another plane: far from here this one is not known.
+        // A ray that ends before the ball, or begins behind it, is apart by another plane: far from here this one is
+        // not known.
         let is_there = (self.base + reach >= V::Scalar::ZERO) & (self.base - reach <= options.max_lambda);
         if !is_there {
             return None;

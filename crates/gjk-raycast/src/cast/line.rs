@@ -24,8 +24,8 @@ impl<V: Vector> Line<V> {
     }
 }
 
-/// A length in the unit of a body that is larger than its size, which is between one and two of them, or four where the unit is
-/// as large as it can be.
+/// A length in the unit of a body that is larger than its size, which is between one and two of them, or four where the
+/// unit is as large as it can be.
 const BEYOND: f64 = 8.0;
 
 /// Which part of a ray is cast.

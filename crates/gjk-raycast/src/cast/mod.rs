@@ -27,8 +27,8 @@ use outline::bound_entry;
 use portal::portal;
 pub(crate) use start::settle_start;
 
-/// Casts a part of a ray, given in the world, against a body. Parameters are counted from where that begins. The direction may be
-/// wrong by some part of its length.
+/// Casts a part of a ray, given in the world, against a body. Parameters are counted from where that begins. The
+/// direction may be wrong by some part of its length.
 #[inline(never)]
 pub(crate) fn cast<V: Vector>(
     body: &mut dyn Body<Vector = V>,
@@ -135,7 +135,8 @@ fn conclude<V: Vector>(bracket: &Bracket<'_, V>, found: Result<RayContact<V>, St
                 let lower = if lower > max_lambda { infinity } else { lower };
                 (Outcome::Miss(Miss { axis }), (lower, infinity), Status::Converged)
             } else {
-                // What may be hit anywhere, or not at all, may be hit before the end; and there is no number for a λ that overflows.
+                // What may be hit anywhere, or not at all, may be hit before the end; and there is no number for a λ
+                // that overflows.
                 (Outcome::Undecided, (if lower < infinity { lower } else { zero }, infinity), Status::Stalled)
             }
         }

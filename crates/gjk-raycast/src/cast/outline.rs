@@ -1,16 +1,16 @@
 //! The outline of a body as it is seen along the line, by which an entry is bounded that may be at an edge, or a graze.
 //!
-//! Let `τ(x)` be where the line moved by `x` across itself enters the body: a convex function, whose graph is the body's lower hull. In a
-//! polygon of points of the body it is at most the height `h` of the highest. Where a point of the body is known at `(x', μ)`, no farther
-//! than `e` from the line, and the sides of the polygon are farther than `m`, zero is between `x'` and a point of the polygon on the other
-//! side, at least `m` away, so that
+//! Let `τ(x)` be where the line moved by `x` across itself enters the body: a convex function, whose graph is the
+//! body's lower hull. In a polygon of points of the body it is at most the height `h` of the highest. Where a point of
+//! the body is known at `(x', μ)`, no farther than `e` from the line, and the sides of the polygon are farther than
+//! `m`, zero is between `x'` and a point of the polygon on the other side, at least `m` away, so that
 //!
 //! ```text
 //! τ(0) ≤ μ + (h − μ)·e/(e + m).
 //! ```
 //!
-//! All points may be wrong by `e`, too: that raises the right side by `e`, and is taken from the distance of the sides. Of the polygon
-//! little matters but that it is wide, so that its corners may be support points across the line.
+//! All points may be wrong by `e`, too: that raises the right side by `e`, and is taken from the distance of the sides.
+//! Of the polygon little matters but that it is wide, so that its corners may be support points across the line.
 //!
 //! Where the outline itself is within an error of the line, the ray may miss.
 //!
@@ -32,8 +32,8 @@ const WIDE: f64 = 0.0625;
 /// How many errors later than the known point the bound may be that a triangle gives, not to look for a wide polygon.
 const LATE: f64 = 32.0;
 
-/// Moves the upper bound of a contact ahead of the source, that may be at an edge or a graze, to where the ray is in the body whatever
-/// the errors, if the body is seen around the line by more than those.
+/// Moves the upper bound of a contact ahead of the source, that may be at an edge or a graze, to where the ray is in
+/// the body whatever the errors, if the body is seen around the line by more than those.
 #[cold]
 #[inline(never)]
 pub(super) fn bound_entry<V: Vector>(bracket: &mut Bracket<'_, V>) {
@@ -81,8 +81,8 @@ impl<V: Vector> View<V> {
         polygon
     }
 
-    /// A wide polygon of support points across the line, or one with a side that the outline is known to be near at; `None` where no more
-    /// points can be had.
+    /// A wide polygon of support points across the line, or one with a side that the outline is known to be near at;
+    /// `None` where no more points can be had.
     fn look_around(&self, bracket: &mut Bracket<'_, V>, error: V::Scalar) -> Option<Polygon<V::Scalar>> {
         let radius = bracket.radius;
         let mut support = |toward: Across<V::Scalar>| {
@@ -203,8 +203,8 @@ impl<S: Scalar> Polygon<S> {
         self.sides().iter().any(|side| side.is_outermost && side.distance <= error + error)
     }
 
-    /// Where the line is in the body, at the latest, that has a point at `mu` to within an error; `None` where the polygon is not around
-    /// it by more than that.
+    /// Where the line is in the body, at the latest, that has a point at `mu` to within an error; `None` where the
+    /// polygon is not around it by more than that.
     fn latest_entry(&self, mu: S, error: S) -> Option<S> {
         let nearest = self.sides[self.nearest_of(|_| true)?];
         // NaN is no distance.

@@ -1,8 +1,9 @@
 //! Proofs of the brackets of answers, for checkers that do not trust the solver (`docs/certificates.md`).
 //!
-//! A bracket has two ends, and a few numbers prove each. The lower end is proved by a plane that has all of the set `C` behind it,
-//! where `C` is the target of a ray, or `A − B`. The upper end is proved by points of `C`, each given by a direction along which it is
-//! farthest. Both are computed here after the answer, from the original shapes, so that a query without a certificate takes no longer.
+//! A bracket has two ends, and a few numbers prove each. The lower end is proved by a plane that has all of the set `C`
+//! behind it, where `C` is the target of a ray, or `A − B`. The upper end is proved by points of `C`, each given by a
+//! direction along which it is farthest. Both are computed here after the answer, from the original shapes, so that a
+//! query without a certificate takes no longer.
 
 mod points;
 
@@ -16,15 +17,18 @@ use crate::{Distance, Intersection, LinearCast, Motion, Outcome, Ray, RayCast};
 
 /// What proves a bracket: a plane for its lower end, support points for its upper end.
 ///
-/// Let `C` be the target of a ray, or `A − B` for two shapes, and let `K ⊕ B(r)` be its [core](convex_support::Core) and radius.
+/// Let `C` be the target of a ray, or `A − B` for two shapes, and let `K ⊕ B(r)` be its [core](convex_support::Core)
+/// and radius.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Certificate<V: Vector> {
-    /// A normal of a plane that has the target behind it, and the start of the ray, or all of the ray, before it. For two shapes the normal
-    /// points from `b` to `a`, and the plane has `b` behind it and `a` before it. `None` if the answer claims no lower bound.
+    /// A normal of a plane that has the target behind it, and the start of the ray, or all of the ray, before it. For
+    /// two shapes the normal points from `b` to `a`, and the plane has `b` behind it and `a` before it. `None` if the
+    /// answer claims no lower bound.
     pub plane: Option<V>,
-    /// Points of the core `K`, at most one more than there are dimensions. Their weighted mean is the closest point found, or the point
-    /// where the ray enters. The weights are not negative, and their sum is 1 to rounding. Empty if the answer claims no upper bound.
+    /// Points of the core `K`, at most one more than there are dimensions. Their weighted mean is the closest point
+    /// found, or the point where the ray enters. The weights are not negative, and their sum is 1 to rounding. Empty if
+    /// the answer claims no upper bound.
     pub points: Vec<WeightedSupport<V>>,
 }
 
@@ -38,8 +42,8 @@ impl<V: Vector> Certificate<V> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WeightedSupport<V> {
-    /// The point is the farthest of the core along this direction, which may have any length. It has few decimals, and is not along the
-    /// normal of a face, so that it identifies one corner in whatever precision it is used.
+    /// The point is the farthest of the core along this direction, which may have any length. It has few decimals, and
+    /// is not along the normal of a face, so that it identifies one corner in whatever precision it is used.
     pub direction: V,
     /// Its weight; in double precision, as it is measured from the numbers of the shape.
     pub weight: f64,
@@ -69,7 +73,8 @@ where
     Certificate { plane, points: points_of_pair(a, b, DVec3::ZERO, answer.normal, None) }
 }
 
-/// The certificate of [`intersects`](crate::intersects): a plane where the shapes are apart, and points where they overlap.
+/// The certificate of [`intersects`](crate::intersects): a plane where the shapes are apart, and points where they
+/// overlap.
 #[must_use]
 pub fn intersection_certificate<A, B>(a: &A, b: &B, answer: &Intersection<A::Vector>) -> Certificate<A::Vector>
 where
@@ -142,7 +147,8 @@ where
     Certificate { plane: hit.normal, points }
 }
 
-/// The axis of a miss, leaning along the ray where it is across it to rounding: that of a plane before all of a ray without end.
+/// The axis of a miss, leaning along the ray where it is across it to rounding: that of a plane before all of a ray
+/// without end.
 fn leaning<V: Vector>(axis: V, direction: DVec3) -> V {
     let (Some(n), Some(d)) = (wide(axis).try_normalize(), direction.try_normalize()) else { return axis };
     let rounding = V::Scalar::EPSILON.as_f64();

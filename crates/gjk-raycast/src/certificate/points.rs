@@ -1,8 +1,8 @@
 //! Points of a core whose weighted mean is a given point, each identified by the direction along which it is farthest.
 //!
-//! The given point is on the core, and the normal there is known. The normal itself does not identify a point if all of a face is farthest
-//! along it. So the search looks along directions that are turned from it a little, towards each corner of the face. How far they have
-//! to be turned depends on the surface, and is found by trial.
+//! The given point is on the core, and the normal there is known. The normal itself does not identify a point if all of
+//! a face is farthest along it. So the search looks along directions that are turned from it a little, towards each
+//! corner of the face. How far they have to be turned depends on the surface, and is found by trial.
 
 use alloc::vec::Vec;
 
@@ -41,9 +41,10 @@ struct FoundPoint<V> {
     point: DVec3,
 }
 
-/// The angles by which directions are turned away from a normal, from large to small. A flat face shows one corner at a time only if the angle
-/// is larger than rounding. On a curved surface the points found leave it by half the square of the angle. A polytope of many nearly
-/// parallel faces shows only the face of the normal if the angle is smaller than those between its faces.
+/// The angles by which directions are turned away from a normal, from large to small. A flat face shows one corner at a
+/// time only if the angle is larger than rounding. On a curved surface the points found leave it by half the square of
+/// the angle. A polytope of many nearly parallel faces shows only the face of the normal if the angle is smaller than
+/// those between its faces.
 fn turns<S: Scalar>() -> impl Iterator<Item = f64> {
     let mut turn = 8.0;
     core::iter::from_fn(move || {
@@ -84,7 +85,8 @@ pub(super) fn points<V: Vector>(support: &mut Support<'_, V>, seen: &Seen) -> Ve
     }
     let is_outside = best.left > 0.0 && normal.is_none() && seen.along.is_some();
     if let Some(outward) = best.simplex.mean_direction().filter(|_| is_outside) {
-        // The ray begins on the boundary, to rounding, and not inside; the mean of the directions found is about the normal there.
+        // The ray begins on the boundary, to rounding, and not inside; the mean of the directions found is about the
+        // normal there.
         let (radius, size) = (seen.radius * scale, seen.size * scale);
         return points(support, &Seen { radius, size, normal: Some(outward), ..seen });
     }
@@ -135,8 +137,8 @@ impl<V: Vector> WeightedPoints<V> {
         self.found.into_iter().zip(self.weights).map(|(f, weight)| WeightedSupport { direction: f.direction, weight })
     }
 
-    /// Keeps the face closest to zero, with its weights, after the projection `seen` into so many dimensions. Returns the projected vector
-    /// to its closest point.
+    /// Keeps the face closest to zero, with its weights, after the projection `seen` into so many dimensions. Returns
+    /// the projected vector to its closest point.
     fn reduce(&mut self, dimension: usize, seen: impl Fn(DVec3) -> DVec3) -> Option<DVec3> {
         let points: Vec<DVec3> = self.found.iter().map(|f| seen(f.point)).collect();
         let closest = nearest_face(&points, dimension)?;
@@ -184,9 +186,9 @@ struct PointSearch<'a, 's, V> {
 const MOST_STEPS: usize = 64;
 
 impl<V: Vector> PointSearch<'_, '_, V> {
-    /// The support point along a direction. With little care the direction is turned a little further, so that it is not by accident the
-    /// normal of a face, and rounded to few decimals, none of them zero. With much care, for thin bodies, it is hardly turned, one way or
-    /// the other.
+    /// The support point along a direction. With little care the direction is turned a little further, so that it is
+    /// not by accident the normal of a face, and rounded to few decimals, none of them zero. With much care, for thin
+    /// bodies, it is hardly turned, one way or the other.
     fn look(&mut self, direction: DVec3, care: Care) -> FoundPoint<V> {
         let aside = if V::DIM == 3 { DVec3::new(0.62, -0.37, 0.69) } else { DVec3::new(0.62, -0.78, 0.0) };
         let turned = |by: f64| direction + aside * (self.turn * by);
@@ -205,9 +207,9 @@ impl<V: Vector> PointSearch<'_, '_, V> {
         FoundPoint { direction, point: (self.support)(direction) / self.scale }
     }
 
-    /// Looks for points around zero along directions near the unit vector `around`. It runs GJK on the projection of the core along the ray,
-    /// or along the normal if there is no ray or a radius has to be bridged. Returns how far the mean of the points found is from zero in
-    /// this projection, and behind the plane of the normal.
+    /// Looks for points around zero along directions near the unit vector `around`. It runs GJK on the projection of
+    /// the core along the ray, or along the normal if there is no ray or a radius has to be bridged. Returns how far
+    /// the mean of the points found is from zero in this projection, and behind the plane of the normal.
     fn around(&mut self, around: DVec3, normal: DVec3, seen: &Seen) -> f64 {
         let ray = seen.along.filter(|_| seen.radius == 0.0).and_then(DVec3::try_normalize);
         let axis = ray.unwrap_or(normal);
@@ -248,8 +250,8 @@ impl<V: Vector> PointSearch<'_, '_, V> {
         left + normal.dot(support - self.simplex.mean()).max(0.0)
     }
 
-    /// Adds points on the sides of a corner or an edge that the ray runs through, since the ray is certainly in the body only inside the
-    /// simplex with these points. They have no weight.
+    /// Adds points on the sides of a corner or an edge that the ray runs through, since the ray is certainly in the
+    /// body only inside the simplex with these points. They have no weight.
     fn widen(&mut self, normal: DVec3, [u, w]: [DVec3; 2]) {
         let sides = match *self.simplex.found.as_slice() {
             [a, b] if V::DIM == 3 => {
@@ -269,8 +271,8 @@ impl<V: Vector> PointSearch<'_, '_, V> {
         }
     }
 
-    /// Looks by GJK for a simplex that contains zero, or comes within the radius of it. Returns zero if there is one, and otherwise the distance of
-    /// its mean from zero.
+    /// Looks by GJK for a simplex that contains zero, or comes within the radius of it. Returns zero if there is one,
+    /// and otherwise the distance of its mean from zero.
     fn within(&mut self, radius: f64) -> f64 {
         let (mut toward, mut care) = (DVec3::X, Care::Little);
         let mut least = f64::INFINITY;

@@ -15,8 +15,8 @@ const MAX_CORNERS: usize = MAX_POINTS - 1;
 /// What the rounding of a normal is, in ε, where the edges it is made of are across one another.
 const TILT: f64 = 8.0;
 
-/// The sine of the angle between two edges below which the normal of a facet is computed with more care: at most this, and where distances
-/// need not be known to the last digit so many ε, in units of what they are to be known to.
+/// The sine of the angle between two edges below which the normal of a facet is computed with more care: at most this,
+/// and where distances need not be known to the last digit so many ε, in units of what they are to be known to.
 const ACUTE: f64 = 0.125;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
@@ -51,14 +51,15 @@ pub(super) struct Facet<V: Vector> {
 
 /// The convex hull of support points, by its vertices and facets.
 ///
-/// A new point replaces the facets that it is beyond by those between it and their horizon. Since that is decided exactly, the
-/// facets bound a convex polytope at any time, however thin, and there is nothing to repair: a point in a facet's plane is not
-/// beyond it, and none of the new facets is without area.
+/// A new point replaces the facets that it is beyond by those between it and their horizon. Since that is decided
+/// exactly, the facets bound a convex polytope at any time, however thin, and there is nothing to repair: a point in a
+/// facet's plane is not beyond it, and none of the new facets is without area.
 ///
 /// # What it proves
-/// The facets are a closed surface by construction. Where zero is below all of them, each covers a part of the directions about
-/// zero, with one orientation, so that they cover them all; and so the ball about zero that is nowhere above them lies within the
-/// polytope. Any unit vector `n` proves of a facet with corners `p` that none of its points is nearer to zero than `min n·p`.
+/// The facets are a closed surface by construction. Where zero is below all of them, each covers a part of the
+/// directions about zero, with one orientation, so that they cover them all; and so the ball about zero that is nowhere
+/// above them lies within the polytope. Any unit vector `n` proves of a facet with corners `p` that none of its points
+/// is nearer to zero than `min n·p`.
 #[derive(Debug)]
 pub(super) struct Boundary<V: Vector> {
     vertices: SmallVec<[Vertex<V>; 64]>,
@@ -69,7 +70,8 @@ pub(super) struct Boundary<V: Vector> {
     /// The same of the ridge that ends there.
     ends: SmallVec<[u16; 64]>,
     facets: SmallVec<[Facet<V>; 128]>,
-    /// A lower bound on the distance of zero from each facet, negative where zero is beyond it; infinite for what is no facet any more.
+    /// A lower bound on the distance of zero from each facet, negative where zero is beyond it; infinite for what is no
+    /// facet any more.
     inner: SmallVec<[V::Scalar; 128]>,
     /// The squared sine of the angle between two edges below which a normal is computed with more care.
     acute: f64,
@@ -81,8 +83,8 @@ pub(super) struct Boundary<V: Vector> {
     fresh: SmallVec<[Fresh; 256]>,
 }
 
-/// A facet that is to be, between the new vertex and a ridge of the horizon. Its corners are the new vertex and the ridge's, in this
-/// order; in 2D the ridge is one vertex.
+/// A facet that is to be, between the new vertex and a ridge of the horizon. Its corners are the new vertex and the
+/// ridge's, in this order; in 2D the ridge is one vertex.
 #[derive(Clone, Copy, Debug)]
 struct Fresh {
     ridge: [u16; MAX_CORNERS - 1],
@@ -94,7 +96,8 @@ struct Fresh {
 }
 
 impl<V: Vector> Boundary<V> {
-    /// No polytope yet. The distances of its facets are to be known to `accuracy`, relative to its size, or as well as may be.
+    /// No polytope yet. The distances of its facets are to be known to `accuracy`, relative to its size, or as well as
+    /// may be.
     pub(super) fn new(accuracy: f64) -> Self {
         let acute = (ROUNDING / accuracy).min(ACUTE);
         Self {
@@ -112,8 +115,8 @@ impl<V: Vector> Boundary<V> {
         }
     }
 
-    /// Begins with the simplex of `DIM + 1` points. `false`, and there is none, where it is no thicker than the given length, or has no
-    /// volume.
+    /// Begins with the simplex of `DIM + 1` points. `false`, and there is none, where it is no thicker than the given
+    /// length, or has no volume.
     pub(super) fn begin(&mut self, points: &[Vertex<V>], thickness: V::Scalar) -> bool {
         // Facet k is the one without vertex k, seen from outside where the last point is behind the last facet.
         let faces: &[[u16; MAX_CORNERS]] = if V::DIM == 2 {
@@ -173,7 +176,8 @@ impl<V: Vector> Boundary<V> {
     pub(super) fn nearest(&self) -> (usize, V::Scalar) {
         let inner = self.inner.as_slice();
         let infinity = V::Scalar::infinity();
-        // In four lanes, which the compiler makes one instruction of; which of the facets it is is looked for afterwards.
+        // In four lanes, which the compiler makes one instruction of; which of the facets it is is looked for
+        // afterwards.
         let mut lanes = [infinity; 4];
         let (fours, rest) = inner.as_chunks::<4>();
         for four in fours {
@@ -226,8 +230,8 @@ impl<V: Vector> Boundary<V> {
         most.0
     }
 
-    /// The least distance of zero from the planes of all facets, where each is less than computed by what `error` says of its
-    /// normal, and that is never more than `most`.
+    /// The least distance of zero from the planes of all facets, where each is less than computed by what `error` says
+    /// of its normal, and that is never more than `most`.
     pub(super) fn certain_inner(&self, error: impl Fn(V) -> V::Scalar, most: V::Scalar) -> V::Scalar {
         let mut least = V::Scalar::infinity();
         for (facet, &inner) in self.facets.iter().zip(&self.inner) {
@@ -239,8 +243,9 @@ impl<V: Vector> Boundary<V> {
         least
     }
 
-    /// Takes a facet for what it is and not for its plane, of which rounding leaves too little where it is a sliver: the direction of
-    /// its point nearest to zero bounds its distance as well. Whether that is more than what was known.
+    /// Takes a facet for what it is and not for its plane, of which rounding leaves too little where it is a sliver:
+    /// the direction of its point nearest to zero bounds its distance as well. Whether that is more than what was
+    /// known.
     pub(super) fn measure(&mut self, index: usize) -> bool {
         let corners = self.corner_points(index);
         let corners = &corners[..V::DIM];
@@ -264,8 +269,9 @@ impl<V: Vector> Boundary<V> {
 
     /// A facet that a point is beyond.
     ///
-    /// With zero inside, the facet by whose plane the point is the largest multiple of points of the polytope is an optimum of a
-    /// linear function on the dual polytope, so that a walk uphill from any facet finds it; it begins where the last point was added.
+    /// With zero inside, the facet by whose plane the point is the largest multiple of points of the polytope is an
+    /// optimum of a linear function on the dual polytope, so that a walk uphill from any facet finds it; it begins
+    /// where the last point was added.
     fn facet_below(&self, point: V) -> Option<usize> {
         let (facets, points, inner) = (self.facets.as_slice(), self.points.as_slice(), self.inner.as_slice());
         let multiple = |i: usize| facets[i].normal.dot(point) / inner[i];
@@ -290,7 +296,8 @@ impl<V: Vector> Boundary<V> {
         (0..facets.len()).find(|&i| inner[i].is_finite() && is_seen(&facets[i], points, point))
     }
 
-    /// Adds a point beyond the given facet. `false`, and nothing is changed, where it is not beyond it, or there are too many.
+    /// Adds a point beyond the given facet. `false`, and nothing is changed, where it is not beyond it, or there are
+    /// too many.
     pub(super) fn insert(&mut self, facet: usize, vertex: &Vertex<V>) -> bool {
         let is_full = self.vertices.len() >= usize::from(NONE / 4);
         if is_full || !is_seen(&self.facets[facet], &self.points, vertex.point) {
@@ -300,10 +307,11 @@ impl<V: Vector> Boundary<V> {
         self.replace(vertex, seen, count)
     }
 
-    /// Finds the facets that a point is beyond, beginning with one, and those that are to be between it and their horizon; how many
-    /// there are of both.
+    /// Finds the facets that a point is beyond, beginning with one, and those that are to be between it and their
+    /// horizon; how many there are of both.
     fn look(&mut self, facet: usize, point: V) -> (usize, usize) {
-        // There is room for all, so that none need be made in between: a horizon has at most two ridges more than facets before it.
+        // There is room for all, so that none need be made in between: a horizon has at most two ridges more than
+        // facets before it.
         let room = self.facets.len() + 2;
         if self.seen.len() < room {
             self.seen.resize(room + ROOM, NONE);
@@ -343,8 +351,9 @@ impl<V: Vector> Boundary<V> {
         (count, ridges)
     }
 
-    /// Puts the fresh facets in the places of those that were `seen`, and more where there are not enough, around the new vertex.
-    /// `false`, and nothing is changed, where the horizon is not one cycle, to which only numbers that underflow can lead.
+    /// Puts the fresh facets in the places of those that were `seen`, and more where there are not enough, around the
+    /// new vertex. `false`, and nothing is changed, where the horizon is not one cycle, to which only numbers that
+    /// underflow can lead.
     fn replace(&mut self, vertex: &Vertex<V>, seen: usize, count: usize) -> bool {
         if !self.is_cycle(count) {
             return false;
@@ -419,8 +428,8 @@ impl<V: Vector> Facet<V> {
     #[inline(always)]
     fn new(points: &[V], corners: [u16; MAX_CORNERS], across: [u16; MAX_CORNERS], acute: f64) -> (Self, V::Scalar) {
         let at: [V; MAX_CORNERS] = core::array::from_fn(|i| points[usize::from(corners[i.min(V::DIM - 1)])]);
-        // Of a facet that is nearly without area no more is known than that its corners are near to one another, or to a line:
-        // the direction of one of them bounds its distance well enough, and tells nothing of what is beyond.
+        // Of a facet that is nearly without area no more is known than that its corners are near to one another, or to
+        // a line: the direction of one of them bounds its distance well enough, and tells nothing of what is beyond.
         let (normal, tilt) = if V::DIM == 2 { edge_normal([at[0], at[1]]) } else { triangle_normal(at, acute) }
             .unwrap_or_else(|| (at[0].unit().unwrap_or_else(|| V::axis(0)), V::Scalar::infinity()));
         let least = |a: V::Scalar, b: V::Scalar| if b < a { b } else { a };
@@ -441,12 +450,12 @@ fn edge_normal<V: Vector>([a, b]: [V; 2]) -> Option<(V, V::Scalar)> {
     Some((V::from_fn(|i| turned[i]).unit()?, V::Scalar::from_f64(TILT) * V::Scalar::EPSILON))
 }
 
-/// The unit normal of a triangle, counterclockwise as seen from where it points to, and what its rounding is for a point at unit
-/// distance: that is relative to the product of the lengths of two edges, which the mean of their squares is no less than. Double
-/// precision leaves none of it to `f32`.
+/// The unit normal of a triangle, counterclockwise as seen from where it points to, and what its rounding is for a
+/// point at unit distance: that is relative to the product of the lengths of two edges, which the mean of their squares
+/// is no less than. Double precision leaves none of it to `f32`.
 ///
-/// Any two edges will do, unless they are nearly along one another: the square of the sine of their angle less than `acute`. To choose the
-/// best two takes a processor as long as all the rest.
+/// Any two edges will do, unless they are nearly along one another: the square of the sine of their angle less than
+/// `acute`. To choose the best two takes a processor as long as all the rest.
 #[inline(always)]
 fn triangle_normal<V: Vector>([a, b, c]: [V; 3], acute: f64) -> Option<(V, V::Scalar)> {
     let (u, v) = (edge(a, b), edge(a, c));
@@ -478,8 +487,8 @@ fn careful_normal<V: Vector>([a, b, c]: [V; 3]) -> Option<(V, V::Scalar)> {
     (area > LEAST).then(|| unit_normal(normal, area, sum))
 }
 
-/// The unit vector along the product of two edges of which the squared length and the sum of the squared lengths of the edges are given,
-/// and its rounding.
+/// The unit vector along the product of two edges of which the squared length and the sum of the squared lengths of the
+/// edges are given, and its rounding.
 #[inline(always)]
 fn unit_normal<V: Vector>(normal: Vec3, area: f64, sum: f64) -> (V, V::Scalar) {
     let per = area.sqrt().recip();

@@ -15,7 +15,8 @@ pub(crate) struct Clipped<S> {
     edge: Edge,
 }
 
-/// An edge of the overlap: of the clipped outline, by the numbers of its ends, or the edge of the other with this index.
+/// An edge of the overlap: of the clipped outline, by the numbers of its ends, or the edge of the other with this
+/// index.
 #[derive(Clone, Copy, Debug)]
 enum Edge {
     Own(u32, u32),
@@ -25,9 +26,9 @@ enum Edge {
 /// The corners of an overlap.
 pub(crate) type ClippedCorners<S> = SmallVec<[Clipped<S>; 32]>;
 
-/// The overlap of two outlines by Sutherland's and Hodgman's method: the first is cut along the edges of the second, one after the
-/// other. A segment is clipped by a polygon, and two segments by each other where they are parallel. Empty where there is none. An outline
-/// without corners is the whole plane.
+/// The overlap of two outlines by Sutherland's and Hodgman's method: the first is cut along the edges of the second,
+/// one after the other. A segment is clipped by a polygon, and two segments by each other where they are parallel.
+/// Empty where there is none. An outline without corners is the whole plane.
 pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> ClippedCorners<S> {
     let mut overlap = corners_of(&own.corners);
     let mut rest = ClippedCorners::new();
@@ -72,8 +73,8 @@ fn corners_of<S: Scalar>(corners: &[Corner<S>]) -> ClippedCorners<S> {
     corners.iter().enumerate().map(corner).collect()
 }
 
-/// Leaves of a polygon or a segment what is where `inside` is not negative. The cut is along the part `along` of the other outline, which is
-/// its edge of index `index`.
+/// Leaves of a polygon or a segment what is where `inside` is not negative. The cut is along the part `along` of the
+/// other outline, which is its edge of index `index`.
 fn cut<S: Scalar>(
     polygon: &mut ClippedCorners<S>,
     kept: &mut ClippedCorners<S>,

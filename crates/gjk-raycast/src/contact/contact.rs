@@ -28,10 +28,10 @@ use num_traits::Float as _;
 /// ```
 ///
 /// The features of both shapes that face each other, each a vertex, an edge or a face
-/// ([`core_support_feature`](SupportMap::core_support_feature)), are clipped against each other in the plane of contact. A corner of their
-/// overlap belongs to the contact if the surfaces overlap there or are within what is asked for, but for a thousandth of the smaller shape's
-/// size. At most four are kept, in 2D two: those that span the overlap well, and one as deep as the shapes are, but for a thousandth of the
-/// size.
+/// ([`core_support_feature`](SupportMap::core_support_feature)), are clipped against each other in the plane of
+/// contact. A corner of their overlap belongs to the contact if the surfaces overlap there or are within what is asked
+/// for, but for a thousandth of the smaller shape's size. At most four are kept, in 2D two: those that span the overlap
+/// well, and one as deep as the shapes are, but for a thousandth of the size.
 pub fn contact<A, B>(
     a: &A,
     b: &B,
@@ -45,11 +45,12 @@ where
     contact_of(a, b, within, options, &[])
 }
 
-/// [`contact`] of shapes that were in contact before: of the points of the `last` contact those are kept that still hold.
+/// [`contact`] of shapes that were in contact before: of the points of the `last` contact those are kept that still
+/// hold.
 ///
-/// A point is recognised by the numbers of its features. It is kept while the shapes are apart there by no more than twice the thousandth of
-/// their size that other points have, and while another one does not span the overlap much better. The last normal is the first
-/// [`axis`](SignedDistanceOptions::axis), if the options have none.
+/// A point is recognised by the numbers of its features. It is kept while the shapes are apart there by no more than
+/// twice the thousandth of their size that other points have, and while another one does not span the overlap much
+/// better. The last normal is the first [`axis`](SignedDistanceOptions::axis), if the options have none.
 pub fn contact_after<A, B>(
     last: &Contact<A::Vector>,
     a: &A,

@@ -13,10 +13,11 @@ use crate::observer::Observer;
 use crate::symmetric::Symmetric;
 use crate::unit::lost_to_underflow;
 
-/// What is lost of a point of the difference, in units of ε times the coordinates of the cores and of the offset of their origins.
+/// What is lost of a point of the difference, in units of ε times the coordinates of the cores and of the offset of
+/// their origins.
 ///
-/// A dot product with a unit vector counts in: its three products and two sums lose 1.5 of their magnitudes. The sums `a − b` and
-/// `a − b + o` lose 0.5 each.
+/// A dot product with a unit vector counts in: its three products and two sums lose 1.5 of their magnitudes. The sums
+/// `a − b` and `a − b + o` lose 0.5 each.
 const SUM: f64 = 2.6;
 const OFFSET: f64 = 2.1;
 
@@ -26,8 +27,8 @@ const SMOOTH: f64 = 1e-3;
 /// The cosine of the angle between a facet's normal and the way out, below which the normal leans towards the way.
 const NEAR_BY: f64 = 0.9;
 
-/// The part of the way from a facet's normal to the way out that is leaned, of facets with a corner where the way ends. With the whole of
-/// it, or with some of it at others, ellipsoids take more support points.
+/// The part of the way from a facet's normal to the way out that is leaned, of facets with a corner where the way ends.
+/// With the whole of it, or with some of it at others, ellipsoids take more support points.
 const LEAN: f64 = 0.8;
 
 /// A support point of the difference, and the points of both cores that it is made of.
@@ -39,7 +40,8 @@ pub(crate) struct Vertex<V> {
     pub(super) pair: PointPair<V>,
 }
 
-/// A plane that supports the difference, by the support point, which knows the outward unit normal that it was found along.
+/// A plane that supports the difference, by the support point, which knows the outward unit normal that it was found
+/// along.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WayOut<V: Vector> {
     /// The support value along it, which is negative where its plane separates the cores.
@@ -62,13 +64,15 @@ impl<V: Vector> WayOut<V> {
         self.u() * self.h - self.vertex.point
     }
 
-    /// The unit normal of a facet with these corners, leaned towards the way where that ends at one of them and at a smooth place.
+    /// The unit normal of a facet with these corners, leaned towards the way where that ends at one of them and at a
+    /// smooth place.
     ///
-    /// At a distance `x` from such a place, the ball of radius `h` about zero is `x²·(1/h − 1/R)/2` below the boundary of `K`, whose radius of
-    /// curvature is `R`, and a facet of size `s` at most `s²/8R`. So the facets that the proof needs may grow in proportion to `x`. The
-    /// support point along a facet's normal is above its middle, and halves it; one nearer to the way leaves a larger facet outside, so
-    /// that fewer lie between the way and the first facets. To second order a support point is beyond the facet if it is within the circle
-    /// through its corners, whose centre the normal leads to. Where the way ends at a corner, all of the way towards it is.
+    /// At a distance `x` from such a place, the ball of radius `h` about zero is `x²·(1/h − 1/R)/2` below the boundary
+    /// of `K`, whose radius of curvature is `R`, and a facet of size `s` at most `s²/8R`. So the facets that the proof
+    /// needs may grow in proportion to `x`. The support point along a facet's normal is above its middle, and halves
+    /// it; one nearer to the way leaves a larger facet outside, so that fewer lie between the way and the first facets.
+    /// To second order a support point is beyond the facet if it is within the circle through its corners, whose centre
+    /// the normal leads to. Where the way ends at a corner, all of the way towards it is.
     pub(super) fn leaned(&self, normal: V, corners: &[V]) -> V {
         let (u, point) = (self.u(), self.vertex.point);
         let aside = self.rest().length_squared();
@@ -102,8 +106,8 @@ pub(crate) struct Cores<'a, V: Vector> {
     pub(crate) iterations: usize,
 }
 
-/// How far the points of the difference may be from those they stand for, in the unit: what the shapes say of their own, and what
-/// is lost here, coordinate by coordinate.
+/// How far the points of the difference may be from those they stand for, in the unit: what the shapes say of their
+/// own, and what is lost here, coordinate by coordinate.
 pub(crate) struct Uncertainty<V: Vector> {
     shapes: [Rounding<V>; 2],
     lost: V,
@@ -143,16 +147,16 @@ impl<V: Vector> Uncertainty<V> {
         self.shapes.iter().fold(self.lost.norm(), |sum, shape| sum + shape.error_length)
     }
 
-    /// A bound on the length of what a point of the difference stands for, which is at `length` from zero and wrong by `along` in its
-    /// own direction.
+    /// A bound on the length of what a point of the difference stands for, which is at `length` from zero and wrong by
+    /// `along` in its own direction.
     #[inline(always)]
     pub(crate) fn greatest_length(&self, length: V::Scalar, along: V::Scalar) -> V::Scalar {
         greatest_length(length + along, self.length())
     }
 }
 
-/// How far points of the difference of two cores may be from those they stand for, as a length, in the world's unit; the same as of
-/// [`Uncertainty`], since no sum of products of coordinates is more than the product of the lengths.
+/// How far points of the difference of two cores may be from those they stand for, as a length, in the world's unit;
+/// the same as of [`Uncertainty`], since no sum of products of coordinates is more than the product of the lengths.
 #[inline(always)]
 pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(pair: &Pair<'_, T>) -> V::Scalar {
     let epsilon: V::Scalar = Scalar::EPSILON;
@@ -165,15 +169,15 @@ pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(pair: &
     pair.error() + of_sum + of_offset
 }
 
-/// A bound on the length of what is as long as `length` along a direction and wrong by `error` across: of √(l² + e²), which l + e²/2l is no
-/// less than, nothing overflows.
+/// A bound on the length of what is as long as `length` along a direction and wrong by `error` across: of √(l² + e²),
+/// which l + e²/2l is no less than, nothing overflows.
 #[inline(always)]
 fn greatest_length<S: Scalar>(length: S, error: S) -> S {
     if error < length { length + error * (error / length) } else { length + error }
 }
 
-/// What a signed distance in the world's unit loses: unit vectors are so to 2ε, and the sum of the radii and the two sums that the radii
-/// and the length go into round to half of that.
+/// What a signed distance in the world's unit loses: unit vectors are so to 2ε, and the sum of the radii and the two
+/// sums that the radii and the length go into round to half of that.
 #[inline(always)]
 pub(super) fn slack<S: Scalar>(signed_distance: S, radius: S) -> S {
     S::from_f64(3.0) * S::EPSILON * (signed_distance.abs() + radius)
@@ -215,8 +219,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         }
     }
 
-    /// Asks the shapes how well they know their points, coordinate by coordinate, which takes longer than many a distance. Of a floor that
-    /// lies flat it has nothing to do with its width.
+    /// Asks the shapes how well they know their points, coordinate by coordinate, which takes longer than many a
+    /// distance. Of a floor that lies flat it has nothing to do with its width.
     #[inline(never)]
     pub(crate) fn sharpen(&mut self) {
         // Of numbers out of range nothing is known, whatever the shapes say.
@@ -234,8 +238,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         self.uncertainty = Some(Uncertainty::new(shapes, offset, lost_in_sum(from, -to) * per_unit));
     }
 
-    /// Looks at the bodies once more if a search has left them nearer to contact than a few errors, as their distance does. What it tells, if
-    /// there is no more to know.
+    /// Looks at the bodies once more if a search has left them nearer to contact than a few errors, as their distance
+    /// does. What it tells, if there is no more to know.
     pub(super) fn look_near(&mut self, state: &mut Gjk<V>, max_iterations: usize) -> Option<NearContact<V>> {
         let frame = Frame { radius: self.radius() * self.frame.per_unit, ..self.frame };
         let left = max_iterations.saturating_sub(self.iterations);
@@ -249,14 +253,15 @@ impl<'a, V: Vector> Cores<'a, V> {
         self.near.filter(NearContact::is_closed)
     }
 
-    /// Whether the error at hand will do for cores that are so far apart: it is little beside that, and beside what is left of it
-    /// without the radii.
+    /// Whether the error at hand will do for cores that are so far apart: it is little beside that, and beside what is
+    /// left of it without the radii.
     pub(super) fn is_well_apart(&self, length: V::Scalar) -> bool {
         let gap = (length - self.radius() * self.frame.per_unit).abs();
         length.min(gap) > self.greatest_error() * Scalar::from_f64(NEAR)
     }
 
-    /// Makes the cores smaller by the balls that roll within them, which become a part of their radii; whether there are any.
+    /// Makes the cores smaller by the balls that roll within them, which become a part of their radii; whether there
+    /// are any.
     ///
     /// Cores that overlap by less than those radii are apart then, and their depth is a distance.
     pub(super) fn peel(&mut self) -> bool {
@@ -296,8 +301,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         point.is_finite().then_some(Vertex { point, along: direction, pair })
     }
 
-    /// The plane by which GJK knows best how far the difference reaches beyond zero: how far at most, and the unit vector across it into
-    /// the difference.
+    /// The plane by which GJK knows best how far the difference reaches beyond zero: how far at most, and the unit
+    /// vector across it into the difference.
     #[inline]
     pub(super) fn best_plane(&self, state: &Gjk<V>) -> Option<(V::Scalar, V)> {
         state.axis.unit().map(|n| (self.error_along(n) - state.lower, n))
@@ -318,8 +323,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         self.pair.is_curved()
     }
 
-    /// How far `n·p` may be from its true value, for a unit vector `n` and a point `p` of the difference; and by how much a
-    /// support point along `n` may fall short of the support value.
+    /// How far `n·p` may be from its true value, for a unit vector `n` and a point `p` of the difference; and by how
+    /// much a support point along `n` may fall short of the support value.
     #[inline]
     pub(crate) fn error_along(&self, n: V) -> V::Scalar {
         self.uncertainty.as_ref().map_or(self.error, |known| known.along(n)) + self.peeled_error
@@ -330,8 +335,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         self.uncertainty.as_ref().map_or(self.error, Uncertainty::length) + self.peeled_error
     }
 
-    /// A bound on the length of what a point `p` of the difference stands for. Along `p` it is as wrong as along any unit vector,
-    /// and what it is wrong by across hardly adds to the length.
+    /// A bound on the length of what a point `p` of the difference stands for. Along `p` it is as wrong as along any
+    /// unit vector, and what it is wrong by across hardly adds to the length.
     #[inline(always)]
     pub(crate) fn greatest_length(&self, p: V) -> V::Scalar {
         let error = self.greatest_error();
@@ -350,8 +355,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         self.error_along(n) * Scalar::from_f64(2.0)
     }
 
-    /// The way out of two parallelotopes that certainly overlap; a plane across `axis`, or across their offset, may tell them apart
-    /// at once.
+    /// The way out of two parallelotopes that certainly overlap; a plane across `axis`, or across their offset, may
+    /// tell them apart at once.
     #[inline(always)]
     pub(super) fn closed_form(&mut self, axis: Option<V>) -> Option<ClosedForm<V>> {
         let Pair { shapes, core_a, core_b, .. } = &self.pair;
@@ -385,8 +390,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         Gjk::new(first_direction(options.axis, self.frame.offset))
     }
 
-    /// GJK, until the distance of the cores is known, or they meet to rounding. The shortest vector is measured, unless it is no vector,
-    /// since zero is within a simplex of full dimension.
+    /// GJK, until the distance of the cores is known, or they meet to rounding. The shortest vector is measured, unless
+    /// it is no vector, since zero is within a simplex of full dimension.
     #[inline]
     pub(super) fn approach(
         &mut self,

@@ -10,11 +10,12 @@ use crate::gjk::{NEAR, rounding};
 use crate::observer::Observer;
 use crate::{Iterate, Status};
 
-/// The signed distance of shapes whose cores are apart by more than a few errors, and whose closest points are known in closed form, as of
-/// a ball and a box, whether the ball reaches the box or not. There is nothing to search, and all is done in the world's unit. Near contact
-/// they are looked at more closely.
+/// The signed distance of shapes whose cores are apart by more than a few errors, and whose closest points are known in
+/// closed form, as of a ball and a box, whether the ball reaches the box or not. There is nothing to search, and all is
+/// done in the world's unit. Near contact they are looked at more closely.
 ///
-/// The plane of the support point across the vector between those points is as far as they are, to rounding, or it is left to the search.
+/// The plane of the support point across the vector between those points is as far as they are, to rounding, or it is
+/// left to the search.
 #[inline(always)]
 pub(super) fn direct<T: Shapes + ?Sized>(
     shapes: &T,

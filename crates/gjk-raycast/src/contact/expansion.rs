@@ -12,8 +12,9 @@ use crate::gjk::Gjk;
 use crate::observer::Observer;
 use crate::{Iterate, Status};
 
-/// How wide a bracket may stay, relative to the way out, where it is as narrow as the tolerance; and how many more support points it is
-/// given to become so. A tolerance relative to the size may be many times as wide as the way is long, of bodies that barely touch.
+/// How wide a bracket may stay, relative to the way out, where it is as narrow as the tolerance; and how many more
+/// support points it is given to become so. A tolerance relative to the size may be many times as wide as the way is
+/// long, of bodies that barely touch.
 const LITTLE: f64 = 1e-6;
 const MORE: usize = 24;
 
@@ -23,7 +24,8 @@ const PATIENCE: usize = 4;
 /// The part of the support points that may be added to them for the points at the ends of the way.
 const FOR_ENDS: usize = 16;
 
-/// Since when the bracket is as narrow as the tolerance, when a lower way out was found last, and which; times in support points.
+/// Since when the bracket is as narrow as the tolerance, when a lower way out was found last, and which; times in
+/// support points.
 struct Closed<S> {
     from: usize,
     lowered: usize,
@@ -35,7 +37,8 @@ impl<S: Scalar> Closed<S> {
         Self { from: time, lowered: time, h }
     }
 
-    /// Whether all support points are spent, at a time when the way out is `h`; what is lower by no more than a `little` is none.
+    /// Whether all support points are spent, at a time when the way out is `h`; what is lower by no more than a
+    /// `little` is none.
     fn is_spent(&mut self, time: usize, h: S, little: S) -> bool {
         if self.h - h > little {
             (self.lowered, self.h) = (time, h);
@@ -50,8 +53,8 @@ pub(super) struct Expanded<V: Vector> {
     pub(super) way: WayOut<V>,
     /// Points of both cores at its ends.
     pub(super) ends: Ends<V>,
-    /// The ball of this radius about zero is certain to be within the difference. Of a negative number, zero is certain to be no
-    /// farther from it than its amount.
+    /// The ball of this radius about zero is certain to be within the difference. Of a negative number, zero is certain
+    /// to be no farther from it than its amount.
     pub(super) inner: V::Scalar,
     pub(super) status: Status,
     pub(super) unexpanded: usize,
@@ -59,16 +62,17 @@ pub(super) struct Expanded<V: Vector> {
 
 /// The search for the direction `u` in which the difference `K` of two cores reaches least far beyond zero.
 ///
-/// Every unit vector bounds the depth from above, by its support value `h(u)`; a polytope of support points with zero within bounds
-/// it from below, by the facet nearest to zero. So that facet is the only one worth a look: the support point along its normal
-/// either shows that it is of the boundary of `K`, and then it decides, or makes the polytope larger (van den Bergen, *Proximity
-/// queries and penetration depth computation on 3D game objects*, 2001). Zero need not be within the polytope at first. Facets that
-/// it is beyond are the nearest by their sign, and grow until it is within, or one of them separates it from `K`. Until then how far
-/// it is beyond their planes proves nothing, since two planes may meet at an angle as sharp as one likes; zero is no farther from `K`
-/// than the point that GJK has met, or than a point of the polytope.
+/// Every unit vector bounds the depth from above, by its support value `h(u)`; a polytope of support points with zero
+/// within bounds it from below, by the facet nearest to zero. So that facet is the only one worth a look: the support
+/// point along its normal either shows that it is of the boundary of `K`, and then it decides, or makes the polytope
+/// larger (van den Bergen, *Proximity queries and penetration depth computation on 3D game objects*, 2001). Zero need
+/// not be within the polytope at first. Facets that it is beyond are the nearest by their sign, and grow until it is
+/// within, or one of them separates it from `K`. Until then how far it is beyond their planes proves nothing, since two
+/// planes may meet at an angle as sharp as one likes; zero is no farther from `K` than the point that GJK has met, or
+/// than a point of the polytope.
 ///
-/// Where `K` is smooth its facets never are of the boundary, and the polytope is only to show that there is no shorter way; the
-/// way itself is found by Newton's method, in each basin that a facet leads to.
+/// Where `K` is smooth its facets never are of the boundary, and the polytope is only to show that there is no shorter
+/// way; the way itself is found by Newton's method, in each basin that a facet leads to.
 pub(super) fn expand<V: Vector>(
     cores: &mut Cores<'_, V>,
     state: &mut Gjk<V>,
@@ -147,7 +151,8 @@ pub(super) fn expand<V: Vector>(
                 may_lean = false;
                 continue;
             }
-            // The facet is of the boundary of K, and by the rounding of its plane farther in than the support value says.
+            // The facet is of the boundary of K, and by the rounding of its plane farther in than the support value
+            // says.
             if boundary.measure(nearest) {
                 continue;
             }

@@ -13,19 +13,21 @@ use super::{Contact, ContactPoint, SignedDistance};
 use crate::compiled_once::compiled_once;
 use crate::symmetric::{Across, axes_across, cross, dot};
 
-/// As a part of the smaller shape's size: how near a corner of one shape's feature a point is that counts as the corner.
+/// As a part of the smaller shape's size: how near a corner of one shape's feature a point is that counts as the
+/// corner.
 const NEAR: f64 = 1.0 / 64.0;
 
-/// As a part of the smaller shape's size: how much farther apart than asked for the shapes may be at a point, and how much less deep than the
-/// deepest all points may be. While shapes move by less than half of that, the manifold keeps its corners.
+/// As a part of the smaller shape's size: how much farther apart than asked for the shapes may be at a point, and how
+/// much less deep than the deepest all points may be. While shapes move by less than half of that, the manifold keeps
+/// its corners.
 const SLACK: f64 = 1.0 / 1024.0;
 
 /// The sine of the angle from which on segments cross in one point.
 const CROSSES: f64 = 0.25;
 
-/// The points where the features of both shapes that face each other overlap, at most four, and the closest points, if those are deeper; they
-/// are alone where one of the features is a vertex, or where edges cross. Of `last`, the points of the last manifold, those are preferred that
-/// still hold.
+/// The points where the features of both shapes that face each other overlap, at most four, and the closest points, if
+/// those are deeper; they are alone where one of the features is a vertex, or where edges cross. Of `last`, the points
+/// of the last manifold, those are preferred that still hold.
 pub(super) fn manifold<A, B>(
     a: &A,
     b: &B,
@@ -80,8 +82,8 @@ compiled_once! {
     }
 }
 
-/// [`manifold`] behind pointers. It is computed for the shapes in the order in which the normal points to one side of space, so that it is the
-/// same, to the last bit, whichever is named first.
+/// [`manifold`] behind pointers. It is computed for the shapes in the order in which the normal points to one side of
+/// space, so that it is the same, to the last bit, whichever is named first.
 fn between<V: Vector>(
     [a, b]: [&dyn Surface<V>; 2],
     answer: &SignedDistance<V>,
@@ -150,8 +152,8 @@ struct Reach<S> {
 }
 
 impl<S: Scalar> Reach<S> {
-    /// A point of a shape that is in the other one, or within what was asked for, is no farther behind the supporting plane than the depth and
-    /// that.
+    /// A point of a shape that is in the other one, or within what was asked for, is no farther behind the supporting
+    /// plane than the depth and that.
     fn new<V: Vector<Scalar = S>>(answer: &SignedDistance<V>, within: S, size: S) -> Self {
         let slack = size * S::from_f64(SLACK);
         let slab = (within - answer.lower).max(S::ZERO) + slack + slack;
@@ -197,8 +199,8 @@ struct Facing<'s, V: Vector> {
 }
 
 impl<V: Vector> Facing<'_, V> {
-    /// The corners of the overlap where the shapes are no farther apart than asked for, reduced to four, in the plane to two; and the closest
-    /// points, which reach to these levels.
+    /// The corners of the overlap where the shapes are no farther apart than asked for, reduced to four, in the plane
+    /// to two; and the closest points, which reach to these levels.
     fn contact(&mut self, answer: &SignedDistance<V>, levels: [V::Scalar; 2]) -> Contact<V> {
         let candidates = self.corners(answer.lower);
         let rank = |i: usize| -> Rank { (!self.is_known(&candidates[i]), candidates[i].codes()) };
@@ -248,13 +250,13 @@ impl<V: Vector> Facing<'_, V> {
         candidates
     }
 
-    /// With the levels of the surfaces. `None` where these are not known, as at a vertex that is behind what a shape shows: a side is along the
-    /// normal there.
+    /// With the levels of the surfaces. `None` where these are not known, as at a vertex that is behind what a shape
+    /// shows: a side is along the normal there.
     fn measured(&self, candidate: Candidate<V::Scalar>, deepest: V::Scalar) -> Option<Candidate<V::Scalar>> {
         let [of_a, of_b] = &self.sides;
         let [of_a, of_b] = [of_a.level(candidate.at)?, of_b.level(candidate.at)?];
-        // Seen nearly from its end an edge is as steep as one likes, and where a corner is on it is rounding; but no points of the shapes are
-        // deeper in one another than the shapes are.
+        // Seen nearly from its end an edge is as steep as one likes, and where a corner is on it is rounding; but no
+        // points of the shapes are deeper in one another than the shapes are.
         let lack = (deepest + of_a.value + of_b.value).max(V::Scalar::ZERO) * Scalar::from_f64(0.5);
         let error = of_a.error + of_b.error + lack;
         (error <= self.reach.slack).then_some(Candidate {
@@ -264,8 +266,8 @@ impl<V: Vector> Facing<'_, V> {
         })
     }
 
-    /// Whether a corner of the overlap, where two edges cross, is on a line with its neighbours but for the slack: of edges that lie on one
-    /// another, rounding tells where they cross.
+    /// Whether a corner of the overlap, where two edges cross, is on a line with its neighbours but for the slack: of
+    /// edges that lie on one another, rounding tells where they cross.
     fn is_on_a_line(&self, overlap: &ClippedCorners<V::Scalar>, i: usize) -> bool {
         let n = overlap.len();
         let at = |i: usize| overlap[i % n].at;
@@ -275,9 +277,9 @@ impl<V: Vector> Facing<'_, V> {
         n > 2 && turn * turn <= dot(base, base) * (self.reach.slack * self.reach.slack)
     }
 
-    /// Adds the closest points if none of the chosen is as deep: features that are not quite flat are closest in their midst, and those of
-    /// vertices, or of edges that cross, have no corners in common. One near them is the same point, and moves there; where there is no room, the
-    /// nearest makes it.
+    /// Adds the closest points if none of the chosen is as deep: features that are not quite flat are closest in their
+    /// midst, and those of vertices, or of edges that cross, have no corners in common. One near them is the same
+    /// point, and moves there; where there is no room, the nearest makes it.
     fn add_closest(
         &self,
         chosen: &mut Chosen<V::Scalar>,
@@ -312,8 +314,9 @@ impl<V: Vector> Facing<'_, V> {
         }
     }
 
-    /// What a point is of both shapes: a corner of a feature that it is near to, or else what clipping says. Where corners of both lie
-    /// on one another, as of boxes stacked, it would change from frame to frame which of them is within the other's outline.
+    /// What a point is of both shapes: a corner of a feature that it is near to, or else what clipping says. Where
+    /// corners of both lie on one another, as of boxes stacked, it would change from frame to frame which of them is
+    /// within the other's outline.
     fn settled(&self, at: Across<V::Scalar>, parts: [ContactPart; 2]) -> [ContactPart; 2] {
         let near = self.reach.near;
         let corner = |outline: &Outline<V::Scalar>| {

@@ -7,7 +7,8 @@ use super::cores::Cores;
 use crate::body::PointPair;
 use crate::gjk::Gjk;
 
-/// The point of the difference next to zero of those that GJK knows. Where cores are well in one another nothing asks for it.
+/// The point of the difference next to zero of those that GJK knows. Where cores are well in one another nothing asks
+/// for it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Met<V: Vector> {
     pub(super) point: V,

@@ -22,8 +22,9 @@ pub(super) enum FoldSide {
     Far,
 }
 
-/// A smooth piece of the boundary of the cores' difference: a support point, the unit direction `n` it was found along, and the
-/// Hessian `H` of the support value there, for which `H·n = 0`, by its entries along two unit vectors across `n`.
+/// A smooth piece of the boundary of the cores' difference: a support point, the unit direction `n` it was found along,
+/// and the Hessian `H` of the support value there, for which `H·n = 0`, by its entries along two unit vectors across
+/// `n`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece<V: Vector> {
     n: V,
@@ -32,7 +33,8 @@ pub(super) struct Piece<V: Vector> {
     hessian: Symmetric<V::Scalar>,
 }
 
-/// The same piece as seen along another unit vector `u`: its support point across `u`, its support value, and its Hessian.
+/// The same piece as seen along another unit vector `u`: its support point across `u`, its support value, and its
+/// Hessian.
 struct SeenAlong<S> {
     slope: Across<S>,
     value: S,
@@ -45,8 +47,8 @@ impl<V: Vector> Piece<V> {
         Self { n: vertex.along, point: vertex.point, across, hessian: cores.hessian(vertex.along, across) }
     }
 
-    /// The piece of a support point as seen from this one. Of a point that was not found along any direction, such as one that coincides
-    /// with zero, no more is known than that it is a corner.
+    /// The piece of a support point as seen from this one. Of a point that was not found along any direction, such as
+    /// one that coincides with zero, no more is known than that it is a corner.
     pub(super) fn beside(&self, cores: &Cores<'_, V>, vertex: &Vertex<V>) -> Self {
         if vertex.along == V::ZERO {
             return Self { point: vertex.point, hessian: Symmetric::ZERO, ..*self };
@@ -61,8 +63,8 @@ impl<V: Vector> Piece<V> {
         e * x + f * y
     }
 
-    /// With `u/(u·n) = n + c`, the support value is `u·n` times that along `n + c`, whose expansion is `(n + c)·p + c·Hc/2`, its
-    /// gradient `p + Hc`.
+    /// With `u/(u·n) = n + c`, the support value is `u·n` times that along `n + c`, whose expansion is `(n + c)·p +
+    /// c·Hc/2`, its gradient `p + Hc`.
     fn seen(&self, u: V, [e, f]: [V; 2]) -> SeenAlong<V::Scalar> {
         let cosine = u.dot(self.n);
         let c = u / cosine - self.n;
@@ -75,8 +77,8 @@ impl<V: Vector> Piece<V> {
         SeenAlong { slope: (e.dot(point), f.dot(point)), value, hessian }
     }
 
-    /// How far a support point is from what this piece foretells along its direction, as a part of its distance from the piece's
-    /// own point; infinite where it is too far around.
+    /// How far a support point is from what this piece foretells along its direction, as a part of its distance from
+    /// the piece's own point; infinite where it is too far around.
     pub(super) fn surprise(&self, vertex: &Vertex<V>) -> V::Scalar {
         let cosine = vertex.along.dot(self.n);
         if !(cosine > V::Scalar::from_f64(LARGEST)) {
@@ -104,8 +106,8 @@ impl<V: Vector> Piece<V> {
     /// h((n + δ)/|n + δ|) = (h + p·δ + δ·Hδ/2)/√(1 + δ²) ≈ h + p·δ + δ·(H − h)·δ/2,   least where   (H − h)·δ = −p across n,
     /// ```
     ///
-    /// if `H − h` is positive definite. It is so near a minimum on a smooth boundary, whose radii of curvature are the eigenvalues
-    /// of `H`: a ball about zero that touches it from within is no larger than these.
+    /// if `H − h` is positive definite. It is so near a minimum on a smooth boundary, whose radii of curvature are the
+    /// eigenvalues of `H`: a ball about zero that touches it from within is no larger than these.
     pub(super) fn step(&self) -> Option<V> {
         let [e, f] = self.across;
         let bend = self.hessian.plus(-self.n.dot(self.point));
@@ -123,8 +125,8 @@ impl<V: Vector> Piece<V> {
 
     /// The unit vector where the larger support value of two pieces is to be least, at a fold of the support value.
     ///
-    /// There both values are alike, and some share `β` of the other's slope and the rest of this one's cancel. With `p` and `q` the
-    /// slopes, `h` and `k` the values, and the Hessians `H_β = (1 − β)·H + β·K`,
+    /// There both values are alike, and some share `β` of the other's slope and the rest of this one's cancel. With `p`
+    /// and `q` the slopes, `h` and `k` the values, and the Hessians `H_β = (1 − β)·H + β·K`,
     ///
     /// ```text
     /// (H_β − h)·δ + p + β·e = 0,   e·δ = h − k,   e = q − p,
@@ -132,8 +134,8 @@ impl<V: Vector> Piece<V> {
     ///
     /// of which the second gives `δ` along `e`, and the first what it is across.
     ///
-    /// What is foretold of a piece is off by the cube of the angle to where it was seen. So the step leads past the fold by a part of
-    /// the angle's square, onto the piece that is to be `seen` again.
+    /// What is foretold of a piece is off by the cube of the angle to where it was seen. So the step leads past the
+    /// fold by a part of the angle's square, onto the piece that is to be `seen` again.
     pub(super) fn step_along_fold(&self, other: &Self, seen: FoldSide) -> Option<V> {
         let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
         let value = self.n.dot(self.point);
@@ -171,8 +173,9 @@ impl<V: Vector> Piece<V> {
 }
 
 impl<V: Vector> Piece<V> {
-    /// The unit vector on the way to the edge of a piece that has no bottom of its own, for where [`step`](Self::step) and
-    /// [`step_along_fold`](Self::step_along_fold) lead nowhere: to the fold with another piece, if there is one that is lower.
+    /// The unit vector on the way to the edge of a piece that has no bottom of its own, for where [`step`](Self::step)
+    /// and [`step_along_fold`](Self::step_along_fold) lead nowhere: to the fold with another piece, if there is one
+    /// that is lower.
     pub(super) fn step_to_edge(&self, other: Option<&Self>) -> Option<V> {
         let [e, f] = self.across;
         let slope = (e.dot(self.point), f.dot(self.point));
@@ -185,9 +188,10 @@ impl<V: Vector> Piece<V> {
 
     /// The step on a piece that is curved along one direction only, as around a rim or an apex.
     ///
-    /// Along that direction the minimum is where it would be on any piece. Across it the support value has a slope and no bottom: it falls
-    /// until another piece begins, at the latest where it would be zero. That is far away as long as the first step is worth its
-    /// while, which is then taken alone; else the second leads a little farther than to zero, onto the other piece.
+    /// Along that direction the minimum is where it would be on any piece. Across it the support value has a slope and
+    /// no bottom: it falls until another piece begins, at the latest where it would be zero. That is far away as long
+    /// as the first step is worth its while, which is then taken alone; else the second leads a little farther than to
+    /// zero, onto the other piece.
     fn step_along_curvature(&self, slope: Across<V::Scalar>) -> Option<Across<V::Scalar>> {
         let (zero, number) = (V::Scalar::ZERO, V::Scalar::from_f64);
         let value = self.n.dot(self.point);

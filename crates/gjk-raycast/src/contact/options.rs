@@ -5,8 +5,8 @@ use num_traits::Float as _;
 
 use crate::options::setters;
 
-/// Support points after which a signed distance is given up. Polytopes need some dozens, smooth shapes about a hundred; the
-/// cap bounds the time that ties take, such as an ellipsoid of revolution within another about the same axis.
+/// Support points after which a signed distance is given up. Polytopes need some dozens, smooth shapes about a hundred;
+/// the cap bounds the time that ties take, such as an ellipsoid of revolution within another about the same axis.
 const MAX_ITERATIONS: usize = 500;
 
 /// Options of [`signed_distance`](crate::signed_distance).
@@ -15,8 +15,8 @@ const MAX_ITERATIONS: usize = 500;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct SignedDistanceOptions<V: Vector> {
-    /// The width of the bracket at which to stop in overlap, relative to the size of what is compared. It concerns curved shapes;
-    /// of polytopes the facet that decides is found exactly. Default: 1e-9 in `f64`, 8ε in `f32`.
+    /// The width of the bracket at which to stop in overlap, relative to the size of what is compared. It concerns
+    /// curved shapes; of polytopes the facet that decides is found exactly. Default: 1e-9 in `f64`, 8ε in `f32`.
     pub tolerance: V::Scalar,
     /// Stop as soon as the shapes are certain to be farther apart than this. NaN is no limit. Default: infinity.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]

@@ -58,7 +58,8 @@ pub(crate) struct Corner<S> {
     pub(crate) id: u32,
 }
 
-/// A convex polygon in the plane of contact, counterclockwise, a segment or a point, and the height of the feature above it.
+/// A convex polygon in the plane of contact, counterclockwise, a segment or a point, and the height of the feature
+/// above it.
 #[derive(Clone, Debug)]
 pub(crate) struct Outline<S: Scalar> {
     pub(crate) corners: SmallVec<[Corner<S>; 16]>,
@@ -128,8 +129,8 @@ impl<S: Scalar> Outline<S> {
     }
 }
 
-/// The convex hull of points in the plane, counterclockwise, by wrapping: from each corner the next is the one that has no point to
-/// its right. Points within rounding of an edge are none of the corners.
+/// The convex hull of points in the plane, counterclockwise, by wrapping: from each corner the next is the one that has
+/// no point to its right. Points within rounding of an edge are none of the corners.
 pub(super) fn wrap<S: Scalar>(points: &[Corner<S>], corners: &mut SmallVec<[Corner<S>; 16]>) {
     let is_before = |a: &Corner<S>, b: &Corner<S>| a.at.0 < b.at.0 || (a.at.0 == b.at.0 && a.at.1 < b.at.1);
     let Some(first) = points.iter().reduce(|a, b| if is_before(b, a) { b } else { a }) else { return };

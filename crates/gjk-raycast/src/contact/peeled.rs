@@ -5,10 +5,11 @@ use convex_support::{Scalar, Vector};
 use crate::body::{AnyPair, PointPair, TracedSupport};
 use crate::symmetric::Symmetric;
 
-/// A pair of shapes whose cores are smaller by the radii of two balls that would sweep them to what they are, in units of the scale.
+/// A pair of shapes whose cores are smaller by the radii of two balls that would sweep them to what they are, in units
+/// of the scale.
 ///
-/// The support point of such a core along a unit vector `u` is that of the whole less `r·u`, and the Hessian of its support value less
-/// that of a ball. Where no radius is positive it is the pair.
+/// The support point of such a core along a unit vector `u` is that of the whole less `r·u`, and the Hessian of its
+/// support value less that of a ball. Where no radius is positive it is the pair.
 pub(super) struct Peeled<'p, 'a, V: Vector> {
     pub(super) pair: &'p mut AnyPair<'a, V>,
     pub(super) radii: [V::Scalar; 2],

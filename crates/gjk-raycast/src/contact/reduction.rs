@@ -7,15 +7,16 @@ use super::manifold::Candidate;
 use super::result::MAX_POINTS;
 use crate::symmetric::{Across, cross};
 
-/// The part of the area that may be lost, so that of corners that do as well the same are kept, whichever rounding prefers; four times as much to keep
-/// those of the last manifold.
+/// The part of the area that may be lost, so that of corners that do as well the same are kept, whichever rounding
+/// prefers; four times as much to keep those of the last manifold.
 pub(super) const WORTHWHILE: f64 = 1.0 / 64.0;
 
-/// Of corners that do as well, those of the least rank are kept: those of the last manifold, and then the least by what they are of both shapes,
-/// which does not jitter.
+/// Of corners that do as well, those of the least rank are kept: those of the last manifold, and then the least by what
+/// they are of both shapes, which does not jitter.
 pub(super) type Rank = (bool, [u32; 2]);
 
-/// The indices of four of the candidates, which are the corners of a convex polygon, that span it well. In the plane there are no more than two.
+/// The indices of four of the candidates, which are the corners of a convex polygon, that span it well. In the plane
+/// there are no more than two.
 pub(super) fn reduced<S: Scalar>(
     candidates: &[Candidate<S>],
     has_last: bool,
@@ -33,10 +34,11 @@ fn from<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
     (b.0 - a.0, b.1 - a.1)
 }
 
-/// Four corners of a convex polygon of more, counterclockwise, that span as much as any but for a part of that, the `margin`: of those that do, the
-/// ones of least rank.
+/// Four corners of a convex polygon of more, counterclockwise, that span as much as any but for a part of that, the
+/// `margin`: of those that do, the ones of least rank.
 ///
-/// A diagonal and the corners farthest from it on either side make the most of it. As the diagonal turns, these go on around the polygon.
+/// A diagonal and the corners farthest from it on either side make the most of it. As the diagonal turns, these go on
+/// around the polygon.
 fn spanning<S: Scalar>(polygon: &[Candidate<S>], margin: f64, rank: impl Fn(usize) -> Rank) -> [usize; 4] {
     let count = polygon.len();
     // Twice around.
@@ -104,7 +106,8 @@ mod tests {
         0.5 * cross(from(at(i), at(k)), from(at(j), at(l)))
     }
 
-    /// Of all quadrilaterals of random polygons none spans more than a thirtieth more. Exchanging one corner at a time ended at 0.83 of the most.
+    /// Of all quadrilaterals of random polygons none spans more than a thirtieth more. Exchanging one corner at a time
+    /// ended at 0.83 of the most.
     #[test]
     fn four_corners_span_nearly_as_much_as_any() {
         let mut state = 1_u64;

@@ -33,11 +33,12 @@ use crate::{Iterate, Status};
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 ///
-/// With `C = A − B` and its support value `h`, the signed distance is `−min h(u)` over all unit vectors `u`, and the normal is `−u`. If the
-/// shapes are apart, zero is outside `C`, and this is the distance of the farthest plane that separates zero from `C`. If they overlap, zero
-/// is inside, and it is minus the distance of the nearest plane that supports `C`. Where the cores are apart, GJK finds both as the distance
-/// of the cores, less the radii. Where the cores overlap, an [expanding polytope](SignedDistance::unexpanded) proves that no way out is
-/// shorter than the one found; for two boxes the depth has a closed form.
+/// With `C = A − B` and its support value `h`, the signed distance is `−min h(u)` over all unit vectors `u`, and the
+/// normal is `−u`. If the shapes are apart, zero is outside `C`, and this is the distance of the farthest plane that
+/// separates zero from `C`. If they overlap, zero is inside, and it is minus the distance of the nearest plane that
+/// supports `C`. Where the cores are apart, GJK finds both as the distance of the cores, less the radii. Where the
+/// cores overlap, an [expanding polytope](SignedDistance::unexpanded) proves that no way out is shorter than the one
+/// found; for two boxes the depth has a closed form.
 // Left to the compiler, it is a call in some programs, in which a ball and a box take half as long again.
 #[inline(always)]
 pub fn signed_distance<A, B>(a: &A, b: &B, options: SignedDistanceOptions<A::Vector>) -> SignedDistance<A::Vector>
@@ -48,9 +49,9 @@ where
     watched(a, b, options, &mut Observer::none())
 }
 
-/// [`signed_distance`], showing an observer every iterate: those of [`distance`](crate::distance) as long as the cores may be
-/// apart. After that the simplex is the facet nearest to zero, `v` its foot, `w` the support point along its normal or
-/// between that and the best way out, and the bounds are those of the signed distance of the cores.
+/// [`signed_distance`], showing an observer every iterate: those of [`distance`](crate::distance) as long as the cores
+/// may be apart. After that the simplex is the facet nearest to zero, `v` its foot, `w` the support point along its
+/// normal or between that and the best way out, and the bounds are those of the signed distance of the cores.
 #[inline(always)]
 pub fn signed_distance_with<A, B>(
     a: &A,
@@ -104,8 +105,8 @@ fn searched<V: Vector>(
     reach(&mut cores, options, true, observer).answer(&cores)
 }
 
-/// [`signed_distance`], and the unit vector from `b` to `a` of the plane that proves its lower bound. Near contact it is known to what the
-/// search itself leaves, since a search in time looks again a moment later.
+/// [`signed_distance`], and the unit vector from `b` to `a` of the plane that proves its lower bound. Near contact it
+/// is known to what the search itself leaves, since a search in time looks again a moment later.
 #[inline]
 pub(crate) fn signed_distance_and_axis<V: Vector>(
     shapes: &dyn Shapes<Vector = V>,
@@ -234,8 +235,8 @@ impl<V: Vector> Reached<V> {
         }
     }
 
-    /// By a look near contact. The points of the surfaces are between those of the cores, from which the plane may lean by the root of the
-    /// rounding.
+    /// By a look near contact. The points of the surfaces are between those of the cores, from which the plane may lean
+    /// by the root of the rounding.
     #[cold]
     fn of_near_contact(cores: &Cores<'_, V>, near: &NearContact<V>) -> Self {
         let &NearContact { ref frame, points, normal, gap, lower, upper, .. } = near;

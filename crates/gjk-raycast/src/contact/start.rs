@@ -19,8 +19,8 @@ pub(super) enum FirstPolytope<V: Vector> {
 
 /// A simplex of support points, beginning with those that GJK ended with; `None` where a support point is not finite.
 ///
-/// Cores that are well in one another have led to a simplex that is thicker than rounding. As long as points span no volume, those
-/// farthest both ways across them are looked for, and the farther one is added.
+/// Cores that are well in one another have led to a simplex that is thicker than rounding. As long as points span no
+/// volume, those farthest both ways across them are looked for, and the farther one is added.
 #[inline]
 pub(super) fn start<V: Vector>(
     cores: &mut Cores<'_, V>,
@@ -98,8 +98,8 @@ impl<V: Vector> AffineSpan<V> {
         Self { points: [none; MAX_POINTS], len: 0, basis: [V::ZERO; MAX_POINTS] }
     }
 
-    /// Adds a point, unless it is no farther from the span of the others than rounding, of which `rounding` says how much it is
-    /// along a unit vector; whether it was added.
+    /// Adds a point, unless it is no farther from the span of the others than rounding, of which `rounding` says how
+    /// much it is along a unit vector; whether it was added.
     fn add(&mut self, vertex: Vertex<V>, rounding: impl Fn(V) -> V::Scalar) -> bool {
         if self.len > 0 {
             let edge = self.orthogonal(vertex.point - self.points[0].point);

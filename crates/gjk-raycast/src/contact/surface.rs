@@ -7,7 +7,8 @@ use smallvec::SmallVec;
 use super::outline::{ContactPlane, Corner, Outline, wrap};
 use crate::symmetric::{Across, cross, dot};
 
-/// Support points after which a height is given up. A polytope takes a few; on what is curved each takes three quarters of the error away.
+/// Support points after which a height is given up. A polytope takes a few; on what is curved each takes three quarters
+/// of the error away.
 const MAX_POINTS: usize = 32;
 
 /// How steep a side of a shape is, as a slope, beyond which nothing is shown.
@@ -35,7 +36,8 @@ impl<S: SupportMap + ?Sized> Surface<S::Vector> for &S {
     }
 }
 
-/// How far a shape reaches along the normal that it shows to the other one, its *level*, and by how much that may be too little.
+/// How far a shape reaches along the normal that it shows to the other one, its *level*, and by how much that may be
+/// too little.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Level<S> {
     pub(super) value: S,
@@ -95,8 +97,8 @@ pub(super) struct Side<'s, V: Vector> {
 }
 
 impl<'s, V: Vector> Side<'s, V> {
-    /// Of a shape, by its points in a slab. Those beyond a side of it that is nearly along the normal are no part of what it shows: of a thin
-    /// plate both faces are in the slab.
+    /// Of a shape, by its points in a slab. Those beyond a side of it that is nearly along the normal are no part of
+    /// what it shows: of a thin plate both faces are in the slab.
     pub(super) fn new(
         surface: &'s dyn Surface<V>,
         core: &Core<V>,
@@ -139,7 +141,8 @@ impl<'s, V: Vector> Side<'s, V> {
         }
     }
 
-    /// Looks whether the outline is that of a face or an edge, as it mostly is: one support point then tells the levels of all places.
+    /// Looks whether the outline is that of a face or an edge, as it mostly is: one support point then tells the levels
+    /// of all places.
     pub(super) fn flatten(&mut self) {
         let corners = &self.outline.corners;
         let n = corners.len();
@@ -183,10 +186,10 @@ impl<'s, V: Vector> Side<'s, V> {
 
     /// The level of the surface at a place within the outline.
     ///
-    /// Points of the shape around the place, first those of the outline, are in the shape with all between them. The plane through them is
-    /// moved out until it supports the shape: the surface is between the two. If they are not the same, the point that supports takes the place
-    /// of one of the others, so that the place is still among them. At a face of a polytope this ends with the face. `None` where the shape is
-    /// not over the place.
+    /// Points of the shape around the place, first those of the outline, are in the shape with all between them. The
+    /// plane through them is moved out until it supports the shape: the surface is between the two. If they are not the
+    /// same, the point that supports takes the place of one of the others, so that the place is still among them. At a
+    /// face of a polytope this ends with the face. `None` where the shape is not over the place.
     pub(super) fn level(&self, at: Across<V::Scalar>) -> Option<Level<V::Scalar>> {
         let is_aside = self.is_aside(at);
         if let (Some(tangent), false) = (&self.flat, is_aside) {
@@ -221,7 +224,8 @@ impl<'s, V: Vector> Side<'s, V> {
         (lost * (V::Scalar::EPSILON.sqrt() * V::Scalar::from_f64(16.0)) <= self.noise).then_some(level)
     }
 
-    /// Whether a place is beside an outline that is a segment, as it may be where that is nearly parallel to the other shape's.
+    /// Whether a place is beside an outline that is a segment, as it may be where that is nearly parallel to the other
+    /// shape's.
     fn is_aside(&self, at: Across<V::Scalar>) -> bool {
         let [p, q] = self.outline.corners[..] else { return false };
         let e = difference(p.at, q.at);
@@ -242,8 +246,8 @@ impl<'s, V: Vector> Side<'s, V> {
         SmallVec::from_slice(&[first, corners[next - 1], corners[next]])
     }
 
-    /// Points of the shape around a place beside its outline: its ends, and then farthest points along the plane, each on the other side of an
-    /// edge that the place is beyond. `None` where the shape is not over the place.
+    /// Points of the shape around a place beside its outline: its ends, and then farthest points along the plane, each
+    /// on the other side of an edge that the place is beyond. `None` where the shape is not over the place.
     fn beside(&self, at: Across<V::Scalar>) -> Option<Corners<V::Scalar>> {
         let [e, f] = self.plane.across;
         let [p, q] = self.outline.corners[..] else { return None };
@@ -280,7 +284,8 @@ fn is_hidden<S: Scalar>(low: &Corner<S>, high: &Corner<S>, noise: S) -> bool {
     rise > noise && rise * rise > dot(e, e) * S::from_f64(STEEP * STEEP)
 }
 
-/// Replaces one of the corners around a place, or joins the two ends of a segment, so that the place is still between them.
+/// Replaces one of the corners around a place, or joins the two ends of a segment, so that the place is still between
+/// them.
 fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, noise: S) -> bool {
     let from = difference;
     if let [p, q] = around[..] {

@@ -16,14 +16,15 @@ const ACUTE: f64 = 0.25;
 /// Edges with a sine of the angle below this many ε count as parallel.
 const PARALLEL: f64 = 8.0;
 
-/// How much a unit normal may be turned by rounding, in ε: the product of two edges is wrong by one of the product of their lengths, which
-/// is at most twice as long; the rest are its own roundings.
+/// How much a unit normal may be turned by rounding, in ε: the product of two edges is wrong by one of the product of
+/// their lengths, which is at most twice as long; the rest are its own roundings.
 const TURN: f64 = 4.0;
 
 /// How much longer or shorter than one it may be, in ε.
 const STRETCH: f64 = 3.0;
 
-/// What a sum of five products of three terms each loses, and the centre in the last of them, in ε of the sum of their magnitudes.
+/// What a sum of five products of three terms each loses, and the centre in the last of them, in ε of the sum of their
+/// magnitudes.
 const SUM: f64 = 4.5;
 
 /// Facets that are by this many ε of the size farther than the nearest may be the nearest: more than all of the above.
@@ -35,8 +36,8 @@ const IN_PLANE: f64 = 16.0;
 /// What a foot may seem to be outside of its facet by rounding, as a part of the edges.
 const OUTSIDE: f64 = 1e-12;
 
-/// Heights of the edges, relative to their lengths, by which a facet of more than two edges is seen as a roof of parallelograms: any
-/// that are not multiples of one another.
+/// Heights of the edges, relative to their lengths, by which a facet of more than two edges is seen as a roof of
+/// parallelograms: any that are not multiples of one another.
 const HEIGHTS: [f64; EDGES] = [1.0, -0.7, 0.45, 0.83, -0.37, 0.61];
 
 /// The edges that span a facet: any two in space, and one alone, named twice, in the plane.
@@ -68,11 +69,13 @@ const OTHERS: [[[f64; EDGES]; EDGES]; EDGES] = {
     others
 };
 
-/// The difference of two parallelotopes: `center + Σ tₖ·edgesₖ` with all `|tₖ| ≤ 1`, the edges of the first and then of the second.
+/// The difference of two parallelotopes: `center + Σ tₖ·edgesₖ` with all `|tₖ| ≤ 1`, the edges of the first and then of
+/// the second.
 ///
-/// It is a zonotope, and each of its facets is spanned by two edges, in 2D by one: the axes of the separating axis test. All other edges
-/// lead to the facet from the centre, so that its distance from there is `Σ |n·eₖ|`. Everything is computed in double precision, and in
-/// the unit of the cores, so that it adds nothing to what `f32` has lost before.
+/// It is a zonotope, and each of its facets is spanned by two edges, in 2D by one: the axes of the separating axis
+/// test. All other edges lead to the facet from the centre, so that its distance from there is `Σ |n·eₖ|`. Everything
+/// is computed in double precision, and in the unit of the cores, so that it adds nothing to what `f32` has lost
+/// before.
 pub(super) struct Zonotope {
     center: Vec3,
     edges: [Vec3; EDGES],
@@ -210,8 +213,9 @@ impl Zonotope {
 
     /// What the distance of a facet may be wrong by.
     ///
-    /// Let `n` be its normal and `z` a point in the middle of it. Along the true normal `n + δ` the zonotope reaches at least as far as `z` does, and
-    /// that is `n·z + δ·z`, in which only the part of `z` across `n` counts: both are unit vectors.
+    /// Let `n` be its normal and `z` a point in the middle of it. Along the true normal `n + δ` the zonotope reaches at
+    /// least as far as `z` does, and that is `n·z + δ·z`, in which only the part of `z` across `n` counts: both are
+    /// unit vectors.
     fn error(&self, facet: &ZonotopeFacet) -> f64 {
         let n = facet.normal;
         let magnitude = |v: Vec3| (n[0] * v[0]).abs() + (n[1] * v[1]).abs() + (n[2] * v[2]).abs();
@@ -234,13 +238,13 @@ impl Zonotope {
         IN_PLANE * f64::EPSILON * self.size
     }
 
-    /// How far along each edge zero's foot on the plane of a facet is; and by how much it seems to be outside of the facet, as a part of
-    /// the edges.
+    /// How far along each edge zero's foot on the plane of a facet is; and by how much it seems to be outside of the
+    /// facet, as a part of the edges.
     ///
-    /// Edges that do not lie in the plane lead to it all the way. If the facet is not a parallelogram, some of the others do not span it.
-    /// Lifted to heights `wₖ`, its lower side becomes a roof of parallelograms: that of the edges `p`, `q` is below `φ·x`, with
-    /// `φ·e_p = w_p` and `φ·e_q = w_q`, and there every other edge leads to where it is lower, the sign of `φ·eₖ − wₖ`. One of them has
-    /// the foot.
+    /// Edges that do not lie in the plane lead to it all the way. If the facet is not a parallelogram, some of the
+    /// others do not span it. Lifted to heights `wₖ`, its lower side becomes a roof of parallelograms: that of the
+    /// edges `p`, `q` is below `φ·x`, with `φ·e_p = w_p` and `φ·e_q = w_q`, and there every other edge leads to where
+    /// it is lower, the sign of `φ·eₖ − wₖ`. One of them has the foot.
     fn foot<V: Vector>(&self, facet: &ZonotopeFacet) -> ([f64; EDGES], f64) {
         let n = facet.normal;
         let flat = self.flat();
@@ -308,7 +312,8 @@ impl Zonotope {
 }
 
 impl NearestFacet {
-    /// The points of both parallelotopes at zero's foot, in the unit, and halfway to one another what rounding leaves between them.
+    /// The points of both parallelotopes at zero's foot, in the unit, and halfway to one another what rounding leaves
+    /// between them.
     pub(super) fn points<V: Vector>(
         &self,
         [a, b]: &[Parallelotope<V>; 2],

@@ -11,20 +11,22 @@ use crate::unit::power_of_two_near;
 /// The error of the normal, in units of the rounding of the points that it is computed from.
 const TILT: f64 = 64.0;
 
-/// The largest error of a normal, as an angle, that is allowed for; a larger one would call features parallel that lean visibly. And the
-/// largest angle within which features are tried that may hold the normal.
+/// The largest error of a normal, as an angle, that is allowed for; a larger one would call features parallel that lean
+/// visibly. And the largest angle within which features are tried that may hold the normal.
 const LARGEST_TILT: f64 = 1e-3;
 const LARGEST_REACH: f64 = 0.03;
 
-/// Where two bodies are closest, or deepest in one another: a vertex, an edge or a face of each, and how they curve there.
+/// Where two bodies are closest, or deepest in one another: a vertex, an edge or a face of each, and how they curve
+/// there.
 ///
 /// It says whether an answer changes [smoothly](Self::smoothness) with the poses of the bodies. If it does, it has the
-/// [velocities of the normal and the points](Self::velocities) and the [second derivatives](Self::hessian); if not, it still has
-/// [one-sided derivatives](Self::rate). It is found from an answer and the shapes that were asked about, by
+/// [velocities of the normal and the points](Self::velocities) and the [second derivatives](Self::hessian); if not, it
+/// still has [one-sided derivatives](Self::rate). It is found from an answer and the shapes that were asked about, by
 /// [`SignedDistance::closest_features`](crate::SignedDistance::closest_features) and the same methods of other answers.
 ///
-/// Faces and edges are found by [`SupportMap::core_support_feature`]. A shape that does not implement it, such as a sum or a hull, is taken
-/// to be smooth. Of a face with more than 16 corners only every second, third, … is [known](Self::are_complete).
+/// Faces and edges are found by [`SupportMap::core_support_feature`]. A shape that does not implement it, such as a sum
+/// or a hull, is taken to be smooth. Of a face with more than 16 corners only every second, third, … is
+/// [known](Self::are_complete).
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct ClosestFeatures<V: Vector> {
@@ -78,8 +80,8 @@ pub(super) struct ClosestPoints<V: Vector> {
 }
 
 impl<V: Vector> ClosestFeatures<V> {
-    /// The features at the normal and the points of an answer. For curved shapes these are known only to about half their digits, since the
-    /// distance is stationary in them; Newton's method finds the rest.
+    /// The features at the normal and the points of an answer. For curved shapes these are known only to about half
+    /// their digits, since the distance is stationary in them; Newton's method finds the rest.
     pub(super) fn new<A, B>(a: &A, b: &B, closest: ClosestPoints<V>) -> Self
     where
         A: SupportMap<Vector = V> + ?Sized,
@@ -90,8 +92,9 @@ impl<V: Vector> ClosestFeatures<V> {
         let gap = closest.signed_distance + cores[0].radius + cores[1].radius;
         let bodies = Bodies { a, b, cores, unit: power_of_two_near(size + closest.signed_distance.abs()) };
         let tilt = tilt(size, gap, closest.error);
-        // The normal of polytopes that are apart is that of their closest points, and if they overlap it is that of a face: both are right to
-        // rounding. If they touch, or the search ended early, it is only as accurate as the search left it.
+        // The normal of polytopes that are apart is that of their closest points, and if they overlap it is that of a
+        // face: both are right to rounding. If they touch, or the search ended early, it is only as accurate as the
+        // search left it.
         let is_curved = cores.iter().any(|core| matches!(core.kind, CoreKind::Curved));
         // NaN is nowhere near.
         let least = size * rounding();
@@ -106,7 +109,8 @@ impl<V: Vector> ClosestFeatures<V> {
         let is_found = if is_curved {
             settle(seen) || refine(seen)
         } else {
-            // The features along a normal that is right to rounding meet the condition of the closest points; those of another do not.
+            // The features along a normal that is right to rounding meet the condition of the closest points; those of
+            // another do not.
             is_searched && (refine(seen) || settle(seen))
         };
         if !is_found {
@@ -119,8 +123,8 @@ impl<V: Vector> ClosestFeatures<V> {
     /// How the features extend together, where the closest points are the only ones.
     pub(super) fn joint(&self) -> Option<Joint<V::Scalar>> {
         let least = self.tilt * V::Scalar::from_f64(4.0);
-        // The side of a cone turns with the normal: where it is parallel to an edge, the two conditions that each of them puts to the normal
-        // are met by any normal that is off by the root of their error.
+        // The side of a cone turns with the normal: where it is parallel to an edge, the two conditions that each of
+        // them puts to the normal are met by any normal that is off by the root of their error.
         let parallel = if self.are_turning == [false; 2] { least } else { least.sqrt() };
         let joint = Joint::of(self.spans, parallel);
         // In the plane an edge is all of the line across the normal.
@@ -133,8 +137,9 @@ impl<V: Vector> ClosestFeatures<V> {
         Symmetric { a: a.a + b.a, b: a.b + b.b, d: a.d + b.d }.plus(self.signed_distance)
     }
 
-    /// A bound on the error of the places of features' corners, in the unit: the rounding of coordinates in the world and of the sizes of
-    /// both bodies, and how far the features of curved bodies move as the normal turns by its error.
+    /// A bound on the error of the places of features' corners, in the unit: the rounding of coordinates in the world
+    /// and of the sizes of both bodies, and how far the features of curved bodies move as the normal turns by its
+    /// error.
     pub(super) fn slack(&self) -> V::Scalar {
         let world = self.middle.abs().max_element() / self.unit;
         let rounding = rounding::<V::Scalar>() * (world + V::Scalar::from_f64(2.0));
@@ -142,8 +147,8 @@ impl<V: Vector> ClosestFeatures<V> {
         rounding + self.tilt * (a + b)
     }
 
-    /// Whether the features are known as a whole. If a shape shows only a part of a face, as of one with more than 16 corners, they are
-    /// not; then one-sided [rates](Self::rate) take only the points of that part into account.
+    /// Whether the features are known as a whole. If a shape shows only a part of a face, as of one with more than 16
+    /// corners, they are not; then one-sided [rates](Self::rate) take only the points of that part into account.
     #[must_use]
     pub fn are_complete(&self) -> bool {
         self.outlines.iter().all(|outline| outline.is_complete)
@@ -173,18 +178,18 @@ pub(super) fn rounding<S: Scalar>() -> S {
     S::EPSILON * S::from_f64(TILT)
 }
 
-/// The error of the normal, as an angle: the rounding of the points that it is computed from over the gap between the cores, and the error of
-/// the distance over the size of the bodies.
+/// The error of the normal, as an angle: the rounding of the points that it is computed from over the gap between the
+/// cores, and the error of the distance over the size of the bodies.
 fn tilt<S: Scalar>(size: S, gap: S, error: S) -> S {
     let magnified = if gap > S::ZERO { rounding::<S>() * (size / gap) } else { S::ZERO };
     let open = if error.is_finite() { error / size * S::from_f64(4.0) } else { S::ZERO };
     (rounding::<S>() + magnified + open).min(S::from_f64(LARGEST_TILT))
 }
 
-/// The error of the normal between curved bodies, as an angle. Let `v` be the shortest vector between two cores that are `g` apart, and `w`
-/// any other one that a bracket `u ≥ g ≥ l` allows. Since `w·v ≥ g²`, the two differ by at most `√(u² − l²)`, so that the angle between them is up
-/// to `√(2(u − l)/g)`. If the cores overlap, the signed distance along a normal falls with the square of its angle as well, times a stiffness
-/// that is taken for a part of the size.
+/// The error of the normal between curved bodies, as an angle. Let `v` be the shortest vector between two cores that
+/// are `g` apart, and `w` any other one that a bracket `u ≥ g ≥ l` allows. Since `w·v ≥ g²`, the two differ by at most
+/// `√(u² − l²)`, so that the angle between them is up to `√(2(u − l)/g)`. If the cores overlap, the signed distance
+/// along a normal falls with the square of its angle as well, times a stiffness that is taken for a part of the size.
 fn reach<S: Scalar>(size: S, gap: S, error: S) -> S {
     let error = error.max(S::EPSILON * size * S::from_f64(4.0));
     let over = if gap > S::ZERO { gap } else { size * S::from_f64(1.0 / 16.0) };

@@ -14,12 +14,13 @@ use crate::{
     Trajectory, signed_distance,
 };
 
-/// How far overlapping bodies are pushed into one another to see whether there is another way out, as a part of their size, in units of
-/// the square root of ε. If bodies are farther apart than this at a hit, the cast had a target distance.
+/// How far overlapping bodies are pushed into one another to see whether there is another way out, as a part of their
+/// size, in units of the square root of ε. If bodies are farther apart than this at a hit, the cast had a target
+/// distance.
 const LITTLE: f64 = 64.0;
 
-/// How much a push may gain: at most so many times its square, in units of the size, and at most this part of the size, which leaves room
-/// for single precision.
+/// How much a push may gain: at most so many times its square, in units of the size, and at most this part of the size,
+/// which leaves room for single precision.
 const GAIN: [f64; 2] = [256.0, 1e-4];
 
 /// If the cosine of the angle between two normals is at least this, they are of the same way out.
@@ -47,7 +48,8 @@ impl<V: Vector> Distance<V> {
 }
 
 impl<V: Vector> Distance<V> {
-    /// The answer with the normal and the points of its [features](Self::closest_features), which are known to rounding.
+    /// The answer with the normal and the points of its [features](Self::closest_features), which are known to
+    /// rounding.
     pub fn refined(self, features: &ClosestFeatures<V>) -> Self {
         let [point_a, point_b] = features.points;
         Self { normal: Some(features.normal), point_a, point_b, ..self }
@@ -57,8 +59,9 @@ impl<V: Vector> Distance<V> {
 impl<V: Vector> SignedDistance<V> {
     /// The features that are closest, or deepest in one another, of the shapes that were asked about.
     ///
-    /// Where the cores of the shapes overlap, another [`signed_distance`] tells whether there is another way out that is as short: it
-    /// is that of `a` pushed on by a millionth of the size, against the normal, which makes any other way the shorter one.
+    /// Where the cores of the shapes overlap, another [`signed_distance`] tells whether there is another way out that
+    /// is as short: it is that of `a` pushed on by a millionth of the size, against the normal, which makes any other
+    /// way the shorter one.
     pub fn closest_features<A, B>(&self, a: &A, b: &B) -> ClosestFeatures<V>
     where
         A: SupportMap<Vector = V> + ?Sized,
@@ -76,16 +79,17 @@ impl<V: Vector> SignedDistance<V> {
         features
     }
 
-    /// The answer with the normal and the points of its [features](Self::closest_features), which are known to rounding.
+    /// The answer with the normal and the points of its [features](Self::closest_features), which are known to
+    /// rounding.
     pub fn refined(self, features: &ClosestFeatures<V>) -> Self {
         let [point_a, point_b] = features.points;
         Self { normal: features.normal, point_a, point_b, ..self }
     }
 
-    /// Whether another normal is as good. If `a` is moved by `−η·n`, the signed distance along any normal `m` falls by `η·n·m`. So if
-    /// another normal was as good to within `η·(1 − n·m)`, it is now the best, is found, and can be measured. Whatever its bracket leaves
-    /// open may be a tie. If the bodies are curved, the other normal turns a little as they are pushed, which gains `η²` over twice the
-    /// stiffness.
+    /// Whether another normal is as good. If `a` is moved by `−η·n`, the signed distance along any normal `m` falls by
+    /// `η·n·m`. So if another normal was as good to within `η·(1 − n·m)`, it is now the best, is found, and can be
+    /// measured. Whatever its bracket leaves open may be a tie. If the bodies are curved, the other normal turns a
+    /// little as they are pushed, which gains `η²` over twice the stiffness.
     fn is_tied<A, B>(&self, a: &A, core_a: Core<V>, b: &B, core_b: Core<V>) -> bool
     where
         A: SupportMap<Vector = V> + ?Sized,
@@ -108,7 +112,8 @@ impl<V: Vector> SignedDistance<V> {
 }
 
 impl<V: Vector> LinearHit<V> {
-    /// The features that touch, of the shapes that were cast with the given motion; `None` where they overlap at the start.
+    /// The features that touch, of the shapes that were cast with the given motion; `None` where they overlap at the
+    /// start.
     #[must_use]
     pub fn closest_features<A, B>(&self, a: &A, b: &B, motion: Motion<V>) -> Option<ClosestFeatures<V>>
     where
@@ -119,16 +124,17 @@ impl<V: Vector> LinearHit<V> {
         touching(self.normal?, self.point, self.time, (&a, &motion_a), (&b, &motion_b))
     }
 
-    /// The hit with the normal and the point of its [features](Self::closest_features), which are known to rounding, and so its
-    /// [gradient](Self::gradient).
+    /// The hit with the normal and the point of its [features](Self::closest_features), which are known to rounding,
+    /// and so its [gradient](Self::gradient).
     #[must_use]
     pub fn refined(self, features: &ClosestFeatures<V>) -> Self {
         Self { normal: Some(features.normal), point: features.points[1], ..self }
     }
 
-    /// How much later the shapes touch as their start poses begin to move, per unit of time of that motion: the one-sided derivative of the
-    /// time of contact. It is exact also where parallel faces or edges touch. `None` where there is no [`gradient`](Self::gradient), or the
-    /// normal is [not the only one](ClosestFeatures::is_normal_unique).
+    /// How much later the shapes touch as their start poses begin to move, per unit of time of that motion: the
+    /// one-sided derivative of the time of contact. It is exact also where parallel faces or edges touch. `None` where
+    /// there is no [`gradient`](Self::gradient), or the normal is [not the only
+    /// one](ClosestFeatures::is_normal_unique).
     #[must_use]
     pub fn rate<A, B>(
         &self,
@@ -147,7 +153,8 @@ impl<V: Vector> LinearHit<V> {
 }
 
 impl<V: Vector> MotionHit<V> {
-    /// The features that touch, of the bodies that were cast with the given motions; `None` where they overlap at the start.
+    /// The features that touch, of the bodies that were cast with the given motions; `None` where they overlap at the
+    /// start.
     #[must_use]
     pub fn closest_features<A, MA, B, MB>(
         &self,
@@ -165,14 +172,15 @@ impl<V: Vector> MotionHit<V> {
         touching(self.normal?, self.point, self.time, (&a, &motion_a), (&b, &motion_b))
     }
 
-    /// The hit with the normal and the point of its [features](Self::closest_features), which are known to rounding, and so its
-    /// [gradient](Self::gradient).
+    /// The hit with the normal and the point of its [features](Self::closest_features), which are known to rounding,
+    /// and so its [gradient](Self::gradient).
     #[must_use]
     pub fn refined(self, features: &ClosestFeatures<V>) -> Self {
         Self { normal: Some(features.normal), point: features.points[1], ..self }
     }
 
-    /// How much later the bodies touch as their start poses begin to move, per unit of time of that motion, as [`LinearHit::rate`].
+    /// How much later the bodies touch as their start poses begin to move, per unit of time of that motion, as
+    /// [`LinearHit::rate`].
     #[must_use]
     pub fn rate<A, MA, B, MB>(
         &self,
@@ -191,7 +199,8 @@ impl<V: Vector> MotionHit<V> {
 }
 
 impl<V: Vector> RayHit<V> {
-    /// The feature of the target that the ray hits, and its point for the other; `None` where the source is in the target.
+    /// The feature of the target that the ray hits, and its point for the other; `None` where the source is in the
+    /// target.
     #[must_use]
     pub fn closest_features<S>(&self, target: &S, ray: Ray<V>) -> Option<ClosestFeatures<V>>
     where
@@ -254,7 +263,8 @@ fn at_time<'s, V: Vector>(shape: Shape<'s, V>, motion: &dyn Trajectory<Vector = 
     Moved::new(shape, core, Some(displacement.rotation()), Scalar::ZERO)
 }
 
-/// How much later two bodies touch whose start poses change. The change of a start pose is turned by the motion until the contact.
+/// How much later two bodies touch whose start poses change. The change of a start pose is turned by the motion until
+/// the contact.
 fn delay<V, MA, MB>(
     features: &ClosestFeatures<V>,
     time: V::Scalar,

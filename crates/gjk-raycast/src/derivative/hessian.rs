@@ -11,7 +11,8 @@ const MAX: usize = 6;
 
 type Rows<S> = [[S; MAX]; MAX];
 
-/// The second derivatives of the signed distance by the poses of both bodies: 12 by 12 numbers in space, 6 by 6 in the plane.
+/// The second derivatives of the signed distance by the poses of both bodies: 12 by 12 numbers in space, 6 by 6 in the
+/// plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -27,24 +28,25 @@ pub struct PairHessian<V: Vector> {
 }
 
 impl<V: Vector> ClosestFeatures<V> {
-    /// The second derivatives of the signed distance by the poses of both bodies, each turned about a centre of the caller's; `None`
-    /// where there are no [`velocities`](Self::velocities).
+    /// The second derivatives of the signed distance by the poses of both bodies, each turned about a centre of the
+    /// caller's; `None` where there are no [`velocities`](Self::velocities).
     ///
-    /// The first derivatives by the pose of `a` are the force `n` at the point `a`: `(n, (a − c) × n)`. As a coordinate `θ` of a pose moves
-    /// the normal by `n′` and the point by `a′`, they change by
+    /// The first derivatives by the pose of `a` are the force `n` at the point `a`: `(n, (a − c) × n)`. As a coordinate
+    /// `θ` of a pose moves the normal by `n′` and the point by `a′`, they change by
     ///
     /// > Q(θ) = (n′, (a − c) × n′ + (a′ − δ) × n),
     ///
-    /// with `δ` the translation if `θ` is one of `a` itself, which takes the centre `c` along; and those of `b` likewise by the force `−n`
-    /// at the point `b`. By the poses of both bodies that is the Hessian, by the pose of one it is `(Q + Qᵀ)/2`. Along a coordinate `φ`, which moves the
-    /// material point by `v` and turns the normal by `t = ω × n`, it is `Q(θ)·φ = n′·v − (a′ − δ)·t`, of which both are across the normal.
+    /// with `δ` the translation if `θ` is one of `a` itself, which takes the centre `c` along; and those of `b`
+    /// likewise by the force `−n` at the point `b`. By the poses of both bodies that is the Hessian, by the pose of one
+    /// it is `(Q + Qᵀ)/2`. Along a coordinate `φ`, which moves the material point by `v` and turns the normal by `t = ω
+    /// × n`, it is `Q(θ)·φ = n′·v − (a′ − δ)·t`, of which both are across the normal.
     ///
     /// Where second derivatives jump, as of a ball exactly above the border of a face, there is [more than
     /// one](Self::is_hessian_unique) Hessian, and this is that of the feature that holds the normal fastest, such as
     /// the face. The Hessian [says so](MotionHessian::is_unique).
     ///
-    /// It is as accurate as the normal and the points, times the condition of the bodies: what turning a needle would do with the
-    /// normal held is mostly taken back by the normal.
+    /// It is as accurate as the normal and the points, times the condition of the bodies: what turning a needle would
+    /// do with the normal held is mostly taken back by the normal.
     ///
     /// ```
     /// use convex_support::{Ball, Posed, glam::DVec2};
@@ -87,8 +89,8 @@ impl<V: Vector> ClosestFeatures<V> {
         Some(MotionHessian::from_rows(rows, self.is_hessian_unique()))
     }
 
-    /// The coordinates of the pose of a body. Of a turn `ω` the part along a unit vector `e` is `e·(ω × arm) = ω·(arm × e)`, which is that of a
-    /// moment.
+    /// The coordinates of the pose of a body. Of a turn `ω` the part along a unit vector `e` is `e·(ω × arm) = ω·(arm ×
+    /// e)`, which is that of a moment.
     #[inline]
     fn coordinates(&self, body: usize, center: V) -> Coordinates<V::Scalar> {
         let arm = self.points[body] - center;
@@ -107,22 +109,22 @@ impl<V: Vector> ClosestFeatures<V> {
     }
 }
 
-/// The coordinates of a pose, translations first, and in 2D zeros: across the normal, along either unit vector, the velocity of the material
-/// point that is closest, and how it turns the normal.
+/// The coordinates of a pose, translations first, and in 2D zeros: across the normal, along either unit vector, the
+/// velocity of the material point that is closest, and how it turns the normal.
 struct Coordinates<S> {
     velocity: [[S; MAX]; 2],
     turn: [[S; MAX]; 2],
 }
 
-/// What unit velocities of the closest material point of a body across the normal do, and unit turns of the normal by it: with them it is known
-/// what every coordinate of the pose of the body does.
+/// What unit velocities of the closest material point of a body across the normal do, and unit turns of the normal by
+/// it: with them it is known what every coordinate of the pose of the body does.
 struct Responses<S> {
     velocities: [Shifted<S>; 2],
     turns: [Shifted<S>; 2],
 }
 
-/// What the coordinates of a pose do, along either unit vector across the normal: how they turn the normal, and by what the point of a body moves
-/// more than the centre of that.
+/// What the coordinates of a pose do, along either unit vector across the normal: how they turn the normal, and by what
+/// the point of a body moves more than the centre of that.
 struct MovedCoordinates<S> {
     normal: [[S; MAX]; 2],
     shift: [[S; MAX]; 2],
@@ -159,8 +161,8 @@ impl<S: Scalar> Responses<S> {
         MovedCoordinates { normal: both(all.map(|of| of.normal)), shift: both(all.map(|of| of.shifts[index])) }
     }
 
-    /// The Hessian by the pose of the body. Of two rotations it is the symmetric part of `Q`; what a rotation does along a translation, which
-    /// turns nothing, is `n′·v`.
+    /// The Hessian by the pose of the body. Of two rotations it is the symmetric part of `Q`; what a rotation does
+    /// along a translation, which turns nothing, is `n′·v`.
     #[inline]
     fn hessian<V: Vector<Scalar = S>>(&self, coordinates: &Coordinates<S>, body: usize) -> Rows<S> {
         let MovedCoordinates { normal: [n, m], shift: [a, b] } = self.moved(coordinates, body);

@@ -28,16 +28,17 @@ pub struct LinearCastGradient<V: Vector> {
 }
 
 impl<V: Vector> LinearHit<V> {
-    /// The derivatives of the time of the hit, for the motion of the cast that it is the answer of. `None` where the shapes overlap at the
-    /// start, since the time is then 0, or touch and do not approach one another, since it then jumps.
+    /// The derivatives of the time of the hit, for the motion of the cast that it is the answer of. `None` where the
+    /// shapes overlap at the start, since the time is then 0, or touch and do not approach one another, since it then
+    /// jumps.
     ///
-    /// With `n` the normal, `p` the point of contact and `w = v_A − v_B`, the gap between the shapes along `n` changes by `n·w` per
-    /// time, so that
+    /// With `n` the normal, `p` the point of contact and `w = v_A − v_B`, the gap between the shapes along `n` changes
+    /// by `n·w` per time, so that
     ///
     /// > dt = −n·(δa − δb)/(n·w).
     ///
-    /// A turn at the start displaces the point of `a` that will be in contact, which is at `p − t·v_A` then; a change of the
-    /// velocity displaces it by `t` times as much. The derivatives grow as `1/(n·w)` towards grazing contacts.
+    /// A turn at the start displaces the point of `a` that will be in contact, which is at `p − t·v_A` then; a change
+    /// of the velocity displaces it by `t` times as much. The derivatives grow as `1/(n·w)` towards grazing contacts.
     ///
     /// Where there is only one point of contact they are derivatives, and elsewhere one-sided derivatives;
     /// [`closest_features`](Self::closest_features) tells which.

@@ -9,8 +9,8 @@ use crate::contact::{ContactPlane, Outline};
 use crate::symmetric::{Across, Symmetric, axes_across, dot};
 use crate::unit::reciprocal_of_power;
 
-/// How far a direction is turned to see which curve an edge between two of them belongs to, and where a support point goes, in units
-/// of the square root of ε.
+/// How far a direction is turned to see which curve an edge between two of them belongs to, and where a support point
+/// goes, in units of the square root of ε.
 const TURN: f64 = 16.0;
 
 /// By how much a support point may differ from where its curvature foretells it, as a part of how far that moves.
@@ -46,7 +46,8 @@ where
         }
     }
 
-    /// Sees the features along the normal, which may be wrong by `tilt`. Outlines are long: features are seen where they stay, not moved there.
+    /// Sees the features along the normal, which may be wrong by `tilt`. Outlines are long: features are seen where
+    /// they stay, not moved there.
     pub(super) fn look(
         &self,
         features: &mut ClosestFeatures<A::Vector>,
@@ -55,7 +56,8 @@ where
     ) {
         let ClosestPoints { normal, points, signed_distance, .. } = closest;
         let (unit, half) = (self.unit, ScalarOf::<A>::from_f64(0.5));
-        // In the unit; zero is the middle of the closest points, which is on both sides of the plane that outlines are seen in.
+        // In the unit; zero is the middle of the closest points, which is on both sides of the plane that outlines are
+        // seen in.
         let plane = ContactPlane { normal, across: axes_across(normal), origin: A::Vector::ZERO };
         let middle = points[0] * half + points[1] * half;
         (features.normal, features.across, features.points, features.middle) = (normal, plane.across, points, middle);
@@ -110,8 +112,9 @@ fn draw<B: SupportMap + ?Sized>(
     outline.draw(&feature, (core.origin - from.middle) * per_unit, &from.plane);
 }
 
-/// The Hessian of the support value of a body across a direction, along which it shows a feature; that of its radius included. And whether the
-/// feature is an edge that turns with the direction, as the side of a cone: the curves at its ends are not the same.
+/// The Hessian of the support value of a body across a direction, along which it shows a feature; that of its radius
+/// included. And whether the feature is an edge that turns with the direction, as the side of a cone: the curves at its
+/// ends are not the same.
 fn hessian<B: SupportMap + ?Sized>(
     body: &B,
     core: &Core<B::Vector>,
@@ -164,8 +167,8 @@ fn bend<S: Scalar>(hessian: Symmetric<S>, e: Across<S>) -> S {
     dot(f, hessian.times(f))
 }
 
-/// Whether the support points of a body along directions near that of the other are where its Hessian says. They are not where a
-/// shape does not say how it curves, or which face it shows.
+/// Whether the support points of a body along directions near that of the other are where its Hessian says. They are
+/// not where a shape does not say how it curves, or which face it shows.
 fn is_foretold<B: SupportMap + ?Sized>(
     body: &B,
     core: &Core<B::Vector>,

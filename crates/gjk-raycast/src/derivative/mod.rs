@@ -1,13 +1,14 @@
 //! Derivatives: how an answer changes as bodies are moved, and whether it does so smoothly.
 //!
-//! With `s` the signed distance, `n` the normal out of B towards A, and `a − b = s·n` the closest points, all first derivatives are
-//! forces at points: since `s` is the largest `min n·A − max n·B` over unit normals, it changes as that does with `n` held,
+//! With `s` the signed distance, `n` the normal out of B towards A, and `a − b = s·n` the closest points, all first
+//! derivatives are forces at points: since `s` is the largest `min n·A − max n·B` over unit normals, it changes as that
+//! does with `n` held,
 //!
 //! > ds = n·(δa − δb),   δa and δb the displacements of the closest points,
 //!
-//! and a hit, at which `s = 0`, is put off by `dt = −n·(δa − δb)/(n·w)`, with `w` the velocity of `a` as seen from `b`. Nothing but
-//! the answer is needed for that. Whether the normal and the points are the only ones, and how they move, is asked of the shapes:
-//! [`ClosestFeatures`].
+//! and a hit, at which `s = 0`, is put off by `dt = −n·(δa − δb)/(n·w)`, with `w` the velocity of `a` as seen from `b`.
+//! Nothing but the answer is needed for that. Whether the normal and the points are the only ones, and how they move,
+//! is asked of the shapes: [`ClosestFeatures`].
 
 mod at_contact;
 mod closest_features;

@@ -20,12 +20,14 @@ pub struct MotionCastGradient<V: Vector> {
     pub pose_a: MotionGradient<V>,
     /// By the pose of `b` at the start.
     pub pose_b: MotionGradient<V>,
-    /// By the place of `a` at the time of contact. With it the time can be derived by any parameter of the motion: find how the parameter
-    /// displaces the body at that time. [`RigidMotion::gradient`] does so for the parameters of a rigid motion.
+    /// By the place of `a` at the time of contact. With it the time can be derived by any parameter of the motion: find
+    /// how the parameter displaces the body at that time. [`RigidMotion::gradient`] does so for the parameters of a
+    /// rigid motion.
     pub contact_a: MotionGradient<V>,
     /// By the place of `b` at the time of contact.
     pub contact_b: MotionGradient<V>,
-    /// By the radius of either body, that is, as the body is grown all around, and by the target distance: never positive.
+    /// By the radius of either body, that is, as the body is grown all around, and by the target distance: never
+    /// positive.
     pub radius: V::Scalar,
 }
 
@@ -43,12 +45,13 @@ pub struct RigidMotionGradient<V: Vector> {
 }
 
 impl<V: Vector> MotionHit<V> {
-    /// The derivatives of the time of first contact, for the motions of the cast that it is the answer of. `None` where the bodies overlap
-    /// at the start, or touch and do not approach one another.
+    /// The derivatives of the time of first contact, for the motions of the cast that it is the answer of. `None` where
+    /// the bodies overlap at the start, or touch and do not approach one another.
     ///
-    /// With `n` the normal at the time `t`, `p` the point of contact and `w` the velocity there of `a` as seen from `b`, a displacement
-    /// `δ` of `a` at that time changes it by `−n·δ/(n·w)`. A displacement of the start pose is turned by the motion until then: the
-    /// force on it is `Rᵀ(−n/(n·w))`, at the point of the body that will be in contact, where that is at the start.
+    /// With `n` the normal at the time `t`, `p` the point of contact and `w` the velocity there of `a` as seen from
+    /// `b`, a displacement `δ` of `a` at that time changes it by `−n·δ/(n·w)`. A displacement of the start pose is
+    /// turned by the motion until then: the force on it is `Rᵀ(−n/(n·w))`, at the point of the body that will be in
+    /// contact, where that is at the start.
     ///
     /// Where there is only one point of contact they are derivatives, and elsewhere one-sided derivatives;
     /// [`closest_features`](Self::closest_features) tells which.
@@ -93,8 +96,8 @@ impl<V: Vector> MotionHit<V> {
     }
 }
 
-/// What a force at the given time is to the pose at the start. The motion takes `x₀` to `x = P + s + R·(x₀ − P)`, with `P` the pivot and
-/// `s` its shift, so that `δx = R·δx₀`.
+/// What a force at the given time is to the pose at the start. The motion takes `x₀` to `x = P + s + R·(x₀ − P)`, with
+/// `P` the pivot and `s` its shift, so that `δx = R·δx₀`.
 fn at_start<M: Trajectory + ?Sized>(
     motion: &M,
     time: <M::Vector as Vector>::Scalar,
@@ -107,15 +110,15 @@ fn at_start<M: Trajectory + ?Sized>(
 }
 
 impl<V: Vector> RigidMotion<V> {
-    /// The change per unit of time of a number with this derivative, as the body begins to move. If the motion is what a joint does per
-    /// radian, it is the change per radian of the joint.
+    /// The change per unit of time of a number with this derivative, as the body begins to move. If the motion is what
+    /// a joint does per radian, it is the change per radian of the joint.
     #[must_use]
     pub fn rate_of(&self, gradient: MotionGradient<V>) -> V::Scalar {
         gradient.prismatic(self.velocity) + gradient.revolute(self.center, self.angular_velocity)
     }
 
-    /// The derivatives of a number by the parameters of this motion, given `force`, its derivative by the pose that the body has at `time`;
-    /// such as [`MotionCastGradient::contact_a`] and the time of the hit.
+    /// The derivatives of a number by the parameters of this motion, given `force`, its derivative by the pose that the
+    /// body has at `time`; such as [`MotionCastGradient::contact_a`] and the time of the hit.
     ///
     /// With `x = c + t·v + y`, `y = R(tω)·(x₀ − c)`, the parameters displace a point by
     ///

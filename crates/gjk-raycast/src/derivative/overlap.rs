@@ -1,7 +1,8 @@
 //! Where the features of two bodies overlap, seen along the normal.
 //!
-//! It is never empty, since the closest points are in it, but often it has no area: boxes side by side have the edges of their faces
-//! in common, and boxes across a corner only the corners. Therefore a corner within rounding of a line counts as being on both sides of it.
+//! It is never empty, since the closest points are in it, but often it has no area: boxes side by side have the edges
+//! of their faces in common, and boxes across a corner only the corners. Therefore a corner within rounding of a line
+//! counts as being on both sides of it.
 
 use convex_support::Scalar;
 use convex_support::numerics::elementary::hypot;
@@ -10,7 +11,8 @@ use smallvec::SmallVec;
 use crate::contact::{Corner, Ellipse, Outline};
 use crate::symmetric::{Across, cross, dot};
 
-/// The most tangents along which discs are cut. Each halves the angle in which the least value lies, so that its error falls to a quarter.
+/// The most tangents along which discs are cut. Each halves the angle in which the least value lies, so that its error
+/// falls to a quarter.
 const MAX_CUTS: usize = 48;
 
 /// The overlap of two features: a convex polygon, a segment or a point, and the rims of discs by which it is cut.
@@ -42,8 +44,8 @@ impl<S: Scalar> Overlap<S> {
         overlap
     }
 
-    /// The least value of a function that has it at a corner of any polygon, as a linear one and a quotient of two; `None` if
-    /// there is no corner.
+    /// The least value of a function that has it at a corner of any polygon, as a linear one and a quotient of two;
+    /// `None` if there is no corner.
     pub(super) fn least(mut self, value: impl Fn(Across<S>) -> S) -> Option<S> {
         for _ in 0..MAX_CUTS {
             let (at, least) = self.least_corner(&value)?;
@@ -85,14 +87,14 @@ impl<S: Scalar> Overlap<S> {
     }
 }
 
-/// The directions, as unit vectors, along which two features only touch, or are apart. The normal could turn in these directions if nothing
-/// else held it.
+/// The directions, as unit vectors, along which two features only touch, or are apart. The normal could turn in these
+/// directions if nothing else held it.
 pub(super) fn separating<S: Scalar>(outlines: &[Outline<S>; 2], slack: S) -> SmallVec<[Across<S>; 16]> {
     axes(outlines).into_iter().filter(|&u| gap(outlines, u) >= -slack).collect()
 }
 
-/// Whether two features are apart by more than rounding. For parallel edges, and for an edge and a vertex, this is tested only along the
-/// edges.
+/// Whether two features are apart by more than rounding. For parallel edges, and for an edge and a vertex, this is
+/// tested only along the edges.
 pub(super) fn are_apart<S: Scalar>(outlines: &[Outline<S>; 2], slack: S) -> bool {
     axes(outlines).into_iter().any(|u| gap(outlines, u) > slack)
 }
@@ -103,8 +105,8 @@ fn gap<S: Scalar>([a, b]: &[Outline<S>; 2], u: Across<S>) -> S {
     (of_a[0] - of_b[1]).max(of_b[0] - of_a[1])
 }
 
-/// Directions of which two features that do not overlap are apart along at least one: those across the edges of both, and those from the
-/// centre of a disc to the corners of the other.
+/// Directions of which two features that do not overlap are apart along at least one: those across the edges of both,
+/// and those from the centre of a disc to the corners of the other.
 fn axes<S: Scalar>([a, b]: &[Outline<S>; 2]) -> SmallVec<[Across<S>; 16]> {
     let edge = |outline: &Outline<S>| match outline.corners[..] {
         [from, to] => Some(direction(from.at, to.at)),

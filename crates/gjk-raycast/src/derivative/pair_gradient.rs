@@ -43,20 +43,22 @@ impl<V: Vector> ClosestFeatures<V> {
     /// The derivative of the signed distance by the poses and radii of both shapes, to rounding, where it is
     /// [smooth](Self::smoothness).
     ///
-    /// The [gradient](SignedDistance::gradient) of an answer uses the normal and the points of the answer. For curved shapes these are known
-    /// only to about half their digits, since the distance is stationary in them; here they are known to rounding.
+    /// The [gradient](SignedDistance::gradient) of an answer uses the normal and the points of the answer. For curved
+    /// shapes these are known only to about half their digits, since the distance is stationary in them; here they are
+    /// known to rounding.
     pub fn gradient(&self) -> PairGradient<V> {
         PairGradient::new(self.normal, self.points[0], self.points[1])
     }
 }
 
 impl<V: Vector> Distance<V> {
-    /// The derivative of the distance by the poses and radii of both shapes. It is zero where they overlap, since the distance then stays
-    /// 0 however they move; the derivative of [`signed_distance`](crate::signed_distance) tells the way out.
+    /// The derivative of the distance by the poses and radii of both shapes. It is zero where they overlap, since the
+    /// distance then stays 0 however they move; the derivative of [`signed_distance`](crate::signed_distance) tells the
+    /// way out.
     ///
-    /// Where there is only one pair of closest points it is the derivative, and elsewhere one of several one-sided derivatives;
-    /// [`closest_features`](Self::closest_features) tells which. For translations alone it is the derivative of any two shapes that are
-    /// apart. It is as accurate as the normal and the points of the answer.
+    /// Where there is only one pair of closest points it is the derivative, and elsewhere one of several one-sided
+    /// derivatives; [`closest_features`](Self::closest_features) tells which. For translations alone it is the
+    /// derivative of any two shapes that are apart. It is as accurate as the normal and the points of the answer.
     ///
     /// ```
     /// use convex_support::{Ball, Posed, glam::DVec2};
@@ -83,8 +85,9 @@ impl<V: Vector> Distance<V> {
 impl<V: Vector> SignedDistance<V> {
     /// The derivative of the signed distance by the poses and radii of both shapes, at any depth.
     ///
-    /// Where the normal and the points are the only ones it is the derivative, and elsewhere one of several one-sided derivatives;
-    /// [`closest_features`](Self::closest_features) tells which. It is as accurate as the normal and the points of the answer.
+    /// Where the normal and the points are the only ones it is the derivative, and elsewhere one of several one-sided
+    /// derivatives; [`closest_features`](Self::closest_features) tells which. It is as accurate as the normal and the
+    /// points of the answer.
     ///
     /// ```
     /// use convex_support::{Cuboid, Posed, glam::DVec3};

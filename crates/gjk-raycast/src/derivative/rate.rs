@@ -8,18 +8,18 @@ use crate::symmetric::Across;
 use crate::{RigidMotion, Trajectory};
 
 impl<V: Vector> ClosestFeatures<V> {
-    /// How fast the signed distance changes as the bodies begin to move: its one-sided derivative. It is exact also where faces or edges
-    /// are parallel. `None` where the normal is [not the only one](Self::is_normal_unique).
+    /// How fast the signed distance changes as the bodies begin to move: its one-sided derivative. It is exact also
+    /// where faces or edges are parallel. `None` where the normal is [not the only one](Self::is_normal_unique).
     ///
-    /// The signed distance falls as fast as the fastest of all closest points come nearer. With `M` the overlap of both features in
-    /// the plane across the normal `n` (Danskin, *The theory of max-min, with applications*, 1966),
+    /// The signed distance falls as fast as the fastest of all closest points come nearer. With `M` the overlap of both
+    /// features in the plane across the normal `n` (Danskin, *The theory of max-min, with applications*, 1966),
     ///
     /// > ds/dt = min { n·(v_A(p) − v_B(p)) : p ∈ M },
     ///
-    /// and since velocities are linear in `p`, the least is at a corner of `M`. In overlap the signed distance is the maximum over all
-    /// normals of a minimum over points; by the duality of linear programs its derivative is the same minimum. Discs are not replaced by
-    /// polygons. If a face is known only [in part](Self::are_complete), corners that are left out may come nearer faster: the answer is
-    /// then an upper bound.
+    /// and since velocities are linear in `p`, the least is at a corner of `M`. In overlap the signed distance is the
+    /// maximum over all normals of a minimum over points; by the duality of linear programs its derivative is the same
+    /// minimum. Discs are not replaced by polygons. If a face is known only [in part](Self::are_complete), corners that
+    /// are left out may come nearer faster: the answer is then an upper bound.
     ///
     /// ```
     /// use convex_support::{Cuboid, Posed, glam::DVec2};
@@ -46,8 +46,9 @@ impl<V: Vector> ClosestFeatures<V> {
         Some(self.least(|p| self.normal.dot(velocity(motion_a, p) - velocity(motion_b, p))))
     }
 
-    /// How much later the bodies touch as their poses begin to change, where they touch while they move: the one-sided derivative
-    /// of the time, `min −n·(δa − δb)/(n·w)` over the overlap of both features. Displacements and motions are those at contact.
+    /// How much later the bodies touch as their poses begin to change, where they touch while they move: the one-sided
+    /// derivative of the time, `min −n·(δa − δb)/(n·w)` over the overlap of both features. Displacements and motions
+    /// are those at contact.
     pub(super) fn delay(&self, change: impl Fn(V) -> V, velocity: impl Fn(V) -> V) -> Option<V::Scalar> {
         if !self.is_normal_unique() {
             return None;
@@ -57,8 +58,8 @@ impl<V: Vector> ClosestFeatures<V> {
         is_closing.then(|| self.least(|p| self.normal.dot(change(p)) / closing(p)))
     }
 
-    /// The least value over the overlap of both features, in the plane half-way between them, in the world. The value is linear in
-    /// the point, or a quotient of such.
+    /// The least value over the overlap of both features, in the plane half-way between them, in the world. The value
+    /// is linear in the point, or a quotient of such.
     fn least(&self, value: impl Fn(V) -> V::Scalar) -> V::Scalar {
         if self.are_points_unique() {
             let half = V::Scalar::from_f64(0.5);

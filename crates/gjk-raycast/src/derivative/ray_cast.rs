@@ -26,11 +26,13 @@ pub struct RayCastGradient<V: Vector> {
 }
 
 impl<V: Vector> RayHit<V> {
-    /// The derivatives of λ, for the ray of the cast that it is the answer of. `None` where the source is in the target, so that λ is 0.
+    /// The derivatives of λ, for the ray of the cast that it is the answer of. `None` where the source is in the
+    /// target, so that λ is 0.
     ///
-    /// With `n` the normal and `d` the direction, the ray comes nearer to the tangent plane by `−n·d` per λ, so that moving the source
-    /// by `δ` changes λ by `−n·δ/(n·d)`, moving the target by the opposite, and changing the direction by `λ` times as much. The
-    /// derivatives grow as `1/(n·d)` towards grazing rays. At an edge of the target they are one-sided.
+    /// With `n` the normal and `d` the direction, the ray comes nearer to the tangent plane by `−n·d` per λ, so that
+    /// moving the source by `δ` changes λ by `−n·δ/(n·d)`, moving the target by the opposite, and changing the
+    /// direction by `λ` times as much. The derivatives grow as `1/(n·d)` towards grazing rays. At an edge of the target
+    /// they are one-sided.
     ///
     /// ```
     /// use convex_support::{Ball, MotionGradient, Posed, glam::DVec2};

@@ -1,4 +1,5 @@
-//! Refinement: the normal and the points right to rounding, by Newton's method along the features near those of an answer.
+//! Refinement: the normal and the points right to rounding, by Newton's method along the features near those of an
+//! answer.
 
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
@@ -11,7 +12,8 @@ use super::span::Span;
 const LONGEST_STEP: f64 = 0.1;
 const MAX_STEPS: usize = 5;
 
-/// The number of rounds in which features are tried that may hold the normal, and the angle of each round as a part of that of the last.
+/// The number of rounds in which features are tried that may hold the normal, and the angle of each round as a part of
+/// that of the last.
 const ROUNDS: usize = 4;
 const NEARER: f64 = 1.0 / 16.0;
 
@@ -20,11 +22,12 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    /// Looks for a normal, within the angle `reach` of that of an answer, along which the features overlap, as the closest points require.
-    /// Returns whether there is one; features within the angle `tilt` count as held by rounding.
+    /// Looks for a normal, within the angle `reach` of that of an answer, along which the features overlap, as the
+    /// closest points require. Returns whether there is one; features within the angle `tilt` count as held by
+    /// rounding.
     ///
-    /// Every feature found within `reach` is tried by making the normal exactly across it. If none fits, as when the answer is at an edge
-    /// of a face within reach, features within a smaller angle are tried.
+    /// Every feature found within `reach` is tried by making the normal exactly across it. If none fits, as when the
+    /// answer is at an edge of a face within reach, features within a smaller angle are tried.
     pub(super) fn settle(
         &self,
         features: &mut ClosestFeatures<A::Vector>,
@@ -52,7 +55,8 @@ where
         false
     }
 
-    /// Turns the normal to be exactly across the features seen. Returns whether there is such a normal along which the features overlap.
+    /// Turns the normal to be exactly across the features seen. Returns whether there is such a normal along which the
+    /// features overlap.
     fn hold(
         &self,
         seen: &mut ClosestFeatures<A::Vector>,
@@ -94,8 +98,8 @@ where
         false
     }
 
-    /// Takes steps of Newton's method for the normal and the points, as long as they become shorter. Returns whether they lead to points
-    /// that are opposite to each other, along the same features.
+    /// Takes steps of Newton's method for the normal and the points, as long as they become shorter. Returns whether
+    /// they lead to points that are opposite to each other, along the same features.
     pub(super) fn refine(&self, best: &mut ClosestFeatures<A::Vector>, closest: ClosestPoints<A::Vector>) -> bool {
         let mut length = ScalarOf::<A>::from_f64(LONGEST_STEP);
         let radii = self.cores.map(|core| core.radius);
@@ -118,8 +122,9 @@ where
             }
             let Some(normal) = (best.normal + step.turn).unit() else { return false };
             if size <= rounding() && shifts[0].max(shifts[1]) <= self.unit * rounding() {
-                // The features along this normal are those that were seen, to rounding, and in the coordinates in which they were seen: another
-                // basis may be a quarter turn away where two coordinates of the normal are equal.
+                // The features along this normal are those that were seen, to rounding, and in the coordinates in which
+                // they were seen: another basis may be a quarter turn away where two coordinates of the normal are
+                // equal.
                 best.normal = normal;
                 break;
             }

@@ -13,11 +13,12 @@ use crate::symmetric::{Across, Symmetric, dot};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Smoothness {
-    /// The normal and the closest points are the only ones. They change continuously, and the gradient is the derivative.
+    /// The normal and the closest points are the only ones. They change continuously, and the gradient is the
+    /// derivative.
     Smooth,
-    /// There are several normals or pairs of closest points: between parallel faces or edges, where a vertex touches a vertex, or where
-    /// two ways out are equally short. Or the answer is at its floor: a distance, a time or a λ of zero falls no
-    /// further as the bodies come nearer. The gradient is one of several one-sided derivatives.
+    /// There are several normals or pairs of closest points: between parallel faces or edges, where a vertex touches a
+    /// vertex, or where two ways out are equally short. Or the answer is at its floor: a distance, a time or a λ of
+    /// zero falls no further as the bodies come nearer. The gradient is one of several one-sided derivatives.
     Edge,
 }
 
@@ -46,15 +47,16 @@ impl<V: Vector> ClosestFeatures<V> {
         self.are_points_unique() && separating(&self.outlines, self.slack()).is_empty()
     }
 
-    /// Whether there is only one pair of closest points. There are more where a face is parallel to a face or an edge, or an edge to an
-    /// edge.
+    /// Whether there is only one pair of closest points. There are more where a face is parallel to a face or an edge,
+    /// or an edge to an edge.
     #[must_use]
     pub fn are_points_unique(&self) -> bool {
         self.joint().is_some()
     }
 
-    /// Whether there is only one normal. Then the answer is differentiable at least by translations. This is so wherever the bodies are
-    /// apart; it is not where a vertex touches a vertex or an edge, or where several ways out are equally short.
+    /// Whether there is only one normal. Then the answer is differentiable at least by translations. This is so
+    /// wherever the bodies are apart; it is not where a vertex touches a vertex or an edge, or where several ways out
+    /// are equally short.
     #[must_use]
     pub fn is_normal_unique(&self) -> bool {
         let stiffness = self.stiffness();
@@ -71,8 +73,9 @@ impl<V: Vector> ClosestFeatures<V> {
         is_held && is_finite && !self.is_at_a_corner(least) && !self.is_tied
     }
 
-    /// Whether cores that touch do so at the boundary of their features, as a box that stands beside another: so that the normal may
-    /// turn away from them. Bodies apart have the normal of their closest points, and those that overlap that of the way out.
+    /// Whether cores that touch do so at the boundary of their features, as a box that stands beside another: so that
+    /// the normal may turn away from them. Bodies apart have the normal of their closest points, and those that overlap
+    /// that of the way out.
     fn is_at_a_corner(&self, least: V::Scalar) -> bool {
         let gap = self.signed_distance + self.radii[0] + self.radii[1];
         let stiffness = self.stiffness();

@@ -5,8 +5,8 @@ use convex_support::Scalar;
 use crate::contact::Outline;
 use crate::symmetric::{Across, cross, dot};
 
-/// The directions in the plane across a normal in which a body's supporting feature extends: those of a vertex, of an edge (a unit
-/// vector), or of a face. In 2D an edge is all there can be.
+/// The directions in the plane across a normal in which a body's supporting feature extends: those of a vertex, of an
+/// edge (a unit vector), or of a face. In 2D an edge is all there can be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Span<S> {
     Vertex,
@@ -54,8 +54,8 @@ impl<S: Scalar> Span<S> {
     }
 }
 
-/// The directions in which the difference of two features extends, where each of them is one way only of moving their points: then
-/// the points are the only ones.
+/// The directions in which the difference of two features extends, where each of them is one way only of moving their
+/// points: then the points are the only ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Joint<S> {
     /// Two vertices.
@@ -76,7 +76,8 @@ pub(super) enum WhichBody {
 }
 
 impl<S: Scalar> Joint<S> {
-    /// `None` where both features extend the same way. Edges are parallel where the sine of their angle is no more than `parallel`.
+    /// `None` where both features extend the same way. Edges are parallel where the sine of their angle is no more than
+    /// `parallel`.
     pub(super) fn of(spans: [Span<S>; 2], parallel: S) -> Option<Self> {
         match spans {
             [Span::Vertex, Span::Vertex] => Some(Self::None),

@@ -1,8 +1,9 @@
 //! How the closest points and the normal move with the bodies.
 //!
-//! At the closest points `a` and `b` the bodies support a plane across the normal `n`, and `a − b = s·n`. As they move, that stays so.
-//! With `v_A` and `v_B` the velocities of the material points there, `H_A` and `H_B` the Hessians of the support values along `∓n`, and
-//! `ω_A`, `ω_B` the turns, a support point moves with its body, and along it as the normal turns against the body:
+//! At the closest points `a` and `b` the bodies support a plane across the normal `n`, and `a − b = s·n`. As they move,
+//! that stays so. With `v_A` and `v_B` the velocities of the material points there, `H_A` and `H_B` the Hessians of the
+//! support values along `∓n`, and `ω_A`, `ω_B` the turns, a support point moves with its body, and along it as the
+//! normal turns against the body:
 //!
 //! > a′ = v_A − H_A·(n′ − ω_A × n),   b′ = v_B + H_B·(n′ − ω_B × n),   a′ − b′ = s′·n + s·n′.
 //!
@@ -10,7 +11,8 @@
 //!
 //! > (H_A + H_B + s)·n′ = v_A − v_B + H_A·(ω_A × n) + H_B·(ω_B × n).
 //!
-//! On an edge of a body, along the unit vector `e`, the support point is free, and the normal stays across the edge in its stead:
+//! On an edge of a body, along the unit vector `e`, the support point is free, and the normal stays across the edge in
+//! its stead:
 //!
 //! > a′ = … + λ·e,   e·(n′ − ω_A × n) = 0.
 //!
@@ -44,8 +46,8 @@ impl<V: Vector> ClosestFeatures<V> {
     /// How fast the signed distance, the normal and the closest points change as the bodies begin to move.
     ///
     /// `None` where the normal or the closest points are not [the only ones](Self::are_points_unique); and where the
-    /// curvature of the shapes is not known, which shows in support points
-    /// nearby that are not where [`SupportMap::core_support_hessian`](convex_support::SupportMap::core_support_hessian) predicts them.
+    /// curvature of the shapes is not known, which shows in support points nearby that are not where
+    /// [`SupportMap::core_support_hessian`](convex_support::SupportMap::core_support_hessian) predicts them.
     ///
     /// ```
     /// use convex_support::{Ball, Posed, glam::DVec3};
@@ -83,8 +85,8 @@ impl<V: Vector> ClosestFeatures<V> {
         Some(Solver { at: self, stiffness: self.stiffness(), joint: self.joint()? })
     }
 
-    /// A step of Newton's method for the normal and the points: that which would be made if the bodies were moved so that the closest
-    /// points, now `r` off across the normal, are opposite to each other.
+    /// A step of Newton's method for the normal and the points: that which would be made if the bodies were moved so
+    /// that the closest points, now `r` off across the normal, are opposite to each other.
     pub(super) fn newton_step(&self, radii: [V::Scalar; 2]) -> Option<NewtonStep<V>> {
         let solver = self.solver()?;
         let [a, b] = [0, 1].map(|i| self.outlines[i].corners[0]);
@@ -138,7 +140,8 @@ pub(super) struct Solver<'f, V: Vector> {
     joint: Joint<V::Scalar>,
 }
 
-/// What of two motions matters: the velocities of the material points that are closest, and how the bodies turn the normal.
+/// What of two motions matters: the velocities of the material points that are closest, and how the bodies turn the
+/// normal.
 #[derive(Clone, Copy, Debug)]
 struct Motions<V> {
     velocities: [V; 2],
@@ -197,8 +200,8 @@ impl<V: Vector> Solver<'_, V> {
         Shifted { normal, shifts: [shift_a, shift_b].map(|shift| scaled(shift, at.unit)) }
     }
 
-    /// The change of the normal, and how the points slide along edges or faces of their bodies: with `K` the stiffness and `g = K·n′ − r`,
-    /// the slide of `a` less that of `b` is `g`.
+    /// The change of the normal, and how the points slide along edges or faces of their bodies: with `K` the stiffness
+    /// and `g = K·n′ − r`, the slide of `a` less that of `b` is `g`.
     fn solved(&self, r: Across<V::Scalar>, turns: [Across<V::Scalar>; 2]) -> Solved<V::Scalar> {
         let zero = (V::Scalar::ZERO, V::Scalar::ZERO);
         let rest = |change| {

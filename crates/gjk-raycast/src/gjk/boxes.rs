@@ -1,18 +1,20 @@
-//! Whether two boxes meet, by the axes that may separate them (Gottschalk, Lin and Manocha, 1996, on trees of oriented boxes).
+//! Whether two boxes meet, by the axes that may separate them (Gottschalk, Lin and Manocha, 1996, on trees of oriented
+//! boxes).
 //!
-//! The difference of two boxes is `c + Σ sᵢ·hᵢuᵢ + Σ tₖ·fₖ` with all `|sᵢ|, |tₖ| ≤ 1`: `uᵢ` are unit vectors along the edges of the first
-//! and `hᵢ` half their lengths, `fₖ` half edges of the second. Zero is in it unless it is beyond a facet, and each facet is spanned by two edges, so
-//! that with `n` one of `uᵢ`, `fₖ × fₘ` and `uᵢ × fₖ`
+//! The difference of two boxes is `c + Σ sᵢ·hᵢuᵢ + Σ tₖ·fₖ` with all `|sᵢ|, |tₖ| ≤ 1`: `uᵢ` are unit vectors along the
+//! edges of the first and `hᵢ` half their lengths, `fₖ` half edges of the second. Zero is in it unless it is beyond a
+//! facet, and each facet is spanned by two edges, so that with `n` one of `uᵢ`, `fₖ × fₘ` and `uᵢ × fₖ`
 //!
 //! > gap(n) = |n·c| − Σ hᵢ|n·uᵢ| − Σ |n·fₖ|
 //!
-//! is positive for one of these 15 where they are apart. In the frame of the first box, with `Fₖ` the coordinates of `fₖ`, all terms are
-//! coordinates of the three products `Fₖ × Fₘ`, or wedges `(Fₖ × C)ᵢ`.
+//! is positive for one of these 15 where they are apart. In the frame of the first box, with `Fₖ` the coordinates of
+//! `fₖ`, all terms are coordinates of the three products `Fₖ × Fₘ`, or wedges `(Fₖ × C)ᵢ`.
 //!
-//! *What is certain.* Let `e` bound what rounding, here and in the boxes, moves points by. Any `n` with a gap of more than `|n|·e` separates. That
-//! they meet takes all facets, and an edge that is nearly along another spans a sliver whose normal means nothing. So let `fₖ` be within `ρ` of
-//! a multiple of `uᵢ`. With that multiple in its place the difference reaches less far by `ρ` at most; its facets are those of the other
-//! edges, and they are seen, with `fₖ` as it is, to another `ρ`. Gaps of `−(e + 2ρ)·|n|` along all those are proof enough.
+//! *What is certain.* Let `e` bound what rounding, here and in the boxes, moves points by. Any `n` with a gap of more
+//! than `|n|·e` separates. That they meet takes all facets, and an edge that is nearly along another spans a sliver
+//! whose normal means nothing. So let `fₖ` be within `ρ` of a multiple of `uᵢ`. With that multiple in its place the
+//! difference reaches less far by `ρ` at most; its facets are those of the other edges, and they are seen, with `fₖ` as
+//! it is, to another `ρ`. Gaps of `−(e + 2ρ)·|n|` along all those are proof enough.
 
 use convex_support::{CoreKind, Parallelotope, Scalar, Vector};
 use num_traits::Float;
@@ -21,17 +23,19 @@ use super::Frame;
 use crate::body::AnyPair;
 use crate::double::{Vec3, array, cross, dot};
 
-/// What rounding loses here, in ε of the bound on all lengths: coordinates `4ε` each, products of two `12ε`, sums of seven `6ε`, of both sides.
+/// What rounding loses here, in ε of the bound on all lengths: coordinates `4ε` each, products of two `12ε`, sums of
+/// seven `6ε`, of both sides.
 const ROUNDING: f64 = 64.0;
 
-/// The same for each part that two edges of the first box are not orthogonal by: a coordinate loses `2`, a product of edges `12`.
+/// The same for each part that two edges of the first box are not orthogonal by: a coordinate loses `2`, a product of
+/// edges `12`.
 const SKEW: f64 = 16.0;
 
 /// Edges that are less orthogonal are of no box.
 const LARGEST_SKEW: f64 = 1.0 / 1024.0;
 
-/// A bound on the sum of all lengths, in units of the frame: its size is below two, the centre and the edges of a box together are at most
-/// twice its extent, and in the plane a sheet has a thickness of one.
+/// A bound on the sum of all lengths, in units of the frame: its size is below two, the centre and the edges of a box
+/// together are at most twice its extent, and in the plane a sheet has a thickness of one.
 const LENGTHS: f64 = 5.0;
 
 /// How two boxes are to one another.
@@ -41,7 +45,8 @@ pub(crate) enum BoxesMeet<V> {
     Meet,
 }
 
-/// Whether two boxes without a radius meet; `None` where they are no boxes, flat, or so near to contact that it is in doubt.
+/// Whether two boxes without a radius meet; `None` where they are no boxes, flat, or so near to contact that it is in
+/// doubt.
 #[inline]
 pub(crate) fn boxes<V: Vector>(pair: &AnyPair<'_, V>, frame: &Frame<V>) -> Option<BoxesMeet<V>> {
     let are_polytopes = [pair.core_a.kind, pair.core_b.kind].iter().all(|kind| matches!(kind, CoreKind::Polytope));

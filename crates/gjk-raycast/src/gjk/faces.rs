@@ -5,11 +5,12 @@ use convex_support::{Scalar, Vector};
 use crate::body::PointPair;
 use crate::simplex::{MAX_POINTS, cross};
 
-/// Whether zero is in the simplex of some points, even if each is wrong by an error, which is at least `8ε` of the longest.
+/// Whether zero is in the simplex of some points, even if each is wrong by an error, which is at least `8ε` of the
+/// longest.
 ///
-/// It is where it has the same orientation with each face as the corner opposite. That is the sign of a determinant, of which an error `e`
-/// of each corner changes no more than `e·Σ(|q| + e)(|r| + e)` over the pairs of corners of the face; in the plane `e·Σ(|q| + e)`. As it
-/// is computed, it loses no more than as much again.
+/// It is where it has the same orientation with each face as the corner opposite. That is the sign of a determinant, of
+/// which an error `e` of each corner changes no more than `e·Σ(|q| + e)(|r| + e)` over the pairs of corners of the
+/// face; in the plane `e·Σ(|q| + e)`. As it is computed, it loses no more than as much again.
 ///
 /// By how much is told by [`room_around_zero`](super::room_around_zero()), in more than twice the operations, which
 /// every query whose bodies overlap would pay.
@@ -41,9 +42,10 @@ pub(super) fn is_around_zero<V: Vector>(points: &[V], error: V::Scalar) -> bool 
     sides.0.max(sides.1) == V::DIM + 1
 }
 
-/// Vectors across the faces that the points of a simplex span, as they follow from the points of both shapes: what is exact about their
-/// edges, as of boxes along the axes, stays so. A face has two sides; the one along `axis` comes first, and of a simplex of full
-/// dimension, with zero inside perhaps, both count. Where the simplex is an edge in space, the vector across it nearest to `axis`.
+/// Vectors across the faces that the points of a simplex span, as they follow from the points of both shapes: what is
+/// exact about their edges, as of boxes along the axes, stays so. A face has two sides; the one along `axis` comes
+/// first, and of a simplex of full dimension, with zero inside perhaps, both count. Where the simplex is an edge in
+/// space, the vector across it nearest to `axis`.
 pub(super) fn across_faces<V: Vector>(pairs: &[PointPair<V>], axis: V) -> impl Iterator<Item = V> {
     let edge = |from: PointPair<V>, to: PointPair<V>| (to.a - from.a) - (to.b - from.b);
     let mut across = [V::ZERO; MAX_POINTS];
@@ -76,8 +78,9 @@ pub(super) fn across_faces<V: Vector>(pairs: &[PointPair<V>], axis: V) -> impl I
     across.into_iter().take(count).map(along).flat_map(move |n| [n, -n].into_iter().take(sides))
 }
 
-/// The vectors across an edge that are nearest to the axes of the coordinates, on the side of `n`. The rounding of a long edge is that of its
-/// longest coordinates; along a vector that hardly has these, points may be known well enough to tell bodies apart.
+/// The vectors across an edge that are nearest to the axes of the coordinates, on the side of `n`. The rounding of a
+/// long edge is that of its longest coordinates; along a vector that hardly has these, points may be known well enough
+/// to tell bodies apart.
 pub(super) fn about_edge<V: Vector>(edge: V, n: V) -> impl Iterator<Item = V> {
     let across = move |v: V| v - edge * (v.dot(edge) / edge.length_squared());
     (0..V::DIM).map(move |i| {

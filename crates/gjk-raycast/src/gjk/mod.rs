@@ -1,5 +1,5 @@
-//! GJK: the closest points of two bodies' cores, for [`distance`](crate::distance) and [`intersects`](crate::intersects)
-//! (the paper's Algorithm 2).
+//! GJK: the closest points of two bodies' cores, for [`distance`](crate::distance) and
+//! [`intersects`](crate::intersects) (the paper's Algorithm 2).
 
 mod boxes;
 mod faces;
@@ -61,13 +61,13 @@ impl<V: Vector> Frame<V> {
     }
 }
 
-/// What the arithmetic of a query adds to a bound on the distance of two bodies of the given size, beside what their support points
-/// are wrong by.
+/// What the arithmetic of a query adds to a bound on the distance of two bodies of the given size, beside what their
+/// support points are wrong by.
 ///
-/// With `u = ε/2`, a lower bound `n·(a − b + offset)/|n|` loses `u` of the size for the offset, `2u` for the sums, `3u` for the
-/// products and `4u` for the quotient; an upper bound `|Σ wᵢ·(aᵢ − bᵢ) + offset|` loses `5u` for the weighted sums, `3u` for their
-/// difference and the offset, `3u` for the length, and what the weights sum up to is off one by, `4u`. It is the larger, with one for
-/// the radii.
+/// With `u = ε/2`, a lower bound `n·(a − b + offset)/|n|` loses `u` of the size for the offset, `2u` for the sums, `3u`
+/// for the products and `4u` for the quotient; an upper bound `|Σ wᵢ·(aᵢ − bᵢ) + offset|` loses `5u` for the weighted
+/// sums, `3u` for their difference and the offset, `3u` for the length, and what the weights sum up to is off one by,
+/// `4u`. It is the larger, with one for the radii.
 #[inline]
 pub(crate) fn rounding<S: Scalar>(size: S) -> S {
     S::from_f64(8.0) * S::EPSILON * size
@@ -116,10 +116,10 @@ struct Direction<V: Vector> {
 
 /// Runs GJK on the cores until their distance is known to rounding, or to exceed the limit, or not to exceed the radii.
 ///
-/// A step is first taken the fast way, by the regions of the newest point or as asked, and judged by what it achieves: one
-/// that brings the simplex no nearer is taken again by a search of all faces. The bounds that end the loop do not depend on
-/// how it came there: the lower one is that of a plane through a support point, and the upper one is measured again before
-/// it counts.
+/// A step is first taken the fast way, by the regions of the newest point or as asked, and judged by what it achieves:
+/// one that brings the simplex no nearer is taken again by a search of all faces. The bounds that end the loop do not
+/// depend on how it came there: the lower one is that of a plane through a support point, and the upper one is measured
+/// again before it counts.
 ///
 /// `known` is the support point along the first direction, if there is one; the state is one that
 /// [began](Gjk::begin_at_closest), or with corners of its own.
@@ -189,8 +189,8 @@ fn descend<B: TracedSupport>(
             continue;
         }
         let Some(mut v) = fast.or_else(|| state.step_by_all_faces(&mut nearing)) else {
-            // The fast steps' normal of a sliver leans by its rounding, and what supports the body along it may be a corner
-            // already. Measured, it shows another.
+            // The fast steps' normal of a sliver leans by its rounding, and what supports the body along it may be a
+            // corner already. Measured, it shows another.
             state.ensure_measured();
             if looked.n != state.normal && nearing.goes_on(state.length) {
                 looked = state.along_normal();

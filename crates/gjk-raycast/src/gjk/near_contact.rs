@@ -1,11 +1,11 @@
 //! Bodies no farther apart than a few errors: looked at once more, as closely as their numbers allow.
 //!
-//! The errors that a query knows at hand are those of the largest number in it, though the gap of a box over a floor has nothing to do
-//! with how wide the floor is. Here the plane between the bodies is evaluated once more without rounding, and what the shapes say of
-//! theirs counts coordinate by coordinate, along the normal alone.
+//! The errors that a query knows at hand are those of the largest number in it, though the gap of a box over a floor
+//! has nothing to do with how wide the floor is. Here the plane between the bodies is evaluated once more without
+//! rounding, and what the shapes say of theirs counts coordinate by coordinate, along the normal alone.
 //!
-//! The search begins at the offset of the origins, whatever axis the query began at, and the [larger body comes first](super::order).
-//! So all queries about one pair decide alike.
+//! The search begins at the offset of the origins, whatever axis the query began at, and the [larger body comes
+//! first](super::order). So all queries about one pair decide alike.
 
 use convex_support::numerics::bound::{raised, raised_vector, roundings, roundings_of};
 use convex_support::numerics::elementary::hypot;
@@ -50,8 +50,8 @@ pub(crate) struct NearContact<V: Vector> {
     pub(crate) lower: V::Scalar,
     /// Points of the bodies are no farther apart than this.
     pub(crate) upper: V::Scalar,
-    /// Whether the bodies have points in common for certain: a simplex of points of their difference has zero inside. Then no plane is
-    /// between them, and `gap` and `lower` are infinitely deep.
+    /// Whether the bodies have points in common for certain: a simplex of points of their difference has zero inside.
+    /// Then no plane is between them, and `gap` and `lower` are infinitely deep.
     pub(crate) overlaps_certainly: bool,
 }
 
@@ -71,16 +71,17 @@ impl<V: Vector> NearContact<V> {
         is_found.then_some(true)
     }
 
-    /// Whether a look behind it would tell no more: it is [closed](Self::is_closed), or the bodies have a point in common far beyond any plane
-    /// that was found, by a search that was not given up.
+    /// Whether a look behind it would tell no more: it is [closed](Self::is_closed), or the bodies have a point in
+    /// common far beyond any plane that was found, by a search that was not given up.
     pub(crate) fn is_settled(&self, max_iterations: usize) -> bool {
         let is_over = self.overlaps_certainly || self.iterations < max_iterations;
         let is_deep = is_over && self.gap < -self.frame.error * V::Scalar::from_f64(NEAR);
         self.is_closed() || is_deep && self.length - self.frame.radius <= self.frame.error
     }
 
-    /// Whether the points are as near as the plane, to what the points are wrong by in any direction. Where it is not known that the bodies are
-    /// apart, to what they are wrong by along the normal: points may be known far less across it, and another plane be beyond zero.
+    /// Whether the points are as near as the plane, to what the points are wrong by in any direction. Where it is not
+    /// known that the bodies are apart, to what they are wrong by along the normal: points may be known far less across
+    /// it, and another plane be beyond zero.
     pub(crate) fn is_closed(&self) -> bool {
         let error = if self.is_separated() { self.frame.error } else { self.gap - self.lower };
         self.upper - self.gap <= error + error
@@ -95,8 +96,8 @@ impl<V: Vector> NearContact<V> {
 
 /// Looks at bodies near contact once more; `None` where no plane can be found, or numbers are out of range.
 ///
-/// A search that is over may have begun where all do: with the bodies [in order](super::comes_first), without an axis of its own, and to
-/// no tolerance but the noise. Then what it came to is gone on with, and else it is made once more.
+/// A search that is over may have begun where all do: with the bodies [in order](super::comes_first), without an axis
+/// of its own, and to no tolerance but the noise. Then what it came to is gone on with, and else it is made once more.
 ///
 /// The bodies are asked behind pointers, so that what is rarely needed is compiled once.
 #[cold]
@@ -291,8 +292,8 @@ impl<V: Vector> Known<V> {
         dot_minus(parts, V::Scalar::ZERO)
     }
 
-    /// What the points of both cores closest to one another tell, where the plane across the vector between them meets that to what
-    /// both are wrong by and is beyond the radii: then there is nothing to search.
+    /// What the points of both cores closest to one another tell, where the plane across the vector between them meets
+    /// that to what both are wrong by and is beyond the radii: then there is nothing to search.
     fn between_closest(
         &self,
         pair: &mut AnyPair<'_, V>,
@@ -376,9 +377,9 @@ impl<V: Vector> Known<V> {
         Found { end, iterations: state.iterations, points, length: state.length }.near_contact(frame, &plane, upper)
     }
 
-    /// The plane that is farthest from zero for certain, of those across the faces that a search has ended at, and across its last two
-    /// directions; and a bound on the length of the shortest vector found. Where the line across a plane pierces the face that is as far,
-    /// no other plane is looked at.
+    /// The plane that is farthest from zero for certain, of those across the faces that a search has ended at, and
+    /// across its last two directions; and a bound on the length of the shortest vector found. Where the line across a
+    /// plane pierces the face that is as far, no other plane is looked at.
     fn best_plane(&self, pair: &mut AnyPair<'_, V>, state: &Gjk<V>) -> Option<(SupportPlane<V>, V::Scalar)> {
         let points = state.simplex.points();
         let mut pairs = [PointPair::default(); MAX_POINTS];
@@ -400,7 +401,8 @@ impl<V: Vector> Known<V> {
                 && (best.is_none() || plane.certain() > certain)
             {
                 upper = upper.min(self.length_at_pierced(state, plane.n));
-                // The face's corners are as far along `n` as the support point: what is left between the bounds is their error.
+                // The face's corners are as far along `n` as the support point: what is left between the bounds is
+                // their error.
                 let is_of_face = upper <= plane.level + plane.error * V::Scalar::from_f64(1.0625);
                 if !is_of_face {
                     upper = upper.min(*length.get_or_insert_with(|| self.length(state)));
@@ -415,8 +417,8 @@ impl<V: Vector> Known<V> {
         best.map(|plane| (plane, upper))
     }
 
-    /// Whether a plane across `n` that supports the difference may be certain to be farther than `level` from zero: it is no farther
-    /// than any of the points.
+    /// Whether a plane across `n` that supports the difference may be certain to be farther than `level` from zero: it
+    /// is no farther than any of the points.
     fn may_be_beyond(&self, n: V, points: &[V], level: V::Scalar) -> bool {
         let nearest = points.iter().map(|p| n.dot(*p)).fold(V::Scalar::infinity(), V::Scalar::min);
         // NaN may be.
@@ -427,15 +429,15 @@ impl<V: Vector> Known<V> {
     fn plane(&self, pair: &mut AnyPair<'_, V>, n: V) -> Option<SupportPlane<V>> {
         let n = n.unit()?;
         let level = self.level(n, pair.support(-n).1);
-        // The unit vector's length is right to 6 roundings; the sum of the products is rounded once, and is right to 1024ε² of what
-        // is added up.
+        // The unit vector's length is right to 6 roundings; the sum of the products is rounded once, and is right to
+        // 1024ε² of what is added up.
         let squared = V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(1024.0);
         let rounded = roundings(8.0, level.abs()) + roundings(4.0, self.radius) + squared * n.abs().dot(self.extent);
         level.is_finite().then(|| SupportPlane { n, level, error: raised(self.error_along(n) + rounded) })
     }
 
-    /// A bound on the length of the shortest vector found, `Σ wᵢ·(aᵢ − bᵢ + offset) / Σ wᵢ`: whatever the weights, that is a vector of the
-    /// difference. Its coordinates are added up in twice the precision.
+    /// A bound on the length of the shortest vector found, `Σ wᵢ·(aᵢ − bᵢ + offset) / Σ wᵢ`: whatever the weights, that
+    /// is a vector of the difference. Its coordinates are added up in twice the precision.
     fn length(&self, state: &Gjk<V>) -> V::Scalar {
         let mut sum = V::Scalar::ZERO;
         for (weight, _) in state.simplex.weighted() {
@@ -448,11 +450,13 @@ impl<V: Vector> Known<V> {
             dot_minus(parts, V::Scalar::ZERO)
         });
         let x = x / sum;
-        // What the weights sum up to is right to three roundings, and to one each the sum of the products and the quotient.
+        // What the weights sum up to is right to three roundings, and to one each the sum of the products and the
+        // quotient.
         self.length_of(x, roundings_of(5.0, x.abs()) + self.rounded_twice())
     }
 
-    /// What sums of up to 16 products lose that are added up in twice the precision, beside one rounding of the sum: 17² quarters of `ε²`.
+    /// What sums of up to 16 products lose that are added up in twice the precision, beside one rounding of the sum:
+    /// 17² quarters of `ε²`.
     fn rounded_twice(&self) -> V {
         self.extent * (V::Scalar::EPSILON * V::Scalar::EPSILON * V::Scalar::from_f64(128.0))
     }
@@ -464,12 +468,12 @@ impl<V: Vector> Known<V> {
         self.length_of(apart + self.offset, lost + self.lost.abs())
     }
 
-    /// A bound on the length of a vector `x` of the difference, which rounding has moved by no more than `rounded`, coordinate by
-    /// coordinate, beside what its points are wrong by.
+    /// A bound on the length of a vector `x` of the difference, which rounding has moved by no more than `rounded`,
+    /// coordinate by coordinate, beside what its points are wrong by.
     ///
-    /// With `u` the unit vector along it, the true vector is `x` but for some `e`. Along `u` that adds `|u|·|e|`, taken coordinate by
-    /// coordinate, and across it hardly anything: the length is at most `√(p² + |e|²)` with `p = |x| + |u|·|e|`, which is
-    /// `p + |e|²/(p + √(p² + |e|²))`.
+    /// With `u` the unit vector along it, the true vector is `x` but for some `e`. Along `u` that adds `|u|·|e|`, taken
+    /// coordinate by coordinate, and across it hardly anything: the length is at most `√(p² + |e|²)` with `p = |x| +
+    /// |u|·|e|`, which is `p + |e|²/(p + √(p² + |e|²))`.
     fn length_of(&self, x: V, rounded: V) -> V::Scalar {
         let error = self.error + rounded;
         let across = raised(error.norm().min(self.error_length + rounded.norm()));
@@ -487,12 +491,12 @@ impl<V: Vector> Known<V> {
         self.error_length * V::Scalar::from_f64(2.0) + roundings(16.0, self.extent.norm())
     }
 
-    /// A bound on the distance of the bodies from a face of the difference that the line along the unit vector `n` through zero pierces,
-    /// for certain: where it does, no corner of the face is nearer along `n`.
+    /// A bound on the distance of the bodies from a face of the difference that the line along the unit vector `n`
+    /// through zero pierces, for certain: where it does, no corner of the face is nearer along `n`.
     ///
-    /// Along `n` the face is seen in the plane of two coordinates, the ones where `n` is shorter. There zero is within a triangle where
-    /// the areas with its sides are all of one sign, by more than they may be wrong; in the plane, within a segment where its ends are
-    /// on two sides.
+    /// Along `n` the face is seen in the plane of two coordinates, the ones where `n` is shorter. There zero is within
+    /// a triangle where the areas with its sides are all of one sign, by more than they may be wrong; in the plane,
+    /// within a segment where its ends are on two sides.
     fn length_at_pierced(&self, state: &Gjk<V>, n: V) -> V::Scalar {
         let number = V::Scalar::from_f64;
         let points = state.simplex.points();
@@ -524,7 +528,8 @@ impl<V: Vector> Known<V> {
         if !is_inside {
             return Float::infinity();
         }
-        // The face may be behind zero, which is outside all the same where what is beyond the face is not of the difference.
+        // The face may be behind zero, which is outside all the same where what is beyond the face is not of the
+        // difference.
         let levels = state.simplex.weighted().map(|(_, pair)| self.level(n, pair).abs());
         let farthest = levels.fold(V::Scalar::ZERO, V::Scalar::max);
         raised(farthest + self.error_along(n) + roundings(8.0, farthest))

@@ -1,5 +1,5 @@
-//! Where GJK looks next: along its shortest vector, or along one that is turned from it by curvature or towards the best
-//! plane known.
+//! Where GJK looks next: along its shortest vector, or along one that is turned from it by curvature or towards the
+//! best plane known.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -30,8 +30,8 @@ impl<V: Vector> NextDirection<V> {
         self.levelled || self.newton.before.is_some()
     }
 
-    /// The direction after one that was turned, and whose support point `w`, with `reach` along it, brings the simplex no
-    /// nearer.
+    /// The direction after one that was turned, and whose support point `w`, with `reach` along it, brings the simplex
+    /// no nearer.
     #[inline(always)]
     pub(super) fn turn_again<B: TracedSupport<Vector = V>>(
         &mut self,
@@ -47,7 +47,8 @@ impl<V: Vector> NextDirection<V> {
         turned.map_or_else(|| state.along_normal(), |n| Direction { n, length: Scalar::ONE })
     }
 
-    /// The direction after a step to the shortest vector `v`, which support point `w`, with `reach` along the last one, led to.
+    /// The direction after a step to the shortest vector `v`, which support point `w`, with `reach` along the last one,
+    /// led to.
     #[inline(always)]
     pub(super) fn after<B: TracedSupport<Vector = V>>(
         &mut self,
@@ -63,8 +64,8 @@ impl<V: Vector> NextDirection<V> {
             return turned.map_or(v, |n| Direction { n, length: Scalar::ONE });
         }
         let levelled = if leaves_open(state) { in_range(level(state, v)) } else { None };
-        // Both directions may cancel. Deep in one another bodies have an axis opposite to the shortest vector, and what is between both is that
-        // axis again: the same support point would come back, over and over.
+        // Both directions may cancel. Deep in one another bodies have an axis opposite to the shortest vector, and what
+        // is between both is that axis again: the same support point would come back, over and over.
         let levelled = levelled
             .filter(|direction| direction.n.dot(v.n) > -(direction.length * v.length) * V::Scalar::from_f64(OPPOSITE));
         self.levelled = levelled.is_some();
@@ -75,15 +76,16 @@ impl<V: Vector> NextDirection<V> {
 /// The shortest vector of a vertex or an edge is not trusted while the lower bound is below this part of its length.
 const TRUSTED: f64 = 0.5;
 
-/// The weight of the lower bound's axis in a direction between it and the shortest vector. Of 1.5, 2 and 3 it takes the fewest
-/// support points on average of polytopes of 8 to 1024 vertices.
+/// The weight of the lower bound's axis in a direction between it and the shortest vector. Of 1.5, 2 and 3 it takes the
+/// fewest support points on average of polytopes of 8 to 1024 vertices.
 const AXIS_WEIGHT: f64 = 2.0;
 
-/// The cosine of the angle to the opposite of the shortest vector, above which a direction between that and the axis is the axis again.
+/// The cosine of the angle to the opposite of the shortest vector, above which a direction between that and the axis is
+/// the axis again.
 const OPPOSITE: f64 = 0.6;
 
-/// Whether the simplex leaves open where to look next, and its shortest vector says little about that. A triangle leaves
-/// nothing open, and polygons in the plane need few steps anyway.
+/// Whether the simplex leaves open where to look next, and its shortest vector says little about that. A triangle
+/// leaves nothing open, and polygons in the plane need few steps anyway.
 #[inline(always)]
 fn leaves_open<V: Vector>(state: &Gjk<V>) -> bool {
     let is_open = V::DIM == 3 && state.simplex.points().len() < V::DIM;
@@ -92,11 +94,11 @@ fn leaves_open<V: Vector>(state: &Gjk<V>) -> bool {
 
 /// A direction between the shortest vector `v` and the axis of the lower bound.
 ///
-/// Among unit vectors, the distance of `C = A − B` from zero is the maximum of `f(n) = min n·x` over all `x` of `C`. The
-/// points known of `C` bound `f` from above, and the shortest vector of their simplex is where that bound is largest. While
-/// they are few it is far from where `f` is, and moves from side to side, as cutting planes do. So, as in level bundle
-/// methods (Lemaréchal, Nemirovskii, Nesterov, 1995), only part of the way to it is gone from the best direction known.
-/// Where an edge is closest, both its ends should stay equally far: the way is across the edge.
+/// Among unit vectors, the distance of `C = A − B` from zero is the maximum of `f(n) = min n·x` over all `x` of `C`.
+/// The points known of `C` bound `f` from above, and the shortest vector of their simplex is where that bound is
+/// largest. While they are few it is far from where `f` is, and moves from side to side, as cutting planes do. So, as
+/// in level bundle methods (Lemaréchal, Nemirovskii, Nesterov, 1995), only part of the way to it is gone from the best
+/// direction known. Where an edge is closest, both its ends should stay equally far: the way is across the edge.
 #[inline(always)]
 fn level<V: Vector>(state: &Gjk<V>, v: Direction<V>) -> V {
     let mut axis = state.axis;
@@ -104,7 +106,8 @@ fn level<V: Vector>(state: &Gjk<V>, v: Direction<V>) -> V {
         let e = q - p;
         axis -= e * (axis.dot(e) / e.length_squared());
     }
-    // The sum of the unit vectors, times both lengths: from one such direction to the next it may become shorter and shorter.
+    // The sum of the unit vectors, times both lengths: from one such direction to the next it may become shorter and
+    // shorter.
     v.n * state.axis_length + axis * (V::Scalar::from_f64(AXIS_WEIGHT) * v.length)
 }
 
@@ -123,8 +126,8 @@ fn level<V: Vector>(state: &Gjk<V>, v: Direction<V>) -> V {
 /// `|p|` are bounds that meet, as long as `p` moves on one smooth piece of the surface.
 ///
 /// A known point of `C` that lies before the plane so foretold is on another piece, and tells that the closest point is
-/// between both. Three pieces that meet fix a plane by themselves: there GJK's own steps suffice, and they are taken too
-/// where steps by curvature do not shrink the bracket.
+/// between both. Three pieces that meet fix a plane by themselves: there GJK's own steps suffice, and they are taken
+/// too where steps by curvature do not shrink the bracket.
 struct Newton<V: Vector> {
     noise: V::Scalar,
     /// The support point found before the last one, and the direction it was found along.

@@ -1,7 +1,7 @@
 //! Which of two bodies a search takes first, whichever is given first.
 //!
-//! Where bodies touch, rounding decides what is found, and the difference `A − B` is not rounded as `B − A` is. So that all queries
-//! about one pair decide alike, the larger body comes first.
+//! Where bodies touch, rounding decides what is found, and the difference `A − B` is not rounded as `B − A` is. So that
+//! all queries about one pair decide alike, the larger body comes first.
 
 use convex_support::{Core, Vector};
 

@@ -17,7 +17,8 @@ impl<S: Scalar> Progress<S> {
         Self { least: S::infinity(), steps_left: MAX_STEPS_WITHOUT }
     }
 
-    /// Takes the next value. False where it is NaN, and after too many values in a row that are no less than one before.
+    /// Takes the next value. False where it is NaN, and after too many values in a row that are no less than one
+    /// before.
     pub(crate) fn goes_on(&mut self, value: S) -> bool {
         if value < self.least {
             *self = Self { least: value, steps_left: MAX_STEPS_WITHOUT };

@@ -15,8 +15,8 @@ pub(crate) fn first_direction<V: Vector>(axis: Option<V>, offset: V) -> V {
 }
 
 impl<V: Vector> Gjk<V> {
-    /// Begins at the closest points of the cores of a pair of the given size, where those are known in closed form: whether the bodies
-    /// meet there, to rounding. `None` where they are not known, and the state is as it was.
+    /// Begins at the closest points of the cores of a pair of the given size, where those are known in closed form:
+    /// whether the bodies meet there, to rounding. `None` where they are not known, and the state is as it was.
     #[inline(always)]
     pub(crate) fn begin_at_closest(
         &mut self,

@@ -8,8 +8,8 @@ use crate::body::PointPair;
 use crate::simplex::{Closest, Face, MAX_POINTS, Simplex, nearest, nearest_face, project};
 use crate::{Iterate, SubAlgorithm};
 
-/// The simplex, the bounds on the distance of the cores, and the plane that proves the lower one; lengths in units of the
-/// frame.
+/// The simplex, the bounds on the distance of the cores, and the plane that proves the lower one; lengths in units of
+/// the frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gjk<V: Vector> {
     /// The corners of the face closest to zero (the paper's W).
@@ -43,8 +43,8 @@ impl<V: Vector> Gjk<V> {
         }
     }
 
-    /// Begins with a point of the difference, if that is finite, and with the vector to it for first direction. Whether the
-    /// bodies meet there, to rounding.
+    /// Begins with a point of the difference, if that is finite, and with the vector to it for first direction. Whether
+    /// the bodies meet there, to rounding.
     #[inline(always)]
     pub(crate) fn begin_at(&mut self, point: V, witness: PointPair<V>, frame: &Frame<V>) -> bool {
         let mut weights = [V::Scalar::ZERO; MAX_POINTS];
@@ -57,7 +57,8 @@ impl<V: Vector> Gjk<V> {
         self.length <= frame.touching()
     }
 
-    /// The state at a face of the difference, of which `v` is the point closest to zero and is made of its corners with these weights.
+    /// The state at a face of the difference, of which `v` is the point closest to zero and is made of its corners with
+    /// these weights.
     #[inline]
     pub(crate) fn at_face(
         corners: impl Iterator<Item = (V, PointPair<V>)>,
@@ -73,9 +74,9 @@ impl<V: Vector> Gjk<V> {
         state
     }
 
-    /// Raises the lower bound to the plane through the support point `w` along a direction, if it is higher: no point of
-    /// `A − B` lies before `w` along it (the paper's bound `‖v‖² − v·w`, divided by `‖v‖`). How high the plane is, if that
-    /// is finite.
+    /// Raises the lower bound to the plane through the support point `w` along a direction, if it is higher: no point
+    /// of `A − B` lies before `w` along it (the paper's bound `‖v‖² − v·w`, divided by `‖v‖`). How high the plane is,
+    /// if that is finite.
     #[inline(always)]
     pub(super) fn advance(&mut self, Direction { n, length }: Direction<V>, w: V) -> Option<V::Scalar> {
         self.iterations += 1;
@@ -129,23 +130,25 @@ impl<V: Vector> Gjk<V> {
         Direction { n: self.normal, length: self.normal.length() }
     }
 
-    /// Whether the shortest vector is no longer than `touching`; `v` is its direction, which may change as it is measured.
+    /// Whether the shortest vector is no longer than `touching`; `v` is its direction, which may change as it is
+    /// measured.
     #[inline(always)]
     pub(super) fn overlaps(&mut self, touching: V::Scalar, v: &mut Direction<V>) -> bool {
-        // No point is nearer than the lower bound: the length of a fast step in a sliver is its rounding. Taken for progress,
-        // it would have the same two steps go on forever.
+        // No point is nearer than the lower bound: the length of a fast step in a sliver is its rounding. Taken for
+        // progress, it would have the same two steps go on forever.
         if self.length < self.lower && !self.measured {
             *v = self.measure().unwrap_or(*v);
         }
-        // A simplex of full dimension contains zero, or is looked at more closely; of any other it remains to be measured, even where the
-        // fast step's length is zero, as it may be by rounding.
+        // A simplex of full dimension contains zero, or is looked at more closely; of any other it remains to be
+        // measured, even where the fast step's length is zero, as it may be by rounding.
         if self.length <= touching && self.simplex.points().len() <= V::DIM && !self.measured {
             *v = self.measure().unwrap_or(*v);
         }
         self.length <= touching
     }
 
-    /// Goes on to the face of the simplex closest to zero, if that is clear and brings it nearer. The newest point is `y`.
+    /// Goes on to the face of the simplex closest to zero, if that is clear and brings it nearer. The newest point is
+    /// `y`.
     #[inline(always)]
     pub(super) fn step(&mut self, y: V, sub_algorithm: SubAlgorithm) -> Option<Direction<V>> {
         if sub_algorithm != SubAlgorithm::Regions {

@@ -23,8 +23,8 @@ impl<V: Vector> HalfSpace<V> {
     /// # Ok::<(), convex_support::InvalidShape>(())
     /// ```
     ///
-    /// The points are corners of the shape's feature that faces the half-space. If there are more than four, in 2D two, they are those that
-    /// span the feature best.
+    /// The points are corners of the shape's feature that faces the half-space. If there are more than four, in 2D two,
+    /// they are those that span the feature best.
     pub fn contact<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A, within: V::Scalar) -> Option<Contact<V>> {
         let answer = self.signed_distance(shape);
         // NaN is farther than anything.

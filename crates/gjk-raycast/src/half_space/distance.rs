@@ -24,8 +24,8 @@ impl<V: Vector> HalfSpace<V> {
     /// # Ok::<(), convex_support::InvalidShape>(())
     /// ```
     ///
-    /// It is the height of the shape's lowest point. Its error is a few roundings of the height itself, and what the shape says of its
-    /// [rounding](SupportMap::rounding), however far along the plane the shape is.
+    /// It is the height of the shape's lowest point. Its error is a few roundings of the height itself, and what the
+    /// shape says of its [rounding](SupportMap::rounding), however far along the plane the shape is.
     pub fn signed_distance<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A) -> SignedDistance<V> {
         let plane = self.plane();
         let Lowest { height, point } = plane.lowest(shape, V::Scalar::default());

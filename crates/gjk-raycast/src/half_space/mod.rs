@@ -1,8 +1,8 @@
 //! Half-spaces: infinite floors and walls.
 //!
-//! A half-space has no support points, since it has no farthest point along most directions. But the point of a shape that is nearest to it,
-//! or deepest in it, is the support point of the shape along `−n`. So its queries are closed forms of how [high](plane) that point is and
-//! how fast it sinks.
+//! A half-space has no support points, since it has no farthest point along most directions. But the point of a shape
+//! that is nearest to it, or deepest in it, is the support point of the shape along `−n`. So its queries are closed
+//! forms of how [high](plane) that point is and how fast it sinks.
 
 mod contact;
 mod distance;
@@ -17,9 +17,10 @@ pub(crate) use plane::{Level, Plane};
 
 /// The points x with n·x ≤ offset: everything on one side of a plane.
 ///
-/// It is no [`SupportMap`](convex_support::SupportMap), as it is unbounded, and has its own queries: [`ray_cast`](Self::ray_cast),
-/// [`linear_cast`](Self::linear_cast), [`motion_cast`](Self::motion_cast), [`distance_from`](Self::distance_from),
-/// [`signed_distance`](Self::signed_distance) and [`contact`](Self::contact). It can be a body of a [`Scene`](crate::Scene).
+/// It is no [`SupportMap`](convex_support::SupportMap), as it is unbounded, and has its own queries:
+/// [`ray_cast`](Self::ray_cast), [`linear_cast`](Self::linear_cast), [`motion_cast`](Self::motion_cast),
+/// [`distance_from`](Self::distance_from), [`signed_distance`](Self::signed_distance) and [`contact`](Self::contact).
+/// It can be a body of a [`Scene`](crate::Scene).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace<V: Vector> {
     normal: V,
@@ -29,7 +30,8 @@ pub struct HalfSpace<V: Vector> {
 }
 
 impl<V: Vector> HalfSpace<V> {
-    /// The half-space of the points x with `normal·x ≤ offset`. The normal points out of it and need not be of unit length.
+    /// The half-space of the points x with `normal·x ≤ offset`. The normal points out of it and need not be of unit
+    /// length.
     ///
     /// # Errors
     /// [`InvalidShape::NonFinite`] if a number is not finite, [`InvalidShape::NotPositive`] if the normal is zero or so

@@ -8,7 +8,8 @@ use num_traits::Float;
 use super::HalfSpace;
 use crate::unit::{power_of_two_near, reciprocal_of_power};
 
-/// The plane of a half-space. Its normal and offset are in units of a power of two near the normal's length, and so as they were given.
+/// The plane of a half-space. Its normal and offset are in units of a power of two near the normal's length, and so as
+/// they were given.
 pub(crate) struct Plane<V: Vector> {
     normal: V,
     offset: V::Scalar,
@@ -92,11 +93,11 @@ impl<V: Vector> Plane<V> {
         self.normal
     }
 
-    /// `(n·Σ terms − subtracted)/|n|`, by one sum of products in twice the precision. Where nothing is rounded there is no error, so that
-    /// what moves along the plane is known to.
+    /// `(n·Σ terms − subtracted)/|n|`, by one sum of products in twice the precision. Where nothing is rounded there is
+    /// no error, so that what moves along the plane is known to.
     ///
-    /// With what `k` products and sums have lost, `lᵢ`, the sum is wrong by no more than `(k + 1)·ε·Σ |lᵢ|` and its own rounding. The length
-    /// and the quotient lose another eight halves of ε.
+    /// With what `k` products and sums have lost, `lᵢ`, the sum is wrong by no more than `(k + 1)·ε·Σ |lᵢ|` and its own
+    /// rounding. The length and the quotient lose another eight halves of ε.
     fn level<const N: usize>(&self, terms: [V; N], subtracted: V::Scalar) -> Level<V::Scalar> {
         let zero = V::Scalar::ZERO;
         let (mut sum, mut lost, mut magnitude, mut tiny) = (-subtracted, zero, zero, zero);

@@ -11,8 +11,8 @@ use crate::{Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, S
 impl<V: Vector> HalfSpace<V> {
     /// The ray's first point in the half-space: where n·(s + λd) = offset, λ = (n·s − offset)/(−n·d).
     ///
-    /// Its beginning and end are treated as by [`ray_cast`](crate::ray_cast()). The height and the speed are each known to a few roundings of
-    /// themselves, and so is λ.
+    /// Its beginning and end are treated as by [`ray_cast`](crate::ray_cast()). The height and the speed are each known
+    /// to a few roundings of themselves, and so is λ.
     ///
     /// # Errors
     /// [`RayCastError`] if the direction is zero, a coordinate not finite, or an end of the ray NaN.
@@ -65,8 +65,9 @@ pub(super) struct Landing<V: Vector> {
 }
 
 impl<V: Vector> Plane<V> {
-    /// When something at a height, which sinks at a speed, comes to the plane, if it does so until `end`. If it may be in the half-space
-    /// already, the answer is a hit at once. That hit is certain if it is inside by more than its error, or certainly sinks.
+    /// When something at a height, which sinks at a speed, comes to the plane, if it does so until `end`. If it may be
+    /// in the half-space already, the answer is a hit at once. That hit is certain if it is inside by more than its
+    /// error, or certainly sinks.
     pub(super) fn crossing(&self, height: Level<V::Scalar>, sinking: Level<V::Scalar>, end: V::Scalar) -> Landing<V> {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
         let miss = Landing {

@@ -25,12 +25,12 @@ pub(super) trait Approach<V: Vector> {
     /// How far apart the plane across a unit vector keeps the bodies at a time, and what that is wrong by at most.
     fn level(&self, time: V::Scalar, normal: V) -> (V::Scalar, V::Scalar);
 
-    /// An upper bound of the second derivative, throughout an interval, of the distance of any point of `a` from any point of `b`
-    /// along a normal that changes at a constant rate.
+    /// An upper bound of the second derivative, throughout an interval, of the distance of any point of `a` from any
+    /// point of `b` along a normal that changes at a constant rate.
     fn acceleration_along(&self, plane: TurningPlane<V>, interval: [V::Scalar; 2]) -> V::Scalar;
 
-    /// Whether balls around the bodies, which move at constant velocities, stay apart throughout an interval, which may be infinite;
-    /// then the direction from `b` to `a` where they are closest.
+    /// Whether balls around the bodies, which move at constant velocities, stay apart throughout an interval, which may
+    /// be infinite; then the direction from `b` to `a` where they are closest.
     fn stays_far_apart(&self, interval: [V::Scalar; 2]) -> Option<V>;
 
     /// Whether the bodies, which overlap by `depth` at least at two times, certainly have a point in common at all
@@ -40,8 +40,8 @@ pub(super) trait Approach<V: Vector> {
     /// The speed of the closest points against one another, where they are.
     fn speed_at(&self, there: &Instant<V>) -> V::Scalar;
 
-    /// Whether bodies that a plane separates at the time of `near` certainly have a point in common at some time until the given one,
-    /// because they have no inside and have passed through one another.
+    /// Whether bodies that a plane separates at the time of `near` certainly have a point in common at some time until
+    /// the given one, because they have no inside and have passed through one another.
     fn pass_through(&self, near: &Instant<V>, time: V::Scalar) -> bool;
 
     /// A point in both bodies, which overlap at a time.

@@ -1,8 +1,9 @@
 //! A look at two moving boxes, by the facets of their difference.
 //!
-//! Well apart, or deep in one another, they are seen by the highest facet ([`boxes`](super::boxes)). Nearly in contact, a support point along
-//! its normal tells its level as well as that can be known. Where the boxes overlap by more than the level may be wrong by, the line through
-//! zero along the normal proves it: on one side of zero it goes through the facet, and on the other side it is within the difference.
+//! Well apart, or deep in one another, they are seen by the highest facet ([`boxes`](super::boxes)). Nearly in contact,
+//! a support point along its normal tells its level as well as that can be known. Where the boxes overlap by more than
+//! the level may be wrong by, the line through zero along the normal proves it: on one side of zero it goes through the
+//! facet, and on the other side it is within the difference.
 
 use convex_support::{Hint, Scalar, SupportMap as _, Vector};
 use num_traits::Float;
@@ -16,19 +17,20 @@ use crate::double::array;
 use crate::gjk::rounding;
 use crate::unit::is_moderate;
 
-/// As a part of the way from zero's foot to the sides of a facet, how deep zero may be behind it without being nearer to another.
+/// As a part of the way from zero's foot to the sides of a facet, how deep zero may be behind it without being nearer
+/// to another.
 const DEEP: f64 = 0.25;
 
-/// What a level is wrong by, in units of what a bound by a support point loses: it is a sum of six edges, each of which was turned, where
-/// that is of two points.
+/// What a level is wrong by, in units of what a bound by a support point loses: it is a sum of six edges, each of which
+/// was turned, where that is of two points.
 const LEVEL: f64 = 2.0;
 
 /// The same of a level from near, roughly.
 const FROM_NEAR: f64 = 0.5;
 
 impl<V: Vector> MovingPair<'_, V> {
-    /// Two boxes at a time, from near if that is asked or they are nearly in contact; `None` where it is not certain which facet is the
-    /// highest, or that proves nothing.
+    /// Two boxes at a time, from near if that is asked or they are nearly in contact; `None` where it is not certain
+    /// which facet is the highest, or that proves nothing.
     ///
     /// All is compiled into one function, so that where the bodies are need not be written to memory and read again.
     #[inline(never)]
@@ -82,8 +84,8 @@ impl<V: Vector> MovingPair<'_, V> {
         Some(Instant { point, closing, ..there })
     }
 
-    /// What a facet tells of a time, as well as it can be known, if zero's foot is within it, and it proves that the boxes are apart or
-    /// overlap. The point is relative to the origin of the second, and the closing speed left out.
+    /// What a facet tells of a time, as well as it can be known, if zero's foot is within it, and it proves that the
+    /// boxes are apart or overlap. The point is relative to the origin of the second, and the closing speed left out.
     #[inline(always)]
     fn near_facet(
         &self,

@@ -1,18 +1,20 @@
 //! Two boxes where they are at a time, and the facets of their difference.
 //!
-//! The difference of two boxes is `c + Σ tₖ·hₖ·eₖ` with all `|tₖ| ≤ 1`: `eₖ` are unit vectors along the six edges of both, and `hₖ` half the
-//! lengths of these. Each of its facets is spanned by two edges, those of a face of one box or one of each, and all other edges lead to it
-//! from the centre. So along the unit vector `n` across a facet zero is beyond it by
+//! The difference of two boxes is `c + Σ tₖ·hₖ·eₖ` with all `|tₖ| ≤ 1`: `eₖ` are unit vectors along the six edges of
+//! both, and `hₖ` half the lengths of these. Each of its facets is spanned by two edges, those of a face of one box or
+//! one of each, and all other edges lead to it from the centre. So along the unit vector `n` across a facet zero is
+//! beyond it by
 //!
 //! > level(n) = n·c − Σ hₖ·|n·eₖ|,
 //!
-//! which is how far apart the plane keeps the boxes. Of boxes that overlap the highest level of all facets is minus the depth. Of boxes that
-//! are apart it is their distance if zero's foot is within the facet. Otherwise an edge or a corner of the difference is closest, and the
-//! highest level is less, but no less than `1/√3` of the distance: the vector to the closest point is a sum of normals of facets that meet
-//! there, and all of these are in one octant as the first box sees it.
+//! which is how far apart the plane keeps the boxes. Of boxes that overlap the highest level of all facets is minus the
+//! depth. Of boxes that are apart it is their distance if zero's foot is within the facet. Otherwise an edge or a
+//! corner of the difference is closest, and the highest level is less, but no less than `1/√3` of the distance: the
+//! vector to the closest point is a sum of normals of facets that meet there, and all of these are in one octant as the
+//! first box sees it.
 //!
-//! The highest facet mostly stays the highest, and as long as it does, its level is as smooth as the motion, also where the boxes begin to
-//! overlap.
+//! The highest facet mostly stays the highest, and as long as it does, its level is as smooth as the motion, also where
+//! the boxes begin to overlap.
 
 use convex_support::{Core, CoreKind, Parallelotope, Scalar, Vector};
 use num_traits::Float;
@@ -27,8 +29,8 @@ const EDGES: usize = 6;
 /// The cosine of the angle between two edges of what is no box.
 const SKEW: f64 = 1e-6;
 
-/// The squared sine of the angle between edges whose facet is not looked at. It is a sliver, and what is beyond it is seen to be beyond
-/// others but for the sine times the shorter edge.
+/// The squared sine of the angle between edges whose facet is not looked at. It is a sliver, and what is beyond it is
+/// seen to be beyond others but for the sine times the shorter edge.
 const PARALLEL: f64 = 1e-6;
 
 /// Which part of a level may be overlooked.
@@ -43,8 +45,8 @@ const WITHIN: f64 = 64.0;
 /// What a product with a unit vector is wrong by, in ε of the magnitudes of its terms.
 const PRODUCT: f64 = 3.0;
 
-/// A core that is a box, as its body starts: its centre relative to the body's origin, unit vectors along its edges, and half the lengths
-/// of these.
+/// A core that is a box, as its body starts: its centre relative to the body's origin, unit vectors along its edges,
+/// and half the lengths of these.
 #[derive(Clone, Copy)]
 pub(super) struct Block<V> {
     center: V,
@@ -57,8 +59,9 @@ pub(super) struct Boxes {
     /// The centre of the second, relative to its body's origin, and the centre of the difference.
     from: Vec3,
     center: Vec3,
-    /// Unit vectors along the edges of the first and then of the second, by their coordinates: all first ones, all second ones, all third
-    /// ones. In 2D the third edges are across the plane, and so long that nothing is beyond them.
+    /// Unit vectors along the edges of the first and then of the second, by their coordinates: all first ones, all
+    /// second ones, all third ones. In 2D the third edges are across the plane, and so long that nothing is beyond
+    /// them.
     units: [[f64; EDGES]; 3],
     halves: [f64; EDGES],
 }
@@ -75,7 +78,8 @@ pub(super) struct BoxFacet {
     pub(super) level: f64,
     /// How far zero's foot is from the sides of the facet; negative if it is not within.
     pub(super) room: f64,
-    /// The point of the second box, relative to its body's origin, that goes into zero's foot, or if that is not within, one that is near.
+    /// The point of the second box, relative to its body's origin, that goes into zero's foot, or if that is not
+    /// within, one that is near.
     pub(super) point: Vec3,
 }
 
@@ -163,7 +167,8 @@ impl Boxes {
                 (highest, span) = (level, [3 + (j + 1) % 3, 3 + (j + 2) % 3]);
             }
         }
-        // An edge of each, whose product is as long as the sine of the angle between them: by squares that keep their signs.
+        // An edge of each, whose product is as long as the sine of the angle between them: by squares that keep their
+        // signs.
         let (mut highest, mut overlooked) = (highest * highest.abs(), 0.0);
         for i in 0..3 {
             let [p, q] = [(i + 1) % 3, (i + 2) % 3];
@@ -202,7 +207,8 @@ impl Boxes {
         let sides: [f64; EDGES] = core::array::from_fn(|k| Float::copysign(halves[k], heights[k]));
         let reach: [f64; EDGES] = core::array::from_fn(|k| heights[k] * sides[k]);
         let level = dot(n, *center) - ((reach[0] + reach[2] + reach[4]) + (reach[1] + reach[3] + reach[5]));
-        // A corner of the facet is the difference of a corner of each box, and zero's foot is so far from there along both edges.
+        // A corner of the facet is the difference of a corner of each box, and zero's foot is so far from there along
+        // both edges.
         let sum = |c: &[f64; EDGES], k: usize| c[k] * sides[k] + c[k + 1] * sides[k + 1] + c[k + 2] * sides[k + 2];
         let (of_first, of_second) = ([sum(x, 0), sum(y, 0), sum(z, 0)], [sum(x, 3), sum(y, 3), sum(z, 3)]);
         let corner: Vec3 = core::array::from_fn(|x| center[x] - (of_first[x] + of_second[x]));
@@ -215,12 +221,12 @@ impl Boxes {
         BoxFacet { span, normal: n, level, room, point }
     }
 
-    /// Whether the line through zero along the normal certainly goes through the facet, and on within the difference to the other side of
-    /// zero.
+    /// Whether the line through zero along the normal certainly goes through the facet, and on within the difference to
+    /// the other side of zero.
     ///
-    /// Zero is `depth` behind the facet, and points of the difference are wrong by `error`, which is less. The other edges lead from the facet
-    /// to the opposite one, `2H` behind it and aside of it by `2R` at most. So `s` behind it there is the same parallelogram, aside by
-    /// `s·R/H` at most. Here `s` is eight times the depth.
+    /// Zero is `depth` behind the facet, and points of the difference are wrong by `error`, which is less. The other
+    /// edges lead from the facet to the opposite one, `2H` behind it and aside of it by `2R` at most. So `s` behind it
+    /// there is the same parallelogram, aside by `s·R/H` at most. Here `s` is eight times the depth.
     pub(super) fn is_pierced(&self, facet: &BoxFacet, depth: f64, error: f64) -> bool {
         let [i, j] = facet.span;
         let (mut behind, mut aside) = (0.0, 0.0);
@@ -235,8 +241,8 @@ impl Boxes {
         s < behind && (facet.room - error) * behind > s * aside
     }
 
-    /// How much higher than its lowest corner a facet may be along a unit vector near its normal: its edges lean, and are wrong by what a turn
-    /// loses, or by no more than the points of their box.
+    /// How much higher than its lowest corner a facet may be along a unit vector near its normal: its edges lean, and
+    /// are wrong by what a turn loses, or by no more than the points of their box.
     pub(super) fn leaning(&self, facet: &BoxFacet, n: Vec3, errors: [f64; 2], epsilon: f64) -> f64 {
         let turned = TURNED * epsilon;
         let mut leaning = 0.0;

@@ -6,18 +6,20 @@ use num_traits::Float as _;
 use super::rigid_motion::{RigidMotion, rate};
 use super::trajectory::{Displacement, Trajectory, TurningPlane};
 
-/// The motion of a body at the end of a chain of joints, each of which moves at a constant rate: a link of a robot along a straight
-/// edge in joint space.
+/// The motion of a body at the end of a chain of joints, each of which moves at a constant rate: a link of a robot
+/// along a straight edge in joint space.
 ///
-/// Each joint is given by the motion that it alone would give to the links beyond it, starting from where they are in the world at time 0.
-/// For a revolute joint this is the [rotation](RigidMotion::rotation) at its rate about a point of its axis, for a prismatic joint the
-/// [translation](RigidMotion::translation), and for a helical joint a screw. Together they move the body by
+/// Each joint is given by the motion that it alone would give to the links beyond it, starting from where they are in
+/// the world at time 0. For a revolute joint this is the [rotation](RigidMotion::rotation) at its rate about a point of
+/// its axis, for a prismatic joint the [translation](RigidMotion::translation), and for a helical joint a screw.
+/// Together they move the body by
 ///
 /// > x(t) = J₁(t)∘J₂(t)∘…∘Jₙ(t) (x),
 ///
-/// the first joint being the one nearest to the base (Brockett's product of exponentials, Murray, Li and Sastry, *A Mathematical
-/// Introduction to Robotic Manipulation*, 1994, section 3.2). If the base moves too, its motion is one more joint in front of the others.
-/// The joints are borrowed, so that the links of one arm can share them: link `k` is carried by the first `k` joints.
+/// the first joint being the one nearest to the base (Brockett's product of exponentials, Murray, Li and Sastry, *A
+/// Mathematical Introduction to Robotic Manipulation*, 1994, section 3.2). If the base moves too, its motion is one
+/// more joint in front of the others. The joints are borrowed, so that the links of one arm can share them: link `k` is
+/// carried by the first `k` joints.
 ///
 /// ```
 /// use convex_support::{Ball, Posed, Rounded, Segment, glam::DVec3};
@@ -52,13 +54,14 @@ impl<'j, V: Vector> ChainMotion<'j, V> {
 
     /// Bounds on the speed and the acceleration of all points of a ball until `end`.
     ///
-    /// Let `y` be a point as the joints beyond joint `k` have moved it, at most at the speed `s` and the acceleration `a`. Joint `k`
-    /// takes it to `c + t·v + R·(y − c)`, with the derivatives
+    /// Let `y` be a point as the joints beyond joint `k` have moved it, at most at the speed `s` and the acceleration
+    /// `a`. Joint `k` takes it to `c + t·v + R·(y − c)`, with the derivatives
     ///
     /// > v + ω × R(y − c) + Rẏ   and   ω × (ω × R(y − c)) + 2ω × Rẏ + Rÿ.
     ///
-    /// So with `r ≥ |y − c|` they are at most `|v| + |ω|·r + s` and `|ω|²·r + 2|ω|·s + a`. That `r` is the distance from the centre of
-    /// the next joint at time 0, what that may have moved until `end`, and the next joint's `r`, whatever the angles.
+    /// So with `r ≥ |y − c|` they are at most `|v| + |ω|·r + s` and `|ω|²·r + 2|ω|·s + a`. That `r` is the distance
+    /// from the centre of the next joint at time 0, what that may have moved until `end`, and the next joint's `r`,
+    /// whatever the angles.
     fn bounds(&self, ball: BoundingSphere<V>, end: V::Scalar) -> (V::Scalar, V::Scalar) {
         let two = V::Scalar::from_f64(2.0);
         let (mut near, mut reach) = (ball.center, ball.radius);

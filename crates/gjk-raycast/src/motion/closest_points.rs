@@ -1,7 +1,9 @@
-//! A look at two moving bodies by the closest points of their cores, where those are known in closed form, as of balls and capsules.
+//! A look at two moving bodies by the closest points of their cores, where those are known in closed form, as of balls
+//! and capsules.
 //!
-//! One support point proves that a plane between the points keeps the bodies apart. Far from contact that is all. Near contact the same
-//! point tells the distance as well as it can be known; and where the bodies overlap but their cores do not, the points prove that.
+//! One support point proves that a plane between the points keeps the bodies apart. Far from contact that is all. Near
+//! contact the same point tells the distance as well as it can be known; and where the bodies overlap but their cores
+//! do not, the points prove that.
 
 use convex_support::{Rounding, Scalar, SupportMap as _, Vector};
 use num_traits::Float;
@@ -28,10 +30,11 @@ struct Between<V: Vector> {
 }
 
 impl<V: Vector> MovingPair<'_, V> {
-    /// The pair at a time by the closest points of its cores; `None` where they do not tell as much as is wanted. What is seen closely is to
-    /// be on the side of `axis`.
+    /// The pair at a time by the closest points of its cores; `None` where they do not tell as much as is wanted. What
+    /// is seen closely is to be on the side of `axis`.
     ///
-    /// All is compiled into one function, so that what is known of the bodies at the time need not be written to memory and read again.
+    /// All is compiled into one function, so that what is known of the bodies at the time need not be written to memory
+    /// and read again.
     #[inline(never)]
     pub(super) fn by_closest_points(&self, time: V::Scalar, axis: V, closeness: Closeness) -> Option<Instant<V>> {
         let placed = self.placed_here(time);
@@ -75,8 +78,8 @@ impl<V: Vector> MovingPair<'_, V> {
 }
 
 impl<V: Vector> Between<V> {
-    /// How well the distance of shapes that round like that is known, and what it is certainly not more than; `None` where that tells
-    /// neither that they are apart nor that they overlap.
+    /// How well the distance of shapes that round like that is known, and what it is certainly not more than; `None`
+    /// where that tells neither that they are apart nor that they overlap.
     #[inline(always)]
     fn closely(self, shapes: [Rounding<V>; 2]) -> Option<(V::Scalar, V::Scalar)> {
         let Self { unit, length, along, lower, radius, extent, offset } = self;

@@ -10,13 +10,13 @@ use crate::Status;
 /// How much deeper than touching an overlap is looked for, in units of what the distance may be wrong by.
 const DEPTH: f64 = 2.0;
 
-/// How far apart again bodies are looked at after a graze, in units of how near to contact they were brought: that they have passed
-/// through one another takes some errors to show.
+/// How far apart again bodies are looked at after a graze, in units of how near to contact they were brought: that they
+/// have passed through one another takes some errors to show.
 const GRAZE: f64 = 16.0;
 
 impl<V: Vector> Search<'_, V> {
-    /// Where the contact is as near as can be told: looks for a time just after it at which the bodies overlap. `None` where they are
-    /// proved apart there, and the search goes on.
+    /// Where the contact is as near as can be told: looks for a time just after it at which the bodies overlap. `None`
+    /// where they are proved apart there, and the search goes on.
     pub(super) fn close_in(&mut self) -> Option<MotionEnd<V>> {
         let (zero, two) = (V::Scalar::ZERO, V::Scalar::from_f64(2.0));
         let end = self.options.max_time.min(self.upper);

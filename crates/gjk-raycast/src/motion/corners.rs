@@ -47,8 +47,8 @@ impl<V: Vector> Corners<V> {
         points
     }
 
-    /// The face closest to zero, where the bodies are at a time. Corners that leave the point closest to zero of their hull outside are
-    /// dropped, which finds a face that is near if not the nearest; `None` where no face is found.
+    /// The face closest to zero, where the bodies are at a time. Corners that leave the point closest to zero of their
+    /// hull outside are dropped, which finds a face that is near if not the nearest; `None` where no face is found.
     #[inline(always)]
     pub(super) fn closest_face(&self, Placed { a, b, offset, .. }: &Placed<'_, V>) -> Option<CornerFace<V>> {
         let mut len = self.len.min(MAX_POINTS);

@@ -1,8 +1,9 @@
 //! The search for the first contact of two moving bodies.
 //!
-//! What is proved are free intervals, one after the other from time 0 on ([`free_interval`](super::free_interval)); how their ends are
-//! chosen decides only how many there are. Far from contact an end is put as far away as can be expected to be proved. Where the
-//! bodies close in fast enough for their contact to be within reach, it is put there, by Newton's method on the distance.
+//! What is proved are free intervals, one after the other from time 0 on ([`free_interval`](super::free_interval)); how
+//! their ends are chosen decides only how many there are. Far from contact an end is put as far away as can be expected
+//! to be proved. Where the bodies close in fast enough for their contact to be within reach, it is put there, by
+//! Newton's method on the distance.
 
 use convex_support::numerics::range::is_comfortable;
 use convex_support::{Scalar, Vector};
@@ -21,7 +22,8 @@ pub(super) const AIM: f64 = 1.5;
 /// How often in a row the search for a contact may come nearer by less than half before it halves the interval.
 pub(super) const PATIENCE: u8 = 2;
 
-/// The square of an angle, in radians, that is too far for a normal to have turned for a step to be like the one before.
+/// The square of an angle, in radians, that is too far for a normal to have turned for a step to be like the one
+/// before.
 const FAR: f64 = 0.25;
 
 /// The search, which has come to [`near`](Self::near).
@@ -33,7 +35,8 @@ pub(super) struct Search<'p, V: Vector> {
     pub(super) base: Base<V::Scalar>,
     /// The last time up to which the bodies are proved apart.
     pub(super) near: Instant<V>,
-    /// How long the last step was, how much nearer the bodies came in it, and what the normal and the closing speed have changed.
+    /// How long the last step was, how much nearer the bodies came in it, and what the normal and the closing speed
+    /// have changed.
     pub(super) step: V::Scalar,
     pub(super) came_nearer: V::Scalar,
     pub(super) turned: V,
@@ -50,8 +53,8 @@ pub(super) struct Search<'p, V: Vector> {
     pub(super) farther: Option<Instant<V>>,
     /// The earliest time known at which they overlap.
     pub(super) upper: V::Scalar,
-    /// How far apart the two ends of the search for a contact were, and how far the bodies were from touching at the nearer of them; and
-    /// how often in a row neither was halved.
+    /// How far apart the two ends of the search for a contact were, and how far the bodies were from touching at the
+    /// nearer of them; and how often in a row neither was halved.
     width: V::Scalar,
     way: V::Scalar,
     pub(super) slow: u8,
@@ -162,7 +165,8 @@ impl<'p, V: Vector> Search<'p, V> {
         MotionEnd::Undecided(Status::IterationLimit)
     }
 
-    /// Goes on to a time at which the bodies are apart, if they are proved to be so until then; if not, that is remembered.
+    /// Goes on to a time at which the bodies are apart, if they are proved to be so until then; if not, that is
+    /// remembered.
     pub(super) fn advance_to(&mut self, there: &Instant<V>) -> bool {
         let Some(acceleration) =
             acceleration_if_free(self.bodies, &self.near, there, &self.base).filter(|_| self.stay_in_contact(there))
@@ -216,8 +220,8 @@ impl<'p, V: Vector> Search<'p, V> {
         }
     }
 
-    /// The bodies at a time; closely where they can be expected to be nearly in contact, since Newton's method squares their distance,
-    /// and if the search does not come nearer to a contact, which from afar may only seem to be one.
+    /// The bodies at a time; closely where they can be expected to be nearly in contact, since Newton's method squares
+    /// their distance, and if the search does not come nearer to a contact, which from afar may only seem to be one.
     fn glance(&mut self, time: V::Scalar) -> Instant<V> {
         let limits = Limits { distance: self.enough_at(time), depth: Scalar::ZERO };
         let Instant { distance, error, .. } = self.near;

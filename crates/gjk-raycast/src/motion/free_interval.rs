@@ -1,13 +1,13 @@
 //! Why two moving bodies are apart throughout an interval, and not only at its ends.
 //!
-//! Let planes with unit normals `n₀` and `n₁` separate the bodies by `g₀` at time 0 and by `g₁` at time `s`. In between let the
-//! normal go straight from one to the other, `n(t) = n₀ + t·r` with `r = (n₁ − n₀)/s`, and look at any two points `a(t)` and `b(t)`
-//! of the bodies' cores. Along the normal they are apart by
+//! Let planes with unit normals `n₀` and `n₁` separate the bodies by `g₀` at time 0 and by `g₁` at time `s`. In between
+//! let the normal go straight from one to the other, `n(t) = n₀ + t·r` with `r = (n₁ − n₀)/s`, and look at any two
+//! points `a(t)` and `b(t)` of the bodies' cores. Along the normal they are apart by
 //!
 //! > φ(t) = n(t)·(a(t) − b(t)),   φ″ = 2·r·(ȧ − ḃ) + n·(ä − b̈) ≤ M.
 //!
-//! At the ends `φ` is at least `g₀` and `g₁` more than the radii `ρ` of the bodies, and a function whose second derivative is at
-//! most `M` lies above its chord less `M·t·(s − t)/2`. So with `σ = t/s`, and since `|n(t)| ≤ 1`,
+//! At the ends `φ` is at least `g₀` and `g₁` more than the radii `ρ` of the bodies, and a function whose second
+//! derivative is at most `M` lies above its chord less `M·t·(s − t)/2`. So with `σ = t/s`, and since `|n(t)| ≤ 1`,
 //!
 //! > φ(t) − ρ·|n(t)| ≥ (1 − σ)·g₀ + σ·g₁ − σ·(1 − σ)·s²·M/2,
 //!
@@ -15,18 +15,18 @@
 //!
 //! > √g₀ + √g₁ > s·√(M/2),
 //!
-//! since its least value over `σ` is zero where both sides are equal. That is the whole certificate: two planes and a bound on how
-//! unevenly the bodies move. Nothing is lost at the ends, so that an interval that ends within rounding of a contact is proved as
-//! easily as any other, where steps that trust a speed come to a transversal contact by ever smaller steps; and bodies that do not
-//! turn have `M = 0` along a plane that does not, which proves any interval.
+//! since its least value over `σ` is zero where both sides are equal. That is the whole certificate: two planes and a
+//! bound on how unevenly the bodies move. Nothing is lost at the ends, so that an interval that ends within rounding of
+//! a contact is proved as easily as any other, where steps that trust a speed come to a transversal contact by ever
+//! smaller steps; and bodies that do not turn have `M = 0` along a plane that does not, which proves any interval.
 //!
 //! That the bodies come no deeper into one another than to a signed distance `ℓ < 0` is proved alike, with gaps
 //! measured from that level: at the ends `φ ≥ ρ + ℓ + g`, and in between it is to be at least `(ρ + ℓ)·|n(t)|`. Where
 //! `ρ + ℓ` is negative the normal's being shorter than one counts against the proof. Since `|n(t)|² = 1 − σ·(1 − σ)·|n₁
 //! − n₀|²`, it is shorter by `σ·(1 − σ)·|n₁ − n₀|²` at most, as if `M` were larger by `2·|ℓ|·|r|²`.
 //!
-//! Any two planes will do that separate the bodies at the two times. Where the normals of the closest points turn far, so that `M` is
-//! large, one of them may do at both times.
+//! Any two planes will do that separate the bodies at the two times. Where the normals of the closest points turn far,
+//! so that `M` is large, one of them may do at both times.
 
 use convex_support::{Scalar, Vector};
 

@@ -1,10 +1,10 @@
 //! Why two moving bodies have a point in common throughout an interval, and not only at its ends.
 //!
 //! Let `κ` be a point of each body, moving with it, and `w(κ, t)` the vector between them at the time `t`; all these
-//! vectors are the difference `C(t)`. Where the bodies overlap by `d`, it contains the ball of radius `d` about zero. Let a
-//! convex set `Z` be within `C` at both ends of an interval of length `s`: for every `z` in `Z` there are `κ₀` and `κ₁`
-//! with `w(κ₀, 0) = w(κ₁, s) = z`. In between, with `σ = t/s`, look at the points `(1 − σ)·κ₀ + σ·κ₁`, which are of the
-//! bodies too. What lies between them is
+//! vectors are the difference `C(t)`. Where the bodies overlap by `d`, it contains the ball of radius `d` about zero.
+//! Let a convex set `Z` be within `C` at both ends of an interval of length `s`: for every `z` in `Z` there are `κ₀`
+//! and `κ₁` with `w(κ₀, 0) = w(κ₁, s) = z`. In between, with `σ = t/s`, look at the points `(1 − σ)·κ₀ + σ·κ₁`, which
+//! are of the bodies too. What lies between them is
 //!
 //! > z + σ·(1 − σ)·[ΔR_A·α − ΔR_B·β] + e,
 //!

@@ -3,7 +3,8 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-/// A step may change the distance by what the closing speeds do not foretell, but for this part of what they have changed.
+/// A step may change the distance by what the closing speeds do not foretell, but for this part of what they have
+/// changed.
 const KINK: f64 = 0.1;
 
 /// Bodies that are apart, or overlap, by fewer errors than this are looked at closely.
@@ -23,7 +24,8 @@ pub(super) const ROUNDED: f64 = 6.0;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Instant<V: Vector> {
     pub(super) time: V::Scalar,
-    /// The unit vector from `b` to `a` along which they are nearest, or along which the way out of one another is the shortest.
+    /// The unit vector from `b` to `a` along which they are nearest, or along which the way out of one another is the
+    /// shortest.
     pub(super) normal: V,
     /// By how much a plane across the normal certainly separates the bodies; not positive where none may.
     pub(super) gap: V::Scalar,
@@ -52,8 +54,8 @@ impl<V: Vector> Instant<V> {
         self.upper < V::Scalar::ZERO
     }
 
-    /// Whether the distance went from here to another time without a kink: the mean of the closing speeds tells what it changed by, but
-    /// for a part of what they did.
+    /// Whether the distance went from here to another time without a kink: the mean of the closing speeds tells what it
+    /// changed by, but for a part of what they did.
     pub(super) fn goes_smoothly_to(&self, to: &Self) -> bool {
         let (half, duration) = (V::Scalar::from_f64(0.5), to.time - self.time);
         let foretold = (self.closing + to.closing) * half * duration;

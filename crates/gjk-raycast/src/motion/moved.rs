@@ -14,8 +14,8 @@ pub(crate) struct Moved<'s, V: Vector> {
 }
 
 impl<'s, V: Vector> Moved<'s, V> {
-    /// The shape with the given core, which may have another origin and another radius than its own, turned by `rotation` about the
-    /// origin. Moving it took its points where they should be but for `error`.
+    /// The shape with the given core, which may have another origin and another radius than its own, turned by
+    /// `rotation` about the origin. Moving it took its points where they should be but for `error`.
     #[inline(always)]
     pub(crate) fn new(shape: Shape<'s, V>, core: Core<V>, rotation: Option<V::Matrix>, error: V::Scalar) -> Self {
         let Some(matrix) = rotation else {
@@ -27,8 +27,8 @@ impl<'s, V: Vector> Moved<'s, V> {
             CoreKind::Segment { middle, half } => CoreKind::Segment { middle: matrix * middle, half: matrix * half },
             kind => kind,
         };
-        // The length of an error stays. The product with the matrix is wrong by at most three ε of the extent, and so may be the
-        // support value along a direction that is turned.
+        // The length of an error stays. The product with the matrix is wrong by at most three ε of the extent, and so
+        // may be the support value along a direction that is turned.
         let error = error + V::Scalar::from_f64(6.0) * Scalar::EPSILON * core.extent;
         Self { shape, rotation, core: Core { kind, error: core.error + error, ..core }, error }
     }

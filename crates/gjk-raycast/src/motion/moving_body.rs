@@ -139,7 +139,8 @@ impl<'s, V: Vector> MovingBody<'s, V> {
         }
     }
 
-    /// A ball that moves at constant velocity and contains the core throughout the interval, as of [`Trajectory::moving_ball`].
+    /// A ball that moves at constant velocity and contains the core throughout the interval, as of
+    /// [`Trajectory::moving_ball`].
     pub(super) fn moving_ball(&self, interval: [V::Scalar; 2]) -> MovingBall<V> {
         let ball = self.ball();
         match &self.course {

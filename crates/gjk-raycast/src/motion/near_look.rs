@@ -1,8 +1,9 @@
 //! A look at two bodies nearly in contact, by what was closest at the last look.
 //!
-//! Near contact the same corners are mostly closest as a moment ago. Then a plane across them is known, and one support point proves that
-//! it separates the bodies. Where they overlap, the closest points of their cores prove that if they are nearer than the radii; and
-//! of cores that overlap themselves, a simplex of the corners and the point of the difference farthest from them has zero inside.
+//! Near contact the same corners are mostly closest as a moment ago. Then a plane across them is known, and one support
+//! point proves that it separates the bodies. Where they overlap, the closest points of their cores prove that if they
+//! are nearer than the radii; and of cores that overlap themselves, a simplex of the corners and the point of the
+//! difference farthest from them has zero inside.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -27,8 +28,8 @@ struct PlaneBetween<V: Vector> {
 }
 
 impl<V: Vector> MovingPair<'_, V> {
-    /// The bodies at a time as well as it can be known, if what was closest at the last look is so still, and proves that they are apart
-    /// or overlap.
+    /// The bodies at a time as well as it can be known, if what was closest at the last look is so still, and proves
+    /// that they are apart or overlap.
     pub(super) fn near_look(&self, time: V::Scalar, placed: &Placed<'_, V>, axis: V) -> Option<Instant<V>> {
         let pair = Pair::new(placed);
         let size = pair.size(placed.offset);
@@ -67,10 +68,11 @@ impl<V: Vector> MovingPair<'_, V> {
         Some(Instant { time, normal: unit, gap, distance, upper, error, closing, point, is_close: true })
     }
 
-    /// What the signed distance is certainly not more than, if the corners of a face prove that the bodies overlap; infinity if not.
+    /// What the signed distance is certainly not more than, if the corners of a face prove that the bodies overlap;
+    /// infinity if not.
     ///
-    /// Each is looked for anew, along a direction that leans away from the others: as it was kept, it is not known as well as a support
-    /// point.
+    /// Each is looked for anew, along a direction that leans away from the others: as it was kept, it is not known as
+    /// well as a support point.
     fn overlap_of_corners(&self, cores: &mut Cores<'_, V>, face: &CornerFace<V>, unit: V) -> Option<V::Scalar> {
         let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
         let (scale, radius, dimension) = (cores.scale(), cores.radius(), V::DIM);

@@ -1,4 +1,5 @@
-//! Which time the search for a first contact looks at next. That decides how long it takes, and nothing of what is proved.
+//! Which time the search for a first contact looks at next. That decides how long it takes, and nothing of what is
+//! proved.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -47,16 +48,17 @@ impl<V: Vector> Search<'_, V> {
         Some(next).filter(|&next| next > time)
     }
 
-    /// Where to look between [`near`](Self::near) and a time at which the bodies are not certainly apart, if from here it seemed to
-    /// be `next`: Newton's method from the end that is nearer to contact; where that leaves the interval, the secant; and where
-    /// neither comes nearer, or a distance is not known, the middle. `None` where nothing moves in between by more than rounding: as at the
-    /// start, which is known better than all that comes after it.
+    /// Where to look between [`near`](Self::near) and a time at which the bodies are not certainly apart, if from here
+    /// it seemed to be `next`: Newton's method from the end that is nearer to contact; where that leaves the interval,
+    /// the secant; and where neither comes nearer, or a distance is not known, the middle. `None` where nothing moves
+    /// in between by more than rounding: as at the start, which is known better than all that comes after it.
     fn between(&self, next: V::Scalar, beyond: &Instant<V>) -> Option<V::Scalar> {
         let Instant { time, distance, error, .. } = self.near;
         let aim = error * Scalar::from_f64(AIM);
         let (width, way) = (beyond.time - time, distance - aim);
         let is_inside = |next: &V::Scalar| *next > time && *next < beyond.time;
-        // Where they overlap, the speed is that of support points, which need not be the closest ones: two distances tell it better.
+        // Where they overlap, the speed is that of support points, which need not be the closest ones: two distances
+        // tell it better.
         let closing = |farther: Instant<V>| (beyond.distance - farther.distance) / (farther.time - beyond.time);
         let from_beyond = beyond.time + (beyond.distance - aim) / self.farther.map_or(beyond.closing, closing);
         let secant = time + width * (way / (distance - beyond.distance));
@@ -71,13 +73,13 @@ impl<V: Vector> Search<'_, V> {
 
     /// The time after which the bodies have come nearer by `way`, as far as the last two looks foretell it.
     ///
-    /// With the closing speeds `w₀` and `w` at the beginning and the end of the last step `h`, in which they came nearer by `m·h`, the only
-    /// cubic that agrees is `w·s + c·s²/2 + j·s³/6` with
+    /// With the closing speeds `w₀` and `w` at the beginning and the end of the last step `h`, in which they came
+    /// nearer by `m·h`, the only cubic that agrees is `w·s + c·s²/2 + j·s³/6` with
     ///
     /// > j·h² = 12·((w₀ + w)/2 − m),   c·h = w − w₀ + j·h²/2.
     ///
-    /// A small part of what is due to `j` is left to go, so that the next step starts on this side of the contact. Where the last step
-    /// does not tell what comes, the growth `c` is the most that it may be.
+    /// A small part of what is due to `j` is left to go, so that the next step starts on this side of the contact.
+    /// Where the last step does not tell what comes, the growth `c` is the most that it may be.
     fn newton(&self, way: V::Scalar) -> V::Scalar {
         let from_f64 = V::Scalar::from_f64;
         let (two, w) = (from_f64(2.0), self.near.closing);
@@ -102,7 +104,8 @@ impl<V: Vector> Search<'_, V> {
         if (s - after).abs() < after * from_f64(0.5) { s } else { after }
     }
 
-    /// The distance at a time that would be enough to prove the rest of the motion along the present normal; infinity elsewhere.
+    /// The distance at a time that would be enough to prove the rest of the motion along the present normal; infinity
+    /// elsewhere.
     pub(super) fn enough_at(&self, time: V::Scalar) -> V::Scalar {
         if time < self.options.max_time {
             return V::Scalar::infinity();

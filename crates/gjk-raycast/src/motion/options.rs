@@ -6,8 +6,8 @@ use num_traits::Float as _;
 use crate::StartInContact;
 use crate::options::setters;
 
-/// Times to look at, after which to give up. A contact takes about ten and each turn near another body about as many; bodies that
-/// spin for long very near one another take the most.
+/// Times to look at, after which to give up. A contact takes about ten and each turn near another body about as many;
+/// bodies that spin for long very near one another take the most.
 const MAX_ITERATIONS: usize = 10_000;
 
 /// Options of [`motion_cast`](crate::motion_cast).
@@ -16,16 +16,16 @@ const MAX_ITERATIONS: usize = 10_000;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct MotionCastOptions<V: Vector> {
-    /// The end of the motion; it belongs to the motion. A negative value is taken for zero. Default: infinity. Set an end if a body spins:
-    /// beside another body, no finite search can prove that it never touches it, and the answer is undecided after
-    /// [`max_iterations`](Self::max_iterations).
+    /// The end of the motion; it belongs to the motion. A negative value is taken for zero. Default: infinity. Set an
+    /// end if a body spins: beside another body, no finite search can prove that it never touches it, and the answer is
+    /// undecided after [`max_iterations`](Self::max_iterations).
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub max_time: V::Scalar,
     /// How far from contact, relative to the sizes of the shapes, the answer may stay uncertain. A bracket at the level
     /// of rounding always ends the search. Default: 0.
     pub tolerance: V::Scalar,
-    /// The distance at which bodies count as touching: the cast stops that far from contact. A negative value is taken for zero.
-    /// Default: 0.
+    /// The distance at which bodies count as touching: the cast stops that far from contact. A negative value is taken
+    /// for zero. Default: 0.
     pub target_distance: V::Scalar,
     /// What to answer where the bodies touch at the start. Default: [`StartInContact::Report`].
     pub start_in_contact: StartInContact,

@@ -40,9 +40,9 @@ impl<V: Vector> HalfSpace<V> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// This is [`motion_cast`](crate::motion_cast()) against a body without an end: hits, misses and brackets mean the same. At every
-    /// time the body's lowest point is one support point, and the plane between the bodies is known. What does not turn is answered by
-    /// [`linear_cast`](Self::linear_cast).
+    /// This is [`motion_cast`](crate::motion_cast()) against a body without an end: hits, misses and brackets mean the
+    /// same. At every time the body's lowest point is one support point, and the plane between the bodies is known.
+    /// What does not turn is answered by [`linear_cast`](Self::linear_cast).
     ///
     /// The [`gradient`](crate::MotionHit::gradient) of a hit is that against a body at rest.
     ///
@@ -57,7 +57,8 @@ impl<V: Vector> HalfSpace<V> {
         self.motion_cast_with(shape, motion, options, |_| {})
     }
 
-    /// [`motion_cast`](Self::motion_cast), showing an observer every time that is looked at. Where nothing turns none is.
+    /// [`motion_cast`](Self::motion_cast), showing an observer every time that is looked at. Where nothing turns none
+    /// is.
     ///
     /// # Errors
     /// As of [`motion_cast`](crate::motion_cast()).
@@ -141,8 +142,8 @@ impl<'s, V: Vector> OverHalfSpace<'s, V> {
 
     /// The lowest point at a time.
     ///
-    /// Its height is that of the sum of the origin, what the motion adds to that, and the support point, so that a body far along the
-    /// plane is known as well as any other.
+    /// Its height is that of the sum of the origin, what the motion adds to that, and the support point, so that a body
+    /// far along the plane is known as well as any other.
     fn lowest(&self, time: V::Scalar) -> LowestPoint<V> {
         let (origin, radius) = (self.body.core.origin, self.body.core.radius);
         let place = self.body.place(time);

@@ -1,14 +1,15 @@
 //! Bodies without an inside that pass through one another, as a point through a plate or a rod across a rod.
 //!
-//! The difference of such bodies has no inside either: they never overlap by more than rounding, and touch at one time only, which
-//! nobody can name to the last bit. That they have touched is certain all the same. Let `w(t)` be corners of the difference, each
-//! between two points that stay with their bodies, as many as there are dimensions, and look at them along a fixed unit vector `n`. As
-//! long as zero is seen within the triangle of the corners (in 2D between two corners), the line through zero along `n` pierces the
-//! triangle at one height `s(t)`, which is continuous. If it is positive at the beginning and negative at the end, it has been zero in
-//! between, and there zero was a point of the triangle, and so of the difference.
+//! The difference of such bodies has no inside either: they never overlap by more than rounding, and touch at one time
+//! only, which nobody can name to the last bit. That they have touched is certain all the same. Let `w(t)` be corners
+//! of the difference, each between two points that stay with their bodies, as many as there are dimensions, and look at
+//! them along a fixed unit vector `n`. As long as zero is seen within the triangle of the corners (in 2D between two
+//! corners), the line through zero along `n` pierces the triangle at one height `s(t)`, which is continuous. If it is
+//! positive at the beginning and negative at the end, it has been zero in between, and there zero was a point of the
+//! triangle, and so of the difference.
 //!
-//! How the corners are seen in between is known by how far they move at most. A component of their path whose second derivative is
-//! at most `m` in amount is off its chord by at most `m·τ²/8`, with `τ` the duration.
+//! How the corners are seen in between is known by how far they move at most. A component of their path whose second
+//! derivative is at most `m` in amount is off its chord by at most `m·τ²/8`, with `τ` the duration.
 
 use convex_support::numerics::elementary::hypot;
 use convex_support::{Scalar, Vector};
@@ -27,7 +28,8 @@ use crate::simplex::MAX_POINTS;
 use crate::symmetric::{Across, axes_across, cross, dot};
 use crate::unit::{is_moderate, length_bound};
 
-/// What corners are wrong by, in units of what the pair says of its support points: they were turned back and forth beside that.
+/// What corners are wrong by, in units of what the pair says of its support points: they were turned back and forth
+/// beside that.
 const ERRORS: f64 = 4.0;
 
 /// Corners as seen along a unit vector: across it, and how high they are.
@@ -37,8 +39,8 @@ struct SeenCorners<S> {
 }
 
 impl<V: Vector> MovingPair<'_, V> {
-    /// Whether the bodies, which a plane separates at the time of `near`, certainly have a point in common at some time until the given
-    /// one, because they have passed through one another.
+    /// Whether the bodies, which a plane separates at the time of `near`, certainly have a point in common at some time
+    /// until the given one, because they have passed through one another.
     #[cold]
     #[inline(never)]
     pub(super) fn have_met(&self, near: &Instant<V>, time: V::Scalar) -> bool {
@@ -83,8 +85,8 @@ impl<V: Vector> MovingPair<'_, V> {
         (state.simplex.points().len() == V::DIM).then_some(corners)
     }
 
-    /// How far a point of the difference may be off the chord of its path: the amount of each coordinate's second derivative is bounded
-    /// along both directions of its axis.
+    /// How far a point of the difference may be off the chord of its path: the amount of each coordinate's second
+    /// derivative is bounded along both directions of its axis.
     fn off_chord(&self, [from, to]: [V::Scalar; 2]) -> V::Scalar {
         let most = |n: V| {
             let plane = |n: V| TurningPlane { from: n, to: n };
@@ -114,8 +116,8 @@ impl<S: Scalar> SeenCorners<S> {
 
     /// The distance of zero from the boundary of what is seen, if it is seen within; else zero or less.
     ///
-    /// If no corner is seen farther from where it is than that, zero is still seen within: else it would have left by one side, whose
-    /// ends would both have come at least so far towards it.
+    /// If no corner is seen farther from where it is than that, zero is still seen within: else it would have left by
+    /// one side, whose ends would both have come at least so far towards it.
     fn room<V: Vector<Scalar = S>>(&self) -> S {
         let at = &self.at;
         if V::DIM == 2 {
@@ -133,12 +135,12 @@ impl<S: Scalar> SeenCorners<S> {
         least.max(-most)
     }
 
-    /// The height at which the line through zero pierces the triangle or segment, which zero is seen within, and what products and
-    /// quotients lose of it.
+    /// The height at which the line through zero pierces the triangle or segment, which zero is seen within, and what
+    /// products and quotients lose of it.
     ///
-    /// With `H` the greatest of the heights, the parts of a segment are right to a few ε, so that `8·ε·H` is lost at most. An area is wrong
-    /// by `2·ε·L²`, with `L` how far the corners are seen from zero, and three of them change the height by `12·ε·H·L²/area` and as
-    /// much as before.
+    /// With `H` the greatest of the heights, the parts of a segment are right to a few ε, so that `8·ε·H` is lost at
+    /// most. An area is wrong by `2·ε·L²`, with `L` how far the corners are seen from zero, and three of them change
+    /// the height by `12·ε·H·L²/area` and as much as before.
     fn height_at_zero<V: Vector<Scalar = S>>(&self) -> (S, S) {
         let (at, heights) = (&self.at, &self.heights);
         let epsilon = S::EPSILON * S::from_f64(16.0);

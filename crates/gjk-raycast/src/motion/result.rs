@@ -15,15 +15,15 @@ use crate::{Outcome, Status};
     serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
 )]
 pub struct MotionCast<V: Vector> {
-    /// Hit, miss, or undecided. A miss is proved over the whole motion; its axis, from `b` to `a`, is the normal of the last separating
-    /// plane.
+    /// Hit, miss, or undecided. A miss is proved over the whole motion; its axis, from `b` to `a`, is the normal of the
+    /// last separating plane.
     pub outcome: Outcome<MotionHit<V>, V>,
     /// The bodies have no point in common before this time. For a miss it is the end of the motion. Where bodies may
     /// [begin in contact](crate::StartInContact::IfDeeper), nothing that counts as a hit happens before.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: V::Scalar,
-    /// The bodies have a point in common at this time, though it need not be their first, or have had one before, if they have no inside and
-    /// have passed through one another; infinite where no such time is known. Where bodies may
+    /// The bodies have a point in common at this time, though it need not be their first, or have had one before, if
+    /// they have no inside and have passed through one another; infinite where no such time is known. Where bodies may
     /// [begin in contact](crate::StartInContact::IfDeeper), they have got deeper, or touched again, by then.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub upper: V::Scalar,
@@ -48,8 +48,8 @@ pub struct MotionHit<V: Vector> {
     /// The time of first contact; 0 where the bodies overlap at the start, unless only what
     /// [goes deeper](crate::StartInContact::IfDeeper) counts.
     pub time: V::Scalar,
-    /// A point of contact, in the world, at that time: a point of `b`, if a target distance was asked for; where the bodies overlap
-    /// at the start, a point in both but for rounding, as of [`distance`](crate::distance).
+    /// A point of contact, in the world, at that time: a point of `b`, if a target distance was asked for; where the
+    /// bodies overlap at the start, a point in both but for rounding, as of [`distance`](crate::distance).
     pub point: V,
     /// The unit normal of contact, out of `b` towards `a`; `None` where the bodies overlap at the start. With
     /// [`StartInContact::IfDeeper`](crate::StartInContact::IfDeeper), it is the shortest way out.

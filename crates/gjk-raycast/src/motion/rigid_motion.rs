@@ -33,8 +33,8 @@ pub struct RigidMotion<V: Vector> {
     pub velocity: V,
     /// The angular velocity `ω`, in radians per unit of time: a vector in 3D, a number in 2D.
     pub angular_velocity: V::AngularVelocity,
-    /// The centre `c` of the rotation at time 0, in the world. It may be any point that moves at the velocity above, such as the
-    /// centre of mass.
+    /// The centre `c` of the rotation at time 0, in the world. It may be any point that moves at the velocity above,
+    /// such as the centre of mass.
     pub center: V,
 }
 
@@ -64,9 +64,9 @@ impl<V: Vector> RigidMotion<V> {
         Self { velocity: V::ZERO, angular_velocity, center }
     }
 
-    /// The motion that takes a body from one pose to another within `duration`: its own origin moves straight, and it turns at a
-    /// constant rate the short way round. It is a motion of the body as it is in the world in its first pose, such as a
-    /// [`Posed`](convex_support::Posed) shape.
+    /// The motion that takes a body from one pose to another within `duration`: its own origin moves straight, and it
+    /// turns at a constant rate the short way round. It is a motion of the body as it is in the world in its first
+    /// pose, such as a [`Posed`](convex_support::Posed) shape.
     ///
     /// ```
     /// use convex_support::glam::DVec2;
@@ -89,9 +89,9 @@ impl<V: Vector> RigidMotion<V> {
         }
     }
 
-    /// The motion from one pose to another within `duration` along a screw (Chasles): a rotation about an axis and a translation along it, so
-    /// that the points of the body on the axis stay on it. In 2D the axis is a point, and the motion a rotation about it. If the body does
-    /// not turn, it is a translation.
+    /// The motion from one pose to another within `duration` along a screw (Chasles): a rotation about an axis and a
+    /// translation along it, so that the points of the body on the axis stay on it. In 2D the axis is a point, and the
+    /// motion a rotation about it. If the body does not turn, it is a translation.
     #[must_use]
     pub fn screw_between(from: Pose<V>, to: Pose<V>, duration: V::Scalar) -> Self {
         let straight = Self::between(from, to, duration);
@@ -101,8 +101,8 @@ impl<V: Vector> RigidMotion<V> {
         if angle == V::Scalar::ZERO {
             return straight;
         }
-        // With a = ω/|ω| and p the way of the origin across the axis: the point of the axis nearest to the middle of p is off by
-        // cot(θ/2)·(a × p)/2, and what is left of the way is along the axis.
+        // With a = ω/|ω| and p the way of the origin across the axis: the point of the axis nearest to the middle of p
+        // is off by cot(θ/2)·(a × p)/2, and what is left of the way is along the axis.
         let (half, axis) = (V::Scalar::from_f64(0.5), w * moved / angle);
         let across = -(w * axis) / angle;
         let center = from.translation + (across + axis * tan(angle * half).recip()) * half;
@@ -116,12 +116,13 @@ impl<V: Vector> RigidMotion<V> {
 
     /// [`acceleration_along`](Trajectory::acceleration_along), by the [reach](Self::reach) of the ball.
     ///
-    /// With `y` the vector to the point from the centre, `ẋ = v + Wy` and `ẍ = W²y` for `W = ω×`, whose transpose is `−W`. So
+    /// With `y` the vector to the point from the centre, `ẋ = v + Wy` and `ẍ = W²y` for `W = ω×`, whose transpose is
+    /// `−W`. So
     ///
     /// > 2·r·ẋ + n·ẍ = 2·r·v + y·W(Wn − 2r),
     ///
-    /// and the last vector is across ω, along which `y` reaches no farther than from the axis to the far side of the ball. Of a normal
-    /// that turns with the body, `r = Wn`, no more is left than of one that does not turn.
+    /// and the last vector is across ω, along which `y` reaches no farther than from the axis to the far side of the
+    /// ball. Of a normal that turns with the body, `r = Wn`, no more is left than of one that does not turn.
     #[inline(always)]
     pub(super) fn acceleration_within(
         &self,
@@ -168,8 +169,8 @@ pub(super) fn rate<M: Matrix>(w: &M) -> <M::Vector as Vector>::Scalar {
 
 /// A bound on the error of a [turn](AngularVelocity::turn) as an operator, its product with a vector included.
 ///
-/// It is relative to the root of the sum of the squared entries of `R − 1`, which is the trace of `(R − 1)ᵀ(R − 1) = (1 − R) + (1 − R)ᵀ`.
-/// Nothing cancels there, as no entry of the diagonal of `1 − R` is negative.
+/// It is relative to the root of the sum of the squared entries of `R − 1`, which is the trace of `(R − 1)ᵀ(R − 1) = (1
+/// − R) + (1 − R)ᵀ`. Nothing cancels there, as no entry of the diagonal of `1 − R` is negative.
 #[inline(always)]
 pub(super) fn turn_error<V: Vector>(turn: &V::Matrix) -> V::Scalar {
     let trace = (0..V::DIM).fold(V::Scalar::ZERO, |sum, j| sum - turn.col(j).get(j));

@@ -13,12 +13,13 @@ use crate::gjk::{self, Frame, Gjk, GjkOptions, gjk, rounding};
 use crate::observer::Observer;
 use crate::unit::is_moderate;
 
-/// How wide a bracket on the distance of bodies that are well apart may stay, relative to it: where they are looked at next hardly
-/// depends on it, and their gap is proved however wide it is. A narrower one takes more support points, a wider one more looks.
+/// How wide a bracket on the distance of bodies that are well apart may stay, relative to it: where they are looked at
+/// next hardly depends on it, and their gap is proved however wide it is. A narrower one takes more support points, a
+/// wider one more looks.
 const ROUGH: f64 = 0.2;
 
-/// What was seen of two cores: how far apart the plane across a unit vector keeps them, what that may be wrong by, and points of them that
-/// are nearly the closest, each relative to its body's origin.
+/// What was seen of two cores: how far apart the plane across a unit vector keeps them, what that may be wrong by, and
+/// points of them that are nearly the closest, each relative to its body's origin.
 struct SeenCores<V: Vector> {
     unit: V,
     lower: V::Scalar,
@@ -50,8 +51,9 @@ fn in_world<V: Vector>(points: PointPair<V>, scale: V::Scalar) -> PointPair<V> {
 impl<V: Vector> MovingPair<'_, V> {
     /// The pair at a time; `None` where the bodies are nearly in contact, or overlap and nobody can tell by how much.
     ///
-    /// Where the corners that were closest at the last time are so still, one support point proves it. Otherwise GJK goes on from there. Where
-    /// the bodies overlap by more than rounding, the best plane known tells about how much, which is all that the search needs.
+    /// Where the corners that were closest at the last time are so still, one support point proves it. Otherwise GJK
+    /// goes on from there. Where the bodies overlap by more than rounding, the best plane known tells about how much,
+    /// which is all that the search needs.
     pub(super) fn roughly(
         &self,
         time: V::Scalar,

@@ -8,15 +8,16 @@ use crate::unit::length_bound;
 
 /// A rigid motion: where the body is at any time, and a bound on the acceleration of its points in between.
 ///
-/// Times are at least 0. At any time the body is where its shape says, moved by the [displacement](Self::displacement) of that time; for
-/// most motions the displacement of time 0 is none. [`RigidMotion`] is the motion at constant velocities, and
-/// [`ChainMotion`](crate::ChainMotion) that of a link whose joints move linearly. Implement this trait for other motions.
+/// Times are at least 0. At any time the body is where its shape says, moved by the [displacement](Self::displacement)
+/// of that time; for most motions the displacement of time 0 is none. [`RigidMotion`] is the motion at constant
+/// velocities, and [`ChainMotion`](crate::ChainMotion) that of a link whose joints move linearly. Implement this trait
+/// for other motions.
 ///
 /// # What an implementor must obey
-/// The bounds certify a first contact, so they must hold for all points of the body and for all times of the interval. This is most
-/// important for [`acceleration_along`](Self::acceleration_along), which alone proves that nothing happens between two times that are
-/// looked at. A larger bound costs time; a smaller one may let bodies pass through one another. [`velocity`](Self::velocity) only steers
-/// the search, so that a wrong one costs time, never correctness.
+/// The bounds certify a first contact, so they must hold for all points of the body and for all times of the interval.
+/// This is most important for [`acceleration_along`](Self::acceleration_along), which alone proves that nothing happens
+/// between two times that are looked at. A larger bound costs time; a smaller one may let bodies pass through one
+/// another. [`velocity`](Self::velocity) only steers the search, so that a wrong one costs time, never correctness.
 pub trait Trajectory {
     /// The space the body moves in.
     type Vector: Vector;
@@ -27,11 +28,12 @@ pub trait Trajectory {
     /// The velocity, at a time, of the body's point that is at `point` then.
     fn velocity(&self, time: ScalarOf<Self>, point: Self::Vector) -> Self::Vector;
 
-    /// An upper bound of `2·r·ẋ(t) + n·ẍ(t)`, for all points `x` of the body that start in the ball, all times `t` of the interval,
-    /// and all normals `n` of the plane, which change at the rate `r`. It is to be finite for finite intervals at least.
+    /// An upper bound of `2·r·ẋ(t) + n·ẍ(t)`, for all points `x` of the body that start in the ball, all times `t` of
+    /// the interval, and all normals `n` of the plane, which change at the rate `r`. It is to be finite for finite
+    /// intervals at least.
     ///
-    /// That is the second derivative of `n(t)·x(t)`, the height of the point over a plane that turns. Since it is linear in `n`, a
-    /// bound that holds for the first and the last normal holds for those in between.
+    /// That is the second derivative of `n(t)·x(t)`, the height of the point over a plane that turns. Since it is
+    /// linear in `n`, a bound that holds for the first and the last normal holds for those in between.
     fn acceleration_along(
         &self,
         ball: BoundingSphere<Self::Vector>,
@@ -39,9 +41,9 @@ pub trait Trajectory {
         interval: [ScalarOf<Self>; 2],
     ) -> ScalarOf<Self>;
 
-    /// A ball that moves at constant velocity and contains, throughout the interval, everything that starts in `ball`. The interval may be
-    /// infinite. The provided method moves the ball along the chord of the way of its centre, and grows it by how far the motion may
-    /// leave that chord.
+    /// A ball that moves at constant velocity and contains, throughout the interval, everything that starts in `ball`.
+    /// The interval may be infinite. The provided method moves the ball along the chord of the way of its centre, and
+    /// grows it by how far the motion may leave that chord.
     fn moving_ball(
         &self,
         ball: BoundingSphere<Self::Vector>,
@@ -62,8 +64,8 @@ pub trait Trajectory {
         MovingBall { start, velocity, radius: ball.radius + sagitta }
     }
 
-    /// The same motion as a [`RigidMotion`], if it is one; the provided method returns `None`. Bodies whose motions do not turn are cast
-    /// by [`linear_cast`](crate::linear_cast), and bodies whose motions are equal do not meet.
+    /// The same motion as a [`RigidMotion`], if it is one; the provided method returns `None`. Bodies whose motions do
+    /// not turn are cast by [`linear_cast`](crate::linear_cast), and bodies whose motions are equal do not meet.
     fn as_rigid_motion(&self) -> Option<RigidMotion<Self::Vector>> {
         None
     }
@@ -74,8 +76,8 @@ pub(crate) type ScalarOf<M> = <<M as Trajectory>::Vector as Vector>::Scalar;
 
 /// Where a rigid motion has taken a body: `x ↦ x + shift + turn·(x − pivot)`, with `1 + turn` for the rotation.
 ///
-/// It holds what the motion adds to a point, so that bodies far from the world's origin, or from the point that they turn about, keep the
-/// digits of the distance between them.
+/// It holds what the motion adds to a point, so that bodies far from the world's origin, or from the point that they
+/// turn about, keep the digits of the distance between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Displacement<V: Vector> {
     /// The point that the body is turned about, in the world at time 0.
@@ -84,8 +86,8 @@ pub struct Displacement<V: Vector> {
     pub shift: V,
     /// The rotation about it, less the identity.
     pub turn: V::Matrix,
-    /// A bound on the error of the turn as an operator, with the rounding of a product included: how far the computed product with a vector
-    /// may be from the exact one, relative to the vector's length.
+    /// A bound on the error of the turn as an operator, with the rounding of a product included: how far the computed
+    /// product with a vector may be from the exact one, relative to the vector's length.
     pub turn_error: V::Scalar,
     /// A bound on the length of the error of the shift.
     pub shift_error: V::Scalar,

@@ -42,7 +42,8 @@ impl<S: SupportMap> Among<'_, S> {
         work
     }
 
-    /// What there is to `tell` of the bodies whose boxes are no farther than `within` from that of the shape, in no order.
+    /// What there is to `tell` of the bodies whose boxes are no farther than `within` from that of the shape, in no
+    /// order.
     pub(super) fn near<A: SupportMap<Vector = S::Vector> + ?Sized, R>(
         &self,
         shape: &A,

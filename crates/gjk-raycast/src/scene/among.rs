@@ -4,8 +4,8 @@ use convex_support::SupportMap;
 
 use super::{Body, Scene, Work};
 
-/// The bodies of a scene that a question is about: all of them, or those that a closure picks. [`Scene::all`] and [`Scene::among`] make it,
-/// and it answers the same questions as a [`Scene`].
+/// The bodies of a scene that a question is about: all of them, or those that a closure picks. [`Scene::all`] and
+/// [`Scene::among`] make it, and it answers the same questions as a [`Scene`].
 ///
 /// ```
 /// use convex_support::{Ball, Posed, glam::DVec2};
@@ -60,8 +60,8 @@ impl<S: SupportMap> core::fmt::Debug for Among<'_, S> {
 }
 
 impl<S: SupportMap> Scene<S> {
-    /// Questions about all bodies. They have the same answers as those of the scene itself, unless [`Among::without_pairs`] or
-    /// [`Among::until`] narrows them down.
+    /// Questions about all bodies. They have the same answers as those of the scene itself, unless
+    /// [`Among::without_pairs`] or [`Among::until`] narrows them down.
     #[must_use]
     pub fn all(&self) -> Among<'_, S> {
         Among { scene: self, bodies: None, without_pairs: None, until: None }
@@ -75,15 +75,16 @@ impl<S: SupportMap> Scene<S> {
 }
 
 impl<'s, S: SupportMap> Among<'s, S> {
-    /// Leaves out the pairs for whose indices `left_out` returns true, such as those of one group, or those that may collide. It is called
-    /// once for each pair whose boxes are near: with the lower index first, or for two scenes with the index in the first one.
+    /// Leaves out the pairs for whose indices `left_out` returns true, such as those of one group, or those that may
+    /// collide. It is called once for each pair whose boxes are near: with the lower index first, or for two scenes
+    /// with the index in the first one.
     #[must_use]
     pub fn without_pairs(self, left_out: &'s (dyn Fn(usize, usize) -> bool + Sync + 's)) -> Self {
         Self { without_pairs: Some(left_out), ..self }
     }
 
-    /// Ends a question early, as soon as `stop` returns true; it is called before each single query. The answer is then about the bodies
-    /// asked so far, and [`Work::cancelled`](crate::Work::cancelled) is set.
+    /// Ends a question early, as soon as `stop` returns true; it is called before each single query. The answer is then
+    /// about the bodies asked so far, and [`Work::cancelled`](crate::Work::cancelled) is set.
     #[must_use]
     pub fn until(self, stop: &'s (dyn Fn() -> bool + Sync + 's)) -> Self {
         Self { until: Some(stop), ..self }

@@ -52,9 +52,9 @@ impl<S: SupportMap> Scene<S> {
         self.all().any_hit(ray, options)
     }
 
-    /// The first body that the moving shape meets: the least time of [`linear_cast`](crate::linear_cast) of the shape, `a`,
-    /// against each body, `b`. All bodies move with the same velocity, which is zero for a scene at rest:
-    /// `Motion { velocity_a, ..Motion::default() }`.
+    /// The first body that the moving shape meets: the least time of [`linear_cast`](crate::linear_cast) of the shape,
+    /// `a`, against each body, `b`. All bodies move with the same velocity, which is zero for a scene at rest: `Motion
+    /// { velocity_a, ..Motion::default() }`.
     ///
     /// # Errors
     /// As of [`linear_cast`](crate::linear_cast()).
@@ -67,7 +67,8 @@ impl<S: SupportMap> Scene<S> {
         self.all().linear_cast(shape, motion, options)
     }
 
-    /// [`ray_cast`](Self::ray_cast) for each of many rays, on all threads of the current [rayon](https://docs.rs/rayon) pool.
+    /// [`ray_cast`](Self::ray_cast) for each of many rays, on all threads of the current [rayon](https://docs.rs/rayon)
+    /// pool.
     #[cfg(feature = "rayon")]
     pub fn par_ray_casts(
         &self,
@@ -258,8 +259,8 @@ type Number<S> = convex_support::ScalarOf<S>;
 /// The first hit so far.
 ///
 /// A body counts from its *key*: the λ of its hit, or where its box begins if that is later, as it cannot be where the
-/// hit's bracket is closed. Keys, and all that is kept here, are minima over bodies, in which one that was left out by its
-/// box takes no part: so the order in which bodies are met does not matter, nor which others were met.
+/// hit's bracket is closed. Keys, and all that is kept here, are minima over bodies, in which one that was left out by
+/// its box takes no part: so the order in which bodies are met does not matter, nor which others were met.
 struct FirstHit<H, S> {
     /// The least key, with the hit.
     hit: Option<(S, BodyHit<H, S>)>,
@@ -309,8 +310,8 @@ fn swept_box<V: Vector>(around: Aabb<V>, velocity: V) -> SweptBox<V> {
     SweptBox::new(half + room, center, velocity)
 }
 
-/// The box of a shape that a scene is asked about: one that contains everything where a number of the shape is not finite,
-/// so that no body is left out and every single query says so.
+/// The box of a shape that a scene is asked about: one that contains everything where a number of the shape is not
+/// finite, so that no body is left out and every single query says so.
 pub(super) fn outer_box_of_question<S: SupportMap + ?Sized>(shape: &S) -> Aabb<S::Vector> {
     let all = S::Vector::splat(Number::<S>::max_value());
     outer_box(shape).unwrap_or(Aabb { min: -all, max: all })

@@ -6,8 +6,9 @@ use super::Body;
 use crate::{Contact, SignedDistance, SignedDistanceOptions, contact, signed_distance};
 
 impl<S: SupportMap> Body<S> {
-    /// How far a shape, `a`, is from this body, `b`, or how deep in it, by [`signed_distance`](crate::signed_distance()) or, for a
-    /// half-space, by [`HalfSpace::signed_distance`](crate::HalfSpace::signed_distance), which needs no options.
+    /// How far a shape, `a`, is from this body, `b`, or how deep in it, by
+    /// [`signed_distance`](crate::signed_distance()) or, for a half-space, by
+    /// [`HalfSpace::signed_distance`](crate::HalfSpace::signed_distance), which needs no options.
     pub fn signed_distance<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
         shape: &A,
@@ -20,8 +21,8 @@ impl<S: SupportMap> Body<S> {
     }
 
     /// The contact of a shape, `a`, with this body, `b`, by [`contact`](crate::contact()) or, for a half-space, by
-    /// [`HalfSpace::contact`](crate::HalfSpace::contact), which needs no options; `None` if they are farther apart than `within`.
-    /// [`Scene::contacts_of`](crate::Scene::contacts_of) asks all bodies that are near.
+    /// [`HalfSpace::contact`](crate::HalfSpace::contact), which needs no options; `None` if they are farther apart than
+    /// `within`. [`Scene::contacts_of`](crate::Scene::contacts_of) asks all bodies that are near.
     pub fn contact<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
         shape: &A,

@@ -10,8 +10,8 @@ use super::{Among, Body, Scene};
 use crate::{Contact, SignedDistanceOptions, contact};
 
 impl<S: SupportMap> Scene<S> {
-    /// The [contacts](Body::contact) of the shape, `a`, with all bodies, `b`, that are no farther than `within` from it, in the order of their
-    /// indices, into `contacts`, which is emptied first.
+    /// The [contacts](Body::contact) of the shape, `a`, with all bodies, `b`, that are no farther than `within` from
+    /// it, in the order of their indices, into `contacts`, which is emptied first.
     ///
     /// ```
     /// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};
@@ -39,8 +39,9 @@ impl<S: SupportMap> Scene<S> {
         self.all().contacts_of(shape, within, options, contacts)
     }
 
-    /// The [contacts](crate::contact()) of all pairs of bodies that are no farther than `within` from each other, in the order of their indices,
-    /// into `contacts`, which is emptied first: all that a step of a simulation has to resolve. Half-spaces make no contacts with each other.
+    /// The [contacts](crate::contact()) of all pairs of bodies that are no farther than `within` from each other, in
+    /// the order of their indices, into `contacts`, which is emptied first: all that a step of a simulation has to
+    /// resolve. Half-spaces make no contacts with each other.
     ///
     /// ```
     /// use convex_support::{Cuboid, Posed, glam::DVec3};
@@ -67,7 +68,8 @@ impl<S: SupportMap> Scene<S> {
         self.all().contacts_within(within, options, contacts)
     }
 
-    /// The contacts of all pairs of a body of this scene, `a`, and one of another, `b`, that are no farther than `within` from each other.
+    /// The contacts of all pairs of a body of this scene, `a`, and one of another, `b`, that are no farther than
+    /// `within` from each other.
     pub fn contacts_between<T: SupportMap<Vector = S::Vector>>(
         &self,
         other: &Scene<T>,
@@ -118,8 +120,9 @@ impl<S: SupportMap> Among<'_, S> {
         })
     }
 
-    /// [`contacts_within`](Self::contacts_within) on all threads of the current [rayon](https://docs.rs/rayon) pool, with the same contacts to
-    /// the last bit. The nodes of the [`Work`] are those of the pieces that the search is cut into.
+    /// [`contacts_within`](Self::contacts_within) on all threads of the current [rayon](https://docs.rs/rayon) pool,
+    /// with the same contacts to the last bit. The nodes of the [`Work`] are those of the pieces that the search is cut
+    /// into.
     #[cfg(feature = "rayon")]
     pub fn par_contacts_within(
         &self,
@@ -134,7 +137,8 @@ impl<S: SupportMap> Among<'_, S> {
     }
 }
 
-/// How far boxes may be from each other, whose bodies have to be so deep in one another if it is negative: boxes have no depth.
+/// How far boxes may be from each other, whose bodies have to be so deep in one another if it is negative: boxes have
+/// no depth.
 fn of_boxes<S: SupportMap>(within: ScalarOf<S>) -> ScalarOf<S> {
     within.max(ScalarOf::<S>::ZERO)
 }

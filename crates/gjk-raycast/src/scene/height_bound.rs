@@ -38,8 +38,8 @@ impl<V: Vector> Bound<V> for HeightBound<V> {
         (height.max(V::Scalar::ZERO) * deflate).min(V::Scalar::max_value())
     }
 
-    /// In the frame of a tree, `x = o + ξ/k`, a height is `(n·ξ + k(n·o − c))/k`, of which the second part is one number. Both bounds are
-    /// sums, which rounding moves by a few ε of their terms.
+    /// In the frame of a tree, `x = o + ξ/k`, a height is `(n·ξ + k(n·o − c))/k`, of which the second part is one
+    /// number. Both bounds are sums, which rounding moves by a few ε of their terms.
     fn rough(&self, frame: &Frame<V>) -> RoughHeight {
         let (unit, epsilon) = (frame.unit(), V::Scalar::EPSILON.as_f64());
         let (mut rest, mut terms) = (-self.offset.as_f64(), self.offset.as_f64().abs());

@@ -7,8 +7,8 @@ use convex_support::{Triangle, Vector, Vector3};
 use super::{Scene, SceneError};
 
 impl<V: Vector> Scene<Triangle<V>> {
-    /// The mesh of these triangles, each given by the indices of three vertices. Body `i` is triangle `i`; rays and shapes meet both of
-    /// its sides.
+    /// The mesh of these triangles, each given by the indices of three vertices. Body `i` is triangle `i`; rays and
+    /// shapes meet both of its sides.
     ///
     /// # Errors
     /// [`SceneError::NoSuchVertex`] if an index is that of no vertex; [`SceneError::NotFinite`] if a coordinate of a
@@ -27,8 +27,9 @@ impl<V: Vector> Scene<Triangle<V>> {
 }
 
 impl<V: Vector3> Scene<Triangle<V>> {
-    /// Whether a ray or shape that moves along `direction` meets the front of a triangle, the side from which its corners are
-    /// seen anticlockwise; `false` if no triangle has this index. This is for questions about one side of a mesh:
+    /// Whether a ray or shape that moves along `direction` meets the front of a triangle, the side from which its
+    /// corners are seen anticlockwise; `false` if no triangle has this index. This is for questions about one side of a
+    /// mesh:
     ///
     /// ```
     /// use convex_support::glam::DVec3;

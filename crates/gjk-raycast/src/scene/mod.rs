@@ -31,21 +31,23 @@ pub use self::result::{
 
 /// Bodies that are asked together: which is hit first, which is nearest, which pairs are near each other.
 ///
-/// All bodies are of one type `S`, which is any [`SupportMap`]: one kind of shape, an enum of yours, or
-/// `Box<dyn SupportMap<Vector = DVec3>>` for a mixture; by value or by reference. For methods that use several threads, it has to be `Sync`:
-/// `Box<dyn SupportMap<Vector = DVec3> + Sync>`. A body is named by its index, which stays the same until the body is removed. A half-space is no support map, since it has no end, but can be a body too
+/// All bodies are of one type `S`, which is any [`SupportMap`]: one kind of shape, an enum of yours, or `Box<dyn
+/// SupportMap<Vector = DVec3>>` for a mixture; by value or by reference. For methods that use several threads, it has
+/// to be `Sync`: `Box<dyn SupportMap<Vector = DVec3> + Sync>`. A body is named by its index, which stays the same until
+/// the body is removed. A half-space is no support map, since it has no end, but can be a body too
 /// ([`insert_half_space`](Self::insert_half_space)).
 ///
 /// Scenes answer ray casts, linear and motion casts, distances, contacts, and near or touching pairs.
 ///
 /// # Answers
-/// Every answer is the one that results if the single query is asked of each body (or pair) in the order of their indices, *to the last
-/// bit*; of equal answers the one with the lowest index counts. It does not depend on the number of threads or on how the scene was built.
-/// A tree of boxes tells which bodies need not be asked. The box of a body has room for the rounding of its queries, so that a box which is
-/// too far away is a proof about the query, not only about the body. Every answer says how much was left out ([`Work`]).
+/// Every answer is the one that results if the single query is asked of each body (or pair) in the order of their
+/// indices, *to the last bit*; of equal answers the one with the lowest index counts. It does not depend on the number
+/// of threads or on how the scene was built. A tree of boxes tells which bodies need not be asked. The box of a body
+/// has room for the rounding of its queries, so that a box which is too far away is a proof about the query, not only
+/// about the body. Every answer says how much was left out ([`Work`]).
 ///
-/// If a query ends undecided, or with a hit whose bracket is still open, the box of the body may prove more than the query did. Then the
-/// body counts from where its bracket begins or from where its box begins, whichever is later.
+/// If a query ends undecided, or with a hit whose bracket is still open, the box of the body may prove more than the
+/// query did. Then the body counts from where its bracket begins or from where its box begins, whichever is later.
 ///
 /// ```
 /// use convex_support::{Ball, Cuboid, Posed, SupportMap, glam::DVec3};
@@ -71,15 +73,16 @@ pub use self::result::{
 /// ```
 ///
 /// # Bodies that move
-/// [`update`](Self::update) moves all bodies and [`replace`](Self::replace) one; [`insert`](Self::insert) adds a body, and
-/// [`remove`](Self::remove) takes one out. The tree is adjusted each time, and is built anew when that is worth it.
+/// [`update`](Self::update) moves all bodies and [`replace`](Self::replace) one; [`insert`](Self::insert) adds a body,
+/// and [`remove`](Self::remove) takes one out. The tree is adjusted each time, and is built anew when that is worth it.
 ///
-/// To find the pairs of bodies that may meet while all of them move straight during a step, put into a scene what each covers in that
-/// time, the `MinkowskiSum` of the body and a `Segment`, and ask for the pairs within 0.
+/// To find the pairs of bodies that may meet while all of them move straight during a step, put into a scene what each
+/// covers in that time, the `MinkowskiSum` of the body and a `Segment`, and ask for the pairs within 0.
 ///
 /// # Groups
-/// A compound is represented by several bodies that are moved together. [`among`](Self::among) asks only about the bodies that a closure
-/// picks, such as those of a layer, and [`Among::without_pairs`] leaves out pairs, such as those of neighbouring links.
+/// A compound is represented by several bodies that are moved together. [`among`](Self::among) asks only about the
+/// bodies that a closure picks, such as those of a layer, and [`Among::without_pairs`] leaves out pairs, such as those
+/// of neighbouring links.
 #[derive(Clone, Debug)]
 pub struct Scene<S: SupportMap> {
     bodies: Vec<Option<Body<S>>>,
@@ -190,7 +193,8 @@ impl<S: SupportMap> Scene<S> {
         }
     }
 
-    /// Takes a body out and returns it; `None` if there is no body with this index. A body that is added later may get the index.
+    /// Takes a body out and returns it; `None` if there is no body with this index. A body that is added later may get
+    /// the index.
     pub fn remove(&mut self, body: usize) -> Option<Body<S>> {
         let removed = self.bodies.get_mut(body)?.take()?;
         self.free.push(body);
@@ -202,8 +206,8 @@ impl<S: SupportMap> Scene<S> {
     /// Puts another body in the place of one, moved or different, and returns the one that was there.
     ///
     /// # Errors
-    /// [`SceneError::NoSuchBody`] if no bounded body has this index; [`SceneError::NotFinite`] if the box of the new one is
-    /// not finite. The scene is then as before.
+    /// [`SceneError::NoSuchBody`] if no bounded body has this index; [`SceneError::NotFinite`] if the box of the new
+    /// one is not finite. The scene is then as before.
     pub fn replace(&mut self, index: usize, body: S) -> Result<S, SceneError> {
         let Some(Some(Body::Convex(place))) = self.bodies.get_mut(index) else {
             return Err(SceneError::NoSuchBody { body: index });
@@ -213,12 +217,12 @@ impl<S: SupportMap> Scene<S> {
         Ok(core::mem::replace(place, body))
     }
 
-    /// Replaces every bounded body by the one that `moved` returns for its index and the body, in the order of the indices, in time
-    /// proportional to their number.
+    /// Replaces every bounded body by the one that `moved` returns for its index and the body, in the order of the
+    /// indices, in time proportional to their number.
     ///
     /// # Errors
-    /// [`SceneError::NotFinite`] for the first body whose box would not be finite. All such bodies stay as they were, and the rest are
-    /// moved.
+    /// [`SceneError::NotFinite`] for the first body whose box would not be finite. All such bodies stay as they were,
+    /// and the rest are moved.
     pub fn update(&mut self, mut moved: impl FnMut(usize, &S) -> S) -> Result<(), SceneError> {
         let mut refused = None;
         let bodies = &mut self.bodies;

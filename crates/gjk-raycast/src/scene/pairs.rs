@@ -22,7 +22,8 @@ impl<S: SupportMap> Scene<S> {
         self.all().pairs_within(within, options, pairs)
     }
 
-    /// All pairs of a body of this scene, `a`, and one of another, `b`, that are no farther than `within` from each other.
+    /// All pairs of a body of this scene, `a`, and one of another, `b`, that are no farther than `within` from each
+    /// other.
     pub fn pairs_between<T: SupportMap<Vector = S::Vector>>(
         &self,
         other: &Scene<T>,
@@ -56,8 +57,8 @@ impl<S: SupportMap> Among<'_, S> {
         self.find_pairs_between(other, within, pairs, &|pair, a, b| between(pair, a, b, options.with_limit(within)))
     }
 
-    /// [`pairs_within`](Self::pairs_within) on all threads of the current [rayon](https://docs.rs/rayon) pool, with the same pairs to the last
-    /// bit. The nodes of the [`Work`] are those of the pieces that the search is cut into.
+    /// [`pairs_within`](Self::pairs_within) on all threads of the current [rayon](https://docs.rs/rayon) pool, with the
+    /// same pairs to the last bit. The nodes of the [`Work`] are those of the pieces that the search is cut into.
     #[cfg(feature = "rayon")]
     pub fn par_pairs_within(
         &self,
@@ -192,7 +193,8 @@ where
         self.work.nodes += nodes;
     }
 
-    /// Asks about the bodies of `b` that are near a half-space of `a`; the other way round too, where both are one scene.
+    /// Asks about the bodies of `b` that are near a half-space of `a`; the other way round too, where both are one
+    /// scene.
     fn half_spaces_of_a(&mut self) {
         let (a, b, within) = (self.a, self.b.scene, self.within);
         for (index, body) in a.half_spaces() {

@@ -11,8 +11,8 @@ pub(super) const MAX_PIECES: usize = 16;
 /// How much larger than the ball of the shape the ball of a piece may be, before the motion is cut into more pieces.
 const GROWTH: f64 = 1.5;
 
-/// A part of a motion, and a ball that moves at constant velocity. Throughout the part, the ball contains the shape, and everything no
-/// farther from it than the target distance.
+/// A part of a motion, and a ball that moves at constant velocity. Throughout the part, the ball contains the shape,
+/// and everything no farther from it than the target distance.
 pub(super) struct MotionPiece<V: Vector> {
     pub(super) start: V::Scalar,
     pub(super) duration: V::Scalar,
@@ -31,7 +31,8 @@ impl<V: Vector> MotionPiece<V> {
     }
 }
 
-/// A motion in as few pieces as make their balls hardly larger than that of the shape. A motion without an end is one piece.
+/// A motion in as few pieces as make their balls hardly larger than that of the shape. A motion without an end is one
+/// piece.
 pub(super) struct MotionPieces<'m, M: Trajectory> {
     motion: &'m M,
     ball: BoundingSphere<M::Vector>,

@@ -17,8 +17,8 @@ pub struct Work {
     pub tested: usize,
     /// Bodies, or pairs, that none was made for.
     pub culled: usize,
-    /// Whether the closure of [`Among::until`](crate::Among::until) ended the search early: the answer is then that of the
-    /// bodies tested so far, and lower bounds are 0.
+    /// Whether the closure of [`Among::until`](crate::Among::until) ended the search early: the answer is then that of
+    /// the bodies tested so far, and lower bounds are 0.
     pub cancelled: bool,
 }
 
@@ -40,8 +40,8 @@ pub struct SceneCast<H, S> {
     /// No body is hit before this λ or time; infinite where all are missed.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub lower: S,
-    /// Of the bodies whose cast was [undecided](crate::Outcome::Undecided) and that may be hit before the first hit, the
-    /// one that may be hit earliest.
+    /// Of the bodies whose cast was [undecided](crate::Outcome::Undecided) and that may be hit before the first hit,
+    /// the one that may be hit earliest.
     pub undecided: Option<usize>,
     /// What was done and what was left out.
     pub work: Work,

@@ -10,13 +10,14 @@ use super::result::BodyContact;
 use crate::{SignedDistanceOptions, signed_distance};
 
 impl<S: SupportMap> Scene<S> {
-    /// Leaves out of the [contacts of a shape](Self::contacts_of) those at seams, and says how many these were: where a floor is made of boxes or
-    /// triangles, a body that slides over it meets the edges and sides at which they lie on one another, and would be stopped or thrown up by
-    /// them.
+    /// Leaves out of the [contacts of a shape](Self::contacts_of) those at seams, and says how many these were: where a
+    /// floor is made of boxes or triangles, a body that slides over it meets the edges and sides at which they lie on
+    /// one another, and would be stopped or thrown up by them.
     ///
-    /// A point of a contact is at a seam if it is a point of another body too, which reaches beyond it along the normal: no surface of the two
-    /// together faces that way. If all points of a contact are at seams with bodies whose contacts are in the list, it is left out. The edges
-    /// that stand out, at the end of a floor or of a step, are at none.
+    /// A point of a contact is at a seam if it is a point of another body too, which reaches beyond it along the
+    /// normal: no surface of the two together faces that way. If all points of a contact are at seams with bodies whose
+    /// contacts are in the list, it is left out. The edges that stand out, at the end of a floor or of a step, are at
+    /// none.
     ///
     /// ```
     /// use convex_support::{Ball, Cuboid, Posed, glam::DVec3};
@@ -49,7 +50,8 @@ impl<S: SupportMap> Scene<S> {
         before - contacts.len()
     }
 
-    /// Whether a point is one of a convex body, but for the root of rounding, and the body reaches beyond it along a unit vector.
+    /// Whether a point is one of a convex body, but for the root of rounding, and the body reaches beyond it along a
+    /// unit vector.
     fn reaches_beyond(&self, body: usize, point: S::Vector, normal: S::Vector) -> bool {
         let Some(body) = self.get(body).and_then(|body| body.convex()) else { return false };
         let core = body.core();

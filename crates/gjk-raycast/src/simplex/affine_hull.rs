@@ -14,12 +14,13 @@ use crate::simplex::MAX_POINTS;
 /// f_i = e_i − Σ_{j<i} c_ij·f_j,   c_ij = e_i·f_j / f_j·f_j.
 /// ```
 ///
-/// Every projection is done twice. After that it is orthogonal to rounding even where nearly everything cancels, so that
-/// a short vector from a far simplex keeps its direction; and only squares of lengths occur, no products of four.
+/// Every projection is done twice. After that it is orthogonal to rounding even where nearly everything cancels, so
+/// that a short vector from a far simplex keeps its direction; and only squares of lengths occur, no products of four.
 ///
-/// The order is for simplices with a side that zero is near to and a corner far away, as near contact. That corner's share of
-/// zero's foot is as small as the square of the distance, yet it turns the shortest vector. Being last, it is the one
-/// coordinate that nothing is subtracted from; from the far corner itself it would be one less the others, and lost.
+/// The order is for simplices with a side that zero is near to and a corner far away, as near contact. That corner's
+/// share of zero's foot is as small as the square of the distance, yet it turns the shortest vector. Being last, it is
+/// the one coordinate that nothing is subtracted from; from the far corner itself it would be one less the others, and
+/// lost.
 pub(crate) struct AffineHull<V: Vector, const EDGES: usize> {
     y: V,
     /// The places of `y` and of the ends of the edges among the points.
@@ -33,8 +34,8 @@ pub(crate) struct AffineHull<V: Vector, const EDGES: usize> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projection<V: Vector> {
     pub(crate) across: V,
-    /// The barycentric coordinates of the point that the vector was given from plus the part along the hull, in the order
-    /// that the points were given in.
+    /// The barycentric coordinates of the point that the vector was given from plus the part along the hull, in the
+    /// order that the points were given in.
     pub(crate) coordinates: [V::Scalar; MAX_POINTS],
 }
 

@@ -23,9 +23,9 @@ pub(crate) struct Closest<V: Vector> {
 /// The points lie in a space of `dimension` dimensions: that of the vectors, or one less for points seen along a ray.
 ///
 /// A new support point brings the simplex nearer, if by less than rounding; so a face with the last point for a corner
-/// is preferred to one that without it is no nearer than that. Near contact the share that the last point has of zero's foot is as small as
-/// the square of the distance, and may be lost in rounding; it turns the plane all the same, so that a share of no less than minus a rounding
-/// counts as none.
+/// is preferred to one that without it is no nearer than that. Near contact the share that the last point has of zero's
+/// foot is as small as the square of the distance, and may be lost in rounding; it turns the plane all the same, so
+/// that a share of no less than minus a rounding counts as none.
 pub(crate) fn nearest_face<V: Vector>(points: &[V], dimension: usize) -> Option<Closest<V>> {
     let newest = points.len().checked_sub(1)?;
     let longest = points.iter().map(|p| p.length_squared()).fold(V::Scalar::ZERO, V::Scalar::max).sqrt();

@@ -13,8 +13,8 @@ use crate::simplex::{Face, MAX_POINTS, faces};
 /// Δ_i{i} = 1,   Δ_j(X ∪ {j}) = Σ_{i in X} Δ_i(X)·(y_k − y_j)·y_i,
 /// ```
 ///
-/// and the face is the `X` with `Δ_i(X) > 0` for all `i` in `X` and `Δ_j(X ∪ {j}) ≤ 0` for all others. Then
-/// `v = Σ Δ_i·y_i / Σ Δ_i`. Each determinant is computed once. The differences are taken before the products: a product of
+/// and the face is the `X` with `Δ_i(X) > 0` for all `i` in `X` and `Δ_j(X ∪ {j}) ≤ 0` for all others. Then `v = Σ
+/// Δ_i·y_i / Σ Δ_i`. Each determinant is computed once. The differences are taken before the products: a product of
 /// long vectors less another has no digits left for a short edge.
 ///
 /// Rounding may turn the signs such that no face, or the wrong one, satisfies them. Where none does, the back-up is to

@@ -1,5 +1,5 @@
-//! The simplex that iterations carry: up to four points of a core, each with what it is made of; and its point closest to
-//! zero.
+//! The simplex that iterations carry: up to four points of a core, each with what it is made of; and its point closest
+//! to zero.
 
 mod affine_hull;
 mod closest;

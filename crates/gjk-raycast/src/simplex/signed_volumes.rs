@@ -9,10 +9,10 @@ use crate::simplex::{Face, MAX_POINTS, faces};
 
 /// The face of a simplex closest to zero, by the signs of volumes, areas and lengths.
 ///
-/// A face contains the foot of zero on its affine hull if replacing any corner by the foot leaves the sign of its volume.
-/// Where it does not, the answer lies in a face without such a corner. Volumes of faces that are not of full dimension
-/// are taken in their largest coordinate projection, so that every sign is that of a determinant of differences, and
-/// nothing is divided before the face is known.
+/// A face contains the foot of zero on its affine hull if replacing any corner by the foot leaves the sign of its
+/// volume. Where it does not, the answer lies in a face without such a corner. Volumes of faces that are not of full
+/// dimension are taken in their largest coordinate projection, so that every sign is that of a determinant of
+/// differences, and nothing is divided before the face is known.
 ///
 /// Where rounding makes the signs inconsistent, the back-up is to look at every face for the nearest.
 ///

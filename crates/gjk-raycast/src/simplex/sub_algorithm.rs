@@ -14,11 +14,12 @@ use crate::simplex::{johnson::johnson, signed_volumes::signed_volumes};
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SubAlgorithm {
-    /// The fastest: it looks only at the faces that the newest point is a corner of, and at every face where that leaves a doubt. Casts
-    /// look at every face at once.
+    /// The fastest: it looks only at the faces that the newest point is a corner of, and at every face where that
+    /// leaves a doubt. Casts look at every face at once.
     #[default]
     Regions,
-    /// The most robust: zero is projected on every face, and of the faces that contain the projection the nearest is taken.
+    /// The most robust: zero is projected on every face, and of the faces that contain the projection the nearest is
+    /// taken.
     #[cfg(feature = "paper")]
     NearestFace,
     /// Johnson's determinants, as in the paper.
@@ -30,8 +31,8 @@ pub enum SubAlgorithm {
 }
 
 impl SubAlgorithm {
-    /// The closest point of the points, in a space of `dimension` dimensions: that of the vectors, or one less for points
-    /// seen along a ray, where only [`nearest_face`] applies.
+    /// The closest point of the points, in a space of `dimension` dimensions: that of the vectors, or one less for
+    /// points seen along a ray, where only [`nearest_face`] applies.
     pub(crate) fn closest<V: Vector>(self, points: &[V], dimension: usize) -> Option<Closest<V>> {
         match self {
             #[cfg(feature = "paper")]

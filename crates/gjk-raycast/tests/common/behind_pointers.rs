@@ -1,7 +1,7 @@
 //! The queries asked of shapes behind pointers, by the names and with the answers of their own.
 //!
-//! What is inlined for every pair of shapes takes seconds to compile, pair by pair. Behind pointers each query is compiled once for
-//! a vector, and a test asks of as many kinds of shapes as it likes.
+//! What is inlined for every pair of shapes takes seconds to compile, pair by pair. Behind pointers each query is
+//! compiled once for a vector, and a test asks of as many kinds of shapes as it likes.
 
 use convex_support::{SupportMap, Vector};
 use gjk_raycast::{

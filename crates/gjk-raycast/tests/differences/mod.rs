@@ -8,8 +8,8 @@ use convex_support::{
 };
 use gjk_raycast::{RigidMotion, SignedDistance, SignedDistanceOptions, Trajectory, signed_distance};
 
-/// Differences, extrapolated to a step of zero (Ridders, 1982), and an estimate of the error; `order` is that by which the first
-/// neglected powers of the step rise.
+/// Differences, extrapolated to a step of zero (Ridders, 1982), and an estimate of the error; `order` is that by which
+/// the first neglected powers of the step rise.
 fn extrapolated(quotient: impl Fn(f64) -> f64, first: f64, order: i32) -> (f64, f64) {
     const SIZE: usize = 12;
     const SHRINK: f64 = 1.8;

@@ -1,9 +1,10 @@
 //! An oracle that shares nothing with the crate: brute force over the vertices of a hull, in integers.
 //!
 //! The convex hull of a finite set is the union of the simplices it spans (Carathéodory). So the ray enters it where it
-//! first meets one of the triangles, segments and points, unless it starts in a tetrahedron; and the distance of zero is
-//! the least distance of zero from one of them. Coordinates are integers below 2⁹, so that every determinant and every
-//! cross product of two fractions is exact in 128 bits. Planar sets have `z = 0`: flatness needs no case of its own.
+//! first meets one of the triangles, segments and points, unless it starts in a tetrahedron; and the distance of zero
+//! is the least distance of zero from one of them. Coordinates are integers below 2⁹, so that every determinant and
+//! every cross product of two fractions is exact in 128 bits. Planar sets have `z = 0`: flatness needs no case of its
+//! own.
 
 pub(crate) mod agree;
 

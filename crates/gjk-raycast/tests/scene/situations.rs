@@ -215,8 +215,9 @@ fn a_filter_is_asked_for_bodies_near_only() {
     assert_eq!(near.nearest.unwrap().distance, alone, "the single query");
 }
 
-/// A ball, a sled and a capsule slide over a hundred tiles and over as many pairs of triangles. Where two of these lie on one another, their edges
-/// and sides push back: with seams left out, all that is left pushes up. The edge at the end of the floor still pushes outward.
+/// A ball, a sled and a capsule slide over a hundred tiles and over as many pairs of triangles. Where two of these lie
+/// on one another, their edges and sides push back: with seams left out, all that is left pushes up. The edge at the
+/// end of the floor still pushes outward.
 #[test]
 fn what_slides_over_a_floor_of_pieces_is_not_caught_at_seams() {
     type Shape = Box<dyn SupportMap<Vector = DVec3>>;

@@ -1,8 +1,8 @@
-//! Single precision held against double: what is claimed of numbers in `f32` is true of the same numbers in `f64`, of which the rounding is
-//! nothing beside theirs.
+//! Single precision held against double: what is claimed of numbers in `f32` is true of the same numbers in `f64`, of
+//! which the rounding is nothing beside theirs.
 //!
-//! Most bodies are needles or plates, nearly touch, and are far from where they are turned about: there claims are the hardest to keep.
-//! `PROPTEST_CASES=1000000` takes a minute or two with optimisation.
+//! Most bodies are needles or plates, nearly touch, and are far from where they are turned about: there claims are the
+//! hardest to keep. `PROPTEST_CASES=1000000` takes a minute or two with optimisation.
 
 use core::fmt::Debug;
 
@@ -85,7 +85,8 @@ fn signed<D: Double>([a, b]: [Body<D>; 2]) -> SignedDistance<D> {
     signed_distance(&a.is::<D>(), &b.is::<D>(), SignedDistanceOptions::default())
 }
 
-/// Two bodies of which the second was moved to be apart by so many times what `f32` rounds of where they are, or by a length.
+/// Two bodies of which the second was moved to be apart by so many times what `f32` rounds of where they are, or by a
+/// length.
 fn bodies<D: Double>(shape: impl Fn() -> BoxedStrategy<Shape>) -> impl Strategy<Value = [Body<D>; 2]> {
     let far = prop_oneof![2 => Just(D::ZERO), 1 => vector(3.0), 1 => vector(100.0)];
     let aside = prop_oneof![2 => vector(3.0), 1 => Just(D::axis(0) * 3.0), 1 => Just(-D::axis(1) * 3.0)];
@@ -205,8 +206,8 @@ fn brackets_of_motion_casts<D: Double>(pair: [Body<D>; 2], [velocity, center]: [
     Ok(())
 }
 
-/// Of a body over a half-space that it nearly touches: of its distance, of how it moves with and without turning, and of a ray from its
-/// lowest point.
+/// Of a body over a half-space that it nearly touches: of its distance, of how it moves with and without turning, and
+/// of a ray from its lowest point.
 fn brackets_over_half_spaces<D: Double>(
     body: Body<D>,
     [normal, velocity, center]: [D; 3],

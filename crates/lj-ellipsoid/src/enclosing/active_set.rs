@@ -27,8 +27,8 @@ const QUADRATIC: f64 = 1e-6;
 /// A gap that is rounding in any case.
 const ROUNDING: f64 = 1e-14;
 
-/// Improves the weights of a working set until their gap over it is at most so much, in at most so many steps; answers the
-/// number of steps.
+/// Improves the weights of a working set until their gap over it is at most so much, in at most so many steps; answers
+/// the number of steps.
 pub(crate) type Improve<D> = fn(&mut Iterate<D>, &mut Workspace<D>, f64, usize) -> usize;
 
 /// Solves on a working set, whose weights `improve` finds.
@@ -62,8 +62,8 @@ pub(crate) fn solve<P: Points>(
             if !polishing || gap <= floor.max(ROUNDING) || gap > QUADRATIC {
                 return search.finish(Status::Converged);
             }
-            // Two more steps cost little. The final check, which looks at all points anyway, tells whether they served; if
-            // ever they did not, the loop goes on without them.
+            // Two more steps cost little. The final check, which looks at all points anyway, tells whether they served;
+            // if ever they did not, the loop goes on without them.
             polishing = false;
             search.at.add(points, &violators.found);
             if !search.at.update() {

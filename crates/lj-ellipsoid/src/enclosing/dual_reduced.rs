@@ -1,9 +1,9 @@
 //! The dual reduced Newton method of Sun and Freund for the weights of a working set.
 //!
 //! With weights u ≥ 0 that need not sum to one, z = Σuᵢaᵢ/Σu, yᵢ = aᵢ − z, W = Σuᵢyᵢyᵢᵀ and M² = ½W⁻¹, the optimum has
-//! h(u) + t = 1 and uᵢtᵢ = 0 with slacks t ≥ 0, hᵢ = yᵢᵀM²yᵢ. The path uᵢtᵢ = θ is followed to θ = 0 by Newton's method:
-//! with Σᵢⱼ = yᵢᵀM²yⱼ the Jacobian of h is −2(Σ/Σu + Σ∘Σ), so every step solves one definite system of the size of the
-//! working set. The sum of u tends to N/2 and uᵀt is the gap.
+//! h(u) + t = 1 and uᵢtᵢ = 0 with slacks t ≥ 0, hᵢ = yᵢᵀM²yᵢ. The path uᵢtᵢ = θ is followed to θ = 0 by Newton's
+//! method: with Σᵢⱼ = yᵢᵀM²yⱼ the Jacobian of h is −2(Σ/Σu + Σ∘Σ), so every step solves one definite system of the size
+//! of the working set. The sum of u tends to N/2 and uᵀt is the gap.
 //!
 //! # References
 //! P. Sun, R. M. Freund, *Computation of minimum-volume covering ellipsoids*, Oper. Res. 52 (2004).

@@ -1,15 +1,15 @@
 //! The ellipsoid algorithm on the lifted problem, after Rimon and Boyd, corrected.
 //!
-//! In n = N + 1 dimensions, with qᵢ = (yᵢ; 1): minimise f(X) = −ln det X over symmetric X ≻ 0 with qᵢᵀXqᵢ ≤ 1. The slice of
-//! the optimal { q : qᵀXq ≤ 1 } at height one is the enclosing ellipsoid (their Lemma B.1). X lives in D = n(n + 1)/2
-//! variables, as svec(X): the diagonal, and √2 times what is above it, so that inner products are traces.
+//! In n = N + 1 dimensions, with qᵢ = (yᵢ; 1): minimise f(X) = −ln det X over symmetric X ≻ 0 with qᵢᵀXqᵢ ≤ 1. The
+//! slice of the optimal { q : qᵀXq ≤ 1 } at height one is the enclosing ellipsoid (their Lemma B.1). X lives in D = n(n
+//! + 1)/2 variables, as svec(X): the diagonal, and √2 times what is above it, so that inner products are traces.
 //!
 //! Where we deviate: D is the number of variables in the update (the paper's text leaves it as the dimension); the
-//! gradients weigh off-diagonal entries twice, by svec; a cut for X ⋡ 0 takes a direction of negative curvature from the failed
-//! Cholesky factorisation in place of the eigenvector of the *least* (not "maximal") eigenvalue; the best feasible iterate
-//! is returned, not the one after the test. And the frame is first made such that Σuᵢqᵢqᵢᵀ = I for some weights: then
-//! the hull of ±qᵢ contains the unit ball, 0 ≺ X* ≼ I, and the start |X − I/2|_F ≤ √n/2 holds the optimum, whatever the
-//! condition of the points (the paper's radius grows with (R/r)²).
+//! gradients weigh off-diagonal entries twice, by svec; a cut for X ⋡ 0 takes a direction of negative curvature from
+//! the failed Cholesky factorisation in place of the eigenvector of the *least* (not "maximal") eigenvalue; the best
+//! feasible iterate is returned, not the one after the test. And the frame is first made such that Σuᵢqᵢqᵢᵀ = I for
+//! some weights: then the hull of ±qᵢ contains the unit ball, 0 ≺ X* ≼ I, and the start |X − I/2|_F ≤ √n/2 holds the
+//! optimum, whatever the condition of the points (the paper's radius grows with (R/r)²).
 //!
 //! # References
 //! E. Rimon, S. P. Boyd, *Obstacle collision detection using best ellipsoid fit*, J. Intell. Robot. Syst. 18 (1997),
@@ -146,7 +146,8 @@ impl Forms {
         self.a.chunks_exact(gradient.len()).map(|row| dot(row, gradient)).collect()
     }
 
-    /// X ← X − Ag̃/(D + 1), A ← D²/(D² − 1)·(A − 2/(D + 1)·Ag̃g̃ᵀA), g̃ = g/√(gᵀAg), of which A·g and the root are given.
+    /// X ← X − Ag̃/(D + 1), A ← D²/(D² − 1)·(A − 2/(D + 1)·Ag̃g̃ᵀA), g̃ = g/√(gᵀAg), of which A·g and the root are
+    /// given.
     fn cut(&mut self, ag: &[f64], width: f64) {
         let d = ag.len() as f64;
         let (growth, share) = (d * d / (d * d - 1.0), 2.0 / (d + 1.0));
@@ -159,8 +160,8 @@ impl Forms {
     }
 }
 
-/// The slice of the form P at height one, and what the lower bound on f proves of it: its centre is −P₁₁⁻¹P₁₂ (eq. 17), its shape
-/// proportional to P₁₁.
+/// The slice of the form P at height one, and what the lower bound on f proves of it: its centre is −P₁₁⁻¹P₁₂ (eq. 17),
+/// its shape proportional to P₁₁.
 fn slice(
     points: &Copied<Dynamic>,
     at: &mut Iterate<Dynamic>,
@@ -181,7 +182,8 @@ fn slice(
     let bound =
         -lower_bound + n as f64 * libm::log(n as f64) - r_float * libm::log(r_float) + 4.0 * r_float * coordinate_error;
     let certificate = Certificate { log_det_bound: bound - log_det, weights: Vec::new() };
-    // As Σuᵢyᵢyᵢᵀ = I and Σuᵢyᵢ = 0 on the starting set, c = Σuᵢ(yᵢᵀc)yᵢ: its preimage is the same combination of points.
+    // As Σuᵢyᵢyᵢᵀ = I and Σuᵢyᵢ = 0 on the starting set, c = Σuᵢ(yᵢᵀc)yᵢ: its preimage is the same combination of
+    // points.
     for (u, y) in at.set.u.iter_mut().zip(at.set.y.chunks_exact(r)) {
         *u *= dot(y, &center);
     }

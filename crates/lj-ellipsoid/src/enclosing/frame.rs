@@ -6,8 +6,8 @@ use crate::numerics::linalg::solve_lower;
 /// The affine map y = T·(v − o) from the N coordinates of the points to the r coordinates of an iterate; r = N unless
 /// the points are flat, and then r is the dimension of their affine hull.
 ///
-/// The problem is affine invariant, so every step is taken where the current ellipsoid is the unit ball: no iterate ever
-/// meets the condition of the data.
+/// The problem is affine invariant, so every step is taken where the current ellipsoid is the unit ball: no iterate
+/// ever meets the condition of the data.
 #[derive(Clone, Debug)]
 pub(crate) struct Frame<N: Dimension> {
     /// o, in the coordinates of the points.

@@ -81,10 +81,10 @@ impl<const N: usize> Enclosing<N> {
 ///
 /// # Errors
 /// [`EnclosingError::Empty`] without points, [`NonFinite`](EnclosingError::NonFinite) for NaN and infinities,
-/// [`Flat`](EnclosingError::Flat) where the points span no volume (unless
-/// [`FlatPolicy::AffineHull`] is asked for), [`OutOfRange`](EnclosingError::OutOfRange) where `f64` cannot hold the answer,
-/// [`InvalidEpsilon`](EnclosingError::InvalidEpsilon) and [`InvalidFlatTolerance`](EnclosingError::InvalidFlatTolerance)
-/// for options out of their range.
+/// [`Flat`](EnclosingError::Flat) where the points span no volume (unless [`FlatPolicy::AffineHull`] is asked for),
+/// [`OutOfRange`](EnclosingError::OutOfRange) where `f64` cannot hold the answer,
+/// [`InvalidEpsilon`](EnclosingError::InvalidEpsilon) and
+/// [`InvalidFlatTolerance`](EnclosingError::InvalidFlatTolerance) for options out of their range.
 ///
 /// # Examples
 /// ```
@@ -135,8 +135,8 @@ pub(crate) fn solve<P: Points>(
 
 /// Solves in the coordinates of a starting frame.
 ///
-/// The methods on a working set are compiled for the dimension of the points, where these span the space. All else is compiled
-/// once, for a dimension known at run time, and works on a copy of the points.
+/// The methods on a working set are compiled for the dimension of the points, where these span the space. All else is
+/// compiled once, for a dimension known at run time, and works on a copy of the points.
 pub(crate) fn solve_from<P: Points>(
     points: &P,
     start: Start<P::Dim>,

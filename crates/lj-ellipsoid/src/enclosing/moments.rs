@@ -11,8 +11,8 @@
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{cholesky_log_det, dot, solve_lower};
 
-/// What is left of an entry on the diagonal of the scatter, relative to it, where that is more than rounding: some ninety units of the last
-/// place. If less is left, all points with weight may lie in one plane.
+/// What is left of an entry on the diagonal of the scatter, relative to it, where that is more than rounding: some
+/// ninety units of the last place. If less is left, all points with weight may lie in one plane.
 const PLANE: f64 = 1e-14;
 
 /// What follows from the weights of a working set.
@@ -37,7 +37,8 @@ impl<D: Dimension> Moments<D> {
         Self { rank, mean: rank.zero(), factor: rank.zero_matrix(), log_det_scatter: 0.0, z, q }
     }
 
-    /// Computes everything from the points `y` and weights `u`; false where the points with weight span no volume, to rounding.
+    /// Computes everything from the points `y` and weights `u`; false where the points with weight span no volume, to
+    /// rounding.
     pub(crate) fn compute(&mut self, y: &[f64], u: &[f64]) -> bool {
         self.compute_scatter(y, u) && {
             self.compute_distances(y);
@@ -123,16 +124,16 @@ impl<D: Dimension> Moments<D> {
         self.q.iter().enumerate().fold((0, f64::NEG_INFINITY), |best, (i, &q)| if q > best.1 { (i, q) } else { best })
     }
 
-    /// N·ln(κ/N), κ = max |zᵢ|²: a bound on ln det X* − ln det X where E(c, S⁻¹/κ) is the ellipsoid X and the points are
-    /// those of the working set. Below zero only by rounding.
+    /// N·ln(κ/N), κ = max |zᵢ|²: a bound on ln det X* − ln det X where E(c, S⁻¹/κ) is the ellipsoid X and the points
+    /// are those of the working set. Below zero only by rounding.
     pub(crate) fn log_det_gap(&self) -> f64 {
         let r = self.rank.get() as f64;
         r * libm::log(self.furthest().1 / r)
     }
 }
 
-/// Whether each pivot Lᵢᵢ² of S = L·Lᵀ is more than the rounding of the diagonal that it is left of, Sᵢᵢ = Σₖ Lᵢₖ², which itself is a square
-/// of what is left of coordinates as large as the mean.
+/// Whether each pivot Lᵢᵢ² of S = L·Lᵀ is more than the rounding of the diagonal that it is left of, Sᵢᵢ = Σₖ Lᵢₖ²,
+/// which itself is a square of what is left of coordinates as large as the mean.
 fn spans_volume(r: usize, mean: &[f64], factor: &[f64]) -> bool {
     factor.chunks_exact(r).zip(mean).enumerate().all(|(i, (row, mean))| {
         let diagonal = dot(&row[..=i], &row[..=i]);

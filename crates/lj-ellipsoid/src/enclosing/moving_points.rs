@@ -13,9 +13,9 @@ use crate::points::PointSlice;
 
 /// Points with their minimum-volume enclosing ellipsoid, kept up to date when points are added, removed or moved.
 ///
-/// A change that cannot touch the ellipsoid costs no solve: a point added inside, or removed or moved inside without having
-/// carried weight, leaves the ellipsoid and its certificate as they are. Otherwise the next [`enclosing`](Self::enclosing)
-/// starts from the old ellipsoid and its weights, which saves passes of a cold start.
+/// A change that cannot touch the ellipsoid costs no solve: a point added inside, or removed or moved inside without
+/// having carried weight, leaves the ellipsoid and its certificate as they are. Otherwise the next
+/// [`enclosing`](Self::enclosing) starts from the old ellipsoid and its weights, which saves passes of a cold start.
 ///
 /// Whether the points are flat is decided as in [`enclosing()`](crate::enclosing()). An ellipsoid within an affine hull
 /// ([`FlatPolicy::AffineHull`](crate::FlatPolicy::AffineHull)), or one so thin that rounding might count for flatness,
@@ -55,8 +55,8 @@ impl<const N: usize> MovingPoints<N> {
     /// Takes the points; nothing is computed yet. They may be none at first.
     ///
     /// # Errors
-    /// [`EnclosingError::NonFinite`]; [`EnclosingError::InvalidEpsilon`] and [`EnclosingError::InvalidFlatTolerance`] for
-    /// options out of their range.
+    /// [`EnclosingError::NonFinite`]; [`EnclosingError::InvalidEpsilon`] and [`EnclosingError::InvalidFlatTolerance`]
+    /// for options out of their range.
     pub fn new<P: Into<[f64; N]> + Copy>(points: &[P], options: EnclosingOptions) -> Result<Self, EnclosingError> {
         options.check()?;
         let points: Vec<[f64; N]> = points.iter().map(|&p| p.into()).collect();

@@ -1,7 +1,7 @@
 //! Newton's method for the weights of a working set.
 //!
-//! Maximise φ(u) = ln det M(u) − n·Σu over u ≥ 0, n = N + 1; the maximum has Σu = 1. With Gᵢⱼ = qᵢᵀM⁻¹qⱼ the gradient is
-//! ω − n·1 and the Hessian −H, H = G∘G (entry by entry), and H·u = ω. The step to v = u + d maximises the model
+//! Maximise φ(u) = ln det M(u) − n·Σu over u ≥ 0, n = N + 1; the maximum has Σu = 1. With Gᵢⱼ = qᵢᵀM⁻¹qⱼ the gradient
+//! is ω − n·1 and the Hessian −H, H = G∘G (entry by entry), and H·u = ω. The step to v = u + d maximises the model
 //!
 //! > rᵀv − ½vᵀHv over v ≥ 0, r = ω − n·1 + H·u = 2ω − n·1,
 //!
@@ -23,8 +23,8 @@ use crate::numerics::linalg::{cholesky, solve_lower, solve_lower_transpose};
 /// what ω could tell.
 const PROXIMAL: f64 = 1e-13;
 
-/// What [`thin_out`] takes to be left of the excess of κ when it forgets members: a step of Newton's method mostly leaves
-/// less. Should one that was needed go, a look at all points brings it back.
+/// What [`thin_out`] takes to be left of the excess of κ when it forgets members: a step of Newton's method mostly
+/// leaves less. Should one that was needed go, a look at all points brings it back.
 const EAGER: f64 = 0.1;
 
 /// Steps of [`thin_out`].
@@ -81,7 +81,8 @@ pub(crate) fn solve<D: Dimension>(at: &mut Iterate<D>, work: &mut Workspace<D>, 
                 work.best.copy_from(set);
             }
         }
-        // None of these has weight at the optimum of this set (Harman and Pronzato). Where rounding says that they have, it is not to be trusted.
+        // None of these has weight at the optimum of this set (Harman and Pronzato). Where rounding says that they
+        // have, it is not to be trusted.
         let threshold = elimination_threshold(rank.get(), moments.furthest().1);
         if !forget(rank, set, moments, threshold)
             || steps >= max_steps
@@ -99,8 +100,8 @@ pub(crate) fn solve<D: Dimension>(at: &mut Iterate<D>, work: &mut Workspace<D>, 
     steps
 }
 
-/// Where every member has weight, as at the start, most will lose it, and Newton's model takes them out one by one. A few
-/// multiplicative steps u ← u·ω/n, which always ascend, tell them from the others, and they are forgotten together.
+/// Where every member has weight, as at the start, most will lose it, and Newton's model takes them out one by one. A
+/// few multiplicative steps u ← u·ω/n, which always ascend, tell them from the others, and they are forgotten together.
 fn thin_out<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D>, before: &mut WorkingSet) {
     let r = rank.get() as f64;
     for _ in 0..MULTIPLICATIVE_STEPS {
@@ -233,8 +234,8 @@ fn forget<D: Dimension>(rank: D, set: &mut WorkingSet, moments: &mut Moments<D>,
 
 /// Maximises rᵀv − ½vᵀHv over v ≥ 0 by the active-set method of Lawson and Hanson, from v = u.
 ///
-/// Leaves the result in `work.v`. Every pass either moves to a better v with fewer free members or to the optimum of the
-/// free ones, so it ends; should rounding make it cycle it stops with a v at least as good as u.
+/// Leaves the result in `work.v`. Every pass either moves to a better v with fewer free members or to the optimum of
+/// the free ones, so it ends; should rounding make it cycle it stops with a v at least as good as u.
 fn non_negative_quadratic<D: Dimension>(n: f64, u: &[f64], work: &mut Workspace<D>) {
     let k = u.len();
     let Workspace { h, r, v, free, factor, solution, .. } = work;

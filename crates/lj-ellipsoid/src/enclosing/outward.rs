@@ -62,7 +62,8 @@ const SMALL: f64 = 1e-14;
 /// Candidates that are mostly enough.
 pub(crate) const SOME: usize = 16;
 
-/// The rounding of the two evaluations of an ellipsoid that is the unit ball of a frame, whatever the order of their sums.
+/// The rounding of the two evaluations of an ellipsoid that is the unit ball of a frame, whatever the order of their
+/// sums.
 struct Evaluation<'a, N: Dimension> {
     frame: &'a Frame<N>,
     matrix: &'a [f64],
@@ -160,8 +161,8 @@ pub(crate) fn reach<P: Points>(points: &P, rank: P::Dim, shape: &Shape<P::Dim>, 
     Reach { frame, axes, proved, matrix, candidates, leaders, passes }
 }
 
-/// max |T·(v − o)|² over the points, those within the share `near` of it unless they are a large part of all, and the passes
-/// it took.
+/// max |T·(v − o)|² over the points, those within the share `near` of it unless they are a large part of all, and the
+/// passes it took.
 fn furthest<P: Points>(
     points: &P,
     rank: P::Dim,

@@ -18,7 +18,8 @@ pub struct EnclosingIterate<'a> {
     pub weights: &'a [f64],
 }
 
-/// Who sees the iterates. The solvers are compiled once for all observers: a call costs little beside the step it reports.
+/// Who sees the iterates. The solvers are compiled once for all observers: a call costs little beside the step it
+/// reports.
 pub(crate) type Observer<'a> = dyn FnMut(EnclosingIterate<'_>) + 'a;
 
 /// What every method is given.

@@ -6,8 +6,8 @@ use crate::enclosing::frame::Frame;
 use crate::numerics::dimension::{Dimension, LANES};
 use crate::points::Points;
 
-/// Calls `visit(i, q)` for the points in `range` with qᵢ = |T·(vᵢ − o)|² at least the cutoff that the last visit answered
-/// (at first `cutoff`). Points below cost arithmetic only.
+/// Calls `visit(i, q)` for the points in `range` with qᵢ = |T·(vᵢ − o)|² at least the cutoff that the last visit
+/// answered (at first `cutoff`). Points below cost arithmetic only.
 #[inline(always)]
 pub(crate) fn beyond<P: Points>(
     points: &P,

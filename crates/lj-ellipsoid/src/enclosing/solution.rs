@@ -55,8 +55,8 @@ pub(crate) struct Certificate {
 }
 
 impl Certificate {
-    /// From weights: ln det X ≤ −ln det S − r·ln r, loosened by what the rounding of the coordinates can do to ln det S:
-    /// 2·tr(S⁻¹Σuᵢyᵢδyᵢᵀ) ≤ 2√r·max|L⁻¹δyᵢ|.
+    /// From weights: ln det X ≤ −ln det S − r·ln r, loosened by what the rounding of the coordinates can do to ln det
+    /// S: 2·tr(S⁻¹Σuᵢyᵢδyᵢᵀ) ≤ 2√r·max|L⁻¹δyᵢ|.
     pub(crate) fn from_weights<P: Points>(
         points: &P,
         rank: P::Dim,

@@ -1,9 +1,10 @@
-//! The start: finite coordinates, the rank of the points, a frame in which they are of unit size, and a few extreme points.
+//! The start: finite coordinates, the rank of the points, a frame in which they are of unit size, and a few extreme
+//! points.
 //!
 //! # References
 //! P. Kumar, E. A. Yıldırım, *Minimum-volume enclosing ellipsoids and core sets*, J. Optim. Theory Appl. 126 (2005):
-//! extreme points along directions orthogonal to those already found are a start within a constant factor of the optimum,
-//! and a direction without spread is a normal of the affine hull.
+//! extreme points along directions orthogonal to those already found are a start within a constant factor of the
+//! optimum, and a direction without spread is a normal of the affine hull.
 
 use std::ops::Range;
 
@@ -104,7 +105,8 @@ fn bounds_of<P: Points>(points: &P, range: Range<usize>) -> Result<Bounds<P::Dim
     let mut at = range.start;
     while at < range.end {
         points.read_block(at, range.end, v.as_mut(), &mut block.as_mut()[..n]);
-        // Few blocks hold a new extreme, and a look at the lanes together tells which. x·0 is 0 unless x is NaN or infinite.
+        // Few blocks hold a new extreme, and a look at the lanes together tells which. x·0 is 0 unless x is NaN or
+        // infinite.
         let (low, high) = (b.low.as_ref(), b.high.as_ref());
         let mut extreme = false;
         let mut finite = [0.0; LANES];
@@ -280,8 +282,8 @@ impl<N: Dimension> Basis<N> {
         }
     }
 
-    /// Gram–Schmidt with pivoting over `vectors`, at most as many as there are dimensions: stops where no residual exceeds
-    /// `threshold`.
+    /// Gram–Schmidt with pivoting over `vectors`, at most as many as there are dimensions: stops where no residual
+    /// exceeds `threshold`.
     fn extend_well_spread(&mut self, vectors: &mut dyn Iterator<Item = N::Point>, threshold: f64) {
         let n = self.dim.get();
         let mut residuals = self.dim.zero_matrix();
@@ -371,7 +373,8 @@ fn hull_frame<P: Points>(points: &P, basis: &Basis<P::Dim>, unit: Units<P::Dim>,
     let scale = unit.scale.as_ref();
     let directions = |(b, spread): (&[f64], f64)| dim.point(b.iter().zip(scale).map(|(x, s)| x * spread / s));
     orthonormal.extend_well_spread(&mut basis.rows().map(directions), 0.0);
-    // The hull is through the points, while the centre of the bounding box need not lie in it exactly: start at a point.
+    // The hull is through the points, while the centre of the bounding box need not lie in it exactly: start at a
+    // point.
     let mut origin = unit.center;
     if basis.rank == 0 {
         points.read(working[0], origin.as_mut());

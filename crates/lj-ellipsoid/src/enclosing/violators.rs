@@ -35,8 +35,8 @@ pub(crate) struct Survivors<D> {
 
 /// The |y|² below which no point can touch the optimal ellipsoid, where the weights leave max |y|² at `furthest`.
 ///
-/// Harman and Pronzato: with ε = max ω − n ≥ 0 every point with ω < n(1 + ε/2 − ½√(ε(4 + ε − 4/n))) has no weight at the
-/// optimum. Here ω = 1 + |y|², n = r + 1 and ε = κ − r; a relative 1e-10 guards against rounding.
+/// Harman and Pronzato: with ε = max ω − n ≥ 0 every point with ω < n(1 + ε/2 − ½√(ε(4 + ε − 4/n))) has no weight at
+/// the optimum. Here ω = 1 + |y|², n = r + 1 and ε = κ − r; a relative 1e-10 guards against rounding.
 ///
 /// R. Harman, L. Pronzato, *Improvements on removing nonoptimal support points in D-optimum design algorithms*,
 /// Stat. Probab. Lett. 77 (2007).
@@ -104,8 +104,8 @@ pub(crate) fn look<P: Points>(
     (Violators { furthest, found }, survivors)
 }
 
-/// Whether a sample suggests that at most `capacity` points lie beyond `threshold`: to collect survivors only to find them
-/// too many is dear.
+/// Whether a sample suggests that at most `capacity` points lie beyond `threshold`: to collect survivors only to find
+/// them too many is dear.
 fn few_beyond<P: Points>(points: &P, rank: P::Dim, frame: &Frame<P::Dim>, threshold: f64, capacity: usize) -> bool {
     let mut v = points.dim().zero();
     let mut y = rank.zero();

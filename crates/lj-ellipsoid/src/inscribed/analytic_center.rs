@@ -6,7 +6,8 @@ use crate::inscribed::coordinates::Rows;
 use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{cholesky, dot, solve_lower, solve_lower_transpose};
 
-/// The most Newton steps; damped ones always descend by a constant, so they are hundreds only for thousands of half-spaces.
+/// The most Newton steps; damped ones always descend by a constant, so they are hundreds only for thousands of
+/// half-spaces.
 const MOST_STEPS: usize = 500;
 
 /// The largest ratio of the diagonal of the Hessian's factor at which its rounding leaves the coordinates round.
@@ -79,8 +80,8 @@ fn slacks_at<D: Dimension>(dim: D, rows: &Rows, relaxation: f64, z: &[f64], slac
     inside
 }
 
-/// Factors the Hessian H = Σpᵢpᵢᵀ/sᵢ² = L·Lᵀ and answers −L⁻¹g, g = Σpᵢ/sᵢ: its length is the decrement √(gᵀH⁻¹g), and the Newton
-/// step is L⁻ᵀ of it.
+/// Factors the Hessian H = Σpᵢpᵢᵀ/sᵢ² = L·Lᵀ and answers −L⁻¹g, g = Σpᵢ/sᵢ: its length is the decrement √(gᵀH⁻¹g), and
+/// the Newton step is L⁻ᵀ of it.
 fn newton<D: Dimension>(dim: D, rows: &Rows, slacks: &[f64], l: &mut [f64]) -> Option<D::Point> {
     let n = dim.get();
     l.fill(0.0);

@@ -2,9 +2,9 @@
 //!
 //! > max t subject to pᵢ·z + t ≤ sᵢ, |pᵢ| = 1,
 //!
-//! by a primal–dual interior-point method whose primal iterates w = (z, t) are always feasible: with slacks c and multipliers
-//! y, each step solves GᵀDG·Δw = e − Gᵀ(σμ/c), D = diag(y/c), G's rows (pᵢ, 1), e the unit vector of t. The optimum is between
-//! t and t + mμ once the multipliers are feasible.
+//! by a primal–dual interior-point method whose primal iterates w = (z, t) are always feasible: with slacks c and
+//! multipliers y, each step solves GᵀDG·Δw = e − Gᵀ(σμ/c), D = diag(y/c), G's rows (pᵢ, 1), e the unit vector of t. The
+//! optimum is between t and t + mμ once the multipliers are feasible.
 
 use crate::inscribed::coordinates::Rows;
 use crate::numerics::dimension::Dynamic;

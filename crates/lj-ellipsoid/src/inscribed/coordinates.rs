@@ -1,9 +1,10 @@
 //! Coordinates in which a body is round, however thin it is.
 //!
-//! x = o + M·z, and the body { x : aᵢ·x ≤ bᵢ } is { z : pᵢ·z ≤ sᵢ } with pᵢ = Mᵀaᵢ and sᵢ = bᵢ − aᵢ·o. Of a body t thick and one
-//! wide, turned against the axes, the components of p and s are t in size and differences of products of size one. So o and M
-//! are taken to be *exactly* the doubles that stand for them, and p and s are computed in twice the precision: then the
-//! problem in z is that of the body as given, and its data are as good as doubles can be, at any thickness.
+//! x = o + M·z, and the body { x : aᵢ·x ≤ bᵢ } is { z : pᵢ·z ≤ sᵢ } with pᵢ = Mᵀaᵢ and sᵢ = bᵢ − aᵢ·o. Of a body t
+//! thick and one wide, turned against the axes, the components of p and s are t in size and differences of products of
+//! size one. So o and M are taken to be *exactly* the doubles that stand for them, and p and s are computed in twice
+//! the precision: then the problem in z is that of the body as given, and its data are as good as doubles can be, at
+//! any thickness.
 //!
 //! M is kept as M = Rᵀ·diag(a), R orthonormal to rounding: as a product with a general matrix on the right it would
 //! lose its short columns in the long ones.
@@ -198,11 +199,11 @@ impl Coordinates {
         }
     }
 
-    /// M ← M·C up to a rotation from the right: the unit ball of the new coordinates is the image of what C makes of the unit
-    /// ball of the old ones.
+    /// M ← M·C up to a rotation from the right: the unit ball of the new coordinates is the image of what C makes of
+    /// the unit ball of the old ones.
     ///
-    /// diag(a)·C = U·Σ·Vᵀ. Of T = Cᵀ·diag(a), whose columns are graded, Householder's and Jacobi's methods find Σ and Uᵀ to high
-    /// relative accuracy, and M·C·V = (Rᵀ·U)·Σ.
+    /// diag(a)·C = U·Σ·Vᵀ. Of T = Cᵀ·diag(a), whose columns are graded, Householder's and Jacobi's methods find Σ and
+    /// Uᵀ to high relative accuracy, and M·C·V = (Rᵀ·U)·Σ.
     pub(crate) fn stretch<D: Dimension>(&mut self, dim: D, c: &[f64]) {
         let n = dim.get();
         let mut t = dim.matrix((0..n * n).map(|at| c[at % n * n + at / n] * self.lengths[at % n]));

@@ -1,12 +1,13 @@
 //! The convex hull of points in two and three dimensions, as half-spaces.
 //!
-//! Which side of a facet a point lies on is decided by exact predicates (Shewchuk's, in the `robust` crate), so the hull is
-//! a closed convex surface however nearly coplanar the points. Planes are then computed in floating point from the largest
-//! triangle of each flat face, and moved out to the neighbouring vertices: a sliver with a poor normal gives a superfluous
-//! half-space, never a cut into the hull.
+//! Which side of a facet a point lies on is decided by exact predicates (Shewchuk's, in the `robust` crate), so the
+//! hull is a closed convex surface however nearly coplanar the points. Planes are then computed in floating point from
+//! the largest triangle of each flat face, and moved out to the neighbouring vertices: a sliver with a poor normal
+//! gives a superfluous half-space, never a cut into the hull.
 //!
 //! # References
-//! C. B. Barber, D. P. Dobkin, H. Huhdanpaa, *The quickhull algorithm for convex hulls*, ACM Trans. Math. Softw. 22 (1996).
+//! C. B. Barber, D. P. Dobkin, H. Huhdanpaa, *The quickhull algorithm for convex hulls*, ACM Trans. Math. Softw. 22
+//! (1996).
 
 use robust::{Coord, Coord3D, orient2d, orient3d};
 

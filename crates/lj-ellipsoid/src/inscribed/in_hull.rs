@@ -1,7 +1,7 @@
 //! The maximum-volume ellipsoid inside the convex hull of points.
 //!
-//! The points are first brought to where their enclosing ellipsoid is the unit ball: there the hull lies between the balls
-//! of radius 1/N and 1 (John), so facets and slacks are of unit size whatever the condition of the points.
+//! The points are first brought to where their enclosing ellipsoid is the unit ball: there the hull lies between the
+//! balls of radius 1/N and 1 (John), so facets and slacks are of unit size whatever the condition of the points.
 
 use crate::enclosing;
 use crate::error::{EnclosingError, InscribedError};

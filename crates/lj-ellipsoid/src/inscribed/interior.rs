@@ -10,8 +10,8 @@ use crate::numerics::dimension::Dimension;
 use crate::numerics::linalg::{UNIT_ROUNDOFF, dot};
 use crate::numerics::twofold;
 
-/// How often coordinates are stretched before a body is called empty. Every time a thin one becomes a million times thicker
-/// in them, so that this covers the range of `f64`.
+/// How often coordinates are stretched before a body is called empty. Every time a thin one becomes a million times
+/// thicker in them, so that this covers the range of `f64`.
 const MOST_STRETCHES: usize = 120;
 
 /// How often the columns of the normals are made orthonormal: each time what rounding left of a column is computed
@@ -152,8 +152,8 @@ fn resolved(coordinates: &Coordinates) -> bool {
     shortest.is_normal() && shortest > 0.25 * UNIT_ROUNDOFF * spacing
 }
 
-/// The half-spaces with normals of unit length, so that all are measured alike, and none further from the origin than twice
-/// `reach`, the radius of a ball around it that holds the body.
+/// The half-spaces with normals of unit length, so that all are measured alike, and none further from the origin than
+/// twice `reach`, the radius of a ball around it that holds the body.
 fn unit_rows<D: Dimension>(dim: D, rows: &Rows, reach: f64) -> Rows {
     let mut unit = rows.clone();
     for (p, s) in unit.p.chunks_exact_mut(dim.get()).zip(&mut unit.s) {

@@ -47,12 +47,12 @@ pub struct Inscribed<const N: usize> {
     /// The ellipsoid: centre, axes and semi-axes as they are, it is proved to be inside. Its
     /// [`support_value`](Ellipsoid::support_value) along the normal of every given half-space is at most the offset.
     pub ellipsoid: Ellipsoid<N>,
-    /// A certified bound: ln det X of `ellipsoid` exceeds that of the true optimum by at most this. It is twice the bound on
-    /// the lack of log-volume. Never negative.
+    /// A certified bound: ln det X of `ellipsoid` exceeds that of the true optimum by at most this. It is twice the
+    /// bound on the lack of log-volume. Never negative.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::gap"))]
     pub log_det_gap: f64,
-    /// The multipliers y that prove the gap, positive ones only, with their half-spaces (facets of the hull, for points),
-    /// scaled to sum to one.
+    /// The multipliers y that prove the gap, positive ones only, with their half-spaces (facets of the hull, for
+    /// points), scaled to sum to one.
     pub weights: Vec<Weight>,
     /// How the computation ended.
     pub status: Status,
@@ -80,9 +80,10 @@ impl<const N: usize> Inscribed<N> {
 
 /// The ellipsoid of greatest volume inside the intersection of `halfspaces`.
 ///
-/// Normals of any length, redundant and repeated half-spaces are fine, and so are thin bodies, turned as they may be. What
-/// limits them is the answer: the axes of the ellipsoid are rounded to doubles, so that of a turned body some 1e-16 of its
-/// length is lost of its thickness, and a centre far from the origin loses as much of its own distance. The gap says how much that is.
+/// Normals of any length, redundant and repeated half-spaces are fine, and so are thin bodies, turned as they may be.
+/// What limits them is the answer: the axes of the ellipsoid are rounded to doubles, so that of a turned body some
+/// 1e-16 of its length is lost of its thickness, and a centre far from the origin loses as much of its own distance.
+/// The gap says how much that is.
 ///
 /// # Errors
 /// [`InscribedError::Unbounded`] and [`InscribedError::EmptyInterior`] where there is no such ellipsoid;

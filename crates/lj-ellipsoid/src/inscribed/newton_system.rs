@@ -1,5 +1,5 @@
-//! The Newton system of the maximum-volume inscribed ellipsoid, in the N(N + 1)/2 entries of B on and above the diagonal
-//! and the N of d.
+//! The Newton system of the maximum-volume inscribed ellipsoid, in the N(N + 1)/2 entries of B on and above the
+//! diagonal and the N of d.
 //!
 //! Linearised at (B, d, y), with Δ = (ΔB, Δd), f = −ln det B and cᵢyᵢ to become μ, the conditions are
 //!

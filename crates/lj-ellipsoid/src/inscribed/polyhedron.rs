@@ -52,8 +52,8 @@ impl Polyhedron {
         self.offsets.len()
     }
 
-    /// Why there is no ellipsoid, where the search for an interior ended at this ratio of the shortest to the longest axis:
-    /// empty or flat if two half-spaces say so by themselves, else too thin for it.
+    /// Why there is no ellipsoid, where the search for an interior ended at this ratio of the shortest to the longest
+    /// axis: empty or flat if two half-spaces say so by themselves, else too thin for it.
     pub(crate) fn without_interior(&self, ratio: f64) -> InscribedError {
         let pairs = (0..self.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
         if pairs.take(MOST_PAIRS).any(|(i, j)| self.exclude_one_another(i, j)) {

@@ -5,15 +5,15 @@
 //!
 //! > maximise ln det B over B ≻ 0 and d, subject to cᵢ = 1 − pᵢ·d − hᵢ ≥ 0, hᵢ = |B·pᵢ|.
 //!
-//! Primal–dual Newton on the conditions B⁻¹ = Σyᵢ·sym(vᵢpᵢᵀ) with vᵢ = B·pᵢ/hᵢ, Σyᵢpᵢ = 0, cᵢyᵢ = μ, μ → 0, in the
-//! N(N + 3)/2 unknowns of (B, d): the multipliers are eliminated, so a step costs time linear in the number of half-spaces.
+//! Primal–dual Newton on the conditions B⁻¹ = Σyᵢ·sym(vᵢpᵢᵀ) with vᵢ = B·pᵢ/hᵢ, Σyᵢpᵢ = 0, cᵢyᵢ = μ, μ → 0, in the N(N
+//! + 3)/2 unknowns of (B, d): the multipliers are eliminated, so a step costs time linear in the number of half-spaces.
 //!
-//! Certificate: for y ≥ 0 with Σyᵢpᵢ = 0 and unit gᵢ, S = Σyᵢ·sym(pᵢgᵢᵀ) ≻ 0, any feasible (B, d) has tr(B·S) ≤ Σyᵢhᵢ ≤ Σyᵢ,
-//! so by the inequality of the means ln det B ≤ N·ln(Σy/N) − ln det S.
+//! Certificate: for y ≥ 0 with Σyᵢpᵢ = 0 and unit gᵢ, S = Σyᵢ·sym(pᵢgᵢᵀ) ≻ 0, any feasible (B, d) has tr(B·S) ≤ Σyᵢhᵢ ≤
+//! Σyᵢ, so by the inequality of the means ln det B ≤ N·ln(Σy/N) − ln det S.
 //!
 //! # References
-//! Y. Zhang, L. Gao, *On numerical solution of the maximum volume ellipsoid problem*, SIAM J. Optim. 14 (2003), treat the
-//! same conditions with m × m systems.
+//! Y. Zhang, L. Gao, *On numerical solution of the maximum volume ellipsoid problem*, SIAM J. Optim. 14 (2003), treat
+//! the same conditions with m × m systems.
 
 use crate::error::InscribedError;
 use crate::inscribed::newton_system::{Direction, System};
@@ -118,8 +118,8 @@ pub(crate) fn maximize<D: Dimension>(
         }
         iteration += 1;
         mu = centring * complementarity / m;
-        // The share of what is left to the boundary that no step takes, and near the end that of the products cᵢyᵢ to aim at.
-        // Smaller ones than 1e-3 leave the products so uneven that the next steps pay for it.
+        // The share of what is left to the boundary that no step takes, and near the end that of the products cᵢyᵢ to
+        // aim at. Smaller ones than 1e-3 leave the products so uneven that the next steps pay for it.
         let boundary = complementarity.clamp(1e-3, 0.03);
         let Some(length) = at.step(mu, boundary) else { break Status::Stalled };
         // Near the end full steps are taken and μ may fall fast; a bold step from afar costs several to recover.
@@ -175,8 +175,8 @@ impl<'a, D: Dimension> Iterate<'a, D> {
         (2.0 * (dual.log_det_bound - point.log_det - n * libm::log(growth)), Some(dual))
     }
 
-    /// One Newton step that aims at the products cᵢyᵢ = μ and leaves the share `boundary` of the way to the boundary. Answers the
-    /// shorter of its two lengths; `None` where there is no step to take.
+    /// One Newton step that aims at the products cᵢyᵢ = μ and leaves the share `boundary` of the way to the boundary.
+    /// Answers the shorter of its two lengths; `None` where there is no step to take.
     fn step(&mut self, mu: f64, boundary: f64) -> Option<f64> {
         let Self { dim, p, point, y, trial, system, direction } = self;
         if !system.assemble(*dim, p, point, y) {
@@ -207,7 +207,8 @@ struct Record {
     gap: f64,
     dual: Option<Dual>,
     without_progress: usize,
-    /// Steps left beyond the gap asked for, and the point before the last of them: a step of rounding may lead anywhere.
+    /// Steps left beyond the gap asked for, and the point before the last of them: a step of rounding may lead
+    /// anywhere.
     polishing: usize,
     kept: Option<Point>,
 }

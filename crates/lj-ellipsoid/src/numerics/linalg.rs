@@ -20,8 +20,8 @@ pub(crate) fn power_of_two_inverse(extent: f64) -> f64 {
     f64::from_bits(((1023 - exponent) as u64) << 52)
 }
 
-/// Σ ln xᵢ of positive numbers, as the logarithm of their product: one rounding of a logarithm in the common case, none of
-/// whose products is extreme.
+/// Σ ln xᵢ of positive numbers, as the logarithm of their product: one rounding of a logarithm in the common case, none
+/// of whose products is extreme.
 #[inline(always)]
 pub(crate) fn sum_of_logarithms(numbers: impl Iterator<Item = f64>) -> f64 {
     let mut sum = 0.0;
@@ -105,8 +105,8 @@ pub(crate) fn solve_lower_transpose<D: Dimension>(dim: D, l: &[f64], x: &mut [f6
     }
 }
 
-/// Brings `t` (rows of length `n`, at most `n` of them) to triangular form by reflections from the left, up to the order
-/// of its columns: T ← H·T, so that `TᵀT` is unchanged.
+/// Brings `t` (rows of length `n`, at most `n` of them) to triangular form by reflections from the left, up to the
+/// order of its columns: T ← H·T, so that `TᵀT` is unchanged.
 ///
 /// Householder's QR with column pivoting and rows sorted by size: its error is small row by row and column by column
 /// (Cox & Higham 1998), so axes of wildly different size survive, wherever the grading stands.
@@ -159,7 +159,8 @@ pub(crate) fn triangularize<D: Dimension>(dim: D, t: &mut [f64]) {
     }
 }
 
-/// Makes the rows of `t` mutually orthogonal by rotations from the left: T ← J·T with `JᵀJ = I`, so that `TᵀT` is unchanged.
+/// Makes the rows of `t` mutually orthogonal by rotations from the left: T ← J·T with `JᵀJ = I`, so that `TᵀT` is
+/// unchanged.
 ///
 /// This is one-sided Jacobi (Hestenes 1958) on Tᵀ. With T = diag·(well conditioned) it finds every singular value, a
 /// row norm at the end, to high *relative* accuracy however graded the diagonal (Demmel & Veselić 1992), which an
@@ -182,7 +183,8 @@ pub(crate) fn orthogonalize_rows<D: Dimension>(dim: D, t: &mut [f64]) {
                     continue;
                 }
                 rotated = true;
-                // The rotation (c, s) with (c·a − s·b)·(s·a + c·b) = 0, t = s/c the root of least size of t² + 2ζt − 1 = 0.
+                // The rotation (c, s) with (c·a − s·b)·(s·a + c·b) = 0, t = s/c the root of least size of t² + 2ζt − 1
+                // = 0.
                 let zeta = (bb - aa) / (2.0 * ab);
                 let tangent = zeta.signum() / (zeta.abs() + (zeta * zeta + 1.0).sqrt());
                 let c = 1.0 / (tangent * tangent + 1.0).sqrt();

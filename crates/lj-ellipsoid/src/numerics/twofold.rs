@@ -1,7 +1,7 @@
 //! Sums of products in twice the working precision.
 //!
-//! What a thin body is made of are small differences of large products, and they decide its shape. They are computed as if in
-//! a format of 106 bits and rounded once.
+//! What a thin body is made of are small differences of large products, and they decide its shape. They are computed as
+//! if in a format of 106 bits and rounded once.
 //!
 //! # References
 //! T. J. Dekker, *A floating-point technique for extending the available precision*, Numer. Math. 18 (1971).
@@ -11,8 +11,8 @@ use std::ops::RangeInclusive;
 
 use crate::numerics::linalg::UNIT_ROUNDOFF;
 
-/// Σxᵢyᵢ with an error of at most u·|Σxᵢyᵢ| + (k·u)²·Σ|xᵢyᵢ| for k terms, where no product leaves the range of `f64`; there
-/// it is the plain sum.
+/// Σxᵢyᵢ with an error of at most u·|Σxᵢyᵢ| + (k·u)²·Σ|xᵢyᵢ| for k terms, where no product leaves the range of `f64`;
+/// there it is the plain sum.
 pub(crate) fn dot(terms: impl IntoIterator<Item = (f64, f64)>) -> f64 {
     let mut sum = Sum::default();
     terms.into_iter().for_each(|(x, y)| sum.add_product(x, y));

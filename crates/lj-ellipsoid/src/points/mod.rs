@@ -16,8 +16,8 @@ pub(crate) trait Points: Sync {
     /// Copies point `i` into `out`, whose length is the dimension.
     fn read(&self, i: usize, out: &mut [f64]);
 
-    /// Copies the points from `at` on into the lanes of `block`, a row for each coordinate, by way of `v`; from `end` on the
-    /// point before it is repeated.
+    /// Copies the points from `at` on into the lanes of `block`, a row for each coordinate, by way of `v`; from `end`
+    /// on the point before it is repeated.
     #[inline(always)]
     fn read_block(&self, at: usize, end: usize, v: &mut [f64], block: &mut [[f64; LANES]]) {
         read_lanes(self, at, end, v, block);

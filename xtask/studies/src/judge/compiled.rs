@@ -17,7 +17,8 @@ use xtask::judge::questions::{Question, SETS};
 use xtask::judge::verdict::Claim;
 use xtask::judge::witnesses::{MICROSECONDS, Reply, Witness, rounding};
 
-/// A library, by what it makes of some rays against a shape, or of some poses of a pair; `None` where it has no such shape.
+/// A library, by what it makes of some rays against a shape, or of some poses of a pair; `None` where it has no such
+/// shape.
 struct Library {
     name: &'static str,
     /// How far from contact its documentation lets an answer be, in metres.

@@ -20,7 +20,8 @@ use xtask::validate::{begin_progress, end_progress};
 /// What to ask, and whom.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Scope {
-    /// Answers of somebody else to the questions that `--questions` writes; `benches/peers/` has programs that give them.
+    /// Answers of somebody else to the questions that `--questions` writes; `benches/peers/` has programs that give
+    /// them.
     #[arg(long, value_name = "FILE", num_args = 1..)]
     answers: Vec<PathBuf>,
     /// Write the questions as a query file, and end.

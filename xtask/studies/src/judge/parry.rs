@@ -1,4 +1,5 @@
-//! parry's answers, in either precision: by the functions that its users call, which pick a special case where there is one.
+//! parry's answers, in either precision: by the functions that its users call, which pick a special case where there is
+//! one.
 
 /// parry3d: `f32`.
 pub(super) mod single {

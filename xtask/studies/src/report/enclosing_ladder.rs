@@ -1,5 +1,5 @@
-//! Enclosing ellipsoids: the certified gap against time, method by method, on seven kinds of points; how the cuts of the
-//! ellipsoid algorithm grow with log(1/ε); what a dimension costs.
+//! Enclosing ellipsoids: the certified gap against time, method by method, on seven kinds of points; how the cuts of
+//! the ellipsoid algorithm grow with log(1/ε); what a dimension costs.
 //!
 //! One run of a method gives its whole curve, by the observer: how long it ran when a gap was first certified.
 

@@ -64,8 +64,8 @@ fn body(random: &mut Rng, kind: usize, center: DVec3) -> Result<Body, InvalidSha
     })
 }
 
-/// Mean support points of a cast, against the length of its ray: those of the paper's algorithm, and ours; cut off at the end of
-/// the ray, or compared with it afterwards.
+/// Mean support points of a cast, against the length of its ray: those of the paper's algorithm, and ours; cut off at
+/// the end of the ray, or compared with it afterwards.
 pub(super) struct FiniteRays {
     /// The length of the ray over the size of the environment, and the four means.
     pub(super) rows: Vec<(f64, [f64; 4])>,
@@ -148,8 +148,8 @@ fn short_rays(measured: &FiniteRays) -> Figure {
 
 /// Mean support points per frame of a body that turns past a segment and misses it.
 pub(super) struct Coherence {
-    /// The step from frame to frame over the body's size, and the means: the paper's ray cast cold and warm, ours cold and
-    /// warm, boolean cold and warm.
+    /// The step from frame to frame over the body's size, and the means: the paper's ray cast cold and warm, ours cold
+    /// and warm, boolean cold and warm.
     pub(super) rows: Vec<(f64, [f64; 6])>,
 }
 

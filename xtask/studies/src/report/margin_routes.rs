@@ -1,7 +1,7 @@
 //! The routes to the margin side by side: how many digits each keeps, and how long it takes, as the bodies get thin.
 //!
-//! The truth is computed in double-double arithmetic, 32 digits, from the bodies as stored, by the polynomial whose terms are
-//! positive: it loses a factor of the condition of B at most, 1e14 here, and so keeps 18.
+//! The truth is computed in double-double arithmetic, 32 digits, from the bodies as stored, by the polynomial whose
+//! terms are positive: it loses a factor of the condition of B at most, 1e14 here, and so keeps 18.
 
 use std::hint::black_box;
 
@@ -203,7 +203,8 @@ impl Truth {
         // C + ν on a vector y of the ball, inverted: y = BᵀB⁻ᵀy, B⁻ᵀ = (adj B)ᵀ/det B.
         let inverse = |nu: Quad, y: Vec3| solve(nu, apply(&transpose(&adjugate), y).map(|v| v / det));
 
-        // Newton's method for 1/‖y‖ = 1, from the answer to be judged: three steps square 1e-3 away, and more do no harm.
+        // Newton's method for 1/‖y‖ = 1, from the answer to be judged: three steps square 1e-3 away, and more do no
+        // harm.
         let mut nu = Quad::from(free_margin(e1, e2, MarginOptions::default()).nu);
         for _ in 0..6 {
             let y = solve(nu, g);

@@ -1,4 +1,5 @@
-//! The whole report of `cargo xtask validate`: the chapters that need long measurements, or code compiled for every type.
+//! The whole report of `cargo xtask validate`: the chapters that need long measurements, or code compiled for every
+//! type.
 
 mod claims;
 mod difficulty;

@@ -1,5 +1,5 @@
-//! Algorithm 3 of van den Bergen's paper as it is printed, to measure what the paper says of it. Slow and plain: it counts
-//! iterations, and is nobody's ray cast.
+//! Algorithm 3 of van den Bergen's paper as it is printed, to measure what the paper says of it. Slow and plain: it
+//! counts iterations, and is nobody's ray cast.
 
 use convex_support::SupportMap;
 use convex_support::glam::DVec3;
@@ -59,8 +59,8 @@ where
     Answer { end: End::Endless, v, iterations: LIMIT }
 }
 
-/// `v(conv({x} − Y))` and the smallest subset of Y that carries it: of all subsets, the one whose affine hull is closest
-/// to x in a convex combination.
+/// `v(conv({x} − Y))` and the smallest subset of Y that carries it: of all subsets, the one whose affine hull is
+/// closest to x in a convex combination.
 fn closest(x: DVec3, vertices: &[DVec3]) -> (DVec3, Vec<DVec3>) {
     let mut best = (DVec3::INFINITY, Vec::new());
     for subset in 1u32..1 << vertices.len() {

@@ -1,5 +1,5 @@
-//! The paper's experiment: an ellipse walks at random past another on a grid of 128 × 128 cells, turning as it goes, and
-//! the margin is tracked. How large may a step be, and what is gained over finding all eigenvalues in every pose?
+//! The paper's experiment: an ellipse walks at random past another on a grid of 128 × 128 cells, turning as it goes,
+//! and the margin is tracked. How large may a step be, and what is gained over finding all eigenvalues in every pose?
 //!
 //! Rimon and Boyd report seven inverse iterations per step of one degree and one cell, a gain of 2.5 over the
 //! eigenvalues, and no correct convergence beyond about five degrees and five cells.
@@ -33,8 +33,8 @@ struct Walk {
 }
 
 impl Walk {
-    /// A walk that drifts from a corner to the opposite one, each step −1, 0 or 1 times `size` cells along both axes and as
-    /// many degrees.
+    /// A walk that drifts from a corner to the opposite one, each step −1, 0 or 1 times `size` cells along both axes
+    /// and as many degrees.
     fn new(random: &mut Rng, size: f64) -> Option<Self> {
         let mut between = |low: f64, high: f64| low + (high - low) * 0.5 * (1.0 + random.signed());
         let link = DVec2::new(between(0.06, 0.14), between(0.02, 0.05));

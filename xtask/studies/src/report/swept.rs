@@ -29,8 +29,8 @@ pub(super) fn swept(scope: &Scope) -> Vec<Block> {
     blocks
 }
 
-/// The columns of a sweep, and whether they say something of queries that are stopped early, at any distance: of those, only
-/// the certificates count.
+/// The columns of a sweep, and whether they say something of queries that are stopped early, at any distance: of those,
+/// only the certificates count.
 const SWEPT: [(&str, bool); 12] = [
     ("distance", false),
     ("precision", true),

@@ -1,5 +1,6 @@
-//! Error against run time on the workloads of `benches`: hundreds of queries of one kind, whose answers are known in closed
-//! form or by construction, down a ladder of tolerances; other methods and other libraries as single marks beside it.
+//! Error against run time on the workloads of `benches`: hundreds of queries of one kind, whose answers are known in
+//! closed form or by construction, down a ladder of tolerances; other methods and other libraries as single marks
+//! beside it.
 
 use std::fs;
 use std::time::Duration;
@@ -62,7 +63,8 @@ const QUERIES: usize = 500;
 /// What timing a row may cost at least.
 const BUDGET: Duration = Duration::from_millis(3);
 
-/// Methods of ours with a knob, with their precision, and their sub-algorithm where that is not the default, in the order of the colours.
+/// Methods of ours with a knob, with their precision, and their sub-algorithm where that is not the default, in the
+/// order of the colours.
 const KNOBS: [(&str, Precision, Option<SubAlgorithm>); 4] = [
     ("ours f64", Precision::Double, None),
     ("ours f32", Precision::Single, None),
@@ -70,7 +72,8 @@ const KNOBS: [(&str, Precision, Option<SubAlgorithm>); 4] = [
     ("signed volumes f64", Precision::Double, Some(SubAlgorithm::SignedVolumes)),
 ];
 
-/// What the other methods are called here, and their colours: of those whose marks are filled, as all are that are measured.
+/// What the other methods are called here, and their colours: of those whose marks are filled, as all are that are
+/// measured.
 fn single(method: Method) -> Option<(&'static str, usize)> {
     Some(match method {
         Method::ClosedF64 => ("closed form f64", 8),
@@ -85,8 +88,8 @@ fn single(method: Method) -> Option<(&'static str, usize)> {
 
 /// Other libraries as recorded in docs/performance.csv, where none was measured in this run; their marks are hollow.
 ///
-/// In the columns of that file: the workload, the case, the method, nanoseconds, the 99th percentile and the worst of the error, and counts
-/// of wrong answers of five kinds, of which being far off is the fourth.
+/// In the columns of that file: the workload, the case, the method, nanoseconds, the 99th percentile and the worst of
+/// the error, and counts of wrong answers of five kinds, of which being far off is the fourth.
 const RECORDED: [(&str, &str, usize); 4] = [
     ("parry gjk f64", "parry GJK f64, recorded", 6),
     ("parry gjk f32", "parry GJK f32, recorded", 7),

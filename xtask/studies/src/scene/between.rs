@@ -1,4 +1,5 @@
-//! Whether the robot is free between the rows of its trajectory, too: proved by casting its links, as the joints move them, at the obstacles.
+//! Whether the robot is free between the rows of its trajectory, too: proved by casting its links, as the joints move
+//! them, at the obstacles.
 
 use gjk_raycast::{ChainMotion, MotionCastOptions, RigidMotion, motion_cast};
 use rayon::prelude::*;
@@ -45,7 +46,8 @@ mod tests {
 
     use super::super::{FREE, Scene};
 
-    /// What is cast is the robot: in the time of a step the joints take every link from where it is in one row to where it is in the next.
+    /// What is cast is the robot: in the time of a step the joints take every link from where it is in one row to where
+    /// it is in the next.
     #[test]
     fn joints_take_links_to_the_next_row() {
         let scene = Scene::read(Path::new(FREE)).expect("it is embedded");

@@ -1,4 +1,5 @@
-//! The robot as a film strip, by this library's own ray casts: links and obstacles are their hulls, the ellipsoids around the links are glass.
+//! The robot as a film strip, by this library's own ray casts: links and obstacles are their hulls, the ellipsoids
+//! around the links are glass.
 
 use std::fs::File;
 use std::io::{self, BufWriter};
@@ -26,8 +27,8 @@ const GAP: usize = 6;
 /// Towards the light.
 const SUN: DVec3 = DVec3::new(0.8, -0.5, 1.4);
 
-/// The squares of the floor, and the length of the arrows along the axes, in metres; and where on the floor the arrows are, beside the robot
-/// rather than within it.
+/// The squares of the floor, and the length of the arrows along the axes, in metres; and where on the floor the arrows
+/// are, beside the robot rather than within it.
 const SQUARE: f64 = 0.1;
 const AXIS: f64 = 0.2;
 const ASIDE: DVec2 = DVec2::new(0.03, -0.53);

@@ -37,7 +37,8 @@ use xtask::mesh::Meshes;
 /// The scene that is run where none is named: the robot works among objects and touches none.
 const FREE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/scenes/ur5_free.json");
 
-/// The same robot and objects on a way that leads through them, whose truth is known: all three levels are needed there.
+/// The same robot and objects on a way that leads through them, whose truth is known: all three levels are needed
+/// there.
 const CROWDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/scenes/ur5_reach.json");
 
 /// Pictures of the film strip, spread over the trajectory where the scene does not say which rows are drawn.

@@ -116,8 +116,8 @@ impl Robot {
         self.links.iter().map(|link| poses[link.frame].after(link.origin)).collect()
     }
 
-    /// The joints that carry each link, the one nearest to the base first: how each would move alone at its rate, from where it is at these
-    /// joint values.
+    /// The joints that carry each link, the one nearest to the base first: how each would move alone at its rate, from
+    /// where it is at these joint values.
     pub(super) fn joints(&self, values: &[f64], rates: &[f64]) -> Vec<Vec<RigidMotion<DVec3>>> {
         let poses = self.frames_at(values);
         // A joint leaves its own axis where it is, so that the frame after it tells that too.

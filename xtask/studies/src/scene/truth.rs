@@ -27,8 +27,8 @@ pub(super) struct Truth {
 }
 
 impl Truth {
-    /// The error of a distance, in metres, that is put down to the rounding of poses and of the truth itself, for bodies
-    /// within a metre or two of the origin.
+    /// The error of a distance, in metres, that is put down to the rounding of poses and of the truth itself, for
+    /// bodies within a metre or two of the origin.
     const ALLOWED: f64 = 1e-12;
 
     pub(super) fn read(path: &Path) -> Result<Self, String> {

@@ -1,8 +1,8 @@
 //! A trajectory through waypoints.
 
-/// The rows of a motion that rests at every waypoint: in joint space straight from each to the next, in so many steps, and with the least
-/// jerk, as arms of people move (Flash and Hogan, *The coordination of arm movements*, 1985): at the part `t` of the time it has made
-/// `10t³ − 15t⁴ + 6t⁵` of the way.
+/// The rows of a motion that rests at every waypoint: in joint space straight from each to the next, in so many steps,
+/// and with the least jerk, as arms of people move (Flash and Hogan, *The coordination of arm movements*, 1985): at the
+/// part `t` of the time it has made `10t³ − 15t⁴ + 6t⁵` of the way.
 pub(super) fn through(waypoints: &[Vec<f64>], steps: usize) -> Vec<Vec<f64>> {
     let row = |from: &[f64], to: &[f64], step: usize| {
         let t = step as f64 / steps as f64;

@@ -1,12 +1,14 @@
 //! Derivatives of every query about random regular pairs, with differences in thirty digits.
 //!
-//! Along a random motion of both bodies, and with the parameters of a cast changing too, `(f(h) − f(−h))/2h` of a distance in thirty digits is the first
-//! derivative to some twenty of them, and the second difference the second derivative to twelve. The time `t` of a hit is where the
-//! distance `s(t, θ)` vanishes, so that `dt = −(∂s/∂θ)/(∂s/∂t)`, of which both are differences. There `‖x − y‖` has no derivative, and so `a` is
-//! held off by a shift along the normal, with which both derivatives stay what they are.
+//! Along a random motion of both bodies, and with the parameters of a cast changing too, `(f(h) − f(−h))/2h` of a
+//! distance in thirty digits is the first derivative to some twenty of them, and the second difference the second
+//! derivative to twelve. The time `t` of a hit is where the distance `s(t, θ)` vanishes, so that `dt =
+//! −(∂s/∂θ)/(∂s/∂t)`, of which both are differences. There `‖x − y‖` has no derivative, and so `a` is held off by a
+//! shift along the normal, with which both derivatives stay what they are.
 //!
-//! A distance is known to a few ε, and so the time of a hit to that over the closing speed `|∂s/∂t|`, whatever computes it. What the derivative is at the
-//! times that this leaves open is all right: near grazing it changes with the square of one over the closing speed.
+//! A distance is known to a few ε, and so the time of a hit to that over the closing speed `|∂s/∂t|`, whatever computes
+//! it. What the derivative is at the times that this leaves open is all right: near grazing it changes with the square
+//! of one over the closing speed.
 //!
 //! Left out, and counted, is what has no difference: near an edge or a face, or within a needle's tip of it.
 
@@ -87,8 +89,8 @@ enum Judged {
 const ROUNDING: f64 = 16.0;
 
 impl Judged {
-    /// By the derivatives of the distance at a time, by the change and by the time: how far off a derivative of the time of a hit is from what it is at the
-    /// times that rounding leaves open.
+    /// By the derivatives of the distance at a time, by the change and by the time: how far off a derivative of the
+    /// time of a hit is from what it is at the times that rounding leaves open.
     fn of_hit<V: Vector3>(ours: f64, time: f64, slopes: impl Fn(f64) -> Option<[f64; 2]>) -> Self {
         let Some([by_change, by_time]) = slopes(time) else { return Self::Irregular };
         let truth = -by_change / by_time;
@@ -358,7 +360,8 @@ impl Case {
         Judged::of_hit::<V>(ours, time, slopes)
     }
 
-    /// The derivatives of the distance at times near a hit: by the changes of poses and motions together, and by the time.
+    /// The derivatives of the distance at times near a hit: by the changes of poses and motions together, and by the
+    /// time.
     fn slopes(
         &self,
         motions: [Rigid; 2],
@@ -381,7 +384,8 @@ impl Case {
     }
 }
 
-/// The derivatives of the distance of two bodies, of which the first is held off by a shift along the normal: by `h`, and by the time.
+/// The derivatives of the distance of two bodies, of which the first is held off by a shift along the normal: by `h`,
+/// and by the time.
 fn differences(
     normal: Vec3,
     time: f64,
@@ -406,8 +410,8 @@ fn is_single<V: Vector3>() -> bool {
     V::Scalar::EPSILON.as_f64() > f64::EPSILON
 }
 
-/// A shape of a size about one; of ellipsoids the square of the aspect, which is the condition, is up to 1e8, and 1e4 in single precision,
-/// which knows the tip of no thinner one to a thousandth.
+/// A shape of a size about one; of ellipsoids the square of the aspect, which is the condition, is up to 1e8, and 1e4
+/// in single precision, which knows the tip of no thinner one to a thousandth.
 fn form<V: Vector3>(rng: &mut Rng) -> Form {
     let s = [0; 3].map(|_| rounded::<V>(0.2 + 0.8 * rng.unit()));
     let shape = match rng.below(9) {
@@ -428,8 +432,8 @@ fn form<V: Vector3>(rng: &mut Rng) -> Form {
     shape.into()
 }
 
-/// The steps of the differences, and how much the differences of the step and of twice the step may differ, so that what is extrapolated from
-/// both is right.
+/// The steps of the differences, and how much the differences of the step and of twice the step may differ, so that
+/// what is extrapolated from both is right.
 const FIRST: (f64, f64) = (1e-11, 1e-10);
 const SECOND: (f64, f64) = (1e-8, 1e-7);
 

@@ -1,8 +1,8 @@
 //! Answers held against what is true, in thirty digits.
 //!
-//! Where the obstacle has a closed form, the truth is computed. Where it has none, the answer's own certificate is checked
-//! instead, with exact support values: a plane bounds from below, and points bound from above by how far they are from the
-//! bodies. A bound that holds is a proof, whoever found it.
+//! Where the obstacle has a closed form, the truth is computed. Where it has none, the answer's own certificate is
+//! checked instead, with exact support values: a plane bounds from below, and points bound from above by how far they
+//! are from the bodies. A bound that holds is a proof, whoever found it.
 
 use convex_support::{Scalar, Vector3};
 use gjk_raycast::{Distance, Intersection, LinearCast, Outcome, RayCast, Status};
@@ -62,8 +62,8 @@ pub(super) enum CastOutcome {
 /// What counts as sure: hits of the obstacle shrunk, and misses of the obstacle grown, by so much.
 const BAND: f64 = 0.05;
 
-/// Where no closed form tells what is sure, errors count for planes that are crossed at least so steeply: the cosine of the
-/// angle between normal and ray, which for a ball is the same as the band.
+/// Where no closed form tells what is sure, errors count for planes that are crossed at least so steeply: the cosine of
+/// the angle between normal and ray, which for a ball is the same as the band.
 const STEEP: f64 = 0.3;
 
 /// A ray that passes within so many rounding errors, relative to the obstacle's size, may hit or miss.
@@ -133,7 +133,8 @@ impl Cast {
         add(self.source, scale(self.direction, lambda))
     }
 
-    /// Holds the answer against the obstacle, where the source is outside of it. `epsilon` is that of the precision asked.
+    /// Holds the answer against the obstacle, where the source is outside of it. `epsilon` is that of the precision
+    /// asked.
     pub(super) fn judge(&self, obstacle: &Obstacle<'_>, epsilon: f64) -> Verdict {
         let mut verdict = Verdict {
             undecided: matches!(self.outcome, CastOutcome::Undecided),
@@ -195,8 +196,8 @@ impl Cast {
         verdict
     }
 
-    /// Where the ray crosses the obstacle's plane of support with this normal, if it comes from before it: no point of the
-    /// ray before that is in the obstacle.
+    /// Where the ray crosses the obstacle's plane of support with this normal, if it comes from before it: no point of
+    /// the ray before that is in the obstacle.
     fn crossing(&self, obstacle: &Obstacle<'_>, n: Vec3<DoubleDouble>) -> Option<DoubleDouble> {
         let zero = DoubleDouble::from(0.0);
         let (ahead, slope) = (dot(n, self.source) - obstacle.support_value(n), dot(n, self.direction));

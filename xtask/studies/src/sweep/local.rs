@@ -1,9 +1,9 @@
 //! The distance of two bodies near where they are closest, in thirty digits.
 //!
-//! There each body is a vertex, an edge, a face, the side or the rim of a cone or a cylinder, or an ellipsoid: a patch `x(u)` with up to
-//! two coordinates. The distance is stationary in the coordinates of both patches, `min ‖x(u) − y(v)‖²` where the bodies are apart and a
-//! saddle where they overlap, and Newton's method finds that. All derivatives are differences: nothing is derived here that could be
-//! derived wrong in the same way elsewhere.
+//! There each body is a vertex, an edge, a face, the side or the rim of a cone or a cylinder, or an ellipsoid: a patch
+//! `x(u)` with up to two coordinates. The distance is stationary in the coordinates of both patches, `min ‖x(u) −
+//! y(v)‖²` where the bodies are apart and a saddle where they overlap, and Newton's method finds that. All derivatives
+//! are differences: nothing is derived here that could be derived wrong in the same way elsewhere.
 
 use convex_support::glam::DVec3;
 use convex_support::{Feature, SupportMap};
@@ -59,7 +59,8 @@ pub(super) struct Local {
 const SLABS: [f64; 2] = [1e-10, 1e-5];
 
 impl Local {
-    /// A body near a point of it, along a direction out of it; `None` where that is ambiguous, nearly across an edge or a face.
+    /// A body near a point of it, along a direction out of it; `None` where that is ambiguous, nearly across an edge or
+    /// a face.
     pub(super) fn new(solid: &Solid, point: Vec3, outward: Vec3) -> Option<Self> {
         let [p, n] =
             [sub(wide(point), wide(solid.translation)), wide(outward)].map(|v| solid.turned_back(v).map(Real::f64));

@@ -1,8 +1,9 @@
-//! `cargo xtask sweep`: ray casts, linear casts and distances at every scale, and derivatives, against references in thirty digits.
+//! `cargo xtask sweep`: ray casts, linear casts and distances at every scale, and derivatives, against references in
+//! thirty digits.
 //!
-//! Bodies × sizes × distances × precisions. Bodies and questions are rounded to the precision that is asked first, and the
-//! truth is that of the rounded numbers (`judge`). A ray is a *sure hit* if it hits the body shrunk by 5 %, and a *sure
-//! miss* if it misses the body grown by 5 %.
+//! Bodies × sizes × distances × precisions. Bodies and questions are rounded to the precision that is asked first, and
+//! the truth is that of the rounded numbers (`judge`). A ray is a *sure hit* if it hits the body shrunk by 5 %, and a
+//! *sure miss* if it misses the body grown by 5 %.
 
 mod certificates;
 mod derivatives;

@@ -221,8 +221,8 @@ fn distances<V: Vector3>(mut cell: Row, queries: u64, rng: &mut Rng) -> Row {
 
 /// Where `a` has to be for a gap to `b` along a random direction; less than zero for an overlap.
 ///
-/// Along `n` the planes of support are apart by the gap; across `n`, the points of support are one above the other, as far
-/// as `f64` finds them. Rounding to the precision of `V` moves `a` by an ulp.
+/// Along `n` the planes of support are apart by the gap; across `n`, the points of support are one above the other, as
+/// far as `f64` finds them. Rounding to the precision of `V` moves `a` by an ulp.
 pub(super) fn apart<V: Vector3>(a: &Solid, b: &Solid, gap: f64, rng: &mut Rng) -> [f64; 3] {
     let n = rng.sphere();
     let minus = n.map(|c| -c);

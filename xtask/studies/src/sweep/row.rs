@@ -23,8 +23,8 @@ pub(crate) struct Row {
     pub(crate) undecided: u64,
     pub(crate) unconverged: u64,
     pub(crate) violations: u64,
-    /// The largest error of λ times the length of the direction, or of the distance, in sizes; of a first derivative, in units of one plus
-    /// its amount.
+    /// The largest error of λ times the length of the direction, or of the distance, in sizes; of a first derivative,
+    /// in units of one plus its amount.
     pub(crate) worst: f64,
     /// The largest distance of a point of contact from the bodies, in sizes; the largest error of a second derivative.
     pub(crate) worst_point: f64,

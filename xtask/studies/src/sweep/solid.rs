@@ -140,7 +140,8 @@ impl Form {
         distance.max(zero).f64()
     }
 
-    /// The smallest `λ` at which the line `p + λ·d` is in the form grown about the origin by a factor; `None` if it misses.
+    /// The smallest `λ` at which the line `p + λ·d` is in the form grown about the origin by a factor; `None` if it
+    /// misses.
     pub(super) fn entry(&self, p: Vec3<DoubleDouble>, d: Vec3<DoubleDouble>, growth: f64) -> Option<DoubleDouble> {
         match &self.hull {
             Some(hull) => hull.planes.entry(p, d, growth),
@@ -165,8 +166,8 @@ fn from_segment(p: [DoubleDouble; 2], a: [DoubleDouble; 2], b: [DoubleDouble; 2]
 
 /// The distance of a point from the ellipsoid with these semi-axes; 0 in it.
 ///
-/// Its nearest point x has `xᵢ = aᵢ²pᵢ/(aᵢ² + t)`, and with `t` the sum of `(xᵢ/aᵢ)²` falls and is convex: Newton's method rises
-/// from 0 to where it is 1.
+/// Its nearest point x has `xᵢ = aᵢ²pᵢ/(aᵢ² + t)`, and with `t` the sum of `(xᵢ/aᵢ)²` falls and is convex: Newton's
+/// method rises from 0 to where it is 1.
 fn from_ellipsoid(p: Vec3<DoubleDouble>, a: Vec3<DoubleDouble>) -> DoubleDouble {
     let (zero, one) = (DoubleDouble::from(0.0), DoubleDouble::from(1.0));
     let mut t = zero;

@@ -27,8 +27,8 @@ pub(crate) enum ConvexHull {
 
 /// The hull of a non-empty list of finite points, whose coordinates must not be so small that their products vanish.
 ///
-/// `None` where the predicates contradict each other, which only underflow can bring about: coordinates of one point set
-/// that are a hundred orders of magnitude apart.
+/// `None` where the predicates contradict each other, which only underflow can bring about: coordinates of one point
+/// set that are a hundred orders of magnitude apart.
 pub(crate) fn convex_hull(points: &[[f64; 3]]) -> Option<ConvexHull> {
     let Some([a, b]) = farthest_along_an_axis(points) else { return Some(ConvexHull::Point(0)) };
     let Some(c) = farthest_from_line(points, a, b) else { return Some(ConvexHull::Segment([a, b])) };

@@ -16,14 +16,16 @@ use crate::line_crossing::{NearLine, faceted};
 use crate::numerics::bound::roundings;
 use crate::{CertainCrossing, Core, Feature, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector};
 
-/// [`WIDTH`] planes, each a unit outward normal by coordinates and how far the polytope reaches along it from the middle.
+/// [`WIDTH`] planes, each a unit outward normal by coordinates and how far the polytope reaches along it from the
+/// middle.
 pub(crate) type Planes<S> = [[S; WIDTH]; 4];
 
 /// The convex hull of points both ways: by its vertices, as a [`Polytope`], and by the half-spaces of its facets.
 ///
-/// It is for lines: a ray cast clips a ray by every facet, and [`line_crossing`](crate::line_crossing) tells where it leaves, too. That takes time
-/// proportional to the number of facets. Up to about a hundred facets it takes less time than a ray cast by support points, which
-/// needs no facets and whose time hardly grows (measured: docs/performance.md, W1).
+/// It is for lines: a ray cast clips a ray by every facet, and [`line_crossing`](crate::line_crossing) tells where it
+/// leaves, too. That takes time proportional to the number of facets. Up to about a hundred facets it takes less time
+/// than a ray cast by support points, which needs no facets and whose time hardly grows (measured: docs/performance.md,
+/// W1).
 ///
 /// ```
 /// use convex_support::{Faceted, glam::DVec3, line_crossing};
@@ -47,8 +49,8 @@ pub struct Faceted<V: Vector> {
     polytope: Polytope<V>,
     planes: Vec<Planes<V::Scalar>>,
     count: usize,
-    /// What is behind all planes by more than this is in the hull of the points as they are seen from the middle; infinite where that is
-    /// not known.
+    /// What is behind all planes by more than this is in the hull of the points as they are seen from the middle;
+    /// infinite where that is not known.
     uncut: V::Scalar,
 }
 
@@ -93,9 +95,9 @@ impl<V: Vector> Faceted<V> {
         self.polytope.points()
     }
 
-    /// The half-spaces whose intersection the set is: unit outward normals `n` and how far the set reaches along them, so that it is
-    /// all `x` with `n·x ≤ b`, to rounding of its size. Triangles in one plane count once; a flat set has facets on both sides and
-    /// around it.
+    /// The half-spaces whose intersection the set is: unit outward normals `n` and how far the set reaches along them,
+    /// so that it is all `x` with `n·x ≤ b`, to rounding of its size. Triangles in one plane count once; a flat set has
+    /// facets on both sides and around it.
     pub fn half_spaces(&self) -> impl ExactSizeIterator<Item = (V, V::Scalar)> + '_ {
         (0..self.count).map(|i| {
             let (n, reach) = self.facet(i);
@@ -114,7 +116,8 @@ impl<V: Vector> Faceted<V> {
     }
 }
 
-/// The normals without what is another one again to rounding, as the triangles of one plane have it; and of each which of those it is.
+/// The normals without what is another one again to rounding, as the triangles of one plane have it; and of each which
+/// of those it is.
 fn distinct<V: Vector>(normals: &[V]) -> (Vec<V>, Vec<usize>) {
     let key = |i: usize| [0, 1, V::DIM - 1].map(|axis| normals[i].get(axis).as_f64());
     let mut order: Vec<usize> = (0..normals.len()).collect();
@@ -131,7 +134,8 @@ fn distinct<V: Vector>(normals: &[V]) -> (Vec<V>, Vec<usize>) {
     (kept, which)
 }
 
-/// The corners of the facets of a hull that spans the space, in the order of their [`normals`]; in the plane the second is told twice.
+/// The corners of the facets of a hull that spans the space, in the order of their [`normals`]; in the plane the second
+/// is told twice.
 fn corners(hull: &ConvexHull, dimension: usize) -> Vec<[u32; 3]> {
     match hull {
         ConvexHull::Polygon(corners) if dimension == 2 => {
@@ -146,12 +150,13 @@ fn corners(hull: &ConvexHull, dimension: usize) -> Vec<[u32; 3]> {
 /// Of corners that are farther behind the plane of their facet, in ε of the size, nothing is told: they are of slivers.
 const FARTHEST_BEHIND: f64 = 64.0;
 
-/// What is behind all planes by more than this is in the hull. The facets are all that it has, each with its corners and its plane.
+/// What is behind all planes by more than this is in the hull. The facets are all that it has, each with its corners
+/// and its plane.
 ///
-/// Let no corner be farther behind the plane of its facet than that, and let a point `o` of the hull, here the mean of the vertices, be farther
-/// behind all planes. A line from `o` to a point `x` outside leaves the hull through some facet, at a point `q` between its corners. From `o`
-/// to `q` the line comes nearer to the plane of that facet, and from there to `x` still nearer or past it: so `x` is not farther behind
-/// that plane than the corners are.
+/// Let no corner be farther behind the plane of its facet than that, and let a point `o` of the hull, here the mean of
+/// the vertices, be farther behind all planes. A line from `o` to a point `x` outside leaves the hull through some
+/// facet, at a point `q` between its corners. From `o` to `q` the line comes nearer to the plane of that facet, and
+/// from there to `x` still nearer or past it: so `x` is not farther behind that plane than the corners are.
 fn uncut<V: Vector>(
     polytope: &Polytope<V>,
     planes: &[(V, V::Scalar)],
@@ -171,8 +176,9 @@ fn uncut<V: Vector>(
 
 /// Outward normals, of any length, of half-spaces whose intersection the hull is, in the first `dimension` coordinates.
 ///
-/// A plane is laid as far out as the polytope reaches along its normal, so that rounding of a normal cuts nothing off. A sliver's
-/// normal is known across it only to `ε` by its width; but what it leaves uncut is as narrow as it is, between its neighbours.
+/// A plane is laid as far out as the polytope reaches along its normal, so that rounding of a normal cuts nothing off.
+/// A sliver's normal is known across it only to `ε` by its width; but what it leaves uncut is as narrow as it is,
+/// between its neighbours.
 fn normals(hull: &ConvexHull, points: &[[f64; 3]], dimension: usize) -> Vec<DVec3> {
     let at = |i: u32| DVec3::from(points[i as usize]);
     let both = |n: DVec3| [n, -n];

@@ -17,8 +17,8 @@ use crate::{Scalar, Vector};
 ///
 /// Where they are not, as at a corner that is all tiny edges, the cell keeps a vertex to climb from. A corner that no
 /// neighbour is farther along than is farthest of all: its neighbours span the cone that the whole polytope is in. Not
-/// so a vertex in the middle of a facet, whose neighbours are all in its plane: it can be the nearest of all, too. But a
-/// climb begins at a vertex that is farthest along a direction less than 60° away, which that one is not.
+/// so a vertex in the middle of a facet, whose neighbours are all in its plane: it can be the nearest of all, too. But
+/// a climb begins at a vertex that is farthest along a direction less than 60° away, which that one is not.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Graph<V: Vector> {
     /// Sorted by the cell that they are in as seen from the middle, so that neighbours are near in memory too.
@@ -38,7 +38,8 @@ pub(super) struct Graph<V: Vector> {
     half_resolution: V::Scalar,
 }
 
-/// The vertices that are farthest along some direction of the cell, those that come first in the list that was given first.
+/// The vertices that are farthest along some direction of the cell, those that come first in the list that was given
+/// first.
 ///
 /// Four are always looked at: how many are needed cannot be foreseen, and to guess wrong takes a processor longer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,7 +132,8 @@ impl<V: Vector> Graph<V> {
                 let (axis, is_negative) = (index / cells_of_face / 2, index / cells_of_face % 2 == 1);
                 start = self.farthest_along_axis(axis, is_negative);
             } else if index % cells_of_face >= self.resolution {
-                // The cell next to it in the row before. From the end of that row, a climb could lead half around the polytope.
+                // The cell next to it in the row before. From the end of that row, a climb could lead half around the
+                // polytope.
                 start = self.cells[index - self.resolution].vertices[0];
             }
             let cone = self.cone(index);
@@ -240,8 +242,8 @@ impl<V: Vector> Graph<V> {
         }
     }
 
-    /// The vertices no farther than `depth` behind the farthest one along a direction, as numbers in the list that the graph was made of
-    /// and in their order; `None` where they are more than there is room for.
+    /// The vertices no farther than `depth` behind the farthest one along a direction, as numbers in the list that the
+    /// graph was made of and in their order; `None` where they are more than there is room for.
     ///
     /// From any vertex an edge leads up, unless it is a farthest one: those above a plane are connected.
     pub(super) fn near<'r>(
@@ -283,8 +285,8 @@ impl<V: Vector> Graph<V> {
     ///
     /// Gains are dot products with the edges, not differences of dot products, so that they are as accurate as the
     /// edges are short: vertices that are close to one another do not stop the climb. But three corners of a facet that
-    /// faces the direction can each seem a rounding farther than the one before. A climb that comes back to where it was
-    /// ends there. It is watched by Brent's method: the vertex it has reached after each power of two of steps.
+    /// faces the direction can each seem a rounding farther than the one before. A climb that comes back to where it
+    /// was ends there. It is watched by Brent's method: the vertex it has reached after each power of two of steps.
     fn climb(&self, direction: V, start: u32) -> u32 {
         let (mut at, mut landmark) = (start, start);
         // A path and a circle of n vertices together are closed, and found to be, within 4n steps.
@@ -354,8 +356,8 @@ impl<V: Vector> Graph<V> {
         Cone {
             middle: stretched(sign, &|i| places[i]),
             spread: stretched(0.0, &|_| width),
-            // Each of three products d·v is at most 1 in the stretched cube. The reaches that are compared later, and the
-            // place of a direction in its cell, are each rounded a few times.
+            // Each of three products d·v is at most 1 in the stretched cube. The reaches that are compared later, and
+            // the place of a direction in its cell, are each rounded a few times.
             rounding: thinnest * V::Scalar::EPSILON * V::Scalar::from_f64(64.0),
         }
     }
@@ -364,8 +366,8 @@ impl<V: Vector> Graph<V> {
 /// The whole part of a number below 2³¹, or either neighbour of a whole one; 0 of one that is negative by rounding, and
 /// anything of a NaN.
 ///
-/// From 2⁵² to 2⁵³ the doubles are a unit apart: moved there, a number is rounded to its last bits. A cast takes twice as
-/// long, since it saturates.
+/// From 2⁵² to 2⁵³ the doubles are a unit apart: moved there, a number is rounded to its last bits. A cast takes twice
+/// as long, since it saturates.
 #[inline(always)]
 fn whole_part(x: f64) -> usize {
     const AMONG_WHOLE_NUMBERS: f64 = 1.5 * (1_u64 << 52) as f64;

@@ -15,9 +15,9 @@ const SCANNED: usize = 8;
 impl<V: Vector> Polytope<V> {
     /// The convex hull of the points, reduced to its vertices, with the edges between them where there are many.
     ///
-    /// For point clouds and meshes of any size: duplicates, points inside, on faces and on edges are sorted out by exact
-    /// predicates, and a flat cloud becomes a flat polygon. Takes `O(n log n)` time for most inputs, about 0.1 s for
-    /// 60,000 points. [`points`](Self::points) are then the vertices, in the order given; a few that lie on a face
+    /// For point clouds and meshes of any size: duplicates, points inside, on faces and on edges are sorted out by
+    /// exact predicates, and a flat cloud becomes a flat polygon. Takes `O(n log n)` time for most inputs, about 0.1 s
+    /// for 60,000 points. [`points`](Self::points) are then the vertices, in the order given; a few that lie on a face
     /// without being a corner of it may be among them.
     ///
     /// # Errors
@@ -34,8 +34,8 @@ pub(super) struct FromPoints<V: Vector> {
     pub(super) seen: Vec<[f64; 3]>,
     /// The unit of those.
     pub(super) unit: V::Scalar,
-    /// The hull of those. There is none of points a hundred orders of magnitude apart: then nothing is lost of the polytope but the
-    /// time of a scan.
+    /// The hull of those. There is none of points a hundred orders of magnitude apart: then nothing is lost of the
+    /// polytope but the time of a scan.
     pub(super) hull: Option<ConvexHull>,
 }
 

@@ -30,9 +30,9 @@ impl<V: Vector> Lanes<V> {
 
     /// The index of the first point farthest along the direction `(dx, dy, dz)`; any index where that is not a number.
     ///
-    /// Which point it is cannot be foreseen, so that nothing branches on it. To keep the index beside the reach costs half
-    /// as much again; of long lists it is done only for the chunk that the farthest point is in. Both times the same
-    /// operations are rounded alike, so that the reach is found again exactly.
+    /// Which point it is cannot be foreseen, so that nothing branches on it. To keep the index beside the reach costs
+    /// half as much again; of long lists it is done only for the chunk that the farthest point is in. Both times the
+    /// same operations are rounded alike, so that the reach is found again exactly.
     #[inline(never)]
     pub(super) fn farthest(&self, dx: V::Scalar, dy: V::Scalar, dz: V::Scalar) -> usize {
         let (mut first, mut most) = (0, -V::Scalar::infinity());
@@ -56,7 +56,8 @@ pub(super) fn coordinate<V: Vector>(v: V, i: usize) -> V::Scalar {
     if i < V::DIM { v.get(i) } else { V::Scalar::ZERO }
 }
 
-/// The numbers of each of a list, [`WIDTH`] of the list side by side; the last block is filled up with the last of the list.
+/// The numbers of each of a list, [`WIDTH`] of the list side by side; the last block is filled up with the last of the
+/// list.
 pub(super) fn side_by_side<T: Copy, S, const NUMBERS: usize>(
     list: &[T],
     number: impl Fn(T, usize) -> S,
@@ -68,8 +69,8 @@ pub(super) fn side_by_side<T: Copy, S, const NUMBERS: usize>(
 
 /// How far the farthest point of each lane reaches along a direction.
 ///
-/// Apart from its caller the loop is one that compilers turn into vector instructions; within it, it is not. And an array
-/// for the direction would be written number by number and read in pairs, which takes longer than a dozen points.
+/// Apart from its caller the loop is one that compilers turn into vector instructions; within it, it is not. And an
+/// array for the direction would be written number by number and read in pairs, which takes longer than a dozen points.
 #[inline(never)]
 fn farthest_reaches<S: Scalar>(blocks: &[Block<S>], dx: S, dy: S, dz: S) -> [S; WIDTH] {
     let mut best = [-S::infinity(); WIDTH];

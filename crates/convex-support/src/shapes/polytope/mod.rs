@@ -45,11 +45,11 @@ pub(crate) use lanes::WIDTH as PLANES;
 /// ```
 ///
 /// # Speed
-/// [`new`](Self::new) keeps the points as they are and scans all of them for each support point, several at a time. With the
-/// feature `hull`, `Polytope::hull_of` finds the vertices and edges of the hull first. If there are more than eight vertices, it also
-/// finds, for each cell of a grid of directions, those that can be farthest along a direction of the cell. A support point then takes a
-/// look at a handful of vertices, however many there are. In a cell that has too many, it climbs along the edges instead, from a vertex
-/// of the cell or from the last answer ([`Hint`]).
+/// [`new`](Self::new) keeps the points as they are and scans all of them for each support point, several at a time.
+/// With the feature `hull`, `Polytope::hull_of` finds the vertices and edges of the hull first. If there are more than
+/// eight vertices, it also finds, for each cell of a grid of directions, those that can be farthest along a direction
+/// of the cell. A support point then takes a look at a handful of vertices, however many there are. In a cell that has
+/// too many, it climbs along the edges instead, from a vertex of the cell or from the last answer ([`Hint`]).
 ///
 /// # Ties
 /// If several points reach equally far along a direction, to the last bit of the dot products computed relative to
@@ -102,8 +102,9 @@ impl<V: Vector> Polytope<V> {
 
     fn searched_by(search: Search<V>, points: Vec<V>, middle: V) -> Result<Self, InvalidShape> {
         let extent = points.iter().map(|&p| (p - middle).norm()).fold(V::Scalar::ZERO, V::Scalar::max);
-        // Which point is farthest is told by comparing two products with the direction, of 3 roundings each; and a climb ends where
-        // every edge gains no more than 4 roundings of its own length, of which there are some on the way to the farthest.
+        // Which point is farthest is told by comparing two products with the direction, of 3 roundings each; and a
+        // climb ends where every edge gains no more than 4 roundings of its own length, of which there are some on the
+        // way to the farthest.
         let compared = match &search {
             Search::Scan(_) => 6.0,
             Search::Look { .. } => 16.0,
@@ -120,8 +121,8 @@ impl<V: Vector> Polytope<V> {
     fn farthest(&self, direction: V, hint: u32) -> u32 {
         let coordinates = |v: V| (v.get(0), v.get(1), if V::DIM == 3 { v.get(2) } else { V::Scalar::ZERO });
         let (mut dx, mut dy, mut dz) = coordinates(direction);
-        // Added from the last to the first, so that the compiler reads x and y as one piece, which is how a caller behind `dyn` writes
-        // them; y and z would be a piece of two writes, which the processor waits for.
+        // Added from the last to the first, so that the compiler reads x and y as one piece, which is how a caller
+        // behind `dyn` writes them; y and z would be a piece of two writes, which the processor waits for.
         if !is_comfortable(dz * dz + dy * dy + dx * dx)
             && let Some((multiple, _)) = scaled(direction)
         {
@@ -149,9 +150,9 @@ fn checked<V: Vector>(points: impl IntoIterator<Item = V>) -> Result<Vec<V>, Inv
     if points.is_empty() { Err(InvalidShape::NoPoints) } else { Ok(points) }
 }
 
-/// The points seen from the middle, in units of a power of two near their size, and that unit. The search works on these
-/// rounded differences, and on nothing else, so that whatever is exact about them stays exact, and products with a
-/// direction stay in range.
+/// The points seen from the middle, in units of a power of two near their size, and that unit. The search works on
+/// these rounded differences, and on nothing else, so that whatever is exact about them stays exact, and products with
+/// a direction stay in range.
 fn relative<V: Vector>(points: &[V], middle: V) -> (Vec<V>, V::Scalar) {
     let mut seen: Vec<V> = points.iter().map(|&p| p - middle).collect();
     let largest = seen.iter().fold(V::Scalar::ZERO, |largest, p| largest.max(p.abs().max_element()));

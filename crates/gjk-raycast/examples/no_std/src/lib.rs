@@ -1,7 +1,8 @@
-//! A microcontroller keeps the arm that it drives from a post: how far is the forearm, and how does that change as either joint turns?
+//! A microcontroller keeps the arm that it drives from a post: how far is the forearm, and how does that change as
+//! either joint turns?
 //!
-//! Single precision, no standard library, and no memory allocated: distances of two shapes and their gradients take none. A program
-//! that uses this has to name an allocator all the same, for the queries that do.
+//! Single precision, no standard library, and no memory allocated: distances of two shapes and their gradients take
+//! none. A program that uses this has to name an allocator all the same, for the queries that do.
 
 #![no_std]
 
@@ -26,8 +27,8 @@ const UPPER_ARM: f32 = 0.3;
 /// Half the length of the forearm.
 const HALF_FOREARM: f32 = 0.125;
 
-/// The clearance at these angles of the shoulder, which is at the origin and turns about z, and of the elbow. At zero the arm is
-/// stretched along x.
+/// The clearance at these angles of the shoulder, which is at the origin and turns about z, and of the elbow. At zero
+/// the arm is stretched along x.
 ///
 /// # Errors
 /// [`InvalidShape`] if an angle is not finite.

@@ -1,7 +1,7 @@
 //! The paper's Algorithm 3, for bodies that are a core swept by a ball.
 //!
-//! Its loop moves a point `x` along the ray up to one supporting plane of the body after another, and finds the planes by GJK
-//! steps towards `x`. Three things are added to it; `docs/ray-cast.md` derives them.
+//! Its loop moves a point `x` along the ray up to one supporting plane of the body after another, and finds the planes
+//! by GJK steps towards `x`. Three things are added to it; `docs/ray-cast.md` derives them.
 //!
 //! - As soon as the simplex of support points is pierced by the ray, the hit is bracketed: behind the last plane, and
 //!   before the point where the ray enters the simplex. From then on, the simplex is refined where it is pierced
@@ -65,7 +65,8 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
             nearing = Progress::new();
         }
         if !simplex.points().contains(&point) {
-            // All points of a simplex are kept where x is in it and yet far from it, which only the points of a shape that is none tell.
+            // All points of a simplex are kept where x is in it and yet far from it, which only the points of a shape
+            // that is none tell.
             if simplex.points().len() > V::DIM {
                 return Err(Stop::InDoubt);
             }

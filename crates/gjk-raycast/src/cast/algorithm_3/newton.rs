@@ -90,8 +90,8 @@ pub(super) fn newton<V: Vector>(
     (n + seen.axes[0] * d.0 + seen.axes[1] * d.1).unit().map(|to| (to, angle))
 }
 
-/// A smooth piece at a plane that the ray crosses: how far it reaches along the normal, its point as seen from the line, and
-/// its Hessian.
+/// A smooth piece at a plane that the ray crosses: how far it reaches along the normal, its point as seen from the
+/// line, and its Hessian.
 struct PieceAlongRay<S> {
     reach: S,
     p: Across<S>,
@@ -147,8 +147,8 @@ impl<V: Vector> SeenAlongRay<'_, '_, V> {
         PieceAlongRay { reach: to.dot(point) + turned.rise, p, hessian: turned.hessian, is_vertex, found }
     }
 
-    /// Of the other pieces the one that would reach farthest beyond the first at the normal that suits the first alone; or
-    /// where the first alone suits none, the one across from which the line lies. And the change to that normal.
+    /// Of the other pieces the one that would reach farthest beyond the first at the normal that suits the first alone;
+    /// or where the first alone suits none, the one across from which the line lies. And the change to that normal.
     fn second_piece(&self, first: &PieceAlongRay<V::Scalar>, others: &[(V, V)], n: V) -> SecondPiece<V::Scalar> {
         let noise = self.bracket.noise;
         let p = first.p;

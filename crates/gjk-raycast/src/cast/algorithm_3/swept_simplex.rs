@@ -53,8 +53,9 @@ type FoundEntry<V> = Option<(<V as Vector>::Scalar, V, [<V as Vector>::Scalar; M
 
 /// The line crosses the plane at distance `radius` from a facet, on the side it comes from.
 ///
-/// Which point of the facet lies below the crossing is read off across the line, where the line is a point and the facet
-/// a triangle: the barycentric coordinates are the same there, and how flat the line meets the facet does not matter.
+/// Which point of the facet lies below the crossing is read off across the line, where the line is a point and the
+/// facet a triangle: the barycentric coordinates are the same there, and how flat the line meets the facet does not
+/// matter.
 fn enter_facet<V: Vector, const EDGES: usize>(
     corners: &[V],
     line: Line<V>,
@@ -80,8 +81,9 @@ fn enter_facet<V: Vector, const EDGES: usize>(
     }
     let coordinates = flat.project(|corner| below - corner).coordinates;
     // Weights that are negative by rounding are none: then what the line passes is a point of the facet itself, and not
-    // of its plane, which rounding may have turned along the line. It passes within the noise, or elsewhere. The others are read
-    // off anew along their edge: in a sliver, what rounding leaves of a weight moves the point by much more than rounding.
+    // of its plane, which rounding may have turned along the line. It passes within the noise, or elsewhere. The others
+    // are read off anew along their edge: in a sliver, what rounding leaves of a weight moves the point by much more
+    // than rounding.
     let (mut rest, mut places, mut len) = ([V::ZERO; MAX_POINTS], [0; MAX_POINTS], 0);
     for (i, &across) in seen[..corners.len()].iter().enumerate() {
         if coordinates[i] >= V::Scalar::ZERO {
@@ -113,8 +115,8 @@ fn enter_facet<V: Vector, const EDGES: usize>(
 
 /// The line comes within `radius` of a corner, or in 3D of an edge.
 ///
-/// Seen along the flat, the line passes a point at the vector `m`, with velocity `d`. It is nearest at `μ₀ = −m·d/d·d`, and
-/// at distance `radius` half a chord earlier.
+/// Seen along the flat, the line passes a point at the vector `m`, with velocity `d`. It is nearest at `μ₀ = −m·d/d·d`,
+/// and at distance `radius` half a chord earlier.
 fn enter_edge<V: Vector, const EDGES: usize>(
     flat: &AffineHull<V, EDGES>,
     line: Line<V>,

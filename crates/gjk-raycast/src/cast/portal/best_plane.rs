@@ -9,18 +9,19 @@ use crate::symmetric::{Across, cross, dot};
 
 /// Where the least of the models is greatest, and how great it is there.
 ///
-/// With `τᵢ`, `Pᵢ` and `Hᵢ` of the pieces turned to the last plane, and `δ` the change of `α`, `mᵢ(δ) = τᵢ − Pᵢ·δ − ½·δ·Hᵢδ`.
-/// At the maximum of their minimum there are weights `wᵢ ≥ 0` with sum 1, and `W = Σ wᵢ·Hᵢ`, such that
+/// With `τᵢ`, `Pᵢ` and `Hᵢ` of the pieces turned to the last plane, and `δ` the change of `α`, `mᵢ(δ) = τᵢ − Pᵢ·δ −
+/// ½·δ·Hᵢδ`. At the maximum of their minimum there are weights `wᵢ ≥ 0` with sum 1, and `W = Σ wᵢ·Hᵢ`, such that
 ///
 /// ```text
 /// Σ wᵢ·Pᵢ + W·δ = 0,   mᵢ(δ) alike where wᵢ > 0, and no lower elsewhere.
 /// ```
 ///
-/// One piece gives `δ = −H⁻¹P`, or where `H` is singular, [`along_edge`]. Of two, with `e = Pⱼ − Pᵢ`, the second condition to
-/// first order is `e·δ = τⱼ − τᵢ`, and the first one [across](between) `e` gives the rest. Three are alike at one `δ`.
+/// One piece gives `δ = −H⁻¹P`, or where `H` is singular, [`along_edge`]. Of two, with `e = Pⱼ − Pᵢ`, the second
+/// condition to first order is `e·δ = τⱼ − τᵢ`, and the first one [across](between) `e` gives the rest. Three are alike
+/// at one `δ`.
 ///
-/// The newest piece is the lowest where it was looked at, and mostly one of those. So those without it are tried only where none
-/// with it will do.
+/// The newest piece is the lowest where it was looked at, and mostly one of those. So those without it are tried only
+/// where none with it will do.
 pub(super) fn best_plane<V: Vector>(
     pieces: &[RayPiece<V>],
     alpha: Alpha<V::Scalar>,
@@ -74,8 +75,8 @@ impl<S: Scalar> Models<S> {
         Some(Self { turned, len: pieces.len(), tau, noise, length, margin, best: None })
     }
 
-    /// Takes a change where some of the models are alike, if they are the least ones there. `active` has a bit for each of
-    /// them.
+    /// Takes a change where some of the models are alike, if they are the least ones there. `active` has a bit for each
+    /// of them.
     #[inline(always)]
     fn offer(&mut self, change: Across<S>, active: usize) {
         let squared = dot(change, change);
@@ -143,11 +144,11 @@ impl<S: Scalar> Models<S> {
     }
 }
 
-/// Where the model of a piece with `H = κ·q·qᵀ` is greatest: an edge of the body, curved or straight, that the line runs through
-/// when `q·P` is zero.
+/// Where the model of a piece with `H = κ·q·qᵀ` is greatest: an edge of the body, curved or straight, that the line
+/// runs through when `q·P` is zero.
 ///
-/// Across the edge, `δ = −(q·P)/κ·q`. Along it the plane is free, between those that the other pieces are on; it is laid away from
-/// them, since on them it would be another piece that shows itself.
+/// Across the edge, `δ = −(q·P)/κ·q`. Along it the plane is free, between those that the other pieces are on; it is
+/// laid away from them, since on them it would be another piece that shows itself.
 fn along_edge<S: Scalar>(models: &[QuadraticModel<S>], edge: usize, least: S, noise: S) -> Option<Across<S>> {
     let t = &models[edge];
     let (curvature, q) = t.hessian.eigen_of_rank_one()?;

@@ -1,4 +1,5 @@
-//! What closes the bracket: the plane that is crossed last, from below, and a point of the body on the line, from above.
+//! What closes the bracket: the plane that is crossed last, from below, and a point of the body on the line, from
+//! above.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -56,8 +57,8 @@ impl<V: Vector> BestPlane<V> {
         if !is_faced || self.tau > self.end { bracket.separate(n, p.point) } else { Ok(()) }
     }
 
-    /// Takes the plane of a support point, if it is crossed later, and ends the search if nothing of the ray is left behind it.
-    /// Whether it is crossed later.
+    /// Takes the plane of a support point, if it is crossed later, and ends the search if nothing of the ray is left
+    /// behind it. Whether it is crossed later.
     #[inline(always)]
     pub(super) fn improve(
         &mut self,

@@ -34,8 +34,8 @@ impl<S: Scalar> QuadraticModel<S> {
 impl<V: Vector> RayPiece<V> {
     /// The piece [turned](turned) to another plane, where nothing is crossed before `least`.
     ///
-    /// The plane through the point alone is never crossed before the body, and the body's own plane earlier. How wrong the
-    /// model may be is told by the angle that the plane turns by, and by how far the point moves; where that is too
+    /// The plane through the point alone is never crossed before the body, and the body's own plane earlier. How wrong
+    /// the model may be is told by the angle that the plane turns by, and by how far the point moves; where that is too
     /// far, or where it foretells less than was found, a point counts for itself alone. So much of its error as
     /// `error_weight` is added: where a model is wrong, its piece then shows itself, and is known anew.
     pub(super) fn at(
@@ -64,8 +64,8 @@ impl<V: Vector> RayPiece<V> {
         QuadraticModel { tau, p: (p.0 + turned.shift.0, p.1 + turned.shift.1), hessian: turned.hessian }
     }
 
-    /// Whether another support point is of the same piece: it moved as the mean of both Hessians says, which is right to third
-    /// order, and no farther than by the body's size.
+    /// Whether another support point is of the same piece: it moved as the mean of both Hessians says, which is right
+    /// to third order, and no farther than by the body's size.
     fn is_same_as(&self, other: &Self, noise: V::Scalar) -> bool {
         let number = V::Scalar::from_f64;
         let expected = self.hessian.blend(other.hessian, number(0.5)).times(self.alpha.change_to(other.alpha));
@@ -77,8 +77,8 @@ impl<V: Vector> RayPiece<V> {
     }
 }
 
-/// The angle that a plane may turn by, and the way that the point may move, in units of the body's size, for a piece to be a
-/// quadratic model.
+/// The angle that a plane may turn by, and the way that the point may move, in units of the body's size, for a piece to
+/// be a quadratic model.
 const FAR: f64 = 0.5;
 
 /// As many pieces as are kept.
@@ -87,8 +87,8 @@ pub(super) const MAX_PIECES: usize = 4;
 /// How far, of the way that a point has moved, it may be from where it was expected to be the same piece's.
 const SAME_PIECE: f64 = 0.5;
 
-/// Whether zero is within a triangle, farther than `by` from its sides: twice the area that it spans with one is the length of that times
-/// its distance.
+/// Whether zero is within a triangle, farther than `by` from its sides: twice the area that it spans with one is the
+/// length of that times its distance.
 #[inline(always)]
 pub(super) fn is_surrounded<V: Vector>([p, q, s]: [&RayPoint<V>; 3], by: V::Scalar) -> bool {
     let weights = weights_of_zero([p.across(), q.across(), s.across()]);
@@ -112,8 +112,8 @@ impl<V: Vector> RayPieces<V> {
         &self.kept[..self.len]
     }
 
-    /// Adds a piece in place of those that are the same, or else of the one that is the farthest from being active. Tells
-    /// whether it is the same as the last.
+    /// Adds a piece in place of those that are the same, or else of the one that is the farthest from being active.
+    /// Tells whether it is the same as the last.
     pub(super) fn push(&mut self, piece: RayPiece<V>, noise: V::Scalar) -> bool {
         let again = self.all().last().is_some_and(|last| last.is_same_as(&piece, noise));
         let mut len = 0;

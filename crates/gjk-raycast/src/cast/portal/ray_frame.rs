@@ -1,8 +1,9 @@
 //! A body as it is seen along a ray: support points, and planes that the ray crosses.
 //!
-//! With `e₁`, `e₂` and the unit direction `d` of the ray for axes and the line's foot for origin, a point has coordinates
-//! `(u, v, t)`, and the line is `u = v = 0`. A plane that the ray approaches has a normal `n = α₁·e₁ + α₂·e₂ − d`, and the core
-//! is behind it where `t ≥ α·(u, v) + τ`. So the hit is the lower hull of the core's points, taken at zero:
+//! With `e₁`, `e₂` and the unit direction `d` of the ray for axes and the line's foot for origin, a point has
+//! coordinates `(u, v, t)`, and the line is `u = v = 0`. A plane that the ray approaches has a normal `n = α₁·e₁ +
+//! α₂·e₂ − d`, and the core is behind it where `t ≥ α·(u, v) + τ`. So the hit is the lower hull of the core's points,
+//! taken at zero:
 //!
 //! ```text
 //! μ* = max over α of τ(α),   τ(α) = min over the core of t − α·(u, v).
@@ -93,7 +94,8 @@ impl<S: Scalar> Alpha<S> {
     }
 }
 
-/// The same plane by a multiple of its normal, `a·e₁ + b·e₂ − c·d`. A support point does not wait for the division by `c`.
+/// The same plane by a multiple of its normal, `a·e₁ + b·e₂ − c·d`. A support point does not wait for the division by
+/// `c`.
 #[derive(Clone, Copy)]
 pub(super) struct RayPlane<S> {
     pub(super) a: S,
@@ -102,8 +104,8 @@ pub(super) struct RayPlane<S> {
 }
 
 impl<S: Scalar> RayPlane<S> {
-    /// The plane that rises by `g` along `e` and by `h` along `f`: `e·α = g`, `f·α = h`; `c = e×f` is twice the area of the
-    /// triangle.
+    /// The plane that rises by `g` along `e` and by `h` along `f`: `e·α = g`, `f·α = h`; `c = e×f` is twice the area of
+    /// the triangle.
     pub(super) fn rising((e, g): (Across<S>, S), (f, h): (Across<S>, S)) -> Self {
         Self { a: g * f.1 - h * e.1, b: e.0 * h - f.0 * g, c: cross(e, f) }
     }
@@ -209,8 +211,8 @@ impl<V: Vector> RayFrame<V> {
         }
     }
 
-    /// The part across the ray, and the one against it, of the derivative of the support point at `n` as that turns against
-    /// the ray.
+    /// The part across the ray, and the one against it, of the derivative of the support point at `n` as that turns
+    /// against the ray.
     #[inline(always)]
     pub(super) fn hessian_against(&self, body: &dyn Body<Vector = V>, n: V) -> (Across<V::Scalar>, V::Scalar) {
         let against = -self.d;

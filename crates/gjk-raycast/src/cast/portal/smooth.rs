@@ -1,9 +1,9 @@
-//! The search where the body is smooth: it is replaced by the ellipsoid about its origin that osculates it, which has the same
-//! support point and Hessian where it is looked at.
+//! The search where the body is smooth: it is replaced by the ellipsoid about its origin that osculates it, which has
+//! the same support point and Hessian where it is looked at.
 //!
-//! The support value of an ellipsoid is `h(n) = √(n·Qn)`, so its support point and Hessian are `p = Qn/h` and
-//! `H = (Q − p·pᵀ)/h`, whence `Q = h·H + p·pᵀ`. Where the ray enters it is known in closed form, and the next plane is the
-//! one there. An ellipsoid is its own model.
+//! The support value of an ellipsoid is `h(n) = √(n·Qn)`, so its support point and Hessian are `p = Qn/h` and `H = (Q −
+//! p·pᵀ)/h`, whence `Q = h·H + p·pᵀ`. Where the ray enters it is known in closed form, and the next plane is the one
+//! there. An ellipsoid is its own model.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -91,11 +91,11 @@ impl<V: Vector> Next<V> {
     }
 }
 
-/// The plane where the ray enters the ellipsoid with support point `p` and this Hessian at `n`; or if it misses that, the
-/// plane along the ray between them.
+/// The plane where the ray enters the ellipsoid with support point `p` and this Hessian at `n`; or if it misses that,
+/// the plane along the ray between them.
 ///
-/// In the axes `e₁`, `e₂` and `−d` let `Q = (A b; bᵀ c)`, and `φ` be the line's foot. That the support point be on the line,
-/// `(A·α + b)/s = φ` with `s² = n·Qn`, gives
+/// In the axes `e₁`, `e₂` and `−d` let `Q = (A b; bᵀ c)`, and `φ` be the line's foot. That the support point be on the
+/// line, `(A·α + b)/s = φ` with `s² = n·Qn`, gives
 ///
 /// ```text
 /// α = A⁻¹(s·φ − b),   s² = (c − b·A⁻¹b)/(1 − φ·A⁻¹φ).

@@ -1,13 +1,14 @@
 //! The search where the body is curved in pieces.
 //!
-//! Near a direction where it is smooth, `τ(α) = min over the body of t − α·(u, v)` is twice differentiable: with `p(α)` the
-//! support point, its gradient is `−(u, v)` of `p`, and its Hessian is `−H`, where `H` is the derivative of `(u, v)` along `α`.
+//! Near a direction where it is smooth, `τ(α) = min over the body of t − α·(u, v)` is twice differentiable: with `p(α)`
+//! the support point, its gradient is `−(u, v)` of `p`, and its Hessian is `−H`, where `H` is the derivative of `(u,
+//! v)` along `α`.
 //!
-//! Where pieces meet, such as the rims of a cylinder along its side, each is a quadratic model of its own (`pieces.rs`), and
-//! the next plane is where the least of the models is greatest (`best_plane.rs`): a step of sequential quadratic programming
-//! (Nocedal and Wright, *Numerical Optimization*, ch. 18), which for three pieces is the portal's own plane. Between two, both
-//! have to be looked at in turn, though only the one that reaches farther shows itself; so the plane is laid by a little more
-//! than the error of the older model on its side.
+//! Where pieces meet, such as the rims of a cylinder along its side, each is a quadratic model of its own
+//! (`pieces.rs`), and the next plane is where the least of the models is greatest (`best_plane.rs`): a step of
+//! sequential quadratic programming (Nocedal and Wright, *Numerical Optimization*, ch. 18), which for three pieces is
+//! the portal's own plane. Between two, both have to be looked at in turn, though only the one that reaches farther
+//! shows itself; so the plane is laid by a little more than the error of the older model on its side.
 
 use convex_support::numerics::elementary::power_of_two;
 use convex_support::{Scalar, Vector};
@@ -175,8 +176,8 @@ impl<S: Scalar> Steps<S> {
     }
 }
 
-/// Three points of the body, in anticlockwise order, whose triangle the line runs through; or where none is known, any, and
-/// `high` infinite.
+/// Three points of the body, in anticlockwise order, whose triangle the line runs through; or where none is known, any,
+/// and `high` infinite.
 #[derive(Clone, Copy)]
 pub(super) struct Portal<V: Vector> {
     pub(super) corners: [RayPoint<V>; 3],
@@ -198,8 +199,8 @@ impl<V: Vector> Portal<V> {
         RayPlane::through([p, q, s]).alpha()
     }
 
-    /// Puts a point in the place of one corner, if the line still runs through, and earlier; but no earlier than `floor`,
-    /// before which nothing of the body is: a triangle that is as flat as rounding may not contain zero.
+    /// Puts a point in the place of one corner, if the line still runs through, and earlier; but no earlier than
+    /// `floor`, before which nothing of the body is: a triangle that is as flat as rounding may not contain zero.
     fn exchange(&mut self, r: &RayPoint<V>, floor: V::Scalar) {
         let zero = V::Scalar::ZERO;
         for i in 0..3 {

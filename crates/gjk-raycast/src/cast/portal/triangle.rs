@@ -1,12 +1,13 @@
 //! The search for a triangle of support points that the line runs through, a *portal*, as near as there is one.
 //!
-//! Seen along the ray, a portal contains zero, and the ray crosses it at `Σ wᵢ·tᵢ`: a bound from above. With the portal's own
-//! plane for `α`, the support point either is on that plane, and `τ(α)` is as high; or it is before it, and of the three
-//! triangles that it spans with the edges of the portal one contains zero, and is crossed earlier. That is the simplex
-//! method for a linear programme in the two unknowns `α`, whose constraints are the support points.
+//! Seen along the ray, a portal contains zero, and the ray crosses it at `Σ wᵢ·tᵢ`: a bound from above. With the
+//! portal's own plane for `α`, the support point either is on that plane, and `τ(α)` is as high; or it is before it,
+//! and of the three triangles that it spans with the edges of the portal one contains zero, and is crossed earlier.
+//! That is the simplex method for a linear programme in the two unknowns `α`, whose constraints are the support points.
 //!
-//! The name, and the search for the first portal, are those of Gary Snethen's *Minkowski portal refinement* (`XenoCollide`:
-//! Complex Collision Made Simple, Game Programming Gems 7, 2008), whose ray runs from a point inside of the body.
+//! The name, and the search for the first portal, are those of Gary Snethen's *Minkowski portal refinement*
+//! (`XenoCollide`: Complex Collision Made Simple, Game Programming Gems 7, 2008), whose ray runs from a point inside of
+//! the body.
 
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
@@ -49,8 +50,8 @@ pub(super) fn triangle<V: Vector>(
     let mut q = planes.opposite(bracket, &p)?;
     match planes.enclose(bracket, &mut p, &mut q)? {
         Some(found) => planes.shrink(bracket, found),
-        // The line passes near where the body is seen to end, too near to be enclosed by points; but an edge or a smooth
-        // piece may be found that it runs through.
+        // The line passes near where the body is seen to end, too near to be enclosed by points; but an edge or a
+        // smooth piece may be found that it runs through.
         None if planes.best.is_known() && frame.is_curved(bracket.body, frame.normal(planes.best.alpha.plane())) => {
             sqp(bracket, frame, Portal::unknown([p, q, q]), planes.best)
         }
@@ -85,8 +86,8 @@ impl<V: Vector> Planes<'_, V> {
         Ok(p)
     }
 
-    /// The support point of a plane that is tilted towards `toward`; or, if that is not on that side of the line, the one
-    /// along `toward` itself.
+    /// The support point of a plane that is tilted towards `toward`; or, if that is not on that side of the line, the
+    /// one along `toward` itself.
     #[inline(always)]
     fn support_toward(
         &mut self,
@@ -128,8 +129,8 @@ impl<V: Vector> Planes<'_, V> {
             let turn = one.copysign(area);
             let ((du, dv), dt) = p.edge_to(q);
             let squared = du * du + dv * dv;
-            // The plane through both points that is tilted from the last one, towards the line: with w = (−dv, du) across
-            // the edge e, α = (dt·e + k·w)/|e|², k = α·w + tilt·√(|e|² + (α·w)²).
+            // The plane through both points that is tilted from the last one, towards the line: with w = (−dv, du)
+            // across the edge e, α = (dt·e + k·w)/|e|², k = α·w + tilt·√(|e|² + (α·w)²).
             let toward = (-dv * turn, du * turn);
             let along = dot(self.alpha.across(), toward);
             let k = along + self.tilt * (squared + along * along).sqrt();
@@ -241,8 +242,8 @@ impl<V: Vector> Triangle<V> {
     }
 }
 
-/// The support point along a vector across the ray, if the plane there does not separate and the point is beyond the line.
-/// Where the line touches the body there, to rounding, it is to pass a little farther inside.
+/// The support point along a vector across the ray, if the plane there does not separate and the point is beyond the
+/// line. Where the line touches the body there, to rounding, it is to pass a little farther inside.
 #[cold]
 #[inline(never)]
 fn support_across<V: Vector>(

@@ -23,8 +23,8 @@ pub(super) fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Shrunk by the dimension, the enclosing ellipsoid lies in the hull: its reach along any direction is no more than that
-/// of the points.
+/// Shrunk by the dimension, the enclosing ellipsoid lies in the hull: its reach along any direction is no more than
+/// that of the points.
 fn shrunk() -> Option<Claim> {
     let mut random = Rng::new(23);
     let mut worst = f64::NEG_INFINITY;
