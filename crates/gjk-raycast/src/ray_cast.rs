@@ -55,7 +55,7 @@ pub fn ray_cast<S: SupportMap + ?Sized>(
     let ray = ray.by_coordinates();
     match certain(target, ray, &options, false) {
         Some(answer) => Ok(answer),
-        None => searched(target, ray, options, &mut Observer::none()),
+        None => searched(target, ray, options, Observer::none()),
     }
 }
 
@@ -73,7 +73,7 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
     let mut observer = Observer::new(&mut observer);
     match certain(target, ray, &options, false) {
         Some(answer) => Ok(shown(answer, target, ray, &mut observer)),
-        None => searched(target, ray, options, &mut observer),
+        None => searched(target, ray, options, observer),
     }
 }
 
@@ -150,7 +150,7 @@ fn searched<S: SupportMap + ?Sized>(
     target: &S,
     ray: Ray<S::Vector>,
     options: RayCastOptions<S::Vector>,
-    observer: &mut Observer<'_, S::Vector>,
+    mut observer: Observer<'_, S::Vector>,
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     ray.check(&options)?;
     let mut body = Single::new(target);
@@ -162,12 +162,12 @@ fn searched<S: SupportMap + ?Sized>(
         && is_unknown
         && let Some(answer) = certain(target, ray, &options, true)
     {
-        return Ok(shown(answer, target, ray, observer));
+        return Ok(shown(answer, target, ray, &mut observer));
     }
-    if is_whole && let Some(cast) = direct(&mut body, ray, Scalar::ZERO, &options, observer) {
+    if is_whole && let Some(cast) = direct(&mut body, ray, Scalar::ZERO, &options, &mut observer) {
         return Ok(answer(cast, ray));
     }
-    Ok(by_search(&mut body, &WithoutLines(target), ray, &options, observer))
+    Ok(by_search(&mut body, &WithoutLines(target), ray, &options, &mut observer))
 }
 
 compiled_once! {
