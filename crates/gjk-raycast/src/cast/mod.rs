@@ -11,12 +11,11 @@ mod outline;
 mod portal;
 mod start;
 
-use crate::body::PointPair;
-use crate::observer::Observer;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::Body;
+use crate::body::{Body, PointPair};
+use crate::observer::Observer;
 use crate::{CastMethod, Miss, Outcome, Ray, RayCastOptions, Status};
 use algorithm_3::algorithm_3;
 use bracket::Bracket;

@@ -1,7 +1,8 @@
 //! A shape somewhere on its way.
 
-use crate::shape::Shape;
 use convex_support::{Core, CoreKind, Feature, Hint, Matrix, Parallelotope, Rounding, Scalar, SupportMap, Vector};
+
+use crate::shape::Shape;
 
 /// A shape turned by a rotation, whose origin is put where one wants it, and whose radius may be grown.
 pub(crate) struct Moved<'s, V: Vector> {

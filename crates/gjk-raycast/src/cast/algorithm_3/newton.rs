@@ -3,10 +3,10 @@
 //! In the plane, where that algorithm is the search, a ray at a curved body would take 17 support points in place of 7
 //! without it, and in space by the paper's method 45 in place of 30.
 
-use crate::body::PointPair;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use crate::body::PointPair;
 use crate::cast::bracket::Bracket;
 use crate::curvature::{between, is_stiff_across, share_of_second, swept, turned};
 use crate::simplex::{MAX_POINTS, Simplex};

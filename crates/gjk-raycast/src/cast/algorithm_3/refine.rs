@@ -1,6 +1,5 @@
 //! The exchange of points that closes the bracket once the ray pierces the simplex.
 
-use crate::simplex::Simplex;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
@@ -9,6 +8,7 @@ use super::swept_simplex::{Entry, entry};
 use crate::cast::bracket::Bracket;
 use crate::cast::line::Line;
 use crate::cast::{RayContact, Stop};
+use crate::simplex::Simplex;
 use crate::simplex::{MAX_POINTS, closest_in_face, faces};
 
 /// Exchanges of a point that gain nothing before the line is moved into the facet, and steps by curvature before the
