@@ -1,7 +1,7 @@
 //! The common scale at which two ellipsoids touch: symmetric, smooth, and telling how deep they overlap.
 //!
-//! Perram and Wertheim (1985): grown or shrunk together about their own centres, E₁ and E₂ touch at the scale α with α²
-//! = max over t in [0, 1] of t(1 − t)·rᵀ[(1 − t)P⁻¹ + tQ⁻¹]⁻¹r. In the singular basis of the margin, with ν = (1 −
+//! Perram and Wertheim (1985): grown or shrunk together about their own centres, E₁ and E₂ touch at the scale α with
+//! α² = max over t in [0, 1] of t(1 − t)·rᵀ[(1 − t)P⁻¹ + tQ⁻¹]⁻¹r. In the singular basis of the margin, with ν = (1 −
 //! t)/t, the point of contact has the coordinates x̂ᵢ = ĉᵢ/(1 + νsᵢ), sᵢ = 1/σᵢ², its distance from x₂ in the norm of
 //! E₂ is ‖x̂‖, from x₁ in the norm of E₁ ‖ŵ‖, ŵᵢ = νx̂ᵢ/σᵢ, and the derivative in t vanishes where the two agree:
 //!

@@ -166,8 +166,8 @@ impl<S: SupportMap> Posed<S> {
     }
 }
 
-/// What an entry of a [`polished`] matrix is away from the nearest rotation at most, in units of epsilon. With `RᵀR = 1
-/// + E`, the step leaves `3/8·|E|²`, where the entries of `E` are at most `√ε`: 3.4; and its own operations leave as
+/// What an entry of a [`polished`] matrix is away from the nearest rotation at most, in units of epsilon. With `RᵀR =
+/// 1 + E`, the step leaves `3/8·|E|²`, where the entries of `E` are at most `√ε`: 3.4; and its own operations leave as
 /// much again.
 const POLISHED: Errors = Errors { entry: 8.0, operator: 14.0 };
 

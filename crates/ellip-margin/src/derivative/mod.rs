@@ -1,7 +1,8 @@
 //! How the margin, the distance and the common scale change as a body moves: one derivation for the three.
 //!
-//! Each is the greatest value s of a difference of support functions over normals N from E₁ to E₂. With r = x₂ − x₁, Sₖ
-//! = Rₖ·diag(aₖ)²·Rₖᵀ and hₖ = √(NᵀSₖN), growing E₁ by ρ = √(1 + m), keeping the two apart by d, or scaling both by α:
+//! Each is the greatest value s of a difference of support functions over normals N from E₁ to E₂. With r = x₂ − x₁,
+//! Sₖ = Rₖ·diag(aₖ)²·Rₖᵀ and hₖ = √(NᵀSₖN), growing E₁ by ρ = √(1 + m), keeping the two apart by d, or scaling both by
+//! α:
 //!
 //! | | s | maximises | where |
 //! |---|---|---|---|

@@ -205,9 +205,9 @@ impl<'a, V: Vector> Bracket<'a, V> {
     /// Whether the ray enters so steeply that it is soon in a ball that rolls within the body, whatever the errors.
     ///
     /// A point of the body no more than `3e` below a plane that supports it is in such a ball, of radius `ρ`, no more
-    /// than `√(6ρe)` beside its top, where the ball falls off at `√(6e/ρ)`: less than a third of a slope `s` with `s²ρ
-    /// > 64e`. A ray that comes within `e` of the point at that slope, and may be as far outside of the ball, is in it
-    /// after `3e/2s`.
+    /// than `√(6ρe)` beside its top, where the ball falls off at `√(6e/ρ)`: less than a third of a slope `s` with
+    /// `s²ρ > 64e`. A ray that comes within `e` of the point at that slope, and may be as far outside of the ball, is
+    /// in it after `3e/2s`.
     fn enters_ball(&self) -> bool {
         let Bound { spread, more, .. } = self.high;
         let radius = self.rolling_radius;

@@ -5,8 +5,9 @@
 //!
 //! > maximise ln det B over B ≻ 0 and d, subject to cᵢ = 1 − pᵢ·d − hᵢ ≥ 0, hᵢ = |B·pᵢ|.
 //!
-//! Primal–dual Newton on the conditions B⁻¹ = Σyᵢ·sym(vᵢpᵢᵀ) with vᵢ = B·pᵢ/hᵢ, Σyᵢpᵢ = 0, cᵢyᵢ = μ, μ → 0, in the N(N
-//! + 3)/2 unknowns of (B, d): the multipliers are eliminated, so a step costs time linear in the number of half-spaces.
+//! Primal–dual Newton on the conditions B⁻¹ = Σyᵢ·sym(vᵢpᵢᵀ) with vᵢ = B·pᵢ/hᵢ, Σyᵢpᵢ = 0, cᵢyᵢ = μ, μ → 0, in the
+//! N(N + 3)/2 unknowns of (B, d): the multipliers are eliminated, so a step costs time linear in the number of
+//! half-spaces.
 //!
 //! Certificate: for y ≥ 0 with Σyᵢpᵢ = 0 and unit gᵢ, S = Σyᵢ·sym(pᵢgᵢᵀ) ≻ 0, any feasible (B, d) has tr(B·S) ≤ Σyᵢhᵢ ≤
 //! Σyᵢ, so by the inequality of the means ln det B ≤ N·ln(Σy/N) − ln det S.
