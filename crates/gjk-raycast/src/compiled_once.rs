@@ -6,24 +6,26 @@
 //! this crate. What is left to a caller's crate is short: the shapes' own methods, and the closed forms that are tried
 //! before a search.
 
-/// Declares a function that finds the one compiled for its type of vector, of the generic function in braces.
+/// Declares a function whose body is compiled for each type of vector here; a call finds the one for its own.
 ///
 /// Which of the five it is, the compiler knows where it is called, and leaves the others out.
 macro_rules! compiled_once {
-    ($(#[$attribute:meta])* $visibility:vis fn $name:ident<$V:ident>($($argument:ident: $T:ty),* $(,)?) -> $R:ty {
-        $function:ident
-    }) => {
+    (
+        $(#[$attribute:meta])*
+        $visibility:vis fn $name:ident<$V:ident>($($argument:ident: $T:ty),* $(,)?) -> $R:ty $body:block
+    ) => {
         $(#[$attribute])*
         #[allow(clippy::type_complexity, reason = "it is said once")]
         #[inline]
         $visibility fn $name<$V: convex_support::Vector>($($argument: $T),*) -> $R {
             use convex_support::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
+            fn once<$V: convex_support::Vector>($($argument: $T),*) -> $R $body
             struct Compiled<$V: convex_support::Vector>(fn($($T),*) -> $R);
-            static VEC2: Compiled<Vec2> = Compiled($function::<Vec2>);
-            static VEC3: Compiled<Vec3> = Compiled($function::<Vec3>);
-            static VEC3A: Compiled<Vec3A> = Compiled($function::<Vec3A>);
-            static DVEC2: Compiled<DVec2> = Compiled($function::<DVec2>);
-            static DVEC3: Compiled<DVec3> = Compiled($function::<DVec3>);
+            static VEC2: Compiled<Vec2> = Compiled(once::<Vec2>);
+            static VEC3: Compiled<Vec3> = Compiled(once::<Vec3>);
+            static VEC3A: Compiled<Vec3A> = Compiled(once::<Vec3A>);
+            static DVEC2: Compiled<DVec2> = Compiled(once::<DVec2>);
+            static DVEC3: Compiled<DVec3> = Compiled(once::<DVec3>);
             let all: [&dyn core::any::Any; 5] = [&VEC2, &VEC3, &VEC3A, &DVEC2, &DVEC3];
             let found = all.into_iter().find_map(|compiled| compiled.downcast_ref::<Compiled<$V>>());
             (found.expect("`Vector` is sealed, and these are its types").0)($($argument),*)

@@ -88,7 +88,14 @@ compiled_once! {
         options: DistanceOptions<V>,
         observer: &mut Observer<'_, V>,
     ) -> Distance<V> {
-        searched
+        if !is_swapped {
+            return searched_in_order(shapes, cores, options, observer);
+        }
+        let options = DistanceOptions { axis: options.axis.map(|axis| -axis), ..options };
+        let is_watched = !observer.is_none();
+        let mut reversed = |iterate: Iterate<'_, V>| iterate.reversed(|iterate| observer.show(|| iterate));
+        let mut observer = if is_watched { Observer::new(&mut reversed) } else { Observer::none() };
+        searched_in_order(shapes, cores, options, &mut observer).reversed()
     }
 }
 
@@ -146,23 +153,6 @@ fn direct<T: Shapes>(
         status: Status::Converged,
         iterations: 1,
     })
-}
-
-fn searched<V: Vector>(
-    shapes: &dyn Shapes<Vector = V>,
-    cores: [Core<V>; 2],
-    is_swapped: bool,
-    options: DistanceOptions<V>,
-    observer: &mut Observer<'_, V>,
-) -> Distance<V> {
-    if !is_swapped {
-        return searched_in_order(shapes, cores, options, observer);
-    }
-    let options = DistanceOptions { axis: options.axis.map(|axis| -axis), ..options };
-    let is_watched = !observer.is_none();
-    let mut reversed = |iterate: Iterate<'_, V>| iterate.reversed(|iterate| observer.show(|| iterate));
-    let mut observer = if is_watched { Observer::new(&mut reversed) } else { Observer::none() };
-    searched_in_order(shapes, cores, options, &mut observer).reversed()
 }
 
 fn searched_in_order<V: Vector>(
@@ -290,17 +280,13 @@ fn apart<V: Vector>(
 
 compiled_once! {
     /// The answer of bodies near contact.
-    fn nearly_touching<V>(shapes: &dyn Shapes<Vector = V>, cores: [Core<V>; 2], max_iterations: usize) -> Option<Distance<V>> {
-        touching_plainly
+    fn nearly_touching<V>(
+        shapes: &dyn Shapes<Vector = V>,
+        cores: [Core<V>; 2],
+        max_iterations: usize,
+    ) -> Option<Distance<V>> {
+        touching(shapes, cores, None, max_iterations)
     }
-}
-
-fn touching_plainly<V: Vector>(
-    shapes: &dyn Shapes<Vector = V>,
-    cores: [Core<V>; 2],
-    max_iterations: usize,
-) -> Option<Distance<V>> {
-    touching(shapes, cores, None, max_iterations)
 }
 
 /// The answer of bodies near contact, perhaps after a search that can be gone on with.

@@ -116,7 +116,7 @@ compiled_once! {
         first: &FirstSupport<V>,
         observer: &mut Observer<'_, V>,
     ) -> Intersection<V> {
-        searched
+        searched(shapes, cores, options, first, observer)
     }
 }
 

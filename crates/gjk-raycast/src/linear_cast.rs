@@ -139,7 +139,7 @@ compiled_once! {
         options: &LinearCastOptions<V>,
         observer: &mut Observer<'_, V>,
     ) -> LinearCast<V> {
-        searched
+        searched(body, shapes, cores, motion, options, observer)
     }
 }
 
@@ -166,7 +166,7 @@ compiled_once! {
         motion: Motion<V>,
         options: &LinearCastOptions<V>,
     ) -> LinearCast<V> {
-        answer
+        answer(cast, shapes, cores, motion, options)
     }
 }
 

@@ -179,23 +179,13 @@ compiled_once! {
         options: &RayCastOptions<V>,
         observer: &mut Observer<'_, V>,
     ) -> RayCast<V> {
-        whole_or_late
+        if options.min_lambda > Scalar::ZERO {
+            return late(body, ray, *options, observer);
+        }
+        let mut cast = cast(body, ray, Scalar::ZERO, Part::Whole, options, observer);
+        settle_start(&mut cast, shape, Scalar::ZERO, || Point::new(ray.source).ok(), ray.direction, options);
+        answer(cast, ray)
     }
-}
-
-fn whole_or_late<V: Vector>(
-    body: &mut dyn Body<Vector = V>,
-    shape: Shape<'_, V>,
-    ray: Ray<V>,
-    options: &RayCastOptions<V>,
-    observer: &mut Observer<'_, V>,
-) -> RayCast<V> {
-    if options.min_lambda > Scalar::ZERO {
-        return late(body, ray, *options, observer);
-    }
-    let mut cast = cast(body, ray, Scalar::ZERO, Part::Whole, options, observer);
-    settle_start(&mut cast, shape, Scalar::ZERO, || Point::new(ray.source).ok(), ray.direction, options);
-    answer(cast, ray)
 }
 
 /// The cast of a ray that begins at [`min_lambda`](RayCastOptions::min_lambda).

@@ -75,7 +75,7 @@ pub fn ray_exit<S: SupportMap + ?Sized>(
 compiled_once! {
     /// Where the whole line of the ray leaves a body.
     fn exit_of_line<V>(body: &mut dyn Body<Vector = V>, ray: Ray<V>, options: &RayCastOptions<V>) -> RayExit<V> {
-        searched
+        searched(body, ray, options)
     }
 }
 

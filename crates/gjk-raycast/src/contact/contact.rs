@@ -1,10 +1,10 @@
 //! The contact of two shapes: which way, how deep, and in which points.
 
 use convex_support::{SupportMap, Vector};
+use num_traits::Float as _;
 
 use super::manifold::manifold;
 use super::{Contact, ContactPoint, SignedDistanceOptions, signed_distance};
-use num_traits::Float as _;
 
 /// The contact of two shapes; `None` if they are farther apart than `within`. The options are those of the signed
 /// distance, but `within` takes the place of the limit; NaN is nearer than nothing. The normal of the last frame is a

@@ -78,7 +78,7 @@ compiled_once! {
         within: V::Scalar,
         last: &[ContactPoint<V>],
     ) -> Contact<V> {
-        between
+        between(shapes, answer, within, last)
     }
 }
 
@@ -118,7 +118,7 @@ compiled_once! {
         within: V::Scalar,
         last: &[ContactPoint<V>],
     ) -> Contact<V> {
-        over_plane
+        over_plane(shape, answer, within, last)
     }
 }
 

@@ -91,18 +91,9 @@ compiled_once! {
         options: SignedDistanceOptions<V>,
         observer: &mut Observer<'_, V>,
     ) -> SignedDistance<V> {
-        searched
+        let mut cores = Cores::new(shapes, parts);
+        reach(&mut cores, options, true, observer).answer(&cores)
     }
-}
-
-fn searched<V: Vector>(
-    shapes: &dyn Shapes<Vector = V>,
-    parts: [Core<V>; 2],
-    options: SignedDistanceOptions<V>,
-    observer: &mut Observer<'_, V>,
-) -> SignedDistance<V> {
-    let mut cores = Cores::new(shapes, parts);
-    reach(&mut cores, options, true, observer).answer(&cores)
 }
 
 /// [`signed_distance`], and the unit vector from `b` to `a` of the plane that proves its lower bound. Near contact it

@@ -228,7 +228,7 @@ compiled_once! {
         a: (Shape<'_, V>, &dyn Trajectory<Vector = V>),
         b: (Shape<'_, V>, &dyn Trajectory<Vector = V>),
     ) -> Option<ClosestFeatures<V>> {
-        features_at
+        features_at(normal, point, time, a, b)
     }
 }
 

@@ -104,17 +104,8 @@ compiled_once! {
         options: MotionCastOptions<V>,
         observer: &mut dyn FnMut(MotionIterate<V>),
     ) -> MotionCast<V> {
-        searched
+        Search::run(&MovingPair::new(shapes, motions, options.target_distance), options, observer)
     }
-}
-
-fn searched<V: Vector>(
-    shapes: &dyn Shapes<Vector = V>,
-    motions: [&dyn Trajectory<Vector = V>; 2],
-    options: MotionCastOptions<V>,
-    observer: &mut dyn FnMut(MotionIterate<V>),
-) -> MotionCast<V> {
-    Search::run(&MovingPair::new(shapes, motions, options.target_distance), options, observer)
 }
 
 /// The cast of bodies that do not turn.

@@ -90,18 +90,8 @@ compiled_once! {
         options: MotionCastOptions<V>,
         observer: &mut dyn FnMut(MotionIterate<V>),
     ) -> MotionCast<V> {
-        searched
+        Search::run(&OverHalfSpace::new(shape, motion, half_space, options.target_distance), options, observer)
     }
-}
-
-fn searched<V: Vector>(
-    shape: Shape<'_, V>,
-    motion: &dyn Trajectory<Vector = V>,
-    half_space: &HalfSpace<V>,
-    options: MotionCastOptions<V>,
-    observer: &mut dyn FnMut(MotionIterate<V>),
-) -> MotionCast<V> {
-    Search::run(&OverHalfSpace::new(shape, motion, half_space, options.target_distance), options, observer)
 }
 
 /// A moving body, `a`, over a half-space at rest, `b`.
