@@ -35,6 +35,14 @@ impl<'o, V: Vector> Observer<'o, V> {
         self.0.is_none()
     }
 
+    /// Runs a search of bodies that may be swapped: what is shown is of those in the order they were given in.
+    #[inline(always)]
+    pub(crate) fn of_swapped<R>(&mut self, is_swapped: bool, search: impl FnOnce(&mut Observer<'_, V>) -> R) -> R {
+        let is_watched = is_swapped && !self.is_none();
+        let mut reversed = |iterate: Iterate<'_, V>| iterate.reversed(|iterate| self.show(|| iterate));
+        search(&mut if is_watched { Observer::new(&mut reversed) } else { self.by_ref() })
+    }
+
     /// The same observer, lent.
     #[inline(always)]
     pub(crate) fn by_ref(&mut self) -> Observer<'_, V> {

@@ -4,8 +4,8 @@ use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Core, Rounding, Scalar, Vector};
 use num_traits::Float as _;
 
-use super::SignedDistanceOptions;
 use super::peeled::{Peeled, without_ball};
+use super::separation::{OfOverlap, Wanted};
 use super::zonotope::{Zonotope, parallelotope};
 use crate::body::{AnyPair, Body as _, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, NearContact, first_direction, gjk, is_near_contact, near_contact};
@@ -155,18 +155,15 @@ impl<V: Vector> Uncertainty<V> {
     }
 }
 
-/// How far points of the difference of two cores may be from those they stand for, as a length, in the world's unit;
-/// the same as of [`Uncertainty`], since no sum of products of coordinates is more than the product of the lengths.
+/// How far points of the difference of two cores of the given size may be from those they stand for, as a length, in the
+/// world's unit: no less than any [`Uncertainty`], since no sum of products of coordinates is more than the product of
+/// the lengths, and the offset of the origins loses half an ε of its own.
 #[inline(always)]
-pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(pair: &Pair<'_, T>) -> V::Scalar {
-    let epsilon: V::Scalar = Scalar::EPSILON;
-    let [from, to] = [pair.core_a.origin, pair.core_b.origin];
-    let of_sum = pair.extent() * (epsilon * Scalar::from_f64(SUM));
-    let lost = lost_in_sum(from, -to);
-    // Nothing is lost where an origin is at zero; the length of tiny vectors takes longer.
-    let lost = if lost == V::ZERO { Scalar::ZERO } else { lost.norm() };
-    let of_offset = (from - to).norm() * (epsilon * Scalar::from_f64(OFFSET)) + lost;
-    pair.error() + of_sum + of_offset
+pub(super) fn error_of_points<T: Shapes<Vector = V> + ?Sized, V: Vector>(
+    pair: &Pair<'_, T>,
+    size: V::Scalar,
+) -> V::Scalar {
+    pair.error() + (size - pair.radius()) * (V::Scalar::EPSILON * Scalar::from_f64(SUM))
 }
 
 /// A bound on the length of what is as long as `length` along a direction and wrong by `error` across: of √(l² + e²),
@@ -201,9 +198,8 @@ impl<'a, V: Vector> Cores<'a, V> {
         let [from, to] = [parts[0].origin, parts[1].origin];
         let offset = from - to;
         let size = pair.size(offset);
-        // The distance of the cores is wanted even where their radii overlap.
-        let frame = Frame { radius: Scalar::ZERO, ..Frame::new(&mut pair, offset, size) };
-        let error = error_of_points(&pair) * frame.per_unit + lost_to_underflow(frame.scale);
+        let frame = Frame::new(&mut pair, offset, size);
+        let error = error_of_points(&pair, size) * frame.per_unit + lost_to_underflow(frame.scale);
         let (zero, size) = (Scalar::ZERO, size * frame.per_unit);
         Self {
             pair,
@@ -238,19 +234,35 @@ impl<'a, V: Vector> Cores<'a, V> {
         self.uncertainty = Some(Uncertainty::new(shapes, offset, lost_in_sum(from, -to) * per_unit));
     }
 
-    /// Looks at the bodies once more if a search has left them nearer to contact than a few errors, as their distance
-    /// does. What it tells, if there is no more to know.
-    pub(super) fn look_near(&mut self, state: &mut Gjk<V>, max_iterations: usize) -> Option<NearContact<V>> {
-        let frame = Frame { radius: self.radius() * self.frame.per_unit, ..self.frame };
-        let left = max_iterations.saturating_sub(self.iterations);
+    /// Whether bodies whose cores are so far apart are nearer to contact than a few errors.
+    #[inline(always)]
+    pub(super) fn is_near(&self, length: V::Scalar) -> bool {
+        (length - self.radius() * self.frame.per_unit).abs() < self.frame.error * Scalar::from_f64(NEAR)
+    }
+
+    /// The same of what a search has come to.
+    pub(super) fn are_near(&self, state: &mut Gjk<V>) -> bool {
+        let radius = self.radius() * self.frame.per_unit;
         // Rounded bodies whose cores overlap are deep in one another.
-        let are_deep = frame.radius > Scalar::ZERO && state.simplex.points().len() > V::DIM;
-        if are_deep || left == 0 || !is_near_contact(state, &frame) {
+        let are_deep = radius > self.frame.error * Scalar::from_f64(NEAR) && state.simplex.points().len() > V::DIM;
+        !are_deep && is_near_contact(state, &Frame { radius, ..self.frame })
+    }
+
+    /// Looks at bodies near contact once more, perhaps after a search. What it tells, if there is no more to know.
+    pub(super) fn look_near(&mut self, wanted: &Wanted<V>, state: Option<&Gjk<V>>) -> Option<NearContact<V>> {
+        if wanted.of_overlap == OfOverlap::RoughDepth {
             return None;
         }
-        self.near = near_contact(self.pair.shapes, [self.pair.core_a, self.pair.core_b], None, left);
-        self.iterations += self.near.as_ref().map_or(0, |near| near.iterations);
-        self.near.filter(NearContact::is_closed)
+        // A search that ended at the limit may have gone farther.
+        let limit = (wanted.options.limit + self.radius()) * self.frame.per_unit + self.frame.error;
+        let begun = state.filter(|state| wanted.is_plain() && !(state.lower > limit));
+        let before = begun.map_or(0, |state| state.iterations);
+        let left = before + wanted.options.max_iterations.saturating_sub(self.iterations);
+        let near = near_contact(self.pair.shapes, [self.pair.core_a, self.pair.core_b], begun, left)?;
+        self.iterations += near.iterations.saturating_sub(before);
+        self.near = Some(near);
+        let is_all = if wanted.is_depth() { near.is_closed() } else { near.is_settled(left) };
+        is_all.then_some(near)
     }
 
     /// Whether the error at hand will do for cores that are so far apart: it is little beside that, and beside what is
@@ -384,29 +396,47 @@ impl<'a, V: Vector> Cores<'a, V> {
         Some(ClosedForm { u: nearest.unit(), depth, inner: inner - error, outer: outer + error, points })
     }
 
-    /// GJK before its first step.
+    /// GJK before its first step, along an axis if there is one.
     #[inline(always)]
-    pub(super) fn first_state(&self, options: &SignedDistanceOptions<V>) -> Gjk<V> {
-        Gjk::new(first_direction(options.axis, self.frame.offset))
+    pub(super) fn first_state(&self, axis: Option<V>) -> Gjk<V> {
+        Gjk::new(first_direction(axis, self.frame.offset))
     }
 
-    /// GJK, until the distance of the cores is known, or they meet to rounding. The shortest vector is measured, unless
-    /// it is no vector, since zero is within a simplex of full dimension.
+    /// The closest points of the cores, where those are known in closed form, and the vector between them.
+    #[inline(always)]
+    pub(super) fn closest_points(&self) -> Option<(PointPair<V>, V)> {
+        let Frame { offset, scale, .. } = self.frame;
+        let is_whole = self.peeled == [Scalar::ZERO; 2];
+        let points = if is_whole { self.pair.closest_points(offset * scale, self.size * scale) } else { None }?;
+        Some((points, points.a - points.b + offset))
+    }
+
+    /// GJK, from the closest points where they are known, until what is wanted of the distance of the cores is known, or
+    /// they meet to rounding: of those who ask for the depth even where the radii overlap. The shortest vector is
+    /// measured, unless it is no vector, since zero is within a simplex of full dimension.
     #[inline]
     pub(super) fn approach(
         &mut self,
-        options: &SignedDistanceOptions<V>,
+        wanted: &Wanted<V>,
         state: &mut Gjk<V>,
+        closest: Option<(PointPair<V>, V)>,
         observer: &mut Observer<'_, V>,
     ) -> End {
-        let Frame { per_unit, scale, .. } = self.frame;
-        let is_whole = self.peeled == [Scalar::ZERO; 2];
-        let meet = is_whole && state.begin_at_closest(&self.pair, &self.frame, self.size * scale) == Some(true);
-        let limit = (options.limit + self.radius()) * per_unit;
-        let max_iterations = options.max_iterations.saturating_sub(self.iterations);
-        let options = GjkOptions { limit, ..GjkOptions::new(state.normal, max_iterations) };
+        let radius = if wanted.is_depth() { Scalar::ZERO } else { self.frame.radius };
+        let frame = Frame { radius, ..self.frame };
+        if let Some((points, v)) = closest
+            && state.begin_at(v, points, &frame)
+        {
+            return End::Overlap;
+        }
+        let options = GjkOptions {
+            limit: (wanted.options.limit + self.radius()) * self.frame.per_unit,
+            tolerance: wanted.tolerance,
+            sub_algorithm: wanted.sub_algorithm,
+            ..GjkOptions::new(state.normal, wanted.options.max_iterations.saturating_sub(self.iterations))
+        };
         let mut cores = Peeled { pair: &mut self.pair, radii: self.peeled };
-        let end = if meet { End::Overlap } else { gjk(state, &mut cores, self.frame, options, None, observer) };
+        let end = gjk(state, &mut cores, frame, options, None, observer);
         if end != End::Overlap || state.simplex.points().len() <= V::DIM {
             state.ensure_measured();
         }
@@ -424,7 +454,7 @@ impl<'a, V: Vector> Cores<'a, V> {
         state.ensure_measured();
         let max_iterations = max_iterations.saturating_sub(self.iterations);
         if state.length > self.frame.noise && max_iterations > 0 {
-            let frame = Frame { offset: self.frame.offset - target, ..self.frame };
+            let frame = Frame { offset: self.frame.offset - target, radius: Scalar::ZERO, ..self.frame };
             go_on(&mut state, self.pair.shapes, self.parts, frame, self.peeled, max_iterations);
             self.iterations += state.iterations;
         }

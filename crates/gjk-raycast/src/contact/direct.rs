@@ -17,7 +17,7 @@ use crate::{Iterate, Status};
 /// The plane of the support point across the vector between those points is as far as they are, to rounding, or it is
 /// left to the search.
 #[inline(always)]
-pub(super) fn direct<T: Shapes + ?Sized>(
+pub(crate) fn direct<T: Shapes + ?Sized>(
     shapes: &T,
     cores: [Core<T::Vector>; 2],
     max_iterations: usize,
@@ -28,7 +28,7 @@ pub(super) fn direct<T: Shapes + ?Sized>(
     let size = pair.size(offset);
     let points = pair.closest_points(offset, size)?;
     let v = pair.vector_between(points, offset);
-    let (length, radius, error) = (v.length(), pair.radius(), error_of_points(&pair));
+    let (length, radius, error) = (v.length(), pair.radius(), error_of_points(&pair, size));
     // As near as bodies are looked at closely for their distance, which counts on more for rounding.
     let near = (rounding(size) + pair.error()) * Scalar::from_f64(NEAR);
     // NaN is left to the search.

@@ -1,0 +1,355 @@
+//! One search for how far apart two bodies are, or how deep in one another.
+//!
+//! All questions about two bodies at rest are readings of one answer, so that none of them can contradict another. The
+//! search has three means, in this order, and ends at the first that tells what is asked: GJK on the cores, a closer
+//! look at bodies near contact, and an expanding polytope. Those who ask for the depth have a fourth one before them,
+//! the closed form for two boxes.
+
+use convex_support::numerics::bound::least;
+use convex_support::{Scalar, Vector};
+use num_traits::Float as _;
+
+use super::cores::{ClosedForm, Cores, slack};
+use super::expansion::{Expanded, expand};
+use super::met::Met;
+use super::witness::Ends;
+use super::{SignedDistance, SignedDistanceOptions};
+use crate::body::{Pair, PointPair};
+use crate::gjk::{End, Gjk, NearContact};
+use crate::observer::Observer;
+use crate::{Distance, Status, SubAlgorithm};
+
+/// What a question wants to know of two bodies, and when the search may stop.
+#[derive(Clone, Copy)]
+pub(crate) struct Wanted<V: Vector> {
+    pub(crate) of_overlap: OfOverlap,
+    /// The depth's own are read where one is looked for.
+    pub(crate) options: SignedDistanceOptions<V>,
+    /// How wide a bracket on the distance may stay, relative to it.
+    pub(crate) tolerance: V::Scalar,
+    pub(crate) sub_algorithm: SubAlgorithm,
+}
+
+/// What is asked of bodies that overlap.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum OfOverlap {
+    /// No more than that they do. The depth is looked for where nothing else decides it.
+    Known,
+    Depth,
+    /// The depth, and near contact no closer than the search itself leaves.
+    RoughDepth,
+}
+
+impl<V: Vector> Wanted<V> {
+    #[inline(always)]
+    pub(crate) fn new(of_overlap: OfOverlap, options: SignedDistanceOptions<V>) -> Self {
+        Self { of_overlap, options, tolerance: Scalar::ZERO, sub_algorithm: SubAlgorithm::Regions }
+    }
+
+    /// Whether more is asked of bodies that overlap.
+    #[inline(always)]
+    pub(super) fn is_depth(&self) -> bool {
+        self.of_overlap != OfOverlap::Known
+    }
+
+    /// Whether the search is the one that any query would make.
+    pub(super) fn is_plain(&self) -> bool {
+        !self.is_depth()
+            && self.options.axis.is_none()
+            && self.sub_algorithm == SubAlgorithm::Regions
+            && !(self.tolerance > Scalar::ZERO)
+    }
+}
+
+/// What is known of the cores; lengths in their unit.
+pub(crate) struct Separation<V: Vector> {
+    /// The unit vector out of their difference, and how far that reaches along it: minus their signed distance, or
+    /// infinitely far where they certainly overlap and no depth was asked for.
+    u: V,
+    depth: V::Scalar,
+    /// Bounds on the depth.
+    inner: V::Scalar,
+    outer: V::Scalar,
+    /// The unit vector into the difference across which a plane proves the outer one.
+    pub(super) axis: V,
+    points: PointPair<V>,
+    /// Whether the bodies have a point in common, to the error it is known to, where that is not told by the depth.
+    overlap: Option<bool>,
+    status: Status,
+    unexpanded: usize,
+}
+
+/// What can be known of the cores. It is compiled once for all who ask.
+#[inline(never)]
+pub(crate) fn separation<V: Vector>(
+    cores: &mut Cores<'_, V>,
+    wanted: &Wanted<V>,
+    observer: &mut Observer<'_, V>,
+) -> Separation<V> {
+    let options = &wanted.options;
+    let mut is_peeled = false;
+    if wanted.is_depth() {
+        // Rounded cores are mostly apart, which takes a search to know.
+        let is_rounded = cores.radius() > Scalar::ZERO;
+        if !is_rounded
+            && let Some(known) = cores.closed_form(options.axis)
+            && known.inner > Scalar::ZERO
+        {
+            return Separation::of_closed_form(known);
+        }
+        // Cores that overlapped in the last frame do so still, if no plane across its normal tells them apart.
+        let is_warm = options.axis.and_then(|axis| axis.unit()).is_some_and(|axis| cores.reaches_beyond(-axis));
+        is_peeled = is_warm && cores.peel();
+    }
+    let mut state = cores.first_state(options.axis);
+    let closest = cores.closest_points();
+    // Where the closest points are known, there is nothing to search near contact.
+    if let Some((_, v)) = closest
+        && cores.is_near(v.length())
+        && let Some(known) = cores.look_near(wanted, None)
+    {
+        return Separation::of_near_contact(cores, &known);
+    }
+    let end = cores.approach(wanted, &mut state, closest, observer);
+    if closest.is_none()
+        && cores.are_near(&mut state)
+        && let Some(known) = cores.look_near(wanted, Some(&state))
+    {
+        return Separation::of_near_contact(cores, &known);
+    }
+    let is_known = if wanted.is_depth() {
+        end == End::Separated && cores.is_well_apart(state.length)
+    } else {
+        end != End::Stalled && cores.near.is_none()
+    };
+    if !is_known {
+        return reach_closely(cores, options, &mut state, end, is_peeled, observer);
+    }
+    let known = Separation::of_gjk(cores, &mut state, end);
+    // A simplex of full dimension has zero inside for certain, or a closer look would have been taken.
+    let is_certain = end == End::Overlap && !wanted.is_depth() && state.simplex.points().len() > V::DIM;
+    let (depth, inner) = if is_certain { (V::Scalar::infinity(), Scalar::ZERO) } else { (known.depth, known.inner) };
+    Separation { depth, inner, overlap: Some(end == End::Overlap), ..known }
+}
+
+/// What can be known of cores that overlap or nearly touch, after a search for the points that are closest.
+#[inline(never)]
+fn reach_closely<V: Vector>(
+    cores: &mut Cores<'_, V>,
+    options: &SignedDistanceOptions<V>,
+    state: &mut Gjk<V>,
+    mut end: End,
+    is_peeled: bool,
+    observer: &mut Observer<'_, V>,
+) -> Separation<V> {
+    let is_rounded = !is_peeled && cores.radius() > Scalar::ZERO;
+    if is_rounded
+        && end == End::Overlap
+        && let Some(known) = cores.closed_form(options.axis)
+    {
+        return Separation::of_closed_form(known);
+    }
+    // Half of what may be asked for is left for a second run.
+    let may_repeat = end == End::Overlap && state.length.is_finite() && 2 * state.iterations < options.max_iterations;
+    if may_repeat && !is_peeled && cores.peel() {
+        *state = cores.first_state(options.axis);
+        end = cores.approach(&Wanted::new(OfOverlap::Depth, *options), state, None, observer);
+    }
+    if !cores.is_well_apart(state.length) {
+        cores.sharpen();
+    }
+    let is_apart = end == End::Separated || !state.length.is_finite();
+    let expanded = if is_apart { None } else { expand(cores, state, options, observer) };
+    match expanded {
+        Some(expanded) => Separation::of_expansion(cores, &expanded, state, end),
+        None => {
+            let known = Separation::of_gjk(cores, state, end);
+            Separation { status: if is_apart { known.status } else { Status::Stalled }, ..known }
+        }
+    }
+}
+
+impl<V: Vector> Separation<V> {
+    /// By GJK alone.
+    #[inline(always)]
+    fn of_gjk(cores: &Cores<'_, V>, state: &mut Gjk<V>, end: End) -> Self {
+        let Met { points, reached, .. } = Met::new(cores, state);
+        // Across the face that the closest points are on; where rounding may have made that up, across the best plane.
+        let direction = if state.length > cores.noise() { state.normal } else { state.axis };
+        let n = direction.unit().or_else(|| state.normal.unit()).unwrap_or_else(|| V::axis(0));
+        let plane = cores.best_plane(state);
+        Self {
+            u: -n,
+            depth: -state.length,
+            inner: -reached,
+            outer: plane.map_or(V::Scalar::infinity(), |(outer, _)| outer),
+            axis: plane.map_or(n, |(_, axis)| axis),
+            points,
+            overlap: None,
+            status: end.status(),
+            unexpanded: 0,
+        }
+    }
+
+    /// By a look near contact. The points of the surfaces are between those of the cores, from which the plane may lean
+    /// by the root of the rounding.
+    #[cold]
+    fn of_near_contact(cores: &Cores<'_, V>, near: &NearContact<V>) -> Self {
+        let &NearContact { ref frame, points, normal, gap, lower, upper, .. } = near;
+        let between = (points.a - points.b + frame.offset).unit().unwrap_or(normal);
+        // Both cores may be without balls, which are in their radii then.
+        let Pair { core_a, core_b, .. } = &cores.pair;
+        let [from, to] = &cores.parts;
+        let aside = |whole: V::Scalar, part: V::Scalar| (normal * part - between * whole) * frame.per_unit;
+        let radius = cores.radius() * frame.per_unit;
+        Self {
+            u: -normal,
+            depth: -gap - radius,
+            inner: -upper - radius,
+            outer: -lower - radius,
+            axis: normal,
+            points: PointPair {
+                a: points.a + aside(core_a.radius, from.radius),
+                b: points.b - aside(core_b.radius, to.radius),
+            },
+            overlap: Some(near.overlap() == Some(true)),
+            status: Status::Converged,
+            unexpanded: 0,
+        }
+    }
+
+    /// In closed form.
+    fn of_closed_form(ClosedForm { u, depth, inner, outer, points }: ClosedForm<V>) -> Self {
+        Self { u, depth, inner, outer, axis: -u, points, overlap: None, status: Status::Converged, unexpanded: 0 }
+    }
+
+    /// By an expansion, after GJK had come to an end.
+    #[inline]
+    fn of_expansion(cores: &Cores<'_, V>, expanded: &Expanded<V>, state: &mut Gjk<V>, end: End) -> Self {
+        let &Expanded { way, ends, inner, status, unexpanded } = expanded;
+        let by_way = way.h + cores.error_along(way.u());
+        // NaN is no bound.
+        let plane = cores.best_plane(state).filter(|(outer, _)| *outer <= by_way);
+        let (outer, axis) = plane.unwrap_or((by_way, -way.u()));
+        // Where the cores turn out to be apart, GJK's points are nearer than those of a facet.
+        if way.h < Scalar::ZERO && end != End::Overlap {
+            return Self { outer, axis, ..Self::of_gjk(cores, state, end) };
+        }
+        let Ends { u, depth, points } = ends;
+        Self { u, depth, inner, outer, axis, points, overlap: None, status, unexpanded }
+    }
+
+    /// The signed distance of the bodies along the normal, in the world's unit, as it is measured.
+    #[inline(always)]
+    fn value(&self, cores: &Cores<'_, V>) -> V::Scalar {
+        -(self.depth * cores.scale()) - cores.radius()
+    }
+
+    /// Bounds on it, and whether they are as near to one another as a look near contact leaves.
+    #[inline(always)]
+    fn bounds(&self, cores: &Cores<'_, V>) -> (V::Scalar, V::Scalar, bool) {
+        let (scale, radius) = (cores.scale(), cores.radius());
+        let world = |depth: V::Scalar| -(depth * scale) - radius;
+        let (lower, upper) = (world(self.outer), world(self.inner));
+        // A product with the unit may be subnormal.
+        let lost = |length: V::Scalar| if length == Scalar::ZERO { length } else { least() };
+        let lower = lower - (slack(lower, radius) + lost(self.outer));
+        let upper = upper + (slack(upper, radius) + lost(self.inner));
+        // What is known near contact is known without the slack.
+        match &cores.near {
+            Some(near) => {
+                let lower = lower.max(near.lower * scale - lost(near.lower));
+                let upper = upper.min(near.upper * scale + lost(near.upper));
+                (lower, upper, upper - lower <= near.frame.error * (scale + scale))
+            }
+            None => (lower, upper, false),
+        }
+    }
+
+    /// The points of both bodies between which the way out leads.
+    #[inline(always)]
+    fn ends(&self, cores: &Cores<'_, V>) -> [V; 2] {
+        let (scale, [a, b]) = (cores.scale(), &cores.parts);
+        let PointPair { a: from, b: to } = self.points;
+        [a.origin + from * scale + self.u * a.radius, b.origin + to * scale - self.u * b.radius]
+    }
+
+    /// The signed distance.
+    #[inline]
+    pub(super) fn signed_distance(&self, cores: &Cores<'_, V>) -> SignedDistance<V> {
+        let (lower, upper, is_narrow) = self.bounds(cores);
+        // Numbers that are not finite, or contradict one another, are of a support map that is none, and bound nothing.
+        let is_bounded = lower.is_finite() && upper.is_finite() && lower <= upper;
+        let infinity = V::Scalar::infinity();
+        let (lower, upper) = if is_bounded { (lower, upper) } else { (-infinity, infinity) };
+        let status = match self.status {
+            Status::Converged if !is_bounded => Status::Stalled,
+            Status::Stalled if is_bounded && is_narrow => Status::Converged,
+            status => status,
+        };
+        let signed_distance = self.value(cores).max(lower).min(upper);
+        let [point_a, point_b] = self.ends(cores);
+        SignedDistance {
+            signed_distance,
+            lower,
+            upper,
+            normal: -self.u,
+            point_a,
+            point_b,
+            overlap: signed_distance <= V::Scalar::ZERO,
+            status,
+            iterations: cores.iterations,
+            unexpanded: self.unexpanded,
+        }
+    }
+
+    /// The distance, which is zero where the bodies overlap.
+    #[inline]
+    pub(crate) fn distance(&self, cores: &Cores<'_, V>) -> Distance<V> {
+        let zero = V::Scalar::ZERO;
+        let (lower, upper, is_narrow) = self.bounds(cores);
+        // The support points of a shape that is none may contradict one another, or be no numbers: nothing is known.
+        let is_bounded = lower <= upper && upper.is_finite();
+        let (lower, upper) = match is_bounded {
+            true if self.inner >= zero => (zero, zero),
+            true => (lower.max(zero), upper.max(zero)),
+            false => (zero, V::Scalar::infinity()),
+        };
+        let status = match self.status {
+            Status::Converged if !is_bounded => Status::Stalled,
+            Status::Stalled if is_bounded && is_narrow => Status::Converged,
+            status => status,
+        };
+        let value = self.value(cores);
+        let is_met = self.overlap.unwrap_or(value <= zero || status == Status::Converged);
+        let overlap = is_met && !(lower > zero);
+        let is_deep = overlap && !(value >= -upper);
+        let n = if lower > zero { self.axis } else { -self.u };
+        let [point_a, point_b] = if overlap { self.common_points(cores) } else { self.ends(cores) };
+        Distance {
+            distance: value.max(lower).min(upper),
+            lower,
+            upper,
+            overlap,
+            point_a,
+            point_b,
+            normal: if is_deep { None } else { Some(n) },
+            status,
+            iterations: cores.iterations,
+        }
+    }
+
+    /// Points of both bodies that are one but for rounding: between the points of their cores, which are no farther
+    /// apart than both radii.
+    fn common_points(&self, cores: &Cores<'_, V>) -> [V; 2] {
+        let (scale, radius, [a, b]) = (cores.scale(), cores.radius(), &cores.parts);
+        let (from, to) = (a.origin + self.points.a * scale, b.origin + self.points.b * scale);
+        // Without radii the cores themselves meet.
+        if radius <= Scalar::ZERO {
+            return [from, to];
+        }
+        let v = from - to;
+        let share = |radius_of_one: V::Scalar| v * (radius_of_one / radius).min(Scalar::ONE);
+        [from - share(a.radius), to + share(b.radius)]
+    }
+}
