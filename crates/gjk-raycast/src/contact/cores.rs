@@ -87,8 +87,8 @@ impl<V: Vector> WayOut<V> {
 /// The difference `K = K_A − K_B` of two cores as seen from zero, in units of a power of two near its size.
 pub(crate) struct Cores<'a, V: Vector> {
     pub(super) pair: AnyPair<'a, V>,
-    /// What both shapes are split into, in the world's unit.
-    pub(super) parts: [Core<V>; 2],
+    /// The radii of both bodies around their cores, in the world's unit.
+    pub(super) radii: [V::Scalar; 2],
     frame: Frame<V>,
     /// The radii of balls that the cores are without, in the unit.
     peeled: [V::Scalar; 2],
@@ -193,17 +193,17 @@ pub(super) struct ClosedForm<V: Vector> {
 
 impl<'a, V: Vector> Cores<'a, V> {
     #[inline(always)]
-    pub(crate) fn new(shapes: &'a (dyn Shapes<Vector = V> + 'a), parts: [Core<V>; 2]) -> Self {
-        let mut pair = Pair::of_cores(shapes, parts);
-        let [from, to] = [parts[0].origin, parts[1].origin];
-        let offset = from - to;
+    pub(crate) fn new(shapes: &'a (dyn Shapes<Vector = V> + 'a), cores: [Core<V>; 2]) -> Self {
+        let mut pair = Pair::of_cores(shapes, cores);
+        let offset = pair.core_a.origin - pair.core_b.origin;
         let size = pair.size(offset);
+        let radii = [pair.core_a.radius, pair.core_b.radius];
         let frame = Frame::new(&mut pair, offset, size);
         let error = error_of_points(&pair, size) * frame.per_unit + lost_to_underflow(frame.scale);
         let (zero, size) = (Scalar::ZERO, size * frame.per_unit);
         Self {
             pair,
-            parts,
+            radii,
             frame,
             peeled: [zero; 2],
             size,
@@ -230,22 +230,22 @@ impl<'a, V: Vector> Cores<'a, V> {
             error_length: r.error_length * per_unit,
         };
         let shapes = self.pair.shapes.each().map(|shape| in_unit(shape.rounding()));
-        let [from, to] = [self.parts[0].origin, self.parts[1].origin];
+        let [from, to] = [self.pair.core_a.origin, self.pair.core_b.origin];
         self.uncertainty = Some(Uncertainty::new(shapes, offset, lost_in_sum(from, -to) * per_unit));
     }
 
     /// Whether bodies whose cores are so far apart are nearer to contact than a few errors.
     #[inline(always)]
     pub(super) fn is_near(&self, length: V::Scalar) -> bool {
-        (length - self.radius() * self.frame.per_unit).abs() < self.frame.error * Scalar::from_f64(NEAR)
+        (length - self.frame.radius).abs() < self.frame.error * Scalar::from_f64(NEAR)
     }
 
     /// The same of what a search has come to.
     pub(super) fn are_near(&self, state: &mut Gjk<V>) -> bool {
-        let radius = self.radius() * self.frame.per_unit;
         // Rounded bodies whose cores overlap are deep in one another.
-        let are_deep = radius > self.frame.error * Scalar::from_f64(NEAR) && state.simplex.points().len() > V::DIM;
-        !are_deep && is_near_contact(state, &Frame { radius, ..self.frame })
+        let is_full = state.simplex.points().len() > V::DIM;
+        let are_deep = is_full && self.frame.radius > self.frame.error * Scalar::from_f64(NEAR);
+        !are_deep && is_near_contact(state, &self.frame)
     }
 
     /// Looks at bodies near contact once more, perhaps after a search. What it tells, if there is no more to know.
@@ -254,7 +254,7 @@ impl<'a, V: Vector> Cores<'a, V> {
             return None;
         }
         // A search that ended at the limit may have gone farther.
-        let limit = (wanted.options.limit + self.radius()) * self.frame.per_unit + self.frame.error;
+        let limit = self.limit(wanted) + self.frame.error;
         let begun = state.filter(|state| wanted.is_plain() && !(state.lower > limit));
         let before = begun.map_or(0, |state| state.iterations);
         let left = before + wanted.options.max_iterations.saturating_sub(self.iterations);
@@ -268,7 +268,7 @@ impl<'a, V: Vector> Cores<'a, V> {
     /// Whether the error at hand will do for cores that are so far apart: it is little beside that, and beside what is
     /// left of it without the radii.
     pub(super) fn is_well_apart(&self, length: V::Scalar) -> bool {
-        let gap = (length - self.radius() * self.frame.per_unit).abs();
+        let gap = (length - self.frame.radius).abs();
         length.min(gap) > self.greatest_error() * Scalar::from_f64(NEAR)
     }
 
@@ -283,14 +283,14 @@ impl<'a, V: Vector> Cores<'a, V> {
         if !(sum > Scalar::ZERO && sum.is_finite()) {
             return false;
         }
-        for (part, radius) in self.parts.iter_mut().zip(radii) {
-            part.radius += radius;
+        for (whole, radius) in self.radii.iter_mut().zip(radii) {
+            *whole += radius;
         }
-        self.peeled = radii.map(|radius| radius * self.frame.per_unit);
+        let per_unit = self.frame.per_unit;
+        self.peeled = radii.map(|radius| radius * per_unit);
+        self.frame.radius = self.radius() * per_unit;
         // The unit vector is right to 6 roundings and the product to one; a sum of radii loses one more.
-        let [a, b] = &self.parts;
-        let four: V::Scalar = Scalar::from_f64(4.0);
-        self.peeled_error = four * Scalar::EPSILON * (a.radius + b.radius) * self.frame.per_unit;
+        self.peeled_error = self.frame.radius * (V::Scalar::EPSILON * Scalar::from_f64(4.0));
         true
     }
 
@@ -301,7 +301,7 @@ impl<'a, V: Vector> Cores<'a, V> {
 
     /// The radii of both, in the world's unit.
     pub(crate) fn radius(&self) -> V::Scalar {
-        self.parts[0].radius + self.parts[1].radius
+        self.radii[0] + self.radii[1]
     }
 
     /// The support point along a direction; `None` where it is not finite.
@@ -411,6 +411,11 @@ impl<'a, V: Vector> Cores<'a, V> {
         Some((points, points.a - points.b + offset))
     }
 
+    /// How far apart the cores are of bodies that are as far apart as is asked for.
+    fn limit(&self, wanted: &Wanted<V>) -> V::Scalar {
+        wanted.options.limit * self.frame.per_unit + self.frame.radius
+    }
+
     /// GJK, from the closest points where they are known, until what is wanted of the distance of the cores is known, or
     /// they meet to rounding: of those who ask for the depth even where the radii overlap. The shortest vector is
     /// measured, unless it is no vector, since zero is within a simplex of full dimension.
@@ -430,7 +435,7 @@ impl<'a, V: Vector> Cores<'a, V> {
             return End::Overlap;
         }
         let options = GjkOptions {
-            limit: (wanted.options.limit + self.radius()) * self.frame.per_unit,
+            limit: self.limit(wanted),
             tolerance: wanted.tolerance,
             sub_algorithm: wanted.sub_algorithm,
             ..GjkOptions::new(state.normal, wanted.options.max_iterations.saturating_sub(self.iterations))
@@ -455,7 +460,14 @@ impl<'a, V: Vector> Cores<'a, V> {
         let max_iterations = max_iterations.saturating_sub(self.iterations);
         if state.length > self.frame.noise && max_iterations > 0 {
             let frame = Frame { offset: self.frame.offset - target, radius: Scalar::ZERO, ..self.frame };
-            go_on(&mut state, self.pair.shapes, self.parts, frame, self.peeled, max_iterations);
+            go_on(
+                &mut state,
+                self.pair.shapes,
+                [self.pair.core_a, self.pair.core_b],
+                frame,
+                self.peeled,
+                max_iterations,
+            );
             self.iterations += state.iterations;
         }
         state
@@ -468,12 +480,12 @@ impl<'a, V: Vector> Cores<'a, V> {
 fn go_on<V: Vector>(
     state: &mut Gjk<V>,
     shapes: &dyn Shapes<Vector = V>,
-    parts: [Core<V>; 2],
+    cores: [Core<V>; 2],
     frame: Frame<V>,
     radii: [V::Scalar; 2],
     max_iterations: usize,
 ) {
-    let mut pair = Pair::of_cores(shapes, parts);
+    let mut pair = Pair::of_cores(shapes, cores);
     pair.set_scale(frame.scale);
     let frame = Frame { noise: frame.noise * Scalar::from_f64(0.0625), ..frame };
     let options = GjkOptions::new(state.normal, max_iterations);

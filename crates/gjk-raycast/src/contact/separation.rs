@@ -199,7 +199,6 @@ impl<V: Vector> Separation<V> {
         let between = (points.a - points.b + frame.offset).unit().unwrap_or(normal);
         // Both cores may be without balls, which are in their radii then.
         let Pair { core_a, core_b, .. } = &cores.pair;
-        let [from, to] = &cores.parts;
         let aside = |whole: V::Scalar, part: V::Scalar| (normal * part - between * whole) * frame.per_unit;
         let radius = cores.radius() * frame.per_unit;
         Self {
@@ -209,8 +208,8 @@ impl<V: Vector> Separation<V> {
             outer: -lower - radius,
             axis: normal,
             points: PointPair {
-                a: points.a + aside(core_a.radius, from.radius),
-                b: points.b - aside(core_b.radius, to.radius),
+                a: points.a + aside(core_a.radius, cores.radii[0]),
+                b: points.b - aside(core_b.radius, cores.radii[1]),
             },
             overlap: Some(near.overlap() == Some(true)),
             status: Status::Converged,
@@ -269,9 +268,9 @@ impl<V: Vector> Separation<V> {
     /// The points of both bodies between which the way out leads.
     #[inline(always)]
     fn ends(&self, cores: &Cores<'_, V>) -> [V; 2] {
-        let (scale, [a, b]) = (cores.scale(), &cores.parts);
-        let PointPair { a: from, b: to } = self.points;
-        [a.origin + from * scale + self.u * a.radius, b.origin + to * scale - self.u * b.radius]
+        let (PointPair { a, b }, scale, [from, to]) = (self.points, cores.scale(), cores.radii);
+        let Pair { core_a, core_b, .. } = &cores.pair;
+        [core_a.origin + a * scale + self.u * from, core_b.origin + b * scale - self.u * to]
     }
 
     /// The signed distance.
@@ -342,14 +341,14 @@ impl<V: Vector> Separation<V> {
     /// Points of both bodies that are one but for rounding: between the points of their cores, which are no farther
     /// apart than both radii.
     fn common_points(&self, cores: &Cores<'_, V>) -> [V; 2] {
-        let (scale, radius, [a, b]) = (cores.scale(), cores.radius(), &cores.parts);
-        let (from, to) = (a.origin + self.points.a * scale, b.origin + self.points.b * scale);
+        let (scale, radius, Pair { core_a, core_b, .. }) = (cores.scale(), cores.radius(), &cores.pair);
+        let (a, b) = (core_a.origin + self.points.a * scale, core_b.origin + self.points.b * scale);
         // Without radii the cores themselves meet.
         if radius <= Scalar::ZERO {
-            return [from, to];
+            return [a, b];
         }
-        let v = from - to;
-        let share = |radius_of_one: V::Scalar| v * (radius_of_one / radius).min(Scalar::ONE);
-        [from - share(a.radius), to + share(b.radius)]
+        let v = a - b;
+        let share = |of: V::Scalar| v * (of / radius).min(Scalar::ONE);
+        [a - share(cores.radii[0]), b + share(cores.radii[1])]
     }
 }
