@@ -182,19 +182,13 @@ pub(crate) struct Both<'a, A: ?Sized, B: ?Sized, const LINES: bool = false> {
     a: WithoutLines<'a, A>,
     b: WithoutLines<'a, B>,
     /// Whether they are taken in the other order.
-    is_swapped: bool,
+    pub(crate) is_swapped: bool,
 }
 
 impl<'a, A: ?Sized, B: ?Sized, const LINES: bool> Both<'a, A, B, LINES> {
     #[inline(always)]
     pub(crate) fn new(a: &'a A, b: &'a B) -> Self {
         Self { a: WithoutLines(a), b: WithoutLines(b), is_swapped: false }
-    }
-
-    /// The same in the other order, or not. Unlike [`Swapped`], it is known to the shapes' own code.
-    #[inline(always)]
-    pub(crate) fn swapped(self, is_swapped: bool) -> Self {
-        Self { is_swapped, ..self }
     }
 
     /// Which of them one of the two is, as they were named.
@@ -261,42 +255,6 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
     #[inline(always)]
     fn each(&self) -> [Shape<'_, A::Vector>; 2] {
         if self.is_swapped { [&self.b, &self.a] } else { [&self.a, &self.b] }
-    }
-}
-
-/// Two shapes in the other order.
-pub(crate) struct Swapped<'a, V>(pub(crate) &'a dyn Shapes<Vector = V>);
-
-impl<V: Vector> Shapes for Swapped<'_, V> {
-    type Vector = V;
-
-    fn cores(&self) -> [Core<V>; 2] {
-        let [a, b] = self.0.cores();
-        [b, a]
-    }
-
-    fn support_points(&self, [along_a, along_b]: [V; 2], hints: &mut [Hint; 2]) -> [V; 2] {
-        hints.swap(0, 1);
-        let [b, a] = self.0.support_points([along_b, along_a], hints);
-        hints.swap(0, 1);
-        [a, b]
-    }
-
-    fn support_hessian(&self, of: Of, direction: V, changes: [V; 2]) -> [V::Scalar; 3] {
-        self.0.support_hessian(of.other(), direction, changes)
-    }
-
-    fn closest_point(&self, of: Of, x: V) -> Option<V> {
-        self.0.closest_point(of.other(), x)
-    }
-
-    fn line_crossing(&self, of: Of, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        self.0.line_crossing(of.other(), source, direction, radius)
-    }
-
-    fn each(&self) -> [Shape<'_, V>; 2] {
-        let [a, b] = self.0.each();
-        [b, a]
     }
 }
 

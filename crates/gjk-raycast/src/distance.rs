@@ -5,7 +5,6 @@ use convex_support::{Core, SupportMap};
 use crate::body::{Both, Shapes};
 use crate::compiled_once::compiled_once;
 use crate::contact::{Cores, OfOverlap, Wanted, direct, separation};
-use crate::gjk::comes_first;
 use crate::observer::Observer;
 use crate::{Distance, DistanceOptions, Iterate, SignedDistance, SignedDistanceOptions};
 
@@ -75,12 +74,12 @@ where
         let (distance, overlap, normal) = (signed_distance, false, Some(normal));
         return Distance { distance, lower, upper, overlap, point_a, point_b, normal, status, iterations };
     }
-    let is_swapped = comes_first(&cores[1], &cores[0]);
-    by_search(&shapes.swapped(is_swapped), cores, is_swapped, options, observer)
+    let (shapes, cores) = shapes.in_order(cores);
+    by_search(&shapes, cores, shapes.is_swapped, options, observer)
 }
 
 compiled_once! {
-    /// The distance by a search, of shapes that are swapped or not.
+    /// The distance by a search, of shapes that are in order, swapped or not.
     fn by_search<V>(
         shapes: &dyn Shapes<Vector = V>,
         cores: [Core<V>; 2],
@@ -92,7 +91,6 @@ compiled_once! {
         let axis = axis.map(|axis| if is_swapped { -axis } else { axis });
         let of_separation = SignedDistanceOptions { limit, max_iterations, axis, ..SignedDistanceOptions::new() };
         let wanted = Wanted { tolerance, sub_algorithm, ..Wanted::new(OfOverlap::Known, of_separation) };
-        let cores = if is_swapped { [cores[1], cores[0]] } else { cores };
         let mut cores = Cores::new(shapes, cores);
         let found = observer.of_swapped(is_swapped, |observer| separation(&mut cores, &wanted, observer));
         let answer = found.distance(&cores);

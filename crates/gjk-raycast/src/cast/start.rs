@@ -1,7 +1,7 @@
 //! Where a cast begins in contact, or within a few errors of it: whether that is a hit.
 //!
 //! What a cast knows of its start is known to the errors of the largest number in it. Looked at [once
-//! more](crate::gjk::near_contact()), a source may turn out to be apart from the target: then a ray that leaves or
+//! more](crate::gjk::near_contact_of()), a source may turn out to be apart from the target: then a ray that leaves or
 //! slides by misses, and one that approaches hits a little later.
 
 use convex_support::numerics::bound::{raised, roundings};
@@ -10,8 +10,8 @@ use convex_support::{Posed, Rounded, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use super::{Cast, CastHit};
-use crate::body::{Both, PointPair};
-use crate::gjk::{Frame, FromContact, NearContact, look_after, near_contact};
+use crate::body::PointPair;
+use crate::gjk::{Frame, FromContact, NearContact, look_after, near_contact_of};
 use crate::shape::{Shape, WithoutLines};
 use crate::{Miss, Outcome, RayCastOptions, Status};
 
@@ -100,7 +100,7 @@ enum Way<V: Vector> {
 #[inline(never)]
 fn start<V: Vector>(a: Shape<'_, V>, b: Shape<'_, V>, direction: V, max_iterations: usize) -> StartLook<V> {
     let zero = V::Scalar::ZERO;
-    let Some(near) = near_contact(&Both::<_, _>::new(a, b), [a.core(), b.core()], None, max_iterations) else {
+    let Some(near) = near_contact_of(a, b, max_iterations) else {
         let spot = Spot { source: V::ZERO, points: PointPair::default(), scale: V::Scalar::ONE };
         return StartLook { way: Way::Unknown, spot, iterations: 0 };
     };
@@ -299,7 +299,7 @@ fn after_hit<V: Vector>(
     let step = direction * lambda;
     let Ok(there) = Posed::translated(b, step) else { return unknown };
     let there = WithoutLines(&there);
-    let Some(near) = near_contact(&Both::<_, _>::new(a, &there), [a.core(), there.core()], None, max_iterations) else {
+    let Some(near) = near_contact_of(a, &there, max_iterations) else {
         return unknown;
     };
     let mut looks = Looks { iterations: near.iterations, max_iterations };

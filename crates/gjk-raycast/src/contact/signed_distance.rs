@@ -9,7 +9,6 @@ use super::{SignedDistance, SignedDistanceOptions};
 use crate::Iterate;
 use crate::body::{Both, Shapes};
 use crate::compiled_once::compiled_once;
-use crate::gjk::comes_first;
 use crate::observer::Observer;
 use crate::shape::Shape;
 
@@ -76,13 +75,13 @@ where
     let shapes = Both::<_, _>::new(a, b);
     let cores = shapes.cores();
     direct(&shapes, cores, options.max_iterations, observer).unwrap_or_else(|| {
-        let is_swapped = comes_first(&cores[1], &cores[0]);
-        by_search(&shapes.swapped(is_swapped), cores, is_swapped, options, observer)
+        let (shapes, cores) = shapes.in_order(cores);
+        by_search(&shapes, cores, shapes.is_swapped, options, observer)
     })
 }
 
 compiled_once! {
-    /// The signed distance by a search, of shapes that are swapped or not.
+    /// The signed distance by a search, of shapes that are in order, swapped or not.
     fn by_search<V>(
         shapes: &dyn Shapes<Vector = V>,
         cores: [Core<V>; 2],
@@ -92,7 +91,6 @@ compiled_once! {
     ) -> SignedDistance<V> {
         let axis = options.axis.map(|axis| if is_swapped { -axis } else { axis });
         let wanted = Wanted::new(OfOverlap::Depth, SignedDistanceOptions { axis, ..options });
-        let cores = if is_swapped { [cores[1], cores[0]] } else { cores };
         let mut cores = Cores::new(shapes, cores);
         let found = observer.of_swapped(is_swapped, |observer| separation(&mut cores, &wanted, observer));
         let answer = found.signed_distance(&cores);

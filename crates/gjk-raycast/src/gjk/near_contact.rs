@@ -14,10 +14,10 @@ use convex_support::{Core, CoreKind, Rounding, Scalar, Vector};
 use num_traits::Float;
 
 use super::faces::{about_edge, across_faces, is_around_zero};
-use super::order::comes_first;
 use super::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
-use crate::body::{AnyPair, Body as _, Pair, PointPair, Shapes, Swapped, TracedSupport as _};
+use crate::body::{AnyPair, Body as _, Both, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::observer::Observer;
+use crate::shape::Shape;
 use crate::simplex::MAX_POINTS;
 
 /// How many errors apart, or in one another, bodies are looked at once more.
@@ -94,31 +94,33 @@ impl<V: Vector> NearContact<V> {
     }
 }
 
-/// Looks at bodies near contact once more; `None` where no plane can be found, or numbers are out of range.
+/// Looks at two shapes near contact once more, whichever of them comes first.
+#[cold]
+#[inline(never)]
+pub(crate) fn near_contact_of<V: Vector>(
+    a: Shape<'_, V>,
+    b: Shape<'_, V>,
+    max_iterations: usize,
+) -> Option<NearContact<V>> {
+    let (shapes, cores) = Both::<_, _>::new(a, b).in_order([a.core(), b.core()]);
+    let near = near_contact(&shapes, cores, None, max_iterations)?;
+    Some(if shapes.is_swapped { near.reversed() } else { near })
+}
+
+/// Looks once more at bodies near contact that are [in order](Both::in_order); `None` where no plane can be found, or
+/// numbers are out of range.
 ///
-/// A search that is over may have begun where all do: with the bodies [in order](super::comes_first), without an axis
-/// of its own, and to no tolerance but the noise. Then what it came to is gone on with, and else it is made once more.
-///
-/// The bodies are asked behind pointers, so that what is rarely needed is compiled once.
+/// A search that is over may have begun where all do: without an axis of its own, and to no tolerance but the noise.
+/// Then what it came to is gone on with, and else it is made once more.
 #[cold]
 #[inline(never)]
 pub(crate) fn near_contact<V: Vector>(
     shapes: &dyn Shapes<Vector = V>,
-    [core_a, core_b]: [Core<V>; 2],
+    cores: [Core<V>; 2],
     begun: Option<&Gjk<V>>,
     max_iterations: usize,
 ) -> Option<NearContact<V>> {
-    if comes_first(&core_b, &core_a) {
-        let begun = begun.map(|&begun| Gjk { simplex: begun.simplex.made_of(PointPair::reversed), ..begun });
-        look(Pair::of_cores(&Swapped(shapes), [core_b, core_a]), begun.as_ref(), max_iterations)
-            .map(NearContact::reversed)
-    } else {
-        look(Pair::of_cores(shapes, [core_a, core_b]), begun, max_iterations)
-    }
-}
-
-/// The same for bodies that are in order.
-fn look<V: Vector>(mut pair: AnyPair<'_, V>, begun: Option<&Gjk<V>>, max_iterations: usize) -> Option<NearContact<V>> {
+    let mut pair = Pair::of_cores(shapes, cores);
     let offset = pair.core_a.origin - pair.core_b.origin;
     let size = pair.size(offset);
     let frame = Frame::new(&mut pair, offset, size);

@@ -110,11 +110,6 @@ impl<V: Vector> Simplex<V> {
         (&self.points, (self.len + MAX_POINTS - 1) % MAX_POINTS)
     }
 
-    /// The same, made of something else.
-    pub(crate) fn made_of(self, changed: impl Fn(PointPair<V>) -> PointPair<V>) -> Self {
-        Self { witnesses: self.witnesses.map(changed), ..self }
-    }
-
     /// The weighted sum of the points.
     pub(crate) fn weighted_point(&self) -> V {
         let mut sum = V::ZERO;
