@@ -284,6 +284,11 @@ impl<'a, T: Shapes + ?Sized> Pair<'a, T> {
 }
 
 impl<T: Shapes + ?Sized> Pair<'_, T> {
+    /// Begins anew to look for support points.
+    pub(crate) fn forget_hints(&mut self) {
+        self.hints = [Hint::new(), Hint::new()];
+    }
+
     /// The sum of the radii.
     #[inline(always)]
     pub(crate) fn radius(&self) -> <T::Vector as Vector>::Scalar {

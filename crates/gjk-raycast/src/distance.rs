@@ -4,8 +4,8 @@ use convex_support::{Core, SupportMap};
 
 use crate::body::{Both, Shapes};
 use crate::compiled_once::compiled_once;
-use crate::contact::{Cores, OfOverlap, Wanted, direct, separation};
 use crate::observer::Observer;
+use crate::separation::{Cores, OfOverlap, Wanted, direct, separation};
 use crate::{Distance, DistanceOptions, Iterate, SignedDistance, SignedDistanceOptions};
 
 /// The distance of two shapes, and where they are closest.

@@ -145,7 +145,9 @@ mod ray_exit;
 mod result;
 mod scene;
 mod segments;
+mod separation;
 mod shape;
+mod signed_distance;
 mod simplex;
 mod start_in_contact;
 mod symmetric;
@@ -158,10 +160,7 @@ pub use certificate::{
     Certificate, WeightedSupport, distance_certificate, intersection_certificate, linear_cast_certificate,
     ray_cast_certificate,
 };
-pub use contact::{
-    Contact, ContactPoint, SignedDistance, SignedDistanceOptions, contact, contact_after, signed_distance,
-    signed_distance_with,
-};
+pub use contact::{Contact, ContactPoint, contact, contact_after};
 pub use derivative::{
     ClosestFeatures, ClosestVelocities, LinearCastGradient, MotionCastGradient, PairGradient, PairHessian,
     RayCastGradient, RigidMotionGradient, Smoothness,
@@ -177,7 +176,10 @@ pub use motion::{
     ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionHit, MotionIterate, MovingBall, Pose, RigidMotion,
     Trajectory, TurningPlane, motion_cast, motion_cast_with,
 };
-pub use options::{CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, RayCastOptions, StartInContact};
+pub use options::{
+    CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, RayCastOptions, SignedDistanceOptions,
+    StartInContact,
+};
 pub use ray::{Motion, Ray};
 pub use ray_cast::{ray_cast, ray_cast_with};
 #[cfg(feature = "rayon")]
@@ -185,10 +187,12 @@ pub use ray_casts::par_ray_casts;
 pub use ray_casts::ray_casts;
 pub use ray_exit::ray_exit;
 pub use result::{
-    Distance, Intersection, Iterate, LinearCast, LinearHit, Miss, Outcome, RayCast, RayExit, RayHit, Status,
+    Distance, Intersection, Iterate, LinearCast, LinearHit, Miss, Outcome, RayCast, RayExit, RayHit, SignedDistance,
+    Status,
 };
 pub use scene::{
     Among, Body, BodyContact, BodyDistance, BodyHit, PairContact, PairDistance, Scene, SceneAnyHit, SceneCast,
     SceneDistance, SceneError, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, Work,
 };
+pub use signed_distance::{signed_distance, signed_distance_with};
 pub use simplex::SubAlgorithm;

@@ -3,8 +3,8 @@
 use convex_support::{Posed, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 
-use crate::contact::signed_distance_of_any;
 use crate::shape::{Shape, WithoutLines};
+use crate::signed_distance::signed_distance_of_any;
 use crate::{Distance, DistanceOptions, LinearCastOptions, Motion, SignedDistance, SignedDistanceOptions, distance};
 
 /// Closing speeds below this many ε of the speed are of rounding: a normal is known to a few.

@@ -1,7 +1,7 @@
 //! Where a cast begins in contact, or within a few errors of it: whether that is a hit.
 //!
 //! What a cast knows of its start is known to the errors of the largest number in it. Looked at [once
-//! more](crate::gjk::near_contact_of()), a source may turn out to be apart from the target: then a ray that leaves or
+//! more](crate::separation::near_contact_of()), a source may turn out to be apart from the target: then a ray that leaves or
 //! slides by misses, and one that approaches hits a little later.
 
 use convex_support::numerics::bound::{raised, roundings};
@@ -11,7 +11,8 @@ use num_traits::Float;
 
 use super::{Cast, CastHit};
 use crate::body::PointPair;
-use crate::gjk::{Frame, FromContact, NearContact, look_after, near_contact_of};
+use crate::gjk::Frame;
+use crate::separation::{FromContact, NearContact, look_after, near_contact_of};
 use crate::shape::{Shape, WithoutLines};
 use crate::{Miss, Outcome, RayCastOptions, Status};
 

@@ -4,7 +4,8 @@ use convex_support::{SupportMap, Vector};
 use num_traits::Float as _;
 
 use super::manifold::manifold;
-use super::{Contact, ContactPoint, SignedDistanceOptions, signed_distance};
+use super::{Contact, ContactPoint};
+use crate::{SignedDistanceOptions, signed_distance};
 
 /// The contact of two shapes; `None` if they are farther apart than `within`. The options are those of the signed
 /// distance, but `within` takes the place of the limit; NaN is nearer than nothing. The normal of the last frame is a

@@ -9,7 +9,8 @@ use super::outline::{ContactPart, ContactPlane, Outline};
 use super::reduction::{Rank, WORTHWHILE, reduced};
 use super::result::MAX_POINTS;
 use super::surface::{Side, Surface};
-use super::{Contact, ContactPoint, SignedDistance};
+use super::{Contact, ContactPoint};
+use crate::SignedDistance;
 use crate::compiled_once::compiled_once;
 use crate::symmetric::{Across, axes_across, cross, dot};
 

@@ -2,55 +2,10 @@
 
 use convex_support::Vector;
 
-use crate::Status;
+use crate::SignedDistance;
 
 /// As many points as a manifold has.
 pub(super) const MAX_POINTS: usize = 4;
-
-/// The answer of [`signed_distance`](crate::signed_distance).
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[must_use]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct SignedDistance<V: Vector> {
-    /// The distance where the shapes are apart; where they overlap, minus the penetration depth: the length of the
-    /// shortest translation of `a` after which they have no interior point in common.
-    pub signed_distance: V::Scalar,
-    /// The signed distance is certainly not less: this is proved by a plane across [`normal`](Self::normal), or across
-    /// a vector near it that closest points give. Minus infinity where a support map returned numbers that are not
-    /// finite.
-    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
-    pub lower: V::Scalar,
-    /// The signed distance is certainly not more: two points of the shapes are this far apart, or a polytope within the
-    /// difference `A − B` reaches this far around zero. Infinity where a support map returned numbers that are not
-    /// finite.
-    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
-    pub upper: V::Scalar,
-    /// The unit vector from `b` to `a`. If `a` is moved along it by the depth, the shapes no longer overlap. Where
-    /// several ways out are equally short, it is the direction of one of them.
-    pub normal: V,
-    /// The point of `a` closest to `b`, or deepest in it. It is in `a` but for rounding, 8ε of the sizes of both shapes
-    /// and their offset, however the search ended: what is not known of the way out is in the bounds.
-    pub point_a: V,
-    /// The point of `b` such that `point_a − point_b` is the signed distance times the normal, in the same way.
-    pub point_b: V,
-    /// Whether the shapes have a point in common, touching included: whether `signed_distance` is not positive. It is
-    /// certain where `lower` and `upper` have the same sign.
-    pub overlap: bool,
-    /// How the search ended. The bounds hold in every case.
-    pub status: Status,
-    /// The number of support points computed of each shape.
-    pub iterations: usize,
-    /// The number of facets of the last polytope that did not have to be expanded, since no way out through them is
-    /// shorter. 0 where no polytope was needed.
-    pub unexpanded: usize,
-}
-
-impl<V: Vector> SignedDistance<V> {
-    /// The same of the shapes in the other order: from `b` to `a`.
-    pub fn reversed(self) -> Self {
-        Self { normal: -self.normal, point_a: self.point_b, point_b: self.point_a, ..self }
-    }
-}
 
 /// The answer of [`contact`](crate::contact).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,12 +2,9 @@
 //! [`intersects`](crate::intersects) (the paper's Algorithm 2).
 
 mod boxes;
-mod faces;
-mod near_contact;
 mod next_direction;
 mod order;
 mod progress;
-mod room;
 mod start;
 mod state;
 
@@ -19,10 +16,8 @@ use crate::observer::Observer;
 use crate::unit::{lost_to_underflow, power_of_two_near, reciprocal_of_power};
 use crate::{Status, SubAlgorithm};
 pub(crate) use boxes::{BoxesMeet, boxes};
-pub(crate) use near_contact::{NEAR, NearContact, is_near_contact, near_contact, near_contact_of};
 use next_direction::NextDirection;
 pub(crate) use progress::Progress;
-pub(crate) use room::{FromContact, across_corners, faces_of_simplex, look_after, room_around_zero};
 pub(crate) use start::first_direction;
 pub(crate) use state::Gjk;
 

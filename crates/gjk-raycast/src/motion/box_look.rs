@@ -12,9 +12,9 @@ use super::boxes::{Block, BoxFacet, Boxes, vector};
 use super::instant::{Instant, Limits, NEAR};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
-use crate::contact::Uncertainty;
 use crate::double::array;
 use crate::gjk::rounding;
+use crate::separation::Uncertainty;
 use crate::unit::is_moderate;
 
 /// As a part of the way from zero's foot to the sides of a facet, how deep zero may be behind it without being nearer

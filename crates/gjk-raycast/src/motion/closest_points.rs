@@ -11,8 +11,8 @@ use num_traits::Float;
 use super::instant::{Closeness, IN_PLANE, Instant, LONG, NEAR};
 use super::moving_pair::MovingPair;
 use crate::body::{Pair, TracedSupport as _};
-use crate::contact::Uncertainty;
 use crate::gjk::rounding;
+use crate::separation::Uncertainty;
 
 /// A plane between the closest points of two cores, lengths in the world's unit.
 struct Between<V: Vector> {

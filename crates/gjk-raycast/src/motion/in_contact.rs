@@ -24,8 +24,8 @@ use convex_support::{Posed, Scalar, Vector};
 use super::instant::Instant;
 use super::moving_pair::MovingPair;
 use crate::SignedDistanceOptions;
-use crate::contact::signed_distance_of_any;
 use crate::shape::WithoutLines;
+use crate::signed_distance::signed_distance_of_any;
 use crate::symmetric::axes_across;
 
 impl<V: Vector> MovingPair<'_, V> {

@@ -14,8 +14,8 @@ use super::moving_body::MovingBody;
 use super::placed::Placed;
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::body::{Pair, Shapes, TracedSupport as _};
-use crate::contact::signed_distance_and_axis;
 use crate::gjk::rounding;
+use crate::signed_distance::signed_distance_and_axis;
 use crate::unit::{is_moderate, length_bound, lost_to_underflow};
 use crate::{DistanceOptions, SignedDistanceOptions, distance};
 

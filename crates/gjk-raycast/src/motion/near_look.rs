@@ -13,8 +13,8 @@ use super::instant::{IN_PLANE, Instant, LONG};
 use super::moving_pair::MovingPair;
 use super::placed::Placed;
 use crate::body::{Pair, PointPair};
-use crate::contact::Cores;
-use crate::gjk::{across_corners, faces_of_simplex, room_around_zero};
+use crate::separation::Cores;
+use crate::separation::{across_corners, faces_of_simplex, room_around_zero};
 use crate::simplex::{MAX_POINTS, project};
 use crate::unit::is_moderate;
 

@@ -7,7 +7,8 @@ use super::boundary::Boundary;
 use super::cores::{Cores, WayOut};
 use super::met::Met;
 use super::witness::{self, Ends};
-use super::{SignedDistanceOptions, basin, start};
+use super::{basin, first_polytope};
+use crate::SignedDistanceOptions;
 use crate::gjk::Gjk;
 use crate::observer::Observer;
 use crate::{Iterate, Status};
@@ -84,9 +85,9 @@ pub(super) fn expand<V: Vector>(
     let tolerance = relative * cores.size;
     // In its place from the beginning: it is a large object to move.
     let mut boundary = Boundary::new(relative.max(Scalar::EPSILON).as_f64());
-    let mut way = match start::start(cores, state, &mut boundary)? {
-        start::FirstPolytope::Flat(way) => return Some(flat(way, Met::new(cores, state))),
-        start::FirstPolytope::Full(way) => way,
+    let mut way = match first_polytope::first_polytope(cores, state, &mut boundary)? {
+        first_polytope::FirstPolytope::Flat(way) => return Some(flat(way, Met::new(cores, state))),
+        first_polytope::FirstPolytope::Full(way) => way,
     };
     let depth_limit = (options.depth_limit - cores.radius()) / cores.scale();
     let enough_of = |cores: &Cores<'_, V>, way: &WayOut<V>| tolerance.max(cores.rounding_along(way.u()));

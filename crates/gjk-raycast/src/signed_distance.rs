@@ -2,15 +2,12 @@
 
 use convex_support::{Core, SupportMap, Vector};
 
-use super::cores::Cores;
-use super::direct::direct;
-use super::separation::{OfOverlap, Wanted, separation};
-use super::{SignedDistance, SignedDistanceOptions};
-use crate::Iterate;
 use crate::body::{Both, Shapes};
 use crate::compiled_once::compiled_once;
 use crate::observer::Observer;
+use crate::separation::{Cores, OfOverlap, Wanted, direct, separation};
 use crate::shape::Shape;
+use crate::{Iterate, SignedDistance, SignedDistanceOptions};
 
 /// How far apart two shapes are, or how deep in one another, and which way out is the shortest.
 ///

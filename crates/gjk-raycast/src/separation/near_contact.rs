@@ -14,8 +14,8 @@ use convex_support::{Core, CoreKind, Rounding, Scalar, Vector};
 use num_traits::Float;
 
 use super::faces::{about_edge, across_faces, is_around_zero};
-use super::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::body::{AnyPair, Body as _, Both, Pair, PointPair, Shapes, TracedSupport as _};
+use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::observer::Observer;
 use crate::shape::Shape;
 use crate::simplex::MAX_POINTS;
@@ -103,39 +103,42 @@ pub(crate) fn near_contact_of<V: Vector>(
     max_iterations: usize,
 ) -> Option<NearContact<V>> {
     let (shapes, cores) = Both::<_, _>::new(a, b).in_order([a.core(), b.core()]);
-    let near = near_contact(&shapes, cores, None, max_iterations)?;
+    let pair: &mut AnyPair<'_, V> = &mut Pair::of_cores(&shapes, cores);
+    let offset = pair.core_a.origin - pair.core_b.origin;
+    let size = pair.size(offset);
+    let frame = Frame::new(pair, offset, size);
+    let near = near_contact(pair, &frame, size, None, max_iterations)?;
     Some(if shapes.is_swapped { near.reversed() } else { near })
 }
 
-/// Looks once more at bodies near contact that are [in order](Both::in_order); `None` where no plane can be found, or
-/// numbers are out of range.
+/// Looks once more at bodies of the given size near contact that are [in order](Both::in_order); `None` where no plane
+/// can be found, or numbers are out of range.
 ///
 /// A search that is over may have begun where all do: without an axis of its own, and to no tolerance but the noise.
 /// Then what it came to is gone on with, and else it is made once more.
 #[cold]
 #[inline(never)]
 pub(crate) fn near_contact<V: Vector>(
-    shapes: &dyn Shapes<Vector = V>,
-    cores: [Core<V>; 2],
+    pair: &mut AnyPair<'_, V>,
+    frame: &Frame<V>,
+    size: V::Scalar,
     begun: Option<&Gjk<V>>,
     max_iterations: usize,
 ) -> Option<NearContact<V>> {
-    let mut pair = Pair::of_cores(shapes, cores);
-    let offset = pair.core_a.origin - pair.core_b.origin;
-    let size = pair.size(offset);
-    let frame = Frame::new(&mut pair, offset, size);
     if !frame.error.is_finite() {
         return None;
     }
-    let seen = Known::new(&pair, &frame);
+    // As of a query that begins here.
+    pair.forget_hints();
+    let seen = Known::new(pair, frame);
     if begun.is_none()
         && max_iterations > 0
-        && let Some(points) = pair.closest_points(offset, size)
-        && let Some(known) = seen.between_closest(&mut pair, &frame, points)
+        && let Some(points) = pair.closest_points(frame.offset * frame.scale, size)
+        && let Some(known) = seen.between_closest(pair, frame, points)
     {
         return Some(known);
     }
-    seen.search(&mut pair, &frame, begun, size, max_iterations)
+    seen.search(pair, frame, begun, size, max_iterations)
 }
 
 /// GJK from the closest points, where they are known in closed form, or from the offset of the origins to the noise.
@@ -361,7 +364,9 @@ impl<V: Vector> Known<V> {
         if best.as_ref().is_none_or(is_doubtful) {
             let certain = |(best, _): &(SupportPlane<V>, _)| best.certain();
             if before.as_ref().map(certain) > best.as_ref().map(certain) {
-                (state, best) = (Gjk { iterations: state.iterations, ..begun }, before);
+                let iterations = state.iterations;
+                (state, best) = (begun, before);
+                state.iterations = iterations;
             }
         }
         best.map(|found| self.found(&state, end, frame, found))

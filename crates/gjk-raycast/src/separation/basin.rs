@@ -3,10 +3,10 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::SignedDistanceOptions;
 use super::boundary::Boundary;
 use super::cores::{Cores, Vertex, WayOut};
 use super::newton::{FoldSide, Piece};
+use crate::SignedDistanceOptions;
 
 /// Newton's steps from one direction.
 const MAX_STEPS: usize = 12;

@@ -5,19 +5,38 @@
 //! look at bodies near contact, and an expanding polytope. Those who ask for the depth have a fourth one before them,
 //! the closed form for two boxes.
 
+mod basin;
+mod boundary;
+mod cores;
+mod direct;
+mod expansion;
+mod faces;
+mod first_polytope;
+mod met;
+mod near_contact;
+mod newton;
+mod orientation;
+mod peeled;
+mod room;
+mod witness;
+mod zonotope;
+
 use convex_support::numerics::bound::least;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::cores::{ClosedForm, Cores, slack};
-use super::expansion::{Expanded, expand};
-use super::met::Met;
-use super::witness::Ends;
-use super::{SignedDistance, SignedDistanceOptions};
 use crate::body::{Pair, PointPair};
-use crate::gjk::{End, Gjk, NearContact};
+use crate::gjk::{End, Gjk};
 use crate::observer::Observer;
-use crate::{Distance, Status, SubAlgorithm};
+use crate::{Distance, SignedDistance, SignedDistanceOptions, Status, SubAlgorithm};
+use cores::{ClosedForm, slack};
+pub(crate) use cores::{Cores, Uncertainty};
+pub(crate) use direct::direct;
+use expansion::{Expanded, expand};
+use met::Met;
+pub(crate) use near_contact::{NearContact, is_near_contact, near_contact_of};
+pub(crate) use room::{FromContact, across_corners, faces_of_simplex, look_after, room_around_zero};
+use witness::Ends;
 
 /// What a question wants to know of two bodies, and when the search may stop.
 #[derive(Clone, Copy)]
@@ -48,12 +67,12 @@ impl<V: Vector> Wanted<V> {
 
     /// Whether more is asked of bodies that overlap.
     #[inline(always)]
-    pub(super) fn is_depth(&self) -> bool {
+    fn is_depth(&self) -> bool {
         self.of_overlap != OfOverlap::Known
     }
 
     /// Whether the search is the one that any query would make.
-    pub(super) fn is_plain(&self) -> bool {
+    fn is_plain(&self) -> bool {
         !self.is_depth()
             && self.options.axis.is_none()
             && self.sub_algorithm == SubAlgorithm::Regions
@@ -71,7 +90,7 @@ pub(crate) struct Separation<V: Vector> {
     inner: V::Scalar,
     outer: V::Scalar,
     /// The unit vector into the difference across which a plane proves the outer one.
-    pub(super) axis: V,
+    pub(crate) axis: V,
     points: PointPair<V>,
     /// Whether the bodies have a point in common, to the error it is known to, where that is not told by the depth.
     overlap: Option<bool>,
@@ -106,16 +125,18 @@ pub(crate) fn separation<V: Vector>(
     // Where the closest points are known, there is nothing to search near contact.
     if let Some((_, v)) = closest
         && cores.is_near(v.length())
-        && let Some(known) = cores.look_near(wanted, None)
+        && cores.look_near(wanted, None)
+        && let Some(near) = &cores.near
     {
-        return Separation::of_near_contact(cores, &known);
+        return Separation::of_near_contact(cores, near);
     }
     let end = cores.approach(wanted, &mut state, closest, observer);
     if closest.is_none()
         && cores.are_near(&mut state)
-        && let Some(known) = cores.look_near(wanted, Some(&state))
+        && cores.look_near(wanted, Some(&state))
+        && let Some(near) = &cores.near
     {
-        return Separation::of_near_contact(cores, &known);
+        return Separation::of_near_contact(cores, near);
     }
     let is_known = if wanted.is_depth() {
         end == End::Separated && cores.is_well_apart(state.length)
@@ -275,7 +296,7 @@ impl<V: Vector> Separation<V> {
 
     /// The signed distance.
     #[inline]
-    pub(super) fn signed_distance(&self, cores: &Cores<'_, V>) -> SignedDistance<V> {
+    pub(crate) fn signed_distance(&self, cores: &Cores<'_, V>) -> SignedDistance<V> {
         let (lower, upper, is_narrow) = self.bounds(cores);
         // Numbers that are not finite, or contradict one another, are of a support map that is none, and bound nothing.
         let is_bounded = lower.is_finite() && upper.is_finite() && lower <= upper;

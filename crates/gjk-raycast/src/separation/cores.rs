@@ -4,11 +4,12 @@ use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Core, Rounding, Scalar, Vector};
 use num_traits::Float as _;
 
+use super::near_contact::{NEAR, NearContact, is_near_contact, near_contact};
 use super::peeled::{Peeled, without_ball};
-use super::separation::{OfOverlap, Wanted};
 use super::zonotope::{Zonotope, parallelotope};
+use super::{OfOverlap, Wanted};
 use crate::body::{AnyPair, Body as _, Pair, PointPair, Shapes, TracedSupport as _};
-use crate::gjk::{End, Frame, Gjk, GjkOptions, NEAR, NearContact, first_direction, gjk, is_near_contact, near_contact};
+use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::observer::Observer;
 use crate::symmetric::Symmetric;
 use crate::unit::lost_to_underflow;
@@ -248,21 +249,23 @@ impl<'a, V: Vector> Cores<'a, V> {
         !are_deep && is_near_contact(state, &self.frame)
     }
 
-    /// Looks at bodies near contact once more, perhaps after a search. What it tells, if there is no more to know.
-    pub(super) fn look_near(&mut self, wanted: &Wanted<V>, state: Option<&Gjk<V>>) -> Option<NearContact<V>> {
+    /// Looks at bodies near contact once more, perhaps after a search. Whether there is no more to know than that tells.
+    pub(super) fn look_near(&mut self, wanted: &Wanted<V>, state: Option<&Gjk<V>>) -> bool {
         if wanted.of_overlap == OfOverlap::RoughDepth {
-            return None;
+            return false;
         }
         // A search that ended at the limit may have gone farther.
         let limit = self.limit(wanted) + self.frame.error;
         let begun = state.filter(|state| wanted.is_plain() && !(state.lower > limit));
         let before = begun.map_or(0, |state| state.iterations);
         let left = before + wanted.options.max_iterations.saturating_sub(self.iterations);
-        let near = near_contact(self.pair.shapes, [self.pair.core_a, self.pair.core_b], begun, left)?;
+        // The cores may be without balls, which are in their radii then.
+        let frame = Frame { radius: self.pair.radius() * self.frame.per_unit, ..self.frame };
+        let size = self.size * self.frame.scale;
+        self.near = near_contact(&mut self.pair, &frame, size, begun, left);
+        let Some(near) = &self.near else { return false };
         self.iterations += near.iterations.saturating_sub(before);
-        self.near = Some(near);
-        let is_all = if wanted.is_depth() { near.is_closed() } else { near.is_settled(left) };
-        is_all.then_some(near)
+        if wanted.is_depth() { near.is_closed() } else { near.is_settled(left) }
     }
 
     /// Whether the error at hand will do for cores that are so far apart: it is little beside that, and beside what is

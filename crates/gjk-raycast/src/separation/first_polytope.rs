@@ -22,7 +22,7 @@ pub(super) enum FirstPolytope<V: Vector> {
 /// Cores that are well in one another have led to a simplex that is thicker than rounding. As long as points span no
 /// volume, those farthest both ways across them are looked for, and the farther one is added.
 #[inline]
-pub(super) fn start<V: Vector>(
+pub(super) fn first_polytope<V: Vector>(
     cores: &mut Cores<'_, V>,
     state: &Gjk<V>,
     boundary: &mut Boundary<V>,

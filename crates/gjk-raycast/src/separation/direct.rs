@@ -3,10 +3,11 @@
 use convex_support::{Core, Scalar, Vector};
 use num_traits::Float as _;
 
-use super::SignedDistance;
 use super::cores::{error_of_points, slack};
+use super::near_contact::NEAR;
+use crate::SignedDistance;
 use crate::body::{Pair, Shapes, TracedSupport as _};
-use crate::gjk::{NEAR, rounding};
+use crate::gjk::rounding;
 use crate::observer::Observer;
 use crate::{Iterate, Status};
 

@@ -7,9 +7,9 @@ use convex_support::numerics::bound::{raised, raised_vector, roundings, rounding
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use super::Frame;
 use super::near_contact::{begin, go_on};
 use crate::body::{AnyPair, Both, Pair, PointPair};
+use crate::gjk::Frame;
 use crate::shape::Shape;
 use crate::simplex::{MAX_POINTS, cross};
 use crate::symmetric::axes_across;
