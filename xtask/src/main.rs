@@ -36,7 +36,7 @@ enum Task {
     Validate(validate::Scope),
     /// Prove answers by their certificates, in interval arithmetic that shares no solver and no shape with the crates.
     ///
-    /// `cargo xtask query --certify FILE | cargo xtask prove -`; `docs/certificates.md` says what is proved, and how.
+    /// `cargo xtask query --certify FILE | cargo xtask prove -`; `docs/evidence.md` says what is proved, and how.
     ///
     /// Exit status: 0 if every line is proved, 1 if some line is not proved or is disproved, 2 if a file could not be
     /// read.
@@ -54,7 +54,7 @@ enum Task {
     ///
     /// Exit status: 0, or 1 if a note or page has a link that leads nowhere, or 2 if the documentation does not build.
     Docs,
-    /// Measure what importing each crate alone costs, and write `docs/footprint.md`: packages, build time, code size.
+    /// Measure what importing each crate alone costs, and write the table of `docs/choosing-a-method.md`: packages, build time, code size.
     Footprint {
         /// Where the programs are built; emptied first.
         #[arg(long, value_name = "FOLDER", default_value = "target/footprint")]
