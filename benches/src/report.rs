@@ -174,7 +174,8 @@ pub fn ours(rows: &[Row]) -> String {
             rows_of_it.filter_map(|row| Some((row.case, row.ns / find(rows, row, than)?.ns))).collect()
         });
         if ratios.iter().any(|ratios| !ratios.is_empty()) {
-            let _ = writeln!(text, "| {} | {} |", workload.question(), ratios.map(|ratios| ratios.to_string()).join(" | "));
+            let _ =
+                writeln!(text, "| {} | {} |", workload.question(), ratios.map(|ratios| ratios.to_string()).join(" | "));
         }
     }
     text
@@ -191,7 +192,8 @@ fn table(rows: &[Row], workload: Workload) -> String {
         let _ = write!(text, "| {} |", double.case);
         for ours in [Some(double), find(&rows, double, Method::OursF32)].into_iter().flatten() {
             let peer = fastest_correct(&rows, ours);
-            let theirs = peer.map_or_else(|| "none".to_owned(), |peer| format!("{}, {}", cell(peer), library(peer.method)));
+            let theirs =
+                peer.map_or_else(|| "none".to_owned(), |peer| format!("{}, {}", cell(peer), library(peer.method)));
             let ratio = peer.map_or_else(|| "-".to_owned(), |peer| format!("{:.2}", ours.ns / peer.ns));
             let _ = write!(text, " {} | {theirs} | {ratio} |", cell(ours));
         }

@@ -85,7 +85,8 @@ fn recorded() -> io::Result<()> {
     let rows: Vec<Row> =
         std::fs::read_to_string(note::path("performance.csv"))?.lines().skip(1).filter_map(Row::parse).collect();
     let page = std::fs::read_to_string(note::path("comparison.md"))?;
-    let measured = note::part(&page, "ratios").and_then(|part| part.lines().find(|line| line.starts_with("Measured on")));
+    let measured =
+        note::part(&page, "ratios").and_then(|part| part.lines().find(|line| line.starts_with("Measured on")));
     parts(&rows, measured.unwrap_or_default())
 }
 

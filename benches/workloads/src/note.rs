@@ -39,7 +39,8 @@ mod tests {
     #[test]
     fn a_part_is_replaced_and_nothing_else() {
         let note = std::env::temp_dir().join(format!("note-{}.md", std::process::id()));
-        fs::write(&note, "Before.\n<!-- times, by a program -->\nold\n<!-- end of times -->\nAfter.\n").expect("written");
+        fs::write(&note, "Before.\n<!-- times, by a program -->\nold\n<!-- end of times -->\nAfter.\n")
+            .expect("written");
         write(&note, "times", "| new |\n").expect("there is such a part");
         let page = fs::read_to_string(&note).expect("it was written");
         let refused = write(&note, "ratios", "").is_err();

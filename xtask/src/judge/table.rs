@@ -183,7 +183,8 @@ impl Report<'_> {
 
     /// How each was asked, and which error is not held against it.
     fn settings(&self) -> String {
-        let mut text = "| library | how it is asked | error allowed: the greatest of these |\n|---|---|---|\n".to_owned();
+        let mut text =
+            "| library | how it is asked | error allowed: the greatest of these |\n|---|---|---|\n".to_owned();
         for Witness { name, tolerance, of_motion, rounding, settings, .. } in self.witnesses {
             let tolerance = if *tolerance > 0.0 { format!("{tolerance:e}; ") } else { String::new() };
             let motion = if *of_motion > 0.0 { format!("{of_motion:e} of the motion; ") } else { String::new() };
@@ -206,7 +207,9 @@ pub fn markdown(csv: &str) -> String {
              |---|---|---:|---:|---:|---:|---:|---:|---:|"
         );
         for row in rows.iter().filter(|row| row[0].starts_with(SUITE) == of_suite) {
-            let &[set, who, asked, _, inaccurate, disproved, none, _, _, most, worst, ns] = row.as_slice() else { continue };
+            let &[set, who, asked, _, inaccurate, disproved, none, _, _, most, worst, ns] = row.as_slice() else {
+                continue;
+            };
             let error = |cell: &str| match cell.parse::<f64>() {
                 Ok(0.0) => "0".to_owned(),
                 Ok(error) => format!("{error:.0e}"),

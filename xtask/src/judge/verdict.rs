@@ -103,7 +103,9 @@ fn judge_cast(Claim { flag, scalar }: Claim, fact: Fact, bodies: &Bodies, allowe
             }
             Verdict::by_length([along(upper, time), early[1].max(along(lower, time))], allowed, reach)
         }
-        _ => Verdict { outcome: Outcome::Inaccurate, error: None, evidence: "neither hit nor miss was said".to_owned() },
+        _ => {
+            Verdict { outcome: Outcome::Inaccurate, error: None, evidence: "neither hit nor miss was said".to_owned() }
+        }
     }
 }
 

@@ -43,7 +43,7 @@ pub(super) fn headline(records: &[Record]) -> Headline {
         name: "headline".to_owned(),
         marks: marks(&points, |who| !is_ours(who)),
         caption: "Filled marks are measured in this run: ours, in double (f64) and single (f32) precision. Hollow marks are other libraries as \
-                  recorded in docs/judge.md; ✗ counts hits, misses and overlaps that are disproved. An error is a length over the size of the scene; \
+                  recorded in docs/comparison.md; ✗ counts hits, misses and overlaps that are disproved. An error is a length over the size of the scene; \
                   of ellipsoids, stiff ones among them, it is relative, that of 1 + margin or of the volume. Near contact: distances of a \
                   millionth of the scene."
             .to_owned(),

@@ -148,7 +148,7 @@ fn measured(scope: &Scope) -> (String, Vec<Measured>) {
 fn measured(scope: &Scope) -> (String, Vec<Measured>) {
     let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs");
     let csv = fs::read_to_string(format!("{docs}/performance.csv")).unwrap_or_default();
-    let when = fs::read_to_string(format!("{docs}/performance.md")).unwrap_or_default();
+    let when = fs::read_to_string(format!("{docs}/comparison.md")).unwrap_or_default();
     let when = when.lines().find(|line| line.starts_with("Measured on")).unwrap_or("Measured earlier.").to_owned();
     let parse = |line: &str| {
         let fields: Vec<&str> = line.split(',').collect();
