@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
 use clap::{Args, Parser, Subcommand};
-use xtask::{bits, docs, footprint, fuzz, prove, query, validate};
+use xtask::{bits, docs, footprint, fuzz, museum, prove, query, validate};
 
 /// Answers query files, validates the crates against true answers, and draws what they do.
 #[derive(Debug, Parser)]
@@ -50,6 +50,10 @@ enum Task {
     ///
     /// Exit status: 0 if every hash is equal, 1 if some are not, 2 if the file of hashes could not be read or written.
     Bits(bits::Choice),
+    /// Ask about poses out of public trackers, where this or that library was wrong.
+    ///
+    /// Exit status: 0 if every answer is right, 1 if some answer is wrong, 2 if a file could not be read or written.
+    Museum(museum::Choice),
     /// Build the API documentation of the libraries as docs.rs does, and check that no link leads nowhere.
     ///
     /// Exit status: 0, or 1 if a note or page has a link that leads nowhere, or 2 if the documentation does not build.
@@ -95,6 +99,7 @@ fn main() -> ExitCode {
         Task::Prove(choice) => prove::run(&choice),
         Task::Fuzz(scope) => fuzz::run(&scope),
         Task::Bits(choice) => bits::run(&choice),
+        Task::Museum(choice) => museum::run(choice),
         Task::Docs => docs::run(),
         Task::Footprint { output } => footprint::run(&output),
         Task::Judge(_) | Task::Growth(_) => study("peers"),

@@ -55,14 +55,14 @@ impl Row {
         self.none += usize::from(asked);
     }
 
-    /// Its mark in the figure; none where no length was asked.
+    /// Its mark in the figure.
     #[must_use]
     pub fn point(&self) -> Option<Point> {
         Some(Point {
             set: self.set.to_owned(),
             who: self.peer.clone(),
             disproved: self.disproved,
-            error: quantile(&self.errors, 0.99)?,
+            error: quantile(&self.errors, 0.99).unwrap_or(f64::NAN),
             ns: quantile(&self.times, 0.5)?,
         })
     }
@@ -133,15 +133,10 @@ impl Report<'_> {
         fs::write(note::path("figures/judge.svg"), self.figure())
     }
 
-    /// The figure as a picture of its own, which has a ground.
+    /// The figure as a picture of its own.
     fn figure(&self) -> String {
-        let marks = figure::marks(&figure::read(&self.csv()), |who| !self.is_measured(who));
-        marks.svg().replacen("<svg ", "<svg style=\"background:#fff;color:#1c1c1e\" ", 1)
-    }
-
-    /// Whether somebody was asked in this run.
-    fn is_measured(&self, who: &str) -> bool {
-        self.witnesses.iter().any(|witness| witness.name == who && witness.is_measured)
+        let about_ellipsoids = figure::recorded().into_iter().filter(|point| !SETS.contains(&point.set.as_str()));
+        figure::panels(&figure::read(&self.csv()).into_iter().chain(about_ellipsoids).collect::<Vec<_>>()).svg(2, "")
     }
 
     /// The rows in the order of the questions, and of those who answer.

@@ -162,7 +162,7 @@ fn table(output: &mut impl Write, title: &str, groups: &BTreeMap<String, Group>)
 }
 
 /// Writes rows under their headers; the first columns are names and the others numbers.
-pub(super) fn aligned(output: &mut impl Write, headers: &[&str], rows: &[Vec<String>], names: usize) -> io::Result<()> {
+pub(crate) fn aligned(output: &mut impl Write, headers: &[&str], rows: &[Vec<String>], names: usize) -> io::Result<()> {
     let width = |k: usize| rows.iter().map(|row| row[k].chars().count()).chain([headers[k].len()]).max().unwrap_or(0);
     let widths: Vec<usize> = (0..headers.len()).map(width).collect();
     let headers = headers.iter().map(|header| (*header).to_owned()).collect();
