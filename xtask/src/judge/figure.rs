@@ -66,11 +66,10 @@ pub fn panels(points: &[Point]) -> Panels {
     Panels { title: "Error against time".to_owned(), panels: sets.filter_map(panel).collect() }
 }
 
-/// What stands above a panel; an error that is no length is named.
+/// What stands above a panel.
 fn title(set: &str) -> String {
     match set {
         "overlap" => "overlap: yes or no".to_owned(),
-        set if OF_ELLIPSOIDS.iter().any(|(_, known)| *known == set) => format!("{set} (relative)"),
         set => asked_as(set).to_owned(),
     }
 }

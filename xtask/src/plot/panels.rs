@@ -50,8 +50,9 @@ const STEP: [f64; 2] = [WIDTH + 14.0, HEIGHT + 34.0];
 /// Where the first panel begins: room for the numbers of the vertical axis, and for titles.
 const LEFT: f64 = 80.0;
 const TOP: f64 = 62.0;
-/// Room below the last panel, for numbers and the title of the axis.
-const BOTTOM: f64 = 46.0;
+/// Room beside the last panel, for half of a number, and below it for the title of the axis.
+const RIGHT: f64 = 14.0;
+const BOTTOM: f64 = 26.0;
 const FONT: f64 = 15.0;
 /// About the width of a letter of a name.
 const LETTER: f64 = 8.3;
@@ -66,7 +67,7 @@ impl Panels {
     #[must_use]
     pub fn svg(&self, columns: usize, class: &str) -> String {
         let rows = (self.panels.len() + 1).div_ceil(columns);
-        let size = [LEFT + STEP[0] * columns as f64, TOP + STEP[1] * rows as f64 + BOTTOM];
+        let size = [LEFT + STEP[0] * columns as f64 + RIGHT, TOP + STEP[1] * rows as f64 + BOTTOM];
         let mut svg = format!(
             "<svg class=\"{class}\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{2}\" xmlns=\"http://www.w3.org/2000/svg\" \
              font-family=\"system-ui, 'Segoe UI', 'DejaVu Sans', sans-serif\" font-size=\"{FONT}\">\n\
@@ -79,7 +80,7 @@ impl Panels {
         for (k, panel) in self.panels.iter().enumerate() {
             let corner = corner(k, columns);
             let is_lowest = k + columns >= self.panels.len();
-            frame(&mut svg, &panel.title, corner, k % columns == 0, is_lowest);
+            frame(&mut svg, panel, corner, k % columns == 0, is_lowest);
             panel.draw(&mut svg, corner);
         }
         key(&mut svg, corner(self.panels.len(), columns));
@@ -114,12 +115,12 @@ fn down(error: f64) -> f64 {
 }
 
 /// Title, lines and numbers of a panel.
-fn frame(svg: &mut String, title: &str, [left, top]: [f64; 2], is_leftmost: bool, is_lowest: bool) {
+fn frame(svg: &mut String, panel: &Panel, [left, top]: [f64; 2], is_leftmost: bool, is_lowest: bool) {
     let _ = writeln!(
         svg,
         "<text x=\"{left:.1}\" y=\"{:.1}\" font-weight=\"600\" font-size=\"16\">{}</text>",
         top - 7.0,
-        escape(title)
+        escape(&panel.title)
     );
     let mut lines = String::new();
     for power in TIME_TICKS {
@@ -136,7 +137,9 @@ fn frame(svg: &mut String, title: &str, [left, top]: [f64; 2], is_leftmost: bool
     }
     for power in ERROR_TICKS {
         let y = top + down(10f64.powi(power));
-        let _ = write!(lines, "M{left:.1} {y:.1}h{WIDTH}");
+        if panel.has_errors() {
+            let _ = write!(lines, "M{left:.1} {y:.1}h{WIDTH}");
+        }
         if is_leftmost {
             let label = if power == 0 { "1".to_owned() } else { format!("10{}", raised(power)) };
             let _ =
@@ -147,6 +150,11 @@ fn frame(svg: &mut String, title: &str, [left, top]: [f64; 2], is_leftmost: bool
 }
 
 impl Panel {
+    /// Whether its answers are numbers; otherwise its marks stand in rows.
+    fn has_errors(&self) -> bool {
+        self.marks.iter().any(|mark| !mark.error.is_nan())
+    }
+
     /// Marks and their names.
     fn draw(&self, svg: &mut String, [left, top]: [f64; 2]) {
         let mut marks: Vec<&Mark> = self.marks.iter().collect();
@@ -169,11 +177,12 @@ impl Panel {
                 );
             }
             let weight = if mark.is_ours { " font-weight=\"600\"" } else { "" };
+            // A name on the left ends where it is to end, whatever the letters of a viewer.
+            let (at, anchor) = if area[2] <= x { (area[2], " text-anchor=\"end\"") } else { (area[0], "") };
             let _ = writeln!(
                 svg,
-                "{}<text x=\"{:.1}\" y=\"{:.1}\"{weight}>{}</text>",
+                "{}<text x=\"{at:.1}\" y=\"{:.1}\"{anchor}{weight}>{}</text>",
                 mark.shape([x, y]),
-                area[0],
                 area[3] - 3.5,
                 escape(label)
             );
@@ -186,10 +195,10 @@ impl Mark {
     fn label(&self) -> String {
         let mut label = self.name.clone();
         if self.disproved > 0 {
-            let _ = write!(label, ", {} false", self.disproved);
+            let _ = write!(label, ": {}", self.disproved);
         }
         if self.ns.log10() > TIMES[1] {
-            let _ = write!(label, " {} →", duration(self.ns));
+            let _ = write!(label, " {} →", rounded(self.ns));
         }
         label
     }
@@ -233,7 +242,8 @@ fn key(svg: &mut String, [left, top]: [f64; 2]) {
         (Some(mark(true, true, 0)), "ours, single precision"),
         (Some(mark(false, false, 0)), "another library, double"),
         (Some(mark(false, true, 0)), "another library, single"),
-        (Some(mark(false, false, 1)), "answers proved false"),
+        (Some(mark(false, false, 1)), "proved false: how many"),
+        (None, "Ellipsoids: relative error."),
         (None, "Lower is more accurate,"),
         (None, "further left is faster."),
     ];
@@ -243,6 +253,12 @@ fn key(svg: &mut String, [left, top]: [f64; 2]) {
         let x = if mark.is_some() { left + 24.0 } else { left + 4.0 };
         let _ = writeln!(svg, "{shape}<text x=\"{x:.1}\" y=\"{y:.1}\">{text}</text>");
     }
+}
+
+/// A time of one or two digits.
+fn rounded(ns: f64) -> String {
+    let unit = 10f64.powf(ns.log10().floor() - 1.0);
+    duration((ns / unit).round() * unit)
 }
 
 fn overlap(a: Area, b: Area) -> bool {
@@ -327,23 +343,19 @@ fn meet((a, b): ([f64; 2], [f64; 2]), (c, d): ([f64; 2], [f64; 2])) -> bool {
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
-/// Places within an area for a name of this width beside a point.
+/// Places within an area for a name of this width: to either side of a point, or above or below it.
 fn candidates([x, y]: [f64; 2], width: f64, within: Area) -> Vec<Area> {
-    let height = FONT + 2.5;
-    let place = |left: f64, top: f64| [left, top, left + width, top + height];
+    let (half, away) = ((FONT + 2.5) / 2.0, RADIUS + 3.0);
     let inside = |a: &Area| a[0] >= within[0] && a[2] <= within[2] && a[1] >= within[1] && a[3] <= within[3];
-    // Thirty-two directions, those to the sides, above and below first.
-    let directions = (0..32).map(|k| f64::from(k) * std::f64::consts::PI / 16.0);
-    let mut directions: Vec<[f64; 2]> = directions.map(|angle| [angle.cos(), angle.sin()]).collect();
-    directions.sort_by(|a, b| (a[0] * a[1]).abs().total_cmp(&(b[0] * b[1]).abs()));
-    let beside = |away: f64| {
-        let at = move |[along, up]: [f64; 2]| {
-            let (center, middle) = (x + along * (8.0 + away + width / 2.0), y + up * (6.0 + away + height / 2.0));
-            place(center - width / 2.0, middle - height / 2.0)
-        };
-        directions.clone().into_iter().map(at)
+    let place = |left: f64, middle: f64| [left, middle - half, left + width, middle + half];
+    // The least shift first.
+    let shifts = (0..=48).map(|k| f64::from(if k % 2 == 0 { -2 * k } else { 2 * k + 2 }));
+    let beside = |dy: f64| {
+        let sides = [x + away, x - away - width].map(|left| place(left, y + dy));
+        let across = (0..=4).map(move |k| place(x - width * f64::from(k) / 4.0, y + dy));
+        sides.into_iter().chain(across.filter(move |_| dy.abs() > half + RADIUS))
     };
-    [0.0, 5.0, 10.0, 16.0, 24.0, 34.0, 46.0, 60.0, 76.0, 94.0].into_iter().flat_map(beside).filter(inside).collect()
+    shifts.flat_map(beside).filter(inside).collect()
 }
 
 #[cfg(test)]
@@ -386,7 +398,7 @@ mod tests {
             is_single: true,
             disproved,
         };
-        assert_eq!(mark(900.0, 2).label(), "theirs, 2 false");
+        assert_eq!(mark(900.0, 2).label(), "theirs: 2");
         assert!(mark(900.0, 2).shape([0.0, 0.0]).contains("class=\"false\""), "a cross");
         assert_eq!(mark(7e6, 0).label(), "theirs 7 ms →");
         let panels = Panels {
