@@ -2,7 +2,7 @@
 """Ellipsoids around points, and margins of ellipsoids: the suite's file of them, and what others answer.
 
     benches/peers/ellipsoids.py --suite      # writes xtask/data/suite/ellipsoids.jsonl; needs numpy and mpmath
-    benches/peers/ellipsoids.py --record     # asks ours and the others, and writes docs/ellipsoids.csv
+    benches/peers/ellipsoids.py --record     # asks ours and the others, and writes docs/ellipsoids.csv and the table
 
 Twenty clouds of a hundred points in space, normally distributed, and a hundred pairs of ellipsoids with semi-axes of 0.1 to
 1. Truths are in fifty digits: of a cloud by Newton's method on its contact points, held against all points; of a margin by its
@@ -26,6 +26,7 @@ import numpy as np
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 SUITE = os.path.join(ROOT, "xtask", "data", "suite", "ellipsoids.jsonl")
 CSV = os.path.join(ROOT, "docs", "ellipsoids.csv")
+NOTE = os.path.join(ROOT, "docs", "comparison.md")
 
 
 def enclosing_truth(points):
@@ -173,6 +174,20 @@ def by_eigenvalues(case):
     return best, margin
 
 
+def note(rows):
+    """Writes the table into docs/comparison.md."""
+    said = lambda ns: f"{ns:.0f} ns" if ns < 1e3 else f"{ns / 1e3:.0f} µs" if ns < 1e6 else f"{ns / 1e6:.0f} ms"
+    lines = ["| question | program | asked | error of 99 in 100 below | worst error | median time |", "|---|---|---:|---:|---:|---:|"]
+    lines += [f"| {r[0]} | {r[1]} | {r[2]} | {r[9]:.0e} | {r[10]:.0e} | {said(r[11])} |" for r in rows]
+    processor = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "")
+    lines += ["", f"Measured on {processor}, {time.strftime('%Y-%m-%d', time.gmtime())}, on a busy machine."]
+    page = open(NOTE, encoding="utf-8").read()
+    begin, end = "<!-- ellipsoids, written by `ellipsoids.py` -->", "<!-- end of ellipsoids -->"
+    head, rest = page.split(begin)
+    text = "\n".join(lines)
+    open(NOTE, "w", encoding="utf-8").write(f"{head}{begin}\n\n{text}\n\n{end}{rest.split(end)[1]}")
+
+
 def record():
     rows = []
 
@@ -199,6 +214,7 @@ def record():
     answers = [by_eigenvalues(case) for case in pairs]
     add("margin of ellipsoids", "numpy eigenvalues", [ns for ns, _ in answers],
         [relative(abs(m - t), t) for (_, m), t in zip(answers, truths)], 1e-7)
+    note(rows)
     with open(CSV, "w") as file:
         file.write("question,who,asked,right,inaccurate,disproved,no answer,undecided,median error,99th percentile,worst,median time\n")
         for row in rows:
