@@ -29,16 +29,13 @@ const TUNED: Build = Build { profile: "bench", flags: "", folder: "" };
 const OTHERS: [(Build, &str); 2] = [
     (
         Build { profile: "release", flags: "", folder: "" },
-        "## As users build it\n\n\
-         All other tables are of the profile `bench` (thin LTO, one codegen unit). This one has the times in cargo's own `release` profile (no LTO between crates, 16 codegen units)\n\
-         over those in `bench`, from alternating runs: the geometric mean of the ratios, and the cases with the least and the greatest.\n",
+        "Times in cargo's own `release` profile (no LTO between crates, 16 codegen units) over those in `bench`, from alternating runs: the geometric mean,\n\
+         and the cases with the least and the greatest.\n",
     ),
     (
         Build { profile: "bench", flags: "-C no-vectorize-slp", folder: "../target/no-slp" },
-        "## Without pairs of numbers in one register\n\n\
-         The compiler packs neighbouring coordinates into vector registers where it can (LLVM's SLP vectorizer). Vectors of three numbers\n\
-         are then written to memory in one way and read in another, which makes the processor wait. `RUSTFLAGS=\"-C no-vectorize-slp\"` turns the packing off.\n\
-         The table has the times with this flag over those without it, in the profile `bench`.\n",
+        "Times in `bench` with `RUSTFLAGS=\"-C no-vectorize-slp\"` over those without it. LLVM packs neighbouring coordinates into registers where it can; a vector\n\
+         of three is then written to memory in one way and read in another, and the processor waits.\n",
     ),
 ];
 
@@ -74,7 +71,7 @@ fn table(times: &Times, tuned: &Times) -> String {
             let of_both = times.iter().filter(|([of, _, by], _)| of == workload.name() && by == method.name());
             of_both.filter_map(|(key, time)| Some((key[1].as_str(), time / tuned.get(key)?))).collect()
         });
-        text += &format!("| {} | {} |\n", workload.name(), ratios.map(|ratios| ratios.to_string()).join(" | "));
+        text += &format!("| {} | {} |\n", workload.question(), ratios.map(|ratios| ratios.to_string()).join(" | "));
     }
     text
 }

@@ -25,21 +25,25 @@ pub fn csv(rows: &[Row]) -> String {
     text
 }
 
-/// Everything but the title: where it was measured, the ratios to the peers and among our own methods, `profiles` (a
-/// section of its own, or nothing), and a table for each workload.
+/// The part of the note on other libraries that has the ratios, the questions together and one by one.
 #[must_use]
-pub fn markdown(rows: &[Row], profiles: &str) -> String {
-    let mut text = format!("{}\n\n{}{}{profiles}{CELLS}", provenance(), beside_peers(rows), beside_ourselves(rows));
+pub fn ratios(rows: &[Row], measured: &str) -> String {
+    format!("{}{measured}\n", beside_peers(rows))
+}
+
+/// The part with a table for each question.
+#[must_use]
+pub fn times(rows: &[Row]) -> String {
+    let mut text = String::new();
     for workload in Workload::ALL.into_iter().filter(|workload| rows.iter().any(|row| row.workload == *workload)) {
         let _ = writeln!(text, "### {}\n\n{}", title(workload), table(rows, workload));
     }
-    text.truncate(text.trim_end().len());
-    text.push('\n');
     text
 }
 
 /// Processor, compiler, date and commit; what was not built.
-fn provenance() -> String {
+#[must_use]
+pub fn measured() -> String {
     let compiler = provenance::compiler().unwrap_or_else(|| "an unknown compiler".to_owned());
     let flags = if cfg!(target_feature = "avx2") { "with AVX2" } else { "baseline instruction set" };
     let commit = provenance::commit().map_or(String::new(), |commit| format!(", commit {commit}"));
@@ -48,66 +52,46 @@ fn provenance() -> String {
     let missing: Vec<_> = peers.into_iter().filter_map(|(name, built)| (!built).then_some(name)).collect();
     let missing = if missing.is_empty() { String::new() } else { format!(" Not built in: {}.", missing.join(", ")) };
     format!(
-        "Measured on {}, one thread, {flags}, profile `bench` (thin LTO, one codegen unit), {compiler}, on {}{commit}.{missing}",
+        "Measured on {}, one thread, {flags}, profile `bench` (thin LTO, one codegen unit), {compiler}, {}{commit}.{missing}",
         provenance::processor(),
         provenance::today()
     )
 }
 
-fn title(workload: Workload) -> &'static str {
-    match workload {
-        Workload::RayCast => "W1: ray cast",
-        Workload::LinearCast => "W2: linear cast",
-        Workload::DistanceFar => "W3: distance, 3 to 0.01 (relative error)",
-        Workload::DistanceNear => "W3: distance, 1e-6 (absolute error)",
-        Workload::Intersect => "W3b: intersection",
-    }
+fn title(workload: Workload) -> String {
+    let (question, count) = (workload.question(), workload.count());
+    let what = match workload {
+        Workload::RayCast => "rays at each body, relative error of λ",
+        Workload::LinearCast => "motions of each pair, relative error of the time",
+        Workload::DistanceFar => "pairs 3 to 0.01 apart, relative error",
+        Workload::DistanceNear => "pairs 1e-6 apart, absolute error",
+        Workload::Intersect => "pairs within 1/2 to 1/1024 of contact",
+    };
+    format!("{}{}: {count} {what}", question[..1].to_uppercase(), &question[1..])
 }
 
-/// How to read the tables of the workloads.
-const CELLS: &str = "\
-## All rows
-
-A cell is `ns / p99 error / wrong answers`. The error is the one that 99 % of the answers stay below; it is left out if the answer is yes or no. The number of wrong
-answers is left out if there are none. The time of the best right peer of either precision is bold.
-
-";
-
-/// How to read the table of ratios to peers.
-const BESIDE_PEERS: &str = "\
-The ratios are geometric means of ratios of times: below 1, ours is faster. A row is a shape or a pair of shapes of a workload. The *best right peer* of a row is the
-fastest other library that answers all its questions rightly in the same precision: parry's GJK, parry as its users call it, and in `f32`
-Box3D or Jolt. *Ahead* and *behind* count the rows in which ours is faster or slower than that peer. Rows that all other libraries get wrong (*no right peer*), or that ours
-gets wrong, are counted but not compared; parry's GJK is compared whatever it answers.
-Ours are the default options. The two lines of `line_crossing` time the closed form alone, and are not among *all rows*.
-[benches/README.md](../benches/README.md) says what the questions are, and which answers count as wrong. For depths, bodies that turn, coal, MuJoCo, FCL and the IPC toolkit see
-[judge.md](judge.md).
-
-";
-
-/// What is compared with the peers: a title, a workload, and a method of either precision.
+/// What is compared with other libraries: a title, a workload, and a method of either precision.
 const COMPARED: [(&str, Workload, [Method; 2]); 6] = [
-    ("W1 ray cast", Workload::RayCast, [Method::OursF64, Method::OursF32]),
-    ("W1 `line_crossing`", Workload::RayCast, [Method::ClosedF64, Method::ClosedF32]),
-    ("W2 linear cast", Workload::LinearCast, [Method::OursF64, Method::OursF32]),
-    ("W3 distance, 3 to 0.01", Workload::DistanceFar, [Method::OursF64, Method::OursF32]),
-    ("W3 distance, 1e-6", Workload::DistanceNear, [Method::OursF64, Method::OursF32]),
-    ("W3b intersection", Workload::Intersect, [Method::OursF64, Method::OursF32]),
+    ("ray cast", Workload::RayCast, [Method::OursF64, Method::OursF32]),
+    ("ray cast, by `line_crossing`", Workload::RayCast, [Method::ClosedF64, Method::ClosedF32]),
+    ("linear cast", Workload::LinearCast, [Method::OursF64, Method::OursF32]),
+    ("distance", Workload::DistanceFar, [Method::OursF64, Method::OursF32]),
+    ("near contact", Workload::DistanceNear, [Method::OursF64, Method::OursF32]),
+    ("overlap", Workload::Intersect, [Method::OursF64, Method::OursF32]),
 ];
 
-/// Ours beside the best right peer and beside parry's GJK: all rows, then each workload. Empty without peers.
+/// Ours beside the fastest correct library: all rows, then each workload. Empty without peers.
 fn beside_peers(rows: &[Row]) -> String {
     if !rows.iter().any(|row| row.method.is_peer()) {
         return String::new();
     }
     let mut text = String::from(
-        "## Beside the best right peer\n\n\
-         | | | ours / best right peer | ours / parry's GJK | ahead | behind | no right peer | ours wrong | behind in |\n\
-         |---|---|---:|---:|---:|---:|---:|---:|---|\n",
+        "| question | precision | our time / theirs | faster in | slower in | none correct | slower where |\n\
+         |---|---|---:|---:|---:|---:|---|\n",
     );
     for method in [Method::OursF64, Method::OursF32] {
         let ours: Vec<_> = rows.iter().filter(|row| row.method == method).collect();
-        text += &beside_peers_in("**all rows**", rows, &ours, false);
+        text += &beside_peers_in("**all**", rows, &ours, false);
     }
     for (title, workload, methods) in COMPARED {
         for method in methods {
@@ -115,42 +99,44 @@ fn beside_peers(rows: &[Row]) -> String {
             text += &beside_peers_in(title, rows, &ours, true);
         }
     }
-    format!("{text}\n{BESIDE_PEERS}")
+    text + "\n"
 }
 
 /// A line for some rows of ours, all of one precision, which ends with the names of those that are behind, if they are
 /// wanted. Empty for no rows.
 fn beside_peers_in(title: &str, rows: &[Row], ours: &[&Row], named: bool) -> String {
     let Some(precision) = ours.first().map(|row| row.method.precision()) else { return String::new() };
-    let (precision, gjk) = match precision {
-        Precision::Double => ("f64", Method::ParryGjkF64),
-        Precision::Single => ("f32", Method::ParryGjkF32),
-    };
-    let to_gjk: Ratios<'_> =
-        ours.iter().filter_map(|row| Some((row.case, row.ns / find(rows, row, gjk)?.ns))).collect();
     let right: Vec<_> = ours.iter().filter(|row| row.score.wrong() == 0).collect();
-    let matched: Vec<_> = right.iter().filter_map(|row| Some((row, best_right_peer(rows, row)?))).collect();
-    let to_best: Ratios<'_> = matched.iter().map(|(row, peer)| (row.case, row.ns / peer.ns)).collect();
+    let matched: Vec<_> = right.iter().filter_map(|row| Some((row, fastest_correct(rows, row)?))).collect();
+    let ratios: Ratios<'_> = matched.iter().map(|(row, peer)| (row.case, row.ns / peer.ns)).collect();
     let behind: Vec<_> = matched.iter().filter(|(row, peer)| row.ns > peer.ns).collect();
     let names: Vec<_> = behind
         .iter()
         .filter(|_| named)
-        .map(|(row, peer)| {
-            let name = peer.method.name().trim_end_matches(precision).trim_end();
-            format!("{} {:.2} ({name})", row.case, row.ns / peer.ns)
-        })
+        .map(|(row, peer)| format!("{} {:.2} ({})", row.case, row.ns / peer.ns, library(peer.method)))
         .collect();
-    let mean = |ratios: Ratios<'_>| if ratios.is_empty() { "-".to_owned() } else { format!("{:.2}", ratios.mean()) };
+    let mean = if ratios.is_empty() { "-".to_owned() } else { format!("**{:.2}**", ratios.mean()) };
     format!(
-        "| {title} | {precision} | **{}** | {} | {} | {} | {} | {} | {} |\n",
-        mean(to_best),
-        mean(to_gjk),
+        "| {title} | {} | {mean} | {} | {} | {} | {} |\n",
+        suffix(precision),
         matched.len() - behind.len(),
         behind.len(),
         right.len() - matched.len(),
-        ours.len() - right.len(),
         names.join(", "),
     )
+}
+
+/// The name of a precision.
+const fn suffix(precision: Precision) -> &'static str {
+    match precision {
+        Precision::Double => "f64",
+        Precision::Single => "f32",
+    }
+}
+
+/// A method without its precision.
+fn library(method: Method) -> &'static str {
+    method.name().trim_end_matches(suffix(method.precision())).trim_end()
 }
 
 /// What else was measured of the same workload and case.
@@ -160,7 +146,7 @@ fn find<'a>(rows: &'a [Row], of: &Row, method: Method) -> Option<&'a Row> {
 
 /// The fastest of the other libraries that answer the workload and case of a row rightly, all of it and in its
 /// precision.
-fn best_right_peer<'a>(rows: &'a [Row], of: &Row) -> Option<&'a Row> {
+fn fastest_correct<'a>(rows: &'a [Row], of: &Row) -> Option<&'a Row> {
     rows.iter()
         .filter(|row| row.workload == of.workload && row.case == of.case)
         .filter(|row| row.method.is_peer() && row.method.precision() == of.method.precision())
@@ -168,18 +154,16 @@ fn best_right_peer<'a>(rows: &'a [Row], of: &Row) -> Option<&'a Row> {
         .min_by(|a, b| a.ns.total_cmp(&b.ns))
 }
 
-/// Our methods beside one another.
-fn beside_ourselves(rows: &[Row]) -> String {
+/// The part with our methods beside one another: means of ratios, and the cases with the least and the greatest.
+#[must_use]
+pub fn ours(rows: &[Row]) -> String {
     const PAIRS: [(Method, Method); 4] = [
         (Method::OursF32, Method::OursF64),
         (Method::DynF64, Method::OursF64),
         (Method::OursF64, Method::ClosedF64),
         (Method::WarmF64, Method::OursF64),
     ];
-    let mut text = String::from(
-        "## Our methods beside one another\n\n\
-         The geometric mean of the ratios, and the cases with the least and the greatest. *Warm* is `intersects` told the axis that the same query ended with before, for bodies that are apart.\n\n| |",
-    );
+    let mut text = String::from("| |");
     for (method, than) in PAIRS {
         let _ = write!(text, " {} / {} |", method.name(), than.name());
     }
@@ -190,48 +174,45 @@ fn beside_ourselves(rows: &[Row]) -> String {
             rows_of_it.filter_map(|row| Some((row.case, row.ns / find(rows, row, than)?.ns))).collect()
         });
         if ratios.iter().any(|ratios| !ratios.is_empty()) {
-            let _ = writeln!(text, "| {} | {} |", workload.name(), ratios.map(|ratios| ratios.to_string()).join(" | "));
+            let _ =
+                writeln!(text, "| {} | {} |", workload.question(), ratios.map(|ratios| ratios.to_string()).join(" | "));
         }
     }
-    text.push('\n');
     text
 }
 
-/// One table: a case a line, a method a column.
+/// One table: a case a line; ours beside the fastest correct library, in either precision, and who else is wrong.
 fn table(rows: &[Row], workload: Workload) -> String {
     let rows: Vec<Row> = rows.iter().filter(|row| row.workload == workload).cloned().collect();
-    let methods: Vec<_> =
-        Method::ALL.into_iter().filter(|method| rows.iter().any(|row| row.method == *method)).collect();
-    let mut cases: Vec<&Row> = rows.iter().collect();
-    cases.dedup_by_key(|row| row.case);
-
-    let mut text = String::from("| case |");
-    for method in &methods {
-        let _ = write!(text, " {} |", method.name());
-    }
-    let _ = writeln!(text, "\n|---|{}", "---|".repeat(methods.len()));
-    for case in cases {
-        let _ = write!(text, "| {} |", case.case);
-        for &method in &methods {
-            let cell = find(&rows, case, method).map_or_else(|| "-".to_owned(), |row| cell(&rows, row));
-            let _ = write!(text, " {cell} |");
+    let mut text = String::from(
+        "| body | ours f64 | fastest correct | ratio | ours f32 | fastest correct | ratio | wrong answers of others |\n\
+         |---|---|---|---:|---|---|---:|---|\n",
+    );
+    for double in rows.iter().filter(|row| row.method == Method::OursF64) {
+        let _ = write!(text, "| {} |", double.case);
+        for ours in [Some(double), find(&rows, double, Method::OursF32)].into_iter().flatten() {
+            let peer = fastest_correct(&rows, ours);
+            let theirs =
+                peer.map_or_else(|| "none".to_owned(), |peer| format!("{}, {}", cell(peer), library(peer.method)));
+            let ratio = peer.map_or_else(|| "-".to_owned(), |peer| format!("{:.2}", ours.ns / peer.ns));
+            let _ = write!(text, " {} | {theirs} | {ratio} |", cell(ours));
         }
-        text.push('\n');
+        let is_wrong = |row: &&Row| row.case == double.case && row.method.is_peer() && row.score.wrong() > 0;
+        let wrong: Vec<String> =
+            rows.iter().filter(is_wrong).map(|row| format!("{} {}", row.method.name(), row.score.wrong())).collect();
+        let _ = writeln!(text, " {} |", wrong.join(", "));
     }
     text
 }
 
-/// The time, in bold that of the best right peer of its precision; the error where there is one; the wrong answers
-/// where there are any.
-fn cell(rows: &[Row], row: &Row) -> String {
-    let best = best_right_peer(rows, row).is_some_and(|best| best.method == row.method);
-    let time = format!("{:.*}", usize::from(row.ns < 9.95), row.ns);
-    let mut parts = vec![if best { format!("**{time}**") } else { time }];
+/// The time, the error where there is one, and how many answers are wrong.
+fn cell(row: &Row) -> String {
+    let mut cell = format!("{:.*} ns", usize::from(row.ns < 9.95), row.ns);
     if !row.score.p99.is_nan() {
-        parts.push(format!("{:.0e}", row.score.p99));
+        let _ = write!(cell, ", {:.0e}", row.score.p99);
     }
     if row.score.wrong() > 0 {
-        parts.push(format!("{} wrong", row.score.wrong()));
+        let _ = write!(cell, ", {} wrong", row.score.wrong());
     }
-    parts.join(" / ")
+    cell
 }

@@ -36,6 +36,28 @@ impl Workload {
     pub const ALL: [Self; 5] =
         [Self::RayCast, Self::LinearCast, Self::DistanceFar, Self::DistanceNear, Self::Intersect];
 
+    /// The question, as a reader says it.
+    #[must_use]
+    pub const fn question(self) -> &'static str {
+        match self {
+            Self::RayCast => "ray cast",
+            Self::LinearCast => "linear cast",
+            Self::DistanceFar => "distance",
+            Self::DistanceNear => "near contact",
+            Self::Intersect => "overlap",
+        }
+    }
+
+    /// How many questions are asked of each body or pair.
+    #[must_use]
+    pub const fn count(self) -> usize {
+        match self {
+            Self::RayCast => 10_000,
+            Self::LinearCast | Self::DistanceFar | Self::Intersect => 2_000,
+            Self::DistanceNear => 1_000,
+        }
+    }
+
     /// Its short name.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -105,16 +127,16 @@ impl Method {
             Self::OursF64 => "ours f64",
             Self::OursF32 => "ours f32",
             Self::DynF64 => "ours dyn f64",
-            Self::ClosedF64 => "ours closed f64",
-            Self::ClosedF32 => "ours closed f32",
-            Self::WarmF64 => "ours warm f64",
-            Self::WarmF32 => "ours warm f32",
-            Self::ParryGjkF64 => "parry gjk f64",
-            Self::ParryGjkF32 => "parry gjk f32",
+            Self::ClosedF64 => "line_crossing f64",
+            Self::ClosedF32 => "line_crossing f32",
+            Self::WarmF64 => "ours with axis f64",
+            Self::WarmF32 => "ours with axis f32",
+            Self::ParryGjkF64 => "parry GJK f64",
+            Self::ParryGjkF32 => "parry GJK f32",
             Self::ParryF64 => "parry f64",
             Self::ParryF32 => "parry f32",
-            Self::Box3d => "box3d f32",
-            Self::Jolt => "jolt f32",
+            Self::Box3d => "Box3D f32",
+            Self::Jolt => "Jolt f32",
         }
     }
 
@@ -158,6 +180,34 @@ pub struct Row {
     pub ns: f64,
     /// How right the answers are.
     pub score: Score,
+}
+
+impl Row {
+    /// A line of `docs/performance.csv`.
+    #[must_use]
+    pub fn parse(line: &str) -> Option<Self> {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [workload, case, method, ns, p99, max, false_hits, false_misses, undecided, far_off, said_zero] =
+            cells.as_slice()
+        else {
+            return None;
+        };
+        Some(Self {
+            workload: Workload::ALL.into_iter().find(|known| known.name() == *workload)?,
+            case: SHAPE_NAMES.into_iter().chain(PAIR_NAMES).find(|known| known == case)?,
+            method: Method::ALL.into_iter().find(|known| known.name() == *method)?,
+            ns: ns.parse().ok()?,
+            score: Score {
+                p99: p99.parse().ok()?,
+                max: max.parse().ok()?,
+                false_hits: false_hits.parse().ok()?,
+                false_misses: false_misses.parse().ok()?,
+                undecided: undecided.parse().ok()?,
+                far_off: far_off.parse().ok()?,
+                said_zero: said_zero.parse().ok()?,
+            },
+        })
+    }
 }
 
 /// Measures every method on every case of the workloads, telling `progress` of each row as it comes.

@@ -6,6 +6,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::{Command, ExitCode};
+use workloads::note;
 use workloads::provenance::provenance;
 
 /// A program that asks one question.
@@ -143,15 +144,13 @@ struct Cost {
     bytes: u64,
 }
 
-/// Where the table goes.
-const DOCUMENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/footprint.md");
-
-/// Builds the programs in `folder`, prints the table, and puts it into `docs/`.
+/// Builds the programs in `folder`, prints the table, and puts it into `docs/choosing-a-method.md`.
 pub fn run(folder: &Path) -> ExitCode {
     let written = measure(folder).and_then(|table| {
         let _ = io::stdout().write_all(table.as_bytes());
-        let page = format!("{INTRODUCTION}{table}\nMeasured on {}.\n", provenance());
-        fs::write(DOCUMENT, page).map_err(|why| format!("cannot write {DOCUMENT}: {why}"))
+        let part = format!("{table}\nMeasured on {}.", provenance());
+        let note = note::path("choosing-a-method.md");
+        note::write(&note, "footprint", &part).map_err(|why| format!("cannot write {}: {why}", note.display()))
     });
     match written {
         Ok(()) => ExitCode::SUCCESS,
@@ -161,19 +160,6 @@ pub fn run(folder: &Path) -> ExitCode {
         }
     }
 }
-
-const INTRODUCTION: &str = "\
-# What importing a crate costs
-
-Written by `cargo xtask footprint`. Each row is a program that imports one crate with one choice of features and asks one
-question: a support point, a hull, the function that is named, an enclosing ellipsoid, a margin. The packages are those that its build compiles,
-the crate included. The time is that of a clean release build, in seconds of processor time of all cores together. The
-code is how much larger the stripped program, with link-time optimisation, is than one that asks nothing. The bridges to parry
-(which cost what parry costs) and the strategies for tests (`proptest`) are left out.
-
-CI fails if gjk-raycast needs more than 8 packages, or faer.
-
-";
 
 fn measure(folder: &Path) -> Result<String, String> {
     let failed = |why: io::Error| format!("cannot build in {}: {why}", folder.display());

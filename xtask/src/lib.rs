@@ -15,6 +15,7 @@ pub mod footprint;
 pub mod fuzz;
 pub mod judge;
 pub mod mesh;
+pub mod museum;
 pub mod plot;
 pub mod prove;
 pub mod query;
@@ -31,7 +32,7 @@ struct Readme;
 #[doc = include_str!("../../docs/porting-from-parry.md")]
 struct PortingFromParry;
 
-/// Compiles and runs the columns of the note on many machines.
+/// Compiles and runs the columns of the note on choosing a method.
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/many-machines.md")]
-struct ManyMachines;
+#[doc = include_str!("../../docs/choosing-a-method.md")]
+struct ChoosingAMethod;

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
 use clap::{Args, Parser, Subcommand};
-use xtask::{bits, docs, footprint, fuzz, prove, query, validate};
+use xtask::{bits, docs, footprint, fuzz, museum, prove, query, validate};
 
 /// Answers query files, validates the crates against true answers, and draws what they do.
 #[derive(Debug, Parser)]
@@ -36,7 +36,7 @@ enum Task {
     Validate(validate::Scope),
     /// Prove answers by their certificates, in interval arithmetic that shares no solver and no shape with the crates.
     ///
-    /// `cargo xtask query --certify FILE | cargo xtask prove -`; `docs/certificates.md` says what is proved, and how.
+    /// `cargo xtask query --certify FILE | cargo xtask prove -`; `docs/evidence.md` says what is proved, and how.
     ///
     /// Exit status: 0 if every line is proved, 1 if some line is not proved or is disproved, 2 if a file could not be
     /// read.
@@ -50,11 +50,15 @@ enum Task {
     ///
     /// Exit status: 0 if every hash is equal, 1 if some are not, 2 if the file of hashes could not be read or written.
     Bits(bits::Choice),
+    /// Ask about poses out of public trackers, where this or that library was wrong.
+    ///
+    /// Exit status: 0 if every answer is right, 1 if some answer is wrong, 2 if a file could not be read or written.
+    Museum(museum::Choice),
     /// Build the API documentation of the libraries as docs.rs does, and check that no link leads nowhere.
     ///
     /// Exit status: 0, or 1 if a note or page has a link that leads nowhere, or 2 if the documentation does not build.
     Docs,
-    /// Measure what importing each crate alone costs, and write `docs/footprint.md`: packages, build time, code size.
+    /// Measure what importing each crate alone costs, and write the table of `docs/choosing-a-method.md`: packages, build time, code size.
     Footprint {
         /// Where the programs are built; emptied first.
         #[arg(long, value_name = "FOLDER", default_value = "target/footprint")]
@@ -95,6 +99,7 @@ fn main() -> ExitCode {
         Task::Prove(choice) => prove::run(&choice),
         Task::Fuzz(scope) => fuzz::run(&scope),
         Task::Bits(choice) => bits::run(&choice),
+        Task::Museum(choice) => museum::run(choice),
         Task::Docs => docs::run(),
         Task::Footprint { output } => footprint::run(&output),
         Task::Judge(_) | Task::Growth(_) => study("peers"),

@@ -1,28 +1,17 @@
-//! Measures every workload in one run and prints the page; `--write` puts it into `docs/performance.md` and
-//! `docs/performance.csv` of the workspace, `--csv` prints the rows alone. `--profiles` adds what the build profile
-//! does to our times.
+//! Measures every workload in one run. `--write` puts the tables into `docs/comparison.md` and the rows into
+//! `docs/performance.csv`, `--csv` prints the rows, and otherwise the tables are printed. `--profiles` adds what the build
+//! profile does to our times. `--recorded` writes the tables of the recorded rows again, and measures nothing.
 //!
-//! `summary [--write | --csv] [--profiles] [--milliseconds PER_ROW] [W1] [W2] [W3far] [W3near] [W3b]`
+//! `summary [--write | --csv | --recorded] [--profiles] [--milliseconds PER_ROW] [W1] [W2] [W3far] [W3near] [W3b]`
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "printing is what it is for")]
 
-use std::path::Path;
+use std::io;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use benches::report::{csv, markdown};
-use benches::rows::{Workload, measure};
-
-const INTRODUCTION: &str = "\
-# Performance
-
-This page compares the crates here (*ours*) with other libraries, on the same inputs, whose answers are known. Times are nanoseconds of thread CPU time for one query, from one
-run of
-
-```sh
-cargo run --profile bench -p benches --features parry,box3d,jolt --bin summary -- --profiles --write
-```
-
-";
+use benches::report::{csv, measured, ours, ratios, times};
+use benches::rows::{Row, Workload, measure};
+use workloads::note;
 
 fn main() -> ExitCode {
     let (mut write, mut as_csv, mut by_profile) = (false, false, false);
@@ -32,6 +21,8 @@ fn main() -> ExitCode {
     while let Some(argument) = arguments.next() {
         if argument == "--write" {
             write = true;
+        } else if argument == "--recorded" {
+            return ended(recorded());
         } else if argument == "--csv" {
             as_csv = true;
         } else if argument == "--profiles" {
@@ -44,7 +35,7 @@ fn main() -> ExitCode {
             workloads.push(workload);
         } else {
             eprintln!(
-                "unexpected argument {argument:?}; usage: summary [--write | --csv] [--profiles] [--milliseconds N] \
+                "unexpected argument {argument:?}; usage: summary [--write | --csv | --recorded] [--profiles] [--milliseconds N] \
                  [W1 W2 W3far W3near W3b]"
             );
             return ExitCode::FAILURE;
@@ -68,18 +59,42 @@ fn main() -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
-    let text = format!("{INTRODUCTION}{}", markdown(&rows, &profiles));
     if !write {
-        println!("{text}");
+        println!("{}\n{}\n{profiles}\n{}", ratios(&rows, &measured()), ours(&rows), times(&rows));
         return ExitCode::SUCCESS;
     }
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
-    let written = std::fs::write(docs.join("performance.md"), text)
-        .and_then(|()| std::fs::write(docs.join("performance.csv"), csv(&rows)));
+    let written = std::fs::write(note::path("performance.csv"), csv(&rows))
+        .and_then(|()| parts(&rows, &measured()))
+        .and_then(|()| if by_profile { part("builds", &profiles) } else { Ok(()) });
+    ended(written)
+}
+
+fn part(name: &str, text: &str) -> io::Result<()> {
+    note::write(&note::path("comparison.md"), name, text)
+}
+
+/// Writes the tables of these rows.
+fn parts(rows: &[Row], measured: &str) -> io::Result<()> {
+    part("ratios", &ratios(rows, measured))?;
+    part("methods", &ours(rows))?;
+    part("times", &times(rows))
+}
+
+/// Writes the tables of the rows that were recorded, with where they were measured as it stands there.
+fn recorded() -> io::Result<()> {
+    let rows: Vec<Row> =
+        std::fs::read_to_string(note::path("performance.csv"))?.lines().skip(1).filter_map(Row::parse).collect();
+    let page = std::fs::read_to_string(note::path("comparison.md"))?;
+    let measured =
+        note::part(&page, "ratios").and_then(|part| part.lines().find(|line| line.starts_with("Measured on")));
+    parts(&rows, measured.unwrap_or_default())
+}
+
+fn ended(written: io::Result<()>) -> ExitCode {
     match written {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("cannot write docs/performance.*: {error}");
+            eprintln!("cannot write docs/comparison.md or docs/performance.csv: {error}");
             ExitCode::FAILURE
         }
     }

@@ -13,11 +13,12 @@
 //! - [`w6_motion_cast`]: the bodies of W2, turning as they move.
 //! - [`line_entry`], [`convex_hull`], [`real`]: truths in closed form, in doubles or in thirty digits.
 //! - [`score`]: answers compared with the truth.
-//! - [`provenance`]: where and when a measurement was made.
+//! - [`provenance`]: where and when a measurement was made; [`note`]: the part of a note that it is written to.
 
 pub mod convex_hull;
 pub mod digest;
 pub mod line_entry;
+pub mod note;
 pub mod pairs;
 pub mod provenance;
 pub mod real;

@@ -3,8 +3,9 @@
 use crate::numerics::bound::{raised, raised_vector, roundings, roundings_of};
 use crate::{Scalar, Vector};
 
-/// What a convex set `C = o + K ⊕ B(r)` is split into: an origin `o`, a core `K` near zero, and a ball of radius `r`
-/// that sweeps it.
+/// What a convex shape is split into: an origin, a smaller shape about it, and the radius of a ball that sweeps that.
+///
+/// In symbols, the set is `o + K ⊕ B(r)` with the origin `o`, the core `K` near zero, and the radius `r`.
 ///
 /// A ball, a capsule and every [rounded](crate::Rounded) shape is a smaller set, its *core*, swept by a ball. Iterative
 /// methods converge slowly on round surfaces and finish at once on a point or a segment, so they work on the core and

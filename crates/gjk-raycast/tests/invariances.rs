@@ -374,7 +374,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     /// A power of two changes no bit of any mantissa, in both precisions, in space and in the plane, over the range
-    /// that `docs/numerics.md` names: of no query, whatever it computes. Odd powers are no better than even ones,
+    /// that `docs/evidence.md` names: of no query, whatever it computes. Odd powers are no better than even ones,
     /// though the root of an odd power of two is none: turning casts once took roots of lengths.
     #[test]
     fn the_unit_of_length_does_not_matter(

@@ -1,7 +1,7 @@
 //! Whether a certificate proves what an answer claims, in interval arithmetic of 256 bits.
 //!
 //! It shares nothing with the libraries, neither a solver nor a shape: a query is read once more here, from its JSON,
-//! and what a certificate proves follows from the query's own numbers. `docs/certificates.md` says how, and what the
+//! and what a certificate proves follows from the query's own numbers. `docs/evidence.md` says how, and what the
 //! numbers of a query mean.
 
 mod body;

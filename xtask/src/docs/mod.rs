@@ -48,20 +48,35 @@ fn build(root: &Path) -> Result<PathBuf, String> {
     Ok(target.join("doc"))
 }
 
-/// The relative links in the notes and READMEs that lead nowhere.
+/// The relative links in the notes and READMEs that lead nowhere: to no file, or to no heading of a note.
 fn missing(root: &Path) -> Result<Vec<String>, String> {
     let mut missing = Vec::new();
     for note in files(root, "md")? {
         let text = read(&note)?;
         for target in text.split("](").skip(1).filter_map(|rest| rest.split([')', ' ']).next()) {
-            let file = target.split('#').next().unwrap_or_default();
-            let elsewhere = target.contains("://") || file.is_empty();
-            if !elsewhere && !note.with_file_name(file).exists() {
+            let (file, heading) = target.split_once('#').unwrap_or((target, ""));
+            if target.contains("://") {
+                continue;
+            }
+            let there = if file.is_empty() { note.clone() } else { note.with_file_name(file) };
+            let is_note = there.extension().is_some_and(|e| e == "md") && !heading.is_empty();
+            if !there.exists() || is_note && !anchors(&read(&there)?).any(|anchor| anchor == heading) {
                 missing.push(format!("{} links to {target}, which is not there", note.display()));
             }
         }
     }
     Ok(missing)
+}
+
+/// What the headings of a note are called in links: small letters, with strokes for spaces, and without other signs.
+fn anchors(text: &str) -> impl Iterator<Item = String> {
+    let headings = text.split("```").step_by(2).flat_map(str::lines).filter(|line| line.starts_with('#'));
+    let sign = |c: char| match c {
+        ' ' => Some('-'),
+        '-' | '_' => Some(c),
+        c => c.is_alphanumeric().then_some(c),
+    };
+    headings.map(move |line| line.trim_start_matches('#').trim().to_lowercase().chars().filter_map(sign).collect())
 }
 
 /// The pages of the libraries that a browser would fetch something for.
@@ -102,6 +117,12 @@ fn files(folder: &Path, extension: &str) -> Result<Vec<PathBuf>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn headings_are_linked_to_as_on_the_web() {
+        let found: Vec<String> = anchors("# A `b_c`, and (d)\n```sh\n# no heading\n```\n## Two–three\n").collect();
+        assert_eq!(found, ["a-b_c-and-d", "twothree"]);
+    }
 
     #[test]
     fn the_notes_lead_nowhere_that_is_not_there() {

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use crate::plot::duration;
 use crate::validate::summary::quantile;
+use workloads::note;
 use workloads::provenance::provenance;
 
 use super::figure::{self, Point};
@@ -40,9 +41,9 @@ impl Row {
         self.asked += 1;
         match verdict.outcome {
             Outcome::Right => self.right += 1,
-            Outcome::Off => self.off += 1,
+            Outcome::Inaccurate => self.off += 1,
             Outcome::Disproved => self.disproved += 1,
-            Outcome::Open => self.open += 1,
+            Outcome::Undecided => self.open += 1,
         }
         self.errors.extend(verdict.error);
         self.times.push(ns);
@@ -54,14 +55,14 @@ impl Row {
         self.none += usize::from(asked);
     }
 
-    /// Its mark in the figure; none where no length was asked.
+    /// Its mark in the figure.
     #[must_use]
     pub fn point(&self) -> Option<Point> {
         Some(Point {
             set: self.set.to_owned(),
             who: self.peer.clone(),
             disproved: self.disproved,
-            error: quantile(&self.errors, 0.99)?,
+            error: quantile(&self.errors, 0.99).unwrap_or(f64::NAN),
             ns: quantile(&self.times, 0.5)?,
         })
     }
@@ -72,10 +73,10 @@ impl Row {
         "who",
         "asked",
         "right",
-        "off",
+        "inaccurate",
         "disproved",
         "no answer",
-        "open",
+        "undecided",
         "median error",
         "99th percentile",
         "worst",
@@ -106,13 +107,13 @@ pub struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// Writes the files, and prints the table.
+    /// Writes the files, and prints the tables.
     ///
     /// # Errors
     /// Where a file cannot be written.
     pub fn write(&self, folder: &Path, disproved: &str) -> io::Result<()> {
         fs::create_dir_all(folder)?;
-        let markdown = self.markdown();
+        let markdown = format!("# Other libraries, judged\n\n{}\n{}", self.judged(), self.settings());
         fs::write(folder.join("judge.md"), &markdown)?;
         fs::write(folder.join("judge.csv"), self.csv())?;
         fs::write(folder.join("disproved.jsonl"), disproved)?;
@@ -121,25 +122,21 @@ impl Report<'_> {
         writeln!(output, "{markdown}\nwritten to {}: judge.md, judge.csv, judge.svg, disproved.jsonl", folder.display())
     }
 
-    /// Writes the table and the figure into the folder of notes.
+    /// Writes the tables and the figure into the notes.
     ///
     /// # Errors
     /// Where a file cannot be written.
-    pub fn record(&self, docs: &Path) -> io::Result<()> {
-        fs::write(docs.join("judge.md"), self.markdown() + BY_HAND)?;
-        fs::write(docs.join("judge.csv"), self.csv())?;
-        fs::write(docs.join("figures/judge.svg"), self.figure())
+    pub fn record(&self) -> io::Result<()> {
+        note::write(&note::path("comparison.md"), "judged", &self.judged())?;
+        note::write(&note::path("comparison.md"), "settings", &self.settings())?;
+        fs::write(note::path("judge.csv"), self.csv())?;
+        fs::write(note::path("figures/judge.svg"), self.figure())
     }
 
-    /// The figure as a picture of its own, which has a ground.
+    /// The figure as a picture of its own.
     fn figure(&self) -> String {
-        let marks = figure::marks(&figure::read(&self.csv()), |who| !self.is_measured(who));
-        marks.svg().replacen("<svg ", "<svg style=\"background:#fff;color:#1c1c1e\" ", 1)
-    }
-
-    /// Whether somebody was asked in this run.
-    fn is_measured(&self, who: &str) -> bool {
-        self.witnesses.iter().any(|witness| witness.name == who && witness.is_measured)
+        let about_ellipsoids = figure::recorded().into_iter().filter(|point| !SETS.contains(&point.set.as_str()));
+        figure::panels(&figure::read(&self.csv()).into_iter().chain(about_ellipsoids).collect::<Vec<_>>()).svg(2, "")
     }
 
     /// The rows in the order of the questions, and of those who answer.
@@ -160,93 +157,89 @@ impl Report<'_> {
         [Row::HEADERS.join(",")].into_iter().chain(lines).map(|line| line + "\n").collect()
     }
 
-    fn markdown(&self) -> String {
+    /// The tables, how many truths were known otherwise, and where all of it was measured.
+    fn judged(&self) -> String {
         let (known, violated) = self.violated;
-        let mut text = format!(
-            "# Other libraries, judged\n\n{}\n\n{}\n\nMeasured on {}.\n\n",
-            INTRODUCTION.trim(),
-            COMMANDS.trim(),
-            provenance()
-        );
         let held = match violated.len() {
-            0 => "in all of them".to_owned(),
-            count => format!("in all but {count}"),
+            0 => "every bracket holds it".to_owned(),
+            count => format!("all brackets but {count} hold it"),
         };
-        let _ = writeln!(
-            text,
-            "{} questions. Of {known} of them the truth is known besides; the brackets hold it {held}.\n",
+        let mut text = format!(
+            "{}\n{} questions. The truth of {known} of them is known independently of any bracket; {held}.\n",
+            markdown(&self.csv()),
             self.cases
         );
         for id in violated {
             let _ = writeln!(text, "- the bracket of {id} does not hold the truth");
         }
-        for witness in self.witnesses {
-            let Witness { name, tolerance, of_motion, rounding, settings, .. } = witness;
-            let tolerance = if *tolerance > 0.0 { format!("{tolerance:e}, or ") } else { String::new() };
-            let motion = if *of_motion > 0.0 { format!("{of_motion:e} of the motion, or ") } else { String::new() };
-            let _ = writeln!(text, "- **{name}**: {settings}. Allowed: {tolerance}{motion}{rounding:e} of the reach.");
-        }
-        let _ =
-            writeln!(text, "\n| {} |\n|---|---|{}", Row::HEADERS.join(" | "), "---:|".repeat(Row::HEADERS.len() - 2));
-        for row in self.sorted() {
-            let cells = row.cells(|error| if error == 0.0 { "0".to_owned() } else { format!("{error:.0e}") }, duration);
-            let _ = writeln!(text, "| {} |", cells.join(" | "));
+        let _ = writeln!(text, "Measured on {}.", provenance());
+        text
+    }
+
+    /// How each was asked, and which error is not held against it.
+    fn settings(&self) -> String {
+        let mut text =
+            "| library | how it is asked | error allowed: the greatest of these |\n|---|---|---|\n".to_owned();
+        for Witness { name, tolerance, of_motion, rounding, settings, .. } in self.witnesses {
+            let tolerance = if *tolerance > 0.0 { format!("{tolerance:e}; ") } else { String::new() };
+            let motion = if *of_motion > 0.0 { format!("{of_motion:e} of the motion; ") } else { String::new() };
+            let _ = writeln!(text, "| {name} | {settings} | {tolerance}{motion}{rounding:e} of the scene's size |");
         }
         text
     }
 }
 
-/// How to make the table again.
-const COMMANDS: &str = "\
-```sh
-cargo xtask judge --each 100 --questions target/judge/questions.jsonl
-python3 -m venv target/venv && target/venv/bin/pip install -r benches/peers/requirements.txt
-for peer in coal fcl ipctk mujoco; do
-    target/venv/bin/python benches/peers/${peer}_answers.py target/judge/questions.jsonl target/judge/$peer.jsonl
-done
-target/venv/bin/python benches/peers/ipctk_answers.py --ccd tight-inclusion target/judge/questions.jsonl target/judge/ipctk-ti.jsonl
-cargo run --release -p studies --features peers,box3d,jolt -- judge --each 100 \\
-    --answers target/judge/{coal,mujoco,fcl,ipctk,ipctk-ti}.jsonl   # --record writes this note
-```
+/// The tables of a `judge.csv`: the questions of the workloads, and those of the embedded suite.
+#[must_use]
+pub fn markdown(csv: &str) -> String {
+    const SUITE: &str = "suite: ";
+    let rows: Vec<Vec<&str>> = csv.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let mut text = String::new();
+    for (title, of_suite) in [("Ordinary questions", false), ("Hard questions: the embedded suite", true)] {
+        let _ = writeln!(
+            text,
+            "### {title}\n\n| question | library | asked | inaccurate | disproved | no answer | error of 99 in 100 below | worst error | median time |\n\
+             |---|---|---:|---:|---:|---:|---:|---:|---:|"
+        );
+        for row in rows.iter().filter(|row| row[0].starts_with(SUITE) == of_suite) {
+            let &[set, who, asked, _, inaccurate, disproved, none, _, _, most, worst, ns] = row.as_slice() else {
+                continue;
+            };
+            let error = |cell: &str| match cell.parse::<f64>() {
+                Ok(0.0) => "0".to_owned(),
+                Ok(error) => format!("{error:.0e}"),
+                Err(_) => String::new(),
+            };
+            let set = asked_as(set.trim_start_matches(SUITE));
+            let time = ns.parse().map_or_else(|_| String::new(), duration);
+            let (most, worst) = (error(most), error(worst));
+            let _ = writeln!(
+                text,
+                "| {set} | {who} | {asked} | {inaccurate} | {disproved} | {none} | {most} | {worst} | {time} |"
+            );
+        }
+        text.push('\n');
+    }
+    text
+}
 
-The IPC toolkit takes a few minutes, the others seconds. Box3D and Jolt are built from source by a C++ compiler and \
-cmake; without them the last command is `cargo xtask judge`, with the same options.
+/// A set of questions as a reader says it.
+#[must_use]
+pub fn asked_as(set: &str) -> &str {
+    if set == "distance of 1e-6" { "near contact" } else { set }
+}
 
-Claims that are disproved are written with their questions and what shows it to `target/judge/disproved.jsonl`.";
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// What was checked without any of this.
-const BY_HAND: &str = "
-## Six claims, checked by hand
-
-Of parry 0.31.1, without a bracket of ours:
-
-- *suite: ray cast*, `closed_form/316`, in `f32`: a miss. Source, direction, centre and radius are whole numbers of some 1e10; in exact arithmetic the quadratic has a \
-positive discriminant, the line passes the ball's centre at 0.2517 of its radius, and the ray enters at λ = 0.80328. Squares of such numbers, squared, are beyond `f32`.
-- *turning cast*, `ball-cuboid/320` (`--each 50` asks it), in `f32`: a miss. At t = 0.4508 the centre of the ball, in coordinates of the turned box, is 0.92716 from the box, less than its radius of 1.
-- *suite: depth*, `signed_distance/1`, in `f64`: apart by 7.1e-8. The centre of the box is within the cylinder, at 0.02 of its half height and 0.13 of its radius; both bodies are some 1e-6 large.
-
-Of FCL 0.7.0, of bodies that its own `collide` finds overlapping when they are put there:
-
-- *linear cast*, `capsule-capsule/880`: a miss. At t = 0.48096 the axes of the capsules are 0.35998 apart at most, as points of theirs \
-show; the sum of the radii is 0.75.
-- *linear cast*, `hull16-hull16/1840`: a miss. At t = 0.52559 both hulls have the point (0.30389, -0.34808, 0.30753) inside: it is a mean of the \
-corners of either, each with a weight of 0.004 at least.
-- *suite: linear cast*, `linear_cast/39`: a miss. At t = 7.53517 the centre of the ball, of radius 1.1608, is that of the box.
-";
-
-/// What the columns are.
-const INTRODUCTION: &str = "\
-Every answer is compared with a bracket that is proved by geometry, not with an answer of ours. It is
-
-- *right* if its error is at most what is allowed. That is a length, the greatest of these: the tolerance that \
-the library documents, for some libraries a part of the motion, and the rounding of the precision.
-- *off* if the hit, miss, overlap or gap is as claimed, but its time or length is not right.
-- *disproved* if the claimed hit, miss, overlap or gap is proved to be false, by more than what is allowed: the \
-bodies are apart at the time of a claimed hit, or deep in one another on the way of a claimed miss.
-- *no answer* if the library returned an error.
-- *open* if the bracket did not close, or if it is a miss and only rounding decides whether a corner is met.
-
-A library is not asked about shapes that it does not have, nor about cases that its documentation leaves \
-undefined. An error is a length in units of the reach of the scene, the distance from the origin of the farthest \
-corner of a body's box. The error of a time is how far the bodies are from touching at that time, or how far \
-they have moved since they touched.";
+    /// Whoever edits the note by hand, or records the numbers without the tables, is told.
+    #[test]
+    fn the_note_has_the_tables_of_the_recorded_numbers() {
+        let read = |name| fs::read_to_string(note::path(name)).expect("it is in the folder of notes");
+        let (page, csv) = (read("comparison.md"), read("judge.csv"));
+        let part = note::part(&page, "judged").expect("there is such a part");
+        let due = markdown(&csv);
+        assert!(part.contains(due.trim()), "docs/comparison.md has other numbers than docs/judge.csv; due:\n{due}");
+    }
+}

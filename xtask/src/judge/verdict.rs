@@ -17,11 +17,11 @@ pub enum Outcome {
     /// Within what is allowed of what is proved.
     Right,
     /// A hit, a miss, an overlap or a gap that is, but another time or length.
-    Off,
+    Inaccurate,
     /// A hit, a miss, an overlap or a gap that is shown not to be.
     Disproved,
     /// Nothing is proved that it could be held against.
-    Open,
+    Undecided,
 }
 
 /// The judgement.
@@ -37,12 +37,12 @@ pub struct Verdict {
 impl Verdict {
     /// By how much it is off at least, which decides, and at most, which is told.
     fn by_length([least, most]: [f64; 2], allowed: f64, reach: f64) -> Self {
-        let outcome = if least <= allowed { Outcome::Right } else { Outcome::Off };
+        let outcome = if least <= allowed { Outcome::Right } else { Outcome::Inaccurate };
         Self { outcome, error: Some(most / reach), evidence: format!("off by {least:.3e} at least") }
     }
 
     fn open() -> Self {
-        Self { outcome: Outcome::Open, error: None, evidence: String::new() }
+        Self { outcome: Outcome::Undecided, error: None, evidence: String::new() }
     }
 
     fn right() -> Self {
@@ -103,7 +103,9 @@ fn judge_cast(Claim { flag, scalar }: Claim, fact: Fact, bodies: &Bodies, allowe
             }
             Verdict::by_length([along(upper, time), early[1].max(along(lower, time))], allowed, reach)
         }
-        _ => Verdict { outcome: Outcome::Off, error: None, evidence: "neither hit nor miss was said".to_owned() },
+        _ => {
+            Verdict { outcome: Outcome::Inaccurate, error: None, evidence: "neither hit nor miss was said".to_owned() }
+        }
     }
 }
 
@@ -125,7 +127,7 @@ fn judge_distance(Claim { flag, scalar }: Claim, [lower, upper]: [f64; 2], bodie
         Some(d) if d.is_finite() => {
             Verdict::by_length([(lower - d).max(d - upper).max(0.0), (upper - d).max(d - lower)], allowed, reach)
         }
-        Some(d) => Verdict { outcome: Outcome::Off, error: None, evidence: format!("{d} is no distance") },
+        Some(d) => Verdict { outcome: Outcome::Inaccurate, error: None, evidence: format!("{d} is no distance") },
         None => Verdict::right(),
     }
 }
@@ -156,11 +158,11 @@ mod tests {
         // The reach is that of the corner (4, 1, 1) of a box.
         let error_due = 0.1 / f64::sqrt(18.0);
         assert!(
-            off == Outcome::Off && (error.expect("a length") - error_due).abs() < 1e-12,
+            off == Outcome::Inaccurate && (error.expect("a length") - error_due).abs() < 1e-12,
             "{error:?}, {error_due} due"
         );
         assert_eq!(ask(0.0).0, Outcome::Disproved, "they do not touch");
-        assert_eq!(ask(f64::NAN).0, Outcome::Off, "no number");
+        assert_eq!(ask(f64::NAN).0, Outcome::Inaccurate, "no number");
         let overlap = format!(r#"{{"query":"intersect",{APART}}}"#);
         assert_eq!(outcome(&overlap, Some(true), None).0, Outcome::Disproved, "they do not touch");
         assert_eq!(outcome(&overlap, Some(false), None), (Outcome::Right, None), "no length was asked");
@@ -168,7 +170,7 @@ mod tests {
         assert_eq!(outcome(&deep, Some(false), None).0, Outcome::Disproved, "they are one deep in one another");
         let depth = deep.replace("intersect", "signed_distance");
         assert_eq!(outcome(&depth, Some(true), Some(-1.0)).0, Outcome::Right, "the depth is one");
-        assert_eq!(outcome(&depth, Some(true), Some(-0.5)).0, Outcome::Off, "not half of it");
+        assert_eq!(outcome(&depth, Some(true), Some(-0.5)).0, Outcome::Inaccurate, "not half of it");
     }
 
     #[test]
@@ -177,8 +179,8 @@ mod tests {
             |velocity: &str| format!(r#"{{"query":"linear_cast",{APART},"velocity_a":{velocity},"max_time":4}}"#);
         let (hit, miss) = (cast("[2,0,0]"), cast("[0,2,0]"));
         assert_eq!(outcome(&hit, Some(true), Some(0.5)).0, Outcome::Right, "they meet after half the time");
-        assert_eq!(outcome(&hit, Some(true), Some(0.4)).0, Outcome::Off, "too early");
-        assert_eq!(outcome(&hit, Some(true), Some(0.6)).0, Outcome::Off, "too late");
+        assert_eq!(outcome(&hit, Some(true), Some(0.4)).0, Outcome::Inaccurate, "too early");
+        assert_eq!(outcome(&hit, Some(true), Some(0.6)).0, Outcome::Inaccurate, "too late");
         assert_eq!(outcome(&hit, Some(false), None).0, Outcome::Disproved, "it goes through");
         assert_eq!(outcome(&miss, Some(false), None).0, Outcome::Right, "it goes past");
         assert_eq!(outcome(&miss, Some(true), Some(0.5)).0, Outcome::Disproved, "they are apart then");
@@ -189,11 +191,11 @@ mod tests {
     #[test]
     fn grazes_are_open_to_who_says_a_miss() {
         let query = r#"{"query":"linear_cast","a":{"type":"cuboid","half_extents":[1,0.5,0.25]},"b":{"type":"posed","of":{"type":"cuboid","half_extents":[1,0.5,0.25]},"rotation":[-0.2384743679799667,-0.8581547372714705,0.0696937552505257,0.4492696330647873],"translation":[-1.8676382472312878,5.955709892924724,1.220076103192911]},"velocity_b":[1.4539202451705933,-7.865894794464111,0.1175268366932869],"max_time":1}"#;
-        assert_eq!(outcome(query, Some(false), None).0, Outcome::Open, "it may");
+        assert_eq!(outcome(query, Some(false), None).0, Outcome::Undecided, "it may");
         let (right, error) = outcome(query, Some(true), Some(0.692_321_729_619_66));
         assert!(right == Outcome::Right && error.expect("a length") < 1e-12, "they touch: {error:?}");
-        assert_eq!(outcome(query, Some(true), Some(0.68)).0, Outcome::Off, "too early");
-        assert_eq!(outcome(query, Some(true), Some(0.72)).0, Outcome::Off, "too late");
+        assert_eq!(outcome(query, Some(true), Some(0.68)).0, Outcome::Inaccurate, "too early");
+        assert_eq!(outcome(query, Some(true), Some(0.72)).0, Outcome::Inaccurate, "too late");
     }
 
     /// A rod of length two turns about its middle into a ball beside it; in the plane, and about z in space.

@@ -1,11 +1,11 @@
 //! Plots as SVG, by hand: points and lines that can be told apart by colour and by mark, on light and dark pages and on
 //! paper.
 
-mod marks;
+mod panels;
 
 use std::fmt::Write as _;
 
-pub use self::marks::{Group, Mark, Marks};
+pub use self::panels::{Mark, Panel, Panels};
 
 /// One set of points of a plot.
 #[derive(Clone, Debug)]

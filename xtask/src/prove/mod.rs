@@ -140,7 +140,7 @@ impl Counts {
 }
 
 /// The verdict on a line, and the line of output.
-fn judge_line(number: u64, line: &[u8], meshes: &Meshes) -> (Verdict, Value) {
+pub(crate) fn judge_line(number: u64, line: &[u8], meshes: &Meshes) -> (Verdict, Value) {
     let read = json::object(line.trim_ascii()).map(Value::Object).map_err(|why| why.message);
     let id = read.as_ref().ok().and_then(|line| line.get("id")).cloned().unwrap_or_else(|| number.into());
     let judged: Result<(Verdict, Bounds), Unread> = read.and_then(|line| {

@@ -17,7 +17,7 @@ pub fn section(records: &[Record]) -> Section {
     let groups = [
         (
             "cases-by-query",
-            "By question and precision, sorted by \"of allowed\". Errors are relative, steps iterations.",
+            "By question and precision, those first whose worst error comes nearest to its tolerance. Errors are relative, steps iterations.",
             "question",
             by_query(records),
         ),
@@ -29,12 +29,11 @@ pub fn section(records: &[Record]) -> Section {
     Section {
         id: "cases",
         title: "Every case",
-        lead: "Each case has a known answer and says what error its inputs allow: 1e-7 (in f32 1e-4) of the answer, and twice \
-               what a change of the inputs by 1000 (in f32 16) rounding errors does to the truth. The column \"of allowed\" is the worst \
-               error in that unit: below 1 is right. An answer is wrong where it exceeds 1, where hit or miss, overlap or gap is the wrong way round, or where \
-               an error came in place of an answer. Where a case is right with a remark, \
-               something beside the answer (a normal, a point, a gradient, a bound) is off. Errors are relative to the answer, of \
-               ellipsoids to the volume."
+        lead: "Each case has a known answer, and a tolerance that its inputs allow: 1e-7 (in f32 1e-4) of the answer, and twice \
+               what a change of the inputs by 1000 (in f32 16) rounding errors does to the truth. An answer is wrong if its error exceeds the tolerance, if hit \
+               or miss, overlap or gap is the wrong way round, or if an error came in place of an answer. The column \"error / tolerance\" has the worst \
+               ratio: below 1 is right. A secondary error is one of a right answer: of a normal, a point, a gradient or a bound beside it. Errors are \
+               relative to the answer, those of ellipsoids to the volume."
             .to_owned(),
         blocks,
     }
@@ -90,7 +89,7 @@ fn table(name: &str, caption: &str, title: &str, groups: &BTreeMap<String, Group
     let headers: Vec<&str> = [title].into_iter().chain(HEADERS).collect();
     let mut groups: Vec<_> = groups.iter().collect();
     // Those without an error come last.
-    let worst = |group: &Group| group.worst_of_allowed().unwrap_or(-1.0);
+    let worst = |group: &Group| group.worst_of_tolerance().unwrap_or(-1.0);
     groups.sort_by(|(_, a), (_, b)| worst(b).total_cmp(&worst(a)));
     let rows = groups
         .into_iter()

@@ -1,28 +1,15 @@
 //! The first figure: error against time, every question of this run beside what other libraries were recorded to do.
 
-use std::fs;
-
 use super::Record;
 use super::page::Drawing;
 use super::progress::progress;
 use super::summary::quantile;
-use crate::judge::figure::{Point, marks, read};
+use crate::judge::figure::{OF_ELLIPSOIDS, Point, is_ours, panels, recorded};
 use crate::judge::{judged, proved, questions, witnesses};
 use crate::plot::duration;
 
 /// How many questions of each kind are asked of each shape or pair of shapes.
 const EACH: usize = 6;
-
-/// Where the judge's table is recorded.
-const RECORDED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/judge.csv");
-
-/// The queries about ellipsoids, which no other library answers, as a reader knows them.
-const OF_ELLIPSOIDS: [(&str, &str); 4] = [
-    ("margin", "margin of ellipsoids"),
-    ("clearance", "clearance of a robot"),
-    ("enclosing_ellipsoid", "enclosing ellipsoid"),
-    ("inscribed_ellipsoid", "inscribed ellipsoid"),
-];
 
 /// The figure, and the sentences that stand beside it.
 #[derive(Clone, Debug)]
@@ -35,24 +22,19 @@ pub(super) struct Headline {
 pub(super) fn headline(records: &[Record]) -> Headline {
     let mut points = ours();
     points.extend(OF_ELLIPSOIDS.iter().filter_map(|(query, name)| of_records(records, query, name)));
-    let recorded: Vec<Point> = fs::read_to_string(RECORDED).map(|csv| read(&csv)).unwrap_or_default();
-    let others: Vec<Point> = recorded.into_iter().filter(|point| !is_ours(&point.who)).collect();
+    let others: Vec<Point> =
+        recorded().into_iter().filter(|point| !is_ours(&point.who) && !point.set.starts_with("suite")).collect();
     let sentences = sentences(records, &points, &others);
     points.extend(others);
     let drawing = Drawing {
         name: "headline".to_owned(),
-        marks: marks(&points, |who| !is_ours(who)),
-        caption: "Filled marks are measured in this run: ours, in double (f64) and single (f32) precision. Hollow marks are other libraries as \
-                  recorded in docs/judge.md; ✗ counts hits, misses and overlaps that are disproved. An error is a length over the size of the scene; \
-                  of ellipsoids, stiff ones among them, it is relative, that of 1 + margin or of the volume. Near contact: distances of a \
-                  millionth of the scene."
+        panels: panels(&points),
+        caption: "Filled marks are ours, measured in this run. Hollow marks and crosses are other libraries, as recorded in docs/comparison.md with date \
+                  and machine. Near contact, bodies are a millionth of the scene apart. The error of an ellipsoid around points is relative to its \
+                  volume, and that of a margin m to 1 + m."
             .to_owned(),
     };
     Headline { drawing, sentences }
-}
-
-fn is_ours(who: &str) -> bool {
-    who.starts_with("ours")
 }
 
 /// Ours, in both precisions, on a sample of the workloads.
@@ -66,9 +48,12 @@ fn ours() -> Vec<Point> {
     rows.filter_map(|row| row.point()).collect()
 }
 
+/// The file of the suite that others were asked too, about ellipsoids.
+const ELLIPSOIDS: &str = "ellipsoids";
+
 /// Ours in double precision on the cases of a query.
 fn of_records(records: &[Record], query: &str, name: &str) -> Option<Point> {
-    let of = || records.iter().filter(|r| r.query == query && r.precision == "f64");
+    let of = || records.iter().filter(|r| r.query == query && r.precision == "f64" && r.file == ELLIPSOIDS);
     let (times, errors): (Vec<f64>, Vec<f64>) =
         (of().filter_map(|r| r.time).collect(), of().filter_map(error).collect());
     Some(Point {
@@ -92,30 +77,23 @@ fn error(record: &Record) -> Option<f64> {
 fn sentences(records: &[Record], points: &[Point], others: &[Point]) -> Vec<String> {
     let violated = records.iter().filter(|r| r.verdict.violates_certificate()).count();
     let bounds = match violated {
-        0 => "each held the truth here".to_owned(),
-        count => format!("{count} of them failed to hold the truth here"),
+        0 => "Every bound held the truth in this run.".to_owned(),
+        count => format!("{count} bounds failed to hold the truth in this run."),
     };
-    let mut sentences = vec![
-        "Each mark is one kind of question and who answers it: lower is more accurate, further left is faster, and both axes are \
-         logarithmic."
-            .to_owned(),
-    ];
+    let mut sentences = Vec::new();
     sentences.extend(of_precision(points, "ours f64", "In double precision"));
     sentences.extend(of_precision(points, "ours f32", "In single precision"));
-    sentences.push(format!(
-        "Our answers carry two bounds that follow from the geometry, so that the error is known without the truth; {bounds}."
-    ));
+    sentences.push(format!("Our answers have a lower and an upper bound, which follow from the geometry. {bounds}"));
     let mut names: Vec<&str> = Vec::new();
-    for point in others {
+    for point in others.iter().filter(|point| point.disproved > 0) {
         if !names.contains(&point.who.as_str()) {
             names.push(&point.who);
         }
     }
-    let disproved: usize =
-        others.iter().filter(|point| !point.set.starts_with("suite")).map(|point| point.disproved).sum();
-    if let Some((last, names)) = names.split_last() {
+    let disproved: usize = others.iter().map(|point| point.disproved).sum();
+    if disproved > 0 {
         sentences.push(format!(
-            "Of the answers of {} and {last}, as recorded, such bounds disprove {disproved} (`cargo xtask judge` asks again).",
+            "Of the recorded answers of other libraries such bounds disprove {disproved} ({}); `cargo xtask judge` asks again.",
             names.join(", ")
         ));
     }
@@ -124,8 +102,10 @@ fn sentences(records: &[Record], points: &[Point], others: &[Point]) -> Vec<Stri
 
 /// How accurate and how fast, over the questions that others are asked too.
 fn of_precision(points: &[Point], who: &str, precision: &str) -> Option<String> {
-    let is_shared = |point: &&Point| point.who == who && !OF_ELLIPSOIDS.iter().any(|(_, name)| *name == point.set);
-    let of: Vec<&Point> = points.iter().filter(is_shared).collect();
+    let is_length = |point: &&Point| {
+        point.who == who && !point.error.is_nan() && !OF_ELLIPSOIDS.iter().any(|(_, name)| *name == point.set)
+    };
+    let of: Vec<&Point> = points.iter().filter(is_length).collect();
     let worst = of.iter().copied().max_by(|a, b| a.error.total_cmp(&b.error))?;
     let fastest = of.iter().copied().min_by(|a, b| a.ns.total_cmp(&b.ns))?;
     let slowest = of.iter().copied().max_by(|a, b| a.ns.total_cmp(&b.ns))?;

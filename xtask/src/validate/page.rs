@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::plot::{Marks, Plot, escape};
+use crate::plot::{Panels, Plot, escape};
 
 /// A chapter of the report.
 #[derive(Clone, Debug)]
@@ -33,12 +33,12 @@ pub struct Figure {
     pub caption: String,
 }
 
-/// Named marks with their caption.
+/// Panels of named marks, with their caption.
 #[derive(Clone, Debug)]
 pub struct Drawing {
     /// The stem of its files.
     pub name: String,
-    pub marks: Marks,
+    pub panels: Panels,
     /// What the marks are.
     pub caption: String,
 }
@@ -172,11 +172,12 @@ impl Figure {
 impl Drawing {
     /// The marks.
     pub fn csv(&self) -> String {
-        let mut csv = format!("who,what,{},{}\n", quoted(&self.marks.x), quoted(&self.marks.y));
-        for mark in &self.marks.marks {
-            let [x, y] = mark.at;
-            let _ =
-                writeln!(csv, "{},{},{x:e},{y:e}", quoted(&self.marks.groups[mark.group].name), quoted(&mark.label));
+        let mut csv = "question,who,error,nanoseconds,disproved\n".to_owned();
+        for panel in &self.panels.panels {
+            for mark in &panel.marks {
+                let (what, who) = (quoted(&panel.title), quoted(&mark.name));
+                let _ = writeln!(csv, "{what},{who},{:e},{:e},{}", mark.error, mark.ns, mark.disproved);
+            }
         }
         csv
     }
@@ -185,8 +186,8 @@ impl Drawing {
         format!(
             "<figure id=\"{0}\" class=\"first\">{1}{2}<figcaption>{3} <a href=\"{0}.csv\">{0}.csv</a></figcaption></figure>\n",
             self.name,
-            self.marks.svg(),
-            self.marks.narrow_svg(),
+            self.panels.svg(3, "wide"),
+            self.panels.svg(2, "narrow"),
             prose(&self.caption)
         )
     }

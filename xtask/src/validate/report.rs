@@ -85,7 +85,11 @@ fn html(records: &[Record], first: Option<&Headline>, sections: &[Section]) -> S
         total.cases - total.wrong,
         if total.wrong > 0 { "wrong" } else { "right" },
         total.wrong,
-        if total.soft > 0 { format!(", <a href=\"#remarks\">{} with a remark</a>", total.soft) } else { String::new() },
+        if total.soft > 0 {
+            format!(", <a href=\"#secondary\">{} with a secondary error</a>", total.soft)
+        } else {
+            String::new()
+        },
     );
     if let Some(Headline { drawing, sentences }) = first {
         let items: String = sentences.iter().map(|sentence| format!("<li>{}\n", prose(sentence))).collect();
@@ -105,8 +109,8 @@ fn html(records: &[Record], first: Option<&Headline>, sections: &[Section]) -> S
     page.push_str("</ol></nav></header>\n<main>\n");
     page.extend(sections.iter().map(Section::html));
     page.push_str(&list("wrong", "Wrong", "What is answered, and what is true.", records, |r| &r.verdict.wrong));
-    let remarks = "The answer itself is right; what stands beside it (a normal, a point, a gradient, a bound) is farther off than its case allows.";
-    page.push_str(&list("remarks", "Right with a remark", remarks, records, |r| &r.verdict.soft));
+    let secondary = "The answer itself is right; what stands beside it (a normal, a point, a gradient, a bound) is farther off than its case allows.";
+    page.push_str(&list("secondary", "Right, with a secondary error", secondary, records, |r| &r.verdict.soft));
     page.push_str(
         "</main>\n<footer><p>The numbers of every case: <a href=\"cases.csv\">cases.csv</a>. Beside every figure and table \
          stands the file with its numbers.</p></footer>\n</html>\n",

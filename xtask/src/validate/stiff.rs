@@ -24,7 +24,7 @@ pub fn section(records: &[Record]) -> Section {
             "What happens to the answers where the numbers get hard: long and thin bodies, scenes that are tiny, huge \
              or far from the origin, bodies that nearly touch, rays that graze. What to see: {}. Where a relative \
              error is large, is the answer itself nearly zero, or would a change of the last digits of the inputs \
-             change it as much? \"Of allowed\" takes both into account.",
+             change it as much? The ratio of error and tolerance takes both into account.",
             Tally::of(&hard).in_words()
         ),
         blocks,
@@ -36,7 +36,11 @@ pub(super) fn print(records: &[Record], output: &mut impl Write) -> io::Result<(
     let table = kinds(&groups(records));
     let headers: Vec<&str> = table.headers.iter().map(String::as_str).collect();
     let rows: Vec<Vec<String>> = table.rows.into_iter().map(|row| row.cells).collect();
-    if rows.is_empty() { Ok(()) } else { aligned(output, &headers, &rows, table.names) }
+    if rows.is_empty() {
+        return Ok(());
+    }
+    writeln!(output, "By kind of difficulty:")?;
+    aligned(output, &headers, &rows, table.names)
 }
 
 /// Cases by query, precision, and kind and value of difficulty.
@@ -55,7 +59,7 @@ fn groups(records: &[Record]) -> Groups<'_> {
 
 /// The columns of both tables that are not names.
 const HEADERS: [&str; 7] =
-    ["cases", "worst error", "of allowed", "wrong", "bounds that fail", "most iterations", "median time"];
+    ["cases", "worst error", "error / tolerance", "wrong", "bounds that fail", "most iterations", "median time"];
 
 /// A row for each kind of difficulty, those first whose errors come nearest to what is allowed.
 fn kinds(groups: &Groups<'_>) -> Table {
@@ -76,7 +80,7 @@ fn kinds(groups: &Groups<'_>) -> Table {
     let headers: Vec<&str> = ["question", "difficulty", "from, to"].into_iter().chain(HEADERS).collect();
     Table::new(
         "stiff",
-        "By kind of difficulty, sorted by the worst error in units of what the inputs allow (\"of allowed\": below 1 is right). Errors are relative, of \
+        "By kind of difficulty, those first whose worst error comes nearest to its tolerance (below 1 is right). Errors are relative, those of \
          fitted ellipsoids to the volume.",
         &headers,
         rows.collect(),
@@ -100,7 +104,7 @@ struct Tally {
     /// Answers whose bounds do not hold the truth.
     violations: usize,
     /// The worst error in units of what the inputs allow; NaN where none is known.
-    of_allowed: f64,
+    of_tolerance: f64,
     iterations: Option<u64>,
 }
 
@@ -110,7 +114,7 @@ impl Tally {
             cases: records.len(),
             wrong: records.iter().filter(|r| !r.verdict.wrong.is_empty()).count(),
             violations: records.iter().filter(|r| r.verdict.violates_certificate()).count(),
-            of_allowed: worst(records, |v| v.ratio),
+            of_tolerance: worst(records, |v| v.ratio),
             iterations: records.iter().filter_map(|r| r.iterations).max(),
         }
     }
@@ -128,7 +132,7 @@ impl Tally {
             count(self.wrong),
             if self.wrong > 1 { "are" } else { "is" },
             count(self.violations),
-            error(self.of_allowed),
+            error(self.of_tolerance),
             self.iterations()
         )
     }
@@ -146,7 +150,7 @@ fn row(names: [String; 3], of: &[&Record]) -> Row {
     let numbers = [
         tally.cases.to_string(),
         error(worst(of, |v| v.relative)),
-        error(tally.of_allowed),
+        error(tally.of_tolerance),
         tally.wrong.to_string(),
         tally.violations.to_string(),
         tally.iterations(),

@@ -32,8 +32,8 @@ impl Group {
         self.iterations.extend(record.iterations.map(|i| i as f64));
     }
 
-    /// The worst error in units of what the inputs allow, if there is one.
-    pub fn worst_of_allowed(&self) -> Option<f64> {
+    /// The worst error in units of its tolerance, if there is one.
+    pub fn worst_of_tolerance(&self) -> Option<f64> {
         quantile(&self.ratio, 1.0)
     }
 
@@ -49,7 +49,7 @@ impl Group {
             told(quantile(&self.relative, 0.5), error),
             told(quantile(&self.relative, 0.99), error),
             told(quantile(&self.relative, 1.0), error),
-            told(self.worst_of_allowed(), error),
+            told(self.worst_of_tolerance(), error),
             told(quantile(&self.iterations, 0.5), whole),
             told(quantile(&self.iterations, 1.0), whole),
             told(quantile(&self.time, 0.5), duration),
@@ -62,11 +62,11 @@ pub const HEADERS: [&str; 11] = [
     "cases",
     "right",
     "wrong",
-    "remarks",
+    "secondary errors",
     "median error",
     "99 % below",
     "worst error",
-    "of allowed",
+    "error / tolerance",
     "steps",
     "most steps",
     "median time",
@@ -129,8 +129,10 @@ const TOLD: usize = 20;
 
 /// Prints the summary.
 pub fn print(records: &[Record], output: &mut impl Write) -> io::Result<()> {
+    writeln!(output, "By file:")?;
     table(output, "file", &by_file(records))?;
     stiff::print(records, output)?;
+    writeln!(output, "By question:")?;
     table(output, "question", &by_query(records))?;
     let bad: Vec<&Record> = records.iter().filter(|r| !r.verdict.wrong.is_empty()).collect();
     for record in bad.iter().take(TOLD) {
@@ -141,12 +143,18 @@ pub fn print(records: &[Record], output: &mut impl Write) -> io::Result<()> {
         writeln!(output, "… and {} more wrong; the report lists all", bad.len() - TOLD)?;
     }
     for record in records.iter().filter(|r| !r.verdict.soft.is_empty()).take(TOLD) {
-        writeln!(output, "right, with a remark: {} {}: {}", record.file, record.id, record.verdict.soft.join("; "))?;
+        writeln!(
+            output,
+            "right, with a secondary error: {} {}: {}",
+            record.file,
+            record.id,
+            record.verdict.soft.join("; ")
+        )?;
     }
     let total = total(records);
     writeln!(
         output,
-        "{} cases: {} right, {} wrong ({} of them errors where an answer was due), {} right with a remark",
+        "{} cases: {} right, {} wrong ({} of them errors where an answer was due), {} with a secondary error",
         total.cases,
         total.cases - total.wrong,
         total.wrong,
@@ -162,7 +170,7 @@ fn table(output: &mut impl Write, title: &str, groups: &BTreeMap<String, Group>)
 }
 
 /// Writes rows under their headers; the first columns are names and the others numbers.
-pub(super) fn aligned(output: &mut impl Write, headers: &[&str], rows: &[Vec<String>], names: usize) -> io::Result<()> {
+pub(crate) fn aligned(output: &mut impl Write, headers: &[&str], rows: &[Vec<String>], names: usize) -> io::Result<()> {
     let width = |k: usize| rows.iter().map(|row| row[k].chars().count()).chain([headers[k].len()]).max().unwrap_or(0);
     let widths: Vec<usize> = (0..headers.len()).map(width).collect();
     let headers = headers.iter().map(|header| (*header).to_owned()).collect();

@@ -9,7 +9,9 @@ use crate::numerics::range::power_of_two_below;
 use crate::support::{ScalarOf, sum_of_hessians, swept, swept_hessian};
 use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Matrix, Parallelotope, Rounding, Scalar, SupportMap, Vector};
 
-/// The image `M·C + t` of a shape under an affine map: scaled, sheared, mirrored, or flattened where `M` is singular.
+/// A shape under an affine map: scaled, sheared, mirrored, or flattened where the matrix is singular.
+///
+/// In symbols, the image of each point `x` is `M·x + t`.
 ///
 /// ```
 /// use convex_support::{Affine, Ball, SupportMap, glam::{DMat2, DVec2}};

@@ -5,8 +5,9 @@ use super::reflected::Reflected;
 use crate::SupportMap;
 use crate::forward::forward;
 
-/// The set `A − B = { a − b : a ∈ A, b ∈ B }`, called the configuration space obstacle (CSO) of `A` and `B`.
+/// All differences of a point of one shape and a point of another: their configuration space obstacle (CSO).
 ///
+/// In symbols, it is `A − B = { a − b : a ∈ A, b ∈ B }`.
 /// Two shapes meet exactly where their difference contains zero; their distance is its distance from zero; and the
 /// translations of `B` that make it touch `A` are the boundary of the difference. So one moving shape against another
 /// becomes one ray against their difference.

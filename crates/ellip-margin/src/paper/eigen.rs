@@ -15,7 +15,10 @@ use crate::pair::Pair;
 use crate::secular::Solution;
 use crate::{Answer, EllipsoidPair, Margin, MarginOptions, Status};
 
-/// [`free_margin`](crate::free_margin) by the eigenvalues of `[[C, −I], [−bbᵀ, C]]`, all of them computed by faer.
+/// [`free_margin`](crate::free_margin) by the paper's eigenvalue problem of twice the dimension, all of whose
+/// eigenvalues are computed by faer.
+///
+/// The matrix has the blocks `C` and `−I` above, and `−bbᵀ` and `C` below.
 ///
 /// `iterations` is 0, since the QR algorithm counts its own; `status` is [`Stalled`](Status::Stalled) where the
 /// eigenvalue of least real part is not real or not negative, as it should be.

@@ -2,7 +2,9 @@
 
 use convex_support::{Scalar, Vector};
 
-/// The gradient of λ* where Σ b̄ᵢ²/(λᵢ − λ*)² = 1, in the eigenbasis of C; see [`eigenvalue_gradient`].
+/// The gradient of the paper's eigenvalue; see [`eigenvalue_gradient`].
+///
+/// It is that of λ* where Σ b̄ᵢ²/(λᵢ − λ*)² = 1, in the eigenbasis of C.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 #[must_use]

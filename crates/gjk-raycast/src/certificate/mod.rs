@@ -1,4 +1,4 @@
-//! Proofs of the brackets of answers, for checkers that do not trust the solver (`docs/certificates.md`).
+//! Proofs of the brackets of answers, for checkers that do not trust the solver (`docs/evidence.md`).
 //!
 //! A bracket has two ends, and a few numbers prove each. The lower end is proved by a plane that has all of the set `C`
 //! behind it, where `C` is the target of a ray, or `A − B`. The upper end is proved by points of `C`, each given by a

@@ -70,8 +70,7 @@ fn judge(scope: &Scope) -> Result<bool, String> {
     let report = Report { rows, witnesses: &witnesses, cases: cases.len(), violated: &violated };
     report.write(&scope.report, &disproved).map_err(|why| format!("cannot write {}: {why}", scope.report.display()))?;
     if scope.record {
-        let docs = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs"));
-        report.record(docs).map_err(|why| format!("cannot write {}: {why}", docs.display()))?;
+        report.record().map_err(|why| format!("cannot write docs/comparison.md and what belongs to it: {why}"))?;
     }
     let sound = report.rows.iter().filter(|row| row.peer.starts_with("ours")).all(|row| row.disproved == 0);
     Ok(violated.1.is_empty() && sound)

@@ -28,12 +28,12 @@ const WORKLOADS: [(&str, &str, &str); 5] = [
 
 /// A method of ours beside one of theirs.
 const RIVALS: [(&str, &str, &str); 6] = [
-    ("ours f64", "parry gjk f64", "parry's GJK, f64"),
-    ("ours f32", "parry gjk f32", "parry's GJK, f32"),
-    ("ours closed f64", "parry f64", "parry, f64 (our closed forms)"),
-    ("ours warm f64", "parry f64", "parry, f64 (ours with a warm start)"),
-    ("ours f32", "box3d f32", "Box3D, f32"),
-    ("ours f32", "jolt f32", "Jolt, f32"),
+    ("ours f64", "parry GJK f64", "parry's GJK, f64"),
+    ("ours f32", "parry GJK f32", "parry's GJK, f32"),
+    ("line_crossing f64", "parry f64", "parry, f64 (our closed forms)"),
+    ("ours with axis f64", "parry f64", "parry, f64 (ours with a warm start)"),
+    ("ours f32", "Box3D f32", "Box3D, f32"),
+    ("ours f32", "Jolt f32", "Jolt, f32"),
 ];
 
 /// The chapter; empty where nothing is known of the peers.
@@ -148,7 +148,7 @@ fn measured(scope: &Scope) -> (String, Vec<Measured>) {
 fn measured(scope: &Scope) -> (String, Vec<Measured>) {
     let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs");
     let csv = fs::read_to_string(format!("{docs}/performance.csv")).unwrap_or_default();
-    let when = fs::read_to_string(format!("{docs}/performance.md")).unwrap_or_default();
+    let when = fs::read_to_string(format!("{docs}/comparison.md")).unwrap_or_default();
     let when = when.lines().find(|line| line.starts_with("Measured on")).unwrap_or("Measured earlier.").to_owned();
     let parse = |line: &str| {
         let fields: Vec<&str> = line.split(',').collect();

@@ -78,8 +78,8 @@ fn single(method: Method) -> Option<(&'static str, usize)> {
     Some(match method {
         Method::ClosedF64 => ("closed form f64", 8),
         Method::ClosedF32 => ("closed form f32", 9),
-        Method::WarmF64 => ("ours warm f64", 8),
-        Method::WarmF32 => ("ours warm f32", 9),
+        Method::WarmF64 => ("ours with axis f64", 8),
+        Method::WarmF32 => ("ours with axis f32", 9),
         Method::ParryGjkF64 => ("parry GJK f64", 10),
         Method::ParryGjkF32 => ("parry GJK f32", 15),
         _ => return None,
@@ -91,10 +91,10 @@ fn single(method: Method) -> Option<(&'static str, usize)> {
 /// In the columns of that file: the workload, the case, the method, nanoseconds, the 99th percentile and the worst of
 /// the error, and counts of wrong answers of five kinds, of which being far off is the fourth.
 const RECORDED: [(&str, &str, usize); 4] = [
-    ("parry gjk f64", "parry GJK f64, recorded", 6),
-    ("parry gjk f32", "parry GJK f32, recorded", 7),
-    ("box3d f32", "Box3D, recorded", 4),
-    ("jolt f32", "Jolt, recorded", 5),
+    ("parry GJK f64", "parry GJK f64, recorded", 6),
+    ("parry GJK f32", "parry GJK f32, recorded", 7),
+    ("Box3D f32", "Box3D, recorded", 4),
+    ("Jolt f32", "Jolt, recorded", 5),
 ];
 
 /// The recorded marks of a case, of which `count` questions were asked; of boolean questions the share that was wrong.

@@ -24,7 +24,7 @@ pub(crate) type Planes<S> = [[S; WIDTH]; 4];
 ///
 /// It is for lines: a ray cast clips a ray by every facet, and [`line_crossing`](crate::line_crossing) tells where it
 /// leaves, too. That takes time proportional to the number of facets. Up to about a hundred facets it takes less time
-/// than a ray cast by support points, which needs no facets and whose time hardly grows (measured: docs/performance.md,
+/// than a ray cast by support points, which needs no facets and whose time hardly grows (measured: docs/comparison.md,
 /// W1).
 ///
 /// ```

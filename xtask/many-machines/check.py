@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks that `pipe.py` writes what one process writes, and measures both.
 
-    docs/many-machines/check.py [--queries 1000000]
+    xtask/many-machines/check.py [--queries 1000000]
 
 The queries are of all kinds that are asked by the million; one line in five hundred is blank, a comment, no JSON, no UTF-8, or
 asks what cannot be answered. Exit status: 0 where the answers are the same to the last byte, 1 where they differ.

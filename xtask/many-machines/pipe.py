@@ -3,8 +3,8 @@
 
     cargo build --release -p xtask
     pip install pyspark==4.3.0                                   # needs Java 17
-    docs/many-machines/pipe.py QUERIES.jsonl ANSWERS             # two workers of one core each, on this machine
-    docs/many-machines/pipe.py --master spark://HOST:7077 QUERIES.jsonl ANSWERS
+    xtask/many-machines/pipe.py QUERIES.jsonl ANSWERS             # two workers of one core each, on this machine
+    xtask/many-machines/pipe.py --master spark://HOST:7077 QUERIES.jsonl ANSWERS
 
 ANSWERS is a folder; its files, in the order of their names, hold what one process would have written, byte by byte. A line
 that cannot be answered is answered by its error, with its number in the whole file. The query file and the program must be

@@ -1,0 +1,220 @@
+//! `cargo xtask museum`: poses out of public trackers, where this or that library was wrong, asked here.
+//!
+//! One file has them, `data/museum.jsonl`, as queries with their truth. The command, the table of `docs/museum.md` and the
+//! regression test read that file.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use checker::Verdict as Proof;
+use clap::Args;
+use serde_json::Value;
+use workloads::note;
+
+use crate::engine;
+use crate::mesh::Meshes;
+use crate::prove::judge_line;
+use crate::query::certified;
+use crate::validate::as_read;
+use crate::validate::score::{Verdict, judge, scalar_of};
+use crate::validate::summary::aligned;
+use crate::wire::answer::Line;
+use crate::wire::fields::Object;
+use crate::wire::json;
+
+/// What to do with the answers.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct Choice {
+    /// Write the table into `docs/museum.md` too.
+    #[arg(long)]
+    write: bool,
+}
+
+/// The poses.
+const POSES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/museum.jsonl");
+
+/// A pose, and what is answered.
+struct Piece {
+    case: Object,
+    answer: Object,
+    verdict: Verdict,
+    /// Whether the certificate proves the answer; none where the query is of a kind that has no certificate.
+    proof: Option<Proof>,
+}
+
+/// Asks about every pose, and prints the table.
+pub fn run(choice: Choice) -> ExitCode {
+    let done = pieces().and_then(|pieces| {
+        print(&pieces).map_err(|why| format!("cannot print: {why}"))?;
+        if choice.write {
+            let file = note::path("museum.md");
+            for (part, given) in PARTS {
+                note::write(&file, part, &markdown(&pieces, given))
+                    .map_err(|why| format!("cannot write {}: {why}", file.display()))?;
+            }
+        }
+        Ok(pieces.iter().all(Piece::is_right))
+    });
+    match done {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(why) => {
+            let _ = writeln!(io::stderr(), "error: {why}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// The parts of the note, and which poses are in each.
+const PARTS: [(&str, &str); 2] = [("given", "given"), ("chosen", "after the report")];
+
+fn pieces() -> Result<Vec<Piece>, String> {
+    let text = fs::read_to_string(POSES).map_err(|why| format!("cannot read {POSES}: {why}"))?;
+    text.lines().filter(|line| !line.starts_with('#')).map(piece).collect()
+}
+
+fn piece(line: &str) -> Result<Piece, String> {
+    let meshes = Meshes::relative_to("");
+    let case = json::object(line.as_bytes()).map_err(|why| format!("{line}: {}", why.message))?;
+    let outcome = engine::question(&case, &meshes).and_then(|question| question.ask());
+    let answer = as_read(Line { id: Value::Null, line: 1, outcome });
+    let proof = certified(line.as_bytes(), &meshes)
+        .filter(|line| line.windows(14).any(|part| part == b"\"certificate\":"))
+        .map(|line| judge_line(1, &line, &meshes).0);
+    Ok(Piece { verdict: judge(&case, &answer), case, answer, proof })
+}
+
+impl Piece {
+    fn is_right(&self) -> bool {
+        self.verdict.wrong.is_empty() && self.verdict.soft.is_empty() && self.proof != Some(Proof::Disproved)
+    }
+
+    fn said(&self, field: &str) -> &str {
+        self.case.get(field).and_then(Value::as_str).unwrap_or_default()
+    }
+
+    /// The link to the report.
+    fn link(&self) -> String {
+        let issue = self.said("_issue");
+        let (project, number) = issue.split_once('#').unwrap_or((issue, ""));
+        let name = project.rsplit('/').next().unwrap_or(project);
+        format!("[{name} #{number}](https://github.com/{project}/issues/{number})")
+    }
+
+    /// What an answer, or the truth, says: a miss, a time, a length.
+    fn shown(&self, of: &Object) -> String {
+        let query = self.said("query");
+        if of.get("hit") == Some(&Value::Bool(false)) {
+            return "a miss".to_owned();
+        }
+        let scalar = scalar_of(query).and_then(|name| of.get(name)?.as_f64());
+        match (scalar, of.get("overlap").and_then(Value::as_bool)) {
+            (Some(depth), _) if query == "signed_distance" && depth < 0.0 => format!("{} deep", short(-depth)),
+            (Some(gap), _) if query.ends_with("distance") => format!("{} apart", short(gap)),
+            (Some(at), _) if query.ends_with("cast") => format!("a hit at {}", short(at)),
+            (Some(size), _) => format!("ln det X = {}", short(size)),
+            (None, Some(overlap)) => if overlap { "they overlap" } else { "they are apart" }.to_owned(),
+            (None, None) => "no answer".to_owned(),
+        }
+    }
+
+    /// How sure the answer is.
+    fn proof(&self) -> &'static str {
+        match self.proof {
+            Some(Proof::Proved) => "proved",
+            Some(Proof::NotProved) => "to rounding",
+            Some(Proof::Disproved) => "disproved",
+            None => "bracket",
+        }
+    }
+
+    fn truth(&self) -> String {
+        self.case.get("expect").and_then(Value::as_object).map_or_else(String::new, |expect| self.shown(expect))
+    }
+}
+
+/// A number of five digits.
+fn short(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || (1e-3..1e5).contains(&size) {
+        let decimals = if size >= 1.0 { 4 - (size.log10().floor() as usize).min(4) } else { 5 };
+        let text = format!("{value:.decimals$}");
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    } else {
+        format!("{value:.2e}")
+    }
+}
+
+fn print(pieces: &[Piece]) -> io::Result<()> {
+    let headers = ["issue", "reported", "truth", "our answer", "certainty", ""];
+    let row = |piece: &Piece| {
+        let right = if piece.is_right() { "right" } else { "WRONG" };
+        let (issue, reported) = (piece.said("_issue").to_owned(), piece.said("_reported").to_owned());
+        vec![issue, reported, piece.truth(), piece.shown(&piece.answer), piece.proof().to_owned(), right.to_owned()]
+    };
+    let rows: Vec<Vec<String>> = pieces.iter().map(row).collect();
+    let mut output = io::stdout().lock();
+    aligned(&mut output, &headers, &rows, headers.len())?;
+    for piece in pieces.iter().filter(|piece| !piece.is_right()) {
+        let why = piece.verdict.wrong.iter().chain(&piece.verdict.soft).cloned().collect::<Vec<_>>().join("; ");
+        writeln!(output, "WRONG {}: {why}", piece.said("id"))?;
+    }
+    let right = pieces.iter().filter(|piece| piece.is_right()).count();
+    let proved = pieces.iter().filter(|piece| piece.proof == Some(Proof::Proved)).count();
+    writeln!(output, "{} poses: {right} right, {proved} of them with a proof that was checked", pieces.len())
+}
+
+/// The rows of the note whose poses are as told.
+fn markdown(pieces: &[Piece], pose: &str) -> String {
+    let mut text = "| report | what is asked | reported | truth | how it is known | our answer | certainty |\n|---|---|---|---|---|---|---|\n".to_owned();
+    for piece in pieces.iter().filter(|piece| piece.said("_pose") == pose) {
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} | {} | {} |",
+            piece.link(),
+            piece.said("_title"),
+            piece.said("_reported"),
+            piece.truth(),
+            piece.said("_truth"),
+            piece.shown(&piece.answer),
+            piece.proof()
+        );
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each row is what went wrong elsewhere: the answer is right to what its line allows, no bound fails, and no
+    /// certificate disproves it.
+    #[test]
+    fn every_piece_is_answered_rightly() {
+        let pieces = pieces().expect("the file is there");
+        let wrong = |piece: &Piece| format!("{}: {:?} {:?}", piece.said("id"), piece.verdict, piece.answer);
+        let wrong: Vec<String> = pieces.iter().filter(|piece| !piece.is_right()).map(wrong).collect();
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+        assert!(pieces.len() >= 40, "{} poses", pieces.len());
+    }
+
+    #[test]
+    fn the_note_names_every_piece() {
+        let page = fs::read_to_string(note::path("museum.md")).expect("it is in the folder of notes");
+        for piece in pieces().expect("the file is there") {
+            assert!(
+                page.contains(&piece.link()),
+                "{} is not in docs/museum.md: cargo xtask museum --write",
+                piece.said("id")
+            );
+        }
+    }
+
+    #[test]
+    fn numbers_are_written_short() {
+        let shown = [0.0, 100.0, 0.1, 8.4834, 0.00631114, 3.575_454e-6, 12_345.678].map(short);
+        assert_eq!(shown, ["0", "100", "0.1", "8.4834", "0.00631", "3.58e-6", "12346"]);
+    }
+}
