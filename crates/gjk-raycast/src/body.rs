@@ -265,6 +265,8 @@ pub(crate) struct Pair<'a, T: Shapes + ?Sized> {
     pub(crate) core_b: Core<T::Vector>,
     hints: [Hint; 2],
     per_unit: <T::Vector as Vector>::Scalar,
+    /// The radii of balls that the cores are taken without, in units of the scale.
+    pub(crate) peeled: [<T::Vector as Vector>::Scalar; 2],
 }
 
 /// The difference of any two shapes.
@@ -279,7 +281,14 @@ impl<'a, T: Shapes + ?Sized> Pair<'a, T> {
     /// The same of shapes that have been asked for their cores.
     #[inline(always)]
     pub(crate) fn of_cores(shapes: &'a T, [core_a, core_b]: [Core<T::Vector>; 2]) -> Self {
-        Self { shapes, core_a, core_b, hints: [Hint::new(), Hint::new()], per_unit: Scalar::ONE }
+        Self {
+            shapes,
+            core_a,
+            core_b,
+            hints: [Hint::new(), Hint::new()],
+            per_unit: Scalar::ONE,
+            peeled: [Scalar::ZERO; 2],
+        }
     }
 }
 
@@ -389,6 +398,13 @@ impl<T: Shapes + ?Sized> TracedSupport for Pair<'_, T> {
         }
         let points = self.shapes.support_points([direction, -direction], &mut self.hints);
         let [a, b] = points.map(|point| point * self.per_unit);
+        let [from_a, from_b] = self.peeled;
+        if !(from_a + from_b > Scalar::ZERO) {
+            return (a - b, PointPair { a, b });
+        }
+        // The support point of a core without a ball along a unit vector `u` is that of the whole less `r·u`.
+        let u = direction.unit().unwrap_or(direction);
+        let (a, b) = (a - u * from_a, b + u * from_b);
         (a - b, PointPair { a, b })
     }
 
@@ -397,7 +413,8 @@ impl<T: Shapes + ?Sized> TracedSupport for Pair<'_, T> {
         let a = self.shapes.support_hessian(Of::A, direction, changes);
         let b = self.shapes.support_hessian(Of::B, -direction, changes);
         let sum = |i: usize| (a[i] + b[i]) * self.per_unit;
-        Symmetric { a: sum(0), b: sum(1), d: sum(2) }
+        let whole = Symmetric { a: sum(0), b: sum(1), d: sum(2) };
+        without_ball(whole, self.peeled[0] + self.peeled[1], direction, changes)
     }
 
     #[inline]
@@ -447,6 +464,21 @@ impl<T: Shapes + ?Sized> Body for Pair<'_, T> {
     fn set_scale(&mut self, scale: <T::Vector as Vector>::Scalar) {
         self.per_unit = reciprocal_of_power(scale);
     }
+}
+
+/// The Hessian without that of a ball of the given radius, at a direction and along two changes of it.
+fn without_ball<V: Vector>(
+    hessian: Symmetric<V::Scalar>,
+    radius: V::Scalar,
+    direction: V,
+    changes: [V; 2],
+) -> Symmetric<V::Scalar> {
+    let Some(e) = direction.unit().filter(|_| radius > Scalar::ZERO) else { return hessian };
+    let across = |change: V| change - e * change.dot(e);
+    let (u, w) = (across(changes[0]), across(changes[1]));
+    let bend = radius / direction.norm();
+    let Symmetric { a, b, d } = hessian;
+    Symmetric { a: a - bend * u.dot(u), b: b - bend * u.dot(w), d: d - bend * w.dot(w) }
 }
 
 /// A crossing in units of the scale.

@@ -49,3 +49,27 @@ impl<'o, V: Vector> Observer<'o, V> {
         Observer(self.0.as_mut().map(|observer| &mut **observer as _))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec::Vec;
+
+    use convex_support::glam::DVec3;
+
+    use super::*;
+
+    /// Of bodies that were swapped, the difference is turned round.
+    #[test]
+    fn iterates_are_shown_as_of_the_bodies_in_the_order_they_were_given_in() {
+        for (is_swapped, sign) in [(false, 1.0), (true, -1.0)] {
+            let mut seen = Vec::new();
+            let mut watch = |iterate: Iterate<'_, DVec3>| seen.push((iterate.v, iterate.simplex.to_vec()));
+            Observer::new(&mut watch).of_swapped(is_swapped, |observer| {
+                let (simplex, v) = ([DVec3::X, DVec3::Y], DVec3::new(0.5, 0.5, 0.0));
+                let (w, scale, lower, upper) = (DVec3::X, 1.0, 0.0, 1.0);
+                observer.show(|| Iterate { iteration: 0, simplex: &simplex, v, w, scale, lower, upper });
+            });
+            assert_eq!(seen, [(DVec3::new(0.5, 0.5, 0.0) * sign, [DVec3::X * sign, DVec3::Y * sign].to_vec())]);
+        }
+    }
+}

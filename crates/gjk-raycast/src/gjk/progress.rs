@@ -29,3 +29,17 @@ impl<S: Scalar> Progress<S> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn progress_ends_after_steps_without_a_gain_and_at_what_is_no_number() {
+        let mut progress = Progress::new();
+        assert!(progress.goes_on(2.0) && progress.goes_on(1.0));
+        let steps = (0..100).take_while(|_| progress.goes_on(1.0)).count();
+        assert_eq!(steps, usize::from(MAX_STEPS_WITHOUT) - 1);
+        assert!(!Progress::new().goes_on(f64::NAN));
+    }
+}

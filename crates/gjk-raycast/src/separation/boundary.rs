@@ -502,3 +502,51 @@ fn edge<V: Vector>(from: V, to: V) -> Vec3 {
     let along = |i: usize| coordinate(to, i) - coordinate(from, i);
     [along(0), along(1), along(2)]
 }
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::DVec3;
+
+    use super::*;
+    use crate::body::PointPair;
+
+    fn vertex(point: DVec3) -> Vertex<DVec3> {
+        Vertex { point, along: point, pair: PointPair::default() }
+    }
+
+    fn tetrahedron() -> Boundary<DVec3> {
+        let mut boundary = Boundary::new(f64::EPSILON);
+        let corners =
+            [DVec3::new(-1.0, -1.0, -0.1), DVec3::new(2.0, -1.0, -0.1), DVec3::new(-1.0, 2.0, -0.1), DVec3::Z];
+        assert!(boundary.begin(&corners.map(vertex), 0.0));
+        boundary
+    }
+
+    /// The predicate is exact: a rounded one takes a point in the plane for one beyond it and makes facets without
+    /// area, whose normals mean nothing.
+    #[test]
+    fn a_point_is_beyond_a_facet_from_the_next_number_on() {
+        let (facet, inner) = tetrahedron().nearest();
+        assert_eq!(inner, 0.1);
+        let below = |z: f64| vertex(DVec3::new(0.25, 0.125, z));
+        assert!(!tetrahedron().insert(facet, &below(-0.1)), "in the plane");
+        assert!(tetrahedron().insert(facet, &below((-0.1_f64).next_down())), "one ulp beyond it");
+    }
+
+    /// The ball that is nowhere above a facet is in the polytope, and grows as points are added.
+    #[test]
+    fn the_nearest_facet_bounds_the_ball_within() {
+        let mut boundary = tetrahedron();
+        let (facet, _) = boundary.nearest();
+        assert!(boundary.insert(facet, &vertex(DVec3::new(0.0, 0.0, -1.0))));
+        assert_eq!(boundary.len(), 6, "three facets in the place of one");
+        let (_, inner) = boundary.nearest();
+        assert!(inner > 0.1 && inner < 1.0);
+    }
+
+    #[test]
+    fn a_flat_simplex_is_no_polytope() {
+        let square = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X + DVec3::Y].map(vertex);
+        assert!(!Boundary::new(f64::EPSILON).begin(&square, 0.0));
+    }
+}

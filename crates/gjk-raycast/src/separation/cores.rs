@@ -5,10 +5,9 @@ use convex_support::{Core, Rounding, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::near_contact::{NEAR, NearContact, is_near_contact, near_contact};
-use super::peeled::{Peeled, without_ball};
 use super::zonotope::{Zonotope, parallelotope};
 use super::{OfOverlap, Wanted};
-use crate::body::{AnyPair, Body as _, Pair, PointPair, Shapes, TracedSupport as _};
+use crate::body::{AnyPair, Pair, PointPair, Shapes, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::observer::Observer;
 use crate::symmetric::Symmetric;
@@ -91,8 +90,6 @@ pub(crate) struct Cores<'a, V: Vector> {
     /// The radii of both bodies around their cores, in the world's unit.
     pub(super) radii: [V::Scalar; 2],
     frame: Frame<V>,
-    /// The radii of balls that the cores are without, in the unit.
-    peeled: [V::Scalar; 2],
     /// The sizes of both cores, their radii and their offset, in the unit.
     pub(super) size: V::Scalar,
     /// What taking the balls out of the cores loses.
@@ -202,18 +199,7 @@ impl<'a, V: Vector> Cores<'a, V> {
         let frame = Frame::new(&mut pair, offset, size);
         let error = error_of_points(&pair, size) * frame.per_unit + lost_to_underflow(frame.scale);
         let (zero, size) = (Scalar::ZERO, size * frame.per_unit);
-        Self {
-            pair,
-            radii,
-            frame,
-            peeled: [zero; 2],
-            size,
-            peeled_error: zero,
-            error,
-            uncertainty: None,
-            near: None,
-            iterations: 0,
-        }
+        Self { pair, radii, frame, size, peeled_error: zero, error, uncertainty: None, near: None, iterations: 0 }
     }
 
     /// Asks the shapes how well they know their points, coordinate by coordinate, which takes longer than many a
@@ -262,7 +248,9 @@ impl<'a, V: Vector> Cores<'a, V> {
         // The cores may be without balls, which are in their radii then.
         let frame = Frame { radius: self.pair.radius() * self.frame.per_unit, ..self.frame };
         let size = self.size * self.frame.scale;
+        let peeled = core::mem::take(&mut self.pair.peeled);
         self.near = near_contact(&mut self.pair, &frame, size, begun, left);
+        self.pair.peeled = peeled;
         let Some(near) = &self.near else { return false };
         self.iterations += near.iterations.saturating_sub(before);
         if wanted.is_depth() { near.is_closed() } else { near.is_settled(left) }
@@ -290,11 +278,17 @@ impl<'a, V: Vector> Cores<'a, V> {
             *whole += radius;
         }
         let per_unit = self.frame.per_unit;
-        self.peeled = radii.map(|radius| radius * per_unit);
+        self.pair.peeled = radii.map(|radius| radius * per_unit);
         self.frame.radius = self.radius() * per_unit;
         // The unit vector is right to 6 roundings and the product to one; a sum of radii loses one more.
         self.peeled_error = self.frame.radius * (V::Scalar::EPSILON * Scalar::from_f64(4.0));
         true
+    }
+
+    /// Whether they were made smaller.
+    #[inline(always)]
+    pub(super) fn is_peeled(&self) -> bool {
+        self.pair.peeled != [Scalar::ZERO; 2]
     }
 
     /// What lengths in the unit are to be multiplied by.
@@ -311,7 +305,7 @@ impl<'a, V: Vector> Cores<'a, V> {
     #[inline]
     pub(crate) fn support(&mut self, direction: V) -> Option<Vertex<V>> {
         self.iterations += 1;
-        let (point, pair) = Peeled { pair: &mut self.pair, radii: self.peeled }.support(direction);
+        let (point, pair) = self.pair.support(direction);
         let point = point + self.frame.offset;
         point.is_finite().then_some(Vertex { point, along: direction, pair })
     }
@@ -330,7 +324,7 @@ impl<'a, V: Vector> Cores<'a, V> {
 
     /// The entries `u·Hu`, `u·Hw`, `w·Hw` of the Hessian of the support value at a direction.
     pub(super) fn hessian(&self, direction: V, changes: [V; 2]) -> Symmetric<V::Scalar> {
-        without_ball(self.pair.hessian(direction, changes), self.peeled[0] + self.peeled[1], direction, changes)
+        self.pair.hessian(direction, changes)
     }
 
     /// Whether the support point may move without jumping.
@@ -409,8 +403,10 @@ impl<'a, V: Vector> Cores<'a, V> {
     #[inline(always)]
     pub(super) fn closest_points(&self) -> Option<(PointPair<V>, V)> {
         let Frame { offset, scale, .. } = self.frame;
-        let is_whole = self.peeled == [Scalar::ZERO; 2];
-        let points = if is_whole { self.pair.closest_points(offset * scale, self.size * scale) } else { None }?;
+        if self.is_peeled() {
+            return None;
+        }
+        let points = self.pair.closest_points(offset * scale, self.size * scale)?;
         Some((points, points.a - points.b + offset))
     }
 
@@ -443,8 +439,7 @@ impl<'a, V: Vector> Cores<'a, V> {
             sub_algorithm: wanted.sub_algorithm,
             ..GjkOptions::new(state.normal, wanted.options.max_iterations.saturating_sub(self.iterations))
         };
-        let mut cores = Peeled { pair: &mut self.pair, radii: self.peeled };
-        let end = gjk(state, &mut cores, frame, options, None, observer);
+        let end = gjk(state, &mut self.pair, frame, options, None, observer);
         if end != End::Overlap || state.simplex.points().len() <= V::DIM {
             state.ensure_measured();
         }
@@ -462,36 +457,15 @@ impl<'a, V: Vector> Cores<'a, V> {
         state.ensure_measured();
         let max_iterations = max_iterations.saturating_sub(self.iterations);
         if state.length > self.frame.noise && max_iterations > 0 {
-            let frame = Frame { offset: self.frame.offset - target, radius: Scalar::ZERO, ..self.frame };
-            go_on(
-                &mut state,
-                self.pair.shapes,
-                [self.pair.core_a, self.pair.core_b],
-                frame,
-                self.peeled,
-                max_iterations,
-            );
+            // A sixteenth of the noise is as near as a point can be told to be.
+            let Frame { offset, noise, .. } = self.frame;
+            let noise = noise * Scalar::from_f64(0.0625);
+            let frame = Frame { offset: offset - target, radius: Scalar::ZERO, noise, ..self.frame };
+            let options = GjkOptions::new(state.normal, max_iterations);
+            let _ = gjk(&mut state, &mut self.pair, frame, options, None, &mut Observer::none());
+            state.ensure_measured();
             self.iterations += state.iterations;
         }
         state
     }
-}
-
-/// Goes on with GJK to a sixteenth of the noise, compiled once.
-#[cold]
-#[inline(never)]
-fn go_on<V: Vector>(
-    state: &mut Gjk<V>,
-    shapes: &dyn Shapes<Vector = V>,
-    cores: [Core<V>; 2],
-    frame: Frame<V>,
-    radii: [V::Scalar; 2],
-    max_iterations: usize,
-) {
-    let mut pair = Pair::of_cores(shapes, cores);
-    pair.set_scale(frame.scale);
-    let frame = Frame { noise: frame.noise * Scalar::from_f64(0.0625), ..frame };
-    let options = GjkOptions::new(state.normal, max_iterations);
-    let _ = gjk(state, &mut Peeled { pair: &mut pair, radii }, frame, options, None, &mut Observer::none());
-    state.ensure_measured();
 }

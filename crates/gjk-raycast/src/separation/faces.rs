@@ -93,3 +93,28 @@ pub(super) fn about_edge<V: Vector>(edge: V, n: V) -> impl Iterator<Item = V> {
 fn turned_right<V: Vector>(v: V) -> V {
     V::from_fn(|i| if i == 0 { v.get(1) } else { -v.get(0) })
 }
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::{DVec2, DVec3};
+
+    use super::*;
+
+    /// A corner that is wrong by more than zero is from a face may leave zero outside. The bound is a sum over the
+    /// edges of a face, so that zero has to be a few errors within.
+    #[test]
+    fn zero_is_inside_only_beyond_the_error_of_the_corners() {
+        let tetrahedron = |depth: f64| {
+            [DVec3::new(-1.0, -1.0, -depth), DVec3::new(2.0, -1.0, -depth), DVec3::new(-1.0, 2.0, -depth), DVec3::Z]
+        };
+        for depth in [1e-3, 1e-9, 1e-14] {
+            assert!(is_around_zero(&tetrahedron(depth), depth / 64.0), "{depth}");
+            assert!(!is_around_zero(&tetrahedron(depth), depth), "{depth}");
+            assert!(!is_around_zero(&tetrahedron(-depth), 0.0), "{depth}");
+        }
+        let triangle = [DVec2::new(-1.0, -1e-9), DVec2::new(1.0, -1e-9), DVec2::Y];
+        assert!(is_around_zero(&triangle, 1e-11) && !is_around_zero(&triangle, 1e-9));
+        assert!(!is_around_zero(&triangle[..2], 0.0), "a segment has no inside");
+        assert!(!is_around_zero(&[DVec3::NAN; 4], 0.0), "NaN is nowhere");
+    }
+}

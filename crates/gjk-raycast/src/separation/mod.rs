@@ -16,7 +16,6 @@ mod met;
 mod near_contact;
 mod newton;
 mod orientation;
-mod peeled;
 mod room;
 mod witness;
 mod zonotope;
@@ -106,7 +105,6 @@ pub(crate) fn separation<V: Vector>(
     observer: &mut Observer<'_, V>,
 ) -> Separation<V> {
     let options = &wanted.options;
-    let mut is_peeled = false;
     if wanted.is_depth() {
         // Rounded cores are mostly apart, which takes a search to know.
         let is_rounded = cores.radius() > Scalar::ZERO;
@@ -118,7 +116,7 @@ pub(crate) fn separation<V: Vector>(
         }
         // Cores that overlapped in the last frame do so still, if no plane across its normal tells them apart.
         let is_warm = options.axis.and_then(|axis| axis.unit()).is_some_and(|axis| cores.reaches_beyond(-axis));
-        is_peeled = is_warm && cores.peel();
+        let _ = is_warm && cores.peel();
     }
     let mut state = cores.first_state(options.axis);
     let closest = cores.closest_points();
@@ -144,7 +142,7 @@ pub(crate) fn separation<V: Vector>(
         end != End::Stalled && cores.near.is_none()
     };
     if !is_known {
-        return reach_closely(cores, options, &mut state, end, is_peeled, observer);
+        return reach_closely(cores, options, &mut state, end, observer);
     }
     let known = Separation::of_gjk(cores, &mut state, end);
     // A simplex of full dimension has zero inside for certain, or a closer look would have been taken.
@@ -160,10 +158,9 @@ fn reach_closely<V: Vector>(
     options: &SignedDistanceOptions<V>,
     state: &mut Gjk<V>,
     mut end: End,
-    is_peeled: bool,
     observer: &mut Observer<'_, V>,
 ) -> Separation<V> {
-    let is_rounded = !is_peeled && cores.radius() > Scalar::ZERO;
+    let is_rounded = !cores.is_peeled() && cores.radius() > Scalar::ZERO;
     if is_rounded
         && end == End::Overlap
         && let Some(known) = cores.closed_form(options.axis)
@@ -172,7 +169,7 @@ fn reach_closely<V: Vector>(
     }
     // Half of what may be asked for is left for a second run.
     let may_repeat = end == End::Overlap && state.length.is_finite() && 2 * state.iterations < options.max_iterations;
-    if may_repeat && !is_peeled && cores.peel() {
+    if may_repeat && !cores.is_peeled() && cores.peel() {
         *state = cores.first_state(options.axis);
         end = cores.approach(&Wanted::new(OfOverlap::Depth, *options), state, None, observer);
     }
@@ -371,5 +368,27 @@ impl<V: Vector> Separation<V> {
         let v = a - b;
         let share = |of: V::Scalar| v * (of / radius).min(Scalar::ONE);
         [a - share(cores.radii[0]), b + share(cores.radii[1])]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::DVec3;
+    use convex_support::{Cone, Cylinder, Posed};
+
+    use crate::{distance, signed_distance};
+
+    /// Both are readings of one search, so that neither knows of a gap more than the other does.
+    #[test]
+    fn a_distance_is_known_as_well_as_a_signed_one() -> Result<(), convex_support::InvalidShape> {
+        let cylinder = Cylinder::<DVec3>::new(0.5, 0.25)?;
+        for height in [4.0, 1.5, 1.125, 1.0625, 1.0, 0.75] {
+            let cone = Posed::translated(Cone::<DVec3>::new(0.5, 0.25)?, DVec3::new(0.25, height, 0.125))?;
+            let apart = distance(&cylinder, &cone, Default::default());
+            let signed = signed_distance(&cylinder, &cone, Default::default());
+            assert_eq!((apart.lower, apart.upper), (signed.lower.max(0.0), signed.upper.max(0.0)), "at {height}");
+            assert_eq!(apart.overlap, signed.overlap, "at {height}");
+        }
+        Ok(())
     }
 }

@@ -542,3 +542,28 @@ impl<V: Vector> Known<V> {
         raised(farthest + self.error_along(n) + roundings(8.0, farthest))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::DVec3;
+    use convex_support::{Cuboid, Posed};
+
+    use super::*;
+
+    /// How wide a floor is has nothing to do with the gap above it: coordinates are counted along the normal alone.
+    #[test]
+    fn a_gap_of_one_ulp_over_a_wide_floor_is_seen() -> Result<(), convex_support::InvalidShape> {
+        let floor = Cuboid::new(DVec3::new(1e6, 0.5, 1e6))?;
+        let over = |height: f64| Posed::translated(Cuboid::new(DVec3::splat(0.5))?, DVec3::new(3.0, height, 0.0));
+        for (height, overlap) in [(1.0_f64.next_up(), false), (1.0, true), (1.0_f64.next_down(), true)] {
+            let (above, gap) = (over(height)?, height - 1.0);
+            for near in [near_contact_of(&above, &floor, 200), near_contact_of(&floor, &above, 200)] {
+                let near = near.expect("bodies near contact");
+                assert_eq!(near.overlap(), Some(overlap), "{height}");
+                let [lower, upper] = [near.lower, near.upper].map(|bound| bound * near.frame.scale);
+                assert!(lower <= gap && gap.max(0.0) <= upper, "{gap} is not in [{lower}, {upper}]");
+            }
+        }
+        Ok(())
+    }
+}

@@ -391,3 +391,33 @@ fn exact_cross(a: &Vec3, b: &Vec3) -> Vec3 {
 fn vector<V: Vector>(a: Vec3) -> V {
     V::from_fn(|i| V::Scalar::from_f64(a[i]))
 }
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::DVec3;
+
+    use super::*;
+
+    /// Half edges along the axes; in space the difference is a box then.
+    fn cube(half: f64) -> Parallelotope<DVec3> {
+        Parallelotope { center: DVec3::ZERO, half_edges: [DVec3::X * half, DVec3::Y * half, DVec3::Z * half] }
+    }
+
+    #[test]
+    fn two_cubes_leave_one_another_through_the_nearest_face() {
+        let cubes = [cube(1.0), cube(0.5)];
+        let nearest = Zonotope::new(&cubes, DVec3::new(0.25, 0.0, 1.25), 1.0).nearest_facet::<DVec3>().expect("inside");
+        assert_eq!((nearest.depth, nearest.unit::<DVec3>()), (0.25, DVec3::NEG_Z));
+        assert!(nearest.inner <= 0.25 && 0.25 <= nearest.outer);
+        let points = nearest.points(&cubes, DVec3::new(0.25, 0.0, 1.25), 1.0);
+        assert_eq!(points.a - points.b + DVec3::new(0.25, 0.0, 1.25), nearest.unit::<DVec3>() * nearest.depth);
+    }
+
+    /// In contact the rounding of the facets leaves it open whether zero is inside, and the search has to tell.
+    #[test]
+    fn nothing_is_told_of_cubes_in_contact() {
+        let cubes = [cube(1.0), cube(0.5)];
+        assert!(Zonotope::new(&cubes, DVec3::Z * 1.5, 1.0).nearest_facet::<DVec3>().is_none());
+        assert!(Zonotope::new(&cubes, DVec3::Z * 1.75, 1.0).is_beyond(DVec3::Z));
+    }
+}
