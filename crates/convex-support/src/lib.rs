@@ -68,6 +68,7 @@ mod bounds;
 mod bvh;
 mod closest_point;
 mod combinators;
+mod compiled_once;
 mod core_set;
 mod error;
 mod forward;

@@ -199,9 +199,10 @@ impl<V: Vector> Feature<V> {
             }
         }
         self.is_complete &= count <= MAX_POINTS;
-        farthest.sort_unstable_by_key(|&(i, _)| i);
-        for (k, &(i, _)) in farthest.iter().enumerate() {
-            if k == 0 || farthest[k - 1].0 != i {
+        let mut kept = farthest.map(|(i, _)| i);
+        sort(&mut kept);
+        for (k, &i) in kept.iter().enumerate() {
+            if k == 0 || kept[k - 1] != i {
                 self.push(point(i), i as u32);
             }
         }
@@ -293,6 +294,11 @@ fn keep<S: Scalar>(near: &mut [(usize, S)], is_kept: impl Fn(S) -> bool) -> usiz
         }
     }
     len
+}
+
+/// Sorts numbers. It knows no type, so that the sort is compiled here and not in every program that has shapes.
+fn sort(numbers: &mut [usize]) {
+    numbers.sort_unstable();
 }
 
 #[cfg(test)]

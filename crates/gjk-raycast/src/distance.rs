@@ -1,9 +1,8 @@
 //! The distance of two shapes (the paper's Algorithm 2).
 
-use convex_support::{Core, SupportMap};
+use convex_support::{Core, SupportMap, compiled_once};
 
 use crate::body::{Both, Shapes};
-use crate::compiled_once::compiled_once;
 use crate::observer::Observer;
 use crate::separation::{Cores, OfOverlap, Wanted, direct, separation};
 use crate::{Distance, DistanceOptions, Iterate, SignedDistance, SignedDistanceOptions};

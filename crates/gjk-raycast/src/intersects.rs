@@ -1,10 +1,9 @@
 //! Whether two shapes meet.
 
-use convex_support::{Core, Scalar, SupportMap, Vector};
+use convex_support::{Core, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float;
 
 use crate::body::{Both, Pair, PointPair, Shapes, TracedSupport as _};
-use crate::compiled_once::compiled_once;
 use crate::distance::distance;
 use crate::gjk::{BoxesMeet, End, Frame, Gjk, GjkOptions, boxes, first_direction, gjk, rounding};
 use crate::observer::Observer;

@@ -119,7 +119,6 @@ struct Readme;
 mod body;
 mod cast;
 mod certificate;
-mod compiled_once;
 mod contact;
 mod curvature;
 #[cfg(feature = "serde")]

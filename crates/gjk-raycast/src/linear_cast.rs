@@ -1,12 +1,11 @@
 //! When two shapes that move without turning meet.
 
 use convex_support::numerics::twofold::lost_in_sum;
-use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector};
+use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
 use crate::body::{Body, Both, Pair, PointPair, Shapes as _};
 use crate::cast::{Cast, CastHit, Part, cast, direct, settle_start};
-use crate::compiled_once::compiled_once;
 use crate::observer::Observer;
 use crate::shape::Shape;
 use crate::start_in_contact::StartingPair;

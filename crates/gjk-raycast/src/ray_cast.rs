@@ -1,11 +1,10 @@
 //! Where a ray enters a shape: the paper's question, answered by a closed form, by a portal or by its Algorithm 3.
 
-use convex_support::{CertainCrossing, LineQuery, Point, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{CertainCrossing, LineQuery, Point, Scalar, ScalarOf, SupportMap, Vector, compiled_once};
 use num_traits::Float;
 
 use crate::body::{Body, Measures, Single, TracedSupport as _};
 use crate::cast::{Cast, CastHit, LocalRay, Part, cast, direct, settle_start};
-use crate::compiled_once::compiled_once;
 use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
 use crate::unit::power_of_two_near;

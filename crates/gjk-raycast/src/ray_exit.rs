@@ -1,11 +1,10 @@
 //! Where a ray leaves a shape.
 
-use convex_support::{Scalar, SupportMap, Vector};
+use convex_support::{Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
 use crate::body::{Body, Measures, Single};
 use crate::cast::{CastHit, LocalRay, Part, cast};
-use crate::compiled_once::compiled_once;
 use crate::observer::Observer;
 use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, Status, ray_cast};
 

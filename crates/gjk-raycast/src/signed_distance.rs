@@ -1,9 +1,8 @@
 //! The signed distance of two shapes: how far apart, or how deep in one another.
 
-use convex_support::{Core, SupportMap, Vector};
+use convex_support::{Core, SupportMap, Vector, compiled_once};
 
 use crate::body::{Both, Shapes};
-use crate::compiled_once::compiled_once;
 use crate::observer::Observer;
 use crate::separation::{Cores, OfOverlap, Wanted, direct, separation};
 use crate::shape::Shape;

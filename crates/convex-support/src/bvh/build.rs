@@ -11,7 +11,7 @@ use super::frame::Frame;
 use super::node::{Boxes, Link, Node, Slot, WIDTH};
 use super::{Bvh, node};
 use crate::glam::{Vec3A, Vec4};
-use crate::{Aabb, Vector};
+use crate::{Aabb, Vector, compiled_once};
 
 const BINS: usize = 16;
 
@@ -71,6 +71,13 @@ impl Extent {
     }
 }
 
+compiled_once! {
+    /// [`Bvh::rebuild`].
+    fn rebuild<V>(tree: &mut Bvh<V>) -> () {
+        tree.build_all();
+    }
+}
+
 /// A range that a node is to be made of, in that place, and the levels it may take.
 struct Task {
     node: usize,
@@ -100,6 +107,10 @@ impl<V: Vector> Bvh<V> {
 
     /// Builds the tree anew over the boxes as they are.
     pub fn rebuild(&mut self) {
+        rebuild(self);
+    }
+
+    fn build_all(&mut self) {
         let items = || (0..self.boxes.len()).filter(|&item| self.slots[item] != Slot::NONE);
         let count = items().count();
         self.frame = Frame::of(count, items().map(|item| self.boxes[item]));

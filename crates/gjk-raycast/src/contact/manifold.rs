@@ -1,6 +1,6 @@
 //! The points in which two shapes in contact carry each other.
 
-use convex_support::{CoreKind, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{CoreKind, Scalar, ScalarOf, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
@@ -11,7 +11,6 @@ use super::result::MAX_POINTS;
 use super::surface::{Side, Surface};
 use super::{Contact, ContactPoint};
 use crate::SignedDistance;
-use crate::compiled_once::compiled_once;
 use crate::symmetric::{Across, axes_across, cross, dot};
 
 /// As a part of the smaller shape's size: how near a corner of one shape's feature a point is that counts as the

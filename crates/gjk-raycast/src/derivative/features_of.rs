@@ -1,12 +1,11 @@
 //! The features that answers are about.
 
-use convex_support::{Core, Matrix, Point, Scalar, SupportMap, Vector};
+use convex_support::{Core, Matrix, Point, Scalar, SupportMap, Vector, compiled_once};
 
 use num_traits::Float as _;
 
 use super::ClosestFeatures;
 use super::closest_features::{ClosestPoints, rounding};
-use crate::compiled_once::compiled_once;
 use crate::motion::Moved;
 use crate::shape::Shape;
 use crate::{

@@ -1,6 +1,6 @@
 //! When two bodies meet that move and turn.
 
-use convex_support::{AngularVelocity, Scalar, SupportMap, Vector};
+use convex_support::{AngularVelocity, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
 use super::first_contact::Search;
@@ -10,7 +10,6 @@ use super::result::{MotionCast, MotionHit, MotionIterate};
 use super::rigid_motion::RigidMotion;
 use super::trajectory::Trajectory;
 use crate::body::{Both, Shapes};
-use crate::compiled_once::compiled_once;
 use crate::error::RayCastError;
 use crate::ray::check_limits;
 use crate::ray::{check_finite, check_numbers};

@@ -2,7 +2,7 @@
 
 use core::cell::Cell;
 
-use convex_support::{Hint, Scalar, SupportMap, Vector};
+use convex_support::{Hint, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float;
 
 use super::approach::Approach;
@@ -13,7 +13,6 @@ use super::moving_body::MovingBody;
 use super::options::MotionCastOptions;
 use super::result::{MotionCast, MotionIterate};
 use super::trajectory::{Trajectory, TurningPlane};
-use crate::compiled_once::compiled_once;
 use crate::half_space::{Level, Plane};
 use crate::shape::{Shape, WithoutLines};
 use crate::unit::{length_bound, lost_to_underflow};

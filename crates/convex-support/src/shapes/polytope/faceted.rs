@@ -14,7 +14,9 @@ use super::lanes::{WIDTH, coordinate, side_by_side};
 use crate::error::InvalidShape;
 use crate::line_crossing::{NearLine, faceted};
 use crate::numerics::bound::roundings;
-use crate::{CertainCrossing, Core, Feature, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector};
+use crate::{
+    CertainCrossing, Core, Feature, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector, compiled_once,
+};
 
 /// [`WIDTH`] planes, each a unit outward normal by coordinates and how far the polytope reaches along it from the
 /// middle.
@@ -60,7 +62,10 @@ impl<V: Vector> Faceted<V> {
     /// # Errors
     /// As [`Polytope::new`].
     pub fn hull_of(points: impl IntoIterator<Item = V>) -> Result<Self, InvalidShape> {
-        let FromPoints { polytope, seen, unit, hull } = FromPoints::new(points)?;
+        FromPoints::new(points).map(with_facets)
+    }
+
+    fn of(FromPoints { polytope, seen, unit, hull }: FromPoints<V>) -> Self {
         // Without a hull, the bounding box is all that is known.
         let hull = hull.unwrap_or(ConvexHull::Point(0));
         let normals: Vec<V> = normals(&hull, &seen, V::DIM)
@@ -80,7 +85,7 @@ impl<V: Vector> Faceted<V> {
             V::Scalar::infinity()
         };
         let planes = side_by_side(&facets, |(n, reach), i| if i == 3 { reach } else { coordinate(n, i) });
-        Ok(Self { planes, count: facets.len(), uncut, polytope })
+        Self { planes, count: facets.len(), uncut, polytope }
     }
 
     /// The same set by its vertices.
@@ -113,6 +118,13 @@ impl<V: Vector> Faceted<V> {
 
     pub(crate) fn planes(&self) -> &[Planes<V::Scalar>] {
         &self.planes
+    }
+}
+
+compiled_once! {
+    /// The polytope with its facets.
+    fn with_facets<V>(found: FromPoints<V>) -> Faceted<V> {
+        Faceted::of(found)
     }
 }
 

@@ -7,7 +7,7 @@ use super::graph::Graph;
 use super::lanes::Lanes;
 use super::{Polytope, Search, checked, middle, relative};
 use crate::error::InvalidShape;
-use crate::{Scalar, Vector};
+use crate::{Scalar, Vector, compiled_once};
 
 /// Up to this many vertices a scan takes no longer than looking them up (measured: docs/support-maps.md).
 const SCANNED: usize = 8;
@@ -41,7 +41,10 @@ pub(super) struct FromPoints<V: Vector> {
 
 impl<V: Vector> FromPoints<V> {
     pub(super) fn new(points: impl IntoIterator<Item = V>) -> Result<Self, InvalidShape> {
-        let points = checked(points)?;
+        from_checked(checked(points)?)
+    }
+
+    fn from_checked(points: Vec<V>) -> Result<Self, InvalidShape> {
         let middle = middle(points.iter().copied());
         let (seen, unit) = relative(&points, middle);
         let coordinates = coordinates(&seen);
@@ -63,6 +66,13 @@ impl<V: Vector> FromPoints<V> {
         };
         let polytope = Polytope::searched_by(search, vertices, middle)?;
         Ok(Self { polytope, seen: coordinates, unit, hull: Some(hull) })
+    }
+}
+
+compiled_once! {
+    /// The hull of points that are finite.
+    fn from_checked<V>(points: Vec<V>) -> Result<FromPoints<V>, InvalidShape> {
+        FromPoints::from_checked(points)
     }
 }
 

@@ -1,14 +1,16 @@
 //! Functions that are compiled once, here, and not in every program that asks a question.
 //!
 //! The machine code of a generic function is made where its types become known, in the crate that calls it, at each of
-//! that crate's builds. The searches know their bodies only behind pointers, so that all they depend on is the type of
-//! the vectors, of which there are five ([`Vector`](convex_support::Vector) is sealed): their machine code is made with
-//! this crate. What is left to a caller's crate is short: the shapes' own methods, and the closed forms that are tried
-//! before a search.
+//! that crate's builds. What depends on the type of the vectors alone, of which there are five
+//! ([`Vector`](crate::Vector) is sealed), is made here instead: trees and hulls are built, and the searches of
+//! `gjk-raycast` know their bodies only behind pointers. What is left to a caller's crate is short: the shapes' own
+//! methods, and the closed forms that are tried before a search.
 
 /// Declares a function whose body is compiled for each type of vector here; a call finds the one for its own.
 ///
 /// Which of the five it is, the compiler knows where it is called, and leaves the others out.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! compiled_once {
     (
         $(#[$attribute:meta])*
@@ -17,10 +19,10 @@ macro_rules! compiled_once {
         $(#[$attribute])*
         #[allow(clippy::type_complexity, reason = "it is said once")]
         #[inline]
-        $visibility fn $name<$V: convex_support::Vector>($($argument: $T),*) -> $R {
-            use convex_support::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
-            fn once<$V: convex_support::Vector>($($argument: $T),*) -> $R $body
-            struct Compiled<$V: convex_support::Vector>(fn($($T),*) -> $R);
+        $visibility fn $name<$V: $crate::Vector>($($argument: $T),*) -> $R {
+            use $crate::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
+            fn once<$V: $crate::Vector>($($argument: $T),*) -> $R $body
+            struct Compiled<$V: $crate::Vector>(fn($($T),*) -> $R);
             static VEC2: Compiled<Vec2> = Compiled(once::<Vec2>);
             static VEC3: Compiled<Vec3> = Compiled(once::<Vec3>);
             static VEC3A: Compiled<Vec3A> = Compiled(once::<Vec3A>);
@@ -32,5 +34,3 @@ macro_rules! compiled_once {
         }
     };
 }
-
-pub(crate) use compiled_once;
