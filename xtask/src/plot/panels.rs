@@ -141,7 +141,8 @@ fn frame(svg: &mut String, panel: &Panel, [left, top]: [f64; 2], is_leftmost: bo
             "middle"
         };
         let _ = write!(lines, "M{x:.1} {top:.1}v{HEIGHT}");
-        if is_lowest {
+        // Every second number has room.
+        if is_lowest && k % 2 == 0 {
             let _ = writeln!(
                 svg,
                 "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{}</text>",
