@@ -90,7 +90,7 @@ impl Panels {
             panel.draw(&mut svg, corner);
         }
         let [left, top] = corner(self.panels.len(), columns);
-        key(&mut svg, [left, if is_below { top } else { top + 8.0 }], if is_below { columns } else { 1 });
+        key(&mut svg, [left, top + if is_below { BOTTOM } else { 8.0 }], if is_below { columns } else { 1 });
         let _ = writeln!(
             svg,
             "<text transform=\"translate(17 {:.0}) rotate(-90)\" text-anchor=\"middle\">error that 99 of 100 answers stay below, over the size of the scene</text>",
