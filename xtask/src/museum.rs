@@ -111,6 +111,8 @@ impl Piece {
         }
         let scalar = scalar_of(query).and_then(|name| of.get(name)?.as_f64());
         match (scalar, of.get("overlap").and_then(Value::as_bool)) {
+            (Some(0.0), _) if query == "signed_distance" => "they touch".to_owned(),
+            (Some(0.0), _) if query == "distance" => "they overlap".to_owned(),
             (Some(depth), _) if query == "signed_distance" && depth < 0.0 => format!("{} deep", short(-depth)),
             (Some(gap), _) if query.ends_with("distance") => format!("{} apart", short(gap)),
             (Some(at), _) if query.ends_with("cast") => format!("a hit at {}", short(at)),
