@@ -269,7 +269,7 @@ row("fcl-127", "flexible-collision-library/fcl#127", "A unit sphere and a box", 
 a = affine(box(0.1815, 0.1385, 0.1815), [[0.9999195703, 0.01021849413, 0.007512347878], [-0.01021878248, 0.9999477869, -3.329855922e-17], [-0.007511955635, -7.676704888e-05, 0.9999717819]], [1.503354966, -0.8531707835, 0.7700092418])
 b = affine(box(0.1815, 0.1815, 0.1385), [[0.9998670967, -0.01297708324, 0.009868343982], [0.01297771517, 0.9999157859, 5.255670031e-17], [-0.009867512928, 0.0001280685574, 0.9999513067]], [1.48838308, -1.102020834, 0.4497073799])
 gap = signed_distance(a, b)
-row("coal-604", "coal-library/coal#604", "Two boxes nearly parallel and close", "totally wrong, with a tolerance other than 1e-6",
+row("coal-604", "coal-library/coal#604", "Two boxes nearly parallel and close", "totally wrong, with a tolerance above 1e-6",
     {"query": "distance", "a": a, "b": b}, {"distance": gap, "overlap": False}, "shortest vector to the difference", allow=1e-9)
 row("jitter-302", "notgiven688/jitterphysics2#302", "A unit box, and a cloud of one point", "the distance says apart, the overlap test says together",
     {"query": "distance", "a": points([[1, 0, 0]]), "b": box(0.5, 0.5, 0.5)}, {"distance": 0.5, "overlap": False}, "the face is a plane", allow=1e-12)

@@ -111,6 +111,8 @@ impl Piece {
         }
         let scalar = scalar_of(query).and_then(|name| of.get(name)?.as_f64());
         match (scalar, of.get("overlap").and_then(Value::as_bool)) {
+            (Some(0.0), _) if query == "signed_distance" => "they touch".to_owned(),
+            (Some(0.0), _) if query == "distance" => "they overlap".to_owned(),
             (Some(depth), _) if query == "signed_distance" && depth < 0.0 => format!("{} deep", short(-depth)),
             (Some(gap), _) if query.ends_with("distance") => format!("{} apart", short(gap)),
             (Some(at), _) if query.ends_with("cast") => format!("a hit at {}", short(at)),
@@ -138,13 +140,12 @@ impl Piece {
 /// A number of five digits.
 fn short(value: f64) -> String {
     let size = value.abs();
-    if size == 0.0 || (1e-3..1e5).contains(&size) {
-        let decimals = if size >= 1.0 { 4 - (size.log10().floor() as usize).min(4) } else { 5 };
-        let text = format!("{value:.decimals$}");
-        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-    } else {
-        format!("{value:.2e}")
+    if size != 0.0 && !(1e-3..1e5).contains(&size) {
+        return format!("{value:.2e}");
     }
+    let decimals = if size == 0.0 { 0 } else { (4 - size.log10().floor() as i32).max(0) as usize };
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 fn print(pieces: &[Piece]) -> io::Result<()> {
@@ -215,6 +216,6 @@ mod tests {
     #[test]
     fn numbers_are_written_short() {
         let shown = [0.0, 100.0, 0.1, 8.4834, 0.00631114, 3.575_454e-6, 12_345.678].map(short);
-        assert_eq!(shown, ["0", "100", "0.1", "8.4834", "0.00631", "3.58e-6", "12346"]);
+        assert_eq!(shown, ["0", "100", "0.1", "8.4834", "0.0063111", "3.58e-6", "12346"]);
     }
 }

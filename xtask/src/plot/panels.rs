@@ -58,6 +58,9 @@ const FONT: f64 = 15.0;
 const LETTER: f64 = 8.3;
 /// The half width of a mark.
 const RADIUS: f64 = 5.0;
+/// What is said of the marks: how many lines, and how high each is.
+const KEYS: usize = 8;
+const KEY_ROW: f64 = 24.0;
 
 /// A box on the picture: left, top, right, bottom.
 type Area = [f64; 4];
@@ -66,8 +69,11 @@ impl Panels {
     /// The picture as an `<svg>` element, with as many panels in a row.
     #[must_use]
     pub fn svg(&self, columns: usize, class: &str) -> String {
-        let rows = (self.panels.len() + 1).div_ceil(columns);
-        let size = [LEFT + STEP[0] * columns as f64 + RIGHT, TOP + STEP[1] * rows as f64 + BOTTOM];
+        // What the marks mean stands in the place of one more panel, or in a few lines below where the rows are full.
+        let rows = self.panels.len().div_ceil(columns);
+        let is_below = self.panels.len() == rows * columns;
+        let below = if is_below { KEY_ROW * KEYS.div_ceil(columns) as f64 + 10.0 } else { 0.0 };
+        let size = [LEFT + STEP[0] * columns as f64 + RIGHT, TOP + STEP[1] * rows as f64 + BOTTOM + below];
         let mut svg = format!(
             "<svg class=\"{class}\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{2}\" xmlns=\"http://www.w3.org/2000/svg\" \
              font-family=\"system-ui, 'Segoe UI', 'DejaVu Sans', sans-serif\" font-size=\"{FONT}\">\n\
@@ -83,17 +89,18 @@ impl Panels {
             frame(&mut svg, panel, corner, k % columns == 0, is_lowest);
             panel.draw(&mut svg, corner);
         }
-        key(&mut svg, corner(self.panels.len(), columns));
+        let [left, top] = corner(self.panels.len(), columns);
+        key(&mut svg, [left, top + if is_below { BOTTOM } else { 8.0 }], if is_below { columns } else { 1 });
         let _ = writeln!(
             svg,
             "<text transform=\"translate(17 {:.0}) rotate(-90)\" text-anchor=\"middle\">error that 99 of 100 answers stay below, over the size of the scene</text>",
-            f64::midpoint(TOP, size[1] - BOTTOM)
+            f64::midpoint(TOP, size[1] - BOTTOM - below)
         );
         let _ = writeln!(
             svg,
             "<text x=\"{:.0}\" y=\"{:.0}\" text-anchor=\"middle\">median time of one question</text>\n</g>\n</svg>",
             f64::midpoint(LEFT, size[0]),
-            size[1] - 12.0
+            size[1] - below - 12.0
         );
         svg
     }
@@ -123,13 +130,22 @@ fn frame(svg: &mut String, panel: &Panel, [left, top]: [f64; 2], is_leftmost: bo
         escape(&panel.title)
     );
     let mut lines = String::new();
-    for power in TIME_TICKS {
+    for (k, power) in TIME_TICKS.into_iter().enumerate() {
         let x = left + across(10f64.powi(power));
+        // The outer numbers stay within the panel.
+        let anchor = if k == 0 {
+            "start"
+        } else if k + 1 == TIME_TICKS.len() {
+            "end"
+        } else {
+            "middle"
+        };
         let _ = write!(lines, "M{x:.1} {top:.1}v{HEIGHT}");
-        if is_lowest {
+        // Every second number has room.
+        if is_lowest && k % 2 == 0 {
             let _ = writeln!(
                 svg,
-                "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+                "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{}</text>",
                 top + HEIGHT + 17.0,
                 duration(10f64.powi(power))
             );
@@ -227,8 +243,8 @@ impl Mark {
     }
 }
 
-/// What the marks mean, in the place of one more panel.
-fn key(svg: &mut String, [left, top]: [f64; 2]) {
+/// What the marks mean, in so many columns.
+fn key(svg: &mut String, [left, top]: [f64; 2], columns: usize) {
     let mark = |is_ours, is_single, disproved| Mark {
         name: String::new(),
         ns: 1.0,
@@ -237,7 +253,7 @@ fn key(svg: &mut String, [left, top]: [f64; 2]) {
         is_single,
         disproved,
     };
-    let lines = [
+    let lines: [(Option<Mark>, &str); KEYS] = [
         (Some(mark(true, false, 0)), "ours, double precision"),
         (Some(mark(true, true, 0)), "ours, single precision"),
         (Some(mark(false, false, 0)), "another library, double"),
@@ -248,7 +264,8 @@ fn key(svg: &mut String, [left, top]: [f64; 2]) {
         (None, "further left is faster."),
     ];
     for (k, (mark, text)) in lines.iter().enumerate() {
-        let y = top + 34.0 + 24.0 * k as f64;
+        let y = top + KEY_ROW * (0.5 + (k / columns) as f64);
+        let left = left + STEP[0] * (k % columns) as f64;
         let shape = mark.as_ref().map_or_else(String::new, |mark| mark.shape([left + 10.0, y - 5.0]));
         let x = if mark.is_some() { left + 24.0 } else { left + 4.0 };
         let _ = writeln!(svg, "{shape}<text x=\"{x:.1}\" y=\"{y:.1}\">{text}</text>");

@@ -30,7 +30,7 @@ pub(super) fn headline(records: &[Record]) -> Headline {
         name: "headline".to_owned(),
         panels: panels(&points),
         caption: "Filled marks are ours, measured in this run. Hollow marks and crosses are other libraries, as recorded in docs/comparison.md with date \
-                  and machine. Near contact, bodies are a millionth of the scene apart. The error of an ellipsoid around points is relative to its \
+                  and machine, each asked about those bodies that it has. Near contact, bodies are a millionth of the scene apart. The error of an ellipsoid around points is relative to its \
                   volume, and that of a margin m to 1 + m."
             .to_owned(),
     };

@@ -129,7 +129,9 @@ impl Table {
         for row in &self.rows {
             html.push_str(if row.tone == Tone::Bad { "<tr class=\"wrong\">" } else { "<tr>" });
             for (k, cell) in row.cells.iter().enumerate() {
-                let _ = write!(html, "<td{}>{}", name(k), escape(cell));
+                // On a telephone a row is a card, in which each number is told what it is.
+                let of = self.headers.get(k).map_or("", String::as_str);
+                let _ = write!(html, "<td{} data-of=\"{}\">{}", name(k), escape(of), escape(cell));
             }
             html.push('\n');
         }
