@@ -135,6 +135,7 @@ mod half_space;
 mod intersects;
 mod iterative_ray_cast;
 mod linear_cast;
+mod linkage;
 mod motion;
 mod observer;
 mod options;
@@ -173,6 +174,10 @@ pub use half_space::HalfSpace;
 pub use intersects::{intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{linear_cast, linear_cast_with};
+pub use linkage::{
+    Joint, JointKind, Link, Linkage, LinkageError, Met, Path, PathContact, PathOptions, PathOutcome, PathStop,
+    PathWork, PathWorkspace,
+};
 pub use motion::{
     ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionHit, MotionIterate, MovingBall, Pose, RigidMotion,
     Trajectory, TurningPlane, motion_cast, motion_cast_with,

@@ -14,6 +14,7 @@ mod margin;
 mod method;
 mod motion_cast;
 mod pair;
+mod path;
 mod ray_cast;
 mod ray_exit;
 mod scene;
@@ -37,6 +38,7 @@ use self::intersect::Intersect;
 use self::linear_cast::LinearCast;
 use self::margin::Margin;
 use self::motion_cast::MotionCast;
+use self::path::Path;
 use self::ray_cast::RayCast;
 use self::ray_exit::RayExit;
 use self::scene::Scene;
@@ -131,6 +133,7 @@ const QUERIES: &[(&str, Reader)] = &[
     ("linear_cast", read::<LinearCast>),
     ("motion_cast", read::<MotionCast>),
     ("scene", read::<Scene>),
+    ("path", read::<Path>),
     ("enclosing_ellipsoid", read::<Enclosing>),
     ("inscribed_ellipsoid", read::<Inscribed>),
     ("margin", read::<Margin>),

@@ -88,6 +88,7 @@ const CRATES: [(&str, &[&str]); 3] = [
             "contact",
             "intersect",
             "scene",
+            "path",
         ],
     ),
     ("lj-ellipsoid", &["enclosing_ellipsoid", "inscribed_ellipsoid"]),

@@ -89,6 +89,7 @@ pub fn called(query: &str) -> String {
         "margin" => "margin of ellipsoids",
         "track" => "margin along a motion",
         "clearance" => "clearance of a robot",
+        "path" => "path of a robot",
         "none" => "unreadable line",
         known if scalar_of(known).is_some() || OTHERS.contains(&known) => return known.replace('_', " "),
         _ => "unknown query",

@@ -1,0 +1,22 @@
+//! Robots: bodies carried by joints, along a path, and anywhere in a box of joint values.
+
+mod axial;
+mod bounds;
+mod error;
+mod frame;
+mod joint;
+mod link_motion;
+#[allow(clippy::module_inception, reason = "it is the type that the folder is about")]
+mod linkage;
+mod moving;
+mod path;
+mod result;
+mod route;
+mod stage;
+mod sweep;
+
+pub use error::LinkageError;
+pub use joint::{Joint, JointKind, Link};
+pub use linkage::Linkage;
+pub use path::{PathOptions, PathWorkspace};
+pub use result::{Met, Path, PathContact, PathOutcome, PathStop, PathWork};
