@@ -5,6 +5,7 @@ mod bounds;
 mod error;
 mod frame;
 mod joint;
+mod joint_box;
 mod link_motion;
 #[allow(clippy::module_inception, reason = "it is the type that the folder is about")]
 mod linkage;
@@ -17,6 +18,7 @@ mod sweep;
 
 pub use error::LinkageError;
 pub use joint::{Joint, JointKind, Link};
+pub use joint_box::{JointBox, JointBoxOptions, JointBoxOutcome};
 pub use linkage::Linkage;
 pub use path::{PathOptions, PathWorkspace};
 pub use result::{Met, Path, PathContact, PathOutcome, PathStop, PathWork};

@@ -110,17 +110,14 @@ impl<S: SupportMap> Linkage<S> {
             let edge = Edge { from: from.as_ref(), to: to.as_ref() };
             let (tree, target, skeleton) = (scene.tree(), options.target_distance, &self.skeleton);
             sweep.parts = 0;
-            Sweep { skeleton, tree, half_spaces, edge, target, space: sweep }.run(duration);
-            work.parts += sweep.parts;
             let mut first = First::<S::Vector> { edge: index, contact: None, stop: None };
-            for near in &sweep.near {
-                let end = first.contact.map_or(near.to, |contact| contact.upper.min(near.to));
-                if !(near.from <= end) {
-                    break;
-                }
+            let mut sweeping = Sweep { skeleton, tree, half_spaces, edge, target, space: sweep };
+            sweeping.run(duration, &mut |near, bounds| {
                 work.casts += 1;
-                self.cast(near, end, scene, (edge, &sweep.bounds[near.item]), options, &mut first)?;
-            }
+                self.cast(near, scene, (edge, bounds), options, &mut first)?;
+                Ok::<_, RayCastError>(first.contact.map_or(duration, |contact| contact.upper))
+            })?;
+            work.parts += sweep.parts;
             if let Some(outcome) = first.outcome() {
                 return Ok(Path { outcome, work });
             }
@@ -132,14 +129,13 @@ impl<S: SupportMap> Linkage<S> {
     fn cast<O: SupportMap<Vector = S::Vector>>(
         &self,
         near: &Near<ScalarOf<S>>,
-        end: ScalarOf<S>,
         scene: &Scene<O>,
         (edge, bounds): (Edge<'_, ScalarOf<S>>, &Bounds<ScalarOf<S>>),
         options: MotionCastOptions<S::Vector>,
         first: &mut First<S::Vector>,
     ) -> Result<(), RayCastError> {
-        let &Near { from, item, body, other, .. } = near;
-        let options = options.with_max_time(end - from);
+        let &Near { from, to, item, body, other } = near;
+        let options = options.with_max_time(to - from);
         let links = &self.skeleton.links;
         // A first guess of the normal: from ball to ball.
         let center = |motion: &LinkMotion<'_, S::Vector>, link: usize| {

@@ -20,9 +20,11 @@ use super::moving::Moving;
 use crate::half_space::Plane;
 
 /// A ball that moves by more than this part of its radius is looked at in a shorter time.
-const COARSE: f64 = 1.0;
+const COARSE: f64 = 0.5;
 /// How often an edge is halved at most.
 const MAX_DEPTH: u32 = 9;
+/// Once it is halved so often, what is near is cast before the next part is looked at, which may be in vain.
+const CAST_DEPTH: u32 = 2;
 
 /// Two bodies that may come near one another within a part of an edge.
 #[derive(Clone, Copy, Debug)]
@@ -45,11 +47,11 @@ pub(super) struct SweepSpace<V: Vector> {
     /// The links and pairs that are not known to be free in the parts that are being looked at.
     items: Vec<usize>,
     /// The bounds of each link and pair.
-    pub(super) bounds: Vec<Bounds<V::Scalar>>,
+    bounds: Vec<Bounds<V::Scalar>>,
     /// The bodies of the scene near a link.
     found: Vec<usize>,
-    /// What the sweep has found.
-    pub(super) near: Vec<Near<V::Scalar>>,
+    /// What has been found and not yet shown.
+    near: Vec<Near<V::Scalar>>,
     pub(super) parts: usize,
 }
 
@@ -103,8 +105,14 @@ impl<V: Vector> SweepSpace<V> {
 }
 
 impl<V: Vector> Sweep<'_, V> {
-    /// Finds what may come near in an edge that takes some time: 1, or 0 of a path that is a pose.
-    pub(super) fn run(&mut self, duration: V::Scalar) {
+    /// Shows what may come near in an edge that takes some time: 1, or 0 of a path that is a pose. It is shown in the
+    /// order of time but for what is near for long, and beside it the bounds of its link or pair. The answer is a time
+    /// from which on nothing matters.
+    pub(super) fn run<E>(
+        &mut self,
+        duration: V::Scalar,
+        show: &mut impl FnMut(&Near<V::Scalar>, &Bounds<V::Scalar>) -> Result<V::Scalar, E>,
+    ) -> Result<(), E> {
         let (links, pairs) = (&self.skeleton.links, &self.skeleton.pairs);
         let routes = links.iter().map(|link| &link.route).chain(pairs.iter().map(|pair| &pair.route));
         self.space.bounds.clear();
@@ -112,14 +120,24 @@ impl<V: Vector> Sweep<'_, V> {
         self.space.near.clear();
         self.space.items.clear();
         self.space.items.extend(0..links.len() + pairs.len());
-        self.visit(V::Scalar::ZERO, duration, MAX_DEPTH, 0..links.len() + pairs.len());
-        join(&mut self.space.near);
+        let mut end = duration;
+        self.visit([V::Scalar::ZERO, duration], 0, 0..links.len() + pairs.len(), &mut end, show)
     }
 
     /// Looks at a part of the edge for what is not known to be free in all of it.
-    fn visit(&mut self, from: V::Scalar, duration: V::Scalar, depth: u32, items: Range<usize>) {
-        let half = duration * V::Scalar::from_f64(0.5);
-        let part = Part { middle: from + half, half, is_last: depth == 0 || half == V::Scalar::ZERO };
+    fn visit<E>(
+        &mut self,
+        [from, to]: [V::Scalar; 2],
+        depth: u32,
+        items: Range<usize>,
+        end: &mut V::Scalar,
+        show: &mut impl FnMut(&Near<V::Scalar>, &Bounds<V::Scalar>) -> Result<V::Scalar, E>,
+    ) -> Result<(), E> {
+        if from > *end {
+            return Ok(());
+        }
+        let half = (to - from) * V::Scalar::from_f64(0.5);
+        let part = Part { middle: from + half, half, is_last: depth == MAX_DEPTH || half == V::Scalar::ZERO };
         self.place(part.middle);
         self.space.parts += 1;
         let rest = self.space.items.len();
@@ -133,12 +151,23 @@ impl<V: Vector> Sweep<'_, V> {
                 self.space.items.push(item);
             }
         }
-        let end = self.space.items.len();
-        if end > rest {
-            self.visit(from, half, depth - 1, rest..end);
-            self.visit(part.middle, half, depth - 1, rest..end);
+        let coarse = rest..self.space.items.len();
+        if !coarse.is_empty() {
+            for half in [[from, part.middle], [part.middle, to]] {
+                self.visit(half, depth + 1, coarse.clone(), end, show)?;
+            }
             self.space.items.truncate(rest);
         }
+        if depth <= CAST_DEPTH {
+            join(&mut self.space.near);
+            for near in self.space.near.drain(..) {
+                // A contact found before bounds those after it.
+                if near.from <= *end {
+                    *end = end.min(show(&Near { to: near.to.min(*end), ..near }, &self.space.bounds[near.item])?);
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Places the joints at a time.
