@@ -15,6 +15,7 @@ pub mod footprint;
 pub mod fuzz;
 pub mod judge;
 pub mod mesh;
+pub mod paths;
 pub mod plot;
 pub mod prove;
 pub mod query;

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
 use clap::{Args, Parser, Subcommand};
-use xtask::{bits, docs, footprint, fuzz, prove, query, validate};
+use xtask::{bits, docs, footprint, fuzz, paths, prove, query, validate};
 
 /// Answers query files, validates the crates against true answers, and draws what they do.
 #[derive(Debug, Parser)]
@@ -34,6 +34,11 @@ enum Task {
     ///
     /// Exit status: 0 if everything is right, 1 if some answer is wrong, 2 if a file could not be read.
     Validate(validate::Scope),
+    /// Ask whether the edges of `path` queries are free, and print a table: what is free and what is not, in which time,
+    /// and beside it how many of the edges that touch something sampling takes for free.
+    ///
+    /// Exit status: 0, or 2 if a file could not be read or a path is none.
+    Path(paths::Choice),
     /// Prove answers by their certificates, in interval arithmetic that shares no solver and no shape with the crates.
     ///
     /// `cargo xtask query --certify FILE | cargo xtask prove -`; `docs/certificates.md` says what is proved, and how.
@@ -92,6 +97,7 @@ fn main() -> ExitCode {
         Task::Query(choice) => query::run(&choice),
         Task::Validate(scope) if scope.is_study() => study(scope.features()),
         Task::Validate(scope) => validate::run(&scope, &validate::QUICK),
+        Task::Path(choice) => paths::run(&choice),
         Task::Prove(choice) => prove::run(&choice),
         Task::Fuzz(scope) => fuzz::run(&scope),
         Task::Bits(choice) => bits::run(&choice),

@@ -9,12 +9,13 @@ mod fit;
 mod gradient;
 mod inscribed;
 mod intersect;
+mod joint_box;
 mod linear_cast;
 mod margin;
 mod method;
 mod motion_cast;
 mod pair;
-mod path;
+pub mod path;
 mod ray_cast;
 mod ray_exit;
 mod scene;
@@ -35,6 +36,7 @@ use self::distance::Distance;
 use self::enclosing::Enclosing;
 use self::inscribed::Inscribed;
 use self::intersect::Intersect;
+use self::joint_box::JointBox;
 use self::linear_cast::LinearCast;
 use self::margin::Margin;
 use self::motion_cast::MotionCast;
@@ -134,6 +136,7 @@ const QUERIES: &[(&str, Reader)] = &[
     ("motion_cast", read::<MotionCast>),
     ("scene", read::<Scene>),
     ("path", read::<Path>),
+    ("joint_box", read::<JointBox>),
     ("enclosing_ellipsoid", read::<Enclosing>),
     ("inscribed_ellipsoid", read::<Inscribed>),
     ("margin", read::<Margin>),

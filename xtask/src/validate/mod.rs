@@ -89,6 +89,7 @@ const CRATES: [(&str, &[&str]); 3] = [
             "intersect",
             "scene",
             "path",
+            "joint_box",
         ],
     ),
     ("lj-ellipsoid", &["enclosing_ellipsoid", "inscribed_ellipsoid"]),

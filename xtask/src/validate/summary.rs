@@ -98,7 +98,7 @@ pub fn called(query: &str) -> String {
 }
 
 /// Queries whose answer is not one number.
-const OTHERS: [&str; 2] = ["contact", "scene"];
+const OTHERS: [&str; 3] = ["contact", "scene", "joint_box"];
 
 /// Groups of cases by what `names` calls them.
 pub fn groups<'r>(records: &'r [Record], names: impl Fn(&'r Record) -> Vec<String>) -> BTreeMap<String, Group> {
