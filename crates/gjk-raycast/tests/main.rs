@@ -30,6 +30,7 @@ mod half_space_motion;
 mod hit_derivatives;
 mod invariances;
 mod lies;
+mod linkage;
 mod motion_cast;
 mod motion_laws;
 mod moving_boxes;

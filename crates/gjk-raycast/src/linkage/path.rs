@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
-use num_traits::Float as _;
+use num_traits::Float;
 
 use super::bounds::Bounds;
 use super::error::LinkageError;
@@ -115,7 +115,7 @@ impl<S: SupportMap> Linkage<S> {
             sweeping.run(duration, &mut |near, bounds| {
                 work.casts += 1;
                 self.cast(near, scene, (edge, bounds), options, &mut first)?;
-                Ok::<_, RayCastError>(first.contact.map_or(duration, |contact| contact.upper))
+                Ok::<_, RayCastError>(first.end(duration))
             })?;
             work.parts += sweep.parts;
             if let Some(outcome) = first.outcome() {
@@ -202,6 +202,12 @@ impl<V: Vector> First<V> {
                 });
             }
         }
+    }
+
+    /// The time from which on nothing matters.
+    fn end(&self, duration: V::Scalar) -> V::Scalar {
+        let [contact, stop] = [self.contact.map(|contact| contact.upper), self.stop.map(|stop| stop.lower)];
+        contact.into_iter().chain(stop).fold(duration, Float::min)
     }
 
     /// What is known of the edge; `None` if it is free.

@@ -319,9 +319,12 @@ impl<V: Vector> Reach<V> {
         Self { center, along: (drift + V::splat(radius)) * above::<V>(), radius: radius + length, drift: length }
     }
 
-    /// The box around it.
+    /// The box around it: one that contains everything where a number is not finite, so that nothing is left out, and
+    /// every cast says so.
     fn around(&self) -> Aabb<V> {
-        Aabb { min: self.center - self.along, max: self.center + self.along }
+        let (min, max) = (self.center - self.along, self.center + self.along);
+        let all = V::splat(V::Scalar::max_value());
+        if min.is_finite() && max.is_finite() { Aabb { min, max } } else { Aabb { min: -all, max: all } }
     }
 
     /// Whether it may come as near as the target to a box. NaN may.
