@@ -68,6 +68,9 @@ enum Task {
     /// Move a robot along its trajectory among obstacles (a study).
     #[command(disable_help_flag = true)]
     Scene(Passed),
+    /// Ask whether the pairs of links that a robot's planner does not look at ever meet (a study).
+    #[command(disable_help_flag = true)]
+    Matrix(Passed),
     /// Compare casts, distances and derivatives with references in thirty digits, at every scale (a study).
     #[command(disable_help_flag = true)]
     Sweep(Passed),
@@ -104,7 +107,7 @@ fn main() -> ExitCode {
         Task::Docs => docs::run(),
         Task::Footprint { output } => footprint::run(&output),
         Task::Judge(_) | Task::Growth(_) => study("peers"),
-        Task::Scene(_) | Task::Sweep(_) | Task::Book2d(_) | Task::Render(_) => study(""),
+        Task::Scene(_) | Task::Matrix(_) | Task::Sweep(_) | Task::Book2d(_) | Task::Render(_) => study(""),
     }
 }
 

@@ -30,7 +30,12 @@
 //! - *When do they meet, moving without turning?* [`linear_cast`], a ray cast at their difference.
 //! - *When do they meet, moving and turning?* [`motion_cast`], along [rigid motions](RigidMotion), [chains of
 //!   joints](ChainMotion) or a [`Trajectory`] of your own.
+//! - *How far may one of them go before its distance has to be asked for again?* [`Distance::free_step`].
 //! - *The same questions about a shape and an infinite floor or wall:* the methods of [`HalfSpace`].
+//!
+//! About a robot:
+//! - *Is its path free, at every time, and what does it meet first?* [`Linkage::path`].
+//! - *Do two of its links ever meet, wherever its joints are?* [`Linkage::joint_box`].
 //!
 //! About a ray and a shape:
 //! - *Where does the ray enter?* [`ray_cast`], and [`ray_casts`] for many rays: a closed form, a portal, or Algorithm 3
@@ -130,6 +135,7 @@ mod distance;
 mod distances;
 mod double;
 mod error;
+mod free_step;
 mod gjk;
 mod half_space;
 mod intersects;
@@ -170,6 +176,7 @@ pub use derivative::{
 pub use distance::{distance, distance_with};
 pub use distances::map_distances_into;
 pub use error::RayCastError;
+pub use free_step::FreeStep;
 pub use half_space::HalfSpace;
 pub use intersects::{intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};

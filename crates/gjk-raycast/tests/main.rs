@@ -24,6 +24,7 @@ mod differences;
 mod edges;
 mod exact;
 mod exact_oracle;
+mod free_steps;
 mod given_up;
 mod half_space;
 mod half_space_motion;
