@@ -339,3 +339,25 @@ fn the_largest_numbers_end() {
     let path = ask(&far.expect("finite"), &[vec![0.0], vec![1.0]], &scene);
     assert!(path.is_free(), "it is far away: {path:?}");
 }
+
+/// An edge is looked at in parts, whose ends are none of the motion. A contact exactly at the end of one, a quarter of the
+/// edge, was undecided there, as one at the end of a motion is: whether it comes before that, rounding decides.
+#[test]
+fn a_contact_at_the_end_of_a_part_is_one() -> Result<(), Box<dyn std::error::Error>> {
+    // By a quarter of a turn: the quaternion is not unit.
+    let quarter = Pose { rotation: DQuat::from_xyzw(0.0, 0.0, 1.0, 1.0), translation: DVec3::ZERO };
+    let joints = [Joint::fixed(None, quarter), Joint::prismatic(Some(0), Pose::default(), DVec3::NEG_Y * 2.0)];
+    let robot = Linkage::new(joints, [Link { joint: Some(1), bodies: vec![Ball::new(0.5)?] }])?;
+    let mut scene = Scene::<Ball<DVec3>>::default();
+    scene.insert_half_space(HalfSpace::new(DVec3::NEG_X * 2.0, -6.0)?);
+    for (part, target) in [(0.25, 0.5), (0.5, 0.5), (0.75, 0.5), (0.125, 0.0), (0.625, 0.25)] {
+        // The ball touches the wall, or comes as near as the target, when its middle is there.
+        let (end, wanted) = (2.5 - target, PathOptions::new().with_target_distance(target));
+        let ways = [[end - 4.0 * part], [end + 4.0 * (1.0 - part)]];
+        let path = robot.path(&ways, &scene, wanted, &mut PathWorkspace::new())?;
+        let contact = path.contact().ok_or("it is decided")?;
+        assert!(contact.lower <= part && part <= contact.upper && contact.is_certain(), "{part}: {contact:?}");
+        assert!(contact.upper - contact.lower < 1e-13, "{part}: {contact:?}");
+    }
+    Ok(())
+}

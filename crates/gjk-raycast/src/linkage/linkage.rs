@@ -31,17 +31,17 @@ use crate::Pose;
 /// )?;
 ///
 /// // It reaches along x, and is to reach along y. A ball is in the way of the forearm.
-/// let scene = Scene::new([Posed::translated(Ball::new(0.1)?, DVec3::new(1.0, 1.0, 0.0))?])?;
+/// let scene = Scene::new([Posed::translated(Ball::new(0.1)?, DVec3::new(1.25, 1.25, 0.0))?])?;
 /// let (mut workspace, options) = (PathWorkspace::new(), PathOptions::new());
 /// let straight = [[0.0, 0.0], [90f64.to_radians(), 0.0]];
 /// let path = arm.path(&straight, &scene, options, &mut workspace)?;
 /// let contact = path.contact().ok_or("the forearm sweeps over the ball")?;
 /// assert_eq!((contact.edge, contact.link), (0, 1));
-/// // The ball is at 45° and √2 from the shoulder; the bar touches it where it is 0.15 from its middle.
-/// let truth = (45.0 - (0.15 / 2f64.sqrt()).asin().to_degrees()) / 90.0;
+/// // The ball is at 45°; the bar touches it where it is 0.15 from its middle.
+/// let truth = (45.0 - (0.15 / (1.25 * 2f64.sqrt())).asin().to_degrees()) / 90.0;
 /// assert!(contact.lower <= truth && truth <= contact.upper && (contact.time - truth).abs() < 1e-12);
 ///
-/// // With the elbow bent by 150° first, and stretched at the end, the way is free: at every time, which is proved.
+/// // With the elbow bent by 150° on the way it is free: at every time, which is proved.
 /// let fold = 150f64.to_radians();
 /// let around = [[0.0, 0.0], [0.0, fold], [90f64.to_radians(), fold], [90f64.to_radians(), 0.0]];
 /// assert!(arm.path(&around, &scene, options, &mut workspace)?.is_free());

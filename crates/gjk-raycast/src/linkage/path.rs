@@ -114,7 +114,7 @@ impl<S: SupportMap> Linkage<S> {
             let mut sweeping = Sweep { skeleton, tree, half_spaces, edge, target, space: sweep };
             sweeping.run(duration, &mut |near, bounds| {
                 work.casts += 1;
-                self.cast(near, scene, (edge, bounds), options, &mut first)?;
+                self.cast(near, scene, (edge, bounds), options.with_max_time(duration), &mut first)?;
                 Ok::<_, RayCastError>(first.end(duration))
             })?;
             work.parts += sweep.parts;
@@ -135,8 +135,16 @@ impl<S: SupportMap> Linkage<S> {
         first: &mut First<S::Vector>,
     ) -> Result<(), RayCastError> {
         let &Near { from, to, item, body, other } = near;
-        let options = options.with_max_time(to - from);
         let links = &self.skeleton.links;
+        // The end of a part is none of the edge: where rounding decides whether a contact comes before it, the cast goes
+        // on.
+        let whole = options.max_time - from;
+        let cast_to_end =
+            |cast: &dyn Fn(MotionCastOptions<S::Vector>) -> Result<MotionCast<S::Vector>, RayCastError>| {
+                let part = cast(options.with_max_time(to - from))?;
+                let is_open = !part.is_certain() && to - from < whole;
+                if is_open { cast(options.with_max_time(whole)) } else { Ok(part) }
+            };
         // A first guess of the normal: from ball to ball.
         let center = |motion: &LinkMotion<'_, S::Vector>, link: usize| {
             motion.at(Scalar::ZERO).0.frame.of(links[link].balls[body].ball.center)
@@ -145,8 +153,9 @@ impl<S: SupportMap> Linkage<S> {
             let Some(obstacle) = scene.get(other) else { return Ok(()) };
             let motion = LinkMotion::new(&links[item].route, edge, from, *bounds);
             let axis = scene.tree().get(other).map(|around| center(&motion, item) - around.center());
-            let options = MotionCastOptions { axis, ..options };
-            let cast = obstacle.motion_cast(&self.bodies[item][body], &motion, options)?;
+            let cast = cast_to_end(&|options| {
+                obstacle.motion_cast(&self.bodies[item][body], &motion, MotionCastOptions { axis, ..options })
+            })?;
             first.take(cast, from, [item, body], Met::Obstacle(other));
             return Ok(());
         };
@@ -154,7 +163,7 @@ impl<S: SupportMap> Linkage<S> {
         let [link, base] = pair.links;
         let motion = LinkMotion::new(&pair.route, edge, from, *bounds);
         let (shape, met) = (&self.bodies[link][body], &self.bodies[base][other]);
-        let mut cast = motion_cast(shape, &motion, met, RigidMotion::default(), options)?;
+        let mut cast = cast_to_end(&|options| motion_cast(shape, &motion, met, RigidMotion::default(), options))?;
         if let Outcome::Hit(hit) = &mut cast.outcome {
             // It was seen from the second link.
             let route = &links[base].route;
