@@ -6,8 +6,8 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec3Swizzles as _};
 use convex_support::{Ball, Capsule, Cuboid, InvalidShape, Point, Polytope, Posed, Rounded, Segment, SupportMap};
 use gjk_raycast::{
-    HalfSpace, Joint, JointBoxOptions, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, Met, Path, PathOptions,
-    PathOutcome, PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, signed_distance,
+    HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, LinkageOptions, Met, Path, PathOutcome,
+    PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, signed_distance,
 };
 
 type Bar = Rounded<Segment<DVec2>>;
@@ -34,7 +34,7 @@ fn ball_at(x: f64, y: f64) -> Posed<Ball<DVec2>> {
 }
 
 fn ask(robot: &Linkage<Bar>, ways: &[Vec<f64>], scene: &Scene<Posed<Ball<DVec2>>>) -> Path<DVec2> {
-    robot.path(ways, scene, PathOptions::new(), &mut PathWorkspace::new()).expect("values for its joints")
+    robot.path(ways, scene, LinkageOptions::new(), &mut PathWorkspace::new()).expect("values for its joints")
 }
 
 /// A stretched arm that turns from an angle on meets a ball on its way when its middle line is 0.15 from the ball's
@@ -47,7 +47,7 @@ fn first_contacts_of_an_arm_are_those_of_its_closed_form() {
         let (angle, far) = (0.6 + 0.1 * f64::from(k), 0.4 + 0.12 * f64::from(k));
         let scene = Scene::new([ball_at(far * angle.cos(), far * angle.sin())]).expect("finite");
         let ways = [[-0.4, 0.0], [0.0, 0.0], [2.0, 0.0], [0.0, 0.0]];
-        let path = robot.path(&ways, &scene, PathOptions::new(), &mut workspace).expect("two values each");
+        let path = robot.path(&ways, &scene, LinkageOptions::new(), &mut workspace).expect("two values each");
         let contact = path.contact().expect("it turns by 2");
         let truth = (angle - (0.15 / far).asin()) / 2.0;
         assert_eq!((contact.edge, contact.link, contact.met), (1, usize::from(far > 1.0), Met::Obstacle(0)), "{far}");
@@ -82,7 +82,7 @@ fn links_of_one_robot_meet_one_another() {
         let normal = contact.normal.expect("they were apart");
         assert!((normal - end.normalize() * sign).length() < 1e-12, "out of the second, in the world: {contact:?}");
         assert!(ask(&chain, &[vec![0.0; 2], vec![alpha - 1e-9; 2]], &nothing).is_free(), "{pair:?}");
-        let near = PathOptions::new().with_target_distance(0.1);
+        let near = LinkageOptions::new().with_target_distance(0.1);
         let sooner = chain.path(&[[0.0; 2], [2.0; 2]], &nothing, near, &mut PathWorkspace::new()).expect("valid");
         let truth = (-0.4_f64).acos() / 2.0;
         assert!(sooner.contact().is_some_and(|c| (c.time - truth).abs() < 1e-13), "{sooner:?}");
@@ -98,7 +98,7 @@ fn a_joint_slides_along_its_axis() -> Result<(), Box<dyn std::error::Error>> {
     let robot = Linkage::new(joints, [Link { joint: Some(1), bodies: vec![Ball::new(0.5)?] }])?;
     let mut scene = Scene::<Ball<DVec3>>::default();
     let wall = scene.insert_half_space(HalfSpace::new(DVec3::NEG_X, -3.0)?);
-    let path = robot.path(&[[0.0], [1.0], [5.0]], &scene, PathOptions::new(), &mut PathWorkspace::new())?;
+    let path = robot.path(&[[0.0], [1.0], [5.0]], &scene, LinkageOptions::new(), &mut PathWorkspace::new())?;
     let contact = path.contact().ok_or("it comes to 2.5")?;
     assert_eq!((contact.edge, contact.met), (1, Met::Obstacle(wall)), "{contact:?}");
     assert!(contact.lower <= 0.375 && 0.375 <= contact.upper && contact.upper - contact.lower < 1e-13, "{contact:?}");
@@ -198,7 +198,7 @@ fn what_is_said_to_be_free_is_free_at_every_time_that_is_looked_at() -> Result<(
         let size = [0.3, 1.0, 4.0][(random(&mut seed) * 3.0) as usize];
         let ways =
             [0; 3].map(|_| (0..robot.values()).map(|_| size * (2.0 * random(&mut seed) - 1.0)).collect::<Vec<_>>());
-        let path = robot.path(&ways, &scene, PathOptions::new(), &mut PathWorkspace::new())?;
+        let path = robot.path(&ways, &scene, LinkageOptions::new(), &mut PathWorkspace::new())?;
         // The least signed distance at a time.
         let least = |edge: usize, time: f64| -> Result<f64, InvalidShape> {
             let values: Vec<f64> = ways[edge].iter().zip(&ways[edge + 1]).map(|(a, b)| a + time * (b - a)).collect();
@@ -255,7 +255,7 @@ fn a_box_of_joints_is_proved_or_refuted() -> Result<(), Box<dyn std::error::Erro
     let joints = [turning(None, DVec2::X), turning(Some(0), DVec2::X)];
     let links = [None, Some(0), Some(1)].map(|joint| Link { joint, bodies: vec![bar()] });
     let chain = Linkage::new(joints, links)?;
-    let ask = |half: f64| chain.joint_box([2, 0], &[[-half, half]; 2], JointBoxOptions::new());
+    let ask = |half: f64| chain.joint_box([2, 0], &[[-half, half]; 2], LinkageOptions::new());
     assert_eq!(ask(1.5)?.outcome, JointBoxOutcome::Never);
     let JointBoxOutcome::Meets { values, bodies } = ask(2.1)?.outcome else { return Err("they may meet".into()) };
     assert_eq!(bodies, [0, 0]);
@@ -266,7 +266,7 @@ fn a_box_of_joints_is_proved_or_refuted() -> Result<(), Box<dyn std::error::Erro
     // No wider interval is free, and none that is free has a pose that is not.
     let mut seed = 7;
     let (limits, mut met) = ([[-1.9, 1.9], [-1.9, 2.4]], 0);
-    let found = chain.joint_box([2, 0], &limits, JointBoxOptions::new())?;
+    let found = chain.joint_box([2, 0], &limits, LinkageOptions::new())?;
     for _ in 0..500 {
         let values = limits.map(|[low, high]: [f64; 2]| low + (high - low) * random(&mut seed)).to_vec();
         met += usize::from(!ask_own(&own, &values).is_free());
@@ -274,11 +274,17 @@ fn a_box_of_joints_is_proved_or_refuted() -> Result<(), Box<dyn std::error::Erro
     assert_eq!(met > 0, matches!(found.outcome, JointBoxOutcome::Meets { .. }), "{met} poses, {found:?}");
 
     // A search that is cut short says how much of the box is open.
-    let cut = chain.joint_box([2, 0], &[[-1.5, 1.5]; 2], JointBoxOptions::new().with_max_boxes(9))?;
+    let cut = chain.joint_box([2, 0], &[[-1.5, 1.5]; 2], LinkageOptions::new().with_max_boxes(9))?;
     assert!(matches!(cut.outcome, JointBoxOutcome::Undecided { share } if share > 0.0 && share < 1.0), "{cut:?}");
-    // At exact contact nothing is certain, and the search ends.
-    let wall = [[0.0, 0.0], [0.0, 0.0]];
-    let touching = chain.joint_box([1, 0], &wall, JointBoxOptions::new().with_max_boxes(100))?;
+    // However few, at least one part is looked at, and none is lost.
+    for most in 0..4 {
+        let cut = chain.joint_box([2, 0], &[[-1.5, 1.5]; 2], LinkageOptions::new().with_max_boxes(most))?;
+        let JointBoxOutcome::Undecided { share } = cut.outcome else { return Err("not by so few".into()) };
+        assert!(share > 0.0 && cut.boxes <= most + 1, "{most}: {cut:?}");
+    }
+    // Of no extent, the box is a pose.
+    let pose = [[0.0, 0.0], [0.0, 0.0]];
+    let touching = chain.joint_box([1, 0], &pose, LinkageOptions::new().with_max_boxes(100))?;
     assert!(matches!(touching.outcome, JointBoxOutcome::Meets { .. }), "neighbours overlap: {touching:?}");
     Ok(())
 }
@@ -307,7 +313,7 @@ fn what_is_no_linkage_or_path_is_refused_by_its_index() -> Result<(), Box<dyn st
 
     let scene = Scene::<Bar>::default();
     let refused = |ways: &[Vec<f64>], options| arm().path(ways, &scene, options, &mut PathWorkspace::new()).err();
-    let options = PathOptions::new();
+    let options = LinkageOptions::new();
     assert_eq!(refused(&[], options), Some(LinkageError::EmptyPath));
     let short = LinkageError::Count { waypoint: 1, joints: 2, values: 1 };
     assert_eq!(refused(&[vec![0.0; 2], vec![1.0]], options), Some(short));
@@ -320,7 +326,7 @@ fn what_is_no_linkage_or_path_is_refused_by_its_index() -> Result<(), Box<dyn st
         "{option}"
     );
 
-    let boxes = |limits: &[[f64; 2]]| arm().joint_box([0, 1], limits, JointBoxOptions::new()).err();
+    let boxes = |limits: &[[f64; 2]]| arm().joint_box([0, 1], limits, LinkageOptions::new()).err();
     assert_eq!(boxes(&[[0.0, 1.0], [1.0, 0.5]]), Some(LinkageError::Interval { value: 1 }));
     assert_eq!(boxes(&[[0.0, 1.0]]), Some(LinkageError::Count { waypoint: 0, joints: 2, values: 1 }));
     assert_eq!(boxes(&[[0.0, 1.0], [0.0, f64::NAN]]), Some(LinkageError::Value { waypoint: 0, value: 1 }));
@@ -352,7 +358,7 @@ fn a_contact_at_the_end_of_a_part_is_one() -> Result<(), Box<dyn std::error::Err
     scene.insert_half_space(HalfSpace::new(DVec3::NEG_X * 2.0, -6.0)?);
     for (part, target) in [(0.25, 0.5), (0.5, 0.5), (0.75, 0.5), (0.125, 0.0), (0.625, 0.25)] {
         // The ball touches the wall, or comes as near as the target, when its middle is there.
-        let (end, wanted) = (2.5 - target, PathOptions::new().with_target_distance(target));
+        let (end, wanted) = (2.5 - target, LinkageOptions::new().with_target_distance(target));
         let ways = [[end - 4.0 * part], [end + 4.0 * (1.0 - part)]];
         let path = robot.path(&ways, &scene, wanted, &mut PathWorkspace::new())?;
         let contact = path.contact().ok_or("it is decided")?;

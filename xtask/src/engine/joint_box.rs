@@ -1,7 +1,7 @@
 //! `joint_box`.
 
 use convex_support::Vector;
-use gjk_raycast::{JointBoxOptions, JointBoxOutcome, Linkage};
+use gjk_raycast::{JointBoxOutcome, Linkage, LinkageOptions};
 
 use super::{Ask, How, Query, Question, scalar};
 use crate::wire::answer::{Answer, Field, Number};
@@ -37,7 +37,7 @@ impl Query for JointBox {
             robot: self.robot.build(how.meshes)?,
             pair: self.pair,
             intervals: self.intervals.iter().map(|ends| ends.map(scalar::<V>)).collect(),
-            options: JointBoxOptions::new().with_target_distance(scalar::<V>(self.target_distance)),
+            options: LinkageOptions::new().with_target_distance(scalar::<V>(self.target_distance)),
         }))
     }
 }
@@ -46,7 +46,7 @@ struct Ever<V: Vector> {
     robot: Linkage<Solid<V>>,
     pair: [usize; 2],
     intervals: Vec<[V::Scalar; 2]>,
-    options: JointBoxOptions<V::Scalar>,
+    options: LinkageOptions<V>,
 }
 
 impl<V: Space> Question for Ever<V> {

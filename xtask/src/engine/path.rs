@@ -4,7 +4,7 @@ use convex_support::Vector;
 use convex_support::glam::{DVec2, DVec3};
 #[cfg(not(target_family = "wasm"))]
 use cpu_time::ThreadTime;
-use gjk_raycast::{Linkage, Met, PathOptions, PathOutcome, PathStop, PathWorkspace, Scene};
+use gjk_raycast::{Linkage, LinkageOptions, Met, PathOutcome, PathStop, PathWorkspace, Scene};
 #[cfg(target_family = "wasm")]
 use std::time::Instant as ThreadTime;
 
@@ -55,7 +55,7 @@ impl Path {
         how.method(&[("gjk", ())])?;
         let build = |(i, body): (usize, &Body)| body.build(&format!("obstacles[{i}]"), how.meshes);
         let obstacles = self.obstacles.iter().enumerate().map(build).collect::<Result<Vec<_>, _>>()?;
-        let mut options = PathOptions::new().with_target_distance(scalar::<V>(self.target_distance));
+        let mut options = LinkageOptions::new().with_target_distance(scalar::<V>(self.target_distance));
         options.tolerance = how.tolerance::<V>()?.unwrap_or(options.tolerance);
         let pairs = self.pairs.iter().copied();
         Ok(Way {
@@ -71,7 +71,7 @@ struct Way<V: Vector> {
     robot: Linkage<Solid<V>>,
     scene: Scene<Solid<V>>,
     waypoints: Vec<Vec<V::Scalar>>,
-    options: PathOptions<V>,
+    options: LinkageOptions<V>,
 }
 
 impl<V: Space> Question for Way<V> {

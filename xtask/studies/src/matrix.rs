@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Args;
-use gjk_raycast::{JointBox, JointBoxOptions, JointBoxOutcome};
+use gjk_raycast::{JointBox, JointBoxOutcome, LinkageOptions};
 use roxmltree::Document;
 
 use crate::scene::robot::{Jointed, Robot};
@@ -55,7 +55,7 @@ fn answer(choice: &Choice) -> Result<(), String> {
         Some(file) => pairs(file)?,
         None => every_pair(&robot),
     };
-    let options = JointBoxOptions::new().with_max_boxes(choice.most);
+    let options = LinkageOptions::new().with_max_boxes(choice.most);
     let mut output = io::stdout().lock();
     let mut kept = Vec::new();
     let mut counts = [0; 4];

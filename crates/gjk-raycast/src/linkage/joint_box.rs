@@ -13,7 +13,7 @@
 //! A box that is not shown to be free is halved along the joint that moves the body the most, those with the nearest
 //! middles first.
 
-use alloc::collections::BinaryHeap;
+use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 use core::cmp::Ordering;
 
@@ -27,49 +27,13 @@ use super::error::LinkageError;
 use super::frame::epsilons;
 use super::linkage::Linkage;
 use super::moving::{Moving, Value};
+use super::path::LinkageOptions;
 use super::route::Route;
-use super::stage::StageMotion;
-use crate::ray::check_limits;
+use super::stage::{Stage, StageMotion};
 use crate::{SignedDistanceOptions, signed_distance};
 
 /// Of more joints than this, the signs of each are chosen alone.
 const MAX_SIGNS: usize = 5;
-
-/// Options of [`Linkage::joint_box`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct JointBoxOptions<S> {
-    /// How near is too near. A negative value is taken for zero. Default: 0.
-    pub target_distance: S,
-    /// The parts of the box to look at, after which to give up. Default: 100 000.
-    pub max_boxes: usize,
-}
-
-impl<S: Scalar> JointBoxOptions<S> {
-    /// The default options.
-    #[must_use]
-    pub fn new() -> Self {
-        Self { target_distance: S::ZERO, max_boxes: 100_000 }
-    }
-
-    /// With a [`target_distance`](Self::target_distance).
-    #[must_use]
-    pub fn with_target_distance(self, target_distance: S) -> Self {
-        Self { target_distance, ..self }
-    }
-
-    /// With another number of [parts](Self::max_boxes).
-    #[must_use]
-    pub fn with_max_boxes(self, max_boxes: usize) -> Self {
-        Self { max_boxes, ..self }
-    }
-}
-
-impl<S: Scalar> Default for JointBoxOptions<S> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
 
 /// The answer of [`Linkage::joint_box`].
 #[derive(Clone, Debug, PartialEq)]
@@ -107,7 +71,7 @@ impl<S: SupportMap> Linkage<S> {
     /// ```
     /// use convex_support::{Rounded, Segment, glam::DVec2};
     /// use gjk_raycast::{
-    ///     Joint, JointBoxOptions, JointBoxOutcome, JointKind, Link, Linkage, Pose,
+    ///     Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageOptions, Pose,
     /// };
     ///
     /// // Three bars of length 1 in a row. The last may meet the first, if both joints turn far enough.
@@ -121,7 +85,7 @@ impl<S: SupportMap> Linkage<S> {
     ///     ],
     ///     [link(None), link(Some(0)), link(Some(1))],
     /// )?;
-    /// let ask = |angle: f64| chain.joint_box([2, 0], &[[-angle, angle]; 2], JointBoxOptions::new());
+    /// let ask = |angle: f64| chain.joint_box([2, 0], &[[-angle, angle]; 2], LinkageOptions::new());
     ///
     /// // Up to 90° at both joints they do not.
     /// assert_eq!(ask(90f64.to_radians())?.outcome, JointBoxOutcome::Never);
@@ -137,9 +101,9 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         pair: [usize; 2],
         joint_box: &[[ScalarOf<S>; 2]],
-        options: JointBoxOptions<ScalarOf<S>>,
+        options: LinkageOptions<S::Vector>,
     ) -> Result<JointBox<ScalarOf<S>>, LinkageError> {
-        check_limits(Scalar::ZERO, options.target_distance)?;
+        let target = options.checked()?.target_distance;
         let route = self.skeleton.between(pair).ok_or(LinkageError::Pair { pair: 0 })?;
         for end in [0, 1] {
             self.check(0, &joint_box.iter().map(|interval| interval[end]).collect::<Vec<_>>())?;
@@ -147,12 +111,11 @@ impl<S: SupportMap> Linkage<S> {
         if let Some(value) = joint_box.iter().position(|[low, high]| low > high) {
             return Err(LinkageError::Interval { value });
         }
-        let target = Float::max(options.target_distance, Scalar::ZERO);
         let (mut boxes, mut open) = (0, Scalar::ZERO);
         for (i, a) in self.bodies[pair[0]].iter().enumerate() {
             for (k, b) in self.bodies[pair[1]].iter().enumerate() {
                 let mut search = Search::new(&route, [a, b], joint_box, target);
-                let outcome = search.run(options.max_boxes - boxes);
+                let outcome = search.run(options.max_boxes.saturating_sub(boxes));
                 boxes += search.looked;
                 match outcome {
                     JointBoxOutcome::Never => {}
@@ -190,8 +153,7 @@ struct Part<S> {
     middle: Vec<S>,
     half: Vec<S>,
     share: S,
-    /// How far the bodies are apart in the middle, and the joint to halve.
-    distance: S,
+    /// The joint to halve.
     joint: usize,
 }
 
@@ -229,41 +191,43 @@ impl<'s, A: SupportMap> Search<'s, A> {
         Self { route, bodies, joint_box, target, reach, size, levers, looked: 0 }
     }
 
-    /// Looks at so many parts at most.
+    /// Looks at so many parts, or one more.
     fn run(&mut self, most: usize) -> JointBoxOutcome<ScalarOf<A>> {
         let half = ScalarOf::<A>::from_f64(0.5);
-        let interval = |i: usize| self.joint_box[self.route.stages[i].column];
-        let count = self.route.stages.len();
-        let middle = (0..count).map(|i| interval(i)[0] * half + interval(i)[1] * half).collect();
-        // Rounded up, so that the parts cover the box.
-        let halves = (0..count).map(|i| raised(interval(i)[1] * half - interval(i)[0] * half)).collect();
-        let whole = Part { middle, half: halves, share: Scalar::ONE, distance: Scalar::ZERO, joint: 0 };
-        let (mut open, mut stuck) = (BinaryHeap::new(), ScalarOf::<A>::ZERO);
+        let interval = |stage: &Stage<A::Vector>| self.joint_box[stage.column];
+        let middle = |[low, high]: [ScalarOf<A>; 2]| low * half + high * half;
+        // With room for the rounding of the middle, so that the parts cover the box.
+        let width = |[low, high]: [ScalarOf<A>; 2]| {
+            raised(high * half - low * half) + epsilons::<ScalarOf<A>>(1.0) * (low.abs() + high.abs())
+        };
+        let stages = &self.route.stages;
+        let whole = Part {
+            middle: stages.iter().map(|stage| middle(interval(stage))).collect(),
+            half: stages.iter().map(|stage| width(interval(stage))).collect(),
+            share: Scalar::ONE,
+            joint: 0,
+        };
+        // By how near the bodies are in the middle, and then in the order in which they were made.
+        let (mut open, mut made, mut stuck) = (BTreeMap::new(), 0, ScalarOf::<A>::ZERO);
         let mut next = Some([Some(whole), None]);
         while let Some(parts) = next {
             for mut part in parts.into_iter().flatten() {
-                if self.looked == most {
-                    open.push(part);
-                    continue;
-                }
                 self.looked += 1;
                 match self.look(&part) {
                     Known::Free => {}
                     Known::Meets => return JointBoxOutcome::Meets { values: self.values(&part), bodies: [0, 0] },
                     // Where no joint moves them, nothing is left to halve.
-                    Known::Open { .. } if count == 0 => stuck = Scalar::ONE,
+                    Known::Open { .. } if stages.is_empty() => stuck = Scalar::ONE,
                     Known::Open { distance, joint } => {
-                        (part.distance, part.joint) = (distance, joint);
-                        open.push(part);
+                        part.joint = joint;
+                        made += 1;
+                        open.insert((in_order(distance), made), part);
                     }
                 }
             }
-            if self.looked == most {
-                break;
-            }
-            next = open.pop().map(|part| part.halves().map(Some));
+            next = if self.looked < most { open.pop_first().map(|(_, part)| part.halves().map(Some)) } else { None };
         }
-        let share = open.iter().fold(stuck, |sum, part| sum + part.share);
+        let share = open.values().fold(stuck, |sum, part| sum + part.share);
         if share == Scalar::ZERO { JointBoxOutcome::Never } else { JointBoxOutcome::Undecided { share } }
     }
 
@@ -380,23 +344,8 @@ impl<S: Scalar> Part<S> {
     }
 }
 
-impl<S: Scalar> Ord for Part<S> {
-    /// The nearest first.
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.distance.as_f64().total_cmp(&self.distance.as_f64())
-    }
+/// A number as one that has the order of numbers.
+fn in_order<S: Scalar>(number: S) -> i64 {
+    let bits = number.as_f64().to_bits() as i64;
+    bits ^ ((bits >> 63) & i64::MAX)
 }
-
-impl<S: Scalar> PartialOrd for Part<S> {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl<S: Scalar> PartialEq for Part<S> {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl<S: Scalar> Eq for Part<S> {}

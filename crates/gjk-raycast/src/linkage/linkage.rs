@@ -17,7 +17,7 @@ use crate::Pose;
 ///
 /// ```
 /// use convex_support::{Ball, Posed, Rounded, Segment, glam::DVec3};
-/// use gjk_raycast::{Joint, JointKind, Link, Linkage, PathOptions, PathWorkspace, Pose, Scene};
+/// use gjk_raycast::{Joint, JointKind, Link, Linkage, LinkageOptions, PathWorkspace, Pose, Scene};
 ///
 /// // An arm of two links of length 1, whose shoulder and elbow turn about z.
 /// let bar = Rounded::new(Segment::new([DVec3::ZERO, DVec3::X])?, 0.05)?;
@@ -32,7 +32,7 @@ use crate::Pose;
 ///
 /// // It reaches along x, and is to reach along y. A ball is in the way of the forearm.
 /// let scene = Scene::new([Posed::translated(Ball::new(0.1)?, DVec3::new(1.25, 1.25, 0.0))?])?;
-/// let (mut workspace, options) = (PathWorkspace::new(), PathOptions::new());
+/// let (mut workspace, options) = (PathWorkspace::new(), LinkageOptions::new());
 /// let straight = [[0.0, 0.0], [90f64.to_radians(), 0.0]];
 /// let path = arm.path(&straight, &scene, options, &mut workspace)?;
 /// let contact = path.contact().ok_or("the forearm sweeps over the ball")?;

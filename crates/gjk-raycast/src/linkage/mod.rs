@@ -18,7 +18,7 @@ mod sweep;
 
 pub use error::LinkageError;
 pub use joint::{Joint, JointKind, Link};
-pub use joint_box::{JointBox, JointBoxOptions, JointBoxOutcome};
+pub use joint_box::{JointBox, JointBoxOutcome};
 pub use linkage::Linkage;
-pub use path::{PathOptions, PathWorkspace};
+pub use path::{LinkageOptions, PathWorkspace};
 pub use result::{Met, Path, PathContact, PathOutcome, PathStop, PathWork};

@@ -16,10 +16,13 @@ use crate::motion::checked;
 use crate::options::setters;
 use crate::{MotionCast, MotionCastOptions, Outcome, RayCastError, RigidMotion, Scene, motion_cast};
 
-/// Options of [`Linkage::path`].
+/// Parts of a box of joint values to look at: a pair of links of a robot arm takes up to ten thousand.
+const MAX_BOXES: usize = 100_000;
+
+/// Options of [`Linkage::path`] and [`Linkage::joint_box`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct PathOptions<V: Vector> {
+pub struct LinkageOptions<V: Vector> {
     /// How near is too near: bodies count as touching at this distance. A negative value is taken for zero. Default: 0.
     pub target_distance: V::Scalar,
     /// As of [`MotionCastOptions::tolerance`]. Default: 0.
@@ -27,26 +30,35 @@ pub struct PathOptions<V: Vector> {
     /// As of [`MotionCastOptions::max_iterations`], for each body of a link and each that is near it. Default: that of
     /// a motion cast.
     pub max_iterations: usize,
+    /// The parts of a box of joint values to look at, after which to give up. Default: 100 000.
+    pub max_boxes: usize,
 }
 
-impl<V: Vector> PathOptions<V> {
+impl<V: Vector> LinkageOptions<V> {
     /// The default options.
     #[must_use]
     pub fn new() -> Self {
         let MotionCastOptions { target_distance, tolerance, max_iterations, .. } = MotionCastOptions::<V>::new();
-        Self { target_distance, tolerance, max_iterations }
+        Self { target_distance, tolerance, max_iterations, max_boxes: MAX_BOXES }
     }
 
     setters!(target_distance, tolerance, max_iterations);
 
-    /// Those of the casts.
-    fn checked(&self) -> Result<MotionCastOptions<V>, RayCastError> {
+    /// With another number of [parts](Self::max_boxes).
+    #[must_use]
+    pub const fn with_max_boxes(mut self, max_boxes: usize) -> Self {
+        self.max_boxes = max_boxes;
+        self
+    }
+
+    /// Those of casts.
+    pub(super) fn checked(&self) -> Result<MotionCastOptions<V>, RayCastError> {
         let options = MotionCastOptions::new().with_target_distance(self.target_distance);
         checked(options.with_tolerance(self.tolerance).with_max_iterations(self.max_iterations))
     }
 }
 
-impl<V: Vector> Default for PathOptions<V> {
+impl<V: Vector> Default for LinkageOptions<V> {
     fn default() -> Self {
         Self::new()
     }
@@ -93,7 +105,7 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         waypoints: &[W],
         scene: &Scene<O>,
-        options: PathOptions<S::Vector>,
+        options: LinkageOptions<S::Vector>,
         workspace: &mut PathWorkspace<S::Vector>,
     ) -> Result<Path<S::Vector>, LinkageError> {
         let options = options.checked()?;

@@ -12,6 +12,7 @@ use core::ops::{ControlFlow, Range};
 use convex_support::{Aabb, BoundingSphere, BoxDistance, Bvh, Scalar, Vector};
 use num_traits::Float as _;
 
+use super::axial;
 use super::bounds::Bounds;
 use super::frame::epsilons;
 use super::link_motion::Edge;
@@ -189,7 +190,9 @@ impl<V: Vector> Sweep<'_, V> {
     fn look_at_link(&mut self, item: usize, part: Part<V::Scalar>) -> Known {
         let link = &self.skeleton.links[item];
         let (moving, bounds) = (self.moving(link.stage), self.space.bounds[item]);
-        let reach = Reach::of(&link.ball, &moving, &bounds, part.half);
+        let seen =
+            |around: &Around<V>| Reach::of(*around, V::Scalar::ZERO, [&moving, &Moving::WORLD], &bounds, part.half);
+        let reach = seen(&link.ball);
         let is_coarse = !part.is_last && reach.drift > link.ball.ball.radius * V::Scalar::from_f64(COARSE);
         let mut found = core::mem::take(&mut self.space.found);
         found.clear();
@@ -209,7 +212,7 @@ impl<V: Vector> Sweep<'_, V> {
         };
         if known == Known::Found {
             for (body, around) in link.balls.iter().enumerate() {
-                let reach = Reach::of(around, &moving, &bounds, part.half);
+                let reach = seen(around);
                 for (k, &other) in found.iter().enumerate() {
                     let (other, is_near) = if k < planes {
                         let (index, plane) = &self.half_spaces[other];
@@ -232,7 +235,7 @@ impl<V: Vector> Sweep<'_, V> {
         let [a, b] = pair.links.map(|link| &self.skeleton.links[link]);
         let [moving, base] = [a, b].map(|link| self.moving(link.stage));
         let bounds = self.space.bounds[item];
-        let seen = |around: &Around<V>| Reach::against(around, pair.route.rim, [&moving, &base], &bounds, part.half);
+        let seen = |around: &Around<V>| Reach::of(*around, pair.route.rim, [&moving, &base], &bounds, part.half);
         let is_near = |reach: &Reach<V>, other: &Around<V>| {
             let between = (reach.center - base.frame.of(other.ball.center)).norm();
             let error = base.frame.error_of(other.distance);
@@ -265,58 +268,34 @@ impl<S: Scalar> Part<S> {
 }
 
 impl<V: Vector> Reach<V> {
-    /// Of a ball that a joint carries.
-    fn of(around: &Around<V>, moving: &Moving<V>, bounds: &Bounds<V::Scalar>, half: V::Scalar) -> Self {
-        let Around { ball: BoundingSphere { center, radius }, distance } = *around;
-        let number = V::Scalar::from_f64;
-        let center = moving.frame.of(center);
-        let squared = half * half;
-        let bent = bounds.jerk(distance) * half * squared * number(1.0 / 6.0);
-        let along = moving.velocity_at(center).abs() * half
-            + moving.acceleration_at(center).abs() * (squared * number(0.5))
-            + V::splat(bent);
-        let always = bounds.speed(distance) * half;
-        Self::with_drift(center, radius, along.min(V::splat(always)), moving, distance, always + bent)
-    }
-
-    /// Of a ball that a joint carries, as it moves against another frame that moves. The acceleration against that is
-    /// only bounded.
-    fn against(
-        around: &Around<V>,
+    /// Of a ball that a joint carries, as it moves against another frame that moves, or the world; `rim` is how far the
+    /// joint is from the last one of the route between them, whose bounds these are.
+    ///
+    /// Seen from a frame that turns at `ω`, a point that moves at `v` against it has the acceleration `2ω × v` less.
+    fn of(
+        Around { ball: BoundingSphere { center, radius }, distance }: Around<V>,
         rim: V::Scalar,
         [moving, base]: [&Moving<V>; 2],
         bounds: &Bounds<V::Scalar>,
         half: V::Scalar,
     ) -> Self {
-        let Around { ball: BoundingSphere { center, radius }, distance } = *around;
+        let (number, squared) = (V::Scalar::from_f64, half * half);
         let center = moving.frame.of(center);
-        let velocity = (moving.velocity_at(center) - base.velocity_at(center)).norm();
+        let carried = base.velocity_at(center);
+        let velocity = moving.velocity_at(center) - carried;
+        let turning = axial::turning(base.spin, velocity);
+        let acceleration = moving.acceleration_at(center) - base.acceleration_at(center) - turning - turning;
         let from_last = distance + rim;
-        let bent = bounds.acceleration(from_last) * half * half * V::Scalar::from_f64(0.5);
+        let bent = bounds.jerk(from_last) * half * squared * number(1.0 / 6.0);
         let always = bounds.speed(from_last) * half;
-        let drift = (velocity * half + bent).min(always);
-        // The velocities of both may be much larger than their difference.
-        let lost = (moving.velocity_at(center).norm() + velocity) * half;
-        let reach = Self::with_drift(center, radius, V::ZERO, moving, distance, always + bent + lost);
-        Self { radius: reach.radius + drift, drift, ..reach }
-    }
-
-    /// A ball that goes so far along the axes, with room for what rounding does: to where it is, and to derivatives of
-    /// which these lengths are made.
-    fn with_drift(
-        center: V,
-        radius: V::Scalar,
-        drift: V,
-        moving: &Moving<V>,
-        distance: V::Scalar,
-        lengths: V::Scalar,
-    ) -> Self {
-        let frame = &moving.frame;
-        let lost = (frame.turn_error + epsilons(64.0)) * (lengths + distance);
-        let room = (frame.error_of(distance) + lost) * above::<V>();
-        let length = drift.norm();
-        let radius = (radius + room) * above::<V>();
-        Self { center, along: (drift + V::splat(radius)) * above::<V>(), radius: radius + length, drift: length }
+        let way = velocity.abs() * half + acceleration.abs() * (squared * number(0.5)) + V::splat(bent);
+        let way = way.min(V::splat(always));
+        let drift = way.norm().min(always);
+        // What rounding does to where the ball is, and to derivatives of which these lengths are made.
+        let lengths = always + bent + carried.norm() * half + base.acceleration_at(center).norm() * squared;
+        let lost = (moving.frame.turn_error + base.frame.turn_error + epsilons(64.0)) * (lengths + distance);
+        let room = radius + moving.frame.error_of(distance) + lost;
+        Self { center, along: (way + V::splat(room)) * above::<V>(), radius: (room + drift) * above::<V>(), drift }
     }
 
     /// The box around it: one that contains everything where a number is not finite, so that nothing is left out, and
