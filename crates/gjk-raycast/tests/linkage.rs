@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use convex_support::glam::{DQuat, DVec2, DVec3, Vec3Swizzles as _};
+use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3Swizzles as _};
 use convex_support::{Ball, Capsule, Cuboid, InvalidShape, Point, Polytope, Posed, Rounded, Segment, SupportMap};
 use gjk_raycast::{
     HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, LinkageOptions, Met, Path, PathOutcome,
@@ -364,6 +364,27 @@ fn a_contact_at_the_end_of_a_part_is_one() -> Result<(), Box<dyn std::error::Err
         let contact = path.contact().ok_or("it is decided")?;
         assert!(contact.lower <= part && part <= contact.upper && contact.is_certain(), "{part}: {contact:?}");
         assert!(contact.upper - contact.lower < 1e-13, "{part}: {contact:?}");
+    }
+    Ok(())
+}
+
+/// In `f32` the joints' own rounding is most of what a bracket is wide by, and the numbers given are those of `f32`.
+#[test]
+fn brackets_hold_in_single_precision() -> Result<(), Box<dyn std::error::Error>> {
+    let bar = Rounded::new(Segment::new([Vec2::ZERO, Vec2::X])?, 0.0625)?;
+    let elbow = Pose { translation: Vec2::X, ..Pose::default() };
+    let joints = [Joint::revolute(None, Pose::default(), 1.0), Joint::revolute(Some(0), elbow, -1.0)];
+    let robot = Linkage::new(joints, [0, 1].map(|joint| Link { joint: Some(joint), bodies: vec![bar] }))?;
+    for k in 0..10_u8 {
+        let (x, y) = (0.75 - 0.0625 * f32::from(k), 0.5 + 0.125 * f32::from(k));
+        let scene = Scene::new([Posed::translated(Ball::new(0.125)?, Vec2::new(x, y))?])?;
+        let ways = [[-0.5, 0.0], [2.5, 0.0]];
+        let path = robot.path(&ways, &scene, LinkageOptions::new(), &mut PathWorkspace::new())?;
+        let contact = path.contact().ok_or("it turns past the ball")?;
+        let (x, y) = (f64::from(x), f64::from(y));
+        let truth = (y.atan2(x) - (0.1875 / x.hypot(y)).asin() + 0.5) / 3.0;
+        let [lower, upper] = [contact.lower, contact.upper].map(f64::from);
+        assert!(lower <= truth && truth <= upper && upper - lower < 1e-4, "{truth} is not in {contact:?}");
     }
     Ok(())
 }

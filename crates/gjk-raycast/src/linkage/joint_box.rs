@@ -276,13 +276,14 @@ impl<'s, A: SupportMap> Search<'s, A> {
         }
         let n = answer.normal;
         let (mut changes, mut level) = (smallvec::SmallVec::<[(A::Vector, ScalarOf<A>); 8]>::new(), zero);
-        let mut turned = one;
+        let (mut turned, mut size) = (one, self.size + frame.translation.norm());
         for ((stage, &half), &(axis, origin)) in stages.iter().zip(&part.half).zip(&axes) {
             match stage.motion {
                 StageMotion::Turn { .. } => {
                     let change = axial::turning(-axis, n) * half;
                     changes.push((change, change.dot(origin)));
                     turned += half;
+                    size += origin.norm();
                 }
                 StageMotion::Slide { .. } => level -= (n.dot(axis) * half).abs(),
             }
@@ -296,7 +297,7 @@ impl<'s, A: SupportMap> Search<'s, A> {
         let bent = Bounds::of(self.route, rate, slide).acceleration(self.reach) * Scalar::from_f64(0.5);
         let shapes = a.core().error + b.core().error;
         // Directions are longer than one by what the joints turn.
-        let lost = (error + shapes + epsilons::<ScalarOf<A>>(64.0) * self.size) * turned + bent * epsilons(64.0);
+        let lost = (error + shapes + epsilons::<ScalarOf<A>>(64.0) * size) * turned + bent * epsilons(64.0);
         if level - bent - raised(lost) > self.target {
             return Known::Free;
         }
@@ -321,7 +322,7 @@ impl<'s, A: SupportMap> Search<'s, A> {
 fn least_height<V: Vector>(height: &impl Fn(V) -> V::Scalar, n: V, changes: &[(V, V::Scalar)]) -> V::Scalar {
     let [rest @ .., (change, offset)] = changes else { return height(n) };
     if changes.len() > MAX_SIGNS {
-        let farthest = Float::max(offset.abs() + Float::max(-height(*change), -height(-*change)), V::Scalar::ZERO);
+        let farthest = Float::max(*offset - height(*change), -height(-*change) - *offset);
         return least_height(height, n, rest) - farthest;
     }
     let up = least_height(height, n - *change, rest) + *offset;
