@@ -106,8 +106,8 @@
 //!   coordinates that JSON cannot hold, and then it cannot be read back.
 //! - Errors can be written but not read, as they name parameters of this crate. Some types are no data: what observers
 //!   are shown; what a [`Trajectory`] answers; [`ChainMotion`], which borrows its [`RigidMotion`]s;
-//!   [`ClosestFeatures`], which can be found again from an answer and its shapes; and [`Scene`], which can be built
-//!   again from its bodies.
+//!   [`ClosestFeatures`], which can be found again from an answer and its shapes; [`Scene`], which can be built again
+//!   from its bodies; and [`Linkage`], with what it is made of, is asked and answers.
 
 #![no_std]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

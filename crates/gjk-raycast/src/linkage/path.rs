@@ -92,7 +92,7 @@ impl<S: SupportMap> Linkage<S> {
     /// A waypoint has a value for each joint that moves, in their order. Between two waypoints all joints move at
     /// constant rates, in one unit of time. A path of one waypoint is the pose.
     ///
-    /// Along each edge, what comes near is found [first](super::sweep). What is near is cast, earliest first, and
+    /// Along each edge, what comes near is found first. What is near is cast, earliest first, and
     /// only until the first contact so far: [`motion_cast`](crate::motion_cast()) proves it free at all times, or
     /// brackets its first contact.
     /// The bounds account for the rounding of the joints' poses, too, so that [`PathOutcome::Free`] is a proof about the
