@@ -16,6 +16,7 @@ pub mod fuzz;
 pub mod judge;
 pub mod mesh;
 pub mod museum;
+pub mod paths;
 pub mod plot;
 pub mod prove;
 pub mod query;

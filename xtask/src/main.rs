@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
 use clap::{Args, Parser, Subcommand};
-use xtask::{bits, docs, footprint, fuzz, museum, prove, query, validate};
+use xtask::{bits, docs, footprint, fuzz, museum, paths, prove, query, validate};
 
 /// Answers query files, validates the crates against true answers, and draws what they do.
 #[derive(Debug, Parser)]
@@ -34,6 +34,11 @@ enum Task {
     ///
     /// Exit status: 0 if everything is right, 1 if some answer is wrong, 2 if a file could not be read.
     Validate(validate::Scope),
+    /// Ask whether the edges of `path` queries are free, and print a table: what is free and what is not, in which time,
+    /// and beside it how many of the edges that touch something sampling takes for free.
+    ///
+    /// Exit status: 0, or 2 if a file could not be read or a path is none.
+    Path(paths::Choice),
     /// Prove answers by their certificates, in interval arithmetic that shares no solver and no shape with the crates.
     ///
     /// `cargo xtask query --certify FILE | cargo xtask prove -`; `docs/evidence.md` says what is proved, and how.
@@ -67,6 +72,9 @@ enum Task {
     /// Move a robot along its trajectory among obstacles (a study).
     #[command(disable_help_flag = true)]
     Scene(Passed),
+    /// Ask whether the pairs of links that a robot's planner does not look at ever meet (a study).
+    #[command(disable_help_flag = true)]
+    Matrix(Passed),
     /// Compare casts, distances and derivatives with references in thirty digits, at every scale (a study).
     #[command(disable_help_flag = true)]
     Sweep(Passed),
@@ -96,6 +104,7 @@ fn main() -> ExitCode {
         Task::Query(choice) => query::run(&choice),
         Task::Validate(scope) if scope.is_study() => study(scope.features()),
         Task::Validate(scope) => validate::run(&scope, &validate::QUICK),
+        Task::Path(choice) => paths::run(&choice),
         Task::Prove(choice) => prove::run(&choice),
         Task::Fuzz(scope) => fuzz::run(&scope),
         Task::Bits(choice) => bits::run(&choice),
@@ -103,7 +112,7 @@ fn main() -> ExitCode {
         Task::Docs => docs::run(),
         Task::Footprint { output } => footprint::run(&output),
         Task::Judge(_) | Task::Growth(_) => study("peers"),
-        Task::Scene(_) | Task::Sweep(_) | Task::Book2d(_) | Task::Render(_) => study(""),
+        Task::Scene(_) | Task::Matrix(_) | Task::Sweep(_) | Task::Book2d(_) | Task::Render(_) => study(""),
     }
 }
 

@@ -30,7 +30,12 @@
 //! - *When do they meet, moving without turning?* [`linear_cast`], a ray cast at their difference.
 //! - *When do they meet, moving and turning?* [`motion_cast`], along [rigid motions](RigidMotion), [chains of
 //!   joints](ChainMotion) or a [`Trajectory`] of your own.
+//! - *How far may one of them go before its distance has to be asked for again?* [`Distance::free_step`].
 //! - *The same questions about a shape and an infinite floor or wall:* the methods of [`HalfSpace`].
+//!
+//! About a robot:
+//! - *Is its path free, at every time, and what does it meet first?* [`Linkage::path`].
+//! - *Do two of its links ever meet, wherever its joints are?* [`Linkage::joint_box`].
 //!
 //! About a ray and a shape:
 //! - *Where does the ray enter?* [`ray_cast`], and [`ray_casts`] for many rays: a closed form, a portal, or Algorithm 3
@@ -101,8 +106,8 @@
 //!   coordinates that JSON cannot hold, and then it cannot be read back.
 //! - Errors can be written but not read, as they name parameters of this crate. Some types are no data: what observers
 //!   are shown; what a [`Trajectory`] answers; [`ChainMotion`], which borrows its [`RigidMotion`]s;
-//!   [`ClosestFeatures`], which can be found again from an answer and its shapes; and [`Scene`], which can be built
-//!   again from its bodies.
+//!   [`ClosestFeatures`], which can be found again from an answer and its shapes; [`Scene`], which can be built again
+//!   from its bodies; and [`Linkage`], with what it is made of, is asked and answers.
 
 #![no_std]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
@@ -129,11 +134,13 @@ mod distance;
 mod distances;
 mod double;
 mod error;
+mod free_step;
 mod gjk;
 mod half_space;
 mod intersects;
 mod iterative_ray_cast;
 mod linear_cast;
+mod linkage;
 mod motion;
 mod observer;
 mod options;
@@ -167,10 +174,15 @@ pub use derivative::{
 pub use distance::{distance, distance_with};
 pub use distances::map_distances_into;
 pub use error::RayCastError;
+pub use free_step::FreeStep;
 pub use half_space::HalfSpace;
 pub use intersects::{intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{linear_cast, linear_cast_with};
+pub use linkage::{
+    Joint, JointBox, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, LinkageOptions, Met, Path, PathContact,
+    PathOutcome, PathStop, PathWork, PathWorkspace,
+};
 pub use motion::{
     ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionHit, MotionIterate, MovingBall, Pose, RigidMotion,
     Trajectory, TurningPlane, motion_cast, motion_cast_with,

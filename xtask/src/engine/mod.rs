@@ -9,11 +9,13 @@ mod fit;
 mod gradient;
 mod inscribed;
 mod intersect;
+mod joint_box;
 mod linear_cast;
 mod margin;
 mod method;
 mod motion_cast;
 mod pair;
+pub mod path;
 mod ray_cast;
 mod ray_exit;
 mod scene;
@@ -34,9 +36,11 @@ use self::distance::Distance;
 use self::enclosing::Enclosing;
 use self::inscribed::Inscribed;
 use self::intersect::Intersect;
+use self::joint_box::JointBox;
 use self::linear_cast::LinearCast;
 use self::margin::Margin;
 use self::motion_cast::MotionCast;
+use self::path::Path;
 use self::ray_cast::RayCast;
 use self::ray_exit::RayExit;
 use self::scene::Scene;
@@ -131,6 +135,8 @@ const QUERIES: &[(&str, Reader)] = &[
     ("linear_cast", read::<LinearCast>),
     ("motion_cast", read::<MotionCast>),
     ("scene", read::<Scene>),
+    ("path", read::<Path>),
+    ("joint_box", read::<JointBox>),
     ("enclosing_ellipsoid", read::<Enclosing>),
     ("inscribed_ellipsoid", read::<Inscribed>),
     ("margin", read::<Margin>),

@@ -52,7 +52,7 @@ impl Query for Scene {
         let bodies = self.bodies.iter().enumerate().map(build).collect::<Result<Vec<_>, _>>()?;
         let ask = |(i, spec): (usize, &Spec)| spec.build(&format!("asks[{i}]"), how);
         let asks = self.asks.iter().enumerate().map(ask).collect::<Result<_, _>>()?;
-        Ok(Box::new(Asked::<V> { scene: scene_of(bodies).map_err(refused)?, asks }))
+        Ok(Box::new(Asked::<V> { scene: scene_of(bodies).map_err(|why| refused(why, "bodies"))?, asks }))
     }
 }
 
@@ -116,7 +116,7 @@ impl Spec {
 }
 
 /// The scene of these bodies, with indices in their order: built at once up to the first half-space.
-fn scene_of<V: Vector>(
+pub(super) fn scene_of<V: Vector>(
     mut bodies: Vec<gjk_raycast::Body<Solid<V>>>,
 ) -> Result<gjk_raycast::Scene<Solid<V>>, SceneError> {
     use gjk_raycast::Body::{Convex, HalfSpace};
@@ -134,10 +134,10 @@ fn scene_of<V: Vector>(
 }
 
 /// A body that has no place in a scene.
-fn refused(why: SceneError) -> Problem {
+pub(super) fn refused(why: SceneError, list: &str) -> Problem {
     let message = match why {
         SceneError::NotFinite { body } => {
-            format!("the box of bodies[{body}] is not finite in the precision asked for")
+            format!("the box of {list}[{body}] is not finite in the precision asked for")
         }
         other => other.to_string(),
     };

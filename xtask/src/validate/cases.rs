@@ -40,7 +40,7 @@ pub fn section(records: &[Record]) -> Section {
 }
 
 /// The queries that have a scalar, in the order of their colours.
-const QUERIES: [&str; 11] = [
+const QUERIES: [&str; 12] = [
     "ray_cast",
     "linear_cast",
     "distance",
@@ -52,6 +52,7 @@ const QUERIES: [&str; 11] = [
     "signed_distance",
     "motion_cast",
     "ray_exit",
+    "path",
 ];
 
 /// Relative error against time, a colour for each query.

@@ -88,6 +88,8 @@ const CRATES: [(&str, &[&str]); 3] = [
             "contact",
             "intersect",
             "scene",
+            "path",
+            "joint_box",
         ],
     ),
     ("lj-ellipsoid", &["enclosing_ellipsoid", "inscribed_ellipsoid"]),

@@ -10,7 +10,7 @@ pub fn scalar_of(query: &str) -> Option<&'static str> {
         "ray_cast" | "ray_exit" => "lambda",
         "distance" => "distance",
         "signed_distance" => "signed_distance",
-        "linear_cast" | "motion_cast" => "time",
+        "linear_cast" | "motion_cast" | "path" => "time",
         "enclosing_ellipsoid" | "inscribed_ellipsoid" => "log_det",
         "margin" => "margin",
         "track" => "margins",
@@ -81,7 +81,7 @@ pub fn judge(case: &Object, answer: &Object) -> Verdict {
         return Verdict { errored: true, ..Verdict::wrong(format!("error {kind}")) };
     }
     let mut verdict = Verdict::default();
-    for flag in ["hit", "overlap", "smooth"] {
+    for flag in ["hit", "overlap", "smooth", "free", "meets"] {
         if let Some(due) = expect.get(flag)
             && answer.get(flag) != Some(due)
         {

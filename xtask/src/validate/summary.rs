@@ -89,6 +89,7 @@ pub fn called(query: &str) -> String {
         "margin" => "margin of ellipsoids",
         "track" => "margin along a motion",
         "clearance" => "clearance of a robot",
+        "path" => "path of a robot",
         "none" => "unreadable line",
         known if scalar_of(known).is_some() || OTHERS.contains(&known) => return known.replace('_', " "),
         _ => "unknown query",
@@ -97,7 +98,7 @@ pub fn called(query: &str) -> String {
 }
 
 /// Queries whose answer is not one number.
-const OTHERS: [&str; 2] = ["contact", "scene"];
+const OTHERS: [&str; 3] = ["contact", "scene", "joint_box"];
 
 /// Groups of cases by what `names` calls them.
 pub fn groups<'r>(records: &'r [Record], names: impl Fn(&'r Record) -> Vec<String>) -> BTreeMap<String, Group> {

@@ -5,6 +5,7 @@ pub mod body;
 pub mod error;
 pub mod fields;
 pub mod json;
+pub mod linkage;
 pub mod motion;
 pub mod names;
 pub mod shape;

@@ -158,7 +158,7 @@ impl Pose {
     }
 
     /// The pose that is among the fields of an object.
-    fn of(fields: &Fields<'_>) -> Result<Self, Problem> {
+    pub fn of(fields: &Fields<'_>) -> Result<Self, Problem> {
         Ok(Self { translation: fields.vector_or_zero("translation")?, rotation: fields.rotation("rotation")? })
     }
 }

@@ -4,6 +4,7 @@
 
 mod book2d;
 mod judge;
+mod matrix;
 mod render;
 mod report;
 mod scene;
@@ -34,6 +35,10 @@ enum Task {
     ///
     /// Exit status: 0, or 1 if an answer differs from the given truth, or 2 if a file could not be read.
     Scene(scene::Choice),
+    /// Ask whether the pairs of links that a robot's planner does not look at ever meet, within the limits of its joints.
+    ///
+    /// Exit status: 0, or 2 if a file could not be read or written.
+    Matrix(matrix::Choice),
     /// Compare ray casts, linear casts, distances and derivatives with references in thirty digits, at every scale.
     ///
     /// Exit status: 0 if everything is right, 1 if some answer is wrong, 2 if the table could not be written.
@@ -68,6 +73,7 @@ fn main() -> ExitCode {
     match Arguments::parse().task {
         Task::Validate(scope) => validate::run(&scope, &report::CHAPTERS),
         Task::Scene(choice) => scene::run(&choice),
+        Task::Matrix(choice) => matrix::run(&choice),
         Task::Sweep(scope) => sweep::run(&scope),
         Task::Judge(scope) => judge::run(&scope),
         Task::Growth(choice) => scene_growth::run(&choice),

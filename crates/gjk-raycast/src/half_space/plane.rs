@@ -10,6 +10,7 @@ use crate::unit::{power_of_two_near, reciprocal_of_power};
 
 /// The plane of a half-space. Its normal and offset are in units of a power of two near the normal's length, and so as
 /// they were given.
+#[derive(Clone, Debug)]
 pub(crate) struct Plane<V: Vector> {
     normal: V,
     offset: V::Scalar,

@@ -163,6 +163,14 @@ impl<S: SupportMap> Scene<S> {
         &self.tree
     }
 
+    /// The half-spaces, with their indices.
+    pub(crate) fn half_spaces(&self) -> impl Iterator<Item = (usize, &HalfSpace<S::Vector>)> {
+        self.half_spaces.iter().filter_map(|&index| match self.get(index)? {
+            Body::HalfSpace(half_space) => Some((index, half_space)),
+            Body::Convex(_) => None,
+        })
+    }
+
     /// Adds a body and returns its index: the index that became free last, or a new one.
     ///
     /// # Errors

@@ -76,7 +76,7 @@ impl<S: SupportMap> Body<S> {
     }
 
     /// The cast of a shape that moves and turns against this body, which is at rest.
-    pub(super) fn motion_cast<A: SupportMap<Vector = S::Vector> + ?Sized>(
+    pub(crate) fn motion_cast<A: SupportMap<Vector = S::Vector> + ?Sized>(
         &self,
         shape: &A,
         motion: &impl Trajectory<Vector = S::Vector>,

@@ -11,7 +11,7 @@ mod levels;
 mod picture;
 mod planar;
 mod report;
-mod robot;
+pub(crate) mod robot;
 mod truth;
 mod waypoints;
 

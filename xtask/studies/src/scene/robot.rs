@@ -1,18 +1,22 @@
 //! A robot from a URDF file: which links have a body, and where they are for given joint values.
 
 use std::collections::HashMap;
+use std::f64::consts::PI;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use convex_support::glam::{DMat3, DQuat, DVec3};
-use gjk_raycast::RigidMotion;
+use convex_support::{Polytope, Posed};
+use gjk_raycast::{Joint as Jointing, JointKind, Link as Carried, Linkage, Pose as Placed, RigidMotion};
 use roxmltree::{Document, Node};
+use xtask::mesh::Meshes;
 
 /// A rigid motion: rotate, then translate.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pose {
-    pub(super) rotation: DQuat,
-    pub(super) translation: DVec3,
+pub(crate) struct Pose {
+    pub(crate) rotation: DQuat,
+    pub(crate) translation: DVec3,
 }
 
 impl Pose {
@@ -38,9 +42,9 @@ impl Pose {
 
 /// A link that has a mesh.
 #[derive(Clone, Debug)]
-pub(super) struct Link {
-    pub(super) name: String,
-    pub(super) mesh: PathBuf,
+pub(crate) struct Link {
+    pub(crate) name: String,
+    pub(crate) mesh: PathBuf,
     /// The frame of the mesh in that of the link.
     origin: Pose,
     /// The place of its frame among all frames of the robot.
@@ -56,6 +60,8 @@ struct Frame {
     motion: Motion,
     /// The column of the joint among the joint values.
     column: Option<usize>,
+    /// Between which values it moves.
+    limits: [f64; 2],
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -67,9 +73,18 @@ enum Motion {
 
 /// The links with a mesh, and the tree of frames that carries them.
 #[derive(Clone, Debug)]
-pub(super) struct Robot {
-    pub(super) links: Vec<Link>,
+pub(crate) struct Robot {
+    pub(crate) links: Vec<Link>,
     frames: Vec<Frame>,
+}
+
+/// A robot, all of whose joints move, as one linkage of the hulls of its meshes.
+pub(crate) struct Jointed {
+    pub(crate) linkage: Linkage<Posed<Arc<Polytope<DVec3>>>>,
+    /// The names of its links, those without a mesh left out.
+    pub(crate) links: Vec<String>,
+    /// The limits of its joints, in the order of the linkage's values.
+    pub(crate) limits: Vec<[f64; 2]>,
 }
 
 impl Robot {
@@ -108,6 +123,46 @@ impl Robot {
             }
         }
         Ok(Self { links, frames })
+    }
+
+    /// Reads the robot with all of its joints.
+    pub(crate) fn read_jointed(path: &Path) -> Result<Jointed, String> {
+        let text = fs::read_to_string(path).map_err(|why| format!("{}: {why}", path.display()))?;
+        let document = Document::parse(&text).map_err(|why| format!("{}: {why}", path.display()))?;
+        let joints = children(document.root_element(), "joint");
+        let moving = joints.filter(|joint| joint.attribute("type") != Some("fixed"));
+        let names: Vec<String> = moving.filter_map(|joint| joint.attribute("name").map(str::to_owned)).collect();
+        Self::read(path, &names)?.jointed()
+    }
+
+    fn jointed(&self) -> Result<Jointed, String> {
+        let joints = self.frames.iter().map(|frame| Jointing {
+            parent: frame.parent,
+            pose: Placed { rotation: frame.origin.rotation, translation: frame.origin.translation },
+            kind: match frame.motion {
+                Motion::Revolute(axis) => JointKind::Revolute(axis),
+                Motion::Prismatic(axis) => JointKind::Prismatic(axis),
+                Motion::Fixed => JointKind::Fixed,
+            },
+        });
+        let meshes = Meshes::relative_to("");
+        let (mut links, mut names) = (Vec::<Carried<Posed<Arc<Polytope<DVec3>>>>>::new(), Vec::<String>::new());
+        for Link { name, mesh, origin, frame } in &self.links {
+            let failed = |why: String| format!("{}: {why}", mesh.display());
+            let hull = meshes.load(mesh).map_err(|problem| problem.message)?.hull_f64();
+            let hull = hull.map_err(|why| failed(why.to_string()))?;
+            let body = Posed::new(hull, origin.rotation, origin.translation).map_err(|why| failed(why.to_string()))?;
+            match names.iter().position(|known| known == name) {
+                Some(link) => links[link].bodies.push(body),
+                None => {
+                    links.push(Carried { joint: Some(*frame), bodies: vec![body] });
+                    names.push(name.clone());
+                }
+            }
+        }
+        let linkage = Linkage::new(joints, links).map_err(|why| why.to_string())?;
+        let moving = self.frames.iter().filter(|frame| !matches!(frame.motion, Motion::Fixed));
+        Ok(Jointed { linkage, links: names, limits: moving.map(|frame| frame.limits).collect() })
     }
 
     /// Where the meshes of the links are in the frame of the root, for these joint values.
@@ -165,6 +220,7 @@ struct Joint<'x> {
     origin: Pose,
     motion: Motion,
     column: Option<usize>,
+    limits: [f64; 2],
 }
 
 impl<'x> Joint<'x> {
@@ -184,7 +240,19 @@ impl<'x> Joint<'x> {
             _ => return Err(format!("the joint {name} neither turns nor slides along one axis")),
         };
         let column = names.iter().position(|column| *column == name);
-        Ok(Self { name, parent: link("parent")?, child: link("child")?, origin: Pose::of(joint)?, motion, column })
+        // Without limits it turns all the way round.
+        let limit = |end| match child(joint, "limit").and_then(|limit| limit.attribute(end)) {
+            Some(text) => {
+                text.trim().parse::<f64>().map(Some).map_err(|_| format!("{end}={text:?} of {name} is no number"))
+            }
+            None => Ok(None),
+        };
+        let limits = match (limit("lower")?, limit("upper")?) {
+            (None, None) => [-PI, PI],
+            (lower, upper) => [lower, upper].map(Option::unwrap_or_default),
+        };
+        let (parent, child) = (link("parent")?, link("child")?);
+        Ok(Self { name, parent, child, origin: Pose::of(joint)?, motion, column, limits })
     }
 }
 
@@ -197,7 +265,8 @@ fn frames<'x>(
     let mut places = HashMap::new();
     for link in roots {
         places.insert(link, frames.len());
-        frames.push(Frame { parent: None, origin: Pose::IDENTITY, motion: Motion::Fixed, column: None });
+        let (origin, motion) = (Pose::IDENTITY, Motion::Fixed);
+        frames.push(Frame { parent: None, origin, motion, column: None, limits: [0.0; 2] });
     }
     // Each pass hangs at least one more joint onto what is there, or none ever will be.
     let mut waiting: Vec<&Joint<'_>> = joints.iter().collect();
@@ -206,8 +275,8 @@ fn frames<'x>(
         waiting.retain(|joint| {
             let Some(&parent) = places.get(joint.parent) else { return true };
             places.insert(joint.child, frames.len());
-            let Joint { origin, motion, column, .. } = **joint;
-            frames.push(Frame { parent: Some(parent), origin, motion, column });
+            let Joint { origin, motion, column, limits, .. } = **joint;
+            frames.push(Frame { parent: Some(parent), origin, motion, column, limits });
             false
         });
         if waiting.len() == before {

@@ -1,0 +1,107 @@
+//! Linkages, paths and boxes of joint values that are none.
+
+use core::error::Error;
+use core::fmt::{self, Display, Formatter};
+
+use convex_support::InvalidShape;
+
+use crate::RayCastError;
+
+/// Why a linkage, a path or a box of joint values was refused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum LinkageError {
+    /// A joint hangs from one that does not come before it, as in a circle of joints.
+    ParentNotBefore {
+        /// The index of the joint.
+        joint: usize,
+        /// The index that it names as its parent.
+        parent: usize,
+    },
+    /// The pose of a joint is none: a number is not finite, or its quaternion is zero.
+    Pose {
+        /// The index of the joint.
+        joint: usize,
+        /// What is wrong with its translation or rotation.
+        why: InvalidShape,
+    },
+    /// The axis of a joint is zero, or a coordinate of it is not finite.
+    Axis {
+        /// The index of the joint.
+        joint: usize,
+    },
+    /// A link hangs from a joint that is not there.
+    NoSuchJoint {
+        /// The index of the link.
+        link: usize,
+        /// The index that it names as its joint.
+        joint: usize,
+    },
+    /// A body of a link has no finite ball around it.
+    BodyNotFinite {
+        /// The index of the link.
+        link: usize,
+        /// The index of the body in it.
+        body: usize,
+    },
+    /// A pair names a link that is not there, or one link twice.
+    Pair {
+        /// The index of the pair.
+        pair: usize,
+    },
+    /// A path has no waypoint.
+    EmptyPath,
+    /// A waypoint, or a box, has another number of values than there are joints that move.
+    Count {
+        /// The index of the waypoint; 0 for a box.
+        waypoint: usize,
+        /// How many joints move.
+        joints: usize,
+        /// How many values there are.
+        values: usize,
+    },
+    /// A joint value is not finite.
+    Value {
+        /// The index of the waypoint; 0 for a box.
+        waypoint: usize,
+        /// The index of the value.
+        value: usize,
+    },
+    /// An interval of a box ends before it begins.
+    Interval {
+        /// The index of the value.
+        value: usize,
+    },
+    /// An option is NaN, or the target distance infinite.
+    Option(RayCastError),
+}
+
+impl Display for LinkageError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::ParentNotBefore { joint, parent } => {
+                write!(f, "joint {joint} hangs from joint {parent}, which does not come before it")
+            }
+            Self::Pose { joint, why } => write!(f, "the pose of joint {joint} is none: {why}"),
+            Self::Axis { joint } => write!(f, "the axis of joint {joint} is zero or not finite"),
+            Self::NoSuchJoint { link, joint } => write!(f, "link {link} hangs from joint {joint}, which is not there"),
+            Self::BodyNotFinite { link, body } => write!(f, "body {body} of link {link} is not finite"),
+            Self::Pair { pair } => write!(f, "pair {pair} is not of two links of the linkage"),
+            Self::EmptyPath => f.write_str("the path has no waypoint"),
+            Self::Count { waypoint, joints, values } => {
+                write!(f, "waypoint {waypoint} has {values} values, but {joints} joints move")
+            }
+            Self::Value { waypoint, value } => write!(f, "value {value} of waypoint {waypoint} is not finite"),
+            Self::Interval { value } => write!(f, "the interval of value {value} ends before it begins"),
+            Self::Option(why) => write!(f, "{why}"),
+        }
+    }
+}
+
+impl Error for LinkageError {}
+
+impl From<RayCastError> for LinkageError {
+    fn from(why: RayCastError) -> Self {
+        Self::Option(why)
+    }
+}

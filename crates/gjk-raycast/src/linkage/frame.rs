@@ -1,0 +1,107 @@
+//! Where a frame is, and by how much rounding may have moved it.
+
+use convex_support::{InvalidShape, Matrix, Rotation, Scalar, Vector};
+use num_traits::Float as _;
+
+use crate::Pose;
+
+/// What a product of a rotation and a unit vector loses, in ε: `n·√n/2` for `n` dimensions.
+const OF_VECTOR: f64 = 2.6;
+
+/// What a product of two rotations loses as an operator, in ε: each entry `n/2`, and so the root of the sum of their
+/// squares `n²/2`.
+const OF_MATRIX: f64 = 4.5;
+
+/// A rotation, then a translation, and bounds on what both are wrong by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame<V: Vector> {
+    pub(super) rotation: V::Matrix,
+    pub(super) translation: V,
+    /// How far the matrix may take a unit vector from where the rotation does.
+    pub(super) turn_error: V::Scalar,
+    /// How far the translation may be from the exact one.
+    pub(super) shift_error: V::Scalar,
+}
+
+impl<V: Vector> Frame<V> {
+    /// The frame of the world, which is exact.
+    pub(super) const WORLD: Self = Self {
+        rotation: V::Matrix::IDENTITY,
+        translation: V::ZERO,
+        turn_error: V::Scalar::ZERO,
+        shift_error: V::Scalar::ZERO,
+    };
+
+    /// The frame at a pose.
+    pub(super) fn at(pose: Pose<V>) -> Result<Self, InvalidShape> {
+        if let Some(index) = (0..V::DIM).find(|&i| !pose.translation.get(i).is_finite()) {
+            return Err(InvalidShape::NonFinite { parameter: "translation", index });
+        }
+        let rotation = pose.rotation.checked("rotation")?;
+        let is_exact = rotation == V::Rotation::default();
+        let units = if is_exact { 0.0 } else { V::Rotation::OPERATOR_ERROR };
+        Ok(Self {
+            rotation: rotation.matrix(),
+            translation: pose.translation,
+            turn_error: epsilons(units),
+            ..Self::WORLD
+        })
+    }
+
+    /// Whether nothing is moved.
+    pub(super) fn is_world(&self) -> bool {
+        self.rotation == Matrix::IDENTITY && self.translation == V::ZERO && self.turn_error == V::Scalar::ZERO
+    }
+
+    /// The frame that is at `inner` in this one.
+    #[inline]
+    pub(super) fn then(&self, inner: &Self) -> Self {
+        if inner.is_world() {
+            return *self;
+        }
+        let moved = self.moved(inner.translation, inner.translation.norm(), inner.shift_error);
+        Self {
+            rotation: self.rotation * inner.rotation,
+            turn_error: self.turn_error + inner.turn_error + epsilons(OF_MATRIX),
+            ..moved
+        }
+    }
+
+    /// The frame moved along an arm of its own, whose length and error are known.
+    #[inline]
+    pub(super) fn moved(&self, arm: V, length: V::Scalar, error: V::Scalar) -> Self {
+        let translation = self.translation + self.rotation * arm;
+        // The sum is rounded once, coordinate by coordinate.
+        let rounded = translation.abs().max_element() + length * V::Scalar::from_f64(OF_VECTOR);
+        let lost = rounded * V::Scalar::EPSILON;
+        Self { translation, shift_error: self.shift_error + error + self.turn_error * length + lost, ..*self }
+    }
+
+    /// The frame that takes back what this one does.
+    pub(super) fn inverse(&self) -> Self {
+        if self.is_world() {
+            return *self;
+        }
+        let rotation = self.rotation.transpose();
+        let back = Self { rotation, translation: V::ZERO, shift_error: self.shift_error, ..*self };
+        back.moved(-self.translation, self.translation.norm(), V::Scalar::ZERO)
+    }
+
+    /// Where a point of the frame is.
+    #[inline]
+    pub(super) fn of(&self, point: V) -> V {
+        self.translation + self.rotation * point
+    }
+
+    /// How far a point of the frame, at most so far from its origin, may be from where it should be.
+    pub(super) fn error_of(&self, distance: V::Scalar) -> V::Scalar {
+        self.shift_error
+            + (self.turn_error + epsilons(OF_VECTOR)) * distance
+            + V::Scalar::EPSILON * self.translation.abs().max_element()
+    }
+}
+
+/// So many ε.
+pub(super) fn epsilons<S: Scalar>(count: f64) -> S {
+    S::EPSILON * S::from_f64(count)
+}

@@ -1,0 +1,151 @@
+//! The motion of a link along an edge of a path.
+
+use core::cell::Cell;
+
+use convex_support::numerics::bound::raised;
+use convex_support::{BoundingSphere, Matrix as _, Scalar, Vector};
+use num_traits::Float as _;
+
+use super::bounds::Bounds;
+use super::frame::{Frame, epsilons};
+use super::moving::{Moving, Value};
+use super::route::Route;
+use crate::{Displacement, MovingBall, Trajectory, TurningPlane};
+
+/// A straight edge in joint space, which takes one unit of time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge<'p, S> {
+    pub(super) from: &'p [S],
+    pub(super) to: &'p [S],
+}
+
+impl<S: Scalar> Edge<'_, S> {
+    /// A joint value at a time.
+    ///
+    /// With `u = ε/2`, the time was rounded once, and the rate, its product with the time and the sum are: by `3u` of the
+    /// rate and `u` of the larger value.
+    #[inline]
+    pub(super) fn at(&self, column: usize, time: S) -> Value<S> {
+        let (from, to) = (self.from[column], self.to[column]);
+        let rate = to - from;
+        let error = epsilons::<S>(2.0) * (rate.abs() + from.abs().max(to.abs()));
+        Value { value: from + rate * time, rate, error }
+    }
+
+    /// The bounds for a route along this edge.
+    pub(super) fn bounds<V: Vector<Scalar = S>>(&self, route: &Route<V>) -> Bounds<S> {
+        let rate = |column: usize| (self.to[column] - self.from[column]).abs();
+        Bounds::of(route, rate, |column| self.from[column].abs().max(self.to[column].abs()))
+    }
+}
+
+/// The motion of a link from a time of an edge on: from where it is in its own frame to where its joints have it.
+pub(super) struct LinkMotion<'l, V: Vector> {
+    route: &'l Route<V>,
+    edge: Edge<'l, V::Scalar>,
+    start: V::Scalar,
+    bounds: Bounds<V::Scalar>,
+    /// What was last computed, which is mostly asked for several times.
+    last: Cell<(V::Scalar, Moving<V>, Frame<V>)>,
+}
+
+impl<'l, V: Vector> LinkMotion<'l, V> {
+    pub(super) fn new(
+        route: &'l Route<V>,
+        edge: Edge<'l, V::Scalar>,
+        start: V::Scalar,
+        bounds: Bounds<V::Scalar>,
+    ) -> Self {
+        Self { route, edge, start, bounds, last: Cell::new((V::Scalar::nan(), Moving::WORLD, Frame::WORLD)) }
+    }
+
+    /// How the last joint's frame moves at a time, and where that of the link is.
+    pub(super) fn at(&self, time: V::Scalar) -> (Moving<V>, Frame<V>) {
+        let (known, moving, frame) = self.last.get();
+        if known == time {
+            return (moving, frame);
+        }
+        let stages = self.route.stages.iter();
+        let moving = stages
+            .fold(Moving::WORLD, |moving, stage| moving.beyond(stage, self.edge.at(stage.column, self.start + time)));
+        let frame = moving.frame.then(&self.route.tail);
+        self.last.set((time, moving, frame));
+        (moving, frame)
+    }
+
+    /// How far a point of the link is from the origin of its last joint.
+    fn distance(&self, point: V) -> V::Scalar {
+        self.route.tail.of(point).norm()
+    }
+}
+
+impl<V: Vector> Trajectory for LinkMotion<'_, V> {
+    type Vector = V;
+
+    fn displacement(&self, time: V::Scalar) -> Displacement<V> {
+        let (_, frame) = self.at(time);
+        Displacement {
+            pivot: V::ZERO,
+            shift: frame.translation,
+            turn: frame.rotation - V::Matrix::IDENTITY,
+            // The difference, and a product with it.
+            turn_error: if frame.is_world() { frame.turn_error } else { raised(frame.turn_error + epsilons(8.0)) },
+            shift_error: raised(frame.shift_error),
+        }
+    }
+
+    fn velocity(&self, time: V::Scalar, point: V) -> V {
+        self.at(time).0.velocity_at(point)
+    }
+
+    /// What holds at all times ([`Bounds`]), or what holds near the end of the interval, if that is less. With the ball's
+    /// centre `c` and its radius `ρ`, and a time `t` before the end at `e`,
+    ///
+    /// > n·ẍ ≤ n·c̈(e) + |n|·(j·(e − t) + ρ·b),   r·ẋ ≤ r·ċ(e) + |r|·(a·(e − t) + ρ·w),
+    ///
+    /// where `w` bounds the angular velocity `ω`, and `b = |ω′(e)| + |ω(e)|²` and what that grows by: `ω′` is a sum of
+    /// products of two rates and so no more than `w²`, and its derivative no more than `w³`.
+    fn acceleration_along(
+        &self,
+        ball: BoundingSphere<V>,
+        TurningPlane { from, to }: TurningPlane<V>,
+        [start, end]: [V::Scalar; 2],
+    ) -> V::Scalar {
+        let (bounds, two) = (&self.bounds, V::Scalar::from_f64(2.0));
+        let distance = self.distance(ball.center);
+        let (duration, longest) = (end - start, from.norm().max(to.norm()));
+        let rate = if from == to { V::ZERO } else { (to - from) / duration };
+        let fast = rate.norm();
+        let reach = distance + ball.radius;
+        let always = two * fast * bounds.speed(reach) + longest * bounds.acceleration(reach);
+        // Not where it cannot be less, or the interval has no end.
+        if !(bounds.spin * duration < V::Scalar::ONE) {
+            return always;
+        }
+        let (moving, frame) = self.at(end);
+        let (center, w) = (frame.of(ball.center), bounds.spin);
+        let turned = w * w * duration;
+        let spin = moving.spin.norm() + turned;
+        let bending = (moving.spin_rate.norm() + w * turned + spin * spin).min(w * w);
+        let acceleration = moving.acceleration_at(center);
+        let along = from.dot(acceleration).max(to.dot(acceleration))
+            + longest * (bounds.jerk(distance) * duration + ball.radius * bending);
+        let turning =
+            rate.dot(moving.velocity_at(center)) + fast * (bounds.acceleration(distance) * duration + ball.radius * w);
+        // Where the frame is, and what the derivatives lose, is a small part of what always holds.
+        let near = along + two * turning + always * (frame.turn_error + epsilons(64.0));
+        // NaN is no bound.
+        if near < always { near } else { always }
+    }
+
+    /// The ball moves along the chord of the way of its centre, which that leaves by `s²/8` of its acceleration at most.
+    fn moving_ball(&self, ball: BoundingSphere<V>, [from, to]: [V::Scalar; 2]) -> MovingBall<V> {
+        let duration = to - from;
+        let (_, frame) = self.at(to);
+        let [start, end] = [self.at(from).1, frame].map(|frame| frame.of(ball.center));
+        let sagitta = self.bounds.acceleration(self.distance(ball.center)) * duration * duration;
+        let error = frame.error_of(ball.center.norm());
+        let velocity = if duration > V::Scalar::ZERO { (end - start) / duration } else { V::ZERO };
+        MovingBall { start, velocity, radius: ball.radius + sagitta * V::Scalar::from_f64(0.125) + error + error }
+    }
+}

@@ -1,0 +1,264 @@
+//! Bodies that joints carry.
+
+use alloc::vec::Vec;
+
+use convex_support::numerics::bound::raised;
+use convex_support::{BoundingSphere, Core, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere};
+use num_traits::Float as _;
+
+use super::error::LinkageError;
+use super::frame::Frame;
+use super::joint::{Joint, JointKind, Link};
+use super::route::Route;
+use super::stage::Stage;
+use crate::Pose;
+
+/// A robot: links, each of some bodies, that joints carry, in a tree.
+///
+/// ```
+/// use convex_support::{Ball, Posed, Rounded, Segment, glam::DVec3};
+/// use gjk_raycast::{Joint, JointKind, Link, Linkage, LinkageOptions, PathWorkspace, Pose, Scene};
+///
+/// // An arm of two links of length 1, whose shoulder and elbow turn about z.
+/// let bar = Rounded::new(Segment::new([DVec3::ZERO, DVec3::X])?, 0.05)?;
+/// let elbow = Pose { translation: DVec3::X, ..Pose::default() };
+/// let arm = Linkage::new(
+///     [
+///         Joint { parent: None, pose: Pose::default(), kind: JointKind::Revolute(DVec3::Z) },
+///         Joint { parent: Some(0), pose: elbow, kind: JointKind::Revolute(DVec3::Z) },
+///     ],
+///     [Link { joint: Some(0), bodies: vec![bar] }, Link { joint: Some(1), bodies: vec![bar] }],
+/// )?;
+///
+/// // It reaches along x, and is to reach along y. A ball is in the way of the forearm.
+/// let scene = Scene::new([Posed::translated(Ball::new(0.1)?, DVec3::new(1.25, 1.25, 0.0))?])?;
+/// let (mut workspace, options) = (PathWorkspace::new(), LinkageOptions::new());
+/// let straight = [[0.0, 0.0], [90f64.to_radians(), 0.0]];
+/// let path = arm.path(&straight, &scene, options, &mut workspace)?;
+/// let contact = path.contact().ok_or("the forearm sweeps over the ball")?;
+/// assert_eq!((contact.edge, contact.link), (0, 1));
+/// // The ball is at 45°; the bar touches it where it is 0.15 from its middle.
+/// let truth = (45.0 - (0.15 / (1.25 * 2f64.sqrt())).asin().to_degrees()) / 90.0;
+/// assert!(contact.lower <= truth && truth <= contact.upper && (contact.time - truth).abs() < 1e-12);
+///
+/// // With the elbow bent by 150° on the way it is free: at every time, which is proved.
+/// let fold = 150f64.to_radians();
+/// let around = [[0.0, 0.0], [0.0, fold], [90f64.to_radians(), fold], [90f64.to_radians(), 0.0]];
+/// assert!(arm.path(&around, &scene, options, &mut workspace)?.is_free());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// All bodies are of one type, as in a [`Scene`](crate::Scene). Links are not asked about one another, but for the
+/// [pairs](Self::with_pairs) that are named.
+#[derive(Clone, Debug)]
+pub struct Linkage<S: SupportMap> {
+    pub(super) skeleton: Skeleton<S::Vector>,
+    /// Those of each link.
+    pub(super) bodies: Vec<Vec<S>>,
+}
+
+/// What of a linkage does not depend on its shapes.
+#[derive(Clone, Debug)]
+pub(super) struct Skeleton<V: Vector> {
+    /// The joints that move, each after the one that carries it, which is named beside it.
+    pub(super) stages: Vec<(Option<usize>, Stage<V>)>,
+    pub(super) links: Vec<Carried<V>>,
+    pub(super) pairs: Vec<LinkPair<V>>,
+}
+
+/// How a link is carried.
+#[derive(Clone, Debug)]
+pub(super) struct Carried<V: Vector> {
+    /// The last joint that moves it.
+    pub(super) stage: Option<usize>,
+    /// The way from the world.
+    pub(super) route: Route<V>,
+    /// A ball around each body, and one around all of them.
+    pub(super) balls: Vec<Around<V>>,
+    pub(super) ball: Around<V>,
+}
+
+/// A ball around something that a joint carries, in the frame of that joint.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Around<V: Vector> {
+    pub(super) ball: BoundingSphere<V>,
+    /// How far its centre is from the joint's origin.
+    pub(super) distance: V::Scalar,
+}
+
+/// Two links that are asked about one another.
+#[derive(Clone, Debug)]
+pub(super) struct LinkPair<V: Vector> {
+    pub(super) links: [usize; 2],
+    /// The way from the second to the first.
+    pub(super) route: Route<V>,
+}
+
+impl<S: SupportMap> Linkage<S> {
+    /// The linkage of these joints, each after its parent, and links.
+    ///
+    /// # Errors
+    /// [`LinkageError`] with the index of the first joint, link or body that is none.
+    pub fn new(
+        joints: impl IntoIterator<Item = Joint<S::Vector>>,
+        links: impl IntoIterator<Item = Link<S>>,
+    ) -> Result<Self, LinkageError> {
+        let mut stages: Vec<(Option<usize>, Stage<S::Vector>)> = Vec::new();
+        // Of each joint, the last that moves, itself included, and its own frame beyond that.
+        let mut places: Vec<(Option<usize>, Frame<S::Vector>)> = Vec::new();
+        for (index, Joint { parent, pose, kind }) in joints.into_iter().enumerate() {
+            let (before, frame) = match parent {
+                None => (None, Frame::WORLD),
+                Some(parent) => *places.get(parent).ok_or(LinkageError::ParentNotBefore { joint: index, parent })?,
+            };
+            let here = Frame::at(pose).map_err(|why| LinkageError::Pose { joint: index, why })?;
+            let fixed = frame.then(&here);
+            if matches!(kind, JointKind::Fixed) {
+                places.push((before, fixed));
+                continue;
+            }
+            let stage = Stage::new(fixed, kind, stages.len()).ok_or(LinkageError::Axis { joint: index })?;
+            places.push((Some(stages.len()), Frame::WORLD));
+            stages.push((before, stage));
+        }
+        let mut skeleton = Skeleton { stages, links: Vec::new(), pairs: Vec::new() };
+        let mut all = Vec::new();
+        for (link, Link { joint, bodies }) in links.into_iter().enumerate() {
+            let (stage, tail) = match joint {
+                None => (None, Frame::WORLD),
+                Some(joint) => *places.get(joint).ok_or(LinkageError::NoSuchJoint { link, joint })?,
+            };
+            let carried = skeleton.carried(&bodies, stage, tail);
+            skeleton.links.push(carried.map_err(|body| LinkageError::BodyNotFinite { link, body })?);
+            all.push(bodies);
+        }
+        Ok(Self { skeleton, bodies: all })
+    }
+
+    /// The same linkage, in which the links of these pairs are asked about one another, by their indices: those that
+    /// may meet. Neighbours overlap in most robots, and should be left out.
+    ///
+    /// # Errors
+    /// [`LinkageError::Pair`] for the first pair that is not of two links.
+    pub fn with_pairs(mut self, pairs: impl IntoIterator<Item = [usize; 2]>) -> Result<Self, LinkageError> {
+        self.skeleton.pairs.clear();
+        for (index, links) in pairs.into_iter().enumerate() {
+            let route = self.skeleton.between(links).ok_or(LinkageError::Pair { pair: index })?;
+            self.skeleton.pairs.push(LinkPair { links, route });
+        }
+        Ok(self)
+    }
+
+    /// The number of joints that move, which is that of the values of a waypoint.
+    #[must_use]
+    pub fn values(&self) -> usize {
+        self.skeleton.stages.len()
+    }
+
+    /// The number of links.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.bodies.is_empty()
+    }
+
+    /// The bodies of a link, in the frame of its joint; none if there is no such link.
+    #[must_use]
+    pub fn bodies(&self, link: usize) -> &[S] {
+        self.bodies.get(link).map_or(&[], |bodies| bodies)
+    }
+
+    /// Whether these are values of all joints.
+    pub(super) fn check(&self, waypoint: usize, values: &[ScalarOf<S>]) -> Result<(), LinkageError> {
+        if values.len() != self.values() {
+            return Err(LinkageError::Count { waypoint, joints: self.values(), values: values.len() });
+        }
+        match values.iter().position(|value| !value.is_finite()) {
+            Some(value) => Err(LinkageError::Value { waypoint, value }),
+            None => Ok(()),
+        }
+    }
+}
+
+impl<V: Vector> Skeleton<V> {
+    /// How a link of these bodies is carried by a joint, if each has a ball around it; else the first that has none.
+    fn carried<S: SupportMap<Vector = V>>(
+        &self,
+        bodies: &[S],
+        stage: Option<usize>,
+        tail: Frame<V>,
+    ) -> Result<Carried<V>, usize> {
+        let mut way = Vec::new();
+        let mut next = stage;
+        while let Some(index) = next {
+            let (before, stage) = &self.stages[index];
+            way.push(stage.clone());
+            next = *before;
+        }
+        way.reverse();
+        let balls: Vec<_> = bodies.iter().map(|body| Around::new(ball_of(body), &tail)).collect();
+        if let Some(body) = balls.iter().position(|around| !(around.distance + around.ball.radius).is_finite()) {
+            return Err(body);
+        }
+        let ball = Around::new(ball_around(balls.iter().map(|around| around.ball)), &Frame::WORLD);
+        Ok(Carried { stage, route: Route::new(way, tail), balls, ball })
+    }
+
+    /// The way from the second to the first of two links, if there are such.
+    pub(super) fn between(&self, [a, b]: [usize; 2]) -> Option<Route<V>> {
+        let [to, from] = [self.links.get(a)?, self.links.get(b)?];
+        (a != b).then(|| Route::between(&from.route, &to.route))
+    }
+}
+
+impl<V: Vector> Around<V> {
+    /// A ball in a frame of the joint.
+    fn new(ball: BoundingSphere<V>, tail: &Frame<V>) -> Self {
+        let (center, error) = (tail.of(ball.center), tail.error_of(ball.center.norm()));
+        let ball = BoundingSphere { center, radius: raised(ball.radius + error) };
+        Self { ball, distance: raised(center.norm() + error) }
+    }
+}
+
+/// A ball around a body, with room for rounding.
+fn ball_of<S: SupportMap>(body: &S) -> BoundingSphere<S::Vector> {
+    let BoundingSphere { center, radius } = bounding_sphere(body);
+    let Core { extent, error, .. } = body.core();
+    let room = (extent + center.abs().max_element()) * ScalarOf::<S>::EPSILON * Scalar::from_f64(32.0);
+    BoundingSphere { center, radius: raised(radius + error + room) }
+}
+
+/// A ball around balls.
+fn ball_around<V: Vector>(balls: impl Iterator<Item = BoundingSphere<V>> + Clone) -> BoundingSphere<V> {
+    let corners = |sign: V::Scalar| balls.clone().map(move |ball| ball.center + V::splat(ball.radius * sign));
+    let least = corners(-V::Scalar::ONE).reduce(V::min).unwrap_or(V::ZERO);
+    let most = corners(V::Scalar::ONE).reduce(V::max).unwrap_or(V::ZERO);
+    let center = (least + most) * V::Scalar::from_f64(0.5);
+    let reach = |ball: BoundingSphere<V>| (ball.center - center).norm() + ball.radius;
+    BoundingSphere { center, radius: raised(balls.map(reach).fold(V::Scalar::ZERO, num_traits::Float::max)) }
+}
+
+impl<V: Vector> Joint<V> {
+    /// A joint that turns about an axis, at a pose in its parent's frame.
+    #[must_use]
+    pub fn revolute(parent: Option<usize>, pose: Pose<V>, axis: V::AngularVelocity) -> Self {
+        Self { parent, pose, kind: JointKind::Revolute(axis) }
+    }
+
+    /// A joint that slides along an axis.
+    #[must_use]
+    pub fn prismatic(parent: Option<usize>, pose: Pose<V>, axis: V) -> Self {
+        Self { parent, pose, kind: JointKind::Prismatic(axis) }
+    }
+
+    /// A joint that does not move.
+    #[must_use]
+    pub fn fixed(parent: Option<usize>, pose: Pose<V>) -> Self {
+        Self { parent, pose, kind: JointKind::Fixed }
+    }
+}

@@ -1,0 +1,24 @@
+//! Robots: bodies carried by joints, along a path, and anywhere in a box of joint values.
+
+mod axial;
+mod bounds;
+mod error;
+mod frame;
+mod joint;
+mod joint_box;
+mod link_motion;
+#[allow(clippy::module_inception, reason = "it is the type that the folder is about")]
+mod linkage;
+mod moving;
+mod path;
+mod result;
+mod route;
+mod stage;
+mod sweep;
+
+pub use error::LinkageError;
+pub use joint::{Joint, JointKind, Link};
+pub use joint_box::{JointBox, JointBoxOutcome};
+pub use linkage::Linkage;
+pub use path::{LinkageOptions, PathWorkspace};
+pub use result::{Met, Path, PathContact, PathOutcome, PathStop, PathWork};

@@ -1,0 +1,239 @@
+//! Whether a linkage meets anything along a path.
+
+use alloc::vec::Vec;
+
+use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
+use num_traits::Float;
+
+use super::bounds::Bounds;
+use super::error::LinkageError;
+use super::link_motion::{Edge, LinkMotion};
+use super::linkage::Linkage;
+use super::result::{Met, Path, PathContact, PathOutcome, PathStop, PathWork};
+use super::sweep::{Near, Sweep, SweepSpace};
+use crate::half_space::Plane;
+use crate::motion::checked;
+use crate::options::setters;
+use crate::{MotionCast, MotionCastOptions, Outcome, RayCastError, RigidMotion, Scene, motion_cast};
+
+/// Parts of a box of joint values to look at: a pair of links of a robot arm takes up to ten thousand.
+const MAX_BOXES: usize = 100_000;
+
+/// Options of [`Linkage::path`] and [`Linkage::joint_box`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LinkageOptions<V: Vector> {
+    /// How near is too near: bodies count as touching at this distance. A negative value is taken for zero. Default: 0.
+    pub target_distance: V::Scalar,
+    /// As of [`MotionCastOptions::tolerance`]. Default: 0.
+    pub tolerance: V::Scalar,
+    /// As of [`MotionCastOptions::max_iterations`], for each body of a link and each that is near it. Default: that of
+    /// a motion cast.
+    pub max_iterations: usize,
+    /// The parts of a box of joint values to look at, after which to give up. Default: 100 000.
+    pub max_boxes: usize,
+}
+
+impl<V: Vector> LinkageOptions<V> {
+    /// The default options.
+    #[must_use]
+    pub fn new() -> Self {
+        let MotionCastOptions { target_distance, tolerance, max_iterations, .. } = MotionCastOptions::<V>::new();
+        Self { target_distance, tolerance, max_iterations, max_boxes: MAX_BOXES }
+    }
+
+    setters!(target_distance, tolerance, max_iterations);
+
+    /// With another number of [parts](Self::max_boxes).
+    #[must_use]
+    pub const fn with_max_boxes(mut self, max_boxes: usize) -> Self {
+        self.max_boxes = max_boxes;
+        self
+    }
+
+    /// Those of casts.
+    pub(super) fn checked(&self) -> Result<MotionCastOptions<V>, RayCastError> {
+        let options = MotionCastOptions::new().with_target_distance(self.target_distance);
+        checked(options.with_tolerance(self.tolerance).with_max_iterations(self.max_iterations))
+    }
+}
+
+impl<V: Vector> Default for LinkageOptions<V> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// What [`Linkage::path`] works with. Once it has served a path of a linkage, the next allocates nothing.
+#[derive(Clone, Debug)]
+pub struct PathWorkspace<V: Vector> {
+    sweep: SweepSpace<V>,
+    half_spaces: Vec<(usize, Plane<V>)>,
+}
+
+impl<V: Vector> PathWorkspace<V> {
+    /// An empty one.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { sweep: SweepSpace::new(), half_spaces: Vec::new() }
+    }
+}
+
+impl<V: Vector> Default for PathWorkspace<V> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<S: SupportMap> Linkage<S> {
+    /// Whether the way along waypoints is free, among the bodies of a scene at rest, and of the
+    /// [pairs](Self::with_pairs) of its own links.
+    ///
+    /// A waypoint has a value for each joint that moves, in their order. Between two waypoints all joints move at
+    /// constant rates, in one unit of time. A path of one waypoint is the pose.
+    ///
+    /// Along each edge, what comes near is found first. What is near is cast, earliest first, and
+    /// only until the first contact so far: [`motion_cast`](crate::motion_cast()) proves it free at all times, or
+    /// brackets its first contact.
+    /// The bounds account for the rounding of the joints' poses, too, so that [`PathOutcome::Free`] is a proof about the
+    /// linkage as it is given by its numbers.
+    ///
+    /// # Errors
+    /// [`LinkageError`] if the path is empty, a waypoint has another number of values than [`values`](Self::values), a
+    /// value is not finite, or an option is NaN.
+    pub fn path<O: SupportMap<Vector = S::Vector>, W: AsRef<[ScalarOf<S>]>>(
+        &self,
+        waypoints: &[W],
+        scene: &Scene<O>,
+        options: LinkageOptions<S::Vector>,
+        workspace: &mut PathWorkspace<S::Vector>,
+    ) -> Result<Path<S::Vector>, LinkageError> {
+        let options = options.checked()?;
+        for (index, waypoint) in waypoints.iter().enumerate() {
+            self.check(index, waypoint.as_ref())?;
+        }
+        let PathWorkspace { sweep, half_spaces } = workspace;
+        half_spaces.clear();
+        half_spaces.extend(scene.half_spaces().map(|(index, half_space)| (index, half_space.plane())));
+        let mut work = PathWork::default();
+        let edges = waypoints.windows(2).map(|pair| (&pair[0], &pair[1], ScalarOf::<S>::ONE));
+        let pose = waypoints.first().filter(|_| waypoints.len() == 1).map(|pose| (pose, pose, Scalar::ZERO));
+        for (index, (from, to, duration)) in edges.chain(pose).enumerate() {
+            let edge = Edge { from: from.as_ref(), to: to.as_ref() };
+            let (tree, target, skeleton) = (scene.tree(), options.target_distance, &self.skeleton);
+            sweep.parts = 0;
+            let mut first = First::<S::Vector> { edge: index, contact: None, stop: None };
+            let mut sweeping = Sweep { skeleton, tree, half_spaces, edge, target, space: sweep };
+            sweeping.run(duration, &mut |near, bounds| {
+                work.casts += 1;
+                self.cast(near, scene, (edge, bounds), options.with_max_time(duration), &mut first)?;
+                Ok::<_, RayCastError>(first.end(duration))
+            })?;
+            work.parts += sweep.parts;
+            if let Some(outcome) = first.outcome() {
+                return Ok(Path { outcome, work });
+            }
+        }
+        if waypoints.is_empty() { Err(LinkageError::EmptyPath) } else { Ok(Path { outcome: PathOutcome::Free, work }) }
+    }
+
+    /// Casts a body at what may come near it.
+    fn cast<O: SupportMap<Vector = S::Vector>>(
+        &self,
+        near: &Near<ScalarOf<S>>,
+        scene: &Scene<O>,
+        (edge, bounds): (Edge<'_, ScalarOf<S>>, &Bounds<ScalarOf<S>>),
+        options: MotionCastOptions<S::Vector>,
+        first: &mut First<S::Vector>,
+    ) -> Result<(), RayCastError> {
+        let &Near { from, to, item, body, other } = near;
+        let links = &self.skeleton.links;
+        // The end of a part is none of the edge: where rounding decides whether a contact comes before it, the cast goes
+        // on.
+        let whole = options.max_time - from;
+        let cast_to_end =
+            |cast: &dyn Fn(MotionCastOptions<S::Vector>) -> Result<MotionCast<S::Vector>, RayCastError>| {
+                let part = cast(options.with_max_time(to - from))?;
+                let is_open = !part.is_certain() && to - from < whole;
+                if is_open { cast(options.with_max_time(whole)) } else { Ok(part) }
+            };
+        // A first guess of the normal: from ball to ball.
+        let center = |motion: &LinkMotion<'_, S::Vector>, link: usize| {
+            motion.at(Scalar::ZERO).0.frame.of(links[link].balls[body].ball.center)
+        };
+        let Some(pair) = item.checked_sub(links.len()) else {
+            let Some(obstacle) = scene.get(other) else { return Ok(()) };
+            let motion = LinkMotion::new(&links[item].route, edge, from, *bounds);
+            let axis = scene.tree().get(other).map(|around| center(&motion, item) - around.center());
+            let cast = cast_to_end(&|options| {
+                obstacle.motion_cast(&self.bodies[item][body], &motion, MotionCastOptions { axis, ..options })
+            })?;
+            first.take(cast, from, [item, body], Met::Obstacle(other));
+            return Ok(());
+        };
+        let pair = &self.skeleton.pairs[pair];
+        let [link, base] = pair.links;
+        let motion = LinkMotion::new(&pair.route, edge, from, *bounds);
+        let (shape, met) = (&self.bodies[link][body], &self.bodies[base][other]);
+        let mut cast = cast_to_end(&|options| motion_cast(shape, &motion, met, RigidMotion::default(), options))?;
+        if let Outcome::Hit(hit) = &mut cast.outcome {
+            // It was seen from the second link.
+            let route = &links[base].route;
+            let frame = LinkMotion::new(route, edge, from, edge.bounds(route)).at(hit.time).1;
+            (hit.point, hit.normal) = (frame.of(hit.point), hit.normal.map(|normal| frame.rotation * normal));
+        }
+        first.take(cast, from, [link, body], Met::Link { link: base, body: other });
+        Ok(())
+    }
+}
+
+/// The first contact on an edge so far.
+struct First<V: Vector> {
+    edge: usize,
+    contact: Option<PathContact<V>>,
+    /// Where an undecided cast may be one.
+    stop: Option<PathStop<V::Scalar>>,
+}
+
+impl<V: Vector> First<V> {
+    /// Takes the cast of a body that began at a time. The first contact of all is bracketed by the least bounds of each.
+    fn take(&mut self, cast: MotionCast<V>, from: V::Scalar, [link, body]: [usize; 2], met: Met) {
+        // The sum with a start is rounded.
+        let room = if from == V::Scalar::ZERO { from } else { V::Scalar::EPSILON };
+        let [lower, upper] = [from + cast.lower - room, from + cast.upper + room];
+        let lower = lower.max(from);
+        match cast.outcome {
+            Outcome::Miss(_) => {}
+            Outcome::Undecided => {
+                if self.stop.is_none_or(|stop| lower < stop.lower) {
+                    self.stop = Some(PathStop { edge: self.edge, lower, link, body, met });
+                }
+            }
+            Outcome::Hit(hit) => {
+                let time = (from + hit.time).min(upper).max(lower);
+                let status = cast.status;
+                let (point, normal) = (hit.point, hit.normal);
+                let next = PathContact { edge: self.edge, time, lower, upper, link, body, met, point, normal, status };
+                self.contact = Some(match self.contact {
+                    None => next,
+                    Some(known) => {
+                        let earlier = if time < known.time { next } else { known };
+                        PathContact { lower: lower.min(known.lower), upper: upper.min(known.upper), ..earlier }
+                    }
+                });
+            }
+        }
+    }
+
+    /// The time from which on nothing matters.
+    fn end(&self, duration: V::Scalar) -> V::Scalar {
+        let [contact, stop] = [self.contact.map(|contact| contact.upper), self.stop.map(|stop| stop.lower)];
+        contact.into_iter().chain(stop).fold(duration, Float::min)
+    }
+
+    /// What is known of the edge; `None` if it is free.
+    fn outcome(&self) -> Option<PathOutcome<V>> {
+        let stop = self.stop.filter(|stop| self.contact.is_none_or(|contact| stop.lower < contact.lower));
+        stop.map(PathOutcome::Undecided).or(self.contact.map(PathOutcome::Contact))
+    }
+}

@@ -1,0 +1,67 @@
+//! The way from the world, or from another link, to a link.
+
+use alloc::vec::Vec;
+
+use convex_support::numerics::bound::raised;
+use convex_support::{Scalar, Vector};
+
+use super::axial;
+use super::frame::Frame;
+use super::stage::{Stage, StageMotion};
+
+/// The moving joints on the way from one frame to a link, and the link's frame beyond the last of them.
+#[derive(Clone, Debug)]
+pub(super) struct Route<V: Vector> {
+    pub(super) stages: Vec<Stage<V>>,
+    /// From each joint to the next: how far its origin is, and how far from the axis.
+    pub(super) arms: Vec<Arm<V::Scalar>>,
+    pub(super) tail: Frame<V>,
+    /// How far the last joint of the link's own way from the world is from the last of this one, beside those of the
+    /// links: not at all, but where the way leads back only.
+    pub(super) rim: V::Scalar,
+}
+
+/// The vector from a joint's origin to what it carries.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arm<S> {
+    pub(super) length: S,
+    /// Across the axis of the joint.
+    pub(super) across: S,
+}
+
+impl<V: Vector> Route<V> {
+    pub(super) fn new(stages: Vec<Stage<V>>, tail: Frame<V>) -> Self {
+        let none = Arm { length: V::Scalar::ZERO, across: V::Scalar::ZERO };
+        let to_next = |pair: &[Stage<V>]| {
+            let (StageMotion::Turn { axis, .. } | StageMotion::Slide { axis, .. }) = pair[0].motion;
+            let arm = pair[1].fixed.translation;
+            Arm { length: arm.norm(), across: axial::across(axis, arm).norm() }
+        };
+        let arms = stages.windows(2).map(to_next).chain([none]).take(stages.len()).collect();
+        Self { stages, arms, tail, rim: V::Scalar::ZERO }
+    }
+
+    /// The route to a frame from another, each given by its way from the world: back along the one to where they part,
+    /// and on along the other.
+    ///
+    /// With `F` for what is fixed and `M` for what moves, `(F₁M₁…FₙMₙT)⁻¹` is `T⁻¹·Mₙ⁻¹·Fₙ⁻¹·…·M₁⁻¹·F₁⁻¹`: the stages
+    /// of the way back have the fixed parts of the stages after them.
+    pub(super) fn between(from: &Self, to: &Self) -> Self {
+        let shared = from.stages.iter().zip(&to.stages).take_while(|(a, b)| a.column == b.column).count();
+        let mut fixed = from.tail.inverse();
+        let mut stages = Vec::with_capacity(from.stages.len() + to.stages.len() - 2 * shared);
+        for stage in from.stages[shared..].iter().rev() {
+            stages.push(stage.reversed(fixed));
+            fixed = stage.fixed.inverse();
+        }
+        for (i, stage) in to.stages[shared..].iter().enumerate() {
+            let before = if i == 0 { fixed.then(&stage.fixed) } else { stage.fixed };
+            stages.push(stage.at(before));
+        }
+        if to.stages.len() > shared {
+            return Self::new(stages, to.tail);
+        }
+        let rim = from.stages.get(shared).map_or(V::Scalar::ZERO, |stage| raised(stage.arm));
+        Self { rim, ..Self::new(stages, fixed.then(&to.tail)) }
+    }
+}

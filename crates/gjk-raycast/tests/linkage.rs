@@ -1,0 +1,390 @@
+//! Robots along paths, and anywhere in a box of joint values: against closed forms, poses by quaternions at many times,
+//! and what is refused.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3Swizzles as _};
+use convex_support::{Ball, Capsule, Cuboid, InvalidShape, Point, Polytope, Posed, Rounded, Segment, SupportMap};
+use gjk_raycast::{
+    HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, LinkageOptions, Met, Path, PathOutcome,
+    PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, signed_distance,
+};
+
+type Bar = Rounded<Segment<DVec2>>;
+type Shape = Box<dyn SupportMap<Vector = DVec3>>;
+
+fn bar() -> Bar {
+    Rounded::new(Segment::new([DVec2::ZERO, DVec2::X]).expect("finite"), 0.05).expect("a radius")
+}
+
+/// A joint at a place, that turns counter-clockwise.
+fn turning(parent: Option<usize>, at: DVec2) -> Joint<DVec2> {
+    Joint::revolute(parent, Pose { translation: at, ..Pose::default() }, 1.0)
+}
+
+/// An arm of two bars of length 1.
+fn arm() -> Linkage<Bar> {
+    let joints = [turning(None, DVec2::ZERO), turning(Some(0), DVec2::X)];
+    let links = [0, 1].map(|joint| Link { joint: Some(joint), bodies: vec![bar()] });
+    Linkage::new(joints, links).expect("a linkage")
+}
+
+fn ball_at(x: f64, y: f64) -> Posed<Ball<DVec2>> {
+    Posed::translated(Ball::new(0.1).expect("a radius"), DVec2::new(x, y)).expect("finite")
+}
+
+fn ask(robot: &Linkage<Bar>, ways: &[Vec<f64>], scene: &Scene<Posed<Ball<DVec2>>>) -> Path<DVec2> {
+    robot.path(ways, scene, LinkageOptions::new(), &mut PathWorkspace::new()).expect("values for its joints")
+}
+
+/// A stretched arm that turns from an angle on meets a ball on its way when its middle line is 0.15 from the ball's
+/// middle, from whichever edge and with whichever workspace it is asked.
+#[test]
+fn first_contacts_of_an_arm_are_those_of_its_closed_form() {
+    let robot = arm();
+    let mut workspace = PathWorkspace::new();
+    for k in 0..12 {
+        let (angle, far) = (0.6 + 0.1 * f64::from(k), 0.4 + 0.12 * f64::from(k));
+        let scene = Scene::new([ball_at(far * angle.cos(), far * angle.sin())]).expect("finite");
+        let ways = [[-0.4, 0.0], [0.0, 0.0], [2.0, 0.0], [0.0, 0.0]];
+        let path = robot.path(&ways, &scene, LinkageOptions::new(), &mut workspace).expect("two values each");
+        let contact = path.contact().expect("it turns by 2");
+        let truth = (angle - (0.15 / far).asin()) / 2.0;
+        assert_eq!((contact.edge, contact.link, contact.met), (1, usize::from(far > 1.0), Met::Obstacle(0)), "{far}");
+        assert!(contact.lower <= truth && truth <= contact.upper, "{truth} is not in {contact:?}");
+        assert!(contact.upper - contact.lower < 1e-12 && (contact.time - truth).abs() < 1e-13, "{contact:?}");
+        assert!((contact.point - DVec2::from_angle(angle) * far).length() - 0.1 < 1e-12, "{contact:?}");
+        assert_eq!(path, ask(&robot, &ways.map(Vec::from), &scene), "a workspace remembers nothing");
+        // Short of the ball by 1e-9 it is free.
+        assert!(ask(&robot, &[vec![0.0, 0.0], vec![2.0 * truth - 1e-9, 0.0]], &scene).is_free(), "{far}");
+    }
+}
+
+/// The time of a chain of three bars whose joints turn alike, when its ends are so far apart: |1 + 2·cos α| = far.
+#[test]
+fn links_of_one_robot_meet_one_another() {
+    let joints = [turning(None, DVec2::X), turning(Some(0), DVec2::X)];
+    let links = [None, Some(0), Some(1)].map(|joint| Link { joint, bodies: vec![bar()] });
+    let chain = Linkage::new(joints, links).expect("a linkage");
+    let nothing = Scene::default();
+    for (pair, sign) in [([2, 0], 1.0), ([0, 2], -1.0)] {
+        let chain = chain.clone().with_pairs([pair]).expect("two links");
+        let path = ask(&chain, &[vec![0.0; 2], vec![2.5; 2]], &nothing);
+        let contact = path.contact().expect("the ends come together at 120°");
+        let (alpha, truth) = ((-0.45_f64).acos(), (-0.45_f64).acos() / 2.5);
+        assert!(
+            contact.lower <= truth && truth <= contact.upper && contact.upper - contact.lower < 1e-12,
+            "{contact:?}"
+        );
+        assert_eq!((contact.link, contact.met), (pair[0], Met::Link { link: pair[1], body: 0 }), "in the order asked");
+        let end = DVec2::X + DVec2::from_angle(alpha) + DVec2::from_angle(2.0 * alpha);
+        assert!((contact.point - end * 0.5).length() < 1e-12, "halfway between the ends: {contact:?}");
+        let normal = contact.normal.expect("they were apart");
+        assert!((normal - end.normalize() * sign).length() < 1e-12, "out of the second, in the world: {contact:?}");
+        assert!(ask(&chain, &[vec![0.0; 2], vec![alpha - 1e-9; 2]], &nothing).is_free(), "{pair:?}");
+        let near = LinkageOptions::new().with_target_distance(0.1);
+        let sooner = chain.path(&[[0.0; 2], [2.0; 2]], &nothing, near, &mut PathWorkspace::new()).expect("valid");
+        let truth = (-0.4_f64).acos() / 2.0;
+        assert!(sooner.contact().is_some_and(|c| (c.time - truth).abs() < 1e-13), "{sooner:?}");
+    }
+    assert!(ask(&chain, &[vec![0.0; 2], vec![2.5; 2]], &nothing).is_free(), "none is asked about another");
+}
+
+/// What slides, in a frame that is turned, towards a wall.
+#[test]
+fn a_joint_slides_along_its_axis() -> Result<(), Box<dyn std::error::Error>> {
+    let quarter = Pose { rotation: DQuat::from_rotation_z(FRAC_PI_2), translation: DVec3::Y };
+    let joints = [Joint::fixed(None, quarter), Joint::prismatic(Some(0), Pose::default(), DVec3::NEG_Y * 3.0)];
+    let robot = Linkage::new(joints, [Link { joint: Some(1), bodies: vec![Ball::new(0.5)?] }])?;
+    let mut scene = Scene::<Ball<DVec3>>::default();
+    let wall = scene.insert_half_space(HalfSpace::new(DVec3::NEG_X, -3.0)?);
+    let path = robot.path(&[[0.0], [1.0], [5.0]], &scene, LinkageOptions::new(), &mut PathWorkspace::new())?;
+    let contact = path.contact().ok_or("it comes to 2.5")?;
+    assert_eq!((contact.edge, contact.met), (1, Met::Obstacle(wall)), "{contact:?}");
+    assert!(contact.lower <= 0.375 && 0.375 <= contact.upper && contact.upper - contact.lower < 1e-13, "{contact:?}");
+    assert!((contact.point - DVec3::new(3.0, 1.0, 0.0)).length() < 1e-13, "{contact:?}");
+    Ok(())
+}
+
+#[test]
+fn a_path_of_one_waypoint_is_a_pose() {
+    let (robot, scene) = (arm(), Scene::new([ball_at(1.0, 1.0)]).expect("finite"));
+    let contact = ask(&robot, &[vec![FRAC_PI_4, 0.0]], &scene).contact().expect("the ball is in the forearm");
+    assert_eq!((contact.edge, contact.time, contact.link, contact.normal), (0, 0.0, 1, None), "{contact:?}");
+    assert!(ask(&robot, &[vec![0.0, 0.0]], &scene).is_free());
+    let still = ask(&robot, &vec![vec![0.3, 0.0]; 3], &scene);
+    assert!(still.is_free(), "it may also rest for two edges: {still:?}");
+}
+
+/// A number from 0 to 1, from a seed.
+fn random(seed: &mut u64) -> f64 {
+    *seed ^= *seed << 13;
+    *seed ^= *seed >> 7;
+    *seed ^= *seed << 17;
+    (*seed >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+fn random_vector(seed: &mut u64) -> DVec3 {
+    DVec3::from_array([0, 1, 2].map(|_| 2.0 * random(seed) - 1.0))
+}
+
+fn random_pose(seed: &mut u64, size: f64) -> Pose<DVec3> {
+    let axis = random_vector(seed);
+    let rotation = DQuat::from_xyzw(axis.x, axis.y, axis.z, random(seed));
+    Pose { rotation, translation: random_vector(seed) * size }
+}
+
+fn random_shape(seed: &mut u64) -> Result<Shape, InvalidShape> {
+    let size = random_vector(seed).abs() * 0.25;
+    let shape: Shape = match (random(seed) * 5.0) as usize {
+        0 => Box::new(Ball::new(size.x)?),
+        1 => Box::new(Cuboid::new(size)?),
+        2 => Box::new(Capsule::<DVec3>::new(size.x, size.y)?),
+        3 => Box::new(Point::new(size)?),
+        _ => Box::new(Polytope::new([size, -size, size.yzx(), -size.zxy(), random_vector(seed) * 0.2])?),
+    };
+    let Pose { rotation, translation } = random_pose(seed, 0.2);
+    Ok(Box::new(Posed::new(shape, rotation, translation)?))
+}
+
+/// Poses by quaternions, one after the other, in place of the matrices of the library.
+fn frames(joints: &[Joint<DVec3>], values: &[f64]) -> Vec<(DQuat, DVec3)> {
+    let (mut frames, mut values) = (Vec::<(DQuat, DVec3)>::new(), values.iter());
+    for Joint { parent, pose, kind } in joints {
+        let (carrier, at) = parent.map_or((DQuat::IDENTITY, DVec3::ZERO), |parent| frames[parent]);
+        let (rotation, origin) = (carrier * pose.rotation.normalize(), at + carrier * pose.translation);
+        frames.push(match *kind {
+            JointKind::Fixed => (rotation, origin),
+            JointKind::Revolute(axis) => {
+                let turn = DQuat::from_axis_angle(axis.normalize(), *values.next().expect("one each"));
+                (rotation * turn, origin)
+            }
+            JointKind::Prismatic(axis) => {
+                (rotation, origin + rotation * axis.normalize() * *values.next().expect("one each"))
+            }
+        });
+    }
+    frames
+}
+
+/// Robots of random joints in a tree, some of which slide, among random bodies: at 40 times of what is said to be free,
+/// every pair is apart; and by the upper bound of a contact one pair is not.
+#[test]
+fn what_is_said_to_be_free_is_free_at_every_time_that_is_looked_at() -> Result<(), Box<dyn std::error::Error>> {
+    let (mut seed, mut free, mut contacts) = (0x2004_1120_u64, 0, 0);
+    for _ in 0..40 {
+        let joints: Vec<Joint<DVec3>> = (0..4)
+            .map(|i: usize| {
+                let parent = i.checked_sub(1).filter(|_| random(&mut seed) < 0.8);
+                let axis = random_vector(&mut seed);
+                let kind = match (random(&mut seed) * 5.0) as usize {
+                    0 => JointKind::Fixed,
+                    1 => JointKind::Prismatic(axis),
+                    _ => JointKind::Revolute(axis),
+                };
+                Joint { parent, pose: random_pose(&mut seed, 0.4), kind }
+            })
+            .collect();
+        let places = [None, Some(1), Some(2), Some(3)];
+        let shapes = places.map(|_| [random_shape(&mut seed), random_shape(&mut seed)]);
+        let mut links = Vec::new();
+        for (joint, [first, second]) in places.into_iter().zip(shapes) {
+            links.push(Link { joint, bodies: vec![first?, second?] });
+        }
+        let pairs = [[3, 0], [1, 3]];
+        let robot = Linkage::new(joints.clone(), links)?.with_pairs(pairs)?;
+        let obstacle = |seed: &mut u64| Posed::translated(random_shape(seed)?, random_vector(seed) * 1.2);
+        let scene = Scene::new([obstacle(&mut seed)?, obstacle(&mut seed)?])?;
+        let size = [0.3, 1.0, 4.0][(random(&mut seed) * 3.0) as usize];
+        let ways =
+            [0; 3].map(|_| (0..robot.values()).map(|_| size * (2.0 * random(&mut seed) - 1.0)).collect::<Vec<_>>());
+        let path = robot.path(&ways, &scene, LinkageOptions::new(), &mut PathWorkspace::new())?;
+        // The least signed distance at a time.
+        let least = |edge: usize, time: f64| -> Result<f64, InvalidShape> {
+            let values: Vec<f64> = ways[edge].iter().zip(&ways[edge + 1]).map(|(a, b)| a + time * (b - a)).collect();
+            let frames = frames(&joints, &values);
+            let placed = |link: usize| {
+                let (rotation, at) = places[link].map_or((DQuat::IDENTITY, DVec3::ZERO), |joint| frames[joint]);
+                robot.bodies(link).iter().map(|body| Posed::new(body, rotation, at)).collect::<Result<Vec<_>, _>>()
+            };
+            let mut least = f64::INFINITY;
+            let mut near = |distance: f64| least = least.min(distance);
+            for link in 0..robot.len() {
+                for body in placed(link)? {
+                    for obstacle in scene.iter().filter_map(|(_, body)| body.convex()) {
+                        near(signed_distance(&body, obstacle, SignedDistanceOptions::new()).signed_distance);
+                    }
+                }
+            }
+            for [a, b] in pairs {
+                for (a, b) in placed(a)?.iter().flat_map(|a| placed(b).into_iter().flatten().map(move |b| (*a, b))) {
+                    near(signed_distance(&a, &b, SignedDistanceOptions::new()).signed_distance);
+                }
+            }
+            Ok(least)
+        };
+        let proved = match path.outcome {
+            PathOutcome::Free => (1, 1.0),
+            PathOutcome::Contact(contact) => (contact.edge, contact.lower),
+            PathOutcome::Undecided(stop) => (stop.edge, stop.lower),
+        };
+        for k in 0..20 {
+            for (edge, end) in
+                [(0, if proved.0 == 0 { proved.1 } else { 1.0 }), (1, if proved.0 == 0 { 0.0 } else { proved.1 })]
+            {
+                let time = end * f64::from(k) / 20.0;
+                let distance = if end > 0.0 { least(edge, time)? } else { 1.0 };
+                assert!(distance > -1e-13, "{distance} at {time} of edge {edge}: {path:?}");
+            }
+        }
+        match path.contact() {
+            Some(contact) => {
+                contacts += 1;
+                assert!(least(contact.edge, contact.upper)? < 1e-12, "{path:?}");
+            }
+            None => free += usize::from(path.is_free()),
+        }
+    }
+    assert!(free > 10 && contacts > 10, "both are exercised: {free} and {contacts}");
+    Ok(())
+}
+
+/// The last of three bars in a row meets the first where both joints turn far enough: at α in both, |1 + 2·cos α| ≤ 0.1.
+#[test]
+fn a_box_of_joints_is_proved_or_refuted() -> Result<(), Box<dyn std::error::Error>> {
+    let joints = [turning(None, DVec2::X), turning(Some(0), DVec2::X)];
+    let links = [None, Some(0), Some(1)].map(|joint| Link { joint, bodies: vec![bar()] });
+    let chain = Linkage::new(joints, links)?;
+    let ask = |half: f64| chain.joint_box([2, 0], &[[-half, half]; 2], LinkageOptions::new());
+    assert_eq!(ask(1.5)?.outcome, JointBoxOutcome::Never);
+    let JointBoxOutcome::Meets { values, bodies } = ask(2.1)?.outcome else { return Err("they may meet".into()) };
+    assert_eq!(bodies, [0, 0]);
+    // The pose is one, by the path of one waypoint.
+    let own = chain.clone().with_pairs([[2, 0]])?;
+    assert!(!ask_own(&own, &values).is_free(), "{values:?}");
+
+    // No wider interval is free, and none that is free has a pose that is not.
+    let mut seed = 7;
+    let (limits, mut met) = ([[-1.9, 1.9], [-1.9, 2.4]], 0);
+    let found = chain.joint_box([2, 0], &limits, LinkageOptions::new())?;
+    for _ in 0..500 {
+        let values = limits.map(|[low, high]: [f64; 2]| low + (high - low) * random(&mut seed)).to_vec();
+        met += usize::from(!ask_own(&own, &values).is_free());
+    }
+    assert_eq!(met > 0, matches!(found.outcome, JointBoxOutcome::Meets { .. }), "{met} poses, {found:?}");
+
+    // A search that is cut short says how much of the box is open.
+    let cut = chain.joint_box([2, 0], &[[-1.5, 1.5]; 2], LinkageOptions::new().with_max_boxes(9))?;
+    assert!(matches!(cut.outcome, JointBoxOutcome::Undecided { share } if share > 0.0 && share < 1.0), "{cut:?}");
+    // However few, at least one part is looked at, and none is lost.
+    for most in 0..4 {
+        let cut = chain.joint_box([2, 0], &[[-1.5, 1.5]; 2], LinkageOptions::new().with_max_boxes(most))?;
+        let JointBoxOutcome::Undecided { share } = cut.outcome else { return Err("not by so few".into()) };
+        assert!(share > 0.0 && cut.boxes <= most + 1, "{most}: {cut:?}");
+    }
+    // Of no extent, the box is a pose.
+    let pose = [[0.0, 0.0], [0.0, 0.0]];
+    let touching = chain.joint_box([1, 0], &pose, LinkageOptions::new().with_max_boxes(100))?;
+    assert!(matches!(touching.outcome, JointBoxOutcome::Meets { .. }), "neighbours overlap: {touching:?}");
+    Ok(())
+}
+
+fn ask_own(robot: &Linkage<Bar>, values: &[f64]) -> Path<DVec2> {
+    ask(robot, &[values.to_vec()], &Scene::default())
+}
+
+#[test]
+fn what_is_no_linkage_or_path_is_refused_by_its_index() -> Result<(), Box<dyn std::error::Error>> {
+    let joints = |joint: Joint<DVec2>| Linkage::<Bar>::new([turning(None, DVec2::ZERO), joint], []).err();
+    let place = |x: f64, rotation: f64| Pose { translation: DVec2::new(x, 0.0), rotation };
+    assert_eq!(joints(turning(Some(1), DVec2::X)), Some(LinkageError::ParentNotBefore { joint: 1, parent: 1 }));
+    assert_eq!(joints(Joint::revolute(Some(0), Pose::default(), 0.0)), Some(LinkageError::Axis { joint: 1 }));
+    assert_eq!(joints(Joint::revolute(Some(0), Pose::default(), f64::NAN)), Some(LinkageError::Axis { joint: 1 }));
+    assert_eq!(joints(Joint::prismatic(Some(0), Pose::default(), DVec2::ZERO)), Some(LinkageError::Axis { joint: 1 }));
+    for (pose, parameter) in [(place(f64::NAN, 0.0), "translation"), (place(0.0, f64::INFINITY), "rotation")] {
+        let why = InvalidShape::NonFinite { parameter, index: 0 };
+        assert_eq!(joints(Joint::fixed(None, pose)), Some(LinkageError::Pose { joint: 1, why }));
+    }
+    let lost = Linkage::new([turning(None, DVec2::ZERO)], [Link { joint: Some(3), bodies: vec![bar()] }]);
+    assert_eq!(lost.err(), Some(LinkageError::NoSuchJoint { link: 0, joint: 3 }));
+    for pair in [[0, 2], [1, 1]] {
+        assert_eq!(arm().with_pairs([[0, 1], pair]).err(), Some(LinkageError::Pair { pair: 1 }), "{pair:?}");
+    }
+
+    let scene = Scene::<Bar>::default();
+    let refused = |ways: &[Vec<f64>], options| arm().path(ways, &scene, options, &mut PathWorkspace::new()).err();
+    let options = LinkageOptions::new();
+    assert_eq!(refused(&[], options), Some(LinkageError::EmptyPath));
+    let short = LinkageError::Count { waypoint: 1, joints: 2, values: 1 };
+    assert_eq!(refused(&[vec![0.0; 2], vec![1.0]], options), Some(short));
+    let nan = LinkageError::Value { waypoint: 0, value: 1 };
+    assert_eq!(refused(&[vec![0.0, f64::NAN]], options), Some(nan));
+    let option = LinkageError::Option(RayCastError::NonFinite { parameter: "target_distance", index: 0 });
+    let without_end = options.with_target_distance(f64::INFINITY);
+    assert!(
+        refused(&[vec![0.0; 2]], without_end).is_some_and(|why| matches!(why, LinkageError::Option(_))),
+        "{option}"
+    );
+
+    let boxes = |limits: &[[f64; 2]]| arm().joint_box([0, 1], limits, LinkageOptions::new()).err();
+    assert_eq!(boxes(&[[0.0, 1.0], [1.0, 0.5]]), Some(LinkageError::Interval { value: 1 }));
+    assert_eq!(boxes(&[[0.0, 1.0]]), Some(LinkageError::Count { waypoint: 0, joints: 2, values: 1 }));
+    assert_eq!(boxes(&[[0.0, 1.0], [0.0, f64::NAN]]), Some(LinkageError::Value { waypoint: 0, value: 1 }));
+    Ok(())
+}
+
+/// Numbers out of any range, and turns by 1e300 radians, are undecided or refused, and end.
+#[test]
+fn the_largest_numbers_end() {
+    let scene = Scene::new([ball_at(1.0, 1.0)]).expect("finite");
+    for values in [[1e300, -1e300], [1e17, 1.0], [f64::MAX, f64::MIN]] {
+        let path = ask(&arm(), &[vec![0.0; 2], values.to_vec()], &scene);
+        assert!(!path.is_free() || values[0] < 1e18, "{path:?}");
+    }
+    let far = Linkage::new([turning(None, DVec2::splat(1e300))], [Link { joint: Some(0), bodies: vec![bar()] }]);
+    let path = ask(&far.expect("finite"), &[vec![0.0], vec![1.0]], &scene);
+    assert!(path.is_free(), "it is far away: {path:?}");
+}
+
+/// An edge is looked at in parts, whose ends are none of the motion. A contact exactly at the end of one, a quarter of the
+/// edge, was undecided there, as one at the end of a motion is: whether it comes before that, rounding decides.
+#[test]
+fn a_contact_at_the_end_of_a_part_is_one() -> Result<(), Box<dyn std::error::Error>> {
+    // By a quarter of a turn: the quaternion is not unit.
+    let quarter = Pose { rotation: DQuat::from_xyzw(0.0, 0.0, 1.0, 1.0), translation: DVec3::ZERO };
+    let joints = [Joint::fixed(None, quarter), Joint::prismatic(Some(0), Pose::default(), DVec3::NEG_Y * 2.0)];
+    let robot = Linkage::new(joints, [Link { joint: Some(1), bodies: vec![Ball::new(0.5)?] }])?;
+    let mut scene = Scene::<Ball<DVec3>>::default();
+    scene.insert_half_space(HalfSpace::new(DVec3::NEG_X * 2.0, -6.0)?);
+    for (part, target) in [(0.25, 0.5), (0.5, 0.5), (0.75, 0.5), (0.125, 0.0), (0.625, 0.25)] {
+        // The ball touches the wall, or comes as near as the target, when its middle is there.
+        let (end, wanted) = (2.5 - target, LinkageOptions::new().with_target_distance(target));
+        let ways = [[end - 4.0 * part], [end + 4.0 * (1.0 - part)]];
+        let path = robot.path(&ways, &scene, wanted, &mut PathWorkspace::new())?;
+        let contact = path.contact().ok_or("it is decided")?;
+        assert!(contact.lower <= part && part <= contact.upper && contact.is_certain(), "{part}: {contact:?}");
+        assert!(contact.upper - contact.lower < 1e-13, "{part}: {contact:?}");
+    }
+    Ok(())
+}
+
+/// In `f32` the joints' own rounding is most of what a bracket is wide by, and the numbers given are those of `f32`.
+#[test]
+fn brackets_hold_in_single_precision() -> Result<(), Box<dyn std::error::Error>> {
+    let bar = Rounded::new(Segment::new([Vec2::ZERO, Vec2::X])?, 0.0625)?;
+    let elbow = Pose { translation: Vec2::X, ..Pose::default() };
+    let joints = [Joint::revolute(None, Pose::default(), 1.0), Joint::revolute(Some(0), elbow, -1.0)];
+    let robot = Linkage::new(joints, [0, 1].map(|joint| Link { joint: Some(joint), bodies: vec![bar] }))?;
+    for k in 0..10_u8 {
+        let (x, y) = (0.75 - 0.0625 * f32::from(k), 0.5 + 0.125 * f32::from(k));
+        let scene = Scene::new([Posed::translated(Ball::new(0.125)?, Vec2::new(x, y))?])?;
+        let ways = [[-0.5, 0.0], [2.5, 0.0]];
+        let path = robot.path(&ways, &scene, LinkageOptions::new(), &mut PathWorkspace::new())?;
+        let contact = path.contact().ok_or("it turns past the ball")?;
+        let (x, y) = (f64::from(x), f64::from(y));
+        let truth = (y.atan2(x) - (0.1875 / x.hypot(y)).asin() + 0.5) / 3.0;
+        let [lower, upper] = [contact.lower, contact.upper].map(f64::from);
+        assert!(lower <= truth && truth <= upper && upper - lower < 1e-4, "{truth} is not in {contact:?}");
+    }
+    Ok(())
+}

@@ -1,0 +1,76 @@
+//! `joint_box`.
+
+use convex_support::Vector;
+use gjk_raycast::{JointBoxOutcome, Linkage, LinkageOptions};
+
+use super::{Ask, How, Query, Question, scalar};
+use crate::wire::answer::{Answer, Field, Number};
+use crate::wire::error::{Kind, Problem};
+use crate::wire::fields::Fields;
+use crate::wire::linkage::{self, problem};
+use crate::wire::names::Names;
+use crate::wire::shape::{Solid, Space};
+
+/// The query as written.
+pub(super) struct JointBox {
+    robot: linkage::Linkage,
+    pair: [usize; 2],
+    intervals: Vec<[f64; 2]>,
+    target_distance: f64,
+}
+
+impl Query for JointBox {
+    const FIELDS: Names = &["joints", "links", "pair", "box", "target_distance"];
+
+    fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+        Ok(Self {
+            robot: linkage::Linkage::read(fields)?,
+            pair: fields.get("pair")?,
+            intervals: fields.get("box")?,
+            target_distance: fields.not_negative("target_distance")?.unwrap_or(0.0),
+        })
+    }
+
+    fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
+        how.method(&[("gjk", ())])?;
+        Ok(Box::new(Ever::<V> {
+            robot: self.robot.build(how.meshes)?,
+            pair: self.pair,
+            intervals: self.intervals.iter().map(|ends| ends.map(scalar::<V>)).collect(),
+            options: LinkageOptions::new().with_target_distance(scalar::<V>(self.target_distance)),
+        }))
+    }
+}
+
+struct Ever<V: Vector> {
+    robot: Linkage<Solid<V>>,
+    pair: [usize; 2],
+    intervals: Vec<[V::Scalar; 2]>,
+    options: LinkageOptions<V>,
+}
+
+impl<V: Space> Question for Ever<V> {
+    type Solution = gjk_raycast::JointBox<V::Scalar>;
+
+    fn solve(&self) -> Result<Self::Solution, Problem> {
+        self.robot.joint_box(self.pair, &self.intervals, self.options).map_err(problem)
+    }
+
+    fn answer(&self, answer: Self::Solution) -> Result<Answer, Problem> {
+        let meets = |meets| Answer::default().with("meets", Field::Flag(meets));
+        let found = match answer.outcome {
+            JointBoxOutcome::Never => meets(false),
+            JointBoxOutcome::Meets { values, .. } => {
+                meets(true).with("values", Field::Numbers(values.into_iter().map(Number::of).collect()))
+            }
+            JointBoxOutcome::Undecided { share } => {
+                let boxes = answer.boxes;
+                let message = format!(
+                    "undecided_share {share}: so much of the box is not known to be free after a look at {boxes} parts of it"
+                );
+                return Err(Problem::new(Kind::NotConverged, message));
+            }
+        };
+        Ok(found.with("boxes", Field::Count(answer.boxes)))
+    }
+}

@@ -1,0 +1,190 @@
+//! `path`.
+
+use convex_support::Vector;
+use convex_support::glam::{DVec2, DVec3};
+#[cfg(not(target_family = "wasm"))]
+use cpu_time::ThreadTime;
+use gjk_raycast::{Linkage, LinkageOptions, Met, PathOutcome, PathStop, PathWorkspace, Scene};
+#[cfg(target_family = "wasm")]
+use std::time::Instant as ThreadTime;
+
+use super::scene::{refused, scene_of};
+use super::{Ask, EVERY, How, Precision, Query, Question, scalar, status};
+use crate::mesh::Meshes;
+use crate::wire::answer::{Answer, Field};
+use crate::wire::body::Body;
+use crate::wire::error::{Kind, Problem};
+use crate::wire::fields::{Dimension, Fields, Object, Written};
+use crate::wire::linkage::{self, problem};
+use crate::wire::names::Names;
+use crate::wire::shape::{Solid, Space};
+
+/// How often an edge is timed.
+const RUNS: usize = 5;
+
+/// The query as written.
+pub(super) struct Path {
+    robot: linkage::Linkage,
+    waypoints: Vec<Vec<f64>>,
+    obstacles: Vec<Body>,
+    pairs: Vec<[usize; 2]>,
+    target_distance: f64,
+}
+
+impl Query for Path {
+    const FIELDS: Names = &["joints", "links", "waypoints", "obstacles", "self", "target_distance"];
+
+    fn read(fields: &Fields<'_>) -> Result<Self, Problem> {
+        Ok(Self {
+            robot: linkage::Linkage::read(fields)?,
+            waypoints: fields.get("waypoints")?,
+            obstacles: fields.each("obstacles")?.into_iter().map(Body::read).collect::<Result<_, _>>()?,
+            pairs: fields.maybe("self")?.unwrap_or_default(),
+            target_distance: fields.not_negative("target_distance")?.unwrap_or(0.0),
+        })
+    }
+
+    fn question<V: Space>(&self, how: &How<'_>) -> Result<Box<dyn Ask>, Problem> {
+        Ok(Box::new(self.way::<V>(how)?))
+    }
+}
+
+impl Path {
+    /// The way of the robot in a space.
+    fn way<V: Space>(&self, how: &How<'_>) -> Result<Way<V>, Problem> {
+        how.method(&[("gjk", ())])?;
+        let build = |(i, body): (usize, &Body)| body.build(&format!("obstacles[{i}]"), how.meshes);
+        let obstacles = self.obstacles.iter().enumerate().map(build).collect::<Result<Vec<_>, _>>()?;
+        let mut options = LinkageOptions::new().with_target_distance(scalar::<V>(self.target_distance));
+        options.tolerance = how.tolerance::<V>()?.unwrap_or(options.tolerance);
+        let pairs = self.pairs.iter().copied();
+        Ok(Way {
+            robot: self.robot.build(how.meshes)?.with_pairs(pairs).map_err(problem)?,
+            scene: scene_of(obstacles).map_err(|why| refused(why, "obstacles"))?,
+            waypoints: self.waypoints.iter().map(|row| row.iter().map(|&value| scalar::<V>(value)).collect()).collect(),
+            options,
+        })
+    }
+}
+
+struct Way<V: Vector> {
+    robot: Linkage<Solid<V>>,
+    scene: Scene<Solid<V>>,
+    waypoints: Vec<Vec<V::Scalar>>,
+    options: LinkageOptions<V>,
+}
+
+impl<V: Space> Question for Way<V> {
+    type Solution = gjk_raycast::Path<V>;
+
+    fn solve(&self) -> Result<Self::Solution, Problem> {
+        self.robot.path(&self.waypoints, &self.scene, self.options, &mut PathWorkspace::new()).map_err(problem)
+    }
+
+    fn answer(&self, path: Self::Solution) -> Result<Answer, Problem> {
+        let answer = |free| Answer::default().with("free", Field::Flag(free));
+        let answer = match path.outcome {
+            PathOutcome::Free => answer(true).with("certain", Field::Flag(true)),
+            PathOutcome::Contact(contact) => {
+                let answer = answer(false)
+                    .with("edge", Field::Count(contact.edge))
+                    .with("time", Field::number(contact.time))
+                    .with("link", Field::Count(contact.link))
+                    .with("body", Field::Count(contact.body));
+                let answer = match contact.met {
+                    Met::Obstacle(obstacle) => answer.with("obstacle", Field::Count(obstacle)),
+                    Met::Link { link, body } => {
+                        answer.with("other_link", Field::Count(link)).with("other_body", Field::Count(body))
+                    }
+                };
+                answer
+                    .with("point", Field::vector(contact.point))
+                    .with("normal", Field::maybe_vector(contact.normal))
+                    .with_finite("lower", contact.lower)
+                    .with_finite("upper", contact.upper)
+                    .with_certain([contact.lower, contact.upper])
+                    .with("status", status(contact.status))
+            }
+            PathOutcome::Undecided(PathStop { edge, lower, link, body, .. }) => {
+                let message = format!(
+                    "the path is free until {lower} of edge {edge}; whether body {body} of link {link} meets something \
+                     from there on is not certain"
+                );
+                return Err(Problem::new(Kind::NotConverged, message));
+            }
+        };
+        Ok(answer.with("casts", Field::Count(path.work.casts)))
+    }
+}
+
+/// What is known of an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    Free,
+    Contact,
+    Undecided,
+}
+
+/// An edge of a path, asked alone.
+#[derive(Clone, Copy, Debug)]
+pub struct EdgeReport {
+    pub verdict: Verdict,
+    /// The least of a few runs.
+    pub nanoseconds: f64,
+    /// Whether poses along it, at each of two steps, are all free.
+    pub sampled_free: [bool; 2],
+}
+
+/// The edges of a `path` query, one by one, in double precision; beside each what poses along it say, one for each of
+/// these steps of the joint values.
+///
+/// # Errors
+/// Where the query is none.
+pub fn edges(object: &Object, meshes: &Meshes, steps: &[f64; 2]) -> Result<Vec<EdgeReport>, Problem> {
+    let dimension = Dimension::default();
+    let fields = Written::new(object, &dimension).fields(EVERY, Path::FIELDS)?;
+    let query = Path::read(&fields)?;
+    let how = How { precision: Precision::F64, tol: None, method: None, meshes };
+    match dimension.known() {
+        Some(2) => query.way::<DVec2>(&how)?.edges(steps),
+        _ => query.way::<DVec3>(&how)?.edges(steps),
+    }
+}
+
+impl<V: Space<Scalar = f64>> Way<V> {
+    fn edges(&self, steps: &[f64; 2]) -> Result<Vec<EdgeReport>, Problem> {
+        let mut workspace = PathWorkspace::new();
+        let mut ask = |waypoints: &[Vec<f64>]| {
+            self.robot.path(waypoints, &self.scene, self.options, &mut workspace).map_err(problem)
+        };
+        let mut reports = Vec::new();
+        for edge in self.waypoints.windows(2) {
+            let mut nanoseconds = f64::INFINITY;
+            for _ in 0..RUNS {
+                let start = ThreadTime::now();
+                std::hint::black_box(&ask(edge)?);
+                nanoseconds = nanoseconds.min(start.elapsed().as_nanos() as f64);
+            }
+            let verdict = match ask(edge)?.outcome {
+                PathOutcome::Free => Verdict::Free,
+                PathOutcome::Contact(_) => Verdict::Contact,
+                PathOutcome::Undecided(_) => Verdict::Undecided,
+            };
+            let length = edge[0].iter().zip(&edge[1]).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt();
+            let mut sampled_free = [true; 2];
+            for (is_free, step) in sampled_free.iter_mut().zip(steps) {
+                let count = (length / step).ceil().max(1.0) as usize;
+                for k in 0..=count {
+                    let part = k as f64 / count as f64;
+                    let pose = edge[0].iter().zip(&edge[1]).map(|(a, b)| a + (b - a) * part).collect();
+                    *is_free &= ask(&[pose])?.is_free();
+                    if !*is_free {
+                        break;
+                    }
+                }
+            }
+            reports.push(EdgeReport { verdict, nanoseconds, sampled_free });
+        }
+        Ok(reports)
+    }
+}
