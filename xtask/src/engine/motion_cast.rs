@@ -72,6 +72,17 @@ impl<V: Space> Question for Cast<V> {
         Ok((cast, hit.and_then(|hit| self.gradient_of(hit))))
     }
 
+    /// The derivatives by the motions too.
+    fn beside(&self, (cast, _): &Self::Solution) -> String {
+        let derivatives = cast.outcome.hit().zip(self.b.convex()).and_then(|(hit, b)| {
+            let features = hit.closest_features(&self.a, &self.motion_a, b, &self.motion_b)?;
+            let gradient = hit.refined(&features).gradient(&self.motion_a, &self.motion_b)?;
+            let by_motion = self.motion_a.gradient(hit.time, gradient.pose_a);
+            Some((gradient, by_motion))
+        });
+        format!("{derivatives:?}")
+    }
+
     fn answer(&self, (cast, gradient): Self::Solution) -> Result<Answer, Problem> {
         let show = |hit: MotionHit<V>| (hit.time, hit.point, hit.normal);
         let answer = cast::answer("time", cast.outcome, show, [cast.lower, cast.upper], cast.status, cast.iterations)?;
