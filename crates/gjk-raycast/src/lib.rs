@@ -67,8 +67,8 @@
 //! - `rayon`: `par_ray_casts`, `Scene::par_ray_casts`, `Among::par_pairs_within` and `Among::par_contacts_within`,
 //!   which use all threads.
 //! - `paper`: the sub-algorithms of the papers beside the default, for comparison: [`SubAlgorithm`].
-//! - `hull`, `mint`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: those of [`convex_support`], for
-//!   its shapes.
+//! - `hull`, `mint`, `bytemuck`, `approx`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: those of
+//!   [`convex_support`], for its shapes.
 //! - `serde`: options, answers and certificates as data, beside the shapes of `convex-support`.
 //!
 //! # Answers as data
@@ -188,7 +188,8 @@ pub use result::{
     Distance, Intersection, Iterate, LinearCast, LinearHit, Miss, Outcome, RayCast, RayExit, RayHit, Status,
 };
 pub use scene::{
-    Among, Body, BodyContact, BodyDistance, BodyHit, PairContact, PairDistance, Scene, SceneAnyHit, SceneCast,
-    SceneDistance, SceneError, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, Work,
+    Among, Body, BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, Scene, SceneAnyHit,
+    SceneCast, SceneDistance, SceneError, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast,
+    SceneSignedDistance, Work,
 };
 pub use simplex::SubAlgorithm;

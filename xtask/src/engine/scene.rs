@@ -194,17 +194,28 @@ impl<V: Space> One<V> {
                 let mut hits = Vec::new();
                 format!("{:?} {hits:?}", scene.ray_cast_all(*ray, *options, &mut hits))
             }
-            Self::LinearCast(shape, motion, options) => format!("{:?}", scene.linear_cast(shape, *motion, *options)),
-            Self::MotionCast(shape, motion, options) => format!("{:?}", scene.motion_cast(shape, *motion, *options)),
+            Self::LinearCast(shape, motion, options) => {
+                let mut hits = Vec::new();
+                let all = scene.linear_cast_all(shape, *motion, *options, &mut hits);
+                format!("{:?} {all:?} {hits:?}", scene.linear_cast(shape, *motion, *options))
+            }
+            Self::MotionCast(shape, motion, options) => {
+                let other = RigidMotion { velocity: motion.center, ..*motion };
+                let both = scene.motion_cast_of_both(shape, *motion, other, *options);
+                format!("{:?} {both:?}", scene.motion_cast(shape, *motion, *options))
+            }
             Self::Nearest(shape, options) => {
                 let (mut near, mut touched) = (Vec::new(), Vec::new());
+                let (mut first, depth) = (Vec::new(), SignedDistanceOptions::new());
                 let nearest = scene.nearest(shape, *options);
                 let within = nearest.lower * scalar::<V>(2.0);
                 let work = [
                     scene.all_within(shape, within, *options, &mut near),
-                    scene.contacts_of(shape, within, SignedDistanceOptions::new(), &mut touched),
+                    scene.contacts_of(shape, within, depth, &mut touched),
+                    scene.nearest_k(shape, 3, *options, &mut first),
                 ];
-                format!("{nearest:?} {work:?} {near:?} {touched:?}")
+                let least = scene.least_signed_distance(shape, depth);
+                format!("{nearest:?} {work:?} {near:?} {touched:?} {first:?} {least:?}")
             }
             Self::PairsWithin(within, options) => {
                 let mut pairs = Vec::new();
