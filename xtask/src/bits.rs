@@ -6,6 +6,7 @@
 //! machine is to have.
 
 use std::io::{self, BufWriter, Write};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
@@ -36,6 +37,9 @@ pub struct Choice {
     /// Print the answers themselves, in order, a line each: `diff` tells in which of them two machines differ.
     #[arg(long)]
     answers: bool,
+    /// Where the hashes are kept.
+    #[arg(long, value_name = "FILE", default_value = KEPT)]
+    kept: PathBuf,
 }
 
 /// Questions of one kind, dimension and precision.
@@ -69,7 +73,7 @@ fn print(count: u64) -> io::Result<ExitCode> {
 fn compare(choice: &Choice) -> io::Result<ExitCode> {
     if choice.record {
         let head = "# Of each kind of question: how many were asked, the hash of the answers, and how many have one; by `cargo xtask bits --record`.\n";
-        std::fs::write(KEPT, format!("{head}{}", COUNTS.map(hashes).concat()))?;
+        std::fs::write(&choice.kept, format!("{head}{}", COUNTS.map(hashes).concat()))?;
         return Ok(ExitCode::SUCCESS);
     }
     let text = hashes(choice.count);
@@ -78,10 +82,10 @@ fn compare(choice: &Choice) -> io::Result<ExitCode> {
         output.write_all(text.as_bytes())?;
         return Ok(ExitCode::SUCCESS);
     }
-    let kept = std::fs::read_to_string(KEPT)?;
+    let kept = std::fs::read_to_string(&choice.kept)?;
     let differ: Vec<_> = text.lines().filter(|line| !kept.lines().any(|due| due == *line)).collect();
     for line in &differ {
-        writeln!(output, "{line} differs from {KEPT}")?;
+        writeln!(output, "{line} differs from {}", choice.kept.display())?;
     }
     let (rows, all) = (text.lines().count(), fnv1a(FNV_BASIS, &text));
     writeln!(
