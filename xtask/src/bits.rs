@@ -1,17 +1,16 @@
 //! `cargo xtask bits`: whether this machine answers as others do, to the last bit.
 //!
-//! Questions of every kind, dimension and precision are drawn from fixed seeds and answered; the answers, as the query
-//! format writes them, with iteration counts and certificates, are hashed. Numbers are written with the digits that
-//! tell them from their neighbours, so that one bit in one of them changes the hash. `bits.txt` keeps the hashes that
-//! every machine is to have.
+//! Questions of every kind, dimension and precision are drawn from fixed seeds and answered; every field of the answers,
+//! their derivatives, certificates and iteration counts are hashed. Numbers are written with the digits that tell them
+//! from their neighbours, so that one bit in one of them changes the hash. `bits.txt` keeps the hashes that every
+//! machine is to have.
 
-use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
 use rayon::prelude::*;
-use serde_json::Value;
 use workloads::rng::Rng;
 
 use crate::draw::{KINDS, query};
@@ -19,31 +18,35 @@ use crate::engine;
 use crate::mesh::Meshes;
 use crate::wire::json;
 
-/// Where the hashes of [`COUNT`] questions each are kept.
+/// Where the hashes of [`COUNTS`] questions each are kept.
 const KEPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/bits.txt");
 
-/// Questions of each row of [`KEPT`].
-const COUNT: u64 = 500;
+/// Questions of each kind, dimension and precision: for every day, and over a million in all.
+const COUNTS: [u64; 2] = [500, 20_000];
 
 /// How many questions, and what becomes of the hashes.
 #[derive(Clone, Debug, Args)]
 pub struct Choice {
-    /// Questions of each kind, dimension and precision; hashes of another count than the default are printed and
-    /// compared with nothing.
-    #[arg(long, value_name = "N", default_value_t = COUNT)]
+    /// Questions of each kind, dimension and precision: 20000 of them are over a million in all, whose hashes are kept
+    /// too. Those of any other count than these two are printed, and compared with nothing.
+    #[arg(long, value_name = "N", default_value_t = COUNTS[0])]
     count: u64,
-    /// Write the hashes down as what every machine is to have.
+    /// Write the hashes of both counts down as what every machine is to have.
     #[arg(long, conflicts_with_all = ["count", "answers"])]
     record: bool,
     /// Print the answers themselves, in order, a line each: `diff` tells in which of them two machines differ.
     #[arg(long)]
     answers: bool,
+    /// Where the hashes are kept.
+    #[arg(long, value_name = "FILE", default_value = KEPT)]
+    kept: PathBuf,
 }
 
 /// Questions of one kind, dimension and precision.
 struct Row {
     name: String,
-    ask: Box<dyn Fn(u64) -> (bool, String) + Sync>,
+    /// What is said of the question with this number; an error where it has no answer.
+    ask: Box<dyn Fn(u64) -> Result<String, String> + Sync>,
 }
 
 /// Answers the questions and compares the hashes; exit status 1 where they differ.
@@ -59,8 +62,8 @@ pub fn run(choice: &Choice) -> ExitCode {
 fn print(count: u64) -> io::Result<ExitCode> {
     let mut output = BufWriter::new(io::stdout().lock());
     for Row { name, ask } in rows() {
-        for (i, (_, answer)) in (0..count).zip(answers(&ask, count)) {
-            writeln!(output, "{name} {i}: {answer}")?;
+        for (i, answer) in (0..count).zip(answers(&ask, count, |answer| answer)) {
+            writeln!(output, "{name} {i}: {answer:?}")?;
         }
     }
     output.flush()?;
@@ -68,37 +71,44 @@ fn print(count: u64) -> io::Result<ExitCode> {
 }
 
 fn compare(choice: &Choice) -> io::Result<ExitCode> {
-    let mut text = format!(
-        "# Hashes of the answers to {} questions of each kind, and how many of them have an answer; by `cargo xtask bits --record`.\n",
-        choice.count
-    );
-    for Row { name, ask } in rows() {
-        let answers = answers(&ask, choice.count);
-        let answered = answers.iter().filter(|(answered, _)| *answered).count();
-        let hash = answers.iter().fold(FNV_BASIS, |hash, (_, answer)| fnv1a(hash, answer));
-        let _ = writeln!(text, "{name:<32} {hash:016x} {answered}");
-    }
-    let mut output = io::stdout().lock();
     if choice.record {
-        std::fs::write(KEPT, &text)?;
+        let head = "# Of each kind of question: how many were asked, the hash of the answers, and how many have one; by `cargo xtask bits --record`.\n";
+        std::fs::write(&choice.kept, format!("{head}{}", COUNTS.map(hashes).concat()))?;
+        return Ok(ExitCode::SUCCESS);
     }
-    if choice.count != COUNT {
+    let text = hashes(choice.count);
+    let mut output = io::stdout().lock();
+    if !COUNTS.contains(&choice.count) {
         output.write_all(text.as_bytes())?;
         return Ok(ExitCode::SUCCESS);
     }
-    let kept = std::fs::read_to_string(KEPT)?;
+    let kept = std::fs::read_to_string(&choice.kept)?;
     let differ: Vec<_> = text.lines().filter(|line| !kept.lines().any(|due| due == *line)).collect();
     for line in &differ {
-        writeln!(output, "{line} differs from {KEPT}")?;
+        writeln!(output, "{line} differs from {}", choice.kept.display())?;
     }
+    let (rows, all) = (text.lines().count(), fnv1a(FNV_BASIS, &text));
     writeln!(
         output,
-        "bits: {} of {} hashes differ; all of them: {:016x}",
+        "bits: {} of {rows} hashes of {} answers each differ; all of them: {all:016x}",
         differ.len(),
-        rows().count(),
-        fnv1a(FNV_BASIS, &text)
+        choice.count
     )?;
     Ok(if differ.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// A line for each row: what is kept of this many questions.
+fn hashes(count: u64) -> String {
+    let line = |Row { name, ask }: Row| {
+        let each = answers(&ask, count, |answer| match answer {
+            Ok(said) => (1, fnv1a(FNV_BASIS, &said)),
+            Err(why) => (0, fnv1a(FNV_BASIS, &why)),
+        });
+        let answered: u64 = each.iter().map(|(answered, _)| answered).sum();
+        let hash = each.iter().fold(FNV_BASIS, |hash, (_, answer)| fnv1a(hash, &format!("{answer:016x}")));
+        format!("{count:>5} {name:<26} {hash:016x} {answered}\n")
+    };
+    rows().map(line).collect()
 }
 
 /// The rows, in the order of the file.
@@ -114,18 +124,19 @@ fn rows() -> impl Iterator<Item = Row> {
                 query(kind, precision, dimension, &mut Rng::new(seed ^ i.wrapping_mul(0x9E37_79B9_7F4A_7C15)));
             let object = json::object(question.to_string().as_bytes());
             let asked = object.and_then(|object| engine::question(&object, &Meshes::relative_to("")));
-            match asked.and_then(|question| question.ask_with_certificate()) {
-                Ok(answer) => (true, serde_json::to_string(&answer).unwrap_or_default()),
-                Err(problem) => (false, Value::from(problem.message).to_string()),
-            }
+            asked.and_then(|question| question.ask_everything()).map_err(|problem| problem.message)
         };
         Row { name, ask: Box::new(ask) }
     })
 }
 
-/// In order, found on all cores.
-fn answers(ask: &(dyn Fn(u64) -> (bool, String) + Sync), count: u64) -> Vec<(bool, String)> {
-    (0..count).into_par_iter().map(ask).collect()
+/// What there is to `keep` of each answer, in order, found on all cores.
+fn answers<T: Send>(
+    ask: &(dyn Fn(u64) -> Result<String, String> + Sync),
+    count: u64,
+    keep: impl Fn(Result<String, String>) -> T + Sync,
+) -> Vec<T> {
+    (0..count).into_par_iter().map(|i| keep(ask(i))).collect()
 }
 
 /// Of the 64-bit FNV-1a hash of nothing.

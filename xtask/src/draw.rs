@@ -11,7 +11,10 @@ type Draw = fn(Space, &mut Rng) -> Value;
 
 /// The kinds of queries.
 pub(crate) const KINDS: &[(&str, Draw)] = &[
-    ("ray_cast", Space::ray),
+    ("ray_cast", |space, rng| {
+        let ray = space.ray(rng);
+        if rng.below(8) == 0 { with(ray, "method", "iterative") } else { ray }
+    }),
     ("ray_exit", Space::ray),
     ("distance", |space, rng| space.near(rng, 4.0)),
     ("signed_distance", |space, rng| space.near(rng, 2.0)),
@@ -22,9 +25,12 @@ pub(crate) const KINDS: &[(&str, Draw)] = &[
     ("scene", Space::scene),
     ("enclosing_ellipsoid", |space, rng| {
         let methods = ["newton", "newton", "khachiyan", "ellipsoid", "dual_newton"];
-        json!({"points": space.cloud(rng), "method": methods[rng.below(5) as usize]})
+        json!({"points": space.wider(rng).cloud(rng), "method": methods[rng.below(5) as usize]})
     }),
-    ("inscribed_ellipsoid", |space, rng| json!({"points": space.cloud(rng)})),
+    ("inscribed_ellipsoid", |space, rng| match rng.below(4) {
+        0 => json!({"halfspaces": space.wider(rng).half_spaces(rng)}),
+        _ => json!({"points": space.cloud(rng)}),
+    }),
     (
         "margin",
         |space, rng| json!({"e1": space.ellipsoid(rng, 3.0), "e2": space.ellipsoid(rng, 3.0), "gradient": rng.below(2) == 0}),
@@ -37,7 +43,9 @@ pub(crate) const KINDS: &[(&str, Draw)] = &[
     }),
     ("clearance", |space, rng| {
         let mut several = |most| (0..=rng.below(most)).map(|_| space.ellipsoid(rng, 5.0)).collect::<Vec<_>>();
-        json!({"links": several(4), "obstacles": several(12)})
+        let (links, obstacles) = (several(4), several(12));
+        let method = if rng.below(4) == 0 { "all_pairs" } else { "culled" };
+        json!({"links": links, "obstacles": obstacles, "method": method})
     }),
 ];
 
@@ -132,19 +140,34 @@ impl Space {
         let source = self.vector(rng, (2.0 + 4.0 * apart) * distance);
         let aim = self.vector(rng, 1.5);
         let direction: Vec<f64> = source.iter().zip(&aim).map(|(s, t)| t - s).collect();
-        json!({"target": self.shape(rng, 3), "source": source, "direction": direction})
+        let ray = json!({"target": self.shape(rng, 3), "source": source, "direction": direction});
+        match rng.below(8) {
+            0 => with(ray, "min_lambda", rng.unit()),
+            1 => with(ray, "max_lambda", rng.unit()),
+            _ => ray,
+        }
     }
 
     fn linear_cast(self, rng: &mut Rng) -> Value {
         let cast = self.near(rng, 18.0);
-        with(with(cast, "velocity_a", self.vector(rng, 1.0)), "velocity_b", self.vector(rng, 1.0))
+        let cast = with(with(cast, "velocity_a", self.vector(rng, 1.0)), "velocity_b", self.vector(rng, 1.0));
+        let cast = self.started(rng, cast);
+        if rng.below(8) == 0 { with(cast, "max_time", 8.0 * rng.unit()) } else { cast }
     }
 
     fn motion_cast(self, rng: &mut Rng) -> Value {
         let cast = with(self.near(rng, 6.0), "motion_a", self.motion(rng));
         let cast = if rng.below(2) == 0 { with(cast, "motion_b", self.motion(rng)) } else { cast };
-        let cast = with(cast, "max_time", 4.0 * rng.unit());
-        if rng.below(4) == 0 { with(cast, "target_distance", self.scale * rng.unit()) } else { cast }
+        with(self.started(rng, cast), "max_time", 4.0 * rng.unit())
+    }
+
+    /// The cast to a distance at times, or with the contact at its start left out.
+    fn started(self, rng: &mut Rng, cast: Value) -> Value {
+        match rng.below(8) {
+            0 | 1 => with(cast, "target_distance", self.scale * rng.unit()),
+            2 => with(cast, "start_in_contact", "if_deeper"),
+            _ => cast,
+        }
     }
 
     fn motion(self, rng: &mut Rng) -> Value {
@@ -163,18 +186,35 @@ impl Space {
         }
         let mut ray = || json!({"source": self.vector(rng, 6.0), "direction": self.vector(rng, 1.0)});
         let (first, all) = (ray(), ray());
+        let straight = json!({"shape": body(rng), "velocity": self.vector(rng, 1.0)});
         json!({"bodies": bodies, "asks": [
             {"ray": first}, {"ray": with(all, "all", true)}, {"nearest": body(rng)},
-            {"linear_cast": {"shape": body(rng), "velocity": self.vector(rng, 1.0)}},
+            {"linear_cast": self.started(rng, straight)},
             {"motion_cast": {"shape": body(rng), "motion": self.motion(rng), "max_time": 2.0}},
             {"pairs_within": self.scale * rng.unit()}, {"contacts_within": 0.5 * self.scale * rng.unit()},
         ]})
+    }
+
+    /// This space, or at times one of four to six dimensions.
+    fn wider(self, rng: &mut Rng) -> Self {
+        let dimension = if rng.below(8) == 0 { 4 + rng.below(3) as usize } else { self.dimension };
+        Self { dimension, ..self }
     }
 
     /// Points that span the space.
     fn cloud(self, rng: &mut Rng) -> Vec<Vec<f64>> {
         let count = 2 + self.dimension as u64 + rng.below(24);
         self.vectors(rng, count)
+    }
+
+    /// A box around the origin, and other half-spaces that cut it.
+    fn half_spaces(self, rng: &mut Rng) -> Vec<Value> {
+        let axis = |i: usize| (0..self.dimension).map(|k| if i / 2 == k { [1.0, -1.0][i % 2] } else { 0.0 }).collect();
+        let mut normals: Vec<Vec<f64>> = (0..2 * self.dimension).map(axis).collect();
+        let cuts = rng.below(12);
+        normals.extend((0..cuts).map(|_| (0..self.dimension).map(|_| rng.signed()).collect::<Vec<_>>()));
+        let mut cut = |normal| json!({"normal": normal, "offset": self.scale * (0.2 + rng.unit())});
+        normals.into_iter().map(&mut cut).collect()
     }
 
     fn ellipsoid(self, rng: &mut Rng, apart: f64) -> Value {

@@ -45,7 +45,8 @@
 //!   read.
 //! - `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`: conversions of parry's shapes to shapes of this crate and
 //!   back, and of its compounds and meshes to their convex pieces.
-//! - `mint`: glam's conversions from and to mint's vectors.
+//! - `mint`, `bytemuck`, `approx`: what glam has under these names for its vectors: conversions from and to mint's, as
+//!   bytes for buffers of a GPU, and comparison up to a tolerance.
 //! - `proptest`: for property tests, the module `laws`, to which a shape of your own can be held, and the module
 //!   `strategies`, which generates shapes and poses of wild aspect and scale.
 

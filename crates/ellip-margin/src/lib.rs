@@ -45,8 +45,8 @@
 //!   `no_std` targets with `alloc`, to the same bits.
 //! - `f64` (default): asks glam for double precision; with glam 0.32, which has no such feature, turn on `glam-032`
 //!   instead.
-//! - `hull`, `mint`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: those of [`convex_support`], for
-//!   its shapes.
+//! - `hull`, `mint`, `bytemuck`, `approx`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: those of
+//!   [`convex_support`], for its shapes.
 //! - `paper`: the paper's own routes, with eigenvalues by faer.
 //! - `rayon`: [`free_margins`] and [`clearance`] use all cores. The answers are the same to the last bit.
 //! - `serde`: options, answers, derivatives and trackers as data, beside convex-support's shapes. An option that is

@@ -72,8 +72,8 @@
 //! - `rayon`: `par_ray_casts`, `Scene::par_ray_casts`, `Among::par_pairs_within` and `Among::par_contacts_within`,
 //!   which use all threads.
 //! - `paper`: the sub-algorithms of the papers beside the default, for comparison: [`SubAlgorithm`].
-//! - `hull`, `mint`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: those of [`convex_support`], for
-//!   its shapes.
+//! - `hull`, `mint`, `bytemuck`, `approx`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: those of
+//!   [`convex_support`], for its shapes.
 //! - `serde`: options, answers and certificates as data, beside the shapes of `convex-support`.
 //!
 //! # Answers as data
@@ -202,8 +202,9 @@ pub use result::{
     Status,
 };
 pub use scene::{
-    Among, Body, BodyContact, BodyDistance, BodyHit, PairContact, PairDistance, Scene, SceneAnyHit, SceneCast,
-    SceneDistance, SceneError, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, Work,
+    Among, Body, BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, Scene, SceneAnyHit,
+    SceneCast, SceneDistance, SceneError, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast,
+    SceneSignedDistance, Work,
 };
 pub use signed_distance::{signed_distance, signed_distance_with};
 pub use simplex::SubAlgorithm;

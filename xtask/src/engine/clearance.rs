@@ -1,10 +1,10 @@
 //! `clearance`.
 
 use convex_support::{Ellipsoid, Vector};
-use ellip_margin::{ClearanceResult, MarginOptions, clearance};
+use ellip_margin::{ClearanceResult, MarginOptions, clearance, free_margins};
 
 use super::margin::{certain, options};
-use super::{Ask, How, Query, Question};
+use super::{Ask, How, Query, Question, scalar};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
@@ -64,6 +64,15 @@ impl<V: Space> Question for Crowd<V> {
             Method::AllPairs => clearance(&self.links, &self.obstacles, self.options),
         }
         .map_err(|why| Problem::new(Kind::InvalidShape, why.to_string()))
+    }
+
+    /// A second step, the pairs near the least, and all margins of the first obstacle in a batch.
+    fn beside(&self, least: &ClearanceResult<V>) -> String {
+        let near = ellip_margin::Clearance::new(&self.obstacles, self.options).map(|mut clearance| {
+            let _ = clearance.step(&self.links);
+            (clearance.step(&self.links), clearance.within(&self.links, least.margin.margin * scalar::<V>(2.0)))
+        });
+        format!("{near:?} {:?}", free_margins(&self.links, &self.obstacles[..1], self.options))
     }
 
     fn answer(&self, least: ClearanceResult<V>) -> Result<Answer, Problem> {

@@ -1,7 +1,7 @@
 //! `contact`.
 
 use convex_support::Vector;
-use gjk_raycast::{Body, ContactPoint, SignedDistanceOptions};
+use gjk_raycast::{Body, ContactPoint, SignedDistanceOptions, contact_after};
 
 use super::pair::Bodies;
 use super::signed_distance::{certain, options};
@@ -44,6 +44,12 @@ impl<V: Space> Question for Pair<V> {
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
         Ok(self.b.contact(&self.a, self.within, self.options))
+    }
+
+    /// The same contact a moment later.
+    fn beside(&self, found: &Self::Solution) -> String {
+        let (Some(last), Some(b)) = (found, self.b.convex()) else { return String::new() };
+        format!("{:?}", contact_after(last, &self.a, b, self.within, self.options))
     }
 
     fn answer(&self, found: Self::Solution) -> Result<Answer, Problem> {

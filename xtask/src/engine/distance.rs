@@ -5,7 +5,7 @@ use gjk_raycast::{Body, DistanceOptions, Status, distance, distance_certificate}
 
 use super::gradient::{self, Gradient};
 use super::pair::Bodies;
-use super::{Ask, How, Query, Question, certificate, status};
+use super::{Ask, How, Query, Question, certificate, scalar, status};
 use crate::wire::answer::{Answer, Field};
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::Fields;
@@ -65,6 +65,16 @@ impl<V: Space> Question for Pair<V> {
 
     fn certificate(&self, (d, _): &Self::Solution) -> Option<Answer> {
         self.b.convex().map(|b| certificate(distance_certificate(&self.a, b, d)))
+    }
+
+    /// The second derivatives, and the same question with a start and with a limit.
+    fn beside(&self, (d, _): &Self::Solution) -> String {
+        let Body::Convex(b) = &self.b else { return String::new() };
+        let features = d.closest_features(&self.a, b);
+        let hessian = features.map(|features| (features.gradient(), features.hessian(V::ZERO, V::ZERO)));
+        let warm = d.normal.map(|normal| distance(&self.a, b, self.options.with_axis(normal)));
+        let limited = distance(&self.a, b, self.options.with_limit(d.lower * scalar::<V>(0.5)));
+        format!("{hessian:?} {warm:?} {limited:?}")
     }
 
     fn answer(&self, (d, gradient): Self::Solution) -> Result<Answer, Problem> {

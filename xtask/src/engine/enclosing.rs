@@ -1,6 +1,6 @@
 //! `enclosing_ellipsoid`.
 
-use lj_ellipsoid::{EnclosingError, EnclosingMethod, EnclosingOptions, enclosing_dyn};
+use lj_ellipsoid::{EnclosingError, EnclosingMethod, EnclosingOptions, MovingPoints, enclosing_dyn};
 
 use super::fit::{Fitting, Points};
 use super::{Ask, How, Query};
@@ -36,8 +36,24 @@ impl Query for Enclosing {
         options.epsilon = self.epsilon.or(how.tol).unwrap_or(options.epsilon);
         let solve = |points: &Vec<Vec<f64>>, options| enclosing_dyn(points, options).map_err(problem);
         let (input, epsilon) = (self.points.listed(how.meshes)?, options.epsilon);
-        Ok(Box::new(Fitting { input, options, solve, epsilon, precision: how.precision }))
+        let beside = |points: &Vec<Vec<f64>>, options| {
+            moving::<2>(points, options).or_else(|| moving::<3>(points, options)).unwrap_or_default()
+        };
+        Ok(Box::new(Fitting { input, options, solve, beside, epsilon, precision: how.precision }))
     }
+}
+
+/// What is said of points that come and go: of all but the last, of all, and of all but the first.
+fn moving<const N: usize>(points: &[Vec<f64>], options: EnclosingOptions) -> Option<String> {
+    let points: Vec<[f64; N]> = points.iter().map(|p| p.as_slice().try_into().ok()).collect::<Option<_>>()?;
+    let (last, others) = points.split_last()?;
+    let mut points = MovingPoints::new(others, options).ok()?;
+    let first = format!("{:?}", points.enclosing());
+    points.insert(*last).ok()?;
+    let second = format!("{:?}", points.enclosing());
+    points.remove(0);
+    let third = format!("{:?}", points.enclosing());
+    Some(format!("{first} {second} {third} {}", points.solves()))
 }
 
 fn problem(why: EnclosingError) -> Problem {

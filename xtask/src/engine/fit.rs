@@ -2,6 +2,7 @@
 //!
 //! The dimension is known at run time only, also where it is 2 or 3: the solvers are compiled once.
 
+use std::fmt::Debug;
 use std::path::PathBuf;
 
 use lj_ellipsoid::{EllipsoidDyn, EnclosingDyn, InscribedDyn, Status};
@@ -72,16 +73,22 @@ pub(super) struct Fitting<Input, Options, Solution> {
     pub(super) input: Input,
     pub(super) options: Options,
     pub(super) solve: fn(&Input, Options) -> Result<Solution, Problem>,
+    /// What the library says of the same input in other ways.
+    pub(super) beside: fn(&Input, Options) -> String,
     /// The gap to be certified.
     pub(super) epsilon: f64,
     pub(super) precision: Precision,
 }
 
-impl<Input, Options: Copy, Solution: Fitted> Question for Fitting<Input, Options, Solution> {
+impl<Input, Options: Copy, Solution: Fitted + Debug> Question for Fitting<Input, Options, Solution> {
     type Solution = Solution;
 
     fn solve(&self) -> Result<Solution, Problem> {
         (self.solve)(&self.input, self.options)
+    }
+
+    fn beside(&self, _: &Solution) -> String {
+        (self.beside)(&self.input, self.options)
     }
 
     fn answer(&self, solution: Solution) -> Result<Answer, Problem> {

@@ -7,6 +7,7 @@ use crate::wire::answer::{Answer, Field, Number};
 use crate::wire::shape::Space;
 
 /// The derivatives of a scalar by the poses of both shapes.
+#[derive(Debug)]
 pub(super) struct Gradient<V: Space> {
     a: MotionGradient<V>,
     b: MotionGradient<V>,

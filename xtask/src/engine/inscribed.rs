@@ -53,13 +53,27 @@ impl Query for Inscribed {
         Ok(match &self.body {
             Body::Points(points) => {
                 let solve = |points: &Vec<Vec<f64>>, options| inscribed_in_hull_dyn(points, options).map_err(problem);
-                Box::new(Fitting { input: points.listed(how.meshes)?, options, solve, epsilon, precision })
+                Box::new(Fitting {
+                    input: points.listed(how.meshes)?,
+                    options,
+                    solve,
+                    beside: |_, _| String::new(),
+                    epsilon,
+                    precision,
+                })
             }
             Body::HalfSpaces(normals, offsets) => {
                 let solve = |(normals, offsets): &(Vec<Vec<f64>>, Vec<f64>), options| {
                     inscribed_dyn(normals, offsets, options).map_err(problem)
                 };
-                Box::new(Fitting { input: (normals.clone(), offsets.clone()), options, solve, epsilon, precision })
+                Box::new(Fitting {
+                    input: (normals.clone(), offsets.clone()),
+                    options,
+                    solve,
+                    beside: |_, _| String::new(),
+                    epsilon,
+                    precision,
+                })
             }
         })
     }

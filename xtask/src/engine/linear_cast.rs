@@ -70,6 +70,15 @@ impl<V: Space> Question for Cast<V> {
         self.b.convex().map(|b| certificate(linear_cast_certificate(&self.a, b, self.motion, cast)))
     }
 
+    /// The derivatives by the velocities too.
+    fn beside(&self, (cast, _): &Self::Solution) -> String {
+        let derivatives = cast.outcome.hit().zip(self.b.convex()).and_then(|(hit, b)| {
+            let features = hit.closest_features(&self.a, b, self.motion)?;
+            Some(hit.refined(&features).gradient(self.motion))
+        });
+        format!("{derivatives:?}")
+    }
+
     fn answer(&self, (cast, gradient): Self::Solution) -> Result<Answer, Problem> {
         let show = |hit: LinearHit<V>| (hit.time, hit.point, hit.normal);
         let answer = cast::answer("time", cast.outcome, show, [cast.lower, cast.upper], cast.status, cast.iterations)?;

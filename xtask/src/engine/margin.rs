@@ -3,7 +3,7 @@
 use convex_support::{Ellipsoid, Vector};
 #[cfg(feature = "paper")]
 use ellip_margin::paper::free_margin_eigen;
-use ellip_margin::{EllipsoidPair, InvalidQuery, MarginOptions, MotionGradient, Status};
+use ellip_margin::{EllipsoidPair, InvalidQuery, MarginOptions, MotionGradient, Status, free_margins};
 
 use super::gradient::moment;
 use super::{Ask, How, Query, Question};
@@ -92,6 +92,23 @@ impl<V: Space> Question for Pair<V> {
             Method::Eigen => free_margin_eigen(&self.e1, &self.e2),
         };
         Ok((*margin, self.gradient.then(|| margin.gradient())))
+    }
+
+    /// The derivatives of all that is asked of a pair, and a batch.
+    fn beside(&self, _: &Self::Solution) -> String {
+        let pair = EllipsoidPair::new(&self.e1, &self.e2, self.options);
+        let (margin, distance, scaling) = (pair.margin(), pair.distance(), pair.scaling());
+        let first = (margin.gradient(), distance.gradient(), scaling.gradient());
+        let of_second = (margin.gradient_of_second(), distance.gradient_of_second(), scaling.gradient_of_second());
+        let second = (margin.hessian(), distance.hessian(), scaling.hessian());
+        let (e1, e2) = (self.e1, self.e2);
+        let batch = free_margins(&[e1, e2, e1], &[e2, e1, e1], self.options);
+        format!(
+            "{:?} {first:?} {of_second:?} {second:?} {:?} {:?} {batch:?}",
+            (*margin, *distance, *scaling),
+            margin.shape_gradient(),
+            pair.distance_bracket()
+        )
     }
 
     fn answer(&self, (margin, gradient): Self::Solution) -> Result<Answer, Problem> {

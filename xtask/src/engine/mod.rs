@@ -22,6 +22,8 @@ mod scene;
 mod signed_distance;
 mod track;
 
+use std::fmt::{Debug, Write as _};
+
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{Scalar as _, Vector};
 #[cfg(not(target_family = "wasm"))]
@@ -55,7 +57,7 @@ use crate::wire::shape::Space;
 
 /// A query with its shapes built, ready to be solved.
 trait Question {
-    type Solution;
+    type Solution: Debug;
 
     /// Solves it: all that a user of the crate would call, and nothing else.
     fn solve(&self) -> Result<Self::Solution, Problem>;
@@ -67,6 +69,11 @@ trait Question {
     fn certificate(&self, _: &Self::Solution) -> Option<Answer> {
         None
     }
+
+    /// What the library says besides, for which the format has no field, such as second derivatives and batches.
+    fn beside(&self, _: &Self::Solution) -> String {
+        String::new()
+    }
 }
 
 /// Any question.
@@ -76,6 +83,10 @@ pub trait Ask {
 
     /// The same, with what proves the answer, where the query is of a kind that has a proof.
     fn ask_with_certificate(&self) -> Result<(Answer, Option<Answer>), Problem>;
+
+    /// Every bit that the library says: each field of the solution, what the format says of it, what proves it, and
+    /// what is said besides.
+    fn ask_everything(&self) -> Result<String, Problem>;
 
     /// Nanoseconds of thread CPU time that solving it takes: the least mean of three runs of about `microseconds` each.
     fn time(&self, microseconds: u64) -> f64;
@@ -90,6 +101,15 @@ impl<Q: Question> Ask for Q {
         let solution = self.solve()?;
         let certificate = self.certificate(&solution).filter(|proof| proof.non_finite().is_none());
         Ok((in_range(self.answer(solution)?)?, certificate))
+    }
+
+    fn ask_everything(&self) -> Result<String, Problem> {
+        let solution = self.solve()?;
+        let mut said = format!("{solution:?} {}", self.beside(&solution));
+        let certificate = self.certificate(&solution);
+        let answer = in_range(self.answer(solution)?).map_err(|problem| problem.message);
+        let _ = write!(said, " {answer:?} {certificate:?}");
+        Ok(said)
     }
 
     fn time(&self, microseconds: u64) -> f64 {

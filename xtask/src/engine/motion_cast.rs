@@ -1,10 +1,7 @@
 //! `motion_cast`.
 
-use convex_support::{AngularVelocity as _, Scalar as _, Vector};
-use gjk_raycast::{
-    Body, ChainMotion, HalfSpace, MotionCastOptions, MotionHit, Outcome, RayCastError, RigidMotion, Trajectory as _,
-    motion_cast,
-};
+use convex_support::Vector;
+use gjk_raycast::{Body, MotionCastOptions, MotionHit, RigidMotion};
 
 use super::cast::{self, Limits, problem};
 use super::gradient::{self, Gradient};
@@ -63,13 +60,20 @@ impl<V: Space> Question for Cast<V> {
     type Solution = (gjk_raycast::MotionCast<V>, Option<Gradient<V>>);
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
-        let cast = match &self.b {
-            Body::Convex(b) => motion_cast(&self.a, self.motion_a, b, self.motion_b, self.options),
-            Body::HalfSpace(half_space) => self.over(half_space),
-        }
-        .map_err(problem)?;
+        let cast = self.b.motion_cast_of_both(&self.a, self.motion_a, self.motion_b, self.options).map_err(problem)?;
         let hit = if self.gradient { cast.outcome.hit() } else { None };
         Ok((cast, hit.and_then(|hit| self.gradient_of(hit))))
+    }
+
+    /// The derivatives by the motions too.
+    fn beside(&self, (cast, _): &Self::Solution) -> String {
+        let derivatives = cast.outcome.hit().zip(self.b.convex()).and_then(|(hit, b)| {
+            let features = hit.closest_features(&self.a, &self.motion_a, b, &self.motion_b)?;
+            let gradient = hit.refined(&features).gradient(&self.motion_a, &self.motion_b)?;
+            let by_motion = self.motion_a.gradient(hit.time, gradient.pose_a);
+            Some((gradient, by_motion))
+        });
+        format!("{derivatives:?}")
     }
 
     fn answer(&self, (cast, gradient): Self::Solution) -> Result<Answer, Problem> {
@@ -80,25 +84,6 @@ impl<V: Space> Question for Cast<V> {
 }
 
 impl<V: Space> Cast<V> {
-    /// The cast over a half-space. The library's is at rest: seen from one that moves, `a` is first moved by its own
-    /// motion, and then back by that of the half-space.
-    fn over(&self, half_space: &HalfSpace<V>) -> Result<gjk_raycast::MotionCast<V>, RayCastError> {
-        if self.motion_b == RigidMotion::default() {
-            return half_space.motion_cast(&self.a, self.motion_a, self.options);
-        }
-        let RigidMotion { velocity, angular_velocity, center } = self.motion_b;
-        let turned_back = RigidMotion::rotation(angular_velocity.scaled(-V::Scalar::ONE), center);
-        let seen = [turned_back, RigidMotion::translation(-velocity), self.motion_a];
-        let cast = half_space.motion_cast(&self.a, ChainMotion::new(&seen), self.options)?;
-        let Outcome::Hit(hit) = cast.outcome else { return Ok(cast) };
-        let place = self.motion_b.displacement(hit.time);
-        let normal = hit.normal.map(|normal| place.rotation() * normal);
-        Ok(gjk_raycast::MotionCast {
-            outcome: Outcome::Hit(MotionHit { point: place.of(hit.point), normal, ..hit }),
-            ..cast
-        })
-    }
-
     /// The derivatives of the time of a hit.
     fn gradient_of(&self, hit: MotionHit<V>) -> Option<Gradient<V>> {
         let b = self.b.convex()?;

@@ -2,11 +2,12 @@
 
 use convex_support::{Point, Vector};
 use gjk_raycast::{
-    DistanceOptions, Ray, RayCastOptions, RayHit, distance, iterative_ray_cast, ray_cast, ray_cast_certificate,
+    CastMethod, DistanceOptions, Ray, RayCastOptions, RayHit, distance, iterative_ray_cast, ray_cast,
+    ray_cast_certificate,
 };
 
 use super::cast::{self, RaySpec, problem};
-use super::{Ask, How, Query, Question, certificate};
+use super::{Ask, How, Query, Question, certificate, scalar};
 use crate::wire::answer::Answer;
 use crate::wire::error::Problem;
 use crate::wire::fields::Fields;
@@ -73,6 +74,22 @@ impl<V: Space> Question for Cast<V> {
 
     fn certificate(&self, cast: &Self::Solution) -> Option<Answer> {
         Some(certificate(ray_cast_certificate(&self.target, self.ray, cast)))
+    }
+
+    /// The derivatives, and a batch around the ray.
+    fn beside(&self, cast: &Self::Solution) -> String {
+        let derivatives = cast.outcome.hit().and_then(|hit| {
+            let features = hit.closest_features(&self.target, self.ray)?;
+            Some((features.smoothness(), hit.refined(&features).gradient(self.ray)))
+        });
+        let turned = |k: f64| self.ray.direction + self.ray.source * scalar::<V>(k / 64.0);
+        let rays = [0.0, -1.0, 2.0].map(|k| Ray { direction: turned(k), ..self.ray });
+        let options = self.options.with_method(CastMethod::Gjk);
+        #[cfg(feature = "parallel")]
+        let batch = gjk_raycast::par_ray_casts(&self.target, &rays, options);
+        #[cfg(not(feature = "parallel"))]
+        let batch = gjk_raycast::ray_casts(&self.target, &rays, options).collect::<Vec<_>>();
+        format!("{derivatives:?} {batch:?}")
     }
 
     fn answer(&self, cast: Self::Solution) -> Result<Answer, Problem> {

@@ -169,12 +169,73 @@ impl<V: Space> Question for Asked<V> {
         self.asks.iter().enumerate().map(one).collect()
     }
 
+    /// All that a scene is asked, with every field of the answers.
+    fn beside(&self, _: &Self::Solution) -> String {
+        self.asks.iter().map(|ask| ask.beside(&self.scene)).collect()
+    }
+
     fn answer(&self, answers: Self::Solution) -> Result<Answer, Problem> {
         Ok(Answer::default().with("answers", Field::Answers(answers)))
     }
 }
 
 impl<V: Space> One<V> {
+    fn beside(&self, scene: &gjk_raycast::Scene<Solid<V>>) -> String {
+        match self {
+            Self::Ray(ray, options) => {
+                let rays = [*ray, Ray { source: ray.source, direction: -ray.direction }];
+                #[cfg(feature = "parallel")]
+                let first = scene.par_ray_casts(&rays, *options);
+                #[cfg(not(feature = "parallel"))]
+                let first = rays.map(|ray| scene.ray_cast(ray, *options)).to_vec();
+                format!("{first:?} {:?}", scene.any_hit(*ray, *options))
+            }
+            Self::EveryHit(ray, options) => {
+                let mut hits = Vec::new();
+                format!("{:?} {hits:?}", scene.ray_cast_all(*ray, *options, &mut hits))
+            }
+            Self::LinearCast(shape, motion, options) => {
+                let mut hits = Vec::new();
+                let all = scene.linear_cast_all(shape, *motion, *options, &mut hits);
+                format!("{:?} {all:?} {hits:?}", scene.linear_cast(shape, *motion, *options))
+            }
+            Self::MotionCast(shape, motion, options) => {
+                let other = RigidMotion { velocity: motion.center, ..*motion };
+                let both = scene.motion_cast_of_both(shape, *motion, other, *options);
+                format!("{:?} {both:?}", scene.motion_cast(shape, *motion, *options))
+            }
+            Self::Nearest(shape, options) => {
+                let (mut near, mut touched) = (Vec::new(), Vec::new());
+                let (mut first, depth) = (Vec::new(), SignedDistanceOptions::new());
+                let nearest = scene.nearest(shape, *options);
+                let within = nearest.lower * scalar::<V>(2.0);
+                let work = [
+                    scene.all_within(shape, within, *options, &mut near),
+                    scene.contacts_of(shape, within, depth, &mut touched),
+                    scene.nearest_k(shape, 3, *options, &mut first),
+                ];
+                let least = scene.least_signed_distance(shape, depth);
+                format!("{nearest:?} {work:?} {near:?} {touched:?} {first:?} {least:?}")
+            }
+            Self::PairsWithin(within, options) => {
+                let mut pairs = Vec::new();
+                #[cfg(feature = "parallel")]
+                let _ = scene.all().par_pairs_within(*within, *options, &mut pairs);
+                #[cfg(not(feature = "parallel"))]
+                let _ = scene.pairs_within(*within, *options, &mut pairs);
+                format!("{pairs:?}")
+            }
+            Self::ContactsWithin(within, options) => {
+                let mut contacts = Vec::new();
+                #[cfg(feature = "parallel")]
+                let _ = scene.all().par_contacts_within(*within, *options, &mut contacts);
+                #[cfg(not(feature = "parallel"))]
+                let _ = scene.contacts_within(*within, *options, &mut contacts);
+                format!("{contacts:?}")
+            }
+        }
+    }
+
     fn answer(&self, scene: &gjk_raycast::Scene<Solid<V>>) -> Result<Answer, Problem> {
         match self {
             Self::Ray(ray, options) => {

@@ -60,6 +60,15 @@ impl<V: Space> Question for Pair<V> {
         Ok((answer, gradient))
     }
 
+    /// The second derivatives, and the same question with a start.
+    fn beside(&self, (d, _): &Self::Solution) -> String {
+        let hessian = self.b.convex().map(|b| {
+            let features = d.closest_features(&self.a, b);
+            (features.gradient(), features.smoothness(), features.hessian(V::ZERO, V::ZERO))
+        });
+        format!("{hessian:?} {:?}", self.b.signed_distance(&self.a, self.options.with_axis(d.normal)))
+    }
+
     fn answer(&self, (d, gradient): Self::Solution) -> Result<Answer, Problem> {
         certain(&d, V::Scalar::ZERO)?;
         let answer = Answer::default()

@@ -1,6 +1,8 @@
 //! Which bodies and pairs are asked about, and until when.
 
-use convex_support::SupportMap;
+use core::ops::ControlFlow;
+
+use convex_support::{Bound, Scalar, ScalarOf, SupportMap};
 
 use super::{Body, Scene, Work};
 
@@ -103,6 +105,36 @@ impl<'s, S: SupportMap> Among<'s, S> {
     pub(super) fn half_spaces(&self) -> impl Iterator<Item = (usize, &'s Body<S>)> {
         let among = *self;
         self.scene.half_spaces.iter().filter_map(move |&index| Some((index, among.body(index)?)))
+    }
+
+    /// Asks the half-spaces, and then the bodies whose bound may be below the limit, those with the least bound mostly
+    /// first. `ask` is told the bound and returns the next limit, which a body reaches too if its index is below the
+    /// one beside it: of equals the lowest index counts.
+    pub(super) fn in_order<B: Bound<S::Vector>>(
+        &self,
+        bound: &B,
+        end: ScalarOf<S>,
+        mut ask: impl FnMut(usize, ScalarOf<S>, &Body<S>) -> ControlFlow<(), (ScalarOf<S>, usize)>,
+    ) -> Work {
+        let (mut work, mut limit) = (Work::default(), (end, usize::MAX));
+        let mut look = |index: usize, from: ScalarOf<S>| {
+            if (from < limit.0 || index < limit.1)
+                && let Some(body) = self.body(index)
+            {
+                if self.stops(&mut work) {
+                    return ControlFlow::Break(());
+                }
+                work.tested += 1;
+                limit = ask(index, from, body)?;
+            }
+            ControlFlow::Continue(limit.0)
+        };
+        let ended = self.scene.half_spaces.iter().try_fold(end, |_, &index| look(index, Scalar::ZERO));
+        if let ControlFlow::Continue(end) = ended {
+            work.nodes = self.scene.tree.search(bound, end, look);
+        }
+        self.finish(&mut work);
+        work
     }
 
     #[inline]

@@ -9,7 +9,7 @@ use num_traits::Float;
 use super::result::{SceneAnyHit, SceneCast, SceneHits, SceneLinearCast, SceneRayCast, Work, reuse};
 use super::single::SingleAnswer;
 use super::{Among, Body, BodyHit, Scene};
-use crate::{LinearCastOptions, Motion, Ray, RayCastError, RayCastOptions, RayHit};
+use crate::{LinearCastOptions, LinearHit, Motion, Ray, RayCastError, RayCastOptions, RayHit};
 
 /// A hit of a ray and the body that it is of.
 type RayBodyHit<V> = BodyHit<RayHit<V>, <V as Vector>::Scalar>;
@@ -67,6 +67,36 @@ impl<S: SupportMap> Scene<S> {
         self.all().linear_cast(shape, motion, options)
     }
 
+    /// All bodies that the moving shape meets, in the order of the time and then of their indices, into `hits`, which is
+    /// emptied first: the hits of [`linear_cast`](crate::linear_cast) against each body, as if it were alone.
+    ///
+    /// ```
+    /// use convex_support::{Ball, Posed, glam::DVec2};
+    /// use gjk_raycast::{LinearCastOptions, Motion, Scene};
+    ///
+    /// // What does a plough push that goes along x?
+    /// let ball_at = |x, y| Posed::translated(Ball::new(0.5)?, DVec2::new(x, y));
+    /// let scene = Scene::new([ball_at(7.0, 0.0)?, ball_at(3.0, 4.0)?, ball_at(4.0, 0.0)?])?;
+    /// let motion = Motion { velocity_a: DVec2::X, ..Motion::default() };
+    /// let mut hits = Vec::new();
+    /// let _ = scene.linear_cast_all(&Ball::new(0.5)?, motion, LinearCastOptions::new(), &mut hits)?;
+    /// let times: Vec<_> = hits.iter().map(|found| (found.body, found.hit.time)).collect();
+    /// assert_eq!(times, [(2, 3.0), (0, 6.0)]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As of [`linear_cast`](crate::linear_cast()).
+    pub fn linear_cast_all<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: Motion<S::Vector>,
+        options: LinearCastOptions<S::Vector>,
+        hits: &mut Vec<BodyHit<LinearHit<S::Vector>, Number<S>>>,
+    ) -> Result<SceneHits, RayCastError> {
+        self.all().linear_cast_all(shape, motion, options, hits)
+    }
+
     /// [`ray_cast`](Self::ray_cast) for each of many rays, on all threads of the current [rayon](https://docs.rs/rayon)
     /// pool.
     #[cfg(feature = "rayon")]
@@ -108,21 +138,8 @@ impl<S: SupportMap> Among<'_, S> {
         hits: &mut Vec<RayBodyHit<S::Vector>>,
     ) -> Result<SceneHits, RayCastError> {
         ray.check(&options)?;
-        let hits = reuse(hits);
-        let mut undecided = None;
-        let work = self.each(&swept_point(ray), options.max_lambda, |index, body| {
-            let single = SingleAnswer::from(body.ray_cast(ray, options)?);
-            if single.is_undecided {
-                undecided = Some(undecided.map_or(index, |lowest: usize| lowest.min(index)));
-            }
-            hits.extend(single.of(index));
-            Ok(ControlFlow::Continue(()))
-        })?;
-        hits.sort_unstable_by(|p, q| {
-            let (a, b) = (p.hit.lambda, q.hit.lambda);
-            a.partial_cmp(&b).unwrap_or(core::cmp::Ordering::Equal).then(p.body.cmp(&q.body))
-        });
-        Ok(SceneHits { undecided, work })
+        let ask = |body: &Body<S>| Ok(body.ray_cast(ray, options)?.into());
+        self.all_hits(&swept_point(ray), options.max_lambda, hits, |hit| hit.lambda, ask)
     }
 
     /// [`Scene::any_hit`] among these bodies.
@@ -159,9 +176,50 @@ impl<S: SupportMap> Among<'_, S> {
         options: LinearCastOptions<S::Vector>,
     ) -> Result<SceneLinearCast<S::Vector>, RayCastError> {
         motion.check(&options)?;
-        let around = grown(outer_box_of_question(shape), options.target_distance);
-        let swept = swept_box(around, motion.velocity_a - motion.velocity_b);
+        let swept = swept_shape(shape, motion, &options);
         self.first(&swept, options.max_time, |body| Ok(body.linear_cast(shape, motion, options)?.into()))
+    }
+
+    /// [`Scene::linear_cast_all`] among these bodies.
+    ///
+    /// # Errors
+    /// As of [`linear_cast`](crate::linear_cast()).
+    pub fn linear_cast_all<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: Motion<S::Vector>,
+        options: LinearCastOptions<S::Vector>,
+        hits: &mut Vec<BodyHit<LinearHit<S::Vector>, Number<S>>>,
+    ) -> Result<SceneHits, RayCastError> {
+        motion.check(&options)?;
+        let ask = |body: &Body<S>| Ok(body.linear_cast(shape, motion, options)?.into());
+        self.all_hits(&swept_shape(shape, motion, &options), options.max_time, hits, |hit| hit.time, ask)
+    }
+
+    /// All hits of bodies that `bound` does not leave out, in the order of their λ or time and then of their indices.
+    fn all_hits<H: Copy, B: Bound<S::Vector>>(
+        &self,
+        bound: &B,
+        end: Number<S>,
+        hits: &mut Vec<BodyHit<H, Number<S>>>,
+        value: impl Fn(&H) -> Number<S>,
+        ask: impl Fn(&Body<S>) -> Result<SingleAnswer<H, Number<S>>, RayCastError>,
+    ) -> Result<SceneHits, RayCastError> {
+        let hits = reuse(hits);
+        let mut undecided = None;
+        let work = self.each(bound, end, |index, body| {
+            let single = ask(body)?;
+            if single.is_undecided {
+                undecided = Some(undecided.map_or(index, |lowest: usize| lowest.min(index)));
+            }
+            hits.extend(single.of(index));
+            Ok(ControlFlow::Continue(()))
+        })?;
+        hits.sort_unstable_by(|p, q| {
+            let (a, b) = (value(&p.hit), value(&q.hit));
+            a.partial_cmp(&b).unwrap_or(core::cmp::Ordering::Equal).then(p.body.cmp(&q.body))
+        });
+        Ok(SceneHits { undecided, work })
     }
 
     /// The first hit of all bodies that `bound` does not leave out; `ask` makes the single cast.
@@ -172,12 +230,9 @@ impl<S: SupportMap> Among<'_, S> {
         mut ask: impl FnMut(&Body<S>) -> Result<SingleAnswer<H, Number<S>>, RayCastError>,
     ) -> Result<SceneCast<H, Number<S>>, RayCastError> {
         let mut first = FirstHit { hit: None, open: None, lower: Number::<S>::infinity() };
-        let (mut work, mut error) = (Work::default(), None);
-        let mut look = |index: usize, from: Number<S>, body: &Body<S>, work: &mut Work| {
-            if self.stops(work) {
-                return ControlFlow::Break(());
-            }
-            work.tested += 1;
+        let mut error = None;
+        // A body is hit where its box begins at the earliest.
+        let work = self.in_order(bound, end, |index, from, body| {
             match ask(body) {
                 Ok(single) => first.take(index, from, single),
                 Err(refused) => {
@@ -186,30 +241,7 @@ impl<S: SupportMap> Among<'_, S> {
                 }
             }
             ControlFlow::Continue(first.hit.map_or((end, usize::MAX), |(key, hit)| (key, hit.body)))
-        };
-        let mut limit = ControlFlow::Continue((end, usize::MAX));
-        for (index, body) in self.half_spaces() {
-            limit = look(index, Number::<S>::ZERO, body, &mut work);
-            if limit.is_break() {
-                break;
-            }
-        }
-        if let ControlFlow::Continue((end, best)) = limit {
-            let (mut end, mut best) = (end, best);
-            work.nodes = self.scene.tree.search(bound, end, |index, from| {
-                // Of equals the lowest index counts, and this body is hit where its box begins at the earliest.
-                if (from < end || index < best)
-                    && let Some(body) = self.body(index)
-                {
-                    match look(index, from, body, &mut work) {
-                        ControlFlow::Continue(limit) => (end, best) = limit,
-                        ControlFlow::Break(()) => return ControlFlow::Break(()),
-                    }
-                }
-                ControlFlow::Continue(end)
-            });
-        }
-        self.finish(&mut work);
+        });
         if let Some(error) = error {
             return Err(error);
         }
@@ -226,29 +258,14 @@ impl<S: SupportMap> Among<'_, S> {
         end: Number<S>,
         mut ask: impl FnMut(usize, &Body<S>) -> Result<ControlFlow<()>, RayCastError>,
     ) -> Result<Work, RayCastError> {
-        let (mut work, mut outcome) = (Work::default(), Ok(ControlFlow::Continue(())));
-        let mut look = |index: usize, body: &Body<S>, work: &mut Work| {
-            if self.stops(work) {
-                return ControlFlow::Break(());
-            }
-            work.tested += 1;
+        let mut outcome = Ok(ControlFlow::Continue(()));
+        let work = self.in_order(bound, end, |index, _, body| {
             outcome = ask(index, body);
-            if matches!(outcome, Ok(ControlFlow::Continue(()))) {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
+            match outcome {
+                Ok(ControlFlow::Continue(())) => ControlFlow::Continue((end, usize::MAX)),
+                _ => ControlFlow::Break(()),
             }
-        };
-        let ended = self.half_spaces().try_for_each(|(index, body)| look(index, body, &mut work));
-        if ended.is_continue() {
-            work.nodes = self.scene.tree.search(bound, end, |index, _| {
-                if let Some(body) = self.body(index) {
-                    look(index, body, &mut work)?;
-                }
-                ControlFlow::Continue(end)
-            });
-        }
-        self.finish(&mut work);
+        });
         outcome.map(|_| work)
     }
 }
@@ -300,6 +317,16 @@ fn swept_point<V: Vector>(ray: Ray<V>) -> SweptBox<V> {
 fn grown<V: Vector>(around: Aabb<V>, distance: V::Scalar) -> Aabb<V> {
     let room = V::splat(if distance > V::Scalar::ZERO { distance } else { V::Scalar::ZERO });
     Aabb { min: around.min - room, max: around.max + room }
+}
+
+/// The box of a shape that moves, as seen from the bodies.
+fn swept_shape<A: SupportMap + ?Sized>(
+    shape: &A,
+    motion: Motion<A::Vector>,
+    options: &LinearCastOptions<A::Vector>,
+) -> SweptBox<A::Vector> {
+    let around = grown(outer_box_of_question(shape), options.target_distance);
+    swept_box(around, motion.velocity_a - motion.velocity_b)
 }
 
 /// A box that moves.

@@ -25,8 +25,8 @@ use crate::HalfSpace;
 pub use self::among::Among;
 pub use self::error::SceneError;
 pub use self::result::{
-    BodyContact, BodyDistance, BodyHit, PairContact, PairDistance, SceneAnyHit, SceneCast, SceneDistance, SceneHits,
-    SceneLinearCast, SceneMotionCast, SceneRayCast, Work,
+    BodyContact, BodyDistance, BodyHit, BodySignedDistance, PairContact, PairDistance, SceneAnyHit, SceneCast,
+    SceneDistance, SceneHits, SceneLinearCast, SceneMotionCast, SceneRayCast, SceneSignedDistance, Work,
 };
 
 /// Bodies that are asked together: which is hit first, which is nearest, which pairs are near each other.

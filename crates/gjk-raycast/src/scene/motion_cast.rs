@@ -9,9 +9,10 @@ use smallvec::SmallVec;
 
 use super::pieces::{MAX_PIECES, MotionPiece, MotionPieces};
 use super::result::SceneMotionCast;
+use super::single::seen_from;
 use super::{Among, Scene};
 use crate::motion::{check, checked};
-use crate::{MotionCastOptions, RayCastError, Trajectory};
+use crate::{ChainMotion, MotionCastOptions, RayCastError, RigidMotion, Trajectory};
 
 impl<S: SupportMap> Scene<S> {
     /// The first body that a shape meets as it moves and turns among bodies at rest: the least time of
@@ -45,6 +46,40 @@ impl<S: SupportMap> Scene<S> {
     ) -> Result<SceneMotionCast<S::Vector>, RayCastError> {
         self.all().motion_cast(shape, motion, options)
     }
+
+    /// The first body that a shape meets as both move: the bodies all by one rigid motion, such as what rides on a
+    /// vehicle or hangs on a gripper. It is the least time of [`motion_cast`](crate::motion_cast()) of the shape, `a`,
+    /// against each body, `b`; the point and the normal are those in the world at that time.
+    ///
+    /// ```
+    /// use convex_support::{Ball, Capsule, Posed, glam::DVec3};
+    /// use gjk_raycast::{MotionCastOptions, RigidMotion, Scene};
+    ///
+    /// // Two balls on a turntable, and a bar that is let down between them.
+    /// let ball_at = |x| Posed::translated(Ball::new(0.5)?, DVec3::new(x, 0.0, 0.0));
+    /// let balls = Scene::new([ball_at(2.0)?, ball_at(-3.0)?])?;
+    /// let table = RigidMotion::rotation(DVec3::Y, DVec3::ZERO);
+    /// let bar = Posed::translated(Capsule::new(1.0, 0.1)?, DVec3::new(0.0, 2.0, 2.0))?;
+    /// let down = RigidMotion::translation(DVec3::NEG_Y * 0.3);
+    /// let cast = balls.motion_cast_of_both(&bar, down, table, MotionCastOptions::new().with_max_time(6.0))?;
+    /// // The first ball comes there after three quarters of a turn, and its rim a little before.
+    /// let first = cast.first.ok_or("they meet")?;
+    /// assert_eq!(first.body, 0);
+    /// assert!(4.2 < first.hit.time && first.hit.time < 4.71);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As of [`motion_cast`](crate::motion_cast()).
+    pub fn motion_cast_of_both<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: RigidMotion<S::Vector>,
+        of_bodies: RigidMotion<S::Vector>,
+        options: MotionCastOptions<S::Vector>,
+    ) -> Result<SceneMotionCast<S::Vector>, RayCastError> {
+        self.all().motion_cast_of_both(shape, motion, of_bodies, options)
+    }
 }
 
 impl<S: SupportMap> Among<'_, S> {
@@ -60,13 +95,44 @@ impl<S: SupportMap> Among<'_, S> {
     ) -> Result<SceneMotionCast<S::Vector>, RayCastError> {
         check("motion", &motion)?;
         let options = checked(options)?;
-        let bound = MovingBalls(MotionPieces::new(shape, &motion, &options).map(MovingBox::new).collect());
-        self.first(&bound, options.max_time, |body| Ok(body.motion_cast(shape, &motion, options)?.into()))
+        self.first(&MovingBalls::new(shape, &motion, &options), options.max_time, |body| {
+            Ok(body.motion_cast(shape, &motion, options)?.into())
+        })
+    }
+
+    /// [`Scene::motion_cast_of_both`] among these bodies.
+    ///
+    /// # Errors
+    /// As of [`motion_cast`](crate::motion_cast()).
+    pub fn motion_cast_of_both<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: RigidMotion<S::Vector>,
+        of_bodies: RigidMotion<S::Vector>,
+        options: MotionCastOptions<S::Vector>,
+    ) -> Result<SceneMotionCast<S::Vector>, RayCastError> {
+        check("motion", &motion)?;
+        check("of_bodies", &of_bodies)?;
+        let options = checked(options)?;
+        let seen = seen_from(of_bodies, motion);
+        self.first(&MovingBalls::new(shape, &ChainMotion::new(&seen), &options), options.max_time, |body| {
+            Ok(body.motion_cast_of_both(shape, motion, of_bodies, options)?.into())
+        })
     }
 }
 
 /// When a shape may meet a box, from below: when the first of the balls does that contain it during the motion.
 struct MovingBalls<V: Vector>(SmallVec<[MovingBox<V>; MAX_PIECES]>);
+
+impl<V: Vector> MovingBalls<V> {
+    fn new<A: SupportMap<Vector = V> + ?Sized>(
+        shape: &A,
+        motion: &impl Trajectory<Vector = V>,
+        options: &MotionCastOptions<V>,
+    ) -> Self {
+        Self(MotionPieces::new(shape, motion, options).map(MovingBox::new).collect())
+    }
+}
 
 /// The box around a moving ball, when it begins to move, and how long it does, rounded up.
 struct MovingBox<V: Vector> {

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use convex_support::Vector;
 use num_traits::Float;
 
-use crate::{Contact, Distance, LinearHit, MotionHit, RayHit, Status};
+use crate::{Contact, Distance, LinearHit, MotionHit, RayHit, SignedDistance, Status};
 
 /// What was done for an answer, and what was left out: a report that need not be looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -159,6 +159,40 @@ pub struct BodyDistance<V: Vector> {
     pub body: usize,
     /// The distance from the shape, `a`, to the body, `b`.
     pub distance: Distance<V>,
+}
+
+/// The answer of [`Scene::least_signed_distance`](crate::Scene::least_signed_distance).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
+pub struct SceneSignedDistance<V: Vector> {
+    /// The body with the least signed distance; `None` where none is within the limit.
+    pub least: Option<BodySignedDistance<V>>,
+    /// No body has a lesser one: the least of the limit and of the lower ends of all brackets.
+    #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
+    pub lower: V::Scalar,
+    /// What was done and what was left out.
+    pub work: Work,
+}
+
+/// A body, and its signed distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
+pub struct BodySignedDistance<V: Vector> {
+    /// The index of the body.
+    pub body: usize,
+    /// The signed distance of the shape, `a`, and the body, `b`.
+    pub distance: SignedDistance<V>,
 }
 
 /// Two bodies, and their distance.

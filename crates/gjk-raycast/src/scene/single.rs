@@ -1,12 +1,13 @@
 //! What a scene needs to know of a single cast, whatever was cast.
 
-use convex_support::{SupportMap, Vector};
+use convex_support::{AngularVelocity as _, Scalar as _, SupportMap, Vector};
 
 use super::Body;
 use super::result::BodyHit;
 use crate::{
-    LinearCast, LinearCastOptions, LinearHit, Motion, MotionCast, MotionCastOptions, MotionHit, Outcome, Ray, RayCast,
-    RayCastError, RayCastOptions, RayHit, RigidMotion, Status, Trajectory, linear_cast, motion_cast, ray_cast,
+    ChainMotion, LinearCast, LinearCastOptions, LinearHit, Motion, MotionCast, MotionCastOptions, MotionHit, Outcome,
+    Ray, RayCast, RayCastError, RayCastOptions, RayHit, RigidMotion, Status, Trajectory, linear_cast, motion_cast,
+    ray_cast,
 };
 
 /// The answer of one cast: `H` is a hit, `S` its λ or time.
@@ -87,4 +88,39 @@ impl<S: SupportMap> Body<S> {
             Self::HalfSpace(half_space) => half_space.motion_cast(shape, motion, options),
         }
     }
+
+    /// The cast of a shape, `a`, and this body, `b`, as both move: [`motion_cast`](crate::motion_cast()), also of a
+    /// half-space.
+    ///
+    /// # Errors
+    /// As of [`motion_cast`](crate::motion_cast()).
+    pub fn motion_cast_of_both<A: SupportMap<Vector = S::Vector> + ?Sized>(
+        &self,
+        shape: &A,
+        motion: RigidMotion<S::Vector>,
+        of_body: RigidMotion<S::Vector>,
+        options: MotionCastOptions<S::Vector>,
+    ) -> Result<MotionCast<S::Vector>, RayCastError> {
+        let half_space = match self {
+            Self::Convex(body) => return motion_cast(shape, motion, body, of_body, options),
+            Self::HalfSpace(half_space) if of_body == RigidMotion::default() => {
+                return half_space.motion_cast(shape, motion, options);
+            }
+            Self::HalfSpace(half_space) => half_space,
+        };
+        let cast = half_space.motion_cast(shape, ChainMotion::new(&seen_from(of_body, motion)), options)?;
+        let Outcome::Hit(hit) = cast.outcome else { return Ok(cast) };
+        let place = of_body.displacement(hit.time);
+        let normal = hit.normal.map(|normal| place.rotation() * normal);
+        Ok(MotionCast { outcome: Outcome::Hit(MotionHit { point: place.of(hit.point), normal, ..hit }), ..cast })
+    }
+}
+
+/// A motion as seen from something that moves: first by the motion, and then back by that of the observer.
+pub(super) fn seen_from<V: Vector>(
+    RigidMotion { velocity, angular_velocity, center }: RigidMotion<V>,
+    motion: RigidMotion<V>,
+) -> [RigidMotion<V>; 3] {
+    let turned_back = RigidMotion::rotation(angular_velocity.scaled(-V::Scalar::ONE), center);
+    [turned_back, RigidMotion::translation(-velocity), motion]
 }

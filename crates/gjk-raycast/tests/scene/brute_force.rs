@@ -34,11 +34,12 @@ pub(crate) fn motions<V: Space>(
     world: &World<V>,
     shape: &Shape<V>,
     motion: RigidMotion<V>,
+    of_bodies: RigidMotion<V>,
     options: MotionCastOptions<V>,
 ) -> Vec<(usize, MotionCast<V>)> {
     let cast = |body: &Body<Shape<V>>| match body {
-        Body::Convex(body) => motion_cast(shape, motion, body, RigidMotion::default(), options),
-        Body::HalfSpace(half_space) => half_space.motion_cast(shape, &motion, options),
+        Body::Convex(body) => motion_cast(shape, motion, body, of_bodies, options),
+        Body::HalfSpace(_) => body.motion_cast_of_both(shape, motion, of_bodies, options),
     };
     world.scene.iter().map(|(index, body)| (index, cast(body).expect("a good motion"))).collect()
 }

@@ -20,6 +20,7 @@ pub(crate) struct Count {
     open: usize,
     undecided: usize,
     within: usize,
+    overlaps: usize,
     pairs: usize,
     contacts: usize,
     tested: usize,
@@ -32,6 +33,7 @@ impl Count {
         self.hits > many
             && self.starts > many / 10
             && self.within > many
+            && self.overlaps > many / 10
             && self.pairs > many
             && self.contacts > many
             && self.culled > self.tested
@@ -151,14 +153,19 @@ fn linear_cast<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Co
     let singles = casts
         .iter()
         .map(|&(body, cast)| Single::new(body, cast.outcome, [cast.lower, cast.upper], cast.status, |hit| hit.time));
-    first(
-        &answer,
-        singles,
-        options.tolerance > V::Scalar::ZERO,
-        &format!("kind {}, {motion:?}, {options:?}", world.kind),
-        count,
-    );
-    count.questions += 1;
+    let is_rough = options.tolerance > V::Scalar::ZERO;
+    first(&answer, singles, is_rough, &format!("kind {}, {motion:?}, {options:?}", world.kind), count);
+
+    let mut hits = Vec::new();
+    let all = world.scene.linear_cast_all(&shape, motion, options, &mut hits).expect("a good motion");
+    let mut due: Vec<_> = casts.iter().filter_map(|(body, cast)| Some((cast.outcome.hit()?, *body))).collect();
+    due.sort_by(|(p, a), (q, b)| p.time.partial_cmp(&q.time).expect("no NaN").then(a.cmp(b)));
+    let found: Vec<_> = hits.iter().map(|hit| (hit.hit, hit.body)).collect();
+    // Where a bracket stays open the box may prove that the end comes first.
+    let is_open = is_rough || casts.iter().any(|(_, cast)| cast.status != Status::Converged);
+    assert!(found == due || is_open && found.iter().all(|hit| due.contains(hit)), "{found:?} of {due:?}: {motion:?}");
+    assert_eq!(all.work.tested + all.work.culled, world.scene.len(), "every body is one or the other");
+    count.questions += 2;
 }
 
 fn motion_cast<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
@@ -186,8 +193,18 @@ fn motion_cast<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Co
         }
         _ => {}
     }
-    let casts = brute_force::motions(world, &shape, motion, options);
-    let answer = world.scene.motion_cast(&shape, motion, options).expect("a good motion");
+    let of_bodies = match numbers.below(3) {
+        0 => RigidMotion::default(),
+        1 => RigidMotion::translation(numbers.vector(size)),
+        _ => RigidMotion { velocity: numbers.vector(size), angular_velocity, center },
+    };
+    let casts = brute_force::motions(world, &shape, motion, of_bodies, options);
+    let answer = if of_bodies == RigidMotion::default() {
+        world.scene.motion_cast(&shape, motion, options)
+    } else {
+        world.scene.motion_cast_of_both(&shape, motion, of_bodies, options)
+    };
+    let answer = answer.expect("a good motion");
     let singles = casts
         .iter()
         .map(|&(body, cast)| Single::new(body, cast.outcome, [cast.lower, cast.upper], cast.status, |hit| hit.time));
@@ -282,7 +299,28 @@ fn distances<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Coun
     let even = all.iter().filter(|body| even(body.body)).copied();
     let due = even.reduce(|a, b| if b.distance.distance < a.distance.distance { b } else { a });
     assert_eq!(answer.nearest, due, "kind {}, the nearest of every other", world.kind);
-    count.questions += 3;
+
+    let mut several = Vec::new();
+    let wanted = numbers.below(8);
+    let work = world.scene.nearest_k(&shape, wanted, DistanceOptions::default().with_limit(limit), &mut several);
+    let mut due: Vec<_> = all.iter().copied().filter(|body| body.distance.distance <= limit).collect();
+    due.sort_by(|a, b| {
+        a.distance.distance.partial_cmp(&b.distance.distance).expect("no NaN").then(a.body.cmp(&b.body))
+    });
+    due.truncate(wanted);
+    assert_eq!(several, due, "kind {}, the {wanted} nearest within {limit}", world.kind);
+    assert_eq!(work.tested + work.culled, world.scene.len(), "every body is one or the other");
+
+    let options = SignedDistanceOptions::default();
+    let answer = world.scene.least_signed_distance(&shape, options.with_limit(limit));
+    let signed = world.scene.iter().map(|(body, other)| (other.signed_distance(&shape, options), body));
+    let near = signed.filter(|(distance, _)| distance.signed_distance <= limit);
+    let due = near.reduce(|a, b| if b.0.signed_distance < a.0.signed_distance { b } else { a });
+    let found = answer.least.map(|least| (least.distance, least.body));
+    assert_eq!(found, due, "kind {}, the least signed distance within {limit}", world.kind);
+    assert!(answer.lower <= due.map_or(limit, |(due, _)| due.signed_distance), "kind {}, {answer:?}", world.kind);
+    count.overlaps += usize::from(due.is_some_and(|(due, _)| due.overlap));
+    count.questions += 5;
 }
 
 fn pairs<V: Space>(world: &World<V>, numbers: &mut Numbers, count: &mut Count) {
