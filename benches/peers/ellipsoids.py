@@ -154,12 +154,13 @@ def by_clarabel(clouds):
         yield problem.solver_stats.solve_time * 1e9, X, -np.linalg.solve(A.value, b.value)
 
 
-def asked(lines, *features):
+def asked(lines):
     """What `cargo xtask validate` finds of some queries: rows of its cases.csv."""
     with tempfile.TemporaryDirectory() as folder:
         file = os.path.join(folder, "asked.jsonl")
         open(file, "w").write("".join(json.dumps(line) + "\n" for line in lines))
-        command = ["cargo", "run", "--release", "--package", "xtask", *features, "--", "validate", "--quick", "--report", folder, file]
+        xtask = ["cargo", "run", "--release", "--package", "xtask", "--features", "paper", "--target-dir", "target/paper"]
+        command = [*xtask, "--", "validate", "--quick", "--report", folder, file]
         # An answer by eigenvalues may be wrong, which the exit status says; the file is written all the same.
         subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL)
         return list(csv.DictReader(open(os.path.join(folder, "cases.csv"))))
@@ -168,8 +169,9 @@ def asked(lines, *features):
 def note(rows):
     """Writes the table into docs/comparison.md."""
     said = lambda ns: f"{ns:.0f} ns" if ns < 1e3 else f"{ns / 1e3:.0f} µs" if ns < 1e6 else f"{ns / 1e6:.0f} ms"
+    small = lambda error: f"{error:.0e}".replace("e-0", "e-")
     lines = ["| question | program | asked | error of 99 in 100 below | worst error | median time |", "|---|---|---:|---:|---:|---:|"]
-    lines += [f"| {r[0]} | {r[1]} | {r[2]} | {r[9]:.0e} | {r[10]:.0e} | {said(r[11])} |" for r in rows]
+    lines += [f"| {r[0]} | {r[1]} | {r[2]} | {small(r[9])} | {small(r[10])} | {said(r[11])} |" for r in rows]
     processor = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "")
     lines += ["", f"Measured on {processor}, {time.strftime('%Y-%m-%d', time.gmtime())}, on a busy machine."]
     page = open(NOTE, encoding="utf-8").read()
@@ -196,7 +198,7 @@ def record():
         answers = list(solve(points))
         add("ellipsoid around points", who, [ns for ns, _, _ in answers],
             [gap(p, X, c, truth) for p, (_, X, c), truth in zip(points, answers, truths)], 1e-2)
-    by_eigenvalues = asked([{**pair, "method": "eigen"} for pair in pairs], "--features", "paper", "--target-dir", "target/paper")
+    by_eigenvalues = asked([{**pair, "method": "eigen"} for pair in pairs])
     for who, rows_of in (("ours f64", asked(pairs)), ("faer eigenvalues", by_eigenvalues)):
         errors = [float(row["error"]) / (1 + pair["expect"]["margin"]) for row, pair in zip(rows_of, pairs)]
         add("margin of ellipsoids", who, times(rows_of), errors, 1e-7)
