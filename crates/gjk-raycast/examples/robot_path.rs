@@ -30,8 +30,7 @@ fn robot() -> Result<Linkage<Shape>, Box<dyn std::error::Error>> {
         Joint::prismatic(Some(2), at(DVec3::X * 0.5), DVec3::X),
     ];
     let base: Shape = Box::new(Posed::translated(Cuboid::new(DVec3::new(0.2, 0.2, 0.2))?, DVec3::Z * 0.2)?);
-    let finger =
-        |y: f64| Ok::<_, convex_support::InvalidShape>(Posed::translated(Ball::new(0.05)?, DVec3::new(0.4, y, 0.0))?);
+    let finger = |y: f64| Posed::translated(Ball::new(0.05)?, DVec3::new(0.4, y, 0.0));
     let hand: Vec<Shape> = vec![bar(0.3, 0.04)?, Box::new(finger(0.08)?), Box::new(finger(-0.08)?)];
     let links = [
         Link { joint: None, bodies: vec![base] },
