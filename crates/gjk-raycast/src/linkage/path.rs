@@ -92,10 +92,9 @@ impl<S: SupportMap> Linkage<S> {
     /// A waypoint has a value for each joint that moves, in their order. Between two waypoints all joints move at
     /// constant rates, in one unit of time. A path of one waypoint is the pose.
     ///
-    /// Along each edge, what comes near is found first. What is near is cast, earliest first, and
-    /// only until the first contact so far: [`motion_cast`](crate::motion_cast()) proves it free at all times, or
-    /// brackets its first contact.
-    /// The bounds account for the rounding of the joints' poses, too, so that [`PathOutcome::Free`] is a proof about the
+    /// Along each edge, what comes near is found first. What is near is cast, earliest first, and only until the first
+    /// contact so far: [`motion_cast`](crate::motion_cast()) proves it free at all times, or brackets its first contact.
+    /// Bounds account for the rounding of the joints' poses too, so that [`PathOutcome::Free`] is a proof about the
     /// linkage as it is given by its numbers.
     ///
     /// # Errors
