@@ -54,13 +54,12 @@ pub trait Trajectory {
         let velocity = (end - start) / duration;
         // A curve leaves its chord by at most s²/8 times the largest second derivative, in any direction.
         let center = BoundingSphere { center: ball.center, radius: Scalar::ZERO };
-        let mut squared = ScalarOf::<Self>::ZERO;
-        for axis in (0..Self::Vector::DIM).map(Self::Vector::axis) {
+        let most = Self::Vector::from_fn(|i| {
             let along = |normal| self.acceleration_along(center, TurningPlane { from: normal, to: normal }, [from, to]);
-            let most = along(axis).max(along(-axis));
-            squared += most * most;
-        }
-        let sagitta = squared.sqrt() * duration * duration * Scalar::from_f64(0.125);
+            let axis = Self::Vector::axis(i);
+            along(axis).max(along(-axis))
+        });
+        let sagitta = most.norm() * duration * duration * Scalar::from_f64(0.125);
         MovingBall { start, velocity, radius: ball.radius + sagitta }
     }
 

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use convex_support::glam::{DQuat, DVec2, DVec3};
 use convex_support::{Ball, Capsule, Cuboid, Point, Posed, SupportMap, Triangle};
 use gjk_raycast::{
-    BodyContact, DistanceOptions, HalfSpace, LinearCastOptions, Motion, MotionCastOptions, Ray, RayCastError,
-    RayCastOptions, RigidMotion, Scene, SceneError, distance,
+    BodyContact, ChainMotion, DistanceOptions, HalfSpace, LinearCastOptions, Motion, MotionCastOptions, Ray,
+    RayCastError, RayCastOptions, RigidMotion, Scene, SceneError, distance,
 };
 
 fn ball(x: f64) -> Posed<Ball<DVec3>> {
@@ -255,4 +255,22 @@ fn what_slides_over_a_floor_of_pieces_is_not_caught_at_seams() {
     tiles.contacts_of(&over_the_end, 0.0, Default::default(), &mut contacts);
     tiles.leave_out_seams(&mut contacts);
     assert!(contacts.iter().any(|found| found.contact.normal.x > 0.3), "{contacts:?}");
+}
+
+/// A ball around a moving shape, by which a scene leaves bodies out, grows by how far the shape's way bends away from
+/// its chord. That is a length of accelerations, whose squares underflowed at 1e-250: the ball did not grow, and what
+/// stood beside the chord was left out.
+#[test]
+fn the_way_of_a_chain_bends_at_every_scale() {
+    for scale in [1.0, 2f64.powi(-830)] {
+        let ball_at = |x, y| Posed::translated(Ball::new(0.1 * scale).expect("a ball"), DVec3::new(x, y, 0.0) * scale);
+        let scene = Scene::new([ball_at(0.0, 1.0).expect("finite")]).expect("finite");
+        let shape = ball_at(1.0, 0.0).expect("finite");
+        let joints = [RigidMotion::rotation(DVec3::Z * 3.0, DVec3::ZERO)];
+        let cast = scene
+            .motion_cast(&shape, ChainMotion::new(&joints), MotionCastOptions::new().with_max_time(1.0))
+            .expect("a good motion");
+        let time = cast.first.map(|first| first.hit.time).expect("it is on the way");
+        assert!(0.4 < time && time < 0.5, "{time} at {scale}");
+    }
 }
