@@ -133,3 +133,42 @@ fn write(kept: &[(&[String; 2], &str)], file: &Path) -> io::Result<()> {
     }
     fs::write(file, text)
 }
+
+#[cfg(test)]
+mod tests {
+    use convex_support::Posed;
+    use gjk_raycast::{DistanceOptions, distance};
+    use xtask::mesh::Meshes;
+
+    use super::*;
+
+    /// What is asked is the robot: as a box without extent, its links are as far apart as its poses say.
+    #[test]
+    fn the_linkage_has_the_poses_of_the_robot() -> Result<(), String> {
+        let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../data/robots/ur5/ur5.urdf"));
+        let jointed = Robot::read_jointed(file)?;
+        let values = [0.4, -1.1, 1.3, -0.6, 0.9, 0.2];
+        assert_eq!((jointed.links.len(), jointed.limits.len()), (7, values.len()), "seven hulls, six joints");
+        assert!(jointed.limits.iter().all(|[low, high]| low < high), "{:?}", jointed.limits);
+        let names = ["shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3"];
+        let robot = Robot::read(file, &names.map(|name| format!("{name}_joint")))?;
+        let meshes = Meshes::relative_to("");
+        let placed = |link: usize| {
+            let pose = robot.poses(&values)[link];
+            let hull = meshes.load(&robot.links[link].mesh).map_err(|problem| problem.message)?.hull_f64();
+            let hull = hull.map_err(|why| why.to_string())?;
+            Posed::new(hull, pose.rotation, pose.translation).map_err(|why| why.to_string())
+        };
+        for (a, b) in [(0, 3), (1, 5), (2, 6)] {
+            let apart = distance(&placed(a)?, &placed(b)?, DistanceOptions::new()).distance;
+            assert!(apart > 0.01, "{} and {} are apart here", jointed.links[a], jointed.links[b]);
+            let is_never = |target: f64| {
+                let options = LinkageOptions::new().with_target_distance(target);
+                let outcome = jointed.linkage.joint_box([a, b], &values.map(|value| [value; 2]), options);
+                outcome.map(|found| found.outcome == JointBoxOutcome::Never).map_err(|why| why.to_string())
+            };
+            assert!(is_never(apart * 0.999_999)? && !is_never(apart * 1.000_001)?, "{a} and {b}: {apart}");
+        }
+        Ok(())
+    }
+}

@@ -89,7 +89,7 @@ pub(crate) struct Jointed {
 
 impl Robot {
     /// Reads the robot; `joints` names the joint values it will be given. Joints that are not named stay at 0.
-    pub(super) fn read(path: &Path, joints: &[String]) -> Result<Self, String> {
+    pub(crate) fn read(path: &Path, joints: &[String]) -> Result<Self, String> {
         let failed = |why: String| format!("{}: {why}", path.display());
         let text = fs::read_to_string(path).map_err(|why| failed(why.to_string()))?;
         let document = Document::parse(&text).map_err(|why| failed(why.to_string()))?;
@@ -166,7 +166,7 @@ impl Robot {
     }
 
     /// Where the meshes of the links are in the frame of the root, for these joint values.
-    pub(super) fn poses(&self, values: &[f64]) -> Vec<Pose> {
+    pub(crate) fn poses(&self, values: &[f64]) -> Vec<Pose> {
         let poses = self.frames_at(values);
         self.links.iter().map(|link| poses[link.frame].after(link.origin)).collect()
     }
