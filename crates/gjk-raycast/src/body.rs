@@ -27,7 +27,7 @@ pub(crate) trait TracedSupport {
 }
 
 /// A core and its radius, as casts see them.
-pub(crate) trait Body: TracedSupport {
+pub(crate) trait CastBody: TracedSupport {
     /// Where the line through `source` along `direction` is in the body, in closed form; lengths in units of `scale`.
     #[inline(always)]
     fn line_crossing(&self, source: Self::Vector, direction: Self::Vector) -> LineCrossing<Self::Vector> {
@@ -101,7 +101,7 @@ impl<S: SupportMap + ?Sized> TracedSupport for Single<'_, S> {
     }
 }
 
-impl<S: SupportMap + ?Sized> Body for Single<'_, S> {
+impl<S: SupportMap + ?Sized> CastBody for Single<'_, S> {
     #[inline(always)]
     fn eroded_line_crossing(
         &self,
@@ -423,7 +423,7 @@ impl<T: Shapes + ?Sized> TracedSupport for Pair<'_, T> {
     }
 }
 
-impl<T: Shapes + ?Sized> Body for Pair<'_, T> {
+impl<T: Shapes + ?Sized> CastBody for Pair<'_, T> {
     /// Known where one of the cores is a point, and the difference is the other body moved, or turned round and moved.
     #[inline(always)]
     fn eroded_line_crossing(

@@ -139,6 +139,7 @@ mod gjk;
 mod half_space;
 mod intersects;
 mod iterative_ray_cast;
+mod level;
 mod linear_cast;
 mod linkage;
 mod motion;

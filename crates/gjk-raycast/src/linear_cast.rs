@@ -4,7 +4,7 @@ use convex_support::numerics::twofold::lost_in_sum;
 use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
-use crate::body::{Body, Both, Pair, PointPair, Shapes as _};
+use crate::body::{Both, CastBody, Pair, PointPair, Shapes as _};
 use crate::cast::{Cast, CastHit, Part, cast, direct, settle_start};
 use crate::observer::Observer;
 use crate::shape::Shape;
@@ -131,7 +131,7 @@ where
 compiled_once! {
     /// The cast of a pair of shapes that have these cores, by a search.
     fn by_search<V>(
-        body: &mut dyn Body<Vector = V>,
+        body: &mut dyn CastBody<Vector = V>,
         shapes: [Shape<'_, V>; 2],
         cores: [Core<V>; 2],
         motion: Motion<V>,
@@ -143,7 +143,7 @@ compiled_once! {
 }
 
 fn searched<V: Vector>(
-    body: &mut dyn Body<Vector = V>,
+    body: &mut dyn CastBody<Vector = V>,
     [a, b]: [Shape<'_, V>; 2],
     cores: [Core<V>; 2],
     motion: Motion<V>,

@@ -3,7 +3,7 @@
 use convex_support::{CertainCrossing, LineQuery, Point, Scalar, ScalarOf, SupportMap, Vector, compiled_once};
 use num_traits::Float;
 
-use crate::body::{Body, Measures, Single, TracedSupport as _};
+use crate::body::{CastBody, Measures, Single, TracedSupport as _};
 use crate::cast::{Cast, CastHit, LocalRay, Part, cast, direct, settle_start};
 use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
@@ -172,7 +172,7 @@ fn searched<S: SupportMap + ?Sized>(
 compiled_once! {
     /// The cast by a search, of a body that is the shape.
     fn by_search<V>(
-        body: &mut dyn Body<Vector = V>,
+        body: &mut dyn CastBody<Vector = V>,
         shape: Shape<'_, V>,
         ray: Ray<V>,
         options: &RayCastOptions<V>,
@@ -195,7 +195,7 @@ compiled_once! {
 #[cold]
 #[inline(never)]
 fn late<V: Vector>(
-    body: &mut dyn Body<Vector = V>,
+    body: &mut dyn CastBody<Vector = V>,
     ray: Ray<V>,
     options: RayCastOptions<V>,
     observer: &mut Observer<'_, V>,

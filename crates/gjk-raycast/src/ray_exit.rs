@@ -3,7 +3,7 @@
 use convex_support::{Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
-use crate::body::{Body, Measures, Single};
+use crate::body::{CastBody, Measures, Single};
 use crate::cast::{CastHit, LocalRay, Part, cast};
 use crate::observer::Observer;
 use crate::{Miss, Outcome, Ray, RayCastError, RayCastOptions, RayExit, RayHit, Status, ray_cast};
@@ -73,12 +73,12 @@ pub fn ray_exit<S: SupportMap + ?Sized>(
 
 compiled_once! {
     /// Where the whole line of the ray leaves a body.
-    fn exit_of_line<V>(body: &mut dyn Body<Vector = V>, ray: Ray<V>, options: &RayCastOptions<V>) -> RayExit<V> {
+    fn exit_of_line<V>(body: &mut dyn CastBody<Vector = V>, ray: Ray<V>, options: &RayCastOptions<V>) -> RayExit<V> {
         searched(body, ray, options)
     }
 }
 
-fn searched<V: Vector>(body: &mut dyn Body<Vector = V>, ray: Ray<V>, &options: &RayCastOptions<V>) -> RayExit<V> {
+fn searched<V: Vector>(body: &mut dyn CastBody<Vector = V>, ray: Ray<V>, &options: &RayCastOptions<V>) -> RayExit<V> {
     let infinity = V::Scalar::infinity();
     let wanted = RayCastOptions { min_lambda: Scalar::ZERO, max_lambda: infinity, ..options };
     let Measures { origin, radius, extent, .. } = body.measures();

@@ -11,7 +11,7 @@ use num_traits::Float;
 
 use super::line::{Line, LocalRay, Part};
 use super::{RayContact, Stop};
-use crate::body::{Body, Measures, PointPair};
+use crate::body::{CastBody, Measures, PointPair};
 use crate::observer::Observer;
 use crate::simplex::MAX_POINTS;
 use crate::unit::{is_moderate, lost_to_underflow, power_of_two_near, reciprocal_of_power};
@@ -59,7 +59,7 @@ struct PlaneCrossing<S> {
 
 /// The part of a ray that its first point in a body may be on.
 pub(super) struct Bracket<'a, V: Vector> {
-    pub(super) body: &'a mut dyn Body<Vector = V>,
+    pub(super) body: &'a mut dyn CastBody<Vector = V>,
     pub(super) ray: LocalRay<V>,
     pub(super) options: &'a RayCastOptions<V>,
     pub(super) radius: V::Scalar,
@@ -115,7 +115,7 @@ impl<'a, V: Vector> Bracket<'a, V> {
     /// length.
     #[inline(always)]
     pub(super) fn new(
-        body: &'a mut dyn Body<Vector = V>,
+        body: &'a mut dyn CastBody<Vector = V>,
         ray: Ray<V>,
         direction_error: V::Scalar,
         part: Part<V::Scalar>,

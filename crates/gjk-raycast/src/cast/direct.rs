@@ -14,7 +14,7 @@ use num_traits::Float;
 
 use super::bracket::{DEEP, NOISE};
 use super::{Cast, CastHit};
-use crate::body::{Body, Measures};
+use crate::body::{CastBody, Measures};
 use crate::observer::Observer;
 use crate::unit::is_moderate;
 use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCastOptions, Status};
@@ -40,7 +40,7 @@ const LEAST_SLOPE: f64 = 1.0 / 128.0;
 
 /// The cast of a ray against a body, where it is the plain case. The direction may be wrong by some part of its length.
 #[inline(always)]
-pub(crate) fn direct<B: Body>(
+pub(crate) fn direct<B: CastBody>(
     body: &mut B,
     ray: Ray<B::Vector>,
     direction_error: <B::Vector as Vector>::Scalar,
@@ -109,7 +109,7 @@ impl<V: Vector> BasedLine<V> {
     /// The body is behind the plane `n·y = n·p + r|n|`, and a point `x` of the line that is before it by `a` crosses it
     /// after `a/(−n·d)`.
     #[inline(always)]
-    fn hit<B: Body<Vector = V>>(
+    fn hit<B: CastBody<Vector = V>>(
         &self,
         Crossing { entry, normal, .. }: Crossing<V>,
         body: &mut B,
@@ -166,7 +166,7 @@ impl<V: Vector> BasedLine<V> {
     /// it](super::bracket::DEEP); or else what is left of the body without two errors: one moves the body, and one what
     /// is computed of the line.
     #[inline(always)]
-    fn certain_entry<B: Body<Vector = V>>(
+    fn certain_entry<B: CastBody<Vector = V>>(
         &self,
         body: &B,
         entry: V::Scalar,
@@ -190,7 +190,7 @@ impl<V: Vector> BasedLine<V> {
     /// Of the line only what is in the ball about the body counts, and that is at most `NEAR + 1` sizes from the base:
     /// there it comes no nearer to the plane than by that times `|n·d|/|d|`.
     #[inline(always)]
-    fn miss<B: Body<Vector = V>>(
+    fn miss<B: CastBody<Vector = V>>(
         &self,
         axis: V,
         body: &mut B,

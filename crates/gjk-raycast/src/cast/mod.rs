@@ -14,7 +14,7 @@ mod start;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Body, PointPair};
+use crate::body::{CastBody, PointPair};
 use crate::observer::Observer;
 use crate::{CastMethod, Miss, Outcome, Ray, RayCastOptions, Status};
 use algorithm_3::algorithm_3;
@@ -30,7 +30,7 @@ pub(crate) use start::settle_start;
 /// direction may be wrong by some part of its length.
 #[inline(never)]
 pub(crate) fn cast<V: Vector>(
-    body: &mut dyn Body<Vector = V>,
+    body: &mut dyn CastBody<Vector = V>,
     ray: Ray<V>,
     direction_error: V::Scalar,
     part: Part<V::Scalar>,

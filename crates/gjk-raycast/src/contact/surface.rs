@@ -5,6 +5,7 @@ use num_traits::Float as _;
 use smallvec::SmallVec;
 
 use super::outline::{ContactPlane, Corner, Outline, wrap};
+use crate::level::Level;
 use crate::symmetric::{Across, cross, dot};
 
 /// Support points after which a height is given up. A polytope takes a few; on what is curved each takes three quarters
@@ -34,14 +35,6 @@ impl<S: SupportMap + ?Sized> Surface<S::Vector> for &S {
     fn farthest(&self, direction: S::Vector) -> S::Vector {
         self.core_support(direction, &mut Hint::new())
     }
-}
-
-/// How far a shape reaches along the normal that it shows to the other one, its *level*, and by how much that may be
-/// too little.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Level<S> {
-    pub(super) value: S,
-    pub(super) error: S,
 }
 
 /// A plane over the plane of contact.
@@ -184,7 +177,7 @@ impl<'s, V: Vector> Side<'s, V> {
         self.flat.unwrap_or_else(|| Tangent::through(&self.around(at))).level(at)
     }
 
-    /// The level of the surface at a place within the outline.
+    /// The level of the surface at a place within the outline, and by how much that may be too little.
     ///
     /// Points of the shape around the place, first those of the outline, are in the shape with all between them. The
     /// plane through them is moved out until it supports the shape: the surface is between the two. If they are not the

@@ -3,7 +3,7 @@
 use convex_support::{Core, CoreKind, Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float as _;
 
-use super::span::{Joint, Span};
+use super::span::{DifferenceSpan, Span};
 use crate::contact::Outline;
 use crate::symmetric::Symmetric;
 use crate::unit::power_of_two_near;
@@ -121,14 +121,14 @@ impl<V: Vector> ClosestFeatures<V> {
     }
 
     /// How the features extend together, where the closest points are the only ones.
-    pub(super) fn joint(&self) -> Option<Joint<V::Scalar>> {
+    pub(super) fn joint(&self) -> Option<DifferenceSpan<V::Scalar>> {
         let least = self.tilt * V::Scalar::from_f64(4.0);
         // The side of a cone turns with the normal: where it is parallel to an edge, the two conditions that each of
         // them puts to the normal are met by any normal that is off by the root of their error.
         let parallel = if self.are_turning == [false; 2] { least } else { least.sqrt() };
-        let joint = Joint::of(self.spans, parallel);
+        let joint = DifferenceSpan::of(self.spans, parallel);
         // In the plane an edge is all of the line across the normal.
-        joint.filter(|joint| V::DIM == 3 || !matches!(joint, Joint::Crossed(_)))
+        joint.filter(|joint| V::DIM == 3 || !matches!(joint, DifferenceSpan::Crossed(_)))
     }
 
     /// How hard it is to turn the normal: the sum of the Hessians and the signed distance.

@@ -6,7 +6,7 @@ use num_traits::Float as _;
 
 use super::ClosestFeatures;
 use super::overlap::separating;
-use super::span::{Joint, Span};
+use super::span::{DifferenceSpan, Span};
 use crate::symmetric::{Across, Symmetric, dot};
 
 /// Whether an answer is differentiable by the poses of both bodies.
@@ -87,9 +87,9 @@ impl<V: Vector> ClosestFeatures<V> {
     fn free(&self) -> Free<V::Scalar> {
         let across = |(x, y): (V::Scalar, V::Scalar)| if V::DIM == 2 { Free::Nothing } else { Free::Along((-y, x)) };
         match (self.joint(), self.spans) {
-            (Some(Joint::None), _) => Free::All,
-            (Some(Joint::Edge(_, e)), _) => across(e),
-            (Some(Joint::Face(_) | Joint::Crossed(_)), _) => Free::Nothing,
+            (Some(DifferenceSpan::None), _) => Free::All,
+            (Some(DifferenceSpan::Edge(_, e)), _) => across(e),
+            (Some(DifferenceSpan::Face(_) | DifferenceSpan::Crossed(_)), _) => Free::Nothing,
             // Parallel edges.
             (None, [Span::Edge(e), Span::Edge(_)]) => across(e),
             (None, _) => Free::Nothing,

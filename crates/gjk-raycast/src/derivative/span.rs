@@ -57,7 +57,7 @@ impl<S: Scalar> Span<S> {
 /// The directions in which the difference of two features extends, where each of them is one way only of moving their
 /// points: then the points are the only ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Joint<S> {
+pub(super) enum DifferenceSpan<S> {
     /// Two vertices.
     None,
     /// An edge of `a`, or of `b`, and a vertex.
@@ -75,7 +75,7 @@ pub(super) enum WhichBody {
     B,
 }
 
-impl<S: Scalar> Joint<S> {
+impl<S: Scalar> DifferenceSpan<S> {
     /// `None` where both features extend the same way. Edges are parallel where the sine of their angle is no more than
     /// `parallel`.
     pub(super) fn of(spans: [Span<S>; 2], parallel: S) -> Option<Self> {

@@ -22,7 +22,7 @@ use convex_support::{AngularVelocity as _, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::ClosestFeatures;
-use super::span::{Joint, WhichBody};
+use super::span::{DifferenceSpan, WhichBody};
 use crate::symmetric::{Across, Symmetric, cross, dot};
 use crate::unit::reciprocal_of_power;
 use crate::{RigidMotion, Trajectory};
@@ -105,8 +105,8 @@ impl<V: Vector> ClosestFeatures<V> {
         let [Some(a), Some(b)] = [0, 1].map(|i| self.outlines[i].corners.first()) else { return V::Scalar::ZERO };
         let r = (a.at.0 - b.at.0, a.at.1 - b.at.1);
         match self.joint() {
-            Some(Joint::None) => dot(r, r).sqrt(),
-            Some(Joint::Edge(_, e)) => cross(e, r).abs(),
+            Some(DifferenceSpan::None) => dot(r, r).sqrt(),
+            Some(DifferenceSpan::Edge(_, e)) => cross(e, r).abs(),
             _ => V::Scalar::ZERO,
         }
     }
@@ -137,7 +137,7 @@ pub(super) struct NewtonStep<V: Vector> {
 pub(super) struct Solver<'f, V: Vector> {
     pub(super) at: &'f ClosestFeatures<V>,
     stiffness: Symmetric<V::Scalar>,
-    joint: Joint<V::Scalar>,
+    joint: DifferenceSpan<V::Scalar>,
 }
 
 /// What of two motions matters: the velocities of the material points that are closest, and how the bodies turn the
@@ -209,18 +209,18 @@ impl<V: Vector> Solver<'_, V> {
             (k.0 - r.0, k.1 - r.1)
         };
         match self.joint {
-            Joint::None => (self.soft(r), [zero; 2]),
-            Joint::Edge(side, e) => {
+            DifferenceSpan::None => (self.soft(r), [zero; 2]),
+            DifferenceSpan::Edge(side, e) => {
                 let held = dot(e, turns[side as usize]);
                 let change = self.held_along(e, held, r);
                 let along = dot(e, rest(change));
                 (change, side.slides(scaled(e, along)))
             }
-            Joint::Face(side) => {
+            DifferenceSpan::Face(side) => {
                 let change = turns[side as usize];
                 (change, side.slides(rest(change)))
             }
-            Joint::Crossed([e, f]) => {
+            DifferenceSpan::Crossed([e, f]) => {
                 // e·n′ and f·n′ are known, and g = λe − μf.
                 let (along_e, along_f) = (dot(e, turns[0]), dot(f, turns[1]));
                 let area = cross(e, f);

@@ -11,7 +11,7 @@ mod state;
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
-use crate::body::{Body as _, Pair, PointPair, Shapes, TracedSupport};
+use crate::body::{CastBody as _, Pair, PointPair, Shapes, TracedSupport};
 use crate::observer::Observer;
 use crate::unit::{lost_to_underflow, power_of_two_near, reciprocal_of_power};
 use crate::{Status, SubAlgorithm};

@@ -13,7 +13,7 @@ mod ray_cast;
 use convex_support::{InvalidShape, Scalar, Vector};
 use num_traits::Float;
 
-pub(crate) use plane::{Level, Plane};
+pub(crate) use plane::Plane;
 
 /// The points x with n·x ≤ offset: everything on one side of a plane.
 ///

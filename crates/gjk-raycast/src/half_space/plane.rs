@@ -6,6 +6,7 @@ use convex_support::{Core, Hint, Rounding, Scalar, SupportMap, Vector};
 use num_traits::Float;
 
 use super::HalfSpace;
+use crate::level::Level;
 use crate::unit::{power_of_two_near, reciprocal_of_power};
 
 /// The plane of a half-space. Its normal and offset are in units of a power of two near the normal's length, and so as
@@ -17,23 +18,6 @@ pub(crate) struct Plane<V: Vector> {
     length: V::Scalar,
     /// The unit normal.
     pub(crate) unit: V,
-}
-
-/// A length along the normal, or a speed, as it is measured, and what that is wrong by at most.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Level<S> {
-    pub(crate) value: S,
-    pub(crate) error: S,
-}
-
-impl<S: Scalar> Level<S> {
-    pub(crate) fn least(&self) -> S {
-        self.value - self.error
-    }
-
-    pub(crate) fn most(&self) -> S {
-        self.value + self.error
-    }
 }
 
 /// A shape's point nearest to a half-space, or deepest in it.

@@ -5,7 +5,8 @@ use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
 use super::HalfSpace;
-use super::plane::{Level, Plane};
+use super::plane::Plane;
+use crate::level::Level;
 use crate::{Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, Status};
 
 impl<V: Vector> HalfSpace<V> {

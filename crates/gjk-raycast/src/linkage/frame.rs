@@ -14,7 +14,7 @@ const OF_MATRIX: f64 = 4.5;
 
 /// A rotation, then a translation, and bounds on what both are wrong by.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame<V: Vector> {
+pub(super) struct LinkFrame<V: Vector> {
     pub(super) rotation: V::Matrix,
     pub(super) translation: V,
     /// How far the matrix may take a unit vector from where the rotation does.
@@ -23,7 +23,7 @@ pub(super) struct Frame<V: Vector> {
     pub(super) shift_error: V::Scalar,
 }
 
-impl<V: Vector> Frame<V> {
+impl<V: Vector> LinkFrame<V> {
     /// The frame of the world, which is exact.
     pub(super) const WORLD: Self = Self {
         rotation: V::Matrix::IDENTITY,

@@ -29,7 +29,7 @@ use super::linkage::Linkage;
 use super::moving::{Moving, Value};
 use super::path::LinkageOptions;
 use super::route::Route;
-use super::stage::{Stage, StageMotion};
+use super::stage::{JointStage, StageMotion};
 use crate::{SignedDistanceOptions, signed_distance};
 
 /// Of more joints than this, the signs of each are chosen alone.
@@ -114,7 +114,7 @@ impl<S: SupportMap> Linkage<S> {
         let (mut boxes, mut open) = (0, Scalar::ZERO);
         for (i, a) in self.bodies[pair[0]].iter().enumerate() {
             for (k, b) in self.bodies[pair[1]].iter().enumerate() {
-                let mut search = Search::new(&route, [a, b], joint_box, target);
+                let mut search = BoxSearch::new(&route, [a, b], joint_box, target);
                 let outcome = search.run(options.max_boxes.saturating_sub(boxes));
                 boxes += search.looked;
                 match outcome {
@@ -134,7 +134,7 @@ impl<S: SupportMap> Linkage<S> {
 }
 
 /// The search for where two bodies meet.
-struct Search<'s, A: SupportMap> {
+struct BoxSearch<'s, A: SupportMap> {
     route: &'s Route<A::Vector>,
     bodies: [&'s A; 2],
     /// The whole box.
@@ -149,7 +149,7 @@ struct Search<'s, A: SupportMap> {
 }
 
 /// A part of the box, by the joints on the way between the links.
-struct Part<S> {
+struct BoxPart<S> {
     middle: Vec<S>,
     half: Vec<S>,
     share: S,
@@ -158,7 +158,7 @@ struct Part<S> {
 }
 
 /// What is known of a part.
-enum Known<S> {
+enum BoxState<S> {
     Free,
     Meets,
     /// How far the bodies are apart in its middle, and which joint moves them the most.
@@ -168,7 +168,7 @@ enum Known<S> {
     },
 }
 
-impl<'s, A: SupportMap> Search<'s, A> {
+impl<'s, A: SupportMap> BoxSearch<'s, A> {
     fn new(
         route: &'s Route<A::Vector>,
         bodies: [&'s A; 2],
@@ -194,14 +194,14 @@ impl<'s, A: SupportMap> Search<'s, A> {
     /// Looks at so many parts, or one more.
     fn run(&mut self, most: usize) -> JointBoxOutcome<ScalarOf<A>> {
         let half = ScalarOf::<A>::from_f64(0.5);
-        let interval = |stage: &Stage<A::Vector>| self.joint_box[stage.column];
+        let interval = |stage: &JointStage<A::Vector>| self.joint_box[stage.column];
         let middle = |[low, high]: [ScalarOf<A>; 2]| low * half + high * half;
         // With room for the rounding of the middle, so that the parts cover the box.
         let width = |[low, high]: [ScalarOf<A>; 2]| {
             raised(high * half - low * half) + epsilons::<ScalarOf<A>>(1.0) * (low.abs() + high.abs())
         };
         let stages = &self.route.stages;
-        let whole = Part {
+        let whole = BoxPart {
             middle: stages.iter().map(|stage| middle(interval(stage))).collect(),
             half: stages.iter().map(|stage| width(interval(stage))).collect(),
             share: Scalar::ONE,
@@ -214,11 +214,11 @@ impl<'s, A: SupportMap> Search<'s, A> {
             for mut part in parts.into_iter().flatten() {
                 self.looked += 1;
                 match self.look(&part) {
-                    Known::Free => {}
-                    Known::Meets => return JointBoxOutcome::Meets { values: self.values(&part), bodies: [0, 0] },
+                    BoxState::Free => {}
+                    BoxState::Meets => return JointBoxOutcome::Meets { values: self.values(&part), bodies: [0, 0] },
                     // Where no joint moves them, nothing is left to halve.
-                    Known::Open { .. } if stages.is_empty() => stuck = Scalar::ONE,
-                    Known::Open { distance, joint } => {
+                    BoxState::Open { .. } if stages.is_empty() => stuck = Scalar::ONE,
+                    BoxState::Open { distance, joint } => {
                         part.joint = joint;
                         made += 1;
                         open.insert((in_order(distance), made), part);
@@ -232,7 +232,7 @@ impl<'s, A: SupportMap> Search<'s, A> {
     }
 
     /// The middle of a part as values of all joints: those that are not on the way may have any.
-    fn values(&self, part: &Part<ScalarOf<A>>) -> Vec<ScalarOf<A>> {
+    fn values(&self, part: &BoxPart<ScalarOf<A>>) -> Vec<ScalarOf<A>> {
         let half = ScalarOf::<A>::from_f64(0.5);
         let mut values: Vec<_> = self.joint_box.iter().map(|[low, high]| *low * half + *high * half).collect();
         for (stage, &value) in self.route.stages.iter().zip(&part.middle) {
@@ -241,7 +241,7 @@ impl<'s, A: SupportMap> Search<'s, A> {
         values
     }
 
-    fn look(&self, part: &Part<ScalarOf<A>>) -> Known<ScalarOf<A>> {
+    fn look(&self, part: &BoxPart<ScalarOf<A>>) -> BoxState<ScalarOf<A>> {
         let (zero, one) = (ScalarOf::<A>::ZERO, ScalarOf::<A>::ONE);
         let stages = &self.route.stages;
         let mut moving = Moving::WORLD;
@@ -266,13 +266,13 @@ impl<'s, A: SupportMap> Search<'s, A> {
         };
         let [a, b] = self.bodies;
         let Ok(a) = Posed::from_matrix(a, frame.rotation, frame.translation) else {
-            return Known::Open { distance: zero, joint: widest() };
+            return BoxState::Open { distance: zero, joint: widest() };
         };
         let answer = signed_distance(&a, b, SignedDistanceOptions::new());
         // The matrix was made orthonormal, which moves it by no more than it was wrong.
         let error = raised(frame.error_of(self.reach) * Scalar::from_f64(2.0));
         if answer.upper + error <= self.target {
-            return Known::Meets;
+            return BoxState::Meets;
         }
         let n = answer.normal;
         let (mut changes, mut level) = (smallvec::SmallVec::<[(A::Vector, ScalarOf<A>); 8]>::new(), zero);
@@ -299,7 +299,7 @@ impl<'s, A: SupportMap> Search<'s, A> {
         // Directions are longer than one by what the joints turn.
         let lost = (error + shapes + epsilons::<ScalarOf<A>>(64.0) * size) * turned + bent * epsilons(64.0);
         if level - bent - raised(lost) > self.target {
-            return Known::Free;
+            return BoxState::Free;
         }
         // What the joint adds to the way at first, and to what bends it.
         let way = |i: usize| {
@@ -313,7 +313,7 @@ impl<'s, A: SupportMap> Search<'s, A> {
         };
         let by_way = |i: &usize, k: &usize| way(*i).partial_cmp(&way(*k)).unwrap_or(Ordering::Equal);
         let joint = (0..stages.len()).max_by(by_way).unwrap_or(0);
-        Known::Open { distance: answer.signed_distance, joint }
+        BoxState::Open { distance: answer.signed_distance, joint }
     }
 }
 
@@ -330,7 +330,7 @@ fn least_height<V: Vector>(height: &impl Fn(V) -> V::Scalar, n: V, changes: &[(V
     Float::min(up, down)
 }
 
-impl<S: Scalar> Part<S> {
+impl<S: Scalar> BoxPart<S> {
     /// Both halves along its widest joint, which cover it.
     fn halves(self) -> [Self; 2] {
         let half = S::from_f64(0.5);

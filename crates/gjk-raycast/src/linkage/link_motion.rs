@@ -7,19 +7,19 @@ use convex_support::{BoundingSphere, Matrix as _, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::bounds::Bounds;
-use super::frame::{Frame, epsilons};
+use super::frame::{LinkFrame, epsilons};
 use super::moving::{Moving, Value};
 use super::route::Route;
 use crate::{Displacement, MovingBall, Trajectory, TurningPlane};
 
 /// A straight edge in joint space, which takes one unit of time.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge<'p, S> {
+pub(super) struct PathEdge<'p, S> {
     pub(super) from: &'p [S],
     pub(super) to: &'p [S],
 }
 
-impl<S: Scalar> Edge<'_, S> {
+impl<S: Scalar> PathEdge<'_, S> {
     /// A joint value at a time.
     ///
     /// With `u = ε/2`, the time was rounded once, and the rate, its product with the time and the sum are: by `3u` of the
@@ -42,25 +42,25 @@ impl<S: Scalar> Edge<'_, S> {
 /// The motion of a link from a time of an edge on: from where it is in its own frame to where its joints have it.
 pub(super) struct LinkMotion<'l, V: Vector> {
     route: &'l Route<V>,
-    edge: Edge<'l, V::Scalar>,
+    edge: PathEdge<'l, V::Scalar>,
     start: V::Scalar,
     bounds: Bounds<V::Scalar>,
     /// What was last computed, which is mostly asked for several times.
-    last: Cell<(V::Scalar, Moving<V>, Frame<V>)>,
+    last: Cell<(V::Scalar, Moving<V>, LinkFrame<V>)>,
 }
 
 impl<'l, V: Vector> LinkMotion<'l, V> {
     pub(super) fn new(
         route: &'l Route<V>,
-        edge: Edge<'l, V::Scalar>,
+        edge: PathEdge<'l, V::Scalar>,
         start: V::Scalar,
         bounds: Bounds<V::Scalar>,
     ) -> Self {
-        Self { route, edge, start, bounds, last: Cell::new((V::Scalar::nan(), Moving::WORLD, Frame::WORLD)) }
+        Self { route, edge, start, bounds, last: Cell::new((V::Scalar::nan(), Moving::WORLD, LinkFrame::WORLD)) }
     }
 
     /// How the last joint's frame moves at a time, and where that of the link is.
-    pub(super) fn at(&self, time: V::Scalar) -> (Moving<V>, Frame<V>) {
+    pub(super) fn at(&self, time: V::Scalar) -> (Moving<V>, LinkFrame<V>) {
         let (known, moving, frame) = self.last.get();
         if known == time {
             return (moving, frame);

@@ -7,10 +7,10 @@ use convex_support::{BoundingSphere, Core, Scalar, ScalarOf, SupportMap, Vector,
 use num_traits::Float as _;
 
 use super::error::LinkageError;
-use super::frame::Frame;
+use super::frame::LinkFrame;
 use super::joint::{Joint, JointKind, Link};
 use super::route::Route;
-use super::stage::Stage;
+use super::stage::JointStage;
 use crate::Pose;
 
 /// A robot: links, each of some bodies, that joints carry, in a tree.
@@ -61,7 +61,7 @@ pub struct Linkage<S: SupportMap> {
 #[derive(Clone, Debug)]
 pub(super) struct Skeleton<V: Vector> {
     /// The joints that move, each after the one that carries it, which is named beside it.
-    pub(super) stages: Vec<(Option<usize>, Stage<V>)>,
+    pub(super) stages: Vec<(Option<usize>, JointStage<V>)>,
     pub(super) links: Vec<Carried<V>>,
     pub(super) pairs: Vec<LinkPair<V>>,
 }
@@ -103,29 +103,29 @@ impl<S: SupportMap> Linkage<S> {
         joints: impl IntoIterator<Item = Joint<S::Vector>>,
         links: impl IntoIterator<Item = Link<S>>,
     ) -> Result<Self, LinkageError> {
-        let mut stages: Vec<(Option<usize>, Stage<S::Vector>)> = Vec::new();
+        let mut stages: Vec<(Option<usize>, JointStage<S::Vector>)> = Vec::new();
         // Of each joint, the last that moves, itself included, and its own frame beyond that.
-        let mut places: Vec<(Option<usize>, Frame<S::Vector>)> = Vec::new();
+        let mut places: Vec<(Option<usize>, LinkFrame<S::Vector>)> = Vec::new();
         for (index, Joint { parent, pose, kind }) in joints.into_iter().enumerate() {
             let (before, frame) = match parent {
-                None => (None, Frame::WORLD),
+                None => (None, LinkFrame::WORLD),
                 Some(parent) => *places.get(parent).ok_or(LinkageError::ParentNotBefore { joint: index, parent })?,
             };
-            let here = Frame::at(pose).map_err(|why| LinkageError::Pose { joint: index, why })?;
+            let here = LinkFrame::at(pose).map_err(|why| LinkageError::Pose { joint: index, why })?;
             let fixed = frame.then(&here);
             if matches!(kind, JointKind::Fixed) {
                 places.push((before, fixed));
                 continue;
             }
-            let stage = Stage::new(fixed, kind, stages.len()).ok_or(LinkageError::Axis { joint: index })?;
-            places.push((Some(stages.len()), Frame::WORLD));
+            let stage = JointStage::new(fixed, kind, stages.len()).ok_or(LinkageError::Axis { joint: index })?;
+            places.push((Some(stages.len()), LinkFrame::WORLD));
             stages.push((before, stage));
         }
         let mut skeleton = Skeleton { stages, links: Vec::new(), pairs: Vec::new() };
         let mut all = Vec::new();
         for (link, Link { joint, bodies }) in links.into_iter().enumerate() {
             let (stage, tail) = match joint {
-                None => (None, Frame::WORLD),
+                None => (None, LinkFrame::WORLD),
                 Some(joint) => *places.get(joint).ok_or(LinkageError::NoSuchJoint { link, joint })?,
             };
             let carried = skeleton.carried(&bodies, stage, tail);
@@ -191,7 +191,7 @@ impl<V: Vector> Skeleton<V> {
         &self,
         bodies: &[S],
         stage: Option<usize>,
-        tail: Frame<V>,
+        tail: LinkFrame<V>,
     ) -> Result<Carried<V>, usize> {
         let mut way = Vec::new();
         let mut next = stage;
@@ -205,7 +205,7 @@ impl<V: Vector> Skeleton<V> {
         if let Some(body) = balls.iter().position(|around| !(around.distance + around.ball.radius).is_finite()) {
             return Err(body);
         }
-        let ball = Around::new(ball_around(balls.iter().map(|around| around.ball)), &Frame::WORLD);
+        let ball = Around::new(ball_around(balls.iter().map(|around| around.ball)), &LinkFrame::WORLD);
         Ok(Carried { stage, route: Route::new(way, tail), balls, ball })
     }
 
@@ -218,7 +218,7 @@ impl<V: Vector> Skeleton<V> {
 
 impl<V: Vector> Around<V> {
     /// A ball in a frame of the joint.
-    fn new(ball: BoundingSphere<V>, tail: &Frame<V>) -> Self {
+    fn new(ball: BoundingSphere<V>, tail: &LinkFrame<V>) -> Self {
         let (center, error) = (tail.of(ball.center), tail.error_of(ball.center.norm()));
         let ball = BoundingSphere { center, radius: raised(ball.radius + error) };
         Self { ball, distance: raised(center.norm() + error) }

@@ -4,8 +4,8 @@ use convex_support::Vector;
 use convex_support::numerics::elementary::sin_cos;
 
 use super::axial;
-use super::frame::{Frame, epsilons};
-use super::stage::{Stage, StageMotion};
+use super::frame::{LinkFrame, epsilons};
+use super::stage::{JointStage, StageMotion};
 
 /// What a rotation about an axis is wrong by as an operator, in ε, beside what its angle is. The unit axis is wrong by
 /// 1.5, which counts twice. The term of the sine loses 3 and that of `1 − cos ≤ 2` twice 6; sine and cosine themselves 3,
@@ -25,7 +25,7 @@ pub(super) struct Value<S> {
 /// rates. Only the frame has a bound on its error; derivatives are as they are computed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moving<V: Vector> {
-    pub(super) frame: Frame<V>,
+    pub(super) frame: LinkFrame<V>,
     /// The angular velocity, as of [`axial`], and its derivative.
     pub(super) spin: V,
     pub(super) spin_rate: V,
@@ -37,7 +37,7 @@ pub(super) struct Moving<V: Vector> {
 impl<V: Vector> Moving<V> {
     /// The world, at rest.
     pub(super) const WORLD: Self =
-        Self { frame: Frame::WORLD, spin: V::ZERO, spin_rate: V::ZERO, velocity: V::ZERO, acceleration: V::ZERO };
+        Self { frame: LinkFrame::WORLD, spin: V::ZERO, spin_rate: V::ZERO, velocity: V::ZERO, acceleration: V::ZERO };
 
     /// The velocity of the point of the frame that is at `point`.
     #[inline]
@@ -59,7 +59,7 @@ impl<V: Vector> Moving<V> {
     /// `w`, which this frame turns, so that its derivative is `ω′ + ω × w`; and what slides at `d` has the acceleration
     /// `2ω × d` more than a point of this frame (Coriolis).
     #[inline]
-    pub(super) fn beyond(&self, stage: &Stage<V>, Value { value, rate, error }: Value<V::Scalar>) -> Self {
+    pub(super) fn beyond(&self, stage: &JointStage<V>, Value { value, rate, error }: Value<V::Scalar>) -> Self {
         let fixed = &stage.fixed;
         match &stage.motion {
             StageMotion::Turn { axis, sine, versine } => {
@@ -72,7 +72,7 @@ impl<V: Vector> Moving<V> {
                     acceleration: self.acceleration_at(moved.translation),
                     spin: self.spin + spin,
                     spin_rate: self.spin_rate + axial::product(self.spin, spin),
-                    frame: Frame { rotation, turn_error, ..moved },
+                    frame: LinkFrame { rotation, turn_error, ..moved },
                 }
             }
             StageMotion::Slide { along, .. } => {
@@ -87,7 +87,7 @@ impl<V: Vector> Moving<V> {
                 Self {
                     velocity: self.velocity_at(moved.translation) + slide,
                     acceleration: self.acceleration_at(moved.translation) + coriolis + coriolis,
-                    frame: Frame { rotation: self.frame.rotation * fixed.rotation, turn_error, ..moved },
+                    frame: LinkFrame { rotation: self.frame.rotation * fixed.rotation, turn_error, ..moved },
                     ..*self
                 }
             }

@@ -7,7 +7,7 @@ use num_traits::Float;
 
 use super::bounds::Bounds;
 use super::error::LinkageError;
-use super::link_motion::{Edge, LinkMotion};
+use super::link_motion::{LinkMotion, PathEdge};
 use super::linkage::Linkage;
 use super::result::{Met, Path, PathContact, PathOutcome, PathStop, PathWork};
 use super::sweep::{Near, Sweep, SweepSpace};
@@ -118,7 +118,7 @@ impl<S: SupportMap> Linkage<S> {
         let edges = waypoints.windows(2).map(|pair| (&pair[0], &pair[1], ScalarOf::<S>::ONE));
         let pose = waypoints.first().filter(|_| waypoints.len() == 1).map(|pose| (pose, pose, Scalar::ZERO));
         for (index, (from, to, duration)) in edges.chain(pose).enumerate() {
-            let edge = Edge { from: from.as_ref(), to: to.as_ref() };
+            let edge = PathEdge { from: from.as_ref(), to: to.as_ref() };
             let (tree, target, skeleton) = (scene.tree(), options.target_distance, &self.skeleton);
             sweep.parts = 0;
             let mut first = First::<S::Vector> { edge: index, contact: None, stop: None };
@@ -141,7 +141,7 @@ impl<S: SupportMap> Linkage<S> {
         &self,
         near: &Near<ScalarOf<S>>,
         scene: &Scene<O>,
-        (edge, bounds): (Edge<'_, ScalarOf<S>>, &Bounds<ScalarOf<S>>),
+        (edge, bounds): (PathEdge<'_, ScalarOf<S>>, &Bounds<ScalarOf<S>>),
         options: MotionCastOptions<S::Vector>,
         first: &mut First<S::Vector>,
     ) -> Result<(), RayCastError> {

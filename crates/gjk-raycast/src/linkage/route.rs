@@ -6,16 +6,16 @@ use convex_support::numerics::bound::raised;
 use convex_support::{Scalar, Vector};
 
 use super::axial;
-use super::frame::Frame;
-use super::stage::{Stage, StageMotion};
+use super::frame::LinkFrame;
+use super::stage::{JointStage, StageMotion};
 
 /// The moving joints on the way from one frame to a link, and the link's frame beyond the last of them.
 #[derive(Clone, Debug)]
 pub(super) struct Route<V: Vector> {
-    pub(super) stages: Vec<Stage<V>>,
+    pub(super) stages: Vec<JointStage<V>>,
     /// From each joint to the next: how far its origin is, and how far from the axis.
     pub(super) arms: Vec<Arm<V::Scalar>>,
-    pub(super) tail: Frame<V>,
+    pub(super) tail: LinkFrame<V>,
     /// How far the last joint of the link's own way from the world is from the last of this one, beside those of the
     /// links: not at all, but where the way leads back only.
     pub(super) rim: V::Scalar,
@@ -30,9 +30,9 @@ pub(super) struct Arm<S> {
 }
 
 impl<V: Vector> Route<V> {
-    pub(super) fn new(stages: Vec<Stage<V>>, tail: Frame<V>) -> Self {
+    pub(super) fn new(stages: Vec<JointStage<V>>, tail: LinkFrame<V>) -> Self {
         let none = Arm { length: V::Scalar::ZERO, across: V::Scalar::ZERO };
-        let to_next = |pair: &[Stage<V>]| {
+        let to_next = |pair: &[JointStage<V>]| {
             let (StageMotion::Turn { axis, .. } | StageMotion::Slide { axis, .. }) = pair[0].motion;
             let arm = pair[1].fixed.translation;
             Arm { length: arm.norm(), across: axial::across(axis, arm).norm() }

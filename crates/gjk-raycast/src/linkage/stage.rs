@@ -3,14 +3,14 @@
 use convex_support::{Matrix, Scalar, Vector};
 
 use super::axial;
-use super::frame::Frame;
+use super::frame::LinkFrame;
 use super::joint::JointKind;
 
 /// The way from one moving joint to the next, and how that moves: `x ↦ fixed·motion(value)·x`.
 #[derive(Clone, Debug)]
-pub(super) struct Stage<V: Vector> {
+pub(super) struct JointStage<V: Vector> {
     /// Its frame in that of the moving joint before it, at the value 0.
-    pub(super) fixed: Frame<V>,
+    pub(super) fixed: LinkFrame<V>,
     /// How far its origin is from that of the joint before it.
     pub(super) arm: V::Scalar,
     pub(super) motion: StageMotion<V>,
@@ -28,9 +28,9 @@ pub(super) enum StageMotion<V: Vector> {
     Slide { axis: V, along: V },
 }
 
-impl<V: Vector> Stage<V> {
+impl<V: Vector> JointStage<V> {
     /// The stage of a joint that is at `fixed`; `None` for one that does not move, or whose axis is none.
-    pub(super) fn new(fixed: Frame<V>, kind: JointKind<V>, column: usize) -> Option<Self> {
+    pub(super) fn new(fixed: LinkFrame<V>, kind: JointKind<V>, column: usize) -> Option<Self> {
         let arm = fixed.translation.norm();
         let motion = match kind {
             JointKind::Fixed => return None,
@@ -40,28 +40,28 @@ impl<V: Vector> Stage<V> {
         Some(Self { fixed, arm, motion, column })
     }
 
-    fn turning(fixed: &Frame<V>, axis: V) -> StageMotion<V> {
+    fn turning(fixed: &LinkFrame<V>, axis: V) -> StageMotion<V> {
         let product = axial::matrix(axis);
         let sine = fixed.rotation * product;
         StageMotion::Turn { axis, sine, versine: sine * product }
     }
 
-    fn sliding(fixed: &Frame<V>, axis: V) -> StageMotion<V> {
+    fn sliding(fixed: &LinkFrame<V>, axis: V) -> StageMotion<V> {
         StageMotion::Slide { axis, along: fixed.rotation * axis }
     }
 
     /// The stage that moves as this one does, from another frame on.
-    pub(super) fn at(&self, fixed: Frame<V>) -> Self {
+    pub(super) fn at(&self, fixed: LinkFrame<V>) -> Self {
         self.along(fixed, V::Scalar::ONE)
     }
 
     /// The stage that takes back how this one moves, from a frame on.
-    pub(super) fn reversed(&self, fixed: Frame<V>) -> Self {
+    pub(super) fn reversed(&self, fixed: LinkFrame<V>) -> Self {
         self.along(fixed, -V::Scalar::ONE)
     }
 
     /// With an axis that is this one's, or its opposite.
-    fn along(&self, fixed: Frame<V>, sign: V::Scalar) -> Self {
+    fn along(&self, fixed: LinkFrame<V>, sign: V::Scalar) -> Self {
         let motion = match self.motion {
             StageMotion::Turn { axis, .. } => Self::turning(&fixed, axis * sign),
             StageMotion::Slide { axis, .. } => Self::sliding(&fixed, axis * sign),

@@ -15,7 +15,7 @@ use num_traits::Float as _;
 use super::axial;
 use super::bounds::Bounds;
 use super::frame::epsilons;
-use super::link_motion::Edge;
+use super::link_motion::PathEdge;
 use super::linkage::{Around, LinkPair, Skeleton};
 use super::moving::Moving;
 use crate::half_space::Plane;
@@ -61,7 +61,7 @@ pub(super) struct Sweep<'s, V: Vector> {
     pub(super) skeleton: &'s Skeleton<V>,
     pub(super) tree: &'s Bvh<V>,
     pub(super) half_spaces: &'s [(usize, Plane<V>)],
-    pub(super) edge: Edge<'s, V::Scalar>,
+    pub(super) edge: PathEdge<'s, V::Scalar>,
     /// How near is too near.
     pub(super) target: V::Scalar,
     pub(super) space: &'s mut SweepSpace<V>,
@@ -69,7 +69,7 @@ pub(super) struct Sweep<'s, V: Vector> {
 
 /// A part of an edge.
 #[derive(Clone, Copy)]
-struct Part<S> {
+struct EdgePart<S> {
     middle: S,
     half: S,
     /// Whether it is as short as it gets.
@@ -77,7 +77,7 @@ struct Part<S> {
 }
 
 /// Everything that a ball touches in a part of an edge.
-struct Reach<V: Vector> {
+struct SweptBall<V: Vector> {
     /// Where its centre is in the middle of the part.
     center: V,
     /// How far it goes from there, along each axis and in any direction.
@@ -89,7 +89,7 @@ struct Reach<V: Vector> {
 
 /// What is known of a link or a pair in a part of an edge.
 #[derive(PartialEq)]
-enum Known {
+enum PartState {
     /// It is free.
     Free,
     /// The part is to be halved.
@@ -138,7 +138,7 @@ impl<V: Vector> Sweep<'_, V> {
             return Ok(());
         }
         let half = (to - from) * V::Scalar::from_f64(0.5);
-        let part = Part { middle: from + half, half, is_last: depth == MAX_DEPTH || half == V::Scalar::ZERO };
+        let part = EdgePart { middle: from + half, half, is_last: depth == MAX_DEPTH || half == V::Scalar::ZERO };
         self.place(part.middle);
         self.space.parts += 1;
         let rest = self.space.items.len();
@@ -148,7 +148,7 @@ impl<V: Vector> Sweep<'_, V> {
                 None => self.look_at_link(item, part),
                 Some(pair) => self.look_at_pair(item, &self.skeleton.pairs[pair], part),
             };
-            if known == Known::Coarse {
+            if known == PartState::Coarse {
                 self.space.items.push(item);
             }
         }
@@ -187,11 +187,11 @@ impl<V: Vector> Sweep<'_, V> {
     }
 
     /// What is near a link in the scene.
-    fn look_at_link(&mut self, item: usize, part: Part<V::Scalar>) -> Known {
+    fn look_at_link(&mut self, item: usize, part: EdgePart<V::Scalar>) -> PartState {
         let link = &self.skeleton.links[item];
         let (moving, bounds) = (self.moving(link.stage), self.space.bounds[item]);
         let seen =
-            |around: &Around<V>| Reach::of(*around, V::Scalar::ZERO, [&moving, &Moving::WORLD], &bounds, part.half);
+            |around: &Around<V>| SweptBall::of(*around, V::Scalar::ZERO, [&moving, &Moving::WORLD], &bounds, part.half);
         let reach = seen(&link.ball);
         let is_coarse = !part.is_last && reach.drift > link.ball.ball.radius * V::Scalar::from_f64(COARSE);
         let mut found = core::mem::take(&mut self.space.found);
@@ -206,11 +206,11 @@ impl<V: Vector> Sweep<'_, V> {
             });
         }
         let known = match (found.is_empty(), is_coarse) {
-            (true, _) => Known::Free,
-            (false, true) => Known::Coarse,
-            (false, false) => Known::Found,
+            (true, _) => PartState::Free,
+            (false, true) => PartState::Coarse,
+            (false, false) => PartState::Found,
         };
-        if known == Known::Found {
+        if known == PartState::Found {
             for (body, around) in link.balls.iter().enumerate() {
                 let reach = seen(around);
                 for (k, &other) in found.iter().enumerate() {
@@ -231,23 +231,23 @@ impl<V: Vector> Sweep<'_, V> {
     }
 
     /// Which bodies of two links are near one another.
-    fn look_at_pair(&mut self, item: usize, pair: &LinkPair<V>, part: Part<V::Scalar>) -> Known {
+    fn look_at_pair(&mut self, item: usize, pair: &LinkPair<V>, part: EdgePart<V::Scalar>) -> PartState {
         let [a, b] = pair.links.map(|link| &self.skeleton.links[link]);
         let [moving, base] = [a, b].map(|link| self.moving(link.stage));
         let bounds = self.space.bounds[item];
-        let seen = |around: &Around<V>| Reach::of(*around, pair.route.rim, [&moving, &base], &bounds, part.half);
-        let is_near = |reach: &Reach<V>, other: &Around<V>| {
+        let seen = |around: &Around<V>| SweptBall::of(*around, pair.route.rim, [&moving, &base], &bounds, part.half);
+        let is_near = |reach: &SweptBall<V>, other: &Around<V>| {
             let between = (reach.center - base.frame.of(other.ball.center)).norm();
             let error = base.frame.error_of(other.distance);
             !(between > (reach.radius + other.ball.radius + error + self.target) * above::<V>())
         };
         let reach = seen(&a.ball);
         if !is_near(&reach, &b.ball) {
-            return Known::Free;
+            return PartState::Free;
         }
         let smaller = a.ball.ball.radius.min(b.ball.ball.radius);
         if !part.is_last && reach.drift > smaller * V::Scalar::from_f64(COARSE) {
-            return Known::Coarse;
+            return PartState::Coarse;
         }
         for (body, around) in a.balls.iter().enumerate() {
             let reach = seen(around);
@@ -257,17 +257,17 @@ impl<V: Vector> Sweep<'_, V> {
                 }
             }
         }
-        Known::Found
+        PartState::Found
     }
 }
 
-impl<S: Scalar> Part<S> {
+impl<S: Scalar> EdgePart<S> {
     fn near(self, item: usize, body: usize, other: usize) -> Near<S> {
         Near { from: self.middle - self.half, to: self.middle + self.half, item, body, other }
     }
 }
 
-impl<V: Vector> Reach<V> {
+impl<V: Vector> SweptBall<V> {
     /// Of a ball that a joint carries, as it moves against another frame that moves, or the world; `rim` is how far the
     /// joint is from the last one of the route between them, whose bounds these are.
     ///

@@ -3,11 +3,12 @@
 use convex_support::{Scalar, Vector};
 use num_traits::Float as _;
 
+use super::basin;
 use super::boundary::Boundary;
 use super::cores::{Cores, WayOut};
-use super::met::Met;
+use super::first_polytope::{FirstPolytope, first_polytope};
+use super::met::MetPoint;
 use super::witness::{self, Ends};
-use super::{basin, first_polytope};
 use crate::SignedDistanceOptions;
 use crate::gjk::Gjk;
 use crate::observer::Observer;
@@ -85,9 +86,9 @@ pub(super) fn expand<V: Vector>(
     let tolerance = relative * cores.size;
     // In its place from the beginning: it is a large object to move.
     let mut boundary = Boundary::new(relative.max(Scalar::EPSILON).as_f64());
-    let mut way = match first_polytope::first_polytope(cores, state, &mut boundary)? {
-        first_polytope::FirstPolytope::Flat(way) => return Some(flat(way, Met::new(cores, state))),
-        first_polytope::FirstPolytope::Full(way) => way,
+    let mut way = match first_polytope(cores, state, &mut boundary)? {
+        FirstPolytope::Flat(way) => return Some(flat(way, MetPoint::new(cores, state))),
+        FirstPolytope::Full(way) => way,
     };
     let depth_limit = (options.depth_limit - cores.radius()) / cores.scale();
     let enough_of = |cores: &Cores<'_, V>, way: &WayOut<V>| tolerance.max(cores.rounding_along(way.u()));
@@ -100,7 +101,7 @@ pub(super) fn expand<V: Vector>(
     let status = loop {
         let (nearest, inner) = boundary.nearest();
         let inner =
-            if inner > Scalar::ZERO { inner } else { -met.get_or_insert_with(|| Met::new(cores, state)).reached };
+            if inner > Scalar::ZERO { inner } else { -met.get_or_insert_with(|| MetPoint::new(cores, state)).reached };
         let normal = boundary.facet_at(nearest).normal;
         // NaN fails this too.
         if !(way.h - inner > enough) {
@@ -178,7 +179,7 @@ fn settled<V: Vector>(
     state: &mut Gjk<V>,
     boundary: &Boundary<V>,
     mut way: WayOut<V>,
-    met: Option<Met<V>>,
+    met: Option<MetPoint<V>>,
     status: Status,
     for_ends: usize,
 ) -> Expanded<V> {
@@ -190,9 +191,9 @@ fn settled<V: Vector>(
         ends => {
             // The foot of the nearest facet, or what GJK has met, is the point nearest to zero of those that are known.
             let mut foot = witness::nearest_to(cores, boundary, nearest, Vector::ZERO, 0);
-            let foot = Met::new(cores, &mut foot);
-            let known = if is_inside { foot } else { met.unwrap_or_else(|| Met::new(cores, state)) };
-            let Met { point, points, reached } = if foot.reached < known.reached { foot } else { known };
+            let foot = MetPoint::new(cores, &mut foot);
+            let known = if is_inside { foot } else { met.unwrap_or_else(|| MetPoint::new(cores, state)) };
+            let MetPoint { point, points, reached } = if foot.reached < known.reached { foot } else { known };
             let one = V::Scalar::ONE;
             let (sign, inner) = if is_inside { (one, certain) } else { (-one, -reached) };
             let u = point.unit().map_or(way.u(), |n| n * sign);
@@ -208,7 +209,7 @@ fn settled<V: Vector>(
 }
 
 /// A difference without an inside: the way out is across it, and no length.
-fn flat<V: Vector>(way: WayOut<V>, Met { points, reached, .. }: Met<V>) -> Expanded<V> {
+fn flat<V: Vector>(way: WayOut<V>, MetPoint { points, reached, .. }: MetPoint<V>) -> Expanded<V> {
     let ends = Ends { u: way.u(), depth: way.h, points };
     Expanded { way, ends, inner: -reached, status: Status::Converged, unexpanded: 0 }
 }

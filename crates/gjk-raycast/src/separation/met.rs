@@ -10,7 +10,7 @@ use crate::gjk::Gjk;
 /// The point of the difference next to zero of those that GJK knows. Where cores are well in one another nothing asks
 /// for it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Met<V: Vector> {
+pub(super) struct MetPoint<V: Vector> {
     pub(super) point: V,
     /// The points of both cores that it is made of.
     pub(super) points: PointPair<V>,
@@ -18,7 +18,7 @@ pub(super) struct Met<V: Vector> {
     pub(super) reached: V::Scalar,
 }
 
-impl<V: Vector> Met<V> {
+impl<V: Vector> MetPoint<V> {
     #[inline(always)]
     pub(super) fn new(cores: &Cores<'_, V>, state: &mut Gjk<V>) -> Self {
         state.ensure_measured();

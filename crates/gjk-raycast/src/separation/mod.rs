@@ -32,7 +32,7 @@ use cores::{ClosedForm, slack};
 pub(crate) use cores::{Cores, Uncertainty};
 pub(crate) use direct::direct;
 use expansion::{Expanded, expand};
-use met::Met;
+use met::MetPoint;
 pub(crate) use near_contact::{NearContact, is_near_contact, near_contact_of};
 pub(crate) use room::{FromContact, across_corners, faces_of_simplex, look_after, room_around_zero};
 use witness::Ends;
@@ -41,7 +41,7 @@ use witness::Ends;
 #[derive(Clone, Copy)]
 pub(crate) struct Wanted<V: Vector> {
     pub(crate) of_overlap: OfOverlap,
-    /// The depth's own are read where one is looked for.
+    /// Where to begin and when to stop. What concerns the depth counts where one is looked for.
     pub(crate) options: SignedDistanceOptions<V>,
     /// How wide a bracket on the distance may stay, relative to it.
     pub(crate) tolerance: V::Scalar,
@@ -116,7 +116,9 @@ pub(crate) fn separation<V: Vector>(
         }
         // Cores that overlapped in the last frame do so still, if no plane across its normal tells them apart.
         let is_warm = options.axis.and_then(|axis| axis.unit()).is_some_and(|axis| cores.reaches_beyond(-axis));
-        let _ = is_warm && cores.peel();
+        if is_warm {
+            let _ = cores.peel();
+        }
     }
     let mut state = cores.first_state(options.axis);
     let closest = cores.closest_points();
@@ -191,7 +193,7 @@ impl<V: Vector> Separation<V> {
     /// By GJK alone.
     #[inline(always)]
     fn of_gjk(cores: &Cores<'_, V>, state: &mut Gjk<V>, end: End) -> Self {
-        let Met { points, reached, .. } = Met::new(cores, state);
+        let MetPoint { points, reached, .. } = MetPoint::new(cores, state);
         // Across the face that the closest points are on; where rounding may have made that up, across the best plane.
         let direction = if state.length > cores.noise() { state.normal } else { state.axis };
         let n = direction.unit().or_else(|| state.normal.unit()).unwrap_or_else(|| V::axis(0));
@@ -283,6 +285,16 @@ impl<V: Vector> Separation<V> {
         }
     }
 
+    /// How the search ended, by what its bounds are worth.
+    #[inline(always)]
+    fn status(&self, is_bounded: bool, is_narrow: bool) -> Status {
+        match self.status {
+            Status::Converged if !is_bounded => Status::Stalled,
+            Status::Stalled if is_bounded && is_narrow => Status::Converged,
+            status => status,
+        }
+    }
+
     /// The points of both bodies between which the way out leads.
     #[inline(always)]
     fn ends(&self, cores: &Cores<'_, V>) -> [V; 2] {
@@ -299,11 +311,7 @@ impl<V: Vector> Separation<V> {
         let is_bounded = lower.is_finite() && upper.is_finite() && lower <= upper;
         let infinity = V::Scalar::infinity();
         let (lower, upper) = if is_bounded { (lower, upper) } else { (-infinity, infinity) };
-        let status = match self.status {
-            Status::Converged if !is_bounded => Status::Stalled,
-            Status::Stalled if is_bounded && is_narrow => Status::Converged,
-            status => status,
-        };
+        let status = self.status(is_bounded, is_narrow);
         let signed_distance = self.value(cores).max(lower).min(upper);
         let [point_a, point_b] = self.ends(cores);
         SignedDistance {
@@ -332,11 +340,7 @@ impl<V: Vector> Separation<V> {
             true => (lower.max(zero), upper.max(zero)),
             false => (zero, V::Scalar::infinity()),
         };
-        let status = match self.status {
-            Status::Converged if !is_bounded => Status::Stalled,
-            Status::Stalled if is_bounded && is_narrow => Status::Converged,
-            status => status,
-        };
+        let status = self.status(is_bounded, is_narrow);
         let value = self.value(cores);
         let is_met = self.overlap.unwrap_or(value <= zero || status == Status::Converged);
         let overlap = is_met && !(lower > zero);

@@ -14,7 +14,7 @@ use convex_support::{Core, CoreKind, Rounding, Scalar, Vector};
 use num_traits::Float;
 
 use super::faces::{about_edge, across_faces, is_around_zero};
-use crate::body::{AnyPair, Body as _, Both, Pair, PointPair, TracedSupport as _};
+use crate::body::{AnyPair, Both, CastBody as _, Pair, PointPair, TracedSupport as _};
 use crate::gjk::{End, Frame, Gjk, GjkOptions, first_direction, gjk};
 use crate::observer::Observer;
 use crate::shape::Shape;

@@ -4,7 +4,7 @@ use convex_support::{Scalar, Vector};
 
 use super::boundary::Boundary;
 use super::cores::{Cores, WayOut};
-use super::met::Met;
+use super::met::MetPoint;
 use crate::body::PointPair;
 use crate::gjk::Gjk;
 use crate::simplex::project;
@@ -55,7 +55,7 @@ pub(super) fn ends<V: Vector>(
         }
         let end = u * way.h;
         let mut state = nearest_to(cores, boundary, boundary.pierced(u, nearest), end, max_iterations);
-        let Met { point, points, .. } = Met::new(cores, &mut state);
+        let MetPoint { point, points, .. } = MetPoint::new(cores, &mut state);
         if point.norm() <= noise {
             return Some(ends(points, u, way.h, -point));
         }

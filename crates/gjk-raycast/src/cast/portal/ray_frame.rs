@@ -11,7 +11,7 @@
 
 use convex_support::{Scalar, Vector};
 
-use crate::body::{Body, PointPair};
+use crate::body::{CastBody, PointPair};
 use crate::cast::Stop;
 use crate::cast::bracket::Bracket;
 use crate::cast::line::Line;
@@ -196,13 +196,13 @@ impl<V: Vector> RayFrame<V> {
     }
 
     /// Whether the core's support point moves as a plane turns.
-    pub(super) fn is_curved(&self, body: &dyn Body<Vector = V>, n: V) -> bool {
+    pub(super) fn is_curved(&self, body: &dyn CastBody<Vector = V>, n: V) -> bool {
         body.is_curved() && !body.hessian(n, [self.e1, self.e2]).is_zero()
     }
 
     /// The derivative of `(u, v)` at `n`: that of the core's support point, and of the radius that it is moved by.
     #[inline(always)]
-    pub(super) fn hessian(&self, body: &dyn Body<Vector = V>, n: V) -> Symmetric<V::Scalar> {
+    pub(super) fn hessian(&self, body: &dyn CastBody<Vector = V>, n: V) -> Symmetric<V::Scalar> {
         let core = body.hessian(n, [self.e1, self.e2]);
         if self.radius > Scalar::ZERO {
             curvature::swept(core, self.radius, self.split(n).0, n.length_squared())
@@ -214,7 +214,7 @@ impl<V: Vector> RayFrame<V> {
     /// The part across the ray, and the one against it, of the derivative of the support point at `n` as that turns
     /// against the ray.
     #[inline(always)]
-    pub(super) fn hessian_against(&self, body: &dyn Body<Vector = V>, n: V) -> (Across<V::Scalar>, V::Scalar) {
+    pub(super) fn hessian_against(&self, body: &dyn CastBody<Vector = V>, n: V) -> (Across<V::Scalar>, V::Scalar) {
         let against = -self.d;
         let (first, second) = (body.hessian(n, [self.e1, against]), body.hessian(n, [self.e2, against]));
         let (mut across, mut along) = ((first.b, second.b), first.d);
