@@ -751,3 +751,28 @@ fn closest_points_lean_from_the_normal_no_more_than_the_bracket_says() {
     }
     assert!(farthest > 1e-12, "rounding alone: {farthest:e}");
 }
+
+/// Where bodies overlap by little more than their rounding, the search goes on to the depth, and the ends of its way
+/// out are as far apart as the bodies are deep. The points of a distance are of both bodies: those that GJK met.
+#[test]
+fn bodies_that_overlap_by_little_have_a_point_in_common() {
+    let (crate_, block) = (cuboid::<DVec3>([0.9, 0.5, 0.3]), cuboid::<DVec3>([0.4, 0.7, 1.1]));
+    let mut deepest: f64 = 0.0;
+    for (i, direction) in directions(60).enumerate() {
+        let turn = DQuat::from_xyzw(0.3, direction[0], direction[1], 0.5 + direction[2]).normalize();
+        let (a, along) = (turned(crate_, turn, [0.0; 3]), v::<DVec3>(direction));
+        let place = |far: f64| turned(block, turn.inverse(), (along * far).to_array());
+        let cast = crate::common::sweep(&place(5.0), &a, (-along).to_array());
+        let Some(hit) = cast.outcome.hit() else { continue };
+        for half_decades in 20..32 {
+            let b = place(5.0 - hit.time - 10.0_f64.powf(f64::from(-half_decades) * 0.5));
+            let answer = distance(&a, &b, DistanceOptions::new());
+            let size = b.core().origin.length() + crate_.core().extent + block.core().extent;
+            let apart = (answer.point_a - answer.point_b).length();
+            assert!(!answer.overlap || apart <= 8.0 * f64::EPSILON * size, "{i}: {apart:e} apart, {answer:?}");
+            let signed = signed_distance(&a, &b, SignedDistanceOptions::new());
+            deepest = deepest.min(if answer.overlap { signed.upper } else { 0.0 });
+        }
+    }
+    assert!(deepest < -1e-12, "none overlaps: {deepest:e}");
+}

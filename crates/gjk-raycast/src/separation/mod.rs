@@ -144,7 +144,8 @@ pub(crate) fn separation<V: Vector>(
         end != End::Stalled && cores.near.is_none()
     };
     if !is_known {
-        return reach_closely(cores, options, &mut state, end, observer);
+        let known = reach_closely(cores, options, &mut state, end, observer);
+        return if wanted.is_depth() { known } else { known.with_common_points(cores, &mut state) };
     }
     let known = Separation::of_gjk(cores, &mut state, end);
     // A simplex of full dimension has zero inside for certain, or a closer look would have been taken.
@@ -256,6 +257,13 @@ impl<V: Vector> Separation<V> {
         }
         let Ends { u, depth, points } = ends;
         Self { u, depth, inner, outer, axis, points, overlap: None, status, unexpanded }
+    }
+
+    /// The same with the points that GJK has come to, where cores overlap and those are nearer to one another than the
+    /// ends of the way out.
+    fn with_common_points(self, cores: &Cores<'_, V>, state: &mut Gjk<V>) -> Self {
+        let MetPoint { point, points, .. } = MetPoint::new(cores, state);
+        if point.norm() < self.depth { Self { points, ..self } } else { self }
     }
 
     /// The signed distance of the bodies along the normal, in the world's unit, as it is measured.
