@@ -133,11 +133,6 @@ pub trait SupportMap {
     /// Where the line through `source` along `direction` is in the core swept by a ball of the given `radius`, in
     /// closed form; `source` is relative to the [origin](Core::origin). The provided method answers
     /// [`LineCrossing::Unknown`].
-    ///
-    /// A negative radius erodes the core: the answer may then be about any set that lies in the core even if it is
-    /// swept by a ball of the radius `−radius`. So a line that enters this set enters the core, even if rounding has
-    /// moved the core by up to that length. A flat core contains no such set; then both ends of the stretch are where
-    /// the line has certainly crossed the core, even if rounding has moved its points by up to that length.
     #[inline]
     fn core_line_crossing(
         &self,

@@ -5,8 +5,9 @@ use std::cell::Cell;
 
 use convex_support::glam::{DVec3, Vec2, Vec3A};
 use convex_support::{
-    Ball, Capsule, CertainCrossing, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, LineCrossing, LineQuery, Point, Posed,
-    Rotation as _, Rounded, Scalar, Segment, SupportMap, Vector3, line_crossing,
+    Affine, Ball, Capsule, CertainCrossing, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, LineCrossing, LineQuery,
+    Matrix, MinkowskiSum, Point, Posed, Rotation as _, Rounded, Scalar, Segment, SupportMap, Triangle, Vector3,
+    line_crossing,
 };
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
@@ -19,12 +20,13 @@ fn known_of<S: SupportMap + ?Sized>(shape: &S, line: LineQuery<S::Vector>) -> Op
 }
 
 /// How many kinds of shapes [`shape`] makes.
-const KINDS: usize = 10;
+const KINDS: usize = 13;
 
 /// A shape of three lengths, in either precision.
 fn shape<V: Vector3>(kind: usize, lengths: [f32; 3], [x, y, z, w]: [f32; 4]) -> AnyShape<V> {
     let [a, b, c] = lengths.map(|length| V::Scalar::from_f64(f64::from(length)));
     let extents = V::from_fn(|i| [a, b, c][i]);
+    let number = |x: f32| V::Scalar::from_f64(f64::from(x));
     let rotation = V::Rotation::from_xyzw([x, y, z, w].map(|q| V::Scalar::from_f64(f64::from(q))));
     match kind {
         0 => Box::new(Ball::new(a).unwrap()),
@@ -38,6 +40,18 @@ fn shape<V: Vector3>(kind: usize, lengths: [f32; 3], [x, y, z, w]: [f32; 4]) -> 
         8 => {
             let end = V::from_fn(|i| V::Scalar::from_f64(f64::from([x, y, z][i] / 64.0)) * b);
             Box::new(Rounded::new(Segment::new([extents, extents + end]).unwrap(), c).unwrap())
+        }
+        9 => {
+            let corner = |i: usize| V::from_fn(|k| extents.get((k + i) % 3) * number(if i == k { -x } else { y }));
+            Box::new(Triangle::new([corner(0), corner(1), corner(2)]).unwrap())
+        }
+        10 => {
+            let matrix = V::Matrix::from_cols_fn(|j| V::from_fn(|i| number(if i == j { x } else { y / (z + 200.0) })));
+            Box::new(Affine::new(Cuboid::new(extents).unwrap(), matrix, extents).unwrap())
+        }
+        11 => {
+            let ball = Rounded::new(Point::new(extents).unwrap(), c).unwrap();
+            Box::new(MinkowskiSum::new(Posed::translated(ball, extents).unwrap(), Cuboid::new(extents).unwrap()))
         }
         _ => {
             Box::new(Faceted::hull_of(hull(lengths).map(|p| V::from_fn(|i| V::Scalar::from_f64(p[i].into())))).unwrap())
@@ -64,7 +78,7 @@ fn changed<V: Vector3>(
 ) -> AnyShape<V> {
     let number = |x: f32| V::Scalar::from_f64(f64::from(x));
     let mut it = shape::<V>(kind, lengths, rotation);
-    if is_swept && [0, 1, 2, 6, 7, 8].contains(&kind) {
+    if is_swept && [0, 1, 2, 6, 7, 8, 9, 11].contains(&kind) {
         it = Box::new(Rounded::new(it, number(lengths[0])).unwrap());
     }
     if is_posed {

@@ -1,7 +1,9 @@
 //! Shapes as algorithms see them: a core and a radius, relative to the shape's origin and in [units](crate::unit) of
 //! its size.
 
-use convex_support::{Core, CoreKind, Crossing, Hint, LineCrossing, Scalar, SupportMap, Vector};
+use convex_support::{
+    CertainCrossing, Core, CoreKind, Crossing, Hint, LineCrossing, LineQuery, Scalar, SupportMap, Vector,
+};
 
 use crate::segments;
 use crate::shape::{Shape, WithoutLines};
@@ -29,17 +31,9 @@ pub(crate) trait TracedSupport {
 /// A core and its radius, as casts see them.
 pub(crate) trait CastBody: TracedSupport {
     /// Where the line through `source` along `direction` is in the body, in closed form; lengths in units of `scale`.
-    #[inline(always)]
-    fn line_crossing(&self, source: Self::Vector, direction: Self::Vector) -> LineCrossing<Self::Vector> {
-        self.eroded_line_crossing(source, direction, Scalar::ZERO)
-    }
-    /// The same, of a set that is in the body even when it is swept by a ball of radius `by`.
-    fn eroded_line_crossing(
-        &self,
-        source: Self::Vector,
-        direction: Self::Vector,
-        by: <Self::Vector as Vector>::Scalar,
-    ) -> LineCrossing<Self::Vector>;
+    fn line_crossing(&self, source: Self::Vector, direction: Self::Vector) -> LineCrossing<Self::Vector>;
+    /// Where a line of the world [certainly enters](SupportMap::certain_crossing) the body.
+    fn certain_crossing(&self, line: LineQuery<Self::Vector>) -> Option<CertainCrossing<Self::Vector>>;
     /// What a point of the core is made of, where [`line_crossing`](Self::line_crossing) is known.
     fn witness(&self, point: Self::Vector) -> PointPair<Self::Vector>;
     /// What the body is split into, in the world's unit. For a difference all is the sum, but for the origin, which is
@@ -103,15 +97,14 @@ impl<S: SupportMap + ?Sized> TracedSupport for Single<'_, S> {
 
 impl<S: SupportMap + ?Sized> CastBody for Single<'_, S> {
     #[inline(always)]
-    fn eroded_line_crossing(
-        &self,
-        source: S::Vector,
-        direction: S::Vector,
-        by: <S::Vector as Vector>::Scalar,
-    ) -> LineCrossing<S::Vector> {
+    fn line_crossing(&self, source: S::Vector, direction: S::Vector) -> LineCrossing<S::Vector> {
         let to_world = reciprocal_of_power(self.per_unit);
-        let radius = self.core.radius - by * to_world;
-        in_units(self.shape.core_line_crossing(source * to_world, direction, radius), self.per_unit)
+        in_units(self.shape.core_line_crossing(source * to_world, direction, self.core.radius), self.per_unit)
+    }
+
+    #[inline(always)]
+    fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
+        self.shape.certain_crossing(line)
     }
 
     #[inline(always)]
@@ -167,11 +160,17 @@ pub(crate) trait Shapes {
     /// As [`SupportMap::core_line_crossing`] of one of them.
     fn line_crossing(
         &self,
-        of: Of,
-        source: Self::Vector,
-        direction: Self::Vector,
-        radius: <Self::Vector as Vector>::Scalar,
-    ) -> LineCrossing<Self::Vector>;
+        _: Of,
+        _source: Self::Vector,
+        _direction: Self::Vector,
+        _radius: <Self::Vector as Vector>::Scalar,
+    ) -> LineCrossing<Self::Vector> {
+        LineCrossing::Unknown
+    }
+    /// As [`SupportMap::certain_crossing`] of one of them.
+    fn certain_crossing(&self, _: Of, _: LineQuery<Self::Vector>) -> Option<CertainCrossing<Self::Vector>> {
+        None
+    }
     /// Each of them, for what is rarely asked.
     fn each(&self) -> [Shape<'_, Self::Vector>; 2];
 }
@@ -253,6 +252,15 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
     }
 
     #[inline(always)]
+    fn certain_crossing(&self, of: Of, line: LineQuery<A::Vector>) -> Option<CertainCrossing<A::Vector>> {
+        match self.named(of) {
+            _ if !LINES => None,
+            Of::A => self.a.0.certain_crossing(line),
+            Of::B => self.b.0.certain_crossing(line),
+        }
+    }
+
+    #[inline(always)]
     fn each(&self) -> [Shape<'_, A::Vector>; 2] {
         if self.is_swapped { [&self.b, &self.a] } else { [&self.a, &self.b] }
     }
@@ -265,6 +273,8 @@ pub(crate) struct Pair<'a, T: Shapes + ?Sized> {
     pub(crate) core_b: Core<T::Vector>,
     hints: [Hint; 2],
     per_unit: <T::Vector as Vector>::Scalar,
+    /// The radius of a ball that the difference is swept by; it is in that of the first core.
+    swept: <T::Vector as Vector>::Scalar,
     /// The radii of balls that the cores are taken without, in units of the scale.
     pub(crate) peeled: [<T::Vector as Vector>::Scalar; 2],
 }
@@ -287,12 +297,19 @@ impl<'a, T: Shapes + ?Sized> Pair<'a, T> {
             core_b,
             hints: [Hint::new(), Hint::new()],
             per_unit: Scalar::ONE,
+            swept: Scalar::ZERO,
             peeled: [Scalar::ZERO; 2],
         }
     }
 }
 
 impl<T: Shapes + ?Sized> Pair<'_, T> {
+    /// The difference swept by a ball.
+    #[inline(always)]
+    pub(crate) fn swept(self, radius: <T::Vector as Vector>::Scalar) -> Self {
+        Self { core_a: self.core_a.rounded(radius), swept: radius, ..self }
+    }
+
     /// Begins anew to look for support points.
     pub(crate) fn forget_hints(&mut self) {
         self.hints = [Hint::new(), Hint::new()];
@@ -426,14 +443,8 @@ impl<T: Shapes + ?Sized> TracedSupport for Pair<'_, T> {
 impl<T: Shapes + ?Sized> CastBody for Pair<'_, T> {
     /// Known where one of the cores is a point, and the difference is the other body moved, or turned round and moved.
     #[inline(always)]
-    fn eroded_line_crossing(
-        &self,
-        source: T::Vector,
-        direction: T::Vector,
-        by: <T::Vector as Vector>::Scalar,
-    ) -> LineCrossing<T::Vector> {
-        let to_world = reciprocal_of_power(self.per_unit);
-        let (source, radius) = (source * to_world, self.radius() - by * to_world);
+    fn line_crossing(&self, source: T::Vector, direction: T::Vector) -> LineCrossing<T::Vector> {
+        let (source, radius) = (source * reciprocal_of_power(self.per_unit), self.radius());
         let crossing = match (self.core_a.kind, self.core_b.kind) {
             (_, CoreKind::Point(b)) => self.shapes.line_crossing(Of::A, source + b, direction, radius),
             (CoreKind::Point(a), _) => match self.shapes.line_crossing(Of::B, a - source, -direction, radius) {
@@ -443,6 +454,28 @@ impl<T: Shapes + ?Sized> CastBody for Pair<'_, T> {
             _ => LineCrossing::Unknown,
         };
         in_units(crossing, self.per_unit)
+    }
+
+    /// Known where one of the cores is a point, which is known to its error. A point of the line is in the difference
+    /// where `b`, moved there by its origin, meets `a`.
+    #[inline(always)]
+    fn certain_crossing(&self, line: LineQuery<T::Vector>) -> Option<CertainCrossing<T::Vector>> {
+        let (core_a, core_b, zero) = (&self.core_a, &self.core_b, T::Vector::ZERO);
+        match (core_a.kind, core_b.kind) {
+            (_, CoreKind::Point(b)) => {
+                let line = line.seen_from([zero, -b]).within(core_b.error);
+                let line = line.sweeping(core_b.radius).sweeping(self.swept);
+                self.shapes.certain_crossing(Of::A, line)
+            }
+            (CoreKind::Point(a), _) => {
+                // As `b` sees it, `a` moves, and backwards.
+                let from_b = line.seen_from([core_b.origin, zero]);
+                let line = LineQuery { source: -from_b.source, direction: -from_b.direction, ..from_b };
+                let line = line.seen_from([-core_a.origin, -a]).sweeping(core_a.radius).within(core_a.error);
+                Some(self.shapes.certain_crossing(Of::B, line)?.with_normal(|n| -n))
+            }
+            _ => None,
+        }
     }
 
     #[inline(always)]

@@ -5,7 +5,7 @@ use convex_support::{Core, CoreKind, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float as _;
 
 use crate::body::{Both, CastBody, Pair, PointPair, Shapes as _};
-use crate::cast::{Cast, CastHit, Part, cast, direct, settle_start};
+use crate::cast::{Cast, CastHit, Part, cast, certain_closely, settle_start};
 use crate::observer::Observer;
 use crate::shape::Shape;
 use crate::start_in_contact::StartingPair;
@@ -114,15 +114,14 @@ where
     motion.check(&options)?;
     let target = options.target_distance.max(<A::Vector as Vector>::Scalar::ZERO);
     let shapes = Both::<_, _, true>::new(a, b);
-    let mut body = Pair::new(&shapes);
-    body.core_a = body.core_a.rounded(target);
+    let mut body = Pair::new(&shapes).swept(target);
     // Of no other pair is a crossing known.
     let is_known = [body.core_a, body.core_b].iter().any(|core| matches!(core.kind, CoreKind::Point(_)));
     let cores = [body.core_a, body.core_b];
     if is_known {
         let (ray, direction_error, wanted) = ray_of(motion, [body.core_a.origin, body.core_b.origin], &options);
-        if let Some(cast) = direct(&mut body, ray, direction_error, &wanted, observer) {
-            return Ok(known(&cast, shapes.each(), cores, motion, &options));
+        if let Some(answer) = certain_closely(&mut body, ray, direction_error, &wanted, observer) {
+            return Ok(known(&Cast::of_certain(&answer, &body, ray), shapes.each(), cores, motion, &options));
         }
     }
     Ok(by_search(&mut body, shapes.each(), cores, motion, &options, observer))

@@ -1,14 +1,14 @@
 //! Where a ray enters a shape: the paper's question, answered by a closed form, by a portal or by its Algorithm 3.
 
-use convex_support::{CertainCrossing, LineQuery, Point, Scalar, ScalarOf, SupportMap, Vector, compiled_once};
+use convex_support::{Point, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float;
 
-use crate::body::{CastBody, Measures, Single, TracedSupport as _};
-use crate::cast::{Cast, CastHit, LocalRay, Part, cast, direct, settle_start};
+use crate::body::{CastBody, Measures, Single};
+use crate::cast::{Cast, CastHit, LocalRay, Part, cast, certain, certain_closely, settle_start, show};
 use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
 use crate::unit::power_of_two_near;
-use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, Status};
+use crate::{Iterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, Status};
 
 /// The first point of a ray in a shape, with the normal there.
 ///
@@ -52,7 +52,7 @@ pub fn ray_cast<S: SupportMap + ?Sized>(
     options: RayCastOptions<S::Vector>,
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     let ray = ray.by_coordinates();
-    match certain(target, ray, &options, false) {
+    match certain(|line| target.certain_crossing(line), ray, &options, false) {
         Some(answer) => Ok(answer),
         None => searched(target, ray, options, Observer::none()),
     }
@@ -70,77 +70,13 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
     mut observer: impl FnMut(Iterate<'_, S::Vector>),
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     let mut observer = Observer::new(&mut observer);
-    match certain(target, ray, &options, false) {
-        Some(answer) => Ok(shown(answer, target, ray, &mut observer)),
+    match certain(|line| target.certain_crossing(line), ray, &options, false) {
+        Some(answer) => {
+            show(&answer, &mut Single::new(target), ray, &mut observer);
+            Ok(answer)
+        }
         None => searched(target, ray, options, observer),
     }
-}
-
-/// The answer that a shape knows for certain, after an observer has seen the plane that tells it.
-fn shown<S: SupportMap + ?Sized>(
-    answer: RayCast<S::Vector>,
-    target: &S,
-    ray: Ray<S::Vector>,
-    observer: &mut Observer<'_, S::Vector>,
-) -> RayCast<S::Vector> {
-    if observer.is_none() {
-        return answer;
-    }
-    let (at, axis) = match answer.outcome {
-        Outcome::Hit(RayHit { point, normal: Some(normal), .. }) => (point, normal),
-        Outcome::Miss(Miss { axis }) => (ray.source, axis),
-        Outcome::Hit(_) | Outcome::Undecided => return answer,
-    };
-    let mut body = Single::new(target);
-    let w = at - body.measures().origin - body.support(axis).0;
-    let (lower, upper) = (Scalar::ZERO, Float::infinity());
-    observer.show(|| Iterate { iteration: 0, simplex: &[], v: axis, w, scale: Scalar::ONE, lower, upper });
-    answer
-}
-
-/// The cast where the shape knows for certain where the ray enters it, or that its line misses, by a close look or not.
-///
-/// That look is left to [`searched`]: beside the plain one it made the answer go through memory, and rays at balls
-/// and boxes took 15 to 30 % more instructions.
-#[inline(always)]
-fn certain<S: SupportMap + ?Sized>(
-    target: &S,
-    ray: Ray<S::Vector>,
-    options: &RayCastOptions<S::Vector>,
-    is_close: bool,
-) -> Option<RayCast<S::Vector>> {
-    let (zero, infinity) = (ScalarOf::<S>::ZERO, ScalarOf::<S>::infinity());
-    let is_plain = options.min_lambda <= zero && options.method == CastMethod::Portal && options.max_iterations > 0;
-    if !is_plain {
-        return None;
-    }
-    let line = LineQuery { is_close, ..LineQuery::new(ray.source, ray.direction) };
-    let missed = |axis| (Outcome::Miss(Miss { axis }), [infinity; 2]);
-    let (outcome, [lower, upper]) = match target.certain_crossing(line)? {
-        // To be refused.
-        CertainCrossing::Misses(_) if options.max_lambda.is_nan() => return None,
-        CertainCrossing::Misses(axis) => {
-            // What is left of it along the ray would count far from here.
-            let along = axis.dot(ray.direction) / ray.direction.length_squared();
-            missed((axis - ray.direction * along).unit().unwrap_or(axis))
-        }
-        CertainCrossing::Enters { entry, bounds, normal } => {
-            let [earliest, latest] = bounds;
-            let is_after_end = !(entry <= options.max_lambda);
-            // By rounding alone, the source may be in the target, or the end of the ray where it enters. NaN and
-            // infinity tell nothing.
-            let begin = if is_after_end { options.max_lambda } else { zero };
-            if !(earliest > begin && latest < infinity) {
-                return None;
-            }
-            if is_after_end {
-                missed(normal)
-            } else {
-                (Outcome::Hit(RayHit { lambda: entry, point: ray.at(entry), normal: Some(normal) }), bounds)
-            }
-        }
-    };
-    Some(RayCast { outcome, lower, upper, status: Status::Converged, iterations: 1 })
 }
 
 /// The cast where that is not so in plain numbers.
@@ -153,18 +89,8 @@ fn searched<S: SupportMap + ?Sized>(
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     ray.check(&options)?;
     let mut body = Single::new(target);
-    let is_whole = !(options.min_lambda > Scalar::ZERO);
-    // Of a ray that begins inside, plain numbers tell where its line enters, and a closer look takes longer than the
-    // search.
-    let is_unknown = target.certain_crossing(LineQuery::new(ray.source, ray.direction)).is_none();
-    if is_whole
-        && is_unknown
-        && let Some(answer) = certain(target, ray, &options, true)
-    {
-        return Ok(shown(answer, target, ray, &mut observer));
-    }
-    if is_whole && let Some(cast) = direct(&mut body, ray, Scalar::ZERO, &options, &mut observer) {
-        return Ok(answer(cast, ray));
+    if let Some(answer) = certain_closely(&mut body, ray, Scalar::ZERO, &options, &mut observer) {
+        return Ok(answer);
     }
     Ok(by_search(&mut body, &WithoutLines(target), ray, &options, &mut observer))
 }

@@ -5,7 +5,9 @@ use num_traits::Float as _;
 use crate::numerics::bound::{roundings, roundings_of};
 use crate::numerics::twofold::{lost_in_sum, two_sum};
 use crate::support::{ScalarOf, sum_of_hessians, support_of_parts};
-use crate::{Core, CoreKind, Hint, LineCrossing, Parallelotope, Rounding, Scalar, SupportMap, Vector};
+use crate::{
+    CertainCrossing, Core, CoreKind, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar, SupportMap, Vector,
+};
 
 /// The set `A + B = { a + b : a ∈ A, b ∈ B }`: one shape swept by the other. Nest it for more than two.
 ///
@@ -110,6 +112,20 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
             (CoreKind::Point(a), _) => self.b.core_line_crossing(source - a, direction, radius),
             (_, CoreKind::Point(b)) => self.a.core_line_crossing(source - b, direction, radius),
             _ => LineCrossing::Unknown,
+        }
+    }
+
+    /// Where one of the cores is a point.
+    #[inline]
+    fn certain_crossing(&self, line: LineQuery<A::Vector>) -> Option<CertainCrossing<A::Vector>> {
+        let (a, b) = (self.a.core(), self.b.core());
+        // The point is known to its error.
+        let from =
+            |point: Core<A::Vector>, at| line.seen_from([point.origin, at]).within(point.error).sweeping(point.radius);
+        match (a.kind, b.kind) {
+            (CoreKind::Point(at), _) => self.b.certain_crossing(from(a, at)),
+            (_, CoreKind::Point(at)) => self.a.certain_crossing(from(b, at)),
+            _ => None,
         }
     }
 

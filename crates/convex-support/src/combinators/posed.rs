@@ -254,14 +254,14 @@ impl<S: SupportMap> SupportMap for Posed<S> {
             }
             let near = NearLine::new(line, self.translation, size)?.at_foot();
             let known = self.shape.certain_crossing(near.before(&self.rotation, line))?;
-            return Some(near.after(&self.rotation, known));
+            return Some(near.after(known, |n| self.rotation * n));
         }
         let near = NearLine::new(line, self.rotation * core.origin + self.translation, size)?.at_foot();
         let before = near.before(&self.rotation, line);
         let source = before.source - self.rotation.transpose_mul(self.lost) + core.origin;
         let rounding = roundings(8.0, size) + roundings(2.0, core.origin.norm() + self.lost.norm());
         let known = self.shape.certain_crossing(LineQuery { source, ..before.within(rounding) })?;
-        Some(near.after(&self.rotation, known))
+        Some(near.after(known, |n| self.rotation * n))
     }
 
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {

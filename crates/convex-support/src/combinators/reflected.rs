@@ -1,7 +1,9 @@
 //! A shape mirrored through zero.
 
 use crate::support::ScalarOf;
-use crate::{Core, Feature, Hint, LineCrossing, Parallelotope, Rounding, SupportMap, Vector};
+use crate::{
+    CertainCrossing, Core, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, SupportMap, Vector,
+};
 
 /// The set `−C = { −x : x ∈ C }`: what a difference adds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +51,12 @@ impl<S: SupportMap> SupportMap for Reflected<S> {
         radius: ScalarOf<S>,
     ) -> LineCrossing<S::Vector> {
         self.0.core_line_crossing(-source, -direction, radius).with_normal(|n| -n)
+    }
+
+    #[inline(always)]
+    fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
+        let line = LineQuery { source: -line.source, direction: -line.direction, ..line };
+        Some(self.0.certain_crossing(line)?.with_normal(|n| -n))
     }
 
     fn core_support_feature(&self, direction: S::Vector, slab: ScalarOf<S>, feature: &mut Feature<S::Vector>) {

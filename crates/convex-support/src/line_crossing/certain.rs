@@ -12,7 +12,7 @@ use num_traits::Float as _;
 use super::{Chord, Crossed, Crossing, Spine, across_two_axes, axis_of, past_rim, rebased};
 use crate::numerics::bound::roundings;
 use crate::numerics::range::{is_comfortable, is_moderate};
-use crate::numerics::twofold::{foot_from, two_sum};
+use crate::numerics::twofold::{foot_from, lost_in_sum, two_sum};
 use crate::shapes::across;
 use crate::{Cone, Matrix, Scalar, Vector, Vector3};
 
@@ -40,15 +40,27 @@ impl<V: Vector> LineQuery<V> {
         Self { source, direction, radius: V::Scalar::ZERO, error: V::Scalar::ZERO, is_close: false }
     }
 
+    /// The line as it is seen from a point that is the sum of two.
+    #[inline(always)]
+    #[must_use]
+    pub fn seen_from(self, [origin, at]: [V; 2]) -> Self {
+        // Mostly the second is zero, and nothing is lost.
+        let point = origin + at;
+        let lost = lost_in_sum(origin, at).norm() + lost_in_sum(self.source, -point).norm();
+        Self { source: self.source - point, ..self.within(lost) }
+    }
+
     /// The line known a further `error` less exactly.
     #[inline(always)]
-    pub(crate) fn within(self, error: V::Scalar) -> Self {
+    #[must_use]
+    pub fn within(self, error: V::Scalar) -> Self {
         Self { error: self.error + error, ..self }
     }
 
-    /// The same of the core of a shape that is swept by a ball itself.
+    /// The same of a shape that is swept by a further ball.
     #[inline(always)]
-    pub(crate) fn sweeping(self, radius: V::Scalar) -> Self {
+    #[must_use]
+    pub fn sweeping(self, radius: V::Scalar) -> Self {
         // Nothing is lost, and nothing to be computed where that is known beforehand, as it mostly is.
         if self.radius == V::Scalar::ZERO {
             return Self { radius, ..self };
@@ -125,12 +137,24 @@ const ALONG: f64 = 1.0 / (WIDE * WIDE);
 pub(crate) struct NearLine<V: Vector> {
     /// The parameter of that point.
     pub(super) base: V::Scalar,
-    pub(super) source: V,
-    pub(super) direction: V,
+    pub(crate) source: V,
+    pub(crate) direction: V,
     /// The size of the shape.
     pub(super) size: V::Scalar,
     /// A bound on the error of the line's crossing, as a displacement of the line.
-    pub(super) error: V::Scalar,
+    pub(crate) error: V::Scalar,
+}
+
+impl<V: Vector> CertainCrossing<V> {
+    /// The same with its normal, or the vector along which the line is apart, mapped.
+    #[inline(always)]
+    #[must_use]
+    pub fn with_normal(self, normal: impl FnOnce(V) -> V) -> Self {
+        match self {
+            Self::Misses(axis) => Self::Misses(normal(axis)),
+            Self::Enters { entry, bounds, normal: n } => Self::Enters { entry, bounds, normal: normal(n) },
+        }
+    }
 }
 
 impl<V: Vector> NearLine<V> {
@@ -174,14 +198,14 @@ impl<V: Vector> NearLine<V> {
         LineQuery { source, direction, error: self.error, ..asked }
     }
 
-    /// What is known there, of the turned shape and this line.
+    /// What is known there, of the shape as it was mapped and this line.
     #[inline(always)]
-    pub(crate) fn after(&self, rotation: &V::Matrix, known: CertainCrossing<V>) -> CertainCrossing<V> {
-        match known {
-            CertainCrossing::Misses(axis) => CertainCrossing::Misses(*rotation * axis),
+    pub(crate) fn after(&self, known: CertainCrossing<V>, normal: impl FnOnce(V) -> V) -> CertainCrossing<V> {
+        match known.with_normal(normal) {
             CertainCrossing::Enters { entry, bounds: [earliest, latest], normal } => {
-                self.enters([earliest, entry, latest], *rotation * normal)
+                self.enters([earliest, entry, latest], normal)
             }
+            missed @ CertainCrossing::Misses(_) => missed,
         }
     }
 
@@ -296,7 +320,7 @@ impl<V: Vector> NearLine<V> {
 
     /// How far the bounds may be apart along the line.
     #[inline(always)]
-    fn longest_slack(&self) -> V::Scalar {
+    pub(super) fn longest_slack(&self) -> V::Scalar {
         self.error * V::Scalar::from_f64(WIDE) / self.direction.abs().max_element()
     }
 
@@ -360,7 +384,7 @@ impl<V: Vector> NearLine<V> {
     /// The points at `1.5e` before and behind the surface, along the normal at the entry, are measured against the
     /// set, if that is no more than `longest` along the line.
     #[inline(always)]
-    fn swept(
+    pub(super) fn swept(
         &self,
         radius: V::Scalar,
         closest: impl Fn(V) -> V,
@@ -395,7 +419,7 @@ impl<V: Vector> NearLine<V> {
     /// by at most that length times `|n·d|/|d|`. This product loses `3u`, which is `27u` of the size, and `n·x` another
     /// `24u`: more than one error, and less than two.
     #[inline(always)]
-    pub(super) fn passes(&self, axis: V, support_value: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+    pub(crate) fn passes(&self, axis: V, support_value: V::Scalar, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let reach = self.size * V::Scalar::from_f64(NEAR + 1.0) / self.direction.abs().max_element();
         let ahead = axis.dot(self.source) - support_value - axis.dot(self.direction).abs() * reach;
         let (squared, apart) = (axis.length_squared(), radius + self.error + self.error);

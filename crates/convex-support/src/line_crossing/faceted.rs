@@ -7,12 +7,12 @@ use crate::shapes::{PLANES, Planes};
 use crate::{Faceted, Scalar, Vector};
 
 /// The line is in the hull while it is behind all facets. The exit and the entry are the least and the largest of the
-/// `λ` where it leaves, or enters, the half-space of a facet. A negative radius moves all facets inward.
+/// `λ` where it leaves, or enters, the half-space of a facet.
 #[inline]
-pub(crate) fn faceted<V: Vector>(hull: &Faceted<V>, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
+pub(crate) fn faceted<V: Vector>(hull: &Faceted<V>, source: V, direction: V) -> Crossed<V> {
     let (direction, dd, unit) = comfortable(direction);
     let (base, near) = rebased(source, direction, dd.recip());
-    let clipped = clip(hull.planes(), radius, coordinates(near), coordinates(direction));
+    let clipped = clip(hull.planes(), coordinates(near), coordinates(direction));
     let Clipped { entry, exit, into, .. } = clipped;
     // A line enters and leaves a bounded set, so that otherwise something is not a number.
     if !(entry > -V::Scalar::infinity() && exit < V::Scalar::infinity()) {
@@ -36,7 +36,7 @@ impl<V: Vector> NearLine<V> {
     pub(crate) fn faceted(&self, hull: &Faceted<V>) -> Option<CertainCrossing<V>> {
         let line = self.at_foot();
         let Self { source, direction, error, .. } = line;
-        let clipped = clip(hull.planes(), V::Scalar::ZERO, coordinates(source), coordinates(direction));
+        let clipped = clip(hull.planes(), coordinates(source), coordinates(direction));
         let Clipped { entry, exit, into, out_of } = clipped;
         let plane = |index: usize| {
             let (normal, reach) = hull.facet(index);
@@ -72,13 +72,13 @@ struct Clipped<S> {
     out_of: usize,
 }
 
-/// Clips the line through `near` along `direction` by planes that are moved by `radius`.
+/// Clips the line through a point along a direction by planes.
 ///
 /// A line along a plane divides by zero: it is then behind it from `−∞` to `∞` or nowhere; and `0/0`, in the plane
 /// itself, compares false and leaves things as they are. Adding zero makes a positive zero of a negative one, which is
 /// told from negative numbers.
 #[inline(never)]
-fn clip<S: Scalar>(planes: &[Planes<S>], radius: S, [x, y, z]: [S; 3], [dx, dy, dz]: [S; 3]) -> Clipped<S> {
+fn clip<S: Scalar>(planes: &[Planes<S>], [x, y, z]: [S; 3], [dx, dy, dz]: [S; 3]) -> Clipped<S> {
     let (below, width) = (-S::infinity(), S::from_f64(PLANES as f64));
     let mut here: [S; PLANES] = core::array::from_fn(|l| S::from_f64(l as f64));
     // Of all the planes that it enters by, and that the line backwards enters by.
@@ -86,7 +86,7 @@ fn clip<S: Scalar>(planes: &[Planes<S>], radius: S, [x, y, z]: [S; 3], [dx, dy, 
     for [nx, ny, nz, reach] in planes {
         let slope: [S; PLANES] = core::array::from_fn(|l| nx[l] * dx + ny[l] * dy + nz[l] * dz + S::ZERO);
         let crossed: [S; PLANES] =
-            core::array::from_fn(|l| (reach[l] + radius - (nx[l] * x + ny[l] * y + nz[l] * z)) / slope[l]);
+            core::array::from_fn(|l| (reach[l] - (nx[l] * x + ny[l] * y + nz[l] * z)) / slope[l]);
         let enters: [S; 2 * PLANES] = core::array::from_fn(|l| {
             let (k, is_back) = (l % PLANES, l >= PLANES);
             if (slope[k] < S::ZERO) != is_back { if is_back { -crossed[k] } else { crossed[k] } } else { below }

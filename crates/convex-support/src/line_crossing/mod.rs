@@ -182,16 +182,6 @@ pub fn line_crossing<S: SupportMap + ?Sized>(
     shape.core_line_crossing(source - origin, direction, radius)
 }
 
-/// How many times as large as a part `s` of itself a set is that has a ball of radius `inner` about zero, where that
-/// part is in the set when swept by a ball of radius `−radius`: with a ball of radius `(1 − s)·inner` it is, since `(1
-/// − s)` times the set has that. A line crosses the part where the line that is as many times larger crosses the set.
-/// `None` where no part is left.
-#[inline(always)]
-pub(crate) fn times_within<S: Scalar>(radius: S, inner: S) -> Option<S> {
-    let part = S::ONE + radius / inner;
-    (radius < S::ZERO && part > S::ZERO).then(|| part.recip())
-}
-
 /// The part of a line within a ball about zero, as `middle ± half`; `half` is `NaN` where the line misses the ball.
 struct Chord<V: Vector> {
     middle: V::Scalar,

@@ -2,7 +2,8 @@
 
 use num_traits::Float as _;
 
-use super::{Crossed, Crossing, Spine, comfortable, rebased};
+use super::{CertainCrossing, Crossed, Crossing, NearLine, Spine, comfortable, rebased};
+use crate::closest_point::closest_of_triangle;
 use crate::shapes::Frame;
 use crate::{Scalar, Triangle, Vector};
 
@@ -10,14 +11,13 @@ use crate::{Scalar, Triangle, Vector};
 /// the line is inside from the first entry to the last exit. In 2D the triangle itself stands for the prism.
 ///
 /// Without a ball, in 3D a line crosses the triangle at a point, where `entry` and `exit` agree. A triangle without
-/// area, a segment, has no side to cross it by: a miss. With a negative radius they are where the line has crossed it
-/// for certain.
+/// area, a segment, has no side to cross it by: a miss.
 pub(crate) fn triangle<V: Vector>(triangle: &Triangle<V>, radius: V::Scalar, source: V, direction: V) -> Crossed<V> {
     let (direction, _, unit) = comfortable(direction);
     let mut union = if V::DIM == 2 {
         triangle.crossing_in_the_plane(source, direction)
     } else {
-        triangle.prism_crossing(radius, source, direction)
+        triangle.prism_crossing(radius, V::Scalar::ZERO, source, direction)
     };
     if radius > V::Scalar::ZERO {
         let [a, b, c] = triangle.points();
@@ -69,14 +69,14 @@ impl<V: Vector> Triangle<V> {
         crossing.shifted(base, V::Scalar::ONE, || V::ZERO).ok()
     }
 
-    /// The crossing of the points within a distance `radius` of the triangle in 3D, across its plane.
+    /// The crossing of the points within a distance `radius` of the triangle in 3D, across its plane; or, of the
+    /// triangle itself, where the line has crossed it even if its corners are moved by up to an `error`.
     ///
-    /// Of a negative one, let the corners be moved by up to `e = −radius`. Seen along the line, no point of a side is
-    /// moved by more, so that the line crosses the triangle still if it is seen more than `e` inside of all sides. With
-    /// the cosine `s` at which it crosses the plane it is so where it crosses more than `e/s` inside of them; and a
-    /// point of the moved triangle is no farther than `e` from the plane, which the line leaves behind by as much after
-    /// `e/s`.
-    fn prism_crossing(&self, radius: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
+    /// Seen along the line, no point of a side is moved by more than the error `e`, so that the line crosses the
+    /// triangle still if it is seen more than `e` inside of all sides. With the cosine `s` at which it crosses the plane
+    /// it is so where it crosses more than `e/s` inside of them; and a point of the moved triangle is no farther than
+    /// `e` from the plane, which the line leaves behind by as much after `e/s`.
+    fn prism_crossing(&self, radius: V::Scalar, error: V::Scalar, source: V, direction: V) -> Option<Crossing<V>> {
         let Frame { corners: [a, b, _], axes: [u, v], length, along, height } = self.frame()?;
         let (base, from_a) = rebased(source - a, direction, direction.length_squared().recip());
         let zero = V::Scalar::ZERO;
@@ -86,11 +86,10 @@ impl<V: Vector> Triangle<V> {
         let lengths = V::from_fn(|i| off_plane(V::axis(i)).length_squared());
         let steepest = (1..V::DIM).fold(0, |best, i| if lengths.get(i) > lengths.get(best) { i } else { best });
         let normal = off_plane(off_plane(V::axis(steepest))).unit()?;
-        let thickness = if radius > zero { radius } else { zero };
-        clip.cut(normal, from_a, thickness, direction);
-        clip.cut(-normal, from_a, thickness, direction);
+        clip.cut(normal, from_a, radius, direction);
+        clip.cut(-normal, from_a, radius, direction);
         // How much later the line has crossed the triangle for certain, and how far that is inside of the edges.
-        let late = if radius < zero { -radius / normal.dot(direction).abs() } else { zero };
+        let late = if error > zero { error / normal.dot(direction).abs() } else { zero };
         let inside = -late * direction.length();
         // Outward of each edge, within the plane.
         clip.cut(-v, from_a, inside, direction);
@@ -101,6 +100,47 @@ impl<V: Vector> Triangle<V> {
         clip.cut(-u, from_a, inside, direction);
         clip.cut(u, from_a, length + inside, direction);
         clip.crossing?.shifted(base + late, V::Scalar::ONE, || V::ZERO).ok()
+    }
+}
+
+impl<V: Vector> NearLine<V> {
+    /// A triangle about zero, in 3D.
+    ///
+    /// The line has not met it before the plane across its normal through the corner that comes first, by two errors:
+    /// what a product with a point loses is [less than one](Self::passes), and so is it for the sides. It misses where
+    /// it is beyond the plane along itself through a side.
+    #[inline(never)]
+    pub(crate) fn triangle(&self, corners: &Triangle<V>) -> Option<CertainCrossing<V>> {
+        let Self { source, direction, error, .. } = *self;
+        let points = corners.points();
+        let reach = |n: V| points.iter().map(|p| n.dot(*p)).fold(-V::Scalar::infinity(), V::Scalar::max);
+        let error = error + error;
+        if let Some(Crossing { entry: latest, normal, .. }) =
+            corners.prism_crossing(V::Scalar::ZERO, error, source, direction)
+        {
+            let falls = normal.dot(direction);
+            let earliest = (reach(normal) + error - normal.dot(source)) / falls;
+            let entry = latest + error / falls;
+            return (earliest <= entry).then(|| self.enters([earliest, entry, latest], normal));
+        }
+        let Frame { corners: [a, b, c], axes: [u, v], .. } = corners.frame()?;
+        let across = |e: V| u * v.dot(e) - v * u.dot(e);
+        [b - a, c - b, a - c].into_iter().find_map(|side| {
+            // Out of the triangle within its plane, and as much across the plane as takes it across the line.
+            let out = across(side);
+            let off = direction - u * u.dot(direction) - v * v.dot(direction);
+            let axis = out - off * (out.dot(direction) / off.dot(direction));
+            self.passes(axis, reach(axis), V::Scalar::ZERO)
+        })
+    }
+
+    /// A triangle about zero, swept by a ball.
+    pub(crate) fn rounded_triangle(&self, corners: &Triangle<V>, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+        let crossed = triangle(corners, radius, self.source, self.direction);
+        // What rounding moves by less than the error may be longer than the radius.
+        let crossed = crossed.map(|at| Crossing { normal: at.normal.unit().unwrap_or(at.normal), ..at });
+        let reach = |n: V| corners.points().iter().map(|p| n.dot(*p)).fold(-V::Scalar::infinity(), V::Scalar::max);
+        self.swept(radius, |x| closest_of_triangle(corners, x), reach, crossed, self.longest_slack())
     }
 }
 

@@ -72,9 +72,6 @@ impl<V: Vector> SupportMap for Ball<V> {
 
     #[inline(always)]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius < V::Scalar::ZERO {
-            return LineCrossing::Unknown;
-        }
         ball(radius, source, direction).into()
     }
 

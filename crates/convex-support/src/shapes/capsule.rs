@@ -87,9 +87,6 @@ impl<V: Vector> SupportMap for Capsule<V> {
 
     #[inline(always)]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius < V::Scalar::ZERO {
-            return LineCrossing::Unknown;
-        }
         Spine::upright(self.half_height).crossing(radius, source, direction).into()
     }
 

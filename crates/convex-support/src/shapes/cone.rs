@@ -3,7 +3,7 @@
 use super::cylinder::{across, disc_hessian};
 use crate::closest_point::closest_of_cone;
 use crate::error::{InvalidShape, measurable, non_negative};
-use crate::line_crossing::{NearLine, closely, cone, times_within};
+use crate::line_crossing::{NearLine, closely, cone};
 use crate::numerics::bound::roundings;
 use crate::numerics::elementary::hypot;
 use crate::support::swept;
@@ -115,14 +115,10 @@ impl<V: Vector3> SupportMap for Cone<V> {
 
     #[inline(always)]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius == V::Scalar::ZERO {
-            return cone(self, source, direction).into();
+        if radius > V::Scalar::ZERO {
+            return LineCrossing::Unknown;
         }
-        // The slant is nearer zero than the base.
-        match times_within(radius, self.slant().1 * self.half_height) {
-            Some(times) => cone(self, source * times, direction * times).into(),
-            None => LineCrossing::Unknown,
-        }
+        cone(self, source, direction).into()
     }
 
     #[inline(always)]

@@ -88,11 +88,7 @@ impl<V: Vector> SupportMap for Cuboid<V> {
         if radius > V::Scalar::ZERO {
             return rounded_cuboid(self.half_extents, radius, source, direction).into();
         }
-        let eroded = self.half_extents + V::splat(radius);
-        if (-eroded).max_element() > V::Scalar::ZERO {
-            return LineCrossing::Unknown;
-        }
-        cuboid(eroded, source, direction).into()
+        cuboid(self.half_extents, source, direction).into()
     }
 
     #[inline(always)]

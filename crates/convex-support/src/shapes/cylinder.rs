@@ -111,11 +111,10 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
 
     #[inline(always)]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        let (half_height, disc_radius) = (self.half_height + radius, self.radius + radius);
-        if radius > V::Scalar::ZERO || half_height.min(disc_radius) < V::Scalar::ZERO {
+        if radius > V::Scalar::ZERO {
             return LineCrossing::Unknown;
         }
-        cylinder(half_height, disc_radius, source, direction).into()
+        cylinder(self.half_height, self.radius, source, direction).into()
     }
 
     #[inline(always)]

@@ -4,7 +4,7 @@ use num_traits::Float as _;
 
 use crate::closest_point::closest_of_ellipsoid;
 use crate::error::{InvalidShape, finite, finite_matrix, orthonormal};
-use crate::line_crossing::{NearLine, ellipsoid, skew, times_within};
+use crate::line_crossing::{NearLine, ellipsoid, skew};
 use crate::numerics::bound::{image, raised, roundings, roundings_of};
 use crate::numerics::jacobi;
 use crate::numerics::range::power_of_two_below;
@@ -240,13 +240,10 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
 
     #[inline(always)]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius == V::Scalar::ZERO {
-            return ellipsoid(&self.axes, self.inverse_semi_axes, source, direction).into();
+        if radius > V::Scalar::ZERO {
+            return LineCrossing::Unknown;
         }
-        match times_within(radius, -(-self.semi_axes).max_element()) {
-            Some(times) => ellipsoid(&self.axes, self.inverse_semi_axes, source * times, direction * times).into(),
-            None => LineCrossing::Unknown,
-        }
+        ellipsoid(&self.axes, self.inverse_semi_axes, source, direction).into()
     }
 
     #[inline(always)]

@@ -104,9 +104,6 @@ impl<V: Vector> SupportMap for Segment<V> {
 
     #[inline]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius < V::Scalar::ZERO {
-            return LineCrossing::Unknown;
-        }
         Spine::between(relative(self.points)).crossing(radius, source, direction).into()
     }
 

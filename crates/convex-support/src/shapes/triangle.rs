@@ -5,9 +5,11 @@ use num_traits::Float as _;
 use super::points::{extent, middle, relative, rounding_of_points};
 use crate::closest_point::closest_of_triangle;
 use crate::error::{InvalidShape, finite, measurable};
-use crate::line_crossing::triangle;
+use crate::line_crossing::{NearLine, triangle};
 use crate::numerics::bound::{roundings, roundings_of};
-use crate::{Core, CoreKind, Feature, Hint, LineCrossing, Rounding, Scalar, SupportMap, Vector};
+use crate::{
+    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector,
+};
 
 /// The triangle of three points, which may be collinear or coincide.
 ///
@@ -125,10 +127,18 @@ impl<V: Vector> SupportMap for Triangle<V> {
 
     #[inline]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius < V::Scalar::ZERO && V::DIM == 2 {
-            return LineCrossing::Unknown;
-        }
         triangle(&Self { points: relative(self.points) }, radius, source, direction).into()
+    }
+
+    /// A closer look in the plane, and in twice the precision, is a search.
+    #[inline]
+    fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
+        let (radius, corners) = (line.radius, Self { points: relative(self.points) });
+        if line.is_close || V::DIM == 2 && radius == V::Scalar::ZERO {
+            return None;
+        }
+        let near = NearLine::new(line, middle(self.points), extent(&self.points).norm() + radius)?;
+        if radius > V::Scalar::ZERO { near.rounded_triangle(&corners, radius) } else { near.triangle(&corners) }
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

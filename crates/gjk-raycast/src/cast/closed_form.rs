@@ -4,10 +4,12 @@
 //! or begins the bracket. Points between entry and exit are taken for points of the body, as the shape promises; if
 //! they are not where the planes are, the answer is in doubt.
 
-use convex_support::{Crossing, LineCrossing, Vector};
+use convex_support::numerics::bound::roundings;
+use convex_support::{CertainCrossing, Crossing, LineCrossing, LineQuery, Vector};
 use num_traits::Float as _;
 
 use super::bracket::Bracket;
+use super::line::Line;
 use super::{RayContact, Stop};
 
 /// Closes the bracket between the plane at the entry and the entry, or finds a plane that the whole ray is before.
@@ -29,16 +31,15 @@ pub(super) fn closed_form<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Ray
         }
         LineCrossing::Crosses(Crossing { entry, normal, .. }) => {
             let start = bracket.ray.start;
-            // What is in the body by two errors is so for certain: one moves the body, and one what is computed of the
-            // line.
-            let by = bracket.error + bracket.error;
-            let eroded = bracket.body.eroded_line_crossing(line.foot, line.direction, by);
-            match eroded {
-                LineCrossing::Crosses(within) if within.entry < start && start < within.exit => {
-                    return Ok(bracket.close_inside());
-                }
-                LineCrossing::Misses(_) | LineCrossing::Unknown => bracket.doubt_entry(),
-                LineCrossing::Crosses(_) => {}
+            let latest = latest_entry(bracket, line);
+            if latest.is_none() {
+                bracket.doubt_entry();
+            }
+            let reversed = Line { direction: -line.direction, ..line };
+            if latest.is_some_and(|entry| entry < start)
+                && latest_entry(bracket, reversed).is_some_and(|exit| start < -exit)
+            {
+                return Ok(bracket.close_inside());
             }
             if entry < start {
                 return Err(Stop::InDoubt);
@@ -53,8 +54,8 @@ pub(super) fn closed_form<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Ray
                     bracket.close_beside(aside, bracket.noise, point, witness, Some(normal)).ok_or(Stop::InDoubt)
                 }
                 Ok(found) => {
-                    if let LineCrossing::Crosses(within) = eroded {
-                        bracket.enter_for_certain(within.entry);
+                    if let Some(latest) = latest {
+                        bracket.enter_for_certain(latest);
                     }
                     Ok(found)
                 }
@@ -64,6 +65,18 @@ pub(super) fn closed_form<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<Ray
                 }
             }
         }
+    }
+}
+
+/// Where a line is in the body for certain, at the latest, however far the error of a point of it moves it: what is
+/// computed of it there, and what the shape is wrong by, the shape knows.
+fn latest_entry<V: Vector>(bracket: &Bracket<'_, V>, Line { foot, direction }: Line<V>) -> Option<V::Scalar> {
+    let scale = bracket.scale;
+    let source = bracket.body.measures().origin + foot * scale;
+    let error = bracket.error * scale + roundings(1.0, source.norm());
+    match bracket.body.certain_crossing(LineQuery::new(source, direction * scale).within(error))? {
+        CertainCrossing::Enters { bounds: [_, latest], .. } => Some(latest),
+        CertainCrossing::Misses(_) => None,
     }
 }
 

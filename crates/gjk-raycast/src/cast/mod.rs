@@ -4,8 +4,8 @@
 
 mod algorithm_3;
 mod bracket;
+mod certain;
 mod closed_form;
-mod direct;
 mod line;
 mod outline;
 mod portal;
@@ -19,8 +19,8 @@ use crate::observer::Observer;
 use crate::{CastMethod, Miss, Outcome, Ray, RayCastOptions, Status};
 use algorithm_3::algorithm_3;
 use bracket::Bracket;
+pub(crate) use certain::{certain, certain_closely, show};
 use closed_form::closed_form;
-pub(crate) use direct::direct;
 pub(crate) use line::{LocalRay, Part};
 use outline::bound_entry;
 use portal::portal;

@@ -2,7 +2,7 @@
 
 use core::cell::Cell;
 
-use convex_support::{Core, Hint, LineCrossing, SupportMap as _, Vector};
+use convex_support::{Core, Hint, SupportMap as _, Vector};
 
 use super::moved::Moved;
 use crate::body::{Of, Shapes};
@@ -52,10 +52,6 @@ impl<V: Vector> Shapes for Placed<'_, V> {
             Of::A => self.a.core_closest_point(x),
             Of::B => self.b.core_closest_point(x),
         }
-    }
-
-    fn line_crossing(&self, _: Of, _: V, _: V, _: V::Scalar) -> LineCrossing<V> {
-        LineCrossing::Unknown
     }
 
     fn each(&self) -> [Shape<'_, V>; 2] {

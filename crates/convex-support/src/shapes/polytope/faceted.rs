@@ -257,7 +257,7 @@ impl<V: Vector> SupportMap for Faceted<V> {
         if radius > V::Scalar::ZERO {
             return LineCrossing::Unknown;
         }
-        faceted(self, radius, source, direction).into()
+        faceted(self, source, direction).into()
     }
 
     #[inline]

@@ -1,0 +1,117 @@
+//! The cast where a shape knows for certain where a line enters it: of a ray at it, and of a point or a ball that moves
+//! against it.
+
+use convex_support::{CertainCrossing, LineQuery, Scalar, Vector};
+use num_traits::Float as _;
+
+use super::{Cast, CastHit};
+use crate::body::{CastBody, Measures};
+use crate::observer::Observer;
+use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCast, RayCastOptions, RayHit, Status};
+
+/// The cast by what a shape answers of the line of the ray; `None` where that is not certain.
+///
+/// In plain numbers alone: with a [closer look](certain_closely) beside it the answer went through memory, and rays at
+/// balls and boxes took 15 to 30 % more instructions.
+#[inline(always)]
+pub(crate) fn certain<V: Vector>(
+    crossing: impl FnOnce(LineQuery<V>) -> Option<CertainCrossing<V>>,
+    ray: Ray<V>,
+    options: &RayCastOptions<V>,
+    is_close: bool,
+) -> Option<RayCast<V>> {
+    let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
+    let is_plain = options.min_lambda <= zero && options.method == CastMethod::Portal && options.max_iterations > 0;
+    if !is_plain {
+        return None;
+    }
+    let line = LineQuery { is_close, ..LineQuery::new(ray.source, ray.direction) };
+    let missed = |axis| (Outcome::Miss(Miss { axis }), [infinity; 2]);
+    let (outcome, [lower, upper]) = match crossing(line)? {
+        // To be refused.
+        CertainCrossing::Misses(_) if options.max_lambda.is_nan() => return None,
+        CertainCrossing::Misses(axis) => {
+            // What is left of it along the ray would count far from here.
+            let along = axis.dot(ray.direction) / ray.direction.length_squared();
+            missed((axis - ray.direction * along).unit().unwrap_or(axis))
+        }
+        CertainCrossing::Enters { entry, bounds, normal } => {
+            let [earliest, latest] = bounds;
+            let is_after_end = !(entry <= options.max_lambda);
+            // By rounding alone, the source may be in the target, or the end of the ray where it enters. NaN and
+            // infinity tell nothing.
+            let begin = if is_after_end { options.max_lambda } else { zero };
+            if !(earliest > begin && latest < infinity) {
+                return None;
+            }
+            if is_after_end {
+                missed(normal)
+            } else {
+                (Outcome::Hit(RayHit { lambda: entry, point: ray.at(entry), normal: Some(normal) }), bounds)
+            }
+        }
+    };
+    Some(RayCast { outcome, lower, upper, status: Status::Converged, iterations: 1 })
+}
+
+/// The same, in plain numbers or by a closer look, of a body and a ray whose direction may be wrong by some part of its
+/// length; an observer sees the plane that tells it.
+#[inline(always)]
+pub(crate) fn certain_closely<B: CastBody>(
+    body: &mut B,
+    ray: Ray<B::Vector>,
+    direction_error: <B::Vector as Vector>::Scalar,
+    options: &RayCastOptions<B::Vector>,
+    observer: &mut Observer<'_, B::Vector>,
+) -> Option<RayCast<B::Vector>> {
+    let Measures { origin, radius, extent, .. } = body.measures();
+    // Near the body the line is no farther from its source than this.
+    let reach = (ray.source - origin).norm() + (extent + radius) + (extent + radius);
+    let turned = if direction_error > Scalar::ZERO { direction_error * reach } else { Scalar::ZERO };
+    let ask = |line: LineQuery<B::Vector>| body.certain_crossing(line.within(turned));
+    // Of a ray that begins inside, plain numbers tell where its line enters, and a closer look takes longer than a
+    // search.
+    let is_unknown = ask(LineQuery::new(ray.source, ray.direction)).is_none();
+    let answer = certain(ask, ray, options, is_unknown)?;
+    show(&answer, body, ray, observer);
+    Some(answer)
+}
+
+/// Shows an observer the plane that tells an answer.
+#[inline(always)]
+pub(crate) fn show<B: CastBody>(
+    answer: &RayCast<B::Vector>,
+    body: &mut B,
+    ray: Ray<B::Vector>,
+    observer: &mut Observer<'_, B::Vector>,
+) {
+    if observer.is_none() {
+        return;
+    }
+    let (at, axis) = match answer.outcome {
+        Outcome::Hit(RayHit { point, normal: Some(normal), .. }) => (point, normal),
+        Outcome::Miss(Miss { axis }) => (ray.source, axis),
+        Outcome::Hit(_) | Outcome::Undecided => return,
+    };
+    let w = at - body.measures().origin - body.support(axis).0;
+    let (lower, upper) = (Scalar::ZERO, <B::Vector as Vector>::Scalar::infinity());
+    observer.show(|| Iterate { iteration: 0, simplex: &[], v: axis, w, scale: Scalar::ONE, lower, upper });
+}
+
+impl<V: Vector> Cast<V> {
+    /// What is certain of a ray and a body.
+    pub(crate) fn of_certain<B: CastBody<Vector = V>>(answer: &RayCast<V>, body: &B, ray: Ray<V>) -> Self {
+        let &RayCast { ref outcome, lower, upper, status, iterations } = answer;
+        let Measures { origin, radius, .. } = body.measures();
+        let outcome = match *outcome {
+            Outcome::Hit(RayHit { lambda, normal, .. }) => {
+                let spot = (ray.source - origin) + ray.direction * lambda;
+                let witness = body.witness(spot - normal.unwrap_or_default() * radius);
+                Outcome::Hit(CastHit { lambda, normal, spot, witness })
+            }
+            Outcome::Miss(miss) => Outcome::Miss(miss),
+            Outcome::Undecided => Outcome::Undecided,
+        };
+        Self { outcome, lower, upper, status, iterations, is_open: false, scale: Scalar::ONE }
+    }
+}
