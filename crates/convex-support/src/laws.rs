@@ -29,7 +29,9 @@ use num_traits::Float as _;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 
-use crate::{CoreKind, Hint, Scalar, SupportMap, Vector, bounding_box, bounding_sphere, strategies};
+use crate::{
+    CertainCrossing, CoreKind, Hint, LineQuery, Scalar, SupportMap, Vector, bounding_box, bounding_sphere, strategies,
+};
 
 /// How many times its own rounding a shape may be off: a law compares up to four support points, each placed and
 /// measured.
@@ -59,7 +61,7 @@ pub fn hold<S: SupportMap + Debug>(shapes: impl Strategy<Value = S>) {
 /// # Errors
 /// Names the first law that is broken, and by how much it is.
 pub fn check<V: Vector>(shape: AnyShape<'_, V>, d: V, e: V) -> Result<(), TestCaseError> {
-    let laws: [(&str, Law<V>); 10] = [
+    let laws: [(&str, Law<V>); 11] = [
         ("the support point reaches the support value", support_point_reaches_the_support_value),
         ("no support point reaches farther", no_support_point_reaches_farther),
         ("the support value is positively homogeneous", support_value_is_positively_homogeneous),
@@ -67,6 +69,7 @@ pub fn check<V: Vector>(shape: AnyShape<'_, V>, d: V, e: V) -> Result<(), TestCa
         ("origin, core and radius make the set", origin_core_and_radius_make_the_set),
         ("the extent bounds the core", extent_bounds_the_core),
         ("the closest point of the core is the closest", closest_point_of_the_core_is_the_closest),
+        ("a line enters where it certainly does", line_enters_where_it_certainly_does),
         ("hints never change the value", hints_never_change_the_value),
         ("bounds contain the set and touch it", bounds_contain_the_set_and_touch_it),
         ("zero gives a point of the set, and nothing panics", zero_gives_a_point_of_the_set),
@@ -170,6 +173,42 @@ fn closest_point_of_the_core_is_the_closest<V: Vector>(
         let lengths = x.norm() + core.extent;
         let slack = rounding + V::Scalar::from_f64(SLACK) * V::Scalar::EPSILON * lengths;
         at_most(out.dot(core_point(shape, out)) - out.dot(p), V::Scalar::ZERO, slack * lengths)?;
+    }
+    Ok(())
+}
+
+/// Algorithms trust this without a check. Lines are aimed at the surface along a direction, from beyond it and from
+/// within, and past it.
+fn line_enters_where_it_certainly_does<V: Vector>(
+    shape: AnyShape<'_, V>,
+    d: V,
+    e: V,
+    rounding: V::Scalar,
+) -> Result<(), TestCaseError> {
+    let core = shape.core();
+    let size = core.extent + core.radius;
+    let (at, away) = (shape.support(d), e * (size / e.norm()));
+    for (source, direction) in [(at + away, -away), (at + away, away), (core.origin + away, at - core.origin)] {
+        // Lengths whose squares are no numbers tell nothing.
+        if !(direction.length_squared() > V::Scalar::ZERO && direction.length_squared().is_finite()) {
+            continue;
+        }
+        let line = LineQuery::new(source, direction);
+        let closely = || shape.certain_crossing(LineQuery { is_close: true, ..line });
+        match shape.certain_crossing(line).or_else(closely) {
+            None => {}
+            Some(CertainCrossing::Misses(axis)) => {
+                at_most(shape.support_value(axis), axis.dot(source), (rounding + rounding) * axis.norm())?;
+            }
+            Some(CertainCrossing::Enters { entry, bounds: [earliest, latest], normal }) => {
+                at_most(earliest, entry, V::Scalar::ZERO)?;
+                at_most(entry, latest, V::Scalar::ZERO)?;
+                let inside = source + direction * latest;
+                for n in [d, -d, e, -e, normal] {
+                    at_most(n.dot(inside), shape.support_value(n), rounding * n.norm())?;
+                }
+            }
+        }
     }
     Ok(())
 }

@@ -148,7 +148,6 @@ pub(crate) struct NearLine<V: Vector> {
 impl<V: Vector> CertainCrossing<V> {
     /// The same with its normal, or the vector along which the line is apart, mapped.
     #[inline(always)]
-    #[must_use]
     pub fn with_normal(self, normal: impl FnOnce(V) -> V) -> Self {
         match self {
             Self::Misses(axis) => Self::Misses(normal(axis)),
