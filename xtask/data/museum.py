@@ -3,7 +3,7 @@
 
 Every line is a query of the query format, and says in fields of its own where it is from: `_issue`, `_title`, `_reported`, and
 `_pose`, which is "given" where all numbers that decide are those of the report, and "after the report" where a number that it
-leaves out was chosen here. `_truth` says how the truth is known. Truths are closed forms in fifty digits. Those of polytopes
+leaves out was chosen here. `_truth` says how the truth is known, and `_today` what `museum_today.json` has of other libraries. Truths are closed forms in fifty digits. Those of polytopes
 are the least of the support values of their difference along its facets, or the shortest vector to it.
 
     python3 xtask/data/museum.py     # then: cargo xtask museum --write
@@ -564,8 +564,11 @@ row("volesti-325", "GeomScale/volesti#325", "The ellipse in a polygon", "an exce
     {"query": "inscribed_ellipsoid", "halfspaces": [{"normal": [1, 0], "offset": 1}, {"normal": [-1, 0], "offset": 1}, {"normal": [0, 1], "offset": 1}, {"normal": [0, -1], "offset": 1}]},
     {"log_det": 0.0}, "the unit disc", pose="after the report", allow=1e-9)
 
-with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "museum.jsonl"), "w", encoding="utf-8") as file:
+HERE = os.path.dirname(os.path.abspath(__file__))
+with open(os.path.join(HERE, "museum_today.json"), encoding="utf-8") as file:
+    TODAY = json.load(file)
+with open(os.path.join(HERE, "museum.jsonl"), "w", encoding="utf-8") as file:
     file.write("# Written by museum.py, which says what the fields are.\n")
     for line in ROWS:
-        file.write(json.dumps(line, ensure_ascii=False) + "\n")
+        file.write(json.dumps({**line, "_today": TODAY.get(line["id"], "not asked")}, ensure_ascii=False) + "\n")
 print(len(ROWS), "rows")

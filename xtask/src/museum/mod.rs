@@ -219,14 +219,14 @@ fn print(pieces: &[Piece]) -> io::Result<()> {
 fn markdown(pieces: &[Piece], part: &Part) -> String {
     let mut text = format!(
         "<img src=\"figures/museum-{}.svg\" alt=\"Drawings of the poses: {}\" width=\"568\">\n\n\
-         | pose | what is asked | reported | truth | our answer | certainty |\n|---|---|---|---|---|---|\n",
+         | pose | what is asked | reported | truth | our answer | certainty | others today |\n|---|---|---|---|---|---|---|\n",
         part.name,
         part.title.to_lowercase()
     );
     for piece in part.of(pieces) {
         let _ = writeln!(
             text,
-            "| `{}`{} of {} | {} | {} | {}: {} | {} | {} |",
+            "| `{}`{} of {} | {} | {} | {}: {} | {} | {} | {} |",
             piece.said("id"),
             if piece.said("_pose") == "given" { "" } else { "\\*" },
             piece.link(),
@@ -235,7 +235,8 @@ fn markdown(pieces: &[Piece], part: &Part) -> String {
             piece.truth(),
             piece.said("_truth"),
             piece.shown(&piece.answer),
-            piece.proof()
+            piece.proof(),
+            piece.said("_today")
         );
     }
     text
