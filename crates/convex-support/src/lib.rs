@@ -56,8 +56,8 @@
 #[cfg(not(any(feature = "f64", feature = "glam-032")))]
 compile_error!(
     "convex-support needs double precision: turn on the feature `f64` of the crate that your Cargo.toml names, \
-     convex-support or one that is written over it; it is on by default. A program that is held to glam 0.32, which has \
-     no such feature, turns on `glam-032` instead, and runs `cargo update --package glam@0.34 --precise 0.32.1`"
+     convex-support or one that is written over it; it is on by default. A program that is held to glam 0.32, which \
+     has no such feature, turns on `glam-032` instead, and runs `cargo update --package glam@0.34 --precise 0.32.1`"
 );
 
 extern crate alloc;

@@ -219,7 +219,8 @@ fn print(pieces: &[Piece]) -> io::Result<()> {
 fn markdown(pieces: &[Piece], part: &Part) -> String {
     let mut text = format!(
         "<img src=\"figures/museum-{}.svg\" alt=\"Drawings of the poses: {}\" width=\"568\">\n\n\
-         | pose | what is asked | reported | truth | our answer | certainty | others today |\n|---|---|---|---|---|---|---|\n",
+         | pose | what is asked | reported | truth | our answer | certainty | others today |\n\
+         |---|---|---|---|---|---|---|\n",
         part.name,
         part.title.to_lowercase()
     );
