@@ -40,6 +40,12 @@ def placed(shape, at=IDENTITY):
         rotation = rotation_of(shape["rotation"]) if "rotation" in shape else np.eye(3)
         at = compose(at, (rotation, vector(shape["center"])))
         return {"type": "ellipsoid", "semi_axes": shape["semi_axes"]}, at
+    if shape["type"] == "affine":
+        # A rotation that is written as a matrix.
+        matrix = np.array([vector(row) for row in shape["matrix"]])
+        if np.abs(matrix @ matrix.T - np.eye(3)).max() > 1e-6 or np.linalg.det(matrix) < 0.0:
+            raise NotAsked
+        return placed(shape["of"], compose(at, (matrix, vector(shape.get("translation", [0, 0, 0])))))
     if shape["type"] != "posed":
         return shape, at
     pose = (rotation_of(shape.get("rotation", [0, 0, 0, 1])), vector(shape.get("translation", [0, 0, 0])))

@@ -55,9 +55,9 @@
 
 #[cfg(not(any(feature = "f64", feature = "glam-032")))]
 compile_error!(
-    "convex-support needs double precision: turn on its feature `f64` (on by default). A program that is held to glam \
-     0.32, which has no such feature, turns on `glam-032` instead, and runs `cargo update --package glam@0.34 \
-     --precise 0.32.1`"
+    "convex-support needs double precision: turn on the feature `f64` of the crate that your Cargo.toml names, \
+     convex-support or one that is written over it; it is on by default. A program that is held to glam 0.32, which \
+     has no such feature, turns on `glam-032` instead, and runs `cargo update --package glam@0.34 --precise 0.32.1`"
 );
 
 extern crate alloc;
@@ -100,7 +100,7 @@ pub use glam;
 pub use angular_velocity::{AngularVelocity, Spin};
 pub use bounds::{Aabb, BoundingSphere, bounding_box, bounding_sphere};
 pub use bvh::{
-    Bound, BoxDistance, Boxes, Bvh, Frame, PairSearch, RoughBound, RoughBoxDistance, RoughSweptBox, RoughUnit,
+    Bound, BoxDistance, Boxes, Bvh, CoarseBound, CoarseBoxDistance, CoarseSweptBox, CoarseUnit, Frame, PairSearch,
     SweptBox, WIDTH, outer_box,
 };
 pub use closest_point::closest_point;

@@ -15,6 +15,15 @@ const SOURCES: [&str; 6] = ["rs", "toml", "py", "sh", "css", "jsonl"];
 
 /// Names of other programs and languages, and of files that a task writes.
 const FOREIGN: &[&str] = &[
+    // Bevy
+    "ConicalFrustum",
+    "Extrusion",
+    "Plane3d",
+    "Segment3d",
+    "Torus",
+    "Triangle3d",
+    "bevy_math",
+    "bevy_shape",
     // CGAL
     "Approximate_min_ellipsoid_d",
     "Min_ellipse_2",

@@ -180,6 +180,8 @@ pub fn difficulty_as_said(kind: &str) -> String {
         "grazing" => "depth of the graze",
         "far" => "distance of source or body",
         "offset" => "distance from the origin",
+        "near-goal" => "distance from the goal",
+        "near-start" => "distance from the start",
         "ratio" => "ratio of the sizes",
         "thick" | "thickness" => "thickness over width",
         other => other,
@@ -216,8 +218,8 @@ pub fn difficulty(tag: &str) -> Option<(&str, f64)> {
         Some((base, exponent)) => base.parse::<f64>().ok()?.powi(exponent.parse().ok()?),
         None => number.parse().ok()?,
     };
-    // Dimensions, counts and steps of a motion are no difficulties.
-    (kind.len() > 1 && value > 0.0 && kind != "nesting" && kind != "f").then_some((kind, value))
+    // Dimensions, counts and steps of a motion are no difficulties, nor is the name of a scene, such as `shelf_ur5`.
+    (kind.len() > 1 && value > 0.0 && kind != "nesting" && !kind.contains('_')).then_some((kind, value))
 }
 
 #[cfg(test)]
@@ -259,5 +261,6 @@ mod tests {
         assert_eq!(difficulty("n4"), None, "a dimension");
         assert_eq!(difficulty("3d"), None, "a dimension");
         assert_eq!(difficulty("easy"), None, "no number at all");
+        assert_eq!(difficulty("bookshelf_small_ur5"), None, "the name of a scene, which ends in a digit");
     }
 }

@@ -4,7 +4,7 @@ use core::marker::PhantomData;
 
 use num_traits::Float as _;
 
-use super::frame::{Frame, RoughUnit, power_of_two_near};
+use super::frame::{CoarseUnit, Frame, power_of_two_near};
 use super::node::Boxes;
 use crate::glam::Vec4;
 use crate::numerics::range::is_comfortable;
@@ -13,22 +13,22 @@ use crate::{Aabb, Scalar, Vector};
 /// A question to a tree of boxes: a lower bound on a quantity, such as a distance, for everything that lies in a box.
 ///
 /// The bound of an item's own box decides whether the item is [shown](super::Bvh::search). Which nodes are looked into
-/// is decided by [rougher](RoughBound) bounds of their boxes, in single precision and for four boxes at once. An
-/// implementor must obey one law, whatever rounding does: *if the bound of a box is at most a limit, so is the rough
+/// is decided by [coarser](CoarseBound) bounds of their boxes, in single precision and for four boxes at once. An
+/// implementor must obey one law, whatever rounding does: *if the bound of a box is at most a limit, so is the coarse
 /// bound of every box around it.* Then what a search leaves out depends on the items' boxes alone, not on the tree.
 pub trait Bound<V: Vector> {
     /// The same question in single precision.
-    type Rough: RoughBound;
+    type Coarse: CoarseBound;
 
     /// The bound of one box; infinity where nothing in it concerns the question.
     fn bound(&self, around: &Aabb<V>) -> V::Scalar;
 
     /// The same question to the boxes of a tree, which are seen in this frame.
-    fn rough(&self, frame: &Frame<V>) -> Self::Rough;
+    fn coarse(&self, frame: &Frame<V>) -> Self::Coarse;
 }
 
 /// A question to four boxes in single precision.
-pub trait RoughBound {
+pub trait CoarseBound {
     /// Numbers, none of them negative or NaN, in the order of the bounds of four boxes, in any unit and on any scale;
     /// infinity where nothing in a box concerns the question. Those of places without a child do not matter.
     fn bounds(&self, boxes: &Boxes) -> Vec4;
@@ -75,7 +75,7 @@ impl<V: Vector> SweptBox<V> {
 }
 
 impl<V: Vector> Bound<V> for SweptBox<V> {
-    type Rough = RoughSweptBox<V>;
+    type Coarse = CoarseSweptBox<V>;
 
     #[inline(always)]
     fn bound(&self, around: &Aabb<V>) -> V::Scalar {
@@ -100,52 +100,52 @@ impl<V: Vector> Bound<V> for SweptBox<V> {
     /// Coordinates are rounded so that the box begins earlier and ends later, the end is put off by all that rounds,
     /// and the limit has room for what rounds the beginning.
     #[inline]
-    fn rough(&self, frame: &Frame<V>) -> RoughSweptBox<V> {
-        let mut rough = RoughSweptBox {
+    fn coarse(&self, frame: &Frame<V>) -> CoarseSweptBox<V> {
+        let mut coarse = CoarseSweptBox {
             from: [[Vec4::ZERO; 2]; 3],
             inverse: [[Vec4::ONE; 2]; 3],
             first: [0; 3],
-            unit: RoughUnit::new::<V::Scalar>(self.unit.as_f64() * frame.unit().per_unit()),
+            unit: CoarseUnit::new::<V::Scalar>(self.unit.as_f64() * frame.unit().per_unit()),
             space: PhantomData,
         };
         let largest = f64::from(f32::MAX);
         for i in 0..V::DIM {
             let inverse = self.inverse.get(i).as_f64();
             // Along a plane a box never ends where it has begun, and begins at the end of all numbers where it has not.
-            let (begin, end) = (inverse.clamp(-largest, largest), inverse * (1.0 + 2.0 * RoughUnit::ROUNDING));
-            rough.inverse[i] = [begin, end].map(|inverse| Vec4::splat(inverse as f32));
+            let (begin, end) = (inverse.clamp(-largest, largest), inverse * (1.0 + 2.0 * CoarseUnit::ROUNDING));
+            coarse.inverse[i] = [begin, end].map(|inverse| Vec4::splat(inverse as f32));
             let first = usize::from(inverse.is_sign_negative());
             let from = [frame.up(i, self.from[0].get(i)), frame.down(i, self.from[1].get(i))];
-            rough.from[i] = [from[first], from[1 - first]].map(Vec4::splat);
-            rough.first[i] = first;
+            coarse.from[i] = [from[first], from[1 - first]].map(Vec4::splat);
+            coarse.first[i] = first;
         }
-        rough
+        coarse
     }
 }
 
 /// A [`SweptBox`] in the frame of a tree, with λ in a unit in which the largest coordinate of the direction is between
 /// 1 and 2.
 #[derive(Clone, Copy, Debug)]
-pub struct RoughSweptBox<V> {
+pub struct CoarseSweptBox<V> {
     /// What the side of a box that is met first is compared with, and what the other.
     from: [[Vec4; 2]; 3],
     /// For where a box begins, and for where it ends.
     inverse: [[Vec4; 2]; 3],
     /// The side of a box that is met first.
     first: [usize; 3],
-    unit: RoughUnit,
+    unit: CoarseUnit,
     space: PhantomData<V>,
 }
 
-impl<V> RoughSweptBox<V> {
+impl<V> CoarseSweptBox<V> {
     /// The unit of λ.
     #[must_use]
-    pub fn unit(&self) -> RoughUnit {
+    pub fn unit(&self) -> CoarseUnit {
         self.unit
     }
 }
 
-impl<V: Vector> RoughBound for RoughSweptBox<V> {
+impl<V: Vector> CoarseBound for CoarseSweptBox<V> {
     #[inline(always)]
     fn bounds(&self, boxes: &Boxes) -> Vec4 {
         let (mut entry, mut exit) = (Vec4::ZERO, Vec4::INFINITY);
@@ -183,7 +183,7 @@ impl<V: Vector> BoxDistance<V> {
 }
 
 impl<V: Vector> Bound<V> for BoxDistance<V> {
-    type Rough = RoughBoxDistance<V>;
+    type Coarse = CoarseBoxDistance<V>;
 
     #[inline(always)]
     fn bound(&self, around: &Aabb<V>) -> V::Scalar {
@@ -197,23 +197,23 @@ impl<V: Vector> Bound<V> for BoxDistance<V> {
     }
 
     #[inline]
-    fn rough(&self, frame: &Frame<V>) -> RoughBoxDistance<V> {
+    fn coarse(&self, frame: &Frame<V>) -> CoarseBoxDistance<V> {
         let of = frame.outwards(&self.of);
         let of = core::array::from_fn(|i| [of.min[i], of.max[i]].map(Vec4::splat));
-        RoughBoxDistance { of, unit: frame.unit(), space: PhantomData }
+        CoarseBoxDistance { of, unit: frame.unit(), space: PhantomData }
     }
 }
 
 /// A [`BoxDistance`] in the frame of a tree: the bounds are the squares of distances, and all rounding is in the limit.
 #[derive(Clone, Copy, Debug)]
-pub struct RoughBoxDistance<V> {
+pub struct CoarseBoxDistance<V> {
     /// By coordinate, the smallest and the largest.
     of: [[Vec4; 2]; 3],
-    unit: RoughUnit,
+    unit: CoarseUnit,
     space: PhantomData<V>,
 }
 
-impl<V: Vector> RoughBound for RoughBoxDistance<V> {
+impl<V: Vector> CoarseBound for CoarseBoxDistance<V> {
     #[inline(always)]
     fn bounds(&self, boxes: &Boxes) -> Vec4 {
         let mut squared = Vec4::ZERO;

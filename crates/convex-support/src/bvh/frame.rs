@@ -92,8 +92,8 @@ impl<V: Vector> Frame<V> {
 
     /// The unit of lengths as they are seen.
     #[must_use]
-    pub fn unit(&self) -> RoughUnit {
-        RoughUnit::new::<V::Scalar>(self.per_unit)
+    pub fn unit(&self) -> CoarseUnit {
+        CoarseUnit::new::<V::Scalar>(self.per_unit)
     }
 
     /// A box as it is seen; in the plane, about zero of the third coordinate.
@@ -162,17 +162,17 @@ fn up(x: f64) -> f32 {
     -down(-x)
 }
 
-/// The unit of [rough bounds](super::RoughBound), and what they may be wrong by: 64 ε of single precision, which is
+/// The unit of [coarse bounds](super::CoarseBound), and what they may be wrong by: 64 ε of single precision, which is
 /// what rounds the few operations that they are made of and those of bounds that may be in single precision themselves;
 /// and a few of the smallest numbers.
 #[derive(Clone, Copy, Debug)]
-pub struct RoughUnit {
+pub struct CoarseUnit {
     per_unit: f64,
     least: f64,
 }
 
-impl RoughUnit {
-    /// Relative to a bound, by how much a rough one may exceed it.
+impl CoarseUnit {
+    /// Relative to a bound, by how much a coarse one may exceed it.
     pub const ROUNDING: f64 = 64.0 * f32::EPSILON as f64;
 
     /// The unit, of which there are so many in one of the question's, which is computed in scalars of this kind.
@@ -194,7 +194,7 @@ impl RoughUnit {
         down(x)
     }
 
-    /// What rough bounds do not exceed if they are right to [`ROUNDING`](Self::ROUNDING) and stand for bounds of at
+    /// What coarse bounds do not exceed if they are right to [`ROUNDING`](Self::ROUNDING) and stand for bounds of at
     /// most `limit`.
     #[inline]
     #[must_use]

@@ -13,8 +13,8 @@ use alloc::vec::Vec;
 
 use crate::{Aabb, Vector};
 
-pub use self::bound::{Bound, BoxDistance, RoughBound, RoughBoxDistance, RoughSweptBox, SweptBox};
-pub use self::frame::{Frame, RoughUnit};
+pub use self::bound::{Bound, BoxDistance, CoarseBound, CoarseBoxDistance, CoarseSweptBox, SweptBox};
+pub use self::frame::{CoarseUnit, Frame};
 pub use self::node::{Boxes, WIDTH};
 use self::node::{Node, Slot};
 pub use self::outer_box::outer_box;

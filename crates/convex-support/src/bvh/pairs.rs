@@ -96,7 +96,7 @@ impl<'t, V: Vector> PairSearch<'t, V> {
         looked
     }
 
-    /// Shows those of some pairs of items, at most a batch, whose own boxes are near. Seen roughly, all are.
+    /// Shows those of some pairs of items, at most a batch, whose own boxes are near. By coarse bounds, all are.
     #[inline(always)]
     fn show(
         &self,
@@ -141,7 +141,7 @@ impl<'t, V: Vector> PairSearch<'t, V> {
         seen
     }
 
-    /// The pairs that a pair consists of and whose boxes are near, roughly. Not for two items.
+    /// The pairs that a pair consists of and whose boxes are near, by coarse bounds. Not for two items.
     #[inline(always)]
     fn expand(&self, (a, b): Pair, mut push: impl FnMut(Pair)) {
         match (a.child(), b.child()) {

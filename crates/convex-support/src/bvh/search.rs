@@ -4,7 +4,7 @@ use core::hint::black_box;
 use core::ops::ControlFlow;
 
 use super::Bvh;
-use super::bound::{Bound, RoughBound};
+use super::bound::{Bound, CoarseBound};
 use super::node::{Child, Link, Node, WIDTH};
 use crate::glam::Vec4;
 use crate::{Scalar, Vector};
@@ -38,8 +38,8 @@ impl<V: Vector> Bvh<V> {
         mut visit: impl FnMut(usize, V::Scalar) -> ControlFlow<(), V::Scalar>,
     ) -> usize {
         let Some(mut limit) = finite(limit) else { return 0 };
-        let rough = question.rough(&self.frame);
-        let mut end = rough_limit(&rough, limit);
+        let coarse = question.coarse(&self.frame);
+        let mut end = coarse_limit(&coarse, limit);
         // What remains to be looked at, the least bound on top, and what is looked at next: of a node the least of its
         // children, for whose order it need not wait. Places that are not read before they are written are all bits
         // zero, which is soon done.
@@ -55,7 +55,7 @@ impl<V: Vector> Bvh<V> {
                         let ControlFlow::Continue(least) = visit(item, bound) else { return nodes };
                         let Some(least) = finite(least) else { return nodes };
                         if least != limit {
-                            (limit, end) = (least, rough_limit(&rough, least));
+                            (limit, end) = (least, coarse_limit(&coarse, least));
                         }
                     }
                 }
@@ -63,7 +63,7 @@ impl<V: Vector> Bvh<V> {
                     nodes += 1;
                     let node = &self.nodes[index];
                     self.fetch(node);
-                    let bounds = rough.bounds(&node.boxes);
+                    let bounds = coarse.bounds(&node.boxes);
                     let near = bounds.cmple(Vec4::splat(end)).bitmask();
                     if near != 0 {
                         let (sorted, least) = sorted(near, node.children, bounds.to_array());
@@ -95,8 +95,8 @@ impl<V: Vector> Bvh<V> {
         mut visit: impl FnMut(usize) -> ControlFlow<()>,
     ) -> usize {
         let Some(limit) = finite(limit) else { return 0 };
-        let rough = question.rough(&self.frame);
-        let end = Vec4::splat(rough_limit(&rough, limit));
+        let coarse = question.coarse(&self.frame);
+        let end = Vec4::splat(coarse_limit(&coarse, limit));
         // Of places, the first is of the root, and others are not read before they are written.
         let (mut below, mut found) = ([Link::ROOT; STACK_WITHIN], [Link::NONE; BATCH]);
         let (mut top, mut count, mut nodes, mut next) = (1, 0, 0, None);
@@ -105,7 +105,7 @@ impl<V: Vector> Bvh<V> {
             nodes += 1;
             let node = &self.nodes[link.index()];
             self.fetch(node);
-            let near = rough.bounds(&node.boxes).cmple(end).bitmask();
+            let near = coarse.bounds(&node.boxes).cmple(end).bitmask();
             for (lane, &child) in node.children.iter().enumerate() {
                 let is_near = near >> lane & 1 != 0;
                 (below[top], found[count]) = (child, child);
@@ -166,10 +166,10 @@ pub(super) fn finite<S: Scalar>(limit: S) -> Option<S> {
     (limit >= S::ZERO).then(|| limit.min(S::max_value()))
 }
 
-/// The rough limit for a limit. A bound that is the largest number may stand for a larger one.
+/// The coarse limit for a limit. A bound that is the largest number may stand for a larger one.
 #[inline]
-fn rough_limit<S: Scalar>(rough: &impl RoughBound, limit: S) -> f32 {
-    rough.limit(if limit < S::max_value() { limit.as_f64() } else { f64::INFINITY })
+fn coarse_limit<S: Scalar>(coarse: &impl CoarseBound, limit: S) -> f32 {
+    coarse.limit(if limit < S::max_value() { limit.as_f64() } else { f64::INFINITY })
 }
 
 /// The children with their bounds in descending order, of which those that the bits of `near` leave out come last; and

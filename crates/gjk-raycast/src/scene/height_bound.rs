@@ -1,7 +1,7 @@
 //! How high boxes are above a half-space.
 
 use convex_support::glam::Vec4;
-use convex_support::{Aabb, Bound, Boxes, Frame, RoughBound, RoughUnit, Scalar, Vector};
+use convex_support::{Aabb, Bound, Boxes, CoarseBound, CoarseUnit, Frame, Scalar, Vector};
 use num_traits::Float as _;
 
 use crate::HalfSpace;
@@ -25,7 +25,7 @@ impl<V: Vector> HeightBound<V> {
 }
 
 impl<V: Vector> Bound<V> for HeightBound<V> {
-    type Rough = RoughHeight;
+    type Coarse = CoarseHeight;
 
     fn bound(&self, around: &Aabb<V>) -> V::Scalar {
         let mut height = -self.offset;
@@ -40,34 +40,34 @@ impl<V: Vector> Bound<V> for HeightBound<V> {
 
     /// In the frame of a tree, `x = o + ξ/k`, a height is `(n·ξ + k(n·o − c))/k`, of which the second part is one
     /// number. Both bounds are sums, which rounding moves by a few ε of their terms.
-    fn rough(&self, frame: &Frame<V>) -> RoughHeight {
+    fn coarse(&self, frame: &Frame<V>) -> CoarseHeight {
         let (unit, epsilon) = (frame.unit(), V::Scalar::EPSILON.as_f64());
         let (mut rest, mut terms) = (-self.offset.as_f64(), self.offset.as_f64().abs());
-        let mut rough = RoughHeight { normal: [Vec4::ZERO; 3], nearest: [0; 3], rest: 0.0, unit };
+        let mut coarse = CoarseHeight { normal: [Vec4::ZERO; 3], nearest: [0; 3], rest: 0.0, unit };
         for i in 0..V::DIM {
             let n = self.normal.get(i).as_f64();
             let term = n * frame.origin().get(i).as_f64();
             (rest, terms) = (rest + term, terms + term.abs());
-            rough.normal[i] = Vec4::splat(n as f32);
-            rough.nearest[i] = usize::from(n < 0.0);
+            coarse.normal[i] = Vec4::splat(n as f32);
+            coarse.nearest[i] = usize::from(n < 0.0);
         }
-        rough.rest = RoughUnit::down((rest - 16.0 * epsilon * terms) * unit.per_unit());
-        rough
+        coarse.rest = CoarseUnit::down((rest - 16.0 * epsilon * terms) * unit.per_unit());
+        coarse
     }
 }
 
 /// A [`HeightBound`] in the frame of a tree.
-pub(super) struct RoughHeight {
+pub(super) struct CoarseHeight {
     /// Coordinates that are not used are zero.
     normal: [Vec4; 3],
     /// The side of a box that is nearest.
     nearest: [usize; 3],
     /// What is the same for all boxes, from below.
     rest: f32,
-    unit: RoughUnit,
+    unit: CoarseUnit,
 }
 
-impl RoughBound for RoughHeight {
+impl CoarseBound for CoarseHeight {
     fn bounds(&self, boxes: &Boxes) -> Vec4 {
         let (mut height, mut terms) = (Vec4::splat(self.rest), Vec4::splat(self.rest.abs()));
         for i in 0..3 {

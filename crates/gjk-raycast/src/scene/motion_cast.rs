@@ -2,7 +2,7 @@
 
 use convex_support::glam::Vec4;
 use convex_support::{
-    Aabb, Bound, Boxes, Frame, RoughBound, RoughSweptBox, RoughUnit, Scalar, SupportMap, SweptBox, Vector,
+    Aabb, Bound, Boxes, CoarseBound, CoarseSweptBox, CoarseUnit, Frame, Scalar, SupportMap, SweptBox, Vector,
 };
 use num_traits::Float as _;
 use smallvec::SmallVec;
@@ -156,7 +156,7 @@ impl<V: Vector> MovingBox<V> {
 }
 
 impl<V: Vector> Bound<V> for MovingBalls<V> {
-    type Rough = RoughMovingBalls<V>;
+    type Coarse = CoarseMovingBalls<V>;
 
     fn bound(&self, around: &Aabb<V>) -> V::Scalar {
         // What the sum of a piece's start and the time in it loses.
@@ -167,39 +167,39 @@ impl<V: Vector> Bound<V> for MovingBalls<V> {
         })
     }
 
-    fn rough(&self, frame: &Frame<V>) -> RoughMovingBalls<V> {
-        let rough = |piece: &MovingBox<V>| {
-            let swept = piece.swept.rough(frame);
+    fn coarse(&self, frame: &Frame<V>) -> CoarseMovingBalls<V> {
+        let coarse = |piece: &MovingBox<V>| {
+            let swept = piece.swept.coarse(frame);
             // Without an end it ends where all numbers do.
             let duration = swept.limit(piece.duration.as_f64());
-            RoughMovingBox { start: 0.0, duration, per_piece: 1.0, swept }
+            CoarseMovingBox { start: 0.0, duration, per_piece: 1.0, swept }
         };
-        let mut balls: SmallVec<[_; MAX_PIECES]> = self.0.iter().map(rough).collect();
+        let mut balls: SmallVec<[_; MAX_PIECES]> = self.0.iter().map(coarse).collect();
         // All in the finest unit of time.
         let per_unit = balls.iter().map(|ball| ball.swept.unit().per_unit()).fold(0.0, f64::max).min(f64::MAX);
         for (ball, piece) in balls.iter_mut().zip(&self.0) {
-            ball.start = RoughUnit::down(piece.start.as_f64() * per_unit).max(0.0);
-            ball.per_piece = RoughUnit::down(per_unit / ball.swept.unit().per_unit());
+            ball.start = CoarseUnit::down(piece.start.as_f64() * per_unit).max(0.0);
+            ball.per_piece = CoarseUnit::down(per_unit / ball.swept.unit().per_unit());
         }
-        RoughMovingBalls { balls, unit: RoughUnit::new::<V::Scalar>(per_unit) }
+        CoarseMovingBalls { balls, unit: CoarseUnit::new::<V::Scalar>(per_unit) }
     }
 }
 
 /// [`MovingBalls`] in the frame of a tree.
-struct RoughMovingBalls<V> {
-    balls: SmallVec<[RoughMovingBox<V>; MAX_PIECES]>,
-    unit: RoughUnit,
+struct CoarseMovingBalls<V> {
+    balls: SmallVec<[CoarseMovingBox<V>; MAX_PIECES]>,
+    unit: CoarseUnit,
 }
 
-struct RoughMovingBox<V> {
+struct CoarseMovingBox<V> {
     start: f32,
     /// In the unit of the piece.
     duration: f32,
     per_piece: f32,
-    swept: RoughSweptBox<V>,
+    swept: CoarseSweptBox<V>,
 }
 
-impl<V: Vector> RoughBound for RoughMovingBalls<V> {
+impl<V: Vector> CoarseBound for CoarseMovingBalls<V> {
     fn bounds(&self, boxes: &Boxes) -> Vec4 {
         self.balls.iter().fold(Vec4::INFINITY, |first, piece| {
             let after = piece.swept.bounds(boxes);

@@ -1,11 +1,15 @@
 //! `cargo xtask museum`: poses out of public trackers, where this or that library was wrong, asked here.
 //!
-//! One file has them, `data/museum.jsonl`, as queries with their truth. The command, the table of `docs/museum.md` and the
-//! regression test read that file.
+//! One file has them, `data/museum.jsonl`, as queries with their truth. The command, the tables and drawings of
+//! `docs/museum.md` and the regression test read that file.
+
+mod drawing;
+mod sheet;
 
 use std::fmt::Write as _;
 use std::fs;
 use std::io::{self, Write};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use checker::Verdict as Proof;
@@ -13,6 +17,10 @@ use clap::Args;
 use serde_json::Value;
 use workloads::note;
 
+use self::drawing::Drawing;
+#[cfg(test)]
+use self::drawing::Role;
+use self::sheet::Cell;
 use crate::engine;
 use crate::mesh::Meshes;
 use crate::prove::judge_line;
@@ -27,7 +35,7 @@ use crate::wire::json;
 /// What to do with the answers.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Choice {
-    /// Write the table into `docs/museum.md` too.
+    /// Write the tables into `docs/museum.md`, and the drawings into `docs/figures`.
     #[arg(long)]
     write: bool,
 }
@@ -50,9 +58,12 @@ pub fn run(choice: Choice) -> ExitCode {
         print(&pieces).map_err(|why| format!("cannot print: {why}"))?;
         if choice.write {
             let file = note::path("museum.md");
-            for (part, given) in PARTS {
-                note::write(&file, part, &markdown(&pieces, given))
+            for part in &PARTS {
+                note::write(&file, part.name, &markdown(&pieces, part))
                     .map_err(|why| format!("cannot write {}: {why}", file.display()))?;
+                let figure = part.figure();
+                fs::write(&figure, part.sheet(&pieces)?)
+                    .map_err(|why| format!("cannot write {}: {why}", figure.display()))?;
             }
         }
         Ok(pieces.iter().all(Piece::is_right))
@@ -67,8 +78,38 @@ pub fn run(choice: Choice) -> ExitCode {
     }
 }
 
-/// The parts of the note, and which poses are in each.
-const PARTS: [(&str, &str); 2] = [("given", "given"), ("chosen", "after the report")];
+/// A part of the note: its poses are of these kinds of query.
+struct Part {
+    name: &'static str,
+    title: &'static str,
+    queries: &'static [&'static str],
+}
+
+const PARTS: [Part; 5] = [
+    Part { name: "rays", title: "Rays", queries: &["ray_cast"] },
+    Part { name: "casts", title: "Bodies that move", queries: &["linear_cast", "motion_cast"] },
+    Part { name: "distances", title: "Distances and overlaps", queries: &["distance", "intersect"] },
+    Part { name: "depths", title: "Depths and contacts", queries: &["signed_distance"] },
+    Part { name: "ellipsoids", title: "Ellipsoids", queries: &["enclosing_ellipsoid", "inscribed_ellipsoid"] },
+];
+
+impl Part {
+    fn of<'p>(&self, pieces: &'p [Piece]) -> impl Iterator<Item = &'p Piece> {
+        let queries = self.queries;
+        pieces.iter().filter(move |piece| queries.contains(&piece.said("query")))
+    }
+
+    /// Where its drawings are.
+    fn figure(&self) -> PathBuf {
+        note::path(&format!("figures/museum-{}.svg", self.name))
+    }
+
+    /// Its drawings.
+    fn sheet(&self, pieces: &[Piece]) -> Result<String, String> {
+        let cells = self.of(pieces).map(Piece::cell).collect::<Result<Vec<_>, _>>()?;
+        Ok(sheet::svg(&format!("The museum: {}", self.title.to_lowercase()), &cells))
+    }
+}
 
 fn pieces() -> Result<Vec<Piece>, String> {
     let text = fs::read_to_string(POSES).map_err(|why| format!("cannot read {POSES}: {why}"))?;
@@ -93,6 +134,13 @@ impl Piece {
 
     fn said(&self, field: &str) -> &str {
         self.case.get(field).and_then(Value::as_str).unwrap_or_default()
+    }
+
+    /// The drawing of the pose and of the answer, under its name and its truth.
+    fn cell(&self) -> Result<Cell, String> {
+        let name = self.said("id").to_owned();
+        let drawing = Drawing::new(&self.case, &self.answer).map_err(|why| format!("{name}: {}", why.message))?;
+        Ok(Cell { name, truth: self.truth(), drawing })
     }
 
     /// The link to the report.
@@ -167,20 +215,29 @@ fn print(pieces: &[Piece]) -> io::Result<()> {
     writeln!(output, "{} poses: {right} right, {proved} of them with a proof that was checked", pieces.len())
 }
 
-/// The rows of the note whose poses are as told.
-fn markdown(pieces: &[Piece], pose: &str) -> String {
-    let mut text = "| report | what is asked | reported | truth | how it is known | our answer | certainty |\n|---|---|---|---|---|---|---|\n".to_owned();
-    for piece in pieces.iter().filter(|piece| piece.said("_pose") == pose) {
+/// A part of the note: its drawings, and the rows of its poses. A star says that the report leaves out a number.
+fn markdown(pieces: &[Piece], part: &Part) -> String {
+    let mut text = format!(
+        "<img src=\"figures/museum-{}.svg\" alt=\"Drawings of the poses: {}\" width=\"568\">\n\n\
+         | pose | what is asked | reported | truth | our answer | certainty | others today |\n\
+         |---|---|---|---|---|---|---|\n",
+        part.name,
+        part.title.to_lowercase()
+    );
+    for piece in part.of(pieces) {
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} | {} | {} | {} |",
+            "| `{}`{} of {} | {} | {} | {}: {} | {} | {} | {} |",
+            piece.said("id"),
+            if piece.said("_pose") == "given" { "" } else { "\\*" },
             piece.link(),
             piece.said("_title"),
             piece.said("_reported"),
             piece.truth(),
             piece.said("_truth"),
             piece.shown(&piece.answer),
-            piece.proof()
+            piece.proof(),
+            piece.said("_today")
         );
     }
     text
@@ -198,7 +255,7 @@ mod tests {
         let wrong = |piece: &Piece| format!("{}: {:?} {:?}", piece.said("id"), piece.verdict, piece.answer);
         let wrong: Vec<String> = pieces.iter().filter(|piece| !piece.is_right()).map(wrong).collect();
         assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-        assert!(pieces.len() >= 40, "{} poses", pieces.len());
+        assert!(pieces.len() >= 90, "{} poses", pieces.len());
     }
 
     #[test]
@@ -211,6 +268,31 @@ mod tests {
                 piece.said("id")
             );
         }
+    }
+
+    /// Whether a pose has a body in this role, or an ellipsoid in the place of the first.
+    fn has(piece: &Piece, role: Role) -> bool {
+        let keys = if role == Role::Own { ["a", "points", "halfspaces"] } else { ["b", "target", "halfspaces"] };
+        keys.iter().any(|key| piece.case.contains_key(*key))
+    }
+
+    /// A drawing shows what it is of: each body that is asked about, or the ellipsoid, is in its cell.
+    #[test]
+    fn every_piece_is_drawn() {
+        let pieces = pieces().expect("the file is there");
+        for part in &PARTS {
+            let figure = fs::read_to_string(part.figure()).expect("it is in the folder of figures");
+            for piece in part.of(&pieces) {
+                let cell = piece.cell().expect("it is a pose");
+                let drawing = &cell.drawing;
+                for role in [Role::Own, Role::Other].into_iter().filter(|role| has(piece, *role)) {
+                    let is_shown = |(of, points): &(Role, Vec<_>)| *of == role && drawing.shows(points);
+                    assert!(drawing.parts.iter().any(is_shown), "{}: {role:?} is not seen", cell.name);
+                }
+                assert!(figure.contains(&cell.name), "{}: cargo xtask museum --write", cell.name);
+            }
+        }
+        assert_eq!(PARTS.iter().map(|part| part.of(&pieces).count()).sum::<usize>(), pieces.len());
     }
 
     #[test]
