@@ -181,8 +181,8 @@ pub use intersects::{intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{linear_cast, linear_cast_with};
 pub use linkage::{
-    Joint, JointBox, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, LinkageOptions, Met, Path, PathContact,
-    PathOutcome, PathStop, PathWork, PathWorkspace,
+    FreeBox, FreeInterval, Joint, JointBox, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, LinkageOptions,
+    Met, Path, PathContact, PathOutcome, PathStop, PathWork, PathWorkspace,
 };
 pub use motion::{
     ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionHit, MotionIterate, MovingBall, Pose, RigidMotion,

@@ -4,14 +4,14 @@ use convex_support::Vector;
 use convex_support::glam::{DVec2, DVec3};
 #[cfg(not(target_family = "wasm"))]
 use cpu_time::ThreadTime;
-use gjk_raycast::{Linkage, LinkageOptions, Met, PathOutcome, PathStop, PathWorkspace, Scene};
+use gjk_raycast::{FreeInterval, Linkage, LinkageOptions, Met, PathOutcome, PathStop, PathWorkspace, Scene};
 #[cfg(target_family = "wasm")]
 use std::time::Instant as ThreadTime;
 
 use super::scene::{refused, scene_of};
 use super::{Ask, EVERY, How, Precision, Query, Question, scalar, status};
 use crate::mesh::Meshes;
-use crate::wire::answer::{Answer, Field};
+use crate::wire::answer::{Answer, Field, Number};
 use crate::wire::body::Body;
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::{Dimension, Fields, Object, Written};
@@ -81,6 +81,22 @@ impl<V: Space> Question for Way<V> {
         self.robot.path(&self.waypoints, &self.scene, self.options, &mut PathWorkspace::new()).map_err(problem)
     }
 
+    fn certificate(&self, _: &Self::Solution) -> Option<Answer> {
+        let mut free = Vec::new();
+        let show = |part: FreeInterval<V>| {
+            let FreeInterval { edge, from, to, link, body, met, normals } = part;
+            let answer = Answer::default()
+                .with("edge", Field::Count(edge))
+                .with("times", Field::Numbers([from, to].map(Number::of).to_vec()))
+                .with("link", Field::Count(link))
+                .with("body", Field::Count(body));
+            free.push(of_what(answer, met).with("normals", Field::vectors(normals)));
+        };
+        let mut workspace = PathWorkspace::new();
+        let _ = self.robot.path_with(&self.waypoints, &self.scene, self.options, &mut workspace, show).ok()?;
+        Some(Answer::default().with("free", Field::Answers(free)))
+    }
+
     fn answer(&self, path: Self::Solution) -> Result<Answer, Problem> {
         let answer = |free| Answer::default().with("free", Field::Flag(free));
         let answer = match path.outcome {
@@ -91,13 +107,7 @@ impl<V: Space> Question for Way<V> {
                     .with("time", Field::number(contact.time))
                     .with("link", Field::Count(contact.link))
                     .with("body", Field::Count(contact.body));
-                let answer = match contact.met {
-                    Met::Obstacle(obstacle) => answer.with("obstacle", Field::Count(obstacle)),
-                    Met::Link { link, body } => {
-                        answer.with("other_link", Field::Count(link)).with("other_body", Field::Count(body))
-                    }
-                };
-                answer
+                of_what(answer, contact.met)
                     .with("point", Field::vector(contact.point))
                     .with("normal", Field::maybe_vector(contact.normal))
                     .with_finite("lower", contact.lower)
@@ -114,6 +124,16 @@ impl<V: Space> Question for Way<V> {
             }
         };
         Ok(answer.with("casts", Field::Count(path.work.casts)))
+    }
+}
+
+/// With what is met, or not.
+fn of_what(answer: Answer, met: Met) -> Answer {
+    match met {
+        Met::Obstacle(obstacle) => answer.with("obstacle", Field::Count(obstacle)),
+        Met::Link { link, body } => {
+            answer.with("other_link", Field::Count(link)).with("other_body", Field::Count(body))
+        }
     }
 }
 

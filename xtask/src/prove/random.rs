@@ -33,7 +33,7 @@ pub(super) fn prove_for(seconds: u64, seed: u64, told: impl Fn(&str) + Sync) -> 
                 continue;
             };
             let (verdict, said) = judge_line(1, &line, &meshes);
-            counts.add(verdict);
+            counts.add(verdict, &said);
             if verdict != Verdict::Proved {
                 told(&format!("{said} of {}", String::from_utf8_lossy(line.trim_ascii())));
             }
@@ -51,14 +51,17 @@ pub(super) fn prove_for(seconds: u64, seed: u64, told: impl Fn(&str) + Sync) -> 
 
 /// A query that has a certificate: none of a half-space, and none with what the checker does not read.
 pub(super) fn query(rng: &mut Rng) -> Value {
-    let kinds = ["distance", "intersect", "linear_cast", "ray_cast"];
+    let kinds = ["distance", "intersect", "linear_cast", "ray_cast", "path", "joint_box"];
     loop {
-        let name = kinds[rng.below(4) as usize];
+        let name = kinds[rng.below(6) as usize];
         let precision = if rng.below(4) == 0 { "f32" } else { "f64" };
         let dimension = 2 + rng.below(2) as usize;
         for kind in KINDS.iter().copied().filter(|(known, _)| *known == name) {
             let query = draw::query(kind, precision, dimension, rng);
-            let unread = ["min_lambda", "target_distance", "start_in_contact", "method"];
+            let unread: &[&str] = match name {
+                "path" | "joint_box" => &[],
+                _ => &["min_lambda", "target_distance", "start_in_contact", "method"],
+            };
             if query["b"]["type"] != "half_space" && unread.iter().all(|name| query.get(name).is_none()) {
                 return query;
             }

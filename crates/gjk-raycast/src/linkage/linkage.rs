@@ -3,12 +3,14 @@
 use alloc::vec::Vec;
 
 use convex_support::numerics::bound::raised;
-use convex_support::{BoundingSphere, Core, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere};
+use convex_support::{BoundingSphere, Core, Posed, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere};
 use num_traits::Float as _;
 
+use super::bounds::Bounds;
 use super::error::LinkageError;
-use super::frame::LinkFrame;
+use super::frame::{LinkFrame, epsilons};
 use super::joint::{Joint, JointKind, Link};
+use super::link_motion::{LinkMotion, PathEdge};
 use super::route::Route;
 use super::stage::JointStage;
 use crate::Pose;
@@ -171,6 +173,45 @@ impl<S: SupportMap> Linkage<S> {
     #[must_use]
     pub fn bodies(&self, link: usize) -> &[S] {
         self.bodies.get(link).map_or(&[], |bodies| bodies)
+    }
+
+    /// A body of a link where joint values have it, to rounding.
+    ///
+    /// # Errors
+    /// [`LinkageError`] if there is no such body, or the values are not as many finite numbers as there are
+    /// [values](Self::values), or too large.
+    pub fn placed(&self, link: usize, body: usize, values: &[ScalarOf<S>]) -> Result<Posed<&S>, LinkageError> {
+        self.check(0, values)?;
+        let shape = self.bodies(link).get(body).ok_or(LinkageError::NoSuchBody { link, body })?;
+        let (route, edge) = (&self.skeleton.links[link].route, PathEdge { from: values, to: values });
+        let (_, frame) = LinkMotion::new(route, edge, Scalar::ZERO, Bounds::default()).at(Scalar::ZERO);
+        let placed = Posed::from_matrix(shape, frame.rotation, frame.translation);
+        placed.map_err(|_| LinkageError::BodyNotFinite { link, body })
+    }
+
+    /// How far any point of a link goes at most, where joint values change from the one to the other. So a link stays
+    /// farther from what is at rest than a margin as long as that is less than the [room](crate::FreeStep) of its
+    /// distance, whichever way the joints have taken in between.
+    ///
+    /// If they go straight, within a unit of time, it is no more than the highest speed, nor than that at first and half
+    /// of the highest acceleration.
+    ///
+    /// # Errors
+    /// As of [`placed`](Self::placed).
+    pub fn way(&self, link: usize, from: &[ScalarOf<S>], to: &[ScalarOf<S>]) -> Result<ScalarOf<S>, LinkageError> {
+        self.check(0, from)?;
+        self.check(1, to)?;
+        let Carried { route, ball, .. } =
+            self.skeleton.links.get(link).ok_or(LinkageError::NoSuchBody { link, body: 0 })?;
+        let Around { ball, distance } = *ball;
+        let (edge, reach) = (PathEdge { from, to }, distance + ball.radius);
+        let bounds = edge.bounds(route);
+        let (moving, _) = LinkMotion::new(route, edge, Scalar::ZERO, bounds).at(Scalar::ZERO);
+        let at_first = moving.velocity_at(moving.frame.of(ball.center)).norm() + moving.spin.norm() * ball.radius;
+        let near = at_first + bounds.acceleration(reach) * Scalar::from_f64(0.5);
+        let always = bounds.speed(reach);
+        // What the frame and the derivatives lose is a small part of what always holds.
+        Ok(near.min(always) + always * (moving.frame.turn_error + epsilons(64.0)))
     }
 
     /// Whether these are values of all joints.
