@@ -1,7 +1,7 @@
 //! Robots along paths, and anywhere in a box of joint values: against closed forms, poses by quaternions at many times,
 //! and what is refused.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3Swizzles as _};
 use convex_support::{Ball, Capsule, Cuboid, InvalidShape, Point, Polytope, Posed, Rounded, Segment, SupportMap};
@@ -88,6 +88,29 @@ fn links_of_one_robot_meet_one_another() {
         assert!(sooner.contact().is_some_and(|c| (c.time - truth).abs() < 1e-13), "{sooner:?}");
     }
     assert!(ask(&chain, &[vec![0.0; 2], vec![2.5; 2]], &nothing).is_free(), "none is asked about another");
+}
+
+/// Two robots that both move are one linkage of two trees. Bars of length 1, 1.8 apart at their other ends, sink towards one
+/// another like a gate: their tips touch where they are 0.1 apart, at the cosine 0.85.
+#[test]
+fn two_robots_meet_one_another() {
+    let joints = [turning(None, DVec2::ZERO), turning(None, DVec2::new(1.8, 0.0))];
+    let links = [0, 1].map(|joint| Link { joint: Some(joint), bodies: vec![bar()] });
+    let gate = Linkage::new(joints, links).expect("a linkage").with_pairs([[0, 1]]).expect("two links");
+    let path = ask(&gate, &[vec![1.2, PI - 1.2], vec![0.0, PI]], &Scene::default());
+    let (contact, truth) = (path.contact().expect("they meet"), (1.2 - 0.85_f64.acos()) / 1.2);
+    assert_eq!((contact.link, contact.met), (0, Met::Link { link: 1, body: 0 }), "{contact:?}");
+    assert!(contact.lower <= truth && truth <= contact.upper && contact.upper - contact.lower < 1e-12, "{contact:?}");
+    assert!((contact.point - DVec2::new(0.9, (1.0_f64 - 0.85 * 0.85).sqrt())).length() < 1e-12, "{contact:?}");
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+fn paths_on_threads_are_answered_as_one_by_one() {
+    let (robot, scene) = (arm(), Scene::new([ball_at(1.0, 1.0)]).expect("finite"));
+    let paths: Vec<_> = (0..40).map(|k| vec![vec![0.0, 0.0], vec![0.05 * f64::from(k), 0.3]]).collect();
+    let alone: Vec<_> = paths.iter().map(|path| Ok(ask(&robot, path, &scene))).collect();
+    assert_eq!(robot.par_paths(&paths, &scene, LinkageOptions::new()), alone, "in the same order");
 }
 
 /// What slides, in a frame that is turned, towards a wall.

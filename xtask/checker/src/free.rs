@@ -1,6 +1,8 @@
 //! Whether a robot's path, or a box of its joint values, is free, by planes that stand between bodies.
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
+use std::rc::Rc;
 
 use serde_json::Value;
 
@@ -119,6 +121,7 @@ fn judge_path(
     let edges = (waypoints.len() - 1).max(1);
     let mut proof = FreeProof::NONE;
     let mut free = Vec::new();
+    let places = Places::default();
     for (key, mut parts) in sorted {
         let (edge, link, body, other, of_link) = key;
         let body = robot.links.get(link).and_then(|link| link.bodies.get(body)).ok_or("there is no such body")?;
@@ -134,7 +137,7 @@ fn judge_path(
         let ends = waypoints.get(edge).zip(waypoints.get(edge + usize::from(edges > 0 && last > 0.0)));
         let (from_values, to_values) = ends.ok_or("there is no such edge")?;
         let pair = Pair::new(robot, robot.route(link, from), body, other, target);
-        let moving = MovingPair::new(&pair, from_values, to_values);
+        let moving = MovingPair::new(&pair, (edge, link, from), from_values, to_values, &places);
         parts.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]));
         // Up to when the two are proved to be apart; nothing is known before the first part.
         let mut until: Option<f64> = None;
@@ -217,12 +220,22 @@ struct MovingPair<'p, 'r> {
     way: Vec<Interval>,
     speed: Interval,
     acceleration: Interval,
-    /// The places that were asked for, by the bits of their times.
-    placed: std::cell::RefCell<HashMap<u64, std::rc::Rc<Placed>>>,
+    /// What both ends of the edge and the route are of: the edge and the links.
+    of: (usize, usize, Option<usize>),
+    places: &'p Places,
 }
 
+/// The places that were asked for, of all bodies of a link together, by the bits of their times.
+type Places = RefCell<HashMap<((usize, usize, Option<usize>), u64), Rc<Placed>>>;
+
 impl<'p, 'r> MovingPair<'p, 'r> {
-    fn new(pair: &'p Pair<'r>, from: &[f64], to: &[f64]) -> Self {
+    fn new(
+        pair: &'p Pair<'r>,
+        of: (usize, usize, Option<usize>),
+        from: &[f64],
+        to: &[f64],
+        places: &'p Places,
+    ) -> Self {
         let exact = |values: &[f64]| values.iter().copied().map(Interval::from).collect::<Vec<_>>();
         let (from, to) = (exact(from), exact(to));
         let way: Vec<_> = from.iter().zip(&to).map(|(from, to)| to - from).collect();
@@ -230,17 +243,16 @@ impl<'p, 'r> MovingPair<'p, 'r> {
         let slides: Vec<_> = from.iter().zip(&to).map(|(a, b)| a.absolute().max(&b.absolute())).collect();
         let bounds = pair.robot.bounds(&pair.route, &pair.reach, &rates, &slides);
         let (speed, acceleration) = (bounds.speed.greatest(), bounds.acceleration.greatest());
-        Self { pair, from, way, speed, acceleration, placed: Default::default() }
+        Self { pair, from, way, speed, acceleration, of, places }
     }
 
-    fn at(&self, time: f64) -> std::rc::Rc<Placed> {
-        let mut placed = self.placed.borrow_mut();
+    fn at(&self, time: f64) -> Rc<Placed> {
         let place = || {
             let t = Interval::from(time);
             let values: Vec<_> = self.from.iter().zip(&self.way).map(|(from, way)| from + &(way * &t)).collect();
-            std::rc::Rc::new(self.pair.robot.place(&self.pair.route, &values))
+            Rc::new(self.pair.robot.place(&self.pair.route, &values))
         };
-        placed.entry(time.to_bits()).or_insert_with(place).clone()
+        self.places.borrow_mut().entry((self.of, time.to_bits())).or_insert_with(place).clone()
     }
 
     /// Whether a plane that turns from one normal to the other, at a constant rate, separates the bodies at all times.

@@ -9,7 +9,7 @@ use gjk_raycast::{FreeInterval, Linkage, LinkageOptions, Met, PathOutcome, PathS
 use std::time::Instant as ThreadTime;
 
 use super::scene::{refused, scene_of};
-use super::{Ask, EVERY, How, Precision, Query, Question, scalar, status};
+use super::{Ask, EVERY, How, Precision, Query, Question, path_picture, scalar, status};
 use crate::mesh::Meshes;
 use crate::wire::answer::{Answer, Field, Number};
 use crate::wire::body::Body;
@@ -169,6 +169,23 @@ pub fn edges(object: &Object, meshes: &Meshes, steps: &[f64; 2]) -> Result<Vec<E
         Some(2) => query.way::<DVec2>(&how)?.edges(steps),
         _ => query.way::<DVec3>(&how)?.edges(steps),
     }
+}
+
+/// The way of a `path` query as a picture, an `<svg>` element, and whether it touches something; `None` in the plane.
+///
+/// # Errors
+/// Where the query is none.
+pub fn picture(object: &Object, meshes: &Meshes) -> Result<Option<(String, bool)>, Problem> {
+    let dimension = Dimension::default();
+    let fields = Written::new(object, &dimension).fields(EVERY, Path::FIELDS)?;
+    let query = Path::read(&fields)?;
+    if dimension.known() == Some(2) {
+        return Ok(None);
+    }
+    let way = query.way::<DVec3>(&How { precision: Precision::F64, tol: None, method: None, meshes })?;
+    let contact = way.solve()?.contact();
+    let svg = path_picture::svg(&way.robot, &way.scene, &way.waypoints, contact.as_ref());
+    Ok(svg.map(|svg| (svg, contact.is_some())))
 }
 
 impl<V: Space<Scalar = f64>> Way<V> {

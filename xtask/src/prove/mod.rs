@@ -29,6 +29,9 @@ pub struct Choice {
     /// Draw random queries for so many seconds, answer them, and prove that.
     #[arg(long, value_name = "SECONDS", conflicts_with = "files")]
     random: Option<u64>,
+    /// Draw robots' paths and boxes of joint values. Of these, only what is free is proved.
+    #[arg(long, requires = "random")]
+    robots: bool,
     /// Another seed draws other queries.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -76,7 +79,8 @@ fn prove(choice: &Choice, output: &mut impl Write) -> io::Result<Counts> {
     if let Some(seconds) = choice.random {
         let told = Mutex::new(Vec::new());
         let tell = |line: &str| told.lock().unwrap_or_else(PoisonError::into_inner).push(line.to_owned());
-        let tally = random::prove_for(seconds, choice.seed, tell);
+        let kinds = if choice.robots { random::ROBOTS } else { random::PLANES };
+        let tally = random::prove_for(kinds, seconds, choice.seed, tell);
         for line in told.into_inner().unwrap_or_else(PoisonError::into_inner) {
             writeln!(output, "{line}")?;
         }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use workloads::rng::Rng;
 
-use super::random::query;
+use super::random::{PLANES, ROBOTS, query};
 use super::{Counts, judge_line};
 use crate::mesh::Meshes;
 use crate::query::certified;
@@ -83,7 +83,7 @@ fn true_claims_are_proved_and_false_ones_disproved() {
 /// An answer of some width that is proved, and claims something of a distance or a time that is not zero.
 fn proved_line(rng: &mut Rng) -> Value {
     loop {
-        let line = answered(&query(rng));
+        let line = answered(&query(PLANES, rng));
         let claims = line["answer"]["lower"].as_f64().is_some_and(|lower| lower > 1e-3);
         if claims && verdict(&line) == Verdict::Proved {
             return line;
@@ -166,6 +166,44 @@ fn a_plane_that_leans_proves_no_bracket() {
             assert_eq!(verdict(&line), Verdict::NotProved, "{line}");
         }
     }
+}
+
+/// All parts of random paths and boxes of joint values are proved, and of those that are free they cover all; with a part
+/// less, or one whose plane faces the other way, they do not.
+#[test]
+fn what_robots_are_free_of_is_proved() {
+    let (mut rng, mut free, mut parts) = (Rng::new(44), 0, 0);
+    for _ in 0..150 {
+        let query = query(ROBOTS, &mut rng);
+        let Some(line) = certified(query.to_string().as_bytes(), &meshes()) else { continue };
+        let (known, said) = judge_line(1, &line, &meshes());
+        assert_eq!(said["parts_not_proved"], json!(0), "{said} of {query}");
+        parts += said["parts_proved"].as_u64().unwrap_or(0);
+        let mut line: Value = serde_json::from_slice(&line).expect("JSON");
+        let is_free = line["answer"]["free"] == json!(true) || line["answer"]["meets"] == json!(false);
+        assert_eq!(known == Verdict::Proved, is_free, "{said} of {query}");
+        let count = line["certificate"]["free"].as_array().map_or(0, Vec::len) as u64;
+        if !is_free || count == 0 {
+            continue;
+        }
+        free += 1;
+        let index = rng.below(count) as usize;
+        let whole = line.clone();
+        let part = &mut line["certificate"]["free"][index];
+        let plane = if part.get("plane").is_some() { &mut part["plane"] } else { &mut part["normals"][0] };
+        for x in plane.as_array_mut().expect("a normal") {
+            *x = json!(-x.as_f64().expect("a number"));
+        }
+        let is_of_half_space = |line: &Value| {
+            let obstacle = line["certificate"]["free"][index]["obstacle"].as_u64().unwrap_or(0) as usize;
+            line["obstacles"][obstacle]["type"] == "half_space"
+        };
+        assert!(verdict(&line) != Verdict::Proved || is_of_half_space(&line), "{line}");
+        let mut line = whole;
+        line["certificate"]["free"].as_array_mut().expect("a list").remove(index);
+        assert_ne!(verdict(&line), Verdict::Proved, "part {index} is missing: {line}");
+    }
+    assert!(free > 30 && parts > 500, "{free} are free, with {parts} parts");
 }
 
 #[test]

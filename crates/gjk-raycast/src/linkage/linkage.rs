@@ -51,7 +51,8 @@ use crate::Pose;
 /// ```
 ///
 /// All bodies are of one type, as in a [`Scene`](crate::Scene). Links are not asked about one another, but for the
-/// [pairs](Self::with_pairs) that are named.
+/// [pairs](Self::with_pairs) that are named. Two robots that both move are one linkage of two trees, and pairs of links
+/// of both.
 #[derive(Clone, Debug)]
 pub struct Linkage<S: SupportMap> {
     pub(super) skeleton: Skeleton<S::Vector>,

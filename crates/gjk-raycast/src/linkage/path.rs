@@ -68,7 +68,7 @@ impl<V: Vector> Default for LinkageOptions<V> {
 }
 
 /// What [`Linkage::path`] works with. Once it has served a path of a linkage, the next allocates nothing.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct PathWorkspace<V: Vector> {
     sweep: SweepSpace<V>,
     half_spaces: Vec<(usize, Plane<V>)>,
@@ -78,13 +78,7 @@ impl<V: Vector> PathWorkspace<V> {
     /// An empty one.
     #[must_use]
     pub fn new() -> Self {
-        Self { sweep: SweepSpace::new(), half_spaces: Vec::new() }
-    }
-}
-
-impl<V: Vector> Default for PathWorkspace<V> {
-    fn default() -> Self {
-        Self::new()
+        Self::default()
     }
 }
 
@@ -133,6 +127,22 @@ impl<S: SupportMap> Linkage<S> {
         mut observer: impl FnMut(FreeInterval<S::Vector>),
     ) -> Result<Path<S::Vector>, LinkageError> {
         self.watched_path(waypoints, scene, options, workspace, Some(&mut observer))
+    }
+
+    /// [`path`](Self::path) of many paths on all threads, such as the edges of a roadmap; answers in the same order.
+    #[cfg(feature = "rayon")]
+    pub fn par_paths<O: SupportMap<Vector = S::Vector> + Sync, P: AsRef<[W]> + Sync, W: AsRef<[ScalarOf<S>]>>(
+        &self,
+        paths: &[P],
+        scene: &Scene<O>,
+        options: LinkageOptions<S::Vector>,
+    ) -> Vec<Result<Path<S::Vector>, LinkageError>>
+    where
+        S: Sync,
+    {
+        use rayon::prelude::*;
+        let ask = |workspace: &mut _, path: &P| self.path(path.as_ref(), scene, options, workspace);
+        paths.par_iter().map_init(PathWorkspace::new, ask).collect()
     }
 
     fn watched_path<O: SupportMap<Vector = S::Vector>, W: AsRef<[ScalarOf<S>]>>(

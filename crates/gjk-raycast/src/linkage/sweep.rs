@@ -43,7 +43,7 @@ pub(super) struct Near<S> {
 }
 
 /// What a sweep works with; it is kept from edge to edge.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct SweepSpace<V: Vector> {
     /// How the joints move at the middle of a part.
     moving: Vec<Moving<V>>,
@@ -98,13 +98,6 @@ enum PartState {
     Coarse,
     /// What is near has been found.
     Found,
-}
-
-impl<V: Vector> SweepSpace<V> {
-    pub(super) fn new() -> Self {
-        let (moving, items, bounds, found, near) = Default::default();
-        Self { moving, items, bounds, found, near, parts: 0 }
-    }
 }
 
 impl<V: Vector> Sweep<'_, V> {
