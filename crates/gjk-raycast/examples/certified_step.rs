@@ -12,7 +12,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use convex_support::glam::{DQuat, DVec3};
 use convex_support::{Ball, Posed, Rounded, Segment};
-use gjk_raycast::{DistanceOptions, FreeStep, Joint, Link, Linkage, LinkageOptions, PathWorkspace, Pose, Scene};
+use gjk_raycast::{BodyDistance, DistanceOptions, Joint, Link, Linkage, LinkageOptions, PathWorkspace, Pose, Scene};
 
 /// A bar around each link of the arm.
 type Bar = Rounded<Segment<DVec3>>;
@@ -24,6 +24,8 @@ const MARGIN: f64 = 0.02;
 const STEP: f64 = 0.3 / 50.0;
 /// For how many steps the arm holds after a wish was refused.
 const HOLD: u32 = 10;
+/// How many obstacles are asked for about each link. All others are farther away than the last of them.
+const NEAREST: usize = 8;
 
 /// The arm by the lengths of its data sheet: each joint's place in the one before, its axis, and the end of its bar.
 fn ur5() -> Result<Linkage<Bar>, Box<dyn Error>> {
@@ -51,34 +53,40 @@ struct Filter<'s> {
     arm: &'s Linkage<Bar>,
     scene: &'s Scene<Posed<Ball<DVec3>>>,
     at: Values,
-    /// Where distances were asked for, and what they allow each link.
+    /// Where distances were asked for, and the obstacles near each link.
     asked_at: Values,
-    steps: Vec<FreeStep<f64>>,
+    near: Vec<Vec<BodyDistance<DVec3>>>,
     questions: usize,
     /// For how many more steps the arm holds.
     held: u32,
-    workspace: PathWorkspace<DVec3>,
 }
 
 impl Filter<'_> {
     /// Whether what the last distances allow is enough to go to these values, for every link.
     fn allows(&self, wish: &Values) -> Result<bool, Box<dyn Error>> {
-        for (link, step) in self.steps.iter().enumerate() {
-            // Whatever the joints do in between, no point goes farther than that.
-            if !step.allows(self.arm.way(link, &self.asked_at, wish)?, 0.0) {
-                return Ok(false);
+        for (link, near) in self.near.iter().enumerate() {
+            let room = |near: &BodyDistance<DVec3>| near.distance.lower - MARGIN;
+            // No point goes farther than that, whatever the joints do in between.
+            let way = self.arm.way(link, &self.asked_at, wish)?;
+            for obstacle in near.iter().filter(|obstacle| room(obstacle) <= way) {
+                // Nor nearer to this one; of those that were not asked for, nothing else is known.
+                let towards = -obstacle.distance.normal.ok_or("it is apart")?;
+                let is_last = obstacle.body == near[NEAREST - 1].body;
+                if is_last || room(obstacle) <= self.arm.way_along(link, &self.asked_at, wish, towards)? {
+                    return Ok(false);
+                }
             }
         }
-        Ok(!self.steps.is_empty())
+        Ok(!self.near.is_empty())
     }
 
     fn ask(&mut self) -> Result<(), Box<dyn Error>> {
+        self.questions += 1;
         self.asked_at = self.at;
-        self.steps.clear();
-        for link in 0..self.arm.len() {
+        self.near.resize(self.arm.len(), Vec::new());
+        for (link, near) in self.near.iter_mut().enumerate() {
             let body = self.arm.placed(link, 0, &self.at)?;
-            let near = self.scene.nearest(&body, DistanceOptions::new()).nearest.ok_or("there are obstacles")?;
-            self.steps.push(near.distance.free_step(&body, DVec3::ZERO, MARGIN));
+            self.scene.nearest_k(&body, NEAREST, DistanceOptions::new(), near);
         }
         Ok(())
     }
@@ -90,19 +98,15 @@ impl Filter<'_> {
             return Ok(false);
         }
         if !self.allows(&wish)? {
-            self.questions += 1;
             self.ask()?;
-            if !self.allows(&wish)? {
-                // Near an obstacle: is this very step free, such as one away from it?
-                let options = LinkageOptions::new().with_target_distance(MARGIN);
-                if !self.arm.path(&[self.at, wish], self.scene, options, &mut self.workspace)?.is_free() {
-                    self.held = HOLD;
-                    return Ok(false);
-                }
-            }
         }
-        self.at = wish;
-        Ok(true)
+        let goes = self.allows(&wish)?;
+        if goes {
+            self.at = wish;
+        } else {
+            self.held = HOLD;
+        }
+        Ok(goes)
     }
 }
 
@@ -134,24 +138,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let scene = Scene::new(balls)?;
 
-    let mut filter = Filter {
-        arm: &arm,
-        scene: &scene,
-        at: start,
-        asked_at: start,
-        steps: Vec::new(),
-        questions: 0,
-        held: 0,
-        workspace: PathWorkspace::new(),
-    };
-    let (mut rates, mut moved, mut refused, mut violations) = ([0.0; 6], 0, 0, 0);
+    let mut filter =
+        Filter { arm: &arm, scene: &scene, at: start, asked_at: start, near: Vec::new(), questions: 0, held: 0 };
+    let (mut wished, mut rates) = ([0.0; 6], [0.0; 6]);
+    let (mut moved, mut refused, mut violations) = (0, 0, 0);
     let (options, mut workspace) = (LinkageOptions::new().with_target_distance(MARGIN - 1e-12), PathWorkspace::new());
-    for _ in 0..steps {
-        // The operator's hand wanders, and is drawn back to the middle a little.
+    for step in 0..steps {
+        // Twice a second the operator wishes to go elsewhere, and is drawn back to the start a little.
         let before = filter.at;
         let mut wish = before;
         for i in 0..6 {
-            rates[i] += 0.2 * STEP * random(seed) - 0.01 * rates[i] - 2e-4 * STEP * (before[i] - start[i]);
+            if step % 25 == 0 {
+                wished[i] = STEP * (1.5 * random(seed) - 0.2 * (before[i] - start[i]));
+            }
+            rates[i] += 0.1 * (wished[i] - rates[i]);
             wish[i] += rates[i];
         }
         if filter.follow(wish)? {
@@ -161,7 +161,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             violations += usize::from(!is_free);
         } else {
             refused += 1;
-            rates = rates.map(|rate| -0.5 * rate);
+            rates = [0.0; 6];
         }
     }
     let fewer = steps as f64 / filter.questions as f64;

@@ -6,6 +6,7 @@ use convex_support::numerics::bound::raised;
 use convex_support::{BoundingSphere, Core, Posed, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere};
 use num_traits::Float as _;
 
+use super::axial;
 use super::bounds::Bounds;
 use super::error::LinkageError;
 use super::frame::{LinkFrame, epsilons};
@@ -200,6 +201,34 @@ impl<S: SupportMap> Linkage<S> {
     /// # Errors
     /// As of [`placed`](Self::placed).
     pub fn way(&self, link: usize, from: &[ScalarOf<S>], to: &[ScalarOf<S>]) -> Result<ScalarOf<S>, LinkageError> {
+        self.greatest_way(link, from, to, |v, turning, radius| v.norm() + turning.norm() * radius)
+    }
+
+    /// The same along a direction, a unit vector: negative where all points certainly go the other way. Towards the other
+    /// body, against the normal of a distance, it is how much nearer the link may come to that one.
+    ///
+    /// With the ball's velocity `v`, its angular velocity `ω` and its radius `ρ`, that is `n·v + |n × ω|·ρ` at first.
+    ///
+    /// # Errors
+    /// As of [`placed`](Self::placed).
+    pub fn way_along(
+        &self,
+        link: usize,
+        from: &[ScalarOf<S>],
+        to: &[ScalarOf<S>],
+        n: S::Vector,
+    ) -> Result<ScalarOf<S>, LinkageError> {
+        self.greatest_way(link, from, to, |v, spin, radius| n.dot(v) + axial::turning(spin, n).norm() * radius)
+    }
+
+    /// The greatest way of a point of a link, by that in a short time, of which only what is linear is told.
+    fn greatest_way(
+        &self,
+        link: usize,
+        from: &[ScalarOf<S>],
+        to: &[ScalarOf<S>],
+        at_first: impl Fn(S::Vector, S::Vector, ScalarOf<S>) -> ScalarOf<S>,
+    ) -> Result<ScalarOf<S>, LinkageError> {
         self.check(0, from)?;
         self.check(1, to)?;
         let Carried { route, ball, .. } =
@@ -208,7 +237,7 @@ impl<S: SupportMap> Linkage<S> {
         let (edge, reach) = (PathEdge { from, to }, distance + ball.radius);
         let bounds = edge.bounds(route);
         let (moving, _) = LinkMotion::new(route, edge, Scalar::ZERO, bounds).at(Scalar::ZERO);
-        let at_first = moving.velocity_at(moving.frame.of(ball.center)).norm() + moving.spin.norm() * ball.radius;
+        let at_first = at_first(moving.velocity_at(moving.frame.of(ball.center)), moving.spin, ball.radius);
         let near = at_first + bounds.acceleration(reach) * Scalar::from_f64(0.5);
         let always = bounds.speed(reach);
         // What the frame and the derivatives lose is a small part of what always holds.
