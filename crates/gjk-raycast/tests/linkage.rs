@@ -453,7 +453,7 @@ fn the_planes_of_a_free_path_are_shown() {
     }
 }
 
-/// No point of a link goes farther than is said, and the farthest mostly go a good part of it.
+/// No point of a link goes farther than is said, in any direction and along one, and short ways are known well.
 #[test]
 fn a_link_goes_no_farther_than_its_way() -> Result<(), Box<dyn std::error::Error>> {
     let (robot, mut seed, mut most) = (arm(), 0x2004_1120_u64, 0.0_f64);
@@ -463,11 +463,15 @@ fn a_link_goes_no_farther_than_its_way() -> Result<(), Box<dyn std::error::Error
         let to = from.map(|value| value + size * (2.0 * random(&mut seed) - 1.0));
         for link in 0..2 {
             let way = robot.way(link, &from, &to)?;
+            let n = DVec2::from_angle(6.3 * random(&mut seed));
+            let along = robot.way_along(link, &from, &to, n)?;
+            assert!(along <= way + 1e-12, "a direction is one of all: {along} of {way}");
             let [before, after] = [robot.placed(link, 0, &from)?, robot.placed(link, 0, &to)?];
             for point in [DVec2::new(-0.05, 0.0), DVec2::new(1.05, 0.0)] {
                 let [before, after] = [&before, &after].map(|body| body.translation() + body.rotation() * point);
                 let gone = (after - before).length();
                 assert!(gone <= way, "{gone} of {way}, from {from:?} to {to:?}");
+                assert!(n.dot(after - before) <= along, "{along} along {n}, from {from:?} to {to:?}");
                 most = most.max(if size < 0.1 { gone / way } else { 0.0 });
             }
         }

@@ -9,8 +9,8 @@ use gjk_raycast::{Body, Linkage, PathContact, Scene};
 use crate::wire::shape::Solid;
 
 /// Poses for each edge, and directions for each outline.
-const POSES: usize = 28;
-const DIRECTIONS: usize = 40;
+const POSES: usize = 12;
+const DIRECTIONS: usize = 24;
 const WIDTH: f64 = 640.0;
 const MARGIN: f64 = 14.0;
 /// Room for the legend.
@@ -62,8 +62,8 @@ pub(super) fn svg(
     });
     let mut layers = vec![
         Layer { style: swept(COLOURS[2], 0.35, 0.9), outlines: obstacles.collect() },
-        Layer { style: swept(COLOURS[1], 0.015, 0.12), outlines: after },
-        Layer { style: swept(COLOURS[0], 0.02, 0.15), outlines: before },
+        Layer { style: swept(COLOURS[1], 0.03, 0.2), outlines: after },
+        Layer { style: swept(COLOURS[0], 0.04, 0.25), outlines: before },
         Layer { style: swept(COLOURS[0], 0.1, 0.9), outlines: posed(&waypoints[0])? },
     ];
     if let Some(contact) = contact {
@@ -88,10 +88,14 @@ fn draw(layers: &[Layer], point: Option<DVec2>, contact: Option<&PathContact<DVe
     for Layer { style, outlines } in layers {
         let _ = write!(svg, "<path {style} d=\"");
         for outline in outlines {
-            for (k, point) in outline.iter().map(|p| at(*p)).enumerate() {
-                let _ = write!(svg, "{}{:.1} {:.1}", if k == 0 { 'M' } else { 'L' }, point.x, point.y);
+            // In tenths, from one to the next.
+            let mut last = DVec2::ZERO;
+            for (k, point) in outline.iter().map(|p| (at(*p) * 10.0).round()).enumerate() {
+                let (step, letter) = ((point - last) / 10.0, if k == 0 { 'M' } else { 'l' });
+                let _ = write!(svg, "{letter}{} {}", step.x, step.y);
+                last = point;
             }
-            svg.push('Z');
+            svg.push('z');
         }
         svg.push_str("\"/>\n");
     }

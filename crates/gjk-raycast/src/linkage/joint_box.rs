@@ -132,7 +132,7 @@ impl<S: SupportMap> Linkage<S> {
         for (i, a) in self.bodies[pair[0]].iter().enumerate() {
             for (k, b) in self.bodies[pair[1]].iter().enumerate() {
                 let mut search = BoxSearch::new(&route, [a, b], joint_box, target);
-                let outcome = search.run(options.max_boxes.saturating_sub(boxes), &mut |part, normal| {
+                let outcome = search.run(options.max_boxes.saturating_sub(boxes), |part, normal| {
                     for ((stage, &middle), &half) in route.stages.iter().zip(&part.middle).zip(&part.half) {
                         part_box[stage.column] = [middle - half, middle + half];
                     }
@@ -220,7 +220,7 @@ impl<'s, A: SupportMap> BoxSearch<'s, A> {
     fn run(
         &mut self,
         most: usize,
-        show_free: &mut dyn FnMut(&BoxPart<ScalarOf<A>>, A::Vector),
+        mut show_free: impl FnMut(&BoxPart<ScalarOf<A>>, A::Vector),
     ) -> JointBoxOutcome<ScalarOf<A>> {
         let half = ScalarOf::<A>::from_f64(0.5);
         let interval = |stage: &JointStage<A::Vector>| self.joint_box[stage.column];
