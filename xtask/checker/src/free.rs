@@ -255,14 +255,20 @@ impl<'p, 'r> MovingPair<'p, 'r> {
         self.places.borrow_mut().entry((self.of, time.to_bits())).or_insert_with(place).clone()
     }
 
-    /// Whether a plane that turns from one normal to the other, at a constant rate, separates the bodies at all times.
+    /// Whether a plane separates the bodies at all times: one that turns from one normal to the other, at a constant rate,
+    /// or one of the two alone.
     fn are_apart(&self, times: [f64; 2], normals: [&Vector; 2]) -> bool {
-        let normals = normals.map(|normal| self.pair.normal(normal));
-        let gaps = [0, 1].map(|i| self.pair.gap(&self.at(times[i]), &normals[i]));
-        self.stay_apart(times, &normals, &gaps, HALVINGS)
+        let [first, second] = normals.map(|normal| self.pair.normal(normal));
+        let planes = [[&first, &second], [&second, &second], [&first, &first]];
+        [0, HALVINGS].into_iter().any(|halvings| {
+            planes.iter().any(|normals| {
+                let gaps = [0, 1].map(|i| self.pair.gap(&self.at(times[i]), normals[i]));
+                self.stay_apart(times, &normals.map(Vector::clone), &gaps, halvings)
+            })
+        })
     }
 
-    /// The same, where it separates them by these gaps at the ends.
+    /// Whether one does that turns from one normal to the other, where it separates them by these gaps at the ends.
     ///
     /// For points `a` and `b` of the bodies `φ(t) = n(t)·(a(t) − b)` has the second derivative `2ṅ·ȧ + n·ä ≤ M`, so
     /// that it is above its chord less `M·t·(s − t)/2`, and the radii take no more than the chord of theirs, as `|n|` is

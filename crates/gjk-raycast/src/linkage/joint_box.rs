@@ -206,7 +206,7 @@ impl<'s, A: SupportMap> BoxSearch<'s, A> {
         let slide = |column: usize| Float::max(joint_box[column][0].abs(), joint_box[column][1].abs());
         let lever = |column| {
             let rate = |other| if other == column { Scalar::ONE } else { Scalar::ZERO };
-            Bounds::of(route, rate, slide).speed(reach)
+            Bounds::of(route, rate, slide).speed.of(reach)
         };
         let levers = route.stages.iter().map(|stage| lever(stage.column)).collect();
         let size = bodies.iter().fold(reach, |size, body| {
@@ -286,16 +286,10 @@ impl<'s, A: SupportMap> BoxSearch<'s, A> {
             axes.push((axis, moving.frame.translation));
         }
         let frame = moving.frame.then(&self.route.tail);
-        let wide = |(i, half): (usize, &ScalarOf<A>)| *half * self.levers[i];
-        let widest = || {
-            let by_way = |i: &usize, k: &usize| {
-                wide((*i, &part.half[*i])).partial_cmp(&wide((*k, &part.half[*k]))).unwrap_or(Ordering::Equal)
-            };
-            (0..stages.len()).max_by(by_way).unwrap_or(0)
-        };
         let [a, b] = self.bodies;
         let Ok(a) = Posed::from_matrix(a, frame.rotation, frame.translation) else {
-            return BoxState::Open { distance: zero, joint: widest() };
+            // Numbers as large as that are not known any better at other joints.
+            return BoxState::Open { distance: zero, joint: 0 };
         };
         let answer = signed_distance(&a, b, SignedDistanceOptions::new());
         // The matrix was made orthonormal, which moves it by no more than it was wrong.
@@ -323,7 +317,7 @@ impl<'s, A: SupportMap> BoxSearch<'s, A> {
             stages.iter().zip(&part.half).find(|(stage, _)| stage.column == column).map_or(zero, |(_, &half)| half)
         };
         let slide = |column: usize| Float::max(self.joint_box[column][0].abs(), self.joint_box[column][1].abs());
-        let bent = Bounds::of(self.route, rate, slide).acceleration(self.reach) * Scalar::from_f64(0.5);
+        let bent = Bounds::of(self.route, rate, slide).acceleration.of(self.reach) * Scalar::from_f64(0.5);
         let shapes = a.core().error + b.core().error;
         // Directions are longer than one by what the joints turn.
         let lost = (error + shapes + epsilons::<ScalarOf<A>>(64.0) * size) * turned + bent * epsilons(64.0);

@@ -238,8 +238,8 @@ impl<S: SupportMap> Linkage<S> {
         let bounds = edge.bounds(route);
         let (moving, _) = LinkMotion::new(route, edge, Scalar::ZERO, bounds).at(Scalar::ZERO);
         let at_first = at_first(moving.velocity_at(moving.frame.of(ball.center)), moving.spin, ball.radius);
-        let near = at_first + bounds.acceleration(reach) * Scalar::from_f64(0.5);
-        let always = bounds.speed(reach);
+        let near = at_first + bounds.acceleration.of(reach) * Scalar::from_f64(0.5);
+        let always = bounds.speed.of(reach);
         // What the frame and the derivatives lose is a small part of what always holds.
         Ok(near.min(always) + always * (moving.frame.turn_error + epsilons(64.0)))
     }

@@ -282,7 +282,8 @@ impl<V: Vector> Sweep<'_, V> {
         };
         // A plane across that, in the frame of the second link, separates what is not near.
         let mut show = |body: usize, other: usize, between: V| {
-            let normal = base.frame.rotation.transpose_mul(between.unit().unwrap_or(V::ZERO));
+            let frame = base.frame.then(&b.route.tail);
+            let normal = frame.rotation.transpose_mul(between.unit().unwrap_or(V::ZERO));
             let met = Met::Link { link: pair.links[1], body: other };
             watch.show(part.times(), [pair.links[0], body], met, [normal; 2]);
         };
@@ -342,8 +343,8 @@ impl<V: Vector> SweptBall<V> {
         let turning = axial::turning(base.spin, velocity);
         let acceleration = moving.acceleration_at(center) - base.acceleration_at(center) - turning - turning;
         let from_last = distance + rim;
-        let bent = bounds.jerk(from_last) * half * squared * number(1.0 / 6.0);
-        let always = bounds.speed(from_last) * half;
+        let bent = bounds.jerk.of(from_last) * half * squared * number(1.0 / 6.0);
+        let always = bounds.speed.of(from_last) * half;
         let way = velocity.abs() * half + acceleration.abs() * (squared * number(0.5)) + V::splat(bent);
         let way = way.min(V::splat(always));
         let drift = way.norm().min(always);
