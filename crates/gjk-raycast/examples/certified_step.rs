@@ -25,7 +25,7 @@ const STEP: f64 = 0.3 / 50.0;
 /// For how many steps the arm holds after a wish was refused.
 const HOLD: u32 = 10;
 /// How many obstacles are asked for about each link. All others are farther away than the last of them.
-const NEAREST: usize = 8;
+const NEAREST: usize = 12;
 
 /// The arm by the lengths of its data sheet: each joint's place in the one before, its axis, and the end of its bar.
 fn ur5() -> Result<Linkage<Bar>, Box<dyn Error>> {

@@ -3,8 +3,8 @@
 use alloc::vec::Vec;
 
 use convex_support::numerics::bound::raised;
-use convex_support::{BoundingSphere, Core, Posed, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere};
-use num_traits::Float as _;
+use convex_support::{BoundingSphere, Core, Matrix as _, Posed, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere};
+use num_traits::Float;
 
 use super::axial;
 use super::bounds::Bounds;
@@ -12,6 +12,7 @@ use super::error::LinkageError;
 use super::frame::{LinkFrame, epsilons};
 use super::joint::{Joint, JointKind, Link};
 use super::link_motion::{LinkMotion, PathEdge};
+use super::moving::Moving;
 use super::route::Route;
 use super::stage::JointStage;
 use crate::Pose;
@@ -201,13 +202,16 @@ impl<S: SupportMap> Linkage<S> {
     /// # Errors
     /// As of [`placed`](Self::placed).
     pub fn way(&self, link: usize, from: &[ScalarOf<S>], to: &[ScalarOf<S>]) -> Result<ScalarOf<S>, LinkageError> {
-        self.greatest_way(link, from, to, |v, turning, radius| v.norm() + turning.norm() * radius)
+        self.greatest_way(link, from, to, |moving, _, ball| {
+            moving.velocity_at(moving.frame.of(ball.center)).norm() + moving.spin.norm() * ball.radius
+        })
     }
 
     /// The same along a direction, a unit vector: negative where all points certainly go the other way. Towards the other
     /// body, against the normal of a distance, it is how much nearer the link may come to that one.
     ///
-    /// With the ball's velocity `v`, its angular velocity `ω` and its radius `ρ`, that is `n·v + |n × ω|·ρ` at first.
+    /// At first the points of a body, whose support function is `h` about an origin of the velocity `v`, go by
+    /// `n·v + h(n × ω)`.
     ///
     /// # Errors
     /// As of [`placed`](Self::placed).
@@ -218,16 +222,20 @@ impl<S: SupportMap> Linkage<S> {
         to: &[ScalarOf<S>],
         n: S::Vector,
     ) -> Result<ScalarOf<S>, LinkageError> {
-        self.greatest_way(link, from, to, |v, spin, radius| n.dot(v) + axial::turning(spin, n).norm() * radius)
+        self.greatest_way(link, from, to, |moving, frame, _| {
+            let turned = frame.rotation.transpose_mul(axial::turning(moving.spin, -n));
+            let farthest = self.bodies(link).iter().map(|body| body.support_value(turned));
+            n.dot(moving.velocity_at(frame.translation)) + farthest.fold(Float::neg_infinity(), Float::max)
+        })
     }
 
-    /// The greatest way of a point of a link, by that in a short time, of which only what is linear is told.
+    /// The greatest way of a point of a link, if `at_first` tells how fast points go there at most.
     fn greatest_way(
         &self,
         link: usize,
         from: &[ScalarOf<S>],
         to: &[ScalarOf<S>],
-        at_first: impl Fn(S::Vector, S::Vector, ScalarOf<S>) -> ScalarOf<S>,
+        at_first: impl Fn(&Moving<S::Vector>, &LinkFrame<S::Vector>, &BoundingSphere<S::Vector>) -> ScalarOf<S>,
     ) -> Result<ScalarOf<S>, LinkageError> {
         self.check(0, from)?;
         self.check(1, to)?;
@@ -236,9 +244,8 @@ impl<S: SupportMap> Linkage<S> {
         let Around { ball, distance } = *ball;
         let (edge, reach) = (PathEdge { from, to }, distance + ball.radius);
         let bounds = edge.bounds(route);
-        let (moving, _) = LinkMotion::new(route, edge, Scalar::ZERO, bounds).at(Scalar::ZERO);
-        let at_first = at_first(moving.velocity_at(moving.frame.of(ball.center)), moving.spin, ball.radius);
-        let near = at_first + bounds.acceleration.of(reach) * Scalar::from_f64(0.5);
+        let (moving, frame) = LinkMotion::new(route, edge, Scalar::ZERO, bounds).at(Scalar::ZERO);
+        let near = at_first(&moving, &frame, &ball) + bounds.acceleration.of(reach) * Scalar::from_f64(0.5);
         let always = bounds.speed.of(reach);
         // What the frame and the derivatives lose is a small part of what always holds.
         Ok(near.min(always) + always * (moving.frame.turn_error + epsilons(64.0)))
@@ -311,7 +318,7 @@ fn ball_around<V: Vector>(balls: impl Iterator<Item = BoundingSphere<V>> + Clone
     let most = corners(V::Scalar::ONE).reduce(V::max).unwrap_or(V::ZERO);
     let center = (least + most) * V::Scalar::from_f64(0.5);
     let reach = |ball: BoundingSphere<V>| (ball.center - center).norm() + ball.radius;
-    BoundingSphere { center, radius: raised(balls.map(reach).fold(V::Scalar::ZERO, num_traits::Float::max)) }
+    BoundingSphere { center, radius: raised(balls.map(reach).fold(V::Scalar::ZERO, Float::max)) }
 }
 
 impl<V: Vector> Joint<V> {
