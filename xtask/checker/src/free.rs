@@ -46,6 +46,7 @@ enum Other<'r> {
 }
 
 /// A thing that stands in the way.
+#[allow(clippy::large_enum_variant, reason = "there are a few of them")]
 enum Obstacle {
     Body(Body),
     HalfSpace(Vector, Interval),
