@@ -47,6 +47,8 @@ pub(crate) const KINDS: &[(&str, Draw)] = &[
         let method = if rng.below(4) == 0 { "all_pairs" } else { "culled" };
         json!({"links": links, "obstacles": obstacles, "method": method})
     }),
+    ("path", Space::path),
+    ("joint_box", Space::joint_box),
 ];
 
 /// A query of a kind in a precision and a dimension.
@@ -193,6 +195,70 @@ impl Space {
             {"motion_cast": {"shape": body(rng), "motion": self.motion(rng), "max_time": 2.0}},
             {"pairs_within": self.scale * rng.unit()}, {"contacts_within": 0.5 * self.scale * rng.unit()},
         ]})
+    }
+
+    /// A robot of a few joints, each with a link; and how far the value of each may go.
+    fn robot(self, rng: &mut Rng) -> (Value, Vec<f64>) {
+        let (mut joints, mut links, mut reach) = (Vec::new(), Vec::new(), Vec::new());
+        for index in 0..2 + rng.below(4) as usize {
+            let parent = if rng.below(4) == 0 { rng.below(1 + index as u64) as i64 - 1 } else { index as i64 - 1 };
+            let joint = json!({"parent": parent, "translation": self.vector(rng, 1.0), "rotation": self.rotation(rng)});
+            let axis: Vec<f64> = (0..self.dimension).map(|_| rng.signed()).collect();
+            joints.push(match rng.below(8) {
+                0 => with(joint, "type", "fixed"),
+                1 => {
+                    reach.push(self.scale);
+                    with(with(joint, "type", "prismatic"), "axis", axis)
+                }
+                _ => {
+                    reach.push(2.0);
+                    let turns = with(joint, "type", "revolute");
+                    if self.dimension == 2 { with(turns, "axis", axis[0]) } else { with(turns, "axis", axis) }
+                }
+            });
+            let shapes: Vec<_> = (0..1 + rng.below(2)).map(|_| self.shape(rng, 1)).collect();
+            links.push(json!({"joint": index, "shapes": shapes}));
+        }
+        (json!({"joints": joints, "links": links}), reach)
+    }
+
+    /// Two links of a robot, the second mostly not next to the first.
+    fn links(robot: &Value, rng: &mut Rng) -> [u64; 2] {
+        let count = robot["links"].as_array().map_or(0, Vec::len) as u64;
+        let first = rng.below(count);
+        [first, (first + 1 + rng.below(count - 1)) % count]
+    }
+
+    fn path(self, rng: &mut Rng) -> Value {
+        let (robot, reach) = self.robot(rng);
+        let waypoints: Vec<Vec<f64>> =
+            (0..1 + rng.below(3)).map(|_| reach.iter().map(|most| most * rng.signed()).collect()).collect();
+        let mut obstacles: Vec<_> = (0..rng.below(4))
+            .map(|_| json!({"type": "posed", "translation": self.vector(rng, 4.0), "of": self.shape(rng, 1)}))
+            .collect();
+        if rng.below(4) == 0 {
+            let normal = self.vector(rng, 1.0);
+            obstacles.push(json!({"type": "half_space", "normal": normal, "offset": -3.0 * self.scale * rng.unit()}));
+        }
+        let path = with(with(robot, "waypoints", waypoints), "obstacles", obstacles);
+        let path = if rng.below(2) == 0 {
+            let links = Self::links(&path, rng).to_vec();
+            with(path, "self", vec![links])
+        } else {
+            path
+        };
+        if rng.below(4) == 0 { with(path, "target_distance", 0.2 * self.scale * rng.unit()) } else { path }
+    }
+
+    fn joint_box(self, rng: &mut Rng) -> Value {
+        let (robot, reach) = self.robot(rng);
+        let mut interval = |most: f64| {
+            let (middle, half) = (most * rng.signed(), 0.25 * most * rng.unit());
+            vec![middle - half, middle + half]
+        };
+        let intervals: Vec<_> = reach.into_iter().map(&mut interval).collect();
+        let links = Self::links(&robot, rng).to_vec();
+        with(with(robot, "pair", links), "box", intervals)
     }
 
     /// This space, or at times one of four to six dimensions.

@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use clap::Args;
 use serde_json::Value;
 
-use crate::engine::path::{EdgeReport, Verdict, edges};
+use crate::engine::path::{EdgeReport, Verdict, edges, picture as drawn};
 use crate::mesh::Meshes;
 use crate::wire::json;
 
@@ -22,13 +22,17 @@ pub struct Choice {
     /// Files of queries, of which those of kind `path` are asked, edge by edge.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
+    /// Draw the first path in space that touches something, and its contact, into a file of this name.
+    #[arg(long, value_name = "FILE.svg")]
+    picture: Option<PathBuf>,
 }
 
 /// Prints the table.
 #[must_use]
 pub fn run(choice: &Choice) -> ExitCode {
     let mut groups = BTreeMap::<String, Vec<EdgeReport>>::new();
-    let read = choice.files.iter().try_for_each(|file| read(file, &mut groups));
+    let mut picture = choice.picture.as_deref();
+    let read = choice.files.iter().try_for_each(|file| read(file, &mut groups, &mut picture));
     match read.and_then(|()| print(&groups, &mut io::stdout().lock()).map_err(|why| why.to_string())) {
         Ok(()) => ExitCode::SUCCESS,
         Err(why) => {
@@ -38,8 +42,13 @@ pub fn run(choice: &Choice) -> ExitCode {
     }
 }
 
-/// Asks every path of a file, and puts its edges into the group of its first tag.
-fn read(file: &Path, groups: &mut BTreeMap<String, Vec<EdgeReport>>) -> Result<(), String> {
+/// Asks every path of a file, and puts its edges into the group of its first tag. A picture that is still to be drawn is
+/// drawn of the first that touches something.
+fn read(
+    file: &Path,
+    groups: &mut BTreeMap<String, Vec<EdgeReport>>,
+    picture: &mut Option<&Path>,
+) -> Result<(), String> {
     let text = fs::read_to_string(file).map_err(|why| format!("cannot read {}: {why}", file.display()))?;
     let meshes = Meshes::relative_to(file.parent().unwrap_or(Path::new("")));
     for (number, line) in text.lines().enumerate() {
@@ -54,6 +63,12 @@ fn read(file: &Path, groups: &mut BTreeMap<String, Vec<EdgeReport>>) -> Result<(
         let tag = object.get("tags").and_then(|tags| tags.get(0)).and_then(Value::as_str).unwrap_or("untagged");
         let found = edges(&object, &meshes, &STEPS).map_err(|problem| failed(problem.message))?;
         groups.entry(tag.to_owned()).or_default().extend(found);
+        if let Some(file) = *picture
+            && let Some((svg, true)) = drawn(&object, &meshes).map_err(|problem| failed(problem.message))?
+        {
+            fs::write(file, svg).map_err(|why| format!("cannot write {}: {why}", file.display()))?;
+            *picture = None;
+        }
     }
     Ok(())
 }

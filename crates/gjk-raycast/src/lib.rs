@@ -69,8 +69,8 @@
 //!   `no_std` targets with `alloc`, to the same bits.
 //! - `f64` (default): asks glam for double precision; with glam 0.32, which has no such feature, turn on `glam-032`
 //!   instead.
-//! - `rayon`: `par_ray_casts`, `Scene::par_ray_casts`, `Among::par_pairs_within` and `Among::par_contacts_within`,
-//!   which use all threads.
+//! - `rayon`: `par_ray_casts`, `Scene::par_ray_casts`, `Among::par_pairs_within`, `Among::par_contacts_within` and
+//!   `Linkage::par_paths`, which use all threads.
 //! - `paper`: the sub-algorithms of the papers beside the default, for comparison: [`SubAlgorithm`].
 //! - `hull`, `mint`, `bytemuck`, `approx`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: those of
 //!   [`convex_support`], for its shapes.
@@ -181,8 +181,8 @@ pub use intersects::{intersects, intersects_with};
 pub use iterative_ray_cast::{iterative_ray_cast, iterative_ray_cast_with};
 pub use linear_cast::{linear_cast, linear_cast_with};
 pub use linkage::{
-    Joint, JointBox, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, LinkageOptions, Met, Path, PathContact,
-    PathOutcome, PathStop, PathWork, PathWorkspace,
+    FreeBox, FreeInterval, Joint, JointBox, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, LinkageOptions,
+    Met, Path, PathContact, PathOutcome, PathStop, PathWork, PathWorkspace,
 };
 pub use motion::{
     ChainMotion, Displacement, MotionCast, MotionCastOptions, MotionHit, MotionIterate, MovingBall, Pose, RigidMotion,

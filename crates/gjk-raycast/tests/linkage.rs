@@ -1,13 +1,13 @@
 //! Robots along paths, and anywhere in a box of joint values: against closed forms, poses by quaternions at many times,
 //! and what is refused.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3Swizzles as _};
 use convex_support::{Ball, Capsule, Cuboid, InvalidShape, Point, Polytope, Posed, Rounded, Segment, SupportMap};
 use gjk_raycast::{
-    HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, LinkageOptions, Met, Path, PathOutcome,
-    PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, signed_distance,
+    Body, HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, LinkageOptions, Met, Path,
+    PathOutcome, PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, signed_distance,
 };
 
 type Bar = Rounded<Segment<DVec2>>;
@@ -88,6 +88,29 @@ fn links_of_one_robot_meet_one_another() {
         assert!(sooner.contact().is_some_and(|c| (c.time - truth).abs() < 1e-13), "{sooner:?}");
     }
     assert!(ask(&chain, &[vec![0.0; 2], vec![2.5; 2]], &nothing).is_free(), "none is asked about another");
+}
+
+/// Two robots that both move are one linkage of two trees. Bars of length 1, 1.8 apart at their other ends, sink towards one
+/// another like a gate: their tips touch where they are 0.1 apart, at the cosine 0.85.
+#[test]
+fn two_robots_meet_one_another() {
+    let joints = [turning(None, DVec2::ZERO), turning(None, DVec2::new(1.8, 0.0))];
+    let links = [0, 1].map(|joint| Link { joint: Some(joint), bodies: vec![bar()] });
+    let gate = Linkage::new(joints, links).expect("a linkage").with_pairs([[0, 1]]).expect("two links");
+    let path = ask(&gate, &[vec![1.2, PI - 1.2], vec![0.0, PI]], &Scene::default());
+    let (contact, truth) = (path.contact().expect("they meet"), (1.2 - 0.85_f64.acos()) / 1.2);
+    assert_eq!((contact.link, contact.met), (0, Met::Link { link: 1, body: 0 }), "{contact:?}");
+    assert!(contact.lower <= truth && truth <= contact.upper && contact.upper - contact.lower < 1e-12, "{contact:?}");
+    assert!((contact.point - DVec2::new(0.9, (1.0_f64 - 0.85 * 0.85).sqrt())).length() < 1e-12, "{contact:?}");
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+fn paths_on_threads_are_answered_as_one_by_one() {
+    let (robot, scene) = (arm(), Scene::new([ball_at(1.0, 1.0)]).expect("finite"));
+    let paths: Vec<_> = (0..40).map(|k| vec![vec![0.0, 0.0], vec![0.05 * f64::from(k), 0.3]]).collect();
+    let alone: Vec<_> = paths.iter().map(|path| Ok(ask(&robot, path, &scene))).collect();
+    assert_eq!(robot.par_paths(&paths, &scene, LinkageOptions::new()), alone, "in the same order");
 }
 
 /// What slides, in a frame that is turned, towards a wall.
@@ -365,6 +388,98 @@ fn a_contact_at_the_end_of_a_part_is_one() -> Result<(), Box<dyn std::error::Err
         assert!(contact.lower <= part && part <= contact.upper && contact.is_certain(), "{part}: {contact:?}");
         assert!(contact.upper - contact.lower < 1e-13, "{part}: {contact:?}");
     }
+    Ok(())
+}
+
+/// A contact exactly at a waypoint was undecided: whether it comes before the end of the one edge, rounding decides, and
+/// the next edge begins in it. That it does is what decides.
+#[test]
+fn a_contact_at_a_waypoint_is_one() -> Result<(), Box<dyn std::error::Error>> {
+    let robot = Linkage::new(
+        [Joint::prismatic(None, Pose::default(), DVec3::X)],
+        [Link { joint: Some(0), bodies: vec![Ball::new(0.5)?] }],
+    )?;
+    let mut scene = Scene::new([Posed::translated(Ball::new(0.3)?, DVec3::new(2.9, 0.0, 0.0))?])?;
+    let wall = scene.insert_half_space(HalfSpace::new(DVec3::NEG_X * 2.0, -6.0)?);
+    let ask = |ways: &[[f64; 1]], target: f64| {
+        let options = LinkageOptions::new().with_target_distance(target);
+        robot.path(ways, &scene, options, &mut PathWorkspace::new())
+    };
+    for target in [0.0, 0.25, 0.1] {
+        let end = 2.1 - target;
+        for (ways, edge) in [(vec![[0.0], [end], [3.0]], 0), (vec![[-1.0], [-0.5], [end], [end + 1.0], [end]], 1)] {
+            let contact = ask(&ways, target)?.contact().ok_or("it is decided")?;
+            assert_eq!((contact.edge, contact.met), (edge, Met::Obstacle(0)), "before the wall {wall}: {contact:?}");
+            assert!(contact.lower <= 1.0 && 1.0 <= contact.upper && contact.is_certain(), "{contact:?}");
+            assert!(contact.upper - contact.lower < 1e-12 && contact.time == 1.0, "{contact:?}");
+        }
+        // One that only touches there stays undecided, as nobody can know it, and what comes later is not taken for it.
+        let touching = ask(&[[0.0], [end], [0.0], [3.0]], target)?;
+        assert!(!touching.is_free(), "{touching:?}");
+        assert!(touching.contact().is_none_or(|contact| contact.edge == 0), "{touching:?}");
+    }
+    Ok(())
+}
+
+/// Each interval that is shown is one in which the plane between two bodies, as it turns, separates them, and together
+/// they cover the path for every two bodies: those that are cast, and those that are far away.
+#[test]
+fn the_planes_of_a_free_path_are_shown() {
+    let robot = arm();
+    let mut scene = Scene::new([ball_at(1.25, 1.25), ball_at(-0.9, 0.3), ball_at(0.3, 6.0)]).expect("finite");
+    scene.insert_half_space(HalfSpace::new(DVec2::Y, -1.0).expect("a normal"));
+    let ways = [[0.0, 0.2], [0.0, 2.6], [1.5, 2.6], [1.5, 0.2]];
+    let (mut shown, mut workspace) = (Vec::new(), PathWorkspace::new());
+    let path = robot.path_with(&ways, &scene, LinkageOptions::new(), &mut workspace, |part| shown.push(part));
+    assert!(path.is_ok_and(|path| path.is_free()), "bent, it passes the first ball");
+    for (edge, link, other) in (0..24).map(|k| (k / 8, k / 4 % 2, k % 4)) {
+        let met = Met::Obstacle(other);
+        let mut parts: Vec<_> = shown.iter().filter(|p| (p.edge, p.link, p.met) == (edge, link, met)).collect();
+        parts.sort_by(|a, b| a.from.total_cmp(&b.from));
+        let end = parts.iter().fold(0.0, |end, part| if part.from <= end { part.to.max(end) } else { end });
+        assert_eq!(end, 1.0, "link {link} and body {other} on edge {edge}: {parts:?}");
+        for (part, k) in parts.iter().flat_map(|part| (0..=8).map(move |k| (part, f64::from(k) / 8.0))) {
+            let time = part.from + k * (part.to - part.from);
+            let at = |joint: usize| ways[edge][joint] + time * (ways[edge + 1][joint] - ways[edge][joint]);
+            let normal = part.normals[0].lerp(part.normals[1], k);
+            let body = robot.placed(link, 0, &[at(0), at(1)]).expect("values for its joints");
+            let height = -body.support_value(-normal);
+            let reach = match scene.get(other) {
+                Some(Body::Convex(ball)) => ball.support_value(normal),
+                _ => -1.0,
+            };
+            assert!(height > reach, "{height} and {reach} at {time}: {part:?}");
+        }
+    }
+}
+
+/// No point of a link goes farther than is said, in any direction and along one, and short ways are known well.
+#[test]
+fn a_link_goes_no_farther_than_its_way() -> Result<(), Box<dyn std::error::Error>> {
+    let (robot, mut seed, mut most) = (arm(), 0x2004_1120_u64, 0.0_f64);
+    for k in 0..200 {
+        let size = [0.05, 0.5, 3.0][k % 3];
+        let from = [0, 1].map(|_| 3.0 * random(&mut seed));
+        let to = from.map(|value| value + size * (2.0 * random(&mut seed) - 1.0));
+        for link in 0..2 {
+            let way = robot.way(link, &from, &to)?;
+            let n = DVec2::from_angle(6.3 * random(&mut seed));
+            let along = robot.way_along(link, &from, &to, n)?;
+            assert!(along <= way + 1e-12, "a direction is one of all: {along} of {way}");
+            let [before, after] = [robot.placed(link, 0, &from)?, robot.placed(link, 0, &to)?];
+            for point in [DVec2::new(-0.05, 0.0), DVec2::new(1.05, 0.0)] {
+                let [before, after] = [&before, &after].map(|body| body.translation() + body.rotation() * point);
+                let gone = (after - before).length();
+                assert!(gone <= way, "{gone} of {way}, from {from:?} to {to:?}");
+                assert!(n.dot(after - before) <= along, "{along} along {n}, from {from:?} to {to:?}");
+                most = most.max(if size < 0.1 { gone / way } else { 0.0 });
+            }
+        }
+    }
+    assert!(most > 0.9, "a short way is known well: {most}");
+    let unknown = LinkageError::NoSuchBody { link: 2, body: 0 };
+    assert_eq!(robot.way(2, &[0.0; 2], &[0.0; 2]), Err(unknown), "there are two links");
+    assert_eq!(robot.placed(2, 0, &[0.0; 2]).err(), Some(unknown), "there are two links");
     Ok(())
 }
 

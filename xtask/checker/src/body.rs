@@ -28,12 +28,7 @@ impl Set {
     pub(crate) fn support(&self, direction: &Vector) -> (Vector, Interval) {
         match self {
             Self::Points(points) => farthest(points.iter().map(|p| (p.clone(), p.dot(direction)))),
-            Self::Ball => {
-                let length = direction.length();
-                let unit = Vector(direction.0.each_ref().map(|x| x.over(&length)));
-                let point = if Interval::zero().is_less_than(&length) { unit } else { Vector::zero() };
-                (point, length)
-            }
+            Self::Ball => (direction.unit().unwrap_or_else(Vector::zero), direction.length()),
             Self::Image(of, rows, translation) => {
                 let (point, value) = of.support(&combined(rows, direction));
                 (apply(rows, &point).plus(translation), &value + &direction.dot(translation))
@@ -61,13 +56,22 @@ fn farthest(mut points: impl Iterator<Item = (Vector, Interval)>) -> (Vector, In
 }
 
 /// The image of a point under the map of these rows.
-fn apply(rows: &[Vector; 3], point: &Vector) -> Vector {
+pub(crate) fn apply(rows: &[Vector; 3], point: &Vector) -> Vector {
     Vector(rows.each_ref().map(|row| row.dot(point)))
 }
 
 /// The rows, combined: the image under the transposed map.
-fn combined(rows: &[Vector; 3], by: &Vector) -> Vector {
+pub(crate) fn combined(rows: &[Vector; 3], by: &Vector) -> Vector {
     rows.iter().zip(&by.0).fold(Vector::zero(), |sum, (row, factor)| sum.plus(&row.times(factor)))
+}
+
+/// The rows of a product.
+pub(crate) fn product(a: &[Vector; 3], b: &[Vector; 3]) -> [Vector; 3] {
+    a.each_ref().map(|row| combined(b, row))
+}
+
+pub(crate) fn transposed(rows: &[Vector; 3]) -> [Vector; 3] {
+    std::array::from_fn(|i| Vector(std::array::from_fn(|j| rows[j].0[i].clone())))
 }
 
 pub(crate) fn diagonal(entries: [Interval; 3]) -> [Vector; 3] {

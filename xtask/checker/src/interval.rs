@@ -88,12 +88,12 @@ impl Interval {
 
     /// Its lower end: a bound from below on everything in it.
     pub(crate) fn least(&self) -> Self {
-        Self { low: self.low.clone(), high: self.low.clone() }
+        Self::exactly(self.low.clone())
     }
 
     /// Its upper end.
     pub(crate) fn greatest(&self) -> Self {
-        Self { low: self.high.clone(), high: self.high.clone() }
+        Self::exactly(self.high.clone())
     }
 
     /// The larger of two numbers.
@@ -127,15 +127,31 @@ impl Interval {
         Self { low, high: high(UP.sqrt(&self.high)) }
     }
 
-    /// The sine and the cosine of an angle, computed to 256 bits, of which the last 16 are not relied on.
-    pub(crate) fn sine_and_cosine(angle: f64) -> [Self; 2] {
-        let margin = Self { low: Repr::new((-1).into(), -240), high: Repr::new(1.into(), -240) };
-        let angle = Self::from(angle);
-        if angle.is_zero() {
+    /// The amount, without its sign.
+    pub(crate) fn absolute(&self) -> Self {
+        let larger = self.max(&-self);
+        if self.is_apart_from_zero() { larger } else { Self { low: Repr::zero(), ..larger } }
+    }
+
+    /// The sine and the cosine of an angle, computed to 256 bits, of which the last 16 are not relied on. Neither
+    /// changes by more than the angle.
+    pub(crate) fn sine_and_cosine(&self) -> [Self; 2] {
+        if self.is_zero() {
             return [0.0, 1.0].map(Self::from);
         }
-        let (sine, cosine) = DOWN.sin_cos(&angle.low, None);
-        [sine, cosine].map(low).map(|value| &Self { low: value.clone(), high: value } + &margin)
+        if !self.is_bounded() {
+            return [Self::unknown(), Self::unknown()];
+        }
+        let lost = &(&self.greatest() - &self.least()) + &Self::exactly(Repr::new(1.into(), -240));
+        let (sine, cosine) = DOWN.sin_cos(&self.low, None);
+        [sine, cosine].map(low).map(|value| {
+            let value = Self::exactly(value);
+            Self { low: (&value - &lost).low, high: (&value + &lost).high }
+        })
+    }
+
+    fn exactly(value: Repr<2>) -> Self {
+        Self { low: value.clone(), high: value }
     }
 
     /// The least and greatest of what an operation makes of the ends of two bounded intervals.
@@ -216,6 +232,17 @@ impl Vector {
 
     pub(crate) fn length(&self) -> Interval {
         self.squared().root()
+    }
+
+    pub(crate) fn cross(&self, other: &Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (&self.0, &other.0);
+        Self([&(b * z) - &(c * y), &(c * x) - &(a * z), &(a * y) - &(b * x)])
+    }
+
+    /// The vector over its length, if that is certainly not zero.
+    pub(crate) fn unit(&self) -> Option<Self> {
+        let length = self.length();
+        Interval::zero().is_less_than(&length).then(|| Self(self.0.each_ref().map(|x| x.over(&length))))
     }
 
     pub(crate) fn plus(&self, other: &Self) -> Self {

@@ -6,11 +6,14 @@
 
 mod body;
 mod certificate;
+mod free;
 mod interval;
 mod reader;
+mod robot;
 #[cfg(test)]
 mod tests;
 
 pub use self::certificate::{Bounds, Verdict, judge};
+pub use self::free::{FreeProof, judge_free};
 pub use self::interval::Interval;
 pub use self::reader::{Points, Reader, Unread};

@@ -5,7 +5,7 @@ use std::fmt;
 
 use serde_json::Value;
 
-use crate::body::{Body, Set, corners, diagonal, diagonal_of, difference, scale_of, sum};
+use crate::body::{Body, Set, corners, diagonal, diagonal_of, difference, scale_of, sum, transposed};
 use crate::interval::{Interval, Vector};
 
 /// What a query's numbers mean: each is the nearest double to what is written, and in single precision the nearest
@@ -76,11 +76,11 @@ impl Reader<'_> {
     /// A rotation: an angle, or a quaternion that is divided by its length.
     ///
     /// In single precision the coordinates of a quaternion are rounded to 24 bits, whatever their exponents.
-    fn rotation(&self, value: Option<&Value>) -> Result<[Vector; 3], Unread> {
+    pub(crate) fn rotation(&self, value: Option<&Value>) -> Result<[Vector; 3], Unread> {
         let one = Interval::from(1.0);
         let Some(value) = value else { return Ok(diagonal(std::array::from_fn(|_| one.clone()))) };
         if value.is_number() {
-            let [sine, cosine] = Interval::sine_and_cosine(self.number(value)?);
+            let [sine, cosine] = Interval::from(self.number(value)?).sine_and_cosine();
             let zero = Interval::zero();
             return Ok([
                 Vector([cosine.clone(), -&sine, zero.clone()]),
@@ -216,8 +216,7 @@ impl Reader<'_> {
                 m[i].0[j] = rest.over(&l[i].0[i]);
             }
         }
-        let rows = std::array::from_fn(|i| Vector(std::array::from_fn(|j| m[j].0[i].clone())));
-        Ok(Set::Image(Box::new(Set::Ball), rows, center))
+        Ok(Set::Image(Box::new(Set::Ball), transposed(&m), center))
     }
 }
 

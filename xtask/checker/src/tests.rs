@@ -26,7 +26,7 @@ fn intervals_enclose_what_they_stand_for() {
         "nothing is lost"
     );
     for angle in [-7.0_f64, 0.5, 3.0, 1e6] {
-        let [sine, cosine] = Interval::sine_and_cosine(angle);
+        let [sine, cosine] = Interval::from(angle).sine_and_cosine();
         assert!(is_between(&sine, angle.sin() - 1e-15, angle.sin() + 1e-15), "the sine of {angle}");
         assert!(is_between(&cosine, angle.cos() - 1e-15, angle.cos() + 1e-15), "the cosine of {angle}");
     }

@@ -1,7 +1,7 @@
 //! `joint_box`.
 
 use convex_support::Vector;
-use gjk_raycast::{JointBoxOutcome, Linkage, LinkageOptions};
+use gjk_raycast::{FreeBox, JointBoxOutcome, Linkage, LinkageOptions};
 
 use super::{Ask, How, Query, Question, scalar};
 use crate::wire::answer::{Answer, Field, Number};
@@ -54,6 +54,20 @@ impl<V: Space> Question for Ever<V> {
 
     fn solve(&self) -> Result<Self::Solution, Problem> {
         self.robot.joint_box(self.pair, &self.intervals, self.options).map_err(problem)
+    }
+
+    fn certificate(&self, _: &Self::Solution) -> Option<Answer> {
+        let mut free = Vec::new();
+        let show = |FreeBox { bodies, joint_box, normal }: FreeBox<'_, V>| {
+            let intervals = joint_box.iter().map(|ends| ends.map(Number::of).to_vec()).collect();
+            let part = Answer::default()
+                .with("body", Field::Count(bodies[0]))
+                .with("other_body", Field::Count(bodies[1]))
+                .with("box", Field::Rows(intervals));
+            free.push(part.with("plane", Field::vector(normal)));
+        };
+        let _ = self.robot.joint_box_with(self.pair, &self.intervals, self.options, show).ok()?;
+        Some(Answer::default().with("free", Field::Answers(free)))
     }
 
     fn answer(&self, answer: Self::Solution) -> Result<Answer, Problem> {

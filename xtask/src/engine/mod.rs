@@ -16,6 +16,7 @@ mod method;
 mod motion_cast;
 mod pair;
 pub mod path;
+mod path_picture;
 mod ray_cast;
 mod ray_exit;
 mod scene;

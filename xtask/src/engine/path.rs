@@ -4,14 +4,14 @@ use convex_support::Vector;
 use convex_support::glam::{DVec2, DVec3};
 #[cfg(not(target_family = "wasm"))]
 use cpu_time::ThreadTime;
-use gjk_raycast::{Linkage, LinkageOptions, Met, PathOutcome, PathStop, PathWorkspace, Scene};
+use gjk_raycast::{FreeInterval, Linkage, LinkageOptions, Met, PathOutcome, PathStop, PathWorkspace, Scene};
 #[cfg(target_family = "wasm")]
 use std::time::Instant as ThreadTime;
 
 use super::scene::{refused, scene_of};
-use super::{Ask, EVERY, How, Precision, Query, Question, scalar, status};
+use super::{Ask, EVERY, How, Precision, Query, Question, path_picture, scalar, status};
 use crate::mesh::Meshes;
-use crate::wire::answer::{Answer, Field};
+use crate::wire::answer::{Answer, Field, Number};
 use crate::wire::body::Body;
 use crate::wire::error::{Kind, Problem};
 use crate::wire::fields::{Dimension, Fields, Object, Written};
@@ -81,6 +81,22 @@ impl<V: Space> Question for Way<V> {
         self.robot.path(&self.waypoints, &self.scene, self.options, &mut PathWorkspace::new()).map_err(problem)
     }
 
+    fn certificate(&self, _: &Self::Solution) -> Option<Answer> {
+        let mut free = Vec::new();
+        let show = |part: FreeInterval<V>| {
+            let FreeInterval { edge, from, to, link, body, met, normals } = part;
+            let answer = Answer::default()
+                .with("edge", Field::Count(edge))
+                .with("times", Field::Numbers([from, to].map(Number::of).to_vec()))
+                .with("link", Field::Count(link))
+                .with("body", Field::Count(body));
+            free.push(of_what(answer, met).with("normals", Field::vectors(normals)));
+        };
+        let mut workspace = PathWorkspace::new();
+        let _ = self.robot.path_with(&self.waypoints, &self.scene, self.options, &mut workspace, show).ok()?;
+        Some(Answer::default().with("free", Field::Answers(free)))
+    }
+
     fn answer(&self, path: Self::Solution) -> Result<Answer, Problem> {
         let answer = |free| Answer::default().with("free", Field::Flag(free));
         let answer = match path.outcome {
@@ -91,13 +107,7 @@ impl<V: Space> Question for Way<V> {
                     .with("time", Field::number(contact.time))
                     .with("link", Field::Count(contact.link))
                     .with("body", Field::Count(contact.body));
-                let answer = match contact.met {
-                    Met::Obstacle(obstacle) => answer.with("obstacle", Field::Count(obstacle)),
-                    Met::Link { link, body } => {
-                        answer.with("other_link", Field::Count(link)).with("other_body", Field::Count(body))
-                    }
-                };
-                answer
+                of_what(answer, contact.met)
                     .with("point", Field::vector(contact.point))
                     .with("normal", Field::maybe_vector(contact.normal))
                     .with_finite("lower", contact.lower)
@@ -114,6 +124,16 @@ impl<V: Space> Question for Way<V> {
             }
         };
         Ok(answer.with("casts", Field::Count(path.work.casts)))
+    }
+}
+
+/// With what is met, or not.
+fn of_what(answer: Answer, met: Met) -> Answer {
+    match met {
+        Met::Obstacle(obstacle) => answer.with("obstacle", Field::Count(obstacle)),
+        Met::Link { link, body } => {
+            answer.with("other_link", Field::Count(link)).with("other_body", Field::Count(body))
+        }
     }
 }
 
@@ -149,6 +169,23 @@ pub fn edges(object: &Object, meshes: &Meshes, steps: &[f64; 2]) -> Result<Vec<E
         Some(2) => query.way::<DVec2>(&how)?.edges(steps),
         _ => query.way::<DVec3>(&how)?.edges(steps),
     }
+}
+
+/// The way of a `path` query as a picture, an `<svg>` element, and whether it touches something; `None` in the plane.
+///
+/// # Errors
+/// Where the query is none.
+pub fn picture(object: &Object, meshes: &Meshes) -> Result<Option<(String, bool)>, Problem> {
+    let dimension = Dimension::default();
+    let fields = Written::new(object, &dimension).fields(EVERY, Path::FIELDS)?;
+    let query = Path::read(&fields)?;
+    if dimension.known() == Some(2) {
+        return Ok(None);
+    }
+    let way = query.way::<DVec3>(&How { precision: Precision::F64, tol: None, method: None, meshes })?;
+    let contact = way.solve()?.contact();
+    let svg = path_picture::svg(&way.robot, &way.scene, &way.waypoints, contact.as_ref());
+    Ok(svg.map(|svg| (svg, contact.is_some())))
 }
 
 impl<V: Space<Scalar = f64>> Way<V> {

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
-use checker::{Bounds, Reader, Unread, Verdict, judge};
+use checker::{Bounds, FreeProof, Reader, Unread, Verdict, judge, judge_free};
 use clap::Args;
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -29,6 +29,9 @@ pub struct Choice {
     /// Draw random queries for so many seconds, answer them, and prove that.
     #[arg(long, value_name = "SECONDS", conflicts_with = "files")]
     random: Option<u64>,
+    /// Draw robots' paths and boxes of joint values. Of these, only what is free is proved.
+    #[arg(long, requires = "random")]
+    robots: bool,
     /// Another seed draws other queries.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -48,7 +51,12 @@ pub struct Counts {
     pub disproved: u64,
     /// Random queries that the crates could not answer.
     pub unanswered: u64,
+    /// Parts of paths and of boxes of joint values that are proved to be free, and those that are not.
+    pub parts: [u64; 2],
 }
+
+/// What the parts of a certificate are called that are proved, and that are not.
+const PARTS: [&str; 2] = ["parts_proved", "parts_not_proved"];
 
 /// Lines that are judged together.
 const BATCH: usize = 1024;
@@ -71,7 +79,8 @@ fn prove(choice: &Choice, output: &mut impl Write) -> io::Result<Counts> {
     if let Some(seconds) = choice.random {
         let told = Mutex::new(Vec::new());
         let tell = |line: &str| told.lock().unwrap_or_else(PoisonError::into_inner).push(line.to_owned());
-        let tally = random::prove_for(seconds, choice.seed, tell);
+        let kinds = if choice.robots { random::ROBOTS } else { random::PLANES };
+        let tally = random::prove_for(kinds, seconds, choice.seed, tell);
         for line in told.into_inner().unwrap_or_else(PoisonError::into_inner) {
             writeln!(output, "{line}")?;
         }
@@ -97,7 +106,7 @@ fn prove(choice: &Choice, output: &mut impl Write) -> io::Result<Counts> {
             let asked: Vec<_> = batch.iter().filter(asks).collect();
             let judged: Vec<_> = asked.into_par_iter().map(|(i, line)| judge_line(*i, line, &meshes)).collect();
             for (verdict, text) in judged {
-                counts.add(verdict);
+                counts.add(verdict, &text);
                 if !(choice.quiet && verdict == Verdict::Proved) {
                     writeln!(output, "{text}")?;
                 }
@@ -112,9 +121,12 @@ fn prove(choice: &Choice, output: &mut impl Write) -> io::Result<Counts> {
 impl Counts {
     /// The line of output, for one kind of query or for all.
     fn said(self, kind: Option<&str>) -> Value {
-        let Self { proved, not_proved, disproved, unanswered } = self;
+        let Self { proved, not_proved, disproved, unanswered, parts } = self;
         let mut said =
             json!({"proved": proved, "not_proved": not_proved, "disproved": disproved, "unanswered": unanswered});
+        if parts != [0; 2] {
+            (said[PARTS[0]], said[PARTS[1]]) = (parts[0].into(), parts[1].into());
+        }
         if let Some(kind) = kind {
             said["kind"] = kind.into();
         }
@@ -127,10 +139,14 @@ impl Counts {
             not_proved: self.not_proved + other.not_proved,
             disproved: self.disproved + other.disproved,
             unanswered: self.unanswered + other.unanswered,
+            parts: [0, 1].map(|i| self.parts[i] + other.parts[i]),
         }
     }
 
-    fn add(&mut self, verdict: Verdict) {
+    fn add(&mut self, verdict: Verdict, said: &Value) {
+        for (count, name) in self.parts.iter_mut().zip(PARTS) {
+            *count += said[name].as_u64().unwrap_or(0);
+        }
         *match verdict {
             Verdict::Proved => &mut self.proved,
             Verdict::NotProved => &mut self.not_proved,
@@ -143,25 +159,28 @@ impl Counts {
 pub(crate) fn judge_line(number: u64, line: &[u8], meshes: &Meshes) -> (Verdict, Value) {
     let read = json::object(line.trim_ascii()).map(Value::Object).map_err(|why| why.message);
     let id = read.as_ref().ok().and_then(|line| line.get("id")).cloned().unwrap_or_else(|| number.into());
-    let judged: Result<(Verdict, Bounds), Unread> = read.and_then(|line| {
+    let said = |verdict| match verdict {
+        Verdict::Proved => "proved",
+        Verdict::NotProved => "not proved",
+        Verdict::Disproved => "disproved",
+    };
+    let judged: Result<(Verdict, Value), Unread> = read.and_then(|line| {
         let single = line.get("precision").and_then(Value::as_str) == Some("f32");
         let mesh = |path: &str| {
             let mesh = meshes.load(Path::new(path)).map_err(|why| why.message)?;
             Ok(mesh.points().iter().map(|point| point.to_array()).collect())
         };
-        judge(&line, &Reader { single, mesh: &mesh })
-    });
-    match judged {
-        Err(why) => (Verdict::NotProved, json!({"id": id, "verdict": "not proved", "because": why})),
-        Ok((verdict, Bounds { lower, upper })) => {
-            let said = match verdict {
-                Verdict::Proved => "proved",
-                Verdict::NotProved => "not proved",
-                Verdict::Disproved => "disproved",
-            };
-            // Infinity is null.
-            let answer = json!({"id": id, "verdict": said, "lower": lower.to_f64(), "upper": upper.to_f64()});
-            (verdict, answer)
+        let reader = Reader { single, mesh: &mesh };
+        if matches!(line.get("query").and_then(Value::as_str), Some("path" | "joint_box")) {
+            let FreeProof { verdict, proved, not_proved } = judge_free(&line, &reader)?;
+            return Ok((verdict, json!({"verdict": said(verdict), PARTS[0]: proved, PARTS[1]: not_proved})));
         }
-    }
+        let (verdict, Bounds { lower, upper }) = judge(&line, &reader)?;
+        // Infinity is null.
+        Ok((verdict, json!({"verdict": said(verdict), "lower": lower.to_f64(), "upper": upper.to_f64()})))
+    });
+    let (verdict, mut answer) =
+        judged.unwrap_or_else(|why| (Verdict::NotProved, json!({"verdict": said(Verdict::NotProved), "because": why})));
+    answer["id"] = id;
+    (verdict, answer)
 }

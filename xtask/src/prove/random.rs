@@ -17,7 +17,7 @@ use crate::query::certified;
 pub(super) type Tally = BTreeMap<String, Counts>;
 
 /// Draws, answers and judges queries for so many seconds, on all cores; the lines that are not proved go to `told`.
-pub(super) fn prove_for(seconds: u64, seed: u64, told: impl Fn(&str) + Sync) -> Tally {
+pub(super) fn prove_for(kinds: &[&str], seconds: u64, seed: u64, told: impl Fn(&str) + Sync) -> Tally {
     let end = Instant::now() + Duration::from_secs(seconds);
     let meshes = Meshes::relative_to("");
     let lanes = 0..rayon::current_num_threads() as u64;
@@ -25,7 +25,7 @@ pub(super) fn prove_for(seconds: u64, seed: u64, told: impl Fn(&str) + Sync) -> 
         let mut rng = Rng::new(seed.wrapping_mul(0x9E37_79B9).wrapping_add(lane));
         let mut tally = Tally::new();
         while Instant::now() < end {
-            let query = query(&mut rng);
+            let query = query(kinds, &mut rng);
             let [kind, precision] = ["query", "precision"].map(|name| query[name].as_str().unwrap_or_default());
             let counts = tally.entry(format!("{kind} {precision}")).or_default();
             let Some(line) = certified(query.to_string().as_bytes(), &meshes) else {
@@ -33,7 +33,7 @@ pub(super) fn prove_for(seconds: u64, seed: u64, told: impl Fn(&str) + Sync) -> 
                 continue;
             };
             let (verdict, said) = judge_line(1, &line, &meshes);
-            counts.add(verdict);
+            counts.add(verdict, &said);
             if verdict != Verdict::Proved {
                 told(&format!("{said} of {}", String::from_utf8_lossy(line.trim_ascii())));
             }
@@ -49,17 +49,23 @@ pub(super) fn prove_for(seconds: u64, seed: u64, told: impl Fn(&str) + Sync) -> 
     })
 }
 
-/// A query that has a certificate: none of a half-space, and none with what the checker does not read.
-pub(super) fn query(rng: &mut Rng) -> Value {
-    let kinds = ["distance", "intersect", "linear_cast", "ray_cast"];
+/// Kinds of queries that have a certificate of one plane and some points.
+pub(super) const PLANES: &[&str] = &["distance", "intersect", "linear_cast", "ray_cast"];
+/// Those whose certificates have many planes.
+pub(super) const ROBOTS: &[&str] = &["path", "joint_box"];
+
+/// A query of one of some kinds that have a certificate: none of a half-space, and none with what the checker does not
+/// read.
+pub(super) fn query(kinds: &[&str], rng: &mut Rng) -> Value {
     loop {
-        let name = kinds[rng.below(4) as usize];
+        let name = kinds[rng.below(kinds.len() as u64) as usize];
         let precision = if rng.below(4) == 0 { "f32" } else { "f64" };
         let dimension = 2 + rng.below(2) as usize;
         for kind in KINDS.iter().copied().filter(|(known, _)| *known == name) {
             let query = draw::query(kind, precision, dimension, rng);
             let unread = ["min_lambda", "target_distance", "start_in_contact", "method"];
-            if query["b"]["type"] != "half_space" && unread.iter().all(|name| query.get(name).is_none()) {
+            let is_read = query["b"]["type"] != "half_space" && unread.iter().all(|name| query.get(name).is_none());
+            if is_read || ROBOTS.contains(&name) {
                 return query;
             }
         }

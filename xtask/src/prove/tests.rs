@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use workloads::rng::Rng;
 
-use super::random::query;
+use super::random::{PLANES, ROBOTS, query};
 use super::{Counts, judge_line};
 use crate::mesh::Meshes;
 use crate::query::certified;
@@ -33,7 +33,8 @@ fn the_embedded_suite_is_proved() {
         let text = std::fs::read_to_string(format!("{EMBEDDED}/{name}.jsonl")).expect("the suite is there");
         for line in text.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
             let Some(line) = certified(line.as_bytes(), &meshes()) else { continue };
-            counts.add(judge_line(1, &line, &meshes()).0);
+            let (verdict, said) = judge_line(1, &line, &meshes());
+            counts.add(verdict, &said);
         }
     }
     assert!(counts.not_proved <= 3 && counts.disproved == 0, "{counts:?}");
@@ -82,7 +83,7 @@ fn true_claims_are_proved_and_false_ones_disproved() {
 /// An answer of some width that is proved, and claims something of a distance or a time that is not zero.
 fn proved_line(rng: &mut Rng) -> Value {
     loop {
-        let line = answered(&query(rng));
+        let line = answered(&query(PLANES, rng));
         let claims = line["answer"]["lower"].as_f64().is_some_and(|lower| lower > 1e-3);
         if claims && verdict(&line) == Verdict::Proved {
             return line;
@@ -165,6 +166,46 @@ fn a_plane_that_leans_proves_no_bracket() {
             assert_eq!(verdict(&line), Verdict::NotProved, "{line}");
         }
     }
+}
+
+/// All parts of random paths and boxes of joint values are proved, and of those that are free they cover all; with a part
+/// less, or one whose plane faces the other way, they do not.
+#[test]
+fn what_robots_are_free_of_is_proved() {
+    let (mut rng, mut free, mut parts) = (Rng::new(44), 0, 0);
+    for _ in 0..48 {
+        let query = query(ROBOTS, &mut rng);
+        let Some(line) = certified(query.to_string().as_bytes(), &meshes()) else { continue };
+        let (known, said) = judge_line(1, &line, &meshes());
+        assert_eq!(said["parts_not_proved"], json!(0), "{said} of {query}");
+        parts += said["parts_proved"].as_u64().unwrap_or(0);
+        let mut line: Value = serde_json::from_slice(&line).expect("JSON");
+        let is_free = line["answer"]["free"] == json!(true) || line["answer"]["meets"] == json!(false);
+        assert_eq!(known == Verdict::Proved, is_free, "{said} of {query}");
+        let count = line["certificate"]["free"].as_array().map_or(0, Vec::len) as u64;
+        if !is_free || count == 0 {
+            continue;
+        }
+        free += 1;
+        let index = rng.below(count) as usize;
+        let whole = line.clone();
+        let turned = |x: &Value| json!(-x.as_f64().expect("a number"));
+        let turned = |normal: &Value| normal.as_array().expect("a normal").iter().map(turned).collect::<Value>();
+        let part = &mut line["certificate"]["free"][index];
+        match part["normals"].as_array() {
+            Some(normals) => part["normals"] = normals.iter().map(turned).collect(),
+            None => part["plane"] = turned(&part["plane"]),
+        }
+        let is_of_half_space = |line: &Value| {
+            let obstacle = line["certificate"]["free"][index]["obstacle"].as_u64().unwrap_or(0) as usize;
+            line["obstacles"][obstacle]["type"] == "half_space"
+        };
+        assert!(verdict(&line) != Verdict::Proved || is_of_half_space(&line), "{line}");
+        let mut line = whole;
+        line["certificate"]["free"].as_array_mut().expect("a list").remove(index);
+        assert_ne!(verdict(&line), Verdict::Proved, "part {index} is missing: {line}");
+    }
+    assert!(free > 8 && parts > 200, "{free} are free, with {parts} parts");
 }
 
 #[test]

@@ -67,6 +67,10 @@ impl Field {
         Self::Numbers(numbers(vector))
     }
 
+    pub fn vectors<V: Vector>(vectors: impl IntoIterator<Item = V>) -> Self {
+        Self::Rows(vectors.into_iter().map(numbers).collect())
+    }
+
     pub fn weighted<V: Vector>(items: impl IntoIterator<Item = (V, f64)>) -> Self {
         Self::Weighted(items.into_iter().map(|(v, weight)| (numbers(v), weight)).collect())
     }

@@ -7,7 +7,7 @@ use super::stage::StageMotion;
 
 /// A bound for points at a distance `r` from the origin of the last joint that moves: `at_origin + per_length·r`.
 #[derive(Clone, Copy, Debug, Default)]
-struct Linear<S> {
+pub(super) struct Linear<S> {
     at_origin: S,
     per_length: S,
 }
@@ -16,15 +16,15 @@ struct Linear<S> {
 /// change at constant rates.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Bounds<S> {
-    speed: Linear<S>,
-    acceleration: Linear<S>,
-    jerk: Linear<S>,
+    pub(super) speed: Linear<S>,
+    pub(super) acceleration: Linear<S>,
+    pub(super) jerk: Linear<S>,
     /// The sum of the rates of the joints that turn: no angular velocity is larger.
     pub(super) spin: S,
 }
 
 impl<S: Scalar> Linear<S> {
-    fn of(self, r: S) -> S {
+    pub(super) fn of(self, r: S) -> S {
         self.at_origin + self.per_length * r
     }
 
@@ -72,20 +72,5 @@ impl<S: Scalar> Bounds<S> {
             reach.at_origin += length;
         }
         Self { speed, acceleration, jerk, spin }
-    }
-
-    /// A bound on the speed of a point at the distance `r` from the origin of the last joint.
-    pub(super) fn speed(&self, r: S) -> S {
-        self.speed.of(r)
-    }
-
-    /// The same of its acceleration.
-    pub(super) fn acceleration(&self, r: S) -> S {
-        self.acceleration.of(r)
-    }
-
-    /// The same of how fast that changes.
-    pub(super) fn jerk(&self, r: S) -> S {
-        self.jerk.of(r)
     }
 }

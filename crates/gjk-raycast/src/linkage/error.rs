@@ -44,6 +44,13 @@ pub enum LinkageError {
         /// The index of the body in it.
         body: usize,
     },
+    /// A link, or a body of it, is asked about that is not there.
+    NoSuchBody {
+        /// The index of the link.
+        link: usize,
+        /// The index of the body in it.
+        body: usize,
+    },
     /// A pair names a link that is not there, or one link twice.
     Pair {
         /// The index of the pair.
@@ -86,6 +93,7 @@ impl Display for LinkageError {
             Self::Axis { joint } => write!(f, "the axis of joint {joint} is zero or not finite"),
             Self::NoSuchJoint { link, joint } => write!(f, "link {link} hangs from joint {joint}, which is not there"),
             Self::BodyNotFinite { link, body } => write!(f, "body {body} of link {link} is not finite"),
+            Self::NoSuchBody { link, body } => write!(f, "there is no body {body} of a link {link}"),
             Self::Pair { pair } => write!(f, "pair {pair} is not of two links of the linkage"),
             Self::EmptyPath => f.write_str("the path has no waypoint"),
             Self::Count { waypoint, joints, values } => {

@@ -28,6 +28,7 @@ use super::frame::epsilons;
 use super::linkage::Linkage;
 use super::moving::{Moving, Value};
 use super::path::LinkageOptions;
+use super::proof::FreeBox;
 use super::route::Route;
 use super::stage::{JointStage, StageMotion};
 use crate::{SignedDistanceOptions, signed_distance};
@@ -103,6 +104,21 @@ impl<S: SupportMap> Linkage<S> {
         joint_box: &[[ScalarOf<S>; 2]],
         options: LinkageOptions<S::Vector>,
     ) -> Result<JointBox<ScalarOf<S>>, LinkageError> {
+        self.joint_box_with(pair, joint_box, options, |_| {})
+    }
+
+    /// [`joint_box`](Self::joint_box), showing an observer the parts of the box in which two bodies are proved to be
+    /// apart. Where the answer is [`Never`](JointBoxOutcome::Never), they cover the box for each two bodies.
+    ///
+    /// # Errors
+    /// As of [`joint_box`](Self::joint_box).
+    pub fn joint_box_with(
+        &self,
+        pair: [usize; 2],
+        joint_box: &[[ScalarOf<S>; 2]],
+        options: LinkageOptions<S::Vector>,
+        mut observer: impl FnMut(FreeBox<'_, S::Vector>),
+    ) -> Result<JointBox<ScalarOf<S>>, LinkageError> {
         let target = options.checked()?.target_distance;
         let route = self.skeleton.between(pair).ok_or(LinkageError::Pair { pair: 0 })?;
         for end in [0, 1] {
@@ -112,10 +128,16 @@ impl<S: SupportMap> Linkage<S> {
             return Err(LinkageError::Interval { value });
         }
         let (mut boxes, mut open) = (0, Scalar::ZERO);
+        let mut part_box = joint_box.to_vec();
         for (i, a) in self.bodies[pair[0]].iter().enumerate() {
             for (k, b) in self.bodies[pair[1]].iter().enumerate() {
                 let mut search = BoxSearch::new(&route, [a, b], joint_box, target);
-                let outcome = search.run(options.max_boxes.saturating_sub(boxes));
+                let outcome = search.run(options.max_boxes.saturating_sub(boxes), |part, normal| {
+                    for ((stage, &middle), &half) in route.stages.iter().zip(&part.middle).zip(&part.half) {
+                        part_box[stage.column] = [middle - half, middle + half];
+                    }
+                    observer(FreeBox { bodies: [i, k], joint_box: &part_box, normal });
+                });
                 boxes += search.looked;
                 match outcome {
                     JointBoxOutcome::Never => {}
@@ -158,12 +180,15 @@ struct BoxPart<S> {
 }
 
 /// What is known of a part.
-enum BoxState<S> {
-    Free,
+enum BoxState<V: Vector> {
+    /// A plane across this separates the bodies in all of it.
+    Free {
+        normal: V,
+    },
     Meets,
     /// How far the bodies are apart in its middle, and which joint moves them the most.
     Open {
-        distance: S,
+        distance: V::Scalar,
         joint: usize,
     },
 }
@@ -181,7 +206,7 @@ impl<'s, A: SupportMap> BoxSearch<'s, A> {
         let slide = |column: usize| Float::max(joint_box[column][0].abs(), joint_box[column][1].abs());
         let lever = |column| {
             let rate = |other| if other == column { Scalar::ONE } else { Scalar::ZERO };
-            Bounds::of(route, rate, slide).speed(reach)
+            Bounds::of(route, rate, slide).speed.of(reach)
         };
         let levers = route.stages.iter().map(|stage| lever(stage.column)).collect();
         let size = bodies.iter().fold(reach, |size, body| {
@@ -192,7 +217,11 @@ impl<'s, A: SupportMap> BoxSearch<'s, A> {
     }
 
     /// Looks at so many parts, or one more.
-    fn run(&mut self, most: usize) -> JointBoxOutcome<ScalarOf<A>> {
+    fn run(
+        &mut self,
+        most: usize,
+        mut show_free: impl FnMut(&BoxPart<ScalarOf<A>>, A::Vector),
+    ) -> JointBoxOutcome<ScalarOf<A>> {
         let half = ScalarOf::<A>::from_f64(0.5);
         let interval = |stage: &JointStage<A::Vector>| self.joint_box[stage.column];
         let middle = |[low, high]: [ScalarOf<A>; 2]| low * half + high * half;
@@ -214,7 +243,7 @@ impl<'s, A: SupportMap> BoxSearch<'s, A> {
             for mut part in parts.into_iter().flatten() {
                 self.looked += 1;
                 match self.look(&part) {
-                    BoxState::Free => {}
+                    BoxState::Free { normal } => show_free(&part, normal),
                     BoxState::Meets => return JointBoxOutcome::Meets { values: self.values(&part), bodies: [0, 0] },
                     // Where no joint moves them, nothing is left to halve.
                     BoxState::Open { .. } if stages.is_empty() => stuck = Scalar::ONE,
@@ -241,7 +270,7 @@ impl<'s, A: SupportMap> BoxSearch<'s, A> {
         values
     }
 
-    fn look(&self, part: &BoxPart<ScalarOf<A>>) -> BoxState<ScalarOf<A>> {
+    fn look(&self, part: &BoxPart<ScalarOf<A>>) -> BoxState<A::Vector> {
         let (zero, one) = (ScalarOf::<A>::ZERO, ScalarOf::<A>::ONE);
         let stages = &self.route.stages;
         let mut moving = Moving::WORLD;
@@ -257,16 +286,10 @@ impl<'s, A: SupportMap> BoxSearch<'s, A> {
             axes.push((axis, moving.frame.translation));
         }
         let frame = moving.frame.then(&self.route.tail);
-        let wide = |(i, half): (usize, &ScalarOf<A>)| *half * self.levers[i];
-        let widest = || {
-            let by_way = |i: &usize, k: &usize| {
-                wide((*i, &part.half[*i])).partial_cmp(&wide((*k, &part.half[*k]))).unwrap_or(Ordering::Equal)
-            };
-            (0..stages.len()).max_by(by_way).unwrap_or(0)
-        };
         let [a, b] = self.bodies;
         let Ok(a) = Posed::from_matrix(a, frame.rotation, frame.translation) else {
-            return BoxState::Open { distance: zero, joint: widest() };
+            // Numbers as large as that are not known any better at other joints.
+            return BoxState::Open { distance: zero, joint: 0 };
         };
         let answer = signed_distance(&a, b, SignedDistanceOptions::new());
         // The matrix was made orthonormal, which moves it by no more than it was wrong.
@@ -294,12 +317,12 @@ impl<'s, A: SupportMap> BoxSearch<'s, A> {
             stages.iter().zip(&part.half).find(|(stage, _)| stage.column == column).map_or(zero, |(_, &half)| half)
         };
         let slide = |column: usize| Float::max(self.joint_box[column][0].abs(), self.joint_box[column][1].abs());
-        let bent = Bounds::of(self.route, rate, slide).acceleration(self.reach) * Scalar::from_f64(0.5);
+        let bent = Bounds::of(self.route, rate, slide).acceleration.of(self.reach) * Scalar::from_f64(0.5);
         let shapes = a.core().error + b.core().error;
         // Directions are longer than one by what the joints turn.
         let lost = (error + shapes + epsilons::<ScalarOf<A>>(64.0) * size) * turned + bent * epsilons(64.0);
         if level - bent - raised(lost) > self.target {
-            return BoxState::Free;
+            return BoxState::Free { normal: n };
         }
         // What the joint adds to the way at first, and to what bends it.
         let way = |i: usize| {

@@ -117,7 +117,7 @@ impl<V: Vector> Trajectory for LinkMotion<'_, V> {
         let rate = if from == to { V::ZERO } else { (to - from) / duration };
         let fast = rate.norm();
         let reach = distance + ball.radius;
-        let always = two * fast * bounds.speed(reach) + longest * bounds.acceleration(reach);
+        let always = two * fast * bounds.speed.of(reach) + longest * bounds.acceleration.of(reach);
         // Not where it cannot be less, or the interval has no end.
         if !(bounds.spin * duration < V::Scalar::ONE) {
             return always;
@@ -129,9 +129,9 @@ impl<V: Vector> Trajectory for LinkMotion<'_, V> {
         let bending = (moving.spin_rate.norm() + w * turned + spin * spin).min(w * w);
         let acceleration = moving.acceleration_at(center);
         let along = from.dot(acceleration).max(to.dot(acceleration))
-            + longest * (bounds.jerk(distance) * duration + ball.radius * bending);
-        let turning =
-            rate.dot(moving.velocity_at(center)) + fast * (bounds.acceleration(distance) * duration + ball.radius * w);
+            + longest * (bounds.jerk.of(distance) * duration + ball.radius * bending);
+        let turning = rate.dot(moving.velocity_at(center))
+            + fast * (bounds.acceleration.of(distance) * duration + ball.radius * w);
         // Where the frame is, and what the derivatives lose, is a small part of what always holds.
         let near = along + two * turning + always * (frame.turn_error + epsilons(64.0));
         // NaN is no bound.
@@ -143,7 +143,7 @@ impl<V: Vector> Trajectory for LinkMotion<'_, V> {
         let duration = to - from;
         let (_, frame) = self.at(to);
         let [start, end] = [self.at(from).1, frame].map(|frame| frame.of(ball.center));
-        let sagitta = self.bounds.acceleration(self.distance(ball.center)) * duration * duration;
+        let sagitta = self.bounds.acceleration.of(self.distance(ball.center)) * duration * duration;
         let error = frame.error_of(ball.center.norm());
         let velocity = if duration > V::Scalar::ZERO { (end - start) / duration } else { V::ZERO };
         MovingBall { start, velocity, radius: ball.radius + sagitta * V::Scalar::from_f64(0.125) + error + error }

@@ -3,12 +3,16 @@
 use alloc::vec::Vec;
 
 use convex_support::numerics::bound::raised;
-use convex_support::{BoundingSphere, Core, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere};
-use num_traits::Float as _;
+use convex_support::{BoundingSphere, Core, Matrix as _, Posed, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere};
+use num_traits::Float;
 
+use super::axial;
+use super::bounds::Bounds;
 use super::error::LinkageError;
-use super::frame::LinkFrame;
+use super::frame::{LinkFrame, epsilons};
 use super::joint::{Joint, JointKind, Link};
+use super::link_motion::{LinkMotion, PathEdge};
+use super::moving::Moving;
 use super::route::Route;
 use super::stage::JointStage;
 use crate::Pose;
@@ -49,7 +53,8 @@ use crate::Pose;
 /// ```
 ///
 /// All bodies are of one type, as in a [`Scene`](crate::Scene). Links are not asked about one another, but for the
-/// [pairs](Self::with_pairs) that are named.
+/// [pairs](Self::with_pairs) that are named. Two robots that both move are one linkage of two trees, and pairs of links
+/// of both.
 #[derive(Clone, Debug)]
 pub struct Linkage<S: SupportMap> {
     pub(super) skeleton: Skeleton<S::Vector>,
@@ -173,6 +178,79 @@ impl<S: SupportMap> Linkage<S> {
         self.bodies.get(link).map_or(&[], |bodies| bodies)
     }
 
+    /// A body of a link where joint values have it, to rounding.
+    ///
+    /// # Errors
+    /// [`LinkageError`] if there is no such body, or the values are not as many finite numbers as there are
+    /// [values](Self::values), or too large.
+    pub fn placed(&self, link: usize, body: usize, values: &[ScalarOf<S>]) -> Result<Posed<&S>, LinkageError> {
+        self.check(0, values)?;
+        let shape = self.bodies(link).get(body).ok_or(LinkageError::NoSuchBody { link, body })?;
+        let (route, edge) = (&self.skeleton.links[link].route, PathEdge { from: values, to: values });
+        let (_, frame) = LinkMotion::new(route, edge, Scalar::ZERO, Bounds::default()).at(Scalar::ZERO);
+        let placed = Posed::from_matrix(shape, frame.rotation, frame.translation);
+        placed.map_err(|_| LinkageError::BodyNotFinite { link, body })
+    }
+
+    /// How far any point of a link goes at most, where joint values change from the one to the other. So a link stays
+    /// farther from what is at rest than a margin as long as that is less than the [room](crate::FreeStep) of its
+    /// distance, whichever way the joints have taken in between.
+    ///
+    /// If they go straight, within a unit of time, it is no more than the highest speed, nor than that at first and half
+    /// of the highest acceleration.
+    ///
+    /// # Errors
+    /// As of [`placed`](Self::placed).
+    pub fn way(&self, link: usize, from: &[ScalarOf<S>], to: &[ScalarOf<S>]) -> Result<ScalarOf<S>, LinkageError> {
+        self.greatest_way(link, from, to, |moving, _, ball| {
+            moving.velocity_at(moving.frame.of(ball.center)).norm() + moving.spin.norm() * ball.radius
+        })
+    }
+
+    /// The same along a direction, a unit vector: negative where all points certainly go the other way. Towards the other
+    /// body, against the normal of a distance, it is how much nearer the link may come to that one.
+    ///
+    /// At first the points of a body, whose support function is `h` about an origin of the velocity `v`, go by
+    /// `n·v + h(n × ω)`.
+    ///
+    /// # Errors
+    /// As of [`placed`](Self::placed).
+    pub fn way_along(
+        &self,
+        link: usize,
+        from: &[ScalarOf<S>],
+        to: &[ScalarOf<S>],
+        n: S::Vector,
+    ) -> Result<ScalarOf<S>, LinkageError> {
+        self.greatest_way(link, from, to, |moving, frame, _| {
+            let turned = frame.rotation.transpose_mul(axial::turning(moving.spin, -n));
+            let farthest = self.bodies(link).iter().map(|body| body.support_value(turned));
+            n.dot(moving.velocity_at(frame.translation)) + farthest.fold(Float::neg_infinity(), Float::max)
+        })
+    }
+
+    /// The greatest way of a point of a link, if `at_first` tells how fast points go there at most.
+    fn greatest_way(
+        &self,
+        link: usize,
+        from: &[ScalarOf<S>],
+        to: &[ScalarOf<S>],
+        at_first: impl Fn(&Moving<S::Vector>, &LinkFrame<S::Vector>, &BoundingSphere<S::Vector>) -> ScalarOf<S>,
+    ) -> Result<ScalarOf<S>, LinkageError> {
+        self.check(0, from)?;
+        self.check(1, to)?;
+        let Carried { route, ball, .. } =
+            self.skeleton.links.get(link).ok_or(LinkageError::NoSuchBody { link, body: 0 })?;
+        let Around { ball, distance } = *ball;
+        let (edge, reach) = (PathEdge { from, to }, distance + ball.radius);
+        let bounds = edge.bounds(route);
+        let (moving, frame) = LinkMotion::new(route, edge, Scalar::ZERO, bounds).at(Scalar::ZERO);
+        let near = at_first(&moving, &frame, &ball) + bounds.acceleration.of(reach) * Scalar::from_f64(0.5);
+        let always = bounds.speed.of(reach);
+        // What the frame and the derivatives lose is a small part of what always holds.
+        Ok(near.min(always) + always * (moving.frame.turn_error + epsilons(64.0)))
+    }
+
     /// Whether these are values of all joints.
     pub(super) fn check(&self, waypoint: usize, values: &[ScalarOf<S>]) -> Result<(), LinkageError> {
         if values.len() != self.values() {
@@ -240,7 +318,7 @@ fn ball_around<V: Vector>(balls: impl Iterator<Item = BoundingSphere<V>> + Clone
     let most = corners(V::Scalar::ONE).reduce(V::max).unwrap_or(V::ZERO);
     let center = (least + most) * V::Scalar::from_f64(0.5);
     let reach = |ball: BoundingSphere<V>| (ball.center - center).norm() + ball.radius;
-    BoundingSphere { center, radius: raised(balls.map(reach).fold(V::Scalar::ZERO, num_traits::Float::max)) }
+    BoundingSphere { center, radius: raised(balls.map(reach).fold(V::Scalar::ZERO, Float::max)) }
 }
 
 impl<V: Vector> Joint<V> {

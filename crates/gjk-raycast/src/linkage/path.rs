@@ -9,12 +9,15 @@ use super::bounds::Bounds;
 use super::error::LinkageError;
 use super::link_motion::{LinkMotion, PathEdge};
 use super::linkage::Linkage;
+use super::proof::{FreeInterval, ProvedSteps, Watch};
 use super::result::{Met, Path, PathContact, PathOutcome, PathStop, PathWork};
 use super::sweep::{Near, Sweep, SweepSpace};
 use crate::half_space::Plane;
 use crate::motion::checked;
 use crate::options::setters;
-use crate::{MotionCast, MotionCastOptions, Outcome, RayCastError, RigidMotion, Scene, motion_cast};
+use crate::{
+    MotionCast, MotionCastOptions, MotionIterate, Outcome, RayCastError, RigidMotion, Scene, motion_cast_with,
+};
 
 /// Parts of a box of joint values to look at: a pair of links of a robot arm takes up to ten thousand.
 const MAX_BOXES: usize = 100_000;
@@ -65,7 +68,7 @@ impl<V: Vector> Default for LinkageOptions<V> {
 }
 
 /// What [`Linkage::path`] works with. Once it has served a path of a linkage, the next allocates nothing.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct PathWorkspace<V: Vector> {
     sweep: SweepSpace<V>,
     half_spaces: Vec<(usize, Plane<V>)>,
@@ -75,15 +78,13 @@ impl<V: Vector> PathWorkspace<V> {
     /// An empty one.
     #[must_use]
     pub fn new() -> Self {
-        Self { sweep: SweepSpace::new(), half_spaces: Vec::new() }
+        Self::default()
     }
 }
 
-impl<V: Vector> Default for PathWorkspace<V> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+/// A cast by options, which shows an observer the times that it looks at.
+type Caster<'c, V> =
+    &'c dyn Fn(MotionCastOptions<V>, &mut dyn FnMut(MotionIterate<V>)) -> Result<MotionCast<V>, RayCastError>;
 
 impl<S: SupportMap> Linkage<S> {
     /// Whether the way along waypoints is free, among the bodies of a scene at rest, and of the
@@ -107,6 +108,51 @@ impl<S: SupportMap> Linkage<S> {
         options: LinkageOptions<S::Vector>,
         workspace: &mut PathWorkspace<S::Vector>,
     ) -> Result<Path<S::Vector>, LinkageError> {
+        self.watched_path(waypoints, scene, options, workspace, None)
+    }
+
+    /// [`path`](Self::path), showing an observer what proves it, bodies and intervals in no particular order. Those of a
+    /// free path cover all of its edges, for each body of a link and each of the scene, and each pair that is asked
+    /// about; those of another come up to where it is said to be free. It takes longer: a look that shows at once that
+    /// nothing is near is told body by body.
+    ///
+    /// # Errors
+    /// As of [`path`](Self::path).
+    pub fn path_with<O: SupportMap<Vector = S::Vector>, W: AsRef<[ScalarOf<S>]>>(
+        &self,
+        waypoints: &[W],
+        scene: &Scene<O>,
+        options: LinkageOptions<S::Vector>,
+        workspace: &mut PathWorkspace<S::Vector>,
+        mut observer: impl FnMut(FreeInterval<S::Vector>),
+    ) -> Result<Path<S::Vector>, LinkageError> {
+        self.watched_path(waypoints, scene, options, workspace, Some(&mut observer))
+    }
+
+    /// [`path`](Self::path) of many paths on all threads, such as the edges of a roadmap; answers in the same order.
+    #[cfg(feature = "rayon")]
+    pub fn par_paths<O: SupportMap<Vector = S::Vector> + Sync, P: AsRef<[W]> + Sync, W: AsRef<[ScalarOf<S>]>>(
+        &self,
+        paths: &[P],
+        scene: &Scene<O>,
+        options: LinkageOptions<S::Vector>,
+    ) -> Vec<Result<Path<S::Vector>, LinkageError>>
+    where
+        S: Sync,
+    {
+        use rayon::prelude::*;
+        let ask = |workspace: &mut _, path: &P| self.path(path.as_ref(), scene, options, workspace);
+        paths.par_iter().map_init(PathWorkspace::new, ask).collect()
+    }
+
+    fn watched_path<O: SupportMap<Vector = S::Vector>, W: AsRef<[ScalarOf<S>]>>(
+        &self,
+        waypoints: &[W],
+        scene: &Scene<O>,
+        options: LinkageOptions<S::Vector>,
+        workspace: &mut PathWorkspace<S::Vector>,
+        observer: Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
+    ) -> Result<Path<S::Vector>, LinkageError> {
         let options = options.checked()?;
         for (index, waypoint) in waypoints.iter().enumerate() {
             self.check(index, waypoint.as_ref())?;
@@ -115,6 +161,8 @@ impl<S: SupportMap> Linkage<S> {
         half_spaces.clear();
         half_spaces.extend(scene.half_spaces().map(|(index, half_space)| (index, half_space.plane())));
         let mut work = PathWork::default();
+        let mut watch = Watch { observer, edge: 0 };
+        let mut open = None;
         let edges = waypoints.windows(2).map(|pair| (&pair[0], &pair[1], ScalarOf::<S>::ONE));
         let pose = waypoints.first().filter(|_| waypoints.len() == 1).map(|pose| (pose, pose, Scalar::ZERO));
         for (index, (from, to, duration)) in edges.chain(pose).enumerate() {
@@ -123,13 +171,19 @@ impl<S: SupportMap> Linkage<S> {
             sweep.parts = 0;
             let mut first = First::<S::Vector> { edge: index, contact: None, stop: None };
             let mut sweeping = Sweep { skeleton, tree, half_spaces, edge, target, space: sweep };
-            sweeping.run(duration, &mut |near, bounds| {
+            watch.edge = index;
+            sweeping.run(duration, &mut watch, &mut |near, bounds, watch| {
                 work.casts += 1;
-                self.cast(near, scene, (edge, bounds), options.with_max_time(duration), &mut first)?;
+                self.cast(near, scene, (edge, bounds), options.with_max_time(duration), &mut first, watch)?;
                 Ok::<_, RayCastError>(first.end(duration))
             })?;
             work.parts += sweep.parts;
-            if let Some(outcome) = first.outcome() {
+            let outcome = open.map_or(first.outcome(), |open| Some(first.goes_on(open)));
+            // What rounding leaves open at a waypoint, the next edge may decide.
+            if open.is_none() && index + 2 < waypoints.len() && outcome.is_some_and(|outcome| is_open_at_end(&outcome))
+            {
+                open = outcome;
+            } else if let Some(outcome) = outcome {
                 return Ok(Path { outcome, work });
             }
         }
@@ -144,18 +198,28 @@ impl<S: SupportMap> Linkage<S> {
         (edge, bounds): (PathEdge<'_, ScalarOf<S>>, &Bounds<ScalarOf<S>>),
         options: MotionCastOptions<S::Vector>,
         first: &mut First<S::Vector>,
+        watch: &mut Watch<'_, S::Vector>,
     ) -> Result<(), RayCastError> {
         let &Near { from, to, item, body, other } = near;
         let links = &self.skeleton.links;
         // The end of a part is none of the edge: where rounding decides whether a contact comes before it, the cast goes
         // on.
         let whole = options.max_time - from;
-        let cast_to_end =
-            |cast: &dyn Fn(MotionCastOptions<S::Vector>) -> Result<MotionCast<S::Vector>, RayCastError>| {
-                let part = cast(options.with_max_time(to - from))?;
-                let is_open = !part.is_certain() && to - from < whole;
-                if is_open { cast(options.with_max_time(whole)) } else { Ok(part) }
+        let mut cast_to_end = |met: Met, link: usize, axis, cast: Caster<'_, S::Vector>| {
+            let mut cast_to = |end| {
+                let mut steps = ProvedSteps::new();
+                let mut show = |times: [ScalarOf<S>; 2], normals| {
+                    watch.show(times.map(|time| from + time), [link, body], met, normals);
+                };
+                let options = MotionCastOptions { axis, ..options.with_max_time(end) };
+                let answer = cast(options, &mut |there| steps.see(&there, &mut show))?;
+                steps.end(&answer, show);
+                Ok::<_, RayCastError>(answer)
             };
+            let part = cast_to(to - from)?;
+            let is_open = !part.is_certain() && to - from < whole;
+            if is_open { cast_to(whole) } else { Ok(part) }
+        };
         // A first guess of the normal: from ball to ball.
         let center = |motion: &LinkMotion<'_, S::Vector>, link: usize| {
             motion.at(Scalar::ZERO).0.frame.of(links[link].balls[body].ball.center)
@@ -164,24 +228,27 @@ impl<S: SupportMap> Linkage<S> {
             let Some(obstacle) = scene.get(other) else { return Ok(()) };
             let motion = LinkMotion::new(&links[item].route, edge, from, *bounds);
             let axis = scene.tree().get(other).map(|around| center(&motion, item) - around.center());
-            let cast = cast_to_end(&|options| {
-                obstacle.motion_cast(&self.bodies[item][body], &motion, MotionCastOptions { axis, ..options })
-            })?;
-            first.take(cast, from, [item, body], Met::Obstacle(other));
+            let (met, shape) = (Met::Obstacle(other), &self.bodies[item][body]);
+            let cast =
+                cast_to_end(met, item, axis, &|options, watch| obstacle.motion_cast(shape, &motion, options, watch))?;
+            first.take(cast, from, [item, body], met);
             return Ok(());
         };
         let pair = &self.skeleton.pairs[pair];
         let [link, base] = pair.links;
         let motion = LinkMotion::new(&pair.route, edge, from, *bounds);
-        let (shape, met) = (&self.bodies[link][body], &self.bodies[base][other]);
-        let mut cast = cast_to_end(&|options| motion_cast(shape, &motion, met, RigidMotion::default(), options))?;
+        let (shape, base_shape) = (&self.bodies[link][body], &self.bodies[base][other]);
+        let met = Met::Link { link: base, body: other };
+        let mut cast = cast_to_end(met, link, None, &|options, watch| {
+            motion_cast_with(shape, &motion, base_shape, RigidMotion::default(), options, watch)
+        })?;
         if let Outcome::Hit(hit) = &mut cast.outcome {
             // It was seen from the second link.
             let route = &links[base].route;
             let frame = LinkMotion::new(route, edge, from, edge.bounds(route)).at(hit.time).1;
             (hit.point, hit.normal) = (frame.of(hit.point), hit.normal.map(|normal| frame.rotation * normal));
         }
-        first.take(cast, from, [link, body], Met::Link { link: base, body: other });
+        first.take(cast, from, [link, body], met);
         Ok(())
     }
 }
@@ -230,9 +297,42 @@ impl<V: Vector> First<V> {
         contact.into_iter().chain(stop).fold(duration, Float::min)
     }
 
+    /// What is known at the end of the edge before, where that is [open](is_open_at_end) and this edge follows: where
+    /// this one begins in contact, or comes to one at once, that is the contact, at the waypoint.
+    fn goes_on(&self, open: PathOutcome<V>) -> PathOutcome<V> {
+        let (edge, lower) = match open {
+            PathOutcome::Contact(contact) => (contact.edge, contact.lower),
+            PathOutcome::Undecided(stop) => (stop.edge, stop.lower),
+            PathOutcome::Free => return open,
+        };
+        match self.outcome() {
+            Some(PathOutcome::Contact(contact)) if contact.is_certain() && contact.upper < at_waypoint() => {
+                let (time, upper) = (V::Scalar::ONE, V::Scalar::ONE + contact.upper + V::Scalar::EPSILON);
+                PathOutcome::Contact(PathContact { edge, time, lower, upper, ..contact })
+            }
+            _ => open,
+        }
+    }
+
     /// What is known of the edge; `None` if it is free.
     fn outcome(&self) -> Option<PathOutcome<V>> {
         let stop = self.stop.filter(|stop| self.contact.is_none_or(|contact| stop.lower < contact.lower));
         stop.map(PathOutcome::Undecided).or(self.contact.map(PathOutcome::Contact))
     }
+}
+
+/// How near the end of an edge, or the beginning of the next, is at the waypoint: a contact that is come to from the
+/// side is known to the root of what a distance is.
+fn at_waypoint<S: Scalar>() -> S {
+    S::EPSILON.sqrt() * S::from_f64(16.0)
+}
+
+/// Whether something may be met at the end of an edge, and not before it.
+fn is_open_at_end<V: Vector>(outcome: &PathOutcome<V>) -> bool {
+    let lower = match outcome {
+        PathOutcome::Contact(contact) if !contact.is_certain() => contact.lower,
+        PathOutcome::Undecided(stop) => stop.lower,
+        PathOutcome::Free | PathOutcome::Contact(_) => return false,
+    };
+    V::Scalar::ONE - lower < at_waypoint()
 }

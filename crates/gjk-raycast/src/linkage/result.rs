@@ -36,7 +36,8 @@ pub struct PathContact<V: Vector> {
     pub time: V::Scalar,
     /// Nothing is met before this time.
     pub lower: V::Scalar,
-    /// Something is met at this time; infinite where that is not certain.
+    /// Something is met at this time; infinite where that is not certain. It is more than 1 for a contact at the end
+    /// of the edge that the next edge has shown: so much after that one's beginning.
     pub upper: V::Scalar,
     /// The link.
     pub link: usize,

@@ -51,12 +51,12 @@ impl<V: Vector> Route<V> {
         let mut fixed = from.tail.inverse();
         let mut stages = Vec::with_capacity(from.stages.len() + to.stages.len() - 2 * shared);
         for stage in from.stages[shared..].iter().rev() {
-            stages.push(stage.reversed(fixed));
+            stages.push(stage.from(fixed, -V::Scalar::ONE));
             fixed = stage.fixed.inverse();
         }
         for (i, stage) in to.stages[shared..].iter().enumerate() {
             let before = if i == 0 { fixed.then(&stage.fixed) } else { stage.fixed };
-            stages.push(stage.at(before));
+            stages.push(stage.from(before, V::Scalar::ONE));
         }
         if to.stages.len() > shared {
             return Self::new(stages, to.tail);

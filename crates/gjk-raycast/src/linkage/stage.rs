@@ -50,18 +50,8 @@ impl<V: Vector> JointStage<V> {
         StageMotion::Slide { axis, along: fixed.rotation * axis }
     }
 
-    /// The stage that moves as this one does, from another frame on.
-    pub(super) fn at(&self, fixed: LinkFrame<V>) -> Self {
-        self.along(fixed, V::Scalar::ONE)
-    }
-
-    /// The stage that takes back how this one moves, from a frame on.
-    pub(super) fn reversed(&self, fixed: LinkFrame<V>) -> Self {
-        self.along(fixed, -V::Scalar::ONE)
-    }
-
-    /// With an axis that is this one's, or its opposite.
-    fn along(&self, fixed: LinkFrame<V>, sign: V::Scalar) -> Self {
+    /// The stage that moves as this one does, from another frame on; or that takes it back, with the sign -1.
+    pub(super) fn from(&self, fixed: LinkFrame<V>, sign: V::Scalar) -> Self {
         let motion = match self.motion {
             StageMotion::Turn { axis, .. } => Self::turning(&fixed, axis * sign),
             StageMotion::Slide { axis, .. } => Self::sliding(&fixed, axis * sign),

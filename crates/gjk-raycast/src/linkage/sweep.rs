@@ -9,7 +9,7 @@
 use alloc::vec::Vec;
 use core::ops::{ControlFlow, Range};
 
-use convex_support::{Aabb, BoundingSphere, BoxDistance, Bvh, Scalar, Vector};
+use convex_support::{Aabb, BoundingSphere, BoxDistance, Bvh, Matrix as _, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::axial;
@@ -18,6 +18,8 @@ use super::frame::epsilons;
 use super::link_motion::PathEdge;
 use super::linkage::{Around, LinkPair, Skeleton};
 use super::moving::Moving;
+use super::proof::{Watch, gap_to};
+use super::result::Met;
 use crate::half_space::Plane;
 
 /// A ball that moves by more than this part of its radius is looked at in a shorter time.
@@ -41,7 +43,7 @@ pub(super) struct Near<S> {
 }
 
 /// What a sweep works with; it is kept from edge to edge.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct SweepSpace<V: Vector> {
     /// How the joints move at the middle of a part.
     moving: Vec<Moving<V>>,
@@ -98,13 +100,6 @@ enum PartState {
     Found,
 }
 
-impl<V: Vector> SweepSpace<V> {
-    pub(super) fn new() -> Self {
-        let (moving, items, bounds, found, near) = Default::default();
-        Self { moving, items, bounds, found, near, parts: 0 }
-    }
-}
-
 impl<V: Vector> Sweep<'_, V> {
     /// Shows what may come near in an edge that takes some time: 1, or 0 of a path that is a pose. It is shown in the
     /// order of time but for what is near for long, and beside it the bounds of its link or pair. The answer is a time
@@ -112,7 +107,8 @@ impl<V: Vector> Sweep<'_, V> {
     pub(super) fn run<E>(
         &mut self,
         duration: V::Scalar,
-        show: &mut impl FnMut(&Near<V::Scalar>, &Bounds<V::Scalar>) -> Result<V::Scalar, E>,
+        watch: &mut Watch<'_, V>,
+        show: &mut impl FnMut(&Near<V::Scalar>, &Bounds<V::Scalar>, &mut Watch<'_, V>) -> Result<V::Scalar, E>,
     ) -> Result<(), E> {
         let (links, pairs) = (&self.skeleton.links, &self.skeleton.pairs);
         let routes = links.iter().map(|link| &link.route).chain(pairs.iter().map(|pair| &pair.route));
@@ -122,7 +118,7 @@ impl<V: Vector> Sweep<'_, V> {
         self.space.items.clear();
         self.space.items.extend(0..links.len() + pairs.len());
         let mut end = duration;
-        self.visit([V::Scalar::ZERO, duration], 0, 0..links.len() + pairs.len(), &mut end, show)
+        self.visit([V::Scalar::ZERO, duration], 0, 0..links.len() + pairs.len(), &mut end, watch, show)
     }
 
     /// Looks at a part of the edge for what is not known to be free in all of it.
@@ -132,7 +128,8 @@ impl<V: Vector> Sweep<'_, V> {
         depth: u32,
         items: Range<usize>,
         end: &mut V::Scalar,
-        show: &mut impl FnMut(&Near<V::Scalar>, &Bounds<V::Scalar>) -> Result<V::Scalar, E>,
+        watch: &mut Watch<'_, V>,
+        show: &mut impl FnMut(&Near<V::Scalar>, &Bounds<V::Scalar>, &mut Watch<'_, V>) -> Result<V::Scalar, E>,
     ) -> Result<(), E> {
         if from > *end {
             return Ok(());
@@ -145,8 +142,8 @@ impl<V: Vector> Sweep<'_, V> {
         for at in items {
             let item = self.space.items[at];
             let known = match item.checked_sub(self.skeleton.links.len()) {
-                None => self.look_at_link(item, part),
-                Some(pair) => self.look_at_pair(item, &self.skeleton.pairs[pair], part),
+                None => self.look_at_link(item, part, watch),
+                Some(pair) => self.look_at_pair(item, &self.skeleton.pairs[pair], part, watch),
             };
             if known == PartState::Coarse {
                 self.space.items.push(item);
@@ -155,7 +152,7 @@ impl<V: Vector> Sweep<'_, V> {
         let coarse = rest..self.space.items.len();
         if !coarse.is_empty() {
             for half in [[from, part.middle], [part.middle, to]] {
-                self.visit(half, depth + 1, coarse.clone(), end, show)?;
+                self.visit(half, depth + 1, coarse.clone(), end, watch, show)?;
             }
             self.space.items.truncate(rest);
         }
@@ -164,7 +161,8 @@ impl<V: Vector> Sweep<'_, V> {
             for near in self.space.near.drain(..) {
                 // A contact found before bounds those after it.
                 if near.from <= *end {
-                    *end = end.min(show(&Near { to: near.to.min(*end), ..near }, &self.space.bounds[near.item])?);
+                    let cut = Near { to: near.to.min(*end), ..near };
+                    *end = end.min(show(&cut, &self.space.bounds[near.item], watch)?);
                 }
             }
         }
@@ -187,7 +185,7 @@ impl<V: Vector> Sweep<'_, V> {
     }
 
     /// What is near a link in the scene.
-    fn look_at_link(&mut self, item: usize, part: EdgePart<V::Scalar>) -> PartState {
+    fn look_at_link(&mut self, item: usize, part: EdgePart<V::Scalar>, watch: &mut Watch<'_, V>) -> PartState {
         let link = &self.skeleton.links[item];
         let (moving, bounds) = (self.moving(link.stage), self.space.bounds[item]);
         let seen =
@@ -210,6 +208,7 @@ impl<V: Vector> Sweep<'_, V> {
             (false, true) => PartState::Coarse,
             (false, false) => PartState::Found,
         };
+        let first = self.space.near.len();
         if known == PartState::Found {
             for (body, around) in link.balls.iter().enumerate() {
                 let reach = seen(around);
@@ -227,22 +226,73 @@ impl<V: Vector> Sweep<'_, V> {
             }
         }
         self.space.found = found;
+        if watch.is_on() && known != PartState::Coarse {
+            for (body, around) in link.balls.iter().enumerate() {
+                let within = seen(around);
+                self.show_apart([item, body], part, first, [&reach, &within], watch);
+            }
+        }
         known
     }
 
+    /// Shows the planes that keep a body of a link from those of the scene that are not near: as far as all of the link
+    /// is from a box, or the body alone.
+    fn show_apart(
+        &self,
+        [item, body]: [usize; 2],
+        part: EdgePart<V::Scalar>,
+        first: usize,
+        [of_link, of_body]: [&SweptBall<V>; 2],
+        watch: &mut Watch<'_, V>,
+    ) {
+        let mut show = |other: usize, normal: V| {
+            if !self.space.near[first..].iter().any(|near| near.body == body && near.other == other) {
+                watch.show(part.times(), [item, body], Met::Obstacle(other), [normal; 2]);
+            }
+        };
+        for (index, plane) in self.half_spaces {
+            show(*index, plane.unit);
+        }
+        let (around, center) = (of_link.around(), Aabb { min: of_body.center, max: of_body.center });
+        self.tree.within(&BoxDistance::new(around), V::Scalar::infinity(), |other| {
+            let Some(at) = self.tree.get(other) else { return ControlFlow::Continue(()) };
+            let [gap, from_center] = [gap_to(&around, &at), gap_to(&center, &at)];
+            let gap = if gap.norm() > self.target { gap } else { from_center };
+            show(other, gap.unit().unwrap_or(V::ZERO));
+            ControlFlow::Continue(())
+        });
+    }
+
     /// Which bodies of two links are near one another.
-    fn look_at_pair(&mut self, item: usize, pair: &LinkPair<V>, part: EdgePart<V::Scalar>) -> PartState {
+    fn look_at_pair(
+        &mut self,
+        item: usize,
+        pair: &LinkPair<V>,
+        part: EdgePart<V::Scalar>,
+        watch: &mut Watch<'_, V>,
+    ) -> PartState {
         let [a, b] = pair.links.map(|link| &self.skeleton.links[link]);
         let [moving, base] = [a, b].map(|link| self.moving(link.stage));
         let bounds = self.space.bounds[item];
         let seen = |around: &Around<V>| SweptBall::of(*around, pair.route.rim, [&moving, &base], &bounds, part.half);
+        let between = |reach: &SweptBall<V>, other: &Around<V>| reach.center - base.frame.of(other.ball.center);
         let is_near = |reach: &SweptBall<V>, other: &Around<V>| {
-            let between = (reach.center - base.frame.of(other.ball.center)).norm();
             let error = base.frame.error_of(other.distance);
-            !(between > (reach.radius + other.ball.radius + error + self.target) * above::<V>())
+            !(between(reach, other).norm() > (reach.radius + other.ball.radius + error + self.target) * above::<V>())
+        };
+        // A plane across that, in the frame of the second link, separates what is not near.
+        let mut show = |body: usize, other: usize, between: V| {
+            let frame = base.frame.then(&b.route.tail);
+            let normal = frame.rotation.transpose_mul(between.unit().unwrap_or(V::ZERO));
+            let met = Met::Link { link: pair.links[1], body: other };
+            watch.show(part.times(), [pair.links[0], body], met, [normal; 2]);
         };
         let reach = seen(&a.ball);
         if !is_near(&reach, &b.ball) {
+            for (body, other) in (0..a.balls.len()).flat_map(|body| (0..b.balls.len()).map(move |other| (body, other)))
+            {
+                show(body, other, between(&reach, &b.ball));
+            }
             return PartState::Free;
         }
         let smaller = a.ball.ball.radius.min(b.ball.ball.radius);
@@ -254,6 +304,8 @@ impl<V: Vector> Sweep<'_, V> {
             for (other, around) in b.balls.iter().enumerate() {
                 if is_near(&reach, around) {
                     self.space.near.push(part.near(item, body, other));
+                } else {
+                    show(body, other, between(&reach, around));
                 }
             }
         }
@@ -262,8 +314,13 @@ impl<V: Vector> Sweep<'_, V> {
 }
 
 impl<S: Scalar> EdgePart<S> {
+    fn times(self) -> [S; 2] {
+        [self.middle - self.half, self.middle + self.half]
+    }
+
     fn near(self, item: usize, body: usize, other: usize) -> Near<S> {
-        Near { from: self.middle - self.half, to: self.middle + self.half, item, body, other }
+        let [from, to] = self.times();
+        Near { from, to, item, body, other }
     }
 }
 
@@ -286,8 +343,8 @@ impl<V: Vector> SweptBall<V> {
         let turning = axial::turning(base.spin, velocity);
         let acceleration = moving.acceleration_at(center) - base.acceleration_at(center) - turning - turning;
         let from_last = distance + rim;
-        let bent = bounds.jerk(from_last) * half * squared * number(1.0 / 6.0);
-        let always = bounds.speed(from_last) * half;
+        let bent = bounds.jerk.of(from_last) * half * squared * number(1.0 / 6.0);
+        let always = bounds.speed.of(from_last) * half;
         let way = velocity.abs() * half + acceleration.abs() * (squared * number(0.5)) + V::splat(bent);
         let way = way.min(V::splat(always));
         let drift = way.norm().min(always);

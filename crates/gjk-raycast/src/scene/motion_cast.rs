@@ -96,7 +96,7 @@ impl<S: SupportMap> Among<'_, S> {
         check("motion", &motion)?;
         let options = checked(options)?;
         self.first(&MovingBalls::new(shape, &motion, &options), options.max_time, |body| {
-            Ok(body.motion_cast(shape, &motion, options)?.into())
+            Ok(body.motion_cast(shape, &motion, options, |_| {})?.into())
         })
     }
 

@@ -5,9 +5,9 @@ use convex_support::{AngularVelocity as _, Scalar as _, SupportMap, Vector};
 use super::Body;
 use super::result::BodyHit;
 use crate::{
-    ChainMotion, LinearCast, LinearCastOptions, LinearHit, Motion, MotionCast, MotionCastOptions, MotionHit, Outcome,
-    Ray, RayCast, RayCastError, RayCastOptions, RayHit, RigidMotion, Status, Trajectory, linear_cast, motion_cast,
-    ray_cast,
+    ChainMotion, LinearCast, LinearCastOptions, LinearHit, Motion, MotionCast, MotionCastOptions, MotionHit,
+    MotionIterate, Outcome, Ray, RayCast, RayCastError, RayCastOptions, RayHit, RigidMotion, Status, Trajectory,
+    linear_cast, motion_cast, motion_cast_with, ray_cast,
 };
 
 /// The answer of one cast: `H` is a hit, `S` its λ or time.
@@ -82,10 +82,11 @@ impl<S: SupportMap> Body<S> {
         shape: &A,
         motion: &impl Trajectory<Vector = S::Vector>,
         options: MotionCastOptions<S::Vector>,
+        observer: impl FnMut(MotionIterate<S::Vector>),
     ) -> Result<MotionCast<S::Vector>, RayCastError> {
         match self {
-            Self::Convex(body) => motion_cast(shape, motion, body, RigidMotion::default(), options),
-            Self::HalfSpace(half_space) => half_space.motion_cast(shape, motion, options),
+            Self::Convex(body) => motion_cast_with(shape, motion, body, RigidMotion::default(), options, observer),
+            Self::HalfSpace(half_space) => half_space.motion_cast_with(shape, motion, options, observer),
         }
     }
 
