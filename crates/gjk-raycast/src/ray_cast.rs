@@ -1,10 +1,10 @@
 //! Where a ray enters a shape: the paper's question, answered by a closed form, by a portal or by its Algorithm 3.
 
-use convex_support::{Point, Scalar, SupportMap, Vector, compiled_once};
+use convex_support::{LineQuery, Point, Scalar, SupportMap, Vector, compiled_once};
 use num_traits::Float;
 
 use crate::body::{CastBody, Measures, Single};
-use crate::cast::{Cast, CastHit, LocalRay, Part, cast, certain, certain_closely, settle_start, show};
+use crate::cast::{Cast, CastHit, LocalRay, Part, cast, certain, certain_closely, is_plain, settle_start, show};
 use crate::observer::Observer;
 use crate::shape::{Shape, WithoutLines};
 use crate::unit::power_of_two_near;
@@ -52,7 +52,7 @@ pub fn ray_cast<S: SupportMap + ?Sized>(
     options: RayCastOptions<S::Vector>,
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     let ray = ray.by_coordinates();
-    match certain(|line| target.certain_crossing(line), ray, &options, false) {
+    match plainly(target, ray, &options) {
         Some(answer) => Ok(answer),
         None => searched(target, ray, options, Observer::none()),
     }
@@ -70,13 +70,26 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
     mut observer: impl FnMut(Iterate<'_, S::Vector>),
 ) -> Result<RayCast<S::Vector>, RayCastError> {
     let mut observer = Observer::new(&mut observer);
-    match certain(|line| target.certain_crossing(line), ray, &options, false) {
+    match plainly(target, ray, &options) {
         Some(answer) => {
             show(&answer, &mut Single::new(target), ray, &mut observer);
             Ok(answer)
         }
         None => searched(target, ray, options, observer),
     }
+}
+
+/// The cast where the shape knows for certain, in plain numbers, where the ray enters it, or that its line misses.
+#[inline(always)]
+fn plainly<S: SupportMap + ?Sized>(
+    target: &S,
+    ray: Ray<S::Vector>,
+    options: &RayCastOptions<S::Vector>,
+) -> Option<RayCast<S::Vector>> {
+    if !is_plain(options) {
+        return None;
+    }
+    certain(target.certain_crossing(LineQuery::new(ray.source, ray.direction))?, ray, options)
 }
 
 /// The cast where that is not so in plain numbers.

@@ -9,25 +9,25 @@ use crate::body::{CastBody, Measures};
 use crate::observer::Observer;
 use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCast, RayCastOptions, RayHit, Status};
 
+/// Whether what a shape answers of a whole line is asked for.
+#[inline(always)]
+pub(crate) fn is_plain<V: Vector>(options: &RayCastOptions<V>) -> bool {
+    options.min_lambda <= V::Scalar::ZERO && options.method == CastMethod::Portal && options.max_iterations > 0
+}
+
 /// The cast by what a shape answers of the line of the ray; `None` where that is not certain.
 ///
 /// In plain numbers alone: with a [closer look](certain_closely) beside it the answer went through memory, and rays at
 /// balls and boxes took 15 to 30 % more instructions.
 #[inline(always)]
 pub(crate) fn certain<V: Vector>(
-    crossing: impl FnOnce(LineQuery<V>) -> Option<CertainCrossing<V>>,
+    crossing: CertainCrossing<V>,
     ray: Ray<V>,
     options: &RayCastOptions<V>,
-    is_close: bool,
 ) -> Option<RayCast<V>> {
     let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::infinity());
-    let is_plain = options.min_lambda <= zero && options.method == CastMethod::Portal && options.max_iterations > 0;
-    if !is_plain {
-        return None;
-    }
-    let line = LineQuery { is_close, ..LineQuery::new(ray.source, ray.direction) };
     let missed = |axis| (Outcome::Miss(Miss { axis }), [infinity; 2]);
-    let (outcome, [lower, upper]) = match crossing(line)? {
+    let (outcome, [lower, upper]) = match crossing {
         // To be refused.
         CertainCrossing::Misses(_) if options.max_lambda.is_nan() => return None,
         CertainCrossing::Misses(axis) => {
@@ -68,11 +68,14 @@ pub(crate) fn certain_closely<B: CastBody>(
     // Near the body the line is no farther from its source than this.
     let reach = (ray.source - origin).norm() + (extent + radius) + (extent + radius);
     let turned = if direction_error > Scalar::ZERO { direction_error * reach } else { Scalar::ZERO };
-    let ask = |line: LineQuery<B::Vector>| body.certain_crossing(line.within(turned));
+    if !is_plain(options) {
+        return None;
+    }
+    let line = LineQuery::new(ray.source, ray.direction).within(turned);
     // Of a ray that begins inside, plain numbers tell where its line enters, and a closer look takes longer than a
     // search.
-    let is_unknown = ask(LineQuery::new(ray.source, ray.direction)).is_none();
-    let answer = certain(ask, ray, options, is_unknown)?;
+    let closely = || body.certain_crossing(LineQuery { is_close: true, ..line });
+    let answer = certain(body.certain_crossing(line).or_else(closely)?, ray, options)?;
     show(&answer, body, ray, observer);
     Some(answer)
 }

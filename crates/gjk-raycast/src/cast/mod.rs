@@ -19,7 +19,7 @@ use crate::observer::Observer;
 use crate::{CastMethod, Miss, Outcome, Ray, RayCastOptions, Status};
 use algorithm_3::algorithm_3;
 use bracket::Bracket;
-pub(crate) use certain::{certain, certain_closely, show};
+pub(crate) use certain::{certain, certain_closely, is_plain, show};
 use closed_form::closed_form;
 pub(crate) use line::{LocalRay, Part};
 use outline::bound_entry;
