@@ -8,7 +8,7 @@ use super::clip::{ClippedCorners, clip};
 use super::outline::{ContactPart, ContactPlane, Outline};
 use super::reduction::{Rank, WORTHWHILE, reduced};
 use super::result::MAX_POINTS;
-use super::surface::{Side, Surface};
+use super::surface::{MAX_SUPPORT_POINTS, Side, Surface};
 use super::{Contact, ContactPoint};
 use crate::SignedDistance;
 use crate::symmetric::{Across, axes_across, cross, dot};
@@ -107,8 +107,7 @@ fn between<V: Vector>(
     let levels = [level, level + (answer.signed_distance - answer.lower)];
     let side =
         |surface, core, normal| Side::new(surface, core, ContactPlane { normal, across, origin }, reach.slab, levels);
-    let sides = [side(a, &core_a, -normal), side(b, &core_b, normal)];
-    Facing { sides, reach, last }.contact(answer, [level, level])
+    Facing { sides: [side(a, &core_a, -normal), side(b, &core_b, normal)], reach, last }.contact(answer, [level, level])
 }
 
 compiled_once! {
@@ -205,7 +204,9 @@ impl<V: Vector> Facing<'_, V> {
         let candidates = self.corners(answer.lower);
         let rank = |i: usize| -> Rank { (!self.is_known(&candidates[i]), candidates[i].codes()) };
         let chosen = reduced(&candidates, !self.last.is_empty(), rank);
-        let mut chosen: Chosen<_> = chosen.iter().filter_map(|&i| self.measured(candidates[i], answer.lower)).collect();
+        let limit = V::Scalar::infinity();
+        let mut measured = |&i: &usize| self.measured(candidates[i], answer.lower, limit);
+        let mut chosen: Chosen<_> = chosen.iter().filter_map(&mut measured).collect();
         self.add_closest(&mut chosen, &candidates, answer, levels);
         let points: SmallVec<[_; MAX_POINTS]> = chosen.iter().map(|candidate| self.point(candidate)).collect();
         Contact::new(answer.normal, *answer, &points)
@@ -226,7 +227,7 @@ impl<V: Vector> Facing<'_, V> {
             return candidates;
         }
         self.sides.iter_mut().for_each(Side::flatten);
-        let [of_a, of_b] = &self.sides;
+        let [of_a, of_b] = [&self.sides[0], &self.sides[1]];
         // A segment is clipped by a polygon.
         let is_swapped = a > b && b > 0;
         let [own, other] = if is_swapped { [of_b, of_a] } else { [of_a, of_b] };
@@ -238,23 +239,38 @@ impl<V: Vector> Facing<'_, V> {
             if is_crossing && self.is_on_a_line(&overlap, i) || candidates.iter().any(|known| known.parts == parts) {
                 continue;
             }
-            let levels = [of_a.chord(corner.at), of_b.chord(corner.at)];
-            let candidate = Candidate { at: corner.at, levels, error: V::Scalar::ZERO, parts };
+            let levels = [0, 1].map(|i| self.sides[i].chord(corner.at));
+            let candidate = Candidate { at: corner.at, levels, error: V::Scalar::infinity(), parts };
             let slack = self.reach.slack * Scalar::from_f64(if self.is_known(&candidate) { 2.0 } else { 1.0 });
-            let is_in = |candidate: &Candidate<_>| candidate.gap() <= self.reach.within + slack;
-            // Between points of shapes that are apart the shapes may overlap.
-            if is_in(&candidate) || self.measured(candidate, deepest).is_some_and(|measured| is_in(&measured)) {
+            let limit = self.reach.within + slack;
+            if candidate.gap() <= limit {
                 candidates.push(candidate);
+            } else {
+                // Between points of shapes that are apart the shapes may overlap.
+                let measured = self.measured(candidate, deepest, limit);
+                candidates.extend(measured.filter(|measured| measured.gap() <= limit));
             }
         }
         candidates
     }
 
-    /// With the levels of the surfaces. `None` where these are not known, as at a vertex that is behind what a shape
-    /// shows: a side is along the normal there.
-    fn measured(&self, candidate: Candidate<V::Scalar>, deepest: V::Scalar) -> Option<Candidate<V::Scalar>> {
-        let [of_a, of_b] = &self.sides;
-        let [of_a, of_b] = [of_a.level(candidate.at)?, of_b.level(candidate.at)?];
+    /// With the levels of the surfaces. `None` where these are farther apart than the `limit`, or not known, as at a
+    /// vertex that is behind what a shape shows: a side is along the normal there.
+    fn measured(
+        &mut self,
+        candidate: Candidate<V::Scalar>,
+        deepest: V::Scalar,
+        limit: V::Scalar,
+    ) -> Option<Candidate<V::Scalar>> {
+        if candidate.error.is_finite() {
+            return Some(candidate);
+        }
+        let [of_a, of_b] = &mut self.sides;
+        let at = candidate.at;
+        // Mostly one support point of each tells that they are farther apart.
+        let most = if limit.is_finite() { of_b.level(at, -limit - of_a.top, 1)?.most() } else { limit };
+        let of_a = of_a.level(at, -limit - most, MAX_SUPPORT_POINTS)?;
+        let of_b = of_b.level(at, -limit - of_a.most(), MAX_SUPPORT_POINTS)?;
         // Seen nearly from its end an edge is as steep as one likes, and where a corner is on it is rounding; but no
         // points of the shapes are deeper in one another than the shapes are.
         let lack = (deepest + of_a.value + of_b.value).max(V::Scalar::ZERO) * Scalar::from_f64(0.5);
