@@ -105,8 +105,7 @@ fn between<V: Vector>(
     let reach = Reach::new(answer, within, size);
     let level = answer.signed_distance * -half;
     let levels = [level, level + (answer.signed_distance - answer.lower)];
-    let side =
-        |surface, core, normal| Side::new(surface, core, ContactPlane { normal, across, origin }, reach.slab, levels);
+    let side = |surface, core, normal| Side::new(surface, core, ContactPlane { normal, across, origin }, levels);
     Facing { sides: [side(a, &core_a, -normal), side(b, &core_b, normal)], reach, last }.contact(answer, [level, level])
 }
 
@@ -133,10 +132,8 @@ fn over_plane<V: Vector>(
     let plane = |normal| ContactPlane { normal, across, origin };
     let core = a.parts();
     let reach = Reach::new(answer, within, core.extent + core.radius);
-    let sides = [
-        Side::new(a, &core, plane(-normal), reach.slab, [-answer.signed_distance, -answer.lower]),
-        Side::flat(plane(normal)),
-    ];
+    let sides =
+        [Side::new(a, &core, plane(-normal), [-answer.signed_distance, -answer.lower]), Side::flat(plane(normal))];
     let levels = [-answer.signed_distance, V::Scalar::ZERO];
     Facing { sides, reach, last }.contact(answer, levels)
 }
@@ -160,22 +157,19 @@ impl<S: Scalar> Reach<S> {
     }
 }
 
-/// A point of contact in the plane: where it is, how far both shapes reach there, and what it is of each.
+/// A point of contact in the plane: where it is, how far both shapes reach there, and the [code](ContactPart::code) of
+/// what it is of each.
 #[derive(Clone, Copy)]
 pub(super) struct Candidate<S> {
     pub(super) at: Across<S>,
     pub(super) levels: [S; 2],
     pub(super) error: S,
-    pub(super) parts: [ContactPart; 2],
+    pub(super) codes: [u32; 2],
 }
 
 impl<S: Scalar> Candidate<S> {
     pub(super) fn gap(&self) -> S {
         -(self.levels[0] + self.levels[1])
-    }
-
-    pub(super) fn codes(&self) -> [u32; 2] {
-        self.parts.map(ContactPart::code)
     }
 }
 
@@ -201,8 +195,9 @@ impl<V: Vector> Facing<'_, V> {
     /// The corners of the overlap where the shapes are no farther apart than asked for, reduced to four, in the plane
     /// to two; and the closest points, which reach to these levels.
     fn contact(&mut self, answer: &SignedDistance<V>, levels: [V::Scalar; 2]) -> Contact<V> {
+        self.sides.iter_mut().for_each(|side| side.see(self.reach.slab));
         let candidates = self.corners(answer.lower);
-        let rank = |i: usize| -> Rank { (!self.is_known(&candidates[i]), candidates[i].codes()) };
+        let rank = |i: usize| -> Rank { (!self.is_known(candidates[i].codes), candidates[i].codes) };
         let chosen = reduced(&candidates, !self.last.is_empty(), rank);
         let limit = V::Scalar::infinity();
         let mut measured = |&i: &usize| self.measured(candidates[i], answer.lower, limit);
@@ -213,8 +208,7 @@ impl<V: Vector> Facing<'_, V> {
     }
 
     /// Whether the last manifold had this point.
-    fn is_known(&self, candidate: &Candidate<V::Scalar>) -> bool {
-        let codes = candidate.codes();
+    fn is_known(&self, codes: [u32; 2]) -> bool {
         self.last.iter().any(|point| [point.feature_a, point.feature_b] == codes)
     }
 
@@ -236,12 +230,13 @@ impl<V: Vector> Facing<'_, V> {
             let [own, other] = corner.parts;
             let parts = self.settled(corner.at, if is_swapped { [other, own] } else { [own, other] });
             let is_crossing = matches!(parts, [ContactPart::Edge(..), ContactPart::Edge(..)]);
-            if is_crossing && self.is_on_a_line(&overlap, i) || candidates.iter().any(|known| known.parts == parts) {
+            let codes = parts.map(ContactPart::code);
+            if is_crossing && self.is_on_a_line(&overlap, i) || candidates.iter().any(|known| known.codes == codes) {
                 continue;
             }
             let levels = [0, 1].map(|i| self.sides[i].chord(corner.at));
-            let candidate = Candidate { at: corner.at, levels, error: V::Scalar::infinity(), parts };
-            let slack = self.reach.slack * Scalar::from_f64(if self.is_known(&candidate) { 2.0 } else { 1.0 });
+            let candidate = Candidate { at: corner.at, levels, error: V::Scalar::infinity(), codes };
+            let slack = self.reach.slack * Scalar::from_f64(if self.is_known(codes) { 2.0 } else { 1.0 });
             let limit = self.reach.within + slack;
             if candidate.gap() <= limit {
                 candidates.push(candidate);
@@ -316,15 +311,16 @@ impl<V: Vector> Facing<'_, V> {
             _ => ContactPart::Face,
         };
         let [a, b] = &self.sides;
-        let parts = candidates.iter().find(|c| squared(c) <= near).map_or([part(a), part(b)], |c| c.parts);
+        let whole = [part(a), part(b)].map(ContactPart::code);
+        let codes = candidates.iter().find(|c| squared(c) <= near).map_or(whole, |c| c.codes);
         let zero = V::Scalar::ZERO;
-        let closest = Candidate { at: (zero, zero), levels, error: answer.upper - answer.lower, parts };
+        let closest = Candidate { at: (zero, zero), levels, error: answer.upper - answer.lower, codes };
         let nearest = chosen.iter().map(squared).fold(V::Scalar::infinity(), V::Scalar::min);
         let limit = near.max(nearest * Scalar::from_f64(1.0 + WORTHWHILE));
         let is_full = chosen.len() >= most::<V>();
         let is_nearest =
-            |c: &&mut Candidate<V::Scalar>| c.parts == parts || squared(c) <= if is_full { limit } else { near };
-        match chosen.iter_mut().filter(is_nearest).min_by_key(|c| (c.parts != parts, c.codes())) {
+            |c: &&mut Candidate<V::Scalar>| c.codes == codes || squared(c) <= if is_full { limit } else { near };
+        match chosen.iter_mut().filter(is_nearest).min_by_key(|c| (c.codes != codes, c.codes)) {
             Some(same) => *same = closest,
             None => chosen.push(closest),
         }
@@ -354,7 +350,7 @@ impl<V: Vector> Facing<'_, V> {
     }
 
     fn point(&self, candidate: &Candidate<V::Scalar>) -> ContactPoint<V> {
-        let [feature_a, feature_b] = candidate.codes();
+        let [feature_a, feature_b] = candidate.codes;
         let [point_a, point_b] = [0, 1].map(|i| self.sides[i].plane.point(candidate.at, candidate.levels[i]));
         ContactPoint {
             point_a,

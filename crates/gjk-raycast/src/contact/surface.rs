@@ -95,30 +95,22 @@ pub(super) struct Side<'s, V: Vector> {
 }
 
 impl<'s, V: Vector> Side<'s, V> {
-    /// Of a shape, by its points in a slab. Those beyond a side of it that is nearly along the normal are no part of
-    /// what it shows: of a thin plate both faces are in the slab.
+    /// Of a shape of which nothing has been [seen](Self::see) yet. A side is long, and better made where it stays.
+    #[inline(always)]
     pub(super) fn new(
         surface: &'s dyn Surface<V>,
         core: &Core<V>,
         plane: ContactPlane<V>,
-        slab: V::Scalar,
         [reach, top]: [V::Scalar; 2],
     ) -> Self {
-        let mut feature = Feature::new();
-        surface.feature(plane.normal, slab, &mut feature);
         let from = core.origin - plane.origin;
-        let swept = from + plane.normal * core.radius;
         let noise = (from.norm() + core.extent + core.radius) * (V::Scalar::EPSILON * V::Scalar::from_f64(16.0));
-        let seen = |(&point, &id): (&V, &u32)| plane.corner(swept + point, id);
-        let known: SmallVec<[_; KNOWN]> = feature.points().iter().zip(feature.ids()).map(seen).collect();
-        let mut outline = Outline::empty();
-        let is_shown = |low: &&Corner<_>| known.len() < 3 || !known.iter().any(|high| is_hidden(low, high, noise));
-        let shown: SmallVec<[_; 16]> = known.iter().filter(is_shown).copied().collect();
-        wrap(&shown, &mut outline.corners);
-        Self { surface: Some(surface), plane, from, radius: core.radius, outline, known, reach, top, flat: None, noise }
+        let (radius, flat) = (core.radius, None);
+        Self { surface: Some(surface), plane, from, radius, reach, top, flat, noise, ..Self::flat(plane) }
     }
 
     /// Of a half-space that the plane ends.
+    #[inline(always)]
     pub(super) fn flat(plane: ContactPlane<V>) -> Self {
         let zero = V::Scalar::ZERO;
         let at = (zero, zero);
@@ -134,6 +126,21 @@ impl<'s, V: Vector> Side<'s, V> {
             flat: Some(Tangent { at, level: zero, gradient: at }),
             noise: zero,
         }
+    }
+
+    /// Draws the outline of the points of the shape that are in a slab. Those beyond a side of it that is nearly along
+    /// the normal are no part of what it shows: of a thin plate both faces are in the slab.
+    pub(super) fn see(&mut self, slab: V::Scalar) {
+        let Some(surface) = self.surface else { return };
+        let mut feature = Feature::new();
+        surface.feature(self.plane.normal, slab, &mut feature);
+        let swept = self.from + self.plane.normal * self.radius;
+        let seen = |(&point, &id): (&V, &u32)| self.plane.corner(swept + point, id);
+        self.known.extend(feature.points().iter().zip(feature.ids()).map(seen));
+        let known = &self.known;
+        let is_shown = |low: &&Corner<_>| known.len() < 3 || !known.iter().any(|high| is_hidden(low, high, self.noise));
+        let shown: SmallVec<[_; 16]> = known.iter().filter(is_shown).copied().collect();
+        wrap(&shown, &mut self.outline.corners);
     }
 
     /// Looks whether the outline is that of a face or an edge, as it mostly is: one support point then tells the levels

@@ -63,7 +63,7 @@ enum Rest {
 }
 
 /// Vertices of a feature that are found along edges; of more, all points are looked at.
-pub(super) const FOLLOWED: usize = 256;
+pub(super) const FOLLOWED: usize = 32;
 
 /// Vertices that a cell holds.
 const HELD: usize = 4;
@@ -259,17 +259,9 @@ impl<V: Vector> Graph<V> {
         let least = direction.dot(self.vertex(farthest)) - depth;
         *room.first_mut()? = farthest;
         let (mut looked_at, mut len) = (0, 1);
-        // Each is at the first place from its number on that was free; half of the places stay so.
-        let mut seen = [u32::MAX; 2 * FOLLOWED];
-        let mut is_new = |vertex: u32| {
-            let places = (vertex as usize..).take(2 * FOLLOWED).map(|place| place % (2 * FOLLOWED));
-            let place = { places }.find(|&place| seen[place] == u32::MAX || seen[place] == vertex);
-            place.is_some_and(|place| core::mem::replace(&mut seen[place], vertex) != vertex)
-        };
-        is_new(farthest);
         while looked_at < len {
             for &next in self.around(room[looked_at]) {
-                if direction.dot(self.vertex(next)) >= least && is_new(next) {
+                if direction.dot(self.vertex(next)) >= least && !room[..len].contains(&next) {
                     *room.get_mut(len)? = next;
                     len += 1;
                 }
