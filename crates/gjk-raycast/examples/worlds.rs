@@ -21,6 +21,7 @@ const GRAVITY: DVec3 = DVec3::new(0.0, -9.81, 0.0);
 const STEP: f64 = 1.0 / 120.0;
 
 type Checked = Result<Film, Box<dyn Error>>;
+type Check = fn() -> Checked;
 
 fn floor() -> Result<Body<DVec3>, Box<dyn Error>> {
     Ok(Body::fixed(DVec3::new(20.0, 1.0, 20.0), DVec3::new(0.0, -1.0, 0.0), DMat3::IDENTITY)?)
@@ -182,7 +183,7 @@ fn tiles() -> Checked {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args().nth(1);
-    let worlds: [(&str, fn() -> Checked); 6] = [
+    let worlds: [(&str, Check); 6] = [
         ("boxes", ten_boxes),
         ("hulls", ten_hulls),
         ("cylinder", cylinder),
