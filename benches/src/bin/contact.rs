@@ -65,21 +65,29 @@ impl PairTask<DVec3> for Manifolds<'_> {
 }
 
 /// The columns of times for one pair.
-fn times(pair: &Pair, overlapping: &[IntersectQuery]) -> [Option<f64>; 6] {
+fn times(pair: &Pair, overlapping: &[IntersectQuery]) -> [Option<f64>; 9] {
     let apart: &[DistanceQuery] = &w3_distance::queries(pair)[..w3_distance::FAR];
     let time = |solver: &Solver| solver.nanoseconds(0..solver.count(), BUDGET);
     let depth = time(&with_pair::<DVec3>(pair, SignedDistances(overlapping, Effort::default())));
+    let manifold = time(&with_pair::<DVec3>(pair, Manifolds(overlapping)));
     #[cfg(feature = "parry")]
-    let parry = benches::parry::double::front_door_depths(pair, overlapping).map(|solver| time(&solver));
+    let [parry, parry_manifold] = {
+        use benches::parry::double::{front_door_depths, front_door_manifolds};
+        [front_door_depths(pair, overlapping), front_door_manifolds(pair, overlapping)]
+            .map(|solver| solver.map(|solver| time(&solver)))
+    };
     #[cfg(not(feature = "parry"))]
-    let parry: Option<f64> = None;
+    let [parry, parry_manifold] = [None::<f64>; 2];
     [
         Some(time(&with_pair::<DVec3>(pair, Distances(apart, Effort::default())))),
         Some(depth),
         Some(time(&with_pair::<DVec3>(pair, Warm(overlapping)))),
-        Some(time(&with_pair::<DVec3>(pair, Manifolds(overlapping)))),
+        Some(manifold),
+        Some(manifold / depth),
         parry,
         parry.map(|parry| parry / depth),
+        parry_manifold,
+        parry_manifold.map(|parry| parry / manifold),
     ]
 }
 
@@ -93,9 +101,9 @@ fn support_points(pair: &Pair, overlapping: &[IntersectQuery]) -> String {
 
 fn main() {
     println!(
-        "| | distance, apart | depth | depth, warm | depth and manifold | parry's depth | parry's / ours | support points of a depth: mean, most |"
+        "| | distance, apart | depth | depth, given the normal | depth and manifold | over the depth | parry's depth | parry's / ours | parry's manifold | parry's / ours | support points of a depth: mean, most |"
     );
-    println!("|---|---:|---:|---:|---:|---:|---:|---:|");
+    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|");
     for name in PAIR_NAMES {
         let pair = Pair::named(name);
         let overlapping: Vec<IntersectQuery> =
@@ -103,7 +111,9 @@ fn main() {
         let times: Vec<String> = times(&pair, &overlapping)
             .iter()
             .enumerate()
-            .map(|(i, cell)| cell.map_or_else(|| "-".to_owned(), |x| format!("{x:.*}", usize::from(i == 5))))
+            .map(|(i, cell)| {
+                cell.map_or_else(|| "-".to_owned(), |x| format!("{x:.*}", usize::from([4, 6, 8].contains(&i))))
+            })
             .collect();
         println!("| {name} | {} | {} |", times.join(" | "), support_points(&pair, &overlapping));
     }

@@ -2,7 +2,9 @@
 
 use parry::math::{Pose, Real, Rotation, Vector};
 use parry::query::gjk::{self, GJKResult, VoronoiSimplex};
-use parry::query::{self, RayCast, ShapeCastOptions};
+use parry::query::{
+    self, ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, RayCast, ShapeCastOptions,
+};
 use parry::shape::{
     Ball, Capsule, Cone, ConvexPolyhedron, Cuboid, Cylinder, RoundCuboid, Shape as ParryShape, SupportMap,
 };
@@ -141,6 +143,18 @@ pub fn front_door_depths(pair: &Pair, queries: &[IntersectQuery]) -> Option<Solv
     Some(Solver::new(queries, move |pose| {
         let contact = query::contact(&Pose::IDENTITY, &*a, pose, &*b, 0.0);
         contact.ok().flatten().map_or(f64::NAN, |contact| f64::from(contact.dist))
+    }))
+}
+
+/// Manifolds by parry's `contact_manifolds`, each made anew; `None` for shapes that it does not have.
+#[must_use]
+pub fn front_door_manifolds(pair: &Pair, queries: &[IntersectQuery]) -> Option<Solver> {
+    let (a, b) = (boxed(&pair.a)?, boxed(&pair.b)?);
+    let queries = queries.iter().map(|query| pose(query.pose)).collect();
+    Some(Solver::new(queries, move |pose| {
+        let mut manifolds = Vec::<ContactManifold<(), ()>>::new();
+        let asked = DefaultQueryDispatcher.contact_manifolds(pose, &*a, &*b, 0.0, &mut manifolds, &mut None);
+        asked.map_or(f64::NAN, |()| manifolds.iter().map(|manifold| manifold.points.len()).sum::<usize>() as f64)
     }))
 }
 

@@ -155,51 +155,35 @@ impl<V: Vector> Feature<V> {
         point: impl Fn(usize) -> V,
     ) {
         let level = |i: usize| direction.dot(point(i));
-        // Once over all points: those near the farthest so far, of which few are left in the end.
-        let mut highest = -V::Scalar::infinity();
-        let mut near = [(0, highest); MAX_POINTS];
-        let (mut len, mut is_full) = (0, false);
-        for i in numbers.clone() {
-            let at = level(i);
-            if at >= highest - slab {
-                highest = highest.max(at);
-                if len == MAX_POINTS {
-                    len = keep(&mut near, |level| level >= highest - slab);
-                }
-                if let Some(next) = near.get_mut(len) {
-                    *next = (i, at);
-                    len += 1;
-                } else {
-                    is_full = true;
-                }
-            }
-        }
-        if !is_full {
-            len = keep(&mut near[..len], |level| level >= highest - slab);
-            near[..len].iter().for_each(|&(i, _)| self.push(point(i), i as u32));
+        let least = numbers.clone().map(level).fold(-V::Scalar::infinity(), V::Scalar::max) - slab;
+        let near = numbers.filter(|&i| level(i) >= least);
+        near.clone().for_each(|i| self.push(point(i), i as u32));
+        if self.is_complete {
             return;
         }
-        // There may be too many: then those that are farthest along directions across, turned all around. None of these
-        // is along an edge of a face whose corners are evenly spaced, where rounding would tell which of its ends is
-        // farther.
+        // There are too many: then those that are farthest along directions across and against them, turned all around.
+        // None of these is along an edge of a face whose corners are evenly spaced, where rounding would tell which of
+        // its ends is farther.
+        self.clear();
         let [e, f] = across(direction);
         let turned = |k: usize| sin_cos(core::f64::consts::TAU * (k as f64 + 0.3) / MAX_POINTS as f64);
-        let aside = core::array::from_fn::<_, MAX_POINTS, _>(turned)
+        let aside = core::array::from_fn::<_, { MAX_POINTS / 2 }, _>(turned)
             .map(|(sine, cosine)| (V::Scalar::from_f64(cosine), V::Scalar::from_f64(sine)));
-        let mut farthest = [(0, -V::Scalar::infinity()); MAX_POINTS];
-        let mut count = 0;
-        for i in numbers.filter(|&i| level(i) >= highest - slab) {
-            count += 1;
+        let mut farthest = [[(0, -V::Scalar::infinity()); MAX_POINTS / 2]; 2];
+        for i in near {
             let (x, y) = (e.dot(point(i)), f.dot(point(i)));
-            for (known, (along_e, along_f)) in farthest.iter_mut().zip(aside) {
+            for (k, (along_e, along_f)) in aside.into_iter().enumerate() {
                 let reach = along_e * x + along_f * y;
-                if reach > known.1 {
-                    *known = (i, reach);
+                for (side, reach) in [reach, -reach].into_iter().enumerate() {
+                    if reach > farthest[side][k].1 {
+                        farthest[side][k] = (i, reach);
+                    }
                 }
             }
         }
-        self.is_complete &= count <= MAX_POINTS;
-        let mut kept = farthest.map(|(i, _)| i);
+        self.is_complete = false;
+        let mut kept = farthest.as_flattened().iter().map(|&(i, _)| i);
+        let mut kept = core::array::from_fn::<_, MAX_POINTS, _>(|_| kept.next().unwrap_or_default());
         sort(&mut kept);
         for (k, &i) in kept.iter().enumerate() {
             if k == 0 || kept[k - 1] != i {
@@ -282,18 +266,6 @@ fn across<V: Vector>(direction: V) -> [V; 2] {
         if V::DIM == 2 { V::Scalar::ZERO } else { at(n, i + 1) * at(e, i + 2) - at(n, i + 2) * at(e, i + 1) }
     });
     [e, f]
-}
-
-/// Moves the entries that are kept to the front, in their order, and says how many they are.
-fn keep<S: Scalar>(near: &mut [(usize, S)], is_kept: impl Fn(S) -> bool) -> usize {
-    let mut len = 0;
-    for i in 0..near.len() {
-        if is_kept(near[i].1) {
-            near[len] = near[i];
-            len += 1;
-        }
-    }
-    len
 }
 
 /// Sorts numbers. It knows no type, so that the sort is compiled here and not in every program that has shapes.

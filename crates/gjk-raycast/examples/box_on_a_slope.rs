@@ -16,8 +16,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (angle, friction, speed, g) = (0.3_f64, 0.6, 3.0, 9.81);
     let turn = DMat3::from_rotation_z(-angle);
     let (downhill, up) = (turn.x_axis, turn.y_axis);
-    let slope = Body::fixed(DVec3::new(20.0, 1.0, 5.0), -up, turn);
-    let mut parcel = Body::new(DVec3::new(0.5, 0.2, 0.4), up * 0.2, turn);
+    let slope = Body::fixed(DVec3::new(20.0, 1.0, 5.0), -up, turn)?;
+    let mut parcel = Body::cuboid(DVec3::new(0.5, 0.2, 0.4), up * 0.2, turn)?;
     parcel.velocity = downhill * speed;
     let mut world = World::new(vec![slope, parcel], DVec3::new(0.0, -g, 0.0), friction);
     for _ in 0..600 {

@@ -19,9 +19,11 @@ fn vector<V: Vector>(coordinates: [f64; 3]) -> V {
 
 /// How far the boxes are from where they were put, at most, after all steps.
 fn farthest<V: Vector3>() -> Result<f64, Box<dyn std::error::Error>> {
-    let mut bodies = vec![Body::fixed(vector::<V>([10.0, 1.0, 10.0]), vector([0.0, -1.0, 0.0]), Matrix::IDENTITY)];
+    let mut bodies = vec![Body::fixed(vector::<V>([10.0, 1.0, 10.0]), vector([0.0, -1.0, 0.0]), Matrix::IDENTITY)?];
     let place = |i: usize| vector::<V>([0.0, 0.5 + i as f64, 0.0]);
-    bodies.extend((0..BOXES).map(|i| Body::new(vector([0.5, 0.5, 0.5]), place(i), Matrix::IDENTITY)));
+    for i in 0..BOXES {
+        bodies.push(Body::cuboid(vector([0.5, 0.5, 0.5]), place(i), Matrix::IDENTITY)?);
+    }
     let mut world = World::new(bodies, vector([0.0, -9.81, 0.0]), 0.5);
     for _ in 0..STEPS {
         world.step(V::Scalar::from_f64(1.0 / 60.0))?;

@@ -9,7 +9,7 @@ use convex_support::{
     Vector, closest_point, glam,
 };
 use gjk_raycast::{
-    Contact, Ray, RayCastOptions, SignedDistanceOptions, contact, contact_after, ray_cast, signed_distance,
+    Contact, Ray, RayCastOptions, RigidMotion, SignedDistanceOptions, contact, contact_after, ray_cast, signed_distance,
 };
 
 const VALID: &str = "positive sizes";
@@ -397,4 +397,30 @@ fn odd_bodies_have_few_points_that_are_on_them() {
             }
         }
     }
+}
+
+/// What a stepper needs beside the points: directions for friction, the points in the frames of the bodies, and how
+/// fast they approach.
+#[test]
+fn a_contact_has_tangents_anchors_and_velocities() {
+    let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.02, 0.7, -0.01);
+    let (a, b) = (turned(cuboid::<DVec3>([0.5; 3]), turn, [0.3, 0.48, -0.2]), floor());
+    let found = touch(&a, &b);
+    let [e, f] = found.tangents();
+    let n = found.normal;
+    assert!((glam::DMat3::from_cols(e, f, n).determinant().abs() - 1.0).abs() < 1e-14, "{e} {f} {n}");
+    assert!(e.dot(f).abs() + e.dot(n).abs() + f.dot(n).abs() < 1e-14, "{e} {f} {n}");
+    let motion = RigidMotion { velocity: DVec3::new(1.0, -2.0, 0.0), angular_velocity: DVec3::Z, center: DVec3::ZERO };
+    let still = RigidMotion::default();
+    for point in found.points() {
+        let [of_a, of_b] = point.anchors(&a, &b);
+        assert!((a.rotation() * of_a + a.translation() - point.point_a).length() < 1e-15, "{of_a}");
+        assert!((of_b.y - 1.0).abs() < 1e-12 && of_a.abs().max_element() < 0.5 + 1e-12, "{of_a} {of_b}");
+        let speed = point.relative_velocity(&motion, &still);
+        assert!((speed - motion.velocity - DVec3::Z.cross(point.point_a)).length() < 1e-15, "{speed}");
+        assert!((point.reversed().relative_velocity(&still, &motion) + speed).length() < 1e-15, "{speed}");
+    }
+    let in_the_plane = touch(&at(cuboid::<DVec2>([0.5, 0.5, 0.0]), [0.0; 3]), &cuboid::<DVec2>([0.5, 0.5, 0.0]));
+    let [e, f] = in_the_plane.tangents();
+    assert_eq!((e.dot(in_the_plane.normal), e.length(), f), (0.0, 1.0, DVec2::ZERO));
 }

@@ -103,11 +103,16 @@ impl<V: Vector> SupportMap for Cuboid<V> {
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
-        let corner = |i: usize| {
+        let ones = V::from_fn(|_| V::Scalar::ONE);
+        for i in 0..1 << V::DIM {
             let sign = V::from_fn(|axis| if i >> axis & 1 == 1 { -V::Scalar::ONE } else { V::Scalar::ONE });
-            self.half_extents * sign
-        };
-        feature.collect(direction, slab, 0..1 << V::DIM, corner);
+            let corner = self.half_extents * sign;
+            // Behind the farthest corner by twice what it is on the wrong side.
+            let along = direction * corner;
+            if (along.abs() - along).dot(ones) <= slab {
+                feature.push(corner, i);
+            }
+        }
     }
 
     #[inline]

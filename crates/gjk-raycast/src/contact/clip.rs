@@ -30,8 +30,8 @@ pub(crate) type ClippedCorners<S> = SmallVec<[Clipped<S>; 32]>;
 /// one after the other. A segment is clipped by a polygon, and two segments by each other where they are parallel.
 /// Empty where there is none. An outline without corners is the whole plane.
 pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> ClippedCorners<S> {
-    let mut overlap = corners_of(&own.corners);
-    let mut rest = ClippedCorners::new();
+    let (mut own_corners, mut rest) = (corners_of(&own.corners), ClippedCorners::new());
+    let mut overlap = [&mut own_corners, &mut rest];
     let count = other.corners.len();
     if count == 2 {
         let [from, to] = [other.corners[0], other.corners[1]];
@@ -40,17 +40,17 @@ pub(crate) fn clip<S: Scalar>(own: &Outline<S>, other: &Outline<S>) -> ClippedCo
         if own.corners.len() > 2 || !are_parallel(e, across) {
             return SmallVec::new();
         }
-        cut(&mut overlap, &mut rest, 0, ContactPart::Vertex(from.id), |at| dot(difference(at, from.at), e), other);
-        cut(&mut overlap, &mut rest, 1, ContactPart::Vertex(to.id), |at| dot(difference(to.at, at), e), other);
-        return overlap;
+        cut(&mut overlap, 0, ContactPart::Vertex(from.id), |at| dot(difference(at, from.at), e), other);
+        cut(&mut overlap, 1, ContactPart::Vertex(to.id), |at| dot(difference(to.at, at), e), other);
+        return SmallVec::from_slice(overlap[0]);
     }
     for i in 0..count {
         let [from, to] = [other.corners[i], other.corners[(i + 1) % count]];
         let e = difference(to.at, from.at);
         let part = ContactPart::Edge(from.id, to.id);
-        cut(&mut overlap, &mut rest, i, part, |at| cross(e, difference(at, from.at)), other);
+        cut(&mut overlap, i, part, |at| cross(e, difference(at, from.at)), other);
     }
-    overlap
+    SmallVec::from_slice(overlap[0])
 }
 
 fn difference<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
@@ -73,25 +73,27 @@ fn corners_of<S: Scalar>(corners: &[Corner<S>]) -> ClippedCorners<S> {
     corners.iter().enumerate().map(corner).collect()
 }
 
-/// Leaves of a polygon or a segment what is where `inside` is not negative. The cut is along the part `along` of the
-/// other outline, which is its edge of index `index`.
+/// Leaves of a polygon or a segment, the first of two lists, what is where `inside` is not negative. The cut is along
+/// the part `along` of the other outline, which is its edge of index `index`.
 fn cut<S: Scalar>(
-    polygon: &mut ClippedCorners<S>,
-    kept: &mut ClippedCorners<S>,
+    lists: &mut [&mut ClippedCorners<S>; 2],
     index: usize,
     along: ContactPart,
     inside: impl Fn(Across<S>) -> S,
     other: &Outline<S>,
 ) {
+    let [polygon, kept] = lists;
     // Most edges of a large face cut nothing.
     if polygon.iter().all(|corner| inside(corner.at) >= S::ZERO) {
         return;
     }
     kept.clear();
     let is_segment = polygon.len() == 2;
+    let Some(first) = polygon.first() else { return };
+    let mut d = inside(first.at);
     for (i, from) in polygon.iter().enumerate() {
-        let to = &polygon[(i + 1) % polygon.len()];
-        let (d, e) = (inside(from.at), inside(to.at));
+        let to = polygon.get(i + 1).unwrap_or(first);
+        let e = inside(to.at);
         let is_crossed = (d >= S::ZERO) != (e >= S::ZERO) && !(is_segment && i == 1);
         if d >= S::ZERO {
             kept.push(*from);
@@ -106,9 +108,9 @@ fn cut<S: Scalar>(
             let edge = if d >= S::ZERO { Edge::Other(index) } else { from.edge };
             kept.push(Clipped { at, parts, edge });
         }
+        d = e;
     }
-    polygon.clear();
-    polygon.extend_from_slice(kept);
+    lists.swap(0, 1);
 }
 
 /// The number of the corner between two edges of an outline.

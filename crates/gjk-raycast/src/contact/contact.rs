@@ -3,8 +3,8 @@
 use convex_support::{SupportMap, Vector};
 use num_traits::Float as _;
 
+use super::Contact;
 use super::manifold::manifold;
-use super::{Contact, ContactPoint};
 use crate::{SignedDistanceOptions, signed_distance};
 
 /// The contact of two shapes; `None` if they are farther apart than `within`. The options are those of the signed
@@ -43,7 +43,7 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    contact_of(a, b, within, options, &[])
+    contact_of(a, b, within, options, None)
 }
 
 /// [`contact`] of shapes that were in contact before: of the points of the `last` contact those are kept that still
@@ -63,25 +63,27 @@ where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let axis = options.axis.or(Some(last.normal));
-    contact_of(a, b, within, SignedDistanceOptions { axis, ..options }, last.points())
+    contact_of(a, b, within, options, Some(last))
 }
 
-fn contact_of<A, B>(
+/// [`contact_after`], if there was a contact before.
+pub(crate) fn contact_of<A, B>(
     a: &A,
     b: &B,
     within: <A::Vector as Vector>::Scalar,
     options: SignedDistanceOptions<A::Vector>,
-    last: &[ContactPoint<A::Vector>],
+    last: Option<&Contact<A::Vector>>,
 ) -> Option<Contact<A::Vector>>
 where
     A: SupportMap + ?Sized,
     B: SupportMap<Vector = A::Vector> + ?Sized,
 {
-    let answer = signed_distance(a, b, SignedDistanceOptions { limit: options.limit.min(within), ..options });
+    let axis = options.axis.or(last.map(|last| last.normal));
+    let limit = options.limit.min(within);
+    let answer = signed_distance(a, b, SignedDistanceOptions { axis, limit, ..options });
     // NaN is farther than anything, and so is what nothing is known of.
     if !(answer.signed_distance <= within && answer.signed_distance.is_finite()) {
         return None;
     }
-    Some(manifold(a, b, &answer, within, last))
+    Some(manifold(a, b, &answer, within, last.map_or(&[], Contact::points)))
 }

@@ -8,7 +8,7 @@ use super::clip::{ClippedCorners, clip};
 use super::outline::{ContactPart, ContactPlane, Outline};
 use super::reduction::{Rank, WORTHWHILE, reduced};
 use super::result::MAX_POINTS;
-use super::surface::{Side, Surface};
+use super::surface::{MAX_SUPPORT_POINTS, Side, Surface};
 use super::{Contact, ContactPoint};
 use crate::SignedDistance;
 use crate::symmetric::{Across, axes_across, cross, dot};
@@ -105,10 +105,8 @@ fn between<V: Vector>(
     let reach = Reach::new(answer, within, size);
     let level = answer.signed_distance * -half;
     let levels = [level, level + (answer.signed_distance - answer.lower)];
-    let side =
-        |surface, core, normal| Side::new(surface, core, ContactPlane { normal, across, origin }, reach.slab, levels);
-    let sides = [side(a, &core_a, -normal), side(b, &core_b, normal)];
-    Facing { sides, reach, last }.contact(answer, [level, level])
+    let side = |surface, core, normal| Side::new(surface, core, ContactPlane { normal, across, origin }, levels);
+    Facing { sides: [side(a, &core_a, -normal), side(b, &core_b, normal)], reach, last }.contact(answer, [level, level])
 }
 
 compiled_once! {
@@ -134,10 +132,8 @@ fn over_plane<V: Vector>(
     let plane = |normal| ContactPlane { normal, across, origin };
     let core = a.parts();
     let reach = Reach::new(answer, within, core.extent + core.radius);
-    let sides = [
-        Side::new(a, &core, plane(-normal), reach.slab, [-answer.signed_distance, -answer.lower]),
-        Side::flat(plane(normal)),
-    ];
+    let sides =
+        [Side::new(a, &core, plane(-normal), [-answer.signed_distance, -answer.lower]), Side::flat(plane(normal))];
     let levels = [-answer.signed_distance, V::Scalar::ZERO];
     Facing { sides, reach, last }.contact(answer, levels)
 }
@@ -161,22 +157,19 @@ impl<S: Scalar> Reach<S> {
     }
 }
 
-/// A point of contact in the plane: where it is, how far both shapes reach there, and what it is of each.
+/// A point of contact in the plane: where it is, how far both shapes reach there, and the [code](ContactPart::code) of
+/// what it is of each.
 #[derive(Clone, Copy)]
 pub(super) struct Candidate<S> {
     pub(super) at: Across<S>,
     pub(super) levels: [S; 2],
     pub(super) error: S,
-    pub(super) parts: [ContactPart; 2],
+    pub(super) codes: [u32; 2],
 }
 
 impl<S: Scalar> Candidate<S> {
     pub(super) fn gap(&self) -> S {
         -(self.levels[0] + self.levels[1])
-    }
-
-    pub(super) fn codes(&self) -> [u32; 2] {
-        self.parts.map(ContactPart::code)
     }
 }
 
@@ -202,18 +195,20 @@ impl<V: Vector> Facing<'_, V> {
     /// The corners of the overlap where the shapes are no farther apart than asked for, reduced to four, in the plane
     /// to two; and the closest points, which reach to these levels.
     fn contact(&mut self, answer: &SignedDistance<V>, levels: [V::Scalar; 2]) -> Contact<V> {
+        self.sides.iter_mut().for_each(|side| side.see(self.reach.slab));
         let candidates = self.corners(answer.lower);
-        let rank = |i: usize| -> Rank { (!self.is_known(&candidates[i]), candidates[i].codes()) };
+        let rank = |i: usize| -> Rank { (!self.is_known(candidates[i].codes), candidates[i].codes) };
         let chosen = reduced(&candidates, !self.last.is_empty(), rank);
-        let mut chosen: Chosen<_> = chosen.iter().filter_map(|&i| self.measured(candidates[i], answer.lower)).collect();
+        let limit = V::Scalar::infinity();
+        let mut measured = |&i: &usize| self.measured(candidates[i], answer.lower, limit);
+        let mut chosen: Chosen<_> = chosen.iter().filter_map(&mut measured).collect();
         self.add_closest(&mut chosen, &candidates, answer, levels);
         let points: SmallVec<[_; MAX_POINTS]> = chosen.iter().map(|candidate| self.point(candidate)).collect();
         Contact::new(answer.normal, *answer, &points)
     }
 
     /// Whether the last manifold had this point.
-    fn is_known(&self, candidate: &Candidate<V::Scalar>) -> bool {
-        let codes = candidate.codes();
+    fn is_known(&self, codes: [u32; 2]) -> bool {
         self.last.iter().any(|point| [point.feature_a, point.feature_b] == codes)
     }
 
@@ -226,7 +221,7 @@ impl<V: Vector> Facing<'_, V> {
             return candidates;
         }
         self.sides.iter_mut().for_each(Side::flatten);
-        let [of_a, of_b] = &self.sides;
+        let [of_a, of_b] = [&self.sides[0], &self.sides[1]];
         // A segment is clipped by a polygon.
         let is_swapped = a > b && b > 0;
         let [own, other] = if is_swapped { [of_b, of_a] } else { [of_a, of_b] };
@@ -235,26 +230,42 @@ impl<V: Vector> Facing<'_, V> {
             let [own, other] = corner.parts;
             let parts = self.settled(corner.at, if is_swapped { [other, own] } else { [own, other] });
             let is_crossing = matches!(parts, [ContactPart::Edge(..), ContactPart::Edge(..)]);
-            if is_crossing && self.is_on_a_line(&overlap, i) || candidates.iter().any(|known| known.parts == parts) {
+            let codes = parts.map(ContactPart::code);
+            if is_crossing && self.is_on_a_line(&overlap, i) || candidates.iter().any(|known| known.codes == codes) {
                 continue;
             }
-            let levels = [of_a.chord(corner.at), of_b.chord(corner.at)];
-            let candidate = Candidate { at: corner.at, levels, error: V::Scalar::ZERO, parts };
-            let slack = self.reach.slack * Scalar::from_f64(if self.is_known(&candidate) { 2.0 } else { 1.0 });
-            let is_in = |candidate: &Candidate<_>| candidate.gap() <= self.reach.within + slack;
-            // Between points of shapes that are apart the shapes may overlap.
-            if is_in(&candidate) || self.measured(candidate, deepest).is_some_and(|measured| is_in(&measured)) {
+            let levels = [0, 1].map(|i| self.sides[i].chord(corner.at));
+            let candidate = Candidate { at: corner.at, levels, error: V::Scalar::infinity(), codes };
+            let slack = self.reach.slack * Scalar::from_f64(if self.is_known(codes) { 2.0 } else { 1.0 });
+            let limit = self.reach.within + slack;
+            if candidate.gap() <= limit {
                 candidates.push(candidate);
+            } else {
+                // Between points of shapes that are apart the shapes may overlap.
+                let measured = self.measured(candidate, deepest, limit);
+                candidates.extend(measured.filter(|measured| measured.gap() <= limit));
             }
         }
         candidates
     }
 
-    /// With the levels of the surfaces. `None` where these are not known, as at a vertex that is behind what a shape
-    /// shows: a side is along the normal there.
-    fn measured(&self, candidate: Candidate<V::Scalar>, deepest: V::Scalar) -> Option<Candidate<V::Scalar>> {
-        let [of_a, of_b] = &self.sides;
-        let [of_a, of_b] = [of_a.level(candidate.at)?, of_b.level(candidate.at)?];
+    /// With the levels of the surfaces. `None` where these are farther apart than the `limit`, or not known, as at a
+    /// vertex that is behind what a shape shows: a side is along the normal there.
+    fn measured(
+        &mut self,
+        candidate: Candidate<V::Scalar>,
+        deepest: V::Scalar,
+        limit: V::Scalar,
+    ) -> Option<Candidate<V::Scalar>> {
+        if candidate.error.is_finite() {
+            return Some(candidate);
+        }
+        let [of_a, of_b] = &mut self.sides;
+        let at = candidate.at;
+        // Mostly one support point of each tells that they are farther apart.
+        let most = if limit.is_finite() { of_b.level(at, -limit - of_a.top, 1)?.most() } else { limit };
+        let of_a = of_a.level(at, -limit - most, MAX_SUPPORT_POINTS)?;
+        let of_b = of_b.level(at, -limit - of_a.most(), MAX_SUPPORT_POINTS)?;
         // Seen nearly from its end an edge is as steep as one likes, and where a corner is on it is rounding; but no
         // points of the shapes are deeper in one another than the shapes are.
         let lack = (deepest + of_a.value + of_b.value).max(V::Scalar::ZERO) * Scalar::from_f64(0.5);
@@ -300,15 +311,16 @@ impl<V: Vector> Facing<'_, V> {
             _ => ContactPart::Face,
         };
         let [a, b] = &self.sides;
-        let parts = candidates.iter().find(|c| squared(c) <= near).map_or([part(a), part(b)], |c| c.parts);
+        let whole = [part(a), part(b)].map(ContactPart::code);
+        let codes = candidates.iter().find(|c| squared(c) <= near).map_or(whole, |c| c.codes);
         let zero = V::Scalar::ZERO;
-        let closest = Candidate { at: (zero, zero), levels, error: answer.upper - answer.lower, parts };
+        let closest = Candidate { at: (zero, zero), levels, error: answer.upper - answer.lower, codes };
         let nearest = chosen.iter().map(squared).fold(V::Scalar::infinity(), V::Scalar::min);
         let limit = near.max(nearest * Scalar::from_f64(1.0 + WORTHWHILE));
         let is_full = chosen.len() >= most::<V>();
         let is_nearest =
-            |c: &&mut Candidate<V::Scalar>| c.parts == parts || squared(c) <= if is_full { limit } else { near };
-        match chosen.iter_mut().filter(is_nearest).min_by_key(|c| (c.parts != parts, c.codes())) {
+            |c: &&mut Candidate<V::Scalar>| c.codes == codes || squared(c) <= if is_full { limit } else { near };
+        match chosen.iter_mut().filter(is_nearest).min_by_key(|c| (c.codes != codes, c.codes)) {
             Some(same) => *same = closest,
             None => chosen.push(closest),
         }
@@ -338,7 +350,7 @@ impl<V: Vector> Facing<'_, V> {
     }
 
     fn point(&self, candidate: &Candidate<V::Scalar>) -> ContactPoint<V> {
-        let [feature_a, feature_b] = candidate.codes();
+        let [feature_a, feature_b] = candidate.codes;
         let [point_a, point_b] = [0, 1].map(|i| self.sides[i].plane.point(candidate.at, candidate.levels[i]));
         ContactPoint {
             point_a,

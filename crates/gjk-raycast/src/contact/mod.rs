@@ -9,6 +9,7 @@ mod reduction;
 mod result;
 mod surface;
 
+pub(crate) use contact::contact_of;
 pub use contact::{contact, contact_after};
 pub(crate) use manifold::manifold_over_plane;
 pub(crate) use outline::{ContactPlane, Corner, Ellipse, Outline};

@@ -89,15 +89,9 @@ mod tests {
     use alloc::vec::Vec;
 
     use super::*;
-    use crate::contact::outline::ContactPart;
 
     fn polygon(corners: impl Iterator<Item = (f64, f64)>) -> Vec<Candidate<f64>> {
-        let corner = |(i, at)| Candidate {
-            at,
-            levels: [0.0; 2],
-            error: 0.0,
-            parts: [ContactPart::Vertex(i), ContactPart::Face],
-        };
+        let corner = |(i, at)| Candidate { at, levels: [0.0; 2], error: 0.0, codes: [i, 0] };
         (0..).zip(corners).map(corner).collect()
     }
 
@@ -121,7 +115,7 @@ mod tests {
             angles.sort_by(f64::total_cmp);
             let flat = number();
             let polygon = polygon(angles.iter().map(|angle| (angle.cos(), flat * angle.sin())));
-            let [a, c, b, d] = spanning(&polygon, WORTHWHILE, |i| (false, polygon[i].codes()));
+            let [a, c, b, d] = spanning(&polygon, WORTHWHILE, |i| (false, polygon[i].codes));
             let mut most = 0.0_f64;
             for i in 0..count {
                 for j in i + 1..count {
@@ -147,7 +141,7 @@ mod tests {
             };
             let chosen = |jitter: f64| {
                 let polygon = corners(jitter);
-                spanning(&polygon, WORTHWHILE, |i| (false, polygon[i].codes()))
+                spanning(&polygon, WORTHWHILE, |i| (false, polygon[i].codes))
             };
             let still = chosen(0.0);
             for jitter in [1e-16, -1e-15, 1e-9, -1e-6, 1e-4] {

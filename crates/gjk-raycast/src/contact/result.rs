@@ -1,8 +1,9 @@
 //! What contact queries answer.
 
-use convex_support::Vector;
+use convex_support::{Matrix, Posed, Scalar, SupportMap, Vector};
 
-use crate::SignedDistance;
+use crate::symmetric::axes_across;
+use crate::{SignedDistance, Trajectory};
 
 /// As many points as a manifold has.
 pub(super) const MAX_POINTS: usize = 4;
@@ -38,6 +39,13 @@ impl<V: Vector> Contact<V> {
         Self { normal: -self.normal, distance: self.distance.reversed(), points, len: self.len }
     }
 
+    /// Unit vectors across the normal and one another, along which friction acts; in 2D the second is zero. They follow
+    /// from the normal alone, so that impulses along them stay what they are while bodies rest.
+    #[must_use]
+    pub fn tangents(&self) -> [V; 2] {
+        axes_across(self.normal)
+    }
+
     /// The points of the manifold: one to four, in 2D one or two.
     #[must_use]
     pub fn points(&self) -> &[ContactPoint<V>] {
@@ -67,6 +75,29 @@ pub struct ContactPoint<V: Vector> {
 }
 
 impl<V: Vector> ContactPoint<V> {
+    /// The points of both bodies in the frames of their shapes, before these were posed: where they are as the bodies
+    /// move on.
+    #[must_use]
+    pub fn anchors<A, B>(&self, a: &Posed<A>, b: &Posed<B>) -> [V; 2]
+    where
+        A: SupportMap<Vector = V>,
+        B: SupportMap<Vector = V>,
+    {
+        let of_a = a.rotation().transpose_mul(self.point_a - a.translation());
+        [of_a, b.rotation().transpose_mul(self.point_b - b.translation())]
+    }
+
+    /// The velocity of the point of `a` relative to that of `b`, of bodies that move like this from now on. Along the
+    /// normal it is negative where they approach.
+    #[must_use]
+    pub fn relative_velocity<A, B>(&self, motion_a: &A, motion_b: &B) -> V
+    where
+        A: Trajectory<Vector = V>,
+        B: Trajectory<Vector = V>,
+    {
+        motion_a.velocity(Scalar::ZERO, self.point_a) - motion_b.velocity(Scalar::ZERO, self.point_b)
+    }
+
     /// The same of the shapes in the other order.
     #[must_use]
     pub fn reversed(self) -> Self {

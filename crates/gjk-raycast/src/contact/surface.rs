@@ -10,7 +10,10 @@ use crate::symmetric::{Across, cross, dot};
 
 /// Support points after which a height is given up. A polytope takes a few; on what is curved each takes three quarters
 /// of the error away.
-const MAX_POINTS: usize = 32;
+pub(super) const MAX_SUPPORT_POINTS: usize = 32;
+
+/// As many points as are kept of a shape.
+const KNOWN: usize = 24;
 
 /// How steep a side of a shape is, as a slope, beyond which nothing is shown.
 const STEEP: f64 = 4.0;
@@ -80,9 +83,11 @@ pub(super) struct Side<'s, V: Vector> {
     from: V,
     radius: V::Scalar,
     pub(super) outline: Outline<V::Scalar>,
+    /// Points of the shape that are known: first those in the slab, then what levels were found by.
+    known: SmallVec<[Corner<V::Scalar>; KNOWN]>,
     /// How far the shape reaches, as it is known and at most.
     reach: V::Scalar,
-    top: V::Scalar,
+    pub(super) top: V::Scalar,
     /// The face, or a plane along the edge, that all corners are in and no point of the shape is beyond.
     flat: Option<Tangent<V::Scalar>>,
     /// What the coordinates of points lose by rounding.
@@ -90,34 +95,22 @@ pub(super) struct Side<'s, V: Vector> {
 }
 
 impl<'s, V: Vector> Side<'s, V> {
-    /// Of a shape, by its points in a slab. Those beyond a side of it that is nearly along the normal are no part of
-    /// what it shows: of a thin plate both faces are in the slab.
+    /// Of a shape of which nothing has been [seen](Self::see) yet. A side is long, and better made where it stays.
+    #[inline(always)]
     pub(super) fn new(
         surface: &'s dyn Surface<V>,
         core: &Core<V>,
         plane: ContactPlane<V>,
-        slab: V::Scalar,
         [reach, top]: [V::Scalar; 2],
     ) -> Self {
-        let mut feature = Feature::new();
-        surface.feature(plane.normal, slab, &mut feature);
         let from = core.origin - plane.origin;
-        let swept = from + plane.normal * core.radius;
         let noise = (from.norm() + core.extent + core.radius) * (V::Scalar::EPSILON * V::Scalar::from_f64(16.0));
-        let seen = |(&point, &id): (&V, &u32)| plane.corner(swept + point, id);
-        let points: SmallVec<[_; 16]> = feature.points().iter().zip(feature.ids()).map(seen).collect();
-        let mut outline = Outline::empty();
-        if points.len() > 2 {
-            let is_shown = |low: &&Corner<_>| !points.iter().any(|high| is_hidden(low, high, noise));
-            let shown: SmallVec<[_; 16]> = points.iter().filter(is_shown).copied().collect();
-            wrap(&shown, &mut outline.corners);
-        } else {
-            wrap(&points, &mut outline.corners);
-        }
-        Self { surface: Some(surface), plane, from, radius: core.radius, outline, reach, top, flat: None, noise }
+        let (radius, flat) = (core.radius, None);
+        Self { surface: Some(surface), plane, from, radius, reach, top, flat, noise, ..Self::flat(plane) }
     }
 
     /// Of a half-space that the plane ends.
+    #[inline(always)]
     pub(super) fn flat(plane: ContactPlane<V>) -> Self {
         let zero = V::Scalar::ZERO;
         let at = (zero, zero);
@@ -127,11 +120,27 @@ impl<'s, V: Vector> Side<'s, V> {
             from: V::ZERO,
             radius: zero,
             outline: Outline::empty(),
+            known: SmallVec::new(),
             reach: zero,
             top: zero,
             flat: Some(Tangent { at, level: zero, gradient: at }),
             noise: zero,
         }
+    }
+
+    /// Draws the outline of the points of the shape that are in a slab. Those beyond a side of it that is nearly along
+    /// the normal are no part of what it shows: of a thin plate both faces are in the slab.
+    pub(super) fn see(&mut self, slab: V::Scalar) {
+        let Some(surface) = self.surface else { return };
+        let mut feature = Feature::new();
+        surface.feature(self.plane.normal, slab, &mut feature);
+        let swept = self.from + self.plane.normal * self.radius;
+        let seen = |(&point, &id): (&V, &u32)| self.plane.corner(swept + point, id);
+        self.known.extend(feature.points().iter().zip(feature.ids()).map(seen));
+        let known = &self.known;
+        let is_shown = |low: &&Corner<_>| known.len() < 3 || !known.iter().any(|high| is_hidden(low, high, self.noise));
+        let shown: SmallVec<[_; 16]> = known.iter().filter(is_shown).copied().collect();
+        wrap(&shown, &mut self.outline.corners);
     }
 
     /// Looks whether the outline is that of a face or an edge, as it mostly is: one support point then tells the levels
@@ -177,44 +186,69 @@ impl<'s, V: Vector> Side<'s, V> {
         self.flat.unwrap_or_else(|| Tangent::through(&self.around(at))).level(at)
     }
 
-    /// The level of the surface at a place within the outline, and by how much that may be too little.
+    /// The level of the surface at a place within the outline, and by how much that may be too little, found by no more
+    /// than so many support points.
     ///
     /// Points of the shape around the place, first those of the outline, are in the shape with all between them. The
     /// plane through them is moved out until it supports the shape: the surface is between the two. If they are not the
     /// same, the point that supports takes the place of one of the others, so that the place is still among them. At a
-    /// face of a polytope this ends with the face. `None` where the shape is not over the place.
-    pub(super) fn level(&self, at: Across<V::Scalar>) -> Option<Level<V::Scalar>> {
+    /// face of a polytope this ends with the face. Points that are known already are taken first.
+    ///
+    /// `None` where the shape is not over the place, or its level is less than the `least` that is of use.
+    pub(super) fn level(
+        &mut self,
+        at: Across<V::Scalar>,
+        least: V::Scalar,
+        mut support_points: usize,
+    ) -> Option<Level<V::Scalar>> {
         let is_aside = self.is_aside(at);
         if let (Some(tangent), false) = (&self.flat, is_aside) {
             return Some(Level { value: tangent.level(at), error: self.rounding(tangent) });
         }
         let mut around = if is_aside { self.beside(at)? } else { self.around(at) };
-        let mut level = Level { value: around[0].height, error: self.top - around[0].height };
-        let mut lost = self.noise;
-        for _ in 0..MAX_POINTS {
+        let (mut value, mut most, mut lost) = (around[0].height, self.top, self.noise);
+        for _ in 0..2 * MAX_SUPPORT_POINTS {
             let tangent = Tangent::through(&around);
             let heights = || around.iter().map(|corner| corner.height);
-            let least = heights().fold(self.top, V::Scalar::min);
-            let most = heights().fold(least, V::Scalar::max);
-            let value = tangent.level(at).max(least).min(most);
+            let lowest = heights().fold(self.top, V::Scalar::min);
+            let highest = heights().fold(lowest, V::Scalar::max);
             let allowed = self.rounding(&tangent);
             // NaN, of points in a row, ends this too.
             if !allowed.is_finite() {
                 break;
             }
-            level = Level { value, error: (self.top - value).max(V::Scalar::ZERO) + allowed };
+            value = tangent.level(at).max(lowest).min(highest);
             lost = allowed;
             if value + self.noise >= self.reach {
                 break;
             }
+            let mut above = (allowed, None);
+            for corner in &self.known {
+                let by = corner.height - tangent.level(corner.at);
+                above = if by > above.0 { (by, Some(*corner)) } else { above };
+            }
+            if above.1.is_some_and(|next| enclose(&mut around, next, at, self.noise)) {
+                continue;
+            }
+            if support_points == 0 {
+                break;
+            }
+            support_points -= 1;
             let Some((next, by)) = self.beyond(&tangent) else { break };
-            level.error = level.error.min(by.max(V::Scalar::ZERO) + allowed);
+            most = most.min(value + by.max(V::Scalar::ZERO) + allowed);
+            if most < least {
+                return None;
+            }
+            if self.known.len() < KNOWN {
+                self.known.push(next);
+            }
             if !(by > allowed) || !enclose(&mut around, next, at, self.noise) {
                 break;
             }
         }
         // A side so steep is along the normal, but for rounding, and where it is is not known.
-        (lost * (V::Scalar::EPSILON.sqrt() * V::Scalar::from_f64(16.0)) <= self.noise).then_some(level)
+        let is_known = lost * (V::Scalar::EPSILON.sqrt() * V::Scalar::from_f64(16.0)) <= self.noise;
+        is_known.then(|| Level { value, error: (most - value).max(V::Scalar::ZERO) + lost })
     }
 
     /// Whether a place is beside an outline that is a segment, as it may be where that is nearly parallel to the other
@@ -245,7 +279,7 @@ impl<'s, V: Vector> Side<'s, V> {
         let [e, f] = self.plane.across;
         let [p, q] = self.outline.corners[..] else { return None };
         let mut around: Corners<V::Scalar> = SmallVec::from_slice(&[p, q]);
-        for _ in 0..MAX_POINTS {
+        for _ in 0..MAX_SUPPORT_POINTS {
             let n = around.len();
             let outward = |i: usize| {
                 let (x, y) = difference(around[i].at, around[(i + 1) % n].at);

@@ -26,11 +26,32 @@ impl<V: Vector> HalfSpace<V> {
     /// The points are corners of the shape's feature that faces the half-space. If there are more than four, in 2D two,
     /// they are those that span the feature best.
     pub fn contact<A: SupportMap<Vector = V> + ?Sized>(&self, shape: &A, within: V::Scalar) -> Option<Contact<V>> {
+        self.contact_of(shape, within, None)
+    }
+
+    /// [`contact`](Self::contact) of a shape that was in contact before: of the points of the `last` contact those are
+    /// kept that still hold, as by [`contact_after`](crate::contact_after).
+    pub fn contact_after<A: SupportMap<Vector = V> + ?Sized>(
+        &self,
+        last: &Contact<V>,
+        shape: &A,
+        within: V::Scalar,
+    ) -> Option<Contact<V>> {
+        self.contact_of(shape, within, Some(last))
+    }
+
+    /// `contact_after`, if there was a contact before.
+    pub(crate) fn contact_of<A: SupportMap<Vector = V> + ?Sized>(
+        &self,
+        shape: &A,
+        within: V::Scalar,
+        last: Option<&Contact<V>>,
+    ) -> Option<Contact<V>> {
         let answer = self.signed_distance(shape);
         // NaN is farther than anything.
         if !(answer.signed_distance <= within) {
             return None;
         }
-        Some(manifold_over_plane(shape, &answer, within, &[]))
+        Some(manifold_over_plane(shape, &answer, within, last.map_or(&[], Contact::points)))
     }
 }

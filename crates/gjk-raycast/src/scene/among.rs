@@ -4,7 +4,8 @@ use core::ops::ControlFlow;
 
 use convex_support::{Bound, Scalar, ScalarOf, SupportMap};
 
-use super::{Body, Scene, Work};
+use super::{Body, PairContact, Scene, Work};
+use crate::Contact;
 
 /// The bodies of a scene that a question is about: all of them, or those that a closure picks. [`Scene::all`] and
 /// [`Scene::among`] make it, and it answers the same questions as a [`Scene`].
@@ -33,6 +34,8 @@ pub struct Among<'s, S: SupportMap> {
     bodies: Option<&'s Picks<'s>>,
     without_pairs: Option<&'s Pairs<'s>>,
     until: Option<&'s StopFlag<'s>>,
+    /// What touched before.
+    last: &'s [PairContact<S::Vector>],
 }
 
 /// Tells by its index whether a body is asked about.
@@ -66,7 +69,7 @@ impl<S: SupportMap> Scene<S> {
     /// [`Among::without_pairs`] or [`Among::until`] narrows them down.
     #[must_use]
     pub fn all(&self) -> Among<'_, S> {
-        Among { scene: self, bodies: None, without_pairs: None, until: None }
+        Among { scene: self, bodies: None, without_pairs: None, until: None, last: &[] }
     }
 
     /// Questions about the bodies for whose index `picked` returns true, such as those of a layer or a group.
@@ -90,6 +93,20 @@ impl<'s, S: SupportMap> Among<'s, S> {
     #[must_use]
     pub fn until(self, stop: &'s (dyn Fn() -> bool + Sync + 's)) -> Self {
         Self { until: Some(stop), ..self }
+    }
+
+    /// Hands on the contacts of pairs in the last step, in the order in which they were told: points of theirs that
+    /// still hold are kept, as by [`contact_after`](crate::contact_after). Who keeps two lists, and swaps them after
+    /// each step, allocates nothing.
+    #[must_use]
+    pub fn after(self, last: &'s [PairContact<S::Vector>]) -> Self {
+        Self { last, ..self }
+    }
+
+    /// The contact that these bodies had.
+    pub(super) fn last_of(&self, [a, b]: [usize; 2]) -> Option<&'s Contact<S::Vector>> {
+        let found = self.last.binary_search_by_key(&(a, b), |found| (found.a, found.b)).ok()?;
+        Some(&self.last[found].contact)
     }
 
     /// The body with this index, if it is asked about.

@@ -7,7 +7,8 @@ use num_traits::Float as _;
 
 use super::result::{BodyContact, PairContact, Work, reuse};
 use super::{Among, Body, Scene};
-use crate::{Contact, SignedDistanceOptions, contact};
+use crate::contact::contact_of;
+use crate::{Contact, SignedDistanceOptions};
 
 impl<S: SupportMap> Scene<S> {
     /// The [contacts](Body::contact) of the shape, `a`, with all bodies, `b`, that are no farther than `within` from
@@ -104,7 +105,9 @@ impl<S: SupportMap> Among<'_, S> {
         options: SignedDistanceOptions<S::Vector>,
         contacts: &mut Vec<PairContact<S::Vector>>,
     ) -> Work {
-        self.find_pairs(of_boxes::<S>(within), contacts, &|pair, a, b| between(pair, a, b, within, options))
+        self.find_pairs(of_boxes::<S>(within), contacts, &|pair, a, b| {
+            between(pair, a, b, within, options, self.last_of(pair))
+        })
     }
 
     /// [`Scene::contacts_between`] of these bodies and all of another scene.
@@ -116,7 +119,7 @@ impl<S: SupportMap> Among<'_, S> {
         contacts: &mut Vec<PairContact<S::Vector>>,
     ) -> Work {
         self.find_pairs_between(other, of_boxes::<S>(within), contacts, &|pair, a, b| {
-            between(pair, a, b, within, options)
+            between(pair, a, b, within, options, self.last_of(pair))
         })
     }
 
@@ -133,7 +136,9 @@ impl<S: SupportMap> Among<'_, S> {
     where
         S: Sync,
     {
-        self.par_find_pairs(of_boxes::<S>(within), contacts, &|pair, a, b| between(pair, a, b, within, options))
+        self.par_find_pairs(of_boxes::<S>(within), contacts, &|pair, a, b| {
+            between(pair, a, b, within, options, self.last_of(pair))
+        })
     }
 }
 
@@ -150,11 +155,14 @@ fn between<S: SupportMap, T: SupportMap<Vector = S::Vector>>(
     b: &Body<T>,
     within: ScalarOf<S>,
     options: SignedDistanceOptions<S::Vector>,
+    last: Option<&Contact<S::Vector>>,
 ) -> Option<PairContact<S::Vector>> {
     let contact = match (a, b) {
-        (Body::Convex(a), Body::Convex(b)) => contact(a, b, within, options),
-        (Body::Convex(a), Body::HalfSpace(b)) => b.contact(a, within),
-        (Body::HalfSpace(a), Body::Convex(b)) => a.contact(b, within).map(Contact::reversed),
+        (Body::Convex(a), Body::Convex(b)) => contact_of(a, b, within, options, last),
+        (Body::Convex(a), Body::HalfSpace(b)) => b.contact_of(a, within, last),
+        (Body::HalfSpace(a), Body::Convex(b)) => {
+            a.contact_of(b, within, last.map(|last| last.reversed()).as_ref()).map(Contact::reversed)
+        }
         (Body::HalfSpace(_), Body::HalfSpace(_)) => None,
     };
     Some(PairContact { a: i, b: j, contact: contact? })

@@ -6,8 +6,8 @@ use convex_support::{Point, Scalar as _, SupportMap, Vector as _};
 use num_traits::Float as _;
 
 use super::Scene;
-use super::result::BodyContact;
-use crate::{SignedDistanceOptions, signed_distance};
+use super::result::{BodyContact, PairContact};
+use crate::{Contact, SignedDistanceOptions, signed_distance};
 
 impl<S: SupportMap> Scene<S> {
     /// Leaves out of the [contacts of a shape](Self::contacts_of) those at seams, and says how many these were: where a
@@ -36,18 +36,30 @@ impl<S: SupportMap> Scene<S> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn leave_out_seams(&self, contacts: &mut Vec<BodyContact<S::Vector>>) -> usize {
-        let before = contacts.len();
-        let mut i = 0;
-        while let Some(&BodyContact { body, contact }) = contacts.get(i) {
-            let covers = |other: usize, p| other != body && self.reaches_beyond(other, p, contact.normal);
-            let is_at_seam = |p| contacts.iter().any(|found| covers(found.body, p));
-            if contact.points().iter().all(|point| is_at_seam(point.point_b)) {
-                contacts.remove(i);
-            } else {
-                i += 1;
-            }
-        }
-        before - contacts.len()
+        leave_out(contacts, |contacts, &BodyContact { body, contact }| {
+            let others = || contacts.iter().map(|found| found.body).filter(|&other| other != body);
+            self.is_at_seam(&contact, others)
+        })
+    }
+
+    /// The same of the contacts of [all pairs](Self::contacts_within), of which either body may be one of the pieces:
+    /// one is left out if all of its points are at seams of one of its bodies with others that touch the other one.
+    pub fn leave_out_seams_of_pairs(&self, contacts: &mut Vec<PairContact<S::Vector>>) -> usize {
+        leave_out(contacts, |contacts, &PairContact { a, b, contact }| {
+            [(a, b, contact), (b, a, contact.reversed())].into_iter().any(|(moving, piece, contact)| {
+                let touching = |found: &PairContact<_>| match [found.a, found.b] {
+                    [other, it] | [it, other] if it == moving && other != piece => Some(other),
+                    _ => None,
+                };
+                self.is_at_seam(&contact, || contacts.iter().filter_map(touching))
+            })
+        })
+    }
+
+    /// Whether all points of a contact, of its second body, are covered by one of the others.
+    fn is_at_seam<I: Iterator<Item = usize>>(&self, contact: &Contact<S::Vector>, others: impl Fn() -> I) -> bool {
+        let covers = |point, other| self.reaches_beyond(other, point, contact.normal);
+        contact.points().iter().all(|point| others().any(|other| covers(point.point_b, other)))
     }
 
     /// Whether a point is one of a convex body, but for the root of rounding, and the body reaches beyond it along a
@@ -61,4 +73,18 @@ impl<S: SupportMap> Scene<S> {
             && signed_distance(&at, body, SignedDistanceOptions::default().with_limit(rounding)).signed_distance
                 <= rounding
     }
+}
+
+/// Leaves contacts out one after the other, each by what is left, and says how many these were.
+fn leave_out<C>(contacts: &mut Vec<C>, is_left_out: impl Fn(&[C], &C) -> bool) -> usize {
+    let before = contacts.len();
+    let mut i = 0;
+    while let Some(contact) = contacts.get(i) {
+        if is_left_out(contacts, contact) {
+            contacts.remove(i);
+        } else {
+            i += 1;
+        }
+    }
+    before - contacts.len()
 }

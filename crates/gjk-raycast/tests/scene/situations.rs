@@ -4,10 +4,10 @@ use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use convex_support::glam::{DQuat, DVec2, DVec3};
-use convex_support::{Ball, Capsule, Cuboid, Point, Posed, SupportMap, Triangle};
+use convex_support::{Ball, Capsule, Cuboid, Cylinder, Point, Posed, SupportMap, Triangle};
 use gjk_raycast::{
-    BodyContact, ChainMotion, DistanceOptions, HalfSpace, LinearCastOptions, Motion, MotionCastOptions, Ray,
-    RayCastError, RayCastOptions, RigidMotion, Scene, SceneError, distance,
+    BodyContact, ChainMotion, Contact, DistanceOptions, HalfSpace, LinearCastOptions, Motion, MotionCastOptions,
+    PairContact, Ray, RayCastError, RayCastOptions, RigidMotion, Scene, SceneError, contact, distance,
 };
 
 fn ball(x: f64) -> Posed<Ball<DVec3>> {
@@ -255,6 +255,60 @@ fn what_slides_over_a_floor_of_pieces_is_not_caught_at_seams() {
     tiles.contacts_of(&over_the_end, 0.0, Default::default(), &mut contacts);
     tiles.leave_out_seams(&mut contacts);
     assert!(contacts.iter().any(|found| found.contact.normal.x > 0.3), "{contacts:?}");
+}
+
+/// Among the contacts of all pairs a tile may be the first body or the second: the sled is before some of the tiles and
+/// behind others. And the contacts of the last step may be handed on, to the half-space too, into a list that has room.
+#[test]
+fn contacts_of_all_pairs_follow_the_last_ones_without_seams() {
+    let block = |half: DVec3, at: DVec3| Posed::translated(Cuboid::new(half).unwrap(), at).unwrap();
+    let tile = |i: u32| block(DVec3::new(0.5, 0.5, 1.0), DVec3::new(f64::from(i) + 0.5, -0.5, 0.0));
+    let (mut caught, mut last, mut contacts) = (0, Vec::new(), Vec::new());
+    let mut room = 0;
+    for step in 0..30 {
+        let sled = block(DVec3::new(0.5, 0.5, 0.3), DVec3::new(1.5 + 0.250_025 * f64::from(step), 0.498, 0.11));
+        let mut scene = Scene::new((0..5).map(tile).chain([sled]).chain((5..10).map(tile))).unwrap();
+        let ground = scene.insert_half_space(HalfSpace::new(DVec3::Y, 0.0).unwrap());
+        let is_floor = |i: usize| i != 5;
+        let pairs = |a, b| is_floor(a) && is_floor(b);
+        let asked = scene.all().without_pairs(&pairs);
+        asked.after(&last).contacts_within(0.001, Default::default(), &mut contacts);
+        assert!(contacts.iter().any(|found| (found.a, found.b) == (5, ground)), "{contacts:?}");
+        let pushes_back = |found: &PairContact<DVec3>| found.contact.normal.y.abs() < 1.0 - 1e-9;
+        let before = contacts.iter().filter(|found| pushes_back(found)).count();
+        assert_eq!(scene.leave_out_seams_of_pairs(&mut contacts), before, "{step}");
+        assert!(contacts.len() > 1 && !contacts.iter().any(pushes_back), "{contacts:?}");
+        caught += before;
+        core::mem::swap(&mut last, &mut contacts);
+        if step == 15 {
+            room = last.capacity() + contacts.capacity();
+        }
+    }
+    assert!(caught > 5 && last.capacity() + contacts.capacity() == room, "{caught}");
+
+    // A disc that is turned has four points of its rim; those of the step before stay, on a body and on a half-space.
+    let disc = |angle| {
+        let turn = DQuat::from_rotation_y(angle);
+        Posed::new(Cylinder::new(0.5, 0.5).unwrap(), turn, DVec3::new(0.0, 0.499, 0.0)).unwrap()
+    };
+    let (ground, slab) = (HalfSpace::new(DVec3::Y, 0.0).unwrap(), block(DVec3::splat(1.0), DVec3::NEG_Y));
+    let ids = |contact: &Contact<DVec3>| contact.points().iter().map(|p| p.feature_a).collect::<Vec<_>>();
+    let mut resting = ground.contact(&disc(0.0), 0.0).unwrap();
+    let mut found =
+        vec![PairContact { a: 0, b: 1, contact: contact(&disc(0.0), &slab, 0.0, Default::default()).unwrap() }];
+    let first = [ids(&resting), ids(&found[0].contact)];
+    for step in 1..20 {
+        let angle = 0.01 * f64::from(step);
+        resting = ground.contact_after(&resting, &disc(angle), 0.0).unwrap();
+        let scene = Scene::new([Box::new(disc(angle)) as Box<dyn SupportMap<Vector = DVec3>>, Box::new(slab)]).unwrap();
+        let mut next = Vec::new();
+        scene.all().after(&found).contacts_within(0.0, Default::default(), &mut next);
+        found = next;
+        let mut now = [ids(&resting), ids(&found[0].contact)];
+        let mut before = first.clone();
+        now.iter_mut().chain(&mut before).for_each(|ids| ids.sort_unstable());
+        assert_eq!(now, before, "{step}");
+    }
 }
 
 /// A ball around a moving shape, by which a scene leaves bodies out, grows by how far the shape's way bends away from

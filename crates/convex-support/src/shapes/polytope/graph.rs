@@ -62,6 +62,9 @@ enum Rest {
     Climbed,
 }
 
+/// Vertices of a feature that are found along edges; of more, all points are looked at.
+pub(super) const FOLLOWED: usize = 32;
+
 /// Vertices that a cell holds.
 const HELD: usize = 4;
 
@@ -251,7 +254,7 @@ impl<V: Vector> Graph<V> {
         farthest: u32,
         direction: V,
         depth: V::Scalar,
-        room: &'r mut [u32],
+        room: &'r mut [u32; FOLLOWED],
     ) -> Option<&'r [u32]> {
         let least = direction.dot(self.vertex(farthest)) - depth;
         *room.first_mut()? = farthest;

@@ -15,7 +15,7 @@ use num_traits::Float as _;
 
 use alloc::vec::Vec;
 
-use graph::Graph;
+use graph::{FOLLOWED, Graph};
 use lanes::Lanes;
 
 use super::points::{middle, rounding_of_points};
@@ -69,9 +69,6 @@ impl<V: Vector> fmt::Debug for Polytope<V> {
         f.debug_struct("Polytope").field("points", &self.points).finish()
     }
 }
-
-/// Vertices of a feature that are found along edges; of more, all points are looked at.
-const FOLLOWED: usize = 32;
 
 /// So many points are looked at as quickly as edges are followed.
 const LOOKED_AT: usize = 128;
