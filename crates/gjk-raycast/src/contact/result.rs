@@ -64,7 +64,8 @@ pub struct ContactPoint<V: Vector> {
     /// How far `point_a` is before `point_b` along the normal; negative where the shapes overlap.
     pub signed_distance: V::Scalar,
     /// What that is wrong by at most: the surfaces are not nearer to one another along this line than the signed
-    /// distance less this, and the points are of the shapes to rounding. Of polytopes it is rounding.
+    /// distance less this. The points are of the shapes to rounding; where a side is so steep that it is nearly along
+    /// the normal, to this. Of polytopes it is rounding.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_infinity"))]
     pub error: V::Scalar,
     /// The vertex, edge or face of `a` that the point is on, as a number. It stays the same from frame to frame as long
