@@ -115,15 +115,7 @@ where
     let target = options.target_distance.max(<A::Vector as Vector>::Scalar::ZERO);
     let shapes = Both::<_, _, true>::new(a, b);
     let mut body = Pair::new(&shapes).swept(target);
-    // Of no other pair is a crossing known.
-    let is_known = [body.core_a, body.core_b].iter().any(|core| matches!(core.kind, CoreKind::Point(_)));
     let cores = [body.core_a, body.core_b];
-    if is_known {
-        let (ray, direction_error, wanted) = ray_of(motion, [body.core_a.origin, body.core_b.origin], &options);
-        if let Some(answer) = certain_closely(&mut body, ray, direction_error, &wanted, observer) {
-            return Ok(known(&Cast::of_certain(&answer, &body, ray), shapes.each(), cores, motion, &options));
-        }
-    }
     Ok(by_search(&mut body, shapes.each(), cores, motion, &options, observer))
 }
 
@@ -150,22 +142,15 @@ fn searched<V: Vector>(
     observer: &mut Observer<'_, V>,
 ) -> LinearCast<V> {
     let (ray, direction_error, wanted) = ray_of(motion, cores.map(|core| core.origin), options);
+    // Of no other pair is a crossing known.
+    if cores.iter().any(|core| matches!(core.kind, CoreKind::Point(_)))
+        && let Some(known) = certain_closely(body, ray, direction_error, &wanted, observer)
+    {
+        return answer(&Cast::of_certain(&known, body, ray), [a, b], cores, motion, options);
+    }
     let mut cast = cast(body, ray, direction_error, Part::Whole, &wanted, observer);
     settle_start(&mut cast, a, options.target_distance.max(Scalar::ZERO), || Some(b), ray.direction, &wanted);
     answer(&cast, [a, b], cores, motion, options)
-}
-
-compiled_once! {
-    /// What a cast in closed form says of two shapes.
-    fn known<V>(
-        cast: &Cast<V>,
-        shapes: [Shape<'_, V>; 2],
-        cores: [Core<V>; 2],
-        motion: Motion<V>,
-        options: &LinearCastOptions<V>,
-    ) -> LinearCast<V> {
-        answer(cast, shapes, cores, motion, options)
-    }
 }
 
 /// What a cast says of two shapes.

@@ -57,7 +57,7 @@ pub(crate) fn certain<V: Vector>(
 /// The same, in plain numbers or by a closer look, of a body and a ray whose direction may be wrong by some part of its
 /// length; an observer sees the plane that tells it.
 #[inline(always)]
-pub(crate) fn certain_closely<B: CastBody>(
+pub(crate) fn certain_closely<B: CastBody + ?Sized>(
     body: &mut B,
     ray: Ray<B::Vector>,
     direction_error: <B::Vector as Vector>::Scalar,
@@ -82,7 +82,7 @@ pub(crate) fn certain_closely<B: CastBody>(
 
 /// Shows an observer the plane that tells an answer.
 #[inline(always)]
-pub(crate) fn show<B: CastBody>(
+pub(crate) fn show<B: CastBody + ?Sized>(
     answer: &RayCast<B::Vector>,
     body: &mut B,
     ray: Ray<B::Vector>,
@@ -103,7 +103,7 @@ pub(crate) fn show<B: CastBody>(
 
 impl<V: Vector> Cast<V> {
     /// What is certain of a ray and a body.
-    pub(crate) fn of_certain<B: CastBody<Vector = V>>(answer: &RayCast<V>, body: &B, ray: Ray<V>) -> Self {
+    pub(crate) fn of_certain<B: CastBody<Vector = V> + ?Sized>(answer: &RayCast<V>, body: &B, ray: Ray<V>) -> Self {
         let &RayCast { ref outcome, lower, upper, status, iterations } = answer;
         let Measures { origin, radius, .. } = body.measures();
         let outcome = match *outcome {
