@@ -198,7 +198,9 @@ fn line_enters_where_it_certainly_does<V: Vector>(
         match shape.certain_crossing(line).or_else(closely) {
             None => {}
             Some(CertainCrossing::Misses(axis)) => {
-                at_most(shape.support_value(axis), axis.dot(source), (rounding + rounding) * axis.norm())?;
+                let Some((axis, d)) = axis.unit().zip(direction.unit()) else { continue };
+                let Some(n) = (axis - d * axis.dot(d)).unit() else { continue };
+                at_most(shape.support_value(n), n.dot(source), rounding + rounding)?;
             }
             Some(CertainCrossing::Enters { entry, bounds: [earliest, latest], normal }) => {
                 at_most(earliest, entry, V::Scalar::ZERO)?;

@@ -221,7 +221,7 @@ impl<V: Vector> NearLine<V> {
     pub(crate) fn ball(&self, radius: V::Scalar) -> Option<CertainCrossing<V>> {
         let recip = self.direction.length_squared().recip();
         let chord = super::ball::chord(radius, self.source, self.direction, recip);
-        if chord.is_past(radius, self.error) {
+        if chord.is_past(radius, self.error, V::Scalar::ZERO) {
             return Some(CertainCrossing::Misses(chord.nearest));
         }
         let slack = chord.slack(radius, self.error, recip, least_chord::<V::Scalar>())?;
@@ -357,7 +357,7 @@ impl<V: Vector> NearLine<V> {
         let per_slope = slope.recip();
         let middle = -out.dot(radial) * per_slope;
         let side = Chord::about(middle, out + radial * middle, per_slope, radius);
-        if side.is_past(radius, error) {
+        if side.is_past(radius, error, self.size) {
             return Some(CertainCrossing::Misses(side.nearest));
         }
         let slack = side.slack(radius, error, per_slope, least_chord)?;
@@ -479,7 +479,7 @@ impl<V: Vector3> NearLine<V> {
         let recip = slope.recip();
         let middle = -out.dot(radial) * recip;
         let side = Chord::about(middle, out + radial * middle, recip, radius);
-        if side.is_past(radius, error) {
+        if side.is_past(radius, error, self.size) {
             return Some(CertainCrossing::Misses(side.nearest));
         }
         let slack = side.slack(radius, error, recip, least_chord::<V::Scalar>())?;
@@ -518,10 +518,13 @@ impl<V: Vector> Chord<V> {
         (self.inside >= radius * error * least).then(|| to_end * (error * V::Scalar::from_f64(1.25)))
     }
 
-    /// Whether the line passes the ball by more than an error: `|x| ≥ r + e` for its point nearest the middle.
+    /// Whether the line passes the ball, or the disc of a set as long as `length` across it, by more than an error, and
+    /// so far that the plane across its nearest point `x` has the set behind it: as `x` is wrong by up to `e`, that plane
+    /// leans by `e/|x|`, and `|x|·(|x| − r) ≥ e·(r + e + length)` is enough. With `|x|² − r²` at most twice the left
+    /// side, three times as much leaves room for rounding.
     #[inline(always)]
-    fn is_past(&self, radius: V::Scalar, error: V::Scalar) -> bool {
-        -self.inside >= (radius + error) * error * V::Scalar::from_f64(3.0)
+    fn is_past(&self, radius: V::Scalar, error: V::Scalar, length: V::Scalar) -> bool {
+        -self.inside >= (radius + error + length) * error * V::Scalar::from_f64(3.0)
     }
 }
 
