@@ -226,10 +226,10 @@ impl<V: Vector> Default for IntersectOptions<V> {
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum CastMethod {
-    /// The fastest. First the [closed form](convex_support::SupportMap::core_line_crossing) is tried, if the shape has
-    /// one. Then, in 3D, a triangle of support points that the ray pierces (a portal) is moved towards the surface, by
-    /// the simplex method of linear programming. Where that is in doubt, and in 2D, this is the same as
-    /// [`Gjk`](Self::Gjk).
+    /// The fastest. First the shape is asked where the line [certainly
+    /// enters](convex_support::SupportMap::certain_crossing) it, if it knows that. Then, in 3D, a triangle of support
+    /// points that the ray pierces (a portal) is moved towards the surface, by the simplex method of linear programming.
+    /// Where that is in doubt, and in 2D, this is the same as [`Gjk`](Self::Gjk).
     #[default]
     Portal,
     /// The paper's Algorithm 3: each plane is across the vector from the ray's point to the simplex of support points.

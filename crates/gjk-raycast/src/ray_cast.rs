@@ -80,6 +80,10 @@ pub fn ray_cast_with<S: SupportMap + ?Sized>(
 }
 
 /// The cast where the shape knows for certain, in plain numbers, where the ray enters it, or that its line misses.
+///
+/// A closer look is left to [`searched`]: beside the plain one it made the answer go through memory, and rays at balls
+/// and boxes took 15 to 30 % more instructions. And the shape is asked here, not by [`certain`]: through a closure rays
+/// at balls and cylinders took 4 % more.
 #[inline(always)]
 fn plainly<S: SupportMap + ?Sized>(
     target: &S,

@@ -112,14 +112,12 @@ impl<V: Vector> NearLine<V> {
     #[inline(never)]
     pub(crate) fn triangle(&self, corners: &Triangle<V>) -> Option<CertainCrossing<V>> {
         let Self { source, direction, error, .. } = *self;
-        let points = corners.points();
-        let reach = |n: V| points.iter().map(|p| n.dot(*p)).fold(-V::Scalar::infinity(), V::Scalar::max);
         let error = error + error;
         if let Some(Crossing { entry: latest, normal, .. }) =
             corners.prism_crossing(V::Scalar::ZERO, error, source, direction)
         {
             let falls = normal.dot(direction);
-            let earliest = (reach(normal) + error - normal.dot(source)) / falls;
+            let earliest = (reach(corners, normal) + error - normal.dot(source)) / falls;
             let entry = latest + error / falls;
             return (earliest <= entry).then(|| self.enters([earliest, entry, latest], normal));
         }
@@ -130,7 +128,7 @@ impl<V: Vector> NearLine<V> {
             let out = across(side);
             let off = direction - u * u.dot(direction) - v * v.dot(direction);
             let axis = out - off * (out.dot(direction) / off.dot(direction));
-            self.passes(axis, reach(axis), V::Scalar::ZERO)
+            self.passes(axis, reach(corners, axis), V::Scalar::ZERO)
         })
     }
 
@@ -139,9 +137,14 @@ impl<V: Vector> NearLine<V> {
         let crossed = triangle(corners, radius, self.source, self.direction);
         // What rounding moves by less than the error may be longer than the radius.
         let crossed = crossed.map(|at| Crossing { normal: at.normal.unit().unwrap_or(at.normal), ..at });
-        let reach = |n: V| corners.points().iter().map(|p| n.dot(*p)).fold(-V::Scalar::infinity(), V::Scalar::max);
-        self.swept(radius, |x| closest_of_triangle(corners, x), reach, crossed, self.longest_slack())
+        let closest = |x| closest_of_triangle(corners, x);
+        self.swept(radius, closest, |n| reach(corners, n), crossed, self.longest_slack())
     }
+}
+
+/// How far the corners reach along a vector: the largest product, where the support point's may be an ulp less.
+fn reach<V: Vector>(corners: &Triangle<V>, n: V) -> V::Scalar {
+    corners.points().into_iter().map(|p| n.dot(p)).fold(-V::Scalar::infinity(), V::Scalar::max)
 }
 
 /// What half-spaces leave of a line.

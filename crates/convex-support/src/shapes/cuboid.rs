@@ -103,13 +103,12 @@ impl<V: Vector> SupportMap for Cuboid<V> {
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
-        let ones = V::from_fn(|_| V::Scalar::ONE);
         for i in 0..1 << V::DIM {
             let sign = V::from_fn(|axis| if i >> axis & 1 == 1 { -V::Scalar::ONE } else { V::Scalar::ONE });
             let corner = self.half_extents * sign;
             // Behind the farthest corner by twice what it is on the wrong side.
             let along = direction * corner;
-            if (along.abs() - along).dot(ones) <= slab {
+            if (along.abs() - along).dot(V::ONE) <= slab {
                 feature.push(corner, i);
             }
         }
