@@ -6,7 +6,7 @@
 use std::hint::black_box;
 
 use convex_support::glam::DVec3;
-use convex_support::{Polytope, SupportMap};
+use convex_support::{Polytope, SupportMap, support_value};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 #[cfg(feature = "parry")]
 use parry3d_f64::{math::Vector, shape::ConvexPolyhedron};
@@ -29,7 +29,7 @@ fn encloses(hull: &impl SupportMap<Vector = DVec3>, points: &[DVec3]) {
     for _ in 0..100 {
         let d = DVec3::from(rng.sphere());
         let farthest = points.iter().map(|p| p.dot(d)).fold(f64::MIN, f64::max);
-        let excess = farthest - hull.support_value(d);
+        let excess = farthest - support_value(&hull, d);
         assert!(excess <= 1e-15, "along {d} a point is {excess:e} beyond the hull");
     }
 }

@@ -8,8 +8,8 @@
 pub mod shapes;
 pub mod tasks;
 
-use convex_support::Faceted;
 use convex_support::glam::{DVec3, Vec3A};
+use convex_support::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, Rounded};
 use gjk_raycast::{CastMethod, DistanceOptions, RayCastOptions, SubAlgorithm};
 use workloads::pairs::Pair;
 use workloads::score::Precision;
@@ -21,7 +21,7 @@ use workloads::w3b_intersect::IntersectQuery;
 
 use crate::measure::Solver;
 use shapes::{Boxed, PairTask, Space, Task, with, with_pair, with_shape};
-use tasks::{ClosedFormRayCasts, Distances, Intersections, LinearCasts, RayCasts};
+use tasks::{Distances, Intersections, LinearCasts, RayCasts, crossings};
 
 /// How hard `gjk-raycast` is to try, and what its solvers are to tell. By default its own options, and the answer.
 #[derive(Clone, Copy, Debug)]
@@ -76,8 +76,21 @@ pub fn ray_casts(precision: Precision, shape: &Shape, rays: &[Ray], effort: Effo
 #[must_use]
 pub fn closed_form_ray_casts(precision: Precision, shape: &Shape, rays: &[Ray]) -> Solver {
     match precision {
-        Precision::Double => with_facets::<DVec3>(shape, ClosedFormRayCasts(rays), true),
-        Precision::Single => with_facets::<Vec3A>(shape, ClosedFormRayCasts(rays), true),
+        Precision::Double => crossings_of::<DVec3>(shape, rays),
+        Precision::Single => crossings_of::<Vec3A>(shape, rays),
+    }
+}
+
+fn crossings_of<V: Space>(shape: &Shape, rays: &[Ray]) -> Solver {
+    match shape {
+        Shape::Ball { .. } => crossings::<Ball<V>>(shape, rays),
+        Shape::Cuboid { .. } => crossings::<Cuboid<V>>(shape, rays),
+        Shape::Cylinder { .. } => crossings::<Cylinder<V>>(shape, rays),
+        Shape::Cone { .. } => crossings::<Cone<V>>(shape, rays),
+        Shape::Capsule { .. } => crossings::<Capsule<V>>(shape, rays),
+        Shape::Ellipsoid { .. } => crossings::<Ellipsoid<V>>(shape, rays),
+        Shape::Hull { .. } => crossings::<Faceted<V>>(shape, rays),
+        Shape::RoundBox { .. } => crossings::<Rounded<Cuboid<V>>>(shape, rays),
     }
 }
 

@@ -1,13 +1,14 @@
 //! Queries of the workloads, as they are put to two shapes of any types.
 
 use convex_support::glam::DVec3;
-use convex_support::{Posed, Scalar, SupportMap, line_crossing};
+use convex_support::{CrossedByLine, Posed, Scalar, SupportMap, line_crossing};
 use gjk_raycast::{
     DistanceOptions, IntersectOptions, LinearCastOptions, Motion, MotionCastOptions, Outcome, RayCastOptions,
     RigidMotion, SignedDistanceOptions, Status, distance, intersects, linear_cast, motion_cast, ray_cast,
     signed_distance,
 };
 use workloads::Pose;
+use workloads::shapes::Shape;
 use workloads::w1_ray_cast::Ray;
 use workloads::w2_linear_cast::Cast;
 use workloads::w3_distance::DistanceQuery;
@@ -15,7 +16,7 @@ use workloads::w3b_intersect::IntersectQuery;
 use workloads::w6_motion_cast::TurningCast;
 
 use super::Effort;
-use super::shapes::{PairTask, Space, Task, VALID, number, vector};
+use super::shapes::{OfWorkload, PairTask, Space, Task, VALID, number, vector};
 use crate::measure::Solver;
 
 /// Ray casts by GJK.
@@ -46,18 +47,14 @@ impl<V: Space> Task<V> for RayCasts<'_> {
 }
 
 /// Ray casts in closed form.
-#[derive(Clone, Copy, Debug)]
-pub struct ClosedFormRayCasts<'a>(pub &'a [Ray]);
-
-impl<V: Space> Task<V> for ClosedFormRayCasts<'_> {
-    fn solver<S: SupportMap<Vector = V> + 'static>(self, target: S) -> Solver {
-        let rays = self.0.iter().map(|ray| (vector(ray.origin), vector(ray.direction))).collect();
-        Solver::new(rays, move |&(source, direction): &(V, V)| {
-            let crossing = line_crossing(&target, source, direction).crossing();
-            let hit = crossing.and_then(|crossing| crossing.first_hit(Scalar::ONE));
-            hit.map_or(f64::INFINITY, Scalar::as_f64)
-        })
-    }
+pub(super) fn crossings<S: CrossedByLine<Vector: Space> + OfWorkload>(shape: &Shape, rays: &[Ray]) -> Solver {
+    let target = S::of(shape).expect(VALID);
+    let rays = rays.iter().map(|ray| (vector(ray.origin), vector(ray.direction))).collect();
+    Solver::new(rays, move |&(source, direction): &(S::Vector, S::Vector)| {
+        let crossing = line_crossing(&target, source, direction).crossing();
+        let hit = crossing.and_then(|crossing| crossing.first_hit(Scalar::ONE));
+        hit.map_or(f64::INFINITY, Scalar::as_f64)
+    })
 }
 
 /// Linear casts. The body is posed within the measurement: every query comes with a new pose.

@@ -5,7 +5,9 @@
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
 use convex_support::glam::DVec2;
-use convex_support::{Capsule, Cuboid, Difference, InvalidShape, MinkowskiSum, Posed, SupportMap, bounding_box};
+use convex_support::{
+    Capsule, Cuboid, Difference, InvalidShape, MinkowskiSum, Posed, SupportMap, bounding_box, support_value,
+};
 
 fn main() -> Result<(), InvalidShape> {
     // A mower: a box with a bumper all around, here a capsule that is added to it.
@@ -20,8 +22,8 @@ fn main() -> Result<(), InvalidShape> {
         let point = keep_out.support(direction);
         println!("  ({:.3}, {:.3}), the farthest at {degrees}°", point.x, point.y);
         // How far a sum reaches is the sum of how far its parts do; a difference takes the other side of the second.
-        let reach = bed.support_value(direction) + mower.support_value(-direction);
-        assert!((keep_out.support_value(direction) - reach).abs() < 1e-14, "support values add up");
+        let reach = support_value(&bed, direction) + support_value(&mower, -direction);
+        assert!((support_value(&keep_out, direction) - reach).abs() < 1e-14, "support values add up");
     }
 
     let bounds = bounding_box(&keep_out);

@@ -1,6 +1,6 @@
 //! Boxes and balls around shapes, for culling.
 
-use crate::{Core, Hint, Scalar, SupportMap, Vector};
+use crate::{Core, Hint, Scalar, SupportMap, Vector, support_value};
 
 /// A box along the coordinate axes: the points with `min ≤ x ≤ max`, coordinate by coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,8 +60,8 @@ impl<V: Vector> Aabb<V> {
 #[must_use]
 pub fn bounding_box<S: SupportMap + ?Sized>(shape: &S) -> Aabb<S::Vector> {
     Aabb {
-        min: S::Vector::from_fn(|i| -shape.support_value(-S::Vector::axis(i))),
-        max: S::Vector::from_fn(|i| shape.support_value(S::Vector::axis(i))),
+        min: S::Vector::from_fn(|i| -support_value(shape, -S::Vector::axis(i))),
+        max: S::Vector::from_fn(|i| support_value(shape, S::Vector::axis(i))),
     }
 }
 

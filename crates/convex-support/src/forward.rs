@@ -5,7 +5,7 @@ use alloc::rc::Rc;
 #[cfg(target_has_atomic = "ptr")]
 use alloc::sync::Arc;
 
-use crate::SupportMap;
+use crate::{CrossedByLine, SupportMap};
 
 /// Implements [`SupportMap`] by forwarding every method, the provided ones too:
 /// `forward!([parameters] type as |this| the shape that it is)`.
@@ -18,12 +18,6 @@ macro_rules! forward {
             fn support(&self, direction: $V) -> $V {
                 let $this = self;
                 $inner.support(direction)
-            }
-
-            #[inline(always)]
-            fn support_value(&self, direction: $V) -> <$V as $crate::Vector>::Scalar {
-                let $this = self;
-                $inner.support_value(direction)
             }
 
             #[inline(always)]
@@ -48,17 +42,6 @@ macro_rules! forward {
             fn core_closest_point(&self, x: $V) -> Option<$V> {
                 let $this = self;
                 $inner.core_closest_point(x)
-            }
-
-            #[inline(always)]
-            fn core_line_crossing(
-                &self,
-                source: $V,
-                direction: $V,
-                radius: <$V as $crate::Vector>::Scalar,
-            ) -> $crate::LineCrossing<$V> {
-                let $this = self;
-                $inner.core_line_crossing(source, direction, radius)
             }
 
             #[inline(always)]
@@ -93,7 +76,25 @@ macro_rules! forward {
     };
 }
 
-pub(crate) use forward;
+/// Implements [`CrossedByLine`] likewise.
+macro_rules! forward_line_crossing {
+    ([$($parameters:tt)*] $shape:ty as $V:ty, |$this:ident| $inner:expr) => {
+        impl<$($parameters)*> $crate::CrossedByLine for $shape {
+            #[inline(always)]
+            fn core_line_crossing(
+                &self,
+                source: $V,
+                direction: $V,
+                radius: <$V as $crate::Vector>::Scalar,
+            ) -> $crate::LineCrossing<$V> {
+                let $this = self;
+                $inner.core_line_crossing(source, direction, radius)
+            }
+        }
+    };
+}
+
+pub(crate) use {forward, forward_line_crossing};
 
 forward!([S: SupportMap + ?Sized] &S as S::Vector, |pointer| (**pointer));
 forward!([S: SupportMap + ?Sized] Box<S> as S::Vector, |pointer| (**pointer));
@@ -101,19 +102,25 @@ forward!([S: SupportMap + ?Sized] Rc<S> as S::Vector, |pointer| (**pointer));
 #[cfg(target_has_atomic = "ptr")]
 forward!([S: SupportMap + ?Sized] Arc<S> as S::Vector, |pointer| (**pointer));
 
+forward_line_crossing!([S: CrossedByLine + ?Sized] &S as S::Vector, |pointer| (**pointer));
+forward_line_crossing!([S: CrossedByLine + ?Sized] Box<S> as S::Vector, |pointer| (**pointer));
+forward_line_crossing!([S: CrossedByLine + ?Sized] Rc<S> as S::Vector, |pointer| (**pointer));
+#[cfg(target_has_atomic = "ptr")]
+forward_line_crossing!([S: CrossedByLine + ?Sized] Arc<S> as S::Vector, |pointer| (**pointer));
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Affine, Ball, Capsule, CoreKind, Hint, Posed, Rounded, closest_point, line_crossing};
+    use crate::{Affine, Ball, Capsule, CoreKind, Hint, Posed, Rounded, closest_point, line_crossing, support_value};
     use glam::DVec3;
 
     /// A capsule has a radius, an extent and closed forms, all of which a forgotten method would lose.
-    fn is_the_capsule<S: SupportMap<Vector = DVec3> + Clone>(pointer: S) {
+    fn is_the_capsule<S: CrossedByLine<Vector = DVec3> + Clone>(pointer: S) {
         let capsule = Capsule::<DVec3>::new(1.0, 0.5).expect("a capsule");
         let d = DVec3::new(1.0, -2.0, 0.5);
         let aside = DVec3::new(0.5, 0.0, 0.0);
         assert_eq!(pointer.support(d), capsule.support(d));
-        assert_eq!(pointer.support_value(d), capsule.support_value(d));
+        assert_eq!(support_value(&pointer, d), support_value(&capsule, d));
         assert_eq!(pointer.core_support(d, &mut Hint::new()), capsule.core_support(d, &mut Hint::new()));
         assert_eq!(pointer.core(), capsule.core());
         assert_eq!(

@@ -31,6 +31,7 @@ use proptest::test_runner::TestRunner;
 
 use crate::{
     CertainCrossing, CoreKind, Hint, LineQuery, Scalar, SupportMap, Vector, bounding_box, bounding_sphere, strategies,
+    support_value,
 };
 
 /// How many times its own rounding a shape may be off: a law compares up to four support points, each placed and
@@ -105,7 +106,7 @@ fn support_point_reaches_the_support_value<V: Vector>(
     _: V,
     rounding: V::Scalar,
 ) -> Result<(), TestCaseError> {
-    equal(d.dot(shape.support(d)), shape.support_value(d), rounding * d.norm())
+    equal(d.dot(shape.support(d)), support_value(shape, d), rounding * d.norm())
 }
 
 fn no_support_point_reaches_farther<V: Vector>(
@@ -114,7 +115,7 @@ fn no_support_point_reaches_farther<V: Vector>(
     e: V,
     rounding: V::Scalar,
 ) -> Result<(), TestCaseError> {
-    at_most(e.dot(shape.support(d)), shape.support_value(e), rounding * e.norm())
+    at_most(e.dot(shape.support(d)), support_value(shape, e), rounding * e.norm())
 }
 
 fn support_value_is_positively_homogeneous<V: Vector>(
@@ -124,7 +125,7 @@ fn support_value_is_positively_homogeneous<V: Vector>(
     rounding: V::Scalar,
 ) -> Result<(), TestCaseError> {
     let t = V::Scalar::from_f64(1.7);
-    equal(shape.support_value(d * t), shape.support_value(d) * t, rounding * d.norm() * t)
+    equal(support_value(shape, d * t), support_value(shape, d) * t, rounding * d.norm() * t)
 }
 
 fn support_value_is_subadditive<V: Vector>(
@@ -135,7 +136,7 @@ fn support_value_is_subadditive<V: Vector>(
 ) -> Result<(), TestCaseError> {
     // Directions of like length, or the sum would say nothing about the shorter.
     let (Some(d), Some(e)) = (d.unit(), e.unit()) else { return Ok(()) };
-    at_most(shape.support_value(d + e), shape.support_value(d) + shape.support_value(e), rounding)
+    at_most(support_value(shape, d + e), support_value(shape, d) + support_value(shape, e), rounding)
 }
 
 fn origin_core_and_radius_make_the_set<V: Vector>(
@@ -146,7 +147,7 @@ fn origin_core_and_radius_make_the_set<V: Vector>(
 ) -> Result<(), TestCaseError> {
     let core = shape.core();
     let value = d.dot(core.origin) + d.dot(core_point(shape, d)) + d.norm() * core.radius;
-    equal(value, shape.support_value(d), rounding * d.norm())
+    equal(value, support_value(shape, d), rounding * d.norm())
 }
 
 fn extent_bounds_the_core<V: Vector>(shape: AnyShape<'_, V>, d: V, _: V, _: V::Scalar) -> Result<(), TestCaseError> {
@@ -200,14 +201,14 @@ fn line_enters_where_it_certainly_does<V: Vector>(
             Some(CertainCrossing::Misses(axis)) => {
                 let Some((axis, d)) = axis.unit().zip(direction.unit()) else { continue };
                 let Some(n) = (axis - d * axis.dot(d)).unit() else { continue };
-                at_most(shape.support_value(n), n.dot(source), rounding + rounding)?;
+                at_most(support_value(shape, n), n.dot(source), rounding + rounding)?;
             }
             Some(CertainCrossing::Enters { entry, bounds: [earliest, latest], normal }) => {
                 at_most(earliest, entry, V::Scalar::ZERO)?;
                 at_most(entry, latest, V::Scalar::ZERO)?;
                 let inside = source + direction * latest;
                 for n in [d, -d, e, -e, normal] {
-                    at_most(n.dot(inside), shape.support_value(n), rounding * n.norm())?;
+                    at_most(n.dot(inside), support_value(shape, n), rounding * n.norm())?;
                 }
             }
         }
@@ -261,9 +262,9 @@ fn zero_gives_a_point_of_the_set<V: Vector>(
 ) -> Result<(), TestCaseError> {
     let zero = shape.support(V::ZERO);
     prop_assert!(zero.is_finite(), "the support point for no direction is a point, not {:?}", zero);
-    at_most(e.dot(zero), shape.support_value(e), rounding * e.norm())?;
+    at_most(e.dot(zero), support_value(shape, e), rounding * e.norm())?;
     for bad in [V::Scalar::nan(), V::Scalar::infinity(), V::Scalar::neg_infinity()] {
-        let _ = (shape.support(d * bad), shape.support_value(V::splat(bad)), core_point(shape, d * bad));
+        let _ = (shape.support(d * bad), support_value(shape, V::splat(bad)), core_point(shape, d * bad));
     }
     Ok(())
 }

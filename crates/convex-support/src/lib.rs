@@ -7,7 +7,7 @@
 //! and rounding each take a few lines, given the support mappings of the shapes they are made of.
 //!
 //! ```
-//! use convex_support::{Ball, Cuboid, Difference, Posed, SupportMap, glam::DVec3};
+//! use convex_support::{Ball, Cuboid, Difference, Posed, glam::DVec3, support_value};
 //!
 //! // A ball of radius 0.5 touches a box where its centre is on the surface of their difference.
 //! let wall = Cuboid::new(DVec3::new(1.0, 4.0, 4.0))?;
@@ -15,7 +15,7 @@
 //! let ball = Ball::new(0.5)?;
 //! let obstacle = Difference::new(wall, ball);
 //! // From the left, the centre stops at x = 8.5.
-//! assert_eq!(obstacle.support_value(DVec3::NEG_X), -8.5);
+//! assert_eq!(support_value(&obstacle, DVec3::NEG_X), -8.5);
 //! # Ok::<(), convex_support::InvalidShape>(())
 //! ```
 //!
@@ -116,7 +116,7 @@ pub use interop_parry::parry2d_f64;
 pub use interop_parry::parry3d;
 #[cfg(feature = "parry3d-f64")]
 pub use interop_parry::parry3d_f64;
-pub use line_crossing::{CertainCrossing, Crossing, LineCrossing, LineQuery, line_crossing};
+pub use line_crossing::{CertainCrossing, CrossedByLine, Crossing, LineCrossing, LineQuery, line_crossing};
 pub use motion_derivative::{MotionGradient, MotionHessian};
 pub use parallelotope::Parallelotope;
 pub use rotation::Rotation;
@@ -124,7 +124,7 @@ pub use scalar::Scalar;
 #[cfg(feature = "hull")]
 pub use shapes::Faceted;
 pub use shapes::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Polytope, Segment, Triangle};
-pub use support::{ScalarOf, SupportMap};
+pub use support::{ScalarOf, SupportMap, support_value};
 pub use support_feature::{Feature, Rim};
 pub use vector::{Matrix, Vector, Vector3};
 

@@ -4,9 +4,7 @@ use num_traits::Float as _;
 
 use crate::numerics::bound::roundings;
 use crate::numerics::range::is_comfortable;
-use crate::{
-    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar, Vector,
-};
+use crate::{CertainCrossing, Core, CoreKind, Feature, Hint, LineQuery, Parallelotope, Rounding, Scalar, Vector};
 
 /// A nonempty, closed, bounded convex set, known by its support mapping.
 ///
@@ -25,7 +23,7 @@ use crate::{
 /// [`support`](Self::support) is all a shape of your own needs:
 ///
 /// ```
-/// use convex_support::{SupportMap, glam::DVec2};
+/// use convex_support::{SupportMap, glam::DVec2, support_value};
 ///
 /// /// The square |x| + |y| ≤ 1.
 /// struct Diamond;
@@ -43,7 +41,7 @@ use crate::{
 /// }
 ///
 /// assert_eq!(Diamond.support(DVec2::new(-3.0, 1.0)), DVec2::NEG_X);
-/// assert_eq!(Diamond.support_value(DVec2::new(-3.0, 1.0)), 3.0);
+/// assert_eq!(support_value(&Diamond, DVec2::new(-3.0, 1.0)), 3.0);
 /// ```
 ///
 /// An implementor must obey these laws (up to rounding), and may rely on nothing about `d` but that callers make it
@@ -73,13 +71,6 @@ pub trait SupportMap {
 
     /// A point of the set farthest along `direction`, which need not be of unit length.
     fn support(&self, direction: Self::Vector) -> Self::Vector;
-
-    /// How far the set reaches along `direction`: the largest dot product of `direction` and a point of the set, in
-    /// units of length times the length of `direction`.
-    #[inline]
-    fn support_value(&self, direction: Self::Vector) -> ScalarOf<Self> {
-        direction.dot(self.support(direction))
-    }
 
     /// The parts of the set: an origin, a core and a radius. Algorithms call this once for each query.
     ///
@@ -130,28 +121,13 @@ pub trait SupportMap {
         None
     }
 
-    /// Where the line through `source` along `direction` is in the core swept by a ball of the given `radius`, in
-    /// closed form; `source` is relative to the [origin](Core::origin). The provided method answers
-    /// [`LineCrossing::Unknown`].
-    #[inline]
-    fn core_line_crossing(
-        &self,
-        source: Self::Vector,
-        direction: Self::Vector,
-        radius: ScalarOf<Self>,
-    ) -> LineCrossing<Self::Vector> {
-        let _ = (source, direction, radius);
-        LineCrossing::Unknown
-    }
-
     /// Where a line enters the whole set, swept by a further ball: an answer in closed form that is certain. It must
     /// hold whatever rounding has done to the shape and to this computation, and for every line that passes within
     /// the [error](LineQuery::error) of the given one near the shape. `None`, as the provided method returns, if
     /// nothing is certain.
     ///
     /// Algorithms trust it without a check. They ask in plain numbers, and where that is `None`
-    /// [closely](LineQuery::is_close); then they certify a [crossing of the core](Self::core_line_crossing) by a
-    /// support point.
+    /// [closely](LineQuery::is_close); then they search.
     #[inline]
     fn certain_crossing(&self, line: LineQuery<Self::Vector>) -> Option<CertainCrossing<Self::Vector>> {
         let _ = line;
@@ -187,6 +163,21 @@ pub trait SupportMap {
     fn rounding(&self) -> Rounding<Self::Vector> {
         Rounding::relative(extent_along_axes(|d| self.core_support(d, &mut Hint::new())), 4.0)
     }
+}
+
+/// How far a set reaches along `direction`: the largest dot product `h(d) = d·s(d)` of `direction` and a point of the
+/// set, in units of length times the length of `direction`.
+///
+/// ```
+/// use convex_support::{Ball, glam::DVec3, support_value};
+///
+/// let ball = Ball::<DVec3>::new(2.0)?;
+/// assert_eq!(support_value(&ball, DVec3::new(0.0, 3.0, 0.0)), 6.0);
+/// # Ok::<(), convex_support::InvalidShape>(())
+/// ```
+#[inline]
+pub fn support_value<S: SupportMap + ?Sized>(shape: &S, direction: S::Vector) -> ScalarOf<S> {
+    direction.dot(shape.support(direction))
 }
 
 /// How far a set reaches along each axis, forwards or backwards.

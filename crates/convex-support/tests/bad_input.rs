@@ -3,6 +3,7 @@
 use convex_support::glam::{DMat2, DMat3, DQuat, DVec2, DVec3, Quat, Vec3};
 use convex_support::{
     Ball, Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Point, Polytope, Posed, Segment, SupportMap, Triangle,
+    support_value,
 };
 
 #[test]
@@ -39,12 +40,12 @@ fn matrices_of_any_magnitude_are_ellipsoids() {
         let found = Ellipsoid::from_matrix(DVec3::ZERO, matrix).unwrap_or_else(|e| panic!("2^{power}: {e}"));
         let length = scale.sqrt();
         for d in [DVec3::X, DVec3::new(0.3, -0.4, 1.0), DVec3::Z] {
-            let (reach, expected) = (found.support_value(d) * length, unit.support_value(d));
+            let (reach, expected) = (support_value(&found, d) * length, support_value(&unit, d));
             assert!((reach / expected - 1.0).abs() < 1e-13, "2^{power} along {d}: {reach} for {expected}");
         }
     }
     let tiny = Ellipsoid::from_matrix(DVec2::ZERO, DMat2::from_diagonal(DVec2::new(1e160, 4e160))).unwrap();
-    let found = [tiny.support_value(DVec2::X), tiny.support_value(DVec2::Y)];
+    let found = [support_value(&tiny, DVec2::X), support_value(&tiny, DVec2::Y)];
     assert!((found[0] / 1e-80 - 1.0).abs() < 1e-15 && (found[1] / 0.5e-80 - 1.0).abs() < 1e-15, "{found:?}");
 }
 

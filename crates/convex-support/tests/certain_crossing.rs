@@ -5,14 +5,14 @@ use std::cell::Cell;
 
 use convex_support::glam::{DVec3, Vec2, Vec3A};
 use convex_support::{
-    Affine, Ball, Capsule, CertainCrossing, Cone, Cuboid, Cylinder, Ellipsoid, Faceted, LineCrossing, LineQuery,
-    Matrix, MinkowskiSum, Point, Posed, Rotation as _, Rounded, Scalar, Segment, SupportMap, Triangle, Vector3,
-    line_crossing,
+    Affine, Ball, Capsule, CertainCrossing, Cone, CrossedByLine, Cuboid, Cylinder, Ellipsoid, Faceted, LineCrossing,
+    LineQuery, Matrix, MinkowskiSum, Point, Posed, Rotation as _, Rounded, Scalar, Segment, SupportMap, Triangle,
+    Vector3, line_crossing, support_value,
 };
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
-type AnyShape<V> = Box<dyn SupportMap<Vector = V>>;
+type AnyShape<V> = Box<dyn CrossedByLine<Vector = V>>;
 
 /// What a shape knows of a line, in plain numbers or else closely.
 fn known_of<S: SupportMap + ?Sized>(shape: &S, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
@@ -154,7 +154,7 @@ fn what_is_certain_in_single_precision_is_so_in_double() {
                     let reach = size + (double(source) - origin).length();
                     prop_assert!(n.dot(d).abs() < 1e-3, "not across the line: {}", n.dot(d));
                     let across = (n - d * n.dot(d)).normalize();
-                    let ahead = across.dot(double(source)) - truth.support_value(across);
+                    let ahead = across.dot(double(source)) - support_value(&truth, across);
                     prop_assert!(ahead > -3e-6 * reach, "not apart by {}", -ahead);
                 }
                 Some(CertainCrossing::Enters { entry, bounds: [earliest, latest], normal }) => {

@@ -3,7 +3,7 @@
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::strategies as any;
 use convex_support::strategies::AnyShape;
-use convex_support::{Posed, Rounded, Scalar, SupportMap, Vector, Vector3, closest_point};
+use convex_support::{Posed, Rounded, Scalar, SupportMap, Vector, Vector3, closest_point, support_value};
 use num_traits::Float;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
@@ -53,11 +53,11 @@ fn check<V: Vector>(shape: &AnyShape<V>, x: V, directions: &[V], size: V::Scalar
     let p = closest_point(shape, x).expect("a closed form");
     let tolerance = V::Scalar::EPSILON * V::Scalar::from_f64(64.0) * (size + x.norm());
     for &d in directions {
-        let sticks_out = d.dot(p) - shape.support_value(d);
+        let sticks_out = d.dot(p) - support_value(&shape, d);
         prop_assert!(sticks_out <= tolerance * d.norm(), "{p:?} sticks out by {sticks_out:?} along {d:?}");
     }
     let out = x - p;
-    let farther = shape.support_value(out) - out.dot(p);
+    let farther = support_value(&shape, out) - out.dot(p);
     prop_assert!(farther <= tolerance * (size + out.norm()), "the shape reaches {farther:?} beyond {p:?}");
     prop_assert!(
         (closest_point(shape, p).expect("a closed form") - p).norm() <= tolerance,

@@ -3,8 +3,8 @@
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::strategies as any;
 use convex_support::{
-    CertainCrossing, Crossing, Cuboid, Faceted, LineCrossing, LineQuery, Posed, Scalar, SupportMap, Triangle, Vector,
-    line_crossing,
+    CertainCrossing, CrossedByLine, Crossing, Cuboid, Faceted, LineCrossing, LineQuery, Posed, Scalar, SupportMap,
+    Triangle, Vector, line_crossing, support_value,
 };
 use num_traits::Float;
 use proptest::prelude::*;
@@ -12,7 +12,7 @@ use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::cell::Cell;
 
 /// The crossing of a shape that has a closed form of it.
-fn crossing_of<V: Vector>(shape: &impl SupportMap<Vector = V>, source: V, direction: V) -> Option<Crossing<V>> {
+fn crossing_of<V: Vector>(shape: &impl CrossedByLine<Vector = V>, source: V, direction: V) -> Option<Crossing<V>> {
     let crossing = line_crossing(shape, source, direction);
     assert_ne!(crossing, LineCrossing::Unknown, "a closed form");
     crossing.crossing()
@@ -96,7 +96,7 @@ fn half_spaces_are_the_facets() {
     points.append(&mut more);
     let hull = Faceted::hull_of(points).unwrap();
     for (n, reach) in hull.half_spaces() {
-        assert!((turned.support_value(n) - reach).abs() <= 1e-13, "{n} reaches {reach}");
+        assert!((support_value(&turned, n) - reach).abs() <= 1e-13, "{n} reaches {reach}");
         let along = turned.rotation().transpose() * n;
         assert!((along.abs().max_element() - 1.0).abs() <= 1e-13 || hull.half_spaces().len() > 6, "{along}");
     }

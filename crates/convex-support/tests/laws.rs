@@ -4,7 +4,7 @@ use convex_support::glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::strategies::{self, AnyShape};
 use convex_support::{
     Affine, Ball, Difference, Hint, Hull, Matrix, MinkowskiSum, Posed, Rotation, Rounded, Scalar, SupportMap, Vector,
-    laws,
+    laws, support_value,
 };
 use num_traits::Float;
 use proptest::prelude::*;
@@ -44,22 +44,22 @@ fn combinators_are_their_formulas_in<V: Vector>(primitive: fn(V::Scalar) -> Boxe
         };
         let b = Affine::new(&a, V::Matrix::from_diagonal(V::axis(0) * V::Scalar::from_f64(2.0)), V::ZERO);
         let b = b.expect("finite");
-        let (ha, hb) = (a.support_value(d), b.support_value(d));
-        alike("sum", MinkowskiSum::new(&a, &b).support_value(d), ha + hb)?;
-        alike("difference", Difference::new(&a, &b).support_value(d), ha + b.support_value(-d))?;
-        alike("hull", Hull::new(&a, &b).support_value(d), ha.max(hb))?;
-        alike("rounded", Rounded::new(&a, r).expect("r ≥ 0").support_value(d), ha + r * d.norm())?;
+        let (ha, hb) = (support_value(&a, d), support_value(&b, d));
+        alike("sum", support_value(&MinkowskiSum::new(&a, &b), d), ha + hb)?;
+        alike("difference", support_value(&Difference::new(&a, &b), d), ha + support_value(&b, -d))?;
+        alike("hull", support_value(&Hull::new(&a, &b), d), ha.max(hb))?;
+        alike("rounded", support_value(&Rounded::new(&a, r).expect("r ≥ 0"), d), ha + r * d.norm())?;
         let ball = Ball::<V>::new(r).expect("r ≥ 0");
-        alike("swept by a ball", MinkowskiSum::new(&a, ball).support_value(d), ha + r * d.norm())?;
+        alike("swept by a ball", support_value(&MinkowskiSum::new(&a, ball), d), ha + r * d.norm())?;
 
         let columns: V::Matrix = Matrix::from_cols_fn(|j| if j == 0 { e / e.norm() } else { V::axis(j) });
         let shift = V::ONE * r;
-        let formula = |columns: V::Matrix| a.support_value(columns.transpose_mul(d)) + d.dot(shift);
+        let formula = |columns: V::Matrix| support_value(&a, columns.transpose_mul(d)) + d.dot(shift);
         let affine = Affine::new(&a, columns, shift).expect("finite");
-        alike("affine", affine.support_value(d), formula(columns))?;
+        alike("affine", support_value(&affine, d), formula(columns))?;
         let q = V::Rotation::from_xyzw([0.1, 0.2, 0.3, 0.9].map(V::Scalar::from_f64));
         let posed = Posed::new(&a, q, shift).expect("finite");
-        alike("posed", posed.support_value(d), formula(q.matrix()))
+        alike("posed", support_value(&posed, d), formula(q.matrix()))
     });
     if let Err(error) = outcome {
         panic!("in {}: {error}", std::any::type_name::<V>());
@@ -106,7 +106,7 @@ fn same_bits<V: Vector>(primitive: fn(V::Scalar) -> BoxedStrategy<AnyShape<V>>) 
         };
         let ((d, unit), (_, scaled)) = (draw(V::Scalar::ONE), draw(factor));
         assert_eq!(scaled.support(d), unit.support(d) * factor, "{unit:?} along {d:?}");
-        assert_eq!(scaled.support_value(d), unit.support_value(d) * factor, "{unit:?} along {d:?}");
+        assert_eq!(support_value(&scaled, d), support_value(&unit, d) * factor, "{unit:?} along {d:?}");
         let (unit_core, scaled_core) = (unit.core(), scaled.core());
         assert_eq!(scaled_core.origin, unit_core.origin * factor, "{unit:?}");
         assert_eq!(scaled_core.radius, unit_core.radius * factor, "{unit:?}");

@@ -2,18 +2,25 @@
 
 use convex_support::glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
 use convex_support::strategies as any;
-use convex_support::strategies::{AnyShape, Shape};
 use convex_support::{
-    Affine, Ball, Capsule, Cone, Crossing, Cuboid, Cylinder, Ellipsoid, LineCrossing, Posed, Rounded, Scalar,
-    SupportMap, Triangle, Vector, closest_point, line_crossing,
+    Affine, Ball, Capsule, Cone, CrossedByLine, Crossing, Cuboid, Cylinder, Ellipsoid, LineCrossing, Posed, Rounded,
+    Scalar, SupportMap, Triangle, Vector, closest_point, line_crossing,
 };
 use num_traits::Float;
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::cell::Cell;
+use std::fmt::Debug;
+
+/// A shape with closed forms, of any kind.
+trait Shape: CrossedByLine + Debug {}
+
+impl<S: CrossedByLine + Debug> Shape for S {}
+
+type AnyShape<V> = Box<dyn Shape<Vector = V>>;
 
 /// The crossing of a shape that has a closed form of it.
-fn crossing_of<V: Vector>(shape: &impl SupportMap<Vector = V>, source: V, direction: V) -> Option<Crossing<V>> {
+fn crossing_of<V: Vector>(shape: &impl CrossedByLine<Vector = V>, source: V, direction: V) -> Option<Crossing<V>> {
     let crossing = line_crossing(shape, source, direction);
     assert_ne!(crossing, LineCrossing::Unknown, "a closed form");
     crossing.crossing()

@@ -2,7 +2,7 @@
 
 use crate::common::{ellipsoid2, ellipsoid3};
 use convex_support::glam::{DMat3, DQuat, DVec2, DVec3};
-use convex_support::{Ellipsoid, SupportMap, Vector};
+use convex_support::{Ellipsoid, SupportMap, Vector, support_value};
 use ellip_margin::{MarginOptions, Status, distance, distance_bracket, free_margin, scaling};
 use proptest::prelude::*;
 
@@ -19,7 +19,7 @@ fn check<V: Vector<Scalar = f64>>(e1: &Ellipsoid<V>, e2: &Ellipsoid<V>, width: f
     for bracket in [d.bracket, rough] {
         assert!(bracket.lower <= d.distance && d.distance <= bracket.upper, "{bracket:?} holds {}", d.distance);
         let n = bracket.normal;
-        let slab = -(e1.support_value(n) + e2.support_value(-n));
+        let slab = -(support_value(&e1, n) + support_value(&e2, -n));
         let size = e1.core().extent + e2.core().extent + e1.center().norm() + e2.center().norm();
         assert!(bracket.lower <= slab + 1e-14 * size, "a slab of width {slab}, not {}", bracket.lower);
         for (e, p) in [(e1, bracket.point1), (e2, bracket.point2)] {

@@ -1,9 +1,7 @@
 //! Shapes as algorithms see them: a core and a radius, relative to the shape's origin and in [units](crate::unit) of
 //! its size.
 
-use convex_support::{
-    CertainCrossing, Core, CoreKind, Crossing, Hint, LineCrossing, LineQuery, Scalar, SupportMap, Vector,
-};
+use convex_support::{CertainCrossing, Core, CoreKind, Hint, LineQuery, Scalar, SupportMap, Vector};
 
 use crate::segments;
 use crate::shape::{Shape, WithoutLines};
@@ -30,11 +28,9 @@ pub(crate) trait TracedSupport {
 
 /// A core and its radius, as casts see them.
 pub(crate) trait CastBody: TracedSupport {
-    /// Where the line through `source` along `direction` is in the body, in closed form; lengths in units of `scale`.
-    fn line_crossing(&self, source: Self::Vector, direction: Self::Vector) -> LineCrossing<Self::Vector>;
     /// Where a line of the world [certainly enters](SupportMap::certain_crossing) the body.
     fn certain_crossing(&self, line: LineQuery<Self::Vector>) -> Option<CertainCrossing<Self::Vector>>;
-    /// What a point of the core is made of, where [`line_crossing`](Self::line_crossing) is known.
+    /// What a point of the core is made of, where a crossing is known.
     fn witness(&self, point: Self::Vector) -> PointPair<Self::Vector>;
     /// What the body is split into, in the world's unit. For a difference all is the sum, but for the origin, which is
     /// that of the first shape alone, since subtracting the other's would round.
@@ -97,12 +93,6 @@ impl<S: SupportMap + ?Sized> TracedSupport for Single<'_, S> {
 
 impl<S: SupportMap + ?Sized> CastBody for Single<'_, S> {
     #[inline(always)]
-    fn line_crossing(&self, source: S::Vector, direction: S::Vector) -> LineCrossing<S::Vector> {
-        let to_world = reciprocal_of_power(self.per_unit);
-        in_units(self.shape.core_line_crossing(source * to_world, direction, self.core.radius), self.per_unit)
-    }
-
-    #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
         self.shape.certain_crossing(line)
     }
@@ -157,16 +147,6 @@ pub(crate) trait Shapes {
     ) -> [<Self::Vector as Vector>::Scalar; 3];
     /// As [`SupportMap::core_closest_point`] of one of them.
     fn closest_point(&self, of: Of, x: Self::Vector) -> Option<Self::Vector>;
-    /// As [`SupportMap::core_line_crossing`] of one of them.
-    fn line_crossing(
-        &self,
-        _: Of,
-        _source: Self::Vector,
-        _direction: Self::Vector,
-        _radius: <Self::Vector as Vector>::Scalar,
-    ) -> LineCrossing<Self::Vector> {
-        LineCrossing::Unknown
-    }
     /// As [`SupportMap::certain_crossing`] of one of them.
     fn certain_crossing(&self, _: Of, _: LineQuery<Self::Vector>) -> Option<CertainCrossing<Self::Vector>> {
         None
@@ -233,21 +213,6 @@ impl<A: SupportMap + ?Sized, B: SupportMap<Vector = A::Vector> + ?Sized, const L
         match self.named(of) {
             Of::A => self.a.0.core_closest_point(x),
             Of::B => self.b.0.core_closest_point(x),
-        }
-    }
-
-    #[inline(always)]
-    fn line_crossing(
-        &self,
-        of: Of,
-        source: A::Vector,
-        direction: A::Vector,
-        radius: <A::Vector as Vector>::Scalar,
-    ) -> LineCrossing<A::Vector> {
-        match self.named(of) {
-            _ if !LINES => LineCrossing::Unknown,
-            Of::A => self.a.0.core_line_crossing(source, direction, radius),
-            Of::B => self.b.0.core_line_crossing(source, direction, radius),
         }
     }
 
@@ -441,21 +406,6 @@ impl<T: Shapes + ?Sized> TracedSupport for Pair<'_, T> {
 }
 
 impl<T: Shapes + ?Sized> CastBody for Pair<'_, T> {
-    /// Known where one of the cores is a point, and the difference is the other body moved, or turned round and moved.
-    #[inline(always)]
-    fn line_crossing(&self, source: T::Vector, direction: T::Vector) -> LineCrossing<T::Vector> {
-        let (source, radius) = (source * reciprocal_of_power(self.per_unit), self.radius());
-        let crossing = match (self.core_a.kind, self.core_b.kind) {
-            (_, CoreKind::Point(b)) => self.shapes.line_crossing(Of::A, source + b, direction, radius),
-            (CoreKind::Point(a), _) => match self.shapes.line_crossing(Of::B, a - source, -direction, radius) {
-                LineCrossing::Crosses(at) => LineCrossing::Crosses(Crossing { normal: -at.normal, ..at }),
-                other => other,
-            },
-            _ => LineCrossing::Unknown,
-        };
-        in_units(crossing, self.per_unit)
-    }
-
     /// Known where one of the cores is a point, which is known to its error. A point of the line is in the difference
     /// where `b`, moved there by its origin, meets `a`.
     #[inline(always)]
@@ -512,15 +462,4 @@ fn without_ball<V: Vector>(
     let bend = radius / direction.norm();
     let Symmetric { a, b, d } = hessian;
     Symmetric { a: a - bend * u.dot(u), b: b - bend * u.dot(w), d: d - bend * w.dot(w) }
-}
-
-/// A crossing in units of the scale.
-#[inline(always)]
-fn in_units<V: Vector>(crossing: LineCrossing<V>, per_unit: V::Scalar) -> LineCrossing<V> {
-    match crossing {
-        LineCrossing::Crosses(Crossing { entry, exit, normal }) => {
-            LineCrossing::Crosses(Crossing { entry: entry * per_unit, exit: exit * per_unit, normal })
-        }
-        other => other,
-    }
 }

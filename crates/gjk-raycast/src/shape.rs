@@ -21,11 +21,6 @@ impl<S: SupportMap + ?Sized> SupportMap for WithoutLines<'_, S> {
     }
 
     #[inline]
-    fn support_value(&self, direction: S::Vector) -> ScalarOf<S> {
-        self.0.support_value(direction)
-    }
-
-    #[inline]
     fn core(&self) -> Core<S::Vector> {
         self.0.core()
     }

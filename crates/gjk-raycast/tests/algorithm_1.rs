@@ -6,7 +6,7 @@ use crate::common::{Quaternion, s, turned, v};
 use convex_support::glam::{DVec3, Vec3A};
 use convex_support::{
     Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Polytope, Posed, Rounded, Scalar, SupportMap, Triangle,
-    closest_point,
+    closest_point, support_value,
 };
 use gjk_raycast::{
     Outcome, Ray, RayCast, RayCastError, RayCastOptions, Status, iterative_ray_cast, iterative_ray_cast_with, ray_exit,
@@ -94,7 +94,7 @@ fn agree<V: Quaternion>(
             // that v is turned by where its rounding, a few units in the last place of coordinates near one, is much of
             // its length.
             let turned = 4.0 * V::Scalar::EPSILON.as_f64() / nearest(&target, ray);
-            let reach = target.support_value(a.axis);
+            let reach = support_value(&target, a.axis);
             let before = (a.axis.dot(ray.at(s::<V>(1.0))) - reach).as_f64();
             prop_assert!(before > -allowed - 2.0 * DIAMETER * turned, "{} before: {:?}", before, one);
             Ok(Some(false))

@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 use convex_support::glam::{DQuat, DVec3};
-use convex_support::{Ball, Capsule, Cuboid, Polytope, Posed, Rounded, SupportMap};
+use convex_support::{Ball, Capsule, Cuboid, Polytope, Posed, Rounded, SupportMap, support_value};
 use gjk_raycast::{CastMethod, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions, linear_cast, ray_cast};
 use proptest::prelude::*;
 
@@ -74,7 +74,7 @@ proptest! {
                 prop_assert!((p.time - q.time).abs() * speed * steep < 1e-13, "{p:?}, {q:?}");
                 // The point of contact is one of both bodies.
                 if let Some(n) = p.normal {
-                    let reach = a.support_value(-n) + n.dot(p.point);
+                    let reach = support_value(&a, -n) + n.dot(p.point);
                     prop_assert!(reach.abs() < 1e-12, "the point is {reach:e} off the surface");
                 }
             }

@@ -5,7 +5,7 @@ use crate::common::behind_pointers::{distance, intersects, linear_cast, ray_cast
 use crate::common::directions;
 use convex_support::glam::{DVec2, DVec3, Vec3A};
 use convex_support::strategies::{self, AnyShape};
-use convex_support::{Posed, Scalar, SupportMap, Vector, Vector3};
+use convex_support::{Posed, Scalar, SupportMap, Vector, Vector3, support_value};
 use gjk_raycast::{DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, Ray, RayCastOptions};
 use proptest::prelude::*;
 
@@ -34,12 +34,12 @@ fn unit_directions<V: Vector>() -> impl Iterator<Item = V> {
 
 /// How far a point is beyond the shape's planes of support: a lower bound of its distance.
 fn beyond<V: Vector>(shape: &Placed<V>, point: V) -> f64 {
-    unit_directions::<V>().map(|n| (n.dot(point) - shape.support_value(n)).as_f64()).fold(f64::NEG_INFINITY, f64::max)
+    unit_directions::<V>().map(|n| (n.dot(point) - support_value(&shape, n)).as_f64()).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// How far the planes of support across `n` are apart, from b's to a's.
 fn gap<V: Vector>(a: &Placed<V>, b: &Placed<V>, n: V) -> f64 {
-    -a.support_value(-n).as_f64() - b.support_value(n).as_f64()
+    -support_value(&a, -n).as_f64() - support_value(&b, n).as_f64()
 }
 
 fn holds<V: Vector>(a: &Placed<V>, b: &Placed<V>, size: V::Scalar, velocity: V) -> Result<(), TestCaseError> {

@@ -2,7 +2,7 @@
 
 use crate::common::behind_pointers::{linear_cast, ray_cast};
 use convex_support::glam::{DQuat, DVec3, Vec3A};
-use convex_support::{Cone, Cuboid, Cylinder, Ellipsoid, Posed, SupportMap};
+use convex_support::{Cone, Cuboid, Cylinder, Ellipsoid, Posed, SupportMap, support_value};
 use gjk_raycast::{Iterate, LinearCastOptions, Motion, Ray, RayCastOptions, Status, linear_cast_with};
 
 const VALID: &str = "valid numbers";
@@ -65,9 +65,10 @@ fn off<A: SupportMap<Vector = DVec3>, B: SupportMap<Vector = DVec3>>(a: &A, b: &
     let then = hit.point - velocity * hit.time;
     let mut worst = 0.0_f64;
     for n in [normal, -normal, DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z] {
-        worst = worst.max(n.dot(then) - a.support_value(n)).max(n.dot(hit.point) - b.support_value(n));
+        worst = worst.max(n.dot(then) - support_value(&a, n)).max(n.dot(hit.point) - support_value(&b, n));
     }
-    let (on_a, on_b) = (a.support_value(-normal) + normal.dot(then), b.support_value(normal) - normal.dot(hit.point));
+    let (on_a, on_b) =
+        (support_value(&a, -normal) + normal.dot(then), support_value(&b, normal) - normal.dot(hit.point));
     worst.max(on_a.abs()).max(on_b.abs())
 }
 

@@ -4,7 +4,9 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3Swizzles as _};
-use convex_support::{Ball, Capsule, Cuboid, InvalidShape, Point, Polytope, Posed, Rounded, Segment, SupportMap};
+use convex_support::{
+    Ball, Capsule, Cuboid, InvalidShape, Point, Polytope, Posed, Rounded, Segment, SupportMap, support_value,
+};
 use gjk_raycast::{
     Body, HalfSpace, Joint, JointBoxOutcome, JointKind, Link, Linkage, LinkageError, LinkageOptions, Met, Path,
     PathOutcome, PathWorkspace, Pose, RayCastError, Scene, SignedDistanceOptions, signed_distance,
@@ -443,9 +445,9 @@ fn the_planes_of_a_free_path_are_shown() {
             let at = |joint: usize| ways[edge][joint] + time * (ways[edge + 1][joint] - ways[edge][joint]);
             let normal = part.normals[0].lerp(part.normals[1], k);
             let body = robot.placed(link, 0, &[at(0), at(1)]).expect("values for its joints");
-            let height = -body.support_value(-normal);
+            let height = -support_value(&body, -normal);
             let reach = match scene.get(other) {
-                Some(Body::Convex(ball)) => ball.support_value(normal),
+                Some(Body::Convex(ball)) => support_value(&ball, normal),
                 _ => -1.0,
             };
             assert!(height > reach, "{height} and {reach} at {time}: {part:?}");

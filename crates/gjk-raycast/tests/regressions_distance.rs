@@ -6,7 +6,7 @@ use crate::common::{Quaternion, apart, at, cuboid, directions, meets, s, turned,
 use convex_support::glam::{DMat3, DQuat, DVec2, DVec3, Quat, Vec2, Vec3, Vec3A};
 use convex_support::{
     Affine, Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, InvalidShape, Point, Polytope, Posed, Rounded, Scalar,
-    Segment, SupportMap, Triangle, Vector,
+    Segment, SupportMap, Triangle, Vector, support_value,
 };
 use gjk_raycast::{DistanceOptions, IntersectOptions, SignedDistanceOptions, Status};
 
@@ -35,7 +35,7 @@ fn d1_no_zero_where_a_plane_separates() {
             let a = hull::<V>(seed, 5 + seed % 20, 0.5, [0.0; 3]);
             let b = hull::<V>(seed + 1000, 12, 0.3, directions(200).nth(seed as usize).expect("200").map(|c| 0.9 * c));
             let answer = apart(&a, &b);
-            let planes = directions(300).map(|d| -(a.support_value(v(d)) + b.support_value(-v::<V>(d))).as_f64());
+            let planes = directions(300).map(|d| -(support_value(&a, v(d)) + support_value(&b, -v::<V>(d))).as_f64());
             let plane = planes.fold(f64::NEG_INFINITY, f64::max);
             assert!(answer.upper.as_f64() >= plane, "{seed}: {answer:?}, {plane}");
             assert_eq!(answer.status, Status::Converged, "{seed}");

@@ -2,7 +2,7 @@
 
 use crate::common::behind_pointers::{distance, signed_distance};
 use convex_support::strategies::{AnyShape, combined, direction, pose, primitive, primitive_3d};
-use convex_support::{Posed, Scalar, SupportMap, Vector, Vector3, glam};
+use convex_support::{Posed, Scalar, SupportMap, Vector, Vector3, glam, support_value};
 use gjk_raycast::{DistanceOptions, SignedDistance, SignedDistanceOptions, Status};
 use num_traits::Float as _;
 use proptest::prelude::*;
@@ -65,7 +65,7 @@ fn no_plane_does_better<V: Vector>(a: &Shape<V>, b: &Shape<V>, directions: &[V])
     let (answer, size) = (ask(a, b), size(a, b));
     for &d in directions {
         let n = d.unit().expect("a direction");
-        let gap = -(a.support_value(-n) + b.support_value(n));
+        let gap = -(support_value(&a, -n) + support_value(&b, n));
         prop_assert!(gap <= answer.upper + ulps::<V::Scalar>(16.0) * size, "{gap} along {n:?} {answer:?}");
     }
     Ok(())
@@ -86,7 +86,7 @@ fn is_symmetric<V: Vector>(a: &Shape<V>, b: &Shape<V>) -> Result<(), TestCaseErr
 fn grows_along_the_normal<V: Vector>(a: &Shape<V>, b: &Shape<V>, part: f64) -> Result<(), TestCaseError> {
     let (answer, size) = (ask(a, b), size(a, b));
     let n = answer.normal;
-    let gap = -(a.support_value(-n) + b.support_value(n));
+    let gap = -(support_value(&a, -n) + support_value(&b, n));
     let t = answer.signed_distance.abs() * V::Scalar::from_f64(part);
     let moved = ask(&Posed::translated(a, n * t).expect("a finite translation"), b);
     let error = ulps::<V::Scalar>(16.0) * (size + t);

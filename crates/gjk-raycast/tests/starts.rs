@@ -5,6 +5,7 @@ use crate::common::{Quaternion, at, cuboid, directions, s, ulps, v};
 use convex_support::glam::{DVec2, DVec3, Vec2, Vec3A};
 use convex_support::{
     Ball, Capsule, Cone, Cylinder, Ellipsoid, Point, Polytope, Posed, Rounded, Scalar, ScalarOf, SupportMap, Vector,
+    support_value,
 };
 use gjk_raycast::{
     CastMethod, DistanceOptions, IntersectOptions, LinearCastOptions, Motion, Outcome, Ray, RayCast, RayCastError,
@@ -348,7 +349,7 @@ fn a_hit_ahead_has_a_normal() {
                         let Some(hit) = cast.outcome.hit().filter(|hit| hit.lambda.as_f64() > 0.0) else { continue };
                         let n = hit.normal.unwrap_or_else(|| panic!("{cloud:?} {ray:?}: {cast:?}"));
                         assert!(n.dot(direction).as_f64() < ulps::<V>(16.0), "{cloud:?} {ray:?}: {cast:?}");
-                        let beyond = body.support_value(n) - n.dot(hit.point);
+                        let beyond = support_value(&body, n) - n.dot(hit.point);
                         assert!(beyond.as_f64() < ulps::<V>(64.0), "{cloud:?} {ray:?}: {cast:?}");
                         hits += 1;
                     }

@@ -12,7 +12,7 @@ use crate::wire::fields::{Dimension, Object, Written};
 use crate::wire::names::Names;
 use crate::wire::shape::{Shape, Space};
 use convex_support::glam::{self, DVec2, DVec3};
-use convex_support::{Scalar as _, SupportMap as _};
+use convex_support::{Scalar as _, support_value};
 use serde_json::{Value, json};
 
 /// What is proved.
@@ -235,7 +235,7 @@ fn extents<V: Space<Scalar = f64>>(shapes: &[Value; 2]) -> Option<[f64; 2]> {
             .ok()?
             .build::<V>("", &Meshes::relative_to(""))
             .ok()?;
-        let along = |axis: V| solid.support_value(axis).as_f64().abs();
+        let along = |axis: V| support_value(&solid, axis).as_f64().abs();
         let squares = (0..V::DIM).map(|i| along(V::axis(i)).max(along(-V::axis(i))).powi(2));
         Some(squares.sum::<f64>().sqrt())
     };

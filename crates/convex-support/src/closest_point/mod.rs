@@ -56,7 +56,9 @@ pub(crate) fn closest_of_ball<V: Vector>(x: V, center: V, radius: V::Scalar) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Posed, Rounded, Segment, Triangle};
+    use crate::{
+        Ball, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Point, Posed, Rounded, Segment, Triangle, support_value,
+    };
     use glam::{DQuat, DVec3};
     use std::{boxed::Box, vec::Vec};
 
@@ -67,13 +69,13 @@ mod tests {
         let tolerance = 1e-14 * (size + (x - shape.core().origin).length());
         for direction in directions() {
             assert!(
-                direction.dot(p) <= shape.support_value(direction) + tolerance,
+                direction.dot(p) <= support_value(shape, direction) + tolerance,
                 "shape {i}: {p} sticks out along {direction}"
             );
         }
         // (x − p)·y ≤ (x − p)·p for every y of the set; an error e of p costs e·size.
         let out = x - p;
-        let excess = shape.support_value(out) - out.dot(p);
+        let excess = support_value(shape, out) - out.dot(p);
         assert!(excess <= tolerance * (size + out.length()), "shape {i}: {p} for {x}, off by {excess:e}");
     }
 

@@ -10,8 +10,8 @@ use crate::numerics::range::power_of_two_below;
 use crate::numerics::twofold::dot_minus;
 use crate::support::{ScalarOf, sum_of_hessians, swept, swept_hessian};
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Matrix, Parallelotope, Rounding, Scalar,
-    SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Matrix, Parallelotope,
+    Rounding, Scalar, SupportMap, Vector,
 };
 
 /// A shape under an affine map: scaled, sheared, mirrored, or flattened where the matrix is singular.
@@ -153,28 +153,6 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         Some(self.matrix * closest + self.lost)
     }
 
-    /// Where a line is in a set is the same before and after an invertible map. A ball that sweeps the image is one
-    /// before it only where the map keeps angles. Where the matrix is singular the image is flat, and nothing is known.
-    #[inline]
-    fn core_line_crossing(
-        &self,
-        source: S::Vector,
-        direction: S::Vector,
-        radius: ScalarOf<S>,
-    ) -> LineCrossing<S::Vector> {
-        let Some(inverse) = self.inverse else { return LineCrossing::Unknown };
-        let radius = match self.scale {
-            Some(scale) => radius / scale,
-            None if radius == ScalarOf::<S>::ZERO => self.swept,
-            None => return LineCrossing::Unknown,
-        };
-        let crossing = self.shape.core_line_crossing(inverse * (source - self.lost), inverse * direction, radius);
-        crossing.with_normal(|normal| {
-            let normal = inverse.transpose_mul(normal);
-            normal.unit().unwrap_or(normal)
-        })
-    }
-
     /// The line is seen from where the shape's origin is taken to, and from there mapped onto the shape.
     ///
     /// With the computed inverse `N` and `R = 1 − M·N`, a point `y` comes to `x = N·y` and, as `r = M·x − y` is computed
@@ -256,6 +234,30 @@ impl<S: SupportMap> SupportMap for Affine<S> {
         let image = placement.image(self.shape.rounding().swept(self.swept), origin, extent);
         // Where the matrix keeps lengths, all of them in one ratio, it does so to 16 roundings.
         image.with_radius_error(self.scale.map_or(Scalar::ZERO, |scale| roundings(32.0, scale * radius)))
+    }
+}
+
+impl<S: CrossedByLine> CrossedByLine for Affine<S> {
+    /// Where a line is in a set is the same before and after an invertible map. A ball that sweeps the image is one
+    /// before it only where the map keeps angles. Where the matrix is singular the image is flat, and nothing is known.
+    #[inline]
+    fn core_line_crossing(
+        &self,
+        source: S::Vector,
+        direction: S::Vector,
+        radius: ScalarOf<S>,
+    ) -> LineCrossing<S::Vector> {
+        let Some(inverse) = self.inverse else { return LineCrossing::Unknown };
+        let radius = match self.scale {
+            Some(scale) => radius / scale,
+            None if radius == ScalarOf::<S>::ZERO => self.swept,
+            None => return LineCrossing::Unknown,
+        };
+        let crossing = self.shape.core_line_crossing(inverse * (source - self.lost), inverse * direction, radius);
+        crossing.with_normal(|normal| {
+            let normal = inverse.transpose_mul(normal);
+            normal.unit().unwrap_or(normal)
+        })
     }
 }
 

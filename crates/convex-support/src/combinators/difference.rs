@@ -2,8 +2,8 @@
 
 use super::MinkowskiSum;
 use super::reflected::Reflected;
-use crate::SupportMap;
-use crate::forward::forward;
+use crate::forward::{forward, forward_line_crossing};
+use crate::{CrossedByLine, SupportMap};
 
 /// All differences of a point of one shape and a point of another: their configuration space obstacle (CSO).
 ///
@@ -13,10 +13,10 @@ use crate::forward::forward;
 /// becomes one ray against their difference.
 ///
 /// ```
-/// use convex_support::{Ball, Cuboid, Difference, SupportMap, glam::DVec3};
+/// use convex_support::{Ball, Cuboid, Difference, glam::DVec3, support_value};
 ///
 /// let cso = Difference::new(Cuboid::new(DVec3::ONE)?, Ball::new(0.5)?);
-/// assert_eq!(cso.support_value(DVec3::X), 1.5);
+/// assert_eq!(support_value(&cso, DVec3::X), 1.5);
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 #[doc = include_str!("../../doc/cso.svg")]
@@ -43,3 +43,6 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> Difference<A, B> {
 }
 
 forward!([A: SupportMap, B: SupportMap<Vector = A::Vector>] Difference<A, B> as A::Vector, |difference| difference.0);
+forward_line_crossing!(
+    [A: CrossedByLine, B: CrossedByLine<Vector = A::Vector>] Difference<A, B> as A::Vector, |difference| difference.0
+);

@@ -6,7 +6,8 @@ use crate::numerics::bound::{roundings, roundings_of};
 use crate::numerics::twofold::{lost_in_sum, two_sum};
 use crate::support::{ScalarOf, sum_of_hessians, support_of_parts};
 use crate::{
-    CertainCrossing, Core, CoreKind, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar, SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar,
+    SupportMap, Vector,
 };
 
 /// The set `A + B = { a + b : a ∈ A, b ∈ B }`: one shape swept by the other. Nest it for more than two.
@@ -55,11 +56,6 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
         support_of_parts(self, direction)
     }
 
-    #[inline]
-    fn support_value(&self, direction: A::Vector) -> ScalarOf<A> {
-        self.a.support_value(direction) + self.b.support_value(direction)
-    }
-
     #[inline(always)]
     fn core(&self) -> Core<A::Vector> {
         let (a, b) = (self.a.core(), self.b.core());
@@ -101,22 +97,6 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
 
     /// Where one of the cores is a point.
     #[inline]
-    fn core_line_crossing(
-        &self,
-        source: A::Vector,
-        direction: A::Vector,
-        radius: ScalarOf<A>,
-    ) -> LineCrossing<A::Vector> {
-        let source = source - self.lost;
-        match (self.a.core().kind, self.b.core().kind) {
-            (CoreKind::Point(a), _) => self.b.core_line_crossing(source - a, direction, radius),
-            (_, CoreKind::Point(b)) => self.a.core_line_crossing(source - b, direction, radius),
-            _ => LineCrossing::Unknown,
-        }
-    }
-
-    /// Where one of the cores is a point.
-    #[inline]
     fn certain_crossing(&self, line: LineQuery<A::Vector>) -> Option<CertainCrossing<A::Vector>> {
         let (a, b) = (self.a.core(), self.b.core());
         // The point is known to its error.
@@ -152,5 +132,23 @@ impl<A: SupportMap, B: SupportMap<Vector = A::Vector>> SupportMap for MinkowskiS
         let rounded = A::Vector::from_fn(|i| ScalarOf::<A>::from_f64(summands(i).saturating_sub(1) as f64));
         let [_, radius] = two_sum(self.a.core().radius, self.b.core().radius);
         sum.with_error(rounded * roundings_of(1.0, sum.extent)).with_radius_error(radius.abs()).raised()
+    }
+}
+
+impl<A: CrossedByLine, B: CrossedByLine<Vector = A::Vector>> CrossedByLine for MinkowskiSum<A, B> {
+    /// Where one of the cores is a point.
+    #[inline]
+    fn core_line_crossing(
+        &self,
+        source: A::Vector,
+        direction: A::Vector,
+        radius: ScalarOf<A>,
+    ) -> LineCrossing<A::Vector> {
+        let source = source - self.lost;
+        match (self.a.core().kind, self.b.core().kind) {
+            (CoreKind::Point(a), _) => self.b.core_line_crossing(source - a, direction, radius),
+            (_, CoreKind::Point(b)) => self.a.core_line_crossing(source - b, direction, radius),
+            _ => LineCrossing::Unknown,
+        }
     }
 }

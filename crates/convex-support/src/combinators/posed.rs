@@ -11,19 +11,19 @@ use crate::numerics::bound::roundings;
 use crate::numerics::twofold::lost_in_sum;
 use crate::support::ScalarOf;
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Matrix, Parallelotope, Rotation, Rounding,
-    Scalar, SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Matrix, Parallelotope,
+    Rotation, Rounding, Scalar, SupportMap, Vector,
 };
 
 /// The image `R·C + t` of a shape under a rotation and then a translation.
 ///
 /// ```
-/// use convex_support::{Cuboid, Posed, SupportMap, glam::DVec2};
+/// use convex_support::{Cuboid, Posed, glam::DVec2, support_value};
 /// use std::f64::consts::FRAC_PI_2;
 ///
 /// let plank = Cuboid::new(DVec2::new(3.0, 1.0))?;
 /// let upright = Posed::new(plank, FRAC_PI_2, DVec2::new(10.0, 0.0))?;
-/// assert!((upright.support_value(DVec2::Y) - 3.0).abs() < 1e-15);
+/// assert!((support_value(&upright, DVec2::Y) - 3.0).abs() < 1e-15);
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 #[derive(Clone, Copy, PartialEq)]
@@ -221,18 +221,6 @@ impl<S: SupportMap> SupportMap for Posed<S> {
         Some(self.rotation * closest + self.lost)
     }
 
-    #[inline(always)]
-    fn core_line_crossing(
-        &self,
-        source: S::Vector,
-        direction: S::Vector,
-        radius: ScalarOf<S>,
-    ) -> LineCrossing<S::Vector> {
-        let local = self.rotation.transpose_mul(source - self.lost);
-        let crossing = self.shape.core_line_crossing(local, self.rotation.transpose_mul(direction), radius);
-        crossing.with_normal(|normal| self.rotation * normal)
-    }
-
     /// The line is seen from where the shape's origin is taken to.
     ///
     /// Where that is not zero, the foot of the line, no more than 2 sizes `S` from there, loses `4uS` and `u|c|` as
@@ -285,5 +273,19 @@ impl<S: SupportMap> SupportMap for Posed<S> {
             is_near: is_near(core.origin, core.extent + core.radius),
         };
         placement.image(self.shape.rounding(), core.origin, core.extent)
+    }
+}
+
+impl<S: CrossedByLine> CrossedByLine for Posed<S> {
+    #[inline(always)]
+    fn core_line_crossing(
+        &self,
+        source: S::Vector,
+        direction: S::Vector,
+        radius: ScalarOf<S>,
+    ) -> LineCrossing<S::Vector> {
+        let local = self.rotation.transpose_mul(source - self.lost);
+        let crossing = self.shape.core_line_crossing(local, self.rotation.transpose_mul(direction), radius);
+        crossing.with_normal(|normal| self.rotation * normal)
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::support::ScalarOf;
 use crate::{
-    CertainCrossing, Core, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, SupportMap, Vector,
+    CertainCrossing, Core, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, SupportMap,
+    Vector,
 };
 
 /// The set `−C = { −x : x ∈ C }`: what a difference adds.
@@ -15,11 +16,6 @@ impl<S: SupportMap> SupportMap for Reflected<S> {
     #[inline(always)]
     fn support(&self, direction: S::Vector) -> S::Vector {
         -self.0.support(-direction)
-    }
-
-    #[inline(always)]
-    fn support_value(&self, direction: S::Vector) -> ScalarOf<S> {
-        self.0.support_value(-direction)
     }
 
     #[inline(always)]
@@ -44,16 +40,6 @@ impl<S: SupportMap> SupportMap for Reflected<S> {
     }
 
     #[inline(always)]
-    fn core_line_crossing(
-        &self,
-        source: S::Vector,
-        direction: S::Vector,
-        radius: ScalarOf<S>,
-    ) -> LineCrossing<S::Vector> {
-        self.0.core_line_crossing(-source, -direction, radius).with_normal(|n| -n)
-    }
-
-    #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
         let line = LineQuery { source: -line.source, direction: -line.direction, ..line };
         Some(self.0.certain_crossing(line)?.with_normal(|n| -n))
@@ -73,5 +59,17 @@ impl<S: SupportMap> SupportMap for Reflected<S> {
     #[inline]
     fn rounding(&self) -> Rounding<S::Vector> {
         self.0.rounding()
+    }
+}
+
+impl<S: CrossedByLine> CrossedByLine for Reflected<S> {
+    #[inline(always)]
+    fn core_line_crossing(
+        &self,
+        source: S::Vector,
+        direction: S::Vector,
+        radius: ScalarOf<S>,
+    ) -> LineCrossing<S::Vector> {
+        self.0.core_line_crossing(-source, -direction, radius).with_normal(|n| -n)
     }
 }

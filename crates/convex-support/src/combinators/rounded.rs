@@ -6,7 +6,7 @@ use num_traits::Float as _;
 use crate::numerics::twofold::two_sum;
 use crate::support::{ScalarOf, support_of_parts};
 use crate::{
-    CertainCrossing, Core, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, SupportMap, Vector,
+    CertainCrossing, Core, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, SupportMap,
 };
 
 /// The Minkowski sum of a shape and a ball: the shape grown by a radius, its edges and corners rounded.
@@ -56,11 +56,6 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
         support_of_parts(self, direction)
     }
 
-    #[inline]
-    fn support_value(&self, direction: S::Vector) -> ScalarOf<S> {
-        self.shape.support_value(direction) + direction.norm() * self.radius
-    }
-
     #[inline(always)]
     fn core(&self) -> Core<S::Vector> {
         self.shape.core().rounded(self.radius)
@@ -79,16 +74,6 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
     #[inline(always)]
     fn core_closest_point(&self, x: S::Vector) -> Option<S::Vector> {
         self.shape.core_closest_point(x)
-    }
-
-    #[inline(always)]
-    fn core_line_crossing(
-        &self,
-        source: S::Vector,
-        direction: S::Vector,
-        radius: ScalarOf<S>,
-    ) -> LineCrossing<S::Vector> {
-        self.shape.core_line_crossing(source, direction, radius)
     }
 
     /// As of the shape; the sum of the radii is rounded, unless one is zero.
@@ -110,5 +95,17 @@ impl<S: SupportMap> SupportMap for Rounded<S> {
     fn rounding(&self) -> Rounding<S::Vector> {
         let [_, lost] = two_sum(self.shape.core().radius, self.radius);
         self.shape.rounding().with_radius_error(lost.abs())
+    }
+}
+
+impl<S: CrossedByLine> CrossedByLine for Rounded<S> {
+    #[inline(always)]
+    fn core_line_crossing(
+        &self,
+        source: S::Vector,
+        direction: S::Vector,
+        radius: ScalarOf<S>,
+    ) -> LineCrossing<S::Vector> {
+        self.shape.core_line_crossing(source, direction, radius)
     }
 }

@@ -51,11 +51,11 @@ pub mod parry3d_f64 {
 /// Asserts that two shapes reach equally far along some directions, to rounding in single precision.
 #[cfg(test)]
 fn same<V: crate::Vector>(a: &impl crate::SupportMap<Vector = V>, b: &impl crate::SupportMap<Vector = V>) {
-    use crate::Scalar;
+    use crate::{Scalar, support_value};
 
     for direction in [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.5, -0.25, 0.75], [-1.0, 2.0, 0.125]] {
         let d = V::from_fn(|axis| Scalar::from_f64(direction[axis]));
-        let (a, b) = (Scalar::as_f64(a.support_value(d)), Scalar::as_f64(b.support_value(d)));
+        let (a, b) = (Scalar::as_f64(support_value(a, d)), Scalar::as_f64(support_value(b, d)));
         assert!((a - b).abs() <= 1e-6 * a.abs(), "along {direction:?}: {a} against {b}");
     }
 }

@@ -36,7 +36,7 @@ pub(crate) use triangle::triangle;
 
 use crate::numerics::range::is_comfortable;
 use crate::shapes::across;
-use crate::{Core, Scalar, SupportMap, Vector, Vector3};
+use crate::{Core, Scalar, ScalarOf, SupportMap, Vector, Vector3};
 
 /// The part of a line that lies in a convex set: `{ λ : source + λ·direction ∈ C }` is the interval from `entry` to
 /// `exit`, in units of the direction.
@@ -142,12 +142,29 @@ impl<V: Vector> From<Crossed<V>> for LineCrossing<V> {
     }
 }
 
+/// A convex set of which it is known in closed form where a line is in it, as [`line_crossing`] asks.
+#[diagnostic::on_unimplemented(
+    message = "where a line crosses `{Self}` has no closed form",
+    note = "`gjk_raycast::ray_cast` answers of every shape where a ray enters it, and `ray_exit` where it leaves"
+)]
+pub trait CrossedByLine: SupportMap {
+    /// Where the line through `source` along `direction` is in the core swept by a ball of the given `radius`, in
+    /// closed form; `source` is relative to the [origin](Core::origin) of the core. [`LineCrossing::Unknown`] where this
+    /// core and this radius have none.
+    fn core_line_crossing(
+        &self,
+        source: Self::Vector,
+        direction: Self::Vector,
+        radius: ScalarOf<Self>,
+    ) -> LineCrossing<Self::Vector>;
+}
+
 /// Where the line through `source` along `direction` is in a shape.
 ///
 /// This is for ray tracers, and it is an independent reference for ray casts that only use the support mapping. Points,
 /// segments, triangles, balls, boxes, capsules, cylinders, cones and ellipsoids have closed forms, and so have the
 /// first six of these swept by a ball. It also works through poses, invertible affine maps, roundings and sums with a
-/// point, and behind any pointer. For other shapes the answer is [`LineCrossing::Unknown`].
+/// point, and behind any pointer. Where such a combination has none the answer is [`LineCrossing::Unknown`].
 ///
 /// ```
 /// use convex_support::{Cone, Cuboid, LineCrossing, Posed, Rounded, glam::DVec3, line_crossing};
@@ -173,7 +190,7 @@ impl<V: Vector> From<Crossed<V>> for LineCrossing<V> {
 /// error is decided by rounding. Squares of lengths must stay in range (about 1e±150 in `f64`, 1e±18 in `f32`);
 /// directions may have any length. A zero direction has no line and a `NaN` no crossing: a miss.
 #[inline(always)]
-pub fn line_crossing<S: SupportMap + ?Sized>(
+pub fn line_crossing<S: CrossedByLine + ?Sized>(
     shape: &S,
     source: S::Vector,
     direction: S::Vector,

@@ -3,7 +3,9 @@
 use crate::error::{InvalidShape, non_negative};
 use crate::line_crossing::{NearLine, ball, closely};
 use crate::support::swept;
-use crate::{CertainCrossing, Core, CoreKind, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector};
+use crate::{
+    CertainCrossing, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector,
+};
 
 /// The ball `|x| ≤ radius`; a disc in 2D. Its core is a point.
 ///
@@ -43,11 +45,6 @@ impl<V: Vector> SupportMap for Ball<V> {
         swept(self.radius, direction)
     }
 
-    #[inline]
-    fn support_value(&self, direction: V) -> V::Scalar {
-        direction.norm() * self.radius
-    }
-
     #[inline(always)]
     fn core(&self) -> Core<V> {
         Core {
@@ -71,11 +68,6 @@ impl<V: Vector> SupportMap for Ball<V> {
     }
 
     #[inline(always)]
-    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        ball(radius, source, direction).into()
-    }
-
-    #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
         let line = line.sweeping(self.radius);
         if line.is_close {
@@ -86,5 +78,12 @@ impl<V: Vector> SupportMap for Ball<V> {
 
     fn rounding(&self) -> Rounding<V> {
         Rounding::exact(V::ZERO)
+    }
+}
+
+impl<V: Vector> CrossedByLine for Ball<V> {
+    #[inline(always)]
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        ball(radius, source, direction).into()
     }
 }

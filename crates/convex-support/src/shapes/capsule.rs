@@ -6,8 +6,8 @@ use crate::error::{InvalidShape, non_negative};
 use crate::line_crossing::{NearLine, Spine, closely};
 use crate::support::support_of_parts;
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar,
-    SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding,
+    Scalar, SupportMap, Vector,
 };
 
 /// The segment from `(0, −half_height)` to `(0, half_height)` along the second axis, swept by a ball. Its core is the
@@ -15,11 +15,11 @@ use crate::{
 /// `Rounded::new(Segment::new([a, b])?, radius)`, which is as quick.
 ///
 /// ```
-/// use convex_support::{Capsule, SupportMap, glam::DVec2};
+/// use convex_support::{Capsule, glam::DVec2, support_value};
 ///
 /// let capsule = Capsule::<DVec2>::new(1.0, 0.5)?;
-/// assert_eq!(capsule.support_value(DVec2::Y), 1.5);
-/// assert_eq!(capsule.support_value(DVec2::X), 0.5);
+/// assert_eq!(support_value(&capsule, DVec2::Y), 1.5);
+/// assert_eq!(support_value(&capsule, DVec2::X), 0.5);
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,11 +58,6 @@ impl<V: Vector> SupportMap for Capsule<V> {
         support_of_parts(self, direction)
     }
 
-    #[inline]
-    fn support_value(&self, direction: V) -> V::Scalar {
-        direction.get(1).abs() * self.half_height + direction.norm() * self.radius
-    }
-
     #[inline(always)]
     fn core(&self) -> Core<V> {
         Core {
@@ -83,11 +78,6 @@ impl<V: Vector> SupportMap for Capsule<V> {
     #[inline]
     fn core_closest_point(&self, x: V) -> Option<V> {
         Some(V::axis(1) * x.get(1).max(-self.half_height).min(self.half_height))
-    }
-
-    #[inline(always)]
-    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        Spine::upright(self.half_height).crossing(radius, source, direction).into()
     }
 
     #[inline(always)]
@@ -112,5 +102,12 @@ impl<V: Vector> SupportMap for Capsule<V> {
 
     fn rounding(&self) -> Rounding<V> {
         Rounding::exact(V::axis(1) * self.half_height)
+    }
+}
+
+impl<V: Vector> CrossedByLine for Capsule<V> {
+    #[inline(always)]
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        Spine::upright(self.half_height).crossing(radius, source, direction).into()
     }
 }

@@ -7,7 +7,10 @@ use crate::line_crossing::{NearLine, closely, cone};
 use crate::numerics::bound::roundings;
 use crate::numerics::elementary::hypot;
 use crate::support::swept;
-use crate::{CertainCrossing, Core, CoreKind, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector3};
+use crate::{
+    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap,
+    Vector3,
+};
 
 /// The cone with its apex at `(0, half_height, 0)` and its base disc at `y = −half_height`.
 ///
@@ -114,14 +117,6 @@ impl<V: Vector3> SupportMap for Cone<V> {
     }
 
     #[inline(always)]
-    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius > V::Scalar::ZERO {
-            return LineCrossing::Unknown;
-        }
-        cone(self, source, direction).into()
-    }
-
-    #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
         if line.radius > V::Scalar::ZERO {
             return None;
@@ -144,5 +139,15 @@ impl<V: Vector3> SupportMap for Cone<V> {
     fn rounding(&self) -> Rounding<V> {
         let extent = V::from_fn(|i| if i == 1 { self.half_height } else { self.radius });
         Rounding::exact(extent).with_error(across(V::splat(roundings(12.5, self.radius))))
+    }
+}
+
+impl<V: Vector3> CrossedByLine for Cone<V> {
+    #[inline(always)]
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        if radius > V::Scalar::ZERO {
+            return LineCrossing::Unknown;
+        }
+        cone(self, source, direction).into()
     }
 }

@@ -3,8 +3,8 @@
 use crate::error::{InvalidShape, finite, measurable};
 use crate::line_crossing::{NearLine, closely, cuboid, rounded_cuboid};
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar, SupportMap,
-    Vector,
+    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar,
+    SupportMap, Vector,
 };
 
 /// The box `|xᵢ| ≤ half_extentsᵢ`; a rectangle in 2D.
@@ -61,11 +61,6 @@ impl<V: Vector> SupportMap for Cuboid<V> {
         self.half_extents.copysign(direction)
     }
 
-    #[inline]
-    fn support_value(&self, direction: V) -> V::Scalar {
-        direction.abs().dot(self.half_extents)
-    }
-
     #[inline(always)]
     fn core(&self) -> Core<V> {
         Core {
@@ -81,14 +76,6 @@ impl<V: Vector> SupportMap for Cuboid<V> {
     #[inline]
     fn core_closest_point(&self, x: V) -> Option<V> {
         Some(x.max(-self.half_extents).min(self.half_extents))
-    }
-
-    #[inline(always)]
-    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius > V::Scalar::ZERO {
-            return rounded_cuboid(self.half_extents, radius, source, direction).into();
-        }
-        cuboid(self.half_extents, source, direction).into()
     }
 
     #[inline(always)]
@@ -122,5 +109,15 @@ impl<V: Vector> SupportMap for Cuboid<V> {
 
     fn rounding(&self) -> Rounding<V> {
         Rounding::exact(self.half_extents)
+    }
+}
+
+impl<V: Vector> CrossedByLine for Cuboid<V> {
+    #[inline(always)]
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        if radius > V::Scalar::ZERO {
+            return rounded_cuboid(self.half_extents, radius, source, direction).into();
+        }
+        cuboid(self.half_extents, source, direction).into()
     }
 }

@@ -9,7 +9,10 @@ use crate::numerics::bound::roundings;
 use crate::numerics::elementary::hypot;
 use crate::numerics::range::is_comfortable;
 use crate::support::{swept, swept_hessian};
-use crate::{CertainCrossing, Core, CoreKind, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector3};
+use crate::{
+    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Rounding, Scalar, SupportMap,
+    Vector3,
+};
 
 /// The cylinder `x² + z² ≤ radius²`, `|y| ≤ half_height`.
 ///
@@ -81,11 +84,6 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
         swept(self.radius, across(direction)) + V::axis(1) * self.half_height.copysign(direction.get(1))
     }
 
-    #[inline]
-    fn support_value(&self, direction: V) -> V::Scalar {
-        across(direction).norm() * self.radius + direction.get(1).abs() * self.half_height
-    }
-
     #[inline(always)]
     fn core(&self) -> Core<V> {
         Core {
@@ -110,14 +108,6 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
     }
 
     #[inline(always)]
-    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius > V::Scalar::ZERO {
-            return LineCrossing::Unknown;
-        }
-        cylinder(self.half_height, self.radius, source, direction).into()
-    }
-
-    #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
         if line.radius > V::Scalar::ZERO {
             return None;
@@ -137,5 +127,15 @@ impl<V: Vector3> SupportMap for Cylinder<V> {
     fn rounding(&self) -> Rounding<V> {
         let extent = V::from_fn(|i| if i == 1 { self.half_height } else { self.radius });
         Rounding::exact(extent).with_error(across(V::splat(roundings(6.0, self.radius))))
+    }
+}
+
+impl<V: Vector3> CrossedByLine for Cylinder<V> {
+    #[inline(always)]
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        if radius > V::Scalar::ZERO {
+            return LineCrossing::Unknown;
+        }
+        cylinder(self.half_height, self.radius, source, direction).into()
     }
 }

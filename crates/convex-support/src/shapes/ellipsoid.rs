@@ -10,8 +10,8 @@ use crate::numerics::jacobi;
 use crate::numerics::range::power_of_two_below;
 use crate::support::swept_hessian;
 use crate::{
-    CertainCrossing, Core, CoreKind, Hint, LineCrossing, LineQuery, Matrix, Rotation, Rounding, Scalar, SupportMap,
-    Vector,
+    CertainCrossing, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Matrix, Rotation, Rounding, Scalar,
+    SupportMap, Vector,
 };
 
 /// The ellipsoid `{ c + R·diag(a)·u : |u| ≤ 1 }`; an ellipse in 2D.
@@ -21,13 +21,13 @@ use crate::{
 /// it loses all accuracy of the longest axis at an aspect of 1e8 in `f64`. Where the axes are known, give the axes.
 ///
 /// ```
-/// use convex_support::{Ellipsoid, SupportMap, glam::{DMat2, DVec2}};
+/// use convex_support::{Ellipsoid, glam::{DMat2, DVec2}, support_value};
 ///
 /// let ellipse = Ellipsoid::new(DVec2::ZERO, DVec2::new(2.0, 1.0), 0.0)?;
-/// assert_eq!(ellipse.support_value(DVec2::X), 2.0);
+/// assert_eq!(support_value(&ellipse, DVec2::X), 2.0);
 ///
 /// let same = Ellipsoid::from_matrix(DVec2::ZERO, DMat2::from_diagonal(DVec2::new(0.25, 1.0)))?;
-/// assert_eq!(same.support_value(DVec2::X), 2.0);
+/// assert_eq!(support_value(&same, DVec2::X), 2.0);
 /// # Ok::<(), convex_support::InvalidShape>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -199,11 +199,6 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
         self.center + self.core_support(direction, &mut Hint::new())
     }
 
-    #[inline]
-    fn support_value(&self, direction: V) -> V::Scalar {
-        direction.dot(self.center) + (self.semi_axes * self.axes.transpose_mul(direction)).norm()
-    }
-
     #[inline(always)]
     fn core(&self) -> Core<V> {
         let extent = self.semi_axes.max_element();
@@ -239,14 +234,6 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
     }
 
     #[inline(always)]
-    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius > V::Scalar::ZERO {
-            return LineCrossing::Unknown;
-        }
-        ellipsoid(&self.axes, self.inverse_semi_axes, source, direction).into()
-    }
-
-    #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
         if line.radius > V::Scalar::ZERO || line.is_close {
             return None;
@@ -267,5 +254,15 @@ impl<V: Vector> SupportMap for Ellipsoid<V> {
         let moved = V::from_fn(|i| if along_axis(i) { V::Scalar::ZERO } else { moved });
         let short = roundings_of(8.0, image(&self.axes, self.semi_axes));
         Rounding::exact(extent).with_error(roundings_of(11.0, extent) + short + moved)
+    }
+}
+
+impl<V: Vector> CrossedByLine for Ellipsoid<V> {
+    #[inline(always)]
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        if radius > V::Scalar::ZERO {
+            return LineCrossing::Unknown;
+        }
+        ellipsoid(&self.axes, self.inverse_semi_axes, source, direction).into()
     }
 }

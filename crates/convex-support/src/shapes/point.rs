@@ -2,7 +2,9 @@
 
 use crate::error::{InvalidShape, finite};
 use crate::line_crossing::{NearLine, ball, closely};
-use crate::{CertainCrossing, Core, CoreKind, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector};
+use crate::{
+    CertainCrossing, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector,
+};
 
 /// The set of one point.
 ///
@@ -66,11 +68,6 @@ impl<V: Vector> SupportMap for Point<V> {
     }
 
     #[inline(always)]
-    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        ball(radius, source, direction).into()
-    }
-
-    #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
         if line.is_close {
             return closely::capsule(line, self.at, V::Scalar::ZERO);
@@ -80,5 +77,12 @@ impl<V: Vector> SupportMap for Point<V> {
 
     fn rounding(&self) -> Rounding<V> {
         Rounding::exact(V::ZERO)
+    }
+}
+
+impl<V: Vector> CrossedByLine for Point<V> {
+    #[inline(always)]
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        ball(radius, source, direction).into()
     }
 }

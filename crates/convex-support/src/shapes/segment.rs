@@ -7,8 +7,8 @@ use crate::error::{InvalidShape, finite, measurable};
 use crate::line_crossing::{NearLine, Spine};
 use crate::numerics::bound::{roundings, roundings_of};
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar,
-    SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding,
+    Scalar, SupportMap, Vector,
 };
 
 /// The segment between two points, which may coincide.
@@ -102,11 +102,6 @@ impl<V: Vector> SupportMap for Segment<V> {
         Some(clamp_to_segment(relative(self.points), x))
     }
 
-    #[inline]
-    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        Spine::between(relative(self.points)).crossing(radius, source, direction).into()
-    }
-
     #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
         // The axis is rounded, and a closer look is none.
@@ -133,5 +128,12 @@ impl<V: Vector> SupportMap for Segment<V> {
     fn rounding(&self) -> Rounding<V> {
         let [a, b] = self.points;
         rounding_of_points(&self.points).with_error(roundings_of(4.0, (b - a).abs()))
+    }
+}
+
+impl<V: Vector> CrossedByLine for Segment<V> {
+    #[inline]
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        Spine::between(relative(self.points)).crossing(radius, source, direction).into()
     }
 }

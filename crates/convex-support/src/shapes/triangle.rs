@@ -8,7 +8,8 @@ use crate::error::{InvalidShape, finite, measurable};
 use crate::line_crossing::{NearLine, triangle};
 use crate::numerics::bound::{roundings, roundings_of};
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Rounding, Scalar,
+    SupportMap, Vector,
 };
 
 /// The triangle of three points, which may be collinear or coincide.
@@ -125,11 +126,6 @@ impl<V: Vector> SupportMap for Triangle<V> {
         Some(closest_of_triangle(&Self { points: relative(self.points) }, x))
     }
 
-    #[inline]
-    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        triangle(&Self { points: relative(self.points) }, radius, source, direction).into()
-    }
-
     /// A closer look in the plane, and in twice the precision, is a search.
     #[inline]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
@@ -150,5 +146,12 @@ impl<V: Vector> SupportMap for Triangle<V> {
     fn rounding(&self) -> Rounding<V> {
         let [a, b, c] = self.points;
         rounding_of_points(&self.points).with_error(roundings_of(8.0, (b - a).abs().max((c - a).abs())))
+    }
+}
+
+impl<V: Vector> CrossedByLine for Triangle<V> {
+    #[inline]
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        triangle(&Self { points: relative(self.points) }, radius, source, direction).into()
     }
 }

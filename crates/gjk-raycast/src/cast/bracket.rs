@@ -14,7 +14,7 @@ use super::{RayContact, Stop};
 use crate::body::{CastBody, Measures, PointPair};
 use crate::observer::Observer;
 use crate::simplex::MAX_POINTS;
-use crate::unit::{is_moderate, lost_to_underflow, power_of_two_near, reciprocal_of_power};
+use crate::unit::{lost_to_underflow, power_of_two_near, reciprocal_of_power};
 use crate::{Iterate, Ray, RayCastOptions, Status};
 
 /// The largest tolerance, in sizes of the body.
@@ -77,8 +77,6 @@ pub(super) struct Bracket<'a, V: Vector> {
     pub(super) is_point: bool,
     /// The unit of length.
     pub(super) scale: V::Scalar,
-    /// Whether lengths in the world's unit can be squared.
-    pub(super) is_moderate: bool,
     observer: Observer<'a, V>,
     iterations: usize,
     /// The body lies in a ball about its origin: the squared half of the chord that it cuts out of the line, negative
@@ -150,7 +148,6 @@ impl<'a, V: Vector> Bracket<'a, V> {
             error,
             is_point: extent == zero,
             scale,
-            is_moderate: is_moderate(measure),
             observer: observer.by_ref(),
             iterations: 0,
             chord: (squared, half_chord),

@@ -1,10 +1,13 @@
 //! The cast where a shape knows for certain where a line enters it: of a ray at it, and of a point or a ball that moves
 //! against it.
 
+use convex_support::numerics::bound::roundings;
 use convex_support::{CertainCrossing, LineQuery, Scalar, Vector};
 use num_traits::Float as _;
 
-use super::{Cast, CastHit};
+use super::bracket::Bracket;
+use super::line::Line;
+use super::{Cast, CastHit, RayContact, Stop};
 use crate::body::{CastBody, Measures};
 use crate::observer::Observer;
 use crate::{CastMethod, Iterate, Miss, Outcome, Ray, RayCast, RayCastOptions, RayHit, Status};
@@ -98,6 +101,59 @@ pub(crate) fn show<B: CastBody + ?Sized>(
     let w = at - body.measures().origin - body.support(axis).0;
     let (lower, upper) = (Scalar::ZERO, <B::Vector as Vector>::Scalar::infinity());
     observer.show(|| Iterate { iteration: 0, simplex: &[], v: axis, w, scale: Scalar::ONE, lower, upper });
+}
+
+/// Closes the bracket between the plane at the entry and the entry, or finds a plane that the whole ray is before: as
+/// with a search, what the shape says is where to look, and the plane is that of a support point. If it is not where the
+/// entry is, the answer is in doubt.
+#[inline(always)]
+pub(super) fn at_certain_entry<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
+    let line = bracket.line();
+    match crossing(bracket, line) {
+        None => Err(Stop::InDoubt),
+        Some(CertainCrossing::Misses(axis)) => {
+            support(bracket, axis)?;
+            Err(Stop::InDoubt)
+        }
+        Some(CertainCrossing::Enters { entry, bounds: [_, latest], normal }) => {
+            let start = bracket.ray.start;
+            if latest < start {
+                let reversed = Line { direction: -line.direction, ..line };
+                return match crossing(bracket, reversed) {
+                    Some(CertainCrossing::Enters { bounds: [_, exit], .. }) if start < -exit => {
+                        Ok(bracket.close_inside())
+                    }
+                    _ => Err(Stop::InDoubt),
+                };
+            }
+            if entry < start {
+                return Err(Stop::InDoubt);
+            }
+            support(bracket, normal)?;
+            let point = line.at(entry) - normal * bracket.radius;
+            let witness = bracket.body.witness(point);
+            let found = bracket.close(point, witness, entry)?;
+            bracket.enter_for_certain(latest);
+            Ok(found)
+        }
+    }
+}
+
+/// Where a line certainly enters the body, however far the error of a point of it moves it: what is computed of it
+/// there, and what the shape is wrong by, the shape knows.
+fn crossing<V: Vector>(bracket: &Bracket<'_, V>, Line { foot, direction }: Line<V>) -> Option<CertainCrossing<V>> {
+    let scale = bracket.scale;
+    let source = bracket.body.measures().origin + foot * scale;
+    let error = bracket.error * scale + roundings(1.0, source.norm());
+    bracket.body.certain_crossing(LineQuery::new(source, direction * scale).within(error))
+}
+
+/// Takes the plane across `n` that supports the body.
+#[inline(always)]
+fn support<V: Vector>(bracket: &mut Bracket<'_, V>, n: V) -> Result<(), Stop<V>> {
+    let n = n.unit().ok_or(Stop::InDoubt)?;
+    let (point, _) = bracket.support(n, n, &[])?;
+    bracket.advance(n, point)
 }
 
 impl<V: Vector> Cast<V> {

@@ -5,7 +5,6 @@
 mod algorithm_3;
 mod bracket;
 mod certain;
-mod closed_form;
 mod line;
 mod outline;
 mod portal;
@@ -19,8 +18,8 @@ use crate::observer::Observer;
 use crate::{CastMethod, Miss, Outcome, Ray, RayCastOptions, Status};
 use algorithm_3::algorithm_3;
 use bracket::Bracket;
+use certain::at_certain_entry;
 pub(crate) use certain::{certain, certain_closely, is_plain, show};
-use closed_form::closed_form;
 pub(crate) use line::{LocalRay, Part};
 use outline::bound_entry;
 use portal::portal;
@@ -54,7 +53,7 @@ pub(crate) fn cast<V: Vector>(
 #[inline(always)]
 fn search<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
     if bracket.options.method == CastMethod::Portal {
-        match closed_form(bracket) {
+        match at_certain_entry(bracket) {
             Err(Stop::InDoubt) => {}
             found => return found,
         }

@@ -18,7 +18,7 @@ use alloc::vec::Vec;
 use core::cmp::Ordering;
 
 use convex_support::numerics::bound::raised;
-use convex_support::{Core, Posed, Scalar, ScalarOf, SupportMap, Vector};
+use convex_support::{Core, Posed, Scalar, ScalarOf, SupportMap, Vector, support_value};
 use num_traits::Float;
 
 use super::axial;
@@ -311,8 +311,8 @@ impl<'s, A: SupportMap> BoxSearch<'s, A> {
                 StageMotion::Slide { .. } => level -= (n.dot(axis) * half).abs(),
             }
         }
-        let height = |direction: A::Vector| -a.support_value(-direction);
-        level += least_height(&height, n, &changes) - b.support_value(n);
+        let height = |direction: A::Vector| -support_value(&a, -direction);
+        level += least_height(&height, n, &changes) - support_value(&b, n);
         let rate = |column: usize| {
             stages.iter().zip(&part.half).find(|(stage, _)| stage.column == column).map_or(zero, |(_, &half)| half)
         };

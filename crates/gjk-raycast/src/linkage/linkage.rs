@@ -3,7 +3,9 @@
 use alloc::vec::Vec;
 
 use convex_support::numerics::bound::raised;
-use convex_support::{BoundingSphere, Core, Matrix as _, Posed, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere};
+use convex_support::{
+    BoundingSphere, Core, Matrix as _, Posed, Scalar, ScalarOf, SupportMap, Vector, bounding_sphere, support_value,
+};
 use num_traits::Float;
 
 use super::axial;
@@ -224,7 +226,7 @@ impl<S: SupportMap> Linkage<S> {
     ) -> Result<ScalarOf<S>, LinkageError> {
         self.greatest_way(link, from, to, |moving, frame, _| {
             let turned = frame.rotation.transpose_mul(axial::turning(moving.spin, -n));
-            let farthest = self.bodies(link).iter().map(|body| body.support_value(turned));
+            let farthest = self.bodies(link).iter().map(|body| support_value(&body, turned));
             n.dot(moving.velocity_at(frame.translation)) + farthest.fold(Float::neg_infinity(), Float::max)
         })
     }

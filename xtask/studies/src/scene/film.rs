@@ -6,7 +6,9 @@ use std::io::{self, BufWriter};
 use std::path::Path;
 
 use convex_support::glam::{DMat3, DQuat, DVec2, DVec3};
-use convex_support::{Capsule, Ellipsoid, InvalidShape, Posed, Rounded, Segment, SupportMap, line_crossing};
+use convex_support::{
+    Capsule, Ellipsoid, InvalidShape, Posed, Rounded, Segment, SupportMap, line_crossing, support_value,
+};
 use gjk_raycast::{Ray, RayCastOptions, Scene};
 use rayon::prelude::*;
 
@@ -70,7 +72,7 @@ struct Stage {
 
 impl Stage {
     fn new(moment: &Moment, obstacles: &[Placed], way: &[DVec3]) -> Result<Self, String> {
-        let floor = -obstacles.iter().map(|o| o.hull.support_value(DVec3::NEG_Z)).fold(0.0, f64::max);
+        let floor = -obstacles.iter().map(|o| support_value(&o.hull, DVec3::NEG_Z)).fold(0.0, f64::max);
         let (mut shapes, mut colours): (Vec<Shape>, Vec<DVec3>) = (Vec::new(), Vec::new());
         let mut add = |shape: Shape, colour: DVec3| {
             shapes.push(shape);
@@ -147,7 +149,7 @@ impl Camera {
         let axes = view().transpose();
         let links = moments.iter().flat_map(|moment| moment.links.iter().map(|(link, _)| link));
         let reach = |axis: DVec3| {
-            let bodies = obstacles.iter().chain(links.clone()).map(|body| body.outer.support_value(axis));
+            let bodies = obstacles.iter().chain(links.clone()).map(|body| support_value(&body.outer, axis));
             bodies.chain(way.iter().map(|at| axis.dot(*at))).fold(f64::NEG_INFINITY, f64::max)
         };
         let (high, low) = ([0, 1].map(|k| reach(axes.col(k))), [0, 1].map(|k| -reach(-axes.col(k))));

@@ -15,7 +15,8 @@ use crate::error::InvalidShape;
 use crate::line_crossing::{NearLine, faceted};
 use crate::numerics::bound::roundings;
 use crate::{
-    CertainCrossing, Core, Feature, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector, compiled_once,
+    CertainCrossing, Core, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector,
+    compiled_once,
 };
 
 /// [`WIDTH`] planes, each a unit outward normal by coordinates and how far the polytope reaches along it from the
@@ -253,14 +254,6 @@ impl<V: Vector> SupportMap for Faceted<V> {
     }
 
     #[inline]
-    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
-        if radius > V::Scalar::ZERO {
-            return LineCrossing::Unknown;
-        }
-        faceted(self, source, direction).into()
-    }
-
-    #[inline]
     fn certain_crossing(&self, line: LineQuery<V>) -> Option<CertainCrossing<V>> {
         let Core { origin, extent, error, .. } = self.core();
         if line.radius != V::Scalar::ZERO || line.is_close || self.uncut == V::Scalar::infinity() {
@@ -276,5 +269,15 @@ impl<V: Vector> SupportMap for Faceted<V> {
     #[inline]
     fn rounding(&self) -> Rounding<V> {
         self.polytope.rounding
+    }
+}
+
+impl<V: Vector> CrossedByLine for Faceted<V> {
+    #[inline]
+    fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
+        if radius > V::Scalar::ZERO {
+            return LineCrossing::Unknown;
+        }
+        faceted(self, source, direction).into()
     }
 }

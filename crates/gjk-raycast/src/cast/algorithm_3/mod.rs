@@ -31,9 +31,13 @@ const GRAZING: f64 = 0.1;
 #[inline(never)]
 pub(super) fn algorithm_3<V: Vector>(bracket: &mut Bracket<'_, V>) -> Result<RayContact<V>, Stop<V>> {
     let mut simplex = Simplex::new();
-    match approach(bracket, &mut simplex)? {
+    let found = match approach(bracket, &mut simplex)? {
         Approached::Touches(contact) => Ok(contact),
-        Approached::Pierces(entry) => refine(bracket, simplex, entry),
+        Approached::Pierces(entry) => refine(bracket, &mut simplex, entry),
+    };
+    match found {
+        Err(Stop::InDoubt) => graze(bracket, &mut simplex).ok_or(Stop::InDoubt),
+        found => found,
     }
 }
 
@@ -118,6 +122,18 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
         n = v / length;
         beside = Some(n);
     }
+}
+
+/// The contact where the line enters the round of a swept simplex no deeper than errors may have brought it: planes at
+/// the entry then lean so far along the line that none of them closes the bracket.
+fn graze<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -> Option<RayContact<V>> {
+    let (line, within) = (bracket.line(), bracket.noise + bracket.error);
+    let Closest { v, face, weights } = closest(bracket, simplex, |p| line.across(line.foot - p), V::DIM - 1).ok()?;
+    if !(bracket.radius > within && bracket.radius - v.norm() <= within) {
+        return None;
+    }
+    simplex.retain(face, weights);
+    touch_beside(bracket, simplex, line.across(v), within, None)
 }
 
 /// The contact where the line comes within rounding of the simplex without entering it ahead of x.

@@ -23,7 +23,7 @@ const MAX_MOVES: usize = 6;
 /// enters it, and earlier.
 pub(super) fn refine<V: Vector>(
     bracket: &mut Bracket<'_, V>,
-    mut simplex: Simplex<V>,
+    simplex: &mut Simplex<V>,
     mut at: Entry<V>,
 ) -> Result<RayContact<V>, Stop<V>> {
     let mut pierced = Pierced { line: bracket.line(), moved: Scalar::ZERO, failures: 0 };
@@ -38,7 +38,7 @@ pub(super) fn refine<V: Vector>(
         {
             bracket.around = Some([p, q, q]);
         }
-        let turned = if steps.may_turn() { newton(bracket, &simplex, &recent, steps.model_error) } else { None };
+        let turned = if steps.may_turn() { newton(bracket, simplex, &recent, steps.model_error) } else { None };
         let turned = steps.accept(turned);
         let n = turned.unwrap_or(at.n);
         let (point, witness) = bracket.support(n, n, simplex.points())?;
@@ -59,20 +59,20 @@ pub(super) fn refine<V: Vector>(
             // Nothing is before the facet. One that is seen as a sliver is entered at a spot that is mostly rounding,
             // while the ray runs through an edge or a corner of it; and what points and planes are wrong by may be all
             // that is left.
-            let contact = if bracket.radius == Scalar::ZERO { touch(bracket, &simplex) } else { None };
+            let contact = if bracket.radius == Scalar::ZERO { touch(bracket, simplex) } else { None };
             let all_there_is = || bracket.close_to_hull(slope, wanted + bracket.error, || simplex.weighted_witness());
             return contact.or_else(all_there_is).ok_or(Stop::InDoubt);
         }
-        let before = simplex;
+        let before = *simplex;
         simplex.push(point, n, witness);
         let next = entry(simplex.points(), pierced.line, bracket.radius, bracket.noise);
         let gains = next.is_some_and(|next| next.mu < at.mu);
         if turned.is_some() && !gains {
             // Away from the facet's normal, there may be nothing before the facet.
-            simplex = before;
+            *simplex = before;
             continue;
         }
-        let next = pierced.keep_pierced(bracket, next, gains, &before, &simplex).ok_or(Stop::InDoubt)?;
+        let next = pierced.keep_pierced(bracket, next, gains, &before, simplex).ok_or(Stop::InDoubt)?;
         simplex.retain(next.face, next.weights);
         if !(next.mu > bracket.low()) {
             // The body has points of the line on both sides of the lower bound, which so is in the body.
