@@ -1,7 +1,5 @@
 //! Robots: bodies carried by joints, along a path, and anywhere in a box of joint values.
 
-mod axial;
-mod bounds;
 mod error;
 mod frame;
 mod joint;

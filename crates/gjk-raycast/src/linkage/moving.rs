@@ -3,9 +3,9 @@
 use convex_support::Vector;
 use convex_support::numerics::elementary::sin_cos;
 
-use super::axial;
 use super::frame::{LinkFrame, epsilons};
 use super::stage::{JointStage, StageMotion};
+use crate::axial;
 
 /// What a rotation about an axis is wrong by as an operator, in ε, beside what its angle is. The unit axis is wrong by
 /// 1.5, which counts twice. The term of the sine loses 3 and that of `1 − cos ≤ 2` twice 6; sine and cosine themselves 3,

@@ -5,9 +5,9 @@ use alloc::vec::Vec;
 use convex_support::numerics::bound::raised;
 use convex_support::{Scalar, Vector};
 
-use super::axial;
 use super::frame::LinkFrame;
 use super::stage::{JointStage, StageMotion};
+use crate::motion::Bounds;
 
 /// The moving joints on the way from one frame to a link, and the link's frame beyond the last of them.
 #[derive(Clone, Debug)]
@@ -35,10 +35,28 @@ impl<V: Vector> Route<V> {
         let to_next = |pair: &[JointStage<V>]| {
             let (StageMotion::Turn { axis, .. } | StageMotion::Slide { axis, .. }) = pair[0].motion;
             let arm = pair[1].fixed.translation;
-            Arm { length: arm.norm(), across: axial::across(axis, arm).norm() }
+            let across = if V::DIM == 3 { arm - axis * axis.dot(arm) } else { arm };
+            Arm { length: arm.norm(), across: across.norm() }
         };
         let arms = stages.windows(2).map(to_next).chain([none]).take(stages.len()).collect();
         Self { stages, arms, tail, rim: V::Scalar::ZERO }
+    }
+
+    /// The bounds for points that it carries, if its joints change at these rates, and slide no farther than `slides`.
+    pub(super) fn bounds(
+        &self,
+        rates: impl Fn(usize) -> V::Scalar,
+        slides: impl Fn(usize) -> V::Scalar,
+    ) -> Bounds<V::Scalar> {
+        let mut bounds = Bounds::REST;
+        for (stage, &Arm { length, across }) in self.stages.iter().zip(&self.arms).rev() {
+            match stage.motion {
+                StageMotion::Turn { .. } => bounds.turn(rates(stage.column), across),
+                StageMotion::Slide { .. } => bounds.slide(rates(stage.column), slides(stage.column)),
+            }
+            bounds.lengthen(length);
+        }
+        bounds
     }
 
     /// The route to a frame from another, each given by its way from the world: back along the one to where they part,

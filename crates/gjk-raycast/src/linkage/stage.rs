@@ -1,10 +1,10 @@
 //! A joint that moves, and the way to it from the one before.
 
-use convex_support::{Matrix, Scalar, Vector};
+use convex_support::{Matrix as _, Scalar, Vector};
 
-use super::axial;
 use super::frame::LinkFrame;
 use super::joint::JointKind;
+use crate::axial;
 
 /// The way from one moving joint to the next, and how that moves: `x ↦ fixed·motion(value)·x`.
 #[derive(Clone, Debug)]
@@ -57,6 +57,14 @@ impl<V: Vector> JointStage<V> {
             StageMotion::Slide { axis, .. } => Self::sliding(&fixed, axis * sign),
         };
         Self { arm: fixed.translation.norm(), fixed, motion, column: self.column }
+    }
+
+    /// Its axis, by its frame as it has moved.
+    pub(super) fn axis_in(&self, frame: &LinkFrame<V>) -> V {
+        match self.motion {
+            StageMotion::Turn { axis, .. } => axial::turned(&frame.rotation, axis),
+            StageMotion::Slide { axis, .. } => frame.rotation * axis,
+        }
     }
 
     /// The rotation of a stage that turns, from its fixed part's on.
