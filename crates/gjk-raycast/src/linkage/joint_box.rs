@@ -29,7 +29,6 @@ use super::moving::{Moving, Value};
 use super::path::LinkageOptions;
 use super::proof::FreeBox;
 use super::route::Route;
-use super::stage::StageMotion;
 use crate::axial;
 use crate::motion::Linear;
 use crate::{SignedDistanceOptions, signed_distance};
@@ -217,10 +216,10 @@ impl<'s, V: Vector> BoxSearch<'s, V> {
         let reach = raised(tail.of(origin).norm() + extent + radius + tail.error_of(origin.norm() + extent));
         let sizes = [a.core(), b.core()].map(|core| core.origin.norm() + core.extent + core.radius);
         // The axis of each joint, and its origin.
-        let (mut moving, mut axes) = (Moving::WORLD, SmallVec::<[(V, V); 8]>::new());
+        let (mut moving, mut axes) = (Moving::WORLD, SmallVec::<[[V; 2]; 8]>::new());
         for stage in stages {
             moving = moving.beyond(stage, Value { value: middle(joint_box[stage.column]), rate: zero, error: zero });
-            axes.push((stage.axis_in(&moving.frame), moving.frame.translation));
+            axes.push(stage.placed(&moving.frame));
         }
         let frame = moving.frame.then(tail);
         let Ok(a) = Posed::from_matrix(a, frame.rotation, frame.translation) else {
@@ -236,16 +235,15 @@ impl<'s, V: Vector> BoxSearch<'s, V> {
         let n = answer.normal;
         let (mut changes, mut level) = (SmallVec::<[(V, V::Scalar); 8]>::new(), -b.support_value(n));
         let (mut turned, mut size) = (one, reach + sizes[0] + sizes[1] + frame.translation.norm());
-        for (stage, &(axis, origin)) in stages.iter().zip(&axes) {
+        for (stage, &[axis, origin]) in stages.iter().zip(&axes) {
             let half = half(stage.column);
-            match stage.motion {
-                StageMotion::Turn { .. } => {
-                    let change = axial::turning(-axis, n) * half;
-                    changes.push((change, change.dot(origin)));
-                    turned += half;
-                    size += origin.norm();
-                }
-                StageMotion::Slide { .. } => level -= (n.dot(axis) * half).abs(),
+            if stage.turns() {
+                let change = axial::turning(-axis, n) * half;
+                changes.push((change, change.dot(origin)));
+                turned += half;
+                size += origin.norm();
+            } else {
+                level -= (n.dot(axis) * half).abs();
             }
         }
         level += least_height(&|direction: V| -a.support_value(-direction), n, &changes);
@@ -258,11 +256,7 @@ impl<'s, V: Vector> BoxSearch<'s, V> {
         }
         // What a joint adds to the way at first, and to what bends it.
         let way = |i: usize| {
-            let (axis, origin) = axes[i];
-            let first = match stages[i].motion {
-                StageMotion::Turn { .. } => axial::turning(-axis, n).dot(answer.point_a - origin).abs(),
-                StageMotion::Slide { .. } => n.dot(axis).abs(),
-            };
+            let first = stages[i].rise(axes[i], n, answer.point_a).abs();
             half(stages[i].column) * (first + self.levers[i].of(reach) * (turned - one) / two)
         };
         let by_way = |i: &usize, k: &usize| way(*i).partial_cmp(&way(*k)).unwrap_or(Ordering::Equal);

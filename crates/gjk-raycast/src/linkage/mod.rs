@@ -14,6 +14,7 @@ mod result;
 mod route;
 mod stage;
 mod sweep;
+mod time_gradient;
 
 pub use error::LinkageError;
 pub use joint::{Joint, JointKind, Link};

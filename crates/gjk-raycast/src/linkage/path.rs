@@ -31,6 +31,9 @@ pub struct LinkageOptions<V: Vector> {
     /// As of [`MotionCastOptions::max_iterations`], for each body of a link and each that is near it. Default: that of
     /// a motion cast.
     pub max_iterations: usize,
+    /// The end of what is asked of a path: a time, of which each edge takes 1. A negative value is taken for zero. Default:
+    /// infinity.
+    pub until: V::Scalar,
     /// The parts of a box of joint values to look at, after which to give up. Default: 100 000.
     pub max_boxes: usize,
 }
@@ -39,11 +42,19 @@ impl<V: Vector> LinkageOptions<V> {
     /// The default options.
     #[must_use]
     pub fn new() -> Self {
-        let MotionCastOptions { target_distance, tolerance, max_iterations, .. } = MotionCastOptions::<V>::new();
-        Self { target_distance, tolerance, max_iterations, max_boxes: MAX_BOXES }
+        let MotionCastOptions { target_distance, tolerance, max_iterations, max_time: until, .. } =
+            MotionCastOptions::<V>::new();
+        Self { target_distance, tolerance, max_iterations, until, max_boxes: MAX_BOXES }
     }
 
     setters!(target_distance, tolerance, max_iterations);
+
+    /// With another [end](Self::until).
+    #[must_use]
+    pub const fn with_until(mut self, until: V::Scalar) -> Self {
+        self.until = until;
+        self
+    }
 
     /// With another number of [parts](Self::max_boxes).
     #[must_use]
@@ -54,7 +65,7 @@ impl<V: Vector> LinkageOptions<V> {
 
     /// Those of casts.
     pub(super) fn checked(&self) -> Result<MotionCastOptions<V>, RayCastError> {
-        let options = MotionCastOptions::new().with_target_distance(self.target_distance);
+        let options = MotionCastOptions::new().with_target_distance(self.target_distance).with_max_time(self.until);
         checked(options.with_tolerance(self.tolerance).with_max_iterations(self.max_iterations))
     }
 }
@@ -158,8 +169,12 @@ impl<S: SupportMap> Linkage<S> {
         // Where an observer is to see what proves it, everything is cast.
         let target = if observer.is_some() { Float::infinity() } else { options.target_distance };
         let last = waypoints.len().checked_sub(1).ok_or(LinkageError::EmptyPath)?;
-        let duration = if last > 0 { ScalarOf::<S>::ONE } else { Scalar::ZERO };
         for index in 0..last.max(1) {
+            let rest = options.max_time - Scalar::from_f64(index as f64);
+            if index > 0 && !(rest > Scalar::ZERO) {
+                break;
+            }
+            let duration = if last > 0 { rest.min(Scalar::ONE) } else { Scalar::ZERO };
             let [from, to] = [index, last.min(index + 1)].map(|waypoint| waypoints[waypoint].as_ref());
             let edge = PathEdge { from, to };
             let mut first = First::<S::Vector> { edge: index, contact: None, stop: None };
@@ -181,7 +196,11 @@ impl<S: SupportMap> Linkage<S> {
             work.parts += sweep.parts;
             let outcome = open.map_or(first.outcome(), |open| Some(first.goes_on(open)));
             // What rounding leaves open at a waypoint, the next edge may decide.
-            if open.is_none() && index + 1 < last && outcome.is_some_and(|outcome| is_open_at_end(&outcome)) {
+            if open.is_none()
+                && index + 1 < last
+                && rest > Scalar::ONE
+                && outcome.is_some_and(|outcome| is_open_at_end(&outcome))
+            {
                 open = outcome;
             } else if let Some(outcome) = outcome {
                 return Ok(Path { outcome, work });

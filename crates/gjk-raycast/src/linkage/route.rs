@@ -6,7 +6,7 @@ use convex_support::numerics::bound::raised;
 use convex_support::{Scalar, Vector};
 
 use super::frame::LinkFrame;
-use super::stage::{JointStage, StageMotion};
+use super::stage::JointStage;
 use crate::motion::Bounds;
 
 /// The moving joints on the way from one frame to a link, and the link's frame beyond the last of them.
@@ -33,8 +33,7 @@ impl<V: Vector> Route<V> {
     pub(super) fn new(stages: Vec<JointStage<V>>, tail: LinkFrame<V>) -> Self {
         let none = Arm { length: V::Scalar::ZERO, across: V::Scalar::ZERO };
         let to_next = |pair: &[JointStage<V>]| {
-            let (StageMotion::Turn { axis, .. } | StageMotion::Slide { axis, .. }) = pair[0].motion;
-            let arm = pair[1].fixed.translation;
+            let (axis, arm) = (pair[0].axis, pair[1].fixed.translation);
             let across = if V::DIM == 3 { arm - axis * axis.dot(arm) } else { arm };
             Arm { length: arm.norm(), across: across.norm() }
         };
@@ -50,9 +49,10 @@ impl<V: Vector> Route<V> {
     ) -> Bounds<V::Scalar> {
         let mut bounds = Bounds::REST;
         for (stage, &Arm { length, across }) in self.stages.iter().zip(&self.arms).rev() {
-            match stage.motion {
-                StageMotion::Turn { .. } => bounds.turn(rates(stage.column), across),
-                StageMotion::Slide { .. } => bounds.slide(rates(stage.column), slides(stage.column)),
+            if stage.turns() {
+                bounds.turn(rates(stage.column), across);
+            } else {
+                bounds.slide(rates(stage.column), slides(stage.column));
             }
             bounds.lengthen(length);
         }
