@@ -10,7 +10,6 @@ use super::error::LinkageError;
 use super::frame::{LinkFrame, epsilons};
 use super::joint::{Joint, JointKind, Link};
 use super::link_motion::{LinkMotion, PathEdge};
-use super::moving::Moving;
 use super::route::Route;
 use super::stage::JointStage;
 use crate::Pose;
@@ -200,9 +199,7 @@ impl<S: SupportMap> Linkage<S> {
     /// # Errors
     /// As of [`placed`](Self::placed).
     pub fn way(&self, link: usize, from: &[ScalarOf<S>], to: &[ScalarOf<S>]) -> Result<ScalarOf<S>, LinkageError> {
-        self.greatest_way(link, from, to, |moving, _, ball| {
-            moving.velocity_at(moving.frame.of(ball.center)).norm() + moving.spin.norm() * ball.radius
-        })
+        self.greatest_way(link, from, to, None)
     }
 
     /// The same along a direction, a unit vector: negative where all points certainly go the other way. Towards the other
@@ -220,20 +217,16 @@ impl<S: SupportMap> Linkage<S> {
         to: &[ScalarOf<S>],
         n: S::Vector,
     ) -> Result<ScalarOf<S>, LinkageError> {
-        self.greatest_way(link, from, to, |moving, frame, _| {
-            let turned = frame.rotation.transpose_mul(axial::turning(moving.spin, -n));
-            let farthest = self.bodies(link).iter().map(|body| body.support_value(turned));
-            n.dot(moving.velocity_at(frame.translation)) + farthest.fold(Float::neg_infinity(), Float::max)
-        })
+        self.greatest_way(link, from, to, Some(n))
     }
 
-    /// The greatest way of a point of a link, if `at_first` tells how fast points go there at most.
+    /// The greatest way of a point of a link, along a direction or in any.
     fn greatest_way(
         &self,
         link: usize,
         from: &[ScalarOf<S>],
         to: &[ScalarOf<S>],
-        at_first: impl Fn(&Moving<S::Vector>, &LinkFrame<S::Vector>, &BoundingSphere<S::Vector>) -> ScalarOf<S>,
+        along: Option<S::Vector>,
     ) -> Result<ScalarOf<S>, LinkageError> {
         self.check(0, from)?;
         self.check(1, to)?;
@@ -243,7 +236,14 @@ impl<S: SupportMap> Linkage<S> {
         let (edge, reach) = (PathEdge { from, to }, distance + ball.radius);
         let bounds = edge.bounds(route);
         let (moving, frame) = LinkMotion::new(route, edge, Scalar::ZERO, bounds).at(Scalar::ZERO);
-        let near = at_first(&moving, &frame, &ball) + bounds.acceleration.of(reach) * Scalar::from_f64(0.5);
+        let at_first = if let Some(n) = along {
+            let turned = frame.rotation.transpose_mul(axial::turning(moving.spin, -n));
+            let farthest = self.bodies(link).iter().map(|body| body.support_value(turned));
+            n.dot(moving.velocity_at(frame.translation)) + farthest.fold(Float::neg_infinity(), Float::max)
+        } else {
+            moving.velocity_at(moving.frame.of(ball.center)).norm() + moving.spin.norm() * ball.radius
+        };
+        let near = at_first + bounds.acceleration.of(reach) * Scalar::from_f64(0.5);
         let always = bounds.speed.of(reach);
         // What the frame and the derivatives lose is a small part of what always holds.
         Ok(near.min(always) + always * (moving.frame.turn_error + epsilons(64.0)))

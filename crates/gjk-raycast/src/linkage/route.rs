@@ -13,32 +13,19 @@ use crate::motion::Bounds;
 #[derive(Clone, Debug)]
 pub(super) struct Route<V: Vector> {
     pub(super) stages: Vec<JointStage<V>>,
-    /// From each joint to the next: how far its origin is, and how far from the axis.
-    pub(super) arms: Vec<Arm<V::Scalar>>,
     pub(super) tail: LinkFrame<V>,
     /// How far the last joint of the link's own way from the world is from the last of this one, beside those of the
     /// links: not at all, but where the way leads back only.
     pub(super) rim: V::Scalar,
 }
 
-/// The vector from a joint's origin to what it carries.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Arm<S> {
-    pub(super) length: S,
-    /// Across the axis of the joint.
-    pub(super) across: S,
-}
-
 impl<V: Vector> Route<V> {
-    pub(super) fn new(stages: Vec<JointStage<V>>, tail: LinkFrame<V>) -> Self {
-        let none = Arm { length: V::Scalar::ZERO, across: V::Scalar::ZERO };
-        let to_next = |pair: &[JointStage<V>]| {
-            let (axis, arm) = (pair[0].axis, pair[1].fixed.translation);
-            let across = if V::DIM == 3 { arm - axis * axis.dot(arm) } else { arm };
-            Arm { length: arm.norm(), across: across.norm() }
-        };
-        let arms = stages.windows(2).map(to_next).chain([none]).take(stages.len()).collect();
-        Self { stages, arms, tail, rim: V::Scalar::ZERO }
+    pub(super) fn new(mut stages: Vec<JointStage<V>>, tail: LinkFrame<V>) -> Self {
+        for k in 1..stages.len() {
+            let (axis, arm) = (stages[k - 1].axis, stages[k].fixed.translation);
+            stages[k].off_axis = if V::DIM == 3 { arm - axis * axis.dot(arm) } else { arm }.norm();
+        }
+        Self { stages, tail, rim: V::Scalar::ZERO }
     }
 
     /// The bounds for points that it carries, if its joints change at these rates, and slide no farther than `slides`.
@@ -47,14 +34,15 @@ impl<V: Vector> Route<V> {
         rates: impl Fn(usize) -> V::Scalar,
         slides: impl Fn(usize) -> V::Scalar,
     ) -> Bounds<V::Scalar> {
-        let mut bounds = Bounds::REST;
-        for (stage, &Arm { length, across }) in self.stages.iter().zip(&self.arms).rev() {
+        let (mut bounds, mut next) = (Bounds::REST, [V::Scalar::ZERO; 2]);
+        for stage in self.stages.iter().rev() {
             if stage.turns() {
-                bounds.turn(rates(stage.column), across);
+                bounds.turn(rates(stage.column), next[1]);
             } else {
                 bounds.slide(rates(stage.column), slides(stage.column));
             }
-            bounds.lengthen(length);
+            bounds.lengthen(next[0]);
+            next = [stage.arm, stage.off_axis];
         }
         bounds
     }

@@ -13,6 +13,8 @@ pub(super) struct JointStage<V: Vector> {
     pub(super) fixed: LinkFrame<V>,
     /// How far its origin is from that of the joint before it.
     pub(super) arm: V::Scalar,
+    /// How far that is from the axis of the joint before it.
+    pub(super) off_axis: V::Scalar,
     /// A unit vector in its own frame.
     pub(super) axis: V,
     pub(super) motion: StageMotion<V>,
@@ -45,7 +47,7 @@ impl<V: Vector> JointStage<V> {
         let sine = fixed.rotation * product;
         let turn = StageMotion::Turn { sine, versine: sine * product };
         let motion = if turns { turn } else { StageMotion::Slide { along: fixed.rotation * axis } };
-        Self { arm: fixed.translation.norm(), fixed, axis, motion, column }
+        Self { arm: fixed.translation.norm(), off_axis: V::Scalar::ZERO, fixed, axis, motion, column }
     }
 
     /// The stage that moves as this one does, from another frame on; or that takes it back, with the sign -1.

@@ -227,7 +227,7 @@ impl<V: Vector> SweptBall<V> {
         let (mut lengths, mut turn_error) = (always + bent + distance, moving.frame.turn_error + epsilons(64.0));
         if let Some(base) = base {
             let (carried, accelerated) = (base.velocity_at(center), base.acceleration_at(center));
-            velocity = velocity - carried;
+            velocity -= carried;
             let turning = axial::turning(base.spin, velocity);
             acceleration = acceleration - accelerated - turning - turning;
             lengths += carried.norm() * half + accelerated.norm() * squared;
