@@ -119,7 +119,7 @@ impl<S: SupportMap> Linkage<S> {
     /// [`path`](Self::path), showing an observer what proves it, bodies and intervals in no particular order. Those of a
     /// free path cover all of its edges, for each body of a link and each of the scene, and each pair that is asked
     /// about; those of another come up to where it is said to be free. It takes longer: all of these are cast, however far
-    /// away.
+    /// away, and along the whole edge, so that brackets may differ from those of [`path`](Self::path) by rounding.
     ///
     /// # Errors
     /// As of [`path`](Self::path).
