@@ -121,6 +121,7 @@ extern crate std;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+mod axial;
 mod body;
 mod cast;
 mod certificate;

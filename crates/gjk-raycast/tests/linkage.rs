@@ -423,6 +423,68 @@ fn a_contact_at_a_waypoint_is_one() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
+/// The derivatives of the time by each value of both waypoints are what differences of the times of other paths tell, for
+/// a link against the scene and for one against another, near to and far from what it meets.
+#[test]
+fn the_time_of_a_contact_is_derived_by_the_waypoints() -> Result<(), Box<dyn std::error::Error>> {
+    let robot = arm();
+    let joints = [turning(None, DVec2::X), turning(Some(0), DVec2::X), turning(Some(1), DVec2::X)];
+    let links = [None, Some(0), Some(1), Some(2)].map(|joint| Link { joint, bodies: vec![bar()] });
+    let chain = Linkage::new(joints, links)?.with_pairs([[3, 0], [2, 0]])?;
+    let scene = Scene::new([ball_at(0.9, 1.2), ball_at(-3.0, 0.0)])?;
+    let ways = |from: &[f64], to: &[f64]| [from.to_vec(), to.to_vec()];
+    let cases = [
+        (&robot, ways(&[0.1, 0.4], &[1.9, -0.3]), &scene),
+        (&robot, ways(&[-0.4, 0.2], &[1.5, 0.9]), &scene),
+        (&chain, ways(&[0.1, 0.2, 0.0], &[1.9, 1.6, 2.3]), &Scene::default()),
+    ];
+    for (robot, ways, scene) in cases {
+        let options = LinkageOptions::new().with_target_distance(0.02);
+        let time = |ways: &[Vec<f64>]| -> Result<_, LinkageError> {
+            let path = robot.path(ways, scene, options, &mut PathWorkspace::new())?;
+            Ok(path.contact())
+        };
+        let contact = time(&ways)?.ok_or("it is on its way")?;
+        assert_eq!(matches!(contact.met, Met::Link { .. }), scene.is_empty(), "{contact:?}");
+        let gradient = robot.time_gradient(&ways, &contact).ok_or("it comes nearer")?;
+        for (k, end) in (0..robot.values()).flat_map(|k| [(k, 0), (k, 1)]) {
+            let at = |step: f64| {
+                let mut ways = ways.clone();
+                ways[end][k] += step;
+                time(&ways).map(|contact| contact.map_or(f64::NAN, |contact| contact.time))
+            };
+            let difference = (at(1e-6)? - at(-1e-6)?) / 2e-6;
+            let derivative = gradient[k][end];
+            assert!((derivative - difference).abs() < 1e-7, "{derivative} and {difference} by value {k} of {end}");
+        }
+        let apart = robot.time_gradient(&ways[..1], &contact);
+        assert_eq!(apart, None, "a path of one waypoint has no such edge");
+    }
+    Ok(())
+}
+
+/// A path is asked until a time, which may be within an edge: what is met later is not.
+#[test]
+fn a_path_is_asked_until_a_time() -> Result<(), Box<dyn std::error::Error>> {
+    let (robot, scene) = (arm(), Scene::new([ball_at(1.0, 1.0)])?);
+    let ways = [[-1.0, 0.0], [0.0, 0.0], [2.0, 0.0]];
+    let ask =
+        |until: f64| robot.path(&ways, &scene, LinkageOptions::new().with_until(until), &mut PathWorkspace::new());
+    let contact = ask(f64::INFINITY)?.contact().ok_or("it turns past the ball")?;
+    assert_eq!(contact.edge, 1);
+    let at = 1.0 + contact.time;
+    for until in [-1.0, 0.0, 0.5, 1.0, at - 1e-9] {
+        assert!(ask(until)?.is_free(), "{until}");
+    }
+    for until in [at + 1e-9, 1.9, 2.0, 7.0] {
+        let sooner = ask(until)?.contact().ok_or("it is met before")?;
+        assert!(sooner.is_certain() && (sooner.time - contact.time).abs() < 1e-13, "{until}: {sooner:?}");
+    }
+    assert!(ask(at)?.contact().is_none_or(|contact| !contact.is_certain()), "rounding decides");
+    assert!(matches!(ask(f64::NAN), Err(LinkageError::Option(_))), "no time");
+    Ok(())
+}
+
 /// Each interval that is shown is one in which the plane between two bodies, as it turns, separates them, and together
 /// they cover the path for every two bodies: those that are cast, and those that are far away.
 #[test]

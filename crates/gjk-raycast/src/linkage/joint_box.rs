@@ -20,9 +20,8 @@ use core::cmp::Ordering;
 use convex_support::numerics::bound::raised;
 use convex_support::{Core, Posed, Scalar, ScalarOf, SupportMap, Vector, support_value};
 use num_traits::Float;
+use smallvec::SmallVec;
 
-use super::axial;
-use super::bounds::Bounds;
 use super::error::LinkageError;
 use super::frame::epsilons;
 use super::linkage::Linkage;
@@ -30,7 +29,8 @@ use super::moving::{Moving, Value};
 use super::path::LinkageOptions;
 use super::proof::FreeBox;
 use super::route::Route;
-use super::stage::{JointStage, StageMotion};
+use crate::axial;
+use crate::motion::Linear;
 use crate::{SignedDistanceOptions, signed_distance};
 
 /// Of more joints than this, the signs of each are chosen alone.
@@ -127,56 +127,48 @@ impl<S: SupportMap> Linkage<S> {
         if let Some(value) = joint_box.iter().position(|[low, high]| low > high) {
             return Err(LinkageError::Interval { value });
         }
-        let (mut boxes, mut open) = (0, Scalar::ZERO);
-        let mut part_box = joint_box.to_vec();
-        for (i, a) in self.bodies[pair[0]].iter().enumerate() {
-            for (k, b) in self.bodies[pair[1]].iter().enumerate() {
-                let mut search = BoxSearch::new(&route, [a, b], joint_box, target);
-                let outcome = search.run(options.max_boxes.saturating_sub(boxes), |part, normal| {
-                    for ((stage, &middle), &half) in route.stages.iter().zip(&part.middle).zip(&part.half) {
-                        part_box[stage.column] = [middle - half, middle + half];
+        let search = BoxSearch::new(&route, joint_box, target);
+        let bodies = pair.map(|link| &self.bodies[link]);
+        let pairs = (0..bodies[0].len()).flat_map(|i| (0..bodies[1].len()).map(move |k| [i, k]));
+        let whole = |bodies| BoxPart { bodies, joint_box: joint_box.to_vec(), share: ScalarOf::<S>::ONE };
+        let mut next: Vec<_> = pairs.map(whole).collect();
+        // By how near the bodies are in the middle, and then in the order in which they were made.
+        let (mut open, mut boxes, mut share) = (BTreeMap::new(), 0, ScalarOf::<S>::ZERO);
+        loop {
+            for part in next.drain(..) {
+                boxes += 1;
+                let BoxPart { bodies: [i, k], ref joint_box, .. } = part;
+                match search.look([&bodies[0][i], &bodies[1][k]], joint_box) {
+                    BoxState::Free { normal } => observer(FreeBox { bodies: part.bodies, joint_box, normal }),
+                    BoxState::Meets => {
+                        let values = joint_box.iter().map(|&interval| middle(interval)).collect();
+                        return Ok(JointBox { outcome: JointBoxOutcome::Meets { values, bodies: part.bodies }, boxes });
                     }
-                    observer(FreeBox { bodies: [i, k], joint_box: &part_box, normal });
-                });
-                boxes += search.looked;
-                match outcome {
-                    JointBoxOutcome::Never => {}
-                    JointBoxOutcome::Meets { values, .. } => {
-                        let outcome = JointBoxOutcome::Meets { values, bodies: [i, k] };
-                        return Ok(JointBox { outcome, boxes });
+                    BoxState::Open { distance, column: Some(column) } => {
+                        open.insert((in_order(distance), boxes), (part, column));
                     }
-                    JointBoxOutcome::Undecided { share } => open = Float::min(open + share, Scalar::ONE),
+                    // Where no joint moves them, nothing is left to halve.
+                    BoxState::Open { column: None, .. } => share += part.share,
                 }
             }
+            if boxes >= options.max_boxes {
+                break;
+            }
+            let Some((_, (part, column))) = open.pop_first() else { break };
+            next.extend(part.halves(column));
         }
-        let is_never = open == Scalar::ZERO;
-        let outcome = if is_never { JointBoxOutcome::Never } else { JointBoxOutcome::Undecided { share: open } };
+        let share = open.values().fold(share, |sum, (part, _)| sum + part.share).min(Scalar::ONE);
+        let is_never = share == Scalar::ZERO;
+        let outcome = if is_never { JointBoxOutcome::Never } else { JointBoxOutcome::Undecided { share } };
         Ok(JointBox { outcome, boxes })
     }
 }
 
-/// The search for where two bodies meet.
-struct BoxSearch<'s, A: SupportMap> {
-    route: &'s Route<A::Vector>,
-    bodies: [&'s A; 2],
-    /// The whole box.
-    joint_box: &'s [[ScalarOf<A>; 2]],
-    target: ScalarOf<A>,
-    /// How far the first body's points are from the last joint's origin, and what they are computed with.
-    reach: ScalarOf<A>,
-    size: ScalarOf<A>,
-    /// By how much a joint moves a point at most, per unit of its value.
-    levers: Vec<ScalarOf<A>>,
-    looked: usize,
-}
-
-/// A part of the box, by the joints on the way between the links.
+/// A part of the box for two bodies.
 struct BoxPart<S> {
-    middle: Vec<S>,
-    half: Vec<S>,
+    bodies: [usize; 2],
+    joint_box: Vec<[S; 2]>,
     share: S,
-    /// The joint to halve.
-    joint: usize,
 }
 
 /// What is known of a part.
@@ -186,157 +178,90 @@ enum BoxState<V: Vector> {
         normal: V,
     },
     Meets,
-    /// How far the bodies are apart in its middle, and which joint moves them the most.
+    /// How far the bodies are apart in its middle, and the value that moves them the most.
     Open {
         distance: V::Scalar,
-        joint: usize,
+        column: Option<usize>,
     },
 }
 
-impl<'s, A: SupportMap> BoxSearch<'s, A> {
-    fn new(
-        route: &'s Route<A::Vector>,
-        bodies: [&'s A; 2],
-        joint_box: &'s [[ScalarOf<A>; 2]],
-        target: ScalarOf<A>,
-    ) -> Self {
-        let Core { origin, extent, radius, .. } = bodies[0].core();
-        let error = route.tail.error_of(origin.norm() + extent);
-        let reach = raised(route.tail.of(origin).norm() + extent + radius + error);
-        let slide = |column: usize| Float::max(joint_box[column][0].abs(), joint_box[column][1].abs());
-        let lever = |column| {
-            let rate = |other| if other == column { Scalar::ONE } else { Scalar::ZERO };
-            Bounds::of(route, rate, slide).speed.of(reach)
-        };
+/// The way of one link seen from another, and bounds that hold in the whole box.
+struct BoxSearch<'s, V: Vector> {
+    route: &'s Route<V>,
+    target: V::Scalar,
+    /// How far each joint slides at most.
+    slides: Vec<V::Scalar>,
+    /// By how much each joint of the route moves a point at most, per unit of its value.
+    levers: Vec<Linear<V::Scalar>>,
+}
+
+impl<'s, V: Vector> BoxSearch<'s, V> {
+    fn new(route: &'s Route<V>, joint_box: &[[V::Scalar; 2]], target: V::Scalar) -> Self {
+        let slides: Vec<_> = joint_box.iter().map(|[low, high]| low.abs().max(high.abs())).collect();
+        let rate = |of: usize| move |other| if other == of { Scalar::ONE } else { Scalar::ZERO };
+        let lever = |of| route.bounds(rate(of), |column| slides[column]).speed;
         let levers = route.stages.iter().map(|stage| lever(stage.column)).collect();
-        let size = bodies.iter().fold(reach, |size, body| {
-            let Core { origin, extent, radius, .. } = body.core();
-            size + origin.norm() + extent + radius
-        });
-        Self { route, bodies, joint_box, target, reach, size, levers, looked: 0 }
+        Self { route, target, levers, slides }
     }
 
-    /// Looks at so many parts, or one more.
-    fn run(
-        &mut self,
-        most: usize,
-        mut show_free: impl FnMut(&BoxPart<ScalarOf<A>>, A::Vector),
-    ) -> JointBoxOutcome<ScalarOf<A>> {
-        let half = ScalarOf::<A>::from_f64(0.5);
-        let interval = |stage: &JointStage<A::Vector>| self.joint_box[stage.column];
-        let middle = |[low, high]: [ScalarOf<A>; 2]| low * half + high * half;
-        // With room for the rounding of the middle, so that the parts cover the box.
-        let width = |[low, high]: [ScalarOf<A>; 2]| {
-            raised(high * half - low * half) + epsilons::<ScalarOf<A>>(1.0) * (low.abs() + high.abs())
+    fn look<S: SupportMap<Vector = V>>(&self, [a, b]: [&S; 2], joint_box: &[[V::Scalar; 2]]) -> BoxState<V> {
+        let (zero, one, two) = (V::Scalar::ZERO, V::Scalar::ONE, V::Scalar::from_f64(2.0));
+        let Route { stages, tail, .. } = self.route;
+        let half = |column: usize| {
+            let [low, high] = joint_box[column];
+            let at = middle([low, high]);
+            raised((high - at).max(at - low))
         };
-        let stages = &self.route.stages;
-        let whole = BoxPart {
-            middle: stages.iter().map(|stage| middle(interval(stage))).collect(),
-            half: stages.iter().map(|stage| width(interval(stage))).collect(),
-            share: Scalar::ONE,
-            joint: 0,
-        };
-        // By how near the bodies are in the middle, and then in the order in which they were made.
-        let (mut open, mut made, mut stuck) = (BTreeMap::new(), 0, ScalarOf::<A>::ZERO);
-        let mut next = Some([Some(whole), None]);
-        while let Some(parts) = next {
-            for mut part in parts.into_iter().flatten() {
-                self.looked += 1;
-                match self.look(&part) {
-                    BoxState::Free { normal } => show_free(&part, normal),
-                    BoxState::Meets => return JointBoxOutcome::Meets { values: self.values(&part), bodies: [0, 0] },
-                    // Where no joint moves them, nothing is left to halve.
-                    BoxState::Open { .. } if stages.is_empty() => stuck = Scalar::ONE,
-                    BoxState::Open { distance, joint } => {
-                        part.joint = joint;
-                        made += 1;
-                        open.insert((in_order(distance), made), part);
-                    }
-                }
-            }
-            next = if self.looked < most { open.pop_first().map(|(_, part)| part.halves().map(Some)) } else { None };
-        }
-        let share = open.values().fold(stuck, |sum, part| sum + part.share);
-        if share == Scalar::ZERO { JointBoxOutcome::Never } else { JointBoxOutcome::Undecided { share } }
-    }
-
-    /// The middle of a part as values of all joints: those that are not on the way may have any.
-    fn values(&self, part: &BoxPart<ScalarOf<A>>) -> Vec<ScalarOf<A>> {
-        let half = ScalarOf::<A>::from_f64(0.5);
-        let mut values: Vec<_> = self.joint_box.iter().map(|[low, high]| *low * half + *high * half).collect();
-        for (stage, &value) in self.route.stages.iter().zip(&part.middle) {
-            values[stage.column] = value;
-        }
-        values
-    }
-
-    fn look(&self, part: &BoxPart<ScalarOf<A>>) -> BoxState<A::Vector> {
-        let (zero, one) = (ScalarOf::<A>::ZERO, ScalarOf::<A>::ONE);
-        let stages = &self.route.stages;
-        let mut moving = Moving::WORLD;
+        let Core { origin, extent, radius, .. } = a.core();
+        let reach = raised(tail.of(origin).norm() + extent + radius + tail.error_of(origin.norm() + extent));
+        let sizes = [a.core(), b.core()].map(|core| core.origin.norm() + core.extent + core.radius);
         // The axis of each joint, and its origin.
-        let mut axes = smallvec::SmallVec::<[(A::Vector, A::Vector); 8]>::new();
-        for (stage, &value) in stages.iter().zip(&part.middle) {
-            moving =
-                moving.beyond(stage, Value { value, rate: zero, error: epsilons::<ScalarOf<A>>(1.0) * value.abs() });
-            let axis = match stage.motion {
-                StageMotion::Turn { axis, .. } => axial::turned(&moving.frame.rotation, axis),
-                StageMotion::Slide { axis, .. } => moving.frame.rotation * axis,
-            };
-            axes.push((axis, moving.frame.translation));
+        let (mut moving, mut axes) = (Moving::WORLD, SmallVec::<[[V; 2]; 8]>::new());
+        for stage in stages {
+            moving = moving.beyond(stage, Value { value: middle(joint_box[stage.column]), rate: zero, error: zero });
+            axes.push(stage.placed(&moving.frame));
         }
-        let frame = moving.frame.then(&self.route.tail);
-        let [a, b] = self.bodies;
+        let frame = moving.frame.then(tail);
         let Ok(a) = Posed::from_matrix(a, frame.rotation, frame.translation) else {
             // Numbers as large as that are not known any better at other joints.
-            return BoxState::Open { distance: zero, joint: 0 };
+            return BoxState::Open { distance: zero, column: stages.first().map(|stage| stage.column) };
         };
         let answer = signed_distance(&a, b, SignedDistanceOptions::new());
         // The matrix was made orthonormal, which moves it by no more than it was wrong.
-        let error = raised(frame.error_of(self.reach) * Scalar::from_f64(2.0));
+        let error = raised(frame.error_of(reach) * two);
         if answer.upper + error <= self.target {
             return BoxState::Meets;
         }
         let n = answer.normal;
-        let (mut changes, mut level) = (smallvec::SmallVec::<[(A::Vector, ScalarOf<A>); 8]>::new(), zero);
-        let (mut turned, mut size) = (one, self.size + frame.translation.norm());
-        for ((stage, &half), &(axis, origin)) in stages.iter().zip(&part.half).zip(&axes) {
-            match stage.motion {
-                StageMotion::Turn { .. } => {
-                    let change = axial::turning(-axis, n) * half;
-                    changes.push((change, change.dot(origin)));
-                    turned += half;
-                    size += origin.norm();
-                }
-                StageMotion::Slide { .. } => level -= (n.dot(axis) * half).abs(),
+        let (mut changes, mut level) = (SmallVec::<[(V, V::Scalar); 8]>::new(), -support_value(b, n));
+        let (mut turned, mut size) = (one, reach + sizes[0] + sizes[1] + frame.translation.norm());
+        for (stage, &[axis, origin]) in stages.iter().zip(&axes) {
+            let half = half(stage.column);
+            if stage.turns() {
+                let change = axial::turning(-axis, n) * half;
+                changes.push((change, change.dot(origin)));
+                turned += half;
+                size += origin.norm();
+            } else {
+                level -= (n.dot(axis) * half).abs();
             }
         }
-        let height = |direction: A::Vector| -support_value(&a, -direction);
-        level += least_height(&height, n, &changes) - support_value(&b, n);
-        let rate = |column: usize| {
-            stages.iter().zip(&part.half).find(|(stage, _)| stage.column == column).map_or(zero, |(_, &half)| half)
-        };
-        let slide = |column: usize| Float::max(self.joint_box[column][0].abs(), self.joint_box[column][1].abs());
-        let bent = Bounds::of(self.route, rate, slide).acceleration.of(self.reach) * Scalar::from_f64(0.5);
+        level += least_height(&|direction: V| -support_value(&a, -direction), n, &changes);
+        let bent = self.route.bounds(half, |column| self.slides[column]).acceleration.of(reach) / two;
         let shapes = a.core().error + b.core().error;
         // Directions are longer than one by what the joints turn.
-        let lost = (error + shapes + epsilons::<ScalarOf<A>>(64.0) * size) * turned + bent * epsilons(64.0);
+        let lost = (error + shapes + epsilons::<V::Scalar>(64.0) * size) * turned + bent * epsilons(64.0);
         if level - bent - raised(lost) > self.target {
             return BoxState::Free { normal: n };
         }
-        // What the joint adds to the way at first, and to what bends it.
+        // What a joint adds to the way at first, and to what bends it.
         let way = |i: usize| {
-            let (axis, origin) = axes[i];
-            let half = part.half[i];
-            let first = match stages[i].motion {
-                StageMotion::Turn { .. } => axial::turning(-axis, n).dot(answer.point_a - origin).abs(),
-                StageMotion::Slide { .. } => n.dot(axis).abs(),
-            };
-            half * (first + self.levers[i] * (turned - one) * Scalar::from_f64(0.5))
+            let first = stages[i].rise(axes[i], n, answer.point_a).abs();
+            half(stages[i].column) * (first + self.levers[i].of(reach) * (turned - one) / two)
         };
         let by_way = |i: &usize, k: &usize| way(*i).partial_cmp(&way(*k)).unwrap_or(Ordering::Equal);
-        let joint = (0..stages.len()).max_by(by_way).unwrap_or(0);
-        BoxState::Open { distance: answer.signed_distance, joint }
+        let widest = (0..stages.len()).max_by(by_way);
+        BoxState::Open { distance: answer.signed_distance, column: widest.map(|i| stages[i].column) }
     }
 }
 
@@ -354,18 +279,21 @@ fn least_height<V: Vector>(height: &impl Fn(V) -> V::Scalar, n: V, changes: &[(V
 }
 
 impl<S: Scalar> BoxPart<S> {
-    /// Both halves along its widest joint, which cover it.
-    fn halves(self) -> [Self; 2] {
-        let half = S::from_f64(0.5);
-        [-S::ONE, S::ONE].map(|side| {
-            let (mut middle, mut halves) = (self.middle.clone(), self.half.clone());
-            // The sum is rounded.
-            let quarter = halves[self.joint] * half;
-            middle[self.joint] += side * quarter;
-            halves[self.joint] = quarter + epsilons::<S>(1.0) * (middle[self.joint].abs() + quarter);
-            Self { middle, half: halves, share: self.share * half, ..self }
+    /// Both halves along a value, which meet in the middle.
+    fn halves(mut self, column: usize) -> [Self; 2] {
+        let [low, high] = self.joint_box[column];
+        let at = middle([low, high]);
+        self.share *= S::from_f64(0.5);
+        [[low, at], [at, high]].map(|interval| {
+            let mut joint_box = self.joint_box.clone();
+            joint_box[column] = interval;
+            Self { joint_box, ..self }
         })
     }
+}
+
+fn middle<S: Scalar>([low, high]: [S; 2]) -> S {
+    low * S::from_f64(0.5) + high * S::from_f64(0.5)
 }
 
 /// A number as one that has the order of numbers.

@@ -6,10 +6,10 @@ use convex_support::numerics::bound::raised;
 use convex_support::{BoundingSphere, Matrix as _, Scalar, Vector};
 use num_traits::Float as _;
 
-use super::bounds::Bounds;
 use super::frame::{LinkFrame, epsilons};
 use super::moving::{Moving, Value};
 use super::route::Route;
+use crate::motion::Bounds;
 use crate::{Displacement, MovingBall, Trajectory, TurningPlane};
 
 /// A straight edge in joint space, which takes one unit of time.
@@ -35,7 +35,7 @@ impl<S: Scalar> PathEdge<'_, S> {
     /// The bounds for a route along this edge.
     pub(super) fn bounds<V: Vector<Scalar = S>>(&self, route: &Route<V>) -> Bounds<S> {
         let rate = |column: usize| (self.to[column] - self.from[column]).abs();
-        Bounds::of(route, rate, |column| self.from[column].abs().max(self.to[column].abs()))
+        route.bounds(rate, |column| self.from[column].abs().max(self.to[column].abs()))
     }
 }
 

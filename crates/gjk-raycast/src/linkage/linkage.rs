@@ -8,16 +8,15 @@ use convex_support::{
 };
 use num_traits::Float;
 
-use super::axial;
-use super::bounds::Bounds;
 use super::error::LinkageError;
 use super::frame::{LinkFrame, epsilons};
 use super::joint::{Joint, JointKind, Link};
 use super::link_motion::{LinkMotion, PathEdge};
-use super::moving::Moving;
 use super::route::Route;
 use super::stage::JointStage;
 use crate::Pose;
+use crate::axial;
+use crate::motion::Bounds;
 
 /// A robot: links, each of some bodies, that joints carry, in a tree.
 ///
@@ -70,16 +69,15 @@ pub(super) struct Skeleton<V: Vector> {
     /// The joints that move, each after the one that carries it, which is named beside it.
     pub(super) stages: Vec<(Option<usize>, JointStage<V>)>,
     pub(super) links: Vec<Carried<V>>,
-    pub(super) pairs: Vec<LinkPair<V>>,
+    /// Each link as the world sees it, and after them the pairs that are asked about.
+    pub(super) views: Vec<View<V>>,
 }
 
-/// How a link is carried.
+/// What a joint carries.
 #[derive(Clone, Debug)]
 pub(super) struct Carried<V: Vector> {
     /// The last joint that moves it.
     pub(super) stage: Option<usize>,
-    /// The way from the world.
-    pub(super) route: Route<V>,
     /// A ball around each body, and one around all of them.
     pub(super) balls: Vec<Around<V>>,
     pub(super) ball: Around<V>,
@@ -93,11 +91,11 @@ pub(super) struct Around<V: Vector> {
     pub(super) distance: V::Scalar,
 }
 
-/// Two links that are asked about one another.
+/// A link as it is seen from another one, or from the world, and the way from there.
 #[derive(Clone, Debug)]
-pub(super) struct LinkPair<V: Vector> {
-    pub(super) links: [usize; 2],
-    /// The way from the second to the first.
+pub(super) struct View<V: Vector> {
+    pub(super) link: usize,
+    pub(super) base: Option<usize>,
     pub(super) route: Route<V>,
 }
 
@@ -128,15 +126,14 @@ impl<S: SupportMap> Linkage<S> {
             places.push((Some(stages.len()), LinkFrame::WORLD));
             stages.push((before, stage));
         }
-        let mut skeleton = Skeleton { stages, links: Vec::new(), pairs: Vec::new() };
+        let mut skeleton = Skeleton { stages, links: Vec::new(), views: Vec::new() };
         let mut all = Vec::new();
         for (link, Link { joint, bodies }) in links.into_iter().enumerate() {
             let (stage, tail) = match joint {
                 None => (None, LinkFrame::WORLD),
                 Some(joint) => *places.get(joint).ok_or(LinkageError::NoSuchJoint { link, joint })?,
             };
-            let carried = skeleton.carried(&bodies, stage, tail);
-            skeleton.links.push(carried.map_err(|body| LinkageError::BodyNotFinite { link, body })?);
+            skeleton.carry(&bodies, stage, tail).map_err(|body| LinkageError::BodyNotFinite { link, body })?;
             all.push(bodies);
         }
         Ok(Self { skeleton, bodies: all })
@@ -148,10 +145,10 @@ impl<S: SupportMap> Linkage<S> {
     /// # Errors
     /// [`LinkageError::Pair`] for the first pair that is not of two links.
     pub fn with_pairs(mut self, pairs: impl IntoIterator<Item = [usize; 2]>) -> Result<Self, LinkageError> {
-        self.skeleton.pairs.clear();
-        for (index, links) in pairs.into_iter().enumerate() {
-            let route = self.skeleton.between(links).ok_or(LinkageError::Pair { pair: index })?;
-            self.skeleton.pairs.push(LinkPair { links, route });
+        self.skeleton.views.truncate(self.len());
+        for (pair, links) in pairs.into_iter().enumerate() {
+            let route = self.skeleton.between(links).ok_or(LinkageError::Pair { pair })?;
+            self.skeleton.views.push(View { link: links[0], base: Some(links[1]), route });
         }
         Ok(self)
     }
@@ -188,8 +185,8 @@ impl<S: SupportMap> Linkage<S> {
     pub fn placed(&self, link: usize, body: usize, values: &[ScalarOf<S>]) -> Result<Posed<&S>, LinkageError> {
         self.check(0, values)?;
         let shape = self.bodies(link).get(body).ok_or(LinkageError::NoSuchBody { link, body })?;
-        let (route, edge) = (&self.skeleton.links[link].route, PathEdge { from: values, to: values });
-        let (_, frame) = LinkMotion::new(route, edge, Scalar::ZERO, Bounds::default()).at(Scalar::ZERO);
+        let (route, edge) = (&self.skeleton.views[link].route, PathEdge { from: values, to: values });
+        let (_, frame) = LinkMotion::new(route, edge, Scalar::ZERO, Bounds::REST).at(Scalar::ZERO);
         let placed = Posed::from_matrix(shape, frame.rotation, frame.translation);
         placed.map_err(|_| LinkageError::BodyNotFinite { link, body })
     }
@@ -204,9 +201,7 @@ impl<S: SupportMap> Linkage<S> {
     /// # Errors
     /// As of [`placed`](Self::placed).
     pub fn way(&self, link: usize, from: &[ScalarOf<S>], to: &[ScalarOf<S>]) -> Result<ScalarOf<S>, LinkageError> {
-        self.greatest_way(link, from, to, |moving, _, ball| {
-            moving.velocity_at(moving.frame.of(ball.center)).norm() + moving.spin.norm() * ball.radius
-        })
+        self.greatest_way(link, from, to, None)
     }
 
     /// The same along a direction, a unit vector: negative where all points certainly go the other way. Towards the other
@@ -224,30 +219,33 @@ impl<S: SupportMap> Linkage<S> {
         to: &[ScalarOf<S>],
         n: S::Vector,
     ) -> Result<ScalarOf<S>, LinkageError> {
-        self.greatest_way(link, from, to, |moving, frame, _| {
-            let turned = frame.rotation.transpose_mul(axial::turning(moving.spin, -n));
-            let farthest = self.bodies(link).iter().map(|body| support_value(&body, turned));
-            n.dot(moving.velocity_at(frame.translation)) + farthest.fold(Float::neg_infinity(), Float::max)
-        })
+        self.greatest_way(link, from, to, Some(n))
     }
 
-    /// The greatest way of a point of a link, if `at_first` tells how fast points go there at most.
+    /// The greatest way of a point of a link, along a direction or in any.
     fn greatest_way(
         &self,
         link: usize,
         from: &[ScalarOf<S>],
         to: &[ScalarOf<S>],
-        at_first: impl Fn(&Moving<S::Vector>, &LinkFrame<S::Vector>, &BoundingSphere<S::Vector>) -> ScalarOf<S>,
+        along: Option<S::Vector>,
     ) -> Result<ScalarOf<S>, LinkageError> {
         self.check(0, from)?;
         self.check(1, to)?;
-        let Carried { route, ball, .. } =
-            self.skeleton.links.get(link).ok_or(LinkageError::NoSuchBody { link, body: 0 })?;
-        let Around { ball, distance } = *ball;
+        let Carried { ball: Around { ball, distance }, .. } =
+            *self.skeleton.links.get(link).ok_or(LinkageError::NoSuchBody { link, body: 0 })?;
+        let route = &self.skeleton.views[link].route;
         let (edge, reach) = (PathEdge { from, to }, distance + ball.radius);
         let bounds = edge.bounds(route);
         let (moving, frame) = LinkMotion::new(route, edge, Scalar::ZERO, bounds).at(Scalar::ZERO);
-        let near = at_first(&moving, &frame, &ball) + bounds.acceleration.of(reach) * Scalar::from_f64(0.5);
+        let at_first = if let Some(n) = along {
+            let turned = frame.rotation.transpose_mul(axial::turning(moving.spin, -n));
+            let farthest = self.bodies(link).iter().map(|body| support_value(body, turned));
+            n.dot(moving.velocity_at(frame.translation)) + farthest.fold(Float::neg_infinity(), Float::max)
+        } else {
+            moving.velocity_at(moving.frame.of(ball.center)).norm() + moving.spin.norm() * ball.radius
+        };
+        let near = at_first + bounds.acceleration.of(reach) * Scalar::from_f64(0.5);
         let always = bounds.speed.of(reach);
         // What the frame and the derivatives lose is a small part of what always holds.
         Ok(near.min(always) + always * (moving.frame.turn_error + epsilons(64.0)))
@@ -266,33 +264,30 @@ impl<S: SupportMap> Linkage<S> {
 }
 
 impl<V: Vector> Skeleton<V> {
-    /// How a link of these bodies is carried by a joint, if each has a ball around it; else the first that has none.
-    fn carried<S: SupportMap<Vector = V>>(
-        &self,
+    /// Adds a link of these bodies behind a joint, if each has a ball around it; else tells the first that has none.
+    fn carry<S: SupportMap<Vector = V>>(
+        &mut self,
         bodies: &[S],
         stage: Option<usize>,
         tail: LinkFrame<V>,
-    ) -> Result<Carried<V>, usize> {
-        let mut way = Vec::new();
-        let mut next = stage;
-        while let Some(index) = next {
-            let (before, stage) = &self.stages[index];
-            way.push(stage.clone());
-            next = *before;
-        }
+    ) -> Result<(), usize> {
+        let before = |&index: &usize| self.stages[index].0;
+        let mut way: Vec<_> = core::iter::successors(stage, before).map(|index| self.stages[index].1.clone()).collect();
         way.reverse();
         let balls: Vec<_> = bodies.iter().map(|body| Around::new(ball_of(body), &tail)).collect();
         if let Some(body) = balls.iter().position(|around| !(around.distance + around.ball.radius).is_finite()) {
             return Err(body);
         }
         let ball = Around::new(ball_around(balls.iter().map(|around| around.ball)), &LinkFrame::WORLD);
-        Ok(Carried { stage, route: Route::new(way, tail), balls, ball })
+        self.views.push(View { link: self.links.len(), base: None, route: Route::new(way, tail) });
+        self.links.push(Carried { stage, balls, ball });
+        Ok(())
     }
 
     /// The way from the second to the first of two links, if there are such.
     pub(super) fn between(&self, [a, b]: [usize; 2]) -> Option<Route<V>> {
-        let [to, from] = [self.links.get(a)?, self.links.get(b)?];
-        (a != b).then(|| Route::between(&from.route, &to.route))
+        let count = self.links.len();
+        (a != b && a.max(b) < count).then(|| Route::between(&self.views[b].route, &self.views[a].route))
     }
 }
 

@@ -1,7 +1,5 @@
 //! Robots: bodies carried by joints, along a path, and anywhere in a box of joint values.
 
-mod axial;
-mod bounds;
 mod error;
 mod frame;
 mod joint;
@@ -16,6 +14,7 @@ mod result;
 mod route;
 mod stage;
 mod sweep;
+mod time_gradient;
 
 pub use error::LinkageError;
 pub use joint::{Joint, JointKind, Link};

@@ -3,9 +3,9 @@
 use convex_support::Vector;
 use convex_support::numerics::elementary::sin_cos;
 
-use super::axial;
 use super::frame::{LinkFrame, epsilons};
 use super::stage::{JointStage, StageMotion};
+use crate::axial;
 
 /// What a rotation about an axis is wrong by as an operator, in ε, beside what its angle is. The unit axis is wrong by
 /// 1.5, which counts twice. The term of the sine loses 3 and that of `1 − cos ≤ 2` twice 6; sine and cosine themselves 3,
@@ -62,11 +62,11 @@ impl<V: Vector> Moving<V> {
     pub(super) fn beyond(&self, stage: &JointStage<V>, Value { value, rate, error }: Value<V::Scalar>) -> Self {
         let fixed = &stage.fixed;
         match &stage.motion {
-            StageMotion::Turn { axis, sine, versine } => {
+            StageMotion::Turn { sine, versine } => {
                 let rotation = self.frame.rotation * stage.rotation(sine, versine, sin_cos(value));
                 let moved = self.frame.moved(fixed.translation, stage.arm, fixed.shift_error);
                 let turn_error = moved.turn_error + fixed.turn_error + error + epsilons(OF_TURN);
-                let spin = axial::turned(&rotation, *axis) * rate;
+                let spin = axial::turned(&rotation, stage.axis) * rate;
                 Self {
                     velocity: self.velocity_at(moved.translation),
                     acceleration: self.acceleration_at(moved.translation),
@@ -75,7 +75,7 @@ impl<V: Vector> Moving<V> {
                     frame: LinkFrame { rotation, turn_error, ..moved },
                 }
             }
-            StageMotion::Slide { along, .. } => {
+            StageMotion::Slide { along } => {
                 let (way, length) = (*along * value, num_traits::Float::abs(value));
                 // The axis is turned, and wrong by 1.5ε before; the product and the sum are rounded.
                 let lost = (fixed.turn_error + epsilons(6.0)) * (length + stage.arm);

@@ -5,19 +5,17 @@ use alloc::vec::Vec;
 use convex_support::{Scalar, ScalarOf, SupportMap, Vector};
 use num_traits::Float;
 
-use super::bounds::Bounds;
 use super::error::LinkageError;
 use super::link_motion::{LinkMotion, PathEdge};
-use super::linkage::Linkage;
-use super::proof::{FreeInterval, ProvedSteps, Watch};
+use super::linkage::{Linkage, View};
+use super::proof::{FreeInterval, ProvedSteps};
 use super::result::{Met, Path, PathContact, PathOutcome, PathStop, PathWork};
 use super::sweep::{Near, Sweep, SweepSpace};
 use crate::half_space::Plane;
+use crate::motion::Bounds;
 use crate::motion::checked;
 use crate::options::setters;
-use crate::{
-    MotionCast, MotionCastOptions, MotionIterate, Outcome, RayCastError, RigidMotion, Scene, motion_cast_with,
-};
+use crate::{Body, MotionCast, MotionCastOptions, MotionHit, Outcome, RayCastError, Scene};
 
 /// Parts of a box of joint values to look at: a pair of links of a robot arm takes up to ten thousand.
 const MAX_BOXES: usize = 100_000;
@@ -33,6 +31,9 @@ pub struct LinkageOptions<V: Vector> {
     /// As of [`MotionCastOptions::max_iterations`], for each body of a link and each that is near it. Default: that of
     /// a motion cast.
     pub max_iterations: usize,
+    /// The end of what is asked of a path: a time, of which each edge takes 1. A negative value is taken for zero. Default:
+    /// infinity.
+    pub until: V::Scalar,
     /// The parts of a box of joint values to look at, after which to give up. Default: 100 000.
     pub max_boxes: usize,
 }
@@ -41,11 +42,19 @@ impl<V: Vector> LinkageOptions<V> {
     /// The default options.
     #[must_use]
     pub fn new() -> Self {
-        let MotionCastOptions { target_distance, tolerance, max_iterations, .. } = MotionCastOptions::<V>::new();
-        Self { target_distance, tolerance, max_iterations, max_boxes: MAX_BOXES }
+        let MotionCastOptions { target_distance, tolerance, max_iterations, max_time: until, .. } =
+            MotionCastOptions::<V>::new();
+        Self { target_distance, tolerance, max_iterations, until, max_boxes: MAX_BOXES }
     }
 
     setters!(target_distance, tolerance, max_iterations);
+
+    /// With another [end](Self::until).
+    #[must_use]
+    pub const fn with_until(mut self, until: V::Scalar) -> Self {
+        self.until = until;
+        self
+    }
 
     /// With another number of [parts](Self::max_boxes).
     #[must_use]
@@ -56,7 +65,7 @@ impl<V: Vector> LinkageOptions<V> {
 
     /// Those of casts.
     pub(super) fn checked(&self) -> Result<MotionCastOptions<V>, RayCastError> {
-        let options = MotionCastOptions::new().with_target_distance(self.target_distance);
+        let options = MotionCastOptions::new().with_target_distance(self.target_distance).with_max_time(self.until);
         checked(options.with_tolerance(self.tolerance).with_max_iterations(self.max_iterations))
     }
 }
@@ -81,10 +90,6 @@ impl<V: Vector> PathWorkspace<V> {
         Self::default()
     }
 }
-
-/// A cast by options, which shows an observer the times that it looks at.
-type Caster<'c, V> =
-    &'c dyn Fn(MotionCastOptions<V>, &mut dyn FnMut(MotionIterate<V>)) -> Result<MotionCast<V>, RayCastError>;
 
 impl<S: SupportMap> Linkage<S> {
     /// Whether the way along waypoints is free, among the bodies of a scene at rest, and of the
@@ -113,8 +118,8 @@ impl<S: SupportMap> Linkage<S> {
 
     /// [`path`](Self::path), showing an observer what proves it, bodies and intervals in no particular order. Those of a
     /// free path cover all of its edges, for each body of a link and each of the scene, and each pair that is asked
-    /// about; those of another come up to where it is said to be free. It takes longer: a look that shows at once that
-    /// nothing is near is told body by body.
+    /// about; those of another come up to where it is said to be free. It takes longer: all of these are cast, however far
+    /// away, and along the whole edge, so that brackets may differ from those of [`path`](Self::path) by rounding.
     ///
     /// # Errors
     /// As of [`path`](Self::path).
@@ -151,7 +156,7 @@ impl<S: SupportMap> Linkage<S> {
         scene: &Scene<O>,
         options: LinkageOptions<S::Vector>,
         workspace: &mut PathWorkspace<S::Vector>,
-        observer: Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
+        mut observer: Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
     ) -> Result<Path<S::Vector>, LinkageError> {
         let options = options.checked()?;
         for (index, waypoint) in waypoints.iter().enumerate() {
@@ -160,95 +165,94 @@ impl<S: SupportMap> Linkage<S> {
         let PathWorkspace { sweep, half_spaces } = workspace;
         half_spaces.clear();
         half_spaces.extend(scene.half_spaces().map(|(index, half_space)| (index, half_space.plane())));
-        let mut work = PathWork::default();
-        let mut watch = Watch { observer, edge: 0 };
-        let mut open = None;
-        let edges = waypoints.windows(2).map(|pair| (&pair[0], &pair[1], ScalarOf::<S>::ONE));
-        let pose = waypoints.first().filter(|_| waypoints.len() == 1).map(|pose| (pose, pose, Scalar::ZERO));
-        for (index, (from, to, duration)) in edges.chain(pose).enumerate() {
-            let edge = PathEdge { from: from.as_ref(), to: to.as_ref() };
-            let (tree, target, skeleton) = (scene.tree(), options.target_distance, &self.skeleton);
-            sweep.parts = 0;
+        let (mut work, mut open) = (PathWork::default(), None);
+        // Where an observer is to see what proves it, everything is cast.
+        let target = if observer.is_some() { Float::infinity() } else { options.target_distance };
+        let last = waypoints.len().checked_sub(1).ok_or(LinkageError::EmptyPath)?;
+        for index in 0..last.max(1) {
+            let rest = options.max_time - Scalar::from_f64(index as f64);
+            if index > 0 && !(rest > Scalar::ZERO) {
+                break;
+            }
+            let duration = if last > 0 { rest.min(Scalar::ONE) } else { Scalar::ZERO };
+            let [from, to] = [index, last.min(index + 1)].map(|waypoint| waypoints[waypoint].as_ref());
+            let edge = PathEdge { from, to };
             let mut first = First::<S::Vector> { edge: index, contact: None, stop: None };
-            let mut sweeping = Sweep { skeleton, tree, half_spaces, edge, target, space: sweep };
-            watch.edge = index;
-            sweeping.run(duration, &mut watch, &mut |near, bounds, watch| {
+            sweep.parts = 0;
+            let mut sweeping =
+                Sweep { skeleton: &self.skeleton, tree: scene.tree(), half_spaces, edge, target, space: sweep };
+            sweeping.run(duration, &mut |near, bounds| {
                 work.casts += 1;
-                self.cast(near, scene, (edge, bounds), options.with_max_time(duration), &mut first, watch)?;
-                Ok::<_, RayCastError>(first.end(duration))
+                let (on, options) = ((edge, bounds), options.with_max_time(duration));
+                if let Some(base) = self.skeleton.views[near.view].base {
+                    let base = Body::Convex(&self.bodies[base][near.other]);
+                    self.cast(near, (&base, None), on, options, &mut first, &mut observer)?;
+                } else if let Some(obstacle) = scene.get(near.other) {
+                    let at = scene.tree().get(near.other).map(|around| around.center());
+                    self.cast(near, (obstacle, at), on, options, &mut first, &mut observer)?;
+                }
+                Ok(first.end(duration))
             })?;
             work.parts += sweep.parts;
             let outcome = open.map_or(first.outcome(), |open| Some(first.goes_on(open)));
             // What rounding leaves open at a waypoint, the next edge may decide.
-            if open.is_none() && index + 2 < waypoints.len() && outcome.is_some_and(|outcome| is_open_at_end(&outcome))
+            if open.is_none()
+                && index + 1 < last
+                && rest > Scalar::ONE
+                && outcome.is_some_and(|outcome| is_open_at_end(&outcome))
             {
                 open = outcome;
             } else if let Some(outcome) = outcome {
                 return Ok(Path { outcome, work });
             }
         }
-        if waypoints.is_empty() { Err(LinkageError::EmptyPath) } else { Ok(Path { outcome: PathOutcome::Free, work }) }
+        Ok(Path { outcome: PathOutcome::Free, work })
     }
 
     /// Casts a body at what may come near it.
     fn cast<O: SupportMap<Vector = S::Vector>>(
         &self,
         near: &Near<ScalarOf<S>>,
-        scene: &Scene<O>,
+        (against, at): (&Body<O>, Option<S::Vector>),
         (edge, bounds): (PathEdge<'_, ScalarOf<S>>, &Bounds<ScalarOf<S>>),
         options: MotionCastOptions<S::Vector>,
         first: &mut First<S::Vector>,
-        watch: &mut Watch<'_, S::Vector>,
+        observer: &mut Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
     ) -> Result<(), RayCastError> {
-        let &Near { from, to, item, body, other } = near;
-        let links = &self.skeleton.links;
+        let &Near { from, to, view, body, other } = near;
+        let View { link, base, ref route } = self.skeleton.views[view];
+        let (motion, shape) = (LinkMotion::new(route, edge, from, *bounds), &self.bodies[link][body]);
+        let met = base.map_or(Met::Obstacle(other), |link| Met::Link { link, body: other });
+        // A first guess of the normal.
+        let center = motion.at(Scalar::ZERO).0.frame.of(self.skeleton.links[link].balls[body].ball.center);
+        let axis = at.map(|at| center - at);
+        let mut cast_to = |end| {
+            let mut steps = ProvedSteps::NONE;
+            let mut show = |[start, end]: [ScalarOf<S>; 2], normals| {
+                if let Some(observer) = observer {
+                    let (from, to) = (from + start, from + end);
+                    observer(FreeInterval { edge: first.edge, from, to, link, body, met, normals });
+                }
+            };
+            let options = MotionCastOptions { axis, max_time: end, ..options };
+            let answer = against.motion_cast(shape, &motion, options, |there| steps.see(&there, &mut show))?;
+            steps.end(&answer, show);
+            Ok::<_, RayCastError>(answer)
+        };
         // The end of a part is none of the edge: where rounding decides whether a contact comes before it, the cast goes
         // on.
         let whole = options.max_time - from;
-        let mut cast_to_end = |met: Met, link: usize, axis, cast: Caster<'_, S::Vector>| {
-            let mut cast_to = |end| {
-                let mut steps = ProvedSteps::new();
-                let mut show = |times: [ScalarOf<S>; 2], normals| {
-                    watch.show(times.map(|time| from + time), [link, body], met, normals);
-                };
-                let options = MotionCastOptions { axis, ..options.with_max_time(end) };
-                let answer = cast(options, &mut |there| steps.see(&there, &mut show))?;
-                steps.end(&answer, show);
-                Ok::<_, RayCastError>(answer)
-            };
-            let part = cast_to(to - from)?;
-            let is_open = !part.is_certain() && to - from < whole;
-            if is_open { cast_to(whole) } else { Ok(part) }
-        };
-        // A first guess of the normal: from ball to ball.
-        let center = |motion: &LinkMotion<'_, S::Vector>, link: usize| {
-            motion.at(Scalar::ZERO).0.frame.of(links[link].balls[body].ball.center)
-        };
-        let Some(pair) = item.checked_sub(links.len()) else {
-            let Some(obstacle) = scene.get(other) else { return Ok(()) };
-            let motion = LinkMotion::new(&links[item].route, edge, from, *bounds);
-            let axis = scene.tree().get(other).map(|around| center(&motion, item) - around.center());
-            let (met, shape) = (Met::Obstacle(other), &self.bodies[item][body]);
-            let cast =
-                cast_to_end(met, item, axis, &|options, watch| obstacle.motion_cast(shape, &motion, options, watch))?;
-            first.take(cast, from, [item, body], met);
-            return Ok(());
-        };
-        let pair = &self.skeleton.pairs[pair];
-        let [link, base] = pair.links;
-        let motion = LinkMotion::new(&pair.route, edge, from, *bounds);
-        let (shape, base_shape) = (&self.bodies[link][body], &self.bodies[base][other]);
-        let met = Met::Link { link: base, body: other };
-        let mut cast = cast_to_end(met, link, None, &|options, watch| {
-            motion_cast_with(shape, &motion, base_shape, RigidMotion::default(), options, watch)
-        })?;
-        if let Outcome::Hit(hit) = &mut cast.outcome {
+        let mut cast = cast_to(to - from)?;
+        if !cast.is_certain() && to - from < whole {
+            cast = cast_to(whole)?;
+        }
+        if let (Outcome::Hit(hit), Some(base)) = (&mut cast.outcome, base) {
             // It was seen from the second link.
-            let route = &links[base].route;
-            let frame = LinkMotion::new(route, edge, from, edge.bounds(route)).at(hit.time).1;
+            let route = &self.skeleton.views[base].route;
+            let frame = LinkMotion::new(route, edge, from, Bounds::REST).at(hit.time).1;
             (hit.point, hit.normal) = (frame.of(hit.point), hit.normal.map(|normal| frame.rotation * normal));
         }
-        first.take(cast, from, [link, body], met);
+        first.take(cast, near, link, met);
         Ok(())
     }
 }
@@ -262,12 +266,11 @@ struct First<V: Vector> {
 }
 
 impl<V: Vector> First<V> {
-    /// Takes the cast of a body that began at a time. The first contact of all is bracketed by the least bounds of each.
-    fn take(&mut self, cast: MotionCast<V>, from: V::Scalar, [link, body]: [usize; 2], met: Met) {
+    /// Takes the cast of a body. The first contact of all is bracketed by the least bounds of each.
+    fn take(&mut self, cast: MotionCast<V>, &Near { from, body, .. }: &Near<V::Scalar>, link: usize, met: Met) {
         // The sum with a start is rounded.
         let room = if from == V::Scalar::ZERO { from } else { V::Scalar::EPSILON };
-        let [lower, upper] = [from + cast.lower - room, from + cast.upper + room];
-        let lower = lower.max(from);
+        let [lower, upper] = [(from + cast.lower - room).max(from), from + cast.upper + room];
         match cast.outcome {
             Outcome::Miss(_) => {}
             Outcome::Undecided => {
@@ -275,18 +278,13 @@ impl<V: Vector> First<V> {
                     self.stop = Some(PathStop { edge: self.edge, lower, link, body, met });
                 }
             }
-            Outcome::Hit(hit) => {
-                let time = (from + hit.time).min(upper).max(lower);
-                let status = cast.status;
-                let (point, normal) = (hit.point, hit.normal);
-                let next = PathContact { edge: self.edge, time, lower, upper, link, body, met, point, normal, status };
-                self.contact = Some(match self.contact {
-                    None => next,
-                    Some(known) => {
-                        let earlier = if time < known.time { next } else { known };
-                        PathContact { lower: lower.min(known.lower), upper: upper.min(known.upper), ..earlier }
-                    }
-                });
+            Outcome::Hit(MotionHit { time, point, normal }) => {
+                let (edge, time, status) = (self.edge, (from + time).min(upper).max(lower), cast.status);
+                let next = PathContact { edge, time, lower, upper, link, body, met, point, normal, status };
+                let known = self.contact.unwrap_or(next);
+                let earlier = if time < known.time { next } else { known };
+                let (lower, upper) = (lower.min(known.lower), upper.min(known.upper));
+                self.contact = Some(PathContact { lower, upper, ..earlier });
             }
         }
     }

@@ -1,6 +1,6 @@
 //! What proves that a path, or a box of joint values, is free: shown to who wants to see it, and kept by nobody.
 
-use convex_support::{Scalar, Vector};
+use convex_support::{Scalar as _, Vector};
 
 use super::result::Met;
 use crate::{MotionCast, MotionIterate, Outcome};
@@ -42,35 +42,15 @@ pub struct FreeBox<'b, V: Vector> {
     pub normal: V,
 }
 
-/// Whoever is shown the proof of a path, if anybody is.
-pub(super) struct Watch<'o, V: Vector> {
-    pub(super) observer: Option<&'o mut dyn FnMut(FreeInterval<V>)>,
-    pub(super) edge: usize,
-}
-
-impl<V: Vector> Watch<'_, V> {
-    pub(super) fn is_on(&self) -> bool {
-        self.observer.is_some()
-    }
-
-    pub(super) fn show(&mut self, [from, to]: [V::Scalar; 2], [link, body]: [usize; 2], met: Met, normals: [V; 2]) {
-        if let Some(observer) = &mut self.observer {
-            observer(FreeInterval { edge: self.edge, from, to, link, body, met, normals });
-        }
-    }
-}
-
 /// What a cast has proved so far, by the times that it has looked at: each that its lower bound has come to is the end
-/// of an interval from the one before.
+/// of an interval from the one before. Both are remembered with the normals there: the last end, and the last look.
 pub(super) struct ProvedSteps<V: Vector> {
     last: Option<(V::Scalar, V)>,
     seen: Option<(V::Scalar, V)>,
 }
 
 impl<V: Vector> ProvedSteps<V> {
-    pub(super) fn new() -> Self {
-        Self { last: None, seen: None }
-    }
+    pub(super) const NONE: Self = Self { last: None, seen: None };
 
     pub(super) fn see(&mut self, there: &MotionIterate<V>, show: impl FnMut([V::Scalar; 2], [V; 2])) {
         self.come_to(there.lower, show);
@@ -95,9 +75,4 @@ impl<V: Vector> ProvedSteps<V> {
             show([from, cast.lower], [miss.axis; 2]);
         }
     }
-}
-
-/// The vector from one box to another, across what is between them; zero where they overlap.
-pub(super) fn gap_to<V: Vector>(to: &convex_support::Aabb<V>, from: &convex_support::Aabb<V>) -> V {
-    (to.min - from.max).max(V::ZERO) - (from.min - to.max).max(V::ZERO)
 }

@@ -5,40 +5,46 @@ use alloc::vec::Vec;
 use convex_support::numerics::bound::raised;
 use convex_support::{Scalar, Vector};
 
-use super::axial;
 use super::frame::LinkFrame;
-use super::stage::{JointStage, StageMotion};
+use super::stage::JointStage;
+use crate::motion::Bounds;
 
 /// The moving joints on the way from one frame to a link, and the link's frame beyond the last of them.
 #[derive(Clone, Debug)]
 pub(super) struct Route<V: Vector> {
     pub(super) stages: Vec<JointStage<V>>,
-    /// From each joint to the next: how far its origin is, and how far from the axis.
-    pub(super) arms: Vec<Arm<V::Scalar>>,
     pub(super) tail: LinkFrame<V>,
     /// How far the last joint of the link's own way from the world is from the last of this one, beside those of the
     /// links: not at all, but where the way leads back only.
     pub(super) rim: V::Scalar,
 }
 
-/// The vector from a joint's origin to what it carries.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Arm<S> {
-    pub(super) length: S,
-    /// Across the axis of the joint.
-    pub(super) across: S,
-}
-
 impl<V: Vector> Route<V> {
-    pub(super) fn new(stages: Vec<JointStage<V>>, tail: LinkFrame<V>) -> Self {
-        let none = Arm { length: V::Scalar::ZERO, across: V::Scalar::ZERO };
-        let to_next = |pair: &[JointStage<V>]| {
-            let (StageMotion::Turn { axis, .. } | StageMotion::Slide { axis, .. }) = pair[0].motion;
-            let arm = pair[1].fixed.translation;
-            Arm { length: arm.norm(), across: axial::across(axis, arm).norm() }
-        };
-        let arms = stages.windows(2).map(to_next).chain([none]).take(stages.len()).collect();
-        Self { stages, arms, tail, rim: V::Scalar::ZERO }
+    pub(super) fn new(mut stages: Vec<JointStage<V>>, tail: LinkFrame<V>) -> Self {
+        for k in 1..stages.len() {
+            let (axis, arm) = (stages[k - 1].axis, stages[k].fixed.translation);
+            stages[k].off_axis = if V::DIM == 3 { arm - axis * axis.dot(arm) } else { arm }.norm();
+        }
+        Self { stages, tail, rim: V::Scalar::ZERO }
+    }
+
+    /// The bounds for points that it carries, if its joints change at these rates, and slide no farther than `slides`.
+    pub(super) fn bounds(
+        &self,
+        rates: impl Fn(usize) -> V::Scalar,
+        slides: impl Fn(usize) -> V::Scalar,
+    ) -> Bounds<V::Scalar> {
+        let (mut bounds, mut next) = (Bounds::REST, [V::Scalar::ZERO; 2]);
+        for stage in self.stages.iter().rev() {
+            if stage.turns() {
+                bounds.turn(rates(stage.column), next[1]);
+            } else {
+                bounds.slide(rates(stage.column), slides(stage.column));
+            }
+            bounds.lengthen(next[0]);
+            next = [stage.arm, stage.off_axis];
+        }
+        bounds
     }
 
     /// The route to a frame from another, each given by its way from the world: back along the one to where they part,

@@ -1,10 +1,10 @@
 //! A joint that moves, and the way to it from the one before.
 
-use convex_support::{Matrix, Scalar, Vector};
+use convex_support::{Matrix as _, Scalar, Vector};
 
-use super::axial;
 use super::frame::LinkFrame;
 use super::joint::JointKind;
+use crate::axial;
 
 /// The way from one moving joint to the next, and how that moves: `x ↦ fixed·motion(value)·x`.
 #[derive(Clone, Debug)]
@@ -13,6 +13,10 @@ pub(super) struct JointStage<V: Vector> {
     pub(super) fixed: LinkFrame<V>,
     /// How far its origin is from that of the joint before it.
     pub(super) arm: V::Scalar,
+    /// How far that is from the axis of the joint before it.
+    pub(super) off_axis: V::Scalar,
+    /// A unit vector in its own frame.
+    pub(super) axis: V,
     pub(super) motion: StageMotion<V>,
     /// The place of its value among the joint values.
     pub(super) column: usize,
@@ -21,42 +25,49 @@ pub(super) struct JointStage<V: Vector> {
 /// How a stage moves.
 #[derive(Clone, Debug)]
 pub(super) enum StageMotion<V: Vector> {
-    /// By an angle about a unit axis. With `A` the matrix of the product with the axis, the rotation is
-    /// `1 + sin·A + (1 − cos)·A²` (Rodrigues); `sine` and `versine` are its terms as the fixed rotation turns them.
-    Turn { axis: V, sine: V::Matrix, versine: V::Matrix },
-    /// Along a unit axis, in its own frame, and as the fixed rotation turns it.
-    Slide { axis: V, along: V },
+    /// By an angle about the axis. With `A` the matrix of the product with it, the rotation is `1 + sin·A + (1 − cos)·A²`
+    /// (Rodrigues); `sine` and `versine` are its terms as the fixed rotation turns them.
+    Turn { sine: V::Matrix, versine: V::Matrix },
+    /// Along the axis, as the fixed rotation turns it.
+    Slide { along: V },
 }
 
 impl<V: Vector> JointStage<V> {
     /// The stage of a joint that is at `fixed`; `None` for one that does not move, or whose axis is none.
     pub(super) fn new(fixed: LinkFrame<V>, kind: JointKind<V>, column: usize) -> Option<Self> {
-        let arm = fixed.translation.norm();
-        let motion = match kind {
-            JointKind::Fixed => return None,
-            JointKind::Revolute(axis) => Self::turning(&fixed, axial::vector::<V>(axis).unit()?),
-            JointKind::Prismatic(axis) => Self::sliding(&fixed, axis.unit()?),
-        };
-        Some(Self { fixed, arm, motion, column })
+        match kind {
+            JointKind::Fixed => None,
+            JointKind::Revolute(axis) => Some(Self::about(fixed, axial::vector::<V>(axis).unit()?, true, column)),
+            JointKind::Prismatic(axis) => Some(Self::about(fixed, axis.unit()?, false, column)),
+        }
     }
 
-    fn turning(fixed: &LinkFrame<V>, axis: V) -> StageMotion<V> {
+    fn about(fixed: LinkFrame<V>, axis: V, turns: bool, column: usize) -> Self {
         let product = axial::matrix(axis);
         let sine = fixed.rotation * product;
-        StageMotion::Turn { axis, sine, versine: sine * product }
-    }
-
-    fn sliding(fixed: &LinkFrame<V>, axis: V) -> StageMotion<V> {
-        StageMotion::Slide { axis, along: fixed.rotation * axis }
+        let turn = StageMotion::Turn { sine, versine: sine * product };
+        let motion = if turns { turn } else { StageMotion::Slide { along: fixed.rotation * axis } };
+        Self { arm: fixed.translation.norm(), off_axis: V::Scalar::ZERO, fixed, axis, motion, column }
     }
 
     /// The stage that moves as this one does, from another frame on; or that takes it back, with the sign -1.
     pub(super) fn from(&self, fixed: LinkFrame<V>, sign: V::Scalar) -> Self {
-        let motion = match self.motion {
-            StageMotion::Turn { axis, .. } => Self::turning(&fixed, axis * sign),
-            StageMotion::Slide { axis, .. } => Self::sliding(&fixed, axis * sign),
-        };
-        Self { arm: fixed.translation.norm(), fixed, motion, column: self.column }
+        Self::about(fixed, self.axis * sign, self.turns(), self.column)
+    }
+
+    pub(super) fn turns(&self) -> bool {
+        matches!(self.motion, StageMotion::Turn { .. })
+    }
+
+    /// Its axis and its origin, by its frame as it has moved.
+    pub(super) fn placed(&self, frame: &LinkFrame<V>) -> [V; 2] {
+        let axis = if self.turns() { axial::turned(&frame.rotation, self.axis) } else { frame.rotation * self.axis };
+        [axis, frame.translation]
+    }
+
+    /// How fast a point goes along `n`, as its value changes, where its axis and origin are these.
+    pub(super) fn rise(&self, [axis, origin]: [V; 2], n: V, point: V) -> V::Scalar {
+        n.dot(if self.turns() { axial::turning(axis, point - origin) } else { axis })
     }
 
     /// The rotation of a stage that turns, from its fixed part's on.

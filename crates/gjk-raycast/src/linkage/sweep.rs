@@ -9,18 +9,17 @@
 use alloc::vec::Vec;
 use core::ops::{ControlFlow, Range};
 
-use convex_support::{Aabb, BoundingSphere, BoxDistance, Bvh, Matrix as _, Scalar, Vector};
+use convex_support::{Aabb, BoundingSphere, BoxDistance, Bvh, Scalar, Vector};
 use num_traits::Float as _;
 
-use super::axial;
-use super::bounds::Bounds;
 use super::frame::epsilons;
 use super::link_motion::PathEdge;
-use super::linkage::{Around, LinkPair, Skeleton};
+use super::linkage::{Around, Skeleton, View};
 use super::moving::Moving;
-use super::proof::{Watch, gap_to};
-use super::result::Met;
+use crate::RayCastError;
+use crate::axial;
 use crate::half_space::Plane;
+use crate::motion::Bounds;
 
 /// A ball that moves by more than this part of its radius is looked at in a shorter time.
 const COARSE: f64 = 0.5;
@@ -34,11 +33,11 @@ const CAST_DEPTH: u32 = 2;
 pub(super) struct Near<S> {
     pub(super) from: S,
     pub(super) to: S,
-    /// A link against the scene, or after all links a pair of them.
-    pub(super) item: usize,
-    /// The body of the link, or of the first one.
+    /// The index of the view of a link.
+    pub(super) view: usize,
+    /// The body of the link.
     pub(super) body: usize,
-    /// The body of the scene, or of the second link.
+    /// The body of the scene, or of the link that it is seen from.
     pub(super) other: usize,
 }
 
@@ -47,11 +46,11 @@ pub(super) struct Near<S> {
 pub(super) struct SweepSpace<V: Vector> {
     /// How the joints move at the middle of a part.
     moving: Vec<Moving<V>>,
-    /// The links and pairs that are not known to be free in the parts that are being looked at.
-    items: Vec<usize>,
-    /// The bounds of each link and pair.
+    /// The views that are not known to be free in the parts that are being looked at.
+    views: Vec<usize>,
+    /// The bounds of each view.
     bounds: Vec<Bounds<V::Scalar>>,
-    /// The bodies of the scene near a link.
+    /// What is near a link.
     found: Vec<usize>,
     /// What has been found and not yet shown.
     near: Vec<Near<V::Scalar>>,
@@ -64,17 +63,16 @@ pub(super) struct Sweep<'s, V: Vector> {
     pub(super) tree: &'s Bvh<V>,
     pub(super) half_spaces: &'s [(usize, Plane<V>)],
     pub(super) edge: PathEdge<'s, V::Scalar>,
-    /// How near is too near.
+    /// How near is too near; infinite where everything is to be shown.
     pub(super) target: V::Scalar,
     pub(super) space: &'s mut SweepSpace<V>,
 }
 
-/// A part of an edge.
+/// A part of an edge: half of its duration, and whether it is as short as it gets.
 #[derive(Clone, Copy)]
 struct EdgePart<S> {
-    middle: S,
+    times: [S; 2],
     half: S,
-    /// Whether it is as short as it gets.
     is_last: bool,
 }
 
@@ -89,72 +87,54 @@ struct SweptBall<V: Vector> {
     drift: V::Scalar,
 }
 
-/// What is known of a link or a pair in a part of an edge.
-#[derive(PartialEq)]
-enum PartState {
-    /// It is free.
-    Free,
-    /// The part is to be halved.
-    Coarse,
-    /// What is near has been found.
-    Found,
-}
-
 impl<V: Vector> Sweep<'_, V> {
     /// Shows what may come near in an edge that takes some time: 1, or 0 of a path that is a pose. It is shown in the
-    /// order of time but for what is near for long, and beside it the bounds of its link or pair. The answer is a time
-    /// from which on nothing matters.
-    pub(super) fn run<E>(
+    /// order of time but for what is near for long, and beside it the bounds of its view. The answer is a time from which
+    /// on nothing matters.
+    pub(super) fn run(
         &mut self,
         duration: V::Scalar,
-        watch: &mut Watch<'_, V>,
-        show: &mut impl FnMut(&Near<V::Scalar>, &Bounds<V::Scalar>, &mut Watch<'_, V>) -> Result<V::Scalar, E>,
-    ) -> Result<(), E> {
-        let (links, pairs) = (&self.skeleton.links, &self.skeleton.pairs);
-        let routes = links.iter().map(|link| &link.route).chain(pairs.iter().map(|pair| &pair.route));
-        self.space.bounds.clear();
-        self.space.bounds.extend(routes.map(|route| self.edge.bounds(route)));
-        self.space.near.clear();
-        self.space.items.clear();
-        self.space.items.extend(0..links.len() + pairs.len());
+        show: &mut impl FnMut(&Near<V::Scalar>, &Bounds<V::Scalar>) -> Result<V::Scalar, RayCastError>,
+    ) -> Result<(), RayCastError> {
+        let (space, views) = (&mut *self.space, &self.skeleton.views);
+        space.bounds.clear();
+        space.bounds.extend(views.iter().map(|view| self.edge.bounds(&view.route)));
+        space.near.clear();
+        space.views.clear();
+        space.views.extend(0..views.len());
         let mut end = duration;
-        self.visit([V::Scalar::ZERO, duration], 0, 0..links.len() + pairs.len(), &mut end, watch, show)
+        self.visit([V::Scalar::ZERO, duration], 0, 0..views.len(), &mut end, show)
     }
 
     /// Looks at a part of the edge for what is not known to be free in all of it.
-    fn visit<E>(
+    fn visit(
         &mut self,
-        [from, to]: [V::Scalar; 2],
+        times @ [from, to]: [V::Scalar; 2],
         depth: u32,
-        items: Range<usize>,
+        views: Range<usize>,
         end: &mut V::Scalar,
-        watch: &mut Watch<'_, V>,
-        show: &mut impl FnMut(&Near<V::Scalar>, &Bounds<V::Scalar>, &mut Watch<'_, V>) -> Result<V::Scalar, E>,
-    ) -> Result<(), E> {
+        show: &mut impl FnMut(&Near<V::Scalar>, &Bounds<V::Scalar>) -> Result<V::Scalar, RayCastError>,
+    ) -> Result<(), RayCastError> {
         if from > *end {
             return Ok(());
         }
         let half = (to - from) * V::Scalar::from_f64(0.5);
-        let part = EdgePart { middle: from + half, half, is_last: depth == MAX_DEPTH || half == V::Scalar::ZERO };
-        self.place(part.middle);
+        let is_last = depth == MAX_DEPTH || half == V::Scalar::ZERO || self.target == V::Scalar::infinity();
+        self.place(from + half);
         self.space.parts += 1;
-        let rest = self.space.items.len();
-        for at in items {
-            let item = self.space.items[at];
-            let known = match item.checked_sub(self.skeleton.links.len()) {
-                None => self.look_at_link(item, part, watch),
-                Some(pair) => self.look_at_pair(item, &self.skeleton.pairs[pair], part, watch),
-            };
-            if known == PartState::Coarse {
-                self.space.items.push(item);
+        let rest = self.space.views.len();
+        for at in views {
+            let view = self.space.views[at];
+            if self.is_coarse(view, EdgePart { times, half, is_last }) {
+                self.space.views.push(view);
             }
         }
-        let coarse = rest..self.space.items.len();
+        let coarse = rest..self.space.views.len();
         if !coarse.is_empty() {
-            for half in [[from, part.middle], [part.middle, to]] {
-                self.visit(half, depth + 1, coarse.clone(), end, watch, show)?;
+            for part in [[from, from + half], [from + half, to]] {
+                self.visit(part, depth + 1, coarse.clone(), end, show)?;
             }
-            self.space.items.truncate(rest);
+            self.space.views.truncate(rest);
         }
         if depth <= CAST_DEPTH {
             join(&mut self.space.near);
@@ -162,7 +142,7 @@ impl<V: Vector> Sweep<'_, V> {
                 // A contact found before bounds those after it.
                 if near.from <= *end {
                     let cut = Near { to: near.to.min(*end), ..near };
-                    *end = end.min(show(&cut, &self.space.bounds[near.item], watch)?);
+                    *end = end.min(show(&cut, &self.space.bounds[near.view])?);
                 }
             }
         }
@@ -173,154 +153,55 @@ impl<V: Vector> Sweep<'_, V> {
     fn place(&mut self, time: V::Scalar) {
         self.space.moving.clear();
         for (before, stage) in &self.skeleton.stages {
-            let carrier = self.moving(*before);
-            let moving = carrier.beyond(stage, self.edge.at(stage.column, time));
-            self.space.moving.push(moving);
+            let carrier = before.map_or(Moving::WORLD, |before| self.space.moving[before]);
+            self.space.moving.push(carrier.beyond(stage, self.edge.at(stage.column, time)));
         }
     }
 
-    /// How a joint moves, or the world.
-    fn moving(&self, stage: Option<usize>) -> Moving<V> {
-        stage.map_or(Moving::WORLD, |stage| self.space.moving[stage])
-    }
-
-    /// What is near a link in the scene.
-    fn look_at_link(&mut self, item: usize, part: EdgePart<V::Scalar>, watch: &mut Watch<'_, V>) -> PartState {
-        let link = &self.skeleton.links[item];
-        let (moving, bounds) = (self.moving(link.stage), self.space.bounds[item]);
-        let seen =
-            |around: &Around<V>| SweptBall::of(*around, V::Scalar::ZERO, [&moving, &Moving::WORLD], &bounds, part.half);
+    /// Looks for what is near a link, body by body. If something is, and the link moves too far, the part is to be halved
+    /// instead.
+    fn is_coarse(&mut self, index: usize, EdgePart { times: [from, to], half, is_last }: EdgePart<V::Scalar>) -> bool {
+        let View { link, base, route } = &self.skeleton.views[index];
+        let (link, base) = (&self.skeleton.links[*link], base.map(|base| &self.skeleton.links[base]));
+        let (world, placed, bounds) = (Moving::WORLD, &self.space.moving, &self.space.bounds[index]);
+        let moving = |stage: Option<usize>| stage.map_or(&world, |stage| &placed[stage]);
+        let (carrier, ground) = (moving(link.stage), base.map(|base| moving(base.stage)));
+        let seen = |around: &Around<V>| SweptBall::of(*around, route.rim, carrier, ground, bounds, half);
+        let is_near = |reach: &SweptBall<V>, Around { ball, distance }: &Around<V>| {
+            let frame = &ground.unwrap_or(&world).frame;
+            let (center, room) = (frame.of(ball.center), ball.radius + frame.error_of(*distance));
+            reach.meets_box(&Aabb { min: center, max: center }, room + self.target)
+        };
         let reach = seen(&link.ball);
-        let is_coarse = !part.is_last && reach.drift > link.ball.ball.radius * V::Scalar::from_f64(COARSE);
+        let smaller = base.map_or(link.ball.ball.radius, |base| link.ball.ball.radius.min(base.ball.ball.radius));
+        let is_coarse = !is_last && reach.drift > smaller * V::Scalar::from_f64(COARSE);
         let mut found = core::mem::take(&mut self.space.found);
         found.clear();
-        let planes = self.half_spaces.iter().enumerate();
-        found.extend(planes.filter(|(_, (_, plane))| reach.meets_plane(plane, self.target)).map(|(k, _)| k));
-        let planes = found.len();
-        if !(is_coarse && planes > 0) {
+        if let Some(base) = base {
+            found.extend(0..if is_near(&reach, &base.ball) { base.balls.len() } else { 0 });
+        } else {
+            let planes = self.half_spaces.iter();
+            found.extend(planes.filter(|(_, plane)| reach.meets_plane(plane, self.target)).map(|(index, _)| *index));
             self.tree.within(&BoxDistance::new(reach.around()), self.target, |body| {
                 found.push(body);
                 if is_coarse { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             });
         }
-        let known = match (found.is_empty(), is_coarse) {
-            (true, _) => PartState::Free,
-            (false, true) => PartState::Coarse,
-            (false, false) => PartState::Found,
-        };
-        let first = self.space.near.len();
-        if known == PartState::Found {
-            for (body, around) in link.balls.iter().enumerate() {
-                let reach = seen(around);
-                for (k, &other) in found.iter().enumerate() {
-                    let (other, is_near) = if k < planes {
-                        let (index, plane) = &self.half_spaces[other];
-                        (*index, reach.meets_plane(plane, self.target))
-                    } else {
-                        (other, self.tree.get(other).is_none_or(|around| reach.meets_box(&around, self.target)))
-                    };
-                    if is_near {
-                        self.space.near.push(part.near(item, body, other));
-                    }
+        let is_coarse = is_coarse && !found.is_empty();
+        for (body, around) in link.balls.iter().enumerate().filter(|_| !is_coarse && !found.is_empty()) {
+            let reach = seen(around);
+            let meets = |other: usize| match (base, self.tree.get(other)) {
+                (Some(base), _) => is_near(&reach, &base.balls[other]),
+                (None, Some(around)) => reach.meets_box(&around, self.target),
+                (None, None) => {
+                    self.half_spaces.iter().any(|(k, plane)| *k == other && reach.meets_plane(plane, self.target))
                 }
-            }
+            };
+            let near = found.iter().filter(|&&other| meets(other));
+            self.space.near.extend(near.map(|&other| Near { from, to, view: index, body, other }));
         }
         self.space.found = found;
-        if watch.is_on() && known != PartState::Coarse {
-            for (body, around) in link.balls.iter().enumerate() {
-                let within = seen(around);
-                self.show_apart([item, body], part, first, [&reach, &within], watch);
-            }
-        }
-        known
-    }
-
-    /// Shows the planes that keep a body of a link from those of the scene that are not near: as far as all of the link
-    /// is from a box, or the body alone.
-    fn show_apart(
-        &self,
-        [item, body]: [usize; 2],
-        part: EdgePart<V::Scalar>,
-        first: usize,
-        [of_link, of_body]: [&SweptBall<V>; 2],
-        watch: &mut Watch<'_, V>,
-    ) {
-        let mut show = |other: usize, normal: V| {
-            if !self.space.near[first..].iter().any(|near| near.body == body && near.other == other) {
-                watch.show(part.times(), [item, body], Met::Obstacle(other), [normal; 2]);
-            }
-        };
-        for (index, plane) in self.half_spaces {
-            show(*index, plane.unit);
-        }
-        let (around, center) = (of_link.around(), Aabb { min: of_body.center, max: of_body.center });
-        self.tree.within(&BoxDistance::new(around), V::Scalar::infinity(), |other| {
-            let Some(at) = self.tree.get(other) else { return ControlFlow::Continue(()) };
-            let [gap, from_center] = [gap_to(&around, &at), gap_to(&center, &at)];
-            let gap = if gap.norm() > self.target { gap } else { from_center };
-            show(other, gap.unit().unwrap_or(V::ZERO));
-            ControlFlow::Continue(())
-        });
-    }
-
-    /// Which bodies of two links are near one another.
-    fn look_at_pair(
-        &mut self,
-        item: usize,
-        pair: &LinkPair<V>,
-        part: EdgePart<V::Scalar>,
-        watch: &mut Watch<'_, V>,
-    ) -> PartState {
-        let [a, b] = pair.links.map(|link| &self.skeleton.links[link]);
-        let [moving, base] = [a, b].map(|link| self.moving(link.stage));
-        let bounds = self.space.bounds[item];
-        let seen = |around: &Around<V>| SweptBall::of(*around, pair.route.rim, [&moving, &base], &bounds, part.half);
-        let between = |reach: &SweptBall<V>, other: &Around<V>| reach.center - base.frame.of(other.ball.center);
-        let is_near = |reach: &SweptBall<V>, other: &Around<V>| {
-            let error = base.frame.error_of(other.distance);
-            !(between(reach, other).norm() > (reach.radius + other.ball.radius + error + self.target) * above::<V>())
-        };
-        // A plane across that, in the frame of the second link, separates what is not near.
-        let mut show = |body: usize, other: usize, between: V| {
-            let frame = base.frame.then(&b.route.tail);
-            let normal = frame.rotation.transpose_mul(between.unit().unwrap_or(V::ZERO));
-            let met = Met::Link { link: pair.links[1], body: other };
-            watch.show(part.times(), [pair.links[0], body], met, [normal; 2]);
-        };
-        let reach = seen(&a.ball);
-        if !is_near(&reach, &b.ball) {
-            for (body, other) in (0..a.balls.len()).flat_map(|body| (0..b.balls.len()).map(move |other| (body, other)))
-            {
-                show(body, other, between(&reach, &b.ball));
-            }
-            return PartState::Free;
-        }
-        let smaller = a.ball.ball.radius.min(b.ball.ball.radius);
-        if !part.is_last && reach.drift > smaller * V::Scalar::from_f64(COARSE) {
-            return PartState::Coarse;
-        }
-        for (body, around) in a.balls.iter().enumerate() {
-            let reach = seen(around);
-            for (other, around) in b.balls.iter().enumerate() {
-                if is_near(&reach, around) {
-                    self.space.near.push(part.near(item, body, other));
-                } else {
-                    show(body, other, between(&reach, around));
-                }
-            }
-        }
-        PartState::Found
-    }
-}
-
-impl<S: Scalar> EdgePart<S> {
-    fn times(self) -> [S; 2] {
-        [self.middle - self.half, self.middle + self.half]
-    }
-
-    fn near(self, item: usize, body: usize, other: usize) -> Near<S> {
-        let [from, to] = self.times();
-        Near { from, to, item, body, other }
+        is_coarse
     }
 }
 
@@ -332,25 +213,31 @@ impl<V: Vector> SweptBall<V> {
     fn of(
         Around { ball: BoundingSphere { center, radius }, distance }: Around<V>,
         rim: V::Scalar,
-        [moving, base]: [&Moving<V>; 2],
+        moving: &Moving<V>,
+        base: Option<&Moving<V>>,
         bounds: &Bounds<V::Scalar>,
         half: V::Scalar,
     ) -> Self {
         let (number, squared) = (V::Scalar::from_f64, half * half);
         let center = moving.frame.of(center);
-        let carried = base.velocity_at(center);
-        let velocity = moving.velocity_at(center) - carried;
-        let turning = axial::turning(base.spin, velocity);
-        let acceleration = moving.acceleration_at(center) - base.acceleration_at(center) - turning - turning;
+        let (mut velocity, mut acceleration) = (moving.velocity_at(center), moving.acceleration_at(center));
         let from_last = distance + rim;
         let bent = bounds.jerk.of(from_last) * half * squared * number(1.0 / 6.0);
         let always = bounds.speed.of(from_last) * half;
+        let (mut lengths, mut turn_error) = (always + bent + distance, moving.frame.turn_error + epsilons(64.0));
+        if let Some(base) = base {
+            let (carried, accelerated) = (base.velocity_at(center), base.acceleration_at(center));
+            velocity -= carried;
+            let turning = axial::turning(base.spin, velocity);
+            acceleration = acceleration - accelerated - turning - turning;
+            lengths += carried.norm() * half + accelerated.norm() * squared;
+            turn_error += base.frame.turn_error;
+        }
         let way = velocity.abs() * half + acceleration.abs() * (squared * number(0.5)) + V::splat(bent);
         let way = way.min(V::splat(always));
         let drift = way.norm().min(always);
         // What rounding does to where the ball is, and to derivatives of which these lengths are made.
-        let lengths = always + bent + carried.norm() * half + base.acceleration_at(center).norm() * squared;
-        let lost = (moving.frame.turn_error + base.frame.turn_error + epsilons(64.0)) * (lengths + distance);
+        let lost = turn_error * lengths;
         let room = radius + moving.frame.error_of(distance) + lost;
         Self { center, along: (way + V::splat(room)) * above::<V>(), radius: (room + drift) * above::<V>(), drift }
     }
@@ -382,7 +269,7 @@ fn above<V: Vector>() -> V::Scalar {
 
 /// Joins parts that follow one another, and puts what is left in the order of time.
 fn join<S: Scalar>(near: &mut Vec<Near<S>>) {
-    let key = |near: &Near<S>| (near.item, near.body, near.other);
+    let key = |near: &Near<S>| (near.view, near.body, near.other);
     let by_time = |a: &Near<S>, b: &Near<S>| a.from.partial_cmp(&b.from).unwrap_or(core::cmp::Ordering::Equal);
     near.sort_unstable_by(|a, b| key(a).cmp(&key(b)).then(by_time(a, b)));
     near.dedup_by(|next, last| {

@@ -1,10 +1,12 @@
 //! The motion of what several joints carry, such as a link of a robot.
 
-use convex_support::{AngularVelocity, BoundingSphere, Matrix, Scalar, Vector};
+use convex_support::{BoundingSphere, Matrix, Scalar, Vector};
 use num_traits::Float as _;
 
-use super::rigid_motion::{RigidMotion, rate};
+use super::chain_bounds::Bounds;
+use super::rigid_motion::RigidMotion;
 use super::trajectory::{Displacement, Trajectory, TurningPlane};
+use crate::axial;
 
 /// The motion of a body at the end of a chain of joints, each of which moves at a constant rate: a link of a robot
 /// along a straight edge in joint space.
@@ -52,32 +54,21 @@ impl<'j, V: Vector> ChainMotion<'j, V> {
         Self { joints }
     }
 
-    /// Bounds on the speed and the acceleration of all points of a ball until `end`.
-    ///
-    /// Let `y` be a point as the joints beyond joint `k` have moved it, at most at the speed `s` and the acceleration
-    /// `a`. Joint `k` takes it to `c + t·v + R·(y − c)`, with the derivatives
-    ///
-    /// > v + ω × R(y − c) + Rẏ   and   ω × (ω × R(y − c)) + 2ω × Rẏ + Rÿ.
-    ///
-    /// So with `r ≥ |y − c|` they are at most `|v| + |ω|·r + s` and `|ω|²·r + 2|ω|·s + a`. That `r` is the distance
-    /// from the centre of the next joint at time 0, what that may have moved until `end`, and the next joint's `r`,
-    /// whatever the angles.
-    fn bounds(&self, ball: BoundingSphere<V>, end: V::Scalar) -> (V::Scalar, V::Scalar) {
-        let two = V::Scalar::from_f64(2.0);
-        let (mut near, mut reach) = (ball.center, ball.radius);
-        let (mut speed, mut acceleration) = (V::Scalar::ZERO, V::Scalar::ZERO);
+    /// Bounds for all points of a ball, by its radius, until `end`. A joint is as far from the next one's centre as at
+    /// time 0, and what that may have moved until `end`.
+    fn bounds(&self, ball: BoundingSphere<V>, end: V::Scalar) -> Bounds<V::Scalar> {
+        let (mut bounds, mut near) = (Bounds::REST, ball.center);
         for joint in self.joints.iter().rev() {
-            let (v, w) = (joint.velocity.norm(), rate(&joint.angular_velocity.cross_matrix()));
+            let (v, w) = (joint.velocity.norm(), axial::vector::<V>(joint.angular_velocity).norm());
             // A joint that does not turn has no centre.
             if w > V::Scalar::ZERO {
-                reach += (near - joint.center).norm();
+                bounds.lengthen((near - joint.center).norm());
                 near = joint.center;
-                acceleration += w * (w * reach + two * speed);
+                bounds.turn(w, V::Scalar::ZERO);
             }
-            speed += v + w * reach;
-            reach += v * end;
+            bounds.slide(v, v * end);
         }
-        (speed, acceleration)
+        bounds
     }
 }
 
@@ -126,9 +117,9 @@ impl<V: Vector> Trajectory for ChainMotion<'_, V> {
         TurningPlane { from, to }: TurningPlane<V>,
         [start, end]: [V::Scalar; 2],
     ) -> V::Scalar {
-        let (speed, acceleration) = self.bounds(ball, end);
+        let bounds = self.bounds(ball, end);
         let rate = if from == to { V::Scalar::ZERO } else { (to - from).norm() / (end - start) };
         let longest = from.norm().max(to.norm());
-        V::Scalar::from_f64(2.0) * rate * speed + longest * acceleration
+        V::Scalar::from_f64(2.0) * rate * bounds.speed.of(ball.radius) + longest * bounds.acceleration.of(ball.radius)
     }
 }

@@ -3,6 +3,7 @@
 mod approach;
 mod box_look;
 mod boxes;
+mod chain_bounds;
 mod chain_motion;
 mod closest_points;
 mod contact;
@@ -27,6 +28,7 @@ mod rigid_motion;
 mod rough_look;
 mod trajectory;
 
+pub(crate) use chain_bounds::{Bounds, Linear};
 pub use chain_motion::ChainMotion;
 pub(crate) use motion_cast::{check, checked};
 pub use motion_cast::{motion_cast, motion_cast_with};

@@ -6,7 +6,7 @@ use convex_support::{AngularVelocity, BoundingSphere, Matrix, Scalar, Vector};
 use num_traits::Float as _;
 
 use super::trajectory::{Displacement, MovingBall, Trajectory, TurningPlane};
-use crate::simplex::cross;
+use crate::axial;
 
 /// A body's motion at a constant velocity and a constant angular velocity about a centre that moves with it:
 ///
@@ -97,7 +97,7 @@ impl<V: Vector> RigidMotion<V> {
         let straight = Self::between(from, to, duration);
         let turn = V::AngularVelocity::between(from.rotation, to.rotation);
         let w = turn.cross_matrix();
-        let (angle, moved) = (rate(&w), to.translation - from.translation);
+        let (angle, moved) = (axial::vector::<V>(turn).norm(), to.translation - from.translation);
         if angle == V::Scalar::ZERO {
             return straight;
         }
@@ -130,7 +130,8 @@ impl<V: Vector> RigidMotion<V> {
         TurningPlane { from, to }: TurningPlane<V>,
         interval: [V::Scalar; 2],
     ) -> V::Scalar {
-        let (w, turns) = (|v| crossed(self.angular_velocity, v), self.angular_velocity != Default::default());
+        let (w, turns) =
+            (|v| axial::turning(axial::vector(self.angular_velocity), v), self.angular_velocity != Default::default());
         if from == to {
             return if turns { longer([w(w(from)); 2]) * reach + least::<V::Scalar>() } else { V::Scalar::ZERO };
         }
@@ -153,18 +154,14 @@ impl<V: Vector> RigidMotion<V> {
         if self.angular_velocity == Default::default() {
             return (V::Scalar::ZERO, ball.radius);
         }
-        let (rate, arm) = (rate(&self.angular_velocity.cross_matrix()), ball.center - self.center);
-        let off = if arm == V::ZERO { V::Scalar::ZERO } else { crossed(self.angular_velocity, arm).norm() / rate };
+        let (rate, arm) = (axial::vector::<V>(self.angular_velocity).norm(), ball.center - self.center);
+        let off = if arm == V::ZERO {
+            V::Scalar::ZERO
+        } else {
+            axial::turning(axial::vector(self.angular_velocity), arm).norm() / rate
+        };
         (rate, off + ball.radius)
     }
-}
-
-/// `|ω|` of the matrix `ω×`, whose entries are those of `ω` twice; in 2D its second column is `(−ω, 0)`.
-pub(super) fn rate<M: Matrix>(w: &M) -> <M::Vector as Vector>::Scalar {
-    if M::Vector::DIM == 2 {
-        return w.col(0).abs().max_element();
-    }
-    M::Vector::from_fn(|i| w.col((i + 1) % 3).get((i + 2) % 3)).norm()
 }
 
 /// A bound on the error of a [turn](AngularVelocity::turn) as an operator, its product with a vector included.
@@ -178,16 +175,6 @@ pub(super) fn turn_error<V: Vector>(turn: &V::Matrix) -> V::Scalar {
     // Four more for the product with a vector.
     let units = <V::AngularVelocity as AngularVelocity<V>>::TURN_ERROR + 4.0;
     squared.sqrt() * V::Scalar::EPSILON * V::Scalar::from_f64(units)
-}
-
-/// `ω × v`, as the [matrix](AngularVelocity::cross_matrix) of `ω` makes it, without the products with its zeros.
-#[inline(always)]
-fn crossed<V: Vector>(w: V::AngularVelocity, v: V) -> V {
-    if V::DIM == 2 {
-        let w = w.coordinate(0);
-        return V::from_fn(|i| if i == 0 { -w * v.get(1) } else { w * v.get(0) });
-    }
-    cross(V::from_fn(|i| w.coordinate(i)), v)
 }
 
 /// The length of the longer of two vectors.
@@ -223,7 +210,7 @@ impl<V: Vector> Trajectory for RigidMotion<V> {
 
     #[inline]
     fn velocity(&self, time: V::Scalar, point: V) -> V {
-        self.velocity + crossed(self.angular_velocity, point - self.center - self.velocity * time)
+        self.velocity + axial::turning(axial::vector(self.angular_velocity), point - self.center - self.velocity * time)
     }
 
     #[inline]

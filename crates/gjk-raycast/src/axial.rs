@@ -6,18 +6,18 @@ use convex_support::{AngularVelocity, Matrix, Vector};
 use crate::simplex::cross;
 
 /// The vector of an angular velocity.
-pub(super) fn vector<V: Vector>(spin: V::AngularVelocity) -> V {
+pub(crate) fn vector<V: Vector>(spin: V::AngularVelocity) -> V {
     V::from_fn(|i| if V::DIM == 3 || i == 0 { spin.coordinate(i) } else { convex_support::Scalar::ZERO })
 }
 
 /// The matrix of the product with it.
-pub(super) fn matrix<V: Vector>(spin: V) -> V::Matrix {
+pub(crate) fn matrix<V: Vector>(spin: V) -> V::Matrix {
     V::AngularVelocity::from_coordinates(|i| spin.get(i)).cross_matrix()
 }
 
 /// `ω × v`.
 #[inline(always)]
-pub(super) fn turning<V: Vector>(spin: V, v: V) -> V {
+pub(crate) fn turning<V: Vector>(spin: V, v: V) -> V {
     if V::DIM == 3 {
         return cross(spin, v);
     }
@@ -27,17 +27,12 @@ pub(super) fn turning<V: Vector>(spin: V, v: V) -> V {
 
 /// `ω × ω'`, which is zero in 2D.
 #[inline(always)]
-pub(super) fn product<V: Vector>(a: V, b: V) -> V {
+pub(crate) fn product<V: Vector>(a: V, b: V) -> V {
     if V::DIM == 3 { cross(a, b) } else { V::ZERO }
 }
 
 /// The angular velocity as a rotation turns it, which leaves it alone in 2D.
 #[inline(always)]
-pub(super) fn turned<M: Matrix>(rotation: &M, spin: M::Vector) -> M::Vector {
+pub(crate) fn turned<M: Matrix>(rotation: &M, spin: M::Vector) -> M::Vector {
     if M::Vector::DIM == 3 { *rotation * spin } else { spin }
-}
-
-/// What is left of a vector across the axis of a joint.
-pub(super) fn across<V: Vector>(axis: V, v: V) -> V {
-    if V::DIM == 3 { v - axis * axis.dot(v) } else { v }
 }
