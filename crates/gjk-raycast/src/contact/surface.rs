@@ -4,7 +4,7 @@ use convex_support::{Core, Feature, Hint, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
-use super::outline::{ContactPlane, Corner, Outline, wrap};
+use super::outline::{ContactPlane, Corner, Outline, spread, wrap};
 use crate::level::Level;
 use crate::symmetric::{Across, cross, dot};
 
@@ -139,8 +139,8 @@ impl<'s, V: Vector> Side<'s, V> {
         self.known.extend(feature.points().iter().zip(feature.ids()).map(seen));
         let known = &self.known;
         let is_shown = |low: &&Corner<_>| known.len() < 3 || !known.iter().any(|high| is_hidden(low, high, self.noise));
-        let shown: SmallVec<[_; 16]> = known.iter().filter(is_shown).copied().collect();
-        wrap(&shown, &mut self.outline.corners);
+        let mut shown: SmallVec<[_; 16]> = known.iter().filter(is_shown).copied().collect();
+        wrap(&mut shown, self.noise, &mut self.outline.corners);
     }
 
     /// Looks whether the outline is that of a face or an edge, as it mostly is: one support point then tells the levels
@@ -209,15 +209,12 @@ impl<'s, V: Vector> Side<'s, V> {
         let (mut value, mut most, mut lost) = (around[0].height, self.top, self.noise);
         for _ in 0..2 * MAX_SUPPORT_POINTS {
             let tangent = Tangent::through(&around);
-            let heights = || around.iter().map(|corner| corner.height);
-            let lowest = heights().fold(self.top, V::Scalar::min);
-            let highest = heights().fold(lowest, V::Scalar::max);
             let allowed = self.rounding(&tangent);
             // NaN, of points in a row, ends this too.
             if !allowed.is_finite() {
                 break;
             }
-            value = tangent.level(at).max(lowest).min(highest);
+            value = between(&around, at);
             lost = allowed;
             if value + self.noise >= self.reach {
                 break;
@@ -301,6 +298,29 @@ impl<'s, V: Vector> Side<'s, V> {
 
 type Corners<S> = SmallVec<[Corner<S>; 3]>;
 
+/// The height between the ends of a segment, or between the corners of a triangle, counterclockwise. A place that is
+/// beyond an edge by rounding has the height of the nearest point of the edges: the plane of a steep triangle is soon
+/// far from the shape there.
+fn between<S: Scalar>(corners: &[Corner<S>], at: Across<S>) -> S {
+    let to = |i: usize| difference(at, corners[i].at);
+    let of_edge = |i: usize, j: usize| {
+        let e = difference(to(i), to(j));
+        let share = (-dot(e, to(i)) / dot(e, e)).max(S::ZERO).min(S::ONE);
+        let (x, y) = (to(i).0 + e.0 * share, to(i).1 + e.1 * share);
+        (dot((x, y), (x, y)), corners[i].height + (corners[j].height - corners[i].height) * share)
+    };
+    if corners.len() < 3 {
+        return of_edge(0, 1).1;
+    }
+    let weights = [cross(to(1), to(2)), cross(to(2), to(0)), cross(to(0), to(1))];
+    if weights.iter().any(|weight| !(*weight >= S::ZERO)) {
+        let edges = [of_edge(0, 1), of_edge(1, 2), of_edge(2, 0)];
+        return edges.iter().fold(edges[0], |best, &next| if next.0 < best.0 { next } else { best }).1;
+    }
+    let [p, q, r] = [0, 1, 2].map(|i| corners[i].height * weights[i]);
+    (p + q + r) / (weights[0] + weights[1] + weights[2])
+}
+
 fn difference<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
     (b.0 - a.0, b.1 - a.1)
 }
@@ -318,7 +338,7 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, n
     if let [p, q] = around[..] {
         let e = from(p.at, q.at);
         let turn = cross(e, from(p.at, next.at));
-        if turn.abs() > dot(e, e) * (S::EPSILON * S::from_f64(64.0)) {
+        if turn.abs() > spread(e) * noise {
             // Counterclockwise.
             if turn < S::ZERO {
                 around.swap(0, 1);
@@ -330,18 +350,22 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, n
         }
         return true;
     }
-    // The place may be that far on the other side.
+    // The place may be that far on the other side, but not behind what is next, as where both sides lead the same way.
     let side = |corner: &Corner<S>| {
-        let e = from(next.at, corner.at);
-        (cross(e, from(next.at, at)), noise * (e.0.abs() + e.1.abs()))
+        let (e, to) = (from(next.at, corner.at), from(next.at, at));
+        let allowed = spread(e) * noise;
+        (cross(e, to), allowed, dot(e, to) >= -allowed)
     };
     let mut best: Option<(S, Corners<S>)> = None;
     for i in 0..3 {
         let (p, q) = (around[i], around[(i + 1) % 3]);
-        let ((left, allowed), (right, as_well)) = (side(&p), side(&q));
-        if left >= -allowed && right <= as_well {
+        let ((left, allowed, ahead), (right, as_well, too)) = (side(&p), side(&q));
+        // No plane is known by corners that are on a line but for rounding.
+        let base = from(p.at, q.at);
+        let is_known = cross(base, from(p.at, next.at)) > spread(base) * noise;
+        if is_known && left >= -allowed && right <= as_well && (ahead || too) {
             let corners = SmallVec::from_buf([p, q, next]);
-            let level = Tangent::through(&corners).level(at);
+            let level = between(&corners, at);
             // Where the place is at a corner there are two, and the one that leaves that corner out is higher.
             if best.as_ref().is_none_or(|(known, _)| level > *known) {
                 best = Some((level, corners));
