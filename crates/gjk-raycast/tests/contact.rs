@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use crate::common::{at, cuboid, turned};
-use convex_support::glam::{DQuat, DVec2, DVec3};
+use convex_support::glam::{DQuat, DVec2, DVec3, Vec3A};
 use convex_support::{
     Affine, Ball, Capsule, Cone, Cylinder, Matrix, Point, Polytope, Posed, Rounded, Segment, SupportMap, Triangle,
     Vector, closest_point, glam,
@@ -396,6 +396,51 @@ fn odd_bodies_have_few_points_that_are_on_them() {
                 }
             }
         }
+    }
+}
+
+/// Outlines that are narrower than the rounding of their coordinates, of needles and of plates seen from the side, were
+/// drawn as polygons whose corners turn by rounding alone. Clipped along their edges, the other outline reached farther
+/// beyond the needle's end than the needle is long: single-precision points were off by up to half of the size. Such
+/// outlines are segments. Levels were read off planes through points as near to one line, and beyond these points.
+#[test]
+fn what_is_narrower_than_rounding_is_a_segment() {
+    let upright = [0.000_340_001_2_f32, 0.000_340_001_2, 0.707_106_7, 0.707_106_7];
+    let aside = [0.0, 0.707_106_77, 0.0, 0.707_106_77_f32];
+    let edgewise = [0.0, 0.0, 0.707_106_77, 0.707_106_77_f32];
+    let double = |q: [f32; 4]| glam::Quat::from_array(q).as_dquat().normalize();
+    let (radius, long) = (1e-7, 0.129_746_47);
+    // A needle beside a box, and a flat stick before a plate.
+    let (needle, side) = ([1.048_909_8, 0.166_029_24, -0.125], [-1.75, -1.424_638, -0.897_294_6]);
+    let (stick, plate) = ([-0.459_427_8, -1.25, -0.5], [-0.875, -1.700_154_3, 1.25]);
+    let (box_size, stick_size, plate_size) = ([1.5, 1.0, 0.964_917_36], [1e-9, 1e-3, 1.5], [1.5, 2.0, 1e-7]);
+    let single = |q| glam::Quat::from_array(q);
+    let a = turned(Cylinder::<Vec3A>::new(long as f32, radius as f32).expect(VALID), single(upright), needle);
+    let b = turned(cuboid::<Vec3A>(box_size), single(aside), side);
+    let known_a = turned(Cylinder::<DVec3>::new(long, radius).expect(VALID), double(upright), needle);
+    let known_b = turned(cuboid::<DVec3>(box_size), double(aside), side);
+    are_on(&a, &b, &known_a, &known_b);
+    let a = turned(cuboid::<Vec3A>(stick_size), single(edgewise), stick);
+    let b = turned(cuboid::<Vec3A>(plate_size), glam::Quat::from_rotation_z(1.374_06e-6), plate);
+    let known_a = turned(cuboid::<DVec3>(stick_size), double(edgewise), stick);
+    let known_b = turned(cuboid::<DVec3>(plate_size), DQuat::from_rotation_z(1.374_06e-6), plate);
+    are_on(&a, &b, &known_a, &known_b);
+}
+
+/// No point of a contact in single precision is outside these bodies by more than rounding.
+fn are_on<A: SupportMap<Vector = DVec3>, B: SupportMap<Vector = DVec3>>(
+    a: &dyn SupportMap<Vector = Vec3A>,
+    b: &dyn SupportMap<Vector = Vec3A>,
+    known_a: &A,
+    known_b: &B,
+) {
+    let found = contact(a, b, 3.0, SignedDistanceOptions::default()).expect("near");
+    for p in found.points() {
+        let outside = |point: Vec3A, body: &dyn SupportMap<Vector = DVec3>| {
+            let point = Point::new(point.as_dvec3()).expect("finite");
+            signed_distance(&point, body, SignedDistanceOptions::default()).lower
+        };
+        assert!(outside(p.point_a, known_a) < 1e-5 && outside(p.point_b, known_b) < 1e-5, "{found:?}");
     }
 }
 

@@ -1,5 +1,7 @@
 //! The outlines of features in the plane of contact.
 
+use core::cmp::Ordering;
+
 use convex_support::{Feature, Rim, Scalar, Vector};
 use smallvec::SmallVec;
 
@@ -94,14 +96,14 @@ impl<S: Scalar> Outline<S> {
             self.corners.push(seen((point, id)));
             return;
         }
-        let points: SmallVec<[_; 16]> = feature.points().iter().zip(feature.ids()).map(seen).collect();
+        let mut points: SmallVec<[_; 16]> = feature.points().iter().zip(feature.ids()).map(seen).collect();
         let across = |v: V| (e.dot(v), f.dot(v));
         let ellipse = |rim: Rim<V>| Ellipse {
             center: across(from + rim.center),
             radii: rim.ends.map(|end| across(end - rim.center)),
         };
         self.rim = feature.rim().map(ellipse);
-        wrap(&points, &mut self.corners);
+        wrap(&mut points, S::ZERO, &mut self.corners);
     }
 
     /// The height at a place of the plane through the three corners that span most; linear along a segment.
@@ -129,38 +131,58 @@ impl<S: Scalar> Outline<S> {
     }
 }
 
-/// The convex hull of points in the plane, counterclockwise, by wrapping: from each corner the next is the one that has
-/// no point to its right. Points within rounding of an edge are none of the corners.
-pub(super) fn wrap<S: Scalar>(points: &[Corner<S>], corners: &mut SmallVec<[Corner<S>; 16]>) {
-    let is_before = |a: &Corner<S>, b: &Corner<S>| a.at.0 < b.at.0 || (a.at.0 == b.at.0 && a.at.1 < b.at.1);
-    let Some(first) = points.iter().reduce(|a, b| if is_before(b, a) { b } else { a }) else { return };
+/// How long a vector is, to a factor of √2.
+pub(super) fn spread<S: Scalar>((x, y): Across<S>) -> S {
+    x.abs() + y.abs()
+}
+
+/// The convex hull of points in the plane, counterclockwise from the one that is least in `x`. Points within rounding
+/// of an edge are none of the corners: what is no wider than that is a segment, and what is no longer a single point.
+/// Coordinates are off by the `noise`, which may be more than the whole hull: a needle far away.
+///
+/// After Andrew: of the points in their order along a long way through the hull, those that turn to the inside are
+/// dropped, on the way there and on the way back.
+pub(super) fn wrap<S: Scalar>(points: &mut [Corner<S>], noise: S, corners: &mut SmallVec<[Corner<S>; 16]>) {
     let edge = |a: &Corner<S>, b: &Corner<S>| (b.at.0 - a.at.0, b.at.1 - a.at.1);
-    let reach = points.iter().map(|p| edge(first, p)).map(|e| dot(e, e)).fold(S::ZERO, S::max);
-    let rounding = S::EPSILON * S::from_f64(64.0) * reach;
-    let mut last = *first;
-    for _ in 0..points.len() {
-        corners.push(last);
-        let mut next: Option<&Corner<S>> = None;
-        for point in points {
-            let e = edge(&last, point);
-            // The same point twice is one corner.
-            if dot(e, e) <= rounding * S::EPSILON {
-                continue;
-            }
-            let is_better = next.is_none_or(|next| {
-                let best = edge(&last, next);
-                let turn = cross(best, e);
-                turn < -rounding || (turn <= rounding && dot(best, e) > S::ZERO && dot(e, e) > dot(best, best))
-            });
-            if is_better {
-                next = Some(point);
-            }
-        }
-        let Some(next) = next else { break };
-        let back = edge(next, first);
-        if dot(back, back) <= rounding * S::EPSILON {
-            break;
-        }
-        last = *next;
+    let Some(&first) = points.first() else { return };
+    let longer = |way: Across<S>, e: Across<S>| if dot(e, e) > dot(way, way) { e } else { way };
+    let way = points.iter().map(|p| edge(&first, p)).fold((S::ZERO, S::ZERO), longer);
+    let reach = spread(way);
+    let noise = noise.max(reach * (S::EPSILON * S::from_f64(64.0)));
+    if !(reach > noise) {
+        corners.push(first);
+        return;
     }
+    let along = |p: &Corner<S>| dot(way, p.at);
+    points.sort_unstable_by(|a, b| along(a).partial_cmp(&along(b)).unwrap_or(Ordering::Equal));
+    let is_corner = |before: &Corner<S>, corner: &Corner<S>, next: &Corner<S>| {
+        let base = edge(before, next);
+        cross(edge(before, corner), base) > spread(base) * noise
+    };
+    let last = points.len() - 1;
+    for is_back in [false, true] {
+        let begin = corners.len();
+        for i in 0..=last {
+            let next = points[if is_back { last - i } else { i }];
+            while let [.., before, corner] = &corners[begin..] {
+                if is_corner(before, corner, &next) {
+                    break;
+                }
+                corners.pop();
+            }
+            // What ends one way begins the other.
+            if i < last {
+                corners.push(next);
+            }
+        }
+    }
+    if let [start, second, .., before] = &corners[..]
+        && corners.len() > 2
+        && !is_corner(before, start, second)
+    {
+        corners.remove(0);
+    }
+    let is_before = |a: &Corner<S>, b: &Corner<S>| a.at.0 < b.at.0 || (a.at.0 == b.at.0 && a.at.1 < b.at.1);
+    let least = (1..corners.len()).fold(0, |least, i| if is_before(&corners[i], &corners[least]) { i } else { least });
+    corners.rotate_left(least);
 }

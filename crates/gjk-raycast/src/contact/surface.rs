@@ -4,7 +4,7 @@ use convex_support::{Core, Feature, Hint, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 use smallvec::SmallVec;
 
-use super::outline::{ContactPlane, Corner, Outline, wrap};
+use super::outline::{ContactPlane, Corner, Outline, spread, wrap};
 use crate::level::Level;
 use crate::symmetric::{Across, cross, dot};
 
@@ -14,6 +14,9 @@ pub(super) const MAX_SUPPORT_POINTS: usize = 32;
 
 /// As many points as are kept of a shape.
 const KNOWN: usize = 24;
+
+/// As many planes as are kept of a shape.
+const PLANES: usize = 8;
 
 /// How steep a side of a shape is, as a slope, beyond which nothing is shown.
 const STEEP: f64 = 4.0;
@@ -69,6 +72,11 @@ impl<S: Scalar> Tangent<S> {
         Self { at: first.at, level: first.height, gradient }
     }
 
+    /// The plane so far above this one.
+    fn raised(self, by: S) -> Self {
+        Self { level: self.level + by, ..self }
+    }
+
     fn level(&self, at: Across<S>) -> S {
         self.level + dot(self.gradient, difference(self.at, at))
     }
@@ -85,9 +93,11 @@ pub(super) struct Side<'s, V: Vector> {
     pub(super) outline: Outline<V::Scalar>,
     /// Points of the shape that are known: first those in the slab, then what levels were found by.
     known: SmallVec<[Corner<V::Scalar>; KNOWN]>,
+    /// Planes that no point of the shape is beyond, which bound the level of every place.
+    planes: SmallVec<[Tangent<V::Scalar>; PLANES]>,
     /// How far the shape reaches, as it is known and at most.
     reach: V::Scalar,
-    pub(super) top: V::Scalar,
+    top: V::Scalar,
     /// The face, or a plane along the edge, that all corners are in and no point of the shape is beyond.
     flat: Option<Tangent<V::Scalar>>,
     /// What the coordinates of points lose by rounding.
@@ -121,6 +131,7 @@ impl<'s, V: Vector> Side<'s, V> {
             radius: zero,
             outline: Outline::empty(),
             known: SmallVec::new(),
+            planes: SmallVec::new(),
             reach: zero,
             top: zero,
             flat: Some(Tangent { at, level: zero, gradient: at }),
@@ -139,8 +150,8 @@ impl<'s, V: Vector> Side<'s, V> {
         self.known.extend(feature.points().iter().zip(feature.ids()).map(seen));
         let known = &self.known;
         let is_shown = |low: &&Corner<_>| known.len() < 3 || !known.iter().any(|high| is_hidden(low, high, self.noise));
-        let shown: SmallVec<[_; 16]> = known.iter().filter(is_shown).copied().collect();
-        wrap(&shown, &mut self.outline.corners);
+        let mut shown: SmallVec<[_; 16]> = known.iter().filter(is_shown).copied().collect();
+        wrap(&mut shown, self.noise, &mut self.outline.corners);
     }
 
     /// Looks whether the outline is that of a face or an edge, as it mostly is: one support point then tells the levels
@@ -155,9 +166,19 @@ impl<'s, V: Vector> Side<'s, V> {
         };
         let allowed = self.rounding(&tangent);
         let is_in = |corner: &Corner<V::Scalar>| (corner.height - tangent.level(corner.at)).abs() <= allowed;
-        if corners.iter().all(is_in) && self.beyond(&tangent).is_some_and(|(_, by)| by <= allowed) {
+        if !corners.iter().all(is_in) {
+            return;
+        }
+        let Some((_, by)) = self.beyond(&tangent) else { return };
+        self.planes.push(tangent.raised(by.max(V::Scalar::ZERO) + allowed));
+        if by <= allowed {
             self.flat = Some(tangent);
         }
+    }
+
+    /// What the level at a place is at most, as planes that are known tell.
+    pub(super) fn bound(&self, at: Across<V::Scalar>) -> V::Scalar {
+        self.planes.iter().map(|plane| plane.level(at)).fold(self.top, V::Scalar::min)
     }
 
     /// What a level of a plane loses by rounding.
@@ -205,19 +226,20 @@ impl<'s, V: Vector> Side<'s, V> {
         if let (Some(tangent), false) = (&self.flat, is_aside) {
             return Some(Level { value: tangent.level(at), error: self.rounding(tangent) });
         }
+        let mut most = self.bound(at);
+        if most < least {
+            return None;
+        }
         let mut around = if is_aside { self.beside(at)? } else { self.around(at) };
-        let (mut value, mut most, mut lost) = (around[0].height, self.top, self.noise);
+        let (mut value, mut lost) = (around[0].height, self.noise);
         for _ in 0..2 * MAX_SUPPORT_POINTS {
             let tangent = Tangent::through(&around);
-            let heights = || around.iter().map(|corner| corner.height);
-            let lowest = heights().fold(self.top, V::Scalar::min);
-            let highest = heights().fold(lowest, V::Scalar::max);
             let allowed = self.rounding(&tangent);
             // NaN, of points in a row, ends this too.
             if !allowed.is_finite() {
                 break;
             }
-            value = tangent.level(at).max(lowest).min(highest);
+            value = between(&around, at);
             lost = allowed;
             if value + self.noise >= self.reach {
                 break;
@@ -235,7 +257,11 @@ impl<'s, V: Vector> Side<'s, V> {
             }
             support_points -= 1;
             let Some((next, by)) = self.beyond(&tangent) else { break };
-            most = most.min(value + by.max(V::Scalar::ZERO) + allowed);
+            let plane = tangent.raised(by.max(V::Scalar::ZERO) + allowed);
+            most = most.min(plane.level(at));
+            if self.planes.len() < PLANES {
+                self.planes.push(plane);
+            }
             if most < least {
                 return None;
             }
@@ -301,6 +327,29 @@ impl<'s, V: Vector> Side<'s, V> {
 
 type Corners<S> = SmallVec<[Corner<S>; 3]>;
 
+/// The height between the ends of a segment, or between the corners of a triangle, counterclockwise. A place that is
+/// beyond an edge by rounding has the height of the nearest point of the edges: the plane of a steep triangle is soon
+/// far from the shape there.
+fn between<S: Scalar>(corners: &[Corner<S>], at: Across<S>) -> S {
+    let to = |i: usize| difference(at, corners[i].at);
+    let of_edge = |i: usize, j: usize| {
+        let e = difference(to(i), to(j));
+        let share = (-dot(e, to(i)) / dot(e, e)).max(S::ZERO).min(S::ONE);
+        let (x, y) = (to(i).0 + e.0 * share, to(i).1 + e.1 * share);
+        (dot((x, y), (x, y)), corners[i].height + (corners[j].height - corners[i].height) * share)
+    };
+    if corners.len() < 3 {
+        return of_edge(0, 1).1;
+    }
+    let weights = [cross(to(1), to(2)), cross(to(2), to(0)), cross(to(0), to(1))];
+    if weights.iter().any(|weight| !(*weight >= S::ZERO)) {
+        let edges = [of_edge(0, 1), of_edge(1, 2), of_edge(2, 0)];
+        return edges.iter().fold(edges[0], |best, &next| if next.0 < best.0 { next } else { best }).1;
+    }
+    let [p, q, r] = [0, 1, 2].map(|i| corners[i].height * weights[i]);
+    (p + q + r) / (weights[0] + weights[1] + weights[2])
+}
+
 fn difference<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
     (b.0 - a.0, b.1 - a.1)
 }
@@ -318,7 +367,7 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, n
     if let [p, q] = around[..] {
         let e = from(p.at, q.at);
         let turn = cross(e, from(p.at, next.at));
-        if turn.abs() > dot(e, e) * (S::EPSILON * S::from_f64(64.0)) {
+        if turn.abs() > spread(e) * noise {
             // Counterclockwise.
             if turn < S::ZERO {
                 around.swap(0, 1);
@@ -330,18 +379,22 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, n
         }
         return true;
     }
-    // The place may be that far on the other side.
+    // The place may be that far on the other side, but not behind what is next, as where both sides lead the same way.
     let side = |corner: &Corner<S>| {
-        let e = from(next.at, corner.at);
-        (cross(e, from(next.at, at)), noise * (e.0.abs() + e.1.abs()))
+        let (e, to) = (from(next.at, corner.at), from(next.at, at));
+        let allowed = spread(e) * noise;
+        (cross(e, to), allowed, dot(e, to) >= -allowed)
     };
     let mut best: Option<(S, Corners<S>)> = None;
     for i in 0..3 {
         let (p, q) = (around[i], around[(i + 1) % 3]);
-        let ((left, allowed), (right, as_well)) = (side(&p), side(&q));
-        if left >= -allowed && right <= as_well {
+        let ((left, allowed, ahead), (right, as_well, too)) = (side(&p), side(&q));
+        // No plane is known by corners that are on a line but for rounding.
+        let base = from(p.at, q.at);
+        let is_known = cross(base, from(p.at, next.at)) > spread(base) * noise;
+        if is_known && left >= -allowed && right <= as_well && (ahead || too) {
             let corners = SmallVec::from_buf([p, q, next]);
-            let level = Tangent::through(&corners).level(at);
+            let level = between(&corners, at);
             // Where the place is at a corner there are two, and the one that leaves that corner out is higher.
             if best.as_ref().is_none_or(|(known, _)| level > *known) {
                 best = Some((level, corners));
