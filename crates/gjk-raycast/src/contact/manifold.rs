@@ -262,8 +262,8 @@ impl<V: Vector> Facing<'_, V> {
         }
         let [of_a, of_b] = &mut self.sides;
         let at = candidate.at;
-        // Mostly planes that are known tell that they are farther apart, or one support point of each.
-        let most = if limit.is_finite() { of_b.level(at, -limit - of_a.bound(at), 1)?.most() } else { limit };
+        // Mostly one support point of each tells that they are farther apart.
+        let most = if limit.is_finite() { of_b.level(at, -limit - of_a.top, 1)?.most() } else { limit };
         let of_a = of_a.level(at, -limit - most, MAX_SUPPORT_POINTS)?;
         let of_b = of_b.level(at, -limit - of_a.most(), MAX_SUPPORT_POINTS)?;
         // Seen nearly from its end an edge is as steep as one likes, and where a corner is on it is rounding; but no

@@ -15,9 +15,6 @@ pub(super) const MAX_SUPPORT_POINTS: usize = 32;
 /// As many points as are kept of a shape.
 const KNOWN: usize = 24;
 
-/// As many planes as are kept of a shape.
-const PLANES: usize = 8;
-
 /// How steep a side of a shape is, as a slope, beyond which nothing is shown.
 const STEEP: f64 = 4.0;
 
@@ -72,11 +69,6 @@ impl<S: Scalar> Tangent<S> {
         Self { at: first.at, level: first.height, gradient }
     }
 
-    /// The plane so far above this one.
-    fn raised(self, by: S) -> Self {
-        Self { level: self.level + by, ..self }
-    }
-
     fn level(&self, at: Across<S>) -> S {
         self.level + dot(self.gradient, difference(self.at, at))
     }
@@ -93,11 +85,9 @@ pub(super) struct Side<'s, V: Vector> {
     pub(super) outline: Outline<V::Scalar>,
     /// Points of the shape that are known: first those in the slab, then what levels were found by.
     known: SmallVec<[Corner<V::Scalar>; KNOWN]>,
-    /// Planes that no point of the shape is beyond, which bound the level of every place.
-    planes: SmallVec<[Tangent<V::Scalar>; PLANES]>,
     /// How far the shape reaches, as it is known and at most.
     reach: V::Scalar,
-    top: V::Scalar,
+    pub(super) top: V::Scalar,
     /// The face, or a plane along the edge, that all corners are in and no point of the shape is beyond.
     flat: Option<Tangent<V::Scalar>>,
     /// What the coordinates of points lose by rounding.
@@ -131,7 +121,6 @@ impl<'s, V: Vector> Side<'s, V> {
             radius: zero,
             outline: Outline::empty(),
             known: SmallVec::new(),
-            planes: SmallVec::new(),
             reach: zero,
             top: zero,
             flat: Some(Tangent { at, level: zero, gradient: at }),
@@ -166,19 +155,9 @@ impl<'s, V: Vector> Side<'s, V> {
         };
         let allowed = self.rounding(&tangent);
         let is_in = |corner: &Corner<V::Scalar>| (corner.height - tangent.level(corner.at)).abs() <= allowed;
-        if !corners.iter().all(is_in) {
-            return;
-        }
-        let Some((_, by)) = self.beyond(&tangent) else { return };
-        self.planes.push(tangent.raised(by.max(V::Scalar::ZERO) + allowed));
-        if by <= allowed {
+        if corners.iter().all(is_in) && self.beyond(&tangent).is_some_and(|(_, by)| by <= allowed) {
             self.flat = Some(tangent);
         }
-    }
-
-    /// What the level at a place is at most, as planes that are known tell.
-    pub(super) fn bound(&self, at: Across<V::Scalar>) -> V::Scalar {
-        self.planes.iter().map(|plane| plane.level(at)).fold(self.top, V::Scalar::min)
     }
 
     /// What a level of a plane loses by rounding.
@@ -226,12 +205,8 @@ impl<'s, V: Vector> Side<'s, V> {
         if let (Some(tangent), false) = (&self.flat, is_aside) {
             return Some(Level { value: tangent.level(at), error: self.rounding(tangent) });
         }
-        let mut most = self.bound(at);
-        if most < least {
-            return None;
-        }
         let mut around = if is_aside { self.beside(at)? } else { self.around(at) };
-        let (mut value, mut lost) = (around[0].height, self.noise);
+        let (mut value, mut most, mut lost) = (around[0].height, self.top, self.noise);
         for _ in 0..2 * MAX_SUPPORT_POINTS {
             let tangent = Tangent::through(&around);
             let allowed = self.rounding(&tangent);
@@ -257,11 +232,7 @@ impl<'s, V: Vector> Side<'s, V> {
             }
             support_points -= 1;
             let Some((next, by)) = self.beyond(&tangent) else { break };
-            let plane = tangent.raised(by.max(V::Scalar::ZERO) + allowed);
-            most = most.min(plane.level(at));
-            if self.planes.len() < PLANES {
-                self.planes.push(plane);
-            }
+            most = most.min(value + by.max(V::Scalar::ZERO) + allowed);
             if most < least {
                 return None;
             }
