@@ -67,6 +67,12 @@ macro_rules! forward {
                 $inner.certain_crossing(line)
             }
 
+            #[inline(always)]
+            fn certain_crossings(&self, lines: &mut $crate::Lines<<$V as $crate::Vector>::Scalar>) -> bool {
+                let $this = self;
+                $inner.certain_crossings(lines)
+            }
+
             #[inline]
             fn core_support_feature(
                 &self,

@@ -116,6 +116,8 @@ pub use interop_parry::parry2d_f64;
 pub use interop_parry::parry3d;
 #[cfg(feature = "parry3d-f64")]
 pub use interop_parry::parry3d_f64;
+#[doc(hidden)]
+pub use line_crossing::lanes::{LINES, Lines};
 pub use line_crossing::{CertainCrossing, Crossing, LineCrossing, LineQuery, line_crossing};
 pub use motion_derivative::{MotionGradient, MotionHessian};
 pub use parallelotope::Parallelotope;

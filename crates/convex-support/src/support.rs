@@ -5,7 +5,7 @@ use num_traits::Float as _;
 use crate::numerics::bound::roundings;
 use crate::numerics::range::is_comfortable;
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar, Vector,
+    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Lines, Parallelotope, Rounding, Scalar, Vector,
 };
 
 /// A nonempty, closed, bounded convex set, known by its support mapping.
@@ -156,6 +156,16 @@ pub trait SupportMap {
     fn certain_crossing(&self, line: LineQuery<Self::Vector>) -> Option<CertainCrossing<Self::Vector>> {
         let _ = line;
         None
+    }
+
+    /// What [`certain_crossing`](Self::certain_crossing) tells in plain numbers of many lines, to the last bit; of
+    /// those that it knows nothing of, or that cost a branch, nothing. `false`, as the provided method returns, if
+    /// nothing is ever known.
+    #[doc(hidden)]
+    #[inline]
+    fn certain_crossings(&self, lines: &mut Lines<ScalarOf<Self>>) -> bool {
+        let _ = lines;
+        false
     }
 
     /// Adds to a feature the points of the core that lie within a slab behind its supporting plane, relative to the

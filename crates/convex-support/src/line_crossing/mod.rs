@@ -16,6 +16,7 @@ mod cylinder;
 mod ellipsoid;
 #[cfg(feature = "hull")]
 mod faceted;
+pub(crate) mod lanes;
 mod rounded_cuboid;
 mod triangle;
 

@@ -1,9 +1,9 @@
 //! A ball about the origin.
 
 use crate::error::{InvalidShape, non_negative};
-use crate::line_crossing::{NearLine, ball, closely};
+use crate::line_crossing::{NearLine, ball, closely, lanes};
 use crate::support::swept;
-use crate::{CertainCrossing, Core, CoreKind, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector};
+use crate::{CertainCrossing, Core, CoreKind, Hint, LineCrossing, LineQuery, Lines, Rounding, Scalar, SupportMap, Vector};
 
 /// The ball `|x| ≤ radius`; a disc in 2D. Its core is a point.
 ///
@@ -82,6 +82,11 @@ impl<V: Vector> SupportMap for Ball<V> {
             return closely::capsule(line, V::ZERO, V::Scalar::ZERO);
         }
         NearLine::new(line, V::ZERO, line.radius)?.ball(line.radius)
+    }
+
+    #[inline]
+    fn certain_crossings(&self, lines: &mut Lines<V::Scalar>) -> bool {
+        lanes::ball::<V>(lines, V::ZERO, self.radius)
     }
 
     fn rounding(&self) -> Rounding<V> {

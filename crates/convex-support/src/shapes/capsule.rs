@@ -3,10 +3,10 @@
 use num_traits::Float as _;
 
 use crate::error::{InvalidShape, non_negative};
-use crate::line_crossing::{NearLine, Spine, closely};
+use crate::line_crossing::{NearLine, Spine, closely, lanes};
 use crate::support::support_of_parts;
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar,
+    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Lines, Parallelotope, Rounding, Scalar,
     SupportMap, Vector,
 };
 
@@ -98,6 +98,11 @@ impl<V: Vector> SupportMap for Capsule<V> {
         }
         let spine = Spine::upright(self.half_height);
         NearLine::new(line, V::ZERO, self.half_height + line.radius)?.segment(&spine, line.radius)
+    }
+
+    #[inline]
+    fn certain_crossings(&self, lines: &mut Lines<V::Scalar>) -> bool {
+        lanes::capsule::<V>(lines, self.half_height, self.radius)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

@@ -1,9 +1,9 @@
 //! A box about the origin, along the axes.
 
 use crate::error::{InvalidShape, finite, measurable};
-use crate::line_crossing::{NearLine, closely, cuboid, rounded_cuboid};
+use crate::line_crossing::{NearLine, closely, cuboid, lanes, rounded_cuboid};
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar, SupportMap,
+    CertainCrossing, Core, CoreKind, Feature, LineCrossing, LineQuery, Lines, Parallelotope, Rounding, Scalar, SupportMap,
     Vector,
 };
 
@@ -100,6 +100,11 @@ impl<V: Vector> SupportMap for Cuboid<V> {
             return self.certain_crossing_swept(line);
         }
         NearLine::new(line, V::ZERO, self.extent)?.cuboid(self.half_extents)
+    }
+
+    #[inline]
+    fn certain_crossings(&self, lines: &mut Lines<V::Scalar>) -> bool {
+        lanes::cuboid(lines, self.half_extents, self.extent)
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
