@@ -47,6 +47,8 @@
 //!   back, and of its compounds and meshes to their convex pieces.
 //! - `mint`, `bytemuck`, `approx`: what glam has under these names for its vectors: conversions from and to mint's, as
 //!   bytes for buffers of a GPU, and comparison up to a tolerance.
+//! - `simd`: loops over many lines, or many pairs of ellipsoids, take the widest vector instructions of the processor,
+//!   found at run time by pulp. The answers are the same. It is for the crates that ask, and they have one of its name.
 //! - `proptest`: for property tests, the module `laws`, to which a shape of your own can be held, and the module
 //!   `strategies`, which generates shapes and poses of wild aspect and scale.
 

@@ -5,7 +5,8 @@ use num_traits::Float as _;
 use crate::numerics::bound::roundings;
 use crate::numerics::range::is_comfortable;
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Lines, Parallelotope, Rounding, Scalar, Vector,
+    CertainCrossing, Core, CoreKind, Feature, Hint, LineCrossing, LineQuery, Lines, Parallelotope, Rounding, Scalar,
+    Vector,
 };
 
 /// A nonempty, closed, bounded convex set, known by its support mapping.

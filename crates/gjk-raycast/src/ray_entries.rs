@@ -79,6 +79,9 @@ pub fn ray_entries_into<S: SupportMap + ?Sized>(
         }
         if by_lanes {
             scatter(&mut lines, options.max_lambda, entries);
+            if !lines.any_in_doubt() {
+                continue;
+            }
         }
         for (line, (&ray, entry)) in rays.iter().zip(entries).enumerate() {
             if by_lanes && lines.known[line] != Scalar::ZERO {
@@ -106,6 +109,7 @@ compiled_once! {
             fn run(self) {
                 let Self(rays, lines) = self;
                 for line in 0..LINES {
+                    lines.error[line] = Scalar::ZERO;
                     for i in 0..V::DIM {
                         lines.source[i][line] = rays[line].source.get(i);
                         lines.direction[i][line] = rays[line].direction.get(i);

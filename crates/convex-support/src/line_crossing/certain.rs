@@ -199,7 +199,11 @@ impl<V: Vector> NearLine<V> {
     /// [`new`](Self::new) without a branch, and whether there is such a line, 1 or 0; where `FAR` is not set, only one
     /// that is near already.
     #[inline(always)]
-    pub(super) fn new_without_branch<const FAR: bool>(line: LineQuery<V>, origin: V, size: V::Scalar) -> (Self, V::Scalar) {
+    pub(super) fn new_without_branch<const FAR: bool>(
+        line: LineQuery<V>,
+        origin: V,
+        size: V::Scalar,
+    ) -> (Self, V::Scalar) {
         let LineQuery { source, direction, error, .. } = line;
         let number = V::Scalar::from_f64;
         let is_moderate = is_moderate(size) & is_moderate(direction.abs().max_element());
@@ -212,8 +216,7 @@ impl<V: Vector> NearLine<V> {
         } else {
             (V::Scalar::ZERO, seen, is_near)
         };
-        let rounding = V::Scalar::EPSILON
-            * (size * number(OF_SIZE) + sum_of_coordinates(source) * number(OF_DISTANCE));
+        let rounding = V::Scalar::EPSILON * (size * number(OF_SIZE) + sum_of_coordinates(source) * number(OF_DISTANCE));
         let known = if is_moderate & is_near { V::Scalar::ONE } else { V::Scalar::ZERO };
         (Self { base, source, direction, size, error: error + rounding }, known)
     }

@@ -3,7 +3,9 @@
 use crate::error::{InvalidShape, non_negative};
 use crate::line_crossing::{NearLine, ball, closely, lanes};
 use crate::support::swept;
-use crate::{CertainCrossing, Core, CoreKind, Hint, LineCrossing, LineQuery, Lines, Rounding, Scalar, SupportMap, Vector};
+use crate::{
+    CertainCrossing, Core, CoreKind, Hint, LineCrossing, LineQuery, Lines, Rounding, Scalar, SupportMap, Vector,
+};
 
 /// The ball `|x| ≤ radius`; a disc in 2D. Its core is a point.
 ///
@@ -86,7 +88,8 @@ impl<V: Vector> SupportMap for Ball<V> {
 
     #[inline]
     fn certain_crossings(&self, lines: &mut Lines<V::Scalar>) -> bool {
-        lanes::ball::<V>(lines, V::ZERO, self.radius)
+        lanes::ball::<V>(lines, V::ZERO, self.radius, V::Scalar::ZERO);
+        true
     }
 
     fn rounding(&self) -> Rounding<V> {

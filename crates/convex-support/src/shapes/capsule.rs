@@ -102,7 +102,8 @@ impl<V: Vector> SupportMap for Capsule<V> {
 
     #[inline]
     fn certain_crossings(&self, lines: &mut Lines<V::Scalar>) -> bool {
-        lanes::capsule::<V>(lines, self.half_height, self.radius)
+        lanes::capsule::<V>(lines, self.half_height, self.radius);
+        true
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {

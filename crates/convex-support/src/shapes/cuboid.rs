@@ -3,8 +3,8 @@
 use crate::error::{InvalidShape, finite, measurable};
 use crate::line_crossing::{NearLine, closely, cuboid, lanes, rounded_cuboid};
 use crate::{
-    CertainCrossing, Core, CoreKind, Feature, LineCrossing, LineQuery, Lines, Parallelotope, Rounding, Scalar, SupportMap,
-    Vector,
+    CertainCrossing, Core, CoreKind, Feature, LineCrossing, LineQuery, Lines, Parallelotope, Rounding, Scalar,
+    SupportMap, Vector,
 };
 
 /// The box `|xᵢ| ≤ half_extentsᵢ`; a rectangle in 2D.
@@ -104,7 +104,8 @@ impl<V: Vector> SupportMap for Cuboid<V> {
 
     #[inline]
     fn certain_crossings(&self, lines: &mut Lines<V::Scalar>) -> bool {
-        lanes::cuboid(lines, self.half_extents, self.extent)
+        lanes::cuboid(lines, self.half_extents, self.extent);
+        true
     }
 
     fn core_support_feature(&self, direction: V, slab: V::Scalar, feature: &mut Feature<V>) {
