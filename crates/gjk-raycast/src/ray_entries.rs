@@ -101,6 +101,7 @@ pub fn ray_entries_into<S: SupportMap + ?Sized>(
 }
 
 compiled_once! {
+    #[allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
     /// The lines of up to [`LINES`] rays, the last as often as there is room.
     fn gather<V>(rays: &[Ray<V>], lines: &mut Lines<<V as Vector>::Scalar>) -> () {
         struct Gather<'a, V: Vector>(&'a [Ray<V>; LINES], &'a mut Lines<V::Scalar>);

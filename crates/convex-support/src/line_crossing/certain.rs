@@ -178,8 +178,8 @@ impl<V: Vector> NearLine<V> {
     pub(crate) fn new(line: LineQuery<V>, origin: V, size: V::Scalar) -> Option<Self> {
         let LineQuery { source, direction, error, .. } = line;
         let number = V::Scalar::from_f64;
-        // NaN and zero are not moderate.
-        let is_moderate = is_moderate(size) & is_moderate(direction.abs().max_element());
+        // NaN and zero are not moderate; the largest coordinate may pass over a NaN, but the sum does not.
+        let is_moderate = is_moderate(size) & is_moderate(sum_of_coordinates(direction));
         let (seen, near) = (source - origin, size * number(NEAR));
         let squared = seen.length_squared();
         let rounding =
@@ -206,7 +206,7 @@ impl<V: Vector> NearLine<V> {
     ) -> (Self, V::Scalar) {
         let LineQuery { source, direction, error, .. } = line;
         let number = V::Scalar::from_f64;
-        let is_moderate = is_moderate(size) & is_moderate(direction.abs().max_element());
+        let is_moderate = is_moderate(size) & is_moderate(sum_of_coordinates(direction));
         let (seen, near) = (source - origin, size * number(NEAR));
         let is_near = seen.length_squared() <= near * near;
         let (base, source, is_near) = if FAR {

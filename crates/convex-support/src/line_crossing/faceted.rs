@@ -138,6 +138,7 @@ impl<S: Scalar> ClippedLines<S> {
 
 /// [`clip`] of many lines. Of planes that are entered at the same parameter it finds the same one: the first of the
 /// first row.
+#[allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
 #[inline(always)]
 pub(super) fn clip_lines<S: Scalar>(
     planes: &[Planes<S>],
@@ -173,6 +174,7 @@ pub(super) fn clip_lines<S: Scalar>(
 }
 
 /// [`most_beyond`] of many points.
+#[allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
 #[inline(always)]
 pub(super) fn most_beyond_of_all<S: Scalar>(planes: &[Planes<S>], [x, y, z]: &[Lane<S>; 3]) -> Lane<S> {
     let mut most = [-S::infinity(); LINES];

@@ -5,6 +5,8 @@
 //! at a time, and choose. Each answer is that of the line alone, to the last bit; or the line is in doubt, and to be
 //! asked alone.
 
+#![allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
+
 use super::certain::BeyondEnd;
 #[cfg(feature = "hull")]
 use super::faceted::{clip_lines, most_beyond_of_all};
