@@ -38,8 +38,7 @@ impl<V: Vector> From<RayCast<V>> for RayEntry<V> {
 
 /// Casts many rays against one shape, and writes where each enters into a slice. Nothing is allocated.
 ///
-/// Each answer is that of [`ray_cast`] to the last bit, whatever its neighbours are: the same λ, the same bounds and the
-/// same normal. Balls, boxes, capsules and hulls with facets, and any of these posed, are asked of several rays at a
+/// Each answer is that of [`ray_cast`] to the last bit, whatever its neighbours are: the same λ, bounds and normal. Balls, boxes, capsules and hulls with facets, and any of these posed, are asked of several rays at a
 /// time, and the rays that are in doubt then are cast alone. With the feature `simd`, the widest vector instructions of
 /// the processor are chosen at run time.
 ///
@@ -131,8 +130,8 @@ compiled_once! {
 }
 
 compiled_once! {
-    /// The answers that are known of rays that end at some parameter; what is not known of a ray, though of its line, is
-    /// unknown from here on.
+    /// The answers that are known of rays that end at some parameter; what is not known of a ray, though of its line,
+    /// is unknown from here on.
     fn scatter<V>(
         lines: &mut Lines<<V as Vector>::Scalar>,
         end: <V as Vector>::Scalar,

@@ -125,7 +125,7 @@ fn a_ray_that_is_none_is_an_error_and_spoils_no_other() {
     assert!(ray_entries_into(&ball, &rays[..1], options, &mut entries[..1]).is_err(), "an end that is not a number");
 }
 
-/// A coordinate that is not a number may be passed over where the largest of them is sought, and slabs pass over it too.
+/// A coordinate that is not a number may be passed over where the largest of them is sought; slabs pass over it too.
 #[test]
 fn no_coordinate_that_is_not_a_number_is_passed_over() {
     let cuboid = Cuboid::new(DVec3::ONE).expect("a box");

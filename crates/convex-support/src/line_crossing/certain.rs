@@ -384,8 +384,8 @@ impl<V: Vector> NearLine<V> {
 
     /// The side of that, or beyond which end the line enters the infinite cylinder.
     ///
-    /// The capsule is within that cylinder, and contains the ball at each end. So where the line enters the side between
-    /// the ends, the slack of the side's chord is certain before the entry, and behind it as well if that point is
+    /// The capsule is within that cylinder, and contains the ball at each end. So where the line enters the side
+    /// between the ends, the slack of the side's chord is certain before the entry, and behind it as well if that point is
     /// between the ends by more than the error.
     #[inline(always)]
     pub(super) fn side(

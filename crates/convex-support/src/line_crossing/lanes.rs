@@ -316,8 +316,8 @@ pub(crate) struct Turned<V: Vector> {
     /// The size of the shape, and the error that it is known to.
     pub(crate) size: V::Scalar,
     pub(crate) error: V::Scalar,
-    /// Where the origin is not zero for the shape: what was lost of its image, as the shape sees it; the origin; and the
-    /// error of taking the one off and putting the other on.
+    /// Where the origin is not zero for the shape: what was lost of its image, as the shape sees it; the origin; and
+    /// the error of taking the one off and putting the other on.
     pub(crate) from: Option<(V, V, V::Scalar)>,
 }
 
