@@ -10,6 +10,11 @@ use crate::{Outcome, Ray, RayCast, RayCastError, RayCastOptions, ray_cast};
 /// Where a ray enters a shape, in numbers alone: what columns are made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "V: serde::Serialize, V::Scalar: serde::Serialize")))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(deserialize = "V: serde::Deserialize<'de>, V::Scalar: serde::Deserialize<'de>"))
+)]
 pub struct RayEntry<V: Vector> {
     /// The parameter of the hit. Infinity is a certain miss, and NaN says that the cast ended
     /// [undecided](Outcome::Undecided).
