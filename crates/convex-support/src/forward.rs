@@ -90,6 +90,12 @@ macro_rules! forward_line_crossing {
                 let $this = self;
                 $inner.core_line_crossing(source, direction, radius)
             }
+
+            #[inline(always)]
+            fn certain_crossings(&self, lines: &mut $crate::Lines<<$V as $crate::Vector>::Scalar>) -> bool {
+                let $this = self;
+                $inner.certain_crossings(lines)
+            }
         }
     };
 }

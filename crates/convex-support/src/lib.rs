@@ -47,6 +47,8 @@
 //!   back, and of its compounds and meshes to their convex pieces.
 //! - `mint`, `bytemuck`, `approx`: what glam has under these names for its vectors: conversions from and to mint's, as
 //!   bytes for buffers of a GPU, and comparison up to a tolerance.
+//! - `simd`: loops over many lines, or many pairs of ellipsoids, take the widest vector instructions of the processor,
+//!   found at run time by pulp. The answers are the same. It is for the crates that ask, and they have one of its name.
 //! - `proptest`: for property tests, the module `laws`, to which a shape of your own can be held, and the module
 //!   `strategies`, which generates shapes and poses of wild aspect and scale.
 
@@ -116,6 +118,8 @@ pub use interop_parry::parry2d_f64;
 pub use interop_parry::parry3d;
 #[cfg(feature = "parry3d-f64")]
 pub use interop_parry::parry3d_f64;
+#[doc(hidden)]
+pub use line_crossing::lanes::{LINES, Lines};
 pub use line_crossing::{CertainCrossing, CrossedByLine, Crossing, LineCrossing, LineQuery, line_crossing};
 pub use motion_derivative::{MotionGradient, MotionHessian};
 pub use parallelotope::Parallelotope;

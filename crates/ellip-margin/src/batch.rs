@@ -8,6 +8,7 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
+use convex_support::numerics::widest::{Loop, widest};
 use convex_support::{Ellipsoid, Scalar, Vector};
 
 use crate::margin::free_margin;
@@ -435,27 +436,18 @@ impl<const N: usize> Answers<N> {
     }
 }
 
-/// [`loop_over_lanes`] in the widest vector instructions this processor has.
-#[cfg(feature = "simd")]
+/// [`loop_over_lanes`] in the widest vector instructions this processor has, or without the feature `simd` in those of
+/// the target.
 #[inline(never)]
 fn solve_lanes<const N: usize>(pairs: &Pairs<N>, tolerance: f64, answers: &mut Answers<N>) {
-    struct Loop<'a, const N: usize>(&'a Pairs<N>, f64, &'a mut Answers<N>);
-    impl<const N: usize> pulp::NullaryFnOnce for Loop<'_, N> {
-        type Output = ();
-
+    struct Lanes<'a, const N: usize>(&'a Pairs<N>, f64, &'a mut Answers<N>);
+    impl<const N: usize> Loop for Lanes<'_, N> {
         #[inline(always)]
-        fn call(self) {
+        fn run(self) {
             loop_over_lanes(self.0, self.1, self.2);
         }
     }
-    pulp::Arch::new().dispatch(Loop(pairs, tolerance, answers));
-}
-
-/// [`loop_over_lanes`] in the vector instructions of the target.
-#[cfg(not(feature = "simd"))]
-#[inline(never)]
-fn solve_lanes<const N: usize>(pairs: &Pairs<N>, tolerance: f64, answers: &mut Answers<N>) {
-    loop_over_lanes(pairs, tolerance, answers);
+    widest(Lanes(pairs, tolerance, answers));
 }
 
 /// The loop that becomes vector instructions: in a function of its own, so that nothing aliases and nothing else is in

@@ -40,6 +40,8 @@
 //! About a ray and a shape:
 //! - *Where does the ray enter?* [`ray_cast`], and [`ray_casts`] for many rays: a closed form, a portal, or Algorithm 3
 //!   of the paper, see [`CastMethod`]. *Where does it leave?* [`ray_exit`].
+//! - *Where do many rays enter?* [`ray_entries_into`] writes numbers into a slice, by several rays at a time where the
+//!   shape has a closed form.
 //! - *The same from closest points alone:* [`iterative_ray_cast`] (Algorithm 1), for shapes whose closest points have a
 //!   closed form.
 //!
@@ -71,6 +73,8 @@
 //!   instead.
 //! - `rayon`: `par_ray_casts`, `Scene::par_ray_casts`, `Among::par_pairs_within`, `Among::par_contacts_within` and
 //!   `Linkage::par_paths`, which use all threads.
+//! - `simd`: [`ray_entries_into`] takes the widest vector instructions of the processor, found at run time by pulp. The
+//!   answers are the same.
 //! - `paper`: the sub-algorithms of the papers beside the default, for comparison: [`SubAlgorithm`].
 //! - `hull`, `mint`, `bytemuck`, `approx`, `parry2d`, `parry2d-f64`, `parry3d`, `parry3d-f64`, `proptest`: those of
 //!   [`convex_support`], for its shapes.
@@ -149,6 +153,7 @@ mod options;
 mod ray;
 mod ray_cast;
 mod ray_casts;
+mod ray_entries;
 mod ray_exit;
 mod result;
 mod scene;
@@ -198,6 +203,7 @@ pub use ray_cast::{ray_cast, ray_cast_with};
 #[cfg(feature = "rayon")]
 pub use ray_casts::par_ray_casts;
 pub use ray_casts::ray_casts;
+pub use ray_entries::{RayEntry, ray_entries_into};
 pub use ray_exit::ray_exit;
 pub use result::{
     Distance, Intersection, Iterate, LinearCast, LinearHit, Miss, Outcome, RayCast, RayExit, RayHit, SignedDistance,

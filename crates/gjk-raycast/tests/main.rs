@@ -37,6 +37,7 @@ mod motion_laws;
 mod moving_boxes;
 mod options;
 mod paper;
+mod ray_entries;
 mod regressions_distance;
 mod regressions_linear_cast;
 mod regressions_ray_cast;

@@ -6,13 +6,14 @@ use num_traits::Float as _;
 
 use super::placement::{Placement, is_near, length_of_error, lost_in_origin};
 use crate::error::{InvalidShape, finite, orthonormal};
+use crate::line_crossing::lanes::{self, Turned};
 use crate::line_crossing::{NearLine, closely, skew};
 use crate::numerics::bound::roundings;
 use crate::numerics::twofold::lost_in_sum;
 use crate::support::ScalarOf;
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Matrix, Parallelotope,
-    Rotation, Rounding, Scalar, SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Lines, Matrix,
+    Parallelotope, Rotation, Rounding, Scalar, SupportMap, Vector,
 };
 
 /// The image `R·C + t` of a shape under a rotation and then a translation.
@@ -287,5 +288,28 @@ impl<S: CrossedByLine> CrossedByLine for Posed<S> {
         let local = self.rotation.transpose_mul(source - self.lost);
         let crossing = self.shape.core_line_crossing(local, self.rotation.transpose_mul(direction), radius);
         crossing.with_normal(|normal| self.rotation * normal)
+    }
+
+    #[inline]
+    fn certain_crossings(&self, lines: &mut Lines<ScalarOf<S>>) -> bool {
+        let core = self.shape.core();
+        let (size, error) = (core.extent + core.radius, self.error + self.skew);
+        if core.origin == S::Vector::ZERO && core.kind == CoreKind::Point(S::Vector::ZERO) {
+            lanes::ball(lines, self.translation, core.radius, error);
+            return true;
+        }
+        let (center, from) = if core.origin == S::Vector::ZERO {
+            (self.translation, None)
+        } else {
+            let rounding = roundings(8.0, size) + roundings(2.0, core.origin.norm() + self.lost.norm());
+            let lost = self.rotation.transpose_mul(self.lost);
+            (self.rotation * core.origin + self.translation, Some((lost, core.origin, rounding)))
+        };
+        let counted = lanes::before_turn(lines, Turned { rotation: self.rotation, center, size, error, from });
+        let is_known = self.shape.certain_crossings(lines);
+        if is_known {
+            lanes::after_turn::<S::Vector>(lines, self.rotation, &counted);
+        }
+        is_known
     }
 }

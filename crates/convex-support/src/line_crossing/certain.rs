@@ -145,6 +145,21 @@ pub(crate) struct NearLine<V: Vector> {
     pub(crate) error: V::Scalar,
 }
 
+/// Of a line that enters the infinite cylinder about a capsule beyond one of its ends.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BeyondEnd<S> {
+    /// Which, ±1.
+    pub(super) end: S,
+    /// How far along the axis the line's nearest point to the middle is, and its parameter.
+    pub(super) along: S,
+    pub(super) base: S,
+}
+
+impl<S: Scalar> BeyondEnd<S> {
+    /// Of a line that is beyond neither.
+    pub(super) const NEITHER: Self = Self { end: S::ZERO, along: S::ZERO, base: S::ZERO };
+}
+
 impl<V: Vector> CertainCrossing<V> {
     /// The same with its normal, or the vector along which the line is apart, mapped.
     #[inline(always)]
@@ -163,8 +178,8 @@ impl<V: Vector> NearLine<V> {
     pub(crate) fn new(line: LineQuery<V>, origin: V, size: V::Scalar) -> Option<Self> {
         let LineQuery { source, direction, error, .. } = line;
         let number = V::Scalar::from_f64;
-        // NaN and zero are not moderate.
-        let is_moderate = is_moderate(size) & is_moderate(direction.abs().max_element());
+        // NaN and zero are not moderate; the largest coordinate may pass over a NaN, but the sum does not.
+        let is_moderate = is_moderate(size) & is_moderate(sum_of_coordinates(direction));
         let (seen, near) = (source - origin, size * number(NEAR));
         let squared = seen.length_squared();
         let rounding =
@@ -179,6 +194,31 @@ impl<V: Vector> NearLine<V> {
             let error = error + rounding(sum_of_coordinates(foot));
             (foot.length_squared() <= near * near).then_some(Self { base, source: foot, direction, size, error })
         }
+    }
+
+    /// [`new`](Self::new) without a branch, and whether there is such a line, 1 or 0; where `FAR` is not set, only one
+    /// that is near already.
+    #[inline(always)]
+    pub(super) fn new_without_branch<const FAR: bool>(
+        line: LineQuery<V>,
+        origin: V,
+        size: V::Scalar,
+    ) -> (Self, V::Scalar) {
+        let LineQuery { source, direction, error, .. } = line;
+        let number = V::Scalar::from_f64;
+        let is_moderate = is_moderate(size) & is_moderate(sum_of_coordinates(direction));
+        let (seen, near) = (source - origin, size * number(NEAR));
+        let is_near = seen.length_squared() <= near * near;
+        let (base, source, is_near) = if FAR {
+            let (base, foot) = foot_from(origin, source, direction);
+            let source = V::from_fn(|i| if is_near { seen.get(i) } else { foot.get(i) });
+            (if is_near { V::Scalar::ZERO } else { base }, source, is_near | (foot.length_squared() <= near * near))
+        } else {
+            (V::Scalar::ZERO, seen, is_near)
+        };
+        let rounding = V::Scalar::EPSILON * (size * number(OF_SIZE) + sum_of_coordinates(source) * number(OF_DISTANCE));
+        let known = if is_moderate & is_near { V::Scalar::ONE } else { V::Scalar::ZERO };
+        (Self { base, source, direction, size, error: error + rounding }, known)
     }
 
     /// The same line from where it is closest to the origin, to be turned.
@@ -333,14 +373,26 @@ impl<V: Vector> NearLine<V> {
         Self { source: self.source - spine.middle, error, ..*self }
     }
 
-    /// A segment about zero, swept by a ball. `None` too where the line passes near a rim, or past an end.
-    ///
-    /// It is within the infinite cylinder, and contains the ball at each end. So where the line enters the side between
-    /// the ends, the slack of the side's chord is certain before the entry, and behind it as well if that point is
-    /// between the ends by more than the error. Beyond an end the closest point of the segment is that end: there the
-    /// slack of the ball's chord is certain, if the point before the entry is beyond the end by more than the error.
+    /// A segment about zero, swept by a ball. `None` too where the line passes near a rim.
     #[inline(always)]
     fn capsule(&self, spine: &Spine<V>, radius: V::Scalar) -> Option<CertainCrossing<V>> {
+        match self.side(spine, radius) {
+            Ok(known) => Some(known),
+            Err(beyond) => self.end(spine, radius, beyond?),
+        }
+    }
+
+    /// The side of that, or beyond which end the line enters the infinite cylinder.
+    ///
+    /// The capsule is within that cylinder, and contains the ball at each end. So where the line enters the side
+    /// between the ends, the slack of the side's chord is certain before the entry, and behind it as well if that point is
+    /// between the ends by more than the error.
+    #[inline(always)]
+    pub(super) fn side(
+        &self,
+        spine: &Spine<V>,
+        radius: V::Scalar,
+    ) -> Result<CertainCrossing<V>, Option<BeyondEnd<V::Scalar>>> {
         let (Self { direction, error, .. }, half_height) = (*self, spine.half_height);
         let recip = direction.length_squared().recip();
         let (base, source) = rebased(self.source, direction, recip);
@@ -352,29 +404,51 @@ impl<V: Vector> NearLine<V> {
             (V::Scalar::EPSILON * V::Scalar::EPSILON, V::Scalar::from_f64(LEAST_CHORD))
         };
         if !(slope * recip > least_slope) {
-            return None;
+            return Err(None);
         }
         let per_slope = slope.recip();
         let middle = -out.dot(radial) * per_slope;
         let side = Chord::about(middle, out + radial * middle, per_slope, radius);
         if side.is_past(radius, error, self.size) {
-            return Some(CertainCrossing::Misses(side.nearest));
+            return Ok(CertainCrossing::Misses(side.nearest));
         }
-        let slack = side.slack(radius, error, per_slope, least_chord)?;
+        let slack = side.slack(radius, error, per_slope, least_chord).ok_or(None)?;
         let entry = side.ends().0;
-        let height_at = |at: V::Scalar| along + rise * at;
-        if height_at(entry + slack).abs() <= half_height - error {
+        let height = along + rise * (entry + slack);
+        if height.abs() <= half_height - error {
             let at = base + entry;
-            return Some(self.enters([at - slack, at, at + slack], side.normal(radius, radial, per_slope)));
+            return Ok(self.enters([at - slack, at, at + slack], side.normal(radius, radial, per_slope)));
         }
-        let side_of_end = V::Scalar::ONE.copysign(height_at(entry));
-        let end = spine.axis * (half_height * side_of_end);
-        let cap = super::ball::chord(radius, self.source - end, direction, recip);
-        let slack = cap.slack(radius, error, recip, least_chord)?;
-        let entry = cap.ends().0;
-        let height = height_at(entry - base - slack) * side_of_end;
+        let end = V::Scalar::ONE.copysign(height);
+        Err((height.abs() >= half_height + error).then_some(BeyondEnd { end, along, base }))
+    }
+
+    /// The ball at the end beyond which the line enters the infinite cylinder: it reaches the rest of the capsule
+    /// through that ball alone.
+    ///
+    /// Beyond the end, which is then the closest point of the segment, the slack of the ball's chord is certain, if the
+    /// point before the entry is there by more than the error. And where the line passes the ball, the plane across the
+    /// nearest point has the other end behind it, too, if that point is beyond the end.
+    #[inline(always)]
+    pub(super) fn end(
+        &self,
+        spine: &Spine<V>,
+        radius: V::Scalar,
+        BeyondEnd { end, along, base }: BeyondEnd<V::Scalar>,
+    ) -> Option<CertainCrossing<V>> {
+        let (Self { direction, error, .. }, half_height) = (*self, spine.half_height);
+        let recip = direction.length_squared().recip();
+        let ball = super::ball::chord(radius, self.source - spine.axis * (half_height * end), direction, recip);
+        let is_beyond = spine.split(ball.nearest).0 * end >= V::Scalar::ZERO;
+        if is_beyond & ball.is_past(radius, error, self.size + self.size) {
+            return Some(CertainCrossing::Misses(ball.nearest));
+        }
+        let least_chord = if spine.is_upright { least_chord() } else { V::Scalar::from_f64(LEAST_CHORD) };
+        let slack = ball.slack(radius, error, recip, least_chord)?;
+        let entry = ball.ends().0;
+        let height = (along + spine.split(direction).0 * (entry - base - slack)) * end;
         (height >= half_height + error)
-            .then(|| self.enters([entry - slack, entry, entry + slack], cap.normal(radius, direction, recip)))
+            .then(|| self.enters([entry - slack, entry, entry + slack], ball.normal(radius, direction, recip)))
     }
 
     /// A set about zero, swept by a ball, whose crossing has a closed form and whose closest points and support values

@@ -2,8 +2,9 @@
 
 use num_traits::Float as _;
 
+use super::lanes::{LINES, Lane};
 use super::{CertainCrossing, Crossed, Crossing, NearLine, comfortable, rebased};
-use crate::shapes::{PLANES, Planes};
+use crate::shapes::{PLANES, Planes, facet};
 use crate::{Faceted, Scalar, Vector};
 
 /// The line is in the hull while it is behind all facets. The exit and the entry are the least and the largest of the
@@ -18,7 +19,7 @@ pub(crate) fn faceted<V: Vector>(hull: &Faceted<V>, source: V, direction: V) -> 
     if !(entry > -V::Scalar::infinity() && exit < V::Scalar::infinity()) {
         return Err(V::ZERO);
     }
-    Crossing { entry, exit, normal: hull.facet(into).0 }.shifted(base, unit, || V::ZERO)
+    Crossing { entry, exit, normal: facet(hull.planes(), into).0 }.shifted(base, unit, || V::ZERO)
 }
 
 impl<V: Vector> NearLine<V> {
@@ -36,10 +37,24 @@ impl<V: Vector> NearLine<V> {
     pub(crate) fn faceted(&self, hull: &Faceted<V>) -> Option<CertainCrossing<V>> {
         let line = self.at_foot();
         let Self { source, direction, error, .. } = line;
-        let clipped = clip(hull.planes(), coordinates(source), coordinates(direction));
+        let (known, latest) =
+            line.cut(hull.planes(), clip(hull.planes(), coordinates(source), coordinates(direction)))?;
+        let is_in = || most_beyond(hull.planes(), coordinates(source + direction * latest)) <= -error;
+        (matches!(known, CertainCrossing::Misses(_)) || is_in()).then_some(known)
+    }
+
+    /// What the planes tell that the line, seen from its foot, enters and leaves by; that it enters if the point at the
+    /// given parameter is in the hull.
+    #[inline(always)]
+    pub(super) fn cut(
+        &self,
+        planes: &[Planes<V::Scalar>],
+        clipped: Clipped<V::Scalar>,
+    ) -> Option<(CertainCrossing<V>, V::Scalar)> {
+        let Self { source, direction, error, .. } = *self;
         let Clipped { entry, exit, into, out_of } = clipped;
         let plane = |index: usize| {
-            let (normal, reach) = hull.facet(index);
+            let (normal, reach): (V, _) = facet(planes, index);
             (normal, normal.dot(direction), reach - normal.dot(source) + error)
         };
         let (normal, falls, behind) = plane(into);
@@ -49,14 +64,13 @@ impl<V: Vector> NearLine<V> {
         if entry < exit {
             let slack = error / falls;
             let (earliest, latest) = (entry + slack, entry - (slack + slack));
-            let is_in = most_beyond(hull.planes(), coordinates(source + direction * latest)) <= -error;
-            return is_in.then(|| line.enters([earliest, entry, latest], normal));
+            return Some((self.enters([earliest, entry, latest], normal), latest));
         }
         // One half-space is left before the other is entered: a plane through both edges, along the line. What is
         // parallel to the line has the line before it at any parameter.
         let (other, rises, behind_other) = plane(out_of);
         let is_missed = (rises >= V::Scalar::ZERO) & (behind / falls > behind_other / rises);
-        is_missed.then(|| CertainCrossing::Misses(normal * rises - other * falls))
+        is_missed.then(|| (CertainCrossing::Misses(normal * rises - other * falls), entry))
     }
 }
 
@@ -65,7 +79,7 @@ fn coordinates<V: Vector>(v: V) -> [V::Scalar; 3] {
 }
 
 /// The stretch of a line behind all planes, and the indices of those it enters and leaves by.
-struct Clipped<S> {
+pub(super) struct Clipped<S> {
     entry: S,
     exit: S,
     into: usize,
@@ -104,6 +118,76 @@ fn clip<S: Scalar>(planes: &[Planes<S>], [x, y, z]: [S; 3], [dx, dy, dz]: [S; 3]
     let (last, first) = (last(0), last(PLANES));
     let index = |place: S| place.as_f64() as usize;
     Clipped { entry: entries[last], exit: -entries[first], into: index(into[last]), out_of: index(into[first]) }
+}
+
+/// [`Clipped`] of many lines; the exits are turned around.
+pub(super) struct ClippedLines<S> {
+    entries: Lane<S>,
+    exits: Lane<S>,
+    into: Lane<S>,
+    out_of: Lane<S>,
+}
+
+impl<S: Scalar> ClippedLines<S> {
+    #[inline(always)]
+    pub(super) fn get(&self, line: usize) -> Clipped<S> {
+        let [into, out_of] = [self.into[line], self.out_of[line]].map(|place| place.as_f64() as usize);
+        Clipped { entry: self.entries[line], exit: -self.exits[line], into, out_of }
+    }
+}
+
+/// [`clip`] of many lines. Of planes that are entered at the same parameter it finds the same one: the first of the
+/// first row.
+#[allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
+#[inline(always)]
+pub(super) fn clip_lines<S: Scalar>(
+    planes: &[Planes<S>],
+    [x, y, z]: &[Lane<S>; 3],
+    [dx, dy, dz]: &[Lane<S>; 3],
+) -> ClippedLines<S> {
+    let (below, width) = (-S::infinity(), S::from_f64(PLANES as f64));
+    let mut found = ClippedLines {
+        entries: [below; LINES],
+        exits: [below; LINES],
+        into: [S::ZERO; LINES],
+        out_of: [S::ZERO; LINES],
+    };
+    for row in 0..PLANES {
+        let mut here = S::from_f64(row as f64);
+        for [nx, ny, nz, reach] in planes {
+            let [nx, ny, nz, reach] = [nx[row], ny[row], nz[row], reach[row]];
+            for l in 0..LINES {
+                let slope = nx * dx[l] + ny * dy[l] + nz * dz[l] + S::ZERO;
+                let crossed = (reach - (nx * x[l] + ny * y[l] + nz * z[l])) / slope;
+                let entry = if slope < S::ZERO { crossed } else { below };
+                let exit = if slope < S::ZERO { below } else { -crossed };
+                let (enters, leaves) = (entry > found.entries[l], exit > found.exits[l]);
+                found.into[l] = if enters { here } else { found.into[l] };
+                found.entries[l] = if enters { entry } else { found.entries[l] };
+                found.out_of[l] = if leaves { here } else { found.out_of[l] };
+                found.exits[l] = if leaves { exit } else { found.exits[l] };
+            }
+            here += width;
+        }
+    }
+    found
+}
+
+/// [`most_beyond`] of many points.
+#[allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
+#[inline(always)]
+pub(super) fn most_beyond_of_all<S: Scalar>(planes: &[Planes<S>], [x, y, z]: &[Lane<S>; 3]) -> Lane<S> {
+    let mut most = [-S::infinity(); LINES];
+    for [nx, ny, nz, reach] in planes {
+        for row in 0..PLANES {
+            let [nx, ny, nz, reach] = [nx[row], ny[row], nz[row], reach[row]];
+            for l in 0..LINES {
+                let beyond = nx * x[l] + ny * y[l] + nz * z[l] - reach;
+                most[l] = if beyond > most[l] { beyond } else { most[l] };
+            }
+        }
+    }
+    most
 }
 
 /// How far a point is beyond the plane that it is farthest beyond, or negative.

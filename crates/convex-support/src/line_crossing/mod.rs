@@ -16,6 +16,7 @@ mod cylinder;
 mod ellipsoid;
 #[cfg(feature = "hull")]
 mod faceted;
+pub(crate) mod lanes;
 mod rounded_cuboid;
 mod triangle;
 
@@ -36,7 +37,7 @@ pub(crate) use triangle::triangle;
 
 use crate::numerics::range::is_comfortable;
 use crate::shapes::across;
-use crate::{Core, Scalar, ScalarOf, SupportMap, Vector, Vector3};
+use crate::{Core, Lines, Scalar, ScalarOf, SupportMap, Vector, Vector3};
 
 /// The part of a line that lies in a convex set: `{ λ : source + λ·direction ∈ C }` is the interval from `entry` to
 /// `exit`, in units of the direction.
@@ -157,6 +158,16 @@ pub trait CrossedByLine: SupportMap {
         direction: Self::Vector,
         radius: ScalarOf<Self>,
     ) -> LineCrossing<Self::Vector>;
+
+    /// What [`certain_crossing`](SupportMap::certain_crossing) tells in plain numbers of many lines, to the last bit; of
+    /// those that it knows nothing of, or that cost a branch, nothing. `false`, as the provided method returns, if
+    /// nothing is ever known.
+    #[doc(hidden)]
+    #[inline]
+    fn certain_crossings(&self, lines: &mut Lines<ScalarOf<Self>>) -> bool {
+        let _ = lines;
+        false
+    }
 }
 
 /// Where the line through `source` along `direction` is in a shape.

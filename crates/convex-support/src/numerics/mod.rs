@@ -6,3 +6,4 @@ pub mod elementary;
 pub mod jacobi;
 pub mod range;
 pub mod twofold;
+pub mod widest;

@@ -1,10 +1,11 @@
 //! A ball about the origin.
 
 use crate::error::{InvalidShape, non_negative};
-use crate::line_crossing::{NearLine, ball, closely};
+use crate::line_crossing::{NearLine, ball, closely, lanes};
 use crate::support::swept;
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, CrossedByLine, Hint, LineCrossing, LineQuery, Lines, Rounding, Scalar, SupportMap,
+    Vector,
 };
 
 /// The ball `|x| ≤ radius`; a disc in 2D. Its core is a point.
@@ -85,5 +86,11 @@ impl<V: Vector> CrossedByLine for Ball<V> {
     #[inline(always)]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
         ball(radius, source, direction).into()
+    }
+
+    #[inline]
+    fn certain_crossings(&self, lines: &mut Lines<V::Scalar>) -> bool {
+        lanes::ball::<V>(lines, V::ZERO, self.radius, V::Scalar::ZERO);
+        true
     }
 }

@@ -3,11 +3,11 @@
 use num_traits::Float as _;
 
 use crate::error::{InvalidShape, non_negative};
-use crate::line_crossing::{NearLine, Spine, closely};
+use crate::line_crossing::{NearLine, Spine, closely, lanes};
 use crate::support::support_of_parts;
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Parallelotope, Rounding,
-    Scalar, SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Lines, Parallelotope,
+    Rounding, Scalar, SupportMap, Vector,
 };
 
 /// The segment from `(0, −half_height)` to `(0, half_height)` along the second axis, swept by a ball. Its core is the
@@ -109,5 +109,11 @@ impl<V: Vector> CrossedByLine for Capsule<V> {
     #[inline(always)]
     fn core_line_crossing(&self, source: V, direction: V, radius: V::Scalar) -> LineCrossing<V> {
         Spine::upright(self.half_height).crossing(radius, source, direction).into()
+    }
+
+    #[inline]
+    fn certain_crossings(&self, lines: &mut Lines<V::Scalar>) -> bool {
+        lanes::capsule::<V>(lines, self.half_height, self.radius);
+        true
     }
 }

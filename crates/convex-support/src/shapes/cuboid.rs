@@ -1,10 +1,10 @@
 //! A box about the origin, along the axes.
 
 use crate::error::{InvalidShape, finite, measurable};
-use crate::line_crossing::{NearLine, closely, cuboid, rounded_cuboid};
+use crate::line_crossing::{NearLine, closely, cuboid, lanes, rounded_cuboid};
 use crate::{
-    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Parallelotope, Rounding, Scalar,
-    SupportMap, Vector,
+    CertainCrossing, Core, CoreKind, CrossedByLine, Feature, LineCrossing, LineQuery, Lines, Parallelotope, Rounding,
+    Scalar, SupportMap, Vector,
 };
 
 /// The box `|xᵢ| ≤ half_extentsᵢ`; a rectangle in 2D.
@@ -119,5 +119,11 @@ impl<V: Vector> CrossedByLine for Cuboid<V> {
             return rounded_cuboid(self.half_extents, radius, source, direction).into();
         }
         cuboid(self.half_extents, source, direction).into()
+    }
+
+    #[inline]
+    fn certain_crossings(&self, lines: &mut Lines<V::Scalar>) -> bool {
+        lanes::cuboid(lines, self.half_extents, self.extent);
+        true
     }
 }

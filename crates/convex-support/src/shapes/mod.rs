@@ -14,7 +14,7 @@ mod triangle;
 
 pub(crate) use cylinder::across;
 #[cfg(feature = "hull")]
-pub(crate) use polytope::{PLANES, Planes};
+pub(crate) use polytope::{PLANES, Planes, facet};
 pub(crate) use segment::clamp_to_segment;
 pub(crate) use triangle::Frame;
 

@@ -13,7 +13,8 @@ macro_rules! glam_vector {
         coordinates: [$($i:literal),+],
         rotation: $R:ident,
         angular_velocity: $W:ident,
-        matrix: $M:ident of $space:ident $(,)?
+        matrix: $M:ident of $space:ident,
+        numbers: $N:ident $(,)?
     }) => {
         impl sealed::Sealed for $V {}
         impl sealed::Sealed for $M {}
@@ -23,6 +24,7 @@ macro_rules! glam_vector {
             type Matrix = $M;
             type Rotation = $R;
             type AngularVelocity = $W;
+            type Numbers = $N;
 
             const DIM: usize = [$($i),+].len();
             const ZERO: Self = Self::ZERO;
@@ -116,11 +118,46 @@ mod space {
     }
 }
 
-glam_vector!(Vec2 { scalar: f32, coordinates: [0, 1], rotation: f32, angular_velocity: f32, matrix: Mat2 of plane });
-glam_vector!(DVec2 { scalar: f64, coordinates: [0, 1], rotation: f64, angular_velocity: f64, matrix: DMat2 of plane });
-glam_vector!(Vec3 { scalar: f32, coordinates: [0, 1, 2], rotation: Quat, angular_velocity: Vec3, matrix: Mat3 of space });
-glam_vector!(Vec3A { scalar: f32, coordinates: [0, 1, 2], rotation: Quat, angular_velocity: Vec3A, matrix: Mat3A of space });
-glam_vector!(DVec3 { scalar: f64, coordinates: [0, 1, 2], rotation: DQuat, angular_velocity: DVec3, matrix: DMat3 of space });
+glam_vector!(Vec2 {
+    scalar: f32,
+    coordinates: [0, 1],
+    rotation: f32,
+    angular_velocity: f32,
+    matrix: Mat2 of plane,
+    numbers: Vec2,
+});
+glam_vector!(DVec2 {
+    scalar: f64,
+    coordinates: [0, 1],
+    rotation: f64,
+    angular_velocity: f64,
+    matrix: DMat2 of plane,
+    numbers: DVec2,
+});
+glam_vector!(Vec3 {
+    scalar: f32,
+    coordinates: [0, 1, 2],
+    rotation: Quat,
+    angular_velocity: Vec3,
+    matrix: Mat3 of space,
+    numbers: Vec3,
+});
+glam_vector!(Vec3A {
+    scalar: f32,
+    coordinates: [0, 1, 2],
+    rotation: Quat,
+    angular_velocity: Vec3A,
+    matrix: Mat3A of space,
+    numbers: Vec3,
+});
+glam_vector!(DVec3 {
+    scalar: f64,
+    coordinates: [0, 1, 2],
+    rotation: DQuat,
+    angular_velocity: DVec3,
+    matrix: DMat3 of space,
+    numbers: DVec3,
+});
 
 impl Vector3 for Vec3 {
     #[inline]

@@ -52,6 +52,11 @@ pub trait Vector:
     /// How fast a body turns in this space: a number in 2D, a vector in 3D.
     type AngularVelocity: AngularVelocity<Self>;
 
+    /// The same vectors as plain numbers, of which compilers make vector instructions for several at a time: `Vec3` for
+    /// `Vec3A`, and the others themselves.
+    #[doc(hidden)]
+    type Numbers: Vector<Scalar = Self::Scalar>;
+
     /// The dimension of the space, 2 or 3.
     const DIM: usize;
     /// The zero vector.

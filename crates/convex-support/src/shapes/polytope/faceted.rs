@@ -12,11 +12,11 @@ use super::convex_hull::ConvexHull;
 use super::hull::FromPoints;
 use super::lanes::{WIDTH, coordinate, side_by_side};
 use crate::error::InvalidShape;
-use crate::line_crossing::{NearLine, faceted};
+use crate::line_crossing::{NearLine, faceted, lanes};
 use crate::numerics::bound::roundings;
 use crate::{
-    CertainCrossing, Core, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Rounding, Scalar, SupportMap, Vector,
-    compiled_once,
+    CertainCrossing, Core, CrossedByLine, Feature, Hint, LineCrossing, LineQuery, Lines, Rounding, Scalar, SupportMap,
+    Vector, compiled_once,
 };
 
 /// [`WIDTH`] planes, each a unit outward normal by coordinates and how far the polytope reaches along it from the
@@ -106,20 +106,20 @@ impl<V: Vector> Faceted<V> {
     /// facets on both sides and around it.
     pub fn half_spaces(&self) -> impl ExactSizeIterator<Item = (V, V::Scalar)> + '_ {
         (0..self.count).map(|i| {
-            let (n, reach) = self.facet(i);
+            let (n, reach): (V, _) = facet(&self.planes, i);
             (n, reach + n.dot(self.polytope.middle))
         })
-    }
-
-    /// The normal of a facet, and how far the polytope reaches along it from the middle.
-    pub(crate) fn facet(&self, index: usize) -> (V, V::Scalar) {
-        let (planes, l) = (&self.planes[index / WIDTH], index % WIDTH);
-        (V::from_fn(|i| planes[i][l]), planes[3][l])
     }
 
     pub(crate) fn planes(&self) -> &[Planes<V::Scalar>] {
         &self.planes
     }
+}
+
+/// The normal of a facet, and how far the polytope reaches along it from the middle.
+pub(crate) fn facet<V: Vector>(planes: &[Planes<V::Scalar>], index: usize) -> (V, V::Scalar) {
+    let (planes, l) = (&planes[index / WIDTH], index % WIDTH);
+    (V::from_fn(|i| planes[i][l]), planes[3][l])
 }
 
 compiled_once! {
@@ -279,5 +279,14 @@ impl<V: Vector> CrossedByLine for Faceted<V> {
             return LineCrossing::Unknown;
         }
         faceted(self, source, direction).into()
+    }
+
+    #[inline]
+    fn certain_crossings(&self, lines: &mut Lines<V::Scalar>) -> bool {
+        let Core { origin, extent, error, .. } = self.core();
+        if self.uncut < V::Scalar::infinity() {
+            lanes::hull(lines, &self.planes, origin, extent, error + self.uncut);
+        }
+        self.uncut < V::Scalar::infinity()
     }
 }

@@ -27,7 +27,7 @@ use crate::{Core, CoreKind, Feature, Hint, Rounding, Scalar, SupportMap, Vector}
 #[cfg(feature = "hull")]
 pub use faceted::Faceted;
 #[cfg(feature = "hull")]
-pub(crate) use faceted::Planes;
+pub(crate) use faceted::{Planes, facet};
 #[cfg(feature = "hull")]
 pub(crate) use lanes::WIDTH as PLANES;
 

@@ -1,0 +1,429 @@
+//! Many lines at one shape, side by side.
+//!
+//! A shape's closed form for one line is run over an array of them. There is no second formula: all of it is inlined
+//! into a loop that stores nothing but numbers, so that compilers compute both sides of each branch for several lines
+//! at a time, and choose. Each answer is that of the line alone, to the last bit; or the line is in doubt, and to be
+//! asked alone.
+
+#![allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
+
+use super::certain::BeyondEnd;
+#[cfg(feature = "hull")]
+use super::faceted::{clip_lines, most_beyond_of_all};
+use super::{CertainCrossing, LineQuery, NearLine, Spine};
+use crate::numerics::widest::{Loop, widest};
+#[cfg(feature = "hull")]
+use crate::shapes::Planes;
+use crate::{Matrix, Scalar, Vector, compiled_once};
+
+/// How many lines are asked at a time: a multiple of what a vector register holds on every target.
+pub const LINES: usize = 32;
+
+/// A number of each line.
+pub(super) type Lane<S> = [S; LINES];
+
+/// Lines, coordinate by coordinate, and what a shape [certainly knows](crate::SupportMap::certain_crossings) of them.
+/// While it is asked, it may write over them.
+#[doc(hidden)]
+#[derive(Clone, Debug)]
+pub struct Lines<S> {
+    /// A point of each line.
+    pub source: [Lane<S>; 3],
+    /// The direction of each line.
+    pub direction: [Lane<S>; 3],
+    /// The answer is to hold for every line that passes within this distance of the line near the shape.
+    pub error: Lane<S>,
+    /// 1 where the line enters the shape, −1 where it misses it, 0 where it is to be asked alone.
+    pub known: Lane<S>,
+    /// Where the line enters.
+    pub entry: Lane<S>,
+    /// Bounds on that.
+    pub bounds: [Lane<S>; 2],
+    /// The normal there.
+    pub normal: [Lane<S>; 3],
+    /// What [`NearLine`] has of each, and 1 or 0 whether there is one.
+    is_near: Lane<S>,
+    base: Lane<S>,
+    near: [Lane<S>; 3],
+    near_error: Lane<S>,
+    /// What [`BeyondEnd`] has of each.
+    beyond: [Lane<S>; 3],
+}
+
+impl<S: Scalar> Default for Lines<S> {
+    fn default() -> Self {
+        let zero = [S::ZERO; LINES];
+        Self {
+            source: [zero; 3],
+            direction: [zero; 3],
+            error: zero,
+            known: zero,
+            entry: zero,
+            bounds: [zero; 2],
+            normal: [zero; 3],
+            is_near: zero,
+            base: zero,
+            near: [zero; 3],
+            near_error: zero,
+            beyond: [zero; 3],
+        }
+    }
+}
+
+#[inline(always)]
+fn vector<V: Vector>(lanes: &[Lane<V::Scalar>; 3], line: usize) -> V {
+    V::from_fn(|i| lanes[i][line])
+}
+
+#[inline(always)]
+fn set<V: Vector>(lanes: &mut [Lane<V::Scalar>; 3], line: usize, v: V) {
+    for i in 0..V::DIM {
+        lanes[i][line] = v.get(i);
+    }
+}
+
+impl<S: Scalar> Lines<S> {
+    /// Whether any line is to be asked alone.
+    #[must_use]
+    pub fn any_in_doubt(&self) -> bool {
+        any(&self.known, |known| known == S::ZERO)
+    }
+
+    #[inline(always)]
+    fn near<V: Vector<Scalar = S>>(&self, line: usize, size: S) -> NearLine<V> {
+        NearLine {
+            base: self.base[line],
+            source: vector(&self.near, line),
+            direction: vector(&self.direction, line),
+            size,
+            error: self.near_error[line],
+        }
+    }
+
+    /// What was written down of a line.
+    #[inline(always)]
+    fn told<V: Vector<Scalar = S>>(&self, line: usize) -> Told<V> {
+        let bounds = [self.bounds[0][line], self.bounds[1][line]];
+        Told { known: self.known[line], entry: self.entry[line], bounds, normal: vector(&self.normal, line) }
+    }
+
+    /// Writes down what is known of a line, if it is near.
+    #[inline(always)]
+    fn tell<V: Vector<Scalar = S>>(&mut self, line: usize, told: Told<V>) {
+        self.known[line] = told.known * self.is_near[line];
+        self.entry[line] = told.entry;
+        self.bounds[0][line] = told.bounds[0];
+        self.bounds[1][line] = told.bounds[1];
+        set(&mut self.normal, line, told.normal);
+    }
+}
+
+/// [`CertainCrossing`] or nothing, in numbers: all are written whatever is known, since stores of some lanes alone are
+/// slow.
+#[derive(Clone, Copy)]
+struct Told<V: Vector> {
+    known: V::Scalar,
+    entry: V::Scalar,
+    bounds: [V::Scalar; 2],
+    normal: V,
+}
+
+impl<V: Vector> Told<V> {
+    const NOTHING: Self =
+        Self { known: V::Scalar::ZERO, entry: V::Scalar::ZERO, bounds: [V::Scalar::ZERO; 2], normal: V::ZERO };
+
+    #[inline(always)]
+    fn new(certain: CertainCrossing<V>) -> Self {
+        match certain {
+            CertainCrossing::Enters { entry, bounds, normal } => Self { known: V::Scalar::ONE, entry, bounds, normal },
+            CertainCrossing::Misses(_) => Self { known: -V::Scalar::ONE, ..Self::NOTHING },
+        }
+    }
+}
+
+/// What is done with each line, inlined always, unlike a closure.
+trait EachLine<V: Vector>: Copy {
+    /// What is true of all lines; where it is not, nothing is done. So the compiler knows it in the loop.
+    #[inline(always)]
+    fn holds(&self) -> bool {
+        true
+    }
+
+    fn call(&self, lines: &mut Lines<V::Scalar>, line: usize);
+}
+
+#[inline(never)]
+fn each<V: Vector>(lines: &mut Lines<V::Scalar>, body: impl EachLine<V>) {
+    struct Each<'a, V: Vector, B>(&'a mut Lines<V::Scalar>, B);
+    impl<V: Vector, B: EachLine<V>> Loop for Each<'_, V, B> {
+        #[inline(always)]
+        fn run(self) {
+            let Self(lines, body) = self;
+            if body.holds() {
+                for line in 0..LINES {
+                    body.call(lines, line);
+                }
+            }
+        }
+    }
+    widest(Each(lines, body));
+}
+
+/// Whether any is so; without a branch for each.
+fn any<S: Scalar>(lane: &Lane<S>, is_so: impl Fn(S) -> bool) -> bool {
+    lane.iter().fold(false, |any, &value| any | is_so(value))
+}
+
+/// Sees the lines, known a further `error` less exactly, from a point near a shape of a `size` about an `origin`, as
+/// [`NearLine::new`] does.
+fn approach<V: Vector>(lines: &mut Lines<V::Scalar>, origin: V, size: V::Scalar, error: V::Scalar) {
+    #[derive(Clone, Copy)]
+    struct Approach<V: Vector, const FAR: bool>(V, V::Scalar, V::Scalar);
+    impl<V: Vector, const FAR: bool> EachLine<V> for Approach<V, FAR> {
+        #[inline(always)]
+        fn call(&self, lines: &mut Lines<V::Scalar>, line: usize) {
+            let (source, direction) = (vector::<V>(&lines.source, line), vector(&lines.direction, line));
+            let asked = LineQuery { error: lines.error[line], ..LineQuery::new(source, direction) }.within(self.2);
+            let (near, is_near) = NearLine::new_without_branch::<FAR>(asked, self.0, self.1);
+            lines.base[line] = near.base;
+            set(&mut lines.near, line, near.source);
+            lines.near_error[line] = near.error;
+            lines.is_near[line] = is_near;
+        }
+    }
+    each(lines, Approach::<V, false>(origin, size, error));
+    if any(&lines.is_near, |near| near == V::Scalar::ZERO) {
+        each(lines, Approach::<V, true>(origin, size, error));
+    }
+}
+
+/// The vector as plain numbers.
+#[inline(always)]
+fn numbers<V: Vector>(v: V) -> V::Numbers {
+    Vector::from_fn(|i| v.get(i))
+}
+
+compiled_once! {
+    /// A ball about a point, known to within an `error`.
+    pub(crate) fn ball<V>(
+        lines: &mut Lines<<V as Vector>::Scalar>,
+        center: V,
+        radius: <V as Vector>::Scalar,
+        error: <V as Vector>::Scalar,
+    ) -> () {
+        #[derive(Clone, Copy)]
+        struct Ball<S>(S);
+        impl<V: Vector> EachLine<V> for Ball<V::Scalar> {
+            #[inline(always)]
+            fn holds(&self) -> bool {
+                self.0 > V::Scalar::ZERO
+            }
+
+            #[inline(always)]
+            fn call(&self, lines: &mut Lines<V::Scalar>, line: usize) {
+                let known = lines.near::<V>(line, self.0).ball(self.0);
+                lines.tell(line, known.map_or(Told::NOTHING, Told::new));
+            }
+        }
+        lines.known = [V::Scalar::ZERO; LINES];
+        approach(lines, numbers(center), radius, error);
+        each::<V::Numbers>(lines, Ball(radius));
+    }
+}
+
+compiled_once! {
+    /// A box about zero.
+    pub(crate) fn cuboid<V>(
+        lines: &mut Lines<<V as Vector>::Scalar>,
+        half_extents: V,
+        size: <V as Vector>::Scalar,
+    ) -> () {
+        #[derive(Clone, Copy)]
+        struct Cuboid<V: Vector>(V, V::Scalar);
+        impl<V: Vector> EachLine<V> for Cuboid<V> {
+            #[inline(always)]
+            fn call(&self, lines: &mut Lines<V::Scalar>, line: usize) {
+                let known = lines.near::<V>(line, self.1).cuboid(self.0);
+                lines.tell(line, known.map_or(Told::NOTHING, Told::new));
+            }
+        }
+        approach(lines, V::Numbers::ZERO, size, Scalar::ZERO);
+        each(lines, Cuboid(numbers(half_extents), size));
+    }
+}
+
+compiled_once! {
+    /// A segment about zero along the second axis, swept by a ball: its side, and then the ends of the lines that meet
+    /// them.
+    pub(crate) fn capsule<V>(
+        lines: &mut Lines<<V as Vector>::Scalar>,
+        half_height: <V as Vector>::Scalar,
+        radius: <V as Vector>::Scalar,
+    ) -> () {
+        #[derive(Clone, Copy)]
+        struct Side<S>(S, S);
+        impl<V: Vector> EachLine<V> for Side<V::Scalar> {
+            #[inline(always)]
+            fn holds(&self) -> bool {
+                self.1 > V::Scalar::ZERO
+            }
+
+            #[inline(always)]
+            fn call(&self, lines: &mut Lines<V::Scalar>, line: usize) {
+                let side = lines.near::<V>(line, self.0 + self.1).side(&Spine::upright(self.0), self.1);
+                let (told, BeyondEnd { end, along, base }) = match side {
+                    Ok(known) => (Told::new(known), BeyondEnd::NEITHER),
+                    Err(beyond) => (Told::NOTHING, beyond.unwrap_or(BeyondEnd::NEITHER)),
+                };
+                lines.beyond[0][line] = end;
+                lines.beyond[1][line] = along;
+                lines.beyond[2][line] = base;
+                lines.tell(line, told);
+            }
+        }
+        #[derive(Clone, Copy)]
+        struct End<S>(S, S);
+        impl<V: Vector> EachLine<V> for End<V::Scalar> {
+            #[inline(always)]
+            fn holds(&self) -> bool {
+                self.1 > V::Scalar::ZERO
+            }
+
+            #[inline(always)]
+            fn call(&self, lines: &mut Lines<V::Scalar>, line: usize) {
+                let [end, along, base] = [0, 1, 2].map(|i| lines.beyond[i][line]);
+                let near = lines.near::<V>(line, self.0 + self.1);
+                let known = near.end(&Spine::upright(self.0), self.1, BeyondEnd { end, along, base });
+                let (told, before) = (known.map_or(Told::NOTHING, Told::new), lines.told(line));
+                lines.tell(line, if end == V::Scalar::ZERO { before } else { told });
+            }
+        }
+        (lines.known, lines.beyond[0]) = ([V::Scalar::ZERO; LINES], [V::Scalar::ZERO; LINES]);
+        approach(lines, V::Numbers::ZERO, half_height + radius, Scalar::ZERO);
+        each::<V::Numbers>(lines, Side(half_height, radius));
+        if any(&lines.beyond[0], |end| end != V::Scalar::ZERO) {
+            each::<V::Numbers>(lines, End(half_height, radius));
+        }
+    }
+}
+
+/// How a shape was turned about its origin and moved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turned<V: Vector> {
+    pub(crate) rotation: V::Matrix,
+    /// Where the origin is now.
+    pub(crate) center: V,
+    /// The size of the shape, and the error that it is known to.
+    pub(crate) size: V::Scalar,
+    pub(crate) error: V::Scalar,
+    /// Where the origin is not zero for the shape: what was lost of its image, as the shape sees it; the origin; and
+    /// the error of taking the one off and putting the other on.
+    pub(crate) from: Option<(V, V, V::Scalar)>,
+}
+
+/// The parameters that lines as a shape sees them are counted from, and whether there are such lines, 1 or 0.
+type Counted<S> = [Lane<S>; 2];
+
+compiled_once! {
+    /// The lines as the shape sees them that was turned.
+    pub(crate) fn before_turn<V>(
+        lines: &mut Lines<<V as Vector>::Scalar>,
+        turned: Turned<V>,
+    ) -> Counted<<V as Vector>::Scalar> {
+        #[derive(Clone, Copy)]
+        struct Before<V: Vector>(Turned<V>);
+        impl<V: Vector> EachLine<V> for Before<V> {
+            #[inline(always)]
+            fn call(&self, lines: &mut Lines<V::Scalar>, line: usize) {
+                let near = lines.near::<V>(line, self.0.size).at_foot();
+                let mut before = near.before(&self.0.rotation, LineQuery::new(V::ZERO, V::ZERO));
+                if let Some((lost, origin, error)) = self.0.from {
+                    before = LineQuery { source: before.source - lost + origin, ..before.within(error) };
+                }
+                lines.base[line] = near.base;
+                lines.error[line] = before.error;
+                set(&mut lines.source, line, before.source);
+                set(&mut lines.direction, line, before.direction);
+            }
+        }
+        let Turned { rotation, center, size, error, from } = turned;
+        let turned = Turned {
+            rotation: <V::Numbers as Vector>::Matrix::from_cols_fn(|j| numbers(rotation.col(j))),
+            center: numbers(center),
+            size,
+            error,
+            from: from.map(|(lost, origin, error)| (numbers(lost), numbers(origin), error)),
+        };
+        approach::<V::Numbers>(lines, turned.center, size, error);
+        each(lines, Before(turned));
+        [lines.base, lines.is_near]
+    }
+}
+
+compiled_once! {
+    /// What the shape knew of the lines as it saw them, of the lines as they were.
+    pub(crate) fn after_turn<V>(
+        lines: &mut Lines<<V as Vector>::Scalar>,
+        rotation: <V as Vector>::Matrix,
+        counted: &Counted<<V as Vector>::Scalar>,
+    ) -> () {
+        #[derive(Clone, Copy)]
+        struct After<M>(M);
+        impl<V: Vector> EachLine<V> for After<V::Matrix> {
+            #[inline(always)]
+            fn call(&self, lines: &mut Lines<V::Scalar>, line: usize) {
+                let Told { known, entry, bounds, normal } = lines.told::<V>(line);
+                let near = lines.near::<V>(line, Scalar::ZERO);
+                let after = Told::new(near.enters([bounds[0], entry, bounds[1]], self.0 * normal));
+                lines.tell(line, Told { known, ..after });
+            }
+        }
+        [lines.base, lines.is_near] = *counted;
+        let rotation = <V::Numbers as Vector>::Matrix::from_cols_fn(|j| numbers(rotation.col(j)));
+        each::<V::Numbers>(lines, After(rotation));
+    }
+}
+
+#[cfg(feature = "hull")]
+compiled_once! {
+    /// A hull by the planes of its facets as they are seen from a point, known to within an `error`.
+    pub(crate) fn hull<V>(
+        lines: &mut Lines<<V as Vector>::Scalar>,
+        planes: &[Planes<<V as Vector>::Scalar>],
+        origin: V,
+        size: <V as Vector>::Scalar,
+        error: <V as Vector>::Scalar,
+    ) -> () {
+        struct Hull<'a, V: Vector>(&'a mut Lines<V::Scalar>, &'a [Planes<V::Scalar>], V::Scalar);
+        impl<V: Vector> Loop for Hull<'_, V> {
+            #[inline(always)]
+            fn run(self) {
+                let Self(lines, planes, size) = self;
+                for line in 0..LINES {
+                    let foot = lines.near::<V>(line, size).at_foot();
+                    (lines.base[line], lines.near_error[line]) = (foot.base, foot.error);
+                    set(&mut lines.near, line, foot.source);
+                }
+                let clipped = clip_lines(planes, &lines.near, &lines.direction);
+                // Where each is to be in the hull if it enters it.
+                let mut inner = [[V::Scalar::ZERO; LINES]; 3];
+                for line in 0..LINES {
+                    let near = lines.near::<V>(line, size);
+                    let (told, latest) = match near.cut(planes, clipped.get(line)) {
+                        Some((known, latest)) => (Told::new(known), latest),
+                        None => (Told::NOTHING, V::Scalar::ZERO),
+                    };
+                    lines.tell(line, told);
+                    set(&mut inner, line, near.source + near.direction * latest);
+                }
+                let most = most_beyond_of_all(planes, &inner);
+                for line in 0..LINES {
+                    let is_known = (lines.known[line] < V::Scalar::ZERO) | (most[line] <= -lines.near_error[line]);
+                    lines.known[line] = if is_known { lines.known[line] } else { V::Scalar::ZERO };
+                }
+            }
+        }
+        approach(lines, numbers(origin), size, error);
+        widest(Hull::<V::Numbers>(lines, planes, size));
+    }
+}

@@ -1,0 +1,31 @@
+//! Loops over lanes in the widest vector instructions of the processor.
+
+/// A loop over lanes in plain arithmetic, which the compiler turns into vector instructions.
+pub trait Loop {
+    /// Runs it. Everything in it is to be inlined, `#[inline(always)]` itself, or it is compiled for the target alone.
+    fn run(self);
+}
+
+/// Runs a loop in the widest vector instructions of this processor, which are found at run time. None of them fuses or
+/// reorders what it is not told to, so that the answers are the same.
+#[cfg(feature = "simd")]
+#[inline]
+pub fn widest(lanes: impl Loop) {
+    struct Run<L>(L);
+    impl<L: Loop> pulp::NullaryFnOnce for Run<L> {
+        type Output = ();
+
+        #[inline(always)]
+        fn call(self) {
+            self.0.run();
+        }
+    }
+    pulp::Arch::new().dispatch(Run(lanes));
+}
+
+/// Runs a loop in the vector instructions of the target.
+#[cfg(not(feature = "simd"))]
+#[inline]
+pub fn widest(lanes: impl Loop) {
+    lanes.run();
+}
