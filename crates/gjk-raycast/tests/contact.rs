@@ -405,6 +405,7 @@ fn odd_bodies_have_few_points_that_are_on_them() {
 /// outlines are segments. Levels were read off planes through points as near to one line, and beyond these points.
 #[test]
 fn what_is_narrower_than_rounding_is_a_segment() {
+    #[allow(clippy::approx_constant, reason = "the last digits are those it was found with")]
     let upright = [0.000_340_001_2_f32, 0.000_340_001_2, 0.707_106_7, 0.707_106_7];
     let aside = [0.0, 0.707_106_77, 0.0, 0.707_106_77_f32];
     let edgewise = [0.0, 0.0, 0.707_106_77, 0.707_106_77_f32];

@@ -1,7 +1,7 @@
 //! Ellipsoids as shapes of convex-support, in two and three dimensions.
 
 use convex_support::glam::{DMat2, DMat3, DVec2, DVec3};
-use convex_support::{Ellipsoid as Shape, InvalidShape, support_value};
+use convex_support::{Ellipsoid as Shape, InvalidShape};
 
 use crate::ellipsoid::Ellipsoid;
 
@@ -34,7 +34,7 @@ impl TryFrom<Ellipsoid<3>> for Shape<DVec3> {
 
 #[cfg(test)]
 mod tests {
-    use convex_support::SupportMap;
+    use convex_support::support_value;
 
     use super::*;
     use crate::{EnclosingOptions, FlatPolicy, enclosing};
@@ -46,7 +46,7 @@ mod tests {
         let shape: Shape<DVec3> = answer.ellipsoid.try_into().expect("three axes");
         for direction in [DVec3::X, DVec3::NEG_Y, DVec3::new(1.0, -2.0, 0.5)] {
             let furthest = points.iter().map(|p| p.dot(direction)).fold(f64::NEG_INFINITY, f64::max);
-            let support = support_value(shape, direction);
+            let support = support_value(&shape, direction);
             assert!(support >= furthest - 1e-12, "{support} against {furthest} along {direction}");
         }
     }
