@@ -130,8 +130,7 @@ impl<V: Vector> RigidMotion<V> {
         TurningPlane { from, to }: TurningPlane<V>,
         interval: [V::Scalar; 2],
     ) -> V::Scalar {
-        let (w, turns) =
-            (|v| axial::turning(axial::vector(self.angular_velocity), v), self.angular_velocity != Default::default());
+        let (w, turns) = (|v| self.turning(v), self.angular_velocity != Default::default());
         if from == to {
             return if turns { longer([w(w(from)); 2]) * reach + least::<V::Scalar>() } else { V::Scalar::ZERO };
         }
@@ -155,12 +154,14 @@ impl<V: Vector> RigidMotion<V> {
             return (V::Scalar::ZERO, ball.radius);
         }
         let (rate, arm) = (axial::vector::<V>(self.angular_velocity).norm(), ball.center - self.center);
-        let off = if arm == V::ZERO {
-            V::Scalar::ZERO
-        } else {
-            axial::turning(axial::vector(self.angular_velocity), arm).norm() / rate
-        };
+        let off = if arm == V::ZERO { V::Scalar::ZERO } else { self.turning(arm).norm() / rate };
         (rate, off + ball.radius)
+    }
+
+    /// `ω × v`.
+    #[inline(always)]
+    fn turning(&self, v: V) -> V {
+        axial::turning(axial::vector(self.angular_velocity), v)
     }
 }
 
@@ -210,7 +211,7 @@ impl<V: Vector> Trajectory for RigidMotion<V> {
 
     #[inline]
     fn velocity(&self, time: V::Scalar, point: V) -> V {
-        self.velocity + axial::turning(axial::vector(self.angular_velocity), point - self.center - self.velocity * time)
+        self.velocity + self.turning(point - self.center - self.velocity * time)
     }
 
     #[inline]

@@ -100,12 +100,7 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
             continue;
         }
         // The same across the ray, with the whole line for x.
-        let Closest { v: aside, face, weights } =
-            closest(bracket, simplex, |p| line.across(line.foot - p), V::DIM - 1)?;
-        // A short vector that long ones cancelled to leans along the ray by their rounding, and a plane that leans
-        // does not stay before the whole ray.
-        v = line.across(aside);
-        simplex.retain(face, weights);
+        v = aside(bracket, simplex)?;
         let length = v.norm();
         // Where nothing brings the line nearer, what the body and v are wrong by may be all that is left.
         let progress = nearing_across.goes_on(length);
@@ -127,13 +122,19 @@ fn approach<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -
 /// The contact where the line enters the round of a swept simplex no deeper than errors may have brought it: planes at
 /// the entry then lean so far along the line that none of them closes the bracket.
 fn graze<V: Vector>(bracket: &mut Bracket<'_, V>, simplex: &mut Simplex<V>) -> Option<RayContact<V>> {
-    let (line, within) = (bracket.line(), bracket.noise + bracket.error);
-    let Closest { v, face, weights } = closest(bracket, simplex, |p| line.across(line.foot - p), V::DIM - 1).ok()?;
-    if !(bracket.radius > within && bracket.radius - v.norm() <= within) {
-        return None;
-    }
+    let (v, within) = (aside(bracket, simplex).ok()?, bracket.noise + bracket.error);
+    let is_graze = bracket.radius > within && bracket.radius - v.norm() <= within;
+    if is_graze { touch_beside(bracket, simplex, v, within, None) } else { None }
+}
+
+/// The shortest vector from the simplex to the line, whose face and weights the simplex is left with.
+fn aside<V: Vector>(bracket: &Bracket<'_, V>, simplex: &mut Simplex<V>) -> Result<V, Stop<V>> {
+    let line = bracket.line();
+    let Closest { v, face, weights } = closest(bracket, simplex, |p| line.across(line.foot - p), V::DIM - 1)?;
     simplex.retain(face, weights);
-    touch_beside(bracket, simplex, line.across(v), within, None)
+    // A short vector that long ones cancelled to leans along the ray by their rounding, and a plane that leans does not
+    // stay before the whole ray.
+    Ok(line.across(v))
 }
 
 /// The contact where the line comes within rounding of the simplex without entering it ahead of x.
