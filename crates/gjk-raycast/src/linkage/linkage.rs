@@ -70,7 +70,7 @@ pub(super) struct Skeleton<V: Vector> {
     pub(super) stages: Vec<(Option<usize>, JointStage<V>)>,
     pub(super) links: Vec<Carried<V>>,
     /// Each link as the world sees it, and after them the pairs that are asked about.
-    pub(super) views: Vec<View<V>>,
+    pub(super) views: Vec<LinkView<V>>,
 }
 
 /// What a joint carries.
@@ -93,7 +93,7 @@ pub(super) struct Around<V: Vector> {
 
 /// A link as it is seen from another one, or from the world, and the way from there.
 #[derive(Clone, Debug)]
-pub(super) struct View<V: Vector> {
+pub(super) struct LinkView<V: Vector> {
     pub(super) link: usize,
     pub(super) base: Option<usize>,
     pub(super) route: Route<V>,
@@ -148,7 +148,7 @@ impl<S: SupportMap> Linkage<S> {
         self.skeleton.views.truncate(self.len());
         for (pair, links) in pairs.into_iter().enumerate() {
             let route = self.skeleton.between(links).ok_or(LinkageError::Pair { pair })?;
-            self.skeleton.views.push(View { link: links[0], base: Some(links[1]), route });
+            self.skeleton.views.push(LinkView { link: links[0], base: Some(links[1]), route });
         }
         Ok(self)
     }
@@ -279,7 +279,7 @@ impl<V: Vector> Skeleton<V> {
             return Err(body);
         }
         let ball = Around::new(ball_around(balls.iter().map(|around| around.ball)), &LinkFrame::WORLD);
-        self.views.push(View { link: self.links.len(), base: None, route: Route::new(way, tail) });
+        self.views.push(LinkView { link: self.links.len(), base: None, route: Route::new(way, tail) });
         self.links.push(Carried { stage, balls, ball });
         Ok(())
     }

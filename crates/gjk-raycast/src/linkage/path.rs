@@ -7,7 +7,7 @@ use num_traits::Float;
 
 use super::error::LinkageError;
 use super::link_motion::{LinkMotion, PathEdge};
-use super::linkage::{Linkage, View};
+use super::linkage::{LinkView, Linkage};
 use super::proof::{FreeInterval, ProvedSteps};
 use super::result::{Met, Path, PathContact, PathOutcome, PathStop, PathWork};
 use super::sweep::{Near, Sweep, SweepSpace};
@@ -220,7 +220,7 @@ impl<S: SupportMap> Linkage<S> {
         observer: &mut Option<&mut dyn FnMut(FreeInterval<S::Vector>)>,
     ) -> Result<(), RayCastError> {
         let &Near { from, to, view, body, other } = near;
-        let View { link, base, ref route } = self.skeleton.views[view];
+        let LinkView { link, base, ref route } = self.skeleton.views[view];
         let (motion, shape) = (LinkMotion::new(route, edge, from, *bounds), &self.bodies[link][body]);
         let met = base.map_or(Met::Obstacle(other), |link| Met::Link { link, body: other });
         // A first guess of the normal.

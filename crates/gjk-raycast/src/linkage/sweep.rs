@@ -14,7 +14,7 @@ use num_traits::Float as _;
 
 use super::frame::epsilons;
 use super::link_motion::PathEdge;
-use super::linkage::{Around, Skeleton, View};
+use super::linkage::{Around, LinkView, Skeleton};
 use super::moving::Moving;
 use crate::RayCastError;
 use crate::axial;
@@ -161,7 +161,7 @@ impl<V: Vector> Sweep<'_, V> {
     /// Looks for what is near a link, body by body. If something is, and the link moves too far, the part is to be halved
     /// instead.
     fn is_coarse(&mut self, index: usize, EdgePart { times: [from, to], half, is_last }: EdgePart<V::Scalar>) -> bool {
-        let View { link, base, route } = &self.skeleton.views[index];
+        let LinkView { link, base, route } = &self.skeleton.views[index];
         let (link, base) = (&self.skeleton.links[*link], base.map(|base| &self.skeleton.links[base]));
         let (world, placed, bounds) = (Moving::WORLD, &self.space.moving, &self.space.bounds[index]);
         let moving = |stage: Option<usize>| stage.map_or(&world, |stage| &placed[stage]);
