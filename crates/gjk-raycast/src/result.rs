@@ -74,9 +74,8 @@ pub struct SignedDistance<V: Vector> {
     /// The distance where the shapes are apart; where they overlap, minus the penetration depth: the length of the
     /// shortest translation of `a` after which they have no interior point in common.
     pub signed_distance: V::Scalar,
-    /// The signed distance is certainly not less: this is proved by a plane across [`normal`](Self::normal), or across
-    /// a vector near it that closest points give. Minus infinity where a support map returned numbers that are not
-    /// finite.
+    /// The signed distance is certainly not less: this is proved by planes across [`normal`](Self::normal). Minus
+    /// infinity where a support map returned numbers that are not finite.
     #[cfg_attr(feature = "serde", serde(with = "crate::data::or_minus_infinity"))]
     pub lower: V::Scalar,
     /// The signed distance is certainly not more: two points of the shapes are this far apart, or a polytope within the
@@ -90,7 +89,9 @@ pub struct SignedDistance<V: Vector> {
     /// The point of `a` closest to `b`, or deepest in it. It is in `a` but for rounding, 8ε of the sizes of both shapes
     /// and their offset, however the search ended: what is not known of the way out is in the bounds.
     pub point_a: V,
-    /// The point of `b` such that `point_a − point_b` is the signed distance times the normal, in the same way.
+    /// The point of `b` such that `point_a − point_b` is the signed distance times the normal, in the same way. The
+    /// normal is that of a plane, across which points of curved shapes may be off by √(2·s·(`upper` − `lower`)), with
+    /// `s` the sum of both sizes and the offset.
     pub point_b: V,
     /// Whether the shapes have a point in common, touching included: whether `signed_distance` is not positive. It is
     /// certain where `lower` and `upper` have the same sign.

@@ -94,20 +94,20 @@ compiled_once! {
     }
 }
 
-/// [`signed_distance`], and the unit vector from `b` to `a` of the plane that proves its lower bound. Near contact it
-/// is known to what the search itself leaves, since a search in time looks again a moment later.
+/// [`signed_distance`] with the normal of the plane that proves its lower bound. Near contact it is known to what the
+/// search itself leaves, since a search in time looks again a moment later.
 #[inline]
-pub(crate) fn signed_distance_and_axis<V: Vector>(
+pub(crate) fn rough_signed_distance<V: Vector>(
     shapes: &dyn Shapes<Vector = V>,
     options: SignedDistanceOptions<V>,
-) -> (SignedDistance<V>, V) {
+) -> SignedDistance<V> {
     let parts = shapes.cores();
-    if let Some(answer) = direct(shapes, parts, options.max_iterations, &mut Observer::none()) {
-        return (answer, answer.normal);
-    }
-    let mut cores = Cores::new(shapes, parts);
-    let found = separation(&mut cores, &Wanted::new(OfOverlap::RoughDepth, options), &mut Observer::none());
-    (found.signed_distance(&cores), found.axis)
+    direct(shapes, parts, options.max_iterations, &mut Observer::none()).unwrap_or_else(|| {
+        let mut cores = Cores::new(shapes, parts);
+        let wanted = Wanted::new(OfOverlap::RoughDepth, options);
+        let found = separation(&mut cores, &wanted, &mut Observer::none());
+        SignedDistance { normal: found.axis, ..found.signed_distance(&cores) }
+    })
 }
 
 /// [`signed_distance`] of shapes behind pointers: compiled once for all that rarely ask it.

@@ -62,7 +62,8 @@ where
     let open = if width(&quick) > 1e3 * rounding { (width(&quick) * size.as_f64()).sqrt() } else { 0.0 };
     // Far from the world's origin, points have the digits that are left there.
     let far = (a.core().origin.norm() + b.core().origin.norm()).as_f64() * V::Scalar::EPSILON.as_f64();
-    assert!(rest.norm().as_f64() <= 64.0 * (rounding + far) + open, "{rest:?} {quick:?}");
+    let lean = if curved { (2.0 * width(&quick) * size.as_f64()).sqrt() } else { 0.0 };
+    assert!(rest.norm().as_f64() <= 64.0 * (rounding + far) + open + lean, "{rest:?} {quick:?}");
     for (off, point) in
         [(closest_point(a, quick.point_a), quick.point_a), (closest_point(b, quick.point_b), quick.point_b)]
     {

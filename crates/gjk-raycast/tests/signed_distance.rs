@@ -4,10 +4,10 @@ use std::cell::Cell;
 
 use crate::common::behind_pointers::signed_distance;
 use crate::common::{at, cuboid, s, turned, v};
-use convex_support::glam::{DQuat, DVec2, DVec3, Vec2, Vec3, Vec3A};
+use convex_support::glam::{DQuat, DVec2, DVec3, Quat, Vec2, Vec3, Vec3A};
 use convex_support::{
     Ball, Capsule, Cone, Cylinder, Ellipsoid, Point, Polytope, Posed, Rounded, Scalar, Segment, SupportMap, Triangle,
-    Vector,
+    Vector, support_value,
 };
 use gjk_raycast::{SignedDistance, SignedDistanceOptions, Status, signed_distance_with};
 
@@ -257,8 +257,12 @@ where
     A: SupportMap<Vector = V>,
     B: SupportMap<Vector = V>,
 {
-    let SignedDistance { signed_distance, normal, point_a, point_b, .. } = answer;
-    assert!((point_a - point_b - normal * signed_distance).norm().as_f64() <= error, "{point_a:?} {point_b:?}");
+    let SignedDistance { signed_distance, lower, upper, normal, point_a, point_b, .. } = answer;
+    let [core_a, core_b] = [a.core(), b.core()];
+    let size = core_a.extent + core_a.radius + core_b.extent + core_b.radius + (core_a.origin - core_b.origin).norm();
+    let lean = (2.0 * (size * (upper - lower)).as_f64()).sqrt();
+    let rest = (point_a - point_b - normal * signed_distance).norm().as_f64();
+    assert!(rest <= error + lean, "{rest:e} of {lean:e} {answer:?}");
     let off = |shape: &dyn SupportMap<Vector = V>, point: V| {
         let point = Point::new(point).expect("a finite point");
         gjk_raycast::distance(shape, &point, gjk_raycast::DistanceOptions::default()).distance.as_f64()
@@ -368,5 +372,25 @@ fn points_on_rims_and_apexes_are_as_deep_as_they_are() {
     for depth in [1e-9, 1e-7, 1e-5] {
         check(&cone, DVec3::new(0.1, depth - 2.0, 0.2), depth);
         check(&cylinder, DVec3::new(0.1, 0.5 - depth, 0.2), depth);
+    }
+}
+
+/// Two rounded bodies whose inner bodies nearly touch are deep in one another, and the way between these is as short as
+/// their rounding: its direction was off by up to 0.1 in single precision. The normal is that of the plane that proves
+/// the lower bound, as that of a distance is.
+#[test]
+fn the_normal_is_that_of_the_plane_that_proves_the_bound() {
+    for i in 0..200 {
+        let [s, t] = [0.0005, 0.0003].map(|s| s * f64::from(i));
+        let a = Ellipsoid::<DVec3>::new(DVec3::ZERO, DVec3::new(0.5, 0.75, 1.25), DQuat::IDENTITY).expect(VALID);
+        let offset = Vec3::new(0.6 + s as f32, 0.5 - t as f32, 0.7);
+        let single = Ellipsoid::<Vec3>::new(Vec3::ZERO, Vec3::new(0.5, 0.75, 1.25), Quat::IDENTITY).expect(VALID);
+        let (b, exact) = (at(single, offset.as_dvec3().to_array()), at(a, offset.as_dvec3().to_array()));
+        let found = signed_distance(&single, &b, SignedDistanceOptions::default());
+        let known = signed_distance(&a, &exact, SignedDistanceOptions::default());
+        let plane = -(support_value(&single, -found.normal) + support_value(&b, found.normal));
+        assert!(plane >= found.lower - 8.0 * f32::EPSILON, "{plane} {found:?}");
+        let angle = found.normal.as_dvec3().cross(known.normal).length();
+        assert!(angle < 2e-3, "{angle:e} {found:?}");
     }
 }

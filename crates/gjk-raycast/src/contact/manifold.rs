@@ -104,7 +104,8 @@ fn between<V: Vector>(
     let size = (core_a.extent + core_a.radius).min(core_b.extent + core_b.radius);
     let reach = Reach::new(answer, within, size);
     let level = answer.signed_distance * -half;
-    let levels = [level, level + (answer.signed_distance - answer.lower)];
+    // The closest points are one beside the other by as much as is not known of the normal.
+    let levels = [level, level + (answer.upper - answer.lower)];
     let side = |surface, core, normal| Side::new(surface, core, ContactPlane { normal, across, origin }, levels);
     Facing { sides: [side(a, &core_a, -normal), side(b, &core_b, normal)], reach, last }.contact(answer, [level, level])
 }
@@ -165,6 +166,8 @@ pub(super) struct Candidate<S> {
     pub(super) levels: [S; 2],
     pub(super) error: S,
     pub(super) codes: [u32; 2],
+    /// Whether it is that of the closest points, which are known better than places in the plane.
+    pub(super) is_closest: bool,
 }
 
 impl<S: Scalar> Candidate<S> {
@@ -203,7 +206,7 @@ impl<V: Vector> Facing<'_, V> {
         let mut measured = |&i: &usize| self.measured(candidates[i], answer.lower, limit);
         let mut chosen: Chosen<_> = chosen.iter().filter_map(&mut measured).collect();
         self.add_closest(&mut chosen, &candidates, answer, levels);
-        let points: SmallVec<[_; MAX_POINTS]> = chosen.iter().map(|candidate| self.point(candidate)).collect();
+        let points: SmallVec<[_; MAX_POINTS]> = chosen.iter().map(|candidate| self.point(candidate, answer)).collect();
         Contact::new(answer.normal, *answer, &points)
     }
 
@@ -235,7 +238,8 @@ impl<V: Vector> Facing<'_, V> {
                 continue;
             }
             let levels = [0, 1].map(|i| self.sides[i].chord(corner.at));
-            let candidate = Candidate { at: corner.at, levels, error: V::Scalar::infinity(), codes };
+            let error = V::Scalar::infinity();
+            let candidate = Candidate { at: corner.at, levels, error, codes, is_closest: false };
             let slack = self.reach.slack * Scalar::from_f64(if self.is_known(codes) { 2.0 } else { 1.0 });
             let limit = self.reach.within + slack;
             if candidate.gap() <= limit {
@@ -314,7 +318,8 @@ impl<V: Vector> Facing<'_, V> {
         let whole = [part(a), part(b)].map(ContactPart::code);
         let codes = candidates.iter().find(|c| squared(c) <= near).map_or(whole, |c| c.codes);
         let zero = V::Scalar::ZERO;
-        let closest = Candidate { at: (zero, zero), levels, error: answer.upper - answer.lower, codes };
+        let (at, error) = ((zero, zero), answer.upper - answer.lower);
+        let closest = Candidate { at, levels, error, codes, is_closest: true };
         let nearest = chosen.iter().map(squared).fold(V::Scalar::infinity(), V::Scalar::min);
         let limit = near.max(nearest * Scalar::from_f64(1.0 + WORTHWHILE));
         let is_full = chosen.len() >= most::<V>();
@@ -349,9 +354,13 @@ impl<V: Vector> Facing<'_, V> {
         }
     }
 
-    fn point(&self, candidate: &Candidate<V::Scalar>) -> ContactPoint<V> {
+    fn point(&self, candidate: &Candidate<V::Scalar>, answer: &SignedDistance<V>) -> ContactPoint<V> {
         let [feature_a, feature_b] = candidate.codes;
-        let [point_a, point_b] = [0, 1].map(|i| self.sides[i].plane.point(candidate.at, candidate.levels[i]));
+        let [point_a, point_b] = if candidate.is_closest {
+            [answer.point_a, answer.point_b]
+        } else {
+            [0, 1].map(|i| self.sides[i].plane.point(candidate.at, candidate.levels[i]))
+        };
         ContactPoint {
             point_a,
             point_b,

@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     fn polygon(corners: impl Iterator<Item = (f64, f64)>) -> Vec<Candidate<f64>> {
-        let corner = |(i, at)| Candidate { at, levels: [0.0; 2], error: 0.0, codes: [i, 0] };
+        let corner = |(i, at)| Candidate { at, levels: [0.0; 2], error: 0.0, codes: [i, 0], is_closest: false };
         (0..).zip(corners).map(corner).collect()
     }
 

@@ -1,5 +1,6 @@
 //! How high the surface of a shape is over a place in the plane of contact.
 
+use convex_support::numerics::twofold::dot_minus;
 use convex_support::{Core, Feature, Hint, Scalar, SupportMap, Vector};
 use num_traits::Float as _;
 use smallvec::SmallVec;
@@ -63,8 +64,8 @@ impl<S: Scalar> Tangent<S> {
             (p.0 * steep, p.1 * steep)
         } else {
             let (q, other) = edge(2);
-            let area = cross(p, q);
-            ((rise * q.1 - other * p.1) / area, (other * p.0 - rise * q.0) / area)
+            let area = spanned(p, q);
+            (spanned((rise, p.1), (other, q.1)) / area, spanned((p.0, rise), (q.0, other)) / area)
         };
         Self { at: first.at, level: first.height, gradient }
     }
@@ -232,7 +233,7 @@ impl<'s, V: Vector> Side<'s, V> {
             }
             support_points -= 1;
             let Some((next, by)) = self.beyond(&tangent) else { break };
-            most = most.min(value + by.max(V::Scalar::ZERO) + allowed);
+            most = most.min(tangent.level(at) + by.max(V::Scalar::ZERO) + allowed);
             if most < least {
                 return None;
             }
@@ -312,13 +313,20 @@ fn between<S: Scalar>(corners: &[Corner<S>], at: Across<S>) -> S {
     if corners.len() < 3 {
         return of_edge(0, 1).1;
     }
-    let weights = [cross(to(1), to(2)), cross(to(2), to(0)), cross(to(0), to(1))];
+    let weights = [spanned(to(1), to(2)), spanned(to(2), to(0)), spanned(to(0), to(1))];
     if weights.iter().any(|weight| !(*weight >= S::ZERO)) {
         let edges = [of_edge(0, 1), of_edge(1, 2), of_edge(2, 0)];
         return edges.iter().fold(edges[0], |best, &next| if next.0 < best.0 { next } else { best }).1;
     }
     let [p, q, r] = [0, 1, 2].map(|i| corners[i].height * weights[i]);
     (p + q + r) / (weights[0] + weights[1] + weights[2])
+}
+
+/// The area between two vectors, as if computed in twice the precision. The points around a place on a curved surface
+/// end as thin triangles, two of them next to one another and the third far away, and of such an area the plain
+/// [`cross`] product leaves the digits that the rounding of the long sides is smaller than.
+fn spanned<S: Scalar>(a: Across<S>, b: Across<S>) -> S {
+    dot_minus([(a.0, b.1), (-a.1, b.0)], S::ZERO)
 }
 
 fn difference<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {

@@ -76,7 +76,7 @@ impl<V: Vector> Gjk<V> {
 
     /// Raises the lower bound to the plane through the support point `w` along a direction, if it is higher: no point
     /// of `A − B` lies before `w` along it (the paper's bound `‖v‖² − v·w`, divided by `‖v‖`). How high the plane is,
-    /// if that is finite.
+    /// if that is finite. Of planes that are equally high the later one is nearer to the best.
     #[inline(always)]
     pub(super) fn advance(&mut self, Direction { n, length }: Direction<V>, w: V) -> Option<V::Scalar> {
         self.iterations += 1;
@@ -84,7 +84,7 @@ impl<V: Vector> Gjk<V> {
         if !reach.is_finite() {
             return None;
         }
-        if reach > self.lower {
+        if reach >= self.lower {
             (self.lower, self.axis, self.axis_length) = (reach, n, length);
         }
         Some(reach)

@@ -15,7 +15,7 @@ use super::placed::Placed;
 use super::trajectory::{Trajectory, TurningPlane};
 use crate::body::{Pair, Shapes, TracedSupport as _};
 use crate::gjk::rounding;
-use crate::signed_distance::signed_distance_and_axis;
+use crate::signed_distance::rough_signed_distance;
 use crate::unit::{is_moderate, length_bound, lost_to_underflow};
 use crate::{DistanceOptions, SignedDistanceOptions, distance};
 
@@ -129,13 +129,10 @@ impl<'s, V: Vector> MovingPair<'s, V> {
     ) -> Instant<V> {
         let wanted =
             SignedDistanceOptions::new().with_axis(axis).with_limit(limits.distance).with_depth_limit(limits.depth);
-        let (answer, axis) = signed_distance_and_axis(placed, wanted);
+        let answer = rough_signed_distance(placed, wanted);
         self.count(answer.iterations);
         let (point_a, point) = (answer.point_a + placed.place, answer.point_b + placed.place);
-        let distance = answer.signed_distance;
-        // Of bodies that are apart, or no deeper than is asked for, the gap is to be that of a plane, and not of one
-        // that is hardly another.
-        let normal = if answer.lower > -limits.depth { axis } else { answer.normal };
+        let (normal, distance) = (answer.normal, answer.signed_distance);
         Instant {
             time,
             normal,

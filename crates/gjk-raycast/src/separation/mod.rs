@@ -81,8 +81,8 @@ impl<V: Vector> Wanted<V> {
 
 /// What is known of the cores; lengths in their unit.
 pub(crate) struct Separation<V: Vector> {
-    /// The unit vector out of their difference, and how far that reaches along it: minus their signed distance, or
-    /// infinitely far where they certainly overlap and no depth was asked for.
+    /// The unit vector out of their difference from one closest point to the other, and how far that reaches along it:
+    /// minus their signed distance, or infinitely far where they certainly overlap and no depth was asked for.
     u: V,
     depth: V::Scalar,
     /// Bounds on the depth.
@@ -195,8 +195,10 @@ impl<V: Vector> Separation<V> {
     #[inline(always)]
     fn of_gjk(cores: &Cores<'_, V>, state: &mut Gjk<V>, end: End) -> Self {
         let MetPoint { points, reached, .. } = MetPoint::new(cores, state);
-        // Across the face that the closest points are on; where rounding may have made that up, across the best plane.
-        let direction = if state.length > cores.noise() { state.normal } else { state.axis };
+        // From one closest point to the other; across the best plane where rounding may have made that up, and where
+        // rounded bodies overlap: the way between their cores is short then, and leans by the rounding.
+        let is_apart = state.length * cores.scale() > cores.radius();
+        let direction = if is_apart && state.length > cores.noise() { state.normal } else { state.axis };
         let n = direction.unit().or_else(|| state.normal.unit()).unwrap_or_else(|| V::axis(0));
         let plane = cores.best_plane(state);
         Self {
@@ -326,7 +328,7 @@ impl<V: Vector> Separation<V> {
             signed_distance,
             lower,
             upper,
-            normal: -self.u,
+            normal: self.axis,
             point_a,
             point_b,
             overlap: signed_distance <= V::Scalar::ZERO,
