@@ -322,11 +322,13 @@ fn between<S: Scalar>(corners: &[Corner<S>], at: Across<S>) -> S {
     (p + q + r) / (weights[0] + weights[1] + weights[2])
 }
 
-/// The area between two vectors, as if computed in twice the precision. The points around a place on a curved surface
-/// end as thin triangles, two of them next to one another and the third far away, and of such an area the plain
-/// [`cross`] product leaves the digits that the rounding of the long sides is smaller than.
+/// The area between two vectors, in twice the precision where the products cancel. The points around a place on a
+/// curved surface end as thin triangles, two of them next to one another and the third far away, and of such an area
+/// rounded products leave the digits that the rounding of the long sides is smaller than.
 fn spanned<S: Scalar>(a: Across<S>, b: Across<S>) -> S {
-    dot_minus([(a.0, b.1), (-a.1, b.0)], S::ZERO)
+    let (p, q) = (a.0 * b.1, a.1 * b.0);
+    let cancels = (p - q).abs() * S::from_f64(16.0) < p.abs() + q.abs();
+    if cancels { dot_minus([(a.0, b.1), (-a.1, b.0)], S::ZERO) } else { p - q }
 }
 
 fn difference<S: Scalar>(a: Across<S>, b: Across<S>) -> Across<S> {
