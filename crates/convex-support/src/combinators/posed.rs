@@ -6,8 +6,7 @@ use num_traits::Float as _;
 
 use super::placement::{Placement, is_near, length_of_error, lost_in_origin};
 use crate::error::{InvalidShape, finite, orthonormal};
-use crate::line_crossing::lanes::{self, Turned};
-use crate::line_crossing::{NearLine, closely, skew};
+use crate::line_crossing::{NearLine, Turned, closely, lanes, skew};
 use crate::numerics::bound::roundings;
 use crate::numerics::twofold::lost_in_sum;
 use crate::support::ScalarOf;
@@ -159,6 +158,23 @@ impl<S: SupportMap> Posed<S> {
         self.translation
     }
 
+    /// How the shape sees lines: from where its origin is taken to.
+    ///
+    /// Where that is not zero, the foot of a line, no more than 2 sizes `S` from there, loses `4uS` and `u|c|` as what
+    /// the image of the origin `c` has lost is taken off and `c` is put on. What was lost is turned, of which is lost
+    /// `3u`; where it is larger than the size, no line is near the shape to rounding.
+    #[inline(always)]
+    fn frame(&self, core: &Core<S::Vector>, size: ScalarOf<S>) -> Turned<S::Vector> {
+        let (rotation, error) = (self.rotation, self.error + self.skew);
+        if core.origin == S::Vector::ZERO {
+            return Turned { rotation, center: self.translation, size, error, from: None };
+        }
+        let center = rotation * core.origin + self.translation;
+        let rounding = roundings(8.0, size) + roundings(2.0, core.origin.norm() + self.lost.norm());
+        let from = Some((rotation.transpose_mul(self.lost), core.origin, rounding));
+        Turned { rotation, center, size, error, from }
+    }
+
     /// A vector of the shape as it is turned. Of zero, which is where most shapes have their origin and balls their
     /// core, the rotation need not even be read.
     #[inline(always)]
@@ -222,34 +238,22 @@ impl<S: SupportMap> SupportMap for Posed<S> {
         Some(self.rotation * closest + self.lost)
     }
 
-    /// The line is seen from where the shape's origin is taken to.
-    ///
-    /// Where that is not zero, the foot of the line, no more than 2 sizes `S` from there, loses `4uS` and `u|c|` as
-    /// what the image of the origin `c` has lost is taken off and `c` is put on. What was lost is turned, of which is
-    /// lost `3u`; where it is larger than the size, no line is near the shape to rounding.
     #[inline(always)]
     fn certain_crossing(&self, line: LineQuery<S::Vector>) -> Option<CertainCrossing<S::Vector>> {
         let core = self.shape.core();
         let line = line.within(self.error + self.skew);
         let size = core.extent + core.radius + line.radius;
-        if core.origin == S::Vector::ZERO {
-            if core.kind == CoreKind::Point(S::Vector::ZERO) {
-                // A ball, whichever way it is turned.
-                let line = line.sweeping(core.radius);
-                if line.is_close {
-                    return closely::capsule(line, self.translation, ScalarOf::<S>::ZERO);
-                }
-                return NearLine::new(line, self.translation, size)?.ball(line.radius);
+        // A ball, whichever way it is turned.
+        if core.origin == S::Vector::ZERO && core.kind == CoreKind::Point(S::Vector::ZERO) {
+            let line = line.sweeping(core.radius);
+            if line.is_close {
+                return closely::capsule(line, self.translation, ScalarOf::<S>::ZERO);
             }
-            let near = NearLine::new(line, self.translation, size)?.at_foot();
-            let known = self.shape.certain_crossing(near.before(&self.rotation, line))?;
-            return Some(near.after(known, |n| self.rotation * n));
+            return NearLine::new(line, self.translation, size)?.ball(line.radius);
         }
-        let near = NearLine::new(line, self.rotation * core.origin + self.translation, size)?.at_foot();
-        let before = near.before(&self.rotation, line);
-        let source = before.source - self.rotation.transpose_mul(self.lost) + core.origin;
-        let rounding = roundings(8.0, size) + roundings(2.0, core.origin.norm() + self.lost.norm());
-        let known = self.shape.certain_crossing(LineQuery { source, ..before.within(rounding) })?;
+        let turned = self.frame(&core, size);
+        let near = NearLine::new(line, turned.center, size)?.at_foot();
+        let known = self.shape.certain_crossing(turned.before(&near, line))?;
         Some(near.after(known, |n| self.rotation * n))
     }
 
@@ -293,19 +297,11 @@ impl<S: CrossedByLine> CrossedByLine for Posed<S> {
     #[inline]
     fn certain_crossings(&self, lines: &mut Lines<ScalarOf<S>>) -> bool {
         let core = self.shape.core();
-        let (size, error) = (core.extent + core.radius, self.error + self.skew);
         if core.origin == S::Vector::ZERO && core.kind == CoreKind::Point(S::Vector::ZERO) {
-            lanes::ball(lines, self.translation, core.radius, error);
+            lanes::ball(lines, self.translation, core.radius, self.error + self.skew);
             return true;
         }
-        let (center, from) = if core.origin == S::Vector::ZERO {
-            (self.translation, None)
-        } else {
-            let rounding = roundings(8.0, size) + roundings(2.0, core.origin.norm() + self.lost.norm());
-            let lost = self.rotation.transpose_mul(self.lost);
-            (self.rotation * core.origin + self.translation, Some((lost, core.origin, rounding)))
-        };
-        let counted = lanes::before_turn(lines, Turned { rotation: self.rotation, center, size, error, from });
+        let counted = lanes::before_turn(lines, self.frame(&core, core.extent + core.radius));
         let is_known = self.shape.certain_crossings(lines);
         if is_known {
             lanes::after_turn::<S::Vector>(lines, self.rotation, &counted);

@@ -176,49 +176,37 @@ impl<V: Vector> NearLine<V> {
     /// are too small or large to be squared.
     #[inline(always)]
     pub(crate) fn new(line: LineQuery<V>, origin: V, size: V::Scalar) -> Option<Self> {
+        let (near, is_near) = Self::seen::<false>(line, origin, size);
+        if is_near {
+            return Some(near);
+        }
+        let (near, is_near) = Self::seen::<true>(line, origin, size);
+        if is_near { Some(near) } else { None }
+    }
+
+    /// The line without a branch, and whether it is [near](Self::new). Where `FAR` is not set, only a line is near whose
+    /// source is.
+    #[inline(always)]
+    pub(super) fn seen<const FAR: bool>(line: LineQuery<V>, origin: V, size: V::Scalar) -> (Self, bool) {
         let LineQuery { source, direction, error, .. } = line;
         let number = V::Scalar::from_f64;
         // NaN and zero are not moderate; the largest coordinate may pass over a NaN, but the sum does not.
         let is_moderate = is_moderate(size) & is_moderate(sum_of_coordinates(direction));
         let (seen, near) = (source - origin, size * number(NEAR));
-        let squared = seen.length_squared();
-        let rounding =
-            |distance: V::Scalar| V::Scalar::EPSILON * (size * number(OF_SIZE) + distance * number(OF_DISTANCE));
-        if !is_moderate {
-            None
-        } else if squared <= near * near {
-            let error = error + rounding(sum_of_coordinates(seen));
-            Some(Self { base: V::Scalar::ZERO, source: seen, direction, size, error })
-        } else {
-            let (base, foot) = foot_from(origin, source, direction);
-            let error = error + rounding(sum_of_coordinates(foot));
-            (foot.length_squared() <= near * near).then_some(Self { base, source: foot, direction, size, error })
-        }
-    }
-
-    /// [`new`](Self::new) without a branch, and whether there is such a line, 1 or 0; where `FAR` is not set, only one
-    /// that is near already.
-    #[inline(always)]
-    pub(super) fn new_without_branch<const FAR: bool>(
-        line: LineQuery<V>,
-        origin: V,
-        size: V::Scalar,
-    ) -> (Self, V::Scalar) {
-        let LineQuery { source, direction, error, .. } = line;
-        let number = V::Scalar::from_f64;
-        let is_moderate = is_moderate(size) & is_moderate(sum_of_coordinates(direction));
-        let (seen, near) = (source - origin, size * number(NEAR));
-        let is_near = seen.length_squared() <= near * near;
+        let is_near = is_moderate & (seen.length_squared() <= near * near);
         let (base, source, is_near) = if FAR {
             let (base, foot) = foot_from(origin, source, direction);
             let source = V::from_fn(|i| if is_near { seen.get(i) } else { foot.get(i) });
-            (if is_near { V::Scalar::ZERO } else { base }, source, is_near | (foot.length_squared() <= near * near))
+            (
+                if is_near { V::Scalar::ZERO } else { base },
+                source,
+                is_near | is_moderate & (foot.length_squared() <= near * near),
+            )
         } else {
             (V::Scalar::ZERO, seen, is_near)
         };
         let rounding = V::Scalar::EPSILON * (size * number(OF_SIZE) + sum_of_coordinates(source) * number(OF_DISTANCE));
-        let known = if is_moderate & is_near { V::Scalar::ONE } else { V::Scalar::ZERO };
-        (Self { base, source, direction, size, error: error + rounding }, known)
+        (Self { base, source, direction, size, error: error + rounding }, is_near)
     }
 
     /// The same line from where it is closest to the origin, to be turned.
@@ -228,13 +216,6 @@ impl<V: Vector> NearLine<V> {
         let (base, source) = rebased(source, direction, direction.length_squared().recip());
         let error = self.error + size * (V::Scalar::EPSILON * V::Scalar::from_f64(OF_TURN));
         Self { base: self.base + base, source, error, ..*self }
-    }
-
-    /// The line from its foot, as it is seen in the frame of a shape that was turned about the origin.
-    #[inline(always)]
-    pub(crate) fn before(&self, rotation: &V::Matrix, asked: LineQuery<V>) -> LineQuery<V> {
-        let (source, direction) = (rotation.transpose_mul(self.source), rotation.transpose_mul(self.direction));
-        LineQuery { source, direction, error: self.error, ..asked }
     }
 
     /// What is known there, of the shape as it was mapped and this line.

@@ -136,7 +136,7 @@ impl<S: Scalar> ClippedLines<S> {
     }
 }
 
-/// [`clip`] of many lines. Of planes that are entered at the same parameter it finds the same one: the first of the
+/// [`clip`] of many lines, each at one plane after the other; of one line, planes are side by side. Of planes that are entered at the same parameter it finds the same one: the first of the
 /// first row.
 #[allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
 #[inline(always)]
@@ -173,7 +173,7 @@ pub(super) fn clip_lines<S: Scalar>(
     found
 }
 
-/// [`most_beyond`] of many points.
+/// [`most_beyond`] of many points, each at one plane after the other.
 #[allow(clippy::needless_range_loop, reason = "arrays are read side by side, as vector instructions do")]
 #[inline(always)]
 pub(super) fn most_beyond_of_all<S: Scalar>(planes: &[Planes<S>], [x, y, z]: &[Lane<S>; 3]) -> Lane<S> {

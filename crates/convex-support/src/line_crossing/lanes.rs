@@ -10,7 +10,7 @@
 use super::certain::BeyondEnd;
 #[cfg(feature = "hull")]
 use super::faceted::{clip_lines, most_beyond_of_all};
-use super::{CertainCrossing, LineQuery, NearLine, Spine};
+use super::{CertainCrossing, LineQuery, NearLine, Spine, Turned};
 use crate::numerics::widest::{Loop, widest};
 #[cfg(feature = "hull")]
 use crate::shapes::Planes;
@@ -184,11 +184,11 @@ fn approach<V: Vector>(lines: &mut Lines<V::Scalar>, origin: V, size: V::Scalar,
         fn call(&self, lines: &mut Lines<V::Scalar>, line: usize) {
             let (source, direction) = (vector::<V>(&lines.source, line), vector(&lines.direction, line));
             let asked = LineQuery { error: lines.error[line], ..LineQuery::new(source, direction) }.within(self.2);
-            let (near, is_near) = NearLine::new_without_branch::<FAR>(asked, self.0, self.1);
+            let (near, is_near) = NearLine::seen::<FAR>(asked, self.0, self.1);
             lines.base[line] = near.base;
             set(&mut lines.near, line, near.source);
             lines.near_error[line] = near.error;
-            lines.is_near[line] = is_near;
+            lines.is_near[line] = if is_near { V::Scalar::ONE } else { V::Scalar::ZERO };
         }
     }
     each(lines, Approach::<V, false>(origin, size, error));
@@ -307,20 +307,6 @@ compiled_once! {
     }
 }
 
-/// How a shape was turned about its origin and moved.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Turned<V: Vector> {
-    pub(crate) rotation: V::Matrix,
-    /// Where the origin is now.
-    pub(crate) center: V,
-    /// The size of the shape, and the error that it is known to.
-    pub(crate) size: V::Scalar,
-    pub(crate) error: V::Scalar,
-    /// Where the origin is not zero for the shape: what was lost of its image, as the shape sees it; the origin; and
-    /// the error of taking the one off and putting the other on.
-    pub(crate) from: Option<(V, V, V::Scalar)>,
-}
-
 /// The parameters that lines as a shape sees them are counted from, and whether there are such lines, 1 or 0.
 type Counted<S> = [Lane<S>; 2];
 
@@ -336,10 +322,7 @@ compiled_once! {
             #[inline(always)]
             fn call(&self, lines: &mut Lines<V::Scalar>, line: usize) {
                 let near = lines.near::<V>(line, self.0.size).at_foot();
-                let mut before = near.before(&self.0.rotation, LineQuery::new(V::ZERO, V::ZERO));
-                if let Some((lost, origin, error)) = self.0.from {
-                    before = LineQuery { source: before.source - lost + origin, ..before.within(error) };
-                }
+                let before = self.0.before(&near, LineQuery::new(V::ZERO, V::ZERO));
                 lines.base[line] = near.base;
                 lines.error[line] = before.error;
                 set(&mut lines.source, line, before.source);

@@ -19,6 +19,7 @@ mod faceted;
 pub(crate) mod lanes;
 mod rounded_cuboid;
 mod triangle;
+mod turned;
 
 use num_traits::Float as _;
 
@@ -34,6 +35,7 @@ pub(crate) use ellipsoid::ellipsoid;
 pub(crate) use faceted::faceted;
 pub(crate) use rounded_cuboid::rounded_cuboid;
 pub(crate) use triangle::triangle;
+pub(crate) use turned::Turned;
 
 use crate::numerics::range::is_comfortable;
 use crate::shapes::across;
