@@ -69,3 +69,24 @@ fn made_moderate<V: Vector>(x: V::Scalar, y: V::Scalar, z: V::Scalar) -> Option<
 pub(crate) fn length_bound<V: Vector>(v: V) -> V::Scalar {
     v.abs().max_element() * V::Scalar::from_f64(1.7321)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A unit has one digit, and so has its reciprocal, however large or small the size.
+    #[test]
+    fn a_unit_is_a_power_of_two_near_the_size() {
+        for exponent in -1000..1000 {
+            let size = 1.7 * f64::from(exponent).exp2();
+            let unit = power_of_two_near(size);
+            assert!(unit <= size && size < unit + unit, "{size:e} {unit:e}");
+            assert_eq!(reciprocal_of_power(unit) * unit, 1.0);
+            assert_eq!(unit.to_bits() & !EXPONENT, 0, "{unit:e}");
+        }
+        for odd in [0.0, f64::NAN, f64::INFINITY, -1.0] {
+            assert_eq!(power_of_two_near(odd), 1.0);
+        }
+        assert!(power_of_two_near(f32::MAX).recip() > 0.0);
+    }
+}

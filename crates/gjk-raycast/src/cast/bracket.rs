@@ -542,3 +542,38 @@ impl<'a, V: Vector> Bracket<'a, V> {
         self.iterations
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use convex_support::SupportMap;
+    use convex_support::glam::DVec3;
+
+    use crate::{Outcome, Ray, RayCastOptions, ray_cast};
+
+    /// A ball about zero that knows its support points alone, so that every bound is a search's.
+    struct Bare;
+
+    impl SupportMap for Bare {
+        type Vector = DVec3;
+
+        fn support(&self, direction: DVec3) -> DVec3 {
+            direction.normalize_or_zero()
+        }
+    }
+
+    /// A supporting plane bounds the first point of a ray from below, and a point of the body from above, also where
+    /// the ray nearly grazes it, and both are far from one another.
+    #[test]
+    fn bounds_hold_the_first_point_of_a_ray_in_a_ball() {
+        for i in 0..200 {
+            let aside = 1.0 - 0.5_f64.powi(i / 4) * (1.0 + f64::from(i % 4) / 8.0);
+            let ray = Ray { source: DVec3::new(-3.0, aside, 0.0), direction: DVec3::X };
+            let cast = ray_cast(&Bare, ray, RayCastOptions::default()).expect("a ray");
+            let known = 3.0 - ((1.0 - aside) * (1.0 + aside)).sqrt();
+            match cast.outcome {
+                Outcome::Hit(_) => assert!(cast.lower <= known && known <= cast.upper, "{aside} {known} {cast:?}"),
+                _ => assert!(cast.lower <= known, "{aside} {known} {cast:?}"),
+            }
+        }
+    }
+}

@@ -186,3 +186,31 @@ pub(super) fn wrap<S: Scalar>(points: &mut [Corner<S>], noise: S, corners: &mut 
     let least = (1..corners.len()).fold(0, |least, i| if is_before(&corners[i], &corners[least]) { i } else { least });
     corners.rotate_left(least);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corners(points: &[Across<f64>], noise: f64) -> alloc::vec::Vec<Across<f64>> {
+        let mut seen: SmallVec<[Corner<f64>; 16]> =
+            points.iter().map(|&at| Corner { at, height: 0.0, id: 0 }).collect();
+        let mut found = SmallVec::new();
+        wrap(&mut seen, noise, &mut found);
+        found.iter().map(|corner| corner.at).collect()
+    }
+
+    #[test]
+    fn a_hull_goes_counterclockwise_and_has_no_points_of_its_edges() {
+        let points = [(1.0, 1.0), (0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (0.25, 0.5), (0.0, 1.0), (1.0, 0.5), (0.0, 0.0)];
+        assert_eq!(corners(&points, 0.0), [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]);
+    }
+
+    /// What is no wider than the noise is a segment, and what is no longer a point.
+    #[test]
+    fn what_is_narrower_than_the_noise_spans_nothing() {
+        let points = [(0.0, 0.0), (1.0, 1e-9), (2.0, -1e-9), (3.0, 0.0)];
+        assert_eq!(corners(&points, 1e-8), [(0.0, 0.0), (3.0, 0.0)]);
+        assert_eq!(corners(&points, 4.0).len(), 1);
+        assert_eq!(corners(&points, 0.0).len(), 4);
+    }
+}

@@ -386,3 +386,24 @@ fn enclose<S: Scalar>(around: &mut Corners<S>, next: Corner<S>, at: Across<S>, n
     *around = corners;
     true
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two corners are next to one another, and the third is far away: the height between them is that of their plane
+    /// at any place among them.
+    #[test]
+    fn the_height_between_corners_of_a_thin_triangle_is_that_of_their_plane() {
+        let plane = |(x, y): Across<f64>| 0.25 + 0.7 * x - 0.4 * y;
+        let corner = |at| Corner { at, height: plane(at), id: 0 };
+        let (p, q) = ((0.1, -0.2), (1.3, 0.9));
+        let r = (q.0 - 3e-8, q.1 + 7e-8);
+        for i in 1..100 {
+            let s = f64::from(i) / 100.0;
+            let at = (p.0 + (0.5 * (q.0 + r.0) - p.0) * s, p.1 + (0.5 * (q.1 + r.1) - p.1) * s);
+            let off = (between(&[corner(p), corner(q), corner(r)], at) - plane(at)).abs();
+            assert!(off <= 8.0 * f64::EPSILON, "{off:e} at {at:?}");
+        }
+    }
+}

@@ -199,3 +199,34 @@ fn descend<B: TracedSupport>(
     }
     End::IterationLimit
 }
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::{DVec3, Vec3};
+
+    use super::rounding;
+
+    /// `n·(a − b + o)/|n|` in single precision is within [`rounding`] of that in double precision.
+    #[test]
+    fn rounding_covers_what_the_arithmetic_of_a_bound_loses() {
+        let mut seed = 1_u32;
+        let mut number = move || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as f32 / (1 << 23) as f32 - 1.0
+        };
+        let mut vector = move || Vec3::new(number(), number(), number());
+        let mut worst = 0.0_f64;
+        for _ in 0..20_000 {
+            let [n, a, b, o] = [vector(), vector(), vector(), vector()];
+            let exact = |v: Vec3| -> DVec3 { v.as_dvec3() };
+            let known = exact(n).dot(exact(a) - exact(b) + exact(o)) / exact(n).length();
+            let computed = n.dot(a - b + o) / n.length();
+            let lost = (f64::from(computed) - known).abs();
+            let allowed = f64::from(rounding(a.length() + b.length() + o.length()));
+            assert!(lost <= allowed, "{lost:e} of {allowed:e}: {n} {a} {b} {o}");
+            worst = worst.max(lost / allowed);
+        }
+        // The bound is of the worst case, and not of some other order.
+        assert!(worst > 0.05, "{worst}");
+    }
+}

@@ -244,3 +244,24 @@ pub(super) fn in_range<V: Vector>(v: V) -> Option<Direction<V>> {
         v.unit().map(|n| Direction { n, length: V::Scalar::ONE })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::DVec3;
+
+    use super::*;
+
+    /// A plane that is lower proves less; of planes that are equally high the later one is kept.
+    #[test]
+    fn only_a_plane_that_is_as_high_raises_the_lower_bound() {
+        let mut state = Gjk::new(DVec3::X);
+        let along = |n: DVec3| Direction { n, length: n.length() };
+        assert_eq!(state.advance(along(DVec3::X * 4.0), DVec3::new(2.0, 0.0, 0.0)), Some(2.0));
+        assert_eq!(state.advance(along(DVec3::Y), DVec3::new(0.0, 1.0, 0.0)), Some(1.0));
+        assert_eq!((state.lower, state.axis), (2.0, DVec3::X * 4.0));
+        let _ = state.advance(along(DVec3::Z), DVec3::new(0.0, 0.0, 2.0));
+        assert_eq!((state.lower, state.axis), (2.0, DVec3::Z));
+        assert_eq!(state.advance(along(DVec3::X), DVec3::NAN), None);
+        assert_eq!((state.lower, state.axis, state.iterations), (2.0, DVec3::Z, 4));
+    }
+}

@@ -107,3 +107,27 @@ impl<V: Vector> Plane<V> {
         Level { value, error }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::{DVec3, Vec3};
+
+    use super::Plane;
+
+    /// The offset and the products cancel but for a millionth; what is left is known to a rounding of that.
+    #[test]
+    fn a_height_is_wrong_by_no_more_than_its_error() {
+        let normal = Vec3::new(0.6, -0.48, 0.64);
+        for i in 0..1000_u16 {
+            let point = Vec3::new(1e3 + f32::from(i), 0.1 * f32::from(i), -7.0);
+            let offset = normal.dot(point) * (1.0 + 1e-6);
+            let plane = Plane { normal, offset, length: normal.length(), unit: normal.normalize() };
+            let height = plane.height([point, Vec3::new(1e-3, 0.0, 2e-3)], 0.0, 0.25);
+            let exact = normal.as_dvec3();
+            let sum = exact.dot(point.as_dvec3() + Vec3::new(1e-3, 0.0, 2e-3).as_dvec3()) - f64::from(offset);
+            let known = sum / DVec3::length(exact) - 0.25;
+            assert!((f64::from(height.value) - known).abs() <= f64::from(height.error), "{i}: {known} {height:?}");
+            assert!(f64::from(height.error) <= 16.0 * f64::from(f32::EPSILON), "{i}: {height:?}");
+        }
+    }
+}

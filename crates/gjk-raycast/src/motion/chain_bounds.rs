@@ -74,3 +74,20 @@ impl<S: Scalar> Bounds<S> {
         self.lengthen(way);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Bounds;
+
+    /// A point at the distance `r` from an axis that it turns about at the rate `w` is as fast as `w·r`, and its
+    /// acceleration and jerk are `w²·r` and `w³·r`; a joint that slides before adds its rate.
+    #[test]
+    fn bounds_of_one_turning_joint_are_those_of_a_circle() {
+        let mut bounds = Bounds::<f64>::REST;
+        bounds.turn(3.0, 0.0);
+        assert_eq!([bounds.speed.of(2.0), bounds.acceleration.of(2.0), bounds.jerk.of(2.0)], [6.0, 18.0, 54.0]);
+        assert_eq!(bounds.spin, 3.0);
+        bounds.slide(0.5, 0.0);
+        assert_eq!([bounds.speed.of(2.0), bounds.acceleration.of(2.0)], [6.5, 18.0]);
+    }
+}

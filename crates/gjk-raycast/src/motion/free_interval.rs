@@ -84,3 +84,21 @@ fn keeps_apart<S: Scalar>(gaps: [S; 2], most: S, times: [S; 2]) -> bool {
     // NaN is no proof.
     duration * duration * most * half < squared
 }
+
+#[cfg(test)]
+mod tests {
+    use super::keeps_apart;
+
+    /// With a bound `M` on the second derivative, gaps of `M/8` at the ends of an interval of length one may close in
+    /// its middle: no less is a proof.
+    #[test]
+    fn gaps_are_a_proof_where_a_parabola_between_them_stays_positive() {
+        let is_proved = |gaps: [f64; 2], most| keeps_apart(gaps, most, [2.0, 3.0]);
+        assert!(is_proved([1.0 + 1e-9; 2], 8.0) && !is_proved([1.0; 2], 8.0));
+        // √g₀ + √g₁ > √(M/2)
+        assert!(is_proved([4.0, 1.0 + 1e-9], 18.0) && !is_proved([4.0, 1.0], 18.0));
+        assert!(is_proved([1e-300, 1e-300], 0.0) && is_proved([1.0, 1.0], -1.0));
+        assert!(!is_proved([0.0, 1.0], 0.0) && !is_proved([1.0, -1.0], 0.0));
+        assert!(!is_proved([f64::NAN, 1.0], 0.0) && !is_proved([1.0; 2], f64::NAN));
+    }
+}

@@ -469,3 +469,18 @@ impl<'a, V: Vector> Cores<'a, V> {
         state
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::greatest_length;
+
+    /// What is known to lie `along` a direction, and to be wrong by some error across it, is no longer than that.
+    #[test]
+    fn an_error_across_makes_a_length_greater() {
+        for (length, error) in [(3.0, 4.0), (4.0, 3.0), (1.0, 1e-9), (1e-9, 1.0), (0.0, 1.0), (1.0, 0.0_f64)] {
+            let bound = greatest_length(length, error);
+            assert!(bound >= length.hypot(error) && bound <= length + error, "{length} {error} {bound}");
+        }
+        assert!(greatest_length(1.0_f64, f64::NAN).is_nan());
+    }
+}

@@ -17,3 +17,24 @@ pub(super) fn is_beyond<V: Vector>(corners: &[V], point: V) -> bool {
         _ => false,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::{DVec2, DVec3};
+
+    use super::is_beyond;
+
+    /// The points are so near to the line `y = x` that the determinant rounds to zero, or to the other sign.
+    #[test]
+    fn a_point_within_rounding_of_a_facet_is_on_its_true_side() {
+        let (a, b) = (DVec2::splat(12.0), DVec2::splat(24.0));
+        let at = |i: u32| 0.5 + f64::from(i) * f64::EPSILON / 2.0;
+        for i in 0..32 {
+            for j in 0..32 {
+                assert_eq!(is_beyond(&[a, b], DVec2::new(at(i), at(j))), i > j, "{i} {j}");
+                let corners = [DVec3::splat(12.0), DVec3::new(24.0, 24.0, 0.0), DVec3::splat(24.0)];
+                assert_eq!(is_beyond(&corners, DVec3::new(at(i), at(j), 3.0)), i > j, "{i} {j} in space");
+            }
+        }
+    }
+}

@@ -65,3 +65,34 @@ pub(crate) fn closest_in_face<V: Vector>(points: &[V], face: Face, dimension: us
     let v = if face.len() > dimension { V::ZERO } else { -foot.across };
     inside.then_some(Closest { v, face, weights: foot.coordinates })
 }
+
+#[cfg(test)]
+mod tests {
+    use convex_support::glam::DVec3;
+
+    use super::*;
+
+    /// The newest point brings the simplex nearer, if by less than rounding: where faces are equally near, as those of
+    /// points in a row, one that it is a corner of is kept.
+    #[test]
+    fn of_equally_near_faces_one_with_the_newest_point_is_kept() {
+        let points = [DVec3::new(-1.0, 1.0, 0.0), DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+        let closest = nearest_face(&points, 3).expect("numbers");
+        assert_eq!((closest.v, closest.face), (DVec3::Y, Face::of_corners(&[2])));
+    }
+
+    #[test]
+    fn every_kind_of_face_may_be_the_nearest() {
+        let tetrahedron = |at: DVec3| [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| p + at);
+        for (at, corners, v) in [
+            (DVec3::ONE, &[0][..], DVec3::ONE),
+            (DVec3::new(-0.5, 1.0, 1.0), &[0, 1], DVec3::new(0.0, 1.0, 1.0)),
+            (DVec3::new(-0.25, -0.25, 1.0), &[0, 1, 2], DVec3::Z),
+            (DVec3::splat(-0.125), &[0, 1, 2, 3], DVec3::ZERO),
+        ] {
+            let closest = nearest_face(&tetrahedron(at), 3).expect("numbers");
+            assert_eq!((closest.v, closest.face), (v, Face::of_corners(corners)), "at {at}");
+        }
+        assert!(nearest_face(&[DVec3::NAN], 3).is_none());
+    }
+}
