@@ -56,6 +56,20 @@ impl<S: SupportMap> Scene<S> {
         })
     }
 
+    /// The same of the [contacts of this scene and another](Self::contacts_between), of which either may be made of
+    /// pieces.
+    pub fn leave_out_seams_between<T: SupportMap<Vector = S::Vector>>(
+        &self,
+        other: &Scene<T>,
+        contacts: &mut Vec<PairContact<S::Vector>>,
+    ) -> usize {
+        leave_out(contacts, |contacts, &PairContact { a, b, contact }| {
+            let beside_a = || contacts.iter().filter(|found| found.b == b && found.a != a).map(|found| found.a);
+            let beside_b = || contacts.iter().filter(|found| found.a == a && found.b != b).map(|found| found.b);
+            other.is_at_seam(&contact, beside_b) || self.is_at_seam(&contact.reversed(), beside_a)
+        })
+    }
+
     /// Whether all points of a contact, of its second body, are covered by one of the others.
     fn is_at_seam<I: Iterator<Item = usize>>(&self, contact: &Contact<S::Vector>, others: impl Fn() -> I) -> bool {
         let covers = |point, other| self.reaches_beyond(other, point, contact.normal);

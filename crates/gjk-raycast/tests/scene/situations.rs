@@ -257,6 +257,30 @@ fn what_slides_over_a_floor_of_pieces_is_not_caught_at_seams() {
     assert!(contacts.iter().any(|found| found.contact.normal.x > 0.3), "{contacts:?}");
 }
 
+/// What slides may be a scene of its own, before or behind the floor: the contacts that are left are the same.
+#[test]
+fn seams_between_two_scenes_are_left_out_whichever_is_the_floor() {
+    let block = |half: DVec3, at: DVec3| Posed::translated(Cuboid::new(half).unwrap(), at).unwrap();
+    let floor = (0..10).map(|i| block(DVec3::new(0.5, 0.5, 1.0), DVec3::new(f64::from(i) + 0.5, -0.5, 0.0)));
+    let floor = Scene::new(floor).unwrap();
+    let (mut caught, mut contacts) = (0, Vec::new());
+    for step in 0..30 {
+        let x = 1.5 + 0.250_025 * f64::from(step);
+        let sleds = [0.11, -0.6].map(|z| block(DVec3::new(0.5, 0.5, 0.3), DVec3::new(x, 0.498, z)));
+        let sleds = Scene::new(sleds).unwrap();
+        let pushes_back = |found: &PairContact<DVec3>| found.contact.normal.y.abs() < 1.0 - 1e-9;
+        for is_swapped in [false, true] {
+            let (a, b) = if is_swapped { (&sleds, &floor) } else { (&floor, &sleds) };
+            a.contacts_between(b, 0.001, Default::default(), &mut contacts);
+            let before = contacts.iter().filter(|found| pushes_back(found)).count();
+            assert_eq!(a.leave_out_seams_between(b, &mut contacts), before, "{step}");
+            assert!(contacts.len() >= 2 && !contacts.iter().any(pushes_back), "{contacts:?}");
+            caught += before;
+        }
+    }
+    assert!(caught > 40, "{caught}");
+}
+
 /// Among the contacts of all pairs a tile may be the first body or the second: the sled is before some of the tiles and
 /// behind others. And the contacts of the last step may be handed on, to the half-space too, into a list that has room.
 #[test]
