@@ -87,6 +87,8 @@ mod tests {
         for odd in [0.0, f64::NAN, f64::INFINITY, -1.0] {
             assert_eq!(power_of_two_near(odd), 1.0);
         }
-        assert!(power_of_two_near(f32::MAX).recip() > 0.0);
+        // Neither the unit nor its reciprocal is subnormal.
+        assert_eq!(power_of_two_near(1e-40_f32), f32::MIN_POSITIVE);
+        assert!(power_of_two_near(f32::MAX).recip() >= f32::MIN_POSITIVE);
     }
 }

@@ -5,7 +5,7 @@ use num_traits::Float as _;
 
 use super::basin;
 use super::boundary::Boundary;
-use super::cores::{Cores, WayOut};
+use super::cores::{Cores, Vertex, WayOut};
 use super::first_polytope::{FirstPolytope, first_polytope};
 use super::met::MetPoint;
 use super::witness::{self, Ends};
@@ -86,37 +86,32 @@ pub(super) fn expand<V: Vector>(
     let tolerance = relative * cores.size;
     // In its place from the beginning: it is a large object to move.
     let mut boundary = Boundary::new(relative.max(Scalar::EPSILON).as_f64());
-    let mut way = match first_polytope(cores, state, &mut boundary)? {
+    let way = match first_polytope(cores, state, &mut boundary)? {
         FirstPolytope::Flat(way) => return Some(flat(way, MetPoint::new(cores, state))),
         FirstPolytope::Full(way) => way,
     };
+    let mut expansion =
+        Expansion { way, is_curved, tolerance, enough: tolerance, may_lean: is_curved, closed: None, met: None };
+    expansion.take(cores, way);
     let depth_limit = (options.depth_limit - cores.radius()) / cores.scale();
-    let enough_of = |cores: &Cores<'_, V>, way: &WayOut<V>| tolerance.max(cores.rounding_along(way.u()));
-    let mut enough = enough_of(cores, &way);
-    let mut met = None;
     let mut is_deep = false;
-    // Whether directions may lean; not next after one whose support point was not beyond the facet.
-    let mut may_lean = is_curved;
-    let mut closed: Option<Closed<_>> = None;
     let status = loop {
         let (nearest, inner) = boundary.nearest();
-        let inner =
-            if inner > Scalar::ZERO { inner } else { -met.get_or_insert_with(|| MetPoint::new(cores, state)).reached };
-        let normal = boundary.facet_at(nearest).normal;
-        // NaN fails this too.
-        if !(way.h - inner > enough) {
-            let little = cores.rounding_along(way.u()).max(way.h.abs() * Scalar::from_f64(LITTLE));
-            let is_first = closed.is_none();
-            let closed = closed.get_or_insert_with(|| Closed::new(cores.iterations, way.h));
-            if closed.is_spent(cores.iterations, way.h, little) || !(is_curved && way.h - inner > little) {
-                break Status::Converged;
-            }
-            if is_first {
+        let inner = if inner > Scalar::ZERO {
+            inner
+        } else {
+            -expansion.met.get_or_insert_with(|| MetPoint::new(cores, state)).reached
+        };
+        if expansion.is_closed(inner) {
+            match expansion.close(cores, inner) {
+                Closing::Spent => break Status::Converged,
                 // Perhaps no step was taken towards the bottom yet.
-                let corners = boundary.corners(nearest);
-                way = basin::descend(cores, &mut boundary, way, &corners[..V::DIM], options, true)?;
-                enough = enough_of(cores, &way);
-                continue;
+                Closing::First => {
+                    let corners = boundary.corners(nearest);
+                    expansion.descend(cores, &mut boundary, &corners, options)?;
+                    continue;
+                }
+                Closing::Again => {}
             }
         }
         if inner > depth_limit {
@@ -126,50 +121,126 @@ pub(super) fn expand<V: Vector>(
         if cores.iterations >= options.max_iterations {
             break Status::IterationLimit;
         }
-        let direction = if may_lean { way.leaned(normal, &boundary.corner_points(nearest)[..V::DIM]) } else { normal };
-        let Some(vertex) = cores.support(direction) else { break Status::Stalled };
+        if !expansion.grow(cores, &mut boundary, nearest, inner, options, observer)? {
+            break Status::Stalled;
+        }
+    };
+    let Expansion { way, closed, met, .. } = expansion;
+    let status = if closed.is_some() { Status::Converged } else { status };
+    // Who asks no more than whether they are so deep asks for no better points.
+    let for_ends = if is_deep { 0 } else { options.max_iterations + options.max_iterations / FOR_ENDS };
+    Some(settled(cores, state, &boundary, way, met, status, for_ends))
+}
+
+/// What the expansion knows beside its polytope.
+struct Expansion<V: Vector> {
+    /// The shortest way out that was found.
+    way: WayOut<V>,
+    is_curved: bool,
+    tolerance: V::Scalar,
+    /// How wide the bracket may stay: as the tolerance, or as rounding along the way lets it be.
+    enough: V::Scalar,
+    /// Whether directions may lean; not next after one whose support point was not beyond the facet.
+    may_lean: bool,
+    /// Since when the bracket is as narrow as asked for.
+    closed: Option<Closed<V::Scalar>>,
+    /// What GJK has met, where zero is not within the polytope.
+    met: Option<MetPoint<V>>,
+}
+
+/// What is left to do where the bracket is as narrow as asked for.
+enum Closing {
+    /// It is so for the first time, and may become narrower.
+    First,
+    Again,
+    Spent,
+}
+
+impl<V: Vector> Expansion<V> {
+    fn take(&mut self, cores: &Cores<'_, V>, way: WayOut<V>) {
+        self.way = way;
+        self.enough = self.tolerance.max(cores.rounding_along(way.u()));
+    }
+
+    /// Whether the bracket down to `inner` is as narrow as asked for. NaN is so too.
+    fn is_closed(&self, inner: V::Scalar) -> bool {
+        !(self.way.h - inner > self.enough)
+    }
+
+    fn close(&mut self, cores: &Cores<'_, V>, inner: V::Scalar) -> Closing {
+        let (way, time) = (&self.way, cores.iterations);
+        let little = cores.rounding_along(way.u()).max(way.h.abs() * Scalar::from_f64(LITTLE));
+        let is_first = self.closed.is_none();
+        let closed = self.closed.get_or_insert_with(|| Closed::new(time, way.h));
+        if closed.is_spent(time, way.h, little) || !(self.is_curved && way.h - inner > little) {
+            Closing::Spent
+        } else if is_first {
+            Closing::First
+        } else {
+            Closing::Again
+        }
+    }
+
+    /// Goes to the bottom of the basin that the way is in, beside a facet with these corners.
+    fn descend(
+        &mut self,
+        cores: &mut Cores<'_, V>,
+        boundary: &mut Boundary<V>,
+        corners: &[Vertex<V>],
+        options: &SignedDistanceOptions<V>,
+    ) -> Option<()> {
+        let way = basin::descend(cores, boundary, self.way, &corners[..V::DIM], options, self.closed.is_some())?;
+        self.take(cores, way);
+        Some(())
+    }
+
+    /// Looks along the normal of the nearest facet, which is `inner` from zero. Whether there is more to look at.
+    fn grow(
+        &mut self,
+        cores: &mut Cores<'_, V>,
+        boundary: &mut Boundary<V>,
+        nearest: usize,
+        inner: V::Scalar,
+        options: &SignedDistanceOptions<V>,
+        observer: &mut Observer<'_, V>,
+    ) -> Option<bool> {
+        let normal = boundary.facet_at(nearest).normal;
+        let leaned = || self.way.leaned(normal, &boundary.corner_points(nearest)[..V::DIM]);
+        let direction = if self.may_lean { leaned() } else { normal };
+        let Some(vertex) = cores.support(direction) else { return Some(false) };
         let seen = WayOut::new(vertex);
-        if seen.h < way.h {
-            way = seen;
-            enough = enough_of(cores, &way);
+        if seen.h < self.way.h {
+            self.take(cores, seen);
         }
         let mut facet = [V::ZERO; 3];
         observer.show(|| {
             facet = boundary.corner_points(nearest);
             let (iteration, scale) = (cores.iterations - 1, cores.scale());
-            let (lower, upper) = (-way.h * scale, -inner * scale);
+            let (lower, upper) = (-self.way.h * scale, -inner * scale);
             let (simplex, v, w) = (&facet[..V::DIM], normal * inner, vertex.point);
             Iterate { iteration, simplex, v, w, scale, lower, upper }
         });
-        // NaN fails this too.
-        if closed.is_none() && !(way.h - inner > enough) {
-            continue;
+        if self.closed.is_none() && self.is_closed(inner) {
+            return Some(true);
         }
-        let descends = is_curved && seen.h == way.h;
+        let descends = self.is_curved && seen.h == self.way.h;
         let corners = descends.then(|| boundary.corners(nearest));
         if !boundary.insert(nearest, &vertex) {
             // The support point along its own normal is beyond any facet that is not of the boundary.
-            if may_lean && direction != normal {
-                may_lean = false;
-                continue;
+            if self.may_lean && direction != normal {
+                self.may_lean = false;
+                return Some(true);
             }
             // The facet is of the boundary of K, and by the rounding of its plane farther in than the support value
             // says.
-            if boundary.measure(nearest) {
-                continue;
-            }
-            break Status::Stalled;
+            return Some(boundary.measure(nearest));
         }
-        may_lean = is_curved;
+        self.may_lean = self.is_curved;
         if let Some(corners) = corners {
-            way = basin::descend(cores, &mut boundary, way, &corners[..V::DIM], options, closed.is_some())?;
-            enough = enough_of(cores, &way);
+            self.descend(cores, boundary, &corners, options)?;
         }
-    };
-    let status = if closed.is_some() { Status::Converged } else { status };
-    // Who asks no more than whether they are so deep asks for no better points.
-    let for_ends = if is_deep { 0 } else { options.max_iterations + options.max_iterations / FOR_ENDS };
-    Some(settled(cores, state, &boundary, way, met, status, for_ends))
+        Some(true)
+    }
 }
 
 /// What an expansion knows where it has ended.
