@@ -6,9 +6,11 @@
 //! distances a copy of the points, which those functions take for themselves.
 
 use boxddd::collision::{
-    self, CastOutput, DistanceInput, MAX_SHAPE_PROXY_POINTS, RayCastInput, ShapeCastPairInput, ShapeProxy,
+    self, CastOutput, DistanceInput, LocalManifold, MAX_SHAPE_PROXY_POINTS, RayCastInput, ShapeCastPairInput,
+    ShapeProxy,
 };
 use boxddd::{Capsule, Foundation, Hull, Quat, Sphere, Transform, Vec3};
+use convex_support::glam::{DQuat, DVec3};
 
 use crate::measure::Solver;
 use workloads::Pose;
@@ -87,6 +89,27 @@ pub fn intersections(pair: &Pair, queries: &[IntersectQuery]) -> Option<Solver> 
         None => Solver::new(distance_inputs(pair, poses)?, |input| {
             yes(distance(input).map(|distance| distance < OVERLAP_SLOP))
         }),
+    })
+}
+
+/// Contact manifolds, by how many points these have; `None` where there is no function for two such shapes.
+#[must_use]
+pub fn manifolds(pair: &Pair, queries: &[IntersectQuery]) -> Option<Solver> {
+    begin();
+    let points = |found: boxddd::Result<LocalManifold>| found.map_or(f64::NAN, |found| found.points.len() as f64);
+    let of = |transform: fn(Pose) -> Transform| queries.iter().map(|query| transform(query.pose)).collect();
+    Some(match (body(&pair.a)?, body(&pair.b)?) {
+        // The hull comes first.
+        (Body::Sphere(a), Body::Hull(b)) => {
+            Solver::new(of(inverse), move |&pose| points(collision::collide_hull_and_sphere(&b, &a, pose)))
+        }
+        (Body::Capsule(a), Body::Capsule(b)) => {
+            Solver::new(of(transform), move |&pose| points(collision::collide_capsules(&a, &b, pose)))
+        }
+        (Body::Hull(a), Body::Hull(b)) => {
+            Solver::new(of(transform), move |&pose| points(collision::collide_hulls(&a, &b, pose)))
+        }
+        _ => return None,
     })
 }
 
@@ -171,6 +194,12 @@ fn yes(answer: boxddd::Result<bool>) -> f64 {
 
 fn vector([x, y, z]: vec3::Vec3) -> Vec3 {
     Vec3::new(x as f32, y as f32, z as f32)
+}
+
+/// The first body as the second sees it.
+fn inverse(pose: Pose) -> Transform {
+    let back = DQuat::from_array(pose.rotation).conjugate();
+    transform(Pose { rotation: back.to_array(), translation: (-(back * DVec3::from(pose.translation))).into() })
 }
 
 fn transform(pose: Pose) -> Transform {

@@ -6,10 +6,10 @@ use std::time::Duration;
 
 use benches::measure::Solver;
 use benches::ours::Effort;
-use benches::ours::shapes::{PairTask, VALID, with_pair};
+use benches::ours::shapes::{PairTask, Space, VALID, with_pair};
 use benches::ours::tasks::{Distances, SignedDistances, placed};
 use convex_support::glam::{DQuat, DVec3};
-use convex_support::{Posed, SupportMap};
+use convex_support::{Posed, Scalar, SupportMap};
 use gjk_raycast::{SignedDistanceOptions, contact, signed_distance};
 use workloads::pairs::{PAIR_NAMES, Pair};
 use workloads::w3_distance::{self, DistanceQuery};
@@ -49,16 +49,16 @@ impl PairTask<DVec3> for Warm<'_> {
 /// The depth, and the points in which the bodies support each other.
 struct Manifolds<'a>(&'a [IntersectQuery]);
 
-impl PairTask<DVec3> for Manifolds<'_> {
+impl<V: Space> PairTask<V> for Manifolds<'_> {
     fn solver<A, B>(self, a: A, b: B) -> Solver
     where
-        A: SupportMap<Vector = DVec3> + 'static,
-        B: SupportMap<Vector = DVec3> + 'static,
+        A: SupportMap<Vector = V> + 'static,
+        B: SupportMap<Vector = V> + 'static,
     {
-        let queries = self.0.iter().map(|query| placed::<DVec3>(query.pose)).collect();
+        let queries = self.0.iter().map(|query| placed::<V>(query.pose)).collect();
         Solver::new(queries, move |&(rotation, translation)| {
             let b = Posed::new(&b, rotation, translation).expect(VALID);
-            let found = contact(&a, &b, 0.0, SignedDistanceOptions::default());
+            let found = contact(&a, &b, V::Scalar::ZERO, SignedDistanceOptions::default());
             found.map_or(f64::NAN, |contact| contact.points().len() as f64)
         })
     }
@@ -91,6 +91,29 @@ fn times(pair: &Pair, overlapping: &[IntersectQuery]) -> [Option<f64>; 9] {
     ]
 }
 
+/// Our manifolds in `f32` and those of `Box3D`: nanoseconds, and how many points they have on average.
+#[cfg(feature = "box3d")]
+fn beside_box3d() {
+    println!("\n| | ours in `f32` | points | Box3D's | points | Box3D's / ours |\n|---|---:|---:|---:|---:|---:|");
+    for name in PAIR_NAMES {
+        let pair = Pair::named(name);
+        let overlapping = overlapping(&pair);
+        let Some(theirs) = benches::box3d::manifolds(&pair, &overlapping) else { continue };
+        let ours = with_pair::<convex_support::glam::Vec3A>(&pair, Manifolds(&overlapping));
+        let [(ours, of_ours), (theirs, of_theirs)] = [ours, theirs].map(|solver| {
+            let points = solver.answers();
+            let mean = points.iter().sum::<f64>() / points.len() as f64;
+            (solver.nanoseconds(0..solver.count(), BUDGET), mean)
+        });
+        println!("| {name} | {ours:.0} | {of_ours:.2} | {theirs:.0} | {of_theirs:.2} | {:.1} |", theirs / ours);
+    }
+}
+
+/// The queries of a pair whose bodies meet.
+fn overlapping(pair: &Pair) -> Vec<IntersectQuery> {
+    w3b_intersect::queries(pair).into_iter().filter(|query| query.meet).collect()
+}
+
 /// The mean and the most of the support points that depths of one pair take.
 fn support_points(pair: &Pair, overlapping: &[IntersectQuery]) -> String {
     let counting = Effort { iterations: true, ..Effort::default() };
@@ -106,8 +129,7 @@ fn main() {
     println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|");
     for name in PAIR_NAMES {
         let pair = Pair::named(name);
-        let overlapping: Vec<IntersectQuery> =
-            w3b_intersect::queries(&pair).into_iter().filter(|query| query.meet).collect();
+        let overlapping = overlapping(&pair);
         let times: Vec<String> = times(&pair, &overlapping)
             .iter()
             .enumerate()
@@ -117,4 +139,6 @@ fn main() {
             .collect();
         println!("| {name} | {} | {} |", times.join(" | "), support_points(&pair, &overlapping));
     }
+    #[cfg(feature = "box3d")]
+    beside_box3d();
 }
